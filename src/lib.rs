@@ -1,0 +1,9 @@
+//! facies predicts how a face will look after the bones under it are moved.
+//!
+//! The modules stand in the order of the path that a job takes; ARCHITECTURE.md tells who may use whom.
+
+pub mod boundary;
+pub mod material;
+pub mod mesh;
+pub mod plan;
+pub mod prediction;

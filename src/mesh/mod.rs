@@ -1,0 +1,14 @@
+//! What was scanned: volume meshes of soft tissue and triangle surfaces, node positions in mm.
+
+pub mod frame;
+pub mod surface;
+pub mod volume;
+pub mod warning;
+
+pub use frame::Frame;
+pub use surface::TriangleSurface;
+pub use volume::{CellShape, Cells, VolumeMesh};
+pub use warning::Warning;
+
+/// A position or a displacement in mm.
+pub type Vector = nalgebra::Vector3<f64>;

@@ -1,0 +1,61 @@
+//! Triangle surfaces: skin, bone.
+
+use super::Vector;
+
+/// Triangles with outward orientation where the surface is closed; points in mm.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TriangleSurface {
+    pub points: Vec<Vector>,
+    pub triangles: Vec<[u32; 3]>,
+    /// For each point the 0-based node of the volume mesh it was cut from, where that is known.
+    pub node_ids: Option<Vec<u32>>,
+}
+
+impl TriangleSurface {
+    /// The three corners of a triangle.
+    pub fn corners(&self, triangle: usize) -> [Vector; 3] {
+        self.triangles[triangle].map(|point| self.points[point as usize])
+    }
+
+    /// Half the cross product of two edges: along the normal, as long as the triangle's area in mm².
+    pub fn area_vector(&self, triangle: usize) -> Vector {
+        let [a, b, c] = self.corners(triangle);
+        (b - a).cross(&(c - a)) * 0.5
+    }
+
+    /// The total area in mm².
+    pub fn area(&self) -> f64 {
+        (0..self.triangles.len())
+            .map(|triangle| self.area_vector(triangle).norm())
+            .sum()
+    }
+
+    /// For each point a third of the area of its triangles, in mm².
+    pub fn point_areas(&self) -> Vec<f64> {
+        let mut areas = vec![0.0; self.points.len()];
+        for (triangle, corners) in self.triangles.iter().enumerate() {
+            let third = self.area_vector(triangle).norm() / 3.0;
+            for &corner in corners {
+                areas[corner as usize] += third;
+            }
+        }
+        areas
+    }
+
+    /// For each point the area-weighted unit normal; zero where its triangles cancel.
+    pub fn point_normals(&self) -> Vec<Vector> {
+        let mut normals = vec![Vector::zeros(); self.points.len()];
+        for (triangle, corners) in self.triangles.iter().enumerate() {
+            let area_vector = self.area_vector(triangle);
+            for &corner in corners {
+                normals[corner as usize] += area_vector;
+            }
+        }
+        for normal in &mut normals {
+            *normal = normal
+                .try_normalize(f64::MIN_POSITIVE)
+                .unwrap_or_else(Vector::zeros);
+        }
+        normals
+    }
+}

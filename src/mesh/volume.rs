@@ -1,0 +1,270 @@
+//! Volume meshes of mixed first-order cells with regions and named sets.
+
+use std::collections::{BTreeMap, HashMap};
+
+use super::{TriangleSurface, Vector};
+
+/// The shape of a first-order cell. Local node order is that of VTK for tetrahedra and hexahedra;
+/// a wedge has its triangle 0, 1, 2 below the triangle 3, 4, 5, counter-clockwise seen from above,
+/// so that its Jacobian is positive.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum CellShape {
+    Tet4,
+    Hex8,
+    Wedge6,
+}
+
+impl CellShape {
+    pub fn node_count(self) -> usize {
+        match self {
+            CellShape::Tet4 => 4,
+            CellShape::Hex8 => 8,
+            CellShape::Wedge6 => 6,
+        }
+    }
+
+    /// The faces as local nodes, counter-clockwise seen from outside.
+    pub fn faces(self) -> &'static [&'static [usize]] {
+        match self {
+            CellShape::Tet4 => &[&[0, 2, 1], &[0, 1, 3], &[1, 2, 3], &[0, 3, 2]],
+            CellShape::Hex8 => &[
+                &[0, 3, 2, 1],
+                &[4, 5, 6, 7],
+                &[0, 1, 5, 4],
+                &[1, 2, 6, 5],
+                &[2, 3, 7, 6],
+                &[3, 0, 4, 7],
+            ],
+            CellShape::Wedge6 => &[
+                &[0, 2, 1],
+                &[3, 4, 5],
+                &[0, 1, 4, 3],
+                &[1, 2, 5, 4],
+                &[2, 0, 3, 5],
+            ],
+        }
+    }
+
+    /// The edges as pairs of local nodes.
+    pub fn edges(self) -> &'static [[usize; 2]] {
+        match self {
+            CellShape::Tet4 => &[[0, 1], [1, 2], [2, 0], [0, 3], [1, 3], [2, 3]],
+            CellShape::Hex8 => &[
+                [0, 1],
+                [1, 2],
+                [2, 3],
+                [3, 0],
+                [4, 5],
+                [5, 6],
+                [6, 7],
+                [7, 4],
+                [0, 4],
+                [1, 5],
+                [2, 6],
+                [3, 7],
+            ],
+            CellShape::Wedge6 => &[
+                [0, 1],
+                [1, 2],
+                [2, 0],
+                [3, 4],
+                [4, 5],
+                [5, 3],
+                [0, 3],
+                [1, 4],
+                [2, 5],
+            ],
+        }
+    }
+
+    /// The name used in documents and tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            CellShape::Tet4 => "tet4",
+            CellShape::Hex8 => "hex8",
+            CellShape::Wedge6 => "wedge6",
+        }
+    }
+}
+
+/// Cells of mixed shape in the order of the file they came from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Cells {
+    shapes: Vec<CellShape>,
+    offsets: Vec<u32>,
+    nodes: Vec<u32>,
+}
+
+impl Default for Cells {
+    fn default() -> Self {
+        Cells {
+            shapes: Vec::new(),
+            offsets: vec![0],
+            nodes: Vec::new(),
+        }
+    }
+}
+
+impl Cells {
+    /// Appends a cell. `nodes` has as many entries as the shape has nodes.
+    pub fn push(&mut self, shape: CellShape, nodes: &[u32]) {
+        assert_eq!(
+            nodes.len(),
+            shape.node_count(),
+            "{} has other nodes",
+            shape.name()
+        );
+        self.shapes.push(shape);
+        self.nodes.extend_from_slice(nodes);
+        self.offsets.push(self.nodes.len() as u32);
+    }
+
+    pub fn len(&self) -> usize {
+        self.shapes.len()
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.shapes.is_empty()
+    }
+
+    pub fn shape(&self, cell: usize) -> CellShape {
+        self.shapes[cell]
+    }
+
+    pub fn nodes(&self, cell: usize) -> &[u32] {
+        &self.nodes[self.offsets[cell] as usize..self.offsets[cell + 1] as usize]
+    }
+
+    pub fn nodes_mut(&mut self, cell: usize) -> &mut [u32] {
+        &mut self.nodes[self.offsets[cell] as usize..self.offsets[cell + 1] as usize]
+    }
+
+    /// All cells in order: shape and nodes.
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = (CellShape, &[u32])> {
+        (0..self.len()).map(|cell| (self.shapes[cell], self.nodes(cell)))
+    }
+}
+
+/// Soft tissue: nodes in mm, cells, and everything the file said about them.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct VolumeMesh {
+    pub nodes: Vec<Vector>,
+    pub cells: Cells,
+    /// Named sets of nodes, each ascending and without repeats.
+    pub node_sets: BTreeMap<String, Vec<u32>>,
+    /// Named sets of cells, each ascending and without repeats.
+    pub cell_sets: BTreeMap<String, Vec<u32>>,
+    /// Integer arrays with one value for each node, for `{"array", "value"}` selections.
+    pub node_labels: BTreeMap<String, Vec<i64>>,
+    /// Integer arrays with one value for each cell; a case names one of them as its regions.
+    pub cell_labels: BTreeMap<String, Vec<i64>>,
+    /// Arrays with one vector for each node, for displacements prescribed by array.
+    pub node_vectors: BTreeMap<String, Vec<Vector>>,
+}
+
+/// A face that belongs to one cell only, oriented outwards; 3 or 4 nodes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BoundaryFace {
+    pub cell: u32,
+    nodes: [u32; 4],
+    count: u8,
+}
+
+impl BoundaryFace {
+    pub fn nodes(&self) -> &[u32] {
+        &self.nodes[..self.count as usize]
+    }
+
+    /// The face as one triangle or, cut along its diagonal 0-2, as two.
+    pub fn triangles(&self) -> impl Iterator<Item = [u32; 3]> + '_ {
+        let [a, b, c, d] = self.nodes;
+        [[a, b, c], [a, c, d]]
+            .into_iter()
+            .take(self.count as usize - 2)
+    }
+}
+
+impl VolumeMesh {
+    /// The corner positions of a cell, as many as its shape has nodes.
+    pub fn corners(&self, cell: usize) -> impl ExactSizeIterator<Item = Vector> + '_ {
+        self.cells
+            .nodes(cell)
+            .iter()
+            .map(|&node| self.nodes[node as usize])
+    }
+
+    /// The node set asked for as `NAME` or `set_NAME`.
+    pub fn node_set(&self, name: &str) -> Option<&[u32]> {
+        self.node_sets
+            .get(name)
+            .or_else(|| self.node_sets.get(name.strip_prefix("set_")?))
+            .map(Vec::as_slice)
+    }
+
+    /// The faces that belong to one cell only, in the order of cells and of the faces of each.
+    pub fn boundary_faces(&self) -> Vec<BoundaryFace> {
+        let mut times_seen: HashMap<[u32; 4], u32> = HashMap::with_capacity(self.cells.len() * 2);
+        for (shape, nodes) in self.cells.iter() {
+            for face in shape.faces() {
+                *times_seen.entry(face_key(face, nodes)).or_default() += 1;
+            }
+        }
+        let mut boundary = Vec::new();
+        for (cell, (shape, nodes)) in self.cells.iter().enumerate() {
+            for face in shape.faces() {
+                if times_seen[&face_key(face, nodes)] == 1 {
+                    let mut face_nodes = [u32::MAX; 4];
+                    for (slot, &local) in face_nodes.iter_mut().zip(*face) {
+                        *slot = nodes[local];
+                    }
+                    let count = face.len() as u8;
+                    boundary.push(BoundaryFace {
+                        cell: cell as u32,
+                        nodes: face_nodes,
+                        count,
+                    });
+                }
+            }
+        }
+        boundary
+    }
+
+    /// The faces as a triangle surface whose points are their nodes in ascending order.
+    pub fn surface_of(&self, faces: &[BoundaryFace]) -> TriangleSurface {
+        let mut node_ids: Vec<u32> = faces
+            .iter()
+            .flat_map(|face| face.nodes())
+            .copied()
+            .collect();
+        node_ids.sort_unstable();
+        node_ids.dedup();
+        let mut point_of = vec![u32::MAX; self.nodes.len()];
+        for (point, &node) in node_ids.iter().enumerate() {
+            point_of[node as usize] = point as u32;
+        }
+        let triangles = faces
+            .iter()
+            .flat_map(|face| face.triangles())
+            .map(|triangle| triangle.map(|node| point_of[node as usize]))
+            .collect();
+        let points = node_ids
+            .iter()
+            .map(|&node| self.nodes[node as usize])
+            .collect();
+        TriangleSurface {
+            points,
+            triangles,
+            node_ids: Some(node_ids),
+        }
+    }
+}
+
+/// The sorted nodes of a face: the same for both cells that share it.
+fn face_key(face: &[usize], nodes: &[u32]) -> [u32; 4] {
+    let mut key = [u32::MAX; 4];
+    for (slot, &local) in key.iter_mut().zip(face) {
+        *slot = nodes[local];
+    }
+    key.sort_unstable();
+    key
+}

@@ -1,0 +1,12 @@
+//! What the surgeon decided: which bone segments move, and how.
+
+pub mod movement;
+
+pub use movement::{MovementError, RigidMovement};
+
+/// A segment by the name it has in the case, and its movement in the frame of the case.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlannedSegment {
+    pub name: String,
+    pub movement: RigidMovement,
+}

@@ -1,0 +1,53 @@
+//! How a long computation tells where it is and asks whether to stop.
+
+/// What the work is at; the caller takes the time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Phase {
+    Validate,
+    Mesh,
+    Assemble,
+    Solve,
+    Contact,
+    Surface,
+    Compare,
+    Write,
+}
+
+impl Phase {
+    pub fn name(self) -> &'static str {
+        match self {
+            Phase::Validate => "validate",
+            Phase::Mesh => "mesh",
+            Phase::Assemble => "assemble",
+            Phase::Solve => "solve",
+            Phase::Contact => "contact",
+            Phase::Surface => "surface",
+            Phase::Compare => "compare",
+            Phase::Write => "write",
+        }
+    }
+}
+
+/// Told by the numerics, kept by the caller. Called from the solving thread, often, so it must be quick.
+pub trait Progress: Sync {
+    fn phase(&self, phase: Phase);
+
+    /// One more iteration of the solver, with its relative residual and the one asked for.
+    fn iteration(&self, iteration: usize, relative_residual: f64, wanted: f64);
+
+    /// True when the work is to end at its next check with a `cancelled` error.
+    fn is_cancelled(&self) -> bool;
+}
+
+/// Progress nobody follows, of work that nobody stops.
+pub struct Unobserved;
+
+impl Progress for Unobserved {
+    fn phase(&self, _phase: Phase) {}
+
+    fn iteration(&self, _iteration: usize, _relative_residual: f64, _wanted: f64) {}
+
+    fn is_cancelled(&self) -> bool {
+        false
+    }
+}
