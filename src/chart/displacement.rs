@@ -23,6 +23,8 @@ pub struct DisplacementPicture<'a> {
 
 const MARGIN: f64 = 28.0;
 const GAP: f64 = 12.0;
+/// Above the image of a panel, where the name of its row stands.
+const STRIP: f64 = 22.0;
 const PANEL_WIDTH: f64 = 300.0;
 const LEGEND_WIDTH: f64 = 84.0;
 const HEAD: f64 = 104.0;
@@ -45,39 +47,16 @@ impl DisplacementPicture<'_> {
             .iter()
             .map(|length| sequential(length / scale.maximum()))
             .collect();
-        let skin = vec![colour::SKIN; moved.len()];
         let cameras = ROWS.map(|(_, around, above)| self.outlook.camera(around, above));
         let layout = Layout::of(&cameras, self);
         let width = 2.0 * MARGIN + 3.0 * PANEL_WIDTH + 3.0 * GAP + LEGEND_WIDTH;
         let foot = wrapped(self.statistics, width - 2.0 * MARGIN, Style::of(13.0));
         let foot_height = 40.0 + 20.0 * foot.len() as f64;
-        let height = HEAD + 2.0 * layout.panel_height + GAP + foot_height;
+        let height = HEAD + 2.0 * (layout.image_height + STRIP) + GAP + foot_height;
 
         let mut document = Document::new(width, height);
         self.write_head(&mut document, width);
-        for (row, camera) in cameras.iter().enumerate() {
-            for (column, (points, colours)) in [
-                (self.before, &skin),
-                (self.after, &skin),
-                (self.after, &colours),
-            ]
-            .into_iter()
-            .enumerate()
-            {
-                let place = layout.panel(row, column);
-                document.rectangle(place, "#f3f4f6", 6.0);
-                let painted = Painted {
-                    points,
-                    triangles: self.triangles,
-                    colours,
-                    crisp: false,
-                };
-                document.image(place, &draw(&painted, &layout.shot(*camera, self)))?;
-            }
-            let place = layout.panel(row, 0);
-            let corner = [place.x + 10.0, place.y + 20.0];
-            document.text(corner, PANEL_WIDTH, Style::of(12.0).faint(), ROWS[row].0);
-        }
+        self.write_panels(&mut document, &layout, &cameras, &colours)?;
         layout.write_scale_bar(&mut document);
         layout.write_legend(&mut document, &scale);
         for (line, words) in foot.iter().enumerate() {
@@ -91,6 +70,45 @@ impl DisplacementPicture<'_> {
         );
         document.text([MARGIN, y], width, Style::of(11.0).faint(), &frame);
         Ok(document.finish(self.title))
+    }
+
+    fn write_panels(
+        &self,
+        document: &mut Document,
+        layout: &Layout,
+        cameras: &[Camera],
+        colours: &[Rgb],
+    ) -> Result<(), PngError> {
+        let skin = vec![colour::SKIN; colours.len()];
+        for (row, camera) in cameras.iter().enumerate() {
+            for (column, (points, colours)) in [
+                (self.before, skin.as_slice()),
+                (self.after, skin.as_slice()),
+                (self.after, colours),
+            ]
+            .into_iter()
+            .enumerate()
+            {
+                let place = layout.panel(row, column);
+                document.rectangle(place, "#f3f4f6", 6.0);
+                let painted = Painted {
+                    points,
+                    triangles: self.triangles,
+                    colours,
+                    crisp: false,
+                };
+                let below = Place {
+                    y: place.y + STRIP,
+                    height: layout.image_height,
+                    ..place
+                };
+                document.image(below, &draw(&painted, &layout.shot(*camera, self)))?;
+            }
+            let place = layout.panel(row, 0);
+            let corner = [place.x + 12.0, place.y + 18.0];
+            document.text(corner, PANEL_WIDTH, Style::of(12.0).faint(), ROWS[row].0);
+        }
+        Ok(())
     }
 
     fn write_head(&self, document: &mut Document, width: f64) {
@@ -107,7 +125,7 @@ impl DisplacementPicture<'_> {
 
 /// Where things stand; one scale for all panels.
 struct Layout {
-    panel_height: f64,
+    image_height: f64,
     millimetres_per_pixel: f64,
 }
 
@@ -120,10 +138,10 @@ impl Layout {
         let tallest = extents.iter().map(|e| e.size(1)).fold(0.0, f64::max);
         let widest = extents.iter().map(|e| e.size(0)).fold(0.0, f64::max);
         let aspect = if widest > 0.0 { tallest / widest } else { 1.0 };
-        let panel_height = (PANEL_WIDTH * aspect.clamp(0.7, 1.35)).round();
-        let pixels = [PANEL_WIDTH, panel_height].map(|side| (side * SHARPNESS) as usize);
+        let image_height = (PANEL_WIDTH * aspect.clamp(0.7, 1.35)).round();
+        let pixels = [PANEL_WIDTH, image_height].map(|side| (side * SHARPNESS) as usize);
         Layout {
-            panel_height,
+            image_height,
             millimetres_per_pixel: Shot::scale_for(&extents, pixels[0], pixels[1]),
         }
     }
@@ -135,16 +153,16 @@ impl Layout {
             centre: extent.centre(),
             millimetres_per_pixel: self.millimetres_per_pixel,
             width: (PANEL_WIDTH * SHARPNESS) as usize,
-            height: (self.panel_height * SHARPNESS) as usize,
+            height: (self.image_height * SHARPNESS) as usize,
         }
     }
 
     fn panel(&self, row: usize, column: usize) -> Place {
         Place {
             x: MARGIN + (PANEL_WIDTH + GAP) * column as f64,
-            y: HEAD + (self.panel_height + GAP) * row as f64,
+            y: HEAD + (self.image_height + STRIP + GAP) * row as f64,
             width: PANEL_WIDTH,
-            height: self.panel_height,
+            height: self.image_height + STRIP,
         }
     }
 
@@ -168,18 +186,16 @@ impl Layout {
         let x = top.x + PANEL_WIDTH + GAP + 6.0;
         let height = (bottom.y + bottom.height - top.y) * 0.6;
         let y = top.y + (bottom.y + bottom.height - top.y - height) / 2.0;
-        const BANDS: usize = 120;
-        for band in 0..BANDS {
-            let fraction = (band as f64 + 0.5) / BANDS as f64;
-            let place = Place {
-                x,
-                y: y + height * (1.0 - (band + 1) as f64 / BANDS as f64),
-                width: 16.0,
-                // Half a unit of overlap hides seams between neighbours.
-                height: height / BANDS as f64 + 0.5,
-            };
-            document.rectangle(place, &colour::hexadecimal(sequential(fraction)), 0.0);
-        }
+        let bar = Place {
+            x,
+            y,
+            width: 16.0,
+            height,
+        };
+        let colours: Vec<String> = (0..=12)
+            .map(|step| colour::hexadecimal(sequential(f64::from(step) / 12.0)))
+            .collect();
+        document.gradient(bar, &colours);
         for &tick in &scale.ticks {
             let level = y + height * (1.0 - tick / scale.maximum());
             document.line([x + 16.0, level], [x + 21.0, level]);

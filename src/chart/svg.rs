@@ -95,6 +95,18 @@ impl Document {
         );
     }
 
+    /// A rectangle that runs through evenly spaced colours, the first at its foot.
+    pub fn gradient(&mut self, place: Place, colours: &[String]) {
+        let last = colours.len().saturating_sub(1).max(1) as f64;
+        self.body += "<linearGradient id=\"sequence\" x1=\"0\" y1=\"1\" x2=\"0\" y2=\"0\">";
+        for (step, colour) in colours.iter().enumerate() {
+            let offset = step as f64 / last;
+            self.body += &format!("<stop offset=\"{offset:.4}\" stop-color=\"{colour}\"/>");
+        }
+        self.body += "</linearGradient>\n";
+        self.rectangle(place, "url(#sequence)", 0.0);
+    }
+
     pub fn line(&mut self, [x1, y1]: [f64; 2], [x2, y2]: [f64; 2]) {
         self.body += &format!(
             "<line x1=\"{x1:.1}\" y1=\"{y1:.1}\" x2=\"{x2:.1}\" y2=\"{y2:.1}\" stroke=\"{INK}\" stroke-width=\"1.2\"/>\n"

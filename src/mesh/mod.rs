@@ -1,6 +1,8 @@
 //! What was scanned: volume meshes of soft tissue and triangle surfaces, node positions in mm.
 
+mod face_shape;
 pub mod frame;
+pub mod half_head;
 pub mod refinement;
 pub mod sample;
 pub mod surface;
