@@ -4,6 +4,9 @@
 
 pub mod boundary;
 pub mod material;
+pub mod element;
+pub mod solver;
 pub mod mesh;
 pub mod plan;
+pub mod model;
 pub mod prediction;
