@@ -46,8 +46,8 @@ impl SurfaceSearch {
         let centre = sum / surface.points.len() as f64;
         let points = surface.points.iter().map(|point| outside_type(point - centre)).collect();
         let indices = triangles.iter().map(|&triangle| surface.triangles[triangle]).collect();
-        let mesh =
-            TriMesh::new(points, indices).map_err(|error| SearchError::Refused(error.to_string()))?;
+        let mesh = TriMesh::new(points, indices)
+            .map_err(|error| SearchError::Refused(error.to_string()))?;
         Ok(SurfaceSearch { mesh, centre, triangles })
     }
 
