@@ -1,11 +1,14 @@
 //! What was scanned: volume meshes of soft tissue and triangle surfaces, node positions in mm.
 
+pub mod closest_point;
 pub mod frame;
 pub mod sample;
 pub mod surface;
+mod surface_topology;
 pub mod volume;
 pub mod warning;
 
+pub use closest_point::{ClosestPoint, SurfaceSearch, SurfaceSearchError};
 pub use frame::Frame;
 pub use surface::TriangleSurface;
 pub use volume::{CellShape, Cells, VolumeMesh};
