@@ -3,10 +3,10 @@
 //! The modules stand in the order of the path that a job takes; ARCHITECTURE.md tells who may use whom.
 
 pub mod boundary;
-pub mod material;
 pub mod element;
-pub mod solver;
+pub mod material;
 pub mod mesh;
-pub mod plan;
 pub mod model;
+pub mod plan;
 pub mod prediction;
+pub mod solver;

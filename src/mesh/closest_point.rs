@@ -29,17 +29,13 @@ const SMALLEST_RELATIVE_HEIGHT: f64 = 1e-12;
 
 /// Why a surface cannot be searched.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum SurfaceSearchError {
+pub enum SearchError {
     #[error("none of {triangles} triangles has an area")]
     NoArea { triangles: usize },
     #[error("point {point} is not finite or is farther than 1e100 mm away")]
     NotFinite { point: usize },
     #[error("triangle {triangle} names point {point} of {points}")]
-    PointOutOfRange {
-        triangle: usize,
-        point: u32,
-        points: usize,
-    },
+    PointOutOfRange { triangle: usize, point: u32, points: usize },
 }
 
 /// Where on its triangle a closest point lies, by local numbers; edge i joins corners i and i + 1.
@@ -77,7 +73,7 @@ pub struct SurfaceSearch {
 
 impl SurfaceSearch {
     /// Triangles without area are left out; a surface that has no others is refused.
-    pub fn new(surface: &TriangleSurface) -> Result<Self, SurfaceSearchError> {
+    pub fn new(surface: &TriangleSurface) -> Result<Self, SearchError> {
         check(surface)?;
         let origin = middle(surface);
         let local = |point: &Vector| to_parry(&(point - origin));
@@ -92,7 +88,7 @@ impl SurfaceSearch {
         }
         if triangles.is_empty() {
             let triangles = surface.triangles.len();
-            return Err(SurfaceSearchError::NoArea { triangles });
+            return Err(SearchError::NoArea { triangles });
         }
         let boxes: Vec<Aabb> = triangles.iter().map(Triangle::local_aabb).collect();
         Ok(SurfaceSearch {
@@ -107,8 +103,7 @@ impl SurfaceSearch {
     /// The nearest point of the surface to a finite `point`. Among equally near triangles it is
     /// always the same one for the same surface. The distance to a point that is not finite is infinite.
     pub fn closest(&self, point: &Vector) -> ClosestPoint {
-        self.nearer_than(point, f64::INFINITY)
-            .unwrap_or_else(|| self.infinitely_far())
+        self.nearer_than(point, f64::INFINITY).unwrap_or_else(|| self.infinitely_far())
     }
 
     /// The nearest point of the surface if it is less than `limit` mm away; the smaller the limit,
@@ -134,11 +129,7 @@ impl SurfaceSearch {
     /// Distance from `point` to `closest`, the closest point to it: positive outside, in mm.
     pub fn signed_distance(&self, point: &Vector, closest: &ClosestPoint) -> f64 {
         let side = (point - closest.point).dot(&self.pseudo_normal(closest));
-        if side < 0.0 {
-            -closest.distance
-        } else {
-            closest.distance
-        }
+        if side < 0.0 { -closest.distance } else { closest.distance }
     }
 
     /// The angle-weighted unit normal of the face, edge or vertex that holds a closest point.
@@ -187,20 +178,16 @@ impl SurfaceSearch {
     }
 }
 
-fn check(surface: &TriangleSurface) -> Result<(), SurfaceSearchError> {
+fn check(surface: &TriangleSurface) -> Result<(), SearchError> {
     let points = surface.points.len();
     for (triangle, corners) in surface.triangles.iter().enumerate() {
         if let Some(&point) = corners.iter().find(|&&corner| corner as usize >= points) {
-            return Err(SurfaceSearchError::PointOutOfRange {
-                triangle,
-                point,
-                points,
-            });
+            return Err(SearchError::PointOutOfRange { triangle, point, points });
         }
     }
     let far = |x: &f64| !x.is_finite() || x.abs() > LARGEST_COORDINATE;
     match surface.points.iter().position(|point| point.iter().any(far)) {
-        Some(point) => Err(SurfaceSearchError::NotFinite { point }),
+        Some(point) => Err(SearchError::NotFinite { point }),
         None => Ok(()),
     }
 }
@@ -221,10 +208,7 @@ fn middle(surface: &TriangleSurface) -> Vector {
 
 fn has_area(a: &Vector, b: &Vector, c: &Vector) -> bool {
     let [ab, bc, ca] = [b - a, c - b, a - c];
-    let longest_square = ab
-        .norm_squared()
-        .max(bc.norm_squared())
-        .max(ca.norm_squared());
+    let longest_square = ab.norm_squared().max(bc.norm_squared()).max(ca.norm_squared());
     ab.cross(&ca).norm() > SMALLEST_RELATIVE_HEIGHT * longest_square
 }
 

@@ -8,7 +8,7 @@ mod surface_topology;
 pub mod volume;
 pub mod warning;
 
-pub use closest_point::{ClosestPoint, SurfaceSearch, SurfaceSearchError};
+pub use closest_point::{ClosestPoint, SearchError, SurfaceSearch};
 pub use frame::Frame;
 pub use surface::TriangleSurface;
 pub use volume::{CellShape, Cells, VolumeMesh};

@@ -25,10 +25,7 @@ struct Place {
 }
 
 impl Place {
-    const BARE: Place = Place {
-        normal: Vector::new(0.0, 0.0, 0.0),
-        is_open: false,
-    };
+    const BARE: Place = Place { normal: Vector::new(0.0, 0.0, 0.0), is_open: false };
 }
 
 impl SurfaceTopology {
