@@ -5,9 +5,11 @@ pub mod connectivity;
 pub mod frame;
 pub mod sample;
 pub mod surface;
+mod surface_topology;
 pub mod volume;
 pub mod warning;
 
+pub use closest_point::{ClosestPoint, SearchError, SurfaceSearch};
 pub use frame::Frame;
 pub use surface::TriangleSurface;
 pub use volume::{CellShape, Cells, VolumeMesh};
