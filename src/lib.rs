@@ -10,3 +10,4 @@ pub mod mesh;
 pub mod plan;
 pub mod model;
 pub mod prediction;
+pub mod schema;
