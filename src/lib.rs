@@ -10,3 +10,4 @@ pub mod model;
 pub mod plan;
 pub mod prediction;
 pub mod solver;
+pub mod schema;
