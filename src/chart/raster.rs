@@ -69,15 +69,9 @@ impl Image {
         let mut encoder = png::Encoder::new(&mut bytes, self.width as u32, self.height as u32);
         encoder.set_color(png::ColorType::Rgba);
         encoder.set_depth(png::BitDepth::Eight);
-        let wrap = |source| PngError {
-            width: self.width,
-            height: self.height,
-            source,
-        };
+        let wrap = |source| PngError { width: self.width, height: self.height, source };
         let mut writer = encoder.write_header().map_err(wrap)?;
-        writer
-            .write_image_data(self.pixels.as_flattened())
-            .map_err(wrap)?;
+        writer.write_image_data(self.pixels.as_flattened()).map_err(wrap)?;
         writer.finish().map_err(wrap)?;
         Ok(bytes)
     }
@@ -139,10 +133,9 @@ fn openness(surface: &Painted, normals: &[Vector]) -> Vec<f64> {
             let [from, to] = [from as usize, to as usize];
             let edge = surface.points[to] - surface.points[from];
             if let Some(direction) = edge.try_normalize(1e-12) {
-                for (point, slope) in [
-                    (from, normals[from].dot(&direction)),
-                    (to, -normals[to].dot(&direction)),
-                ] {
+                for (point, slope) in
+                    [(from, normals[from].dot(&direction)), (to, -normals[to].dot(&direction))]
+                {
                     rise[point].0 += slope;
                     rise[point].1 += 1.0;
                 }
@@ -242,11 +235,7 @@ impl Samples {
                 pixels.push([r as u8, g as u8, b as u8, opacity as u8]);
             }
         }
-        Image {
-            width,
-            height,
-            pixels,
-        }
+        Image { width, height, pixels }
     }
 }
 
@@ -259,19 +248,14 @@ fn shade(corners: [&Corner; 3], weights: [f64; 3], from_front: bool, crisp: bool
             + part(corners[1]) * weights[1]
             + part(corners[2]) * weights[2]
     };
-    let mut normal = mix(|corner| corner.normal)
-        .try_normalize(1e-12)
-        .unwrap_or_else(Vector::z);
+    let mut normal = mix(|corner| corner.normal).try_normalize(1e-12).unwrap_or_else(Vector::z);
     if !from_front {
         normal = -normal;
     }
     let albedo = if !from_front {
         linear(BACK)
     } else if crisp {
-        let nearest = (1..3).fold(
-            0,
-            |best, k| if weights[k] > weights[best] { k } else { best },
-        );
+        let nearest = (1..3).fold(0, |best, k| if weights[k] > weights[best] { k } else { best });
         corners[nearest].albedo
     } else {
         mix(|corner| corner.albedo)
@@ -325,18 +309,10 @@ mod tests {
     fn a_sphere_covers_the_pixels_of_its_disc() {
         let (points, triangles) = sphere(40.0, 60);
         let colours = vec![[200, 180, 160]; points.len()];
-        let surface = Painted {
-            points: &points,
-            triangles: &triangles,
-            colours: &colours,
-            crisp: false,
-        };
+        let surface =
+            Painted { points: &points, triangles: &triangles, colours: &colours, crisp: false };
         let image = draw(&surface, &shot(Outlook::lps(), 100));
-        let covered: f64 = image
-            .pixels
-            .iter()
-            .map(|pixel| f64::from(pixel[3]) / 255.0)
-            .sum();
+        let covered: f64 = image.pixels.iter().map(|pixel| f64::from(pixel[3]) / 255.0).sum();
         let disc = std::f64::consts::PI * 40.0 * 40.0;
         // The polyhedron's outline lies inside the circle by 0.2 % of its area.
         assert!((covered / disc - 1.0).abs() < 0.01, "{covered} of {disc}");
@@ -353,12 +329,8 @@ mod tests {
         triangles.extend(more.iter().map(|t| t.map(|p| p + count)));
         let mut colours = vec![[0, 0, 255]; count as usize];
         colours.resize(points.len(), [255, 0, 0]);
-        let surface = Painted {
-            points: &points,
-            triangles: &triangles,
-            colours: &colours,
-            crisp: true,
-        };
+        let surface =
+            Painted { points: &points, triangles: &triangles, colours: &colours, crisp: true };
         let mut view = shot(Outlook::lps(), 101);
         for (around, red_wins) in [(0.0, true), (180.0, false)] {
             view.camera = Outlook::lps().camera(around, 0.0);
@@ -372,12 +344,8 @@ mod tests {
         let (mut points, triangles) = sphere(40.0, 20);
         points[100].x = f64::NAN;
         let colours = vec![[200, 180, 160]; points.len()];
-        let surface = Painted {
-            points: &points,
-            triangles: &triangles,
-            colours: &colours,
-            crisp: false,
-        };
+        let surface =
+            Painted { points: &points, triangles: &triangles, colours: &colours, crisp: false };
         let image = draw(&surface, &shot(Outlook::lps(), 100));
         assert!(image.pixels.iter().filter(|pixel| pixel[3] > 0).count() > 4000);
     }

@@ -37,11 +37,7 @@ pub fn half_head(fineness: usize) -> HalfHead {
             let (row_of_profile, angle) = (grid.row(row), grid.angle(grid.column_at(place)));
             for (layer, mut point) in column(row_of_profile, angle.abs()).into_iter().enumerate() {
                 // Both sides come from the same angle, so that they mirror to the last bit.
-                point.x = if angle == 0.0 {
-                    0.0
-                } else {
-                    point.x.abs().copysign(angle)
-                };
+                point.x = if angle == 0.0 { 0.0 } else { point.x.abs().copysign(angle) };
                 nodes[grid.node(layer, row, place)] = point;
             }
         }
@@ -66,23 +62,14 @@ pub fn half_head(fineness: usize) -> HalfHead {
         }
     }
     let mesh = VolumeMesh {
-        cells: layers_of(
-            &grid.quads(),
-            grid.sheet_nodes(),
-            4,
-            CellShape::Tet4,
-            &nodes,
-        ),
+        cells: layers_of(&grid.quads(), grid.sheet_nodes(), 4, CellShape::Tet4, &nodes),
         cell_labels: BTreeMap::from([("layer".to_owned(), grid.layer_labels())]),
         node_sets: sets.0,
         nodes,
         ..VolumeMesh::default()
     };
     HalfHead {
-        bones: BONES
-            .into_iter()
-            .map(|name| (name, bone_surface(&mesh, name)))
-            .collect(),
+        bones: BONES.into_iter().map(|name| (name, bone_surface(&mesh, name))).collect(),
         landmarks: grid.landmarks(&mesh.nodes),
         mesh,
     }
@@ -128,10 +115,7 @@ struct Grid {
 
 impl Grid {
     fn of(fineness: usize) -> Self {
-        Grid {
-            rows: 9 * fineness,
-            half_columns: 4 * fineness as isize,
-        }
+        Grid { rows: 9 * fineness, half_columns: 4 * fineness as isize }
     }
 
     fn row_nodes(&self) -> usize {
@@ -154,11 +138,7 @@ impl Grid {
     }
 
     fn place_of(column: isize) -> usize {
-        if column > 0 {
-            2 * column as usize - 1
-        } else {
-            2 * column.unsigned_abs()
-        }
+        if column > 0 { 2 * column as usize - 1 } else { 2 * column.unsigned_abs() }
     }
 
     fn row(&self, row: usize) -> f64 {
@@ -179,11 +159,7 @@ impl Grid {
                 let at = |row: usize, column| self.node(0, row, Self::place_of(column)) as u32;
                 let [a, b] = [at(row, column), at(row, column + 1)];
                 let [c, d] = [at(row + 1, column + 1), at(row + 1, column)];
-                quads.push(if column < 0 {
-                    [b, c, d, a]
-                } else {
-                    [a, b, c, d]
-                });
+                quads.push(if column < 0 { [b, c, d, a] } else { [a, b, c, d] });
             }
         }
         quads
@@ -198,10 +174,7 @@ impl Grid {
                 let middle = self.row(row) + self.row(1) / 2.0;
                 let muscle = (19.5..34.5).contains(&middle);
                 let label = if layer == 1 && !muscle { 2 } else { layer };
-                labels.extend(std::iter::repeat_n(
-                    label,
-                    6 * 2 * self.half_columns as usize,
-                ));
+                labels.extend(std::iter::repeat_n(label, 6 * 2 * self.half_columns as usize));
             }
         }
         labels
