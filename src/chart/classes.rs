@@ -2,7 +2,7 @@
 
 use super::Vector;
 use super::colour::{self, Rgb};
-use super::raster::{Painted, PngError, Shot, draw};
+use super::raster::{Finish, Painted, PngError, Shot, draw};
 use super::svg::{Document, Place, Style};
 use super::view::Outlook;
 
@@ -92,7 +92,7 @@ impl ClassesPicture<'_> {
                 points: self.points,
                 triangles: self.triangles,
                 colours: &colours,
-                crisp: true,
+                finish: Finish::Classes,
             };
             document.rectangle(place, "#f3f4f6", 6.0);
             document.image(place, &draw(&painted, &shot))?;

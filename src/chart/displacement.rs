@@ -3,7 +3,7 @@
 use super::Vector;
 use super::colour::{self, Rgb, sequential};
 use super::legend::{Scale, round_length};
-use super::raster::{Painted, PngError, Shot, draw};
+use super::raster::{Finish, Painted, PngError, Shot, draw};
 use super::svg::{Document, Place, Style, wrapped};
 use super::view::{Camera, Outlook};
 
@@ -79,17 +79,17 @@ impl DisplacementPicture<'_> {
     ) -> Result<(), PngError> {
         let skin = vec![colour::SKIN; colours.len()];
         for (row, camera) in cameras.iter().enumerate() {
-            for (column, (points, colours)) in [
-                (self.before, skin.as_slice()),
-                (self.after, skin.as_slice()),
-                (self.after, colours),
+            for (column, (points, colours, finish)) in [
+                (self.before, skin.as_slice(), Finish::Bare),
+                (self.after, skin.as_slice(), Finish::Bare),
+                (self.after, colours, Finish::Values),
             ]
             .into_iter()
             .enumerate()
             {
                 let place = layout.panel(row, column);
                 document.rectangle(place, "#f3f4f6", 6.0);
-                let painted = Painted { points, triangles: self.triangles, colours, crisp: false };
+                let painted = Painted { points, triangles: self.triangles, colours, finish };
                 let below = Place { y: place.y + STRIP, height: layout.image_height, ..place };
                 document.image(below, &draw(&painted, &layout.shot(*camera, self)))?;
             }
