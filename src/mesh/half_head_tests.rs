@@ -132,6 +132,16 @@ fn landmarks_follow_each_other_down_the_profile() {
 }
 
 #[test]
+fn parts_of_the_skin_hold_their_landmarks() {
+    let HalfHead { mesh, landmarks, .. } = half_head(STANDARD_FINENESS);
+    for (part, landmark) in [("nose", "pronasale"), ("lips", "stomion"), ("chin", "pogonion")] {
+        let set = &mesh.node_sets[part];
+        assert!(set.iter().any(|&node| mesh.nodes[node as usize] == landmarks[landmark]));
+        assert!(set.iter().all(|node| mesh.node_sets["skin"].contains(node)));
+    }
+}
+
+#[test]
 fn every_layer_has_cells_and_muscle_is_a_band() {
     let mesh = half_head(2).mesh;
     let labels = &mesh.cell_labels["layer"];
