@@ -9,5 +9,5 @@ pub mod mesh;
 pub mod model;
 pub mod plan;
 pub mod prediction;
-pub mod solver;
 pub mod schema;
+pub mod solver;
