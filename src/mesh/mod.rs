@@ -1,7 +1,10 @@
 //! What was scanned: volume meshes of soft tissue and triangle surfaces, node positions in mm.
 
+pub mod check;
 pub mod frame;
+pub mod orientation;
 pub mod surface;
+pub mod surface_edges;
 pub mod volume;
 pub mod warning;
 
