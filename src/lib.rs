@@ -3,8 +3,12 @@
 //! The modules stand in the order of the path that a job takes; ARCHITECTURE.md tells who may use whom.
 
 pub mod boundary;
+pub mod element;
 pub mod format;
 pub mod material;
 pub mod mesh;
+pub mod model;
 pub mod plan;
 pub mod prediction;
+pub mod schema;
+pub mod solver;

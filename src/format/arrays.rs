@@ -198,9 +198,7 @@ pub(super) fn checked_name(name: &str, limits: &ReadLimits) -> Result<String, Fo
     let unwritable =
         |character: char| character.is_control() || matches!(character, '\u{fffe}' | '\u{ffff}');
     if name.contains(unwritable) {
-        return Err(FormatError::Name {
-            detail: format!("{name:?} holds a control character"),
-        });
+        return Err(FormatError::Name { detail: format!("{name:?} holds a control character") });
     }
     Ok(name.to_string())
 }

@@ -66,11 +66,7 @@ fn put_row(text: &mut String, cells: impl Iterator<Item = String>) {
 /// A text as one cell: never a formula, and quoted where it holds a separator.
 pub fn cell(text: &str) -> String {
     let is_formula = text.starts_with(['=', '+', '-', '@', '\t', '\r']);
-    let text = if is_formula {
-        format!("'{text}")
-    } else {
-        text.to_string()
-    };
+    let text = if is_formula { format!("'{text}") } else { text.to_string() };
     if text.contains(['"', ',', '\n', '\r']) {
         format!("\"{}\"", text.replace('"', "\"\""))
     } else {

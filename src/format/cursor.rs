@@ -13,11 +13,7 @@ pub(super) struct Cursor<'a> {
 
 impl<'a> Cursor<'a> {
     pub fn new(format: &'static str, bytes: &'a [u8]) -> Self {
-        Cursor {
-            format,
-            bytes,
-            at: 0,
-        }
+        Cursor { format, bytes, at: 0 }
     }
 
     pub fn rest(&self) -> &'a [u8] {
@@ -78,10 +74,7 @@ impl<'a> Cursor<'a> {
     // Words and lines.
 
     pub fn skip_space(&mut self) {
-        let space = self
-            .rest()
-            .iter()
-            .take_while(|byte| byte.is_ascii_whitespace());
+        let space = self.rest().iter().take_while(|byte| byte.is_ascii_whitespace());
         self.at += space.count();
     }
 
@@ -89,10 +82,7 @@ impl<'a> Cursor<'a> {
     pub fn word(&mut self) -> Option<&'a [u8]> {
         self.skip_space();
         let rest = self.rest();
-        let length = rest
-            .iter()
-            .position(u8::is_ascii_whitespace)
-            .unwrap_or(rest.len());
+        let length = rest.iter().position(u8::is_ascii_whitespace).unwrap_or(rest.len());
         self.at += length;
         (length > 0).then(|| &rest[..length])
     }
@@ -125,11 +115,8 @@ impl<'a> Cursor<'a> {
     /// The error for a word that should be a number; says so where a decimal comma is the cause.
     pub fn not_a_number(&self, what: &str, word: &str) -> FormatError {
         let shown: String = word.chars().take(40).collect();
-        let hint = if word.contains(',') {
-            "; numbers need a decimal point, not a comma"
-        } else {
-            ""
-        };
+        let hint =
+            if word.contains(',') { "; numbers need a decimal point, not a comma" } else { "" };
         self.bad_line(format!("expected {what}, found {shown:?}{hint}"))
     }
 

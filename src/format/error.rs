@@ -22,42 +22,25 @@ impl fmt::Display for Place {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum FormatError {
     #[error("{format} file, {place}: {detail}")]
-    Parse {
-        format: &'static str,
-        place: Place,
-        detail: String,
-    },
+    Parse { format: &'static str, place: Place, detail: String },
     #[error("the file holds cells that are not supported: {}", types.join(", "))]
     UnsupportedCells { types: Vec<String> },
     #[error("a name is refused: {detail}")]
     Name { detail: String },
     #[error("{declared} {what}, and {limit} is the limit")]
-    Limits {
-        what: &'static str,
-        declared: u64,
-        limit: u64,
-    },
+    Limits { what: &'static str, declared: u64, limit: u64 },
     #[error("memory does not hold {values} values")]
     Memory { values: u64 },
     #[error("{count} nodes have a coordinate that is not a finite number")]
     NonFinite { count: u64, first: Vec<u64> },
     #[error("{count} cells or triangles name a node that does not exist; there are {nodes} nodes")]
-    IndexOutOfRange {
-        count: u64,
-        first: Vec<u64>,
-        nodes: u64,
-    },
+    IndexOutOfRange { count: u64, first: Vec<u64>, nodes: u64 },
     #[error("the mesh is empty: {detail}")]
     Empty { detail: String },
     #[error("all {count} {what} are degenerate: they enclose nothing")]
     Degenerate { what: &'static str, count: u64 },
     #[error("{count} of {of} {shape} cells are inverted or flat")]
-    InvertedElements {
-        shape: &'static str,
-        count: u64,
-        of: u64,
-        first: Vec<u64>,
-    },
+    InvertedElements { shape: &'static str, count: u64, of: u64, first: Vec<u64> },
     #[error("the arrays decode to {declared} bytes, and {limit} bytes is the limit")]
     DecompressionLimit { declared: u64, limit: u64 },
     #[error("not a mesh file that is read here: {detail}")]
@@ -95,11 +78,7 @@ impl FormatError {
     pub fn members(&self) -> Vec<(&'static str, Member)> {
         use Member::{Count, Counts, Text, Texts};
         match self {
-            FormatError::Parse {
-                format,
-                place,
-                detail,
-            } => vec![
+            FormatError::Parse { format, place, detail } => vec![
                 ("format", Text((*format).into())),
                 match place {
                     Place::Line(line) => ("line", Count(*line)),
@@ -109,11 +88,7 @@ impl FormatError {
             ],
             FormatError::UnsupportedCells { types } => vec![("types", Texts(types.clone()))],
             FormatError::Name { detail } => vec![("detail", Text(detail.clone()))],
-            FormatError::Limits {
-                what,
-                declared,
-                limit,
-            } => vec![
+            FormatError::Limits { what, declared, limit } => vec![
                 ("what", Text((*what).into())),
                 ("declared", Count(*declared)),
                 ("limit", Count(*limit)),
@@ -122,11 +97,7 @@ impl FormatError {
             FormatError::NonFinite { count, first } => {
                 vec![("count", Count(*count)), ("first", Counts(first.clone()))]
             }
-            FormatError::IndexOutOfRange {
-                count,
-                first,
-                nodes,
-            } => vec![
+            FormatError::IndexOutOfRange { count, first, nodes } => vec![
                 ("count", Count(*count)),
                 ("first", Counts(first.clone())),
                 ("nodes", Count(*nodes)),
@@ -135,12 +106,7 @@ impl FormatError {
             FormatError::Degenerate { what, count } => {
                 vec![("what", Text((*what).into())), ("count", Count(*count))]
             }
-            FormatError::InvertedElements {
-                shape,
-                count,
-                of,
-                first,
-            } => vec![
+            FormatError::InvertedElements { shape, count, of, first } => vec![
                 ("shape", Text((*shape).into())),
                 ("count", Count(*count)),
                 ("of", Count(*of)),

@@ -50,12 +50,8 @@ fn turned(vector: Vector, frame: Frame) -> [f64; 3] {
 pub fn write(output: &SurfaceOutput) -> Result<Vec<u8>, WriteError> {
     output.check()?;
     let surface = output.surface;
-    let mut binary: Vec<u8> = surface
-        .triangles
-        .as_flattened()
-        .iter()
-        .flat_map(|corner| corner.to_le_bytes())
-        .collect();
+    let mut binary: Vec<u8> =
+        surface.triangles.as_flattened().iter().flat_map(|corner| corner.to_le_bytes()).collect();
     let index_bytes = binary.len();
     let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
     for &point in &surface.points {
@@ -86,11 +82,7 @@ fn put(binary: &mut Vec<u8>, values: [f32; 3]) {
 /// glTF stores linear colours. Source: IEC 61966-2-1.
 fn linear(srgb: u8) -> f32 {
     let value = f32::from(srgb) / 255.0;
-    if value <= 0.04045 {
-        value / 12.92
-    } else {
-        ((value + 0.055) / 1.055).powf(2.4)
-    }
+    if value <= 0.04045 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
 }
 
 /// Offset, length and target of each part of the binary chunk.
@@ -189,10 +181,7 @@ mod tests {
         assert_eq!(turned(-Vector::y(), Frame::Lps), [0.0, 0.0, 1.0]);
         assert_eq!(turned(Vector::y(), Frame::Ras), [0.0, 0.0, 1.0]);
         // The left of the patient is +x in LPS and -x in RAS.
-        assert_eq!(
-            turned(Vector::x(), Frame::Lps),
-            turned(-Vector::x(), Frame::Ras)
-        );
+        assert_eq!(turned(Vector::x(), Frame::Lps), turned(-Vector::x(), Frame::Ras));
     }
 
     #[test]

@@ -51,9 +51,7 @@ pub(super) fn read(bytes: &[u8], limits: &ReadLimits) -> Result<Parsed, FormatEr
             return Err(reader.bad(format!("section ${name} has no end")));
         }
     }
-    let GmshReader {
-        groups, mut parsed, ..
-    } = reader;
+    let GmshReader { groups, mut parsed, .. } = reader;
     groups.move_to(&mut parsed);
     Ok(parsed)
 }
@@ -143,10 +141,7 @@ impl GmshReader<'_, '_> {
         if self.binary.is_none() {
             return self.cursor.expect_words(count.saturating_mul(words_each));
         }
-        self.cursor
-            .clone()
-            .take_records(count, bytes_each)
-            .map(|_| ())
+        self.cursor.clone().take_records(count, bytes_each).map(|_| ())
     }
 
     fn point(&mut self) -> Result<Vector, FormatError> {

@@ -46,12 +46,7 @@ fn element_type(number: i64) -> Option<ElementType> {
         19 => ("13-node pyramid", 13, 3, Use::Unsupported),
         _ => return None,
     };
-    Some(ElementType {
-        name,
-        nodes,
-        dimension,
-        use_as,
-    })
+    Some(ElementType { name, nodes, dimension, use_as })
 }
 
 /// Elements while they are read.
@@ -189,8 +184,7 @@ impl GmshReader<'_, '_> {
         }
         if !self.parsed.cells.is_empty() {
             let what = "surface, line and point elements without a physical group";
-            self.parsed
-                .note_skipped(elements.polygons_without_group, what);
+            self.parsed.note_skipped(elements.polygons_without_group, what);
         }
         Ok(())
     }

@@ -83,10 +83,7 @@ impl Groups {
             members.dedup();
             // Unknown nodes are refused with their element; a set must not hold them.
             members.retain(|&member| member != u32::MAX);
-            let name = self
-                .names
-                .get(&(dimension, number))
-                .filter(|n| !n.is_empty());
+            let name = self.names.get(&(dimension, number)).filter(|n| !n.is_empty());
             let unnamed = || format!("physical_{dimension}_{number}");
             let name = name.cloned().unwrap_or_else(unnamed);
             if dimension == VOLUME {

@@ -61,9 +61,7 @@ impl ReadLimits {
     pub(super) fn decode_budget(&self, file_bytes: usize) -> DecodeBudget {
         let by_ratio = (file_bytes as f64 * self.decoded_ratio) as u64;
         DecodeBudget {
-            limit: by_ratio
-                .max(self.decoded_floor_bytes)
-                .min(self.decoded_bytes),
+            limit: by_ratio.max(self.decoded_floor_bytes).min(self.decoded_bytes),
             used: 0,
         }
     }
@@ -71,11 +69,7 @@ impl ReadLimits {
 
 fn within(what: &'static str, declared: u64, limit: u64) -> Result<(), FormatError> {
     if declared > limit {
-        return Err(FormatError::Limits {
-            what,
-            declared,
-            limit,
-        });
+        return Err(FormatError::Limits { what, declared, limit });
     }
     Ok(())
 }
@@ -91,10 +85,7 @@ impl DecodeBudget {
     pub fn charge(&mut self, bytes: u64) -> Result<(), FormatError> {
         let declared = self.used.saturating_add(bytes);
         if declared > self.limit {
-            return Err(FormatError::DecompressionLimit {
-                declared,
-                limit: self.limit,
-            });
+            return Err(FormatError::DecompressionLimit { declared, limit: self.limit });
         }
         self.used = declared;
         Ok(())
@@ -104,10 +95,6 @@ impl DecodeBudget {
 /// An empty vector with room for `count` values, or an error where memory does not allow it.
 pub(super) fn room_for<T>(count: usize) -> Result<Vec<T>, FormatError> {
     let mut values = Vec::new();
-    values
-        .try_reserve_exact(count)
-        .map_err(|_| FormatError::Memory {
-            values: count as u64,
-        })?;
+    values.try_reserve_exact(count).map_err(|_| FormatError::Memory { values: count as u64 })?;
     Ok(values)
 }

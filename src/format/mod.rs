@@ -105,13 +105,10 @@ pub struct ReadMesh {
 pub fn read(bytes: &[u8], limits: &ReadLimits) -> Result<ReadMesh, FormatError> {
     let bytes = without_byte_order_mark(bytes);
     if bytes.iter().all(u8::is_ascii_whitespace) {
-        return Err(FormatError::Empty {
-            detail: "the file holds nothing".into(),
-        });
+        return Err(FormatError::Empty { detail: "the file holds nothing".into() });
     }
-    let format = sniff::sniff(bytes).ok_or_else(|| FormatError::UnsupportedFormat {
-        detail: sniff::foreign_kind(bytes),
-    })?;
+    let format = sniff::sniff(bytes)
+        .ok_or_else(|| FormatError::UnsupportedFormat { detail: sniff::foreign_kind(bytes) })?;
     let parsed = match format {
         MeshFormat::Vtu => vtu::read(bytes, limits),
         MeshFormat::Vtp => vtp::read(bytes, limits),

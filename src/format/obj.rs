@@ -18,9 +18,7 @@ pub(super) fn read(bytes: &[u8], limits: &ReadLimits) -> Result<Parsed, FormatEr
         // The place of an error is the line that is being read, so that the cursor moves later.
         let mut after = cursor.clone();
         let Some(line) = after.line() else { break };
-        let mut words = line
-            .split(u8::is_ascii_whitespace)
-            .filter(|word| !word.is_empty());
+        let mut words = line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty());
         match words.next() {
             Some(b"v") => {
                 parsed.points.push(vertex(&cursor, words)?);
@@ -76,11 +74,7 @@ fn face<'a>(
             .ok()
             .and_then(|number| number.parse().ok())
             .ok_or_else(|| cursor.not_a_number("a vertex", &String::from_utf8_lossy(word)))?;
-        let index = if number < 0 {
-            number.saturating_add(vertices as i64)
-        } else {
-            number - 1
-        };
+        let index = if number < 0 { number.saturating_add(vertices as i64) } else { number - 1 };
         corners.push(node_number(index));
     }
     limits.check_corners(count)?;

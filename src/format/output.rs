@@ -80,11 +80,7 @@ pub enum WriteError {
     #[error("{count} values of {array:?} are not finite")]
     NonFinite { array: String, count: usize },
     #[error("{array:?} has {have} values for {wanted} points or cells")]
-    Length {
-        array: String,
-        have: usize,
-        wanted: usize,
-    },
+    Length { array: String, have: usize, wanted: usize },
     #[error("two arrays are called {array:?}")]
     Duplicate { array: String },
 }
@@ -158,21 +154,14 @@ fn check_length(array: &str, have: usize, wanted: usize) -> Result<(), WriteErro
     if have == wanted {
         return Ok(());
     }
-    Err(WriteError::Length {
-        array: array.into(),
-        have,
-        wanted,
-    })
+    Err(WriteError::Length { array: array.into(), have, wanted })
 }
 
 fn check_array(array: &str, values: ArrayValues, wanted: usize) -> Result<(), WriteError> {
     check_length(array, values.len(), wanted)?;
     match values.nonfinite() {
         0 => Ok(()),
-        count => Err(WriteError::NonFinite {
-            array: array.into(),
-            count,
-        }),
+        count => Err(WriteError::NonFinite { array: array.into(), count }),
     }
 }
 

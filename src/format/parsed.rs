@@ -51,9 +51,8 @@ impl Parsed {
             return;
         };
         let value = &upper[at + "SPACE=".len()..];
-        let length = value
-            .find(|character: char| !character.is_ascii_alphanumeric())
-            .unwrap_or(value.len());
+        let length =
+            value.find(|character: char| !character.is_ascii_alphanumeric()).unwrap_or(value.len());
         self.frame = self.frame.or(Frame::from_name(&value[..length]));
     }
 
@@ -114,10 +113,7 @@ impl Parsed {
             largest = largest.max(point.amax());
         }
         if nonfinite.count > 0 {
-            return Err(FormatError::NonFinite {
-                count: nonfinite.count,
-                first: nonfinite.first,
-            });
+            return Err(FormatError::NonFinite { count: nonfinite.count, first: nonfinite.first });
         }
         if largest > LARGEST_COORDINATE {
             return Err(FormatError::Limits {
@@ -160,8 +156,7 @@ impl Parsed {
         if self.polygons_cut > 0 && self.cells.is_empty() {
             let detail = format!("{} polygons were cut into triangles", self.polygons_cut);
             let warning = Warning::new("polygons-triangulated", detail);
-            self.warnings
-                .push(warning.with("count", self.polygons_cut as f64));
+            self.warnings.push(warning.with("count", self.polygons_cut as f64));
         }
     }
 
@@ -191,9 +186,7 @@ impl Parsed {
         for (name, cells) in self.cell_sets.drain(..) {
             insert(&mut mesh.cell_sets, checked_name(&name, limits)?, cells)?;
         }
-        let Parsed {
-            arrays, warnings, ..
-        } = self;
+        let Parsed { arrays, warnings, .. } = self;
         arrays.move_to_volume(&mut mesh, warnings, limits)?;
         for shape in [CellShape::Tet4, CellShape::Hex8, CellShape::Wedge6] {
             orient(&mut mesh, shape, warnings)?;
@@ -240,20 +233,15 @@ fn orient(
         }
     }
     if all > 0 && flat == all {
-        return Err(FormatError::Degenerate {
-            what: "cells",
-            count: all,
-        });
+        return Err(FormatError::Degenerate { what: "cells", count: all });
     }
     if all > 0 && reversed == all {
         reverse_all(mesh, shape);
         // The documentation of VTK and its code disagree about wedges, so that neither order of
         // their triangles is a mistake.
         if shape != CellShape::Wedge6 {
-            let detail = format!(
-                "all {all} {} cells were inverted and are reordered",
-                shape.name()
-            );
+            let detail =
+                format!("all {all} {} cells were inverted and are reordered", shape.name());
             warnings.push(Warning::new("cells-reordered", detail).with("count", all as f64));
         }
     } else if invalid.count > 0 {

@@ -21,12 +21,7 @@ pub(super) fn read(bytes: &[u8], limits: &ReadLimits) -> Result<Parsed, FormatEr
     let mut cursor = Cursor::new("PLY", bytes);
     cursor.skip_space();
     let header = Header::read(&mut cursor)?;
-    let mut reader = PlyReader {
-        cursor,
-        binary: header.binary,
-        limits,
-        parsed: Parsed::default(),
-    };
+    let mut reader = PlyReader { cursor, binary: header.binary, limits, parsed: Parsed::default() };
     for comment in &header.comments {
         reader.parsed.note_space_mark(comment);
     }
@@ -64,9 +59,7 @@ impl PlyReader<'_, '_> {
         }
         if self.binary.is_none() {
             let words = element.properties.len() as u64;
-            return self
-                .cursor
-                .expect_words(element.count.saturating_mul(words));
+            return self.cursor.expect_words(element.count.saturating_mul(words));
         }
         let mut ahead = self.cursor.clone();
         let rows = ahead.take_records(element.count, element.bytes_at_least());
@@ -141,10 +134,10 @@ impl PlyReader<'_, '_> {
         let names = others.map(|(_, property)| property.name.clone());
         self.parsed.arrays.ignored.extend(names);
         if node_id.is_some() {
-            self.parsed.arrays.points.push(NamedArray {
-                name: "node_id".into(),
-                values: Values::Integers(node_ids),
-            });
+            self.parsed
+                .arrays
+                .points
+                .push(NamedArray { name: "node_id".into(), values: Values::Integers(node_ids) });
         }
         Ok(())
     }

@@ -51,11 +51,7 @@ pub(super) struct Header {
 
 impl Header {
     pub fn read(cursor: &mut Cursor<'_>) -> Result<Header, FormatError> {
-        let mut header = Header {
-            binary: None,
-            elements: Vec::new(),
-            comments: Vec::new(),
-        };
+        let mut header = Header { binary: None, elements: Vec::new(), comments: Vec::new() };
         let mut has_format = false;
         cursor.line();
         loop {
@@ -77,9 +73,7 @@ impl Header {
                 }
                 ["element", name, count] => {
                     let what = "a number of elements";
-                    let count = count
-                        .parse()
-                        .map_err(|_| cursor.not_a_number(what, count))?;
+                    let count = count.parse().map_err(|_| cursor.not_a_number(what, count))?;
                     header.elements.push(Element {
                         name: (*name).into(),
                         count,
@@ -110,15 +104,11 @@ fn read_property(cursor: &Cursor<'_>, definition: &[&str]) -> Result<Property, F
             if !count.is_integer() {
                 return Err(cursor.bad_line("the length of a list is an integer"));
             }
-            Ok(Property {
-                name: (*name).into(),
-                kind: PropertyKind::List { count, item },
-            })
+            Ok(Property { name: (*name).into(), kind: PropertyKind::List { count, item } })
         }
-        [kind, name] => Ok(Property {
-            name: (*name).into(),
-            kind: PropertyKind::Single(scalar(kind)?),
-        }),
+        [kind, name] => {
+            Ok(Property { name: (*name).into(), kind: PropertyKind::Single(scalar(kind)?) })
+        }
         _ => Err(cursor.bad_line("a property that is not understood")),
     }
 }

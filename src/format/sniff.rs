@@ -14,18 +14,14 @@ const FOREIGN: [(&[u8], &str); 12] = [
     (b"BZh", "it is compressed with bzip2"),
     (b"\x28\xb5\x2f\xfd", "it is compressed with zstd"),
     (b"NRRD", "it is an NRRD volume"),
-    (
-        b"glTF",
-        "it is a glTF file, which is written here but not read",
-    ),
+    (b"glTF", "it is a glTF file, which is written here but not read"),
     (b"{", "it is a JSON document"),
     (b"\x89HDF", "it is an HDF5 file"),
 ];
 
 /// Words that start the lines of a Wavefront OBJ file.
-const OBJ_WORDS: [&[u8]; 13] = [
-    b"v", b"vn", b"vt", b"vp", b"f", b"l", b"p", b"o", b"g", b"s", b"mtllib", b"usemtl", b"deg",
-];
+const OBJ_WORDS: [&[u8]; 13] =
+    [b"v", b"vn", b"vt", b"vp", b"f", b"l", b"p", b"o", b"g", b"s", b"mtllib", b"usemtl", b"deg"];
 
 const STL_HEADER_BYTES: usize = 84;
 const STL_TRIANGLE_BYTES: u64 = 50;
@@ -103,9 +99,7 @@ fn is_binary_stl_of_exact_length(bytes: &[u8]) -> bool {
 /// A binary STL whose length is wrong still has a header of text, padded with zeros or spaces.
 fn looks_like_damaged_stl(bytes: &[u8]) -> bool {
     bytes.get(..80).is_some_and(|header| {
-        header
-            .iter()
-            .all(|&byte| byte == 0 || byte == b'\t' || (b' '..=b'~').contains(&byte))
+        header.iter().all(|&byte| byte == 0 || byte == b'\t' || (b' '..=b'~').contains(&byte))
     }) && bytes.len() >= STL_HEADER_BYTES
 }
 

@@ -17,18 +17,12 @@ const TRIANGLE_BYTES: u64 = 50;
 
 pub(super) fn read(bytes: &[u8], limits: &ReadLimits) -> Result<Parsed, FormatError> {
     let mut cursor = Cursor::new("STL", bytes);
-    if is_text(bytes) {
-        read_text(&mut cursor, limits)
-    } else {
-        read_binary(&mut cursor, limits)
-    }
+    if is_text(bytes) { read_text(&mut cursor, limits) } else { read_binary(&mut cursor, limits) }
 }
 
 /// Binary files may start with "solid" too; their length, or a zero byte, gives them away.
 fn is_text(bytes: &[u8]) -> bool {
-    let declared = bytes
-        .get(80..84)
-        .map(|count| Scalar::U32.integer(count, ByteOrder::Little));
+    let declared = bytes.get(80..84).map(|count| Scalar::U32.integer(count, ByteOrder::Little));
     let is_exact = declared.is_some_and(|count| {
         count > 0 && bytes.len() as u64 == HEADER_BYTES + 4 + count as u64 * TRIANGLE_BYTES
     });

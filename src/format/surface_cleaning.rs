@@ -37,30 +37,18 @@ fn drop_flat(
         .collect();
     let before = surface.triangles.len();
     let mut kept = keep.iter();
-    surface
-        .triangles
-        .retain(|_| kept.next().copied().unwrap_or(true));
+    surface.triangles.retain(|_| kept.next().copied().unwrap_or(true));
     if surface.triangles.is_empty() {
-        return Err(FormatError::Degenerate {
-            what: "triangles",
-            count: before as u64,
-        });
+        return Err(FormatError::Degenerate { what: "triangles", count: before as u64 });
     }
     let dropped = before - surface.triangles.len();
-    warn(
-        warnings,
-        "degenerate-triangles",
-        dropped,
-        "without area were dropped",
-    );
+    warn(warnings, "degenerate-triangles", dropped, "without area were dropped");
     Ok(())
 }
 
 fn bounds(points: &[Vector]) -> (Vector, Vector) {
     let start = (Vector::repeat(f64::MAX), Vector::repeat(f64::MIN));
-    points.iter().fold(start, |(low, high), point| {
-        (low.inf(point), high.sup(point))
-    })
+    points.iter().fold(start, |(low, high), point| (low.inf(point), high.sup(point)))
 }
 
 fn is_flat(surface: &TriangleSurface, triangle: usize, shortest: f64) -> bool {
@@ -88,15 +76,8 @@ fn drop_doubled(surface: &mut TriangleSurface, warnings: &mut Vec<Warning>) {
         }
     }
     let mut dropped = drop.iter();
-    surface
-        .triangles
-        .retain(|_| !dropped.next().copied().unwrap_or(false));
-    warn(
-        warnings,
-        "duplicate-triangles",
-        same,
-        "stood twice in the file",
-    );
+    surface.triangles.retain(|_| !dropped.next().copied().unwrap_or(false));
+    warn(warnings, "duplicate-triangles", same, "stood twice in the file");
     warn(
         warnings,
         "flipped-duplicates",
@@ -119,12 +100,7 @@ fn make_consistent(surface: &mut TriangleSurface, warnings: &mut Vec<Warning>) {
     let mut sides = surface.sorted_sides();
     if count_edges(&sides).inconsistent > 0 {
         let flipped = flip_minorities(surface, &sides);
-        warn(
-            warnings,
-            "triangles-flipped",
-            flipped,
-            "faced the other way than their neighbours",
-        );
+        warn(warnings, "triangles-flipped", flipped, "faced the other way than their neighbours");
         sides = surface.sorted_sides();
     }
     let counts = count_edges(&sides);
@@ -134,12 +110,7 @@ fn make_consistent(surface: &mut TriangleSurface, warnings: &mut Vec<Warning>) {
             triangle.swap(1, 2);
         }
         let all = surface.triangles.len();
-        warn(
-            warnings,
-            "surface-turned",
-            all,
-            "of a closed surface faced inwards",
-        );
+        warn(warnings, "surface-turned", all, "of a closed surface faced inwards");
     }
 }
 

@@ -32,10 +32,7 @@ impl<'d, 'a> Decoder<'d, 'a> {
     }
 
     pub fn new(document: &'d Document<'a>, file_bytes: usize, limits: &ReadLimits) -> Self {
-        Decoder {
-            document,
-            budget: limits.decode_budget(file_bytes),
-        }
+        Decoder { document, budget: limits.decode_budget(file_bytes) }
     }
 
     fn bad(&self, array: &DataArray<'_>, detail: impl std::fmt::Display) -> FormatError {
@@ -122,9 +119,7 @@ impl<'d, 'a> Decoder<'d, 'a> {
     }
 
     fn scalar(&self, array: &DataArray<'_>) -> Result<Scalar, FormatError> {
-        array
-            .scalar
-            .ok_or_else(|| self.bad(array, "it does not hold numbers"))
+        array.scalar.ok_or_else(|| self.bad(array, "it does not hold numbers"))
     }
 
     fn check_count(
@@ -212,10 +207,7 @@ impl<'d, 'a> Decoder<'d, 'a> {
     ) -> Result<Cow<'a, [u8]>, FormatError> {
         let have = source.at_most();
         if length > have {
-            return Err(self.bad(
-                array,
-                format!("{length} bytes declared, at most {have} left"),
-            ));
+            return Err(self.bad(array, format!("{length} bytes declared, at most {have} left")));
         }
         source
             .take(length as usize)?
@@ -230,10 +222,7 @@ impl<'d, 'a> Decoder<'d, 'a> {
         let Document { header, order, .. } = self.document;
         let bytes = self.take(array, source, header.size() * N as u64)?;
         let mut numbers = [0; N];
-        for (number, raw) in numbers
-            .iter_mut()
-            .zip(bytes.chunks_exact(header.size() as usize))
-        {
+        for (number, raw) in numbers.iter_mut().zip(bytes.chunks_exact(header.size() as usize)) {
             *number = header.integer(raw, *order) as u64;
         }
         Ok(numbers)
@@ -268,19 +257,12 @@ impl<'d, 'a> Decoder<'d, 'a> {
             .and_then(|before| before.checked_add(last))
             .unwrap_or(u64::MAX);
         self.budget.charge(decoded)?;
-        let stored = compressed
-            .iter()
-            .fold(0_u64, |sum, &bytes| sum.saturating_add(bytes));
+        let stored = compressed.iter().fold(0_u64, |sum, &bytes| sum.saturating_add(bytes));
         if stored > source.at_most() || decoded / MOST_BYTES_OF_ONE > stored {
             let detail = format!("{decoded} bytes declared in blocks of {stored} bytes");
             return Err(self.bad(array, detail));
         }
-        Ok(Blocks {
-            compressed,
-            full,
-            last,
-            decoded,
-        })
+        Ok(Blocks { compressed, full, last, decoded })
     }
 
     fn inflate(

@@ -148,9 +148,7 @@ pub(super) fn split_counted_lists(
     while let Some((&count, after)) = rest.split_first() {
         let Some((cell, after)) = after.split_at_checked(count as usize) else {
             let (cell, have) = (ends.len(), after.len());
-            return Err(format!(
-                "cell {cell} has {count} nodes, {have} numbers are left"
-            ));
+            return Err(format!("cell {cell} has {count} nodes, {have} numbers are left"));
         };
         nodes.extend_from_slice(cell);
         ends.push(nodes.len() as u32);
@@ -195,10 +193,7 @@ pub(super) fn decode_named(
             true => Values::Integers(decoder.integers(array, count, |v| v)?),
             false => Values::Vectors(as_vectors(&decoder.reals(array, count * 3)?)),
         };
-        let named = NamedArray {
-            name: array.name.clone(),
-            values,
-        };
+        let named = NamedArray { name: array.name.clone(), values };
         match section {
             Section::PointData => arrays.points.push(named),
             _ => arrays.cells.push(named),
@@ -209,8 +204,5 @@ pub(super) fn decode_named(
 
 /// Triples of numbers as vectors.
 pub(super) fn as_vectors(values: &[f64]) -> Vec<Vector> {
-    values
-        .chunks_exact(3)
-        .map(Vector::from_column_slice)
-        .collect()
+    values.chunks_exact(3).map(Vector::from_column_slice).collect()
 }

@@ -124,13 +124,13 @@ impl<'a> Document<'a> {
 
     /// The array of a section by its name.
     pub fn array(&self, section: Section, name: &str) -> Result<&DataArray<'a>, FormatError> {
-        self.arrays_in(section)
-            .find(|array| array.name.eq_ignore_ascii_case(name))
-            .ok_or_else(|| FormatError::Parse {
+        self.arrays_in(section).find(|array| array.name.eq_ignore_ascii_case(name)).ok_or_else(
+            || FormatError::Parse {
                 format: self.format,
                 place: Place::Offset(0),
                 detail: format!("{section:?} has no array {name:?}"),
-            })
+            },
+        )
     }
 }
 
@@ -168,10 +168,7 @@ impl<'a> Parser<'a> {
 
     fn run(&mut self, has_appended: bool) -> Result<(), FormatError> {
         loop {
-            let event = self
-                .reader
-                .read_event()
-                .map_err(|error| self.bad(error.to_string()))?;
+            let event = self.reader.read_event().map_err(|error| self.bad(error.to_string()))?;
             match event {
                 Event::Start(tag) => {
                     self.start(&tag)?;

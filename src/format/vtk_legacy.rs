@@ -246,11 +246,7 @@ impl LegacyReader<'_, '_> {
             let detail = format!("{cells} cells, but {types} cell types");
             return Err(self.cursor.bad_line(detail));
         }
-        let table = CellTable {
-            types: self.types,
-            ends: self.ends,
-            nodes: self.nodes,
-        };
+        let table = CellTable { types: self.types, ends: self.ends, nodes: self.nodes };
         let cursor = &self.cursor;
         table.move_to(&mut self.parsed, self.limits, |e| cursor.bad_line(e))?;
         Ok(self.parsed)

@@ -59,12 +59,7 @@ impl LegacyReader<'_, '_> {
             "TENSORS6" => (self.scalar_type()?, 6),
             _ => (self.scalar_type()?, 1),
         };
-        self.read_values(Announced {
-            name,
-            scalar,
-            components,
-            tuples: self.tuples,
-        })
+        self.read_values(Announced { name, scalar, components, tuples: self.tuples })
     }
 
     /// `type [components]`, then a line with the lookup table.
@@ -119,12 +114,7 @@ impl LegacyReader<'_, '_> {
                 continue;
             }
             let scalar = self.scalar_type()?;
-            self.read_values(Announced {
-                name,
-                scalar,
-                components,
-                tuples,
-            })?;
+            self.read_values(Announced { name, scalar, components, tuples })?;
         }
         Ok(())
     }
@@ -153,8 +143,7 @@ impl LegacyReader<'_, '_> {
                 decoded_name(&line.ok_or_else(|| self.cursor.bad_line("a text is missing"))?)
             };
             if name == "SPACE" && number == 0 && self.owner == Owner::Dataset {
-                self.parsed
-                    .note_space_mark(&format!("SPACE={}", text.trim()));
+                self.parsed.note_space_mark(&format!("SPACE={}", text.trim()));
                 self.parsed.note_space_mark(&text);
             }
         }
@@ -169,20 +158,13 @@ impl LegacyReader<'_, '_> {
         let first = self.cursor.rest().first().copied().unwrap_or_default();
         let bytes = [8, 4, 2, 1][usize::from(first >> 6)];
         let raw = self.cursor.take(bytes)?;
-        let length = raw
-            .iter()
-            .fold(0_u64, |sum, &byte| sum << 8 | u64::from(byte));
+        let length = raw.iter().fold(0_u64, |sum, &byte| sum << 8 | u64::from(byte));
         let mark = u64::from(first >> 6) << (8 * bytes - 2);
         Ok(length - mark)
     }
 
     fn read_values(&mut self, announced: Announced) -> Result<(), FormatError> {
-        let Announced {
-            name,
-            scalar,
-            components,
-            tuples,
-        } = announced;
+        let Announced { name, scalar, components, tuples } = announced;
         let count = components.saturating_mul(tuples);
         let has_cells = self.keeps_cell_arrays();
         let arrays = &mut self.parsed.arrays;

@@ -17,10 +17,7 @@ pub(super) enum Source<'a> {
 
 impl<'a> Source<'a> {
     pub fn base64(text: &'a [u8]) -> Self {
-        Source::Base64 {
-            text,
-            pending: Vec::new(),
-        }
+        Source::Base64 { text, pending: Vec::new() }
     }
 
     pub fn is_empty(&self) -> bool {

@@ -63,10 +63,7 @@ pub(super) struct VtkFile {
 
 impl VtkFile {
     pub fn new(kind: &'static str) -> Self {
-        let mut file = VtkFile {
-            text: "<?xml version=\"1.0\"?>\n".into(),
-            kind,
-        };
+        let mut file = VtkFile { text: "<?xml version=\"1.0\"?>\n".into(), kind };
         file.open(&format!(
             "VTKFile type=\"{kind}\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\" compressor=\"vtkZLibDataCompressor\""
         ));
@@ -161,8 +158,6 @@ fn compressed(bytes: &[u8]) -> (Vec<u8>, Vec<u8>) {
         header.push(stored.len());
         data.extend_from_slice(&stored);
     }
-    let header = header
-        .iter()
-        .flat_map(|&number| (number as u64).to_le_bytes());
+    let header = header.iter().flat_map(|&number| (number as u64).to_le_bytes());
     (header.collect(), data)
 }

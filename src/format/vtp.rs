@@ -90,9 +90,7 @@ pub fn write(output: &SurfaceOutput) -> Result<Vec<u8>, WriteError> {
     });
     file.section("Polys", |file| {
         let nodes = surface.triangles.as_flattened();
-        let ends: Vec<u32> = (1..=surface.triangles.len() as u32)
-            .map(|n| n * 3)
-            .collect();
+        let ends: Vec<u32> = (1..=surface.triangles.len() as u32).map(|n| n * 3).collect();
         file.array("connectivity", 1, Numbers::Nodes(nodes));
         file.array("offsets", 1, Numbers::Nodes(&ends));
     });

@@ -30,9 +30,7 @@ pub(super) fn read(bytes: &[u8], limits: &ReadLimits) -> Result<Parsed, FormatEr
         ends: read_ends(&document, &mut decoder, Section::Cells, cells)?,
         nodes: read_nodes(&document, &mut decoder, Section::Cells)?,
     };
-    table.move_to(&mut parsed, limits, |detail| {
-        at_array(&document, types, &detail)
-    })?;
+    table.move_to(&mut parsed, limits, |detail| at_array(&document, types, &detail))?;
     Ok(parsed)
 }
 

@@ -3,6 +3,7 @@
 
 use std::collections::BTreeMap;
 
+use super::connectivity::{parts_by_face, sorted_faces};
 use super::surface_edges::count_edges;
 use super::{CellShape, TriangleSurface, Vector, VolumeMesh, Warning};
 
@@ -26,7 +27,7 @@ pub struct MeshReport {
     pub volume_mm3: Option<f64>,
     /// mm²; of a volume mesh that of its boundary.
     pub area_mm2: f64,
-    /// Parts that share no node with each other.
+    /// Parts that share no face with each other, or, in a surface, no point.
     pub components: u64,
     /// Cells or triangles of the ten largest parts.
     pub largest_components: Vec<u64>,
@@ -51,7 +52,8 @@ pub struct MeshReport {
 impl MeshReport {
     pub fn of_volume(mesh: &VolumeMesh) -> MeshReport {
         let surface = mesh.surface_of(&mesh.boundary_faces());
-        let parts = Parts::of(mesh.nodes.len(), mesh.cells.iter().map(|(_, nodes)| nodes));
+        let parts = volume_parts(mesh);
+        let referenced = mesh.cells.iter().flat_map(|(_, nodes)| nodes);
         let mut report = MeshReport {
             nodes: mesh.nodes.len() as u64,
             cells: cells_by_shape(mesh),
@@ -59,13 +61,13 @@ impl MeshReport {
             bounding_box: bounding_box(&mesh.nodes),
             volume_mm3: Some(volume(mesh)),
             area_mm2: surface.area(),
-            components: parts.sizes.len() as u64,
+            components: parts.len() as u64,
             open_edges: 0,
             nonmanifold_edges: count_edges(&surface.sorted_sides()).nonmanifold,
             nonmanifold_faces: nonmanifold_faces(mesh),
-            unreferenced_nodes: parts.unreferenced,
+            unreferenced_nodes: unreferenced(mesh.nodes.len(), referenced),
             duplicate_nodes: duplicates(&mesh.nodes),
-            largest_components: parts.largest(),
+            largest_components: largest(&parts),
             node_sets: sizes(&mesh.node_sets),
             cell_sets: sizes(&mesh.cell_sets),
             node_labels: occurrences(&mesh.node_labels),
@@ -79,8 +81,8 @@ impl MeshReport {
 
     pub fn of_surface(surface: &TriangleSurface) -> MeshReport {
         let edges = count_edges(&surface.sorted_sides());
-        let triangles = surface.triangles.iter().map(|corners| corners.as_slice());
-        let parts = Parts::of(surface.points.len(), triangles);
+        let parts = surface_parts(surface);
+        let referenced = surface.triangles.as_flattened().iter();
         let is_closed = edges.open == 0 && edges.nonmanifold == 0;
         let mut report = MeshReport {
             nodes: surface.points.len() as u64,
@@ -88,12 +90,12 @@ impl MeshReport {
             bounding_box: bounding_box(&surface.points),
             volume_mm3: is_closed.then(|| surface.signed_volume()),
             area_mm2: surface.area(),
-            components: parts.sizes.len() as u64,
+            components: parts.len() as u64,
             open_edges: edges.open,
             nonmanifold_edges: edges.nonmanifold,
-            unreferenced_nodes: parts.unreferenced,
+            unreferenced_nodes: unreferenced(surface.points.len(), referenced),
             duplicate_nodes: duplicates(&surface.points),
-            largest_components: parts.largest(),
+            largest_components: largest(&parts),
             ..MeshReport::default()
         };
         report.warn();
@@ -102,8 +104,7 @@ impl MeshReport {
 
     /// From one corner of the bounding box to the other, in mm; 0 without nodes.
     pub fn diagonal(&self) -> f64 {
-        self.bounding_box
-            .map_or(0.0, |[low, high]| (high - low).norm())
+        self.bounding_box.map_or(0.0, |[low, high]| (high - low).norm())
     }
 
     fn warn(&mut self) {
@@ -114,36 +115,17 @@ impl MeshReport {
             }
         };
         let other_parts = self.components.saturating_sub(1);
-        add(
-            "several-components",
-            other_parts,
-            "parts touch the largest one nowhere",
-        );
-        add(
-            "nonmanifold-edges",
-            self.nonmanifold_edges,
-            "edges belong to more than two triangles",
-        );
-        add(
-            "nonmanifold-faces",
-            self.nonmanifold_faces,
-            "faces belong to more than two cells",
-        );
-        add(
-            "duplicate-nodes",
-            self.duplicate_nodes,
-            "nodes lie exactly on another one",
-        );
+        add("several-components", other_parts, "parts touch the largest one nowhere");
+        add("nonmanifold-edges", self.nonmanifold_edges, "edges belong to more than two triangles");
+        add("nonmanifold-faces", self.nonmanifold_faces, "faces belong to more than two cells");
+        add("duplicate-nodes", self.duplicate_nodes, "nodes lie exactly on another one");
         let sets = self.node_sets.iter().chain(&self.cell_sets);
-        let empty: Vec<&str> = sets
-            .filter(|(_, size)| **size == 0)
-            .map(|(name, _)| name.as_str())
-            .collect();
+        let empty: Vec<&str> =
+            sets.filter(|(_, size)| **size == 0).map(|(name, _)| name.as_str()).collect();
         if !empty.is_empty() {
             let detail = format!("sets without a member: {}", empty.join(", "));
             let warning = Warning::new("empty-sets", detail);
-            self.warnings
-                .push(warning.with("count", empty.len() as f64));
+            self.warnings.push(warning.with("count", empty.len() as f64));
         }
     }
 }
@@ -176,23 +158,18 @@ fn cells_by_shape(mesh: &VolumeMesh) -> BTreeMap<&'static str, u64> {
 
 fn bounding_box(nodes: &[Vector]) -> Option<[Vector; 2]> {
     let first = *nodes.first()?;
-    let widened = nodes.iter().fold([first, first], |[low, high], node| {
-        [low.inf(node), high.sup(node)]
-    });
+    let widened =
+        nodes.iter().fold([first, first], |[low, high], node| [low.inf(node), high.sup(node)]);
     Some(widened)
 }
 
 fn volume(mesh: &VolumeMesh) -> f64 {
-    (0..mesh.cells.len())
-        .map(|cell| mesh.cell_jacobian(cell).volume)
-        .sum()
+    (0..mesh.cells.len()).map(|cell| mesh.cell_jacobian(cell).volume).sum()
 }
 
 fn sizes(sets: &BTreeMap<String, Vec<u32>>) -> BTreeMap<String, u64> {
     let sized = sets.iter();
-    sized
-        .map(|(name, set)| (name.clone(), set.len() as u64))
-        .collect()
+    sized.map(|(name, set)| (name.clone(), set.len() as u64)).collect()
 }
 
 fn occurrences(labels: &BTreeMap<String, Vec<i64>>) -> BTreeMap<String, BTreeMap<i64, u64>> {
@@ -217,57 +194,51 @@ fn duplicates(nodes: &[Vector]) -> u64 {
 
 /// Faces that belong to more than two cells.
 fn nonmanifold_faces(mesh: &VolumeMesh) -> u64 {
-    let mut faces = Vec::with_capacity(mesh.cells.len() * 5);
-    for (shape, nodes) in mesh.cells.iter() {
-        for face in shape.faces() {
-            let mut key = [u32::MAX; 4];
-            for (slot, &local) in key.iter_mut().zip(*face) {
-                *slot = nodes[local];
-            }
-            key.sort_unstable();
-            faces.push(key);
-        }
-    }
-    faces.sort_unstable();
-    let shared = faces.chunk_by(|one, other| one == other);
+    let faces = sorted_faces(mesh);
+    let shared = faces.chunk_by(|one, other| one.nodes == other.nodes);
     shared.filter(|group| group.len() > 2).count() as u64
 }
 
-/// Parts of a mesh that share no node.
-struct Parts {
-    /// Cells of each part, largest first.
-    sizes: Vec<u64>,
-    unreferenced: u64,
+/// Cells of each part of a volume mesh, largest first; parts hang together by faces.
+fn volume_parts(mesh: &VolumeMesh) -> Vec<u64> {
+    let mut sizes = Vec::new();
+    for part in parts_by_face(mesh) {
+        let part = part as usize;
+        sizes.resize(sizes.len().max(part + 1), 0);
+        sizes[part] += 1;
+    }
+    sizes.sort_unstable_by(|one: &u64, other| other.cmp(one));
+    sizes
 }
 
-impl Parts {
-    fn of<'a>(nodes: usize, cells: impl Iterator<Item = &'a [u32]>) -> Parts {
-        let mut parent: Vec<u32> = (0..nodes as u32).collect();
-        let mut first_nodes = Vec::new();
-        let mut is_referenced = vec![false; nodes];
-        for cell in cells {
-            for &node in cell {
-                is_referenced[node as usize] = true;
-                let (one, other) = (root(&mut parent, cell[0]), root(&mut parent, node));
-                parent[one.max(other) as usize] = one.min(other);
-            }
-            first_nodes.extend(cell.first());
-        }
-        let mut cells_of = vec![0_u64; nodes];
-        for node in first_nodes {
-            cells_of[root(&mut parent, node) as usize] += 1;
-        }
-        let mut sizes: Vec<u64> = cells_of.into_iter().filter(|size| *size > 0).collect();
-        sizes.sort_unstable_by(|one, other| other.cmp(one));
-        Parts {
-            sizes,
-            unreferenced: is_referenced.iter().filter(|named| !**named).count() as u64,
+/// Triangles of each part of a surface, largest first; parts hang together by points.
+fn surface_parts(surface: &TriangleSurface) -> Vec<u64> {
+    let mut parent: Vec<u32> = (0..surface.points.len() as u32).collect();
+    for &[a, b, c] in &surface.triangles {
+        for other in [b, c] {
+            let (one, other) = (root(&mut parent, a), root(&mut parent, other));
+            parent[one.max(other) as usize] = one.min(other);
         }
     }
+    let mut triangles_of = vec![0_u64; parent.len()];
+    for triangle in &surface.triangles {
+        triangles_of[root(&mut parent, triangle[0]) as usize] += 1;
+    }
+    triangles_of.retain(|size| *size > 0);
+    triangles_of.sort_unstable_by(|one, other| other.cmp(one));
+    triangles_of
+}
 
-    fn largest(&self) -> Vec<u64> {
-        self.sizes.iter().copied().take(MOST_PARTS_LISTED).collect()
+fn largest(parts: &[u64]) -> Vec<u64> {
+    parts.iter().copied().take(MOST_PARTS_LISTED).collect()
+}
+
+fn unreferenced<'a>(nodes: usize, named: impl Iterator<Item = &'a u32>) -> u64 {
+    let mut is_named = vec![false; nodes];
+    for &node in named {
+        is_named[node as usize] = true;
     }
+    is_named.iter().filter(|named| !**named).count() as u64
 }
 
 /// The node that stands for the part of `node`. Halves the path on its way.

@@ -24,10 +24,7 @@ struct SamplePoints {
 static HEXAHEDRON: LazyLock<SamplePoints> = LazyLock::new(|| {
     let at = 1.0 / 3.0_f64.sqrt();
     SamplePoints {
-        corners: HEXAHEDRON_CORNERS
-            .iter()
-            .map(hexahedron_gradients)
-            .collect(),
+        corners: HEXAHEDRON_CORNERS.iter().map(hexahedron_gradients).collect(),
         gauss: HEXAHEDRON_CORNERS
             .iter()
             .map(|corner| hexahedron_gradients(&corner.map(|sign| sign * at)))
@@ -42,8 +39,7 @@ static WEDGE: LazyLock<SamplePoints> = LazyLock::new(|| {
     let inner = triangle.map(|point| point.map(|coordinate: f64| coordinate / 2.0 + 1.0 / 6.0));
     let both_ends = |points: [[f64; 2]; 3], end: f64| {
         let ends = [-end, end].into_iter();
-        ends.flat_map(move |z| points.map(|[x, y]| wedge_gradients(x, y, z)))
-            .collect()
+        ends.flat_map(move |z| points.map(|[x, y]| wedge_gradients(x, y, z))).collect()
     };
     SamplePoints {
         corners: both_ends(triangle, 1.0),

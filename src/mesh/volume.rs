@@ -1,7 +1,10 @@
 //! Volume meshes of mixed first-order cells with regions and named sets.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 
+use rayon::prelude::*;
+
+use super::connectivity::sorted_faces;
 use super::{TriangleSurface, Vector};
 
 /// The shape of a first-order cell. Local node order is that of VTK for tetrahedra and hexahedra;
@@ -35,13 +38,9 @@ impl CellShape {
                 &[2, 3, 7, 6],
                 &[3, 0, 4, 7],
             ],
-            CellShape::Wedge6 => &[
-                &[0, 2, 1],
-                &[3, 4, 5],
-                &[0, 1, 4, 3],
-                &[1, 2, 5, 4],
-                &[2, 0, 3, 5],
-            ],
+            CellShape::Wedge6 => {
+                &[&[0, 2, 1], &[3, 4, 5], &[0, 1, 4, 3], &[1, 2, 5, 4], &[2, 0, 3, 5]]
+            }
         }
     }
 
@@ -63,17 +62,9 @@ impl CellShape {
                 [2, 6],
                 [3, 7],
             ],
-            CellShape::Wedge6 => &[
-                [0, 1],
-                [1, 2],
-                [2, 0],
-                [3, 4],
-                [4, 5],
-                [5, 3],
-                [0, 3],
-                [1, 4],
-                [2, 5],
-            ],
+            CellShape::Wedge6 => {
+                &[[0, 1], [1, 2], [2, 0], [3, 4], [4, 5], [5, 3], [0, 3], [1, 4], [2, 5]]
+            }
         }
     }
 
@@ -97,23 +88,14 @@ pub struct Cells {
 
 impl Default for Cells {
     fn default() -> Self {
-        Cells {
-            shapes: Vec::new(),
-            offsets: vec![0],
-            nodes: Vec::new(),
-        }
+        Cells { shapes: Vec::new(), offsets: vec![0], nodes: Vec::new() }
     }
 }
 
 impl Cells {
     /// Appends a cell. `nodes` has as many entries as the shape has nodes.
     pub fn push(&mut self, shape: CellShape, nodes: &[u32]) {
-        assert_eq!(
-            nodes.len(),
-            shape.node_count(),
-            "{} has other nodes",
-            shape.name()
-        );
+        assert_eq!(nodes.len(), shape.node_count(), "{} has other nodes", shape.name());
         self.shapes.push(shape);
         self.nodes.extend_from_slice(nodes);
         self.offsets.push(self.nodes.len() as u32);
@@ -178,19 +160,14 @@ impl BoundaryFace {
     /// The face as one triangle or, cut along its diagonal 0-2, as two.
     pub fn triangles(&self) -> impl Iterator<Item = [u32; 3]> + '_ {
         let [a, b, c, d] = self.nodes;
-        [[a, b, c], [a, c, d]]
-            .into_iter()
-            .take(self.count as usize - 2)
+        [[a, b, c], [a, c, d]].into_iter().take(self.count as usize - 2)
     }
 }
 
 impl VolumeMesh {
     /// The corner positions of a cell, as many as its shape has nodes.
     pub fn corners(&self, cell: usize) -> impl ExactSizeIterator<Item = Vector> + '_ {
-        self.cells
-            .nodes(cell)
-            .iter()
-            .map(|&node| self.nodes[node as usize])
+        self.cells.nodes(cell).iter().map(|&node| self.nodes[node as usize])
     }
 
     /// The node set asked for as `NAME` or `set_NAME`.
@@ -203,39 +180,29 @@ impl VolumeMesh {
 
     /// The faces that belong to one cell only, in the order of cells and of the faces of each.
     pub fn boundary_faces(&self) -> Vec<BoundaryFace> {
-        let mut times_seen: HashMap<[u32; 4], u32> = HashMap::with_capacity(self.cells.len() * 2);
-        for (shape, nodes) in self.cells.iter() {
-            for face in shape.faces() {
-                *times_seen.entry(face_key(face, nodes)).or_default() += 1;
-            }
+        let faces = sorted_faces(self);
+        let mut alone: Vec<(u32, u8)> = faces
+            .chunk_by(|a, b| a.nodes == b.nodes)
+            .filter(|same| same.len() == 1)
+            .map(|same| (same[0].cell, same[0].local))
+            .collect();
+        alone.par_sort_unstable();
+        alone.into_iter().map(|(cell, local)| self.face(cell, local)).collect()
+    }
+
+    fn face(&self, cell: u32, local: u8) -> BoundaryFace {
+        let cell_nodes = self.cells.nodes(cell as usize);
+        let face = self.cells.shape(cell as usize).faces()[local as usize];
+        let mut nodes = [u32::MAX; 4];
+        for (slot, &local) in nodes.iter_mut().zip(face) {
+            *slot = cell_nodes[local];
         }
-        let mut boundary = Vec::new();
-        for (cell, (shape, nodes)) in self.cells.iter().enumerate() {
-            for face in shape.faces() {
-                if times_seen[&face_key(face, nodes)] == 1 {
-                    let mut face_nodes = [u32::MAX; 4];
-                    for (slot, &local) in face_nodes.iter_mut().zip(*face) {
-                        *slot = nodes[local];
-                    }
-                    let count = face.len() as u8;
-                    boundary.push(BoundaryFace {
-                        cell: cell as u32,
-                        nodes: face_nodes,
-                        count,
-                    });
-                }
-            }
-        }
-        boundary
+        BoundaryFace { cell, nodes, count: face.len() as u8 }
     }
 
     /// The faces as a triangle surface whose points are their nodes in ascending order.
     pub fn surface_of(&self, faces: &[BoundaryFace]) -> TriangleSurface {
-        let mut node_ids: Vec<u32> = faces
-            .iter()
-            .flat_map(|face| face.nodes())
-            .copied()
-            .collect();
+        let mut node_ids: Vec<u32> = faces.iter().flat_map(|face| face.nodes()).copied().collect();
         node_ids.sort_unstable();
         node_ids.dedup();
         let mut point_of = vec![u32::MAX; self.nodes.len()];
@@ -247,24 +214,7 @@ impl VolumeMesh {
             .flat_map(|face| face.triangles())
             .map(|triangle| triangle.map(|node| point_of[node as usize]))
             .collect();
-        let points = node_ids
-            .iter()
-            .map(|&node| self.nodes[node as usize])
-            .collect();
-        TriangleSurface {
-            points,
-            triangles,
-            node_ids: Some(node_ids),
-        }
+        let points = node_ids.iter().map(|&node| self.nodes[node as usize]).collect();
+        TriangleSurface { points, triangles, node_ids: Some(node_ids) }
     }
-}
-
-/// The sorted nodes of a face: the same for both cells that share it.
-fn face_key(face: &[usize], nodes: &[u32]) -> [u32; 4] {
-    let mut key = [u32::MAX; 4];
-    for (slot, &local) in key.iter_mut().zip(face) {
-        *slot = nodes[local];
-    }
-    key.sort_unstable();
-    key
 }

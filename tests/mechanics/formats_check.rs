@@ -9,10 +9,7 @@ use crate::formats_samples::{closed_surface, mixed_mesh};
 fn a_volume_report_counts_cells_sets_and_labels() {
     let report = MeshReport::of_volume(&mixed_mesh());
     assert_eq!((report.nodes, report.components), (11, 1));
-    assert_eq!(
-        report.cells,
-        [("hex8", 1), ("tet4", 1), ("wedge6", 1)].into()
-    );
+    assert_eq!(report.cells, [("hex8", 1), ("tet4", 1), ("wedge6", 1)].into());
     assert_eq!(report.node_sets["jaw attached"], 4);
     assert_eq!(report.cell_sets["muscle"], 2);
     assert_eq!(report.node_labels["tag"][&1], 4);
@@ -43,11 +40,7 @@ fn open_nonmanifold_and_separate_parts_are_counted() {
     skin.triangles.pop();
     skin.points.push(Vector::new(50.0, 50.0, 50.0));
     skin.triangles.push([0, 1, 4]);
-    let moved: Vec<Vector> = skin
-        .points
-        .iter()
-        .map(|p| p + Vector::x() * 500.0)
-        .collect();
+    let moved: Vec<Vector> = skin.points.iter().map(|p| p + Vector::x() * 500.0).collect();
     let triangles = [[5, 6, 7], [5, 7, 8]];
     let skin = TriangleSurface {
         points: skin.points.into_iter().chain(moved).collect(),
@@ -57,10 +50,7 @@ fn open_nonmanifold_and_separate_parts_are_counted() {
     let report = MeshReport::of_surface(&skin);
     assert_eq!(report.nonmanifold_edges, 1);
     assert_eq!(report.open_edges, 3 - 0 + 2 + 4 - 0);
-    assert_eq!(
-        (report.components, report.largest_components.clone()),
-        (2, vec![4, 2])
-    );
+    assert_eq!((report.components, report.largest_components.clone()), (2, vec![4, 2]));
     assert_eq!((report.unreferenced_nodes, report.duplicate_nodes), (1, 0));
     assert_eq!(report.volume_mm3, None);
 }

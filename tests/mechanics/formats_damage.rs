@@ -23,11 +23,7 @@ fn a_file_cut_anywhere_is_answered() {
             refused += usize::from(read(&bytes[..length], &limits()).is_err());
         }
         // What may be missing: a last line end, the arrays behind a complete mesh, skipped parts.
-        assert!(
-            refused * 2 > bytes.len(),
-            "{name}: {refused} of {}",
-            bytes.len()
-        );
+        assert!(refused * 2 > bytes.len(), "{name}: {refused} of {}", bytes.len());
     }
 }
 
@@ -56,13 +52,9 @@ fn numbers_replaced_by_huge_ones_are_answered() {
             .filter(|((_, before), digit)| !before.is_ascii_digit() && digit.is_ascii_digit());
         for ((at, before), _) in digits {
             let at = at + before.len_utf8();
-            for huge in [
-                "4294967295",
-                "18446744073709551615",
-                "-1",
-                "99999999999999999999",
-                "1e400",
-            ] {
+            for huge in
+                ["4294967295", "18446744073709551615", "-1", "99999999999999999999", "1e400"]
+            {
                 let rest = text[at..].trim_start_matches(|c: char| c.is_ascii_digit());
                 let changed = format!("{}{huge}{rest}", &text[..at]);
                 if let Err(FormatError::Memory { values }) = read(changed.as_bytes(), &limits()) {

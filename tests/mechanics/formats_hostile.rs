@@ -17,32 +17,20 @@ use crate::formats_samples::{
 #[test]
 fn an_stl_that_declares_more_than_it_holds_is_refused_with_both_numbers() {
     let huge = binary_stl(b"x", u32::MAX, &[TRIANGLE]);
-    assert_eq!(
-        error_of(&huge),
-        "STL file, byte 84: 4294967295 triangles declared, 1 follow"
-    );
+    assert_eq!(error_of(&huge), "STL file, byte 84: 4294967295 triangles declared, 1 follow");
     let truncated = binary_stl(b"solid exported", 2, &[TRIANGLE]);
-    assert_eq!(
-        error_of(&truncated),
-        "STL file, byte 84: 2 triangles declared, 1 follow"
-    );
+    assert_eq!(error_of(&truncated), "STL file, byte 84: 2 triangles declared, 1 follow");
 }
 
 #[test]
 fn coordinates_that_are_not_finite_are_counted() {
     let mut triangle = TRIANGLE;
     triangle[1][0] = f32::NAN;
-    let expected = FormatError::NonFinite {
-        count: 1,
-        first: vec![1],
-    };
+    let expected = FormatError::NonFinite { count: 1, first: vec![1] };
     let binary = read(&binary_stl(b"x", 1, &[triangle]), &ReadLimits::default());
     assert_eq!(binary, Err(expected));
     for word in ["nan", "inf", "-Infinity", "1e999"] {
-        assert_eq!(
-            code_of(STL.replace("100.5", word).as_bytes()),
-            "mesh-nonfinite"
-        );
+        assert_eq!(code_of(STL.replace("100.5", word).as_bytes()), "mesh-nonfinite");
         assert_eq!(
             code_of(OBJ.replace("v 100 0", &format!("v {word} 0")).as_bytes()),
             "mesh-nonfinite"
@@ -52,17 +40,11 @@ fn coordinates_that_are_not_finite_are_counted() {
             "mesh-nonfinite"
         );
         assert_eq!(
-            code_of(
-                PLY.replace("0 0 100 41", &format!("0 0 {word} 41"))
-                    .as_bytes()
-            ),
+            code_of(PLY.replace("0 0 100 41", &format!("0 0 {word} 41")).as_bytes()),
             "mesh-nonfinite"
         );
     }
-    assert_eq!(
-        code_of(OBJ.replace("v 100 0", "v 1e300 0").as_bytes()),
-        "mesh-limits"
-    );
+    assert_eq!(code_of(OBJ.replace("v 100 0", "v 1e300 0").as_bytes()), "mesh-limits");
 }
 
 #[test]
@@ -97,11 +79,7 @@ fn text_that_ends_early_is_refused_with_its_line() {
 fn indices_beyond_the_points_are_refused_in_every_format() {
     for index in ["9", "0", "-9", "-99999999999999", "4294967297"] {
         let bytes = OBJ.replace("3/1", index);
-        assert_eq!(
-            code_of(bytes.as_bytes()),
-            "mesh-index-out-of-range",
-            "{index}"
-        );
+        assert_eq!(code_of(bytes.as_bytes()), "mesh-index-out-of-range", "{index}");
     }
     for (text, from, to) in [
         (PLY, "4 0 1 2 3", "4 0 1 2 4"),
@@ -132,16 +110,9 @@ fn a_polygon_has_at_most_64_corners() {
     for corner in 0..2_000_000 {
         write!(text, " {}", corner % 3 + 1).unwrap();
     }
-    assert_eq!(
-        error_of(text.as_bytes()),
-        "2000000 corners in one polygon, and 64 is the limit"
-    );
+    assert_eq!(error_of(text.as_bytes()), "2000000 corners in one polygon, and 64 is the limit");
     let list = PLY.replace("list uchar uint vertex_index", "list int int vertex_index");
-    for (length, code) in [
-        ("65", "mesh-limits"),
-        ("-1", "mesh-parse"),
-        ("x", "mesh-parse"),
-    ] {
+    for (length, code) in [("65", "mesh-limits"), ("-1", "mesh-parse"), ("x", "mesh-parse")] {
         let bytes = list.replace("1 4 0 1 2 3", &format!("1 {length} 0 1 2 3"));
         assert_eq!(code_of(bytes.as_bytes()), code, "{length}");
     }
@@ -160,35 +131,17 @@ fn a_decimal_comma_is_refused_with_a_hint() {
 #[test]
 fn counts_that_the_file_cannot_hold_are_refused() {
     let ply = |from: &str, to: &str| PLY.replace(from, to);
-    assert_eq!(
-        code_of(ply("vertex 4", "vertex 4000000000").as_bytes()),
-        "mesh-limits"
-    );
-    assert_eq!(
-        code_of(ply("vertex 4", "vertex 4000000").as_bytes()),
-        "mesh-parse"
-    );
-    assert_eq!(
-        code_of(ply("face 1", "face 9000000").as_bytes()),
-        "mesh-parse"
-    );
-    let endless = ply(
-        "element edge 1\r\n",
-        "element edge 4000000000\r\nelement other 1\r\n",
-    );
+    assert_eq!(code_of(ply("vertex 4", "vertex 4000000000").as_bytes()), "mesh-limits");
+    assert_eq!(code_of(ply("vertex 4", "vertex 4000000").as_bytes()), "mesh-parse");
+    assert_eq!(code_of(ply("face 1", "face 9000000").as_bytes()), "mesh-parse");
+    let endless = ply("element edge 1\r\n", "element edge 4000000000\r\nelement other 1\r\n");
     assert_eq!(code_of(endless.as_bytes()), "mesh-limits");
     let vtk = |from: &str, to: &str| code_of(VTK.replace(from, to).as_bytes());
     assert_eq!(vtk("POINTS 4", "POINTS 4000000000"), "mesh-limits");
-    assert_eq!(
-        vtk("POINTS 4", "POINTS 18446744073709551615"),
-        "mesh-limits"
-    );
+    assert_eq!(vtk("POINTS 4", "POINTS 18446744073709551615"), "mesh-limits");
     assert_eq!(vtk("POINTS 4", "POINTS 4000000"), "mesh-parse");
     assert_eq!(vtk("CELLS 1 5", "CELLS 1 99999999999"), "mesh-parse");
-    assert_eq!(
-        vtk("FieldData 2", "FieldData 18446744073709551615"),
-        "mesh-parse"
-    );
+    assert_eq!(vtk("FieldData 2", "FieldData 18446744073709551615"), "mesh-parse");
     assert_eq!(vtk("tag 1 4", "tag 18446744073709551615 4"), "mesh-parse");
     for (text, from, to) in [
         (GMSH_2, "$Nodes\n4", "$Nodes\n4000000"),
@@ -197,11 +150,7 @@ fn counts_that_the_file_cannot_hold_are_refused() {
         (GMSH_4, "3 6 0 4", "3 6 0 9223372036854775807"),
         (GMSH_4, "2 8 2 1 5", "9223372036854775807 8 2 1 5"),
         (GMSH_4, "2 2 1 2", "9223372036854775807 2 1 2"),
-        (
-            GMSH_2,
-            "$PhysicalNames\n2",
-            "$PhysicalNames\n18446744073709551615",
-        ),
+        (GMSH_2, "$PhysicalNames\n2", "$PhysicalNames\n18446744073709551615"),
     ] {
         let bytes = text.replace(from, to);
         assert_ne!(bytes, text);
@@ -216,10 +165,7 @@ fn counts_that_the_file_cannot_hold_are_refused() {
 
 #[test]
 fn more_nodes_than_the_limit_are_refused() {
-    let limits = ReadLimits {
-        nodes: 3,
-        ..ReadLimits::default()
-    };
+    let limits = ReadLimits { nodes: 3, ..ReadLimits::default() };
     for text in [OBJ, PLY, STL, VTK, GMSH_2, GMSH_4] {
         let error = read(text.as_bytes(), &limits).unwrap_err();
         assert_eq!(error.to_string(), "4 nodes, and 3 is the limit");
@@ -231,10 +177,8 @@ fn binary_vtu(points: &str, file: &str) -> Vec<u8> {
     let text = ascii_vtu(&TETRAHEDRON, &[(10, &[0, 1, 2, 3])], "");
     let start = text.find("format=\"ascii\"").unwrap();
     let end = text.find("</DataArray>").unwrap();
-    let head = text[..start].replace(
-        "\"UnstructuredGrid\">",
-        &format!("\"UnstructuredGrid\" {file}>"),
-    );
+    let head =
+        text[..start].replace("\"UnstructuredGrid\">", &format!("\"UnstructuredGrid\" {file}>"));
     format!("{head}{points}{}", &text[end..]).into_bytes()
 }
 
@@ -242,11 +186,7 @@ const ZLIB: &str = "compressor=\"vtkZLibDataCompressor\"";
 
 fn compressed(header: &[u32], data: &[u8]) -> String {
     let header: Vec<u8> = header.iter().flat_map(|n| n.to_le_bytes()).collect();
-    format!(
-        "format=\"binary\">{}{}",
-        STANDARD.encode(header),
-        STANDARD.encode(data)
-    )
+    format!("format=\"binary\">{}{}", STANDARD.encode(header), STANDARD.encode(data))
 }
 
 fn zlib(bytes: &[u8]) -> Vec<u8> {
@@ -274,11 +214,7 @@ fn block_headers_that_lie_are_refused() {
         (vec![], "mesh-parse"),
     ] {
         let found = code_of(&binary_vtu(&compressed(&header, &data), ZLIB));
-        let expected = if code.ends_with("flat") {
-            "mesh-degenerate"
-        } else {
-            code
-        };
+        let expected = if code.ends_with("flat") { "mesh-degenerate" } else { code };
         assert_eq!(found, expected, "{header:?}");
     }
 }
@@ -292,33 +228,22 @@ fn an_array_nobody_asks_for_counts_towards_the_decoded_size_too() {
         compressed(&header, &zeros)
     );
     let text = ascii_vtu(&TETRAHEDRON, &[(10, &[0, 1, 2, 3])], &array);
-    let text = text.replace(
-        "\"UnstructuredGrid\">",
-        &format!("\"UnstructuredGrid\" {ZLIB}>"),
-    );
+    let text = text.replace("\"UnstructuredGrid\">", &format!("\"UnstructuredGrid\" {ZLIB}>"));
     assert_eq!(
         error_of(text.as_bytes()),
         "the arrays decode to 67108864 bytes, and 16777216 bytes is the limit"
     );
-    let generous = ReadLimits {
-        decoded_floor_bytes: 65 << 20,
-        ..ReadLimits::default()
-    };
+    let generous = ReadLimits { decoded_floor_bytes: 65 << 20, ..ReadLimits::default() };
     assert!(read(text.as_bytes(), &generous).is_ok());
 }
 
 #[test]
 fn appended_data_beyond_the_end_is_refused() {
-    let head = binary_vtu(
-        "format=\"appended\" offset=\"4000000000\">",
-        "header_type=\"UInt32\"",
-    );
+    let head = binary_vtu("format=\"appended\" offset=\"4000000000\">", "header_type=\"UInt32\"");
     let head = String::from_utf8(head).unwrap();
     assert!(error_of(head.as_bytes()).contains("lies beyond the data"));
-    let tail = head.replace(
-        "</VTKFile>",
-        "<AppendedData encoding=\"raw\">_abcdefgh</AppendedData></VTKFile>",
-    );
+    let tail = head
+        .replace("</VTKFile>", "<AppendedData encoding=\"raw\">_abcdefgh</AppendedData></VTKFile>");
     assert!(error_of(tail.as_bytes()).contains("lies beyond the data"));
     let near = tail.replace("4000000000", "2");
     assert!(error_of(near.as_bytes()).contains("bytes declared, at most"));
@@ -336,10 +261,8 @@ fn entities_and_deep_nesting_are_refused() {
     assert!(error_of(external.as_bytes()).contains("entities"));
     let deep = vtu.replace("<Points>", &("<a>".repeat(200_000) + "<Points>"));
     assert!(error_of(deep.as_bytes()).contains("nested deeper than 32"));
-    let many = vtu.replace(
-        "<Points>",
-        &("<FieldData>".to_string() + &"<DataArray/>".repeat(200_000)),
-    );
+    let many =
+        vtu.replace("<Points>", &("<FieldData>".to_string() + &"<DataArray/>".repeat(200_000)));
     assert!(error_of(many.as_bytes()).contains("more than 10000 arrays"));
 }
 
@@ -369,10 +292,7 @@ fn names_that_are_too_long_or_stand_twice_are_refused() {
         ascii_vtu(&TETRAHEDRON, &[(10, &[0, 1, 2, 3])], &more)
     };
     assert_eq!(code_of(named("set_lèvre inférieure").as_bytes()), "read");
-    assert_eq!(
-        code_of(named(&"x".repeat(10_000)).as_bytes()),
-        "mesh-limits"
-    );
+    assert_eq!(code_of(named(&"x".repeat(10_000)).as_bytes()), "mesh-limits");
     assert!(
         error_of(named("set_jaw ").as_bytes()).contains("two sets or arrays are called \"jaw\"")
     );

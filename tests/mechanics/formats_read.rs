@@ -13,9 +13,7 @@ use crate::formats_samples::{
 #[test]
 fn every_sample_is_recognised_by_its_content_and_read() {
     for (name, bytes) in one_of_each() {
-        let format = MeshFormat::sniff(&bytes)
-            .map(MeshFormat::name)
-            .unwrap_or("none");
+        let format = MeshFormat::sniff(&bytes).map(MeshFormat::name).unwrap_or("none");
         let start = name.split(' ').next().unwrap();
         let expected = match start {
             "vtk" => "VTK legacy",
@@ -71,10 +69,7 @@ fn equal_corners_of_an_stl_are_one_point() {
 fn ply_properties_are_found_by_name() {
     let read = read_default(PLY.as_bytes());
     assert_eq!(read.frame, Some(Frame::Lps));
-    assert_eq!(
-        warning_codes(&read),
-        ["cells-skipped", "polygons-triangulated"]
-    );
+    assert_eq!(warning_codes(&read), ["cells-skipped", "polygons-triangulated"]);
     assert_eq!(read.ignored_arrays, ["neighbours", "red"]);
     let skin = surface(read);
     assert_eq!(skin.points[1], Vector::new(100.0, 0.0, 0.0));
@@ -109,15 +104,8 @@ fn an_unstructured_grid_of_flat_cells_is_a_surface() {
 #[test]
 fn arrays_that_number_things_are_ignored_and_named() {
     let numbering: Vec<String> = (0..70).map(|n| n.to_string()).collect();
-    let points: Vec<[f64; 3]> = (0..70)
-        .map(|n| {
-            if n < 4 {
-                TETRAHEDRON[n]
-            } else {
-                [f64::from(n as u32); 3]
-            }
-        })
-        .collect();
+    let points: Vec<[f64; 3]> =
+        (0..70).map(|n| if n < 4 { TETRAHEDRON[n] } else { [f64::from(n as u32); 3] }).collect();
     let array = |kind: &str, name: &str, text: &str| {
         format!("<DataArray type=\"{kind}\" Name=\"{name}\" format=\"ascii\">{text}</DataArray>")
     };
@@ -133,10 +121,7 @@ fn arrays_that_number_things_are_ignored_and_named() {
     .concat();
     let bytes = ascii_vtu(&points, &[(10, &[0, 1, 2, 3])], &more);
     let read = read_default(bytes.as_bytes());
-    assert_eq!(
-        read.ignored_arrays,
-        ["temperature", "element_id", "node_id"]
-    );
+    assert_eq!(read.ignored_arrays, ["temperature", "element_id", "node_id"]);
     assert_eq!(warning_codes(&read), ["unreferenced-nodes"]);
     let mesh = volume(read);
     assert_eq!(mesh.nodes.len(), 70, "nodes keep the numbers of the file");
@@ -151,18 +136,10 @@ fn encoded_vtu(
 ) -> Vec<u8> {
     let big = file.contains("BigEndian");
     let real = |value: &f64| {
-        if big {
-            value.to_be_bytes()
-        } else {
-            value.to_le_bytes()
-        }
+        if big { value.to_be_bytes() } else { value.to_le_bytes() }
     };
     let whole = |value: i32| {
-        if big {
-            value.to_be_bytes()
-        } else {
-            value.to_le_bytes()
-        }
+        if big { value.to_be_bytes() } else { value.to_le_bytes() }
     };
     let points = TETRAHEDRON.as_flattened().iter().flat_map(real).collect();
     let nodes = [0, 1, 2, 3].into_iter().flat_map(whole).collect();
@@ -211,12 +188,8 @@ fn appended_data_is_read_raw_and_as_base64() {
     let mut raw = b"<AppendedData encoding=\"raw\">\n_".to_vec();
     let start = raw.len();
     let file = "byte_order=\"LittleEndian\" header_type=\"UInt32\"";
-    let appended = |offset: usize| {
-        (
-            format!("format=\"appended\" offset=\"{offset}\""),
-            String::new(),
-        )
-    };
+    let appended =
+        |offset: usize| (format!("format=\"appended\" offset=\"{offset}\""), String::new());
     let head = encoded_vtu(
         file,
         |bytes| {
@@ -254,10 +227,7 @@ fn cells_that_are_all_inverted_are_reordered_and_a_mixture_is_refused() {
     assert!(volume(read).cell_jacobian(0).is_valid());
     let cells: [(u8, &[u32]); 2] = [(10, &[0, 1, 2, 3]), (10, &[0, 2, 1, 3])];
     let mixture = ascii_vtu(&TETRAHEDRON, &cells, "");
-    assert_eq!(
-        error_of(mixture.as_bytes()),
-        "1 of 2 tet4 cells are inverted or flat"
-    );
+    assert_eq!(error_of(mixture.as_bytes()), "1 of 2 tet4 cells are inverted or flat");
     assert_eq!(code_of(mixture.as_bytes()), "mesh-inverted-elements");
 }
 

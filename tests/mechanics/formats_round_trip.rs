@@ -26,10 +26,8 @@ fn a_mesh_of_several_blocks_and_of_exactly_one_reads_as_itself() {
     // 2^18 bytes are a block: 32768 labels fill one exactly.
     for nodes in [32_768, 70_000] {
         let point = |node: u32| Vector::new(f64::from(node).sin(), f64::from(node).cos(), 0.1);
-        let mut mesh = VolumeMesh {
-            nodes: (0..nodes).map(point).collect(),
-            ..VolumeMesh::default()
-        };
+        let mut mesh =
+            VolumeMesh { nodes: (0..nodes).map(point).collect(), ..VolumeMesh::default() };
         mesh.nodes[0..4].copy_from_slice(&[
             Vector::zeros(),
             Vector::x() * 100.0,
@@ -67,9 +65,7 @@ fn a_surface_written_as_stl_reads_as_itself_rounded_to_32_bits() {
     let back = surface(back);
     assert_eq!(back.node_ids, None);
     for triangle in 0..4 {
-        let rounded = skin
-            .corners(triangle)
-            .map(|c| c.map(|x| f64::from(x as f32)));
+        let rounded = skin.corners(triangle).map(|c| c.map(|x| f64::from(x as f32)));
         assert_eq!(back.corners(triangle), rounded);
     }
 }
@@ -86,19 +82,10 @@ fn displaced_positions_and_results_stand_beside_what_the_mesh_had() {
         positions: &moved,
         frame: Frame::Lps,
         point_arrays: vec![
-            NamedValues {
-                name: "displacement_mm",
-                values: ArrayValues::Vectors(&displacement),
-            },
-            NamedValues {
-                name: "u_mm",
-                values: ArrayValues::Vectors(&replaced),
-            },
+            NamedValues { name: "displacement_mm", values: ArrayValues::Vectors(&displacement) },
+            NamedValues { name: "u_mm", values: ArrayValues::Vectors(&replaced) },
         ],
-        cell_arrays: vec![NamedValues {
-            name: "det_f",
-            values: ArrayValues::Reals(&det_f),
-        }],
+        cell_arrays: vec![NamedValues { name: "det_f", values: ArrayValues::Reals(&det_f) }],
         field_data: vec![("note".into(), "pas <un> dispositif médical".into())],
     };
     let back = read_default(&vtu::write(&output).unwrap());
@@ -116,24 +103,15 @@ fn csv_has_units_in_its_header_and_digits_that_give_the_same_number() {
     let displacement = [Vector::new(0.1, -1.0 / 3.0, 1e-300); 4];
     let output = SurfaceOutput {
         point_arrays: vec![
-            NamedValues {
-                name: "displacement_mm",
-                values: ArrayValues::Vectors(&displacement),
-            },
-            NamedValues {
-                name: "=HYPERLINK(1)",
-                values: ArrayValues::Integers(&[1, 2, 3, 4]),
-            },
+            NamedValues { name: "displacement_mm", values: ArrayValues::Vectors(&displacement) },
+            NamedValues { name: "=HYPERLINK(1)", values: ArrayValues::Integers(&[1, 2, 3, 4]) },
         ],
         ..SurfaceOutput::plain(&skin, Frame::Lps)
     };
     let text = String::from_utf8(csv::write(&output).unwrap()).unwrap();
     let lines: Vec<&str> = text.lines().collect();
     assert_eq!(lines.len(), 5);
-    assert_eq!(
-        lines[0],
-        "node_id,x_mm,y_mm,z_mm,ux_mm,uy_mm,uz_mm,'=HYPERLINK(1)"
-    );
+    assert_eq!(lines[0], "node_id,x_mm,y_mm,z_mm,ux_mm,uy_mm,uz_mm,'=HYPERLINK(1)");
     let last: Vec<&str> = lines[4].split(',').collect();
     assert_eq!(last[0], "17");
     assert_eq!(last[3].parse::<f64>().unwrap(), 100.0 / 3.0);
@@ -151,10 +129,7 @@ fn glb_holds_metres_with_exact_bounds_and_the_way_back() {
     };
     let bytes = glb::write(&output).unwrap();
     let number = |at: usize| u32::from_le_bytes(bytes[at..at + 4].try_into().unwrap()) as usize;
-    assert_eq!(
-        (&bytes[..4], number(4), number(8)),
-        (&b"glTF"[..], 2, bytes.len())
-    );
+    assert_eq!((&bytes[..4], number(4), number(8)), (&b"glTF"[..], 2, bytes.len()));
     let json_bytes = number(12);
     let scene: serde_json::Value = serde_json::from_slice(&bytes[20..20 + json_bytes]).unwrap();
     assert_eq!(scene["extras"]["frame"], "LPS");
@@ -188,50 +163,26 @@ fn a_number_that_is_not_finite_is_never_written() {
         }],
         ..SurfaceOutput::plain(&skin, Frame::Lps)
     };
-    let refused = Err(WriteError::NonFinite {
-        array: "signed_distance_mm".into(),
-        count: 2,
-    });
+    let refused = Err(WriteError::NonFinite { array: "signed_distance_mm".into(), count: 2 });
     for write in [vtp::write, stl::write, ply::write, glb::write, csv::write] {
         assert_eq!(write(&output), refused);
     }
     let mesh = mixed_mesh();
     let moved = vec![Vector::repeat(f64::NAN); mesh.nodes.len()];
-    let output = VolumeOutput {
-        positions: &moved,
-        ..VolumeOutput::plain(&mesh, Frame::Lps)
-    };
-    assert!(matches!(
-        vtu::write(&output),
-        Err(WriteError::NonFinite { count: 11, .. })
-    ));
+    let output = VolumeOutput { positions: &moved, ..VolumeOutput::plain(&mesh, Frame::Lps) };
+    assert!(matches!(vtu::write(&output), Err(WriteError::NonFinite { count: 11, .. })));
 }
 
 #[test]
 fn an_array_of_the_wrong_length_or_with_a_taken_name_is_not_written() {
     let skin = closed_surface();
-    let array = |name, values| NamedValues {
-        name,
-        values: ArrayValues::Reals(values),
-    };
-    let with = |point_arrays| SurfaceOutput {
-        point_arrays,
-        ..SurfaceOutput::plain(&skin, Frame::Lps)
-    };
+    let array = |name, values| NamedValues { name, values: ArrayValues::Reals(values) };
+    let with =
+        |point_arrays| SurfaceOutput { point_arrays, ..SurfaceOutput::plain(&skin, Frame::Lps) };
     let short = with(vec![array("a", &[0.0; 3])]);
-    assert!(matches!(
-        vtp::write(&short),
-        Err(WriteError::Length {
-            have: 3,
-            wanted: 4,
-            ..
-        })
-    ));
+    assert!(matches!(vtp::write(&short), Err(WriteError::Length { have: 3, wanted: 4, .. })));
     let twice = with(vec![array("node_id", &[0.0; 4])]);
-    assert!(matches!(
-        ply::write(&twice),
-        Err(WriteError::Duplicate { .. })
-    ));
+    assert!(matches!(ply::write(&twice), Err(WriteError::Duplicate { .. })));
 }
 
 #[test]

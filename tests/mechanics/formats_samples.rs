@@ -128,12 +128,8 @@ pub fn ascii_vtu(points: &[[f64; 3]], cells: &[(u8, &[u32])], more: &str) -> Str
 }
 
 /// Four points of a tetrahedron that the node order 0 1 2 3 makes positive.
-pub const TETRAHEDRON: [[f64; 3]; 4] = [
-    [0.0, 0.0, 0.0],
-    [100.0, 0.0, 0.0],
-    [0.0, 100.0, 0.0],
-    [0.0, 0.0, 100.0],
-];
+pub const TETRAHEDRON: [[f64; 3]; 4] =
+    [[0.0, 0.0, 0.0], [100.0, 0.0, 0.0], [0.0, 100.0, 0.0], [0.0, 0.0, 100.0]];
 
 /// Binary STL of some triangles with a header of one's own and a count of one's own.
 pub fn binary_stl(header: &[u8], count: u32, triangles: &[[[f32; 3]; 3]]) -> Vec<u8> {
@@ -163,10 +159,7 @@ pub fn one_of_each() -> Vec<(&'static str, Vec<u8>)> {
         ("vtp", vtp::write(&output).unwrap()),
         ("stl", stl::write(&output).unwrap()),
         ("ply", ply::write(&output).unwrap()),
-        (
-            "vtu ascii",
-            ascii_vtu(&TETRAHEDRON, &[(10, &[0, 1, 2, 3])], "").into_bytes(),
-        ),
+        ("vtu ascii", ascii_vtu(&TETRAHEDRON, &[(10, &[0, 1, 2, 3])], "").into_bytes()),
         ("vtk", VTK.as_bytes().to_vec()),
         ("vtk binary", binary_vtk()),
         ("gmsh 2.2", GMSH_2.as_bytes().to_vec()),

@@ -70,10 +70,7 @@ fn the_skin_of_the_face_knows_its_nodes() {
     };
     let skin = surface(read_default(&std::fs::read(path).unwrap()));
     let ids = skin.node_ids.unwrap();
-    assert_eq!(
-        (ids.len(), ids.iter().min(), ids.iter().max()),
-        (2180, Some(&34), Some(&7693))
-    );
+    assert_eq!((ids.len(), ids.iter().min(), ids.iter().max()), (2180, Some(&34), Some(&7693)));
 }
 
 #[test]
@@ -83,10 +80,7 @@ fn a_file_of_muscle_fibres_is_no_mesh_and_says_what_it_holds() {
     };
     let error = read(&std::fs::read(path).unwrap(), &ReadLimits::default()).unwrap_err();
     assert_eq!(error.code(), "mesh-empty");
-    assert!(
-        error.to_string().contains("36 lines were skipped"),
-        "{error}"
-    );
+    assert!(error.to_string().contains("36 lines were skipped"), "{error}");
 }
 
 #[test]

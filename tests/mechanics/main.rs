@@ -1,8 +1,13 @@
-//! Numerics and formats, without a database.
+//! Mechanics, formats and statistics: no server, no database.
+
+#![allow(clippy::unwrap_used)]
 
 #[path = "../shared/mod.rs"]
 mod shared;
 
+mod closed_form;
+mod conditions;
+mod convergence;
 mod formats_check;
 mod formats_damage;
 mod formats_hostile;
@@ -12,3 +17,6 @@ mod formats_round_trip;
 mod formats_samples;
 mod formats_shared_data;
 mod formats_surface;
+mod patch;
+mod scenes;
+mod solvers;
