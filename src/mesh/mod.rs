@@ -1,10 +1,13 @@
 //! What was scanned: volume meshes of soft tissue and triangle surfaces, node positions in mm.
 
+pub mod check;
 pub mod closest_point;
 pub mod connectivity;
 pub mod frame;
+pub mod orientation;
 pub mod sample;
 pub mod surface;
+pub mod surface_edges;
 mod surface_topology;
 pub mod volume;
 pub mod warning;
