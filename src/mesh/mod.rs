@@ -3,6 +3,8 @@
 pub mod closest_point;
 pub mod connectivity;
 pub mod frame;
+pub mod jacobian;
+pub mod quality;
 pub mod sample;
 pub mod surface;
 mod surface_topology;
