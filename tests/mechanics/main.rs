@@ -9,5 +9,6 @@ mod closed_form;
 mod conditions;
 mod convergence;
 mod patch;
+mod quality;
 mod scenes;
 mod solvers;
