@@ -3,7 +3,10 @@
 //! The modules stand in the order of the path that a job takes; ARCHITECTURE.md tells who may use whom.
 
 pub mod boundary;
+pub mod config;
 pub mod material;
 pub mod mesh;
 pub mod plan;
 pub mod prediction;
+pub mod store;
+pub mod telemetry;
