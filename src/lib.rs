@@ -8,5 +8,6 @@ pub mod material;
 pub mod mesh;
 pub mod plan;
 pub mod prediction;
+pub mod jobs;
 pub mod store;
 pub mod telemetry;

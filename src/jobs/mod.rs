@@ -1,0 +1,4 @@
+//! The queue and its workers.
+
+pub mod heartbeat;
+pub mod worker;
