@@ -5,9 +5,13 @@
 pub mod boundary;
 pub mod config;
 pub mod material;
+pub mod element;
+pub mod solver;
 pub mod mesh;
 pub mod plan;
+pub mod model;
 pub mod prediction;
-pub mod jobs;
+pub mod schema;
 pub mod store;
+pub mod jobs;
 pub mod telemetry;

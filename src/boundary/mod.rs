@@ -1,5 +1,12 @@
 //! From a plan and a mesh to what every node is held to.
 
+pub mod conditions;
+pub mod hold;
 pub mod selection;
+pub mod sliding;
+pub mod support;
+pub mod tearing;
 
-pub use selection::NodeSelection;
+pub use conditions::{ConditionError, Conditions, HeldNodes, NodeClass};
+pub use hold::Hold;
+pub use selection::{NodeSelection, SelectionError, Selector};

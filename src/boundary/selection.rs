@@ -1,5 +1,11 @@
 //! Sets of nodes asked for by name, by label, or by distance from a surface.
 
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use crate::mesh::closest_point::SurfaceSearch;
+use crate::mesh::{TriangleSurface, VolumeMesh};
+
 /// How a set of nodes is asked for (SELECT of the documents).
 #[derive(Clone, Debug, PartialEq)]
 pub enum NodeSelection {
@@ -14,4 +20,89 @@ pub enum NodeSelection {
         distance: f64,
     },
     Any(Vec<NodeSelection>),
+}
+
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SelectionError {
+    #[error("the mesh has no node set {name:?}; it has {known}")]
+    UnknownSet { name: String, known: String },
+    #[error("the mesh has no integer point array {name:?}; it has {known}")]
+    UnknownArray { name: String, known: String },
+    #[error("the case has no surface {0:?}")]
+    UnknownSurface(String),
+    #[error("surface {0:?} has no triangle with an area")]
+    FlatSurface(String),
+    #[error("the selection has no node")]
+    Empty,
+}
+
+/// What selections are asked of.
+pub struct Selector<'a> {
+    pub mesh: &'a VolumeMesh,
+    pub surfaces: &'a BTreeMap<String, Arc<TriangleSurface>>,
+    /// Nodes of boundary faces, ascending.
+    pub boundary_nodes: &'a [u32],
+}
+
+impl Selector<'_> {
+    /// The selected nodes, ascending and without repeats; never none.
+    pub fn select(&self, selection: &NodeSelection) -> Result<Vec<u32>, SelectionError> {
+        let mut nodes = self.collect(selection)?;
+        nodes.sort_unstable();
+        nodes.dedup();
+        match nodes.is_empty() {
+            true => Err(SelectionError::Empty),
+            false => Ok(nodes),
+        }
+    }
+
+    fn collect(&self, selection: &NodeSelection) -> Result<Vec<u32>, SelectionError> {
+        match selection {
+            NodeSelection::NodeSet(name) => {
+                let set = self.mesh.node_set(name).ok_or_else(|| SelectionError::UnknownSet {
+                    name: name.clone(),
+                    known: listed(self.mesh.node_sets.keys()),
+                })?;
+                Ok(set.to_vec())
+            }
+            NodeSelection::Label { array, value } => self.labelled(array, *value),
+            NodeSelection::NearSurface { surface, distance } => self.near(surface, *distance),
+            NodeSelection::Any(parts) => {
+                let mut nodes = Vec::new();
+                for part in parts {
+                    nodes.extend(self.collect(part)?);
+                }
+                Ok(nodes)
+            }
+        }
+    }
+
+    fn labelled(&self, array: &str, value: i64) -> Result<Vec<u32>, SelectionError> {
+        let labels = self.mesh.node_labels.get(array).ok_or_else(|| SelectionError::UnknownArray {
+            name: array.to_owned(),
+            known: listed(self.mesh.node_labels.keys()),
+        })?;
+        Ok((0_u32..).zip(labels).filter(|(_, label)| **label == value).map(|(node, _)| node).collect())
+    }
+
+    fn near(&self, name: &str, distance: f64) -> Result<Vec<u32>, SelectionError> {
+        let surface =
+            self.surfaces.get(name).ok_or_else(|| SelectionError::UnknownSurface(name.to_owned()))?;
+        let search =
+            SurfaceSearch::new(surface).map_err(|_| SelectionError::FlatSurface(name.to_owned()))?;
+        let is_near = |node: &&u32| search.closest(&self.mesh.nodes[**node as usize]).distance <= distance;
+        Ok(self.boundary_nodes.iter().filter(is_near).copied().collect())
+    }
+}
+
+/// Up to 20 names, so that a message stays one line.
+fn listed<'a>(names: impl Iterator<Item = &'a String>) -> String {
+    let mut names: Vec<&str> = names.map(String::as_str).collect();
+    if names.is_empty() {
+        return "none".to_owned();
+    }
+    let more = names.len().saturating_sub(20);
+    names.truncate(20);
+    let shown = names.join(", ");
+    if more > 0 { format!("{shown} and {more} more") } else { shown }
 }

@@ -1,6 +1,7 @@
 //! What was scanned: volume meshes of soft tissue and triangle surfaces, node positions in mm.
 
 pub mod frame;
+pub mod sample;
 pub mod surface;
 pub mod volume;
 pub mod warning;

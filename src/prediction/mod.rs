@@ -1,8 +1,10 @@
 //! The path of one prediction: scene in, nodal displacement and its measures out.
 
 pub mod case;
+mod problem;
 pub mod progress;
 pub mod scene;
+mod skin;
 
 use std::collections::BTreeMap;
 
@@ -10,20 +12,27 @@ pub use case::{
     Bone, Case, CaseSegment, ElementChoice, Load, Plan, Prescribed, RegionNames, Settings, Sliding,
     SlidingNormal,
 };
+pub use problem::{SceneError, SceneErrors};
 pub use progress::{Phase, Progress, Unobserved};
-pub use scene::{NodeClass, Scene, SceneError, SceneErrors, Skin};
+pub use scene::Scene;
+pub use skin::Skin;
 
+pub use crate::boundary::NodeClass;
 use crate::mesh::{Vector, Warning};
+use crate::model::linear_fem::{Equilibrium, LinearFemError, Observer, Problem};
+use crate::model::strain::{CellDeformation, deformations};
+use crate::solver::{SolverError, Tolerance};
+
+/// A landmark farther than this from the tissue, in mm, is told to move as something it is not part of.
+const LANDMARK_FAR: f64 = 2.0;
 
 /// The answer. Node and cell order are those of the volume mesh of the case.
 #[derive(Clone, Debug)]
 pub struct Prediction {
     /// In mm, for each node.
     pub displacement: Vec<Vector>,
-    /// The smallest determinant of F = I + grad u over the quadrature points of each cell.
-    pub det_f: Vec<f64>,
-    /// Principal small strains at the centre of each cell, largest first.
-    pub principal_strain: Vec<[f64; 3]>,
+    /// For each cell.
+    pub deformation: Vec<CellDeformation>,
     /// In mN: what each segment, `fixed`, `sliding` and `prescribed` nodes exert on the tissue.
     pub reactions: BTreeMap<String, Vector>,
     /// The displacement of each landmark in mm.
@@ -55,14 +64,11 @@ pub enum PredictionError {
     #[error("stopped on request")]
     Cancelled,
     #[error("residual {residual:.2e} after {iterations} iterations, wanted {wanted:.2e}")]
-    NotConverged {
-        iterations: usize,
-        residual: f64,
-        wanted: f64,
-        history: Vec<f64>,
-    },
+    NotConverged { iterations: usize, residual: f64, wanted: f64, history: Vec<f64> },
     #[error("the matrix is singular at node {node}")]
     Singular { node: usize },
+    #[error("cell {cell} is inverted or flat")]
+    Inverted { cell: usize },
     #[error("the problem needs about {needed_mb:.0} MB and may take {allowed_mb:.0} MB")]
     OverBudget { needed_mb: f64, allowed_mb: f64 },
     #[error("the solution has values that are not finite")]
@@ -70,6 +76,122 @@ pub enum PredictionError {
 }
 
 /// Solves a scene. The same scene gives the same bits on any number of threads.
-pub fn predict(_scene: &Scene, _progress: &dyn Progress) -> Result<Prediction, PredictionError> {
-    unimplemented!("the numerics land on main while you work; code against this signature")
+pub fn predict(scene: &Scene, progress: &dyn Progress) -> Result<Prediction, PredictionError> {
+    // 1. Equilibrium.
+    let wanted = scene.settings.relative_residual;
+    let problem = Problem {
+        tissue: scene.tissue(),
+        holds: &scene.conditions.holds,
+        forces: &scene.forces,
+        tolerance: Tolerance { relative_residual: wanted, memory_mb: scene.settings.memory_mb },
+    };
+    let equilibrium = problem.solve(&Followed { progress, wanted })?;
+
+    // 2. What it does to the tissue and to the landmarks.
+    progress.phase(Phase::Surface);
+    let deformation = deformations(&scene.mesh, &equilibrium.displacement);
+    let landmarks =
+        skin::landmark_displacement(&scene.mesh, &scene.landmarks, &equilibrium.displacement);
+
+    // 3. What a reader must know.
+    let mut warnings = scene.warnings.clone();
+    warnings.extend(inverted_cells(&deformation));
+    warnings.extend(far_landmarks(&landmarks));
+    Ok(Prediction {
+        reactions: reactions(scene, &equilibrium),
+        landmarks: landmarks.into_iter().map(|(name, (moved, _))| (name, moved)).collect(),
+        solver: report(scene, &equilibrium),
+        displacement: equilibrium.displacement,
+        deformation,
+        warnings,
+    })
+}
+
+/// Passes the solver's words on to the progress of the prediction.
+struct Followed<'a> {
+    progress: &'a dyn Progress,
+    wanted: f64,
+}
+
+impl Observer for Followed<'_> {
+    fn assembling(&self) {
+        self.progress.phase(Phase::Assemble);
+    }
+
+    fn solving(&self) {
+        self.progress.phase(Phase::Solve);
+    }
+
+    fn iterated(&self, iteration: usize, relative_residual: f64) -> bool {
+        self.progress.iteration(iteration, relative_residual, self.wanted);
+        !self.progress.is_cancelled()
+    }
+
+    fn is_stopped(&self) -> bool {
+        self.progress.is_cancelled()
+    }
+}
+
+/// Sums the reactions of the nodes of each segment and of each other class.
+fn reactions(scene: &Scene, equilibrium: &Equilibrium) -> BTreeMap<String, Vector> {
+    let mut sums: BTreeMap<String, Vector> =
+        scene.segments.iter().map(|segment| (segment.name.clone(), Vector::zeros())).collect();
+    for (hold, reaction) in scene.conditions.holds.iter().zip(&equilibrium.reactions) {
+        let holder = match scene.conditions.classes[hold.node as usize] {
+            NodeClass::Joined(segment) => scene.segments[segment as usize].name.clone(),
+            other => other.name().to_owned(),
+        };
+        *sums.entry(holder).or_insert_with(Vector::zeros) += reaction;
+    }
+    sums
+}
+
+fn report(scene: &Scene, equilibrium: &Equilibrium) -> SolverReport {
+    SolverReport {
+        name: equilibrium.solution.method,
+        preconditioner: equilibrium.solution.preconditioner,
+        why: equilibrium.solution.why.clone(),
+        unknowns: equilibrium.unknowns,
+        iterations: equilibrium.solution.iterations,
+        relative_residual: equilibrium.solution.relative_residual,
+        wanted_residual: scene.settings.relative_residual,
+        elements: scene.elements(),
+    }
+}
+
+/// A linear answer that turns cells inside out says so.
+fn inverted_cells(deformation: &[CellDeformation]) -> Option<Warning> {
+    let inverted = deformation.iter().filter(|cell| cell.det_f <= 0.0).count();
+    let smallest = deformation.iter().map(|cell| cell.det_f).fold(f64::INFINITY, f64::min);
+    let detail = format!("the linear displacement turns {inverted} cells inside out");
+    let warning = Warning::new("cells-inverted", detail).with("cells", inverted as f64);
+    (inverted > 0).then(|| warning.with("smallest_det_f", smallest))
+}
+
+fn far_landmarks(landmarks: &BTreeMap<String, (Vector, f64)>) -> Vec<Warning> {
+    let far = landmarks.iter().filter(|(_, (_, distance))| *distance > LANDMARK_FAR);
+    far.map(|(name, (_, distance))| {
+        let detail = format!("landmark {name:?} takes the displacement of the closest point of the tissue surface");
+        Warning::new("landmark-far", detail).with("distance_mm", *distance)
+    })
+    .collect()
+}
+
+impl From<LinearFemError> for PredictionError {
+    fn from(error: LinearFemError) -> Self {
+        match error {
+            LinearFemError::Inverted(inverted) => PredictionError::Inverted { cell: inverted.cell },
+            LinearFemError::Solver(SolverError::Stopped) => PredictionError::Cancelled,
+            LinearFemError::Solver(SolverError::NotFinite) => PredictionError::NotFinite,
+            LinearFemError::Solver(SolverError::NotPositiveDefinite { row }) => {
+                PredictionError::Singular { node: row }
+            }
+            LinearFemError::Solver(SolverError::OverBudget { needed_mb, allowed_mb }) => {
+                PredictionError::OverBudget { needed_mb, allowed_mb }
+            }
+            LinearFemError::Solver(SolverError::NotConverged { iterations, residual, wanted, history }) => {
+                PredictionError::NotConverged { iterations, residual, wanted, history }
+            }
+        }
+    }
 }

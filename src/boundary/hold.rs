@@ -1,0 +1,151 @@
+//! The directions in which one node is held, and where to.
+
+use nalgebra::Matrix3;
+
+use crate::mesh::Vector;
+
+/// A direction whose part across the earlier ones is shorter than this adds nothing.
+const INDEPENDENT: f64 = 1e-6;
+
+/// A node held at values u . e_k = v_k along the first `count` axes of an orthonormal frame,
+/// and free along the others.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Hold {
+    pub node: u32,
+    axes: Matrix3<f64>,
+    values: Vector,
+    count: usize,
+}
+
+impl Hold {
+    pub(super) fn free(node: u32) -> Self {
+        Hold { node, axes: Matrix3::identity(), values: Vector::zeros(), count: 0 }
+    }
+
+    /// A node held in all directions at a displacement in mm.
+    pub fn at(node: u32, displacement: Vector) -> Self {
+        Hold { node, axes: Matrix3::identity(), values: displacement, count: 3 }
+    }
+
+    /// How many directions are held: 0 to 3.
+    pub fn count(&self) -> usize {
+        self.count
+    }
+
+    /// The frame, one axis a column: held ones first.
+    pub fn axes(&self) -> &Matrix3<f64> {
+        &self.axes
+    }
+
+    /// Displacement in mm along the held axes; zero along the others.
+    pub fn values(&self) -> &Vector {
+        &self.values
+    }
+
+    /// True where the frame is that of the coordinates.
+    pub fn is_aligned(&self) -> bool {
+        self.axes == Matrix3::identity()
+    }
+
+    /// Holds u . direction = value too, unless earlier directions decide it already.
+    pub(super) fn add(&mut self, direction: &Vector, value: f64) {
+        let mut across = *direction;
+        let mut rest = value;
+        for held in 0..self.count {
+            let axis = self.axes.column(held).into_owned();
+            let along = axis.dot(direction);
+            across -= axis * along;
+            rest -= self.values[held] * along;
+        }
+        let length = across.norm();
+        if length < INDEPENDENT {
+            return;
+        }
+        self.axes.set_column(self.count, &(across / length));
+        self.values[self.count] = rest / length;
+        self.count += 1;
+        self.complete_axes();
+    }
+
+    /// Makes the free axes orthonormal to the held ones.
+    fn complete_axes(&mut self) {
+        if self.count == 3 {
+            return self.align_fully_held();
+        }
+        for free in self.count..3 {
+            let mut best = Vector::zeros();
+            for unit in [Vector::x(), Vector::y(), Vector::z()] {
+                let mut across = unit;
+                for earlier in 0..free {
+                    let axis = self.axes.column(earlier).into_owned();
+                    across -= axis * axis.dot(&unit);
+                }
+                if across.norm() > best.norm() + INDEPENDENT {
+                    best = across;
+                }
+            }
+            let mut axis = best.normalize();
+            for earlier in 0..free {
+                let other = self.axes.column(earlier).into_owned();
+                axis -= other * other.dot(&axis);
+            }
+            self.axes.set_column(free, &axis.normalize());
+        }
+    }
+
+    /// A node held in all directions needs no frame of its own.
+    fn align_fully_held(&mut self) {
+        if !self.is_aligned() {
+            self.values = self.axes * self.values;
+            self.axes = Matrix3::identity();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn oblique_directions_hold_the_node_where_both_planes_meet() {
+        let mut hold = Hold::free(0);
+        let oblique = Vector::new(1.0, 1.0, 0.0).normalize();
+        hold.add(&Vector::x(), 2.0);
+        hold.add(&oblique, 0.0);
+        let displacement = hold.axes() * hold.values();
+        assert!((displacement.x - 2.0).abs() < 1e-15);
+        assert!(displacement.dot(&oblique).abs() < 1e-15);
+        assert_eq!(hold.count(), 2);
+    }
+
+    #[test]
+    fn a_direction_that_is_held_already_changes_nothing() {
+        let mut hold = Hold::free(0);
+        hold.add(&Vector::z(), 1.0);
+        let before = hold.clone();
+        hold.add(&-Vector::z(), 5.0);
+        assert_eq!(hold, before);
+    }
+
+    #[test]
+    fn the_frame_is_orthonormal_for_any_normal() {
+        for normal in [Vector::new(0.3, -0.5, 0.8), Vector::new(1e-9, 1.0, 0.0), -Vector::x()] {
+            let mut hold = Hold::free(0);
+            hold.add(&normal.normalize(), 0.0);
+            let axes = hold.axes();
+            assert!((axes.transpose() * axes - Matrix3::identity()).amax() < 1e-15);
+        }
+    }
+
+    #[test]
+    fn a_node_held_in_three_oblique_directions_lies_at_their_common_point() {
+        let mut hold = Hold::free(0);
+        let target = Vector::new(1.0, -2.0, 3.0);
+        let directions = [Vector::new(1.0, 1.0, 0.0), Vector::new(0.0, 1.0, 1.0), Vector::new(1.0, 0.0, 2.0)];
+        for direction in directions.map(|d| d.normalize()) {
+            hold.add(&direction, direction.dot(&target));
+        }
+        assert!(hold.is_aligned());
+        assert!((hold.values() - target).norm() < 1e-14);
+    }
+}

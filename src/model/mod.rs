@@ -1,0 +1,19 @@
+//! Ways of modelling: conditions, materials and mesh in, nodal displacement out.
+
+pub mod assembly;
+pub mod linear_fem;
+pub mod load;
+pub mod stiffness;
+pub mod strain;
+
+use crate::element::{self, ReferenceCell};
+use crate::mesh::CellShape;
+
+/// Shape functions and quadrature of a cell shape.
+pub fn reference_cell(shape: CellShape) -> &'static ReferenceCell {
+    match shape {
+        CellShape::Tet4 => element::tetrahedron4(),
+        CellShape::Hex8 => element::hexahedron8(),
+        CellShape::Wedge6 => element::wedge6(),
+    }
+}

@@ -1,0 +1,53 @@
+//! Everything that is wrong with a case and a plan, with the place of each.
+
+use crate::boundary::SelectionError;
+
+/// More problems than this help nobody.
+const MOST_PROBLEMS: usize = 50;
+
+/// Everything wrong with a case and a plan, at most 50 entries.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{} problems, the first: {}", .0.len(), .0[0])]
+pub struct SceneErrors(pub Vec<SceneError>);
+
+/// One thing wrong, and where: a JSON pointer that starts with `/case` or `/plan`.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{pointer}: {detail}")]
+pub struct SceneError {
+    pub pointer: String,
+    /// A stable word: `empty-selection`, `unknown-set`, `unknown-array`, `unknown-surface`,
+    /// `unknown-region`, `unknown-segment`, `duplicate-segment`, `missing-material`, `plan-conflict`,
+    /// `sliding-normal-zero`, `underconstrained` or `mesh-inverted-elements`.
+    pub code: &'static str,
+    pub detail: String,
+}
+
+/// Problems found so far.
+#[derive(Default)]
+pub(super) struct Problems(Vec<SceneError>);
+
+impl Problems {
+    pub(super) fn add(&mut self, pointer: impl Into<String>, code: &'static str, detail: String) {
+        if self.0.len() < MOST_PROBLEMS {
+            self.0.push(SceneError { pointer: pointer.into(), code, detail });
+        }
+    }
+
+    pub(super) fn selection(&mut self, pointer: &str, error: &SelectionError) {
+        let code = match error {
+            SelectionError::UnknownSet { .. } => "unknown-set",
+            SelectionError::UnknownArray { .. } => "unknown-array",
+            SelectionError::UnknownSurface(_) => "unknown-surface",
+            SelectionError::FlatSurface(_) => "mesh-degenerate",
+            SelectionError::Empty => "empty-selection",
+        };
+        self.add(pointer, code, error.to_string());
+    }
+
+    pub(super) fn give_up_if_any(&mut self) -> Result<(), SceneErrors> {
+        match self.0.is_empty() {
+            true => Ok(()),
+            false => Err(SceneErrors(std::mem::take(&mut self.0))),
+        }
+    }
+}

@@ -1,0 +1,72 @@
+//! The surface whose movement is the answer.
+
+use std::collections::BTreeMap;
+
+use crate::boundary::NodeClass;
+use crate::mesh::volume::BoundaryFace;
+use crate::mesh::{TriangleSurface, Vector, VolumeMesh, Warning};
+
+/// Skin as triangles, and its named parts.
+#[derive(Clone, Debug)]
+pub struct Skin {
+    /// With `node_ids`.
+    pub surface: TriangleSurface,
+    /// Named parts as ascending points of `surface`.
+    pub regions: BTreeMap<String, Vec<u32>>,
+}
+
+impl Skin {
+    /// The nodes of the volume mesh, ascending, one for each point of the surface.
+    pub fn nodes(&self) -> &[u32] {
+        self.surface.node_ids.as_deref().unwrap_or_default()
+    }
+
+    /// The skin after its nodes have moved.
+    pub fn moved(&self, displacement: &[Vector]) -> TriangleSurface {
+        let mut moved = self.surface.clone();
+        for (point, &node) in moved.points.iter_mut().zip(self.nodes()) {
+            *point += displacement[node as usize];
+        }
+        moved
+    }
+}
+
+/// All boundary faces without a joined, fixed or sliding node; where none is left, the whole boundary.
+pub(super) fn default_faces(
+    boundary: &[BoundaryFace],
+    classes: &[NodeClass],
+    warnings: &mut Vec<Warning>,
+) -> Vec<BoundaryFace> {
+    let is_bare = |node: &u32| matches!(classes[*node as usize], NodeClass::Free | NodeClass::Prescribed);
+    let bare: Vec<BoundaryFace> =
+        boundary.iter().filter(|face| face.nodes().iter().all(is_bare)).copied().collect();
+    if !bare.is_empty() {
+        return bare;
+    }
+    let detail = "every boundary face touches a joined, fixed or sliding node: the whole boundary is taken as skin";
+    warnings.push(Warning::new("no-free-skin", detail));
+    boundary.to_vec()
+}
+
+/// The displacement of each landmark: that of the boundary point closest to it, and how far that is.
+pub(super) fn landmark_displacement(
+    mesh: &VolumeMesh,
+    landmarks: &BTreeMap<String, Vector>,
+    displacement: &[Vector],
+) -> BTreeMap<String, (Vector, f64)> {
+    use crate::mesh::closest_point::SurfaceSearch;
+    let surface = mesh.surface_of(&mesh.boundary_faces());
+    let nodes = surface.node_ids.clone().unwrap_or_default();
+    let Ok(search) = SurfaceSearch::new(&surface) else {
+        return BTreeMap::new();
+    };
+    let moved = |landmark: &Vector| {
+        let closest = search.closest(landmark);
+        let corners = surface.triangles[closest.triangle];
+        let sum = corners.iter().zip(closest.barycentric).fold(Vector::zeros(), |sum, (&corner, weight)| {
+            sum + displacement[nodes[corner as usize] as usize] * weight
+        });
+        (sum, closest.distance)
+    };
+    landmarks.iter().map(|(name, landmark)| (name.clone(), moved(landmark))).collect()
+}

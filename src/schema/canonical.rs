@@ -1,0 +1,82 @@
+//! Canonical JSON and the hash of a job: the same work has the same hash, however it was written down.
+
+use serde::Serialize;
+use serde_json::{Value, json};
+use sha2::{Digest, Sha256};
+
+use super::case::CaseDocument;
+use super::compare::CompareDocument;
+use super::plan::PlanDocument;
+use super::spec::PredictDocument;
+
+/// A document as a value whose keys are sorted.
+pub fn to_value(document: &impl Serialize) -> Value {
+    let mut value = serde_json::to_value(document)
+        .expect("documents have text keys and serialise without failing");
+    value.sort_all_objects();
+    value
+}
+
+/// SHA-256 of some bytes in hexadecimal.
+pub fn sha256_hex(bytes: &[u8]) -> String {
+    hex(&Sha256::digest(bytes))
+}
+
+/// Bytes in lower-case hexadecimal.
+pub fn hex(bytes: &[u8]) -> String {
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// The hash of a prediction: contents of meshes in place of their ids, the plan in full, names and tags left out.
+/// `content_of` gives the SHA-256 of a mesh by its id; an id it does not know stands for itself.
+pub fn predict_hash(
+    case: &CaseDocument,
+    plan: &PlanDocument,
+    spec: &PredictDocument,
+    content_of: &dyn Fn(&str) -> Option<String>,
+) -> String {
+    let mut case = case.clone();
+    case.name = None;
+    case.tags.clear();
+    let mut plan = plan.clone();
+    let mut spec = spec.clone();
+    let case_meshes = case.mesh_references_mut().into_iter();
+    let plan_meshes = plan.surface_references_mut().into_iter();
+    for (_, id) in case_meshes.chain(plan_meshes) {
+        replace(id, content_of);
+    }
+    if let Some(compare_to) = &mut spec.compare_to {
+        replace(&mut compare_to.actual.mesh, content_of);
+    }
+    hash(&json!({
+        "engine": env!("CARGO_PKG_VERSION"),
+        "case": to_value(&case),
+        "plan": to_value(&plan),
+        "spec": spec.content(),
+    }))
+}
+
+/// The hash of a comparison; `content_of` also answers for the predicted skin of a job.
+pub fn compare_hash(spec: &CompareDocument, content_of: &dyn Fn(&str) -> Option<String>) -> String {
+    let mut spec = spec.clone();
+    spec.tags.clear();
+    let reference = &mut spec.prediction;
+    let prediction = [reference.job.as_mut(), reference.mesh.as_mut()];
+    for id in prediction.into_iter().flatten() {
+        replace(id, content_of);
+    }
+    replace(&mut spec.actual.mesh, content_of);
+    hash(&json!({ "engine": env!("CARGO_PKG_VERSION"), "spec": to_value(&spec) }))
+}
+
+fn replace(id: &mut String, content_of: &dyn Fn(&str) -> Option<String>) {
+    if let Some(content) = content_of(id) {
+        *id = content;
+    }
+}
+
+fn hash(value: &Value) -> String {
+    let mut sorted = value.clone();
+    sorted.sort_all_objects();
+    sha256_hex(sorted.to_string().as_bytes())
+}

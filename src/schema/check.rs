@@ -1,0 +1,46 @@
+//! The answer of a check: what every node is held to, before anything is solved.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+use super::warning::WarningDocument;
+
+/// Wrong sets are the commonest mistake: these counts show them.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct CheckDocument {
+    pub nodes: u64,
+    pub cells: u64,
+    pub classes: ClassCounts,
+    pub skin: SkinSummary,
+    /// Unknown displacement components.
+    pub unknowns: u64,
+    /// What matrix and solver are expected to take.
+    pub memory_mb: f64,
+    /// The method that `auto` chooses.
+    pub method: String,
+    pub why: String,
+    pub warnings: Vec<WarningDocument>,
+}
+
+/// How many nodes are held by what; each node is counted once, by the strongest that holds it.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+pub struct ClassCounts {
+    pub prescribed: u64,
+    /// By segment.
+    pub joined: BTreeMap<String, u64>,
+    pub fixed: u64,
+    pub sliding: u64,
+    pub free: u64,
+}
+
+/// The surface whose movement is the answer.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct SkinSummary {
+    pub nodes: u64,
+    pub triangles: u64,
+    pub area_mm2: f64,
+    /// Nodes of each of `skin_regions`.
+    pub regions: BTreeMap<String, u64>,
+}

@@ -1,0 +1,217 @@
+//! The spec of a comparison: two surfaces, whether they are aligned first, and where they are measured.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use utoipa::ToSchema;
+
+use super::canonical;
+use super::case_conversion::check_tags;
+use super::fault::{Faults, Pointer};
+use super::limits::Limits;
+use super::{CornerPair, Sphere};
+
+/// `compare`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum CompareKind {
+    #[default]
+    Compare,
+}
+
+/// A comparison of a predicted with an actual surface.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CompareDocument {
+    #[serde(default)]
+    #[schema(required)]
+    pub kind: CompareKind,
+    pub prediction: SurfaceReference,
+    pub actual: MeshReference,
+    #[serde(default)]
+    pub align: AlignDocument,
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub regions: BTreeMap<String, PlaceDocument>,
+    #[serde(default = "usual_density")]
+    #[schema(default = 1.0, exclusive_minimum = 0.0, maximum = 100.0)]
+    pub samples_per_mm2: f64,
+    #[serde(default)]
+    pub node_wise: NodeWise,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub tags: Vec<String>,
+}
+
+/// A comparison within a prediction: that of the predicted skin with another surface.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CompareToDocument {
+    #[serde(default)]
+    pub kind: CompareKind,
+    pub actual: MeshReference,
+    #[serde(default)]
+    pub align: AlignDocument,
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub regions: BTreeMap<String, PlaceDocument>,
+    #[serde(default = "usual_density")]
+    #[schema(default = 1.0, exclusive_minimum = 0.0, maximum = 100.0)]
+    pub samples_per_mm2: f64,
+    #[serde(default)]
+    pub node_wise: NodeWise,
+}
+
+fn usual_density() -> f64 {
+    1.0
+}
+
+/// A surface: exactly one of the predicted skin of a `job` and a `mesh`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SurfaceReference {
+    /// The id of a successful prediction.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub job: Option<String>,
+    /// The id of a mesh; of a volume mesh the boundary is compared.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub mesh: Option<String>,
+}
+
+/// A mesh by its id; of a volume mesh the boundary is compared.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MeshReference {
+    pub mesh: String,
+}
+
+/// Whether the prediction is moved rigidly onto the actual surface before it is measured.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct AlignDocument {
+    #[serde(default)]
+    pub method: AlignMethod,
+    /// Only what lies in it decides the alignment.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub mask: Option<PlaceDocument>,
+    /// Reports the measures before the alignment as well.
+    #[serde(default = "yes")]
+    #[schema(default = true)]
+    pub report_unaligned: bool,
+}
+
+fn yes() -> bool {
+    true
+}
+
+impl Default for AlignDocument {
+    fn default() -> Self {
+        AlignDocument { method: AlignMethod::None, mask: None, report_unaligned: true }
+    }
+}
+
+/// How surfaces are aligned.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum AlignMethod {
+    #[default]
+    None,
+    Landmarks,
+    Icp,
+}
+
+/// A part of space: exactly one of a sphere and a box.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PlaceDocument {
+    /// Centre and radius: x, y, z, r.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub sphere_mm: Option<Sphere>,
+    /// Lowest and highest corner: x0, y0, z0, x1, y1, z1.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub box_mm: Option<CornerPair>,
+}
+
+/// Whether the distance between points of the same number is measured.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum NodeWise {
+    /// Where `node_id` arrays or the triangles of both agree.
+    #[default]
+    Auto,
+    On,
+    Off,
+}
+
+impl CompareToDocument {
+    /// Adds what is wrong with it.
+    pub fn check(&self, at: &Pointer, limits: &Limits, faults: &mut Faults) {
+        if self.align.method == AlignMethod::Landmarks {
+            let detail = "alignment by landmarks is not available; `none` and `icp` are";
+            let place = at.key("align").key("method");
+            faults.add(&place, "alignment-not-available", detail);
+        }
+        if let Some(mask) = &self.align.mask {
+            mask.check(&at.key("align").key("mask"), faults);
+        }
+        let place = at.key("regions");
+        faults.check_length(&place, self.regions.len(), limits.map_entries as usize);
+        for (name, region) in &self.regions {
+            faults.check_name(&place.key(name), name, limits.name_characters as usize);
+            region.check(&place.key(name), faults);
+        }
+        let density = 1e-4..=limits.samples_per_mm2;
+        let place = at.key("samples_per_mm2");
+        faults.check_range(&place, self.samples_per_mm2, density, "per mm2");
+    }
+
+    /// What decides the numbers, for the hash of a job.
+    pub fn content(&self) -> Value {
+        canonical::to_value(self)
+    }
+}
+
+impl CompareDocument {
+    /// Adds what is wrong with it; pointers start at `/spec`.
+    pub fn check(&self, limits: &Limits, faults: &mut Faults) {
+        let at = Pointer::root().key("spec");
+        let reference = &self.prediction;
+        let given = usize::from(reference.job.is_some()) + usize::from(reference.mesh.is_some());
+        faults.check_one_of(&at.key("prediction"), given, "`job`, `mesh`");
+        check_tags(&self.tags, &at.key("tags"), limits, faults);
+        self.to_compare_to().check(&at, limits, faults);
+    }
+
+    /// The part that does not depend on where the prediction comes from.
+    pub fn to_compare_to(&self) -> CompareToDocument {
+        CompareToDocument {
+            kind: self.kind,
+            actual: self.actual.clone(),
+            align: self.align.clone(),
+            regions: self.regions.clone(),
+            samples_per_mm2: self.samples_per_mm2,
+            node_wise: self.node_wise,
+        }
+    }
+}
+
+impl PlaceDocument {
+    fn check(&self, at: &Pointer, faults: &mut Faults) {
+        let given = usize::from(self.sphere_mm.is_some()) + usize::from(self.box_mm.is_some());
+        if !faults.check_one_of(at, given, "`sphere_mm`, `box_mm`") {
+            return;
+        }
+        if let Some(Sphere([.., radius])) = self.sphere_mm {
+            faults.check_range(&at.key("sphere_mm").index(3), radius, 1e-6..=1e6, "mm");
+        }
+        if let Some(CornerPair([x0, y0, z0, x1, y1, z1])) = self.box_mm
+            && !(x0 < x1 && y0 < y1 && z0 < z1)
+        {
+            let detail = "each coordinate of the lowest corner is below that of the highest";
+            faults.add(&at.key("box_mm"), "out-of-range", detail);
+        }
+    }
+}

@@ -1,0 +1,160 @@
+//! The state of a job: statusInfo (OGC API Processes part 1, section 7.12) and its error.
+
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
+use utoipa::ToSchema;
+
+use super::prediction::{EngineDocument, ResultDocument};
+use super::warning::WarningDocument;
+
+/// Where a job is in its life.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum JobStatus {
+    Accepted,
+    Running,
+    Successful,
+    Failed,
+    Dismissed,
+}
+
+impl JobStatus {
+    pub fn name(self) -> &'static str {
+        match self {
+            JobStatus::Accepted => "accepted",
+            JobStatus::Running => "running",
+            JobStatus::Successful => "successful",
+            JobStatus::Failed => "failed",
+            JobStatus::Dismissed => "dismissed",
+        }
+    }
+
+    /// The status a stored word names.
+    pub fn from_name(name: &str) -> Option<JobStatus> {
+        use JobStatus::{Accepted, Dismissed, Failed, Running, Successful};
+        [Accepted, Running, Successful, Failed, Dismissed]
+            .into_iter()
+            .find(|status| status.name() == name)
+    }
+
+    /// Whether nothing will happen to it any more.
+    pub fn is_terminal(self) -> bool {
+        !matches!(self, JobStatus::Accepted | JobStatus::Running)
+    }
+}
+
+/// What a job does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum JobKind {
+    Predict,
+    Compare,
+}
+
+impl JobKind {
+    pub fn name(self) -> &'static str {
+        match self {
+            JobKind::Predict => "predict",
+            JobKind::Compare => "compare",
+        }
+    }
+
+    /// The kind a stored word names.
+    pub fn from_name(name: &str) -> Option<JobKind> {
+        [JobKind::Predict, JobKind::Compare].into_iter().find(|kind| kind.name() == name)
+    }
+}
+
+/// The state of a job.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct StatusInfo {
+    pub id: String,
+    pub kind: JobKind,
+    pub status: JobStatus,
+    /// `validate`, `mesh`, `assemble`, `solve`, `contact`, `surface`, `compare` or `write`, while it runs.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub phase: Option<String>,
+    pub message: String,
+    /// 0 to 100, never falling.
+    #[schema(maximum = 100)]
+    pub progress: u8,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub iteration: Option<u64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub residual: Option<f64>,
+    /// RFC 3339, UTC.
+    pub created: String,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub started: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub finished: Option<String>,
+    pub updated: String,
+    /// How often it was started.
+    pub attempt: u32,
+    /// 0 is the next one; absent once it has started.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub queue_position: Option<u64>,
+    pub spec_hash: String,
+    pub engine: EngineDocument,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub case: Option<String>,
+    pub tags: Vec<String>,
+    /// True where an earlier job with the same hash is the answer.
+    #[serde(default)]
+    pub deduplicated: bool,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub error: Option<JobErrorDocument>,
+    pub warnings: Vec<WarningDocument>,
+    /// The manifest, as soon as `status` is successful.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub results: Option<ResultDocument>,
+    pub links: Vec<Link>,
+}
+
+/// Why a job failed.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct JobErrorDocument {
+    /// A stable word, e.g. `solver-diverged`, `budget-exceeded`, `worker-lost`.
+    #[serde(rename = "type")]
+    pub kind: String,
+    pub class: ErrorClass,
+    pub detail: String,
+    /// Members that belong to the type, e.g. `which` of `budget-exceeded`.
+    #[serde(flatten)]
+    #[schema(value_type = Object)]
+    pub members: Map<String, Value>,
+}
+
+/// What kind of thing went wrong; only `infrastructure` is ever tried again.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum ErrorClass {
+    /// The numbers: the same again would fail again.
+    Numerical,
+    /// The documents or meshes.
+    Input,
+    /// Disks, databases, processes.
+    Infrastructure,
+    /// Somebody asked it to stop.
+    Cancelled,
+    /// Time or memory that the spec allows.
+    Budget,
+}
+
+/// Where to go from here (RFC 8288).
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+pub struct Link {
+    pub href: String,
+    pub rel: String,
+    #[serde(rename = "type")]
+    pub media_type: String,
+}

@@ -1,0 +1,74 @@
+//! `GET /v1/limits`: every bound that is enforced.
+
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+/// Bounds on what is accepted. Defaults are those of the API's first version.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct Limits {
+    /// Largest mesh upload.
+    pub upload_bytes: u64,
+    /// Largest JSON body.
+    pub json_bytes: u64,
+    /// Deepest nesting of arrays and objects in JSON.
+    pub json_depth: u32,
+    /// Parts of a multipart body.
+    pub multipart_parts: u32,
+    pub mesh_nodes: u64,
+    pub mesh_triangles: u64,
+    pub mesh_cells: u64,
+    /// Corners of one polygon of a surface file.
+    pub polygon_corners: u32,
+    /// Decoded size of a file.
+    pub decoded_bytes: u64,
+    /// Decoded size of a file in multiples of the file.
+    pub decoded_ratio: u32,
+    /// Longest wait for a result within a request.
+    pub wait_s: u32,
+    /// Characters of a name.
+    pub name_characters: u32,
+    pub tags: u32,
+    /// Segments, bones, sliding sets, prescribed sets, loads or steps of a sequence: of each.
+    pub list_entries: u32,
+    /// Landmarks, named regions and materials: of each.
+    pub map_entries: u32,
+    /// Length of the translation of one movement, and each component of a prescribed displacement.
+    pub translation_mm: f64,
+    /// Each angle of one movement, and the angle of the whole movement of a segment.
+    pub rotation_deg: f64,
+    /// How far the whole movement of a segment may displace the centre of the mesh's bounding box.
+    pub centre_displacement_mm: f64,
+    /// Largest budget of time of one job.
+    pub wall_s: f64,
+    /// Largest budget of memory of one job.
+    pub memory_mb: f64,
+    pub samples_per_mm2: f64,
+}
+
+impl Default for Limits {
+    fn default() -> Self {
+        Limits {
+            upload_bytes: 256 << 20,
+            json_bytes: 1 << 20,
+            json_depth: 32,
+            multipart_parts: 32,
+            mesh_nodes: 5_000_000,
+            mesh_triangles: 10_000_000,
+            mesh_cells: 4_000_000,
+            polygon_corners: 64,
+            decoded_bytes: 512 << 20,
+            decoded_ratio: 10,
+            wait_s: 30,
+            name_characters: 128,
+            tags: 32,
+            list_entries: 100,
+            map_entries: 1000,
+            translation_mm: 100.0,
+            rotation_deg: 90.0,
+            centre_displacement_mm: 250.0,
+            wall_s: 86_400.0,
+            memory_mb: 1_000_000.0,
+            samples_per_mm2: 100.0,
+        }
+    }
+}

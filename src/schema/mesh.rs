@@ -1,0 +1,81 @@
+//! An uploaded mesh: what the file holds and what a reader of it must know.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+use super::CornerPair;
+use super::case::{FrameName, LengthUnit};
+use super::warning::WarningDocument;
+
+/// The answer of `POST /v1/meshes` and `GET /v1/meshes/{id}`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct MeshDocument {
+    pub id: String,
+    /// Of the bytes that were sent, in hexadecimal.
+    pub sha256: String,
+    pub bytes: u64,
+    /// As sniffed from the bytes, e.g. `vtu`, `stl`, `gmsh`.
+    pub format: String,
+    /// RFC 3339, UTC.
+    pub created: String,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub role: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub units: Option<LengthUnit>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub frame: Option<FrameName>,
+    pub report: MeshReport,
+}
+
+/// What a mesh file holds. Lengths are in the units of the file.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct MeshReport {
+    pub kind: MeshKind,
+    pub nodes: u64,
+    /// Cells of a volume by shape: `tet4`, `hex8`, `wedge6`.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub cells: BTreeMap<String, u64>,
+    /// Triangles of a surface, or of the boundary of a volume.
+    pub triangles: u64,
+    /// Lowest and highest corner.
+    pub bounding_box: CornerPair,
+    pub diagonal: f64,
+    /// The frame that a `SPACE=` mark in the file names.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub space: Option<FrameName>,
+    /// Named sets with their number of nodes.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub node_sets: BTreeMap<String, u64>,
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub cell_sets: BTreeMap<String, u64>,
+    /// Integer arrays with their values.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub node_labels: BTreeMap<String, Vec<i64>>,
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub cell_labels: BTreeMap<String, Vec<i64>>,
+    /// Arrays of vectors, for displacements prescribed by array.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub node_vectors: Vec<String>,
+    /// Arrays of the file that nothing reads.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub ignored_arrays: Vec<String>,
+    /// Of volumes: the smallest scaled Jacobian of a cell; 1 is perfect, below 0 is inverted.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub min_quality: Option<f64>,
+    pub warnings: Vec<WarningDocument>,
+}
+
+/// What a mesh is made of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum MeshKind {
+    Volume,
+    Surface,
+}

@@ -1,0 +1,262 @@
+//! JSON read strictly: what a lenient reader would drop or guess is refused, with the place.
+//!
+//! Syntax (RFC 8259), size, depth and encoding are refused as `malformed-json` with line and column;
+//! repeated keys, nulls and anything a document does not know as `validation-failed` with JSON pointers.
+
+use std::cell::RefCell;
+use std::fmt;
+
+use serde::Deserialize;
+use serde::de::{DeserializeOwned, DeserializeSeed, Error, MapAccess, SeqAccess, Visitor};
+use serde_json::{Map, Number, Value};
+use serde_path_to_error::Segment;
+
+use super::fault::{Faults, Pointer};
+use super::limits::Limits;
+use super::problem::Problem;
+
+/// One document of a known shape.
+pub fn parse<T: DeserializeOwned>(bytes: &[u8], limits: &Limits) -> Result<T, Problem> {
+    from_value(parse_value(bytes, limits)?)
+}
+
+/// Any JSON within the limits that repeats no key.
+pub fn parse_value(bytes: &[u8], limits: &Limits) -> Result<Value, Problem> {
+    if bytes.len() as u64 > limits.json_bytes {
+        let detail = format!(
+            "the document has {} bytes, at most {} are allowed",
+            bytes.len(),
+            limits.json_bytes
+        );
+        return Err(Problem::new("payload-too-large", detail).with("limit", limits.json_bytes));
+    }
+    let text = std::str::from_utf8(bytes).map_err(|error| not_utf8(bytes, error.valid_up_to()))?;
+    let scan = Scan {
+        depth_limit: limits.json_depth as usize,
+        path: RefCell::default(),
+        faults: RefCell::default(),
+    };
+    let mut deserializer = serde_json::Deserializer::from_str(text);
+    let value = ScanValue(&scan)
+        .deserialize(&mut deserializer)
+        .and_then(|value| deserializer.end().map(|()| value))
+        .map_err(|error| malformed(&error, &scan.pointer()))?;
+    scan.faults.into_inner().into_result()?;
+    Ok(value)
+}
+
+/// A document of a known shape out of JSON that `parse_value` let through.
+/// Every unknown field is reported; of other mistakes in the shape the first.
+pub fn from_value<T: DeserializeOwned>(mut value: Value) -> Result<T, Problem> {
+    let mut faults = Faults::default();
+    remove_nulls(&mut value, &Pointer::root(), &mut faults);
+    loop {
+        let error = match serde_path_to_error::deserialize::<_, T>(&value) {
+            Ok(document) => return faults.into_result().map(|()| document),
+            Err(error) => error,
+        };
+        let at = pointer_of(error.path());
+        let detail = error.inner().to_string();
+        match quoted_after(&detail, "unknown field ") {
+            Some(name) => {
+                let (parent, place) = member(&at, name);
+                faults.add(&place, "unknown-field", detail.clone());
+                let object = value.pointer_mut(parent.as_str()).and_then(Value::as_object_mut);
+                if object.and_then(|object| object.remove(name)).is_some() {
+                    continue;
+                }
+            }
+            None => add_shape_fault(&mut faults, &at, &detail),
+        }
+        faults.into_result()?;
+        return Err(Problem::new("validation-failed", detail));
+    }
+}
+
+fn add_shape_fault(faults: &mut Faults, at: &Pointer, detail: &str) {
+    if let Some(name) = quoted_after(detail, "missing field ") {
+        faults.add(&at.key(name), "missing-field", detail);
+    } else if detail.starts_with("unknown variant ") {
+        faults.add(at, "unknown-word", detail);
+    } else {
+        faults.add(at, "wrong-type", detail);
+    }
+}
+
+/// The object and the place of a member, whether or not the path already ends with it.
+fn member(at: &Pointer, name: &str) -> (Pointer, Pointer) {
+    let last = Pointer::root().key(name);
+    match at.as_str().strip_suffix(last.as_str()) {
+        Some(parent) => (Pointer::from_text(parent), at.clone()),
+        None => (at.clone(), at.key(name)),
+    }
+}
+
+/// The name in backquotes behind a prefix of one of serde's messages.
+fn quoted_after<'a>(message: &'a str, prefix: &str) -> Option<&'a str> {
+    let rest = message.strip_prefix(prefix)?.strip_prefix('`')?;
+    // serde lists what it expected behind the name, so the name ends at the last quote before that.
+    let end = rest.find("`, ").or_else(|| rest.rfind('`'))?;
+    Some(&rest[..end])
+}
+
+fn pointer_of(path: &serde_path_to_error::Path) -> Pointer {
+    path.iter().fold(Pointer::root(), |at, segment| match segment {
+        Segment::Seq { index } => at.index(*index),
+        Segment::Map { key } => at.key(key),
+        Segment::Enum { variant } => at.key(variant),
+        Segment::Unknown => at,
+    })
+}
+
+/// A member that is null says nothing a missing one does not; entries of arrays are judged by their type.
+fn remove_nulls(value: &mut Value, at: &Pointer, faults: &mut Faults) {
+    match value {
+        Value::Object(members) => {
+            members.retain(|name, member| {
+                if member.is_null() {
+                    faults.add(&at.key(name), "null-value", "null is not a value here");
+                } else {
+                    remove_nulls(member, &at.key(name), faults);
+                }
+                !member.is_null()
+            });
+        }
+        Value::Array(entries) => {
+            for (index, entry) in entries.iter_mut().enumerate() {
+                remove_nulls(entry, &at.index(index), faults);
+            }
+        }
+        _ => {}
+    }
+}
+
+fn not_utf8(bytes: &[u8], valid: usize) -> Problem {
+    let before = &bytes[..valid];
+    let line = before.iter().filter(|&&byte| byte == b'\n').count() + 1;
+    let line_start =
+        before.iter().rposition(|&byte| byte == b'\n').map_or(0, |newline| newline + 1);
+    let column = valid - line_start + 1;
+    let detail = format!("byte {valid} is not UTF-8 (line {line}, column {column})");
+    Problem::new("malformed-json", detail).with("line", line).with("column", column)
+}
+
+fn malformed(error: &serde_json::Error, at: &Pointer) -> Problem {
+    let problem = Problem::new("malformed-json", error.to_string())
+        .with("line", error.line())
+        .with("column", error.column());
+    match at.as_str() {
+        "" => problem,
+        pointer => problem.with("pointer", pointer),
+    }
+}
+
+enum Step {
+    Key(String),
+    Index(usize),
+}
+
+/// Where the reader stands and what it found.
+struct Scan {
+    depth_limit: usize,
+    path: RefCell<Vec<Step>>,
+    faults: RefCell<Faults>,
+}
+
+impl Scan {
+    fn pointer(&self) -> Pointer {
+        self.path.borrow().iter().fold(Pointer::root(), |at, step| match step {
+            Step::Key(key) => at.key(key),
+            Step::Index(index) => at.index(*index),
+        })
+    }
+
+    /// Steps into a member or entry; where the step is refused the path keeps pointing at it.
+    fn enter<E: Error>(&self, step: Step) -> Result<(), E> {
+        self.path.borrow_mut().push(step);
+        let depth = self.path.borrow().len();
+        if depth > self.depth_limit {
+            return Err(E::custom(format_args!("nested deeper than {} levels", self.depth_limit)));
+        }
+        Ok(())
+    }
+
+    fn leave(&self) {
+        self.path.borrow_mut().pop();
+    }
+}
+
+struct ScanValue<'a>(&'a Scan);
+
+impl<'de> DeserializeSeed<'de> for ScanValue<'_> {
+    type Value = Value;
+
+    fn deserialize<D: serde::Deserializer<'de>>(self, deserializer: D) -> Result<Value, D::Error> {
+        deserializer.deserialize_any(self)
+    }
+}
+
+impl<'de> Visitor<'de> for ScanValue<'_> {
+    type Value = Value;
+
+    fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str("any JSON value")
+    }
+
+    fn visit_unit<E: Error>(self) -> Result<Value, E> {
+        Ok(Value::Null)
+    }
+
+    fn visit_bool<E: Error>(self, value: bool) -> Result<Value, E> {
+        Ok(Value::Bool(value))
+    }
+
+    fn visit_i64<E: Error>(self, value: i64) -> Result<Value, E> {
+        Ok(Value::Number(value.into()))
+    }
+
+    fn visit_u64<E: Error>(self, value: u64) -> Result<Value, E> {
+        Ok(Value::Number(value.into()))
+    }
+
+    fn visit_f64<E: Error>(self, value: f64) -> Result<Value, E> {
+        let number = Number::from_f64(value).ok_or_else(|| E::custom("number out of range"))?;
+        Ok(Value::Number(number))
+    }
+
+    fn visit_str<E: Error>(self, value: &str) -> Result<Value, E> {
+        Ok(Value::String(value.to_owned()))
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut entries: A) -> Result<Value, A::Error> {
+        let mut array = Vec::new();
+        loop {
+            self.0.enter(Step::Index(array.len()))?;
+            let entry = entries.next_element_seed(ScanValue(self.0))?;
+            self.0.leave();
+            match entry {
+                Some(entry) => array.push(entry),
+                None => return Ok(Value::Array(array)),
+            }
+        }
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut members: A) -> Result<Value, A::Error> {
+        let mut object = Map::new();
+        while let Some(Key(key)) = members.next_key()? {
+            self.0.enter(Step::Key(key.clone()))?;
+            if object.contains_key(&key) {
+                let detail = format!("the key `{key}` is given more than once");
+                let at = self.0.pointer();
+                self.0.faults.borrow_mut().add(&at, "duplicate-key", detail);
+            }
+            let member = members.next_value_seed(ScanValue(self.0))?;
+            self.0.leave();
+            object.insert(key, member);
+        }
+        Ok(Value::Object(object))
+    }
+}
+
+#[derive(Deserialize)]
+struct Key(String);
