@@ -4,14 +4,14 @@
 
 pub mod boundary;
 pub mod config;
-pub mod material;
 pub mod element;
-pub mod solver;
+pub mod jobs;
+pub mod material;
 pub mod mesh;
-pub mod plan;
 pub mod model;
+pub mod plan;
 pub mod prediction;
 pub mod schema;
+pub mod solver;
 pub mod store;
-pub mod jobs;
 pub mod telemetry;

@@ -60,7 +60,9 @@ pub enum ConditionError {
     TwoMovements { node: u32, first: usize, second: usize, distance: f64 },
     #[error("component {component} of node {node} is prescribed as {first} mm and as {second} mm")]
     TwoValues { node: u32, component: usize, first: f64, second: f64 },
-    #[error("component {component} of node {node} is prescribed as {prescribed} mm, and its segment moves it by {joined} mm")]
+    #[error(
+        "component {component} of node {node} is prescribed as {prescribed} mm, and its segment moves it by {joined} mm"
+    )]
     PrescribedAgainstJoined { node: u32, component: usize, prescribed: f64, joined: f64 },
 }
 
@@ -101,7 +103,11 @@ struct NodeConditions {
 }
 
 impl NodeConditions {
-    fn prescribe(&mut self, node: u32, displacement: [Option<f64>; 3]) -> Result<(), ConditionError> {
+    fn prescribe(
+        &mut self,
+        node: u32,
+        displacement: [Option<f64>; 3],
+    ) -> Result<(), ConditionError> {
         for (component, value) in displacement.into_iter().enumerate() {
             let Some(second) = value else { continue };
             if let Some(first) = self.prescribed[component]
@@ -114,7 +120,12 @@ impl NodeConditions {
         Ok(())
     }
 
-    fn join(&mut self, node: u32, segment: usize, displacement: Vector) -> Result<(), ConditionError> {
+    fn join(
+        &mut self,
+        node: u32,
+        segment: usize,
+        displacement: Vector,
+    ) -> Result<(), ConditionError> {
         if let Some((first, other)) = self.joined {
             let distance = (other - displacement).norm();
             if distance > CONTRADICTION {
@@ -128,7 +139,12 @@ impl NodeConditions {
             if let Some(prescribed) = prescribed
                 && (prescribed - joined).abs() > CONTRADICTION
             {
-                return Err(ConditionError::PrescribedAgainstJoined { node, component, prescribed, joined });
+                return Err(ConditionError::PrescribedAgainstJoined {
+                    node,
+                    component,
+                    prescribed,
+                    joined,
+                });
             }
         }
         self.joined = Some((segment, displacement));
@@ -160,7 +176,10 @@ impl NodeConditions {
         let whole = self.joined.map(|(_, displacement)| displacement);
         if let Some(displacement) = whole.or(self.fixed.then(Vector::zeros)) {
             for component in 0..3 {
-                hold.add(&Matrix3::identity().column(component).into_owned(), displacement[component]);
+                hold.add(
+                    &Matrix3::identity().column(component).into_owned(),
+                    displacement[component],
+                );
             }
         }
         for direction in &self.across {

@@ -141,7 +141,8 @@ mod tests {
     fn a_node_held_in_three_oblique_directions_lies_at_their_common_point() {
         let mut hold = Hold::free(0);
         let target = Vector::new(1.0, -2.0, 3.0);
-        let directions = [Vector::new(1.0, 1.0, 0.0), Vector::new(0.0, 1.0, 1.0), Vector::new(1.0, 0.0, 2.0)];
+        let directions =
+            [Vector::new(1.0, 1.0, 0.0), Vector::new(0.0, 1.0, 1.0), Vector::new(1.0, 0.0, 2.0)];
         for direction in directions.map(|d| d.normalize()) {
             hold.add(&direction, direction.dot(&target));
         }

@@ -78,19 +78,27 @@ impl Selector<'_> {
     }
 
     fn labelled(&self, array: &str, value: i64) -> Result<Vec<u32>, SelectionError> {
-        let labels = self.mesh.node_labels.get(array).ok_or_else(|| SelectionError::UnknownArray {
-            name: array.to_owned(),
-            known: listed(self.mesh.node_labels.keys()),
-        })?;
-        Ok((0_u32..).zip(labels).filter(|(_, label)| **label == value).map(|(node, _)| node).collect())
+        let labels =
+            self.mesh.node_labels.get(array).ok_or_else(|| SelectionError::UnknownArray {
+                name: array.to_owned(),
+                known: listed(self.mesh.node_labels.keys()),
+            })?;
+        Ok((0_u32..)
+            .zip(labels)
+            .filter(|(_, label)| **label == value)
+            .map(|(node, _)| node)
+            .collect())
     }
 
     fn near(&self, name: &str, distance: f64) -> Result<Vec<u32>, SelectionError> {
-        let surface =
-            self.surfaces.get(name).ok_or_else(|| SelectionError::UnknownSurface(name.to_owned()))?;
-        let search =
-            SurfaceSearch::new(surface).map_err(|_| SelectionError::FlatSurface(name.to_owned()))?;
-        let is_near = |node: &&u32| search.closest(&self.mesh.nodes[**node as usize]).distance <= distance;
+        let surface = self
+            .surfaces
+            .get(name)
+            .ok_or_else(|| SelectionError::UnknownSurface(name.to_owned()))?;
+        let search = SurfaceSearch::new(surface)
+            .map_err(|_| SelectionError::FlatSurface(name.to_owned()))?;
+        let is_near =
+            |node: &&u32| search.closest(&self.mesh.nodes[**node as usize]).distance <= distance;
         Ok(self.boundary_nodes.iter().filter(is_near).copied().collect())
     }
 }

@@ -11,7 +11,11 @@ const SAME_WALL: f64 = std::f64::consts::FRAC_1_SQRT_2;
 ///
 /// The walls are the boundary faces all of whose nodes are listed; a node without such a face takes
 /// all boundary faces that touch it.
-pub fn wall_normals(mesh: &VolumeMesh, boundary: &[BoundaryFace], nodes: &[u32]) -> Vec<(u32, Vec<Vector>)> {
+pub fn wall_normals(
+    mesh: &VolumeMesh,
+    boundary: &[BoundaryFace],
+    nodes: &[u32],
+) -> Vec<(u32, Vec<Vector>)> {
     let mut listed = vec![false; mesh.nodes.len()];
     for &node in nodes {
         listed[node as usize] = true;

@@ -6,7 +6,9 @@ pub(super) fn reference_cell() -> ReferenceCell {
     let (near, far) = (1.0 / 6.0, 2.0 / 3.0);
     let points = [-GAUSS, GAUSS]
         .into_iter()
-        .flat_map(|z| [(near, near), (far, near), (near, far)].map(|(x, y)| point([x, y, z], 1.0 / 6.0)))
+        .flat_map(|z| {
+            [(near, near), (far, near), (near, far)].map(|(x, y)| point([x, y, z], 1.0 / 6.0))
+        })
         .collect();
     ReferenceCell { node_count: 6, points, centre: point([1.0 / 3.0, 1.0 / 3.0, 0.0], 1.0) }
 }

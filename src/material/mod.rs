@@ -37,11 +37,7 @@ impl LinearElastic {
         if !(0.0..=100.0).contains(&density) {
             return Err(MaterialError::Density(density));
         }
-        Ok(LinearElastic {
-            young_modulus,
-            poisson_ratio,
-            density,
-        })
+        Ok(LinearElastic { young_modulus, poisson_ratio, density })
     }
 
     pub fn young_modulus(&self) -> f64 {

@@ -19,12 +19,7 @@ pub fn block(size: Vector, cells: [usize; 3], shape: CellShape) -> VolumeMesh {
     let mut quads = Vec::with_capacity(nx * ny);
     for j in 0..ny {
         for i in 0..nx {
-            quads.push([
-                number(i, j),
-                number(i + 1, j),
-                number(i + 1, j + 1),
-                number(i, j + 1),
-            ]);
+            quads.push([number(i, j), number(i + 1, j), number(i + 1, j + 1), number(i, j + 1)]);
         }
     }
     let mut nodes = Vec::with_capacity((nx + 1) * (ny + 1) * (nz + 1));
@@ -144,16 +139,7 @@ pub(super) fn layers_of(
             match shape {
                 CellShape::Hex8 => cells.push(
                     shape,
-                    &[
-                        low + p,
-                        low + q,
-                        low + r,
-                        low + s,
-                        high + p,
-                        high + q,
-                        high + r,
-                        high + s,
-                    ],
+                    &[low + p, low + q, low + r, low + s, high + p, high + q, high + r, high + s],
                 ),
                 CellShape::Wedge6 => {
                     for [a, b, c] in [[p, q, r], [p, r, s]] {
@@ -231,12 +217,8 @@ mod tests {
     }
 
     fn octant(cells_along: usize, shape: CellShape) -> VolumeMesh {
-        let sphere = ThickSphere {
-            inner_radius: 60.0,
-            outer_radius: 72.0,
-            cells_radial: 2,
-            cells_along,
-        };
+        let sphere =
+            ThickSphere { inner_radius: 60.0, outer_radius: 72.0, cells_radial: 2, cells_along };
         thick_sphere_octant(sphere, shape)
     }
 

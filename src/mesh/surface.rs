@@ -25,9 +25,7 @@ impl TriangleSurface {
 
     /// The total area in mm².
     pub fn area(&self) -> f64 {
-        (0..self.triangles.len())
-            .map(|triangle| self.area_vector(triangle).norm())
-            .sum()
+        (0..self.triangles.len()).map(|triangle| self.area_vector(triangle).norm()).sum()
     }
 
     /// For each point a third of the area of its triangles, in mm².
@@ -52,9 +50,7 @@ impl TriangleSurface {
             }
         }
         for normal in &mut normals {
-            *normal = normal
-                .try_normalize(f64::MIN_POSITIVE)
-                .unwrap_or_else(Vector::zeros);
+            *normal = normal.try_normalize(f64::MIN_POSITIVE).unwrap_or_else(Vector::zeros);
         }
         normals
     }

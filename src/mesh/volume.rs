@@ -35,13 +35,9 @@ impl CellShape {
                 &[2, 3, 7, 6],
                 &[3, 0, 4, 7],
             ],
-            CellShape::Wedge6 => &[
-                &[0, 2, 1],
-                &[3, 4, 5],
-                &[0, 1, 4, 3],
-                &[1, 2, 5, 4],
-                &[2, 0, 3, 5],
-            ],
+            CellShape::Wedge6 => {
+                &[&[0, 2, 1], &[3, 4, 5], &[0, 1, 4, 3], &[1, 2, 5, 4], &[2, 0, 3, 5]]
+            }
         }
     }
 
@@ -63,17 +59,9 @@ impl CellShape {
                 [2, 6],
                 [3, 7],
             ],
-            CellShape::Wedge6 => &[
-                [0, 1],
-                [1, 2],
-                [2, 0],
-                [3, 4],
-                [4, 5],
-                [5, 3],
-                [0, 3],
-                [1, 4],
-                [2, 5],
-            ],
+            CellShape::Wedge6 => {
+                &[[0, 1], [1, 2], [2, 0], [3, 4], [4, 5], [5, 3], [0, 3], [1, 4], [2, 5]]
+            }
         }
     }
 
@@ -97,23 +85,14 @@ pub struct Cells {
 
 impl Default for Cells {
     fn default() -> Self {
-        Cells {
-            shapes: Vec::new(),
-            offsets: vec![0],
-            nodes: Vec::new(),
-        }
+        Cells { shapes: Vec::new(), offsets: vec![0], nodes: Vec::new() }
     }
 }
 
 impl Cells {
     /// Appends a cell. `nodes` has as many entries as the shape has nodes.
     pub fn push(&mut self, shape: CellShape, nodes: &[u32]) {
-        assert_eq!(
-            nodes.len(),
-            shape.node_count(),
-            "{} has other nodes",
-            shape.name()
-        );
+        assert_eq!(nodes.len(), shape.node_count(), "{} has other nodes", shape.name());
         self.shapes.push(shape);
         self.nodes.extend_from_slice(nodes);
         self.offsets.push(self.nodes.len() as u32);
@@ -178,19 +157,14 @@ impl BoundaryFace {
     /// The face as one triangle or, cut along its diagonal 0-2, as two.
     pub fn triangles(&self) -> impl Iterator<Item = [u32; 3]> + '_ {
         let [a, b, c, d] = self.nodes;
-        [[a, b, c], [a, c, d]]
-            .into_iter()
-            .take(self.count as usize - 2)
+        [[a, b, c], [a, c, d]].into_iter().take(self.count as usize - 2)
     }
 }
 
 impl VolumeMesh {
     /// The corner positions of a cell, as many as its shape has nodes.
     pub fn corners(&self, cell: usize) -> impl ExactSizeIterator<Item = Vector> + '_ {
-        self.cells
-            .nodes(cell)
-            .iter()
-            .map(|&node| self.nodes[node as usize])
+        self.cells.nodes(cell).iter().map(|&node| self.nodes[node as usize])
     }
 
     /// The node set asked for as `NAME` or `set_NAME`.
@@ -218,11 +192,7 @@ impl VolumeMesh {
                         *slot = nodes[local];
                     }
                     let count = face.len() as u8;
-                    boundary.push(BoundaryFace {
-                        cell: cell as u32,
-                        nodes: face_nodes,
-                        count,
-                    });
+                    boundary.push(BoundaryFace { cell: cell as u32, nodes: face_nodes, count });
                 }
             }
         }
@@ -231,11 +201,7 @@ impl VolumeMesh {
 
     /// The faces as a triangle surface whose points are their nodes in ascending order.
     pub fn surface_of(&self, faces: &[BoundaryFace]) -> TriangleSurface {
-        let mut node_ids: Vec<u32> = faces
-            .iter()
-            .flat_map(|face| face.nodes())
-            .copied()
-            .collect();
+        let mut node_ids: Vec<u32> = faces.iter().flat_map(|face| face.nodes()).copied().collect();
         node_ids.sort_unstable();
         node_ids.dedup();
         let mut point_of = vec![u32::MAX; self.nodes.len()];
@@ -247,15 +213,8 @@ impl VolumeMesh {
             .flat_map(|face| face.triangles())
             .map(|triangle| triangle.map(|node| point_of[node as usize]))
             .collect();
-        let points = node_ids
-            .iter()
-            .map(|&node| self.nodes[node as usize])
-            .collect();
-        TriangleSurface {
-            points,
-            triangles,
-            node_ids: Some(node_ids),
-        }
+        let points = node_ids.iter().map(|&node| self.nodes[node as usize]).collect();
+        TriangleSurface { points, triangles, node_ids: Some(node_ids) }
     }
 }
 

@@ -10,11 +10,7 @@ pub struct Warning {
 
 impl Warning {
     pub fn new(code: &'static str, detail: impl Into<String>) -> Self {
-        Warning {
-            code,
-            detail: detail.into(),
-            numbers: Vec::new(),
-        }
+        Warning { code, detail: detail.into(), numbers: Vec::new() }
     }
 
     /// The same warning with one more number.

@@ -43,7 +43,10 @@ impl Tissue<'_> {
     }
 
     /// K over all nodes, held or not, in kPa mm.
-    pub fn assemble(&self, keep_going: &dyn Fn() -> bool) -> Result<Option<BlockMatrix>, InvertedCell> {
+    pub fn assemble(
+        &self,
+        keep_going: &dyn Fn() -> bool,
+    ) -> Result<Option<BlockMatrix>, InvertedCell> {
         let cells = &self.mesh.cells;
         let cliques = (0..cells.len()).map(|cell| cells.nodes(cell));
         let mut matrix = BlockMatrix::from_cliques(self.mesh.nodes.len(), cliques);
@@ -82,10 +85,12 @@ pub fn rotate_into_frames(matrix: &mut BlockMatrix, holds: &[Hold]) {
             let neighbour = neighbour as usize;
             let row = matrix.block_mut(node, neighbour);
             let old = *row;
-            *row = std::array::from_fn(|e| (0..3).map(|m| q[(m, e / 3)] * old[3 * m + e % 3]).sum());
+            *row =
+                std::array::from_fn(|e| (0..3).map(|m| q[(m, e / 3)] * old[3 * m + e % 3]).sum());
             let column = matrix.block_mut(neighbour, node);
             let old = *column;
-            *column = std::array::from_fn(|e| (0..3).map(|m| old[3 * (e / 3) + m] * q[(m, e % 3)]).sum());
+            *column =
+                std::array::from_fn(|e| (0..3).map(|m| old[3 * (e / 3) + m] * q[(m, e % 3)]).sum());
         }
     }
 }

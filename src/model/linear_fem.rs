@@ -60,7 +60,8 @@ impl Problem<'_> {
 
         // 3. The free unknowns.
         observer.solving();
-        let system = LinearSystem { matrix: &matrix, held: &held, right_hand_side: &right_hand_side };
+        let system =
+            LinearSystem { matrix: &matrix, held: &held, right_hand_side: &right_hand_side };
         let watch = |iteration, residual| observer.iterated(iteration, residual);
         let solution = solver::solve(&system, &self.tolerance, &watch)?;
 
@@ -103,7 +104,8 @@ impl Problem<'_> {
 
     /// Nodal forces with those of sliding nodes in their frames.
     fn acting_forces(&self) -> Vec<f64> {
-        let mut acting: Vec<f64> = self.forces.iter().flat_map(|force| [force.x, force.y, force.z]).collect();
+        let mut acting: Vec<f64> =
+            self.forces.iter().flat_map(|force| [force.x, force.y, force.z]).collect();
         for hold in self.holds.iter().filter(|hold| !hold.is_aligned()) {
             let local = hold.axes().transpose() * self.forces[hold.node as usize];
             let first = 3 * hold.node as usize;
@@ -128,7 +130,8 @@ impl Problem<'_> {
     }
 
     fn to_coordinates(&self, total: &[f64]) -> Vec<Vector> {
-        let mut displacement: Vec<Vector> = total.chunks_exact(3).map(Vector::from_column_slice).collect();
+        let mut displacement: Vec<Vector> =
+            total.chunks_exact(3).map(Vector::from_column_slice).collect();
         for hold in self.holds.iter().filter(|hold| !hold.is_aligned()) {
             let local = displacement[hold.node as usize];
             displacement[hold.node as usize] = hold.axes() * local;

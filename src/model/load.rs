@@ -15,7 +15,12 @@ pub enum FaceLoad {
 }
 
 /// Adds f_i = int N_i t dA over the faces: exact for flat triangles, 2 x 2 Gauss points otherwise.
-pub fn add_face_load(mesh: &VolumeMesh, faces: &[BoundaryFace], load: FaceLoad, forces: &mut [Vector]) {
+pub fn add_face_load(
+    mesh: &VolumeMesh,
+    faces: &[BoundaryFace],
+    load: FaceLoad,
+    forces: &mut [Vector],
+) {
     for face in faces {
         let nodes = face.nodes();
         let corners: Vec<Vector> = nodes.iter().map(|&node| mesh.nodes[node as usize]).collect();
@@ -55,7 +60,11 @@ fn face_points(corners: &[Vector]) -> Vec<([f64; 4], Vector)> {
 }
 
 /// Adds f_i = int N_i rho g dV; acceleration in mm/ms², density in mg/mm³.
-pub fn add_gravity(tissue: &Tissue, acceleration: Vector, forces: &mut [Vector]) -> Result<(), InvertedCell> {
+pub fn add_gravity(
+    tissue: &Tissue,
+    acceleration: Vector,
+    forces: &mut [Vector],
+) -> Result<(), InvertedCell> {
     for (cell, (shape, nodes)) in tissue.mesh.cells.iter().enumerate() {
         let corners: Vec<Vector> = tissue.mesh.corners(cell).collect();
         let density = tissue.materials[tissue.material_of_cell[cell] as usize].density();

@@ -63,7 +63,13 @@ pub fn cell_stiffness(
 }
 
 /// V [ lambda g_j g_k^T + mu g_k g_j^T + mu (g_j . g_k) I ] for all pairs of nodes.
-fn add_point(blocks: &mut [Matrix3<f64>], count: usize, point: &PhysicalPoint, lambda: f64, mu: f64) {
+fn add_point(
+    blocks: &mut [Matrix3<f64>],
+    count: usize,
+    point: &PhysicalPoint,
+    lambda: f64,
+    mu: f64,
+) {
     let (lambda, mu) = (lambda * point.volume, mu * point.volume);
     for j in 0..count {
         for k in 0..count {

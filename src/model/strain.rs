@@ -18,12 +18,16 @@ pub struct CellDeformation {
 
 /// The deformation of every cell, in cell order.
 pub fn deformations(mesh: &VolumeMesh, displacement: &[Vector]) -> Vec<CellDeformation> {
-    (0..mesh.cells.len()).into_par_iter().map(|cell| deformation(mesh, displacement, cell)).collect()
+    (0..mesh.cells.len())
+        .into_par_iter()
+        .map(|cell| deformation(mesh, displacement, cell))
+        .collect()
 }
 
 fn deformation(mesh: &VolumeMesh, displacement: &[Vector], cell: usize) -> CellDeformation {
     let corners: Vec<Vector> = mesh.corners(cell).collect();
-    let moved: Vec<Vector> = mesh.cells.nodes(cell).iter().map(|&node| displacement[node as usize]).collect();
+    let moved: Vec<Vector> =
+        mesh.cells.nodes(cell).iter().map(|&node| displacement[node as usize]).collect();
     let reference = reference_cell(mesh.cells.shape(cell));
     let gradient = |point: &PhysicalPoint| {
         moved
@@ -37,7 +41,8 @@ fn deformation(mesh: &VolumeMesh, displacement: &[Vector], cell: usize) -> CellD
         .filter_map(|point| point.at(&corners))
         .map(|point| (Matrix3::identity() + gradient(&point)).determinant())
         .fold(f64::INFINITY, f64::min);
-    let at_centre = reference.centre.at(&corners).map_or(Matrix3::zeros(), |point| gradient(&point));
+    let at_centre =
+        reference.centre.at(&corners).map_or(Matrix3::zeros(), |point| gradient(&point));
     let strain = (at_centre + at_centre.transpose()) * 0.5;
     let mut principal_strain: [f64; 3] = strain.symmetric_eigenvalues().into();
     principal_strain.sort_by(|a, b| b.total_cmp(a));

@@ -28,10 +28,7 @@ pub enum MovementError {
 
 impl Default for RigidMovement {
     fn default() -> Self {
-        RigidMovement {
-            rotation: Matrix3::identity(),
-            translation: Vector::zeros(),
-        }
+        RigidMovement { rotation: Matrix3::identity(), translation: Vector::zeros() }
     }
 }
 
@@ -42,10 +39,7 @@ impl RigidMovement {
             * rotation_about(1, angles_xyz.y)
             * rotation_about(0, angles_xyz.x);
         let translation = pivot - rotation * pivot + translation;
-        RigidMovement {
-            rotation,
-            translation,
-        }
+        RigidMovement { rotation, translation }
     }
 
     /// A rotation, which has to be orthonormal with determinant +1 to 1e-6, and a translation.
@@ -58,10 +52,7 @@ impl RigidMovement {
         if determinant < 0.0 {
             return Err(MovementError::Mirrors { determinant });
         }
-        Ok(RigidMovement {
-            rotation,
-            translation,
-        })
+        Ok(RigidMovement { rotation, translation })
     }
 
     /// A row-major 4x4 matrix with last row 0 0 0 1.
@@ -93,10 +84,7 @@ impl RigidMovement {
 
     pub fn inverse(&self) -> RigidMovement {
         let rotation = self.rotation.transpose();
-        RigidMovement {
-            rotation,
-            translation: -(rotation * self.translation),
-        }
+        RigidMovement { rotation, translation: -(rotation * self.translation) }
     }
 
     pub fn apply(&self, point: &Vector) -> Vector {
@@ -111,11 +99,8 @@ impl RigidMovement {
     /// The angle of the rotation in radians, in [0, pi].
     pub fn angle(&self) -> f64 {
         let r = &self.rotation;
-        let twice_sine = Vector::new(
-            r[(2, 1)] - r[(1, 2)],
-            r[(0, 2)] - r[(2, 0)],
-            r[(1, 0)] - r[(0, 1)],
-        );
+        let twice_sine =
+            Vector::new(r[(2, 1)] - r[(1, 2)], r[(0, 2)] - r[(2, 0)], r[(1, 0)] - r[(0, 1)]);
         twice_sine.norm().atan2(r.trace() - 1.0)
     }
 
@@ -184,10 +169,7 @@ mod tests {
         for degrees in [0.0, 1e-6, 30.0, 179.0] {
             let angles = Vector::new(0.0, f64::to_radians(degrees), 0.0);
             let movement = RigidMovement::about_pivot(angles, Vector::x(), Vector::zeros());
-            assert!(
-                (movement.angle().to_degrees() - degrees).abs() < 1e-9,
-                "{degrees}"
-            );
+            assert!((movement.angle().to_degrees() - degrees).abs() < 1e-9, "{degrees}");
         }
     }
 
@@ -200,10 +182,7 @@ mod tests {
             RigidMovement::new(scaled, zero),
             Err(MovementError::NotOrthonormal { .. })
         ));
-        assert!(matches!(
-            RigidMovement::new(mirrored, zero),
-            Err(MovementError::Mirrors { .. })
-        ));
+        assert!(matches!(RigidMovement::new(mirrored, zero), Err(MovementError::Mirrors { .. })));
     }
 
     #[test]

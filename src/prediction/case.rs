@@ -76,10 +76,7 @@ pub struct Plan {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Prescribed {
     /// `None` leaves a component free.
-    Uniform {
-        nodes: NodeSelection,
-        displacement: [Option<f64>; 3],
-    },
+    Uniform { nodes: NodeSelection, displacement: [Option<f64>; 3] },
     /// Taken from a vector array of the volume mesh.
     FromArray { nodes: NodeSelection, array: String },
 }

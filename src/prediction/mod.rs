@@ -1,6 +1,8 @@
 //! The path of one prediction: scene in, nodal displacement and its measures out.
 
 pub mod case;
+mod check;
+mod held;
 mod problem;
 pub mod progress;
 pub mod scene;
@@ -171,7 +173,9 @@ fn inverted_cells(deformation: &[CellDeformation]) -> Option<Warning> {
 fn far_landmarks(landmarks: &BTreeMap<String, (Vector, f64)>) -> Vec<Warning> {
     let far = landmarks.iter().filter(|(_, (_, distance))| *distance > LANDMARK_FAR);
     far.map(|(name, (_, distance))| {
-        let detail = format!("landmark {name:?} takes the displacement of the closest point of the tissue surface");
+        let detail = format!(
+            "landmark {name:?} takes the displacement of the closest point of the tissue surface"
+        );
         Warning::new("landmark-far", detail).with("distance_mm", *distance)
     })
     .collect()
@@ -189,9 +193,12 @@ impl From<LinearFemError> for PredictionError {
             LinearFemError::Solver(SolverError::OverBudget { needed_mb, allowed_mb }) => {
                 PredictionError::OverBudget { needed_mb, allowed_mb }
             }
-            LinearFemError::Solver(SolverError::NotConverged { iterations, residual, wanted, history }) => {
-                PredictionError::NotConverged { iterations, residual, wanted, history }
-            }
+            LinearFemError::Solver(SolverError::NotConverged {
+                iterations,
+                residual,
+                wanted,
+                history,
+            }) => PredictionError::NotConverged { iterations, residual, wanted, history },
         }
     }
 }

@@ -37,7 +37,8 @@ pub(super) fn default_faces(
     classes: &[NodeClass],
     warnings: &mut Vec<Warning>,
 ) -> Vec<BoundaryFace> {
-    let is_bare = |node: &u32| matches!(classes[*node as usize], NodeClass::Free | NodeClass::Prescribed);
+    let is_bare =
+        |node: &u32| matches!(classes[*node as usize], NodeClass::Free | NodeClass::Prescribed);
     let bare: Vec<BoundaryFace> =
         boundary.iter().filter(|face| face.nodes().iter().all(is_bare)).copied().collect();
     if !bare.is_empty() {
@@ -63,9 +64,12 @@ pub(super) fn landmark_displacement(
     let moved = |landmark: &Vector| {
         let closest = search.closest(landmark);
         let corners = surface.triangles[closest.triangle];
-        let sum = corners.iter().zip(closest.barycentric).fold(Vector::zeros(), |sum, (&corner, weight)| {
-            sum + displacement[nodes[corner as usize] as usize] * weight
-        });
+        let sum = corners
+            .iter()
+            .zip(closest.barycentric)
+            .fold(Vector::zeros(), |sum, (&corner, weight)| {
+                sum + displacement[nodes[corner as usize] as usize] * weight
+            });
         (sum, closest.distance)
     };
     landmarks.iter().map(|(name, landmark)| (name.clone(), moved(landmark))).collect()

@@ -93,7 +93,8 @@ impl BlockMatrix {
                 let row = chunk * ROW_CHUNK + local;
                 let range = self.row_start[row]..self.row_start[row + 1];
                 let mut sum = [0.0; 3];
-                for (&column, block) in self.columns[range.clone()].iter().zip(&self.blocks[range]) {
+                for (&column, block) in self.columns[range.clone()].iter().zip(&self.blocks[range])
+                {
                     let x = &x[3 * column as usize..3 * column as usize + 3];
                     for (sum, row) in sum.iter_mut().zip(block.chunks_exact(3)) {
                         *sum += row[0] * x[0] + row[1] * x[1] + row[2] * x[2];
@@ -157,7 +158,8 @@ mod tests {
         let cliques: [&[u32]; 2] = [&[0, 1], &[1, 2]];
         let mut matrix = BlockMatrix::from_cliques(3, cliques.into_iter());
         for (row, column) in [(0, 0), (0, 1), (1, 2), (2, 2)] {
-            *matrix.block_mut(row, column) = std::array::from_fn(|k| (1 + k + row + 10 * column) as f64);
+            *matrix.block_mut(row, column) =
+                std::array::from_fn(|k| (1 + k + row + 10 * column) as f64);
         }
         let x: Vec<f64> = (1..=9).map(f64::from).collect();
         let mut product = vec![f64::NAN; 9];

@@ -4,7 +4,8 @@ use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::LltError;
 use faer::perm::PermRef;
 use faer::sparse::linalg::cholesky::{
-    CholeskySymbolicParams, LltRef, SymbolicCholesky, SymmetricOrdering, factorize_symbolic_cholesky,
+    CholeskySymbolicParams, LltRef, SymbolicCholesky, SymmetricOrdering,
+    factorize_symbolic_cholesky,
 };
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, MatMut, Par, Side};
@@ -154,7 +155,15 @@ impl Columns {
         let stack = MemStack::new(&mut memory);
         let (side, regularisation) = (Side::Lower, Default::default());
         symbolic
-            .factorize_numeric_llt(values, matrix, side, regularisation, Par::Seq, stack, Default::default())
+            .factorize_numeric_llt(
+                values,
+                matrix,
+                side,
+                regularisation,
+                Par::Seq,
+                stack,
+                Default::default(),
+            )
             .map_err(|LltError::NonPositivePivot { index }| {
                 let unknown = free.unknown.get(index).copied().unwrap_or_default();
                 SolverError::NotPositiveDefinite { row: unknown / 3 }

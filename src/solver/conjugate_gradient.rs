@@ -146,9 +146,11 @@ impl<'a> Run<'a> {
     }
 
     fn not_converged(&self, wanted: f64) -> SolverError {
+        let mut residual = vec![0.0; self.x.len()];
+        residual_of(self.system, &self.x, &mut residual);
         SolverError::NotConverged {
             iterations: self.iterations,
-            residual: self.relative_residual(),
+            residual: norm(&residual) / self.scale,
             wanted,
             history: self.history.clone(),
         }

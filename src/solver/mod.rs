@@ -59,7 +59,7 @@ pub enum SolverError {
 
 /// Up to this many multiplications a factorisation takes about as long as iterations do, or less.
 /// Measured on face-like shells and the hexahedral face (docs/performance.md).
-const CHOLESKY_WORK: f64 = 4e9;
+const CHOLESKY_WORK: f64 = 2e10;
 
 /// Above this many rows even the ordering of a factorisation costs more than it can save.
 const ORDERING_ROWS: usize = 150_000;
@@ -97,7 +97,9 @@ pub fn solve(
     }
     match conjugate_gradient::solve(system, tolerance, watch, cost) {
         Err(SolverError::NotConverged { iterations, residual, .. }) if fits => {
-            let why = format!("conjugate gradients stalled at {residual:.1e} after {iterations} iterations");
+            let why = format!(
+                "conjugate gradients stalled at {residual:.1e} after {iterations} iterations"
+            );
             cholesky::solve(system, &ordering, tolerance, watch, why)
         }
         other => other,

@@ -1,0 +1,119 @@
+//! The checks that tell what every node is held to: segments, fixed, sliding and prescribed nodes.
+
+use super::case::{Plan, Prescribed, SlidingNormal};
+use super::check::Check;
+use crate::boundary::{HeldNodes, sliding};
+use crate::mesh::Vector;
+use crate::plan::{PlannedSegment, RigidMovement};
+
+impl Check<'_> {
+    pub(super) fn held_nodes(
+        &mut self,
+        plan: &Plan,
+        sliding: bool,
+    ) -> (Vec<PlannedSegment>, HeldNodes) {
+        let mut held = HeldNodes::default();
+        let segments = self.segments(plan, &mut held);
+        for (index, selection) in self.case.fixed.iter().enumerate() {
+            held.fixed.extend(self.select(selection, &format!("/case/fixed/{index}")));
+        }
+        if sliding {
+            self.sliding(&mut held);
+        }
+        self.prescribed(plan, &mut held);
+        (segments, held)
+    }
+
+    /// The segments of the case with their movements, then those that the plan names after node sets.
+    fn segments(&mut self, plan: &Plan, held: &mut HeldNodes) -> Vec<PlannedSegment> {
+        let mut segments: Vec<PlannedSegment> = Vec::new();
+        for (index, segment) in self.case.segments.iter().enumerate() {
+            if segments.iter().any(|other| other.name == segment.name) {
+                let detail = format!("segment {:?} is defined twice", segment.name);
+                self.problems.add(
+                    format!("/case/segments/{index}/name"),
+                    "duplicate-segment",
+                    detail,
+                );
+            }
+            let planned = plan.segments.iter().find(|planned| planned.name == segment.name);
+            let movement = planned.map_or_else(RigidMovement::default, |planned| planned.movement);
+            let nodes = self.select(&segment.nodes, &format!("/case/segments/{index}/nodes"));
+            held.joined.push((nodes, movement));
+            segments.push(PlannedSegment { name: segment.name.clone(), movement });
+        }
+        for (index, planned) in plan.segments.iter().enumerate() {
+            let pointer = format!("/plan/segments/{index}/name");
+            if plan.segments[..index].iter().any(|other| other.name == planned.name) {
+                let detail = format!("segment {:?} is named twice", planned.name);
+                self.problems.add(pointer, "duplicate-segment", detail);
+            } else if !segments.iter().any(|segment| segment.name == planned.name) {
+                match self.case.volume.node_set(&planned.name) {
+                    Some(nodes) if !nodes.is_empty() => {
+                        held.joined.push((nodes.to_vec(), planned.movement));
+                        segments.push(planned.clone());
+                    }
+                    _ => {
+                        let known: Vec<&str> =
+                            segments.iter().map(|segment| segment.name.as_str()).collect();
+                        let detail = format!(
+                            "the case has neither a segment nor a node set {:?}; its segments: {}",
+                            planned.name,
+                            known.join(", ")
+                        );
+                        self.problems.add(pointer, "unknown-segment", detail);
+                    }
+                }
+            }
+        }
+        segments
+    }
+
+    fn sliding(&mut self, held: &mut HeldNodes) {
+        for (index, entry) in self.case.sliding.iter().enumerate() {
+            let nodes = self.select(&entry.nodes, &format!("/case/sliding/{index}/nodes"));
+            let normals = match entry.normal {
+                SlidingNormal::Surface => {
+                    sliding::wall_normals(&self.case.volume, self.boundary, &nodes)
+                }
+                SlidingNormal::Direction(direction) => {
+                    let unit: Vec<Vector> = direction.try_normalize(1e-12).into_iter().collect();
+                    nodes.iter().map(|&node| (node, unit.clone())).collect()
+                }
+            };
+            if let Some((node, _)) = normals.iter().find(|(_, normals)| normals.is_empty()) {
+                let detail = format!("node {node} has no normal to be held across");
+                self.problems.add(
+                    format!("/case/sliding/{index}/normal"),
+                    "sliding-normal-zero",
+                    detail,
+                );
+            }
+            held.sliding.extend(normals);
+        }
+    }
+
+    fn prescribed(&mut self, plan: &Plan, held: &mut HeldNodes) {
+        for (index, entry) in plan.prescribed.iter().enumerate() {
+            let pointer = format!("/plan/prescribed/{index}");
+            match entry {
+                Prescribed::Uniform { nodes, displacement } => {
+                    let nodes = self.select(nodes, &format!("{pointer}/nodes"));
+                    held.prescribed.extend(nodes.iter().map(|&node| (node, *displacement)));
+                }
+                Prescribed::FromArray { nodes, array } => {
+                    let nodes = self.select(nodes, &format!("{pointer}/nodes"));
+                    let Some(values) = self.case.volume.node_vectors.get(array) else {
+                        let detail =
+                            format!("the mesh has no point array {array:?} with 3 components");
+                        self.problems.add(format!("{pointer}/array"), "unknown-array", detail);
+                        continue;
+                    };
+                    let value = |node: u32| values[node as usize];
+                    let whole = |node: u32| [value(node).x, value(node).y, value(node).z].map(Some);
+                    held.prescribed.extend(nodes.iter().map(|&node| (node, whole(node))));
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,145 @@
+//! V.1, V.2: affine fields and rigid movements.
+
+use facies::boundary::Hold;
+use facies::mesh::sample::block;
+use facies::mesh::{CellShape, Vector, VolumeMesh};
+use facies::model::assembly::Tissue;
+use facies::model::stiffness::Dilatation;
+use facies::prediction::{ElementChoice, Settings};
+use facies::solver::BlockMatrix;
+use nalgebra::DMatrix;
+
+use crate::scenes::{SHAPES, case_of, exact, largest_error, material, on_the_boundary, solve};
+
+/// A 3 x 3 x 3 block whose inner nodes are moved by up to 20 % of a cell, the same at every run.
+fn distorted_block(shape: CellShape) -> VolumeMesh {
+    let mut mesh = block(Vector::new(3.0, 3.0, 3.0), [3, 3, 3], shape);
+    let mut seed = 12345_u64;
+    let mut random = || {
+        seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (seed >> 33) as f64 / (1_u64 << 31) as f64 * 0.4 - 0.2
+    };
+    for node in &mut mesh.nodes {
+        if node.iter().all(|&x| x > 0.1 && x < 2.9) {
+            *node += Vector::new(random(), random(), random());
+        }
+    }
+    mesh
+}
+
+fn affine(x: &Vector) -> Vector {
+    Vector::new(x.x + 2.0 * x.y - x.z, 3.0 * x.x - x.y + 2.0 * x.z, -x.x + x.y + 2.0 * x.z) * 1e-3
+}
+
+#[test]
+fn an_affine_boundary_gives_the_affine_field_inside() {
+    for shape in SHAPES {
+        for element in [ElementChoice::Auto, ElementChoice::Plain] {
+            for nu in [0.0, 0.3, 0.46, 0.49, 0.4999] {
+                let mut mesh = distorted_block(shape);
+                let plan = on_the_boundary(&mut mesh, affine);
+                let case = case_of(mesh, material(15.0, nu));
+                let settings = Settings { element, ..exact() };
+                let prediction = solve(&case, &plan, &settings);
+                let largest = prediction.displacement.iter().map(|u| u.norm()).fold(0.0, f64::max);
+                let error = largest_error(&case.volume, &prediction.displacement, affine);
+                // The condition number grows as 1 / (1 - 2 nu), and rounding with it.
+                let tolerance = if nu > 0.499 { 1e-11 } else { 1e-12 };
+                assert!(error < tolerance * largest, "{shape:?} {element:?} nu {nu}: {error:.2e}");
+            }
+        }
+    }
+}
+
+#[test]
+fn an_affine_field_has_the_same_principal_strains_in_every_cell() {
+    for shape in SHAPES {
+        let mut mesh = distorted_block(shape);
+        let plan = on_the_boundary(&mut mesh, affine);
+        let prediction = solve(&case_of(mesh, material(15.0, 0.3)), &plan, &exact());
+        let first = prediction.deformation[0];
+        for cell in &prediction.deformation {
+            for (a, b) in cell.principal_strain.iter().zip(first.principal_strain) {
+                assert!((a - b).abs() < 1e-10 * first.principal_strain[0], "{shape:?}");
+            }
+            assert!((cell.det_f - first.det_f).abs() < 1e-12, "{shape:?}");
+        }
+    }
+}
+
+fn assembled(mesh: &VolumeMesh, dilatation: fn(CellShape) -> Dilatation) -> BlockMatrix {
+    let materials = [material(15.0, 0.49)];
+    let material_of_cell = vec![0; mesh.cells.len()];
+    let tissue =
+        Tissue { mesh, materials: &materials, material_of_cell: &material_of_cell, dilatation };
+    tissue.assemble(&|| true).unwrap().unwrap()
+}
+
+fn dense(matrix: &BlockMatrix) -> DMatrix<f64> {
+    let mut dense = DMatrix::zeros(3 * matrix.rows(), 3 * matrix.rows());
+    for row in 0..matrix.rows() {
+        for (column, block) in matrix.row(row) {
+            for (entry, value) in block.iter().enumerate() {
+                dense[(3 * row + entry / 3, 3 * column + entry % 3)] = *value;
+            }
+        }
+    }
+    dense
+}
+
+#[test]
+fn a_small_rigid_movement_stores_no_energy() {
+    let (axis, shift) =
+        (Vector::new(1.0, 2.0, 3.0).normalize() * 1e-3, Vector::new(0.1, -0.2, 0.3));
+    for shape in SHAPES {
+        let mesh = distorted_block(shape);
+        let matrix = assembled(&mesh, |_| Dilatation::Mean);
+        let rigid: Vec<f64> =
+            mesh.nodes.iter().flat_map(|x| <[f64; 3]>::from(axis.cross(x) + shift)).collect();
+        let mut forces = vec![0.0; rigid.len()];
+        matrix.multiply(&rigid, &mut forces);
+        let energy: f64 = rigid.iter().zip(&forces).map(|(u, f)| u * f).sum::<f64>() / 2.0;
+        // The shift is 0.3 mm: rounding leaves about 1e-16 of E V |u|^2 / h^2 there.
+        assert!(energy.abs() < 1e-15 * 15.0 * 27.0, "{shape:?}: {energy:.2e}");
+    }
+}
+
+#[test]
+fn the_stiffness_matrix_has_exactly_six_rigid_modes() {
+    for shape in SHAPES {
+        for dilatation in
+            [|_| Dilatation::Mean, |_| Dilatation::Pointwise] as [fn(CellShape) -> Dilatation; 2]
+        {
+            let matrix = assembled(&distorted_block(shape), dilatation);
+            let mut eigenvalues: Vec<f64> =
+                dense(&matrix).symmetric_eigenvalues().iter().copied().collect();
+            eigenvalues.sort_by(f64::total_cmp);
+            let largest = eigenvalues[eigenvalues.len() - 1];
+            assert!(
+                eigenvalues[5] < 1e-12 * largest,
+                "{shape:?}: {:.2e}",
+                eigenvalues[5] / largest
+            );
+            assert!(eigenvalues[6] > 1e-8 * largest, "{shape:?}: {:.2e}", eigenvalues[6] / largest);
+        }
+    }
+}
+
+#[test]
+fn the_assembled_matrix_is_symmetric() {
+    for shape in SHAPES {
+        let matrix = dense(&assembled(&distorted_block(shape), |_| Dilatation::Mean));
+        let asymmetry = (&matrix - matrix.transpose()).amax();
+        assert!(asymmetry < 1e-13 * matrix.amax(), "{shape:?}: {asymmetry:.2e}");
+    }
+}
+
+#[test]
+fn a_node_held_nowhere_has_no_hold() {
+    let mut mesh = distorted_block(CellShape::Hex8);
+    let plan = on_the_boundary(&mut mesh, affine);
+    let case = case_of(mesh, material(15.0, 0.3));
+    let scene = facies::prediction::Scene::new(&case, &plan, &exact()).unwrap();
+    let held: Vec<u32> = scene.conditions.holds.iter().map(|hold: &Hold| hold.node).collect();
+    assert_eq!(held, case.volume.node_sets["boundary"]);
+}
