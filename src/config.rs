@@ -32,12 +32,12 @@ const fn setting(name: &'static str, default: &'static str, about: &'static str)
 /// All settings of `facies serve`.
 pub const SETTINGS: [Setting; 15] = [
     setting(
-        "listen",
+        "bind",
         "127.0.0.1:8080",
         "address and port to listen on; port 0 takes a free one; any address but loopback needs an api-key",
     ),
     setting(
-        "data-dir",
+        "data",
         "facies-data",
         "folder of the database, the blobs and the temporary files",
     ),
@@ -166,7 +166,7 @@ pub enum ConfigError {
         "heartbeat-s is {heartbeat} and lease-s {lease}: a lease has to outlast two heartbeats"
     )]
     Heartbeat { heartbeat: f64, lease: f64 },
-    #[error("listen is {0}, which others can reach: set an api-key or listen on 127.0.0.1")]
+    #[error("bind is {0}, which others can reach: set an api-key or bind to 127.0.0.1")]
     OpenWithoutKey(SocketAddr),
 }
 
@@ -179,8 +179,8 @@ impl Config {
             text: |name: &str| given(name).unwrap_or_else(|| default_of(name).to_owned()),
         };
         let config = Config {
-            listen: read.parsed("listen", "an address with a port, e.g. 127.0.0.1:8080")?,
-            data_dir: read.parsed("data-dir", "a folder")?,
+            listen: read.parsed("bind", "an address with a port, e.g. 127.0.0.1:8080")?,
+            data_dir: read.parsed("data", "a folder")?,
             api_key: read.api_key()?,
             workers: read.whole("workers", 0..=64)?,
             threads_per_job: read.whole("threads-per-job", 1..=64)?,
@@ -318,7 +318,7 @@ mod tests {
 
     #[test]
     fn an_address_that_others_reach_needs_a_key() {
-        let open = ("listen", "0.0.0.0:80");
+        let open = ("bind", "0.0.0.0:80");
         assert!(matches!(
             config(&[open]),
             Err(ConfigError::OpenWithoutKey(_))
@@ -336,8 +336,8 @@ mod tests {
             ("upload-mib", "0"),
             ("log-format", "xml"),
             ("api-key", "short"),
-            ("listen", "localhost"),
-            ("data-dir", ""),
+            ("bind", "localhost"),
+            ("data", ""),
         ] {
             let error = config(&[(name, value)]).unwrap_err().to_string();
             assert!(error.contains(name), "{error}");

@@ -157,6 +157,14 @@ impl Store {
         Ok(())
     }
 
+    /// Whether the data folder takes a file.
+    pub async fn try_write(&self) -> Result<(), StoreError> {
+        let place = self.folder.join("tmp").join(uuid::Uuid::now_v7().to_string());
+        tokio::fs::write(&place, b"facies").await?;
+        tokio::fs::remove_file(&place).await?;
+        Ok(())
+    }
+
     /// Bytes free for this user on the disk of the data folder.
     pub fn free_space(&self) -> Result<u64, StoreError> {
         let disk = rustix::fs::statvfs(&self.folder).map_err(std::io::Error::from)?;
