@@ -2,6 +2,7 @@
 //!
 //! The modules stand in the order of the path that a job takes; ARCHITECTURE.md tells who may use whom.
 
+pub mod api;
 pub mod boundary;
 pub mod config;
 pub mod element;

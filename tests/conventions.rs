@@ -22,12 +22,35 @@ const TABLE: [(&str, &[&str]); 20] = [
     ("prediction", &["mesh", "plan", "boundary", "material", "solver", "model"]),
     (
         "schema",
-        &["mesh", "format", "plan", "boundary", "material", "solver", "model", "prediction", "registration", "validation"],
+        &[
+            "mesh",
+            "format",
+            "plan",
+            "boundary",
+            "material",
+            "solver",
+            "model",
+            "prediction",
+            "registration",
+            "validation",
+        ],
     ),
     ("store", &["schema", "config"]),
     (
         "jobs",
-        &["mesh", "registration", "format", "plan", "boundary", "prediction", "validation", "chart", "schema", "store", "config"],
+        &[
+            "mesh",
+            "registration",
+            "format",
+            "plan",
+            "boundary",
+            "prediction",
+            "validation",
+            "chart",
+            "schema",
+            "store",
+            "config",
+        ],
     ),
     ("api", &["format", "schema", "store", "jobs", "config"]),
     ("command", &["*"]),
@@ -41,8 +64,18 @@ const SERVICE_CRATES: [&str; 4] = ["axum", "sqlx", "tokio", "utoipa"];
 const OUTSIDE_WORLD: [&str; 4] = ["std::fs", "std::env", "std::time", "std::net"];
 
 const NUMERICS: [&str; 12] = [
-    "mesh", "material", "element", "solver", "chart", "registration", "format", "plan", "validation", "boundary",
-    "model", "prediction",
+    "mesh",
+    "material",
+    "element",
+    "solver",
+    "chart",
+    "registration",
+    "format",
+    "plan",
+    "validation",
+    "boundary",
+    "model",
+    "prediction",
 ];
 
 fn source() -> PathBuf {
@@ -111,7 +144,8 @@ fn every_module_uses_only_the_modules_that_the_table_allows() {
         let allowed = table.get(module.as_str()).copied();
         let allowed = allowed.unwrap_or_else(|| panic!("{module} is not in the table"));
         let code = code_of(&file);
-        let used = used_modules(&code, "crate::").into_iter().chain(used_modules(&code, "facies::"));
+        let used =
+            used_modules(&code, "crate::").into_iter().chain(used_modules(&code, "facies::"));
         for other in used {
             let ours = table.contains_key(other.as_str());
             if ours && other != module && !allowed.contains(&other.as_str()) && allowed != ["*"] {
@@ -168,7 +202,10 @@ fn sql_stays_in_the_store_and_http_in_the_api() {
 fn no_module_is_a_drawer_for_what_has_no_home() {
     for file in rust_files(&source()) {
         let name = file.file_stem().unwrap().to_string_lossy().to_string();
-        assert!(!["utils", "util", "common", "helpers", "core", "misc"].contains(&name.as_str()), "{name}");
+        assert!(
+            !["utils", "util", "common", "helpers", "core", "misc"].contains(&name.as_str()),
+            "{name}"
+        );
     }
 }
 

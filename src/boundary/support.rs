@@ -1,15 +1,19 @@
 //! Whether every part of a mesh is held against all six rigid movements.
+//!
+//! A part is what hangs together by faces. Parts that touch in a node or an edge only can hinge there;
+//! their shared nodes hold a part as far as its neighbour is held itself.
 
 use nalgebra::{Matrix6, Vector6};
 
 use super::hold::Hold;
+use crate::mesh::connectivity::parts_by_face;
 use crate::mesh::{Vector, VolumeMesh};
 
-/// A rigid movement is held when its eigenvalue exceeds this share of the largest one.
-/// Below it a part a thousand times its held patch across could turn freely.
+/// A rigid movement is held when its eigenvalue exceeds this share of the largest one: a part may be
+/// ten thousand times as long as the patch that holds it.
 const HELD: f64 = 1e-9;
 
-/// A connected part of the mesh that some rigid movement can carry away.
+/// A part of the mesh that some rigid movement can carry away.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LoosePart {
     pub nodes: usize,
@@ -19,111 +23,119 @@ pub struct LoosePart {
     pub free_movements: usize,
 }
 
-/// The parts of the mesh, connected by cells, that the holds do not keep in place.
+/// The parts of the mesh that the holds do not keep in place.
 pub fn loose_parts(mesh: &VolumeMesh, holds: &[Hold]) -> Vec<LoosePart> {
-    let parts = connected_parts(mesh);
-    let mut grams = vec![Matrix6::<f64>::zeros(); parts.centres.len()];
+    let mut parts = Parts::new(mesh);
     for hold in holds {
-        let part = parts.of_node[hold.node as usize];
-        if part == u32::MAX {
-            continue;
-        }
-        let part = part as usize;
-        let arm = (mesh.nodes[hold.node as usize] - parts.centres[part]) / parts.radii[part];
         for held in 0..hold.count() {
-            let axis: Vector = hold.axes().column(held).into_owned();
-            let turn = arm.cross(&axis);
-            let row = Vector6::new(axis.x, axis.y, axis.z, turn.x, turn.y, turn.z);
-            grams[part] += row * row.transpose();
+            let axis = hold.axes().column(held).into_owned();
+            for place in parts.places_of(hold.node) {
+                parts.bodies[parts.body_of[place] as usize]
+                    .hold(&mesh.nodes[hold.node as usize], &axis);
+            }
         }
     }
-    let mut loose = Vec::new();
-    for (part, gram) in grams.iter().enumerate() {
-        let eigenvalues = gram.symmetric_eigenvalues();
-        let largest = eigenvalues.max();
-        let free_movements = match largest > 0.0 {
-            true => eigenvalues.iter().filter(|value| **value <= HELD * largest).count(),
-            false => 6,
-        };
-        if free_movements > 0 {
-            let (nodes, first_node) = (parts.sizes[part], parts.first_nodes[part]);
-            loose.push(LoosePart { nodes, first_node, free_movements });
-        }
+    parts.hold_by_neighbours(mesh);
+    parts
+        .bodies
+        .iter()
+        .filter(|body| body.free_movements() > 0)
+        .map(|body| LoosePart {
+            nodes: body.nodes.len(),
+            first_node: body.nodes[0],
+            free_movements: body.free_movements(),
+        })
+        .collect()
+}
+
+/// A part taken as rigid, and what holds it.
+struct Body {
+    /// Ascending.
+    nodes: Vec<u32>,
+    centre: Vector,
+    /// The largest distance of a node from the centre.
+    radius: f64,
+    /// The sum of r r^T over held directions, r = (axis, arm x axis).
+    gram: Matrix6<f64>,
+}
+
+impl Body {
+    fn new(mesh: &VolumeMesh, nodes: Vec<u32>) -> Self {
+        let position = |node: &u32| mesh.nodes[*node as usize];
+        let centre = nodes.iter().map(position).sum::<Vector>() / nodes.len() as f64;
+        let radius = nodes.iter().map(|node| (position(node) - centre).norm()).fold(0.0, f64::max);
+        Body { nodes, centre, radius, gram: Matrix6::zeros() }
     }
-    loose
+
+    fn hold(&mut self, at: &Vector, axis: &Vector) {
+        let turn = ((at - self.centre) / self.radius).cross(axis);
+        let row = Vector6::new(axis.x, axis.y, axis.z, turn.x, turn.y, turn.z);
+        self.gram += row * row.transpose();
+    }
+
+    fn free_movements(&self) -> usize {
+        let eigenvalues = self.gram.symmetric_eigenvalues();
+        let least = HELD * eigenvalues.max();
+        eigenvalues.iter().filter(|value| **value <= least).count()
+    }
 }
 
 struct Parts {
-    /// The part of each node, in the order of their lowest nodes; `u32::MAX` for nodes without a cell.
-    of_node: Vec<u32>,
-    first_nodes: Vec<u32>,
-    sizes: Vec<usize>,
-    centres: Vec<Vector>,
-    /// The largest distance of a node from the centre.
-    radii: Vec<f64>,
+    bodies: Vec<Body>,
+    /// Compressed lists: the bodies of node n are `body_of[start[n]..start[n + 1]]`.
+    start: Vec<usize>,
+    body_of: Vec<u32>,
 }
 
-fn connected_parts(mesh: &VolumeMesh) -> Parts {
-    let root_of = roots(mesh);
-    let mut parts = Parts {
-        of_node: vec![u32::MAX; mesh.nodes.len()],
-        first_nodes: Vec::new(),
-        sizes: Vec::new(),
-        centres: Vec::new(),
-        radii: Vec::new(),
-    };
-    // A root is the lowest node of its part, so it is met before the others.
-    for (node, &root) in root_of.iter().enumerate().filter(|(_, root)| **root != u32::MAX) {
-        if root as usize == node {
-            parts.of_node[node] = parts.first_nodes.len() as u32;
-            parts.first_nodes.push(root);
-            parts.sizes.push(0);
-            parts.centres.push(Vector::zeros());
-            parts.radii.push(0.0);
+impl Parts {
+    fn new(mesh: &VolumeMesh) -> Self {
+        let part_of_cell = parts_by_face(mesh);
+        let cells = mesh.cells.iter().zip(&part_of_cell);
+        let mut pairs: Vec<(u32, u32)> = cells
+            .flat_map(|((_, nodes), &part)| nodes.iter().map(move |&node| (node, part)))
+            .collect();
+        pairs.sort_unstable();
+        pairs.dedup();
+        let count = part_of_cell.iter().max().map_or(0, |last| *last as usize + 1);
+        let mut nodes_of: Vec<Vec<u32>> = vec![Vec::new(); count];
+        let mut start = vec![0; mesh.nodes.len() + 1];
+        for &(node, part) in &pairs {
+            nodes_of[part as usize].push(node);
+            start[node as usize + 1] += 1;
         }
-        let part = parts.of_node[root as usize];
-        parts.of_node[node] = part;
-        parts.sizes[part as usize] += 1;
-        parts.centres[part as usize] += mesh.nodes[node];
+        for node in 0..mesh.nodes.len() {
+            start[node + 1] += start[node];
+        }
+        let bodies = nodes_of.into_iter().map(|nodes| Body::new(mesh, nodes)).collect();
+        Parts { bodies, start, body_of: pairs.into_iter().map(|(_, part)| part).collect() }
     }
-    for (centre, size) in parts.centres.iter_mut().zip(&parts.sizes) {
-        *centre /= *size as f64;
-    }
-    for (node, &part) in parts.of_node.iter().enumerate().filter(|(_, part)| **part != u32::MAX) {
-        let distance = (mesh.nodes[node] - parts.centres[part as usize]).norm();
-        let radius = &mut parts.radii[part as usize];
-        *radius = radius.max(distance);
-    }
-    parts
-}
 
-/// For each node of a cell the lowest node of its part: union by cells with path halving.
-fn roots(mesh: &VolumeMesh) -> Vec<u32> {
-    let mut parent: Vec<u32> = vec![u32::MAX; mesh.nodes.len()];
-    for (_, nodes) in mesh.cells.iter() {
-        for &node in nodes {
-            if parent[node as usize] == u32::MAX {
-                parent[node as usize] = node;
+    fn places_of(&self, node: u32) -> std::ops::Range<usize> {
+        self.start[node as usize]..self.start[node as usize + 1]
+    }
+
+    /// Passes on from held bodies, through the nodes they share, until nothing changes.
+    fn hold_by_neighbours(&mut self, mesh: &VolumeMesh) {
+        let held = |body: &Body| body.free_movements() == 0;
+        let mut waiting: Vec<usize> =
+            (0..self.bodies.len()).filter(|b| held(&self.bodies[*b])).collect();
+        let mut passed: Vec<bool> = self.bodies.iter().map(held).collect();
+        while let Some(holder) = waiting.pop() {
+            for node in self.bodies[holder].nodes.clone() {
+                for place in self.places_of(node) {
+                    let other = self.body_of[place] as usize;
+                    if passed[other] {
+                        continue;
+                    }
+                    for axis in [Vector::x(), Vector::y(), Vector::z()] {
+                        self.bodies[other].hold(&mesh.nodes[node as usize], &axis);
+                    }
+                    if held(&self.bodies[other]) {
+                        passed[other] = true;
+                        waiting.push(other);
+                    }
+                }
             }
         }
-        for pair in nodes.windows(2) {
-            let (a, b) = (find(&mut parent, pair[0]), find(&mut parent, pair[1]));
-            parent[a.max(b) as usize] = a.min(b);
-        }
     }
-    for node in 0..parent.len() {
-        if parent[node] != u32::MAX {
-            parent[node] = find(&mut parent, node as u32);
-        }
-    }
-    parent
-}
-
-fn find(parent: &mut [u32], mut node: u32) -> u32 {
-    while parent[node as usize] != node {
-        let grandparent = parent[parent[node as usize] as usize];
-        parent[node as usize] = grandparent;
-        node = grandparent;
-    }
-    node
 }

@@ -1,7 +1,10 @@
 //! Volume meshes of mixed first-order cells with regions and named sets.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 
+use rayon::prelude::*;
+
+use super::connectivity::sorted_faces;
 use super::{TriangleSurface, Vector};
 
 /// The shape of a first-order cell. Local node order is that of VTK for tetrahedra and hexahedra;
@@ -177,26 +180,24 @@ impl VolumeMesh {
 
     /// The faces that belong to one cell only, in the order of cells and of the faces of each.
     pub fn boundary_faces(&self) -> Vec<BoundaryFace> {
-        let mut times_seen: HashMap<[u32; 4], u32> = HashMap::with_capacity(self.cells.len() * 2);
-        for (shape, nodes) in self.cells.iter() {
-            for face in shape.faces() {
-                *times_seen.entry(face_key(face, nodes)).or_default() += 1;
-            }
+        let faces = sorted_faces(self);
+        let mut alone: Vec<(u32, u8)> = faces
+            .chunk_by(|a, b| a.nodes == b.nodes)
+            .filter(|same| same.len() == 1)
+            .map(|same| (same[0].cell, same[0].local))
+            .collect();
+        alone.par_sort_unstable();
+        alone.into_iter().map(|(cell, local)| self.face(cell, local)).collect()
+    }
+
+    fn face(&self, cell: u32, local: u8) -> BoundaryFace {
+        let cell_nodes = self.cells.nodes(cell as usize);
+        let face = self.cells.shape(cell as usize).faces()[local as usize];
+        let mut nodes = [u32::MAX; 4];
+        for (slot, &local) in nodes.iter_mut().zip(face) {
+            *slot = cell_nodes[local];
         }
-        let mut boundary = Vec::new();
-        for (cell, (shape, nodes)) in self.cells.iter().enumerate() {
-            for face in shape.faces() {
-                if times_seen[&face_key(face, nodes)] == 1 {
-                    let mut face_nodes = [u32::MAX; 4];
-                    for (slot, &local) in face_nodes.iter_mut().zip(*face) {
-                        *slot = nodes[local];
-                    }
-                    let count = face.len() as u8;
-                    boundary.push(BoundaryFace { cell: cell as u32, nodes: face_nodes, count });
-                }
-            }
-        }
-        boundary
+        BoundaryFace { cell, nodes, count: face.len() as u8 }
     }
 
     /// The faces as a triangle surface whose points are their nodes in ascending order.
@@ -216,14 +217,4 @@ impl VolumeMesh {
         let points = node_ids.iter().map(|&node| self.nodes[node as usize]).collect();
         TriangleSurface { points, triangles, node_ids: Some(node_ids) }
     }
-}
-
-/// The sorted nodes of a face: the same for both cells that share it.
-fn face_key(face: &[usize], nodes: &[u32]) -> [u32; 4] {
-    let mut key = [u32::MAX; 4];
-    for (slot, &local) in key.iter_mut().zip(face) {
-        *slot = nodes[local];
-    }
-    key.sort_unstable();
-    key
 }

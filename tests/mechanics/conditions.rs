@@ -245,3 +245,41 @@ fn moving_and_turning_the_whole_scene_moves_and_turns_the_answer() {
         assert!((pose.rotation() * a - b).norm() < 1e-8);
     }
 }
+
+/// Two blocks of one cell each that share the given corners of the first one's face at x = 1.
+fn two_blocks_sharing(corners: &[usize]) -> Case {
+    let mut mesh = block(Vector::new(1.0, 1.0, 1.0), [1, 1, 1], CellShape::Hex8);
+    let first: Vec<u32> = mesh.cells.nodes(0).to_vec();
+    // Local nodes 1, 2, 6, 5 of the first cell are 0, 3, 7, 4 of the second.
+    let pairs = [(1, 0), (2, 3), (6, 7), (5, 4)];
+    let mut second = [0; 8];
+    for (local, slot) in second.iter_mut().enumerate() {
+        let shared = pairs.iter().position(|(_, other)| *other == local);
+        *slot = match shared.filter(|pair| corners.contains(pair)) {
+            Some(pair) => first[pairs[pair].0],
+            None => {
+                let position = mesh.nodes[first[local] as usize] + Vector::x();
+                mesh.nodes.push(position);
+                mesh.nodes.len() as u32 - 1
+            }
+        };
+    }
+    mesh.cells.push(CellShape::Hex8, &second);
+    let mut case = case_of(mesh, material(15.0, 0.3));
+    case.fixed.push(set("x_min"));
+    case
+}
+
+#[test]
+fn a_part_that_hinges_on_an_edge_is_refused_and_one_that_shares_three_corners_is_held() {
+    let free_movements = |corners: &[usize]| {
+        let scene =
+            Scene::new(&two_blocks_sharing(corners), &Plan::default(), &Settings::default());
+        scene.err().map(|errors| errors.0[0].detail.clone())
+    };
+    assert!(free_movements(&[0, 1]).unwrap().contains("1 of the 6"));
+    assert!(free_movements(&[0]).unwrap().contains("3 of the 6"));
+    assert!(free_movements(&[]).unwrap().contains("6 of the 6"));
+    assert_eq!(free_movements(&[0, 1, 2]), None);
+    assert_eq!(free_movements(&[0, 1, 2, 3]), None);
+}

@@ -1,0 +1,142 @@
+//! What a triangle surface looks like around its edges and corners: normals there, and open borders.
+//!
+//! Points at exactly the same place count as one, so that a triangle soup (STL) has neighbours too.
+
+use std::collections::HashMap;
+
+use super::closest_point::Feature;
+use super::{TriangleSurface, Vector};
+
+/// Normals of faces, edges and vertices, and which edges and vertices lie on an open border.
+pub(super) struct SurfaceTopology {
+    faces: Vec<Vector>,
+    /// For each triangle the numbers of its edges and of its welded corners.
+    edges_of: Vec<[u32; 3]>,
+    vertices_of: Vec<[u32; 3]>,
+    edges: Vec<Place>,
+    vertices: Vec<Place>,
+}
+
+/// An edge or a vertex: the weighted sum of the normals around it.
+#[derive(Clone, Copy)]
+struct Place {
+    normal: Vector,
+    is_open: bool,
+}
+
+impl Place {
+    const BARE: Place = Place { normal: Vector::new(0.0, 0.0, 0.0), is_open: false };
+}
+
+impl SurfaceTopology {
+    /// Only triangles for which `counts` holds give normals; all of them close borders.
+    pub(super) fn new(
+        surface: &TriangleSurface,
+        counts: impl Fn(&Vector, &Vector, &Vector) -> bool,
+    ) -> Self {
+        let (vertex_of, vertex_count) = weld(&surface.points);
+        let vertices_of: Vec<[u32; 3]> = surface
+            .triangles
+            .iter()
+            .map(|corners| corners.map(|corner| vertex_of[corner as usize]))
+            .collect();
+        let (edges_of, edge_ends, edge_uses) = number_edges(&vertices_of);
+        let mut topology = SurfaceTopology {
+            faces: vec![Vector::zeros(); vertices_of.len()],
+            edges: vec![Place::BARE; edge_ends.len()],
+            vertices: vec![Place::BARE; vertex_count],
+            edges_of,
+            vertices_of,
+        };
+        for triangle in 0..surface.triangles.len() {
+            let corners = surface.corners(triangle);
+            let [a, b, c] = &corners;
+            if counts(a, b, c) {
+                topology.add_normals(triangle, &corners);
+            }
+        }
+        for (edge, ends) in edge_ends.iter().enumerate() {
+            if edge_uses[edge] == 1 {
+                topology.edges[edge].is_open = true;
+                for &vertex in ends {
+                    topology.vertices[vertex as usize].is_open = true;
+                }
+            }
+        }
+        topology
+    }
+
+    /// A unit normal, or that of the face where the normals around an edge or vertex cancel.
+    pub(super) fn normal(&self, triangle: usize, feature: Feature) -> Vector {
+        let face = self.faces[triangle];
+        let normal = self.place(triangle, feature).map_or(face, |p| p.normal);
+        // Sums of unit vectors shorter than this are rounding.
+        normal.try_normalize(1e-9).unwrap_or(face)
+    }
+
+    pub(super) fn is_open(&self, triangle: usize, feature: Feature) -> bool {
+        self.place(triangle, feature).is_some_and(|p| p.is_open)
+    }
+
+    fn place(&self, triangle: usize, feature: Feature) -> Option<&Place> {
+        match feature {
+            Feature::Face => None,
+            Feature::Edge(local) => Some(&self.edges[self.edges_of[triangle][local] as usize]),
+            Feature::Vertex(local) => {
+                Some(&self.vertices[self.vertices_of[triangle][local] as usize])
+            }
+        }
+    }
+
+    fn add_normals(&mut self, triangle: usize, corners: &[Vector; 3]) {
+        let [a, b, c] = corners;
+        let normal = (b - a).cross(&(c - a)).normalize();
+        self.faces[triangle] = normal;
+        for local in 0..3 {
+            self.edges[self.edges_of[triangle][local] as usize].normal += normal;
+            let [to_next, to_last] =
+                [1, 2].map(|step| corners[(local + step) % 3] - corners[local]);
+            let angle = to_next.angle(&to_last);
+            self.vertices[self.vertices_of[triangle][local] as usize].normal += normal * angle;
+        }
+    }
+}
+
+/// For each point the number of its place, and how many places there are.
+fn weld(points: &[Vector]) -> (Vec<u32>, usize) {
+    let mut places: HashMap<[u64; 3], u32> = HashMap::with_capacity(points.len());
+    let numbers = points
+        .iter()
+        .map(|point| {
+            let next = places.len() as u32;
+            // Adding zero makes one place of 0 and -0.
+            let key = [point.x, point.y, point.z].map(|x| (x + 0.0).to_bits());
+            *places.entry(key).or_insert(next)
+        })
+        .collect();
+    (numbers, places.len())
+}
+
+/// For each triangle its three edges, for each edge its two ends, and how many triangles use it.
+fn number_edges(vertices_of: &[[u32; 3]]) -> (Vec<[u32; 3]>, Vec<[u32; 2]>, Vec<u32>) {
+    let mut numbers: HashMap<[u32; 2], u32> = HashMap::with_capacity(vertices_of.len() * 2);
+    let mut ends = Vec::new();
+    let mut uses = Vec::new();
+    let mut edges_of = Vec::with_capacity(vertices_of.len());
+    for corners in vertices_of {
+        let [a, b, c] = *corners;
+        // A triangle folded onto one edge would close a border that is open.
+        let use_count = u32::from(a != b && b != c && c != a);
+        edges_of.push([[a, b], [b, c], [c, a]].map(|[from, to]| {
+            let key = [from.min(to), from.max(to)];
+            let edge = *numbers.entry(key).or_insert_with(|| {
+                ends.push(key);
+                uses.push(0);
+                ends.len() as u32 - 1
+            });
+            uses[edge as usize] += use_count;
+            edge
+        }));
+    }
+    (edges_of, ends, uses)
+}
