@@ -8,6 +8,7 @@ mod shared;
 mod closed_form;
 mod conditions;
 mod convergence;
+mod documents;
 mod patch;
 mod scenes;
 mod solvers;
