@@ -4,6 +4,7 @@
 
 pub mod boundary;
 pub mod element;
+pub mod chart;
 pub mod material;
 pub mod mesh;
 pub mod model;

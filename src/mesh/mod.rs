@@ -2,7 +2,10 @@
 
 pub mod closest_point;
 pub mod connectivity;
+mod face_shape;
 pub mod frame;
+pub mod half_head;
+pub mod refinement;
 pub mod sample;
 pub mod surface;
 mod surface_topology;
