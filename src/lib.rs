@@ -5,10 +5,11 @@
 pub mod boundary;
 pub mod element;
 pub mod chart;
+pub mod format;
 pub mod material;
 pub mod mesh;
 pub mod model;
 pub mod plan;
 pub mod prediction;
-pub mod solver;
 pub mod schema;
+pub mod solver;
