@@ -4,8 +4,10 @@
 
 pub mod api;
 pub mod boundary;
+pub mod chart;
 pub mod config;
 pub mod element;
+pub mod format;
 pub mod jobs;
 pub mod material;
 pub mod mesh;
