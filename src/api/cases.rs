@@ -7,6 +7,7 @@ use axum::http::{HeaderMap, StatusCode, header};
 use axum::response::IntoResponse;
 use bytes::Bytes;
 use serde::{Deserialize, Serialize};
+use tokio::runtime::Handle;
 use utoipa::{IntoParams, ToSchema};
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
@@ -14,9 +15,8 @@ use utoipa_axum::routes;
 use super::error::{ApiError, ApiResult};
 use super::meshes::{TakenIn, document_of, take_in};
 use super::paging::Page;
-use super::parameters::{Ids, Parameters};
-use super::{Service, body, conditional, jobs, json, json_only, time, with_header};
-use crate::jobs::library::Overlay;
+use super::parameters::{Id, Parameters};
+use super::{Service, body, conditional, job_input, json, json_only, time, with_header};
 use crate::jobs::upload::{Statement, Upload};
 use crate::jobs::{PredictInput, StoredMesh};
 use crate::schema::check::CheckDocument;
@@ -218,7 +218,7 @@ impl Draft {
             return Err(ApiError::new("conflict", detail));
         }
         for (row, mesh) in new.meshes.iter().zip(meshes) {
-            service.library.keep(&row.blob, mesh);
+            service.library.keep(&row.blob, mesh.shape);
         }
         tracing::info!(case.id = %id, meshes = new.mesh_ids.len(), "case stored");
         Ok(id)
@@ -244,10 +244,10 @@ async fn checked(
     input: PredictInput,
     extra: BTreeMap<String, StoredMesh>,
 ) -> ApiResult<CheckDocument> {
-    let sources = Overlay::new(service.library.source(), extra);
+    let sources = service.library.source(Handle::current(), extra);
     let limits: Limits = (*service.limits).clone();
     let report = service.compute(move || crate::jobs::check(&input, &sources, &limits)).await?;
-    report.map(|report| report.document).map_err(jobs::refusal)
+    report.map(|report| report.document).map_err(job_input::refusal)
 }
 
 async fn row_of(service: &Service, id: &str) -> ApiResult<CaseRow> {
@@ -305,7 +305,7 @@ async fn list(
 )]
 async fn show(
     State(service): State<Service>,
-    Ids([id]): Ids<1>,
+    Id(id): Id,
     headers: HeaderMap,
 ) -> ApiResult {
     let row = row_of(&service, &id).await?;
@@ -331,7 +331,7 @@ async fn show(
 )]
 async fn remove(
     State(service): State<Service>,
-    Ids([id]): Ids<1>,
+    Id(id): Id,
     headers: HeaderMap,
 ) -> ApiResult {
     let row = row_of(&service, &id).await?;
@@ -352,7 +352,7 @@ async fn remove(
 )]
 async fn check(
     State(service): State<Service>,
-    Ids([id]): Ids<1>,
+    Id(id): Id,
     request: Request,
 ) -> ApiResult {
     let bytes = body::json(&service, request).await?;
@@ -364,7 +364,7 @@ async fn check(
         faults.add(&at, "other-case", "the spec names another case than the address");
         faults.into_result()?;
     }
-    let input = jobs::predict_input(&service, &row, spec).await?;
+    let input = job_input::predict_input(&service, &row, spec).await?;
     let document = checked(&service, input, BTreeMap::new()).await;
     let document = document.map_err(|error| error.map_problem(|problem| problem.moved("/spec", "")))?;
     Ok(json(StatusCode::OK, &document))

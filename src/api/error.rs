@@ -103,6 +103,12 @@ impl ApiError {
         self
     }
 
+    /// The same error with another problem.
+    pub fn map_problem(mut self, change: impl FnOnce(Problem) -> Problem) -> Self {
+        self.problem = change(self.problem);
+        self
+    }
+
     /// An error of ours, told in the log only.
     pub fn internal(reason: impl std::fmt::Display) -> Self {
         tracing::error!(%reason, "internal error");

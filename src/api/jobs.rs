@@ -11,7 +11,7 @@ use utoipa_axum::routes;
 use super::error::{ApiError, ApiResult};
 use super::job_view::status_info;
 use super::paging::Page;
-use super::parameters::{Ids, Parameters, no_such_job};
+use super::parameters::{Id, Parameters, no_such_job};
 use super::prefer::{wait_for_end, wanted_wait};
 use super::results::RETRY_AFTER_S;
 use super::{Service, body, job_input, json, json_only, with_header};
@@ -145,7 +145,7 @@ fn answer(status: StatusCode, job: &JobRow, deduplicated: bool, wait: Option<u32
 )]
 async fn show(
     State(service): State<Service>,
-    Ids([id]): Ids<1>,
+    Id(id): Id,
     headers: HeaderMap,
 ) -> ApiResult {
     let wait = wanted_wait(&headers, service.limits.wait_s);
@@ -185,7 +185,7 @@ async fn list(
         (status = 204, description = "it had ended, and is removed"),
     )
 )]
-async fn dismiss(State(service): State<Service>, Ids([id]): Ids<1>) -> ApiResult<Response> {
+async fn dismiss(State(service): State<Service>, Id(id): Id) -> ApiResult<Response> {
     let what = service.store.dismiss(&id).await?;
     tracing::info!(job.id = %id, ?what, "job dismissed");
     match what {

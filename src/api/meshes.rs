@@ -2,7 +2,7 @@
 
 use axum::extract::{Request, State};
 use axum::http::{HeaderMap, StatusCode, header};
-use axum::response::{IntoResponse, Response};
+use axum::response::IntoResponse;
 use bytes::Bytes;
 use serde::Deserialize;
 use utoipa::IntoParams;
@@ -10,12 +10,13 @@ use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 use super::error::{ApiError, ApiResult};
-use super::parameters::{Ids, Parameters};
+use super::parameters::{Id, Parameters};
 use super::{Service, body, conditional, json, json_only, time, with_header};
 use crate::jobs::upload::{ExportFormat, Statement, Upload, export, read_upload};
 use crate::schema::case::{FrameName, LengthUnit};
 use crate::schema::mesh::{MeshDocument, MeshKind};
-use crate::store::{MeshDeletion, MeshRow, sha256};
+use crate::schema::canonical::sha256_hex;
+use crate::store::{MeshDeletion, MeshRow};
 
 const READ_HERE: &str = "model/stl, model/obj, application/vnd.ply, application/vnd.vtk, \
      application/vnd.vtk.xml, application/x-gmsh, application/octet-stream, multipart/form-data";
@@ -136,7 +137,7 @@ pub async fn take_in(
     standalone: bool,
 ) -> ApiResult<TakenIn> {
     let hashed = bytes.clone();
-    let hash = service.compute(move || sha256(&hashed)).await?;
+    let hash = service.compute(move || sha256_hex(&hashed)).await?;
     let known = service.store.mesh_by_content(&hash, &statement.identity()).await?;
     if let Some(row) = known {
         return Ok(TakenIn::Known(row));
@@ -151,7 +152,7 @@ async fn store(service: &Service, upload: Upload) -> ApiResult<(MeshRow, bool)> 
     let (hash, options) = (&upload.row.sha256, &upload.row.options);
     let row = service.store.mesh_by_content(hash, options).await?;
     let row = row.ok_or_else(|| ApiError::new("conflict", "the mesh was deleted meanwhile"))?;
-    service.library.keep(&row.blob, upload.mesh);
+    service.library.keep(&row.blob, upload.mesh.shape);
     tracing::info!(mesh.id = %row.id, mesh.nodes = upload.document.report.nodes, is_new, "mesh stored");
     Ok((row, is_new))
 }
@@ -179,7 +180,7 @@ async fn row_of(service: &Service, id: &str) -> ApiResult<MeshRow> {
 )]
 async fn show(
     State(service): State<Service>,
-    Ids([id]): Ids<1>,
+    Id(id): Id,
     headers: HeaderMap,
 ) -> ApiResult {
     let row = row_of(&service, &id).await?;
@@ -235,7 +236,7 @@ impl From<ContentFormat> for ExportFormat {
 )]
 async fn content(
     State(service): State<Service>,
-    Ids([id]): Ids<1>,
+    Id(id): Id,
     Parameters(parameters): Parameters<ContentParameters>,
     headers: HeaderMap,
 ) -> ApiResult {
@@ -252,8 +253,7 @@ async fn content(
         service.store.read_blob(&blob).await?
     } else {
         let mesh = service.library.open(row).await?;
-        let frame = mesh.frame.unwrap_or_default();
-        Bytes::from(service.compute(move || export(&mesh.mesh, frame, format)).await??)
+        Bytes::from(service.compute(move || export(&mesh, format)).await??)
     };
     let name = format!("{id}.{}", format.name());
     let tag = format!("{blob}-{}", format.name());
@@ -268,7 +268,7 @@ async fn content(
         (status = 409, description = "a case or a job refers to it"),
     )
 )]
-async fn remove(State(service): State<Service>, Ids([id]): Ids<1>) -> ApiResult {
+async fn remove(State(service): State<Service>, Id(id): Id) -> ApiResult {
     let row = row_of(&service, &id).await?;
     match service.store.delete_mesh(&id).await? {
         MeshDeletion::Deleted => {

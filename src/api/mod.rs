@@ -7,6 +7,8 @@ mod conditional;
 mod error;
 mod guard;
 mod health;
+mod job_input;
+mod job_view;
 mod jobs;
 mod meshes;
 mod openapi;

@@ -22,7 +22,8 @@ const ALWAYS: [(&str, &str); 8] = [
     ("507", "the disk of the service is full"),
 ];
 const WITH_PATH: (&str, &str) = ("404", "it is not there");
-const WITH_BODY: [(&str, &str); 4] = [
+const WITH_BODY: [(&str, &str); 5] = [
+    ("409", "something it refers to changed meanwhile"),
     ("408", "the body came too slowly"),
     ("413", "the body is too large"),
     ("415", "the body is of a kind that is not read"),
@@ -87,7 +88,7 @@ fn add_problems(path: &str, operation: &mut Operation) {
         let RefOr::T(response) = response else { continue };
         if status.starts_with(['4', '5']) {
             let schema = Ref::from_schema_name(ProblemDocument::name());
-            let content = ContentBuilder::new().schema(Some(schema)).build();
+            let content = RefOr::T(ContentBuilder::new().schema(Some(schema)).build());
             response.content = [("application/problem+json".to_owned(), content)].into();
         }
     }

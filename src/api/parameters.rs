@@ -25,22 +25,35 @@ impl<T: DeserializeOwned, S: Sync> FromRequestParts<S> for Parameters<T> {
     }
 }
 
-/// The parameters of the path in their order. What is not an id names nothing.
-pub struct Ids<const N: usize>(pub [String; N]);
+/// The one id of the path. What is not an id names nothing.
+pub struct Id(pub String);
 
-impl<const N: usize, S: Send + Sync> FromRequestParts<S> for Ids<N> {
+impl<S: Send + Sync> FromRequestParts<S> for Id {
     type Rejection = ApiError;
 
     async fn from_request_parts(parts: &mut Parts, state: &S) -> ApiResult<Self> {
         let found = path_texts(parts, state).await?;
-        let mut ids = [const { String::new() }; N];
-        if found.len() != N {
-            return Err(ApiError::internal("the route has other parameters"));
+        let id = found.first().and_then(|text| id(text));
+        id.map(Id).ok_or_else(|| ApiError::not_found("resource"))
+    }
+}
+
+/// The id of a case and that of one of its plans.
+pub struct PlanPath {
+    pub case: String,
+    pub id: String,
+}
+
+impl<S: Send + Sync> FromRequestParts<S> for PlanPath {
+    type Rejection = ApiError;
+
+    async fn from_request_parts(parts: &mut Parts, state: &S) -> ApiResult<Self> {
+        let found = path_texts(parts, state).await?;
+        let mut ids = found.iter().map(|text| id(text));
+        match (ids.next().flatten(), ids.next().flatten()) {
+            (Some(case), Some(id)) => Ok(PlanPath { case, id }),
+            _ => Err(ApiError::not_found("plan of this case")),
         }
-        for (slot, text) in ids.iter_mut().zip(found) {
-            *slot = id(&text).ok_or_else(|| ApiError::not_found("resource"))?;
-        }
-        Ok(Ids(ids))
     }
 }
 

@@ -10,7 +10,7 @@ use utoipa_axum::routes;
 
 use super::error::{ApiError, ApiResult};
 use super::paging::Page;
-use super::parameters::{Ids, Parameters};
+use super::parameters::{Id, Parameters, PlanPath};
 use super::{Service, body, conditional, json, json_only, time, with_header};
 use crate::schema::{PlanDocument, strict};
 use crate::store::{Change, PlanRow};
@@ -87,7 +87,7 @@ async fn read(service: &Service, request: Request) -> ApiResult<String> {
 )]
 async fn create(
     State(service): State<Service>,
-    Ids([case]): Ids<1>,
+    Id(case): Id,
     request: Request,
 ) -> ApiResult {
     let document = read(&service, request).await?;
@@ -107,7 +107,7 @@ async fn create(
 )]
 async fn list(
     State(service): State<Service>,
-    Ids([case]): Ids<1>,
+    Id(case): Id,
     Parameters(parameters): Parameters<ListParameters>,
 ) -> ApiResult {
     let page = Page::new(parameters.cursor.as_deref(), parameters.limit)?;
@@ -131,7 +131,7 @@ async fn list(
 )]
 async fn show(
     State(service): State<Service>,
-    Ids([case, id]): Ids<2>,
+    PlanPath { case, id }: PlanPath,
     headers: HeaderMap,
 ) -> ApiResult {
     let row = row_of(&service, &case, &id).await?;
@@ -158,7 +158,7 @@ async fn show(
 )]
 async fn replace(
     State(service): State<Service>,
-    Ids([case, id]): Ids<2>,
+    PlanPath { case, id }: PlanPath,
     headers: HeaderMap,
     request: Request,
 ) -> ApiResult {
@@ -185,7 +185,7 @@ async fn replace(
 )]
 async fn remove(
     State(service): State<Service>,
-    Ids([case, id]): Ids<2>,
+    PlanPath { case, id }: PlanPath,
     headers: HeaderMap,
 ) -> ApiResult<Response> {
     let row = row_of(&service, &case, &id).await?;

@@ -6,7 +6,7 @@ use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 use super::error::{ApiError, ApiResult};
-use super::parameters::{FileName, Ids, no_such_job};
+use super::parameters::{FileName, Id, no_such_job};
 use super::{Service, conditional, guard, json};
 use crate::schema::job::JobStatus;
 use crate::schema::prediction::ResultDocument;
@@ -55,7 +55,7 @@ async fn successful(service: &Service, id: &str) -> ApiResult<JobRow> {
         (status = 422, description = "the job failed or was dismissed"),
     )
 )]
-async fn manifest(State(service): State<Service>, Ids([id]): Ids<1>) -> ApiResult {
+async fn manifest(State(service): State<Service>, Id(id): Id) -> ApiResult {
     let job = successful(&service, &id).await?;
     let result = job.result.as_deref().unwrap_or("null");
     let result: serde_json::Value = serde_json::from_str(result).map_err(ApiError::internal)?;

@@ -173,6 +173,7 @@ impl Drop for Heartbeat {
 fn worker_lost(attempts: u32) -> String {
     serde_json::json!({
         "type": "worker-lost",
+        "class": "infrastructure",
         "detail": format!("the job lost its worker {attempts} times"),
         "attempts": attempts,
     })

@@ -1,63 +1,34 @@
 //! The meshes of the service, parsed: kept in memory while there is room, so that a job does not parse
 //! again what its check has parsed.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use crate::format::{self, Mesh, ReadLimits};
-use crate::mesh::{Frame, TriangleSurface, VolumeMesh};
+use tokio::runtime::Handle;
+
+use super::source::{MeshSource, SourceError, StoredMesh, StoredShape};
+use crate::format::{self, ReadLimits};
+use crate::mesh::Frame;
 use crate::schema::case::LengthUnit;
 use crate::schema::mesh::MeshDocument;
 use crate::store::{MeshRow, Store, StoreError};
 
-/// A parsed mesh in the unit of its file, shared by all who use it.
-#[derive(Clone, Debug)]
-pub enum SharedMesh {
-    Volume(Arc<VolumeMesh>),
-    Surface(Arc<TriangleSurface>),
-}
+/// The result file that holds the predicted skin with its node numbers.
+const PREDICTED_SKIN: &str = "skin.vtp";
 
-impl From<Mesh> for SharedMesh {
-    fn from(mesh: Mesh) -> Self {
-        match mesh {
-            Mesh::Volume(volume) => SharedMesh::Volume(Arc::new(volume)),
-            Mesh::Surface(surface) => SharedMesh::Surface(Arc::new(surface)),
+/// About what a mesh takes in memory, in bytes.
+fn size_of(shape: &StoredShape) -> usize {
+    match shape {
+        StoredShape::Volume(volume) => {
+            let numbers: usize = volume.cells.iter().map(|(_, nodes)| nodes.len() + 2).sum();
+            let per_node = 24 + 8 * volume.node_labels.len() + 24 * volume.node_vectors.len();
+            let per_cell = 8 * volume.cell_labels.len();
+            let sets = volume.node_sets.values().chain(volume.cell_sets.values());
+            let in_sets: usize = sets.map(Vec::len).sum();
+            4 * (numbers + in_sets) + per_node * volume.nodes.len() + per_cell * volume.cells.len()
         }
+        StoredShape::Surface(surface) => 28 * surface.points.len() + 12 * surface.triangles.len(),
     }
-}
-
-impl SharedMesh {
-    /// About what it takes in memory, in bytes.
-    fn size(&self) -> usize {
-        match self {
-            SharedMesh::Volume(volume) => {
-                let numbers: usize = volume.cells.iter().map(|(_, nodes)| nodes.len() + 2).sum();
-                let per_node = 24 + 8 * volume.node_labels.len() + 24 * volume.node_vectors.len();
-                let per_cell = 8 * volume.cell_labels.len();
-                let sets = volume.node_sets.values().chain(volume.cell_sets.values());
-                let in_sets: usize = sets.map(Vec::len).sum();
-                4 * (numbers + in_sets)
-                    + per_node * volume.nodes.len()
-                    + per_cell * volume.cells.len()
-            }
-            SharedMesh::Surface(surface) => {
-                28 * surface.points.len() + 12 * surface.triangles.len()
-            }
-        }
-    }
-}
-
-/// A stored mesh with what its upload said about it.
-#[derive(Clone, Debug)]
-pub struct LibraryMesh {
-    pub id: String,
-    /// Of the bytes that were uploaded.
-    pub sha256: String,
-    pub mesh: SharedMesh,
-    /// Named by the file or by the upload.
-    pub frame: Option<Frame>,
-    /// Named by the upload.
-    pub units: Option<LengthUnit>,
 }
 
 /// Parsed meshes by the hash of their stored bytes, the least recently used given up first.
@@ -69,21 +40,21 @@ struct Cache {
 }
 
 struct Cached {
-    mesh: SharedMesh,
+    mesh: StoredShape,
     size: usize,
     last_used: u64,
 }
 
 impl Cache {
-    fn get(&mut self, blob: &str) -> Option<SharedMesh> {
+    fn get(&mut self, blob: &str) -> Option<StoredShape> {
         self.clock += 1;
         let cached = self.meshes.get_mut(blob)?;
         cached.last_used = self.clock;
         Some(cached.mesh.clone())
     }
 
-    fn insert(&mut self, blob: &str, mesh: SharedMesh) {
-        let size = mesh.size();
+    fn insert(&mut self, blob: &str, mesh: StoredShape) {
+        let size = size_of(&mesh);
         if size > self.room || self.meshes.contains_key(blob) {
             return;
         }
@@ -124,7 +95,7 @@ impl Library {
     }
 
     /// Keeps a mesh that was parsed on its way in.
-    pub fn keep(&self, blob: &str, mesh: SharedMesh) {
+    pub fn keep(&self, blob: &str, mesh: StoredShape) {
         self.cache().insert(blob, mesh);
     }
 
@@ -133,51 +104,98 @@ impl Library {
         self.cache().forget(blob);
     }
 
-    pub async fn get(&self, id: &str) -> Result<Option<LibraryMesh>, StoreError> {
+    pub async fn get(&self, id: &str) -> Result<Option<StoredMesh>, StoreError> {
         match self.store.mesh(id).await? {
             Some(row) => self.open(row).await.map(Some),
             None => Ok(None),
         }
     }
 
-    /// The mesh of a row; parsed on a thread that may block.
-    pub async fn open(&self, row: MeshRow) -> Result<LibraryMesh, StoreError> {
+    /// The mesh of a row, in the unit of its file; parsed on a thread that may block.
+    pub async fn open(&self, row: MeshRow) -> Result<StoredMesh, StoreError> {
         let document: MeshDocument = serde_json::from_str(&row.report)
             .map_err(|error| StoreError::Schema(format!("report of a mesh: {error}")))?;
         let cached = self.cache().get(&row.blob);
-        let mesh = match cached {
-            Some(mesh) => mesh,
-            None => self.parse(&row.blob).await?,
+        let shape = match cached {
+            Some(shape) => shape,
+            None => {
+                let shape = self.read(&row.blob, row.sha256.clone()).await?.shape;
+                self.keep(&row.blob, shape.clone());
+                shape
+            }
         };
-        Ok(LibraryMesh {
-            id: row.id,
-            sha256: row.sha256,
-            mesh,
+        Ok(StoredMesh {
+            shape,
             frame: document.report.space.or(document.frame).map(Frame::from),
-            units: document.units,
+            units: document.units.unwrap_or_default(),
+            warnings: Vec::new(),
+            sha256: row.sha256,
         })
     }
 
-    async fn parse(&self, blob: &str) -> Result<SharedMesh, StoreError> {
+    async fn read(&self, blob: &str, sha256: String) -> Result<StoredMesh, StoreError> {
         let bytes = self.store.read_blob(blob).await?;
+        // Our own writers may compress better than a stranger's file is allowed to.
         let limits = ReadLimits { decoded_ratio: f64::INFINITY, ..ReadLimits::default() };
         let parsed = tokio::task::spawn_blocking(move || format::read(&bytes, &limits)).await;
         let parsed = parsed.map_err(|_| StoreError::Interrupted)?;
         let parsed = parsed.map_err(|error| StoreError::Schema(format!("stored mesh: {error}")))?;
-        let mesh = SharedMesh::from(parsed.mesh);
-        self.keep(blob, mesh.clone());
-        Ok(mesh)
+        Ok(StoredMesh::new(parsed, LengthUnit::Mm, sha256))
+    }
+
+    /// The skin that a successful prediction wrote; `None` where the job has none.
+    async fn predicted_skin(&self, job: &str) -> Result<Option<StoredMesh>, StoreError> {
+        let Some(file) = self.store.job_file(job, PREDICTED_SKIN).await? else { return Ok(None) };
+        self.read(&file.blob, file.blob.clone()).await.map(Some)
+    }
+
+    /// The same meshes for work that is not async. Only to be asked on threads that may block.
+    pub fn source(&self, runtime: Handle, extra: BTreeMap<String, StoredMesh>) -> LibrarySource {
+        LibrarySource { library: self.clone(), runtime, extra }
+    }
+}
+
+/// Stored meshes, and those of a request that are not stored yet.
+pub struct LibrarySource {
+    library: Library,
+    runtime: Handle,
+    extra: BTreeMap<String, StoredMesh>,
+}
+
+impl MeshSource for LibrarySource {
+    fn mesh(&self, id: &str) -> Result<StoredMesh, SourceError> {
+        if let Some(mesh) = self.extra.get(id) {
+            return Ok(mesh.clone());
+        }
+        found(id, self.runtime.block_on(self.library.get(id)))
+    }
+
+    fn predicted_skin(&self, job: &str) -> Result<StoredMesh, SourceError> {
+        found(job, self.runtime.block_on(self.library.predicted_skin(job)))
+    }
+}
+
+fn found(
+    id: &str,
+    mesh: Result<Option<StoredMesh>, StoreError>,
+) -> Result<StoredMesh, SourceError> {
+    match mesh {
+        Ok(Some(mesh)) => Ok(mesh),
+        Ok(None) => Err(SourceError::Unknown { id: id.to_owned() }),
+        Err(error) => {
+            Err(SourceError::Unreadable { id: id.to_owned(), detail: error.to_string() })
+        }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::Vector;
+    use crate::mesh::{TriangleSurface, Vector};
 
-    fn surface(points: usize) -> SharedMesh {
+    fn surface(points: usize) -> StoredShape {
         let points = vec![Vector::zeros(); points];
-        SharedMesh::Surface(Arc::new(TriangleSurface { points, ..TriangleSurface::default() }))
+        StoredShape::Surface(Arc::new(TriangleSurface { points, ..TriangleSurface::default() }))
     }
 
     #[test]

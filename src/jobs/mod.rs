@@ -8,6 +8,7 @@ pub mod heartbeat;
 pub mod input;
 pub mod library;
 pub mod observed;
+pub mod numerics;
 mod output;
 mod pictures;
 pub mod report;

@@ -4,14 +4,16 @@
 use bytes::Bytes;
 use serde_json::Value;
 
-use super::library::SharedMesh;
+use super::report::mesh_report;
+use super::source::{StoredMesh, StoredShape};
 use crate::format::{self, FormatError, Member, ReadLimits, ReadMesh, SurfaceOutput, VolumeOutput};
-use crate::mesh::{Frame, Vector, Warning};
+use crate::mesh::{Frame, Warning};
 use crate::schema::Problem;
 use crate::schema::case::{FrameName, LengthUnit};
-use crate::schema::mesh::{MeshDocument, MeshKind, MeshReport};
+use crate::schema::mesh::MeshDocument;
+use crate::schema::canonical::sha256_hex;
 use crate::schema::warning::WarningDocument;
-use crate::store::{NewMesh, sha256};
+use crate::store::NewMesh;
 
 /// Diagonals of the bounding boxes of heads and their parts, in mm.
 const USUAL_DIAGONAL_MM: std::ops::RangeInclusive<f64> = 50.0..=600.0;
@@ -40,7 +42,7 @@ impl Statement {
 pub struct Upload {
     pub row: NewMesh,
     pub document: MeshDocument,
-    pub mesh: SharedMesh,
+    pub mesh: StoredMesh,
 }
 
 /// Reads and checks an upload. Takes its time: not for an async thread.
@@ -51,7 +53,7 @@ pub fn read_upload(
     standalone: bool,
 ) -> Result<Upload, Problem> {
     let read = format::read(bytes, &ReadLimits::default()).map_err(|error| problem_of(&error))?;
-    let mut report = report_of(&read);
+    let mut report = mesh_report(&read);
     check_frame(&read, statement)?;
     let scale = check_scale(report.diagonal, statement)?;
     report.warnings.extend(scale.as_ref().map(WarningDocument::from));
@@ -69,13 +71,14 @@ pub fn read_upload(
         report,
     };
     let frame = read.frame.or(statement.frame.map(Frame::from)).unwrap_or_default();
-    let mesh = SharedMesh::from(read.mesh);
-    let stored = Bytes::from(encode(&mesh, frame)?);
+    let units = statement.units.unwrap_or_default();
+    let mesh = StoredMesh { frame: Some(frame), ..StoredMesh::new(read, units, sha256_of_bytes.clone()) };
+    let stored = Bytes::from(encode(&mesh.shape, frame)?);
     let row = NewMesh {
         id,
         sha256: sha256_of_bytes,
         options: statement.identity(),
-        blob: sha256(&stored),
+        blob: sha256_hex(&stored),
         bytes: stored,
         standalone,
         report: serde_json::to_string(&document).map_err(not_written)?,
@@ -84,10 +87,10 @@ pub fn read_upload(
 }
 
 /// The form in which a mesh is stored: reading it gives the same mesh.
-fn encode(mesh: &SharedMesh, frame: Frame) -> Result<Vec<u8>, Problem> {
-    let written = match mesh {
-        SharedMesh::Volume(volume) => format::vtu::write(&VolumeOutput::plain(volume, frame)),
-        SharedMesh::Surface(surface) => format::vtp::write(&SurfaceOutput::plain(surface, frame)),
+fn encode(shape: &StoredShape, frame: Frame) -> Result<Vec<u8>, Problem> {
+    let written = match shape {
+        StoredShape::Volume(volume) => format::vtu::write(&VolumeOutput::plain(volume, frame)),
+        StoredShape::Surface(surface) => format::vtp::write(&SurfaceOutput::plain(surface, frame)),
     };
     written.map_err(not_written)
 }
@@ -151,92 +154,20 @@ fn check_scale(diagonal: f64, statement: &Statement) -> Result<Option<Warning>, 
     })
 }
 
-fn report_of(read: &ReadMesh) -> MeshReport {
-    let points = match &read.mesh {
-        format::Mesh::Volume(volume) => &volume.nodes,
-        format::Mesh::Surface(surface) => &surface.points,
-    };
-    let (low, high) = bounding_box(points);
-    let mut report = MeshReport {
-        kind: MeshKind::Surface,
-        nodes: points.len() as u64,
-        cells: Default::default(),
-        triangles: 0,
-        bounding_box: [low.into(), high.into()],
-        diagonal: (high - low).norm(),
-        space: read.frame.map(FrameName::from),
-        node_sets: Default::default(),
-        cell_sets: Default::default(),
-        node_labels: Default::default(),
-        cell_labels: Default::default(),
-        node_vectors: Vec::new(),
-        ignored_arrays: read.ignored_arrays.clone(),
-        min_quality: None,
-        warnings: read.warnings.iter().map(WarningDocument::from).collect(),
-    };
-    match &read.mesh {
-        format::Mesh::Surface(surface) => report.triangles = surface.triangles.len() as u64,
-        format::Mesh::Volume(volume) => report_volume(volume, &mut report),
-    }
-    report
-}
-
-fn report_volume(volume: &crate::mesh::VolumeMesh, report: &mut MeshReport) {
-    report.kind = MeshKind::Volume;
-    let boundary = volume.boundary_faces();
-    report.triangles = boundary.iter().map(|face| face.triangles().count() as u64).sum();
-    for (shape, _) in volume.cells.iter() {
-        *report.cells.entry(shape.name().to_owned()).or_default() += 1;
-    }
-    let counts = |sets: &std::collections::BTreeMap<String, Vec<u32>>| {
-        sets.iter().map(|(name, members)| (name.clone(), members.len() as u64)).collect()
-    };
-    report.node_sets = counts(&volume.node_sets);
-    report.cell_sets = counts(&volume.cell_sets);
-    let values = |labels: &std::collections::BTreeMap<String, Vec<i64>>| {
-        labels.iter().map(|(name, labels)| (name.clone(), distinct(labels))).collect()
-    };
-    report.node_labels = values(&volume.node_labels);
-    report.cell_labels = values(&volume.cell_labels);
-    report.node_vectors = volume.node_vectors.keys().cloned().collect();
-}
-
-/// The different values, ascending, at most 64 of them.
-fn distinct(labels: &[i64]) -> Vec<i64> {
-    let mut values = labels.to_vec();
-    values.sort_unstable();
-    values.dedup();
-    values.truncate(64);
-    values
-}
-
-fn bounding_box(points: &[Vector]) -> (Vector, Vector) {
-    let Some(first) = points.first() else { return Default::default() };
-    points.iter().fold((*first, *first), |(low, high), point| (low.inf(point), high.sup(point)))
-}
-
-/// The surface of a mesh, for formats that hold surfaces only.
-pub fn surface_of(mesh: &SharedMesh) -> std::sync::Arc<crate::mesh::TriangleSurface> {
-    match mesh {
-        SharedMesh::Surface(surface) => surface.clone(),
-        SharedMesh::Volume(volume) => volume.surface_of(&volume.boundary_faces()).into(),
-    }
-}
-
 /// A mesh in another format, as `GET /v1/meshes/{id}/content` hands it out.
 pub fn export(
-    mesh: &SharedMesh,
-    frame: Frame,
+    mesh: &StoredMesh,
     format: ExportFormat,
 ) -> Result<Vec<u8>, Problem> {
+    let frame = mesh.frame.unwrap_or_default();
     if format == ExportFormat::Vtu {
-        let SharedMesh::Volume(_) = mesh else {
+        let StoredShape::Volume(_) = mesh.shape else {
             let detail = "a surface has no VTU form; vtp, stl and ply are there";
             return Err(Problem::new("format-not-available", detail));
         };
-        return encode(mesh, frame);
+        return encode(&mesh.shape, frame);
     }
-    let surface = surface_of(mesh);
+    let surface = mesh.surface();
     let output = SurfaceOutput::plain(&surface, frame);
     let written = match format {
         ExportFormat::Vtu | ExportFormat::Vtp => format::vtp::write(&output),

@@ -15,7 +15,8 @@ use tokio::runtime::Handle;
 use super::heartbeat::{Heartbeat, RunningJob};
 use crate::config::Config;
 use crate::prediction::Progress;
-use crate::store::{Claim, Lease, PublishedFile, Store, StoreError, sha256};
+use crate::schema::canonical::sha256_hex;
+use crate::store::{Claim, Lease, PublishedFile, Store, StoreError};
 
 /// How long an idle worker waits before it looks for jobs that another process has accepted.
 const IDLE: Duration = Duration::from_secs(1);
@@ -193,6 +194,7 @@ impl Shared {
             tracing::error!(reason = words.unwrap_or("unknown"), "a job panicked");
             Err(Failure::Permanent(json!({
                 "type": "internal",
+                "class": "infrastructure",
                 "detail": "the work broke off; the log has the details under the job's id",
             })))
         })
@@ -206,7 +208,7 @@ impl Shared {
             files.push(PublishedFile {
                 name: file.name,
                 media_type: file.media_type,
-                sha256: sha256(&bytes),
+                sha256: sha256_hex(&bytes),
                 bytes,
             });
         }
@@ -235,7 +237,11 @@ impl Shared {
             Ok(false) => return "fenced",
             Err(_) if job.is_cancelled() => return "stopped",
             Err(Failure::Cancelled) => {
-                let error = json!({"type": "cancelled", "detail": "the work was stopped"});
+                let error = json!({
+                    "type": "cancelled",
+                    "class": "cancelled",
+                    "detail": "the work was stopped",
+                });
                 ("failed", self.runtime.block_on(self.store.fail(lease, &error.to_string())))
             }
             Err(Failure::Permanent(error)) => {
@@ -246,6 +252,7 @@ impl Shared {
                 tracing::error!(%reason, "the storage failed an attempt");
                 let error = json!({
                     "type": "storage",
+                    "class": "infrastructure",
                     "detail": "the results could not be stored",
                     "attempts": self.attempts,
                 });

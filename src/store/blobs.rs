@@ -7,20 +7,14 @@ use bytes::Bytes;
 use futures::TryStreamExt;
 use object_store::local::LocalFileSystem;
 use object_store::{ObjectStore, ObjectStoreExt, PutMode, PutOptions, PutPayload};
-use sha2::{Digest, Sha256};
 
 use super::StoreError;
+use crate::schema::canonical::sha256_hex;
 
 /// A folder of blobs. A blob is complete or absent: it is written beside its place, flushed, and linked.
 #[derive(Clone)]
 pub struct Blobs {
     objects: Arc<dyn ObjectStore>,
-}
-
-/// SHA-256 in lower-case hexadecimal.
-pub fn sha256(bytes: &[u8]) -> String {
-    let digest = Sha256::digest(bytes);
-    digest.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 impl Blobs {
@@ -53,7 +47,7 @@ impl Blobs {
     pub async fn get(&self, sha256: &str) -> Result<Bytes, StoreError> {
         let bytes = self.objects.get(&place(sha256)).await?.bytes().await?;
         let (bytes, found) = tokio::task::spawn_blocking(move || {
-            let found = self::sha256(&bytes);
+            let found = sha256_hex(&bytes);
             (bytes, found)
         })
         .await

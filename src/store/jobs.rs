@@ -5,46 +5,7 @@ use sqlx::Row as _;
 use super::cases::AFTER_ALL;
 use super::database::{Row, Transaction, is_reference};
 use super::{Store, StoreError};
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum JobStatus {
-    Accepted,
-    Running,
-    Successful,
-    Failed,
-    Dismissed,
-}
-
-impl JobStatus {
-    pub const ALL: [JobStatus; 5] = [
-        JobStatus::Accepted,
-        JobStatus::Running,
-        JobStatus::Successful,
-        JobStatus::Failed,
-        JobStatus::Dismissed,
-    ];
-
-    pub fn name(self) -> &'static str {
-        match self {
-            JobStatus::Accepted => "accepted",
-            JobStatus::Running => "running",
-            JobStatus::Successful => "successful",
-            JobStatus::Failed => "failed",
-            JobStatus::Dismissed => "dismissed",
-        }
-    }
-
-    pub fn from_name(name: &str) -> Option<JobStatus> {
-        JobStatus::ALL
-            .into_iter()
-            .find(|status| status.name() == name)
-    }
-
-    /// True when the job will not change any more.
-    pub fn is_terminal(self) -> bool {
-        !matches!(self, JobStatus::Accepted | JobStatus::Running)
-    }
-}
+use crate::schema::job::JobStatus;
 
 /// A job to be accepted.
 #[derive(Clone, Debug)]

@@ -15,9 +15,9 @@ use std::sync::Arc;
 
 use tokio::sync::{RwLock, watch};
 
-pub use blobs::{Blobs, sha256};
+pub use blobs::Blobs;
 pub use cases::{CaseRow, Change, NewCase};
-pub use jobs::{Dismissal, Enqueued, JobFilter, JobRow, JobStatus, NewJob};
+pub use jobs::{Dismissal, Enqueued, JobFilter, JobRow, NewJob};
 pub use leases::{Claim, FileRow, Lease, Point, PublishedFile, Reaped};
 pub use meshes::{MeshDeletion, MeshRow, NewMesh};
 pub use plans::PlanRow;

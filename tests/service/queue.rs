@@ -4,9 +4,10 @@ use std::path::Path;
 use std::time::Duration;
 
 use bytes::Bytes;
+use facies::schema::canonical::sha256_hex;
+use facies::schema::job::JobStatus;
 use facies::store::{
-    Claim, Dismissal, Enqueued, JobRow, JobStatus, NewJob, Point, PublishedFile, Store, StoreError,
-    sha256,
+    Claim, Dismissal, Enqueued, JobRow, NewJob, Point, PublishedFile, Store, StoreError,
 };
 use sqlx::Connection;
 use tempfile::TempDir;
@@ -62,7 +63,7 @@ fn file(content: &'static str) -> PublishedFile {
     PublishedFile {
         name: "result.json".into(),
         media_type: "application/json".into(),
-        sha256: sha256(&bytes),
+        sha256: sha256_hex(&bytes),
         bytes,
     }
 }

@@ -8,7 +8,8 @@ use std::time::Duration;
 use facies::config::Config;
 use facies::jobs::worker::{Failure, Finished, FinishedFile, Work, Workers};
 use facies::prediction::Progress;
-use facies::store::{Claim, JobRow, JobStatus, Store};
+use facies::schema::job::JobStatus;
+use facies::store::{Claim, JobRow, Store};
 use tempfile::TempDir;
 
 use crate::queue::{job, new_job, store};
