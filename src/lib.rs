@@ -2,10 +2,13 @@
 //!
 //! The modules stand in the order of the path that a job takes; ARCHITECTURE.md tells who may use whom.
 
+pub mod api;
 pub mod boundary;
 pub mod chart;
 pub mod element;
 pub mod format;
+pub mod config;
+pub mod jobs;
 pub mod material;
 pub mod mesh;
 pub mod model;
@@ -13,3 +16,5 @@ pub mod plan;
 pub mod prediction;
 pub mod schema;
 pub mod solver;
+pub mod store;
+pub mod telemetry;

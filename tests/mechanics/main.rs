@@ -8,6 +8,7 @@ mod shared;
 mod closed_form;
 mod conditions;
 mod convergence;
+mod documents;
 mod formats_check;
 mod formats_damage;
 mod formats_hostile;

@@ -1,0 +1,4 @@
+//! The service from outside: the real server, its store, its queue.
+
+mod queue;
+mod worker;
