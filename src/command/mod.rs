@@ -1,5 +1,6 @@
 //! What the binary does: one file for each command.
 
+pub mod demo;
 pub mod health;
 pub mod openapi;
 pub mod serve;
@@ -20,6 +21,8 @@ pub struct Arguments {
 enum Command {
     /// Serve the API, with workers in the same process
     Serve(serve::ServeArgs),
+    /// Predict a face that the program makes itself, and say how good the numbers are
+    Demo(demo::DemoArgs),
     /// Ask a running service whether it is alive; for health checks of containers
     Health(health::HealthArgs),
     /// Print the OpenAPI description of the service
@@ -30,6 +33,10 @@ enum Command {
 pub fn run(arguments: Arguments) -> ExitCode {
     match arguments.command {
         Command::Serve(arguments) => match serve::serve(&arguments) {
+            Ok(()) => ExitCode::SUCCESS,
+            Err(error) => failed(&error, error.exit_code()),
+        },
+        Command::Demo(arguments) => match demo::demo(&arguments) {
             Ok(()) => ExitCode::SUCCESS,
             Err(error) => failed(&error, error.exit_code()),
         },
