@@ -9,5 +9,7 @@ pub mod mesh;
 pub mod model;
 pub mod plan;
 pub mod prediction;
+pub mod registration;
 pub mod solver;
 pub mod schema;
+pub mod validation;
