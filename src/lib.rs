@@ -3,13 +3,15 @@
 //! The modules stand in the order of the path that a job takes; ARCHITECTURE.md tells who may use whom.
 
 pub mod boundary;
+pub mod chart;
 pub mod element;
+pub mod format;
 pub mod material;
 pub mod mesh;
 pub mod model;
 pub mod plan;
 pub mod prediction;
 pub mod registration;
-pub mod solver;
 pub mod schema;
+pub mod solver;
 pub mod validation;

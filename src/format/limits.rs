@@ -1,0 +1,100 @@
+//! How large a mesh may be, checked before memory is taken.
+
+use super::error::FormatError;
+
+/// Bounds of a reader. The defaults are the published limits of the service.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ReadLimits {
+    pub nodes: u64,
+    pub triangles: u64,
+    pub cells: u64,
+    /// Bytes that all compressed arrays of a file may decode to.
+    pub decoded_bytes: u64,
+    /// The same as a multiple of the whole file. No ratio is asked of a single array: a constant
+    /// array of a good file reaches 1000:1.
+    pub decoded_ratio: f64,
+    /// Files that decode to no more than this pass whatever their ratio: a small regular block
+    /// compresses far better than 10:1 and threatens nobody.
+    pub decoded_floor_bytes: u64,
+    pub polygon_corners: u64,
+    /// Characters in the name of a set or an array.
+    pub name_length: u64,
+}
+
+impl Default for ReadLimits {
+    fn default() -> Self {
+        ReadLimits {
+            nodes: 5_000_000,
+            triangles: 10_000_000,
+            cells: 4_000_000,
+            decoded_bytes: 512 << 20,
+            decoded_ratio: 10.0,
+            decoded_floor_bytes: 16 << 20,
+            polygon_corners: 64,
+            name_length: 128,
+        }
+    }
+}
+
+impl ReadLimits {
+    pub(super) fn check_nodes(&self, declared: u64) -> Result<(), FormatError> {
+        within("nodes", declared, self.nodes)
+    }
+
+    pub(super) fn check_triangles(&self, declared: u64) -> Result<(), FormatError> {
+        within("triangles", declared, self.triangles)
+    }
+
+    pub(super) fn check_cells(&self, declared: u64) -> Result<(), FormatError> {
+        within("cells", declared, self.cells)
+    }
+
+    /// A table that mixes points, lines, polygons and cells cannot be longer than this.
+    pub(super) fn check_elements(&self, declared: u64) -> Result<(), FormatError> {
+        within("cells", declared, self.cells + self.triangles)
+    }
+
+    pub(super) fn check_corners(&self, declared: u64) -> Result<(), FormatError> {
+        within("corners in one polygon", declared, self.polygon_corners)
+    }
+
+    pub(super) fn decode_budget(&self, file_bytes: usize) -> DecodeBudget {
+        let by_ratio = (file_bytes as f64 * self.decoded_ratio) as u64;
+        DecodeBudget {
+            limit: by_ratio.max(self.decoded_floor_bytes).min(self.decoded_bytes),
+            used: 0,
+        }
+    }
+}
+
+fn within(what: &'static str, declared: u64, limit: u64) -> Result<(), FormatError> {
+    if declared > limit {
+        return Err(FormatError::Limits { what, declared, limit });
+    }
+    Ok(())
+}
+
+/// What is left of the bytes that a file may decode to.
+pub(super) struct DecodeBudget {
+    limit: u64,
+    used: u64,
+}
+
+impl DecodeBudget {
+    /// Takes `bytes` from the budget, before they are allocated.
+    pub fn charge(&mut self, bytes: u64) -> Result<(), FormatError> {
+        let declared = self.used.saturating_add(bytes);
+        if declared > self.limit {
+            return Err(FormatError::DecompressionLimit { declared, limit: self.limit });
+        }
+        self.used = declared;
+        Ok(())
+    }
+}
+
+/// An empty vector with room for `count` values, or an error where memory does not allow it.
+pub(super) fn room_for<T>(count: usize) -> Result<Vec<T>, FormatError> {
+    let mut values = Vec::new();
+    values.try_reserve_exact(count).map_err(|_| FormatError::Memory { values: count as u64 })?;
+    Ok(values)
+}

@@ -1,0 +1,271 @@
+//! The one check after any reader: what a file said becomes a mesh that the rest can trust.
+
+use super::arrays::{Arrays, checked_name, insert, is_finite};
+use super::error::{FormatError, Offenders};
+use super::limits::ReadLimits;
+use super::surface_cleaning::clean;
+use super::{Mesh, MeshFormat, ReadMesh};
+use crate::mesh::{CellShape, Cells, Frame, TriangleSurface, Vector, VolumeMesh, Warning};
+
+/// Products of three coordinates must stay far from overflow; a micrometre file of a scanner with
+/// a far origin reaches 1e10.
+const LARGEST_COORDINATE: f64 = 1e15;
+
+/// What a reader found. With any cell it is a volume mesh, otherwise a surface.
+#[derive(Default)]
+pub(super) struct Parsed {
+    pub points: Vec<Vector>,
+    pub cells: Cells,
+    pub triangles: Vec<[u32; 3]>,
+    /// Polygons with more than three corners that became triangles.
+    pub polygons_cut: u64,
+    pub arrays: Arrays,
+    pub node_sets: Vec<(String, Vec<u32>)>,
+    pub cell_sets: Vec<(String, Vec<u32>)>,
+    pub frame: Option<Frame>,
+    pub warnings: Vec<Warning>,
+}
+
+impl Parsed {
+    /// Adds a polygon as triangles that share its first corner.
+    pub fn push_polygon(
+        &mut self,
+        corners: &[u32],
+        limits: &ReadLimits,
+    ) -> Result<(), FormatError> {
+        limits.check_corners(corners.len() as u64)?;
+        let [first, others @ ..] = corners else {
+            return Ok(());
+        };
+        for pair in others.windows(2) {
+            self.triangles.push([*first, pair[0], pair[1]]);
+        }
+        self.polygons_cut += u64::from(corners.len() > 3);
+        limits.check_triangles(self.triangles.len() as u64)
+    }
+
+    /// Remembers the frame that a header line, a comment or a field names as `SPACE=…`.
+    pub fn note_space_mark(&mut self, text: &str) {
+        let upper = text.to_ascii_uppercase();
+        let Some(at) = upper.find("SPACE=") else {
+            return;
+        };
+        let value = &upper[at + "SPACE=".len()..];
+        let length =
+            value.find(|character: char| !character.is_ascii_alphanumeric()).unwrap_or(value.len());
+        self.frame = self.frame.or(Frame::from_name(&value[..length]));
+    }
+
+    /// Says that parts of the file were left out, if there were any.
+    pub fn note_skipped(&mut self, count: u64, what: &str) {
+        if count > 0 {
+            let detail = format!("{count} {what} were skipped");
+            let warning = Warning::new("cells-skipped", detail).with("count", count as f64);
+            self.warnings.push(warning);
+        }
+    }
+
+    /// Checks the whole and sorts it into a mesh.
+    pub fn into_mesh(
+        mut self,
+        format: MeshFormat,
+        limits: &ReadLimits,
+    ) -> Result<ReadMesh, FormatError> {
+        limits.check_nodes(self.points.len() as u64)?;
+        limits.check_cells(self.cells.len() as u64)?;
+        limits.check_triangles(self.triangles.len() as u64)?;
+        if self.cells.is_empty() && self.triangles.is_empty() {
+            return Err(self.empty());
+        }
+        self.check_coordinates()?;
+        self.check_indices()?;
+        self.warn_of_cut_polygons();
+        let mesh = if self.cells.is_empty() {
+            Mesh::Surface(self.take_surface()?)
+        } else {
+            Mesh::Volume(self.take_volume(limits)?)
+        };
+        Ok(ReadMesh {
+            format,
+            mesh,
+            frame: self.frame,
+            ignored_arrays: self.arrays.ignored_names(limits),
+            warnings: self.warnings,
+        })
+    }
+
+    fn empty(&self) -> FormatError {
+        let skipped: Vec<&str> = self.warnings.iter().map(|w| w.detail.as_str()).collect();
+        let mut detail = format!("{} points, no cells and no triangles", self.points.len());
+        if !skipped.is_empty() {
+            detail = format!("{detail}; {}", skipped.join(", "));
+        }
+        FormatError::Empty { detail }
+    }
+
+    fn check_coordinates(&mut self) -> Result<(), FormatError> {
+        let mut nonfinite = Offenders::default();
+        let mut largest = 0.0_f64;
+        for (node, point) in self.points.iter().enumerate() {
+            if !is_finite(*point) {
+                nonfinite.add(node);
+            }
+            largest = largest.max(point.amax());
+        }
+        if nonfinite.count > 0 {
+            return Err(FormatError::NonFinite { count: nonfinite.count, first: nonfinite.first });
+        }
+        if largest > LARGEST_COORDINATE {
+            return Err(FormatError::Limits {
+                what: "is the largest coordinate",
+                declared: largest as u64,
+                limit: LARGEST_COORDINATE as u64,
+            });
+        }
+        Ok(())
+    }
+
+    fn check_indices(&self) -> Result<(), FormatError> {
+        let nodes = self.points.len() as u64;
+        let is_wrong = |corners: &[u32]| corners.iter().any(|&corner| u64::from(corner) >= nodes);
+        let mut wrong = Offenders::default();
+        if self.cells.is_empty() {
+            for (triangle, corners) in self.triangles.iter().enumerate() {
+                if is_wrong(corners) {
+                    wrong.add(triangle);
+                }
+            }
+        } else {
+            for (cell, (_, corners)) in self.cells.iter().enumerate() {
+                if is_wrong(corners) {
+                    wrong.add(cell);
+                }
+            }
+        }
+        if wrong.count > 0 {
+            return Err(FormatError::IndexOutOfRange {
+                count: wrong.count,
+                first: wrong.first,
+                nodes,
+            });
+        }
+        Ok(())
+    }
+
+    fn warn_of_cut_polygons(&mut self) {
+        if self.polygons_cut > 0 && self.cells.is_empty() {
+            let detail = format!("{} polygons were cut into triangles", self.polygons_cut);
+            let warning = Warning::new("polygons-triangulated", detail);
+            self.warnings.push(warning.with("count", self.polygons_cut as f64));
+        }
+    }
+
+    fn take_surface(&mut self) -> Result<TriangleSurface, FormatError> {
+        let mut surface = TriangleSurface {
+            points: std::mem::take(&mut self.points),
+            triangles: std::mem::take(&mut self.triangles),
+            node_ids: None,
+        };
+        self.arrays.move_to_surface(&mut surface);
+        let sets = self.node_sets.drain(..).chain(self.cell_sets.drain(..));
+        self.arrays.ignored.extend(sets.map(|(name, _)| name));
+        clean(&mut surface, &mut self.warnings)?;
+        self.warn_of_unreferenced(surface.points.len(), surface.triangles.iter().flatten());
+        Ok(surface)
+    }
+
+    fn take_volume(&mut self, limits: &ReadLimits) -> Result<VolumeMesh, FormatError> {
+        let mut mesh = VolumeMesh {
+            nodes: std::mem::take(&mut self.points),
+            cells: std::mem::take(&mut self.cells),
+            ..VolumeMesh::default()
+        };
+        for (name, nodes) in self.node_sets.drain(..) {
+            insert(&mut mesh.node_sets, checked_name(&name, limits)?, nodes)?;
+        }
+        for (name, cells) in self.cell_sets.drain(..) {
+            insert(&mut mesh.cell_sets, checked_name(&name, limits)?, cells)?;
+        }
+        let Parsed { arrays, warnings, .. } = self;
+        arrays.move_to_volume(&mut mesh, warnings, limits)?;
+        for shape in [CellShape::Tet4, CellShape::Hex8, CellShape::Wedge6] {
+            orient(&mut mesh, shape, warnings)?;
+        }
+        let referenced = mesh.cells.iter().flat_map(|(_, nodes)| nodes);
+        self.warn_of_unreferenced(mesh.nodes.len(), referenced);
+        Ok(mesh)
+    }
+
+    fn warn_of_unreferenced<'a>(&mut self, nodes: usize, named: impl Iterator<Item = &'a u32>) {
+        let mut is_named = vec![false; nodes];
+        for &node in named {
+            is_named[node as usize] = true;
+        }
+        let count = is_named.iter().filter(|named| !**named).count();
+        if count > 0 {
+            let detail =
+                format!("{count} nodes belong to no cell or triangle; they stay where they are");
+            let warning = Warning::new("unreferenced-nodes", detail);
+            self.warnings.push(warning.with("count", count as f64));
+        }
+    }
+}
+
+/// Makes all cells of one shape right-handed when all are left-handed, and refuses a mixture.
+fn orient(
+    mesh: &mut VolumeMesh,
+    shape: CellShape,
+    warnings: &mut Vec<Warning>,
+) -> Result<(), FormatError> {
+    let (mut all, mut reversed, mut dented, mut flat) = (0_u64, 0_u64, 0_u64, 0_u64);
+    let mut invalid = Offenders::default();
+    for cell in 0..mesh.cells.len() {
+        if mesh.cells.shape(cell) != shape {
+            continue;
+        }
+        let jacobian = mesh.cell_jacobian(cell);
+        all += 1;
+        reversed += u64::from(jacobian.is_reversed());
+        flat += u64::from(jacobian.gauss_min == 0.0 && jacobian.gauss_max == 0.0);
+        dented += u64::from(jacobian.corner_min <= 0.0 && jacobian.corner_max >= 0.0);
+        if !jacobian.is_valid() {
+            invalid.add(cell);
+        }
+    }
+    if all > 0 && flat == all {
+        return Err(FormatError::Degenerate { what: "cells", count: all });
+    }
+    if all > 0 && reversed == all {
+        reverse_all(mesh, shape);
+        // The documentation of VTK and its quality filters disagree about wedges, and meshio
+        // follows the former, so that neither order of their nodes is a mistake.
+        if shape != CellShape::Wedge6 {
+            let detail =
+                format!("all {all} {} cells were inverted and are reordered", shape.name());
+            warnings.push(Warning::new("cells-reordered", detail).with("count", all as f64));
+        }
+    } else if invalid.count > 0 {
+        return Err(FormatError::InvertedElements {
+            shape: shape.name(),
+            count: invalid.count,
+            of: all,
+            first: invalid.first,
+        });
+    }
+    if dented > 0 {
+        let detail = format!(
+            "{dented} {} cells have a corner with a Jacobian of zero or less; they are valid at their Gauss points",
+            shape.name()
+        );
+        warnings.push(Warning::new("dented-cells", detail).with("count", dented as f64));
+    }
+    Ok(())
+}
+
+fn reverse_all(mesh: &mut VolumeMesh, shape: CellShape) {
+    for cell in 0..mesh.cells.len() {
+        if mesh.cells.shape(cell) == shape {
+            mesh.reverse_cell(cell);
+        }
+    }
+}

@@ -1,0 +1,74 @@
+//! The edges of a triangle surface, sorted, so that triangles that meet lie side by side.
+
+use super::TriangleSurface;
+
+/// One side of a triangle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct TriangleSide {
+    /// The two points in ascending order.
+    pub points: [u32; 2],
+    pub triangle: u32,
+    /// The triangle runs from the smaller to the larger point.
+    pub ascending: bool,
+}
+
+/// How often edges are shared.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct EdgeCounts {
+    /// Edges of one triangle only: the border of an open surface.
+    pub open: u64,
+    /// Edges of three triangles or more.
+    pub nonmanifold: u64,
+    /// Edges whose two triangles disagree about inside and outside.
+    pub inconsistent: u64,
+}
+
+impl TriangleSurface {
+    /// All sides of all triangles in the order of their points.
+    pub fn sorted_sides(&self) -> Vec<TriangleSide> {
+        let mut sides = Vec::with_capacity(self.triangles.len() * 3);
+        for (triangle, &[a, b, c]) in self.triangles.iter().enumerate() {
+            for [from, to] in [[a, b], [b, c], [c, a]] {
+                sides.push(TriangleSide {
+                    points: [from.min(to), from.max(to)],
+                    triangle: triangle as u32,
+                    ascending: from < to,
+                });
+            }
+        }
+        sides.sort_unstable();
+        sides
+    }
+
+    /// The volume enclosed in mm³, negative where the triangles face inwards. Measured from the
+    /// first point, so that a far origin costs no digits.
+    pub fn signed_volume(&self) -> f64 {
+        let Some(&origin) = self.points.first() else {
+            return 0.0;
+        };
+        let six_times: f64 = (0..self.triangles.len())
+            .map(|triangle| {
+                let [a, b, c] = self.corners(triangle).map(|corner| corner - origin);
+                a.dot(&b.cross(&c))
+            })
+            .sum();
+        six_times / 6.0
+    }
+}
+
+/// The groups of sides that are the same edge.
+pub fn edges(sides: &[TriangleSide]) -> impl Iterator<Item = &[TriangleSide]> {
+    sides.chunk_by(|one, other| one.points == other.points)
+}
+
+pub fn count_edges(sides: &[TriangleSide]) -> EdgeCounts {
+    let mut counts = EdgeCounts::default();
+    for edge in edges(sides) {
+        match edge {
+            [_] => counts.open += 1,
+            [one, other] => counts.inconsistent += u64::from(one.ascending == other.ascending),
+            _ => counts.nonmanifold += 1,
+        }
+    }
+    counts
+}
