@@ -11,9 +11,10 @@ use bytes::Bytes;
 use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::Value;
 
-use super::serve::{ServeError, Server};
+use super::serve::{ServeError, Server, stop_signal};
 use crate::config::Config;
 use crate::format::{self, FormatError, Mesh, ReadLimits, WriteError};
+use crate::jobs::worker::Workers;
 use crate::mesh::half_head::{HalfHead, STANDARD_FINENESS, half_head};
 use crate::mesh::refinement::refine;
 use crate::mesh::{TriangleSurface, VolumeMesh};
@@ -73,42 +74,63 @@ pub fn demo(arguments: &DemoArgs) -> Result<(), DemoError> {
         .enable_all()
         .build()
         .map_err(ServeError::from)?;
-    let done = runtime.block_on(run(arguments));
-    // No job is left; what the service still holds ends with the process.
+    let (workers, done) = runtime.block_on(beside_the_service(arguments))?;
+    workers.stop(Duration::ZERO);
     runtime.shutdown_background();
     done
 }
 
-async fn run(arguments: &DemoArgs) -> Result<(), DemoError> {
-    let started = Instant::now();
-
-    // 1. The service, on a free port of this machine.
+/// Starts the service on a free port of this machine, runs the demo, and ends the service.
+async fn beside_the_service(
+    arguments: &DemoArgs,
+) -> Result<(Workers, Result<(), DemoError>), DemoError> {
     let data = arguments.data.clone().unwrap_or_else(|| arguments.out.join("service"));
     let config = Config::new(|name| setting(name, &data)).map_err(ServeError::from)?;
     telemetry::start(&config.log).map_err(ServeError::from)?;
     let server = Server::start(config).await?;
     let client = Client { address: server.address };
-    let serving = tokio::spawn(server.run());
-    println!("service      http://{}, data in {}", client.address, data.display());
+    let (stop, stopped) = tokio::sync::oneshot::channel::<()>();
+    let serving = tokio::spawn(server.run_until(async {
+        // Whether it is sent or dropped, the demo is over.
+        let _ = stopped.await;
+    }));
+    println!("service on http://{}, its data in {}", client.address, data.display());
+    let done = run(arguments, client).await;
+    if let (true, Ok(jobs)) = (arguments.serve, &done) {
+        println!("\nlistening on http://{} (stop with Ctrl-C)", client.address);
+        println!("  {:<20}http://{}/docs", "the API", client.address);
+        for job in jobs {
+            println!("  {:<20}http://{}{}", job.name, client.address, job.path());
+        }
+        stop_signal().await;
+    }
+    drop(stop);
+    let workers = serving.await.map_err(|error| ServeError::Io(error.into()))??;
+    Ok((workers, done.map(|_| ())))
+}
 
-    // 2. The half head, its plan, and what becomes of its skin.
+async fn run(arguments: &DemoArgs, client: Client) -> Result<[Done; 3], DemoError> {
+    let started = Instant::now();
+
+    // 1. The half head, its plan, and what becomes of its skin.
     let head = half_head(STANDARD_FINENESS);
-    let coarse = predict(&client, &head, &head.mesh, "half head").await?;
+    let coarse = predict(&client, &head, &head.mesh, ("half head", &scene::FILES)).await?;
     let files = fetch_files(&client, &coarse, &arguments.out).await?;
 
-    // 3. The same with every edge halved, and how far the two are apart.
+    // 2. The same with every edge halved, and how far the two are apart.
     let finer = refine(&head.mesh);
-    let fine = predict(&client, &head, &finer, "half head, every edge halved").await?;
+    let fine = predict(&client, &head, &finer, ("every edge halved", &["skin.vtp"])).await?;
     let fine_skin = client.bytes(&fine.file("skin.vtp")).await?;
     let compared = compare(&client, &coarse, &fine_skin).await?;
     let skins = [client.bytes(&coarse.file("skin.vtp")).await?, fine_skin];
 
-    // 4. What came out.
+    // 3. What came out.
     let report = Report {
         coarse: &coarse.results,
         fine: &fine.results,
         comparison: &compared.results,
         node_wise: node_wise_distances(&skins)?,
+        upload_s: [coarse.upload_s, fine.upload_s, compared.upload_s],
     };
     println!("\n{}", report.table());
     println!("files");
@@ -116,16 +138,7 @@ async fn run(arguments: &DemoArgs) -> Result<(), DemoError> {
         println!("  {}", file.display());
     }
     println!("\n{:.1} s in all", started.elapsed().as_secs_f64());
-    if arguments.serve {
-        println!("\nlistening on http://{} (stop with Ctrl-C)", client.address);
-        println!("  http://{}/docs        the API", client.address);
-        for job in [&coarse, &fine, &compared] {
-            println!("  http://{}{}  {}", client.address, job.path(), job.name);
-        }
-        let stopped = serving.await.map_err(|error| ServeError::Io(error.into()))?;
-        stopped?;
-    }
-    Ok(())
+    Ok([coarse, fine, compared])
 }
 
 /// The settings of the service in the demo; the others keep their defaults.
@@ -148,6 +161,8 @@ fn setting(name: &str, data: &Path) -> Option<String> {
 struct Done {
     name: String,
     id: String,
+    /// From the start of the encoding to the answer about the meshes.
+    upload_s: f64,
     results: Value,
 }
 
@@ -166,23 +181,29 @@ async fn predict(
     client: &Client,
     head: &HalfHead,
     volume: &VolumeMesh,
-    name: &str,
+    (name, files): (&str, &[&str]),
 ) -> Result<Done, DemoError> {
     let bar = progress_bar(name);
     bar.set_message("upload");
+    let started = Instant::now();
     let form = scene::case_form(head, volume, name)?;
     let case = client.form("/v1/cases", &form).await?;
     let case = text(&case, "POST /v1/cases", "id")?;
-    run_job(client, name, &scene::prediction_of(&case), bar).await
+    let upload_s = started.elapsed().as_secs_f64();
+    let done = run_job(client, name, &scene::prediction_of(&case, files), bar).await?;
+    Ok(Done { upload_s, ..done })
 }
 
 async fn compare(client: &Client, coarse: &Done, skin: &Bytes) -> Result<Done, DemoError> {
     let name = "comparison";
     let bar = progress_bar(name);
+    let started = Instant::now();
     let path = "/v1/meshes?units=mm&frame=LPS&role=skin";
     let mesh = client.upload(path, "application/vnd.vtk.xml", skin.clone()).await?;
     let mesh = text(&mesh, "POST /v1/meshes", "id")?;
-    run_job(client, name, &scene::comparison_of(&coarse.id, &mesh), bar).await
+    let upload_s = started.elapsed().as_secs_f64();
+    let done = run_job(client, name, &scene::comparison_of(&coarse.id, &mesh), bar).await?;
+    Ok(Done { upload_s, ..done })
 }
 
 /// Posts a job and follows it to its end.
@@ -194,6 +215,7 @@ async fn run_job(
 ) -> Result<Done, DemoError> {
     let mut state = client.post("/v1/jobs", document).await?;
     let id = text(&state, "POST /v1/jobs", "id")?;
+    let known = state["deduplicated"].as_bool().unwrap_or(false);
     loop {
         let status = text(&state, "GET /v1/jobs/{id}", "status")?;
         bar.set_position(state["progress"].as_u64().unwrap_or(0));
@@ -210,10 +232,11 @@ async fn run_job(
         }
         state = client.get(&format!("/v1/jobs/{id}")).await?;
     }
-    let known = state["deduplicated"].as_bool().unwrap_or(false);
-    bar.finish_with_message(if known { "known from an earlier run" } else { "done" });
+    bar.finish_and_clear();
     let results = client.get(&format!("/v1/jobs/{id}/results")).await?;
-    Ok(Done { name: name.to_owned(), id, results })
+    let known = if known { ", known from an earlier run" } else { "" };
+    println!("{name}: {:.1} s{known}", bar.elapsed().as_secs_f64());
+    Ok(Done { name: name.to_owned(), id, upload_s: 0.0, results })
 }
 
 fn doing(state: &Value) -> String {
@@ -236,11 +259,7 @@ fn progress_bar(name: &str) -> ProgressBar {
     bar
 }
 
-fn text(
-    document: &Value,
-    what: &'static str,
-    member: &'static str,
-) -> Result<String, DemoError> {
+fn text(document: &Value, what: &'static str, member: &'static str) -> Result<String, DemoError> {
     let value = document[member].as_str();
     value.map(str::to_owned).ok_or(DemoError::Answer { what, member })
 }

@@ -82,8 +82,10 @@ impl Client {
             .await
             .map_err(|source| ClientError::Connection { path: path.to_owned(), source })?;
         let failed = |source| ClientError::Http { path: path.to_owned(), source };
-        let unreadable =
-            |error: axum::Error| ClientError::Answer { path: path.into(), detail: error.to_string() };
+        let unreadable = |error: axum::Error| ClientError::Answer {
+            path: path.into(),
+            detail: error.to_string(),
+        };
         let (mut sender, connection) =
             hyper::client::conn::http1::handshake(TokioIo::new(stream)).await.map_err(failed)?;
         // It ends with the answer; what goes wrong on it is told by the answer.
@@ -95,9 +97,10 @@ impl Client {
         if !media_type.is_empty() {
             request = request.header(header::CONTENT_TYPE, media_type);
         }
-        let request = request
-            .body(body)
-            .map_err(|error| ClientError::Answer { path: path.into(), detail: error.to_string() })?;
+        let request = request.body(body).map_err(|error| ClientError::Answer {
+            path: path.into(),
+            detail: error.to_string(),
+        })?;
         let response = sender.send_request(request).await.map_err(failed)?;
         let status = response.status();
         let body = to_bytes(Body::new(response.into_body()), LARGEST_ANSWER);
@@ -124,13 +127,34 @@ fn document(path: &str, bytes: &[u8]) -> Result<Value, ClientError> {
 fn form_body(parts: &[Part], boundary: &str) -> Vec<u8> {
     let mut body = Vec::new();
     for Part { name, bytes } in parts {
-        let head = format!(
-            "--{boundary}\r\nContent-Disposition: form-data; name=\"{name}\"\r\n\r\n"
-        );
+        let head =
+            format!("--{boundary}\r\nContent-Disposition: form-data; name=\"{name}\"\r\n\r\n");
         body.extend_from_slice(head.as_bytes());
         body.extend_from_slice(bytes);
         body.extend_from_slice(b"\r\n");
     }
     body.extend_from_slice(format!("--{boundary}--\r\n").as_bytes());
     body
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_form_is_written_as_rfc_7578_asks() {
+        let parts = [("case", &b"{}"[..]), ("volume", b"\x00\r\n")]
+            .map(|(name, bytes)| Part { name: name.into(), bytes: bytes.to_vec() });
+        let expected = b"--b\r\nContent-Disposition: form-data; name=\"case\"\r\n\r\n{}\r\n\
+            --b\r\nContent-Disposition: form-data; name=\"volume\"\r\n\r\n\x00\r\n\r\n--b--\r\n";
+        assert_eq!(form_body(&parts, "b"), expected);
+    }
+
+    #[test]
+    fn a_refusal_is_told_by_its_first_reason() {
+        let problem = br#"{"detail":"2 problems","errors":[{"detail":"nu is 0.7"},{"detail":"E"}]}"#;
+        assert_eq!(reason(problem), "nu is 0.7");
+        assert_eq!(reason(br#"{"detail":"gone"}"#), "gone");
+        assert_eq!(reason(b"<html>"), "<html>");
+    }
 }

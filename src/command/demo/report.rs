@@ -11,6 +11,8 @@ pub struct Report<'a> {
     pub comparison: &'a Value,
     /// In mm, at the nodes that both predictions have.
     pub node_wise: Vec<f64>,
+    /// Of the three jobs, as the client waited for it.
+    pub upload_s: [f64; 3],
 }
 
 /// Phases that take time, as provenance names them.
@@ -49,7 +51,9 @@ impl Report<'_> {
             )
         };
         let statistics = &self.coarse["statistics"];
-        lines.push("skin displacement, mm            nodes     mean   median      p95      max".into());
+        lines.push(
+            "skin displacement, mm            nodes     mean   median      p95      max".into(),
+        );
         lines.push(row("whole skin", &statistics["skin"]["nodes"]));
         for (name, region) in statistics["regions"].as_object().into_iter().flatten() {
             lines.push(row(name, &region["nodes"]));
@@ -57,14 +61,13 @@ impl Report<'_> {
         lines.push("landmarks, mm                        left     back       up".into());
         for name in ["pronasale", "subnasale", "labrale_superius", "labrale_inferius", "pogonion"] {
             let moved = &statistics["landmarks"][name];
-            if let [x, y, z] = [0, 1, 2].map(|axis| moved[axis].as_f64()) {
-                let component = |value: Option<f64>| match value {
-                    // Rounding noise has a sign, zero has none.
-                    Some(value) => format!("{:>9.3}", if value.abs() < 5e-4 { 0.0 } else { value }),
-                    None => format!("{:>9}", "-"),
-                };
-                lines.push(format!("  {name:<30}{}{}{}", component(x), component(y), component(z)));
-            }
+            // Rounding noise has a sign, zero has none.
+            let component = |axis: usize| match moved[axis].as_f64() {
+                Some(value) if value.abs() < 5e-4 => format!("{:>9.3}", 0.0),
+                Some(value) => format!("{value:>9.3}"),
+                None => format!("{:>9}", "-"),
+            };
+            lines.push(format!("  {name:<30}{}", [0, 1, 2].map(component).concat()));
         }
     }
 
@@ -91,12 +94,16 @@ impl Report<'_> {
         lines.push(format!("{:<30}{}", "effort", heads.concat()));
         lines.push(row("cells", &|p| count(&p["mesh"]["cells"])));
         lines.push(row("unknowns", &|p| count(&p["solver"]["unknowns"])));
+        let uploads = self.upload_s.map(|time| format!("{time:>14.2}"));
+        lines.push(format!("  {:<28}{}", "upload and check, s", uploads.concat()));
         for (phase, member) in PHASES {
             lines.push(row(&format!("{phase}, s"), &|p| seconds(&p["timing"][member])));
         }
-        lines.push(row("total, s", &|p| seconds(&p["timing"]["total_s"])));
+        lines.push(row("job in all, s", &|p| seconds(&p["timing"]["total_s"])));
         lines.push(row("peak memory of process, MB", &|p| {
-            p["peak_rss_mb"].as_f64().map_or_else(|| "-".into(), |megabytes| format!("{megabytes:.0}"))
+            p["peak_rss_mb"]
+                .as_f64()
+                .map_or_else(|| "-".into(), |megabytes| format!("{megabytes:.0}"))
         }));
     }
 
@@ -109,20 +116,31 @@ impl Report<'_> {
             lines.push(format!(
                 "{name}: {}, {}, {} ({})",
                 word(&provenance["method"]),
-                solver["elements"].as_array().into_iter().flatten().map(word).collect::<Vec<_>>().join(", "),
+                solver["elements"]
+                    .as_array()
+                    .into_iter()
+                    .flatten()
+                    .map(word)
+                    .collect::<Vec<_>>()
+                    .join(", "),
                 word(&solver["name"]),
                 word(&solver["preconditioner"]),
             ));
-            let power = |value: &Value| value.as_f64().map_or_else(|| "-".into(), |v| format!("{v:.1e}"));
+            let power =
+                |value: &Value| value.as_f64().map_or_else(|| "-".into(), |v| format!("{v:.1e}"));
             lines.push(format!(
-                "  residual {} of {} asked for, {} iterations, {} threads",
+                "  relative residual {} ({} asked for), iterations {}, threads {}",
                 power(&solver["relative_residual"]),
                 power(&solver["wanted_residual"]),
                 count(&solver["iterations"]),
                 count(&provenance["threads"]),
             ));
             for warning in manifest["warnings"].as_array().into_iter().flatten() {
-                lines.push(format!("  warning {}: {}", word(&warning["code"]), word(&warning["detail"])));
+                lines.push(format!(
+                    "  warning {}: {}",
+                    word(&warning["code"]),
+                    word(&warning["detail"])
+                ));
             }
         }
     }

@@ -7,7 +7,7 @@ use crate::format::{SurfaceOutput, VolumeOutput, WriteError, vtp, vtu};
 use crate::mesh::half_head::{HalfHead, LAYERS};
 use crate::mesh::{Frame, VolumeMesh};
 
-/// What is asked for besides `result.json`.
+/// What is asked for besides `result.json`, and fetched.
 pub const FILES: [&str; 7] = [
     "skin.vtp",
     "skin.glb",
@@ -27,7 +27,10 @@ pub fn case_form(
 ) -> Result<Vec<Part>, WriteError> {
     let mut parts = vec![
         Part { name: "case".into(), bytes: case_document(head, name).to_string().into_bytes() },
-        Part { name: "volume".into(), bytes: vtu::write(&VolumeOutput::plain(volume, Frame::Lps))? },
+        Part {
+            name: "volume".into(),
+            bytes: vtu::write(&VolumeOutput::plain(volume, Frame::Lps))?,
+        },
     ];
     for (bone, surface) in &head.bones {
         let bytes = vtp::write(&SurfaceOutput::plain(surface, Frame::Lps))?;
@@ -47,11 +50,8 @@ fn bone_part(bone: &str) -> String {
 fn case_document(head: &HalfHead, name: &str) -> Value {
     let layers: serde_json::Map<String, Value> =
         LAYERS.iter().enumerate().map(|(label, layer)| (label.to_string(), json!(layer))).collect();
-    let bones: Vec<Value> = head
-        .bones
-        .keys()
-        .map(|bone| json!({"name": bone, "mesh": bone_part(bone)}))
-        .collect();
+    let bones: Vec<Value> =
+        head.bones.keys().map(|bone| json!({"name": bone, "mesh": bone_part(bone)})).collect();
     let landmarks: serde_json::Map<String, Value> = head
         .landmarks
         .iter()
@@ -99,8 +99,8 @@ fn plan() -> Value {
 }
 
 /// The job document of the prediction of a case.
-pub fn prediction_of(case: &str) -> Value {
-    json!({"kind": "predict", "case": case, "plan": plan(), "outputs": FILES, "tags": ["demo"]})
+pub fn prediction_of(case: &str, files: &[&str]) -> Value {
+    json!({"kind": "predict", "case": case, "plan": plan(), "outputs": files, "tags": ["demo"]})
 }
 
 /// The job document that compares a predicted skin with the mesh of another.
