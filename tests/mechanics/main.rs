@@ -6,8 +6,10 @@
 mod shared;
 
 mod closed_form;
+mod comparison;
 mod conditions;
 mod convergence;
+mod distances;
 mod formats_check;
 mod formats_damage;
 mod formats_hostile;
