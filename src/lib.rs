@@ -11,5 +11,7 @@ pub mod mesh;
 pub mod model;
 pub mod plan;
 pub mod prediction;
+pub mod registration;
 pub mod schema;
 pub mod solver;
+pub mod validation;

@@ -1,5 +1,6 @@
 //! What was scanned: volume meshes of soft tissue and triangle surfaces, node positions in mm.
 
+pub mod area_sampling;
 pub mod check;
 pub mod closest_point;
 pub mod connectivity;

@@ -6,8 +6,10 @@
 mod shared;
 
 mod closed_form;
+mod comparison;
 mod conditions;
 mod convergence;
+mod distances;
 mod formats_check;
 mod formats_damage;
 mod formats_hostile;
@@ -19,5 +21,7 @@ mod formats_shared_data;
 mod formats_surface;
 mod patch;
 mod quality;
+mod registration;
 mod scenes;
 mod solvers;
+mod surfaces;
