@@ -57,6 +57,18 @@ fn gmsh_groups_of_surfaces_are_node_sets_and_those_of_volumes_cell_sets() {
 }
 
 #[test]
+fn an_element_that_gmsh_repeats_for_each_of_its_groups_is_one_cell() {
+    let repeated = "3 4 2 8 1 1000000000000 7 -4 9\n4 4 2 5 1 1000000000000 7 -4 9\n$End";
+    let bytes = GMSH_2
+        .replace("3 4 2 8 1 1000000000000 7 -4 9\n$End", repeated)
+        .replace("$Elements\n3", "$Elements\n4");
+    let mesh = volume(read_default(bytes.as_bytes()));
+    assert_eq!(mesh.cells.len(), 1);
+    assert_eq!((&mesh.cell_sets["fat"], &mesh.cell_sets["physical_3_5"]), (&vec![0], &vec![0]));
+    assert_eq!(mesh.cell_labels["gmsh:physical"], [8]);
+}
+
+#[test]
 fn equal_corners_of_an_stl_are_one_point() {
     let read = read_default(STL.as_bytes());
     assert_eq!(read.frame, Some(Frame::Lps));
