@@ -26,6 +26,15 @@ fn every_sample_is_recognised_by_its_content_and_read() {
 }
 
 #[test]
+fn the_same_tetrahedron_is_read_from_every_volume_format() {
+    for (name, bytes) in one_of_each() {
+        if ["vtu ascii", "vtk", "vtk binary", "gmsh 4.1", "gmsh 2.2 binary"].contains(&name) {
+            assert_is_the_tetrahedron(&bytes);
+        }
+    }
+}
+
+#[test]
 fn a_byte_order_mark_and_leading_lines_do_not_matter() {
     let text = format!("\u{feff}\n\n{OBJ}");
     assert_eq!(code_of(text.as_bytes()), "read");
