@@ -3,6 +3,7 @@
 //! The modules stand in the order of the path that a job takes; ARCHITECTURE.md tells who may use whom.
 
 pub mod boundary;
+pub mod chart;
 pub mod element;
 pub mod format;
 pub mod material;

@@ -3,8 +3,13 @@
 pub mod check;
 pub mod closest_point;
 pub mod connectivity;
+mod face_shape;
 pub mod frame;
+pub mod half_head;
+pub mod jacobian;
 pub mod orientation;
+pub mod quality;
+pub mod refinement;
 pub mod sample;
 pub mod surface;
 pub mod surface_edges;

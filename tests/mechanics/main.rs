@@ -18,5 +18,6 @@ mod formats_samples;
 mod formats_shared_data;
 mod formats_surface;
 mod patch;
+mod quality;
 mod scenes;
 mod solvers;

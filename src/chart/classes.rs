@@ -1,0 +1,192 @@
+//! What holds the boundary of the tissue, before anything is solved: wrong sets are the commonest mistake.
+
+use super::Vector;
+use super::colour::{self, Rgb};
+use super::raster::{Finish, Painted, PngError, Shot, draw};
+use super::svg::{Document, Place, Style};
+use super::view::Outlook;
+
+/// What holds a node.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum ClassKind {
+    /// Moves with the segment of this name.
+    Joined(String),
+    Fixed,
+    Sliding,
+    Prescribed,
+    Free,
+}
+
+/// One class of nodes and how many there are in the whole mesh.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct NodeClasses {
+    pub kind: ClassKind,
+    pub count: usize,
+}
+
+/// What the picture shows: the boundary of the volume mesh, points in mm.
+pub struct ClassesPicture<'a> {
+    pub title: &'a str,
+    pub points: &'a [Vector],
+    /// Counter-clockwise seen from outside the tissue.
+    pub triangles: &'a [[u32; 3]],
+    /// For each point its entry in `classes`.
+    pub class_of: &'a [usize],
+    pub classes: &'a [NodeClasses],
+    pub outlook: Outlook,
+    pub frame: &'a str,
+}
+
+const MARGIN: f64 = 28.0;
+const GAP: f64 = 12.0;
+const PANEL_WIDTH: f64 = 300.0;
+const HEAD: f64 = 84.0;
+const SHARPNESS: f64 = 1.5;
+/// Degrees around the head and above it.
+const PANELS: [(&str, f64, f64); 3] = [
+    ("outside, from the front", 0.0, 0.0),
+    ("bone side, from behind", 180.0, 0.0),
+    ("bone side, obliquely", 130.0, 25.0),
+];
+const COLUMNS: usize = 3;
+const LINE: f64 = 24.0;
+
+impl ClassesPicture<'_> {
+    /// The picture as one SVG document.
+    pub fn to_svg(&self) -> Result<String, PngError> {
+        let palette = self.palette();
+        let colours: Vec<Rgb> = self
+            .class_of
+            .iter()
+            .map(|&class| palette.get(class).copied().unwrap_or(colour::FREE))
+            .collect();
+        let cameras = PANELS.map(|(_, around, above)| self.outlook.camera(around, above));
+        let extents = cameras.map(|camera| camera.extent(self.points.iter()));
+        let widest = extents.iter().map(|e| e.size(0)).fold(1e-9, f64::max);
+        let tallest = extents.iter().map(|e| e.size(1)).fold(1e-9, f64::max);
+        let panel_height = (PANEL_WIDTH * (tallest / widest).clamp(0.7, 1.35)).round();
+        let [pixels_wide, pixels_high] =
+            [PANEL_WIDTH, panel_height].map(|side| (side * SHARPNESS) as usize);
+        let width = 2.0 * MARGIN + 3.0 * PANEL_WIDTH + 2.0 * GAP;
+        let lines = self.classes.len().div_ceil(COLUMNS);
+        let height = HEAD + panel_height + 52.0 + LINE * lines as f64;
+
+        let mut document = Document::new(width, height);
+        let room = width - 2.0 * MARGIN;
+        document.text([MARGIN, 42.0], room, Style::of(22.0).bold(), self.title);
+        for (panel, camera) in cameras.into_iter().enumerate() {
+            let place = Place {
+                x: MARGIN + (PANEL_WIDTH + GAP) * panel as f64,
+                y: HEAD,
+                width: PANEL_WIDTH,
+                height: panel_height,
+            };
+            let shot = Shot {
+                camera,
+                centre: extents[panel].centre(),
+                millimetres_per_pixel: Shot::scale_for(&extents, pixels_wide, pixels_high),
+                width: pixels_wide,
+                height: pixels_high,
+            };
+            let painted = Painted {
+                points: self.points,
+                triangles: self.triangles,
+                colours: &colours,
+                finish: Finish::Classes,
+            };
+            document.rectangle(place, "#f3f4f6", 6.0);
+            document.image(place, &draw(&painted, &shot))?;
+            let middle = [place.x + PANEL_WIDTH / 2.0, HEAD - 10.0];
+            let style = Style::of(13.0).bold().middle();
+            document.text(middle, PANEL_WIDTH, style, PANELS[panel].0);
+        }
+        self.write_legend(&mut document, HEAD + panel_height + 30.0, &palette);
+        let frame = format!("Nodes of the whole mesh, coordinates in frame {}.", self.frame);
+        document.text([MARGIN, height - 10.0], room, Style::of(11.0).faint(), &frame);
+        Ok(document.finish(self.title))
+    }
+
+    /// A colour for each class; segments beyond the fifth begin again at the first colour.
+    fn palette(&self) -> Vec<Rgb> {
+        let mut segments = colour::SEGMENTS.into_iter().cycle();
+        self.classes
+            .iter()
+            .map(|class| match class.kind {
+                ClassKind::Joined(_) => segments.next().unwrap_or(colour::FREE),
+                ClassKind::Fixed => colour::FIXED,
+                ClassKind::Sliding => colour::SLIDING,
+                ClassKind::Prescribed => colour::PRESCRIBED,
+                ClassKind::Free => colour::FREE,
+            })
+            .collect()
+    }
+
+    fn write_legend(&self, document: &mut Document, top: f64, palette: &[Rgb]) {
+        for (entry, class) in self.classes.iter().enumerate() {
+            let x = MARGIN + (PANEL_WIDTH + GAP) * (entry % COLUMNS) as f64;
+            let y = top + LINE * (entry / COLUMNS) as f64;
+            let patch = Place { x, y: y - 12.0, width: 16.0, height: 16.0 };
+            document.rectangle(patch, &colour::hexadecimal(palette[entry]), 3.0);
+            let name = match &class.kind {
+                ClassKind::Joined(segment) => format!("joined to {segment}"),
+                ClassKind::Fixed => "fixed".to_owned(),
+                ClassKind::Sliding => "sliding".to_owned(),
+                ClassKind::Prescribed => "prescribed".to_owned(),
+                ClassKind::Free => "free".to_owned(),
+            };
+            let count = format!("{} nodes", grouped(class.count));
+            document.text([x + 24.0, y + 1.0], 164.0, Style::of(13.0), &name);
+            document.text([x + 196.0, y + 1.0], 100.0, Style::of(13.0).faint(), &count);
+        }
+    }
+}
+
+/// A number with a narrow space between thousands.
+fn grouped(count: usize) -> String {
+    let digits = count.to_string();
+    let mut text = String::new();
+    for (place, digit) in digits.chars().enumerate() {
+        if place > 0 && (digits.len() - place).is_multiple_of(3) {
+            text.push('\u{202f}');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_class_is_named_with_its_count_and_a_colour_of_its_own() {
+        let points = [[0.0, 0.0, 0.0], [50.0, 0.0, 0.0], [0.0, 0.0, 60.0]].map(Vector::from);
+        let classes = [
+            (ClassKind::Joined("maxilla & nose".into()), 12_345),
+            (ClassKind::Joined("mandible".into()), 7),
+            (ClassKind::Fixed, 3),
+            (ClassKind::Sliding, 2),
+            (ClassKind::Prescribed, 1),
+            (ClassKind::Free, 0),
+        ]
+        .map(|(kind, count)| NodeClasses { kind, count });
+        let picture = ClassesPicture {
+            title: "Conditions",
+            points: &points,
+            triangles: &[[0, 1, 2]],
+            class_of: &[0, 1, 5],
+            classes: &classes,
+            outlook: Outlook::ras(),
+            frame: "RAS",
+        };
+        let mut palette = picture.palette();
+        palette.sort_unstable();
+        palette.dedup();
+        assert_eq!(palette.len(), 6);
+        let svg = picture.to_svg().unwrap();
+        assert_eq!(svg.matches("data:image/png;base64,").count(), 3);
+        for words in ["joined to maxilla &amp;", "12\u{202f}345 nodes", ">0 nodes<", "frame RAS"] {
+            assert!(svg.contains(words), "{words}");
+        }
+    }
+}

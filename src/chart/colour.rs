@@ -1,0 +1,103 @@
+//! Colours that people with colour-blindness can tell apart.
+
+/// Red, green and blue as stored in an image (sRGB).
+pub type Rgb = [u8; 3];
+
+/// Bare skin, for the panels without values.
+pub const SKIN: Rgb = [233, 196, 172];
+/// What is seen of a surface from its back.
+pub const BACK: Rgb = [168, 160, 154];
+
+/// Magma from its light end, which leaves the unmoved face bright, to a purple on which shading is
+/// still seen; lightness falls evenly. Source: van der Walt, Smith, matplotlib 1.5, 2015 (CC0).
+const SEQUENCE: [Rgb; 7] = [
+    [252, 253, 191],
+    [254, 194, 135],
+    [251, 135, 97],
+    [229, 80, 100],
+    [181, 54, 122],
+    [129, 37, 129],
+    [79, 18, 123],
+];
+
+/// Okabe and Ito, Color universal design, 2008: those that stand for segments, in order.
+pub const SEGMENTS: [Rgb; 5] =
+    [[230, 159, 0], [86, 180, 233], [0, 158, 115], [240, 228, 66], [0, 114, 178]];
+pub const FIXED: Rgb = [60, 60, 64];
+pub const SLIDING: Rgb = [204, 121, 167];
+pub const PRESCRIBED: Rgb = [213, 94, 0];
+pub const FREE: Rgb = [222, 212, 203];
+
+/// The colour at a fraction of the range; fractions outside [0, 1] get the colour of the nearer end.
+pub fn sequential(fraction: f64) -> Rgb {
+    let steps = (SEQUENCE.len() - 1) as f64;
+    let place = if fraction.is_nan() { 0.0 } else { fraction.clamp(0.0, 1.0) } * steps;
+    let low = (place.floor() as usize).min(SEQUENCE.len() - 2);
+    let share = place - low as f64;
+    [0, 1, 2].map(|channel| {
+        let [from, to] = [SEQUENCE[low][channel], SEQUENCE[low + 1][channel]].map(f64::from);
+        (from + (to - from) * share).round() as u8
+    })
+}
+
+/// The colour as `#rrggbb`.
+pub fn hexadecimal([red, green, blue]: Rgb) -> String {
+    format!("#{red:02x}{green:02x}{blue:02x}")
+}
+
+/// Light intensity of a stored value, in [0, 1] (IEC 61966-2-1).
+pub(super) fn to_linear(value: f64) -> f64 {
+    if value <= 0.04045 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
+}
+
+/// The inverse of [`to_linear`], clamped to what an image can store.
+pub(super) fn to_stored(intensity: f64) -> f64 {
+    let intensity = intensity.clamp(0.0, 1.0);
+    if intensity <= 0.003_130_8 {
+        intensity * 12.92
+    } else {
+        1.055 * intensity.powf(1.0 / 2.4) - 0.055
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// CIE L*, 0 for black and 100 for white.
+    fn lightness(colour: Rgb) -> f64 {
+        let [r, g, b] = colour.map(|value| to_linear(f64::from(value) / 255.0));
+        116.0 * (0.2126 * r + 0.7152 * g + 0.0722 * b).cbrt() - 16.0
+    }
+
+    #[test]
+    fn lightness_falls_evenly_along_the_sequence() {
+        let steps: Vec<f64> = (0..12)
+            .map(|step| {
+                let [from, to] = [step, step + 1].map(|s| sequential(f64::from(s) / 12.0));
+                lightness(from) - lightness(to)
+            })
+            .collect();
+        let mean = steps.iter().sum::<f64>() / 12.0;
+        // Even to a fifth: the table has seven entries and is joined by straight lines.
+        assert!(
+            mean > 5.0 && steps.iter().all(|step| (step / mean - 1.0).abs() < 0.25),
+            "{steps:?}"
+        );
+    }
+
+    #[test]
+    fn a_stored_value_survives_the_way_to_light_and_back() {
+        for value in 0..=255 {
+            let stored = f64::from(value) / 255.0;
+            assert!((to_stored(to_linear(stored)) - stored).abs() < 1e-6);
+        }
+    }
+
+    #[test]
+    fn fractions_outside_the_range_get_its_ends() {
+        assert_eq!(sequential(-1.0), SEQUENCE[0]);
+        assert_eq!(sequential(7.0), SEQUENCE[6]);
+        assert_eq!(sequential(f64::NAN), SEQUENCE[0]);
+    }
+}

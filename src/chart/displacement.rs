@@ -1,0 +1,212 @@
+//! A face before, after, and coloured by how far its skin moved, from the front and from beside.
+
+use super::Vector;
+use super::colour::{self, Rgb, sequential};
+use super::legend::{Scale, round_length};
+use super::raster::{Finish, Painted, PngError, Shot, draw};
+use super::svg::{Document, Place, Style, wrapped};
+use super::view::{Camera, Outlook};
+
+/// What the picture shows. Points in mm; `before` and `after` correspond one to one.
+pub struct DisplacementPicture<'a> {
+    pub title: &'a str,
+    pub subtitle: &'a str,
+    pub triangles: &'a [[u32; 3]],
+    pub before: &'a [Vector],
+    pub after: &'a [Vector],
+    pub outlook: Outlook,
+    /// The frame of the coordinates as clients name it, e.g. `LPS`.
+    pub frame: &'a str,
+    /// A line of numbers for the foot of the picture.
+    pub statistics: &'a str,
+}
+
+const MARGIN: f64 = 28.0;
+const GAP: f64 = 12.0;
+/// Above the image of a panel, where the name of its row stands.
+const STRIP: f64 = 22.0;
+const PANEL_WIDTH: f64 = 300.0;
+const LEGEND_WIDTH: f64 = 84.0;
+const HEAD: f64 = 104.0;
+/// Image pixels for a unit of the document.
+const SHARPNESS: f64 = 1.5;
+/// Degrees around the head and above it, for each row.
+const ROWS: [(&str, f64, f64); 2] = [("front", 0.0, 0.0), ("three-quarter", 55.0, 5.0)];
+
+impl DisplacementPicture<'_> {
+    /// The picture as one SVG document.
+    pub fn to_svg(&self) -> Result<String, PngError> {
+        let moved: Vec<f64> = self
+            .before
+            .iter()
+            .zip(self.after)
+            .map(|(before, after)| (after - before).norm())
+            .collect();
+        let scale = Scale::covering(moved.iter().copied().fold(0.0, f64::max));
+        let colours: Vec<Rgb> =
+            moved.iter().map(|length| sequential(length / scale.maximum())).collect();
+        let cameras = ROWS.map(|(_, around, above)| self.outlook.camera(around, above));
+        let layout = Layout::of(&cameras, self);
+        let width = 2.0 * MARGIN + 3.0 * PANEL_WIDTH + 3.0 * GAP + LEGEND_WIDTH;
+        let foot = wrapped(self.statistics, width - 2.0 * MARGIN, Style::of(13.0));
+        let foot_height = 40.0 + 20.0 * foot.len() as f64;
+        let height = HEAD + 2.0 * (layout.image_height + STRIP) + GAP + foot_height;
+
+        let mut document = Document::new(width, height);
+        self.write_head(&mut document, width);
+        self.write_panels(&mut document, &layout, &cameras, &colours)?;
+        layout.write_scale_bar(&mut document);
+        layout.write_legend(&mut document, &scale);
+        for (line, words) in foot.iter().enumerate() {
+            let y = height - foot_height + 28.0 + 20.0 * line as f64;
+            document.text([MARGIN, y], width, Style::of(13.0), words);
+        }
+        let y = height - 12.0;
+        let frame = format!(
+            "Lengths in mm, coordinates in frame {}. Parallel projection; all panels have one scale.",
+            self.frame
+        );
+        document.text([MARGIN, y], width, Style::of(11.0).faint(), &frame);
+        Ok(document.finish(self.title))
+    }
+
+    fn write_panels(
+        &self,
+        document: &mut Document,
+        layout: &Layout,
+        cameras: &[Camera],
+        colours: &[Rgb],
+    ) -> Result<(), PngError> {
+        let skin = vec![colour::SKIN; colours.len()];
+        for (row, camera) in cameras.iter().enumerate() {
+            for (column, (points, colours, finish)) in [
+                (self.before, skin.as_slice(), Finish::Bare),
+                (self.after, skin.as_slice(), Finish::Bare),
+                (self.after, colours, Finish::Values),
+            ]
+            .into_iter()
+            .enumerate()
+            {
+                let place = layout.panel(row, column);
+                document.rectangle(place, "#f3f4f6", 6.0);
+                let painted = Painted { points, triangles: self.triangles, colours, finish };
+                let below = Place { y: place.y + STRIP, height: layout.image_height, ..place };
+                document.image(below, &draw(&painted, &layout.shot(*camera, self)))?;
+            }
+            let place = layout.panel(row, 0);
+            let corner = [place.x + 12.0, place.y + 18.0];
+            document.text(corner, PANEL_WIDTH, Style::of(12.0).faint(), ROWS[row].0);
+        }
+        Ok(())
+    }
+
+    fn write_head(&self, document: &mut Document, width: f64) {
+        let room = width - 2.0 * MARGIN;
+        document.text([MARGIN, 42.0], room, Style::of(22.0).bold(), self.title);
+        document.text([MARGIN, 66.0], room, Style::of(13.0).faint(), self.subtitle);
+        for (column, name) in ["Before", "After", "Displacement"].into_iter().enumerate() {
+            let x = MARGIN + (PANEL_WIDTH + GAP) * column as f64 + PANEL_WIDTH / 2.0;
+            let style = Style::of(14.0).bold().middle();
+            document.text([x, 95.0], PANEL_WIDTH, style, name);
+        }
+    }
+}
+
+/// Where things stand; one scale for all panels.
+struct Layout {
+    image_height: f64,
+    millimetres_per_pixel: f64,
+}
+
+impl Layout {
+    fn of(cameras: &[Camera], picture: &DisplacementPicture) -> Self {
+        let extents: Vec<_> = cameras
+            .iter()
+            .map(|camera| camera.extent(picture.before.iter().chain(picture.after)))
+            .collect();
+        let tallest = extents.iter().map(|e| e.size(1)).fold(0.0, f64::max);
+        let widest = extents.iter().map(|e| e.size(0)).fold(0.0, f64::max);
+        let aspect = if widest > 0.0 { tallest / widest } else { 1.0 };
+        let image_height = (PANEL_WIDTH * aspect.clamp(0.7, 1.35)).round();
+        let pixels = [PANEL_WIDTH, image_height].map(|side| (side * SHARPNESS) as usize);
+        Layout {
+            image_height,
+            millimetres_per_pixel: Shot::scale_for(&extents, pixels[0], pixels[1]),
+        }
+    }
+
+    fn shot(&self, camera: Camera, picture: &DisplacementPicture) -> Shot {
+        let extent = camera.extent(picture.before.iter().chain(picture.after));
+        Shot {
+            camera,
+            centre: extent.centre(),
+            millimetres_per_pixel: self.millimetres_per_pixel,
+            width: (PANEL_WIDTH * SHARPNESS) as usize,
+            height: (self.image_height * SHARPNESS) as usize,
+        }
+    }
+
+    fn panel(&self, row: usize, column: usize) -> Place {
+        Place {
+            x: MARGIN + (PANEL_WIDTH + GAP) * column as f64,
+            y: HEAD + (self.image_height + STRIP + GAP) * row as f64,
+            width: PANEL_WIDTH,
+            height: self.image_height + STRIP,
+        }
+    }
+
+    fn write_scale_bar(&self, document: &mut Document) {
+        let units_per_millimetre = 1.0 / (self.millimetres_per_pixel * SHARPNESS);
+        let length = round_length(PANEL_WIDTH / 4.0 / units_per_millimetre);
+        let place = self.panel(1, 0);
+        let [x, y] = [place.x + 12.0, place.y + place.height - 14.0];
+        document.line([x, y], [x + length * units_per_millimetre, y]);
+        document.text([x, y - 6.0], PANEL_WIDTH, Style::of(11.0).faint(), &format!("{length} mm"));
+    }
+
+    /// A bar of colours as high as a panel, beside the last column.
+    fn write_legend(&self, document: &mut Document, scale: &Scale) {
+        let [top, bottom] = [self.panel(0, 2), self.panel(1, 2)];
+        let x = top.x + PANEL_WIDTH + GAP + 6.0;
+        let height = (bottom.y + bottom.height - top.y) * 0.6;
+        let y = top.y + (bottom.y + bottom.height - top.y - height) / 2.0;
+        let bar = Place { x, y, width: 16.0, height };
+        let colours: Vec<String> =
+            (0..=12).map(|step| colour::hexadecimal(sequential(f64::from(step) / 12.0))).collect();
+        document.gradient(bar, &colours);
+        for &tick in &scale.ticks {
+            let level = y + height * (1.0 - tick / scale.maximum());
+            document.line([x + 16.0, level], [x + 21.0, level]);
+            let at = [x + 25.0, level + 4.0];
+            document.text(at, LEGEND_WIDTH - 25.0, Style::of(12.0), &scale.label(tick));
+        }
+        let room = LEGEND_WIDTH + MARGIN - 6.0;
+        document.text([x, y - 14.0], room, Style::of(12.0).bold(), "moved, mm");
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_picture_names_its_numbers_and_its_frame() {
+        let before = [[0.0, 0.0, 0.0], [50.0, 0.0, 0.0], [0.0, 0.0, 60.0]].map(Vector::from);
+        let after = before.map(|point| point + Vector::new(0.0, 2.3, 0.0));
+        let picture = DisplacementPicture {
+            title: "Case <7>",
+            subtitle: "chin 2.3 mm back",
+            triangles: &[[0, 1, 2]],
+            before: &before,
+            after: &after,
+            outlook: Outlook::lps(),
+            frame: "LPS",
+            statistics: "mean 2.30 mm",
+        };
+        let svg = picture.to_svg().unwrap();
+        assert_eq!(svg.matches("data:image/png;base64,").count(), 6);
+        for words in ["Case &lt;7&gt;", ">2.5<", ">0.0<", "frame LPS", "mean 2.30 mm", ">10 mm<"] {
+            assert!(svg.contains(words), "{words}");
+        }
+    }
+}

@@ -1,0 +1,19 @@
+//! Pictures without a GPU: surfaces drawn in software inside an SVG whose words stay words.
+//!
+//! Knows nothing of meshes or jobs: it takes points, triangles, values and names.
+
+mod classes;
+pub mod colour;
+mod displacement;
+mod legend;
+pub mod raster;
+mod svg;
+pub mod view;
+
+pub use classes::{ClassKind, ClassesPicture, NodeClasses};
+pub use displacement::DisplacementPicture;
+pub use raster::{Image, PngError};
+pub use view::{Outlook, front_of};
+
+/// A position in mm.
+type Vector = nalgebra::Vector3<f64>;

@@ -1,0 +1,235 @@
+//! An SVG document: rectangles, words that fit, and images inside.
+
+use base64::Engine;
+
+use super::raster::{Image, PngError};
+
+/// Words are estimated with these widths, in font sizes: those of DejaVu Sans, the widest of the
+/// fonts asked for, so that a viewer that has another one needs less room.
+const WIDTH_NARROW: f64 = 0.40;
+const WIDTH_NORMAL: f64 = 0.635;
+const WIDTH_WIDE: f64 = 1.0;
+
+const INK: &str = "#22262b";
+const FAINT_INK: &str = "#5b636d";
+
+/// How words are set.
+#[derive(Clone, Copy)]
+pub struct Style {
+    /// Font size in units of the document.
+    pub size: f64,
+    pub bold: bool,
+    pub faint: bool,
+    pub anchor: Anchor,
+}
+
+#[derive(Clone, Copy)]
+pub enum Anchor {
+    Start,
+    Middle,
+}
+
+impl Style {
+    pub fn of(size: f64) -> Self {
+        Style { size, bold: false, faint: false, anchor: Anchor::Start }
+    }
+
+    pub fn bold(self) -> Self {
+        Style { bold: true, ..self }
+    }
+
+    pub fn faint(self) -> Self {
+        Style { faint: true, ..self }
+    }
+
+    pub fn middle(self) -> Self {
+        Style { anchor: Anchor::Middle, ..self }
+    }
+}
+
+/// A rectangle from its top left.
+#[derive(Clone, Copy)]
+pub struct Place {
+    pub x: f64,
+    pub y: f64,
+    pub width: f64,
+    pub height: f64,
+}
+
+/// A document in the making; lengths in its own units, one for a pixel at 100 %.
+pub struct Document {
+    body: String,
+    width: f64,
+    height: f64,
+}
+
+impl Document {
+    pub fn new(width: f64, height: f64) -> Self {
+        Document { body: String::new(), width, height }
+    }
+
+    pub fn rectangle(&mut self, place: Place, fill: &str, corner: f64) {
+        let Place { x, y, width, height } = place;
+        self.body += &format!(
+            "<rect x=\"{x:.1}\" y=\"{y:.1}\" width=\"{width:.1}\" height=\"{height:.1}\" rx=\"{corner}\" fill=\"{fill}\"/>\n"
+        );
+    }
+
+    /// A rectangle that runs through evenly spaced colours, the first at its foot.
+    pub fn gradient(&mut self, place: Place, colours: &[String]) {
+        let last = colours.len().saturating_sub(1).max(1) as f64;
+        self.body += "<linearGradient id=\"sequence\" x1=\"0\" y1=\"1\" x2=\"0\" y2=\"0\">";
+        for (step, colour) in colours.iter().enumerate() {
+            let offset = step as f64 / last;
+            self.body += &format!("<stop offset=\"{offset:.4}\" stop-color=\"{colour}\"/>");
+        }
+        self.body += "</linearGradient>\n";
+        self.rectangle(place, "url(#sequence)", 0.0);
+    }
+
+    pub fn line(&mut self, [x1, y1]: [f64; 2], [x2, y2]: [f64; 2]) {
+        self.body += &format!(
+            "<line x1=\"{x1:.1}\" y1=\"{y1:.1}\" x2=\"{x2:.1}\" y2=\"{y2:.1}\" stroke=\"{INK}\" stroke-width=\"1.2\"/>\n"
+        );
+    }
+
+    /// Words on one line, at most `room` wide: what does not fit is cut and marked by an ellipsis.
+    pub fn text(&mut self, [x, y]: [f64; 2], room: f64, style: Style, words: &str) {
+        let anchor = match style.anchor {
+            Anchor::Start => "start",
+            Anchor::Middle => "middle",
+        };
+        let weight = if style.bold { "600" } else { "400" };
+        let fill = if style.faint { FAINT_INK } else { INK };
+        self.body += &format!(
+            "<text x=\"{x:.1}\" y=\"{y:.1}\" font-size=\"{}\" font-weight=\"{weight}\" text-anchor=\"{anchor}\" fill=\"{fill}\">{}</text>\n",
+            style.size,
+            escaped(&fitting(words, room, style)),
+        );
+    }
+
+    pub fn image(&mut self, place: Place, image: &Image) -> Result<(), PngError> {
+        let Place { x, y, width, height } = place;
+        let encoded = base64::engine::general_purpose::STANDARD.encode(image.to_png()?);
+        self.body += &format!(
+            "<image x=\"{x:.1}\" y=\"{y:.1}\" width=\"{width:.1}\" height=\"{height:.1}\" href=\"data:image/png;base64,{encoded}\"/>\n"
+        );
+        Ok(())
+    }
+
+    /// The whole document.
+    pub fn finish(self, title: &str) -> String {
+        let Document { body, width, height } = self;
+        format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width:.0} {height:.0}\" width=\"{width:.0}\" height=\"{height:.0}\" font-family=\"Helvetica, Arial, 'DejaVu Sans', sans-serif\">\n<title>{}</title>\n<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n{body}</svg>\n",
+            escaped(title),
+        )
+    }
+}
+
+/// How wide words come out at most, in units of the document.
+pub fn estimated_width(words: &str, style: Style) -> f64 {
+    let of_bold = if style.bold { 1.1 } else { 1.0 };
+    let widths = words.chars().map(|letter| match letter {
+        ' ' | '.' | ',' | ':' | ';' | '-' | '\'' | '|' | '(' | ')' | 'i' | 'j' | 'l' | 't'
+        | 'f' | 'r' | 'I' => WIDTH_NARROW,
+        'm' | 'w' | 'M' | 'W' | '%' | '@' | '\u{2014}' => WIDTH_WIDE,
+        letter if letter.is_ascii() || ('\u{80}'..'\u{2100}').contains(&letter) => WIDTH_NORMAL,
+        _ => 1.1,
+    });
+    widths.sum::<f64>() * style.size * of_bold
+}
+
+fn fitting(words: &str, room: f64, style: Style) -> String {
+    if estimated_width(words, style) <= room {
+        return words.to_owned();
+    }
+    let mut kept = String::new();
+    for letter in words.chars() {
+        kept.push(letter);
+        if estimated_width(&format!("{kept}…"), style) > room {
+            kept.pop();
+            break;
+        }
+    }
+    format!("{}…", kept.trim_end())
+}
+
+/// Breaks words at spaces into lines of at most `room`.
+pub fn wrapped(words: &str, room: f64, style: Style) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in words.split_whitespace() {
+        match lines.last_mut() {
+            Some(line) if estimated_width(&format!("{line} {word}"), style) <= room => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    lines
+}
+
+/// Without what XML reads as markup or does not allow at all.
+fn escaped(words: &str) -> String {
+    let mut text = String::with_capacity(words.len());
+    for letter in words.chars() {
+        match letter {
+            '&' => text.push_str("&amp;"),
+            '<' => text.push_str("&lt;"),
+            '>' => text.push_str("&gt;"),
+            '"' => text.push_str("&quot;"),
+            '\t' | '\n' | '\r' => text.push(' '),
+            letter if letter.is_control() || matches!(letter, '\u{fffe}' | '\u{ffff}') => {
+                text.push('\u{fffd}');
+            }
+            letter => text.push(letter),
+        }
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_words_and_never_markup() {
+        let mut document = Document::new(100.0, 50.0);
+        let name = "a<script>\"&'\u{0}\n]]>";
+        document.text([1.0, 2.0], 1000.0, Style::of(10.0), name);
+        let text = document.finish(name);
+        let mut reader = quick_xml::Reader::from_str(&text);
+        let mut elements = Vec::new();
+        loop {
+            match reader.read_event() {
+                Ok(quick_xml::events::Event::Start(start)) => {
+                    elements.push(start.name().as_ref().as_bytes().to_vec());
+                }
+                Ok(quick_xml::events::Event::Eof) => break,
+                Ok(_) => {}
+                Err(error) => panic!("{error}"),
+            }
+        }
+        assert_eq!(elements, [&b"svg"[..], b"title", b"text"]);
+        assert!(!text.contains('\0') && text.contains("a&lt;script&gt;"));
+    }
+
+    #[test]
+    fn words_too_long_are_cut_to_their_room() {
+        let style = Style::of(12.0).bold();
+        let cut = fitting(&"mandibula ".repeat(30), 120.0, style);
+        assert!(cut.ends_with("a…") || cut.ends_with('…'));
+        assert!(estimated_width(&cut, style) <= 120.0 && cut.len() > 8);
+        assert_eq!(fitting("jaw", 120.0, style), "jaw");
+    }
+
+    #[test]
+    fn lines_are_broken_between_words() {
+        let style = Style::of(12.0);
+        let lines = wrapped("mean 1.2 mm, median 0.8 mm, largest 6.1 mm", 130.0, style);
+        assert!(lines.len() > 1);
+        assert!(lines.iter().all(|line| estimated_width(line, style) <= 130.0));
+        assert_eq!(lines.join(" "), "mean 1.2 mm, median 0.8 mm, largest 6.1 mm");
+    }
+}

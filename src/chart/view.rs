@@ -1,0 +1,148 @@
+//! From where a face is looked at.
+
+use super::Vector;
+
+/// Which way a face looks and which way its head points; neither has to have length 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Outlook {
+    /// Out of the face, towards somebody in front of it.
+    pub front: Vector,
+    pub up: Vector,
+}
+
+impl Outlook {
+    /// Left, posterior, superior: the face looks along -y.
+    pub fn lps() -> Self {
+        Outlook { front: -Vector::y(), up: Vector::z() }
+    }
+
+    /// Right, anterior, superior: the face looks along +y.
+    pub fn ras() -> Self {
+        Outlook { front: Vector::y(), up: Vector::z() }
+    }
+
+    /// The camera of somebody who has walked `around` degrees to the right of the person in front
+    /// of him (who sees more of the face's left side) and looks down by `above` degrees.
+    pub(super) fn camera(&self, around: f64, above: f64) -> Camera {
+        let up = self.up.try_normalize(1e-12).unwrap_or_else(Vector::z);
+        let across = up.cross(&self.front);
+        let right = across
+            .try_normalize(1e-12)
+            .unwrap_or_else(|| up.cross(&least_aligned(&up)).normalize());
+        let front = right.cross(&up);
+        let (sin, cos) = around.to_radians().sin_cos();
+        let level = front * cos + right * sin;
+        let (sin_above, cos_above) = above.to_radians().sin_cos();
+        let towards = level * cos_above + up * sin_above;
+        Camera { right: up.cross(&level), up: up * cos_above - level * sin_above, towards }
+    }
+}
+
+/// The axis that makes the largest angle with a direction.
+fn least_aligned(direction: &Vector) -> Vector {
+    let mut axis = Vector::zeros();
+    axis[direction.iamin()] = 1.0;
+    axis
+}
+
+/// Parallel projection: image axes and the direction towards the viewer, orthonormal.
+#[derive(Clone, Copy, Debug)]
+pub struct Camera {
+    pub right: Vector,
+    pub up: Vector,
+    pub towards: Vector,
+}
+
+/// The rectangle that some points cover in an image, in mm.
+#[derive(Clone, Copy, Debug)]
+pub struct Extent {
+    pub low: [f64; 2],
+    pub high: [f64; 2],
+}
+
+impl Camera {
+    /// Right, up and towards the viewer, in mm.
+    pub fn project(&self, point: &Vector) -> [f64; 3] {
+        [self.right.dot(point), self.up.dot(point), self.towards.dot(point)]
+    }
+
+    /// What all the points cover; the unit square when there are none.
+    pub fn extent<'a>(&self, points: impl Iterator<Item = &'a Vector>) -> Extent {
+        let mut extent = Extent { low: [f64::INFINITY; 2], high: [f64::NEG_INFINITY; 2] };
+        for point in points {
+            let [right, up, _] = self.project(point);
+            extent.low = [extent.low[0].min(right), extent.low[1].min(up)];
+            extent.high = [extent.high[0].max(right), extent.high[1].max(up)];
+        }
+        if (0..2).all(|axis| extent.low[axis].is_finite() && extent.high[axis].is_finite()) {
+            extent
+        } else {
+            Extent { low: [0.0; 2], high: [1.0; 2] }
+        }
+    }
+}
+
+impl Extent {
+    /// Width or height in mm.
+    pub fn size(&self, axis: usize) -> f64 {
+        self.high[axis] - self.low[axis]
+    }
+
+    pub fn centre(&self) -> [f64; 2] {
+        [0, 1].map(|axis| (self.low[axis] + self.high[axis]) / 2.0)
+    }
+}
+
+/// The front of an open skin surface: its mean outward normal without the part along `up`.
+/// Where that vanishes, as on a closed surface, the axis least along `up`.
+pub fn front_of(points: &[Vector], triangles: &[[u32; 3]], up: Vector) -> Vector {
+    let up = up.try_normalize(1e-12).unwrap_or_else(Vector::z);
+    let mut area = 0.0;
+    let mut sum = Vector::zeros();
+    for triangle in triangles {
+        let [a, b, c] = triangle.map(|point| points[point as usize]);
+        let normal = (b - a).cross(&(c - a));
+        area += normal.norm();
+        sum += normal;
+    }
+    let level = sum - up * up.dot(&sum);
+    level.try_normalize(1e-6 * area).unwrap_or_else(|| least_aligned(&up))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_viewer_in_front_sees_the_left_side_of_the_face_on_his_right() {
+        // In LPS the person's left is +x.
+        let camera = Outlook::lps().camera(0.0, 0.0);
+        assert!((camera.right - Vector::x()).norm() < 1e-12);
+        assert!((camera.towards + Vector::y()).norm() < 1e-12);
+        let camera = Outlook::ras().camera(0.0, 0.0);
+        assert!((camera.right + Vector::x()).norm() < 1e-12);
+        let beside = Outlook::lps().camera(90.0, 0.0);
+        assert!((beside.towards - Vector::x()).norm() < 1e-12);
+    }
+
+    #[test]
+    fn a_camera_is_orthonormal_and_right_handed() {
+        let odd = Outlook { front: Vector::new(-3.0, 1.0, 2.0), up: Vector::new(0.1, 0.0, 4.0) };
+        let blind = Outlook { front: Vector::z(), up: Vector::z() };
+        for camera in [odd.camera(40.0, 15.0), blind.camera(-170.0, -20.0)] {
+            assert!((camera.right.cross(&camera.up) - camera.towards).norm() < 1e-12);
+            assert!((camera.up.norm() - 1.0).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn the_front_is_where_the_mean_normal_points() {
+        // A tent that looks along -x and a little down.
+        let points =
+            [Vector::new(0.0, -1.0, 0.0), Vector::new(0.0, 1.0, 0.0), Vector::new(0.3, 0.0, -2.0)];
+        let front = front_of(&points, &[[0, 1, 2]], Vector::z());
+        assert!((front + Vector::x()).norm() < 1e-12);
+        let closed = front_of(&points, &[[0, 1, 2], [0, 2, 1]], Vector::z());
+        assert_eq!(closed.z, 0.0);
+    }
+}
