@@ -8,6 +8,8 @@ pub mod frame;
 pub mod half_head;
 pub mod refinement;
 pub mod orientation;
+pub mod jacobian;
+pub mod quality;
 pub mod sample;
 pub mod surface;
 pub mod surface_edges;

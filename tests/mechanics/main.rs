@@ -19,5 +19,6 @@ mod formats_samples;
 mod formats_shared_data;
 mod formats_surface;
 mod patch;
+mod quality;
 mod scenes;
 mod solvers;
