@@ -5,7 +5,9 @@
 pub mod boundary;
 pub mod element;
 pub mod chart;
+pub mod command;
 pub mod format;
+pub mod jobs;
 pub mod material;
 pub mod mesh;
 pub mod model;

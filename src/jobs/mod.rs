@@ -7,6 +7,7 @@ pub mod input;
 pub mod observed;
 mod output;
 mod pictures;
+mod provenance;
 pub mod report;
 mod skin_files;
 pub mod source;
