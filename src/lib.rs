@@ -3,9 +3,9 @@
 //! The modules stand in the order of the path that a job takes; ARCHITECTURE.md tells who may use whom.
 
 pub mod boundary;
-pub mod element;
 pub mod chart;
 pub mod command;
+pub mod element;
 pub mod format;
 pub mod jobs;
 pub mod material;
@@ -13,5 +13,7 @@ pub mod mesh;
 pub mod model;
 pub mod plan;
 pub mod prediction;
+pub mod registration;
 pub mod schema;
 pub mod solver;
+pub mod validation;

@@ -20,5 +20,7 @@ mod formats_shared_data;
 mod formats_surface;
 mod patch;
 mod quality;
+mod registration;
 mod scenes;
 mod solvers;
+mod surfaces;
