@@ -32,10 +32,23 @@ pub struct Arguments {
     #[arg(long, default_value = "none")]
     align: AlignArgument,
     /// Only this sphere decides the alignment: x,y,z,r
-    #[arg(long, value_name = "X,Y,Z,R", value_delimiter = ',', num_args = 1, allow_hyphen_values = true)]
+    #[arg(
+        long,
+        value_name = "X,Y,Z,R",
+        value_delimiter = ',',
+        num_args = 1,
+        allow_hyphen_values = true
+    )]
     mask_sphere_mm: Vec<f64>,
     /// Only this box decides the alignment: x0,y0,z0,x1,y1,z1
-    #[arg(long, value_name = "X0,..,Z1", value_delimiter = ',', num_args = 1, allow_hyphen_values = true, conflicts_with = "mask_sphere_mm")]
+    #[arg(
+        long,
+        value_name = "X0,..,Z1",
+        value_delimiter = ',',
+        num_args = 1,
+        allow_hyphen_values = true,
+        conflicts_with = "mask_sphere_mm"
+    )]
     mask_box_mm: Vec<f64>,
     /// Points for each mm2 of surface
     #[arg(long, default_value_t = 1.0)]

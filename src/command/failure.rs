@@ -58,10 +58,7 @@ impl CommandError {
 }
 
 fn problem_lines(problem: &Problem) -> impl Iterator<Item = String> {
-    let whole = problem
-        .errors
-        .is_empty()
-        .then(|| format!("{} ({})", problem.detail, problem.code));
+    let whole = problem.errors.is_empty().then(|| format!("{} ({})", problem.detail, problem.code));
     let errors = problem.errors.iter();
     whole.into_iter().chain(errors.map(|error| match error.pointer.as_str() {
         "" => format!("{} ({})", error.detail, error.code),

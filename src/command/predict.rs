@@ -89,10 +89,7 @@ fn print_result(result: &ResultDocument, before: &CheckDocument) {
     if let Some(solver) = &provenance.solver {
         println!(
             "solver       {}, {} iterations, residual {:.1e} (wanted {:.0e})",
-            solver.name,
-            solver.iterations,
-            solver.relative_residual,
-            solver.wanted_residual
+            solver.name, solver.iterations, solver.relative_residual, solver.wanted_residual
         );
     }
     let timing = &provenance.timing;

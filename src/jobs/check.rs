@@ -31,10 +31,7 @@ pub fn check(
     limits: &Limits,
 ) -> Result<CheckReport, JobError> {
     let prepared = input.prepare(sources, limits)?;
-    Ok(CheckReport {
-        document: prepared.summary(input),
-        picture: prepared.classes_picture()?,
-    })
+    Ok(CheckReport { document: prepared.summary(input), picture: prepared.classes_picture()? })
 }
 
 impl Prepared {
@@ -112,9 +109,7 @@ fn expected_memory_mb(scene: &Scene) -> f64 {
 }
 
 /// Warnings as documents, without repeats.
-pub fn warning_documents<'a>(
-    warnings: impl Iterator<Item = &'a Warning>,
-) -> Vec<WarningDocument> {
+pub fn warning_documents<'a>(warnings: impl Iterator<Item = &'a Warning>) -> Vec<WarningDocument> {
     let mut documents: Vec<WarningDocument> = Vec::new();
     for warning in warnings.map(WarningDocument::from) {
         if !documents.contains(&warning) {

@@ -61,8 +61,7 @@ pub fn compare_skin(
     let actual = fetch(place.sources, &spec.actual.mesh, &at.key("actual").key("mesh"))?;
     let frame = prepared.case.frame;
     let stated = (frame != Frame::Unspecified).then_some(frame);
-    let pair =
-        Pair { prediction: &skin.surface, prediction_frame: stated, actual: &actual, at };
+    let pair = Pair { prediction: &skin.surface, prediction_frame: stated, actual: &actual, at };
     pair.compare(spec, clock).map(Some)
 }
 
@@ -236,7 +235,9 @@ fn settings(spec: &CompareToDocument) -> ComparisonSettings {
     ComparisonSettings {
         alignment: alignment(&spec.align),
         report_unaligned: spec.align.report_unaligned,
-        regions: regions.filter_map(|(name, region)| Some((name.clone(), place(region)?))).collect(),
+        regions: regions
+            .filter_map(|(name, region)| Some((name.clone(), place(region)?)))
+            .collect(),
         samples_per_mm2: spec.samples_per_mm2,
         node_wise: match spec.node_wise {
             NodeWiseName::Auto => NodeWise::Auto,

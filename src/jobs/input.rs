@@ -14,7 +14,8 @@ use crate::schema::case_conversion::centre;
 use crate::schema::plan::PlanContext;
 use crate::schema::prediction::InputDocument;
 use crate::schema::{
-    CaseDocument, CompareDocument, Faults, Limits, PlanDocument, Pointer, PredictDocument, canonical,
+    CaseDocument, CompareDocument, Faults, Limits, PlanDocument, Pointer, PredictDocument,
+    canonical,
 };
 
 /// A job as it is queued: everything that decides its result, but for the meshes.

@@ -65,7 +65,8 @@ impl<'a> Observed<'a> {
         let of = |phase: Phase| {
             let ended = phases.spent.iter().filter(|(other, _)| *other == phase);
             let ended: Duration = ended.map(|(_, spent)| *spent).sum();
-            let running = if phases.current == phase { phases.since.elapsed() } else { Duration::ZERO };
+            let running =
+                if phases.current == phase { phases.since.elapsed() } else { Duration::ZERO };
             (ended + running).as_secs_f64()
         };
         TimingDocument {
@@ -166,10 +167,10 @@ mod tests {
         let clock = Observed::start(&Unobserved, 0.0);
         assert!(clock.is_cancelled());
         let error = clock.judge(PredictionError::Cancelled);
-        assert_eq!((error.kind(), &error.to_document().members["which"]), (
-            "budget-exceeded",
-            &"wall".into()
-        ));
+        assert_eq!(
+            (error.kind(), &error.to_document().members["which"]),
+            ("budget-exceeded", &"wall".into())
+        );
     }
 
     #[test]

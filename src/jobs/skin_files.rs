@@ -1,9 +1,7 @@
 //! The predicted skin as files: the arrays of the API beside the moved points.
 
 use crate::chart::colour::{Rgb, sequential};
-use crate::format::{
-    ArrayValues, NamedValues, SurfaceOutput, WriteError, csv, glb, ply, stl, vtp,
-};
+use crate::format::{ArrayValues, NamedValues, SurfaceOutput, WriteError, csv, glb, ply, stl, vtp};
 use crate::mesh::{Frame, TriangleSurface, Vector};
 use crate::prediction::{Prediction, Skin};
 use crate::schema::spec::OutputName;

@@ -1,8 +1,6 @@
 //! The moved tissue and the moved bones as files.
 
-use crate::format::{
-    ArrayValues, NamedValues, SurfaceOutput, VolumeOutput, WriteError, vtp, vtu,
-};
+use crate::format::{ArrayValues, NamedValues, SurfaceOutput, VolumeOutput, WriteError, vtp, vtu};
 use crate::mesh::{Frame, TriangleSurface, Vector};
 use crate::prediction::{Case, Prediction, Scene};
 
@@ -24,11 +22,8 @@ pub fn encode_volume(
     let node_id: Vec<i64> = (0..mesh.nodes.len() as i64).collect();
     let region: Vec<i64> = scene.region_of_cell.iter().map(|&region| i64::from(region)).collect();
     let det_f: Vec<f64> = prediction.deformation.iter().map(|cell| cell.det_f).collect();
-    let strain: Vec<Vector> = prediction
-        .deformation
-        .iter()
-        .map(|cell| Vector::from(cell.principal_strain))
-        .collect();
+    let strain: Vec<Vector> =
+        prediction.deformation.iter().map(|cell| Vector::from(cell.principal_strain)).collect();
     let named = |name, values| NamedValues { name, values };
     let mut field_data = field_data.to_vec();
     field_data.push(("region_names".to_owned(), scene.regions.join("\n")));

@@ -128,19 +128,13 @@ struct Finished<'a> {
 }
 
 impl Finished<'_> {
-    fn write_files(
-        &self,
-        names: &[OutputName],
-        folder: &mut ResultFolder,
-    ) -> Result<(), JobError> {
+    fn write_files(&self, names: &[OutputName], folder: &mut ResultFolder) -> Result<(), JobError> {
         let field_data = self.origin.field_data(&solver_document(self.prediction));
         let scene = &self.prepared.scene;
         let frame = self.origin.frame;
         for &name in names {
             let bytes = match name {
-                OutputName::VolumeVtu => {
-                    encode_volume(scene, self.prediction, frame, &field_data)?
-                }
+                OutputName::VolumeVtu => encode_volume(scene, self.prediction, frame, &field_data)?,
                 OutputName::BonesVtp => encode_bones(&self.prepared.case, scene, &field_data)?,
                 OutputName::ClassesSvg => self.prepared.classes_picture()?.into_bytes(),
                 OutputName::DisplacementSvg => {

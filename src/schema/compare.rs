@@ -217,7 +217,8 @@ impl AlignDocument {
         }
         let wanted = self.method == AlignMethod::Landmarks;
         if wanted && count < 3 {
-            let detail = format!("alignment by landmarks needs at least 3 of them, here are {count}");
+            let detail =
+                format!("alignment by landmarks needs at least 3 of them, here are {count}");
             faults.add(&place, "alignment-failed", detail);
         }
         if !wanted && count > 0 {

@@ -108,9 +108,8 @@ impl Faults {
     }
 
     fn into_problem(self) -> Problem {
-        let shared = CATALOGUE
-            .iter()
-            .find(|code| self.errors.iter().all(|error| error.code == **code));
+        let shared =
+            CATALOGUE.iter().find(|code| self.errors.iter().all(|error| error.code == **code));
         let count = self.errors.len() + self.unreported;
         let first = self
             .errors

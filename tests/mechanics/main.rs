@@ -18,6 +18,7 @@ mod formats_round_trip;
 mod formats_samples;
 mod formats_shared_data;
 mod formats_surface;
+mod jobs;
 mod patch;
 mod quality;
 mod registration;
