@@ -4,8 +4,10 @@
 
 pub mod boundary;
 pub mod chart;
+pub mod command;
 pub mod element;
 pub mod format;
+pub mod jobs;
 pub mod material;
 pub mod mesh;
 pub mod model;

@@ -14,7 +14,7 @@ const REPORTED_FAULTS: usize = 50;
 
 /// Codes that name a whole problem when nothing else is wrong with a document.
 const CATALOGUE: &[&str] = &[
-    "alignment-not-available",
+    "alignment-failed",
     "empty-selection",
     "frame-conflict",
     "method-not-available",
@@ -101,30 +101,28 @@ impl Faults {
     /// `Ok` where nothing is wrong. A problem is called by the code of its faults if all share one
     /// of the catalogue, else `validation-failed`.
     pub fn into_result(self) -> Result<(), Problem> {
-        let Some(first) = self.errors.first() else {
-            return Ok(());
-        };
+        match self.errors.is_empty() {
+            true => Ok(()),
+            false => Err(self.into_problem()),
+        }
+    }
+
+    fn into_problem(self) -> Problem {
         let shared =
             CATALOGUE.iter().find(|code| self.errors.iter().all(|error| error.code == **code));
         let count = self.errors.len() + self.unreported;
+        let first = self
+            .errors
+            .first()
+            .map(|first| format!("{}: {}", place(&first.pointer), first.detail))
+            .unwrap_or_default();
         let detail = match count {
-            1 => format!("{}: {}", place(&first.pointer), first.detail),
-            _ => format!(
-                "{count} mistakes, the first at {}: {}",
-                place(&first.pointer),
-                first.detail
-            ),
+            1 => first,
+            _ => format!("{count} mistakes, the first at {first}"),
         };
         let mut problem = Problem::new(shared.copied().unwrap_or("validation-failed"), detail);
         problem.errors = self.errors;
-        Err(problem)
-    }
-
-    /// Adds what a scene refused; its pointers start at `/case`, `/plan` or `/spec`.
-    pub fn add_scene_errors(&mut self, errors: &SceneErrors) {
-        for error in &errors.0 {
-            self.add(&Pointer::from_text(&error.pointer), error.code, &error.detail);
-        }
+        problem
     }
 
     /// Refuses a number outside a closed range, and whatever is not a number.
@@ -174,6 +172,17 @@ impl Faults {
             );
         }
         given == 1
+    }
+}
+
+/// What a scene refuses; its pointers start at `/case` or `/plan`.
+impl From<SceneErrors> for Problem {
+    fn from(errors: SceneErrors) -> Problem {
+        let mut faults = Faults::default();
+        for error in &errors.0 {
+            faults.add(&Pointer::from_text(&error.pointer), error.code, &error.detail);
+        }
+        faults.into_problem()
     }
 }
 

@@ -28,6 +28,19 @@ impl Problem {
         self
     }
 
+    /// The same problem with pointers that start at `from` starting at `to` instead: a body that is
+    /// itself the plan knows nothing of `/plan`.
+    pub fn moved(mut self, from: &str, to: &str) -> Self {
+        for error in &mut self.errors {
+            if let Some(rest) = error.pointer.strip_prefix(from)
+                && (rest.is_empty() || rest.starts_with('/'))
+            {
+                error.pointer = format!("{to}{rest}");
+            }
+        }
+        self
+    }
+
     /// The body of an answer with this problem.
     pub fn into_document(self, kind: ProblemKind, instance: Option<String>) -> ProblemDocument {
         ProblemDocument {

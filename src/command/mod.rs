@@ -1,0 +1,52 @@
+//! The commands of the program, one file for each.
+
+pub mod check;
+pub mod compare;
+mod documents;
+mod failure;
+mod files;
+pub mod predict;
+mod scene;
+mod screen;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+pub use failure::CommandError;
+
+/// Predicts how a face will look after the bones under it are moved. Not a medical device.
+#[derive(Debug, Parser)]
+#[command(name = "facies", version)]
+pub struct Facies {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Predict the skin after a plan; write it with its statistics into a folder
+    Predict(predict::Arguments),
+    /// Measure the distances between two surfaces
+    Compare(compare::Arguments),
+    /// Tell what a case and a plan mean, without solving
+    Check(check::Arguments),
+}
+
+/// Runs the command and says what went wrong, one line for each mistake.
+pub fn run(facies: &Facies) -> ExitCode {
+    let result = match &facies.command {
+        Command::Predict(arguments) => predict::run(arguments),
+        Command::Compare(arguments) => compare::run(arguments),
+        Command::Check(arguments) => check::run(arguments),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            for line in error.lines() {
+                eprintln!("error: {line}");
+            }
+            ExitCode::from(error.exit_code())
+        }
+    }
+}

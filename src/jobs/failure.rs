@@ -1,0 +1,157 @@
+//! Why a job failed, in the words of the API.
+
+use serde_json::{Map, Value, json};
+
+use super::source::SourceError;
+use crate::chart::PngError;
+use crate::format::WriteError;
+use crate::prediction::PredictionError;
+use crate::schema::Problem;
+use crate::schema::job::{ErrorClass, JobErrorDocument};
+use crate::validation::StatisticsError;
+
+/// Residuals of a diverged solver that are told; a history has one for each iteration.
+const TOLD_RESIDUALS: usize = 200;
+
+#[derive(Debug, thiserror::Error)]
+pub enum JobError {
+    /// The documents or the meshes.
+    #[error("{}", .0.detail)]
+    Refused(Problem),
+    #[error(transparent)]
+    Prediction(#[from] PredictionError),
+    #[error("{which} ran out: {allowed} {unit} are allowed")]
+    Budget { which: &'static str, allowed: f64, unit: &'static str },
+    #[error("stopped on request")]
+    Cancelled,
+    #[error("the surfaces could not be aligned: {0}")]
+    Alignment(String),
+    #[error("{0}")]
+    Source(SourceError),
+    #[error("{what} is not a finite number")]
+    NotFinite { what: String },
+    #[error("no statistics: {0}")]
+    Statistics(#[from] StatisticsError),
+    #[error(transparent)]
+    Encode(#[from] WriteError),
+    #[error(transparent)]
+    Picture(#[from] PngError),
+    #[error("{file} could not be written: {source}")]
+    Write { file: String, source: std::io::Error },
+}
+
+impl JobError {
+    pub fn class(&self) -> ErrorClass {
+        match self {
+            JobError::Refused(_) | JobError::Alignment(_) => ErrorClass::Input,
+            JobError::Prediction(PredictionError::Cancelled) | JobError::Cancelled => {
+                ErrorClass::Cancelled
+            }
+            JobError::Prediction(PredictionError::OverBudget { .. }) | JobError::Budget { .. } => {
+                ErrorClass::Budget
+            }
+            JobError::Prediction(PredictionError::Inverted { .. }) => ErrorClass::Input,
+            JobError::Prediction(_)
+            | JobError::NotFinite { .. }
+            | JobError::Statistics(_)
+            | JobError::Encode(_) => ErrorClass::Numerical,
+            JobError::Source(SourceError::Unreadable { .. })
+            | JobError::Write { .. }
+            | JobError::Picture(_) => ErrorClass::Infrastructure,
+            JobError::Source(_) => ErrorClass::Input,
+        }
+    }
+
+    /// The stable word of the error catalogue.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            JobError::Refused(problem) => problem.code,
+            JobError::Prediction(error) => match error {
+                PredictionError::Cancelled => "cancelled",
+                PredictionError::NotConverged { .. } | PredictionError::NotFinite => {
+                    "solver-diverged"
+                }
+                PredictionError::Singular { .. } => "matrix-singular",
+                PredictionError::Inverted { .. } => "element-inverted",
+                PredictionError::OverBudget { .. } => "budget-exceeded",
+            },
+            JobError::Budget { .. } => "budget-exceeded",
+            JobError::Cancelled => "cancelled",
+            JobError::Alignment(_) => "alignment-failed",
+            JobError::Source(SourceError::Unknown { .. }) => "not-found",
+            JobError::Source(SourceError::Refused { code, .. }) => code,
+            JobError::Source(SourceError::Unreadable { .. }) | JobError::Write { .. } => "storage",
+            JobError::NotFinite { .. } | JobError::Statistics(_) | JobError::Encode(_) => {
+                "solver-diverged"
+            }
+            JobError::Picture(_) => "internal",
+        }
+    }
+
+    /// The `error` of a failed job. Names of files and systems stay in the log.
+    pub fn to_document(&self) -> JobErrorDocument {
+        let detail = match self {
+            JobError::Write { .. } => "a result file could not be written".to_owned(),
+            JobError::Source(SourceError::Unreadable { .. }) => {
+                "a stored mesh could not be read".to_owned()
+            }
+            other => other.to_string(),
+        };
+        let kind = self.kind().to_owned();
+        JobErrorDocument { kind, class: self.class(), detail, members: self.members() }
+    }
+
+    fn members(&self) -> Map<String, Value> {
+        let value = match self {
+            JobError::Refused(problem) => {
+                let mut members = problem.members.clone();
+                if !problem.errors.is_empty() {
+                    members.insert("errors".to_owned(), json!(problem.errors));
+                }
+                return members;
+            }
+            JobError::Prediction(PredictionError::NotConverged {
+                iterations,
+                residual,
+                wanted,
+                history,
+            }) => json!({
+                "iterations": iterations,
+                "residual": residual,
+                "wanted": wanted,
+                "residual_history": thinned(history),
+            }),
+            JobError::Prediction(PredictionError::Singular { node }) => json!({ "node": node }),
+            JobError::Prediction(PredictionError::Inverted { cell }) => json!({ "element": cell }),
+            JobError::Prediction(PredictionError::OverBudget { needed_mb, allowed_mb }) => {
+                json!({ "which": "memory", "needed_mb": needed_mb, "allowed_mb": allowed_mb })
+            }
+            JobError::Budget { which, allowed, unit } => {
+                json!({ "which": which, format!("allowed_{unit}"): allowed })
+            }
+            _ => json!({}),
+        };
+        match value {
+            Value::Object(members) => members,
+            _ => Map::new(),
+        }
+    }
+}
+
+/// At most 200 entries, evenly spread, with the last.
+fn thinned(history: &[f64]) -> Vec<f64> {
+    let step = history.len().div_ceil(TOLD_RESIDUALS).max(1);
+    let mut told: Vec<f64> = history.iter().copied().step_by(step).collect();
+    if let Some(&last) = history.last()
+        && (history.len() - 1) % step != 0
+    {
+        told.push(last);
+    }
+    told
+}
+
+impl From<Problem> for JobError {
+    fn from(problem: Problem) -> Self {
+        JobError::Refused(problem)
+    }
+}

@@ -1,0 +1,200 @@
+//! The documents of a job with their meshes, checked and converted.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+use super::failure::JobError;
+use super::source::{MeshSource, SourceError, StoredMesh, StoredShape};
+use crate::mesh::Warning;
+use crate::mesh::quality::{QualityReport, quality};
+use crate::prediction::{Case, Plan, Scene, Settings};
+use crate::schema::case::{CaseMeshes, NamedMesh};
+use crate::schema::case_conversion::centre;
+use crate::schema::plan::PlanContext;
+use crate::schema::prediction::InputDocument;
+use crate::schema::{
+    CaseDocument, CompareDocument, Faults, Limits, PlanDocument, Pointer, PredictDocument,
+    canonical,
+};
+
+/// A job as it is queued: everything that decides its result, but for the meshes.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum JobInput {
+    Predict(PredictInput),
+    Compare(CompareInput),
+}
+
+/// A prediction: the case and the plan in full beside the spec.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PredictInput {
+    /// The id of the job; absent on the command line.
+    pub job: Option<String>,
+    /// From acceptance to start.
+    pub queue_s: Option<f64>,
+    pub case: CaseDocument,
+    pub plan: PlanDocument,
+    pub spec: PredictDocument,
+}
+
+/// A comparison of two surfaces.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CompareInput {
+    /// The id of the job; absent on the command line.
+    pub job: Option<String>,
+    /// From acceptance to start.
+    pub queue_s: Option<f64>,
+    pub spec: CompareDocument,
+}
+
+/// A prediction whose documents are sound: what the path takes, and where it came from.
+pub struct Prepared {
+    pub case: Case,
+    pub scene: Scene,
+    pub quality: QualityReport,
+    pub spec_hash: String,
+    pub inputs: Vec<InputDocument>,
+    /// Of the meshes and of the conversion; those of the scene are in the scene.
+    pub warnings: Vec<Warning>,
+}
+
+/// Documents in the types of the path.
+struct Converted {
+    case: Case,
+    plan: Plan,
+    settings: Settings,
+    warnings: Vec<Warning>,
+}
+
+impl PredictInput {
+    /// Fetches the meshes, converts the documents and checks them together. Everything wrong is told;
+    /// pointers start at `/case`, `/plan` and `/spec`.
+    pub fn prepare(&self, sources: &dyn MeshSource, limits: &Limits) -> Result<Prepared, JobError> {
+        let stored = self.fetch(sources)?;
+        let meshes = self.case_meshes(&stored)?;
+        let converted = self.convert(&meshes, limits)?;
+        let scene = Scene::new(&converted.case, &converted.plan, &converted.settings)
+            .map_err(|errors| JobError::Refused(errors.into()))?;
+        let quality = quality(&converted.case.volume);
+        let mut warnings = reader_warnings(&stored);
+        warnings.extend(converted.warnings);
+        warnings.extend(quality.warnings());
+        Ok(Prepared {
+            case: converted.case,
+            scene,
+            quality,
+            spec_hash: self.spec_hash(&stored),
+            inputs: self.inputs(&stored),
+            warnings,
+        })
+    }
+
+    fn convert(&self, meshes: &CaseMeshes, limits: &Limits) -> Result<Converted, JobError> {
+        let mut faults = Faults::default();
+        let spec_materials = self.spec.materials.as_ref();
+        let (case, warnings) = self.case.to_case(meshes, spec_materials, limits, &mut faults);
+        let context = PlanContext { frame: case.frame, centre: centre(&case.volume), limits };
+        let plan = self.plan.to_plan(&Pointer::root().key("plan"), &context, &mut faults);
+        let settings = self.spec.to_settings(limits, &mut faults);
+        faults.into_result()?;
+        Ok(Converted { case, plan, settings, warnings })
+    }
+
+    /// The meshes that the case and the plan ask for.
+    fn fetch(&self, sources: &dyn MeshSource) -> Result<BTreeMap<String, StoredMesh>, JobError> {
+        let mut wanted: Vec<(Pointer, String)> = Vec::new();
+        let (mut case, mut plan) = (self.case.clone(), self.plan.clone());
+        let is_bone = |id: &str| self.case.bones.iter().any(|bone| bone.name == id);
+        let under = |root: &str, at: Pointer| Pointer::from_text(&format!("/{root}{at}"));
+        for (at, id) in case.mesh_references_mut() {
+            wanted.push((under("case", at), id.clone()));
+        }
+        for (at, id) in plan.surface_references_mut() {
+            if !is_bone(id) {
+                wanted.push((under("plan", at), id.clone()));
+            }
+        }
+        let mut stored = BTreeMap::new();
+        let mut faults = Faults::default();
+        for (at, id) in wanted {
+            if stored.contains_key(&id) {
+                continue;
+            }
+            match sources.mesh(&id) {
+                Ok(mesh) => {
+                    stored.insert(id, mesh);
+                }
+                Err(SourceError::Unknown { .. }) => {
+                    faults.add(&at, "unknown-mesh", format!("there is no mesh {id:?}"));
+                }
+                Err(SourceError::Refused { code, detail, .. }) => faults.add(&at, code, detail),
+                Err(other) => return Err(JobError::Source(other)),
+            }
+        }
+        faults.into_result()?;
+        Ok(stored)
+    }
+
+    fn case_meshes(&self, stored: &BTreeMap<String, StoredMesh>) -> Result<CaseMeshes, JobError> {
+        let mut faults = Faults::default();
+        let mut surfaces = BTreeMap::new();
+        let mut volume = None;
+        for (id, mesh) in stored {
+            match &mesh.shape {
+                StoredShape::Volume(shared) if *id == self.case.volume => {
+                    volume = Some(NamedMesh { mesh: shared.clone(), frame: mesh.frame });
+                }
+                StoredShape::Surface(_) if *id == self.case.volume => {
+                    let detail = "this mesh is a surface, and a volume is needed";
+                    faults.add(&Pointer::from_text("/case/volume"), "wrong-mesh", detail);
+                }
+                _ => {
+                    let named = NamedMesh { mesh: mesh.surface(), frame: mesh.frame };
+                    surfaces.insert(id.clone(), named);
+                }
+            }
+        }
+        faults.into_result()?;
+        let missing = || JobError::Source(SourceError::Unknown { id: self.case.volume.clone() });
+        Ok(CaseMeshes { volume: volume.ok_or_else(missing)?, surfaces })
+    }
+
+    /// The hash of everything that decides the numbers.
+    fn spec_hash(&self, stored: &BTreeMap<String, StoredMesh>) -> String {
+        let content = |id: &str| stored.get(id).map(|mesh| mesh.sha256.clone());
+        canonical::predict_hash(&self.case, &self.plan, &self.spec, &content)
+    }
+
+    fn inputs(&self, stored: &BTreeMap<String, StoredMesh>) -> Vec<InputDocument> {
+        let role = |id: &str| {
+            if *id == self.case.volume {
+                return "volume".to_owned();
+            }
+            let bone = self.case.bones.iter().find(|bone| bone.mesh == id);
+            bone.map_or_else(|| "surface".to_owned(), |bone| format!("bone {}", bone.name))
+        };
+        let mut inputs: Vec<InputDocument> =
+            stored.iter().map(|(id, mesh)| mesh.to_input(&role(id))).collect();
+        inputs.sort_by(|a, b| b.role.cmp(&a.role));
+        inputs
+    }
+}
+
+fn reader_warnings(stored: &BTreeMap<String, StoredMesh>) -> Vec<Warning> {
+    stored.values().flat_map(|mesh| mesh.warnings.iter().cloned()).collect()
+}
+
+impl StoredMesh {
+    /// How provenance names this mesh.
+    pub fn to_input(&self, role: &str) -> InputDocument {
+        let (nodes, cells, triangles) = match &self.shape {
+            StoredShape::Volume(mesh) => (mesh.nodes.len(), Some(mesh.cells.len() as u64), None),
+            StoredShape::Surface(mesh) => {
+                (mesh.points.len(), None, Some(mesh.triangles.len() as u64))
+            }
+        };
+        let sha256 = self.sha256.clone();
+        InputDocument { role: role.to_owned(), sha256, nodes: nodes as u64, cells, triangles }
+    }
+}

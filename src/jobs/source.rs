@@ -1,0 +1,78 @@
+//! Where a job finds its meshes: the service keeps them by content, the command line reads files.
+
+use std::sync::Arc;
+
+use crate::format::{Mesh, ReadMesh};
+use crate::mesh::{Frame, TriangleSurface, VolumeMesh, Warning};
+use crate::schema::case::LengthUnit;
+
+/// Meshes by the ids that documents use.
+pub trait MeshSource {
+    fn mesh(&self, id: &str) -> Result<StoredMesh, SourceError>;
+
+    /// The predicted skin of an earlier job, in mm.
+    fn predicted_skin(&self, job: &str) -> Result<StoredMesh, SourceError>;
+}
+
+/// A parsed mesh and the hash of the bytes it came from.
+#[derive(Clone, Debug)]
+pub struct StoredMesh {
+    pub shape: StoredShape,
+    /// The frame that a mark in the file names.
+    pub frame: Option<Frame>,
+    /// The unit in which it was uploaded; a case states its own.
+    pub units: LengthUnit,
+    /// What the reader had to say.
+    pub warnings: Vec<Warning>,
+    /// SHA-256 in hexadecimal.
+    pub sha256: String,
+}
+
+/// A mesh of either kind, shared by the jobs that use it.
+#[derive(Clone, Debug)]
+pub enum StoredShape {
+    Volume(Arc<VolumeMesh>),
+    Surface(Arc<TriangleSurface>),
+}
+
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SourceError {
+    #[error("there is no mesh {id:?}")]
+    Unknown { id: String },
+    #[error("mesh {id:?} is refused: {detail}")]
+    Refused { id: String, code: &'static str, detail: String },
+    #[error("mesh {id:?} could not be read: {detail}")]
+    Unreadable { id: String, detail: String },
+}
+
+impl StoredMesh {
+    /// A mesh that was just read from bytes with this hash.
+    pub fn new(read: ReadMesh, units: LengthUnit, sha256: String) -> Self {
+        let shape = match read.mesh {
+            Mesh::Volume(volume) => StoredShape::Volume(Arc::new(volume)),
+            Mesh::Surface(surface) => StoredShape::Surface(Arc::new(surface)),
+        };
+        StoredMesh { shape, frame: read.frame, units, warnings: read.warnings, sha256 }
+    }
+
+    /// The surface, or the boundary of the volume.
+    pub fn surface(&self) -> Arc<TriangleSurface> {
+        match &self.shape {
+            StoredShape::Surface(surface) => surface.clone(),
+            StoredShape::Volume(volume) => Arc::new(volume.surface_of(&volume.boundary_faces())),
+        }
+    }
+
+    /// The same surface in mm.
+    pub fn surface_in_mm(&self) -> Arc<TriangleSurface> {
+        let surface = self.surface();
+        if self.units == LengthUnit::Mm {
+            return surface;
+        }
+        let mut scaled = (*surface).clone();
+        for point in &mut scaled.points {
+            *point *= self.units.in_mm();
+        }
+        Arc::new(scaled)
+    }
+}
