@@ -5,6 +5,7 @@
 pub mod api;
 pub mod boundary;
 pub mod chart;
+pub mod command;
 pub mod config;
 pub mod element;
 pub mod format;
@@ -14,7 +15,9 @@ pub mod mesh;
 pub mod model;
 pub mod plan;
 pub mod prediction;
+pub mod registration;
 pub mod schema;
 pub mod solver;
 pub mod store;
 pub mod telemetry;
+pub mod validation;

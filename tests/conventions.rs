@@ -1,5 +1,7 @@
 //! The import table of ARCHITECTURE.md, held against the source.
 
+#![allow(clippy::unwrap_used)]
+
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -2,7 +2,7 @@
 
 use super::Vector;
 use super::colour::{self, Rgb};
-use super::raster::{Painted, PngError, Shot, draw};
+use super::raster::{Finish, Painted, PngError, Shot, draw};
 use super::svg::{Document, Place, Style};
 use super::view::Outlook;
 
@@ -92,7 +92,7 @@ impl ClassesPicture<'_> {
                 points: self.points,
                 triangles: self.triangles,
                 colours: &colours,
-                crisp: true,
+                finish: Finish::Classes,
             };
             document.rectangle(place, "#f3f4f6", 6.0);
             document.image(place, &draw(&painted, &shot))?;
@@ -101,16 +101,8 @@ impl ClassesPicture<'_> {
             document.text(middle, PANEL_WIDTH, style, PANELS[panel].0);
         }
         self.write_legend(&mut document, HEAD + panel_height + 30.0, &palette);
-        let frame = format!(
-            "Nodes of the whole mesh, coordinates in frame {}.",
-            self.frame
-        );
-        document.text(
-            [MARGIN, height - 10.0],
-            room,
-            Style::of(11.0).faint(),
-            &frame,
-        );
+        let frame = format!("Nodes of the whole mesh, coordinates in frame {}.", self.frame);
+        document.text([MARGIN, height - 10.0], room, Style::of(11.0).faint(), &frame);
         Ok(document.finish(self.title))
     }
 
@@ -133,12 +125,7 @@ impl ClassesPicture<'_> {
         for (entry, class) in self.classes.iter().enumerate() {
             let x = MARGIN + (PANEL_WIDTH + GAP) * (entry % COLUMNS) as f64;
             let y = top + LINE * (entry / COLUMNS) as f64;
-            let patch = Place {
-                x,
-                y: y - 12.0,
-                width: 16.0,
-                height: 16.0,
-            };
+            let patch = Place { x, y: y - 12.0, width: 16.0, height: 16.0 };
             document.rectangle(patch, &colour::hexadecimal(palette[entry]), 3.0);
             let name = match &class.kind {
                 ClassKind::Joined(segment) => format!("joined to {segment}"),
@@ -198,12 +185,7 @@ mod tests {
         assert_eq!(palette.len(), 6);
         let svg = picture.to_svg().unwrap();
         assert_eq!(svg.matches("data:image/png;base64,").count(), 3);
-        for words in [
-            "joined to maxilla &amp;",
-            "12\u{202f}345 nodes",
-            ">0 nodes<",
-            "frame RAS",
-        ] {
+        for words in ["joined to maxilla &amp;", "12\u{202f}345 nodes", ">0 nodes<", "frame RAS"] {
             assert!(svg.contains(words), "{words}");
         }
     }

@@ -21,13 +21,8 @@ const SEQUENCE: [Rgb; 7] = [
 ];
 
 /// Okabe and Ito, Color universal design, 2008: those that stand for segments, in order.
-pub const SEGMENTS: [Rgb; 5] = [
-    [230, 159, 0],
-    [86, 180, 233],
-    [0, 158, 115],
-    [240, 228, 66],
-    [0, 114, 178],
-];
+pub const SEGMENTS: [Rgb; 5] =
+    [[230, 159, 0], [86, 180, 233], [0, 158, 115], [240, 228, 66], [0, 114, 178]];
 pub const FIXED: Rgb = [60, 60, 64];
 pub const SLIDING: Rgb = [204, 121, 167];
 pub const PRESCRIBED: Rgb = [213, 94, 0];
@@ -36,11 +31,7 @@ pub const FREE: Rgb = [222, 212, 203];
 /// The colour at a fraction of the range; fractions outside [0, 1] get the colour of the nearer end.
 pub fn sequential(fraction: f64) -> Rgb {
     let steps = (SEQUENCE.len() - 1) as f64;
-    let place = if fraction.is_nan() {
-        0.0
-    } else {
-        fraction.clamp(0.0, 1.0)
-    } * steps;
+    let place = if fraction.is_nan() { 0.0 } else { fraction.clamp(0.0, 1.0) } * steps;
     let low = (place.floor() as usize).min(SEQUENCE.len() - 2);
     let share = place - low as f64;
     [0, 1, 2].map(|channel| {
@@ -56,11 +47,7 @@ pub fn hexadecimal([red, green, blue]: Rgb) -> String {
 
 /// Light intensity of a stored value, in [0, 1] (IEC 61966-2-1).
 pub(super) fn to_linear(value: f64) -> f64 {
-    if value <= 0.04045 {
-        value / 12.92
-    } else {
-        ((value + 0.055) / 1.055).powf(2.4)
-    }
+    if value <= 0.04045 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
 }
 
 /// The inverse of [`to_linear`], clamped to what an image can store.

@@ -3,7 +3,7 @@
 use super::Vector;
 use super::colour::{self, Rgb, sequential};
 use super::legend::{Scale, round_length};
-use super::raster::{Painted, PngError, Shot, draw};
+use super::raster::{Finish, Painted, PngError, Shot, draw};
 use super::svg::{Document, Place, Style, wrapped};
 use super::view::{Camera, Outlook};
 
@@ -43,10 +43,8 @@ impl DisplacementPicture<'_> {
             .map(|(before, after)| (after - before).norm())
             .collect();
         let scale = Scale::covering(moved.iter().copied().fold(0.0, f64::max));
-        let colours: Vec<Rgb> = moved
-            .iter()
-            .map(|length| sequential(length / scale.maximum()))
-            .collect();
+        let colours: Vec<Rgb> =
+            moved.iter().map(|length| sequential(length / scale.maximum())).collect();
         let cameras = ROWS.map(|(_, around, above)| self.outlook.camera(around, above));
         let layout = Layout::of(&cameras, self);
         let width = 2.0 * MARGIN + 3.0 * PANEL_WIDTH + 3.0 * GAP + LEGEND_WIDTH;
@@ -81,27 +79,18 @@ impl DisplacementPicture<'_> {
     ) -> Result<(), PngError> {
         let skin = vec![colour::SKIN; colours.len()];
         for (row, camera) in cameras.iter().enumerate() {
-            for (column, (points, colours)) in [
-                (self.before, skin.as_slice()),
-                (self.after, skin.as_slice()),
-                (self.after, colours),
+            for (column, (points, colours, finish)) in [
+                (self.before, skin.as_slice(), Finish::Bare),
+                (self.after, skin.as_slice(), Finish::Bare),
+                (self.after, colours, Finish::Values),
             ]
             .into_iter()
             .enumerate()
             {
                 let place = layout.panel(row, column);
                 document.rectangle(place, "#f3f4f6", 6.0);
-                let painted = Painted {
-                    points,
-                    triangles: self.triangles,
-                    colours,
-                    crisp: false,
-                };
-                let below = Place {
-                    y: place.y + STRIP,
-                    height: layout.image_height,
-                    ..place
-                };
+                let painted = Painted { points, triangles: self.triangles, colours, finish };
+                let below = Place { y: place.y + STRIP, height: layout.image_height, ..place };
                 document.image(below, &draw(&painted, &layout.shot(*camera, self)))?;
             }
             let place = layout.panel(row, 0);
@@ -172,12 +161,7 @@ impl Layout {
         let place = self.panel(1, 0);
         let [x, y] = [place.x + 12.0, place.y + place.height - 14.0];
         document.line([x, y], [x + length * units_per_millimetre, y]);
-        document.text(
-            [x, y - 6.0],
-            PANEL_WIDTH,
-            Style::of(11.0).faint(),
-            &format!("{length} mm"),
-        );
+        document.text([x, y - 6.0], PANEL_WIDTH, Style::of(11.0).faint(), &format!("{length} mm"));
     }
 
     /// A bar of colours as high as a panel, beside the last column.
@@ -186,15 +170,9 @@ impl Layout {
         let x = top.x + PANEL_WIDTH + GAP + 6.0;
         let height = (bottom.y + bottom.height - top.y) * 0.6;
         let y = top.y + (bottom.y + bottom.height - top.y - height) / 2.0;
-        let bar = Place {
-            x,
-            y,
-            width: 16.0,
-            height,
-        };
-        let colours: Vec<String> = (0..=12)
-            .map(|step| colour::hexadecimal(sequential(f64::from(step) / 12.0)))
-            .collect();
+        let bar = Place { x, y, width: 16.0, height };
+        let colours: Vec<String> =
+            (0..=12).map(|step| colour::hexadecimal(sequential(f64::from(step) / 12.0))).collect();
         document.gradient(bar, &colours);
         for &tick in &scale.ticks {
             let level = y + height * (1.0 - tick / scale.maximum());
@@ -227,14 +205,7 @@ mod tests {
         };
         let svg = picture.to_svg().unwrap();
         assert_eq!(svg.matches("data:image/png;base64,").count(), 6);
-        for words in [
-            "Case &lt;7&gt;",
-            ">2.5<",
-            ">0.0<",
-            "frame LPS",
-            "mean 2.30 mm",
-            ">10 mm<",
-        ] {
+        for words in ["Case &lt;7&gt;", ">2.5<", ">0.0<", "frame LPS", "mean 2.30 mm", ">10 mm<"] {
             assert!(svg.contains(words), "{words}");
         }
     }

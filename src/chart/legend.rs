@@ -13,11 +13,7 @@ const MOST_STEPS: f64 = 6.0;
 impl Scale {
     /// A scale that covers [0, maximum]; of nothing, or nothing finite, it covers [0, 1].
     pub fn covering(maximum: f64) -> Self {
-        let maximum = if maximum.is_finite() && maximum > 1e-9 {
-            maximum
-        } else {
-            1.0
-        };
+        let maximum = if maximum.is_finite() && maximum > 1e-9 { maximum } else { 1.0 };
         let power = (maximum / MOST_STEPS).log10().floor();
         let step = [1.0, 2.0, 5.0, 10.0, 20.0]
             .into_iter()
@@ -30,10 +26,7 @@ impl Scale {
             let unit = 10f64.powi(decimals as i32);
             (value * unit).round() / unit
         };
-        Scale {
-            ticks: (0..=steps).map(|tick| round(tick as f64 * step)).collect(),
-            decimals,
-        }
+        Scale { ticks: (0..=steps).map(|tick| round(tick as f64 * step)).collect(), decimals }
     }
 
     pub fn maximum(&self) -> f64 {
@@ -66,15 +59,9 @@ mod tests {
             let scale = Scale::covering(maximum);
             let step = scale.ticks[1];
             let mantissa = step / 10f64.powf((step * 1.000_001).log10().floor());
-            assert!(
-                [1.0, 2.0, 5.0].iter().any(|m| (m - mantissa).abs() < 1e-6),
-                "{step}"
-            );
+            assert!([1.0, 2.0, 5.0].iter().any(|m| (m - mantissa).abs() < 1e-6), "{step}");
             assert!(scale.ticks[0] == 0.0 && scale.maximum() >= maximum * (1.0 - 1e-9));
-            assert!(
-                scale.maximum() - step < maximum,
-                "no more ticks than needed"
-            );
+            assert!(scale.maximum() - step < maximum, "no more ticks than needed");
             assert!((3..=7).contains(&scale.ticks.len()), "{:?}", scale.ticks);
             for &tick in &scale.ticks {
                 assert_eq!(scale.label(tick).parse::<f64>(), Ok(tick));
@@ -91,9 +78,6 @@ mod tests {
 
     #[test]
     fn a_round_length_fits_its_room() {
-        assert_eq!(
-            [7.0, 49.9, 50.0, 0.3].map(round_length),
-            [5.0, 20.0, 50.0, 0.2]
-        );
+        assert_eq!([7.0, 49.9, 50.0, 0.3].map(round_length), [5.0, 20.0, 50.0, 0.2]);
     }
 }

@@ -30,13 +30,30 @@ pub struct PngError {
     source: png::EncodingError,
 }
 
-/// A surface with a colour for each point. `crisp` gives each point the part of a triangle that is
-/// nearest to it, in its own colour; otherwise colours run into each other.
+/// A surface with a colour for each point.
 pub struct Painted<'a> {
     pub points: &'a [Vector],
     pub triangles: &'a [[u32; 3]],
     pub colours: &'a [Rgb],
-    pub crisp: bool,
+    pub finish: Finish,
+}
+
+/// How colours and light meet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Finish {
+    /// Full light and shade.
+    Bare,
+    /// Colours run into each other, and are shaded so little that a legend still holds.
+    Values,
+    /// As values, but each point has the part of a triangle that is nearest to it to itself.
+    Classes,
+}
+
+impl Finish {
+    /// How much of light and shade reaches the colour.
+    fn relief(self) -> f64 {
+        if self == Finish::Bare { 1.0 } else { 0.5 }
+    }
 }
 
 /// Where a picture is taken from, and how large.
@@ -69,15 +86,9 @@ impl Image {
         let mut encoder = png::Encoder::new(&mut bytes, self.width as u32, self.height as u32);
         encoder.set_color(png::ColorType::Rgba);
         encoder.set_depth(png::BitDepth::Eight);
-        let wrap = |source| PngError {
-            width: self.width,
-            height: self.height,
-            source,
-        };
+        let wrap = |source| PngError { width: self.width, height: self.height, source };
         let mut writer = encoder.write_header().map_err(wrap)?;
-        writer
-            .write_image_data(self.pixels.as_flattened())
-            .map_err(wrap)?;
+        writer.write_image_data(self.pixels.as_flattened()).map_err(wrap)?;
         writer.finish().map_err(wrap)?;
         Ok(bytes)
     }
@@ -89,6 +100,7 @@ pub fn draw(surface: &Painted, shot: &Shot) -> Image {
     let scale = SAMPLES as f64 / shot.millimetres_per_pixel;
     let normals = point_normals(surface);
     let openness = openness(surface, &normals);
+    let relief = surface.finish.relief();
     let corners: Vec<Corner> = surface
         .points
         .iter()
@@ -101,13 +113,13 @@ pub fn draw(surface: &Painted, shot: &Shot) -> Image {
                 y: (shot.centre[1] - up) * scale + samples.height as f64 / 2.0,
                 depth: towards,
                 normal: Vector::from(shot.camera.project(normal)),
-                albedo: linear(surface.colours[point]) * openness[point],
+                albedo: linear(surface.colours[point]) * (1.0 - relief * (1.0 - openness[point])),
             }
         })
         .collect();
     for triangle in surface.triangles {
         let [a, b, c] = triangle.map(|point| &corners[point as usize]);
-        samples.fill([a, b, c], surface.crisp);
+        samples.fill([a, b, c], surface.finish);
     }
     samples.resolve()
 }
@@ -139,10 +151,9 @@ fn openness(surface: &Painted, normals: &[Vector]) -> Vec<f64> {
             let [from, to] = [from as usize, to as usize];
             let edge = surface.points[to] - surface.points[from];
             if let Some(direction) = edge.try_normalize(1e-12) {
-                for (point, slope) in [
-                    (from, normals[from].dot(&direction)),
-                    (to, -normals[to].dot(&direction)),
-                ] {
+                for (point, slope) in
+                    [(from, normals[from].dot(&direction)), (to, -normals[to].dot(&direction))]
+                {
                     rise[point].0 += slope;
                     rise[point].1 += 1.0;
                 }
@@ -183,7 +194,7 @@ impl Samples {
         }
     }
 
-    fn fill(&mut self, corners: [&Corner; 3], crisp: bool) {
+    fn fill(&mut self, corners: [&Corner; 3], finish: Finish) {
         let [a, b, c] = corners;
         let twice_area = (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y);
         if !twice_area.is_finite() || twice_area.abs() < 1e-12 {
@@ -210,7 +221,7 @@ impl Samples {
                 let depth = a.depth * weights[0] + b.depth * weights[1] + c.depth * weights[2];
                 if depth > self.depth[sample] {
                     self.depth[sample] = depth;
-                    let light = shade(corners, weights, from_front, crisp);
+                    let light = shade(corners, weights, from_front, finish);
                     self.intensity[sample] = [light.x as f32, light.y as f32, light.z as f32];
                 }
             }
@@ -242,16 +253,12 @@ impl Samples {
                 pixels.push([r as u8, g as u8, b as u8, opacity as u8]);
             }
         }
-        Image {
-            width,
-            height,
-            pixels,
-        }
+        Image { width, height, pixels }
     }
 }
 
 /// Light towards the viewer: a key light from the upper left, a fill light from the right.
-fn shade(corners: [&Corner; 3], weights: [f64; 3], from_front: bool, crisp: bool) -> Vector {
+fn shade(corners: [&Corner; 3], weights: [f64; 3], from_front: bool, finish: Finish) -> Vector {
     const KEY: [f64; 3] = [-0.45, 0.62, 0.64];
     const FILL: [f64; 3] = [0.77, 0.05, 0.64];
     let mix = |part: fn(&Corner) -> Vector| {
@@ -259,19 +266,14 @@ fn shade(corners: [&Corner; 3], weights: [f64; 3], from_front: bool, crisp: bool
             + part(corners[1]) * weights[1]
             + part(corners[2]) * weights[2]
     };
-    let mut normal = mix(|corner| corner.normal)
-        .try_normalize(1e-12)
-        .unwrap_or_else(Vector::z);
+    let mut normal = mix(|corner| corner.normal).try_normalize(1e-12).unwrap_or_else(Vector::z);
     if !from_front {
         normal = -normal;
     }
     let albedo = if !from_front {
         linear(BACK)
-    } else if crisp {
-        let nearest = (1..3).fold(
-            0,
-            |best, k| if weights[k] > weights[best] { k } else { best },
-        );
+    } else if finish == Finish::Classes {
+        let nearest = (1..3).fold(0, |best, k| if weights[k] > weights[best] { k } else { best });
         corners[nearest].albedo
     } else {
         mix(|corner| corner.albedo)
@@ -280,7 +282,9 @@ fn shade(corners: [&Corner; 3], weights: [f64; 3], from_front: bool, crisp: bool
     let skylight = 0.26 + 0.10 * normal.y;
     let halfway = Vector::new(KEY[0], KEY[1], KEY[2] + 1.0).normalize();
     let highlight = 0.05 * normal.dot(&halfway).max(0.0).powi(24);
-    albedo * (skylight + 0.72 * key + 0.22 * fill) + Vector::repeat(highlight)
+    let light = skylight + 0.72 * key + 0.22 * fill;
+    let relief = finish.relief();
+    albedo * (1.0 - relief * (1.0 - light)) + Vector::repeat(highlight * relief)
 }
 
 #[cfg(test)]
@@ -329,14 +333,10 @@ mod tests {
             points: &points,
             triangles: &triangles,
             colours: &colours,
-            crisp: false,
+            finish: Finish::Bare,
         };
         let image = draw(&surface, &shot(Outlook::lps(), 100));
-        let covered: f64 = image
-            .pixels
-            .iter()
-            .map(|pixel| f64::from(pixel[3]) / 255.0)
-            .sum();
+        let covered: f64 = image.pixels.iter().map(|pixel| f64::from(pixel[3]) / 255.0).sum();
         let disc = std::f64::consts::PI * 40.0 * 40.0;
         // The polyhedron's outline lies inside the circle by 0.2 % of its area.
         assert!((covered / disc - 1.0).abs() < 0.01, "{covered} of {disc}");
@@ -357,7 +357,7 @@ mod tests {
             points: &points,
             triangles: &triangles,
             colours: &colours,
-            crisp: true,
+            finish: Finish::Classes,
         };
         let mut view = shot(Outlook::lps(), 101);
         for (around, red_wins) in [(0.0, true), (180.0, false)] {
@@ -376,7 +376,7 @@ mod tests {
             points: &points,
             triangles: &triangles,
             colours: &colours,
-            crisp: false,
+            finish: Finish::Bare,
         };
         let image = draw(&surface, &shot(Outlook::lps(), 100));
         assert!(image.pixels.iter().filter(|pixel| pixel[3] > 0).count() > 4000);

@@ -31,12 +31,7 @@ pub enum Anchor {
 
 impl Style {
     pub fn of(size: f64) -> Self {
-        Style {
-            size,
-            bold: false,
-            faint: false,
-            anchor: Anchor::Start,
-        }
+        Style { size, bold: false, faint: false, anchor: Anchor::Start }
     }
 
     pub fn bold(self) -> Self {
@@ -44,17 +39,11 @@ impl Style {
     }
 
     pub fn faint(self) -> Self {
-        Style {
-            faint: true,
-            ..self
-        }
+        Style { faint: true, ..self }
     }
 
     pub fn middle(self) -> Self {
-        Style {
-            anchor: Anchor::Middle,
-            ..self
-        }
+        Style { anchor: Anchor::Middle, ..self }
     }
 }
 
@@ -76,20 +65,11 @@ pub struct Document {
 
 impl Document {
     pub fn new(width: f64, height: f64) -> Self {
-        Document {
-            body: String::new(),
-            width,
-            height,
-        }
+        Document { body: String::new(), width, height }
     }
 
     pub fn rectangle(&mut self, place: Place, fill: &str, corner: f64) {
-        let Place {
-            x,
-            y,
-            width,
-            height,
-        } = place;
+        let Place { x, y, width, height } = place;
         self.body += &format!(
             "<rect x=\"{x:.1}\" y=\"{y:.1}\" width=\"{width:.1}\" height=\"{height:.1}\" rx=\"{corner}\" fill=\"{fill}\"/>\n"
         );
@@ -129,12 +109,7 @@ impl Document {
     }
 
     pub fn image(&mut self, place: Place, image: &Image) -> Result<(), PngError> {
-        let Place {
-            x,
-            y,
-            width,
-            height,
-        } = place;
+        let Place { x, y, width, height } = place;
         let encoded = base64::engine::general_purpose::STANDARD.encode(image.to_png()?);
         self.body += &format!(
             "<image x=\"{x:.1}\" y=\"{y:.1}\" width=\"{width:.1}\" height=\"{height:.1}\" href=\"data:image/png;base64,{encoded}\"/>\n"
@@ -144,11 +119,7 @@ impl Document {
 
     /// The whole document.
     pub fn finish(self, title: &str) -> String {
-        let Document {
-            body,
-            width,
-            height,
-        } = self;
+        let Document { body, width, height } = self;
         format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width:.0} {height:.0}\" width=\"{width:.0}\" height=\"{height:.0}\" font-family=\"Helvetica, Arial, 'DejaVu Sans', sans-serif\">\n<title>{}</title>\n<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n{body}</svg>\n",
             escaped(title),
@@ -258,14 +229,7 @@ mod tests {
         let style = Style::of(12.0);
         let lines = wrapped("mean 1.2 mm, median 0.8 mm, largest 6.1 mm", 130.0, style);
         assert!(lines.len() > 1);
-        assert!(
-            lines
-                .iter()
-                .all(|line| estimated_width(line, style) <= 130.0)
-        );
-        assert_eq!(
-            lines.join(" "),
-            "mean 1.2 mm, median 0.8 mm, largest 6.1 mm"
-        );
+        assert!(lines.iter().all(|line| estimated_width(line, style) <= 130.0));
+        assert_eq!(lines.join(" "), "mean 1.2 mm, median 0.8 mm, largest 6.1 mm");
     }
 }

@@ -13,18 +13,12 @@ pub struct Outlook {
 impl Outlook {
     /// Left, posterior, superior: the face looks along -y.
     pub fn lps() -> Self {
-        Outlook {
-            front: -Vector::y(),
-            up: Vector::z(),
-        }
+        Outlook { front: -Vector::y(), up: Vector::z() }
     }
 
     /// Right, anterior, superior: the face looks along +y.
     pub fn ras() -> Self {
-        Outlook {
-            front: Vector::y(),
-            up: Vector::z(),
-        }
+        Outlook { front: Vector::y(), up: Vector::z() }
     }
 
     /// The camera of somebody who has walked `around` degrees to the right of the person in front
@@ -40,11 +34,7 @@ impl Outlook {
         let level = front * cos + right * sin;
         let (sin_above, cos_above) = above.to_radians().sin_cos();
         let towards = level * cos_above + up * sin_above;
-        Camera {
-            right: up.cross(&level),
-            up: up * cos_above - level * sin_above,
-            towards,
-        }
+        Camera { right: up.cross(&level), up: up * cos_above - level * sin_above, towards }
     }
 }
 
@@ -73,19 +63,12 @@ pub struct Extent {
 impl Camera {
     /// Right, up and towards the viewer, in mm.
     pub fn project(&self, point: &Vector) -> [f64; 3] {
-        [
-            self.right.dot(point),
-            self.up.dot(point),
-            self.towards.dot(point),
-        ]
+        [self.right.dot(point), self.up.dot(point), self.towards.dot(point)]
     }
 
     /// What all the points cover; the unit square when there are none.
     pub fn extent<'a>(&self, points: impl Iterator<Item = &'a Vector>) -> Extent {
-        let mut extent = Extent {
-            low: [f64::INFINITY; 2],
-            high: [f64::NEG_INFINITY; 2],
-        };
+        let mut extent = Extent { low: [f64::INFINITY; 2], high: [f64::NEG_INFINITY; 2] };
         for point in points {
             let [right, up, _] = self.project(point);
             extent.low = [extent.low[0].min(right), extent.low[1].min(up)];
@@ -94,10 +77,7 @@ impl Camera {
         if (0..2).all(|axis| extent.low[axis].is_finite() && extent.high[axis].is_finite()) {
             extent
         } else {
-            Extent {
-                low: [0.0; 2],
-                high: [1.0; 2],
-            }
+            Extent { low: [0.0; 2], high: [1.0; 2] }
         }
     }
 }
@@ -126,9 +106,7 @@ pub fn front_of(points: &[Vector], triangles: &[[u32; 3]], up: Vector) -> Vector
         sum += normal;
     }
     let level = sum - up * up.dot(&sum);
-    level
-        .try_normalize(1e-6 * area)
-        .unwrap_or_else(|| least_aligned(&up))
+    level.try_normalize(1e-6 * area).unwrap_or_else(|| least_aligned(&up))
 }
 
 #[cfg(test)]
@@ -149,14 +127,8 @@ mod tests {
 
     #[test]
     fn a_camera_is_orthonormal_and_right_handed() {
-        let odd = Outlook {
-            front: Vector::new(-3.0, 1.0, 2.0),
-            up: Vector::new(0.1, 0.0, 4.0),
-        };
-        let blind = Outlook {
-            front: Vector::z(),
-            up: Vector::z(),
-        };
+        let odd = Outlook { front: Vector::new(-3.0, 1.0, 2.0), up: Vector::new(0.1, 0.0, 4.0) };
+        let blind = Outlook { front: Vector::z(), up: Vector::z() };
         for camera in [odd.camera(40.0, 15.0), blind.camera(-170.0, -20.0)] {
             assert!((camera.right.cross(&camera.up) - camera.towards).norm() < 1e-12);
             assert!((camera.up.norm() - 1.0).abs() < 1e-12);
@@ -166,11 +138,8 @@ mod tests {
     #[test]
     fn the_front_is_where_the_mean_normal_points() {
         // A tent that looks along -x and a little down.
-        let points = [
-            Vector::new(0.0, -1.0, 0.0),
-            Vector::new(0.0, 1.0, 0.0),
-            Vector::new(0.3, 0.0, -2.0),
-        ];
+        let points =
+            [Vector::new(0.0, -1.0, 0.0), Vector::new(0.0, 1.0, 0.0), Vector::new(0.3, 0.0, -2.0)];
         let front = front_of(&points, &[[0, 1, 2]], Vector::z());
         assert!((front + Vector::x()).norm() < 1e-12);
         let closed = front_of(&points, &[[0, 1, 2], [0, 2, 1]], Vector::z());

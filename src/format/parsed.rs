@@ -237,8 +237,8 @@ fn orient(
     }
     if all > 0 && reversed == all {
         reverse_all(mesh, shape);
-        // The documentation of VTK and its code disagree about wedges, so that neither order of
-        // their triangles is a mistake.
+        // The documentation of VTK and its quality filters disagree about wedges, and meshio
+        // follows the former, so that neither order of their nodes is a mistake.
         if shape != CellShape::Wedge6 {
             let detail =
                 format!("all {all} {} cells were inverted and are reordered", shape.name());

@@ -91,23 +91,31 @@ impl VtkFile {
         self.text.into_bytes()
     }
 
-    /// The frame under the name that 3D Slicer uses, then the texts of the caller.
-    pub fn field_data(&mut self, frame: Frame, texts: &[(String, String)]) {
+    /// The frame as 3D Slicer marks it, then the texts of the caller, all as string arrays.
+    pub fn field_strings(&mut self, frame: Frame, texts: &[(String, String)]) {
         self.section("FieldData", |file| {
-            file.string("SPACE", frame.name());
-            for (name, text) in texts {
-                file.string(name, text);
+            for (name, text) in once_more(("SPACE", frame.name()), texts) {
+                file.field(("Array", "String"), name, 1, &zero_ended(text));
             }
         });
     }
 
-    /// VTK writes strings as the numbers of their bytes with a zero behind.
-    fn string(&mut self, name: &str, text: &str) {
-        let mut codes: String = text.bytes().map(|byte| format!("{byte} ")).collect();
-        codes.push('0');
+    /// The same without string arrays, which meshio refuses to read: the frame is the name of an
+    /// array, and texts are arrays of their bytes.
+    pub fn field_bytes(&mut self, frame: Frame, texts: &[(String, String)]) {
+        self.section("FieldData", |file| {
+            let mark = format!("SPACE={}", frame.name());
+            file.field(("DataArray", "UInt8"), &mark, 1, "1");
+            for (name, text) in texts {
+                file.field(("DataArray", "UInt8"), name, text.len(), &codes(text));
+            }
+        });
+    }
+
+    fn field(&mut self, (tag, kind): (&str, &str), name: &str, tuples: usize, content: &str) {
         let name = quick_xml::escape::escape(name);
         self.text.push_str(&format!(
-            "<Array type=\"String\" Name=\"{name}\" NumberOfTuples=\"1\" format=\"ascii\">\n{codes}\n</Array>\n"
+            "<{tag} type=\"{kind}\" Name=\"{name}\" NumberOfTuples=\"{tuples}\" format=\"ascii\">\n{content}\n</{tag}>\n"
         ));
     }
 
@@ -133,8 +141,13 @@ impl VtkFile {
 
     pub fn array(&mut self, name: &str, components: usize, numbers: Numbers) {
         let name = quick_xml::escape::escape(name);
+        // One component is the default, and meshio makes columns of arrays that name it.
+        let components = match components {
+            1 => String::new(),
+            several => format!(" NumberOfComponents=\"{several}\""),
+        };
         self.text.push_str(&format!(
-            "<DataArray type=\"{}\" Name=\"{name}\" NumberOfComponents=\"{components}\" format=\"binary\">\n",
+            "<DataArray type=\"{}\" Name=\"{name}\"{components} format=\"binary\">\n",
             numbers.type_name()
         ));
         let (header, data) = compressed(&numbers.little_endian());
@@ -142,6 +155,24 @@ impl VtkFile {
         STANDARD.encode_string(data, &mut self.text);
         self.text.push_str("\n</DataArray>\n");
     }
+}
+
+fn once_more<'a>(
+    first: (&'a str, &'a str),
+    others: &'a [(String, String)],
+) -> impl Iterator<Item = (&'a str, &'a str)> {
+    let others = others.iter().map(|(name, text)| (name.as_str(), text.as_str()));
+    std::iter::once(first).chain(others)
+}
+
+fn codes(text: &str) -> String {
+    let codes: Vec<String> = text.bytes().map(|byte| byte.to_string()).collect();
+    codes.join(" ")
+}
+
+/// VTK writes strings as the numbers of their bytes with a zero behind.
+fn zero_ended(text: &str) -> String {
+    format!("{} 0", codes(text)).trim_start().to_string()
 }
 
 /// The block header and the blocks.

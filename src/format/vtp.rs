@@ -79,7 +79,7 @@ pub fn write(output: &SurfaceOutput) -> Result<Vec<u8>, WriteError> {
     output.check()?;
     let surface = output.surface;
     let mut file = VtkFile::new("PolyData");
-    file.field_data(output.frame, &output.field_data);
+    file.field_strings(output.frame, &output.field_data);
     file.open(&format!(
         "Piece NumberOfPoints=\"{}\" NumberOfVerts=\"0\" NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"{}\"",
         surface.points.len(),

@@ -49,10 +49,14 @@ impl<'a> Observed<'a> {
     /// What a prediction that failed means for the job: one that stopped may have run out of time.
     pub fn judge(&self, error: PredictionError) -> JobError {
         match error {
-            PredictionError::Cancelled if !self.inner.is_cancelled() => self.over_budget(),
-            PredictionError::Cancelled => JobError::Cancelled,
+            PredictionError::Cancelled => self.stopped(),
             other => other.into(),
         }
+    }
+
+    /// Why work that was told to stop was told so.
+    pub fn stopped(&self) -> JobError {
+        if self.inner.is_cancelled() { JobError::Cancelled } else { self.over_budget() }
     }
 
     /// The time of each phase so far.

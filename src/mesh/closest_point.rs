@@ -75,7 +75,8 @@ impl SurfaceSearch {
     /// Triangles without area are left out; a surface that has no others is refused.
     pub fn new(surface: &TriangleSurface) -> Result<Self, SearchError> {
         check(surface)?;
-        let origin = middle(surface);
+        let (low, high) = surface.bounds();
+        let origin = (low + high) * 0.5;
         let local = |point: &Vector| to_parry(&(point - origin));
         let mut triangles = Vec::with_capacity(surface.triangles.len());
         let mut numbers = Vec::with_capacity(surface.triangles.len());
@@ -190,20 +191,6 @@ fn check(surface: &TriangleSurface) -> Result<(), SearchError> {
         Some(point) => Err(SearchError::NotFinite { point }),
         None => Ok(()),
     }
-}
-
-/// The middle of the box around all points.
-fn middle(surface: &TriangleSurface) -> Vector {
-    let mut lower = Vector::repeat(f64::INFINITY);
-    let mut upper = Vector::repeat(f64::NEG_INFINITY);
-    for point in &surface.points {
-        lower = lower.inf(point);
-        upper = upper.sup(point);
-    }
-    if surface.points.is_empty() {
-        return Vector::zeros();
-    }
-    (lower + upper) * 0.5
 }
 
 fn has_area(a: &Vector, b: &Vector, c: &Vector) -> bool {

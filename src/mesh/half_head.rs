@@ -19,7 +19,8 @@ pub const LAYERS: [&str; 4] = ["deep", "muscle", "fat", "skin"];
 #[derive(Clone, Debug, PartialEq)]
 pub struct HalfHead {
     /// Cell array `layer` (see [`LAYERS`]); node sets `maxilla`, `mandible` and `skull` on bone,
-    /// `rim` on the cut faces and `skin`, whose outermost nodes are also those of the rim.
+    /// `rim` on the cut faces and `skin`, whose outermost nodes are also those of the rim, with its
+    /// parts `nose`, `lips` and `chin`.
     pub mesh: VolumeMesh,
     /// `maxilla`, `mandible` and `skull`: bone under the tissue, its normals towards the tissue.
     pub bones: BTreeMap<&'static str, TriangleSurface>,
@@ -30,63 +31,24 @@ pub struct HalfHead {
 /// A half head with 9 n rows, 8 n columns and 4 layers of cells, 1728 n² tetrahedra; n at least 1.
 pub fn half_head(fineness: usize) -> HalfHead {
     let grid = Grid::of(fineness.max(1));
-    let mut nodes = vec![Vector::zeros(); 5 * grid.sheet_nodes()];
-    let mut sets = NodeSets::default();
-    for row in 0..=grid.rows {
-        for place in 0..grid.row_nodes() {
-            let (row_of_profile, angle) = (grid.row(row), grid.angle(grid.column_at(place)));
-            for (layer, mut point) in column(row_of_profile, angle.abs()).into_iter().enumerate() {
-                // Both sides come from the same angle, so that they mirror to the last bit.
-                point.x = if angle == 0.0 {
-                    0.0
-                } else {
-                    point.x.abs().copysign(angle)
-                };
-                nodes[grid.node(layer, row, place)] = point;
-            }
-        }
-    }
-    for layer in 0..5 {
-        for row in 0..=grid.rows {
-            for place in 0..grid.row_nodes() {
-                let node = grid.node(layer, row, place) as u32;
-                let angle = grid.angle(grid.column_at(place));
-                let rim = row == 0
-                    || row == grid.rows
-                    || grid.column_at(place).abs() == grid.half_columns;
-                sets.push("rim", node, rim);
-                sets.push("skin", node, layer == 4);
-                if layer == 0 && !rim {
-                    let bone = bone_at(grid.row(row), angle.abs(), nodes[node as usize].x.abs());
-                    for name in BONES {
-                        sets.push(name, node, bone == Some(name));
-                    }
-                }
-            }
-        }
-    }
+    let nodes = grid.nodes();
     let mesh = VolumeMesh {
-        cells: layers_of(
-            &grid.quads(),
-            grid.sheet_nodes(),
-            4,
-            CellShape::Tet4,
-            &nodes,
-        ),
+        cells: layers_of(&grid.quads(), grid.sheet_nodes(), 4, CellShape::Tet4, &nodes),
         cell_labels: BTreeMap::from([("layer".to_owned(), grid.layer_labels())]),
-        node_sets: sets.0,
+        node_sets: grid.node_sets(&nodes),
         nodes,
         ..VolumeMesh::default()
     };
     HalfHead {
-        bones: BONES
-            .into_iter()
-            .map(|name| (name, bone_surface(&mesh, name)))
-            .collect(),
+        bones: BONES.into_iter().map(|name| (name, bone_surface(&mesh, name))).collect(),
         landmarks: grid.landmarks(&mesh.nodes),
         mesh,
     }
 }
+
+/// Parts of the skin by rows and half width in mm.
+const SKIN_REGIONS: [(&str, std::ops::RangeInclusive<f64>, f64); 3] =
+    [("nose", 33.5..=44.0, 18.0), ("lips", 23.0..=31.5, 26.0), ("chin", 11.0..=20.0, 24.0)];
 
 const BONES: [&str; 3] = ["maxilla", "mandible", "skull"];
 
@@ -128,10 +90,7 @@ struct Grid {
 
 impl Grid {
     fn of(fineness: usize) -> Self {
-        Grid {
-            rows: 9 * fineness,
-            half_columns: 4 * fineness as isize,
-        }
+        Grid { rows: 9 * fineness, half_columns: 4 * fineness as isize }
     }
 
     fn row_nodes(&self) -> usize {
@@ -154,11 +113,7 @@ impl Grid {
     }
 
     fn place_of(column: isize) -> usize {
-        if column > 0 {
-            2 * column as usize - 1
-        } else {
-            2 * column.unsigned_abs()
-        }
+        if column > 0 { 2 * column as usize - 1 } else { 2 * column.unsigned_abs() }
     }
 
     fn row(&self, row: usize) -> f64 {
@@ -171,6 +126,46 @@ impl Grid {
         SIDE_ANGLE * share * (0.62 + 0.38 * share * share)
     }
 
+    /// Layer by layer from the bone out.
+    fn nodes(&self) -> Vec<Vector> {
+        let mut nodes = vec![Vector::zeros(); 5 * self.sheet_nodes()];
+        for row in 0..=self.rows {
+            for place in 0..self.row_nodes() {
+                let angle = self.angle(self.column_at(place));
+                let across = column(self.row(row), angle.abs());
+                for (layer, mut point) in across.into_iter().enumerate() {
+                    // Both sides come from the same angle, so that they mirror to the last bit.
+                    point.x = if angle == 0.0 { 0.0 } else { point.x.abs().copysign(angle) };
+                    nodes[self.node(layer, row, place)] = point;
+                }
+            }
+        }
+        nodes
+    }
+
+    fn node_sets(&self, nodes: &[Vector]) -> BTreeMap<String, Vec<u32>> {
+        let mut sets = NodeSets::default();
+        for (number, point) in nodes.iter().enumerate() {
+            let node = number as u32;
+            let layer = number / self.sheet_nodes();
+            let in_sheet = number % self.sheet_nodes();
+            let (row, place) = (in_sheet / self.row_nodes(), in_sheet % self.row_nodes());
+            let (column, row_of_profile) = (self.column_at(place), self.row(row));
+            let rim = row == 0 || row == self.rows || column.abs() == self.half_columns;
+            sets.push("rim", node, rim);
+            sets.push("skin", node, layer == 4);
+            for (name, rows, half_width) in SKIN_REGIONS {
+                let inside = rows.contains(&row_of_profile) && point.x.abs() < half_width;
+                sets.push(name, node, layer == 4 && inside);
+            }
+            let bone = bone_at(row_of_profile, self.angle(column).abs(), point.x.abs());
+            for name in BONES {
+                sets.push(name, node, layer == 0 && !rim && bone == Some(name));
+            }
+        }
+        sets.0
+    }
+
     /// Row by row from the right; cut along their diagonal 0-2, which leads outwards and up.
     fn quads(&self) -> Vec<[u32; 4]> {
         let mut quads = Vec::new();
@@ -179,11 +174,7 @@ impl Grid {
                 let at = |row: usize, column| self.node(0, row, Self::place_of(column)) as u32;
                 let [a, b] = [at(row, column), at(row, column + 1)];
                 let [c, d] = [at(row + 1, column + 1), at(row + 1, column)];
-                quads.push(if column < 0 {
-                    [b, c, d, a]
-                } else {
-                    [a, b, c, d]
-                });
+                quads.push(if column < 0 { [b, c, d, a] } else { [a, b, c, d] });
             }
         }
         quads
@@ -198,10 +189,7 @@ impl Grid {
                 let middle = self.row(row) + self.row(1) / 2.0;
                 let muscle = (19.5..34.5).contains(&middle);
                 let label = if layer == 1 && !muscle { 2 } else { layer };
-                labels.extend(std::iter::repeat_n(
-                    label,
-                    6 * 2 * self.half_columns as usize,
-                ));
+                labels.extend(std::iter::repeat_n(label, 6 * 2 * self.half_columns as usize));
             }
         }
         labels

@@ -2,22 +2,16 @@ use super::*;
 
 /// Dihedral angles in degrees: between the faces that meet at each edge.
 fn dihedral_angles(corners: [Vector; 4]) -> [f64; 6] {
-    [
-        [0, 1, 2, 3],
-        [0, 2, 1, 3],
-        [0, 3, 1, 2],
-        [1, 2, 0, 3],
-        [1, 3, 0, 2],
-        [2, 3, 0, 1],
-    ]
-    .map(|[a, b, c, d]| {
-        let edge = (corners[b] - corners[a]).normalize();
-        let [p, q] = [c, d].map(|other| {
-            let side = corners[other] - corners[a];
-            side - edge * edge.dot(&side)
-        });
-        p.angle(&q).to_degrees()
-    })
+    [[0, 1, 2, 3], [0, 2, 1, 3], [0, 3, 1, 2], [1, 2, 0, 3], [1, 3, 0, 2], [2, 3, 0, 1]].map(
+        |[a, b, c, d]| {
+            let edge = (corners[b] - corners[a]).normalize();
+            let [p, q] = [c, d].map(|other| {
+                let side = corners[other] - corners[a];
+                side - edge * edge.dot(&side)
+            });
+            p.angle(&q).to_degrees()
+        },
+    )
 }
 
 fn corners_of(mesh: &VolumeMesh, cell: usize) -> [Vector; 4] {
@@ -35,10 +29,7 @@ fn the_demo_has_about_sixty_thousand_sound_tetrahedra() {
         assert!(a.cross(&b).dot(&c) > 0.0, "cell {cell}");
         let angles = dihedral_angles(corners);
         // The worst is 5.1 degrees, below the lips, where 2 mm of skin meet cells of 8 mm.
-        assert!(
-            angles.iter().all(|&angle| angle > 4.5 && angle < 170.0),
-            "{angles:?}"
-        );
+        assert!(angles.iter().all(|&angle| angle > 4.5 && angle < 170.0), "{angles:?}");
     }
 }
 
@@ -51,20 +42,14 @@ fn the_tissue_is_as_thick_as_faces_are() {
         .collect();
     let least = thickness.iter().copied().fold(f64::INFINITY, f64::min);
     let most = thickness.iter().copied().fold(0.0, f64::max);
-    assert!(
-        least > 5.5 && most < 17.5 && most > 2.0 * least,
-        "{least} to {most} mm"
-    );
+    assert!(least > 5.5 && most < 17.5 && most > 2.0 * least, "{least} to {most} mm");
 }
 
 #[test]
 fn the_half_head_mirrors_in_the_middle_of_the_face() {
     let mesh = half_head(2).mesh;
     let bits = |p: &Vector| [p.x + 0.0, p.y, p.z].map(f64::to_bits);
-    let node_at: BTreeMap<_, u32> = (0u32..)
-        .zip(&mesh.nodes)
-        .map(|(n, p)| (bits(p), n))
-        .collect();
+    let node_at: BTreeMap<_, u32> = (0u32..).zip(&mesh.nodes).map(|(n, p)| (bits(p), n)).collect();
     let mirrored = |node: u32| {
         let p = mesh.nodes[node as usize];
         node_at[&bits(&Vector::new(-p.x, p.y, p.z))]
@@ -113,22 +98,12 @@ fn bones_are_apart_and_far_enough_not_to_tear() {
 #[test]
 fn bone_surfaces_look_at_the_tissue() {
     let head = half_head(2);
-    assert_eq!(
-        head.bones.keys().copied().collect::<Vec<_>>(),
-        ["mandible", "maxilla", "skull"]
-    );
+    assert_eq!(head.bones.keys().copied().collect::<Vec<_>>(), ["mandible", "maxilla", "skull"]);
     for (name, bone) in &head.bones {
         let nodes = bone.node_ids.as_ref().unwrap();
-        assert!(
-            nodes
-                .iter()
-                .all(|node| head.mesh.node_sets[*name].contains(node))
-        );
+        assert!(nodes.iter().all(|node| head.mesh.node_sets[*name].contains(node)));
         let sum: Vector = (0..bone.triangles.len()).map(|t| bone.area_vector(t)).sum();
-        assert!(
-            sum.y < -0.5 * sum.norm() && bone.area() > 100.0,
-            "{name}: {sum:?}"
-        );
+        assert!(sum.y < -0.5 * sum.norm() && bone.area() > 100.0, "{name}: {sum:?}");
     }
 }
 
@@ -149,19 +124,21 @@ fn landmarks_follow_each_other_down_the_profile() {
     ];
     let heights = order.map(|name| head.landmarks[name].z);
     assert!(heights.is_sorted_by(|a, b| a > b), "{heights:?}");
-    let most_forward = head
-        .mesh
-        .nodes
-        .iter()
-        .map(|p| p.y)
-        .fold(f64::INFINITY, f64::min);
+    let most_forward = head.mesh.nodes.iter().map(|p| p.y).fold(f64::INFINITY, f64::min);
     assert_eq!(head.landmarks["pronasale"].y, most_forward);
-    let on_skin = |p: &Vector| {
-        head.mesh.node_sets["skin"]
-            .iter()
-            .any(|&n| head.mesh.nodes[n as usize] == *p)
-    };
+    let on_skin =
+        |p: &Vector| head.mesh.node_sets["skin"].iter().any(|&n| head.mesh.nodes[n as usize] == *p);
     assert!(head.landmarks.values().all(on_skin));
+}
+
+#[test]
+fn parts_of_the_skin_hold_their_landmarks() {
+    let HalfHead { mesh, landmarks, .. } = half_head(STANDARD_FINENESS);
+    for (part, landmark) in [("nose", "pronasale"), ("lips", "stomion"), ("chin", "pogonion")] {
+        let set = &mesh.node_sets[part];
+        assert!(set.iter().any(|&node| mesh.nodes[node as usize] == landmarks[landmark]));
+        assert!(set.iter().all(|node| mesh.node_sets["skin"].contains(node)));
+    }
 }
 
 #[test]
@@ -174,9 +151,6 @@ fn every_layer_has_cells_and_muscle_is_a_band() {
     }
     for (cell, &label) in labels.iter().enumerate() {
         let middle = corners_of(&mesh, cell).iter().sum::<Vector>() / 4.0;
-        assert!(
-            label != 1 || (-75.0..0.0).contains(&middle.z),
-            "muscle at {middle:?}"
-        );
+        assert!(label != 1 || (-75.0..0.0).contains(&middle.z), "muscle at {middle:?}");
     }
 }

@@ -1,13 +1,16 @@
 //! What was scanned: volume meshes of soft tissue and triangle surfaces, node positions in mm.
 
+pub mod area_sampling;
 pub mod check;
 pub mod closest_point;
 pub mod connectivity;
 mod face_shape;
 pub mod frame;
 pub mod half_head;
-pub mod refinement;
+pub mod jacobian;
 pub mod orientation;
+pub mod quality;
+pub mod refinement;
 pub mod sample;
 pub mod surface;
 pub mod surface_edges;

@@ -125,9 +125,14 @@ impl VolumeMesh {
         let nodes = self.cells.nodes_mut(cell);
         match shape {
             CellShape::Tet4 => nodes.swap(1, 2),
-            CellShape::Hex8 | CellShape::Wedge6 => {
-                let (bottom, top) = nodes.split_at_mut(shape.node_count() / 2);
+            CellShape::Hex8 => {
+                let (bottom, top) = nodes.split_at_mut(4);
                 bottom.swap_with_slice(top);
+            }
+            // The way in which the two conventions for wedges in VTK files differ.
+            CellShape::Wedge6 => {
+                nodes.swap(1, 2);
+                nodes.swap(4, 5);
             }
         }
     }

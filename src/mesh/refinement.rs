@@ -50,12 +50,7 @@ pub fn refine(mesh: &VolumeMesh) -> VolumeMesh {
         }),
         node_vectors: each(&mesh.node_vectors, |vectors| {
             let mut all = vectors.clone();
-            all.extend(
-                division
-                    .parents
-                    .iter()
-                    .map(|parents| mean(parents, vectors)),
-            );
+            all.extend(division.parents.iter().map(|parents| mean(parents, vectors)));
             all
         }),
         nodes: division.nodes,
@@ -67,10 +62,7 @@ fn each<T>(
     arrays: &BTreeMap<String, Vec<T>>,
     refined: impl Fn(&Vec<T>) -> Vec<T>,
 ) -> BTreeMap<String, Vec<T>> {
-    arrays
-        .iter()
-        .map(|(name, values)| (name.clone(), refined(values)))
-        .collect()
+    arrays.iter().map(|(name, values)| (name.clone(), refined(values))).collect()
 }
 
 fn children(cell: &u32) -> std::ops::Range<u32> {
@@ -89,16 +81,11 @@ impl Parents {
         let mut sorted = [u32::MAX; 8];
         sorted[..nodes.len()].copy_from_slice(nodes);
         sorted[..nodes.len()].sort_unstable();
-        Parents {
-            nodes: sorted,
-            count: nodes.len() as u8,
-        }
+        Parents { nodes: sorted, count: nodes.len() as u8 }
     }
 
     fn iter(&self) -> impl Iterator<Item = usize> + '_ {
-        self.nodes[..self.count as usize]
-            .iter()
-            .map(|&node| node as usize)
+        self.nodes[..self.count as usize].iter().map(|&node| node as usize)
     }
 }
 
@@ -117,12 +104,7 @@ struct Division<'a> {
 
 impl<'a> Division<'a> {
     fn of(mesh: &'a VolumeMesh) -> Self {
-        Division {
-            mesh,
-            nodes: mesh.nodes.clone(),
-            parents: Vec::new(),
-            number_of: HashMap::new(),
-        }
+        Division { mesh, nodes: mesh.nodes.clone(), parents: Vec::new(), number_of: HashMap::new() }
     }
 
     /// The node in the middle of these nodes; a single node is its own middle.
@@ -167,10 +149,7 @@ impl<'a> Division<'a> {
         }
         let ([from, to], ring) = shortest;
         for side in 0..4 {
-            cells.push(
-                CellShape::Tet4,
-                &[from, to, ring[side], ring[(side + 1) % 4]],
-            );
+            cells.push(CellShape::Tet4, &[from, to, ring[side], ring[(side + 1) % 4]]);
         }
     }
 
@@ -269,10 +248,7 @@ impl<'a> Division<'a> {
     }
 
     fn refined_labels(&self, labels: &[i64], together: &[bool]) -> Vec<i64> {
-        let none = labels
-            .iter()
-            .min()
-            .map_or(0, |least| least.saturating_sub(1));
+        let none = labels.iter().min().map_or(0, |least| least.saturating_sub(1));
         let between = self.new_nodes(together).map(|(_, together, parents)| {
             let label = labels[parents.nodes[0] as usize];
             let agreed = together && parents.iter().all(|node| labels[node] == label);

@@ -47,10 +47,7 @@ fn refinement_keeps_volume_and_orientation() {
     for mesh in SHAPES
         .map(|shape| block(Vector::new(3.0, 2.0, 1.0), [3, 2, 2], shape))
         .into_iter()
-        .chain([
-            mixed(),
-            twisted(block(Vector::new(3.0, 2.0, 1.0), [2; 3], CellShape::Tet4)),
-        ])
+        .chain([mixed(), twisted(block(Vector::new(3.0, 2.0, 1.0), [2; 3], CellShape::Tet4))])
     {
         let fine = refine(&mesh);
         let [before, after] = [&mesh, &fine].map(volumes);
@@ -64,16 +61,10 @@ fn refinement_keeps_volume_and_orientation() {
 
 #[test]
 fn refined_cells_share_whole_faces() {
-    let sphere = ThickSphere {
-        inner_radius: 60.0,
-        outer_radius: 72.0,
-        cells_radial: 2,
-        cells_along: 3,
-    };
-    let meshes = SHAPES
-        .map(|shape| thick_sphere_octant(sphere, shape))
-        .into_iter()
-        .chain([mixed()]);
+    let sphere =
+        ThickSphere { inner_radius: 60.0, outer_radius: 72.0, cells_radial: 2, cells_along: 3 };
+    let meshes =
+        SHAPES.map(|shape| thick_sphere_octant(sphere, shape)).into_iter().chain([mixed()]);
     for mesh in meshes {
         let fine = refine(&mesh);
         let [coarse_faces, fine_faces] = [&mesh, &fine].map(VolumeMesh::boundary_faces);
@@ -113,11 +104,7 @@ fn a_refined_block_has_the_nodes_and_sets_of_the_finer_block() {
 fn walls_one_cell_apart_do_not_grow_together() {
     for shape in SHAPES {
         let mut mesh = block(Vector::new(4.0, 4.0, 1.0), [4, 4, 1], shape);
-        let walls = [
-            mesh.node_sets["z_min"].clone(),
-            mesh.node_sets["z_max"].clone(),
-        ]
-        .concat();
+        let walls = [mesh.node_sets["z_min"].clone(), mesh.node_sets["z_max"].clone()].concat();
         mesh.node_labels = BTreeMap::from([("wall".into(), vec![7; mesh.nodes.len()])]);
         mesh.node_sets.insert("walls".into(), walls);
         let fine = refine(&mesh);
@@ -126,10 +113,7 @@ fn walls_one_cell_apart_do_not_grow_together() {
             p.z == 0.5 && p.x > 0.0 && p.x < 4.0 && p.y > 0.0 && p.y < 4.0
         };
         let set = &fine.node_sets["walls"];
-        assert!(
-            !set.iter().any(|&node| inside(&(node as usize))),
-            "{shape:?}"
-        );
+        assert!(!set.iter().any(|&node| inside(&(node as usize))), "{shape:?}");
         let labels = &fine.node_labels["wall"];
         assert!((0..fine.nodes.len()).all(|n| labels[n] == if inside(&n) { 6 } else { 7 }));
     }
@@ -152,19 +136,12 @@ fn cells_inherit_labels_and_nodes_average_vectors() {
 
 #[test]
 fn a_tetrahedron_is_cut_along_its_shortest_diagonal() {
-    let positions = [
-        [0.0, 0.0, 0.0],
-        [1.0, 0.0, 0.0],
-        [0.0, 1.0, 0.0],
-        [1.0, 1.0, 1.0],
-    ];
+    let positions = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 1.0]];
     // The diagonals of the inner octahedron measure 1.12, 1.12 and, from the middle of edge 0-3
     // to that of edge 1-2, 0.5 mm. Renaming corners, evenly, gives each diagonal its turn.
     for [b, c, d] in [[1, 2, 3], [2, 3, 1], [3, 1, 2]] {
         let mut mesh = VolumeMesh {
-            nodes: [0, b, c, d]
-                .map(|node| Vector::from(positions[node]))
-                .to_vec(),
+            nodes: [0, b, c, d].map(|node| Vector::from(positions[node])).to_vec(),
             ..VolumeMesh::default()
         };
         mesh.cells.push(CellShape::Tet4, &[0, 1, 2, 3]);

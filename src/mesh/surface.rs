@@ -28,6 +28,14 @@ impl TriangleSurface {
         (0..self.triangles.len()).map(|triangle| self.area_vector(triangle).norm()).sum()
     }
 
+    /// The lowest and the highest corner of the box around the points that triangles use, in mm.
+    /// Without triangles the lowest is above the highest.
+    pub fn bounds(&self) -> (Vector, Vector) {
+        let empty = (Vector::repeat(f64::INFINITY), Vector::repeat(f64::NEG_INFINITY));
+        let used = self.triangles.iter().flatten().map(|&point| self.points[point as usize]);
+        used.fold(empty, |(low, high), point| (low.inf(&point), high.sup(&point)))
+    }
+
     /// For each point a third of the area of its triangles, in mm².
     pub fn point_areas(&self) -> Vec<f64> {
         let mut areas = vec![0.0; self.points.len()];

@@ -3,6 +3,10 @@
 //! K u = f with u given at held nodes: K_ff u_f = f_f - K_fb u_b. Nodes that slide are written in a
 //! frame whose first axis is their normal, so that every condition holds single unknowns.
 
+use std::collections::BTreeMap;
+
+use nalgebra::Matrix3;
+
 use super::assembly::{InvertedCell, Tissue, rotate_into_frames};
 use crate::boundary::Hold;
 use crate::mesh::Vector;
@@ -60,8 +64,14 @@ impl Problem<'_> {
 
         // 3. The free unknowns.
         observer.solving();
-        let system =
-            LinearSystem { matrix: &matrix, held: &held, right_hand_side: &right_hand_side };
+        let axes = self.own_axes();
+        let system = LinearSystem {
+            matrix: &matrix,
+            held: &held,
+            right_hand_side: &right_hand_side,
+            positions: &self.tissue.mesh.nodes,
+            axes: &axes,
+        };
         let watch = |iteration, residual| observer.iterated(iteration, residual);
         let solution = solver::solve(&system, &self.tolerance, &watch)?;
 
@@ -91,6 +101,11 @@ impl Problem<'_> {
             held[first..first + hold.count()].fill(true);
         }
         held
+    }
+
+    fn own_axes(&self) -> BTreeMap<usize, Matrix3<f64>> {
+        let turned = self.holds.iter().filter(|hold| !hold.is_aligned());
+        turned.map(|hold| (hold.node as usize, *hold.axes())).collect()
     }
 
     fn known_displacement(&self) -> Vec<f64> {

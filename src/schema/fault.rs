@@ -14,7 +14,7 @@ const REPORTED_FAULTS: usize = 50;
 
 /// Codes that name a whole problem when nothing else is wrong with a document.
 const CATALOGUE: &[&str] = &[
-    "alignment-not-available",
+    "alignment-failed",
     "empty-selection",
     "frame-conflict",
     "method-not-available",

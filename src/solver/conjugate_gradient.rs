@@ -1,14 +1,13 @@
-//! Conjugate gradients preconditioned by the inverses of the 3x3 diagonal blocks.
+//! Conjugate gradients preconditioned by one multigrid cycle.
 //!
 //! Hestenes, Stiefel 1952, in the preconditioned form of Saad, Iterative Methods for Sparse Linear
-//! Systems, 2nd ed., algorithm 9.1. The recursive residual decides when to look, the true residual
-//! f - K x decides when to stop.
+//! Systems, 2nd ed., algorithm 9.1, with the flexible (Polak-Ribiere) step of Golub, Ye 1999, because the
+//! cycle is rounded to f32. The recursive residual decides when to look, the true residual f - K x
+//! decides when to stop.
 
-use nalgebra::Matrix3;
-use rayon::prelude::*;
-
+use super::multigrid::Multigrid;
 use super::vector::{add_scaled, dot, norm, scale_and_add};
-use super::{Block, LinearSystem, Solution, SolverError, Tolerance, Watch, residual_of};
+use super::{LinearSystem, Solution, SolverError, Tolerance, Watch, residual_of};
 
 /// Iterations without a new smallest residual after which no more progress is expected.
 const PATIENCE: usize = 2000;
@@ -26,8 +25,8 @@ pub fn solve(
     watch: Watch,
     why: String,
 ) -> Result<Solution, SolverError> {
-    let inverses = inverse_diagonal(system)?;
-    let mut run = Run::new(system, &inverses);
+    let multigrid = Multigrid::new(system);
+    let mut run = Run::new(system, &multigrid);
     let wanted = tolerance.relative_residual;
     for _ in 0..=MOST_RESTARTS {
         run.restart();
@@ -41,7 +40,7 @@ pub fn solve(
 
 struct Run<'a> {
     system: &'a LinearSystem<'a>,
-    inverses: &'a [Block],
+    multigrid: &'a Multigrid,
     scale: f64,
     x: Vec<f64>,
     r: Vec<f64>,
@@ -53,11 +52,11 @@ struct Run<'a> {
 }
 
 impl<'a> Run<'a> {
-    fn new(system: &'a LinearSystem<'a>, inverses: &'a [Block]) -> Self {
+    fn new(system: &'a LinearSystem<'a>, multigrid: &'a Multigrid) -> Self {
         let zeros = || vec![0.0; system.right_hand_side.len()];
         Run {
             system,
-            inverses,
+            multigrid,
             scale: norm(system.right_hand_side),
             x: zeros(),
             r: zeros(),
@@ -111,7 +110,9 @@ impl<'a> Run<'a> {
             }
             self.precondition();
             let next_rho = dot(&self.r, &self.z);
-            scale_and_add(&mut self.p, next_rho / rho, &self.z);
+            // The part of the new correction along the last change of the residual, r - r_old = -step K p.
+            let along = -step * dot(&self.product, &self.z);
+            scale_and_add(&mut self.p, along / rho, &self.z);
             rho = next_rho;
         }
     }
@@ -125,17 +126,8 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// z = D^-1 r block by block.
     fn precondition(&mut self) {
-        let blocks = self.inverses.par_chunks(1024);
-        let vectors = self.z.par_chunks_mut(3072).zip(self.r.par_chunks(3072));
-        blocks.zip(vectors).for_each(|(blocks, (z, r))| {
-            for (block, (z, r)) in blocks.iter().zip(z.chunks_exact_mut(3).zip(r.chunks_exact(3))) {
-                for (z, row) in z.iter_mut().zip(block.chunks_exact(3)) {
-                    *z = row[0] * r[0] + row[1] * r[1] + row[2] * r[2];
-                }
-            }
-        });
+        self.multigrid.apply(&self.r, &mut self.z);
     }
 
     /// Keeps every residual up to 100, then every tenth, for the report of a failure.
@@ -161,29 +153,9 @@ impl<'a> Run<'a> {
             relative_residual: self.relative_residual(),
             unknowns: self.x,
             method: "conjugate_gradient",
-            preconditioner: "block_jacobi",
+            preconditioner: "multigrid",
             why,
             iterations: self.iterations,
         }
     }
-}
-
-/// Inverse diagonal blocks; held unknowns get zero rows and columns.
-fn inverse_diagonal(system: &LinearSystem) -> Result<Vec<Block>, SolverError> {
-    (0..system.matrix.rows())
-        .map(|row| {
-            let held = &system.held[3 * row..3 * row + 3];
-            let stored = system.matrix.diagonal(row);
-            let block = Matrix3::from_fn(|i, j| match (held[i] || held[j], i == j) {
-                (true, same) => f64::from(u8::from(same)),
-                (false, _) => stored[3 * i + j],
-            });
-            let inverse = block.cholesky().map(|factor| factor.inverse());
-            let inverse = inverse.ok_or(SolverError::NotPositiveDefinite { row })?;
-            Ok(std::array::from_fn(|k| match held[k / 3] || held[k % 3] {
-                true => 0.0,
-                false => inverse[(k / 3, k % 3)],
-            }))
-        })
-        .collect()
 }

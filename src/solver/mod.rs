@@ -4,8 +4,13 @@
 pub mod block_matrix;
 pub mod cholesky;
 pub mod conjugate_gradient;
+pub mod multigrid;
 pub mod ordering;
 mod vector;
+
+use std::collections::BTreeMap;
+
+use nalgebra::{Matrix3, Vector3};
 
 pub use block_matrix::{Block, BlockMatrix};
 pub use vector::norm;
@@ -17,6 +22,10 @@ pub struct LinearSystem<'a> {
     pub held: &'a [bool],
     /// Zero where held.
     pub right_hand_side: &'a [f64],
+    /// Where each row stands, in mm: rigid movements of neighbourhoods are what varies slowly.
+    pub positions: &'a [Vector3<f64>],
+    /// Rows whose unknowns are along axes of their own, one axis a column.
+    pub axes: &'a BTreeMap<usize, Matrix3<f64>>,
 }
 
 /// What a solution has to meet and what finding it may take.
@@ -59,7 +68,7 @@ pub enum SolverError {
 
 /// Up to this many multiplications a factorisation takes about as long as iterations do, or less.
 /// Measured on face-like shells and the hexahedral face (docs/performance.md).
-const CHOLESKY_WORK: f64 = 2e10;
+const CHOLESKY_WORK: f64 = 6e9;
 
 /// Above this many rows even the ordering of a factorisation costs more than it can save.
 const ORDERING_ROWS: usize = 150_000;

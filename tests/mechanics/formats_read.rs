@@ -241,7 +241,7 @@ fn a_wedge_in_the_other_order_of_vtk_is_turned_without_a_word() {
         [100.0, 0.0, 50.0],
         [0.0, 100.0, 50.0],
     ];
-    let read = read_default(ascii_vtu(&points, &[(13, &[3, 4, 5, 0, 1, 2])], "").as_bytes());
+    let read = read_default(ascii_vtu(&points, &[(13, &[0, 2, 1, 3, 5, 4])], "").as_bytes());
     assert_eq!(read.warnings, []);
     let mesh = volume(read);
     assert_eq!(mesh.cells.nodes(0), [0, 1, 2, 3, 4, 5]);

@@ -19,5 +19,8 @@ mod formats_samples;
 mod formats_shared_data;
 mod formats_surface;
 mod patch;
+mod quality;
+mod registration;
 mod scenes;
 mod solvers;
+mod surfaces;

@@ -1,0 +1,162 @@
+//! How good the cells of a volume mesh are: volumes, dihedral angles, scaled Jacobians, folds.
+
+use super::jacobian::{jacobian_sign, scaled_jacobian, signed_volume, smallest_jacobian};
+use super::{CellShape, Vector, VolumeMesh, Warning};
+
+/// How many cells a report names of each kind.
+const NAMED_CELLS: usize = 10;
+
+/// Quality of all cells of a mesh.
+#[derive(Clone, Debug, PartialEq)]
+pub struct QualityReport {
+    pub cells: usize,
+    /// Of one cell, in mm³; negative where it is inverted as a whole.
+    pub smallest_volume: f64,
+    pub largest_volume: f64,
+    pub total_volume: f64,
+    /// Of one cell: the determinant of the unit edge vectors at its worst corner, 1 for a regular cell.
+    pub smallest_scaled_jacobian: f64,
+    /// Cells by scaled Jacobian in steps of 0.1 from 0 to 1; what is below 0 is in the first.
+    pub scaled_jacobian_histogram: [usize; 10],
+    /// Of the tetrahedra, if there are any.
+    pub dihedral_angles: Option<DihedralAngles>,
+    /// Hexahedra with positive corners that had to be divided before their sign was known.
+    pub subdivided: usize,
+    /// Cells whose Jacobian is zero or negative somewhere.
+    pub inverted: usize,
+    /// The first ten of them.
+    pub inverted_cells: Vec<InvertedCell>,
+    /// Cells whose Jacobian is so close to zero that its sign stayed unknown.
+    pub undecided: usize,
+    /// The first ten of them.
+    pub undecided_cells: Vec<u32>,
+}
+
+/// A cell that is folded or flat somewhere.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct InvertedCell {
+    pub cell: u32,
+    /// The smallest Jacobian inside it, in mm³.
+    pub jacobian: f64,
+}
+
+/// Angles between the faces of tetrahedra, in radians.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DihedralAngles {
+    pub smallest: f64,
+    pub largest: f64,
+    /// Angles in steps of 10 degrees from 0 to 180.
+    pub histogram: [usize; 18],
+}
+
+impl QualityReport {
+    /// What a reader must know although the mesh may be used.
+    pub fn warnings(&self) -> Vec<Warning> {
+        let mut warnings = Vec::new();
+        if self.inverted > 0 {
+            let detail = format!("{} of {} cells are inverted or flat", self.inverted, self.cells);
+            let worst = self.inverted_cells.iter().map(|c| c.jacobian).fold(0.0, f64::min);
+            warnings.push(
+                Warning::new("mesh-inverted-elements", detail)
+                    .with("count", self.inverted as f64)
+                    .with("smallest_jacobian_mm3", worst),
+            );
+        }
+        if self.undecided > 0 {
+            let detail = format!(
+                "the Jacobian of {} of {} cells is too close to zero to know its sign",
+                self.undecided, self.cells
+            );
+            warnings.push(
+                Warning::new("mesh-jacobian-undecided", detail)
+                    .with("count", self.undecided as f64),
+            );
+        }
+        warnings
+    }
+}
+
+/// Measures every cell. A mesh without cells has volumes and Jacobians of zero.
+pub fn quality(mesh: &VolumeMesh) -> QualityReport {
+    let mut report = empty_report(mesh.cells.len());
+    let mut corners = Vec::with_capacity(8);
+    for (cell, (shape, _)) in mesh.cells.iter().enumerate() {
+        corners.clear();
+        corners.extend(mesh.corners(cell));
+        add_size_and_shape(&mut report, shape, &corners);
+        add_sign(&mut report, cell as u32, shape, &corners);
+    }
+    if mesh.cells.is_empty() {
+        [report.smallest_volume, report.largest_volume, report.smallest_scaled_jacobian] = [0.0; 3];
+    }
+    report
+}
+
+fn empty_report(cells: usize) -> QualityReport {
+    QualityReport {
+        cells,
+        smallest_volume: f64::INFINITY,
+        largest_volume: f64::NEG_INFINITY,
+        total_volume: 0.0,
+        smallest_scaled_jacobian: f64::INFINITY,
+        scaled_jacobian_histogram: [0; 10],
+        dihedral_angles: None,
+        subdivided: 0,
+        inverted: 0,
+        inverted_cells: Vec::new(),
+        undecided: 0,
+        undecided_cells: Vec::new(),
+    }
+}
+
+fn add_size_and_shape(report: &mut QualityReport, shape: CellShape, corners: &[Vector]) {
+    let volume = signed_volume(shape, corners);
+    report.smallest_volume = report.smallest_volume.min(volume);
+    report.largest_volume = report.largest_volume.max(volume);
+    report.total_volume += volume;
+    let scaled = scaled_jacobian(shape, corners);
+    report.smallest_scaled_jacobian = report.smallest_scaled_jacobian.min(scaled);
+    report.scaled_jacobian_histogram[((scaled * 10.0) as usize).min(9)] += 1;
+    if shape == CellShape::Tet4 {
+        let angles = report.dihedral_angles.get_or_insert(DihedralAngles {
+            smallest: f64::INFINITY,
+            largest: 0.0,
+            histogram: [0; 18],
+        });
+        for angle in dihedral_angles(corners) {
+            angles.smallest = angles.smallest.min(angle);
+            angles.largest = angles.largest.max(angle);
+            angles.histogram[((angle.to_degrees() / 10.0) as usize).min(17)] += 1;
+        }
+    }
+}
+
+fn add_sign(report: &mut QualityReport, cell: u32, shape: CellShape, corners: &[Vector]) {
+    let sign = jacobian_sign(shape, corners);
+    report.subdivided += usize::from(sign.halvings > 0);
+    if sign.is_inverted() {
+        report.inverted += 1;
+        if report.inverted_cells.len() < NAMED_CELLS {
+            let jacobian = smallest_jacobian(shape, corners).upper;
+            report.inverted_cells.push(InvertedCell { cell, jacobian });
+        }
+    } else if !sign.is_valid() {
+        report.undecided += 1;
+        if report.undecided_cells.len() < NAMED_CELLS {
+            report.undecided_cells.push(cell);
+        }
+    }
+}
+
+/// The six angles between the faces of a tetrahedron, in radians; 0 at an edge of a face without area.
+pub fn dihedral_angles(corners: &[Vector]) -> [f64; 6] {
+    // An edge, and the two corners that are not on it.
+    const EDGES: [[usize; 4]; 6] =
+        [[0, 1, 2, 3], [0, 2, 3, 1], [0, 3, 1, 2], [1, 2, 0, 3], [1, 3, 2, 0], [2, 3, 0, 1]];
+    EDGES.map(|[from, to, one, other]| {
+        let edge = corners[to] - corners[from];
+        let normals = [one, other].map(|corner| edge.cross(&(corners[corner] - corners[from])));
+        // The arc tangent keeps its digits for slivers, where the arc cosine loses half of them.
+        normals[0].cross(&normals[1]).norm().atan2(normals[0].dot(&normals[1]))
+    })
+}

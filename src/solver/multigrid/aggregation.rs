@@ -1,0 +1,71 @@
+//! Groups of neighbouring rows.
+
+use super::rows::BlockRows;
+
+/// No group: a row that is held altogether.
+pub(super) const NONE: u32 = u32::MAX;
+
+/// For each row its group: grown from the lowest free row over its neighbours up to `size` rows.
+/// A group of less than a quarter of that joins the neighbour it is tied to most. Groups are numbered in the
+/// order of their lowest rows.
+pub(super) fn aggregate<const B: usize>(
+    matrix: &impl BlockRows<B>,
+    size: usize,
+    takes_part: impl Fn(usize) -> bool,
+) -> (Vec<u32>, usize) {
+    let mut group = vec![NONE; matrix.rows()];
+    let mut sizes: Vec<usize> = Vec::new();
+    let mut members: Vec<usize> = Vec::with_capacity(size);
+    for seed in 0..matrix.rows() {
+        if group[seed] != NONE || !takes_part(seed) {
+            continue;
+        }
+        let number = sizes.len() as u32;
+        members.clear();
+        members.push(seed);
+        group[seed] = number;
+        let mut next = 0;
+        while next < members.len() && members.len() < size {
+            for (column, tie) in matrix.ties(members[next]) {
+                if members.len() < size && group[column] == NONE && tie > 0.0 && takes_part(column)
+                {
+                    group[column] = number;
+                    members.push(column);
+                }
+            }
+            next += 1;
+        }
+        sizes.push(members.len());
+        if 4 * members.len() < size
+            && let Some(host) = strongest_neighbour(matrix, &members, &group, number)
+        {
+            members.iter().for_each(|&row| group[row] = host);
+            sizes[host as usize] += members.len();
+            sizes.pop();
+        }
+    }
+    (group, sizes.len())
+}
+
+/// The group to which the members are tied most; `None` where they have no neighbour in another group.
+fn strongest_neighbour<const B: usize>(
+    matrix: &impl BlockRows<B>,
+    members: &[usize],
+    group: &[u32],
+    own: u32,
+) -> Option<u32> {
+    let mut ties: Vec<(u32, f64)> = Vec::new();
+    for &row in members {
+        for (column, tie) in matrix.ties(row) {
+            let other = group[column];
+            if other == NONE || other == own || tie == 0.0 {
+                continue;
+            }
+            match ties.iter_mut().find(|(known, _)| *known == other) {
+                Some((_, sum)) => *sum += tie,
+                None => ties.push((other, tie)),
+            }
+        }
+    }
+    ties.into_iter().max_by(|a, b| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0))).map(|(other, _)| other)
+}

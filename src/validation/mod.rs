@@ -1,0 +1,12 @@
+//! Prediction against a postoperative scan: distances, statistics, alignment.
+
+pub mod alignment;
+pub mod comparison;
+mod correspondence;
+pub mod distance;
+pub mod statistics;
+
+pub use alignment::{Alignment, AlignmentReport, LandmarkPair};
+pub use comparison::{Comparison, ComparisonError, ComparisonSettings, NodeWise, compare};
+pub use distance::{DistanceStatistics, Distances};
+pub use statistics::{Statistics, StatisticsError};
