@@ -3,6 +3,8 @@
 use std::io;
 use std::path::PathBuf;
 
+use super::health::HealthError;
+use super::serve::ServeError;
 use crate::jobs::JobError;
 use crate::schema::Problem;
 use crate::schema::job::ErrorClass;
@@ -13,6 +15,8 @@ const FAILED: u8 = 1;
 const REFUSED: u8 = 2;
 /// Disks, memory, other programs.
 const INFRASTRUCTURE: u8 = 3;
+/// A wrong setting (sysexits.h, EX_CONFIG).
+const CONFIGURATION: u8 = 78;
 
 #[derive(Debug, thiserror::Error)]
 pub enum CommandError {
@@ -26,6 +30,10 @@ pub enum CommandError {
     Write { path: PathBuf, source: io::Error },
     #[error(transparent)]
     Job(#[from] JobError),
+    #[error(transparent)]
+    Serve(#[from] ServeError),
+    #[error(transparent)]
+    Health(#[from] HealthError),
 }
 
 impl CommandError {
@@ -35,6 +43,9 @@ impl CommandError {
                 REFUSED
             }
             CommandError::Write { .. } => INFRASTRUCTURE,
+            CommandError::Serve(error) if error.is_setting() => CONFIGURATION,
+            CommandError::Health(error) if error.is_setting() => CONFIGURATION,
+            CommandError::Serve(_) | CommandError::Health(_) => INFRASTRUCTURE,
             CommandError::Job(error) => match error.class() {
                 ErrorClass::Input => REFUSED,
                 ErrorClass::Infrastructure => INFRASTRUCTURE,

@@ -5,9 +5,12 @@ pub mod compare;
 mod documents;
 mod failure;
 mod files;
+pub mod health;
+pub mod openapi;
 pub mod predict;
 mod scene;
 mod screen;
+pub mod serve;
 
 use std::process::ExitCode;
 
@@ -31,6 +34,12 @@ enum Command {
     Compare(compare::Arguments),
     /// Tell what a case and a plan mean, without solving
     Check(check::Arguments),
+    /// Serve the API, with workers in the same process
+    Serve(serve::Arguments),
+    /// Ask the service on this machine whether it is alive
+    Health(health::Arguments),
+    /// Print the OpenAPI description of the service
+    Openapi,
 }
 
 /// Runs the command and says what went wrong, one line for each mistake.
@@ -39,6 +48,9 @@ pub fn run(facies: &Facies) -> ExitCode {
         Command::Predict(arguments) => predict::run(arguments),
         Command::Compare(arguments) => compare::run(arguments),
         Command::Check(arguments) => check::run(arguments),
+        Command::Serve(arguments) => serve::run(arguments).map_err(CommandError::from),
+        Command::Health(arguments) => health::run(arguments).map_err(CommandError::from),
+        Command::Openapi => openapi::run(),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

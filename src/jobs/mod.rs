@@ -1,10 +1,14 @@
 //! From a job document to result files: one path for the service and for the command line.
+//! Around it, for the service: the meshes in memory, the queue's workers and their signs of life.
 
 pub mod check;
 pub mod comparison;
 pub mod failure;
+pub mod heartbeat;
 pub mod input;
+pub mod library;
 pub mod observed;
+pub mod numerics;
 mod output;
 mod pictures;
 mod provenance;
@@ -12,7 +16,9 @@ pub mod report;
 mod skin_files;
 pub mod source;
 mod tissue_files;
+pub mod upload;
 pub mod work;
+pub mod worker;
 
 pub use check::{CheckReport, check};
 pub use failure::JobError;

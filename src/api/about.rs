@@ -1,0 +1,34 @@
+//! What the service is: its limits, its methods, its description.
+
+use axum::extract::State;
+use axum::http::StatusCode;
+use axum::response::Response;
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+use super::{Service, json, json_only};
+use crate::schema::Limits;
+use crate::schema::methods::{MethodList, available_methods};
+
+pub fn router() -> OpenApiRouter<Service> {
+    let router = OpenApiRouter::new().routes(routes!(limits)).routes(routes!(methods));
+    json_only(router.routes(routes!(description)))
+}
+
+/// Every bound that is enforced.
+#[utoipa::path(get, path = "/v1/limits", tag = "about", responses((status = 200, description = "the limits", body = Limits)))]
+async fn limits(State(service): State<Service>) -> Response {
+    json(StatusCode::OK, &*service.limits)
+}
+
+/// The ways of modelling that a spec may name.
+#[utoipa::path(get, path = "/v1/methods", tag = "about", responses((status = 200, description = "the methods", body = MethodList)))]
+async fn methods() -> Response {
+    json(StatusCode::OK, &available_methods())
+}
+
+/// This description.
+#[utoipa::path(get, path = "/openapi.json", tag = "about", responses((status = 200, description = "OpenAPI 3.1", body = serde_json::Value)))]
+async fn description() -> Response {
+    json(StatusCode::OK, &super::document())
+}

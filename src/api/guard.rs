@@ -1,0 +1,211 @@
+//! What surrounds every request: its id, its log line, bounds on its head, the key, and problem bodies.
+
+use std::time::Instant;
+
+use axum::extract::{MatchedPath, Request, State};
+use axum::http::{HeaderMap, HeaderValue, header};
+use axum::middleware::Next;
+use axum::response::{IntoResponse, Response};
+use tracing::Instrument;
+
+use super::Service;
+use super::error::{ApiError, with_problem_body};
+use crate::schema::problem::Problem;
+
+const REQUEST_ID: &str = "x-request-id";
+const LONGEST_URI: usize = 8 << 10;
+const LARGEST_HEAD: usize = 16 << 10;
+
+/// The outermost layer: names the request, logs it, and writes the bodies of errors.
+pub async fn surround(State(service): State<Service>, request: Request, next: Next) -> Response {
+    let started = Instant::now();
+    let id = request_id(request.headers());
+    let method = request.method().clone();
+    // The pattern of the route, not the path: ids lead to patients.
+    let route = request
+        .extensions()
+        .get::<MatchedPath>()
+        .map_or_else(|| "unmatched".to_owned(), |path| path.as_str().to_owned());
+    let span = tracing::info_span!("request", request.id = %id);
+    let answered = async {
+        match check_head(&service, &request) {
+            Ok(()) => next.run(request).await,
+            Err(error) => error.into_response(),
+        }
+    };
+    let response = answered.instrument(span.clone()).await;
+    let mut response = with_problem_body(response, &id);
+    if let Ok(value) = HeaderValue::from_str(&id) {
+        response.headers_mut().insert(REQUEST_ID, value);
+    }
+    span.in_scope(|| {
+        tracing::info!(
+            http.method = %method,
+            http.route = %route,
+            http.status = response.status().as_u16(),
+            duration_ms = started.elapsed().as_secs_f64() * 1e3,
+            "request"
+        );
+    });
+    response
+}
+
+/// The id that the client gave, when it is one that can stand in a log; else one of ours.
+fn request_id(headers: &HeaderMap) -> String {
+    let given = headers
+        .get(REQUEST_ID)
+        .and_then(|value| value.to_str().ok());
+    let is_plain =
+        |byte: u8| byte.is_ascii_alphanumeric() || matches!(byte, b'.' | b'_' | b'-');
+    match given {
+        Some(id) if (1..=64).contains(&id.len()) && id.bytes().all(is_plain) => id.to_owned(),
+        _ => uuid::Uuid::now_v7().to_string(),
+    }
+}
+
+fn check_head(service: &Service, request: &Request) -> Result<(), ApiError> {
+    let uri_length = request
+        .uri()
+        .path_and_query()
+        .map_or(0, |uri| uri.as_str().len());
+    if uri_length > LONGEST_URI {
+        let detail = format!("the address has {uri_length} bytes, {LONGEST_URI} are allowed");
+        return Err(Problem::new("uri-too-long", detail)
+            .with("limit", LONGEST_URI)
+            .into());
+    }
+    let head: usize = request
+        .headers()
+        .iter()
+        .map(|(name, value)| name.as_str().len() + value.len())
+        .sum();
+    if head > LARGEST_HEAD {
+        let detail = format!("the headers have {head} bytes, {LARGEST_HEAD} are allowed");
+        return Err(Problem::new("header-too-large", detail)
+            .with("limit", LARGEST_HEAD)
+            .into());
+    }
+    check_key(service, request)
+}
+
+fn check_key(service: &Service, request: &Request) -> Result<(), ApiError> {
+    let Some(key) = &service.config.api_key else {
+        return Ok(());
+    };
+    if matches!(request.uri().path(), "/healthz" | "/readyz") {
+        return Ok(());
+    }
+    let given = request
+        .headers()
+        .get(header::AUTHORIZATION)
+        .and_then(|value| value.to_str().ok())
+        .and_then(|value| value.split_once(' '))
+        .filter(|(scheme, _)| scheme.eq_ignore_ascii_case("bearer"))
+        .map(|(_, given)| given.trim());
+    if given.is_some_and(|given| key.matches(given)) {
+        return Ok(());
+    }
+    let error = ApiError::new(
+        "unauthorized",
+        "send the key of the service as `Authorization: Bearer KEY`",
+    );
+    Err(error.header(header::WWW_AUTHENTICATE, HeaderValue::from_static("Bearer")))
+}
+
+/// For routes that answer in JSON only.
+pub async fn accepts_json(request: Request, next: Next) -> Response {
+    match check_accept(request.headers(), "application/json") {
+        Ok(()) => next.run(request).await,
+        Err(error) => error.into_response(),
+    }
+}
+
+/// Whether the client takes a media type (RFC 9110, section 12.5.1).
+pub fn check_accept(headers: &HeaderMap, offered: &str) -> Result<(), ApiError> {
+    let mut ranges = headers
+        .get_all(header::ACCEPT)
+        .iter()
+        .filter_map(|value| value.to_str().ok())
+        .flat_map(|value| value.split(','))
+        .filter(|range| !range.trim().is_empty())
+        .peekable();
+    if ranges.peek().is_none() {
+        return Ok(());
+    }
+    let mut best = (0, false);
+    for range in ranges {
+        let mut parts = range.split(';').map(str::trim);
+        let name = parts.next().unwrap_or_default().to_ascii_lowercase();
+        let refused = parts.any(|parameter| {
+            let quality = parameter.strip_prefix("q=").unwrap_or("1");
+            quality.parse::<f32>().is_ok_and(|quality| quality <= 0.0)
+        });
+        let precision = precision_of(&name, offered);
+        if precision > best.0 {
+            best = (precision, !refused);
+        }
+    }
+    if best.1 {
+        return Ok(());
+    }
+    let detail = format!("the answer is {offered}, which the header Accept does not allow");
+    Err(ApiError::new("not-acceptable", detail))
+}
+
+/// How precisely a range names what is offered; 0 when it does not.
+fn precision_of(range: &str, offered: &str) -> u8 {
+    if range == offered {
+        return 3;
+    }
+    if range == "*/*" {
+        return 1;
+    }
+    match (range.strip_suffix("/*"), offered.split_once('/')) {
+        (Some(group), Some((kind, _))) if group == kind => 2,
+        _ => 0,
+    }
+}
+
+/// A panic in a handler costs that request and nothing else.
+pub fn after_panic(panic: Box<dyn std::any::Any + Send + 'static>) -> Response {
+    let reason = panic
+        .downcast_ref::<String>()
+        .map(String::as_str)
+        .or_else(|| panic.downcast_ref::<&str>().copied())
+        .unwrap_or("a panic without words");
+    ApiError::internal(reason).into_response()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn accepts(accept: &str, offered: &str) -> bool {
+        let mut headers = HeaderMap::new();
+        headers.insert(header::ACCEPT, accept.parse().unwrap());
+        check_accept(&headers, offered).is_ok()
+    }
+
+    #[test]
+    fn the_most_precise_range_decides_what_is_accepted() {
+        assert!(accepts("*/*", "application/json"));
+        assert!(accepts("text/html, application/json;q=0.2", "application/json"));
+        assert!(accepts("application/*", "application/json"));
+        assert!(!accepts("image/png", "application/json"));
+        assert!(!accepts("*/*, application/json;q=0", "application/json"));
+        assert!(!accepts("application/json; q=0.0", "application/json"));
+    }
+
+    #[test]
+    fn an_id_that_could_forge_a_log_line_is_replaced() {
+        let id_for = |given: &[u8]| {
+            let mut headers = HeaderMap::new();
+            headers.insert(REQUEST_ID, HeaderValue::from_bytes(given).unwrap());
+            request_id(&headers)
+        };
+        assert_eq!(id_for(b"abc-1_2.X"), "abc-1_2.X");
+        for given in [&b"a b"[..], b"a\"b", b"", b"\xff", &[b'a'; 65]] {
+            assert_ne!(id_for(given).as_bytes(), given);
+        }
+    }
+}

@@ -1,0 +1,52 @@
+//! Whether the process lives, and whether it can work.
+
+use axum::extract::State;
+use axum::http::StatusCode;
+use axum::response::Response;
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+use super::error::{ApiError, ApiResult};
+use super::{Service, json, json_only};
+use crate::schema::problem::Problem;
+
+#[derive(Serialize, Deserialize, ToSchema)]
+pub struct Health {
+    /// `ok`.
+    pub status: String,
+}
+
+pub fn router() -> OpenApiRouter<Service> {
+    json_only(OpenApiRouter::new().routes(routes!(healthz)).routes(routes!(readyz)))
+}
+
+/// Whether the process is alive; touches nothing else.
+#[utoipa::path(get, path = "/healthz", tag = "health", responses((status = 200, description = "alive", body = Health)))]
+async fn healthz() -> Response {
+    json(StatusCode::OK, &Health { status: "ok".into() })
+}
+
+/// Whether requests will be served: the database answers, files can be written, there is space.
+#[utoipa::path(get, path = "/readyz", tag = "health", responses((status = 200, description = "ready", body = Health)))]
+async fn readyz(State(service): State<Service>) -> ApiResult {
+    let mut failing: Vec<String> = Vec::new();
+    if let Err(error) = service.store.ping().await {
+        tracing::warn!(%error, "the database does not answer");
+        failing.push("database".into());
+    }
+    if let Err(error) = service.store.try_write().await {
+        tracing::warn!(%error, "the data folder cannot be written");
+        failing.push("storage".into());
+    }
+    match service.store.free_space() {
+        Ok(free) if free >= service.config.free_space_floor_bytes => {}
+        _ => failing.push("free-space".into()),
+    }
+    if failing.is_empty() {
+        return Ok(json(StatusCode::OK, &Health { status: "ok".into() }));
+    }
+    let detail = format!("failing: {}", failing.join(", "));
+    Err(ApiError::from(Problem::new("not-ready", detail).with("checks", failing)))
+}

@@ -1,0 +1,192 @@
+//! From the body of `POST /v1/jobs` to a job that can be queued: references resolved, everything checked.
+
+use std::collections::BTreeMap;
+
+use tokio::runtime::Handle;
+
+use super::Service;
+use super::error::{ApiError, ApiResult};
+use super::parameters::id;
+use crate::jobs::{CompareInput, JobError, JobInput, PredictInput};
+use crate::schema::job::{JobKind, JobStatus};
+use crate::schema::prediction::EngineDocument;
+use crate::schema::{
+    CaseDocument, CompareDocument, Faults, Limits, PlanDocument, Pointer, PredictDocument, Problem,
+};
+use crate::store::{CaseRow, NewJob};
+
+/// A prediction: its case and plan as they are at this moment, checked together with the meshes.
+pub async fn of_prediction(service: &Service, spec: PredictDocument) -> ApiResult<NewJob> {
+    let case_id = spec.case.clone().unwrap_or_default();
+    let row = match id(&case_id) {
+        Some(id) => service.store.case(&id).await?,
+        None => None,
+    };
+    let row = row.ok_or_else(|| fault("/case", "unknown-case", "there is no such case"))?;
+    let input = predict_input(service, &row, spec).await?;
+    let mesh_ids = mesh_ids(&input);
+    if let Some(compare_to) = &input.spec.compare_to {
+        require_mesh(service, "/compare_to/actual/mesh", &compare_to.actual.mesh).await?;
+    }
+    let tags = input.spec.tags.clone();
+    let sources = service.library.source(Handle::current(), BTreeMap::new());
+    let limits: Limits = (*service.limits).clone();
+    let (input, prepared) = service
+        .compute(move || {
+            let spec_hash = input.prepare(&sources, &limits).map(|prepared| prepared.spec_hash);
+            (input, spec_hash)
+        })
+        .await?;
+    let spec_hash = prepared.map_err(|error| refusal(error).map_problem(in_spec))?;
+    let new = Accepted { kind: JobKind::Predict, case_id: Some(row.id), spec_hash, tags, mesh_ids };
+    new.with(&JobInput::Predict(input))
+}
+
+/// A comparison of surfaces that are there.
+pub async fn of_comparison(service: &Service, spec: CompareDocument) -> ApiResult<NewJob> {
+    let mut faults = Faults::default();
+    spec.check(&service.limits, &mut faults);
+    faults.into_result().map_err(in_spec)?;
+    let mut mesh_ids = vec![spec.actual.mesh.clone()];
+    let mut contents = BTreeMap::new();
+    let mut case_id = None;
+    contents.insert(
+        spec.actual.mesh.clone(),
+        require_mesh(service, "/actual/mesh", &spec.actual.mesh).await?,
+    );
+    if let Some(mesh) = &spec.prediction.mesh {
+        contents.insert(mesh.clone(), require_mesh(service, "/prediction/mesh", mesh).await?);
+        mesh_ids.push(mesh.clone());
+    }
+    if let Some(job) = &spec.prediction.job {
+        let (skin, case) = predicted_skin(service, job).await?;
+        contents.insert(job.clone(), skin);
+        case_id = case;
+    }
+    let content_of = |id: &str| contents.get(id).cloned();
+    let spec_hash = crate::schema::canonical::compare_hash(&spec, &content_of);
+    let tags = spec.tags.clone();
+    let new = Accepted { kind: JobKind::Compare, case_id, spec_hash, tags, mesh_ids };
+    new.with(&JobInput::Compare(CompareInput { job: None, queue_s: None, spec }))
+}
+
+/// What is known of a job when it is accepted, beside its document.
+struct Accepted {
+    kind: JobKind,
+    case_id: Option<String>,
+    spec_hash: String,
+    tags: Vec<String>,
+    mesh_ids: Vec<String>,
+}
+
+impl Accepted {
+    fn with(self, input: &JobInput) -> ApiResult<NewJob> {
+        let engine = serde_json::to_string(&EngineDocument::this()).map_err(ApiError::internal)?;
+        Ok(NewJob {
+            id: uuid::Uuid::now_v7().to_string(),
+            kind: self.kind.name(),
+            case_id: self.case_id,
+            document: serde_json::to_string(input).map_err(ApiError::internal)?,
+            spec_hash: self.spec_hash,
+            engine,
+            tags: self.tags,
+            mesh_ids: self.mesh_ids,
+        })
+    }
+}
+
+/// The case and the plan of a spec in full; without a plan nothing moves.
+pub async fn predict_input(
+    service: &Service,
+    row: &CaseRow,
+    mut spec: PredictDocument,
+) -> ApiResult<PredictInput> {
+    let case: CaseDocument = serde_json::from_str(&row.document).map_err(ApiError::internal)?;
+    let plan = match (spec.plan.take(), spec.plan_id.as_deref()) {
+        (Some(plan), _) => plan,
+        (None, None) => PlanDocument::default(),
+        (None, Some(text)) => {
+            let found = match id(text) {
+                Some(id) => service.store.plan(&row.id, &id).await?,
+                None => None,
+            };
+            let unknown = || fault("/plan_id", "unknown-plan", "the case has no such plan");
+            let found = found.ok_or_else(unknown)?;
+            serde_json::from_str(&found.document).map_err(ApiError::internal)?
+        }
+    };
+    Ok(PredictInput { job: None, queue_s: None, case, plan, spec })
+}
+
+/// Every mesh that a prediction reads.
+fn mesh_ids(input: &PredictInput) -> Vec<String> {
+    let mut ids = input.case.mesh_ids();
+    let is_bone = |id: &str| input.case.bones.iter().any(|bone| bone.name == id);
+    let mut plan = input.plan.clone();
+    for (_, id) in plan.surface_references_mut() {
+        if !is_bone(id) {
+            ids.push(id.clone());
+        }
+    }
+    ids.extend(input.spec.compare_to.iter().map(|compare_to| compare_to.actual.mesh.clone()));
+    ids
+}
+
+/// The hash of a mesh that has to be there.
+async fn require_mesh(service: &Service, at: &str, mesh: &str) -> ApiResult<String> {
+    let row = match id(mesh) {
+        Some(id) => service.store.mesh(&id).await?,
+        None => None,
+    };
+    let row = row.ok_or_else(|| fault(at, "unknown-mesh", "there is no such mesh"))?;
+    Ok(row.sha256)
+}
+
+/// The hash of the skin that a job predicted, and the job's case.
+async fn predicted_skin(service: &Service, job: &str) -> ApiResult<(String, Option<String>)> {
+    const AT: &str = "/prediction/job";
+    let row = match id(job) {
+        Some(id) => service.store.job(&id).await?,
+        None => None,
+    };
+    let row = row.ok_or_else(|| fault(AT, "unknown-job", "there is no such job"))?;
+    if row.status != JobStatus::Successful {
+        let detail = format!("the job is {}, and has to be successful", row.status.name());
+        return Err(fault(AT, "result-not-ready", &detail));
+    }
+    let skin = service.store.job_file(&row.id, "skin.vtp").await?;
+    let skin = skin.ok_or_else(|| {
+        fault(AT, "no-such-output", "the job wrote no skin.vtp, which a comparison reads")
+    })?;
+    Ok((skin.blob, row.case_id))
+}
+
+fn fault(at: &str, code: &str, detail: &str) -> ApiError {
+    let mut faults = Faults::default();
+    faults.add(&Pointer::from_text(at), code, detail);
+    match faults.into_result() {
+        Err(problem) => problem.into(),
+        Ok(()) => ApiError::internal("a fault vanished"),
+    }
+}
+
+/// A body that is the spec knows nothing of `/spec`.
+fn in_spec(problem: Problem) -> Problem {
+    problem.moved("/spec", "")
+}
+
+/// What a check found, as the answer to the request that asked for it.
+pub fn refusal(error: JobError) -> ApiError {
+    match error {
+        JobError::Refused(problem) => problem.into(),
+        JobError::Source(source @ crate::jobs::SourceError::Unreadable { .. }) => {
+            ApiError::internal(source)
+        }
+        other => {
+            let document = other.to_document();
+            let mut problem = Problem::new(other.kind(), document.detail);
+            problem.members = document.members;
+            problem.into()
+        }
+    }
+}

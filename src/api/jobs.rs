@@ -1,0 +1,199 @@
+//! Jobs: accepted, looked at, waited for, dismissed.
+
+use axum::extract::{Request, State};
+use axum::http::{HeaderMap, StatusCode, header};
+use axum::response::{IntoResponse, Response};
+use serde::{Deserialize, Serialize};
+use utoipa::{IntoParams, ToSchema};
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+use super::error::{ApiError, ApiResult};
+use super::job_view::status_info;
+use super::paging::Page;
+use super::parameters::{Id, Parameters, no_such_job};
+use super::prefer::{wait_for_end, wanted_wait};
+use super::results::RETRY_AFTER_S;
+use super::{Service, body, job_input, json, json_only, with_header};
+use crate::schema::job::{JobKind, JobStatus, StatusInfo};
+use crate::schema::spec::JobDocument;
+use crate::schema::strict;
+use crate::store::{Dismissal, Enqueued, JobFilter, JobRow};
+
+/// Jobs that may wait at the same time.
+const LONGEST_QUEUE: i64 = 10_000;
+/// Kinds that the description of the service names and that are not built.
+const LATER_KINDS: [&str; 4] = ["response", "optimise", "study", "batch"];
+
+pub fn router() -> OpenApiRouter<Service> {
+    let router = OpenApiRouter::new().routes(routes!(create, list));
+    json_only(router.routes(routes!(show, dismiss)))
+}
+
+#[derive(Serialize, ToSchema)]
+struct JobList {
+    items: Vec<StatusInfo>,
+    /// The cursor of the next page; absent on the last.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    next: Option<String>,
+}
+
+#[derive(Deserialize, IntoParams)]
+#[serde(deny_unknown_fields)]
+#[into_params(parameter_in = Query)]
+struct ListParameters {
+    /// Only jobs in this state.
+    status: Option<JobStatus>,
+    /// Only jobs of this kind.
+    kind: Option<JobKind>,
+    /// Only jobs with this tag.
+    tag: Option<String>,
+    /// Only jobs of this case.
+    #[param(format = Uuid)]
+    case: Option<String>,
+    cursor: Option<String>,
+    /// Default: 50.
+    #[param(minimum = 1, maximum = 200)]
+    limit: Option<u32>,
+}
+
+/// Accepts a job. The same inputs, whoever sends them, are the same job. With `Prefer: wait=n` the answer
+/// comes when the job has ended, at the latest after n seconds (at most 30).
+#[utoipa::path(
+    post, path = "/v1/jobs", tag = "jobs",
+    params(("Prefer" = Option<String>, Header, description = "wait=n: wait at most n seconds for the end")),
+    request_body = JobDocument,
+    responses(
+        (status = 201, description = "accepted", body = StatusInfo, headers(
+            ("Location" = String, description = "the job"), ("Retry-After" = Option<u32>, description = "seconds after which to look again"),
+            ("Preference-Applied" = Option<String>, description = "the wait that was granted"))),
+        (status = 200, description = "successful within the wait, or known already (`deduplicated`)", body = StatusInfo, headers(
+            ("Content-Location" = String, description = "the job"), ("Retry-After" = Option<u32>, description = "seconds after which to look again"),
+            ("Preference-Applied" = Option<String>, description = "the wait that was granted"))),
+    )
+)]
+async fn create(State(service): State<Service>, request: Request) -> ApiResult {
+    let wait = wanted_wait(request.headers(), service.limits.wait_s);
+    let bytes = body::json(&service, request).await?;
+    refuse_later_kinds(&service, &bytes)?;
+    let accepted = match JobDocument::parse(&bytes, &service.limits)? {
+        JobDocument::Predict(spec) => job_input::of_prediction(&service, spec).await?,
+        JobDocument::Compare(spec) => job_input::of_comparison(&service, spec).await?,
+    };
+    let (id, deduplicated) = match service.store.enqueue(&accepted, LONGEST_QUEUE).await? {
+        Enqueued::Accepted => (accepted.id, false),
+        Enqueued::Known(id) => (id, true),
+        Enqueued::QueueFull => {
+            let detail = format!("{LONGEST_QUEUE} jobs are waiting");
+            return Err(ApiError::new("queue-full", detail));
+        }
+        Enqueued::InputGone => {
+            let detail = "the case or a mesh of the job was deleted meanwhile";
+            return Err(ApiError::new("conflict", detail));
+        }
+    };
+    tracing::info!(job.id = %id, deduplicated, "job accepted");
+    let job = wait_for_end(&service.store, &id, wait.unwrap_or(0)).await?;
+    let job = job.ok_or_else(no_such_job)?;
+    let location = format!("/v1/jobs/{id}");
+    let answer = if deduplicated || job.status == JobStatus::Successful {
+        let answer = answer(StatusCode::OK, &job, deduplicated, wait)?;
+        with_header(answer, header::CONTENT_LOCATION, &location)
+    } else {
+        let answer = answer(StatusCode::CREATED, &job, false, wait)?;
+        with_header(answer, header::LOCATION, &location)
+    };
+    Ok(answer)
+}
+
+/// A kind that will come is not a spelling mistake.
+fn refuse_later_kinds(service: &Service, bytes: &[u8]) -> ApiResult<()> {
+    let value = strict::parse_value(bytes, &service.limits)?;
+    match value.get("kind").and_then(serde_json::Value::as_str) {
+        Some(kind) if LATER_KINDS.contains(&kind) => {
+            let detail = format!("jobs of kind {kind} are not available; predict and compare are");
+            Err(ApiError::new("kind-not-available", detail))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// The state of a job with the headers that go with it.
+fn answer(status: StatusCode, job: &JobRow, deduplicated: bool, wait: Option<u32>) -> ApiResult {
+    let mut answer = json(status, &status_info(job, deduplicated)?);
+    if !job.status.is_terminal() {
+        answer = with_header(answer, header::RETRY_AFTER, &RETRY_AFTER_S.to_string());
+    }
+    if let Some(wait) = wait {
+        let applied = header::HeaderName::from_static("preference-applied");
+        answer = with_header(answer, applied, &format!("wait={wait}"));
+    }
+    Ok(answer)
+}
+
+/// The state of a job; with `Prefer: wait=n` when it has ended, at the latest after n seconds (at most 30).
+#[utoipa::path(
+    get, path = "/v1/jobs/{id}", tag = "jobs",
+    params(
+        ("id" = uuid::Uuid, Path, description = "the job"),
+        ("Prefer" = Option<String>, Header, description = "wait=n: wait at most n seconds for the end"),
+    ),
+    responses((status = 200, description = "its state, and its results once it is successful", body = StatusInfo, headers(
+        ("Retry-After" = Option<u32>, description = "seconds after which to look again"),
+        ("Preference-Applied" = Option<String>, description = "the wait that was granted"))))
+)]
+async fn show(
+    State(service): State<Service>,
+    Id(id): Id,
+    headers: HeaderMap,
+) -> ApiResult {
+    let wait = wanted_wait(&headers, service.limits.wait_s);
+    let job = wait_for_end(&service.store, &id, wait.unwrap_or(0)).await?;
+    answer(StatusCode::OK, &job.ok_or_else(no_such_job)?, false, wait)
+}
+
+/// Jobs, newest first.
+#[utoipa::path(
+    get, path = "/v1/jobs", tag = "jobs", params(ListParameters),
+    responses((status = 200, description = "a page of them", body = JobList))
+)]
+async fn list(
+    State(service): State<Service>,
+    Parameters(parameters): Parameters<ListParameters>,
+) -> ApiResult {
+    let page = Page::new(parameters.cursor.as_deref(), parameters.limit)?;
+    let filter = JobFilter {
+        status: parameters.status.map_or("", JobStatus::name).to_owned(),
+        kind: parameters.kind.map_or("", JobKind::name).to_owned(),
+        tag: parameters.tag.unwrap_or_default(),
+        case_id: parameters.case.unwrap_or_default(),
+        cursor: page.after.clone(),
+        limit: page.rows(),
+    };
+    let mut rows = service.store.jobs(&filter).await?;
+    let next = page.cut(&mut rows, |row| &row.id);
+    let items = rows.iter().map(|row| status_info(row, false)).collect::<ApiResult<_>>()?;
+    Ok(json(StatusCode::OK, &JobList { items, next }))
+}
+
+/// Dismisses a job that has not ended; removes one that has, with its results.
+#[utoipa::path(
+    delete, path = "/v1/jobs/{id}", tag = "jobs", params(("id" = uuid::Uuid, Path, description = "the job")),
+    responses(
+        (status = 200, description = "dismissed", body = StatusInfo),
+        (status = 204, description = "it had ended, and is removed"),
+    )
+)]
+async fn dismiss(State(service): State<Service>, Id(id): Id) -> ApiResult<Response> {
+    let what = service.store.dismiss(&id).await?;
+    tracing::info!(job.id = %id, ?what, "job dismissed");
+    match what {
+        Dismissal::Dismissed => {
+            let job = service.store.job(&id).await?.ok_or_else(no_such_job)?;
+            Ok(json(StatusCode::OK, &status_info(&job, false)?))
+        }
+        Dismissal::Removed => Ok(StatusCode::NO_CONTENT.into_response()),
+        Dismissal::NotFound => Err(no_such_job()),
+    }
+}

@@ -1,0 +1,283 @@
+//! Meshes: uploaded once, never changed, fetched in other formats.
+
+use axum::extract::{Request, State};
+use axum::http::{HeaderMap, StatusCode, header};
+use axum::response::IntoResponse;
+use bytes::Bytes;
+use serde::Deserialize;
+use utoipa::IntoParams;
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+use super::error::{ApiError, ApiResult};
+use super::parameters::{Id, Parameters};
+use super::{Service, body, conditional, json, json_only, time, with_header};
+use crate::jobs::upload::{ExportFormat, Statement, Upload, export, read_upload};
+use crate::schema::case::{FrameName, LengthUnit};
+use crate::schema::mesh::{MeshDocument, MeshKind};
+use crate::schema::canonical::sha256_hex;
+use crate::store::{MeshDeletion, MeshRow};
+
+const READ_HERE: &str = "model/stl, model/obj, application/vnd.ply, application/vnd.vtk, \
+     application/vnd.vtk.xml, application/x-gmsh, application/octet-stream, multipart/form-data";
+const MULTIPART: &str = "multipart/form-data";
+
+pub fn router() -> OpenApiRouter<Service> {
+    let json = OpenApiRouter::new().routes(routes!(upload)).routes(routes!(show, remove));
+    json_only(json).routes(routes!(content))
+}
+
+/// What an upload says about its bytes.
+#[derive(Clone, Default, Deserialize, IntoParams)]
+#[serde(deny_unknown_fields)]
+#[into_params(parameter_in = Query)]
+pub struct UploadParameters {
+    /// The frame of the coordinates; a `SPACE=` mark in the file has to agree.
+    frame: Option<FrameName>,
+    /// The unit of length of the file. Default: mm.
+    units: Option<LengthUnit>,
+    /// What the mesh is used for, a word of at most 32 letters; kept and not interpreted.
+    #[param(pattern = "^[A-Za-z0-9_-]{1,32}$")]
+    role: Option<String>,
+    /// Takes a mesh that is smaller or larger than any head. Default: false.
+    allow_any_scale: Option<bool>,
+}
+
+impl UploadParameters {
+    fn into_statement(self) -> ApiResult<Statement> {
+        let is_word = |role: &str| {
+            let plain = |byte: u8| byte.is_ascii_alphanumeric() || matches!(byte, b'_' | b'-');
+            (1..=32).contains(&role.len()) && role.bytes().all(plain)
+        };
+        if self.role.as_deref().is_some_and(|role| !is_word(role)) {
+            let detail = "role has 1 to 32 letters, digits, `_` or `-`";
+            return Err(ApiError::invalid_parameter("role", detail));
+        }
+        Ok(Statement {
+            units: self.units,
+            frame: self.frame,
+            role: self.role,
+            allow_any_scale: self.allow_any_scale.unwrap_or(false),
+        })
+    }
+}
+
+/// Stores a mesh: VTU, VTP, VTK legacy, Gmsh, STL, PLY or OBJ, told apart by content.
+/// Bytes that were stored before are not stored again.
+#[utoipa::path(
+    post, path = "/v1/meshes", tag = "meshes", params(UploadParameters),
+    request_body(description = "the file", content(
+        (Vec<u8> = "application/octet-stream"), (Vec<u8> = "model/stl"), (Vec<u8> = "model/obj"),
+        (Vec<u8> = "application/vnd.ply"), (Vec<u8> = "application/vnd.vtk"),
+        (Vec<u8> = "application/vnd.vtk.xml"), (Vec<u8> = "application/x-gmsh"),
+        (MeshForm = "multipart/form-data"),
+    )),
+    responses(
+        (status = 201, description = "stored", body = MeshDocument, headers(("Location" = String, description = "the mesh"))),
+        (status = 200, description = "the same bytes, so described, were stored before", body = MeshDocument),
+    )
+)]
+async fn upload(
+    State(service): State<Service>,
+    Parameters(parameters): Parameters<UploadParameters>,
+    request: Request,
+) -> ApiResult {
+    let statement = parameters.into_statement()?;
+    let kind = body::content_type(request.headers());
+    let bytes = if kind == MULTIPART {
+        single_part(body::parts(&service, request).await?)?
+    } else if READ_HERE.split(", ").any(|known| known == kind) {
+        body::upload(&service, request).await?
+    } else {
+        return Err(body::unsupported(&kind, READ_HERE));
+    };
+    let (row, is_new) = match take_in(&service, bytes, &statement, true).await? {
+        TakenIn::Known(row) => {
+            service.store.keep_mesh(&row.id).await?;
+            (row, false)
+        }
+        TakenIn::New(upload) => store(&service, *upload).await?,
+    };
+    let location = format!("/v1/meshes/{}", row.id);
+    let status = if is_new { StatusCode::CREATED } else { StatusCode::OK };
+    let answer = json(status, &document_of(&row)?);
+    Ok(with_header(answer, header::LOCATION, &location))
+}
+
+/// A form with the file as its one part.
+#[derive(utoipa::ToSchema)]
+#[allow(dead_code, reason = "describes the form for the OpenAPI document")]
+struct MeshForm {
+    #[schema(value_type = String, format = Binary)]
+    file: Vec<u8>,
+}
+
+fn single_part(mut parts: Vec<(String, Bytes)>) -> ApiResult<Bytes> {
+    match (parts.pop(), parts.len()) {
+        (Some((_, bytes)), 0) => Ok(bytes),
+        (last, others) => {
+            let count = others + usize::from(last.is_some());
+            let detail = format!("the form has {count} parts and has to have one, the file");
+            Err(ApiError::new("malformed-multipart", detail))
+        }
+    }
+}
+
+/// An upload that was stored before, or one that can be stored.
+pub enum TakenIn {
+    Known(MeshRow),
+    New(Box<Upload>),
+}
+
+/// Looks whether bytes are known, and reads them when not.
+pub async fn take_in(
+    service: &Service,
+    bytes: Bytes,
+    statement: &Statement,
+    standalone: bool,
+) -> ApiResult<TakenIn> {
+    let hashed = bytes.clone();
+    let hash = service.compute(move || sha256_hex(&hashed)).await?;
+    let known = service.store.mesh_by_content(&hash, &statement.identity()).await?;
+    if let Some(row) = known {
+        return Ok(TakenIn::Known(row));
+    }
+    let statement = statement.clone();
+    let read = service.compute(move || read_upload(&bytes, hash, &statement, standalone)).await?;
+    Ok(TakenIn::New(Box::new(read?)))
+}
+
+async fn store(service: &Service, upload: Upload) -> ApiResult<(MeshRow, bool)> {
+    let is_new = service.store.add_mesh(&upload.row).await?;
+    let (hash, options) = (&upload.row.sha256, &upload.row.options);
+    let row = service.store.mesh_by_content(hash, options).await?;
+    let row = row.ok_or_else(|| ApiError::new("conflict", "the mesh was deleted meanwhile"))?;
+    service.library.keep(&row.blob, upload.mesh.shape);
+    tracing::info!(mesh.id = %row.id, mesh.nodes = upload.document.report.nodes, is_new, "mesh stored");
+    Ok((row, is_new))
+}
+
+/// The description of a stored mesh.
+pub fn document_of(row: &MeshRow) -> ApiResult<MeshDocument> {
+    let mut document: MeshDocument =
+        serde_json::from_str(&row.report).map_err(ApiError::internal)?;
+    document.created = time::rfc3339(row.created);
+    Ok(document)
+}
+
+async fn row_of(service: &Service, id: &str) -> ApiResult<MeshRow> {
+    let row = service.store.mesh(id).await?;
+    row.ok_or_else(|| ApiError::not_found("mesh"))
+}
+
+/// What a mesh holds.
+#[utoipa::path(
+    get, path = "/v1/meshes/{id}", tag = "meshes", params(("id" = uuid::Uuid, Path, description = "the mesh")),
+    responses(
+        (status = 200, description = "the report of its upload", body = MeshDocument, headers(("ETag" = String, description = "of the bytes as uploaded"))),
+        (status = 304, description = "the client has it already"),
+    )
+)]
+async fn show(
+    State(service): State<Service>,
+    Id(id): Id,
+    headers: HeaderMap,
+) -> ApiResult {
+    let row = row_of(&service, &id).await?;
+    if conditional::is_known(&headers, &row.sha256) {
+        return Ok(conditional::not_modified(&row.sha256));
+    }
+    let answer = json(StatusCode::OK, &document_of(&row)?);
+    Ok(with_header(answer, header::ETAG, &format!("\"{}\"", row.sha256)))
+}
+
+#[derive(Deserialize, IntoParams)]
+#[serde(deny_unknown_fields)]
+#[into_params(parameter_in = Query)]
+struct ContentParameters {
+    /// `vtu` (volumes only), `vtp`, `stl` or `ply`; of a volume the last three hold the boundary.
+    #[param(inline)]
+    format: Option<ContentFormat>,
+}
+
+#[derive(Clone, Copy, Deserialize, utoipa::ToSchema)]
+#[serde(rename_all = "lowercase")]
+enum ContentFormat {
+    Vtu,
+    Vtp,
+    Stl,
+    Ply,
+}
+
+impl From<ContentFormat> for ExportFormat {
+    fn from(format: ContentFormat) -> Self {
+        match format {
+            ContentFormat::Vtu => ExportFormat::Vtu,
+            ContentFormat::Vtp => ExportFormat::Vtp,
+            ContentFormat::Stl => ExportFormat::Stl,
+            ContentFormat::Ply => ExportFormat::Ply,
+        }
+    }
+}
+
+/// The mesh as a file, written anew from what was understood of the upload, in its unit and frame.
+#[utoipa::path(
+    get, path = "/v1/meshes/{id}/content", tag = "meshes",
+    params(("id" = uuid::Uuid, Path, description = "the mesh"), ContentParameters),
+    responses(
+        (status = 200, description = "the file", content(
+            (Vec<u8> = "application/vnd.vtk.xml"), (Vec<u8> = "model/stl"), (Vec<u8> = "application/vnd.ply"))),
+        (status = 206, description = "the range that was asked for", content(
+            (Vec<u8> = "application/vnd.vtk.xml"), (Vec<u8> = "model/stl"), (Vec<u8> = "application/vnd.ply"))),
+        (status = 304, description = "the client has it already"),
+        (status = 416, description = "the range is outside the file"),
+        (status = 422, description = "the mesh has no such form"),
+    )
+)]
+async fn content(
+    State(service): State<Service>,
+    Id(id): Id,
+    Parameters(parameters): Parameters<ContentParameters>,
+    headers: HeaderMap,
+) -> ApiResult {
+    let row = row_of(&service, &id).await?;
+    let document = document_of(&row)?;
+    let stored_as = match document.report.kind {
+        MeshKind::Volume => ExportFormat::Vtu,
+        MeshKind::Surface => ExportFormat::Vtp,
+    };
+    let format = parameters.format.map_or(stored_as, ExportFormat::from);
+    super::guard::check_accept(&headers, format.media_type())?;
+    let blob = row.blob.clone();
+    let bytes = if format == stored_as {
+        service.store.read_blob(&blob).await?
+    } else {
+        let mesh = service.library.open(row).await?;
+        Bytes::from(service.compute(move || export(&mesh, format)).await??)
+    };
+    let name = format!("{id}.{}", format.name());
+    let tag = format!("{blob}-{}", format.name());
+    conditional::file(&headers, &bytes, (format.media_type(), &name), &tag)
+}
+
+/// Deletes a mesh that no case and no job refers to.
+#[utoipa::path(
+    delete, path = "/v1/meshes/{id}", tag = "meshes", params(("id" = uuid::Uuid, Path, description = "the mesh")),
+    responses(
+        (status = 204, description = "deleted"),
+        (status = 409, description = "a case or a job refers to it"),
+    )
+)]
+async fn remove(State(service): State<Service>, Id(id): Id) -> ApiResult {
+    let row = row_of(&service, &id).await?;
+    match service.store.delete_mesh(&id).await? {
+        MeshDeletion::Deleted => {
+            service.library.forget(&row.blob);
+            Ok(StatusCode::NO_CONTENT.into_response())
+        }
+        MeshDeletion::InUse => {
+            Err(ApiError::new("conflict-in-use", "a case or a job refers to this mesh"))
+        }
+        MeshDeletion::NotFound => Err(ApiError::not_found("mesh")),
+    }
+}

@@ -1,0 +1,126 @@
+//! HTTP: one file for each resource, each with its `router()`.
+
+mod about;
+mod body;
+mod cases;
+mod conditional;
+mod error;
+mod guard;
+mod health;
+mod job_input;
+mod job_view;
+mod jobs;
+mod meshes;
+mod openapi;
+mod paging;
+mod parameters;
+mod plans;
+mod prefer;
+mod results;
+mod time;
+
+use std::sync::Arc;
+
+use axum::Router;
+use axum::extract::DefaultBodyLimit;
+use axum::http::{HeaderValue, StatusCode, header};
+use axum::middleware::{from_fn, from_fn_with_state};
+use axum::response::{IntoResponse, Response};
+use serde::Serialize;
+use tokio::sync::Semaphore;
+use tower_http::catch_panic::CatchPanicLayer;
+use utoipa_axum::router::OpenApiRouter;
+
+use crate::config::Config;
+use crate::jobs::library::Library;
+use crate::schema::Limits;
+use crate::store::Store;
+
+pub use openapi::document;
+
+/// Meshes that are parsed at the same time: each may take several times its size in memory.
+const PARSED_AT_ONCE: usize = 2;
+
+/// What every request may use.
+#[derive(Clone)]
+pub struct Service {
+    pub config: Arc<Config>,
+    pub limits: Arc<Limits>,
+    pub store: Store,
+    pub library: Library,
+    parsing: Arc<Semaphore>,
+}
+
+impl Service {
+    pub fn new(config: Config, store: Store, library: Library) -> Self {
+        let limits = Limits { upload_bytes: config.upload_bytes as u64, ..Limits::default() };
+        Service {
+            config: Arc::new(config),
+            limits: Arc::new(limits),
+            store,
+            library,
+            parsing: Arc::new(Semaphore::new(PARSED_AT_ONCE)),
+        }
+    }
+
+    /// Runs work that takes a processor for long, on a thread that may block, a few at a time.
+    async fn compute<T: Send + 'static>(
+        &self,
+        work: impl FnOnce() -> T + Send + 'static,
+    ) -> error::ApiResult<T> {
+        let permit = self.parsing.clone().acquire_owned().await;
+        let _permit = permit.map_err(error::ApiError::internal)?;
+        tokio::task::spawn_blocking(work).await.map_err(error::ApiError::internal)
+    }
+}
+
+/// The resources with their descriptions, before anything is laid around them.
+fn resources() -> OpenApiRouter<Service> {
+    OpenApiRouter::new()
+        .merge(health::router())
+        .merge(about::router())
+        .merge(meshes::router())
+        .merge(cases::router())
+        .merge(plans::router())
+        .merge(jobs::router())
+        .merge(results::router())
+}
+
+/// Everything that is served.
+pub fn router(service: Service) -> Router {
+    let (resources, _) = resources().split_for_parts();
+    let pages = utoipa_swagger_ui::SwaggerUi::new("/docs")
+        .config(utoipa_swagger_ui::Config::from("/openapi.json"));
+    resources
+        .merge(pages)
+        .fallback(|| async { error::ApiError::not_found("resource") })
+        .layer(DefaultBodyLimit::disable())
+        .layer(CatchPanicLayer::custom(guard::after_panic))
+        .layer(from_fn_with_state(service.clone(), guard::surround))
+        .with_state(service)
+}
+
+/// For routers whose answers are JSON only.
+fn json_only(router: OpenApiRouter<Service>) -> OpenApiRouter<Service> {
+    router.route_layer(from_fn(guard::accepts_json))
+}
+
+/// An answer in JSON that no cache keeps.
+fn json(status: StatusCode, body: &impl Serialize) -> Response {
+    let headers = [
+        (header::CONTENT_TYPE, HeaderValue::from_static("application/json")),
+        (header::CACHE_CONTROL, HeaderValue::from_static("private, no-store")),
+    ];
+    match serde_json::to_vec(body) {
+        Ok(bytes) => (status, headers, bytes).into_response(),
+        Err(error) => error::ApiError::internal(error).into_response(),
+    }
+}
+
+/// The same answer with one more header.
+fn with_header(mut response: Response, name: header::HeaderName, value: &str) -> Response {
+    if let Ok(value) = HeaderValue::from_str(value) {
+        response.headers_mut().insert(name, value);
+    }
+    response
+}

@@ -1,0 +1,95 @@
+//! The description of the service (OpenAPI 3.1), made from the code.
+
+use utoipa::ToSchema as _;
+use utoipa::openapi::path::Operation;
+use utoipa::openapi::{
+    ContentBuilder, InfoBuilder, OpenApi, OpenApiBuilder, PathItem, Ref, RefOr, ResponseBuilder,
+};
+
+use super::resources;
+use crate::schema::ProblemDocument;
+
+/// Problems that every operation may answer with: what is wrong with the head of the request, and what is
+/// wrong with the service.
+const ALWAYS: [(&str, &str); 8] = [
+    ("400", "a parameter or a header is not valid"),
+    ("401", "the service asks for a key"),
+    ("406", "the header Accept does not allow the answer"),
+    ("414", "the address is too long"),
+    ("431", "the headers are too large"),
+    ("500", "something broke in the service"),
+    ("503", "the service is busy; the header Retry-After says when to come back"),
+    ("507", "the disk of the service is full"),
+];
+const WITH_PATH: (&str, &str) = ("404", "it is not there");
+const WITH_BODY: [(&str, &str); 5] = [
+    ("409", "something it refers to changed meanwhile"),
+    ("408", "the body came too slowly"),
+    ("413", "the body is too large"),
+    ("415", "the body is of a kind that is not read"),
+    ("422", "the body was understood and is refused; `code` and `errors` say why"),
+];
+
+/// The description as it is served and as it stands in `openapi/openapi.json`.
+pub fn document() -> OpenApi {
+    let info = InfoBuilder::new()
+        .title("facies")
+        .version(env!("CARGO_PKG_VERSION"))
+        .description(Some(
+            "Predicts how a face will look after the bones under it are moved. Not a medical device. \
+             Lengths are mm, angles degrees, stresses kPa, forces mN. \
+             Every error is application/problem+json (RFC 9457) with a stable `code`.",
+        ))
+        .build();
+    let (_, mut api) = resources().split_for_parts();
+    let mut components = api.components.take().unwrap_or_default();
+    add_schema::<ProblemDocument>(&mut components.schemas);
+    let mut document = OpenApiBuilder::new().info(info).components(Some(components)).build();
+    document.paths = api.paths;
+    for (path, item) in &mut document.paths.paths {
+        for operation in operations(item) {
+            add_problems(path, operation);
+        }
+    }
+    document
+}
+
+fn add_schema<T: utoipa::ToSchema>(
+    schemas: &mut std::collections::BTreeMap<String, RefOr<utoipa::openapi::Schema>>,
+) {
+    let mut found = Vec::new();
+    T::schemas(&mut found);
+    schemas.extend(found);
+    schemas.insert(T::name().into_owned(), T::schema());
+}
+
+fn operations(item: &mut PathItem) -> impl Iterator<Item = &mut Operation> {
+    [&mut item.get, &mut item.put, &mut item.post, &mut item.delete]
+        .into_iter()
+        .filter_map(Option::as_mut)
+}
+
+/// Writes down the answers that the layers around the handlers give, and the body of all problems.
+fn add_problems(path: &str, operation: &mut Operation) {
+    let mut problems = ALWAYS.to_vec();
+    if path.contains('{') {
+        problems.push(WITH_PATH);
+    }
+    if operation.request_body.is_some() {
+        problems.extend(WITH_BODY);
+    }
+    let told = &mut operation.responses.responses;
+    for (status, description) in problems {
+        told.entry(status.to_owned()).or_insert_with(|| {
+            RefOr::T(ResponseBuilder::new().description(description).build())
+        });
+    }
+    for (status, response) in told.iter_mut() {
+        let RefOr::T(response) = response else { continue };
+        if status.starts_with(['4', '5']) {
+            let schema = Ref::from_schema_name(ProblemDocument::name());
+            let content = RefOr::T(ContentBuilder::new().schema(Some(schema)).build());
+            response.content = [("application/problem+json".to_owned(), content)].into();
+        }
+    }
+}

@@ -1,0 +1,93 @@
+//! Parameters of paths and queries.
+
+use axum::extract::{FromRequestParts, Query, RawPathParams};
+use axum::http::request::Parts;
+use serde::de::DeserializeOwned;
+use uuid::Uuid;
+
+use super::error::{ApiError, ApiResult};
+
+/// The query, in which nothing unknown stands: a misspelt parameter would be a silent default.
+pub struct Parameters<T>(pub T);
+
+impl<T: DeserializeOwned, S: Sync> FromRequestParts<S> for Parameters<T> {
+    type Rejection = ApiError;
+
+    async fn from_request_parts(parts: &mut Parts, _state: &S) -> ApiResult<Self> {
+        match Query::<T>::try_from_uri(&parts.uri) {
+            Ok(Query(parameters)) => Ok(Parameters(parameters)),
+            Err(error) => {
+                let detail = error.body_text();
+                let detail = detail.rsplit("query string: ").next().unwrap_or_default();
+                Err(ApiError::invalid_parameter("query", detail))
+            }
+        }
+    }
+}
+
+/// The one id of the path. What is not an id names nothing.
+pub struct Id(pub String);
+
+impl<S: Send + Sync> FromRequestParts<S> for Id {
+    type Rejection = ApiError;
+
+    async fn from_request_parts(parts: &mut Parts, state: &S) -> ApiResult<Self> {
+        let found = path_texts(parts, state).await?;
+        let id = found.first().and_then(|text| id(text));
+        id.map(Id).ok_or_else(|| ApiError::not_found("resource"))
+    }
+}
+
+/// The id of a case and that of one of its plans.
+pub struct PlanPath {
+    pub case: String,
+    pub id: String,
+}
+
+impl<S: Send + Sync> FromRequestParts<S> for PlanPath {
+    type Rejection = ApiError;
+
+    async fn from_request_parts(parts: &mut Parts, state: &S) -> ApiResult<Self> {
+        let found = path_texts(parts, state).await?;
+        let mut ids = found.iter().map(|text| id(text));
+        match (ids.next().flatten(), ids.next().flatten()) {
+            (Some(case), Some(id)) => Ok(PlanPath { case, id }),
+            _ => Err(ApiError::not_found("plan of this case")),
+        }
+    }
+}
+
+/// The id of a job and the name of one of its files.
+pub struct FileName {
+    pub job: String,
+    pub name: String,
+}
+
+impl<S: Send + Sync> FromRequestParts<S> for FileName {
+    type Rejection = ApiError;
+
+    async fn from_request_parts(parts: &mut Parts, state: &S) -> ApiResult<Self> {
+        let mut found = path_texts(parts, state).await?.into_iter();
+        let (job, name) = (found.next().unwrap_or_default(), found.next().unwrap_or_default());
+        let job = id(&job).ok_or_else(no_such_job)?;
+        Ok(FileName { job, name })
+    }
+}
+
+pub fn no_such_job() -> ApiError {
+    ApiError::new("no-such-job", "there is no such job")
+}
+
+async fn path_texts<S: Send + Sync>(parts: &mut Parts, state: &S) -> ApiResult<Vec<String>> {
+    let parameters = RawPathParams::from_request_parts(parts, state).await;
+    let parameters = parameters.map_err(|error| {
+        ApiError::new("malformed-request", format!("the path is not readable: {error}"))
+    })?;
+    Ok(parameters.iter().map(|(_, text)| text.to_owned()).collect())
+}
+
+/// An id in its one spelling.
+pub fn id(text: &str) -> Option<String> {
+    let id = Uuid::try_parse(text).ok()?.to_string();
+    id.eq_ignore_ascii_case(text).then_some(id)
+}

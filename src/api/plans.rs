@@ -1,0 +1,203 @@
+//! Plans that are kept with their case. A plan may as well stand in the job that carries it out.
+
+use axum::extract::{Request, State};
+use axum::http::{HeaderMap, StatusCode, header};
+use axum::response::{IntoResponse, Response};
+use serde::{Deserialize, Serialize};
+use utoipa::{IntoParams, ToSchema};
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+use super::error::{ApiError, ApiResult};
+use super::paging::Page;
+use super::parameters::{Id, Parameters, PlanPath};
+use super::{Service, body, conditional, json, json_only, time, with_header};
+use crate::schema::{PlanDocument, strict};
+use crate::store::{Change, PlanRow};
+
+pub fn router() -> OpenApiRouter<Service> {
+    let router = OpenApiRouter::new().routes(routes!(create, list));
+    json_only(router.routes(routes!(show, replace, remove)))
+}
+
+/// A plan as it is kept.
+#[derive(Serialize, ToSchema)]
+pub struct PlanView {
+    pub id: String,
+    pub case: String,
+    pub version: i64,
+    /// RFC 3339, UTC.
+    pub created: String,
+    pub updated: String,
+    pub plan: PlanDocument,
+}
+
+#[derive(Serialize, ToSchema)]
+struct PlanList {
+    items: Vec<PlanView>,
+    /// The cursor of the next page; absent on the last.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    next: Option<String>,
+}
+
+#[derive(Deserialize, IntoParams)]
+#[serde(deny_unknown_fields)]
+#[into_params(parameter_in = Query)]
+struct ListParameters {
+    cursor: Option<String>,
+    /// Default: 50.
+    #[param(minimum = 1, maximum = 200)]
+    limit: Option<u32>,
+}
+
+fn view(row: &PlanRow) -> ApiResult<PlanView> {
+    Ok(PlanView {
+        id: row.id.clone(),
+        case: row.case_id.clone(),
+        version: row.version,
+        created: time::rfc3339(row.created),
+        updated: time::rfc3339(row.updated),
+        plan: serde_json::from_str(&row.document).map_err(ApiError::internal)?,
+    })
+}
+
+fn answer(status: StatusCode, row: &PlanRow) -> ApiResult {
+    let tag = format!("\"{}\"", row.version);
+    Ok(with_header(json(status, &view(row)?), header::ETAG, &tag))
+}
+
+async fn row_of(service: &Service, case: &str, id: &str) -> ApiResult<PlanRow> {
+    let row = service.store.plan(case, id).await?;
+    row.ok_or_else(|| ApiError::not_found("plan of this case"))
+}
+
+/// The plan of a body; its form is checked here, what it means with the case when it is carried out.
+async fn read(service: &Service, request: Request) -> ApiResult<String> {
+    let bytes = body::json(service, request).await?;
+    let plan: PlanDocument = strict::parse(&bytes, &service.limits)?;
+    serde_json::to_string(&plan).map_err(ApiError::internal)
+}
+
+/// Keeps a plan with its case.
+#[utoipa::path(
+    post, path = "/v1/cases/{id}/plans", tag = "plans", params(("id" = uuid::Uuid, Path, description = "the case")),
+    request_body = PlanDocument,
+    responses((status = 201, description = "kept", body = PlanView, headers(("Location" = String, description = "the plan"), ("ETag" = String, description = "its version"))))
+)]
+async fn create(
+    State(service): State<Service>,
+    Id(case): Id,
+    request: Request,
+) -> ApiResult {
+    let document = read(&service, request).await?;
+    let id = uuid::Uuid::now_v7().to_string();
+    if !service.store.add_plan(&case, &id, &document).await? {
+        return Err(ApiError::not_found("case"));
+    }
+    let row = row_of(&service, &case, &id).await?;
+    let location = format!("/v1/cases/{case}/plans/{id}");
+    Ok(with_header(answer(StatusCode::CREATED, &row)?, header::LOCATION, &location))
+}
+
+/// The plans of a case, newest first.
+#[utoipa::path(
+    get, path = "/v1/cases/{id}/plans", tag = "plans", params(("id" = uuid::Uuid, Path, description = "the case"), ListParameters),
+    responses((status = 200, description = "a page of them", body = PlanList))
+)]
+async fn list(
+    State(service): State<Service>,
+    Id(case): Id,
+    Parameters(parameters): Parameters<ListParameters>,
+) -> ApiResult {
+    let page = Page::new(parameters.cursor.as_deref(), parameters.limit)?;
+    if service.store.case(&case).await?.is_none() {
+        return Err(ApiError::not_found("case"));
+    }
+    let mut rows = service.store.plans(&case, page.after.as_deref(), page.rows()).await?;
+    let next = page.cut(&mut rows, |row| &row.id);
+    let items = rows.iter().map(view).collect::<ApiResult<_>>()?;
+    Ok(json(StatusCode::OK, &PlanList { items, next }))
+}
+
+/// One plan.
+#[utoipa::path(
+    get, path = "/v1/cases/{id}/plans/{plan}", tag = "plans",
+    params(("id" = uuid::Uuid, Path, description = "the case"), ("plan" = uuid::Uuid, Path, description = "the plan")),
+    responses(
+        (status = 200, description = "the plan", body = PlanView, headers(("ETag" = String, description = "its version"))),
+        (status = 304, description = "the client has it already"),
+    )
+)]
+async fn show(
+    State(service): State<Service>,
+    PlanPath { case, id }: PlanPath,
+    headers: HeaderMap,
+) -> ApiResult {
+    let row = row_of(&service, &case, &id).await?;
+    let version = row.version.to_string();
+    if conditional::is_known(&headers, &version) {
+        return Ok(conditional::not_modified(&version));
+    }
+    answer(StatusCode::OK, &row)
+}
+
+/// Replaces a plan. Jobs that were accepted keep the plan they were accepted with.
+#[utoipa::path(
+    put, path = "/v1/cases/{id}/plans/{plan}", tag = "plans",
+    params(
+        ("id" = uuid::Uuid, Path, description = "the case"), ("plan" = uuid::Uuid, Path, description = "the plan"),
+        ("If-Match" = Option<String>, Header, description = "the version that is meant, or *"),
+    ),
+    request_body = PlanDocument,
+    responses(
+        (status = 200, description = "replaced", body = PlanView, headers(("ETag" = String, description = "its version"))),
+        (status = 412, description = "it has another version"),
+        (status = 428, description = "If-Match is missing"),
+    )
+)]
+async fn replace(
+    State(service): State<Service>,
+    PlanPath { case, id }: PlanPath,
+    headers: HeaderMap,
+    request: Request,
+) -> ApiResult {
+    let row = row_of(&service, &case, &id).await?;
+    conditional::require_match(&headers, &row.version.to_string())?;
+    let document = read(&service, request).await?;
+    let change = service.store.replace_plan((&case, &id), &document, Some(row.version)).await?;
+    done(change)?;
+    answer(StatusCode::OK, &row_of(&service, &case, &id).await?)
+}
+
+/// Deletes a plan. Jobs that were accepted keep it.
+#[utoipa::path(
+    delete, path = "/v1/cases/{id}/plans/{plan}", tag = "plans",
+    params(
+        ("id" = uuid::Uuid, Path, description = "the case"), ("plan" = uuid::Uuid, Path, description = "the plan"),
+        ("If-Match" = Option<String>, Header, description = "the version that is meant, or *"),
+    ),
+    responses(
+        (status = 204, description = "deleted"),
+        (status = 412, description = "it has another version"),
+        (status = 428, description = "If-Match is missing"),
+    )
+)]
+async fn remove(
+    State(service): State<Service>,
+    PlanPath { case, id }: PlanPath,
+    headers: HeaderMap,
+) -> ApiResult<Response> {
+    let row = row_of(&service, &case, &id).await?;
+    conditional::require_match(&headers, &row.version.to_string())?;
+    done(service.store.delete_plan((&case, &id), Some(row.version)).await?)?;
+    Ok(StatusCode::NO_CONTENT.into_response())
+}
+
+fn done(change: Change) -> ApiResult<()> {
+    match change {
+        Change::Done => Ok(()),
+        Change::OtherVersion(version) => Err(conditional::other_version(&version.to_string())),
+        Change::NotFound => Err(ApiError::not_found("plan of this case")),
+    }
+}

@@ -1,0 +1,72 @@
+//! `Prefer: wait=n` (RFC 7240): how long a client waits for a job to end.
+
+use std::time::Duration;
+
+use axum::http::HeaderMap;
+use tokio::time::Instant;
+
+use super::error::ApiResult;
+use crate::store::{JobRow, Store, StoreError};
+
+/// Rows are looked at this often even when nothing was announced: another process may have changed them.
+const LOOK: Duration = Duration::from_secs(1);
+
+/// The seconds that a client asks for, at most `cap`; `None` when it does not ask or asks for nonsense.
+pub fn wanted_wait(headers: &HeaderMap, cap: u32) -> Option<u32> {
+    headers
+        .get_all("prefer")
+        .iter()
+        .filter_map(|value| value.to_str().ok())
+        .flat_map(|value| value.split([',', ';']))
+        .filter_map(|preference| preference.split_once('='))
+        .find(|(name, _)| name.trim().eq_ignore_ascii_case("wait"))
+        .and_then(|(_, seconds)| seconds.trim().trim_matches('"').parse::<u64>().ok())
+        .map(|seconds| u32::try_from(seconds).unwrap_or(u32::MAX).min(cap))
+}
+
+/// Waits until a job has ended, is gone, or the time is up, and tells how it is then.
+pub async fn wait_for_end(
+    store: &Store,
+    id: &str,
+    seconds: u32,
+) -> ApiResult<Option<JobRow>> {
+    let until = Instant::now() + Duration::from_secs(seconds.into());
+    let mut changes = store.job_changes();
+    loop {
+        changes.mark_unchanged();
+        let job = store.job(id).await?;
+        let over = Instant::now() >= until;
+        match job {
+            Some(job) if !job.status.is_terminal() && !over => {}
+            ended => return Ok(ended),
+        }
+        let next = until.min(Instant::now() + LOOK);
+        // Time that runs out is no error: the row is looked at again.
+        let changed = tokio::time::timeout_at(next, changes.changed()).await;
+        if matches!(changed, Ok(Err(_))) {
+            return Err(StoreError::Interrupted.into());
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_wait_is_capped_and_nonsense_is_no_wait() {
+        let wait = |value: &str| {
+            let mut headers = HeaderMap::new();
+            headers.insert("prefer", value.parse().unwrap());
+            wanted_wait(&headers, 30)
+        };
+        assert_eq!(wait("wait=5"), Some(5));
+        assert_eq!(wait("respond-async, wait=7"), Some(7));
+        assert_eq!(wait("WAIT=\"3\""), Some(3));
+        assert_eq!(wait("wait=99999"), Some(30));
+        assert_eq!(wait("wait=99999999999999"), Some(30));
+        assert_eq!(wait("wait=-1"), None);
+        assert_eq!(wait("respond-async"), None);
+        assert_eq!(wanted_wait(&HeaderMap::new(), 30), None);
+    }
+}

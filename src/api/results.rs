@@ -1,0 +1,99 @@
+//! Results: the manifest of a job and its files.
+
+use axum::extract::State;
+use axum::http::{HeaderMap, StatusCode};
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+use super::error::{ApiError, ApiResult};
+use super::parameters::{FileName, Id, no_such_job};
+use super::{Service, conditional, guard, json};
+use crate::schema::job::JobStatus;
+use crate::schema::prediction::ResultDocument;
+use crate::schema::problem::Problem;
+use crate::store::JobRow;
+
+/// How long a client had better wait before it asks again.
+pub const RETRY_AFTER_S: u32 = 1;
+
+pub fn router() -> OpenApiRouter<Service> {
+    let manifest = super::json_only(OpenApiRouter::new().routes(routes!(manifest)));
+    manifest.routes(routes!(file))
+}
+
+/// The job, when it has results.
+async fn successful(service: &Service, id: &str) -> ApiResult<JobRow> {
+    let job = service.store.job(id).await?.ok_or_else(no_such_job)?;
+    match job.status {
+        JobStatus::Successful => Ok(job),
+        JobStatus::Failed | JobStatus::Dismissed => {
+            let error = job.error.as_deref().unwrap_or("null");
+            let error: serde_json::Value = serde_json::from_str(error).unwrap_or_default();
+            let detail = format!("the job has {} and has no results", job.status.name());
+            Err(Problem::new("job-failed", detail)
+                .with("job_status", job.status.name())
+                .with("error", error)
+                .into())
+        }
+        JobStatus::Accepted | JobStatus::Running => {
+            let detail = format!("the job is {} and has no results yet", job.status.name());
+            Err(Problem::new("result-not-ready", detail)
+                .with("job_status", job.status.name())
+                .with("progress", job.progress)
+                .with("retry_after_s", RETRY_AFTER_S)
+                .into())
+        }
+    }
+}
+
+/// The manifest: files with their hashes, statistics, provenance.
+#[utoipa::path(
+    get, path = "/v1/jobs/{id}/results", tag = "jobs", params(("id" = uuid::Uuid, Path, description = "the job")),
+    responses(
+        (status = 200, description = "the manifest", body = ResultDocument),
+        (status = 404, description = "there is no such job, or it has not ended"),
+        (status = 422, description = "the job failed or was dismissed"),
+    )
+)]
+async fn manifest(State(service): State<Service>, Id(id): Id) -> ApiResult {
+    let job = successful(&service, &id).await?;
+    let result = job.result.as_deref().unwrap_or("null");
+    let result: serde_json::Value = serde_json::from_str(result).map_err(ApiError::internal)?;
+    Ok(json(StatusCode::OK, &result))
+}
+
+/// One file of the results.
+#[utoipa::path(
+    get, path = "/v1/jobs/{id}/results/{file}", tag = "jobs",
+    params(
+        ("id" = uuid::Uuid, Path, description = "the job"),
+        ("file" = String, Path, description = "its name in the manifest, e.g. skin.vtp"),
+    ),
+    responses(
+        (status = 200, description = "the file", content(
+            (Vec<u8> = "application/vnd.vtk.xml"), (Vec<u8> = "model/stl"), (Vec<u8> = "application/vnd.ply"),
+            (Vec<u8> = "model/gltf-binary"), (Vec<u8> = "text/csv"), (Vec<u8> = "application/json"))),
+        (status = 206, description = "the range that was asked for", content(
+            (Vec<u8> = "application/vnd.vtk.xml"), (Vec<u8> = "model/stl"), (Vec<u8> = "application/vnd.ply"),
+            (Vec<u8> = "model/gltf-binary"), (Vec<u8> = "text/csv"), (Vec<u8> = "application/json"))),
+        (status = 304, description = "the client has it already"),
+        (status = 404, description = "there is no such job or file, or the job has not ended"),
+        (status = 416, description = "the range is outside the file"),
+        (status = 422, description = "the job failed or was dismissed"),
+    )
+)]
+async fn file(
+    State(service): State<Service>,
+    FileName { job, name }: FileName,
+    headers: HeaderMap,
+) -> ApiResult {
+    successful(&service, &job).await?;
+    let row = service.store.job_file(&job, &name).await?;
+    let row = row.ok_or_else(|| ApiError::new("no-such-output", "the job has no file of this name"))?;
+    guard::check_accept(&headers, row.media_type.split(';').next().unwrap_or_default())?;
+    if conditional::is_known(&headers, &row.blob) {
+        return Ok(conditional::not_modified(&row.blob));
+    }
+    let bytes = service.store.read_blob(&row.blob).await?;
+    conditional::file(&headers, &bytes, (&row.media_type, &row.name), &row.blob)
+}

@@ -1,0 +1,61 @@
+//! `facies health`: whether a service on this machine is alive, for images that hold no other client.
+
+use std::io::{Read, Write};
+use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr, TcpStream};
+use std::time::Duration;
+
+use clap::Args;
+
+const PATIENCE: Duration = Duration::from_secs(2);
+
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// Address of the service; an address of all interfaces stands for this machine
+    #[arg(long, env = "FACIES_BIND", default_value = "127.0.0.1:8080")]
+    bind: String,
+}
+
+#[derive(Debug, thiserror::Error)]
+pub enum HealthError {
+    #[error("bind is `{0}`, and has to be an address with a port")]
+    Address(String),
+    #[error("the service does not answer: {0}")]
+    Silent(#[from] std::io::Error),
+    #[error("the service answers `{0}`")]
+    Unwell(String),
+}
+
+impl HealthError {
+    /// Whether another setting would help.
+    pub fn is_setting(&self) -> bool {
+        matches!(self, HealthError::Address(_))
+    }
+}
+
+/// Asks for /healthz.
+pub fn run(arguments: &Arguments) -> Result<(), HealthError> {
+    let address: SocketAddr = arguments
+        .bind
+        .parse()
+        .map_err(|_| HealthError::Address(arguments.bind.clone()))?;
+    let mut connection = TcpStream::connect_timeout(&on_this_machine(address), PATIENCE)?;
+    connection.set_read_timeout(Some(PATIENCE))?;
+    connection.set_write_timeout(Some(PATIENCE))?;
+    connection.write_all(b"GET /healthz HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n")?;
+    let mut answer = String::new();
+    connection.take(4096).read_to_string(&mut answer)?;
+    let first = answer.lines().next().unwrap_or_default();
+    match first.split(' ').nth(1) {
+        Some("200") => Ok(()),
+        _ => Err(HealthError::Unwell(first.to_owned())),
+    }
+}
+
+fn on_this_machine(address: SocketAddr) -> SocketAddr {
+    let ip = match address.ip() {
+        IpAddr::V4(ip) if ip.is_unspecified() => IpAddr::V4(Ipv4Addr::LOCALHOST),
+        IpAddr::V6(ip) if ip.is_unspecified() => IpAddr::V6(Ipv6Addr::LOCALHOST),
+        ip => ip,
+    };
+    SocketAddr::new(ip, address.port())
+}

@@ -1,0 +1,183 @@
+//! `facies serve`: the API, with workers in the same process.
+
+use std::net::SocketAddr;
+use std::sync::Arc;
+
+use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
+use tokio::net::TcpListener;
+use tokio::runtime::Handle;
+
+use crate::api::{self, Service};
+use crate::config::{Config, ConfigError, SETTINGS};
+use crate::jobs::library::Library;
+use crate::jobs::numerics::Numerics;
+use crate::jobs::worker::Workers;
+use crate::store::{Store, StoreError};
+use crate::telemetry::{self, TelemetryError};
+
+#[derive(Debug, thiserror::Error)]
+pub enum ServeError {
+    #[error("{0}")]
+    Config(#[from] ConfigError),
+    #[error("{0}")]
+    Telemetry(#[from] TelemetryError),
+    #[error("data folder: {0}")]
+    Store(#[from] StoreError),
+    #[error("{address} cannot be listened on: {source}")]
+    Listen { address: SocketAddr, source: std::io::Error },
+    #[error("{0}")]
+    Io(#[from] std::io::Error),
+}
+
+impl ServeError {
+    /// Whether another setting, folder or program would help.
+    pub fn is_setting(&self) -> bool {
+        match self {
+            ServeError::Io(_) => false,
+            ServeError::Store(error) => matches!(
+                error,
+                StoreError::InUse
+                    | StoreError::Files(_)
+                    | StoreError::SchemaTooNew { .. }
+                    | StoreError::Schema(_)
+            ),
+            _ => true,
+        }
+    }
+}
+
+/// The settings as flags; each may as well be an environment variable.
+#[derive(Clone, Debug, Default)]
+pub struct Arguments {
+    given: Vec<(&'static str, String)>,
+}
+
+impl Arguments {
+    /// What was given for a setting: by its flag, else by its variable.
+    pub fn get(&self, name: &str) -> Option<String> {
+        let flag = self.given.iter().find(|(given, _)| *given == name);
+        flag.map(|(_, value)| value.clone()).or_else(|| {
+            let setting = SETTINGS.iter().find(|setting| setting.name == name)?;
+            let value = std::env::var_os(setting.variable())?;
+            Some(value.to_string_lossy().into_owned())
+        })
+    }
+}
+
+impl Args for Arguments {
+    fn augment_args(command: Command) -> Command {
+        SETTINGS.iter().fold(command, |command, setting| {
+            let default = match setting.default {
+                "" => String::new(),
+                default => format!(" [default: {default}]"),
+            };
+            let argument = Arg::new(setting.name)
+                .long(setting.name)
+                .value_name("VALUE")
+                .allow_hyphen_values(true)
+                .help(format!("{} [env: {}]{default}", setting.about, setting.variable()));
+            command.arg(argument)
+        })
+    }
+
+    fn augment_args_for_update(command: Command) -> Command {
+        Self::augment_args(command)
+    }
+}
+
+impl FromArgMatches for Arguments {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
+        let value = |name: &'static str| {
+            let value = matches.get_one::<String>(name)?;
+            Some((name, value.clone()))
+        };
+        let given = SETTINGS.iter().filter_map(|setting| value(setting.name)).collect();
+        Ok(Arguments { given })
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
+        *self = Self::from_arg_matches(matches)?;
+        Ok(())
+    }
+}
+
+/// Serves until the process is told to stop (SIGTERM or SIGINT).
+pub fn run(arguments: &Arguments) -> Result<(), ServeError> {
+    let config = Config::new(|name| arguments.get(name))?;
+    telemetry::start(&config.log)?;
+    let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().build()?;
+    let grace = config.grace;
+    let server = runtime.block_on(Server::start(config))?;
+    // One line on standard output, for programs that started this one with port 0.
+    println!("listening on http://{}", server.address);
+    let workers = runtime.block_on(server.run())?;
+    workers.stop(grace);
+    // What still computes for a request that nobody waits for ends with the process.
+    runtime.shutdown_background();
+    Ok(())
+}
+
+/// A server that listens and whose workers work.
+pub struct Server {
+    pub address: SocketAddr,
+    listener: TcpListener,
+    service: Service,
+    workers: Workers,
+}
+
+impl Server {
+    /// Opens the store, sweeps it, listens, and starts the workers.
+    pub async fn start(config: Config) -> Result<Server, ServeError> {
+        let store = Store::open(&config.data_dir).await?;
+        let swept = store.sweep().await?;
+        tracing::info!(blobs = swept.blobs, temporary = swept.temporary, "swept");
+        let address = config.listen;
+        let listener = TcpListener::bind(address)
+            .await
+            .map_err(|source| ServeError::Listen { address, source })?;
+        let address = listener.local_addr()?;
+        let library = Library::new(store.clone(), config.mesh_cache_bytes);
+        let runtime = Handle::current();
+        let source = library.source(runtime.clone(), Default::default());
+        let service = Service::new(config.clone(), store.clone(), library);
+        let numerics = Numerics { source, limits: (*service.limits).clone() };
+        let workers = Workers::start(store, &config, Arc::new(numerics), runtime)?;
+        tracing::info!(%address, workers = config.workers, "serving");
+        Ok(Server { address, listener, service, workers })
+    }
+
+    /// Answers requests until the process is told to stop; the workers are still at work then.
+    pub async fn run(self) -> Result<Workers, ServeError> {
+        let deadline = self.service.config.grace;
+        let (stopping, mut stopped) = tokio::sync::watch::channel(());
+        let served = axum::serve(self.listener, api::router(self.service))
+            .with_graceful_shutdown(async move {
+                stop_signal().await;
+                tracing::info!("stopping");
+                drop(stopping);
+            });
+        let served = tokio::spawn(served.into_future());
+        // The sender goes when the signal comes.
+        let _ = stopped.changed().await;
+        // A client that never ends its request does not keep the process from ending.
+        if tokio::time::timeout(deadline, served).await.is_err() {
+            tracing::warn!("requests were cut off");
+        }
+        Ok(self.workers)
+    }
+}
+
+async fn stop_signal() {
+    use tokio::signal::unix::{SignalKind, signal};
+    let mut terminate = match signal(SignalKind::terminate()) {
+        Ok(signal) => signal,
+        Err(error) => {
+            tracing::error!(%error, "SIGTERM is not listened to");
+            return std::future::pending().await;
+        }
+    };
+    tokio::select! {
+        _ = terminate.recv() => {}
+        _ = tokio::signal::ctrl_c() => {}
+    }
+}

@@ -1,0 +1,362 @@
+//! Every setting of the service, read once at the start from flags and `FACIES_*` variables.
+
+use std::net::SocketAddr;
+use std::path::PathBuf;
+use std::time::Duration;
+
+/// One setting as it is documented: the flag is `--name`, the variable `FACIES_NAME`.
+pub struct Setting {
+    /// Lower case with dashes; names the unit.
+    pub name: &'static str,
+    /// As it would be written; empty where there is none.
+    pub default: &'static str,
+    /// What it does and its range.
+    pub about: &'static str,
+}
+
+impl Setting {
+    /// The environment variable.
+    pub fn variable(&self) -> String {
+        format!("FACIES_{}", self.name.replace('-', "_").to_uppercase())
+    }
+}
+
+const fn setting(name: &'static str, default: &'static str, about: &'static str) -> Setting {
+    Setting {
+        name,
+        default,
+        about,
+    }
+}
+
+/// All settings of `facies serve`.
+pub const SETTINGS: [Setting; 15] = [
+    setting(
+        "bind",
+        "127.0.0.1:8080",
+        "address and port to listen on; port 0 takes a free one; any address but loopback needs an api-key",
+    ),
+    setting(
+        "data",
+        "facies-data",
+        "folder of the database, the blobs and the temporary files",
+    ),
+    setting(
+        "api-key",
+        "",
+        "asked for as `Authorization: Bearer KEY` on everything but /healthz and /readyz; 16 to 255 visible characters; without it nobody is asked",
+    ),
+    setting(
+        "workers",
+        "2",
+        "jobs solved at the same time; 0 to 64, 0 leaves the jobs to others",
+    ),
+    setting(
+        "threads-per-job",
+        "1",
+        "threads of one job; 1 to 64; the results do not depend on it",
+    ),
+    setting(
+        "lease-s",
+        "15",
+        "seconds without a sign of life after which a job is given to another worker; 0.5 to 3600",
+    ),
+    setting(
+        "heartbeat-s",
+        "5",
+        "seconds between two signs of life of a running job; 0.1 to a half of lease-s",
+    ),
+    setting(
+        "attempts",
+        "3",
+        "times a job may lose its worker or its storage before it fails; 1 to 10",
+    ),
+    setting(
+        "grace-s",
+        "10",
+        "seconds that running jobs get to finish after SIGTERM before they are given back; 0 to 3600",
+    ),
+    setting(
+        "upload-mib",
+        "256",
+        "largest body of an upload in MiB; 1 to 4096",
+    ),
+    setting(
+        "body-idle-s",
+        "30",
+        "seconds a client may stay silent in the middle of a body; 0.1 to 600",
+    ),
+    setting(
+        "mesh-cache-mib",
+        "1024",
+        "memory for parsed meshes in MiB; 0 to 1048576",
+    ),
+    setting(
+        "free-space-floor-mib",
+        "256",
+        "free disk space in MiB under which the service reports itself not ready; 0 to 1048576",
+    ),
+    setting("log-format", "json", "json or text"),
+    setting(
+        "log-level",
+        "info",
+        "error, warn, info, debug, trace, or a filter such as facies=debug,sqlx=warn",
+    ),
+];
+
+/// The settings in force.
+#[derive(Clone, Debug)]
+pub struct Config {
+    pub listen: SocketAddr,
+    pub data_dir: PathBuf,
+    pub api_key: Option<Secret>,
+    pub workers: usize,
+    pub threads_per_job: usize,
+    pub lease: Duration,
+    pub heartbeat: Duration,
+    pub attempts: u32,
+    pub grace: Duration,
+    pub upload_bytes: usize,
+    pub body_idle: Duration,
+    pub mesh_cache_bytes: usize,
+    pub free_space_floor_bytes: u64,
+    pub log: LogConfig,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct LogConfig {
+    pub json: bool,
+    pub filter: String,
+}
+
+/// A text that never reaches a log.
+#[derive(Clone, PartialEq)]
+pub struct Secret(String);
+
+impl Secret {
+    /// Compares in a time that depends on the length only.
+    pub fn matches(&self, other: &str) -> bool {
+        let (own, other) = (self.0.as_bytes(), other.as_bytes());
+        own.len() == other.len()
+            && own
+                .iter()
+                .zip(other)
+                .fold(0, |difference, (a, b)| difference | (a ^ b))
+                == 0
+    }
+}
+
+impl std::fmt::Debug for Secret {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        formatter.write_str("…")
+    }
+}
+
+#[derive(Debug, PartialEq, thiserror::Error)]
+pub enum ConfigError {
+    #[error("{name} is `{value}`, and has to be {wanted}")]
+    Value {
+        name: &'static str,
+        value: String,
+        wanted: &'static str,
+    },
+    #[error("api-key has to have 16 to 255 visible characters")]
+    ApiKey,
+    #[error(
+        "heartbeat-s is {heartbeat} and lease-s {lease}: a lease has to outlast two heartbeats"
+    )]
+    Heartbeat { heartbeat: f64, lease: f64 },
+    #[error("bind is {0}, which others can reach: set an api-key or bind to 127.0.0.1")]
+    OpenWithoutKey(SocketAddr),
+}
+
+const MIB: usize = 1 << 20;
+
+impl Config {
+    /// Takes each setting from `given` (its value by its name) or from its default, and checks it.
+    pub fn new(given: impl Fn(&str) -> Option<String>) -> Result<Config, ConfigError> {
+        let read = Reader {
+            text: |name: &str| given(name).unwrap_or_else(|| default_of(name).to_owned()),
+        };
+        let config = Config {
+            listen: read.parsed("bind", "an address with a port, e.g. 127.0.0.1:8080")?,
+            data_dir: read.parsed("data", "a folder")?,
+            api_key: read.api_key()?,
+            workers: read.whole("workers", 0..=64)?,
+            threads_per_job: read.whole("threads-per-job", 1..=64)?,
+            lease: read.seconds("lease-s", 0.5, 3600.0)?,
+            heartbeat: read.seconds("heartbeat-s", 0.1, 1800.0)?,
+            attempts: read.whole("attempts", 1..=10)? as u32,
+            grace: read.seconds("grace-s", 0.0, 3600.0)?,
+            upload_bytes: read.whole("upload-mib", 1..=4096)? * MIB,
+            body_idle: read.seconds("body-idle-s", 0.1, 600.0)?,
+            mesh_cache_bytes: read.whole("mesh-cache-mib", 0..=MIB)? * MIB,
+            free_space_floor_bytes: (read.whole("free-space-floor-mib", 0..=MIB)? * MIB) as u64,
+            log: LogConfig {
+                json: read.json_log()?,
+                filter: (read.text)("log-level"),
+            },
+        };
+        config.checked()
+    }
+
+    fn checked(self) -> Result<Config, ConfigError> {
+        if self.heartbeat * 2 > self.lease {
+            return Err(ConfigError::Heartbeat {
+                heartbeat: self.heartbeat.as_secs_f64(),
+                lease: self.lease.as_secs_f64(),
+            });
+        }
+        if !self.listen.ip().is_loopback() && self.api_key.is_none() {
+            return Err(ConfigError::OpenWithoutKey(self.listen));
+        }
+        Ok(self)
+    }
+}
+
+fn default_of(name: &str) -> &'static str {
+    SETTINGS
+        .iter()
+        .find(|setting| setting.name == name)
+        .map_or("", |setting| setting.default)
+}
+
+struct Reader<Text> {
+    text: Text,
+}
+
+impl<Text: Fn(&str) -> String> Reader<Text> {
+    fn parsed<T: std::str::FromStr>(
+        &self,
+        name: &'static str,
+        wanted: &'static str,
+    ) -> Result<T, ConfigError> {
+        let value = (self.text)(name);
+        value
+            .parse()
+            .ok()
+            .filter(|_| !value.is_empty())
+            .ok_or(ConfigError::Value {
+                name,
+                value,
+                wanted,
+            })
+    }
+
+    fn whole(
+        &self,
+        name: &'static str,
+        range: std::ops::RangeInclusive<usize>,
+    ) -> Result<usize, ConfigError> {
+        let value = (self.text)(name);
+        let number = value.parse().ok().filter(|number| range.contains(number));
+        number.ok_or_else(|| out_of_range(name, value))
+    }
+
+    fn seconds(&self, name: &'static str, least: f64, most: f64) -> Result<Duration, ConfigError> {
+        let value = (self.text)(name);
+        let number = value.parse().ok();
+        number
+            .filter(|number| (least..=most).contains(number))
+            .map(Duration::from_secs_f64)
+            .ok_or_else(|| out_of_range(name, value))
+    }
+
+    fn api_key(&self) -> Result<Option<Secret>, ConfigError> {
+        let key = (self.text)("api-key");
+        if key.is_empty() {
+            return Ok(None);
+        }
+        if !(16..=255).contains(&key.len()) || !key.bytes().all(|byte| byte.is_ascii_graphic()) {
+            return Err(ConfigError::ApiKey);
+        }
+        Ok(Some(Secret(key)))
+    }
+
+    fn json_log(&self) -> Result<bool, ConfigError> {
+        let value = (self.text)("log-format");
+        match value.as_str() {
+            "json" => Ok(true),
+            "text" => Ok(false),
+            _ => Err(out_of_range("log-format", value)),
+        }
+    }
+}
+
+fn out_of_range(name: &'static str, value: String) -> ConfigError {
+    let wanted = SETTINGS
+        .iter()
+        .find(|setting| setting.name == name)
+        .map_or("", |setting| setting.about);
+    ConfigError::Value {
+        name,
+        value,
+        wanted,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn config(given: &[(&str, &str)]) -> Result<Config, ConfigError> {
+        Config::new(|name| {
+            given
+                .iter()
+                .find(|(key, _)| *key == name)
+                .map(|(_, value)| (*value).to_owned())
+        })
+    }
+
+    #[test]
+    fn the_defaults_are_valid_and_stay_on_this_machine() {
+        let config = config(&[]).unwrap();
+        assert!(config.listen.ip().is_loopback());
+        assert_eq!(config.lease, Duration::from_secs(15));
+        assert_eq!(config.upload_bytes, 256 << 20);
+    }
+
+    #[test]
+    fn an_address_that_others_reach_needs_a_key() {
+        let open = ("bind", "0.0.0.0:80");
+        assert!(matches!(
+            config(&[open]),
+            Err(ConfigError::OpenWithoutKey(_))
+        ));
+        assert!(config(&[open, ("api-key", "0123456789abcdef")]).is_ok());
+    }
+
+    #[test]
+    fn a_value_outside_its_range_is_named_with_its_range() {
+        for (name, value) in [
+            ("workers", "65"),
+            ("workers", "-1"),
+            ("lease-s", "nan"),
+            ("lease-s", "1e9"),
+            ("upload-mib", "0"),
+            ("log-format", "xml"),
+            ("api-key", "short"),
+            ("bind", "localhost"),
+            ("data", ""),
+        ] {
+            let error = config(&[(name, value)]).unwrap_err().to_string();
+            assert!(error.contains(name), "{error}");
+            assert!(!error.contains('\n'), "{error}");
+        }
+    }
+
+    #[test]
+    fn a_lease_outlasts_two_heartbeats() {
+        let error = config(&[("lease-s", "4"), ("heartbeat-s", "3")]).unwrap_err();
+        assert!(matches!(error, ConfigError::Heartbeat { .. }));
+    }
+
+    #[test]
+    fn a_key_is_never_printed() {
+        let config = config(&[("api-key", "0123456789abcdef")]).unwrap();
+        assert!(!format!("{config:?}").contains("0123456789abcdef"));
+        let key = config.api_key.unwrap();
+        assert!(key.matches("0123456789abcdef"));
+        assert!(!key.matches("0123456789abcdeg"));
+    }
+}

@@ -1,0 +1,183 @@
+//! Cases: a document that refers to meshes, with its tags.
+
+use sqlx::Row as _;
+
+use super::database::{Row, Transaction, is_duplicate, is_reference};
+use super::meshes::insert_mesh;
+use super::{NewMesh, Store, StoreError};
+
+/// A case to be stored, with the meshes that came in the same request.
+#[derive(Clone, Debug)]
+pub struct NewCase {
+    pub id: String,
+    pub document: String,
+    pub report: String,
+    pub tags: Vec<String>,
+    /// All meshes that the document refers to.
+    pub mesh_ids: Vec<String>,
+    pub meshes: Vec<NewMesh>,
+}
+
+#[derive(Clone, Debug)]
+pub struct CaseRow {
+    pub id: String,
+    pub document: String,
+    pub report: String,
+    pub version: i64,
+    pub created: i64,
+    pub updated: i64,
+}
+
+/// What became of a change that names the version it knows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Change {
+    Done,
+    /// The row has the version told here.
+    OtherVersion(i64),
+    NotFound,
+}
+
+const BY_ID: &str =
+    "SELECT id, document, report, version, created, updated FROM cases WHERE id = $1";
+const LIST: &str = "SELECT id, document, report, version, created, updated FROM cases \
+     WHERE id < $1 AND ($2 = '' OR EXISTS \
+       (SELECT 1 FROM case_tags WHERE case_tags.case_id = cases.id AND case_tags.tag = $2)) \
+     ORDER BY id DESC LIMIT $3";
+const INSERT: &str = "INSERT INTO cases (id, document, report, version, created, updated) \
+     VALUES ($1, $2, $3, 1, (SELECT now_ms FROM clock), (SELECT now_ms FROM clock))";
+/// What a case leaves when it goes: the files of its jobs.
+const FILES_OF_CASE: &str = "SELECT job_files.blob FROM job_files \
+     JOIN jobs ON jobs.id = job_files.job_id WHERE jobs.case_id = $1";
+const MESHES_OF_CASE: &str = "SELECT mesh_id FROM case_meshes WHERE case_id = $1";
+const DELETE_UNUSED_MESH: &str = "DELETE FROM meshes WHERE id = $1 AND standalone = 0 \
+     AND NOT EXISTS (SELECT 1 FROM case_meshes WHERE mesh_id = $1) \
+     AND NOT EXISTS (SELECT 1 FROM job_meshes WHERE mesh_id = $1) RETURNING blob";
+
+/// Sorts after every id.
+pub(super) const AFTER_ALL: &str = "~";
+
+fn case_row(row: &Row) -> Result<CaseRow, sqlx::Error> {
+    Ok(CaseRow {
+        id: row.try_get("id")?,
+        document: row.try_get("document")?,
+        report: row.try_get("report")?,
+        version: row.try_get("version")?,
+        created: row.try_get("created")?,
+        updated: row.try_get("updated")?,
+    })
+}
+
+impl Store {
+    pub async fn case(&self, id: &str) -> Result<Option<CaseRow>, StoreError> {
+        let row = sqlx::query(BY_ID)
+            .bind(id)
+            .fetch_optional(self.database.reader())
+            .await?;
+        Ok(row.as_ref().map(case_row).transpose()?)
+    }
+
+    /// Cases newest first, those after `cursor` where one is given, with `tag` unless it is empty.
+    pub async fn cases(
+        &self,
+        tag: &str,
+        cursor: Option<&str>,
+        limit: i64,
+    ) -> Result<Vec<CaseRow>, StoreError> {
+        let rows = sqlx::query(LIST)
+            .bind(cursor.unwrap_or(AFTER_ALL))
+            .bind(tag)
+            .bind(limit)
+            .fetch_all(self.database.reader())
+            .await?;
+        Ok(rows.iter().map(case_row).collect::<Result<_, _>>()?)
+    }
+
+    /// Stores a case and its meshes, or nothing: false when a mesh it counts on came or went meanwhile.
+    pub async fn add_case(&self, case: &NewCase) -> Result<bool, StoreError> {
+        let _uncommitted = self.uncommitted.read().await;
+        for mesh in &case.meshes {
+            self.blobs.put(&mesh.blob, mesh.bytes.clone()).await?;
+        }
+        let mut transaction = self.database.begin().await?;
+        match insert_case(&mut transaction, case).await {
+            Ok(()) => {
+                transaction.commit().await?;
+                Ok(true)
+            }
+            Err(error) if is_duplicate(&error) || is_reference(&error) => Ok(false),
+            Err(error) => Err(error.into()),
+        }
+    }
+
+    /// Erases a case: its plans, its jobs with their results, and the meshes that came with it and that
+    /// nothing else refers to. A job of it that is running finds itself gone and stops.
+    pub async fn delete_case(&self, id: &str, version: Option<i64>) -> Result<Change, StoreError> {
+        let mut transaction = self.database.begin().await?;
+        let found = sqlx::query("SELECT version FROM cases WHERE id = $1")
+            .bind(id)
+            .fetch_optional(&mut *transaction)
+            .await?;
+        let Some(found) = found else {
+            return Ok(Change::NotFound);
+        };
+        let found: i64 = found.try_get("version")?;
+        if version.is_some_and(|version| version != found) {
+            return Ok(Change::OtherVersion(found));
+        }
+        let mut blobs = column(&mut transaction, FILES_OF_CASE, id).await?;
+        let meshes = column(&mut transaction, MESHES_OF_CASE, id).await?;
+        sqlx::query("DELETE FROM cases WHERE id = $1")
+            .bind(id)
+            .execute(&mut *transaction)
+            .await?;
+        for mesh in meshes {
+            blobs.extend(column(&mut transaction, DELETE_UNUSED_MESH, &mesh).await?);
+        }
+        transaction.commit().await?;
+        self.jobs_changed();
+        self.delete_unreferenced_blobs(blobs).await?;
+        Ok(Change::Done)
+    }
+}
+
+/// The first column of a query with one parameter.
+async fn column(
+    transaction: &mut Transaction,
+    sql: &'static str,
+    id: &str,
+) -> Result<Vec<String>, sqlx::Error> {
+    let rows = sqlx::query(sql)
+        .bind(id)
+        .fetch_all(&mut **transaction)
+        .await?;
+    rows.iter().map(|row| row.try_get(0)).collect()
+}
+
+async fn insert_case(transaction: &mut Transaction, case: &NewCase) -> Result<(), sqlx::Error> {
+    for mesh in &case.meshes {
+        insert_mesh(transaction, mesh).await?;
+    }
+    sqlx::query(INSERT)
+        .bind(&case.id)
+        .bind(&case.document)
+        .bind(&case.report)
+        .execute(&mut **transaction)
+        .await?;
+    for tag in &case.tags {
+        sqlx::query("INSERT INTO case_tags (case_id, tag) VALUES ($1, $2) ON CONFLICT DO NOTHING")
+            .bind(&case.id)
+            .bind(tag)
+            .execute(&mut **transaction)
+            .await?;
+    }
+    for mesh in &case.mesh_ids {
+        sqlx::query(
+            "INSERT INTO case_meshes (case_id, mesh_id) VALUES ($1, $2) ON CONFLICT DO NOTHING",
+        )
+        .bind(&case.id)
+        .bind(mesh)
+        .execute(&mut **transaction)
+        .await?;
+    }
+    Ok(())
+}

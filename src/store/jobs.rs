@@ -1,0 +1,266 @@
+//! Jobs as clients see them: accepted, looked at, listed, dismissed, removed.
+
+use sqlx::Row as _;
+
+use super::cases::AFTER_ALL;
+use super::database::{Row, Transaction, is_reference};
+use super::{Store, StoreError};
+use crate::schema::job::JobStatus;
+
+/// A job to be accepted.
+#[derive(Clone, Debug)]
+pub struct NewJob {
+    pub id: String,
+    pub kind: &'static str,
+    pub case_id: Option<String>,
+    /// Everything the job needs, resolved.
+    pub document: String,
+    pub spec_hash: String,
+    pub engine: String,
+    pub tags: Vec<String>,
+    /// The meshes that have to stay while the job is there.
+    pub mesh_ids: Vec<String>,
+}
+
+/// What became of a job that was to be accepted.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Enqueued {
+    Accepted,
+    /// The same inputs are the job of this id already.
+    Known(String),
+    QueueFull,
+    /// The case or a mesh went meanwhile.
+    InputGone,
+}
+
+#[derive(Clone, Debug)]
+pub struct JobRow {
+    pub id: String,
+    pub kind: String,
+    pub case_id: Option<String>,
+    pub spec_hash: String,
+    pub engine: String,
+    pub status: JobStatus,
+    pub phase: Option<String>,
+    pub progress: i64,
+    pub iteration: Option<i64>,
+    pub residual: Option<f64>,
+    pub attempt: i64,
+    /// JSON with `type` and `detail`.
+    pub error: Option<String>,
+    /// The manifest, JSON.
+    pub result: Option<String>,
+    pub created: i64,
+    pub started: Option<i64>,
+    pub finished: Option<i64>,
+    pub updated: i64,
+    pub tags: Vec<String>,
+    /// How many accepted jobs stand before this one, where it is accepted itself.
+    pub queue_position: Option<i64>,
+}
+
+/// Which jobs to list; an empty text asks for all.
+#[derive(Clone, Debug, Default)]
+pub struct JobFilter {
+    pub status: String,
+    pub kind: String,
+    pub tag: String,
+    pub case_id: String,
+    pub cursor: Option<String>,
+    pub limit: i64,
+}
+
+/// What became of a request to dismiss or remove.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Dismissal {
+    Dismissed,
+    /// It had ended and is gone.
+    Removed,
+    NotFound,
+}
+
+macro_rules! columns {
+    () => {
+        "SELECT id, kind, case_id, spec_hash, engine, status, phase, progress, iteration, residual, \
+         attempt, error, result, created, started, finished, updated, \
+         CASE WHEN status = 'accepted' THEN (SELECT COUNT(*) FROM jobs AS before \
+           WHERE before.status = 'accepted' AND before.id < jobs.id) END AS queue_position \
+         FROM jobs WHERE "
+    };
+}
+
+const BY_ID: &str = concat!(columns!(), "id = $1");
+const LIST: &str = concat!(
+    columns!(),
+    "id < $1 AND ($2 = '' OR status = $2) AND ($3 = '' OR kind = $3) \
+     AND ($4 = '' OR EXISTS (SELECT 1 FROM job_tags WHERE job_tags.job_id = jobs.id AND job_tags.tag = $4)) \
+     AND ($5 = '' OR case_id = $5) ORDER BY id DESC LIMIT $6"
+);
+const INSERT: &str = "INSERT INTO jobs (id, kind, case_id, document, spec_hash, engine, status, \
+     progress, attempt, losses, claimable_from, created, updated) \
+     VALUES ($1, $2, $3, $4, $5, $6, 'accepted', 0, 0, 0, 0, \
+       (SELECT now_ms FROM clock), (SELECT now_ms FROM clock)) \
+     ON CONFLICT (spec_hash) DO NOTHING";
+const DISMISS: &str = "UPDATE jobs SET status = 'dismissed', lease_token = NULL, lease_expires = NULL, \
+     finished = (SELECT now_ms FROM clock), updated = (SELECT now_ms FROM clock) \
+     WHERE id = $1 AND status IN ('accepted', 'running')";
+const REMOVE: &str =
+    "DELETE FROM jobs WHERE id = $1 AND status IN ('successful', 'failed', 'dismissed')";
+
+fn job_row(row: &Row) -> Result<JobRow, sqlx::Error> {
+    let status: String = row.try_get("status")?;
+    Ok(JobRow {
+        id: row.try_get("id")?,
+        kind: row.try_get("kind")?,
+        case_id: row.try_get("case_id")?,
+        spec_hash: row.try_get("spec_hash")?,
+        engine: row.try_get("engine")?,
+        status: JobStatus::from_name(&status)
+            .ok_or_else(|| sqlx::Error::Decode(format!("job status `{status}`").into()))?,
+        phase: row.try_get("phase")?,
+        progress: row.try_get("progress")?,
+        iteration: row.try_get("iteration")?,
+        residual: row.try_get("residual")?,
+        attempt: row.try_get("attempt")?,
+        error: row.try_get("error")?,
+        result: row.try_get("result")?,
+        created: row.try_get("created")?,
+        started: row.try_get("started")?,
+        finished: row.try_get("finished")?,
+        updated: row.try_get("updated")?,
+        tags: Vec::new(),
+        queue_position: row.try_get("queue_position")?,
+    })
+}
+
+impl Store {
+    pub async fn job(&self, id: &str) -> Result<Option<JobRow>, StoreError> {
+        let row = sqlx::query(BY_ID)
+            .bind(id)
+            .fetch_optional(self.database.reader())
+            .await?;
+        match row {
+            Some(row) => Ok(Some(self.with_tags(job_row(&row)?).await?)),
+            None => Ok(None),
+        }
+    }
+
+    /// Jobs newest first.
+    pub async fn jobs(&self, filter: &JobFilter) -> Result<Vec<JobRow>, StoreError> {
+        let rows = sqlx::query(LIST)
+            .bind(filter.cursor.as_deref().unwrap_or(AFTER_ALL))
+            .bind(&filter.status)
+            .bind(&filter.kind)
+            .bind(&filter.tag)
+            .bind(&filter.case_id)
+            .bind(filter.limit)
+            .fetch_all(self.database.reader())
+            .await?;
+        let mut jobs = Vec::with_capacity(rows.len());
+        for row in &rows {
+            jobs.push(self.with_tags(job_row(row)?).await?);
+        }
+        Ok(jobs)
+    }
+
+    async fn with_tags(&self, mut job: JobRow) -> Result<JobRow, StoreError> {
+        let rows = sqlx::query("SELECT tag FROM job_tags WHERE job_id = $1 ORDER BY tag")
+            .bind(&job.id)
+            .fetch_all(self.database.reader())
+            .await?;
+        job.tags = rows
+            .iter()
+            .map(|row| row.try_get(0))
+            .collect::<Result<_, _>>()?;
+        Ok(job)
+    }
+
+    /// Accepts a job, unless one with the same inputs is known.
+    pub async fn enqueue(&self, job: &NewJob, longest_queue: i64) -> Result<Enqueued, StoreError> {
+        let mut transaction = self.database.begin().await?;
+        let known = sqlx::query("SELECT id FROM jobs WHERE spec_hash = $1")
+            .bind(&job.spec_hash)
+            .fetch_optional(&mut *transaction)
+            .await?;
+        if let Some(row) = known {
+            return Ok(Enqueued::Known(row.try_get(0)?));
+        }
+        let waiting = sqlx::query("SELECT COUNT(*) FROM jobs WHERE status = 'accepted'")
+            .fetch_one(&mut *transaction)
+            .await?;
+        if waiting.try_get::<i64, _>(0)? >= longest_queue {
+            return Ok(Enqueued::QueueFull);
+        }
+        match insert_job(&mut transaction, job).await {
+            Ok(()) => {
+                transaction.commit().await?;
+                self.jobs_changed();
+                Ok(Enqueued::Accepted)
+            }
+            Err(error) if is_reference(&error) => Ok(Enqueued::InputGone),
+            Err(error) => Err(error.into()),
+        }
+    }
+
+    /// Ends a job that is accepted or running, removes one that has ended.
+    pub async fn dismiss(&self, id: &str) -> Result<Dismissal, StoreError> {
+        let mut transaction = self.database.begin().await?;
+        let dismissed = sqlx::query(DISMISS)
+            .bind(id)
+            .execute(&mut *transaction)
+            .await?;
+        if dismissed.rows_affected() == 1 {
+            transaction.commit().await?;
+            self.jobs_changed();
+            return Ok(Dismissal::Dismissed);
+        }
+        let rows = sqlx::query("SELECT blob FROM job_files WHERE job_id = $1")
+            .bind(id)
+            .fetch_all(&mut *transaction)
+            .await?;
+        let blobs = rows
+            .iter()
+            .map(|row| row.try_get(0))
+            .collect::<Result<Vec<String>, _>>()?;
+        let removed = sqlx::query(REMOVE)
+            .bind(id)
+            .execute(&mut *transaction)
+            .await?;
+        transaction.commit().await?;
+        self.jobs_changed();
+        self.delete_unreferenced_blobs(blobs).await?;
+        Ok(match removed.rows_affected() {
+            0 => Dismissal::NotFound,
+            _ => Dismissal::Removed,
+        })
+    }
+}
+
+async fn insert_job(transaction: &mut Transaction, job: &NewJob) -> Result<(), sqlx::Error> {
+    sqlx::query(INSERT)
+        .bind(&job.id)
+        .bind(job.kind)
+        .bind(&job.case_id)
+        .bind(&job.document)
+        .bind(&job.spec_hash)
+        .bind(&job.engine)
+        .execute(&mut **transaction)
+        .await?;
+    for tag in &job.tags {
+        sqlx::query("INSERT INTO job_tags (job_id, tag) VALUES ($1, $2) ON CONFLICT DO NOTHING")
+            .bind(&job.id)
+            .bind(tag)
+            .execute(&mut **transaction)
+            .await?;
+    }
+    for mesh in &job.mesh_ids {
+        sqlx::query(
+            "INSERT INTO job_meshes (job_id, mesh_id) VALUES ($1, $2) ON CONFLICT DO NOTHING",
+        )
+        .bind(&job.id)
+        .bind(mesh)
+        .execute(&mut **transaction)
+        .await?;
+    }
+    Ok(())
+}

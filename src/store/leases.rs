@@ -1,0 +1,289 @@
+//! Jobs as workers see them. A claim makes a lease with a token of its own; every later write names the
+//! token, so that a worker which was thought dead and comes back changes nothing.
+
+use std::time::Duration;
+
+use bytes::Bytes;
+use sqlx::Row as _;
+
+use super::database::Query;
+use super::{Store, StoreError};
+
+/// The right of one attempt to write to its job.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct Lease {
+    pub job: String,
+    pub token: String,
+    pub attempt: i64,
+}
+
+/// A job to be worked on.
+#[derive(Clone, Debug)]
+pub struct Claim {
+    pub lease: Lease,
+    pub kind: String,
+    pub document: String,
+    pub created: i64,
+    pub started: i64,
+}
+
+/// Where a running job stands.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Point {
+    pub phase: Option<&'static str>,
+    pub progress: i64,
+    pub iteration: Option<i64>,
+    pub residual: Option<f64>,
+}
+
+/// A result file to be published.
+#[derive(Clone, Debug)]
+pub struct PublishedFile {
+    pub name: String,
+    pub media_type: String,
+    pub sha256: String,
+    pub bytes: Bytes,
+}
+
+/// A result file.
+#[derive(Clone, Debug)]
+pub struct FileRow {
+    pub name: String,
+    pub media_type: String,
+    pub blob: String,
+    pub bytes: i64,
+}
+
+/// A job whose worker was lost.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Reaped {
+    pub job: String,
+    pub attempt: i64,
+    /// False: it has lost its worker too often and has failed.
+    pub accepted_again: bool,
+}
+
+// Another engine adds FOR UPDATE SKIP LOCKED to the inner query.
+const CLAIM: &str = "UPDATE jobs SET status = 'running', attempt = attempt + 1, lease_token = $1, \
+     lease_expires = (SELECT now_ms FROM clock) + $2, heartbeat = (SELECT now_ms FROM clock), \
+     phase = NULL, iteration = NULL, residual = NULL, \
+     started = COALESCE(started, (SELECT now_ms FROM clock)), updated = (SELECT now_ms FROM clock) \
+     WHERE id = (SELECT id FROM jobs WHERE status = 'accepted' \
+       AND claimable_from <= (SELECT now_ms FROM clock) ORDER BY id LIMIT 1) \
+     AND status = 'accepted' RETURNING id, attempt, kind, document, created, started";
+const RENEW: &str = "UPDATE jobs SET lease_expires = (SELECT now_ms FROM clock) + $3, \
+     heartbeat = (SELECT now_ms FROM clock), updated = (SELECT now_ms FROM clock), phase = $4, \
+     progress = CASE WHEN $5 > progress THEN $5 ELSE progress END, iteration = $6, residual = $7 \
+     WHERE id = $1 AND status = 'running' AND lease_token = $2";
+const HELD: &str = "SELECT 1 FROM jobs WHERE id = $1 AND status = 'running' AND lease_token = $2";
+const SUCCEED: &str = "UPDATE jobs SET status = 'successful', result = $3, progress = 100, \
+     lease_token = NULL, lease_expires = NULL, phase = NULL, \
+     finished = (SELECT now_ms FROM clock), updated = (SELECT now_ms FROM clock) \
+     WHERE id = $1 AND status = 'running' AND lease_token = $2";
+const FAIL: &str = "UPDATE jobs SET status = 'failed', error = $3, \
+     lease_token = NULL, lease_expires = NULL, \
+     finished = (SELECT now_ms FROM clock), updated = (SELECT now_ms FROM clock) \
+     WHERE id = $1 AND status = 'running' AND lease_token = $2";
+const RELEASE: &str = "UPDATE jobs SET status = 'accepted', lease_token = NULL, lease_expires = NULL, \
+     updated = (SELECT now_ms FROM clock) \
+     WHERE id = $1 AND status = 'running' AND lease_token = $2";
+/// An attempt that failed through no fault of the job: accepted again after a pause, or failed for good.
+const LOSE: &str = "UPDATE jobs SET losses = losses + 1, lease_token = NULL, lease_expires = NULL, \
+     status = CASE WHEN losses + 1 >= $3 THEN 'failed' ELSE 'accepted' END, \
+     error = CASE WHEN losses + 1 >= $3 THEN $4 END, \
+     finished = CASE WHEN losses + 1 >= $3 THEN (SELECT now_ms FROM clock) END, \
+     claimable_from = (SELECT now_ms FROM clock) + $5 * (losses + 1), \
+     updated = (SELECT now_ms FROM clock) \
+     WHERE id = $1 AND status = 'running' AND lease_token = $2";
+const REAP: &str = "UPDATE jobs SET losses = losses + 1, lease_token = NULL, lease_expires = NULL, \
+     status = CASE WHEN losses + 1 >= $1 THEN 'failed' ELSE 'accepted' END, \
+     error = CASE WHEN losses + 1 >= $1 THEN $2 END, \
+     finished = CASE WHEN losses + 1 >= $1 THEN (SELECT now_ms FROM clock) END, \
+     updated = (SELECT now_ms FROM clock) \
+     WHERE status = 'running' AND lease_expires < (SELECT now_ms FROM clock) \
+     RETURNING id, attempt, status";
+const INSERT_FILE: &str =
+    "INSERT INTO job_files (job_id, name, media_type, blob, bytes) VALUES ($1, $2, $3, $4, $5)";
+const FILE: &str =
+    "SELECT name, media_type, blob, bytes FROM job_files WHERE job_id = $1 AND name = $2";
+
+/// The pause before an attempt that lost its storage is repeated, times the losses so far.
+const PAUSE_AFTER_LOSS_MS: i64 = 500;
+
+impl Store {
+    /// Takes the oldest accepted job, if there is one. Two workers never take the same.
+    pub async fn claim(&self, lease: Duration) -> Result<Option<Claim>, StoreError> {
+        let token = uuid::Uuid::now_v7().to_string();
+        let row = sqlx::query(CLAIM)
+            .bind(&token)
+            .bind(milliseconds(lease))
+            .fetch_optional(self.database.writer())
+            .await?;
+        let Some(row) = row else { return Ok(None) };
+        self.jobs_changed();
+        Ok(Some(Claim {
+            lease: Lease {
+                job: row.try_get("id")?,
+                token,
+                attempt: row.try_get("attempt")?,
+            },
+            kind: row.try_get("kind")?,
+            document: row.try_get("document")?,
+            created: row.try_get("created")?,
+            started: row.try_get("started")?,
+        }))
+    }
+
+    /// Keeps a job and tells where it stands; false when it is not ours any more.
+    pub async fn renew(
+        &self,
+        lease: &Lease,
+        length: Duration,
+        point: &Point,
+    ) -> Result<bool, StoreError> {
+        let renewed = sqlx::query(RENEW)
+            .bind(&lease.job)
+            .bind(&lease.token)
+            .bind(milliseconds(length))
+            .bind(point.phase)
+            .bind(point.progress)
+            .bind(point.iteration)
+            .bind(point.residual)
+            .execute(self.database.writer())
+            .await?;
+        self.jobs_changed();
+        Ok(renewed.rows_affected() == 1)
+    }
+
+    /// Whether a job is ours still.
+    pub async fn holds(&self, lease: &Lease) -> Result<bool, StoreError> {
+        let row = sqlx::query(HELD)
+            .bind(&lease.job)
+            .bind(&lease.token)
+            .fetch_optional(self.database.reader())
+            .await?;
+        Ok(row.is_some())
+    }
+
+    /// Publishes the result of an attempt, all of it or, when the job is not ours any more, nothing:
+    /// bytes first, then one transaction.
+    pub async fn publish(
+        &self,
+        lease: &Lease,
+        result: &str,
+        files: &[PublishedFile],
+    ) -> Result<bool, StoreError> {
+        let uncommitted = self.uncommitted.read().await;
+        for file in files {
+            self.blobs.put(&file.sha256, file.bytes.clone()).await?;
+        }
+        let mut transaction = self.database.begin().await?;
+        let published = sqlx::query(SUCCEED)
+            .bind(&lease.job)
+            .bind(&lease.token)
+            .bind(result)
+            .execute(&mut *transaction)
+            .await?;
+        if published.rows_affected() != 1 {
+            transaction.rollback().await?;
+            drop(uncommitted);
+            let blobs = files.iter().map(|file| file.sha256.clone()).collect();
+            self.delete_unreferenced_blobs(blobs).await?;
+            return Ok(false);
+        }
+        for file in files {
+            sqlx::query(INSERT_FILE)
+                .bind(&lease.job)
+                .bind(&file.name)
+                .bind(&file.media_type)
+                .bind(&file.sha256)
+                .bind(file.bytes.len() as i64)
+                .execute(&mut *transaction)
+                .await?;
+        }
+        transaction.commit().await?;
+        self.jobs_changed();
+        Ok(true)
+    }
+
+    /// Ends a job whose own fault it is; false when it is not ours any more.
+    pub async fn fail(&self, lease: &Lease, error: &str) -> Result<bool, StoreError> {
+        self.end(
+            sqlx::query(FAIL)
+                .bind(&lease.job)
+                .bind(&lease.token)
+                .bind(error),
+        )
+        .await
+    }
+
+    /// Gives a job back untouched, for a worker that is about to stop.
+    pub async fn release(&self, lease: &Lease) -> Result<bool, StoreError> {
+        self.end(sqlx::query(RELEASE).bind(&lease.job).bind(&lease.token))
+            .await
+    }
+
+    /// Gives a job back that failed through no fault of its own, or fails it when that was the last attempt.
+    pub async fn lose(
+        &self,
+        lease: &Lease,
+        attempts: u32,
+        error: &str,
+    ) -> Result<bool, StoreError> {
+        let query = sqlx::query(LOSE)
+            .bind(&lease.job)
+            .bind(&lease.token)
+            .bind(i64::from(attempts))
+            .bind(error)
+            .bind(PAUSE_AFTER_LOSS_MS);
+        self.end(query).await
+    }
+
+    async fn end(&self, query: Query<'_>) -> Result<bool, StoreError> {
+        let changed = query.execute(self.database.writer()).await?;
+        self.jobs_changed();
+        Ok(changed.rows_affected() == 1)
+    }
+
+    /// Takes jobs from workers that gave no sign of life for a lease. `error` is for those that this
+    /// happened to `attempts` times.
+    pub async fn reap(&self, attempts: u32, error: &str) -> Result<Vec<Reaped>, StoreError> {
+        let rows = sqlx::query(REAP)
+            .bind(i64::from(attempts))
+            .bind(error)
+            .fetch_all(self.database.writer())
+            .await?;
+        if !rows.is_empty() {
+            self.jobs_changed();
+        }
+        let mut reaped = Vec::with_capacity(rows.len());
+        for row in &rows {
+            reaped.push(Reaped {
+                job: row.try_get("id")?,
+                attempt: row.try_get("attempt")?,
+                accepted_again: row.try_get::<String, _>("status")? == "accepted",
+            });
+        }
+        Ok(reaped)
+    }
+
+    /// One file of a successful job.
+    pub async fn job_file(&self, job: &str, name: &str) -> Result<Option<FileRow>, StoreError> {
+        let row = sqlx::query(FILE)
+            .bind(job)
+            .bind(name)
+            .fetch_optional(self.database.reader())
+            .await?;
+        let Some(row) = row else { return Ok(None) };
+        Ok(Some(FileRow {
+            name: row.try_get("name")?,
+            media_type: row.try_get("media_type")?,
+            blob: row.try_get("blob")?,
+            bytes: row.try_get("bytes")?,
+        }))
+    }
+}
+
+fn milliseconds(duration: Duration) -> i64 {
+    i64::try_from(duration.as_millis()).unwrap_or(i64::MAX)
+}

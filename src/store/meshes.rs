@@ -1,0 +1,139 @@
+//! Uploaded meshes: immutable, known by the hash of the bytes that came and by what was said about them.
+
+use bytes::Bytes;
+use sqlx::Row as _;
+
+use super::database::{Row, Transaction, is_reference};
+use super::{Store, StoreError};
+
+/// A mesh to be stored, with the bytes that our own writer made of it.
+#[derive(Clone, Debug)]
+pub struct NewMesh {
+    pub id: String,
+    /// Of the bytes as they came.
+    pub sha256: String,
+    /// What the upload said about them, as stable text: the same bytes in another unit are another mesh.
+    pub options: String,
+    pub blob: String,
+    pub bytes: Bytes,
+    /// False: it came with a case, and goes with it.
+    pub standalone: bool,
+    pub report: String,
+}
+
+#[derive(Clone, Debug)]
+pub struct MeshRow {
+    pub id: String,
+    pub sha256: String,
+    pub options: String,
+    pub blob: String,
+    pub report: String,
+    pub created: i64,
+}
+
+/// What became of a request to delete.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MeshDeletion {
+    Deleted,
+    InUse,
+    NotFound,
+}
+
+const COLUMNS: &str = "SELECT id, sha256, options, blob, report, created FROM meshes WHERE id = $1";
+const BY_CONTENT: &str = "SELECT id, sha256, options, blob, report, created FROM meshes \
+     WHERE sha256 = $1 AND options = $2";
+const INSERT: &str = "INSERT INTO meshes (id, sha256, options, blob, standalone, report, created) \
+     VALUES ($1, $2, $3, $4, $5, $6, (SELECT now_ms FROM clock))";
+
+fn mesh_row(row: &Row) -> Result<MeshRow, sqlx::Error> {
+    Ok(MeshRow {
+        id: row.try_get("id")?,
+        sha256: row.try_get("sha256")?,
+        options: row.try_get("options")?,
+        blob: row.try_get("blob")?,
+        report: row.try_get("report")?,
+        created: row.try_get("created")?,
+    })
+}
+
+impl Store {
+    pub async fn mesh(&self, id: &str) -> Result<Option<MeshRow>, StoreError> {
+        let row = sqlx::query(COLUMNS)
+            .bind(id)
+            .fetch_optional(self.database.reader())
+            .await?;
+        Ok(row.as_ref().map(mesh_row).transpose()?)
+    }
+
+    /// The mesh that these bytes, so described, were stored as before.
+    pub async fn mesh_by_content(
+        &self,
+        sha256: &str,
+        options: &str,
+    ) -> Result<Option<MeshRow>, StoreError> {
+        let row = sqlx::query(BY_CONTENT)
+            .bind(sha256)
+            .bind(options)
+            .fetch_optional(self.database.reader())
+            .await?;
+        Ok(row.as_ref().map(mesh_row).transpose()?)
+    }
+
+    /// Stores a mesh; false when it was there before, by whichever request came first.
+    pub async fn add_mesh(&self, mesh: &NewMesh) -> Result<bool, StoreError> {
+        let _uncommitted = self.uncommitted.read().await;
+        self.blobs.put(&mesh.blob, mesh.bytes.clone()).await?;
+        let mut transaction = self.database.begin().await?;
+        match insert_mesh(&mut transaction, mesh).await {
+            Ok(()) => {
+                transaction.commit().await?;
+                Ok(true)
+            }
+            Err(error) if super::database::is_duplicate(&error) => Ok(false),
+            Err(error) => Err(error.into()),
+        }
+    }
+
+    /// Keeps a mesh although the case that it came with may go.
+    pub async fn keep_mesh(&self, id: &str) -> Result<(), StoreError> {
+        sqlx::query("UPDATE meshes SET standalone = 1 WHERE id = $1 AND standalone = 0")
+            .bind(id)
+            .execute(self.database.writer())
+            .await?;
+        Ok(())
+    }
+
+    /// Deletes a mesh that no case and no job refers to, and its bytes.
+    pub async fn delete_mesh(&self, id: &str) -> Result<MeshDeletion, StoreError> {
+        let deleted = sqlx::query("DELETE FROM meshes WHERE id = $1 RETURNING blob")
+            .bind(id)
+            .fetch_optional(self.database.writer())
+            .await;
+        match deleted {
+            Ok(None) => Ok(MeshDeletion::NotFound),
+            Ok(Some(row)) => {
+                self.delete_unreferenced_blobs(vec![row.try_get("blob")?])
+                    .await?;
+                Ok(MeshDeletion::Deleted)
+            }
+            Err(error) if is_reference(&error) => Ok(MeshDeletion::InUse),
+            Err(error) => Err(error.into()),
+        }
+    }
+}
+
+pub(super) async fn insert_mesh(
+    transaction: &mut Transaction,
+    mesh: &NewMesh,
+) -> Result<(), sqlx::Error> {
+    sqlx::query(INSERT)
+        .bind(&mesh.id)
+        .bind(&mesh.sha256)
+        .bind(&mesh.options)
+        .bind(&mesh.blob)
+        .bind(i64::from(mesh.standalone))
+        .bind(&mesh.report)
+        .execute(&mut **transaction)
+        .await?;
+    Ok(())
+}
