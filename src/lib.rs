@@ -5,9 +5,10 @@
 pub mod api;
 pub mod boundary;
 pub mod chart;
+pub mod command;
+pub mod config;
 pub mod element;
 pub mod format;
-pub mod config;
 pub mod jobs;
 pub mod material;
 pub mod mesh;

@@ -1,9 +1,8 @@
-//! Only starts what `command` does.
-
 use std::process::ExitCode;
 
 use clap::Parser;
+use facies::command::{Facies, run};
 
 fn main() -> ExitCode {
-    facies::command::run(facies::command::Arguments::parse())
+    run(&Facies::parse())
 }

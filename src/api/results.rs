@@ -31,14 +31,14 @@ async fn successful(service: &Service, id: &str) -> ApiResult<JobRow> {
             let error: serde_json::Value = serde_json::from_str(error).unwrap_or_default();
             let detail = format!("the job has {} and has no results", job.status.name());
             Err(Problem::new("job-failed", detail)
-                .with("status", job.status.name())
+                .with("job_status", job.status.name())
                 .with("error", error)
                 .into())
         }
         JobStatus::Accepted | JobStatus::Running => {
             let detail = format!("the job is {} and has no results yet", job.status.name());
             Err(Problem::new("result-not-ready", detail)
-                .with("status", job.status.name())
+                .with("job_status", job.status.name())
                 .with("progress", job.progress)
                 .with("retry_after_s", RETRY_AFTER_S)
                 .into())

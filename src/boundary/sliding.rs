@@ -64,3 +64,27 @@ fn group_by_wall(faces: &[Vector]) -> Vec<Vector> {
     walls.truncate(3);
     walls.iter().map(|wall| wall.normalize()).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_two_sides_of_a_thin_edge_are_one_wall() {
+        let above = Vector::new(0.1, 0.0, 1.0);
+        let below = Vector::new(0.1, 0.0, -1.0);
+        let walls = group_by_wall(&[above, below]);
+        assert_eq!(walls.len(), 1);
+        assert!((walls[0] - Vector::z()).norm() < 1e-15, "{}", walls[0]);
+    }
+
+    #[test]
+    fn gently_curved_faces_are_one_wall_and_a_corner_is_three() {
+        let tilted = |degrees: f64| {
+            let angle = degrees.to_radians();
+            Vector::new(angle.sin(), 0.0, angle.cos())
+        };
+        assert_eq!(group_by_wall(&[tilted(-20.0), tilted(0.0), tilted(20.0)]).len(), 1);
+        assert_eq!(group_by_wall(&[Vector::x(), Vector::y(), Vector::z(), Vector::x()]).len(), 3);
+    }
+}

@@ -25,16 +25,15 @@ use report::Report;
 /// How often the state of a job is asked for.
 const LOOK: Duration = Duration::from_millis(100);
 
-/// Predicts a face that the program makes itself, and says how good the numbers are.
 #[derive(Clone, Debug, clap::Args)]
-pub struct DemoArgs {
-    /// Leave the service running afterwards and print its addresses.
+pub struct Arguments {
+    /// Leave the service running afterwards and print its addresses
     #[arg(long)]
     serve: bool,
-    /// Folder for the results.
+    /// Folder for the results
     #[arg(long, value_name = "DIR", default_value = "facies-demo")]
     out: PathBuf,
-    /// Folder of the service's database and files [default: OUT/service].
+    /// Folder of the service's database and files [default: OUT/service]
     #[arg(long, value_name = "DIR")]
     data: Option<PathBuf>,
 }
@@ -58,18 +57,19 @@ pub enum DemoError {
 }
 
 impl DemoError {
-    /// What the process ends with.
-    pub fn exit_code(&self) -> u8 {
-        match self {
-            DemoError::Serve(error) => error.exit_code(),
-            DemoError::Job { .. } => 1,
-            _ => super::serve::EXIT_INFRASTRUCTURE,
-        }
+    /// Whether another setting would help.
+    pub fn is_setting(&self) -> bool {
+        matches!(self, DemoError::Serve(error) if error.is_setting())
+    }
+
+    /// Whether everything works and a job failed nevertheless.
+    pub fn is_failed_job(&self) -> bool {
+        matches!(self, DemoError::Job { .. })
     }
 }
 
 /// Runs the demo; with `--serve` it returns when the process is told to stop.
-pub fn demo(arguments: &DemoArgs) -> Result<(), DemoError> {
+pub fn run(arguments: &Arguments) -> Result<(), DemoError> {
     let runtime = tokio::runtime::Builder::new_multi_thread()
         .enable_all()
         .build()
@@ -82,7 +82,7 @@ pub fn demo(arguments: &DemoArgs) -> Result<(), DemoError> {
 
 /// Starts the service on a free port of this machine, runs the demo, and ends the service.
 async fn beside_the_service(
-    arguments: &DemoArgs,
+    arguments: &Arguments,
 ) -> Result<(Workers, Result<(), DemoError>), DemoError> {
     let data = arguments.data.clone().unwrap_or_else(|| arguments.out.join("service"));
     let config = Config::new(|name| setting(name, &data)).map_err(ServeError::from)?;
@@ -95,7 +95,7 @@ async fn beside_the_service(
         let _ = stopped.await;
     }));
     println!("service on http://{}, its data in {}", client.address, data.display());
-    let done = run(arguments, client).await;
+    let done = show(arguments, client).await;
     if let (true, Ok(jobs)) = (arguments.serve, &done) {
         println!("\nlistening on http://{} (stop with Ctrl-C)", client.address);
         println!("  {:<20}http://{}/docs", "the API", client.address);
@@ -109,7 +109,7 @@ async fn beside_the_service(
     Ok((workers, done.map(|_| ())))
 }
 
-async fn run(arguments: &DemoArgs, client: Client) -> Result<[Done; 3], DemoError> {
+async fn show(arguments: &Arguments, client: Client) -> Result<[Done; 3], DemoError> {
     let started = Instant::now();
 
     // 1. The half head, its plan, and what becomes of its skin.

@@ -6,12 +6,10 @@ use std::time::Duration;
 
 use clap::Args;
 
-use super::serve::{EXIT_CONFIGURATION, EXIT_INFRASTRUCTURE};
-
 const PATIENCE: Duration = Duration::from_secs(2);
 
-#[derive(Args)]
-pub struct HealthArgs {
+#[derive(Debug, Args)]
+pub struct Arguments {
     /// Address of the service; an address of all interfaces stands for this machine
     #[arg(long, env = "FACIES_BIND", default_value = "127.0.0.1:8080")]
     bind: String,
@@ -28,16 +26,14 @@ pub enum HealthError {
 }
 
 impl HealthError {
-    pub fn exit_code(&self) -> u8 {
-        match self {
-            HealthError::Address(_) => EXIT_CONFIGURATION,
-            _ => EXIT_INFRASTRUCTURE,
-        }
+    /// Whether another setting would help.
+    pub fn is_setting(&self) -> bool {
+        matches!(self, HealthError::Address(_))
     }
 }
 
 /// Asks for /healthz.
-pub fn health(arguments: &HealthArgs) -> Result<(), HealthError> {
+pub fn run(arguments: &Arguments) -> Result<(), HealthError> {
     let address: SocketAddr = arguments
         .bind
         .parse()

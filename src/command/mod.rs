@@ -1,58 +1,68 @@
-//! What the binary does: one file for each command.
+//! The commands of the program, one file for each.
 
+pub mod check;
+pub mod compare;
 pub mod demo;
+mod documents;
+mod failure;
+mod files;
 pub mod health;
 pub mod openapi;
+pub mod predict;
+mod scene;
+mod screen;
 pub mod serve;
 
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
+pub use failure::CommandError;
+
 /// Predicts how a face will look after the bones under it are moved. Not a medical device.
-#[derive(Parser)]
+#[derive(Debug, Parser)]
 #[command(name = "facies", version)]
-pub struct Arguments {
+pub struct Facies {
     #[command(subcommand)]
     command: Command,
 }
 
-#[derive(Subcommand)]
+#[derive(Debug, Subcommand)]
 enum Command {
-    /// Serve the API, with workers in the same process
-    Serve(serve::ServeArgs),
     /// Predict a face that the program makes itself, and say how good the numbers are
-    Demo(demo::DemoArgs),
-    /// Ask a running service whether it is alive; for health checks of containers
-    Health(health::HealthArgs),
+    Demo(demo::Arguments),
+    /// Predict the skin after a plan; write it with its statistics into a folder
+    Predict(predict::Arguments),
+    /// Measure the distances between two surfaces
+    Compare(compare::Arguments),
+    /// Tell what a case and a plan mean, without solving
+    Check(check::Arguments),
+    /// Serve the API, with workers in the same process
+    Serve(serve::Arguments),
+    /// Ask the service on this machine whether it is alive
+    Health(health::Arguments),
     /// Print the OpenAPI description of the service
     Openapi,
 }
 
-/// Does what the arguments ask for.
-pub fn run(arguments: Arguments) -> ExitCode {
-    match arguments.command {
-        Command::Serve(arguments) => match serve::serve(&arguments) {
-            Ok(()) => ExitCode::SUCCESS,
-            Err(error) => failed(&error, error.exit_code()),
-        },
-        Command::Demo(arguments) => match demo::demo(&arguments) {
-            Ok(()) => ExitCode::SUCCESS,
-            Err(error) => failed(&error, error.exit_code()),
-        },
-        Command::Health(arguments) => match health::health(&arguments) {
-            Ok(()) => ExitCode::SUCCESS,
-            Err(error) => failed(&error, error.exit_code()),
-        },
-        Command::Openapi => match openapi::openapi() {
-            Ok(()) => ExitCode::SUCCESS,
-            Err(error) => failed(&error, serve::EXIT_INFRASTRUCTURE),
-        },
+/// Runs the command and says what went wrong, one line for each mistake.
+pub fn run(facies: &Facies) -> ExitCode {
+    let result = match &facies.command {
+        Command::Demo(arguments) => demo::run(arguments).map_err(CommandError::from),
+        Command::Predict(arguments) => predict::run(arguments),
+        Command::Compare(arguments) => compare::run(arguments),
+        Command::Check(arguments) => check::run(arguments),
+        Command::Serve(arguments) => serve::run(arguments).map_err(CommandError::from),
+        Command::Health(arguments) => health::run(arguments).map_err(CommandError::from),
+        Command::Openapi => openapi::run(),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            for line in error.lines() {
+                eprintln!("error: {line}");
+            }
+            ExitCode::from(error.exit_code())
+        }
     }
-}
-
-/// One line on standard error.
-fn failed(error: &dyn std::error::Error, code: u8) -> ExitCode {
-    eprintln!("facies: {error}");
-    ExitCode::from(code)
 }

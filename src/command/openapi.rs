@@ -2,9 +2,14 @@
 
 use std::io::Write;
 
+use super::CommandError;
+
 /// Prints the description.
-pub fn openapi() -> std::io::Result<()> {
-    let mut out = std::io::stdout().lock();
-    serde_json::to_writer_pretty(&mut out, &crate::api::document())?;
-    writeln!(out)
+pub fn run() -> Result<(), CommandError> {
+    let write = || {
+        let mut out = std::io::stdout().lock();
+        serde_json::to_writer_pretty(&mut out, &crate::api::document())?;
+        writeln!(out)
+    };
+    write().map_err(|source| CommandError::Write { path: "standard output".into(), source })
 }

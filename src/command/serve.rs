@@ -15,11 +15,6 @@ use crate::jobs::worker::Workers;
 use crate::store::{Store, StoreError};
 use crate::telemetry::{self, TelemetryError};
 
-/// Exit code of a wrong setting (sysexits.h, EX_CONFIG).
-pub const EXIT_CONFIGURATION: u8 = 78;
-/// Exit code of a database, disk or network that does not work.
-pub const EXIT_INFRASTRUCTURE: u8 = 3;
-
 #[derive(Debug, thiserror::Error)]
 pub enum ServeError {
     #[error("{0}")]
@@ -35,34 +30,29 @@ pub enum ServeError {
 }
 
 impl ServeError {
-    /// What the process ends with.
-    pub fn exit_code(&self) -> u8 {
+    /// Whether another setting, folder or program would help.
+    pub fn is_setting(&self) -> bool {
         match self {
-            ServeError::Store(error) if !is_setting(error) => EXIT_INFRASTRUCTURE,
-            ServeError::Io(_) => EXIT_INFRASTRUCTURE,
-            _ => EXIT_CONFIGURATION,
+            ServeError::Io(_) => false,
+            ServeError::Store(error) => matches!(
+                error,
+                StoreError::InUse
+                    | StoreError::Files(_)
+                    | StoreError::SchemaTooNew { .. }
+                    | StoreError::Schema(_)
+            ),
+            _ => true,
         }
     }
 }
 
-/// Whether another setting would help.
-fn is_setting(error: &StoreError) -> bool {
-    matches!(
-        error,
-        StoreError::InUse
-            | StoreError::Files(_)
-            | StoreError::SchemaTooNew { .. }
-            | StoreError::Schema(_)
-    )
-}
-
 /// The settings as flags; each may as well be an environment variable.
 #[derive(Clone, Debug, Default)]
-pub struct ServeArgs {
+pub struct Arguments {
     given: Vec<(&'static str, String)>,
 }
 
-impl ServeArgs {
+impl Arguments {
     /// What was given for a setting: by its flag, else by its variable.
     pub fn get(&self, name: &str) -> Option<String> {
         let flag = self.given.iter().find(|(given, _)| *given == name);
@@ -74,7 +64,7 @@ impl ServeArgs {
     }
 }
 
-impl Args for ServeArgs {
+impl Args for Arguments {
     fn augment_args(command: Command) -> Command {
         SETTINGS.iter().fold(command, |command, setting| {
             let default = match setting.default {
@@ -95,14 +85,14 @@ impl Args for ServeArgs {
     }
 }
 
-impl FromArgMatches for ServeArgs {
+impl FromArgMatches for Arguments {
     fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
         let value = |name: &'static str| {
             let value = matches.get_one::<String>(name)?;
             Some((name, value.clone()))
         };
         let given = SETTINGS.iter().filter_map(|setting| value(setting.name)).collect();
-        Ok(ServeArgs { given })
+        Ok(Arguments { given })
     }
 
     fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
@@ -112,7 +102,7 @@ impl FromArgMatches for ServeArgs {
 }
 
 /// Serves until the process is told to stop (SIGTERM or SIGINT).
-pub fn serve(arguments: &ServeArgs) -> Result<(), ServeError> {
+pub fn run(arguments: &Arguments) -> Result<(), ServeError> {
     let config = Config::new(|name| arguments.get(name))?;
     telemetry::start(&config.log)?;
     let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().build()?;

@@ -70,6 +70,9 @@ impl GmshReader<'_, '_> {
             ("MeshFormat", _) => self.read_format(),
             ("PhysicalNames", _) => self.groups.read_names(&mut self.cursor),
             ("Entities", _) => self.read_entities(),
+            ("ParametricNodes", Version::Two) => {
+                Err(self.bad("parametric nodes are not read; save without them, or as version 4.1"))
+            }
             ("Nodes", Version::Two) => self.read_nodes_2(),
             ("Nodes", Version::Four) => self.read_nodes_4(),
             ("Elements", Version::Two) => self.read_elements_2(),

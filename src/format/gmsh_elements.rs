@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::error::FormatError;
-use super::gmsh::GmshReader;
+use super::gmsh::{GmshReader, Version};
 use crate::mesh::CellShape;
 
 /// What a Gmsh element type is to us.
@@ -153,11 +153,8 @@ impl GmshReader<'_, '_> {
                 return Ok(());
             }
             Use::Cell(shape) => {
-                let cell = self.parsed.cells.len() as u32;
-                self.limits.check_cells(u64::from(cell) + 1)?;
-                self.parsed.cells.push(shape, nodes);
                 let first = groups.next();
-                self.groups.cell_labels.push(first.unwrap_or(0));
+                let cell = self.cell_number(shape, nodes, first.unwrap_or(0))?;
                 for group in first.into_iter().chain(groups) {
                     self.groups.add(kind.dimension, group, &[cell]);
                 }
@@ -173,6 +170,29 @@ impl GmshReader<'_, '_> {
         }
         elements.polygons_without_group += u64::from(!is_grouped);
         Ok(())
+    }
+
+    /// The number of a cell, which is added unless it is the one before: version 2 repeats an
+    /// element for each of its groups.
+    fn cell_number(
+        &mut self,
+        shape: CellShape,
+        nodes: &[u32],
+        group: i64,
+    ) -> Result<u32, FormatError> {
+        let cells = &mut self.parsed.cells;
+        let before = cells.len().checked_sub(1);
+        if let Some(before) = before
+            && self.version == Version::Two
+            && cells.shape(before) == shape
+            && cells.nodes(before) == nodes
+        {
+            return Ok(before as u32);
+        }
+        self.limits.check_cells(cells.len() as u64 + 1)?;
+        cells.push(shape, nodes);
+        self.groups.cell_labels.push(group);
+        Ok(cells.len() as u32 - 1)
     }
 
     fn finish_elements(&mut self, elements: Elements) -> Result<(), FormatError> {

@@ -81,6 +81,8 @@ pub enum WriteError {
     NonFinite { array: String, count: usize },
     #[error("{array:?} has {have} values for {wanted} points or cells")]
     Length { array: String, have: usize, wanted: usize },
+    #[error("the surface has no triangles")]
+    Empty,
     #[error("two arrays are called {array:?}")]
     Duplicate { array: String },
 }
@@ -99,6 +101,9 @@ impl SurfaceOutput<'_> {
 
     pub(super) fn check(&self) -> Result<(), WriteError> {
         let points = self.surface.points.len();
+        if self.surface.triangles.is_empty() {
+            return Err(WriteError::Empty);
+        }
         check_array("points", ArrayValues::Vectors(&self.surface.points), points)?;
         if let Some(node_ids) = &self.surface.node_ids {
             check_length("node_id", node_ids.len(), points)?;

@@ -3,9 +3,12 @@
 use serde_json::{Map, Value, json};
 
 use super::source::SourceError;
+use crate::chart::PngError;
+use crate::format::WriteError;
 use crate::prediction::PredictionError;
 use crate::schema::Problem;
 use crate::schema::job::{ErrorClass, JobErrorDocument};
+use crate::validation::StatisticsError;
 
 /// Residuals of a diverged solver that are told; a history has one for each iteration.
 const TOLD_RESIDUALS: usize = 200;
@@ -27,6 +30,12 @@ pub enum JobError {
     Source(SourceError),
     #[error("{what} is not a finite number")]
     NotFinite { what: String },
+    #[error("no statistics: {0}")]
+    Statistics(#[from] StatisticsError),
+    #[error(transparent)]
+    Encode(#[from] WriteError),
+    #[error(transparent)]
+    Picture(#[from] PngError),
     #[error("{file} could not be written: {source}")]
     Write { file: String, source: std::io::Error },
 }
@@ -42,10 +51,13 @@ impl JobError {
                 ErrorClass::Budget
             }
             JobError::Prediction(PredictionError::Inverted { .. }) => ErrorClass::Input,
-            JobError::Prediction(_) | JobError::NotFinite { .. } => ErrorClass::Numerical,
-            JobError::Source(SourceError::Unreadable { .. }) | JobError::Write { .. } => {
-                ErrorClass::Infrastructure
-            }
+            JobError::Prediction(_)
+            | JobError::NotFinite { .. }
+            | JobError::Statistics(_)
+            | JobError::Encode(_) => ErrorClass::Numerical,
+            JobError::Source(SourceError::Unreadable { .. })
+            | JobError::Write { .. }
+            | JobError::Picture(_) => ErrorClass::Infrastructure,
             JobError::Source(_) => ErrorClass::Input,
         }
     }
@@ -69,7 +81,10 @@ impl JobError {
             JobError::Source(SourceError::Unknown { .. }) => "not-found",
             JobError::Source(SourceError::Refused { code, .. }) => code,
             JobError::Source(SourceError::Unreadable { .. }) | JobError::Write { .. } => "storage",
-            JobError::NotFinite { .. } => "solver-diverged",
+            JobError::NotFinite { .. } | JobError::Statistics(_) | JobError::Encode(_) => {
+                "solver-diverged"
+            }
+            JobError::Picture(_) => "internal",
         }
     }
 

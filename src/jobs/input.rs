@@ -7,13 +7,15 @@ use serde::{Deserialize, Serialize};
 use super::failure::JobError;
 use super::source::{MeshSource, SourceError, StoredMesh, StoredShape};
 use crate::mesh::Warning;
+use crate::mesh::quality::{QualityReport, quality};
 use crate::prediction::{Case, Plan, Scene, Settings};
 use crate::schema::case::{CaseMeshes, NamedMesh};
 use crate::schema::case_conversion::centre;
 use crate::schema::plan::PlanContext;
 use crate::schema::prediction::InputDocument;
 use crate::schema::{
-    CaseDocument, CompareDocument, Faults, Limits, PlanDocument, Pointer, PredictDocument, canonical,
+    CaseDocument, CompareDocument, Faults, Limits, PlanDocument, Pointer, PredictDocument,
+    canonical,
 };
 
 /// A job as it is queued: everything that decides its result, but for the meshes.
@@ -50,6 +52,7 @@ pub struct CompareInput {
 pub struct Prepared {
     pub case: Case,
     pub scene: Scene,
+    pub quality: QualityReport,
     pub spec_hash: String,
     pub inputs: Vec<InputDocument>,
     /// Of the meshes and of the conversion; those of the scene are in the scene.
@@ -73,11 +76,14 @@ impl PredictInput {
         let converted = self.convert(&meshes, limits)?;
         let scene = Scene::new(&converted.case, &converted.plan, &converted.settings)
             .map_err(|errors| JobError::Refused(errors.into()))?;
+        let quality = quality(&converted.case.volume);
         let mut warnings = reader_warnings(&stored);
         warnings.extend(converted.warnings);
+        warnings.extend(quality.warnings());
         Ok(Prepared {
             case: converted.case,
             scene,
+            quality,
             spec_hash: self.spec_hash(&stored),
             inputs: self.inputs(&stored),
             warnings,

@@ -11,6 +11,7 @@ pub mod observed;
 pub mod numerics;
 mod output;
 mod pictures;
+mod provenance;
 pub mod report;
 mod skin_files;
 pub mod source;

@@ -49,10 +49,14 @@ impl<'a> Observed<'a> {
     /// What a prediction that failed means for the job: one that stopped may have run out of time.
     pub fn judge(&self, error: PredictionError) -> JobError {
         match error {
-            PredictionError::Cancelled if !self.inner.is_cancelled() => self.over_budget(),
-            PredictionError::Cancelled => JobError::Cancelled,
+            PredictionError::Cancelled => self.stopped(),
             other => other.into(),
         }
+    }
+
+    /// Why work that was told to stop was told so.
+    pub fn stopped(&self) -> JobError {
+        if self.inner.is_cancelled() { JobError::Cancelled } else { self.over_budget() }
     }
 
     /// The time of each phase so far.
@@ -61,7 +65,8 @@ impl<'a> Observed<'a> {
         let of = |phase: Phase| {
             let ended = phases.spent.iter().filter(|(other, _)| *other == phase);
             let ended: Duration = ended.map(|(_, spent)| *spent).sum();
-            let running = if phases.current == phase { phases.since.elapsed() } else { Duration::ZERO };
+            let running =
+                if phases.current == phase { phases.since.elapsed() } else { Duration::ZERO };
             (ended + running).as_secs_f64()
         };
         TimingDocument {
@@ -162,10 +167,10 @@ mod tests {
         let clock = Observed::start(&Unobserved, 0.0);
         assert!(clock.is_cancelled());
         let error = clock.judge(PredictionError::Cancelled);
-        assert_eq!((error.kind(), &error.to_document().members["which"]), (
-            "budget-exceeded",
-            &"wall".into()
-        ));
+        assert_eq!(
+            (error.kind(), &error.to_document().members["which"]),
+            ("budget-exceeded", &"wall".into())
+        );
     }
 
     #[test]

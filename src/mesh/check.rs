@@ -4,6 +4,7 @@
 use std::collections::BTreeMap;
 
 use super::connectivity::{parts_by_face, sorted_faces};
+use super::jacobian::signed_volume;
 use super::surface_edges::count_edges;
 use super::{CellShape, TriangleSurface, Vector, VolumeMesh, Warning};
 
@@ -164,7 +165,14 @@ fn bounding_box(nodes: &[Vector]) -> Option<[Vector; 2]> {
 }
 
 fn volume(mesh: &VolumeMesh) -> f64 {
-    (0..mesh.cells.len()).map(|cell| mesh.cell_jacobian(cell).volume).sum()
+    let mut sum = 0.0;
+    let mut corners = Vec::new();
+    for cell in 0..mesh.cells.len() {
+        corners.clear();
+        corners.extend(mesh.corners(cell));
+        sum += signed_volume(mesh.cells.shape(cell), &corners);
+    }
+    sum
 }
 
 fn sizes(sets: &BTreeMap<String, Vec<u32>>) -> BTreeMap<String, u64> {

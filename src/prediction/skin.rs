@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::boundary::NodeClass;
 use crate::mesh::volume::BoundaryFace;
-use crate::mesh::{TriangleSurface, Vector, VolumeMesh, Warning};
+use crate::mesh::{SurfaceSearch, TriangleSurface, Vector, VolumeMesh, Warning};
 
 /// Skin as triangles, and its named parts.
 #[derive(Clone, Debug)]
@@ -55,7 +55,9 @@ pub(super) fn landmark_displacement(
     landmarks: &BTreeMap<String, Vector>,
     displacement: &[Vector],
 ) -> BTreeMap<String, (Vector, f64)> {
-    use crate::mesh::closest_point::SurfaceSearch;
+    if landmarks.is_empty() {
+        return BTreeMap::new();
+    }
     let surface = mesh.surface_of(&mesh.boundary_faces());
     let nodes = surface.node_ids.clone().unwrap_or_default();
     let Ok(search) = SurfaceSearch::new(&surface) else {

@@ -1,25 +1,26 @@
 //! Iterative closest point of one surface onto another, point to plane, with a mask.
 //!
 //! x_i: points spread over the fixed surface, inside the mask; y_i: the closest point to each on the
-//! moving surface as it lies, n_i the normal there. Each iteration minimises over a small turn ω about
-//! the middle c and a shift t
+//! moving surface as it lies, n_i the direction between them. Each iteration minimises over a small turn
+//! ω about the middle c and a shift t
 //!
 //!   Σ (n_i · (y_i + ω × (y_i - c) + t - x_i))²
 //!
 //! until the mean squared distance changes by less than a given share of itself.
-//! Pairs farther apart than three robust standard deviations (1.4826 median) and pairs on an open
-//! border of the moving surface do not count. Where such a step makes the distance larger, the step of
-//! least squares between the points (Kabsch) is taken instead, which cannot.
+//! Pairs farther apart than three robust standard deviations (1.4826 median), a limit that shrinks in
+//! the first iterations and then stays, and pairs on an open border of the moving surface do not
+//! count. A step that does not lower the squared distances cut at the limit is damped and tried again.
 //!
 //! Source: Besl, McKay, IEEE Transactions on Pattern Analysis and Machine Intelligence 14 (1992) 239
 //! (the iteration and its stop rule); Chen, Medioni, Image and Vision Computing 10 (1992) 145 (point to
-//! plane). It finds the nearest minimum: shapes turned by more than about 30 degrees, or a mask
-//! without features, need landmarks first.
+//! plane); Fitzgibbon, Image and Vision Computing 21 (2003) 1145 (damping). It finds the nearest
+//! minimum: shapes turned by more than about 30 degrees, or a mask without features, need landmarks first.
 
 use nalgebra::{Matrix6, Rotation3, Vector6};
 use rayon::prelude::*;
 
-use super::{AlignmentError, Place, RigidTransform, align_points};
+use super::{AlignmentError, Place, RigidTransform};
+use crate::mesh::closest_point::Feature;
 use crate::mesh::{SurfaceSearch, TriangleSurface, Vector, area_sampling};
 
 /// Points of the fixed surface: few to come near, many to end.
@@ -37,8 +38,21 @@ const FEWEST_PAIRS: usize = 12;
 /// stiffest direction is rounding.
 const FREE_DIRECTION: f64 = 1e-9;
 
-/// Distances below this share of the size of the surface are rounding.
-const ROUNDING: f64 = 1e-11;
+/// Distances below this share of the largest coordinate are rounding.
+const ROUNDING: f64 = 64.0 * f64::EPSILON;
+
+/// Steps after which the limit of what counts stays, so that the distances cannot but fall.
+const SHRINKING_STEPS: usize = 20;
+
+/// Three standard deviations of a normal distribution with this median, squared.
+const LIMIT_BY_MEDIAN: f64 = 9.0 * 1.4826 * 1.4826;
+
+/// In mm: points nearer than this have no direction between them.
+const SAME_PLACE: f64 = 1e-6;
+
+/// Damping relative to the mean stiffness: where it starts, and where no step is left.
+const FIRST_DAMPING: f64 = 1e-3;
+const LAST_DAMPING: f64 = 1e6;
 
 /// How surfaces are aligned.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -69,16 +83,13 @@ pub struct SurfaceAlignment {
 }
 
 /// A point of the fixed surface, and the closest one of the moving surface as it lies.
+#[derive(Clone, Copy)]
 struct Pair {
     fixed: Vector,
     moving: Vector,
-    normal: Vector,
-}
-
-impl Pair {
-    fn squared_distance(&self) -> f64 {
-        (self.moving - self.fixed).norm_squared()
-    }
+    /// Between the two, or the normal of the moving surface where they are about the same.
+    direction: Vector,
+    squared_distance: f64,
 }
 
 /// When an iteration ends.
@@ -105,7 +116,10 @@ impl IterativeClosestPoint {
     ) -> Result<SurfaceAlignment, AlignmentError> {
         let search = SurfaceSearch::new(moving)?;
         let start = starting_transform(fixed, moving);
-        let coarse = StopRule { relative_change: COARSE_CHANGE, max_iterations: COARSE_ITERATIONS };
+        let coarse = StopRule {
+            relative_change: COARSE_CHANGE,
+            max_iterations: COARSE_ITERATIONS.min(self.max_iterations),
+        };
         let points = points_in_mask(fixed, self.mask.as_ref(), COARSE_POINTS)?;
         let near = iterate(&points, &search, start, &coarse, cancelled)?.alignment;
         let fine =
@@ -148,6 +162,49 @@ pub(super) fn points_in_mask(
     }
 }
 
+/// How the moving surface lies, and what is opposite what.
+struct State {
+    transform: RigidTransform,
+    pairs: Vec<Pair>,
+    points: usize,
+}
+
+impl State {
+    fn new(points: &[Vector], search: &SurfaceSearch, transform: RigidTransform) -> Self {
+        State { transform, pairs: pairs_of(points, search, &transform), points: points.len() }
+    }
+
+    /// The square of the distance beyond which a pair does not count.
+    fn limit(&self) -> f64 {
+        let mut squares: Vec<f64> = self.pairs.iter().map(|pair| pair.squared_distance).collect();
+        if squares.is_empty() {
+            return 0.0;
+        }
+        let middle = squares.len() / 2;
+        LIMIT_BY_MEDIAN * *squares.select_nth_unstable_by(middle, f64::total_cmp).1
+    }
+
+    fn counting(&self, limit: f64) -> impl Iterator<Item = &Pair> {
+        self.pairs.iter().filter(move |pair| pair.squared_distance <= limit)
+    }
+
+    /// The sum of squared distances, each at most the limit; what has no partner is at the limit.
+    fn cut_sum(&self, limit: f64) -> f64 {
+        let sum: f64 = self.pairs.iter().map(|pair| pair.squared_distance.min(limit)).sum();
+        sum + limit * (self.points - self.pairs.len()) as f64
+    }
+
+    /// How many pairs count, and their mean squared distance.
+    fn mean(&self, limit: f64) -> Result<(usize, f64), AlignmentError> {
+        let pairs = self.counting(limit).count();
+        if pairs < FEWEST_PAIRS {
+            return Err(AlignmentError::NoOverlap { pairs, points: self.points });
+        }
+        let sum: f64 = self.counting(limit).map(|pair| pair.squared_distance).sum();
+        Ok((pairs, sum / pairs as f64))
+    }
+}
+
 pub(super) fn iterate(
     points: &[Vector],
     search: &SurfaceSearch,
@@ -155,41 +212,36 @@ pub(super) fn iterate(
     stop: &StopRule,
     cancelled: &dyn Fn() -> bool,
 ) -> Result<Ended, AlignmentError> {
-    let size = middle_and_radius(points).1;
-    let mut transform = start;
-    let mut last: Option<(RigidTransform, Vec<Pair>, f64)> = None;
-    let mut iterations = 0;
+    let rounding = ROUNDING * (largest(points) + largest(&[start.inverse().apply(&points[0])]));
+    let mut state = State::new(points, search, start);
+    let mut limit = state.limit();
+    let (mut iterations, mut steps, mut damping, mut change) = (0, 0, 0.0, f64::INFINITY);
     loop {
+        let (pairs, mean) = state.mean(limit)?;
+        let is_still = change <= stop.relative_change && damping < 1.0;
+        let has_converged = is_still || damping > LAST_DAMPING || mean <= rounding * rounding;
+        if has_converged || iterations >= stop.max_iterations {
+            let (transform, rms, points) = (state.transform, mean.sqrt(), points.len());
+            let alignment = SurfaceAlignment { transform, iterations, rms, points, pairs };
+            return Ok(Ended { alignment, change, has_converged });
+        }
         if cancelled() {
             return Err(AlignmentError::Cancelled { iterations });
         }
-        let pairs = trimmed(pairs_of(points, search, &transform));
-        if pairs.len() < FEWEST_PAIRS {
-            return Err(AlignmentError::NoOverlap { pairs: pairs.len(), points: points.len() });
-        }
-        let squared_distance =
-            pairs.iter().map(Pair::squared_distance).sum::<f64>() / pairs.len() as f64;
-        let before = last.as_ref().map_or(f64::INFINITY, |(_, _, before)| *before);
-        let change = (squared_distance - before).abs() / before;
-        let has_converged =
-            change <= stop.relative_change || squared_distance <= (ROUNDING * size).powi(2);
-        if has_converged || iterations == stop.max_iterations {
-            let alignment = SurfaceAlignment {
-                transform,
-                iterations,
-                rms: squared_distance.sqrt(),
-                points: points.len(),
-                pairs: pairs.len(),
-            };
-            return Ok(Ended { alignment, change, has_converged });
-        }
         iterations += 1;
-        if let Some((origin, former, _)) = last.take_if(|_| squared_distance > before) {
-            transform = origin.then(&point_to_point(&former)?);
+        let counting: Vec<Pair> = state.counting(limit).copied().collect();
+        let transform = state.transform.then(&point_to_plane(&counting, damping));
+        let next = State::new(points, search, transform);
+        if next.cut_sum(limit) <= state.cut_sum(limit) {
+            change = (next.mean(limit)?.1 - mean).abs() / mean;
+            damping = if damping > FIRST_DAMPING { damping * 0.1 } else { 0.0 };
+            state = next;
+            if steps < SHRINKING_STEPS {
+                limit = limit.min(state.limit());
+            }
+            steps += 1;
         } else {
-            let next = transform.then(&point_to_plane(&pairs));
-            last = Some((transform, pairs, squared_distance));
-            transform = next;
+            damping = (damping * 10.0).max(FIRST_DAMPING);
         }
     }
 }
@@ -201,61 +253,57 @@ fn pairs_of(points: &[Vector], search: &SurfaceSearch, transform: &RigidTransfor
         .par_iter()
         .with_min_len(64)
         .map(|fixed| {
-            let closest = search.closest(&back.apply(fixed));
-            (!search.is_on_open_border(&closest)).then(|| Pair {
+            let query = back.apply(fixed);
+            let closest = search.closest(&query);
+            if search.is_on_open_border(&closest) {
+                return None;
+            }
+            let between = (query - closest.point).try_normalize(SAME_PLACE);
+            let direction = match closest.feature {
+                Feature::Face => search.pseudo_normal(&closest),
+                _ => between.unwrap_or_else(|| search.pseudo_normal(&closest)),
+            };
+            Some(Pair {
                 fixed: *fixed,
                 moving: transform.apply(&closest.point),
-                normal: transform.rotation * search.pseudo_normal(&closest),
+                direction: transform.rotation * direction,
+                squared_distance: closest.distance * closest.distance,
             })
         })
         .collect();
     pairs.into_iter().flatten().collect()
 }
 
-/// The pairs that are not much farther apart than half of them are.
-fn trimmed(mut pairs: Vec<Pair>) -> Vec<Pair> {
-    if pairs.is_empty() {
-        return pairs;
-    }
-    let mut squares: Vec<f64> = pairs.iter().map(Pair::squared_distance).collect();
-    let middle = squares.len() / 2;
-    let median_square = *squares.select_nth_unstable_by(middle, f64::total_cmp).1;
-    let limit = (3.0 * 1.4826_f64).powi(2) * median_square;
-    pairs.retain(|pair| pair.squared_distance() <= limit);
-    pairs
-}
-
-fn point_to_point(pairs: &[Pair]) -> Result<RigidTransform, AlignmentError> {
-    let (moving, fixed): (Vec<Vector>, Vec<Vector>) =
-        pairs.iter().map(|pair| (pair.moving, pair.fixed)).unzip();
-    Ok(align_points(&moving, &fixed)?.transform)
-}
-
-/// The small turn and shift that minimise the distances along the normals.
-fn point_to_plane(pairs: &[Pair]) -> RigidTransform {
+/// The small turn and shift that minimise the distances along their directions.
+fn point_to_plane(pairs: &[Pair], damping: f64) -> RigidTransform {
     let moving: Vec<Vector> = pairs.iter().map(|pair| pair.moving).collect();
     let (centre, radius) = middle_and_radius(&moving);
     let mut matrix = Matrix6::zeros();
     let mut right = Vector6::zeros();
     for pair in pairs {
         // The turn is measured by the shift it causes at `radius`, so that all unknowns are lengths.
-        let turn = ((pair.moving - centre) / radius).cross(&pair.normal);
-        let normal = pair.normal;
-        let row = Vector6::new(turn.x, turn.y, turn.z, normal.x, normal.y, normal.z);
+        let turn = ((pair.moving - centre) / radius).cross(&pair.direction);
+        let shift = pair.direction;
+        let row = Vector6::new(turn.x, turn.y, turn.z, shift.x, shift.y, shift.z);
         matrix += row * row.transpose();
-        right += row * normal.dot(&(pair.fixed - pair.moving));
+        right += row * shift.dot(&(pair.fixed - pair.moving));
     }
     let modes = matrix.symmetric_eigen();
     let stiffest = modes.eigenvalues.amax();
+    let added = damping * modes.eigenvalues.mean();
     let mut solution = Vector6::zeros();
     for (value, mode) in modes.eigenvalues.iter().zip(modes.eigenvectors.column_iter()) {
         if *value > FREE_DIRECTION * stiffest {
-            solution += mode * (mode.dot(&right) / value);
+            solution += mode * (mode.dot(&right) / (value + added));
         }
     }
     let turn = Vector::new(solution[0], solution[1], solution[2]) / radius;
     let shift = Vector::new(solution[3], solution[4], solution[5]);
     RigidTransform::about(&centre, *Rotation3::new(turn).matrix(), shift)
+}
+
+fn largest(points: &[Vector]) -> f64 {
+    points.iter().map(Vector::amax).fold(0.0, f64::max)
 }
 
 /// The mean of some points, and the root of their mean squared distance from it.

@@ -182,6 +182,27 @@ pub enum NormalWord {
 }
 
 impl CaseDocument {
+    /// A case of a volume mesh and nothing else.
+    pub fn of_volume(volume: &str, units: LengthUnit) -> Self {
+        CaseDocument {
+            schema: one(),
+            name: None,
+            tags: Vec::new(),
+            units,
+            frame: FrameName::Unspecified,
+            volume: volume.to_owned(),
+            bones: Vec::new(),
+            landmarks: BTreeMap::new(),
+            regions: None,
+            skin: None,
+            skin_regions: BTreeMap::new(),
+            segments: Vec::new(),
+            fixed: Vec::new(),
+            sliding: Vec::new(),
+            materials: None,
+        }
+    }
+
     /// Every mesh the case asks for, with its place: the volume, the bones, and the surfaces of selections.
     /// A selection may also name a bone; the names of bones are left out.
     pub fn mesh_references_mut(&mut self) -> Vec<(Pointer, &mut String)> {

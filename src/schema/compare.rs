@@ -10,7 +10,7 @@ use super::canonical;
 use super::case_conversion::check_tags;
 use super::fault::{Faults, Pointer};
 use super::limits::Limits;
-use super::{CornerPair, Sphere};
+use super::{CornerPair, Sphere, Triple};
 
 /// `compare`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
@@ -85,13 +85,16 @@ pub struct MeshReference {
     pub mesh: String,
 }
 
-/// Whether the prediction is moved rigidly onto the actual surface before it is measured.
+/// Whether the actual surface is moved rigidly onto the prediction before they are measured.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct AlignDocument {
     #[serde(default)]
     pub method: AlignMethod,
-    /// Only what lies in it decides the alignment.
+    /// At least three places that both surfaces have; required by `landmarks`.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub landmarks: BTreeMap<String, LandmarkDocument>,
+    /// Only the part of the prediction in it decides an alignment by `icp`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub mask: Option<PlaceDocument>,
@@ -107,8 +110,21 @@ fn yes() -> bool {
 
 impl Default for AlignDocument {
     fn default() -> Self {
-        AlignDocument { method: AlignMethod::None, mask: None, report_unaligned: true }
+        AlignDocument {
+            method: AlignMethod::None,
+            landmarks: BTreeMap::new(),
+            mask: None,
+            report_unaligned: true,
+        }
     }
+}
+
+/// The same place on both surfaces.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct LandmarkDocument {
+    pub prediction_mm: Triple,
+    pub actual_mm: Triple,
 }
 
 /// How surfaces are aligned.
@@ -149,14 +165,7 @@ pub enum NodeWise {
 impl CompareToDocument {
     /// Adds what is wrong with it.
     pub fn check(&self, at: &Pointer, limits: &Limits, faults: &mut Faults) {
-        if self.align.method == AlignMethod::Landmarks {
-            let detail = "alignment by landmarks is not available; `none` and `icp` are";
-            let place = at.key("align").key("method");
-            faults.add(&place, "alignment-not-available", detail);
-        }
-        if let Some(mask) = &self.align.mask {
-            mask.check(&at.key("align").key("mask"), faults);
-        }
+        self.align.check(&at.key("align"), limits, faults);
         let place = at.key("regions");
         faults.check_length(&place, self.regions.len(), limits.map_entries as usize);
         for (name, region) in &self.regions {
@@ -194,6 +203,34 @@ impl CompareDocument {
             regions: self.regions.clone(),
             samples_per_mm2: self.samples_per_mm2,
             node_wise: self.node_wise,
+        }
+    }
+}
+
+impl AlignDocument {
+    fn check(&self, at: &Pointer, limits: &Limits, faults: &mut Faults) {
+        let place = at.key("landmarks");
+        let count = self.landmarks.len();
+        faults.check_length(&place, count, limits.map_entries as usize);
+        for name in self.landmarks.keys() {
+            faults.check_name(&place.key(name), name, limits.name_characters as usize);
+        }
+        let wanted = self.method == AlignMethod::Landmarks;
+        if wanted && count < 3 {
+            let detail =
+                format!("alignment by landmarks needs at least 3 of them, here are {count}");
+            faults.add(&place, "alignment-failed", detail);
+        }
+        if !wanted && count > 0 {
+            let detail = "landmarks are read where `method` is `landmarks`";
+            faults.add(&place, "unknown-field", detail);
+        }
+        if let Some(mask) = &self.mask {
+            mask.check(&at.key("mask"), faults);
+            if self.method != AlignMethod::Icp {
+                let detail = "a mask is read where `method` is `icp`";
+                faults.add(&at.key("mask"), "unknown-field", detail);
+            }
         }
     }
 }

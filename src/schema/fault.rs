@@ -14,7 +14,7 @@ const REPORTED_FAULTS: usize = 50;
 
 /// Codes that name a whole problem when nothing else is wrong with a document.
 const CATALOGUE: &[&str] = &[
-    "alignment-not-available",
+    "alignment-failed",
     "empty-selection",
     "frame-conflict",
     "method-not-available",
@@ -108,9 +108,8 @@ impl Faults {
     }
 
     fn into_problem(self) -> Problem {
-        let shared = CATALOGUE
-            .iter()
-            .find(|code| self.errors.iter().all(|error| error.code == **code));
+        let shared =
+            CATALOGUE.iter().find(|code| self.errors.iter().all(|error| error.code == **code));
         let count = self.errors.len() + self.unreported;
         let first = self
             .errors

@@ -46,10 +46,7 @@ fn tetrahedron(frame: Option<Frame>) -> CaseMeshes {
     };
     mesh.cells.push(CellShape::Tet4, &[0, 1, 2, 3]);
     mesh.cell_labels.insert("band".to_owned(), vec![1]);
-    CaseMeshes {
-        volume: NamedMesh { mesh: Arc::new(mesh), frame },
-        surfaces: BTreeMap::new(),
-    }
+    CaseMeshes { volume: NamedMesh { mesh: Arc::new(mesh), frame }, surfaces: BTreeMap::new() }
 }
 
 fn case_with(
@@ -62,8 +59,7 @@ fn case_with(
     let mut faults = Faults::default();
     let meshes = tetrahedron(mark);
     let limits = Limits::default();
-    let (case, warnings) =
-        document.to_case(&meshes, spec.materials.as_ref(), &limits, &mut faults);
+    let (case, warnings) = document.to_case(&meshes, spec.materials.as_ref(), &limits, &mut faults);
     faults.into_result().map(|()| (case, warnings.iter().map(|warning| warning.code).collect()))
 }
 
@@ -89,9 +85,7 @@ fn matrix_plan(entries: [f64; 16]) -> String {
 // Row 50.
 #[test]
 fn a_matrix_that_scales_shears_or_mirrors_is_not_rigid() {
-    let identity = [
-        1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0,
-    ];
+    let identity = [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0];
     assert!(plan(&matrix_plan(identity)).is_ok());
     for (entry, value) in [(0, 1.001), (1, 0.001), (0, -1.0), (12, 1.0), (15, 2.0), (0, 1e308)] {
         let mut matrix = identity;
@@ -105,9 +99,8 @@ fn a_matrix_that_scales_shears_or_mirrors_is_not_rigid() {
 // Row 50: the deviation is told.
 #[test]
 fn a_matrix_that_is_not_rigid_is_told_its_deviation() {
-    let stretched = [
-        1.001, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0,
-    ];
+    let stretched =
+        [1.001, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0];
     let problem = plan(&matrix_plan(stretched)).expect_err("refused");
     assert!(problem.detail.contains("2.001e-3"), "{}", problem.detail);
 }
@@ -214,7 +207,8 @@ fn a_repeated_key_is_refused_in_objects_and_in_maps() {
     let in_object = r#"{"segments":[{"name":"jaw","name":"chin","translation_mm":[0,0,0]}]}"#;
     let wanted = one("validation-failed", "duplicate-key", "/segments/0/name");
     assert_eq!(refused(plan(in_object)), wanted);
-    let in_map = r#"{"materials":{"soft":{"young_modulus_kpa":15},"soft":{"young_modulus_kpa":30}}}"#;
+    let in_map =
+        r#"{"materials":{"soft":{"young_modulus_kpa":15},"soft":{"young_modulus_kpa":30}}}"#;
     let wanted = one("validation-failed", "duplicate-key", "/materials/soft");
     assert_eq!(refused(settings(in_map)), wanted);
 }
@@ -449,7 +443,11 @@ fn a_selection_is_exactly_one_form() {
         r#"{"any":[{"node_set":"a"}],"surface":"s","within_mm":1}"#,
     ] {
         let text = format!(r#"{{"units":"mm","volume":"v","skin":{skin}}}"#);
-        assert_eq!(refused(case(&text)), one("validation-failed", "one-of", "/case/skin"), "{skin}");
+        assert_eq!(
+            refused(case(&text)),
+            one("validation-failed", "one-of", "/case/skin"),
+            "{skin}"
+        );
     }
 }
 

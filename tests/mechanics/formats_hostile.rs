@@ -87,6 +87,7 @@ fn indices_beyond_the_points_are_refused_in_every_format() {
         (VTK, "4 0 1 2 3", "4 0 1 2 -1"),
         (GMSH_2, "7 -4 9\n$End", "7 -4 8\n$End"),
         (GMSH_4, "2 1 2 3 4", "2 1 2 3 5"),
+        (GMSH_4, "2 1 2 3 4", "2 1 2 3 4294967300"),
     ] {
         let bytes = text.replace(from, to);
         assert_ne!(bytes, text);

@@ -26,6 +26,15 @@ fn every_sample_is_recognised_by_its_content_and_read() {
 }
 
 #[test]
+fn the_same_tetrahedron_is_read_from_every_volume_format() {
+    for (name, bytes) in one_of_each() {
+        if ["vtu ascii", "vtk", "vtk binary", "gmsh 4.1", "gmsh 2.2 binary"].contains(&name) {
+            assert_is_the_tetrahedron(&bytes);
+        }
+    }
+}
+
+#[test]
 fn a_byte_order_mark_and_leading_lines_do_not_matter() {
     let text = format!("\u{feff}\n\n{OBJ}");
     assert_eq!(code_of(text.as_bytes()), "read");
@@ -54,6 +63,18 @@ fn gmsh_groups_of_surfaces_are_node_sets_and_those_of_volumes_cell_sets() {
     assert_eq!(four.node_sets["physical_2_4"], [1, 2, 3]);
     assert_eq!(four.cell_sets["fat"], [0]);
     assert_eq!(four.cell_sets["physical_3_2"], [0]);
+}
+
+#[test]
+fn an_element_that_gmsh_repeats_for_each_of_its_groups_is_one_cell() {
+    let repeated = "3 4 2 8 1 1000000000000 7 -4 9\n4 4 2 5 1 1000000000000 7 -4 9\n$End";
+    let bytes = GMSH_2
+        .replace("3 4 2 8 1 1000000000000 7 -4 9\n$End", repeated)
+        .replace("$Elements\n3", "$Elements\n4");
+    let mesh = volume(read_default(bytes.as_bytes()));
+    assert_eq!(mesh.cells.len(), 1);
+    assert_eq!((&mesh.cell_sets["fat"], &mesh.cell_sets["physical_3_5"]), (&vec![0], &vec![0]));
+    assert_eq!(mesh.cell_labels["gmsh:physical"], [8]);
 }
 
 #[test]

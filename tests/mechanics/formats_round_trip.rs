@@ -4,7 +4,7 @@ use facies::format::{
     ArrayValues, Mesh, NamedValues, ReadLimits, SurfaceOutput, VolumeOutput, WriteError, csv, glb,
     ply, read, stl, vtp, vtu,
 };
-use facies::mesh::{CellShape, Cells, Frame, Vector, VolumeMesh};
+use facies::mesh::{CellShape, Cells, Frame, TriangleSurface, Vector, VolumeMesh};
 
 use crate::formats_samples::{closed_surface, mixed_mesh, read_default, surface, volume};
 
@@ -183,6 +183,15 @@ fn an_array_of_the_wrong_length_or_with_a_taken_name_is_not_written() {
     assert!(matches!(vtp::write(&short), Err(WriteError::Length { have: 3, wanted: 4, .. })));
     let twice = with(vec![array("node_id", &[0.0; 4])]);
     assert!(matches!(ply::write(&twice), Err(WriteError::Duplicate { .. })));
+}
+
+#[test]
+fn a_surface_without_triangles_is_not_written() {
+    let nothing = TriangleSurface::default();
+    let output = SurfaceOutput::plain(&nothing, Frame::Lps);
+    for write in [vtp::write, stl::write, ply::write, glb::write, csv::write] {
+        assert_eq!(write(&output), Err(WriteError::Empty));
+    }
 }
 
 #[test]

@@ -85,7 +85,9 @@ fn a_file_of_muscle_fibres_is_no_mesh_and_says_what_it_holds() {
 
 #[test]
 fn shells_of_up_to_a_million_tetrahedra_are_read() {
-    for (file, cells) in [("shell/30k.vtu", 29_834), ("shell/300k.vtu", 302_265)] {
+    for (file, cells) in
+        [("shell/30k.vtu", 29_834), ("shell/300k.vtu", 302_265), ("shell/1M.vtu", 1_018_865)]
+    {
         let Some(path) = shared_data(file) else {
             return;
         };

@@ -6,8 +6,10 @@
 mod shared;
 
 mod closed_form;
+mod comparison;
 mod conditions;
 mod convergence;
+mod distances;
 mod documents;
 mod formats_check;
 mod formats_damage;
@@ -18,6 +20,7 @@ mod formats_round_trip;
 mod formats_samples;
 mod formats_shared_data;
 mod formats_surface;
+mod jobs;
 mod patch;
 mod quality;
 mod registration;

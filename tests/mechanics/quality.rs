@@ -6,6 +6,7 @@ use facies::mesh::jacobian::{jacobian_sign, scaled_jacobian, signed_volume, smal
 use facies::mesh::quality::{dihedral_angles, quality};
 use facies::mesh::{CellShape, Cells, Vector, VolumeMesh, sample};
 
+use crate::formats_samples::{read_default, volume};
 use crate::shared::shared_data;
 
 /// A hexahedron in the node order of VTK from one that counts x fastest, then y, then z.
@@ -193,26 +194,10 @@ fn a_mesh_without_cells_has_no_quality_and_no_infinity() {
     assert!(report.warnings().is_empty());
 }
 
-fn face(name: &str) -> Option<VolumeMesh> {
-    let nodes = fs::read_to_string(shared_data(&format!("face/{name}_nodes.csv"))?).unwrap();
-    let elements = fs::read_to_string(shared_data(&format!("face/{name}_elements.csv"))?).unwrap();
-    let mut mesh = VolumeMesh::default();
-    for line in nodes.lines().skip(1) {
-        let numbers: Vec<f64> = line.split(',').skip(1).map(|x| x.parse().unwrap()).collect();
-        mesh.nodes.push(Vector::new(numbers[0], numbers[1], numbers[2]));
-    }
-    for line in elements.lines().skip(1) {
-        let shape = if line.contains("hex8") { CellShape::Hex8 } else { CellShape::Wedge6 };
-        let numbers = line.split(',').skip(2).filter(|x| !x.is_empty());
-        let nodes: Vec<u32> = numbers.map(|x| x.parse::<u32>().unwrap() - 1).collect();
-        mesh.cells.push(shape, &nodes);
-    }
-    Some(mesh)
-}
-
 #[test]
 fn all_cells_of_the_subject_face_are_valid_and_four_must_be_divided_to_know() {
-    let Some(mesh) = face("subject_face") else { return };
+    let Some(path) = shared_data("face/subject_face.vtu") else { return };
+    let mesh = volume(read_default(&fs::read(path).unwrap()));
     let report = quality(&mesh);
     assert_eq!((report.cells, report.inverted, report.undecided), (6342, 0, 0));
     assert_eq!(report.subdivided, 4);

@@ -7,6 +7,7 @@ use facies::mesh::{TriangleSurface, Vector};
 use facies::registration::RigidTransform;
 use nalgebra::Rotation3;
 
+use crate::formats_samples::{read_default, surface};
 use crate::shared::shared_data;
 
 /// The unit sphere from an icosahedron whose triangles are quartered so many times.
@@ -148,25 +149,8 @@ impl Noise {
     }
 }
 
-/// A binary STL of the shared data, equal corners made one point.
-pub fn shared_stl(file: &str) -> Option<TriangleSurface> {
+/// A surface of the shared data.
+pub fn shared_surface(file: &str) -> Option<TriangleSurface> {
     let bytes = fs::read(shared_data(file)?).unwrap();
-    let mut surface = TriangleSurface::default();
-    let mut numbers: HashMap<[u32; 3], u32> = HashMap::new();
-    for facet in bytes[84..].chunks_exact(50) {
-        let corner = |i: usize| {
-            [0, 1, 2].map(|axis| {
-                let at = 12 + 12 * i + 4 * axis;
-                f32::from_le_bytes(facet[at..at + 4].try_into().unwrap())
-            })
-        };
-        surface.triangles.push([0, 1, 2].map(|i| {
-            let place = corner(i);
-            *numbers.entry(place.map(f32::to_bits)).or_insert_with(|| {
-                surface.points.push(Vector::from(place.map(f64::from)));
-                surface.points.len() as u32 - 1
-            })
-        }));
-    }
-    Some(surface)
+    Some(surface(read_default(&bytes)))
 }

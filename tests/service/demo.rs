@@ -24,14 +24,17 @@ fn the_demo_predicts_a_face_and_says_how_good_the_numbers_are_twice() {
     let out = folder.path().join("demo");
     for run in ["the first run", "the second run"] {
         let Output { status, stdout, stderr } = demo(&out);
-        let [table, errors] = [stdout, stderr].map(|text| String::from_utf8_lossy(&text).into_owned());
+        let [table, errors] =
+            [stdout, stderr].map(|text| String::from_utf8_lossy(&text).into_owned());
         assert!(status.success(), "{run}: {errors}");
         assert_eq!(errors, "", "{run}");
         assert_eq!(table.contains("known from an earlier run"), run == "the second run");
         assert!(table.lines().all(|line| line.chars().count() <= 80 || line.contains('/')));
 
         // No skin moves farther than the bone that moves it: the mandible by |(0, 6, 2)| = 6.325 mm.
-        let [_, mean, median, p95, max] = numbers(&table, "whole skin")[..] else { panic!("{table}") };
+        let [_, mean, median, p95, max] = numbers(&table, "whole skin")[..] else {
+            panic!("{table}")
+        };
         assert!(0.0 < mean && median < p95 && p95 < max && max < 6.325, "{table}");
         // The chin follows the mandible back and up; in a symmetric face nothing goes aside.
         let [aside, back, up] = numbers(&table, "pogonion")[..] else { panic!("{table}") };

@@ -1,0 +1,106 @@
+//! `facies predict`: the path of a job without a server.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::failure::CommandError;
+use super::scene::SceneArguments;
+use super::screen::{TerminalProgress, print_check, print_warnings};
+use crate::jobs::work::Workplace;
+use crate::jobs::{JobInput, check, work};
+use crate::schema::Limits;
+use crate::schema::check::CheckDocument;
+use crate::schema::prediction::ResultDocument;
+use crate::schema::spec::OutputName;
+
+#[derive(Debug, Args)]
+pub struct Arguments {
+    #[command(flatten)]
+    scene: SceneArguments,
+    /// The folder for the result
+    #[arg(long, value_name = "FOLDER")]
+    out: PathBuf,
+}
+
+/// Tells what is held, solves, writes the result and the documents, and prints a table.
+pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
+    let mut asked = arguments.scene.documents()?;
+    let outputs = asked.file.spec.outputs.get_or_insert_with(usual_outputs);
+    if asked.file.case.bones.is_empty() {
+        outputs.retain(|name| *name != OutputName::BonesVtp);
+    }
+    let limits = Limits::default();
+    let input = asked.file.to_input();
+
+    let before = check(&input, &asked.sources, &limits)?.document;
+    print_check(&before);
+
+    let place = Workplace { sources: &asked.sources, limits: &limits, out: &arguments.out };
+    let progress = TerminalProgress::start();
+    let done = work(&JobInput::Predict(input), &place, &progress);
+    progress.finish();
+    let done = done?;
+
+    let read_from = arguments.scene.case.as_deref();
+    let documents = asked.file.write_beside(&asked.folder, &arguments.out, read_from)?;
+    print_result(&done.result, &before);
+    for file in &done.files {
+        println!("wrote      {}", arguments.out.join(&file.name).display());
+    }
+    println!("wrote      {}", documents.display());
+    Ok(())
+}
+
+/// What a person at a terminal looks at.
+fn usual_outputs() -> Vec<OutputName> {
+    vec![
+        OutputName::SkinVtp,
+        OutputName::SkinGlb,
+        OutputName::BonesVtp,
+        OutputName::ClassesSvg,
+        OutputName::DisplacementSvg,
+    ]
+}
+
+fn print_result(result: &ResultDocument, before: &CheckDocument) {
+    println!();
+    if let Some(statistics) = &result.statistics {
+        println!("displacement in mm   mean   median   p95     max    (skin nodes; by area)");
+        let regions = statistics.regions.iter().map(|(name, region)| (name.as_str(), region));
+        for (name, region) in [("skin", &statistics.skin)].into_iter().chain(regions) {
+            for (weights, stat) in [("nodes", &region.nodes), ("area", &region.area)] {
+                println!(
+                    "{name:<12} {weights:<6} {:>7.3} {:>7.3} {:>7.3} {:>7.3}",
+                    stat.mean, stat.median, stat.p95, stat.max
+                );
+            }
+        }
+        for (name, moved) in &statistics.landmarks {
+            let [x, y, z] = moved.0;
+            println!("landmark     {name} moves by {x:.3} {y:.3} {z:.3} mm");
+        }
+    }
+    for (name, reaction) in &result.reaction_mn {
+        let [x, y, z] = reaction.0;
+        println!("reaction     {name} {x:.1} {y:.1} {z:.1} mN");
+    }
+    let provenance = &result.provenance;
+    if let Some(solver) = &provenance.solver {
+        println!(
+            "solver       {}, {} iterations, residual {:.1e} (wanted {:.0e})",
+            solver.name, solver.iterations, solver.relative_residual, solver.wanted_residual
+        );
+    }
+    let timing = &provenance.timing;
+    println!(
+        "time         {:.2} s: assemble {:.2}, solve {:.2}, write {:.2}; peak memory {:.0} MB",
+        timing.total_s,
+        timing.assemble_s,
+        timing.solve_s,
+        timing.write_s,
+        provenance.peak_rss_mb.unwrap_or_default()
+    );
+    let solved: Vec<_> = result.warnings.iter().filter(|w| !before.warnings.contains(w)).collect();
+    print_warnings(&solved.into_iter().cloned().collect::<Vec<_>>());
+}

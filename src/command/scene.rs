@@ -1,0 +1,140 @@
+//! The arguments that say what is to be predicted: a file with the documents, or a mesh and a plan.
+
+use std::path::{Path, PathBuf};
+
+use clap::{Args, ValueEnum};
+
+use super::documents::{CaseFile, read};
+use super::failure::CommandError;
+use super::files::FileSource;
+use crate::schema::case::{FrameName, LengthUnit};
+use crate::schema::methods::ElementName;
+use crate::schema::selection::SelectionDocument;
+use crate::schema::{CaseDocument, MaterialDocument, PlanDocument, PredictDocument};
+
+/// What is to be predicted.
+#[derive(Debug, Args)]
+pub struct SceneArguments {
+    /// The case, plan and spec documents in one file; mesh paths are relative to it
+    #[arg(long, value_name = "FILE", required_unless_present = "mesh")]
+    pub case: Option<PathBuf>,
+    /// The volume mesh: VTU, VTK or Gmsh
+    #[arg(long, value_name = "FILE", conflicts_with = "case")]
+    mesh: Option<PathBuf>,
+    /// The plan document; its segments are segments of the case or node sets of the mesh
+    #[arg(long, value_name = "FILE", conflicts_with = "case")]
+    plan: Option<PathBuf>,
+    /// A node set that is held; may be given several times
+    #[arg(long, value_name = "SET", conflicts_with = "case")]
+    fixed: Vec<String>,
+    /// The node set that is the skin; default: every boundary face that nothing holds
+    #[arg(long, value_name = "SET", conflicts_with = "case")]
+    skin: Option<String>,
+    /// The unit of length of the mesh
+    #[arg(long, default_value = "mm", conflicts_with = "case")]
+    units: UnitArgument,
+    /// The frame of the mesh
+    #[arg(long, default_value = "unspecified", conflicts_with = "case")]
+    frame: FrameArgument,
+    /// Young's modulus of all tissue, in kPa; default 15
+    #[arg(long, value_name = "KPA", conflicts_with = "case")]
+    young_modulus_kpa: Option<f64>,
+    /// Poisson's ratio of all tissue; default 0.46
+    #[arg(long, value_name = "RATIO", conflicts_with = "case")]
+    poisson_ratio: Option<f64>,
+    /// The treatment of cells
+    #[arg(long, default_value = "auto", conflicts_with = "case")]
+    element: ElementArgument,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub enum UnitArgument {
+    Mm,
+    M,
+    Um,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum FrameArgument {
+    #[value(name = "LPS")]
+    Lps,
+    #[value(name = "RAS")]
+    Ras,
+    Unspecified,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+#[value(rename_all = "snake_case")]
+enum ElementArgument {
+    Auto,
+    Plain,
+    MeanDilatation,
+}
+
+impl UnitArgument {
+    pub fn unit(self) -> LengthUnit {
+        match self {
+            UnitArgument::Mm => LengthUnit::Mm,
+            UnitArgument::M => LengthUnit::M,
+            UnitArgument::Um => LengthUnit::Um,
+        }
+    }
+}
+
+/// The documents, and the folder from which their mesh paths lead.
+pub struct Asked {
+    pub file: CaseFile,
+    pub folder: PathBuf,
+    pub sources: FileSource,
+}
+
+impl SceneArguments {
+    /// The documents that the arguments name or stand for.
+    pub fn documents(&self) -> Result<Asked, CommandError> {
+        let (file, folder) = match (&self.case, &self.mesh) {
+            (Some(path), _) => {
+                let folder = path.parent().unwrap_or(Path::new("")).to_owned();
+                (read::<CaseFile>(path)?, folder)
+            }
+            (None, Some(mesh)) => (self.from_mesh(mesh)?, PathBuf::new()),
+            (None, None) => {
+                let detail = "give --case, or --mesh and --plan";
+                return Err(CommandError::Usage(detail.to_owned()));
+            }
+        };
+        let sources = FileSource::new(&folder, file.case.units);
+        Ok(Asked { file, folder, sources })
+    }
+
+    fn from_mesh(&self, mesh: &Path) -> Result<CaseFile, CommandError> {
+        let plan: PlanDocument = match &self.plan {
+            Some(path) => read(path)?,
+            None => PlanDocument::default(),
+        };
+        let mut case = CaseDocument::of_volume(&mesh.to_string_lossy(), self.units.unit());
+        case.frame = match self.frame {
+            FrameArgument::Lps => FrameName::Lps,
+            FrameArgument::Ras => FrameName::Ras,
+            FrameArgument::Unspecified => FrameName::Unspecified,
+        };
+        case.skin = self.skin.as_deref().map(SelectionDocument::node_set);
+        case.fixed = self.fixed.iter().map(|set| SelectionDocument::node_set(set)).collect();
+        let element = match self.element {
+            ElementArgument::Auto => ElementName::Auto,
+            ElementArgument::Plain => ElementName::Plain,
+            ElementArgument::MeanDilatation => ElementName::MeanDilatation,
+        };
+        let materials = self.material().map(|material| [("*".to_owned(), material)].into());
+        let spec = PredictDocument { element, materials, ..PredictDocument::default() };
+        Ok(CaseFile { case, plan, spec })
+    }
+
+    fn material(&self) -> Option<MaterialDocument> {
+        let given = self.young_modulus_kpa.is_some() || self.poisson_ratio.is_some();
+        given.then(|| MaterialDocument {
+            young_modulus_kpa: self.young_modulus_kpa,
+            poisson_ratio: self.poisson_ratio,
+            density_g_per_cm3: None,
+        })
+    }
+}

@@ -1,0 +1,120 @@
+//! What a case and a plan mean, before anything is solved.
+
+use super::failure::JobError;
+use super::input::{PredictInput, Prepared};
+use super::pictures::classes_picture;
+use super::source::MeshSource;
+use crate::mesh::{CellShape, Warning};
+use crate::prediction::{NodeClass, Scene};
+use crate::schema::check::{CheckDocument, ClassCounts, SkinSummary};
+use crate::schema::{Limits, WarningDocument};
+
+/// Coupled node pairs for each cell of a large mesh, both ways: six edges shared by about five
+/// tetrahedra, 26 neighbours of a node in a brick lattice with one brick a node, 20 with two wedges a node.
+const PAIRS_OF_TETRAHEDRON: f64 = 2.5;
+const PAIRS_OF_HEXAHEDRON: f64 = 26.0;
+const PAIRS_OF_WEDGE: f64 = 10.0;
+/// Bytes of a 3x3 block with its column, held as matrix and as preconditioner.
+const BYTES_OF_PAIR: f64 = 2.0 * 76.0;
+
+/// The counts and the picture of a check.
+pub struct CheckReport {
+    pub document: CheckDocument,
+    /// `classes.svg`.
+    pub picture: String,
+}
+
+/// Checks a case and a plan without solving; an empty plan checks the case alone.
+pub fn check(
+    input: &PredictInput,
+    sources: &dyn MeshSource,
+    limits: &Limits,
+) -> Result<CheckReport, JobError> {
+    let prepared = input.prepare(sources, limits)?;
+    Ok(CheckReport { document: prepared.summary(input), picture: prepared.classes_picture()? })
+}
+
+impl Prepared {
+    /// The counts of everything that is held, and what solving is expected to take.
+    pub fn summary(&self, input: &PredictInput) -> CheckDocument {
+        let scene = &self.scene;
+        let skin = &scene.skin;
+        let nodes = scene.mesh.nodes.len();
+        let held: usize = scene.conditions.holds.iter().map(|hold| hold.count()).sum();
+        let warnings = self.warnings.iter().chain(&scene.warnings);
+        CheckDocument {
+            nodes: nodes as u64,
+            cells: scene.mesh.cells.len() as u64,
+            classes: class_counts(scene),
+            skin: SkinSummary {
+                nodes: skin.surface.points.len() as u64,
+                triangles: skin.surface.triangles.len() as u64,
+                area_mm2: skin.surface.area(),
+                regions: skin
+                    .regions
+                    .iter()
+                    .map(|(name, points)| (name.clone(), points.len() as u64))
+                    .collect(),
+            },
+            unknowns: (3 * nodes - held) as u64,
+            memory_mb: expected_memory_mb(scene),
+            method: "fem_linear".to_owned(),
+            why: input.spec.method.why().to_owned(),
+            warnings: warnings.map(WarningDocument::from).collect(),
+        }
+    }
+
+    /// The boundary coloured by what holds it.
+    pub fn classes_picture(&self) -> Result<String, JobError> {
+        let counts = class_counts(&self.scene);
+        let joined: u64 = counts.joined.values().sum();
+        let title = format!("What holds the tissue: {joined} joined, {} fixed nodes", counts.fixed);
+        Ok(classes_picture(&self.scene, self.case.frame, &title)?)
+    }
+}
+
+fn class_counts(scene: &Scene) -> ClassCounts {
+    let mut counts = ClassCounts::default();
+    for segment in &scene.segments {
+        counts.joined.insert(segment.name.clone(), 0);
+    }
+    for class in &scene.conditions.classes {
+        match class {
+            NodeClass::Prescribed => counts.prescribed += 1,
+            NodeClass::Joined(segment) => {
+                let name = &scene.segments[*segment as usize].name;
+                *counts.joined.entry(name.clone()).or_default() += 1;
+            }
+            NodeClass::Fixed => counts.fixed += 1,
+            NodeClass::Sliding => counts.sliding += 1,
+            NodeClass::Free => counts.free += 1,
+        }
+    }
+    counts
+}
+
+/// About what matrix and iterations take; a factorisation is chosen only where it fits the budget too.
+fn expected_memory_mb(scene: &Scene) -> f64 {
+    let pairs: f64 = scene
+        .mesh
+        .cells
+        .iter()
+        .map(|(shape, _)| match shape {
+            CellShape::Tet4 => PAIRS_OF_TETRAHEDRON,
+            CellShape::Hex8 => PAIRS_OF_HEXAHEDRON,
+            CellShape::Wedge6 => PAIRS_OF_WEDGE,
+        })
+        .sum();
+    (pairs + scene.mesh.nodes.len() as f64) * BYTES_OF_PAIR / 1e6
+}
+
+/// Warnings as documents, without repeats.
+pub fn warning_documents<'a>(warnings: impl Iterator<Item = &'a Warning>) -> Vec<WarningDocument> {
+    let mut documents: Vec<WarningDocument> = Vec::new();
+    for warning in warnings.map(WarningDocument::from) {
+        if !documents.contains(&warning) {
+            documents.push(warning);
+        }
+    }
+    documents
+}

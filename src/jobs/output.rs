@@ -1,0 +1,36 @@
+//! The folder of a result: each file with its size and hash.
+
+use std::path::Path;
+
+use super::failure::JobError;
+use crate::schema::canonical;
+use crate::schema::prediction::FileDocument;
+use crate::schema::spec::OutputName;
+
+/// Writes files and keeps the list of them.
+pub struct ResultFolder<'a> {
+    folder: &'a Path,
+    pub files: Vec<FileDocument>,
+}
+
+impl<'a> ResultFolder<'a> {
+    /// Makes the folder if it is not there.
+    pub fn open(folder: &'a Path) -> Result<Self, JobError> {
+        let failed = |source| JobError::Write { file: folder.display().to_string(), source };
+        std::fs::create_dir_all(folder).map_err(failed)?;
+        Ok(ResultFolder { folder, files: Vec::new() })
+    }
+
+    pub fn add(&mut self, name: OutputName, bytes: &[u8]) -> Result<(), JobError> {
+        let file = name.file_name();
+        std::fs::write(self.folder.join(file), bytes)
+            .map_err(|source| JobError::Write { file: file.to_owned(), source })?;
+        self.files.push(FileDocument {
+            name: file.to_owned(),
+            media_type: name.media_type().to_owned(),
+            bytes: bytes.len() as u64,
+            sha256: canonical::sha256_hex(bytes),
+        });
+        Ok(())
+    }
+}

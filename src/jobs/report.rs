@@ -1,0 +1,75 @@
+//! The report of an uploaded mesh.
+
+use std::collections::BTreeMap;
+
+use crate::format::{Mesh, ReadMesh};
+use crate::mesh::quality::quality;
+use crate::mesh::{Vector, VolumeMesh};
+use crate::schema::mesh::{MeshKind, MeshReport};
+use crate::schema::{CornerPair, WarningDocument};
+
+/// What a mesh file holds, in the units of the file.
+pub fn mesh_report(read: &ReadMesh) -> MeshReport {
+    let (kind, points, triangles) = match &read.mesh {
+        Mesh::Volume(volume) => {
+            let boundary = volume.boundary_faces();
+            let triangles = boundary.iter().map(|face| face.triangles().count()).sum();
+            (MeshKind::Volume, &volume.nodes, triangles)
+        }
+        Mesh::Surface(surface) => (MeshKind::Surface, &surface.points, surface.triangles.len()),
+    };
+    let (low, high) = bounding_box(points);
+    let mut report = MeshReport {
+        kind,
+        nodes: points.len() as u64,
+        cells: BTreeMap::new(),
+        triangles: triangles as u64,
+        bounding_box: CornerPair([low.x, low.y, low.z, high.x, high.y, high.z]),
+        diagonal: (high - low).norm(),
+        space: read.frame.map(Into::into),
+        node_sets: BTreeMap::new(),
+        cell_sets: BTreeMap::new(),
+        node_labels: BTreeMap::new(),
+        cell_labels: BTreeMap::new(),
+        node_vectors: Vec::new(),
+        ignored_arrays: read.ignored_arrays.clone(),
+        min_quality: None,
+        warnings: read.warnings.iter().map(WarningDocument::from).collect(),
+    };
+    if let Mesh::Volume(volume) = &read.mesh {
+        describe(volume, &mut report);
+    }
+    report
+}
+
+fn describe(volume: &VolumeMesh, report: &mut MeshReport) {
+    for (shape, _) in volume.cells.iter() {
+        *report.cells.entry(shape.name().to_owned()).or_default() += 1;
+    }
+    report.node_sets = sizes(&volume.node_sets);
+    report.cell_sets = sizes(&volume.cell_sets);
+    report.node_labels = values(&volume.node_labels);
+    report.cell_labels = values(&volume.cell_labels);
+    report.min_quality = Some(quality(volume).smallest_scaled_jacobian);
+    report.node_vectors = volume.node_vectors.keys().cloned().collect();
+}
+
+fn sizes(sets: &BTreeMap<String, Vec<u32>>) -> BTreeMap<String, u64> {
+    sets.iter().map(|(name, members)| (name.clone(), members.len() as u64)).collect()
+}
+
+/// The distinct values of each array, ascending; readers keep arrays of at most 64 of them.
+fn values(arrays: &BTreeMap<String, Vec<i64>>) -> BTreeMap<String, Vec<i64>> {
+    let distinct = |labels: &Vec<i64>| {
+        let mut values = labels.clone();
+        values.sort_unstable();
+        values.dedup();
+        values
+    };
+    arrays.iter().map(|(name, labels)| (name.clone(), distinct(labels))).collect()
+}
+
+fn bounding_box(points: &[Vector]) -> (Vector, Vector) {
+    let first = points.first().copied().unwrap_or_else(Vector::zeros);
+    points.iter().fold((first, first), |(low, high), point| (low.inf(point), high.sup(point)))
+}

@@ -1,0 +1,84 @@
+//! The moved tissue and the moved bones as files.
+
+use crate::format::{ArrayValues, NamedValues, SurfaceOutput, VolumeOutput, WriteError, vtp, vtu};
+use crate::mesh::{Frame, TriangleSurface, Vector};
+use crate::prediction::{Case, Prediction, Scene};
+
+/// `segment` of a point of a bone that moves with no segment.
+const NO_SEGMENT: i64 = -1;
+
+/// `volume.vtu`: predicted positions, and how each cell is deformed.
+pub fn encode_volume(
+    scene: &Scene,
+    prediction: &Prediction,
+    frame: Frame,
+    field_data: &[(String, String)],
+) -> Result<Vec<u8>, WriteError> {
+    let mesh = &scene.mesh;
+    let displacement = &prediction.displacement;
+    let positions: Vec<Vector> =
+        mesh.nodes.iter().zip(displacement).map(|(node, moved)| node + moved).collect();
+    let magnitude: Vec<f64> = displacement.iter().map(Vector::norm).collect();
+    let node_id: Vec<i64> = (0..mesh.nodes.len() as i64).collect();
+    let region: Vec<i64> = scene.region_of_cell.iter().map(|&region| i64::from(region)).collect();
+    let det_f: Vec<f64> = prediction.deformation.iter().map(|cell| cell.det_f).collect();
+    let strain: Vec<Vector> =
+        prediction.deformation.iter().map(|cell| Vector::from(cell.principal_strain)).collect();
+    let named = |name, values| NamedValues { name, values };
+    let mut field_data = field_data.to_vec();
+    field_data.push(("region_names".to_owned(), scene.regions.join("\n")));
+    vtu::write(&VolumeOutput {
+        mesh,
+        positions: &positions,
+        frame,
+        point_arrays: vec![
+            named("displacement_mm", ArrayValues::Vectors(displacement)),
+            named("displacement_magnitude_mm", ArrayValues::Reals(&magnitude)),
+            named("node_id", ArrayValues::Integers(&node_id)),
+        ],
+        cell_arrays: vec![
+            named("region", ArrayValues::Integers(&region)),
+            named("det_f", ArrayValues::Reals(&det_f)),
+            named("principal_strain", ArrayValues::Vectors(&strain)),
+        ],
+        field_data,
+    })
+}
+
+/// `bones.vtp`: every bone of the case where its segment takes it. `segment` counts the segments named in
+/// the field data; it is -1 on bones that stay.
+pub fn encode_bones(
+    case: &Case,
+    scene: &Scene,
+    field_data: &[(String, String)],
+) -> Result<Vec<u8>, WriteError> {
+    let mut moved = TriangleSurface::default();
+    let mut displacement = Vec::new();
+    let mut segment = Vec::new();
+    for bone in &case.bones {
+        let Some(surface) = case.surfaces.get(&bone.surface) else {
+            continue;
+        };
+        let number = scene.segments.iter().position(|segment| segment.name == bone.name);
+        let first = moved.points.len() as u32;
+        for point in &surface.points {
+            let by = number.map_or_else(Vector::zeros, |number| {
+                scene.segments[number].movement.displacement(point)
+            });
+            moved.points.push(point + by);
+            displacement.push(by);
+            segment.push(number.map_or(NO_SEGMENT, |number| number as i64));
+        }
+        let triangles = surface.triangles.iter();
+        moved.triangles.extend(triangles.map(|triangle| triangle.map(|point| point + first)));
+    }
+    let names: Vec<&str> = scene.segments.iter().map(|segment| segment.name.as_str()).collect();
+    let mut output = SurfaceOutput::plain(&moved, case.frame);
+    output.field_data = field_data.to_vec();
+    output.field_data.push(("segment_names".to_owned(), names.join("\n")));
+    output.point_arrays = vec![
+        NamedValues { name: "displacement_mm", values: ArrayValues::Vectors(&displacement) },
+        NamedValues { name: "segment", values: ArrayValues::Integers(&segment) },
+    ];
+    vtp::write(&output)
+}

@@ -1,0 +1,205 @@
+//! The one function from a job document to result files.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use super::check::warning_documents;
+use super::comparison::{Compared, compare_job, compare_skin};
+use super::failure::JobError;
+use super::input::{JobInput, PredictInput, Prepared};
+use super::observed::Observed;
+use super::output::ResultFolder;
+use super::pictures::displacement_picture;
+use super::provenance::{Origin, add_method, encode_result, solver_document};
+use super::skin_files::PredictedSkin;
+use super::source::MeshSource;
+use super::tissue_files::{encode_bones, encode_volume};
+use crate::mesh::{Vector, Warning};
+use crate::prediction::{Phase, Prediction, Progress, Skin, predict};
+use crate::schema::prediction::{
+    DisplacementDocument, FileDocument, ResultDocument, StatisticsDocument,
+};
+use crate::schema::spec::OutputName;
+use crate::schema::validation::StatDocument;
+use crate::schema::{Limits, Triple};
+use crate::validation::{Statistics, StatisticsError};
+
+/// What a job made.
+#[derive(Clone, Debug)]
+pub struct JobOutput {
+    /// The content of `result.json`.
+    pub result: ResultDocument,
+    /// Every file in the folder, with `result.json` itself.
+    pub files: Vec<FileDocument>,
+}
+
+/// Where a job finds its meshes, what it is allowed, and where its files go.
+pub struct Workplace<'a> {
+    pub sources: &'a dyn MeshSource,
+    pub limits: &'a Limits,
+    pub out: &'a Path,
+}
+
+/// Does a job. The same input and meshes give the same files, but for times in `result.json`.
+pub fn work(
+    input: &JobInput,
+    place: &Workplace,
+    progress: &dyn Progress,
+) -> Result<JobOutput, JobError> {
+    match input {
+        JobInput::Predict(input) => predict_job(input, place, progress),
+        JobInput::Compare(input) => compare_job(input, place, progress),
+    }
+}
+
+fn predict_job(
+    input: &PredictInput,
+    place: &Workplace,
+    progress: &dyn Progress,
+) -> Result<JobOutput, JobError> {
+    let clock = Observed::start(progress, input.spec.budget.wall_s);
+
+    // 1. Documents and meshes, checked together.
+    let prepared = input.prepare(place.sources, place.limits)?;
+    clock.check()?;
+
+    // 2. The displacement of the tissue and of its skin.
+    let prediction = predict(&prepared.scene, &clock).map_err(|error| clock.judge(error))?;
+    clock.phase(Phase::Surface);
+    let mut skin = PredictedSkin::new(&prepared.scene.skin, &prediction);
+    let statistics = statistics(&prepared.scene.skin, &skin, &prediction)?;
+    clock.check()?;
+
+    // 3. Against another surface, if asked.
+    clock.phase(Phase::Compare);
+    let compared = compare_skin(input, &prepared, &skin, place, &clock)?;
+    let mut warnings = prepared.warnings.clone();
+    warnings.extend(prediction.warnings.iter().cloned());
+    let mut inputs = prepared.inputs.clone();
+    if let Some(compared) = &compared {
+        skin.signed_distance = Some(compared.signed_distance.clone());
+        warnings.extend(compared.warnings.iter().cloned());
+        inputs.extend(compared.inputs.iter().cloned());
+    }
+    clock.check()?;
+
+    // 4. Files.
+    clock.phase(Phase::Write);
+    let finished = Finished {
+        origin: Origin {
+            spec_hash: prepared.spec_hash.clone(),
+            inputs,
+            frame: prepared.case.frame,
+            queue_s: input.queue_s,
+        },
+        prepared: &prepared,
+        prediction: &prediction,
+        skin: &skin,
+        statistics,
+    };
+    let mut folder = ResultFolder::open(place.out)?;
+    finished.write_files(&input.files(), &mut folder)?;
+
+    // 5. The manifest.
+    let result = finished.result(input, compared, &warnings, &clock, folder.files.clone());
+    folder.add(OutputName::ResultJson, &encode_result(&result)?)?;
+    Ok(JobOutput { result, files: folder.files })
+}
+
+impl PredictInput {
+    /// The files to write but for `result.json`: those asked for, or skin and moved bones.
+    fn files(&self) -> Vec<OutputName> {
+        let mut files = self.spec.files();
+        if self.spec.outputs.is_none() && !self.case.bones.is_empty() {
+            files.push(OutputName::BonesVtp);
+        }
+        files.retain(|name| *name != OutputName::ResultJson);
+        files
+    }
+}
+
+/// A prediction with everything that goes into its files.
+struct Finished<'a> {
+    origin: Origin,
+    prepared: &'a Prepared,
+    prediction: &'a Prediction,
+    skin: &'a PredictedSkin,
+    statistics: StatisticsDocument,
+}
+
+impl Finished<'_> {
+    fn write_files(&self, names: &[OutputName], folder: &mut ResultFolder) -> Result<(), JobError> {
+        let field_data = self.origin.field_data(&solver_document(self.prediction));
+        let scene = &self.prepared.scene;
+        let frame = self.origin.frame;
+        for &name in names {
+            let bytes = match name {
+                OutputName::VolumeVtu => encode_volume(scene, self.prediction, frame, &field_data)?,
+                OutputName::BonesVtp => encode_bones(&self.prepared.case, scene, &field_data)?,
+                OutputName::ClassesSvg => self.prepared.classes_picture()?.into_bytes(),
+                OutputName::DisplacementSvg => {
+                    let numbers = &self.statistics.skin.nodes;
+                    displacement_picture(scene, self.skin, frame, numbers)?.into_bytes()
+                }
+                skin => match self.skin.encode(skin, frame, &field_data)? {
+                    Some(bytes) => bytes,
+                    None => continue,
+                },
+            };
+            folder.add(name, &bytes)?;
+        }
+        Ok(())
+    }
+
+    fn result(
+        &self,
+        input: &PredictInput,
+        compared: Option<Compared>,
+        warnings: &[Warning],
+        clock: &Observed,
+        files: Vec<FileDocument>,
+    ) -> ResultDocument {
+        let mut provenance = self.origin.provenance(clock);
+        let solver = solver_document(self.prediction);
+        let mesh = (&*self.prepared.scene.mesh, &self.prepared.quality);
+        add_method(&mut provenance, input.spec.method, mesh, solver);
+        ResultDocument {
+            job: input.job.clone(),
+            files,
+            statistics: Some(self.statistics.clone()),
+            comparison: compared.map(|compared| compared.document),
+            numerical_error_mm: None,
+            reaction_mn: triples(&self.prediction.reactions),
+            provenance,
+            warnings: warning_documents(warnings.iter()),
+        }
+    }
+}
+
+/// How far the skin, its parts and the landmarks move.
+fn statistics(
+    skin: &Skin,
+    predicted: &PredictedSkin,
+    prediction: &Prediction,
+) -> Result<StatisticsDocument, StatisticsError> {
+    let areas = skin.surface.point_areas();
+    let over = |points: &[u32]| -> Result<DisplacementDocument, StatisticsError> {
+        let pick = |values: &[f64]| points.iter().map(|&point| values[point as usize]).collect();
+        let (lengths, areas): (Vec<f64>, Vec<f64>) = (pick(&predicted.magnitude), pick(&areas));
+        Ok(DisplacementDocument {
+            nodes: StatDocument::from(&Statistics::plain(&lengths)?),
+            area: StatDocument::from(&Statistics::weighted(&lengths, &areas)?),
+        })
+    };
+    let everywhere: Vec<u32> = (0..predicted.magnitude.len() as u32).collect();
+    let mut regions = BTreeMap::new();
+    for (name, points) in &skin.regions {
+        regions.insert(name.clone(), over(points)?);
+    }
+    let landmarks = triples(&prediction.landmarks);
+    Ok(StatisticsDocument { skin: over(&everywhere)?, regions, landmarks })
+}
+
+fn triples(vectors: &BTreeMap<String, Vector>) -> BTreeMap<String, Triple> {
+    vectors.iter().map(|(name, &vector)| (name.clone(), vector.into())).collect()
+}

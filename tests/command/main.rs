@@ -1,0 +1,301 @@
+//! The program as people call it: exit codes, files, numbers.
+
+#![allow(clippy::unwrap_used)]
+
+#[path = "../shared/mod.rs"]
+mod shared;
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use facies::format::{VolumeOutput, vtu};
+use facies::mesh::{CellShape, Frame, Vector, sample};
+use facies::schema::canonical::sha256_hex;
+use facies::schema::check::CheckDocument;
+use facies::schema::prediction::ResultDocument;
+use shared::shared_data;
+
+fn facies(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_facies")).args(arguments).output().unwrap()
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8(bytes.to_vec()).unwrap()
+}
+
+fn block() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/block")
+}
+
+fn result(folder: &Path) -> ResultDocument {
+    serde_json::from_slice(&fs::read(folder.join("result.json")).unwrap()).unwrap()
+}
+
+fn path(path: &Path) -> &str {
+    path.to_str().unwrap()
+}
+
+/// A folder with a plan that moves node set `mandible` of the block.
+fn plan_folder(plan: &str) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("plan.json"), plan).unwrap();
+    folder
+}
+
+const FORWARD: &str = r#"{"segments":[{"name":"mandible","translation_mm":[4,0,0]}]}"#;
+
+fn predict_block(folder: &Path, out: &Path) -> Output {
+    facies(&[
+        "predict",
+        "--mesh",
+        path(&block().join("block.vtu")),
+        "--plan",
+        path(&folder.join("plan.json")),
+        "--fixed",
+        "skull",
+        "--skin",
+        "skin",
+        "--young-modulus-kpa",
+        "15",
+        "--poisson-ratio",
+        "0.45",
+        "--out",
+        path(out),
+    ])
+}
+
+#[test]
+fn the_example_runs_and_its_files_are_those_of_its_manifest() {
+    let out = tempfile::tempdir().unwrap();
+    let case = block().join("case.json");
+    let done = facies(&["predict", "--case", path(&case), "--out", path(out.path())]);
+    assert_eq!(done.status.code(), Some(0), "{}", text(&done.stderr));
+    let result = result(out.path());
+    for file in &result.files {
+        let bytes = fs::read(out.path().join(&file.name)).unwrap();
+        assert_eq!((bytes.len() as u64, sha256_hex(&bytes)), (file.bytes, file.sha256.clone()));
+    }
+    let names: BTreeSet<&str> = result.files.iter().map(|file| file.name.as_str()).collect();
+    let wanted = [
+        "bones.vtp",
+        "classes.svg",
+        "displacement.svg",
+        "skin.csv",
+        "skin.glb",
+        "skin.vtp",
+        "volume.vtu",
+    ];
+    assert_eq!(names, wanted.into());
+    // No node of the plate goes farther than the turn at 40 mm from the pivot, 3.5 mm, and the
+    // translation, 4.2 mm, together.
+    let moved = &result.statistics.unwrap().skin.nodes;
+    assert!(moved.max > 1.0 && moved.max < 7.7, "{}", moved.max);
+}
+
+#[test]
+fn what_is_held_is_told_before_anything_is_solved() {
+    let case = block().join("case.json");
+    let out = tempfile::tempdir().unwrap();
+    let done = facies(&["check", "--case", path(&case), "--out", path(out.path())]);
+    assert_eq!(done.status.code(), Some(0), "{}", text(&done.stderr));
+    // Three of five columns of nodes and one of five rows of five lie over the plates.
+    let shown = text(&done.stdout);
+    assert!(shown.contains("joined     15 nodes to mandible"), "{shown}");
+    assert!(shown.contains("fixed      10 nodes"), "{shown}");
+    let check: CheckDocument =
+        serde_json::from_slice(&fs::read(out.path().join("check.json")).unwrap()).unwrap();
+    assert_eq!((check.classes.free, check.unknowns), (50, 150));
+    assert_eq!((check.skin.nodes, check.skin.area_mm2), (25, 4800.0));
+    assert!(fs::read_to_string(out.path().join("classes.svg")).unwrap().starts_with("<svg"));
+}
+
+#[test]
+fn a_mesh_with_a_plan_and_the_documents_written_from_them_give_the_same_bits() {
+    let folder = plan_folder(FORWARD);
+    let (first, second) = (folder.path().join("first"), folder.path().join("second"));
+    let done = predict_block(folder.path(), &first);
+    assert_eq!(done.status.code(), Some(0), "{}", text(&done.stderr));
+    let documents = first.join("case.json");
+    let done = facies(&["predict", "--case", path(&documents), "--out", path(&second)]);
+    assert_eq!(done.status.code(), Some(0), "{}", text(&done.stderr));
+    let (a, b) = (result(&first), result(&second));
+    assert_eq!(a.provenance.spec_hash, b.provenance.spec_hash);
+    assert_eq!(a.files, b.files);
+    assert_eq!(a.statistics, b.statistics);
+    assert!(second.join("case.json").exists());
+}
+
+#[test]
+fn wrong_use_ends_with_code_2() {
+    for arguments in [
+        &["predict"][..],
+        &["predict", "--case", "a", "--mesh", "b", "--out", "c"],
+        &["compare", "--prediction", "a"],
+        &["dance"],
+        &[],
+    ] {
+        assert_eq!(facies(arguments).status.code(), Some(2), "{arguments:?}");
+    }
+}
+
+#[test]
+fn every_mistake_in_the_documents_has_a_line_with_its_place() {
+    let plan = r#"{"segments":[{"name":"mandible","translation_mm":[500,0,0]},{"name":"jaw","rotation_deg":[0,5,0]}]}"#;
+    let folder = plan_folder(plan);
+    let done = predict_block(folder.path(), &folder.path().join("out"));
+    assert_eq!(done.status.code(), Some(2));
+    let lines = text(&done.stderr);
+    let lines: Vec<&str> = lines.lines().collect();
+    assert_eq!(lines.len(), 2, "{lines:?}");
+    assert!(lines[0].starts_with("error: /plan/segments/0/translation_mm: moves by 500 mm"));
+    assert!(lines[1].starts_with("error: /plan/segments/1/pivot_mm: "));
+    assert!(!folder.path().join("out").exists(), "nothing is written for a refused job");
+}
+
+#[test]
+fn a_segment_that_is_nowhere_and_a_mesh_that_is_not_there_are_refused() {
+    let folder = plan_folder(r#"{"segments":[{"name":"jaw","translation_mm":[1,0,0]}]}"#);
+    let done = predict_block(folder.path(), &folder.path().join("out"));
+    assert_eq!(done.status.code(), Some(2));
+    let line = text(&done.stderr);
+    assert!(line.contains("/plan/segments/0/name") && line.contains("unknown-segment"), "{line}");
+    let done = facies(&["check", "--mesh", "nowhere.vtu"]);
+    assert_eq!(done.status.code(), Some(2));
+    assert!(text(&done.stderr).contains("/case/volume: there is no mesh"));
+}
+
+#[test]
+fn a_plan_that_is_not_json_is_refused_with_line_and_column() {
+    let folder = plan_folder("{\"segments\": [\n  {\"name\": jaw}]}");
+    let done = predict_block(folder.path(), &folder.path().join("out"));
+    assert_eq!(done.status.code(), Some(2));
+    let line = text(&done.stderr);
+    assert!(line.contains("line 2 column 12") && line.contains("malformed-json"), "{line}");
+}
+
+#[test]
+fn a_folder_that_cannot_be_made_ends_with_code_3() {
+    let folder = plan_folder(FORWARD);
+    let done = predict_block(folder.path(), &folder.path().join("plan.json/out"));
+    assert_eq!(done.status.code(), Some(3), "{}", text(&done.stderr));
+}
+
+#[test]
+fn a_job_that_needs_more_memory_than_it_may_take_fails_with_code_1() {
+    let folder = tempfile::tempdir().unwrap();
+    let mesh = sample::block(Vector::repeat(100.0), [12, 12, 12], CellShape::Hex8);
+    let bytes = vtu::write(&VolumeOutput::plain(&mesh, Frame::Unspecified)).unwrap();
+    fs::write(folder.path().join("block.vtu"), bytes).unwrap();
+    let set = mesh.node_sets.keys().next().unwrap();
+    let file = format!(
+        r#"{{"case":{{"units":"mm","volume":"block.vtu","fixed":[{{"node_set":"{set}"}}]}},
+           "plan":{{"loads":[{{"gravity_m_per_s2":[0,0,-9.81]}}]}},"spec":{{"budget":{{"memory_mb":1}}}}}}"#
+    );
+    fs::write(folder.path().join("case.json"), file).unwrap();
+    let case = folder.path().join("case.json");
+    let out = folder.path().join("out");
+    let done = facies(&["predict", "--case", path(&case), "--out", path(&out)]);
+    assert_eq!(done.status.code(), Some(1), "{}", text(&done.stderr));
+    assert!(text(&done.stderr).contains("budget-exceeded"), "{}", text(&done.stderr));
+}
+
+#[test]
+fn a_surface_has_no_distance_from_itself() {
+    let folder = plan_folder(FORWARD);
+    let out = folder.path().join("out");
+    assert_eq!(predict_block(folder.path(), &out).status.code(), Some(0));
+    let skin = out.join("skin.vtp");
+    let compared = folder.path().join("compared");
+    let done = facies(&[
+        "compare",
+        "--prediction",
+        path(&skin),
+        "--actual",
+        path(&skin),
+        "--out",
+        path(&compared),
+    ]);
+    assert_eq!(done.status.code(), Some(0), "{}", text(&done.stderr));
+    let comparison = result(&compared).comparison.unwrap();
+    // Rounding of a projection onto a triangle of 80 mm.
+    assert!(comparison.both.max < 1e-12 && comparison.both.share_below_1_mm == 1.0);
+    assert_eq!(comparison.node_wise.unwrap().nodes.max, 0.0);
+}
+
+#[test]
+fn alignment_takes_back_a_rigid_movement() {
+    let folder = tempfile::tempdir().unwrap();
+    let lifted = fs::read_to_string(block().join("mandible.stl")).unwrap().replace(" 0\n", " 2\n");
+    fs::write(folder.path().join("lifted.stl"), lifted).unwrap();
+    let (plate, lifted) = (block().join("mandible.stl"), folder.path().join("lifted.stl"));
+    let compare = |align: &str| {
+        let out = folder.path().join(align);
+        let files = ["--prediction", path(&plate), "--actual", path(&lifted)];
+        let done =
+            facies(&[&["compare", "--align", align, "--out", path(&out)][..], &files[..]].concat());
+        assert_eq!(done.status.code(), Some(0), "{}", text(&done.stderr));
+        result(&out).comparison.unwrap()
+    };
+    assert!((compare("none").both.mean - 2.0).abs() < 1e-12, "the plates are 2 mm apart");
+    let aligned = compare("icp");
+    assert!(aligned.both.max < 1e-6, "{}", aligned.both.max);
+    assert!((aligned.unaligned.unwrap().both.mean - 2.0).abs() < 1e-12);
+}
+
+/// A face of the shared data, its sets, and the movement of its jaw.
+struct Face {
+    mesh: &'static str,
+    jaw: &'static str,
+    fixed: &'static str,
+    movement: &'static str,
+}
+
+const SUBJECT: Face = Face {
+    mesh: "face/subject_face.vtu",
+    jaw: "jaw_attached",
+    fixed: "skull_fixed_orig",
+    movement: "[-5,0,0]",
+};
+
+const TEMPLATE: Face = Face {
+    mesh: "face/template_face.vtu",
+    jaw: "mandible_fixed",
+    fixed: "skull_nose_fixed",
+    movement: "[0,5,0]",
+};
+
+/// Largest and mean displacement of the skin in mm.
+fn face_moves(face: &Face, element: &str) -> Option<(f64, f64)> {
+    let mesh = shared_data(face.mesh)?;
+    let movement = face.movement;
+    let jaw = face.jaw;
+    let plan = format!(r#"{{"segments":[{{"name":"{jaw}","translation_mm":{movement}}}]}}"#);
+    let folder = plan_folder(&plan);
+    let (plan, out) = (folder.path().join("plan.json"), folder.path().join("out"));
+    let files = ["predict", "--mesh", path(&mesh), "--plan", path(&plan), "--out", path(&out)];
+    let sets = ["--fixed", face.fixed, "--skin", "outer_skin", "--element", element];
+    let tissue = ["--young-modulus-kpa", "15", "--poisson-ratio", "0.45"];
+    let done = facies(&[&files[..], &sets[..], &tissue[..]].concat());
+    assert_eq!(done.status.code(), Some(0), "{}", text(&done.stderr));
+    let skin = result(&out).statistics.unwrap().skin.nodes;
+    Some((skin.max, skin.mean))
+}
+
+#[test]
+fn real_faces_move_as_an_independent_code_says() {
+    let cases = [
+        (SUBJECT, "mean_dilatation", 4.749, 1.743),
+        (SUBJECT, "plain", 4.773, 1.750),
+        (TEMPLATE, "mean_dilatation", 4.904, 1.843),
+        (TEMPLATE, "plain", 4.930, 1.828),
+    ];
+    for (face, element, largest, mean) in cases {
+        let Some((max, average)) = face_moves(&face, element) else { return };
+        let mesh = face.mesh;
+        // Half a per cent: both codes solve the same equations, and the given numbers have four digits.
+        assert!((max / largest - 1.0).abs() < 0.005, "{mesh}, {element}: largest {max}");
+        assert!((average / mean - 1.0).abs() < 0.005, "{mesh}, {element}: mean {average}");
+    }
+}
