@@ -3,6 +3,7 @@
 use std::io;
 use std::path::PathBuf;
 
+use super::demo::DemoError;
 use super::health::HealthError;
 use super::serve::ServeError;
 use crate::jobs::JobError;
@@ -31,6 +32,8 @@ pub enum CommandError {
     #[error(transparent)]
     Job(#[from] JobError),
     #[error(transparent)]
+    Demo(#[from] DemoError),
+    #[error(transparent)]
     Serve(#[from] ServeError),
     #[error(transparent)]
     Health(#[from] HealthError),
@@ -43,9 +46,13 @@ impl CommandError {
                 REFUSED
             }
             CommandError::Write { .. } => INFRASTRUCTURE,
+            CommandError::Demo(error) if error.is_failed_job() => FAILED,
+            CommandError::Demo(error) if error.is_setting() => CONFIGURATION,
             CommandError::Serve(error) if error.is_setting() => CONFIGURATION,
             CommandError::Health(error) if error.is_setting() => CONFIGURATION,
-            CommandError::Serve(_) | CommandError::Health(_) => INFRASTRUCTURE,
+            CommandError::Demo(_) | CommandError::Serve(_) | CommandError::Health(_) => {
+                INFRASTRUCTURE
+            }
             CommandError::Job(error) => match error.class() {
                 ErrorClass::Input => REFUSED,
                 ErrorClass::Infrastructure => INFRASTRUCTURE,

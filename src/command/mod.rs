@@ -2,6 +2,7 @@
 
 pub mod check;
 pub mod compare;
+pub mod demo;
 mod documents;
 mod failure;
 mod files;
@@ -28,6 +29,8 @@ pub struct Facies {
 
 #[derive(Debug, Subcommand)]
 enum Command {
+    /// Predict a face that the program makes itself, and say how good the numbers are
+    Demo(demo::Arguments),
     /// Predict the skin after a plan; write it with its statistics into a folder
     Predict(predict::Arguments),
     /// Measure the distances between two surfaces
@@ -45,6 +48,7 @@ enum Command {
 /// Runs the command and says what went wrong, one line for each mistake.
 pub fn run(facies: &Facies) -> ExitCode {
     let result = match &facies.command {
+        Command::Demo(arguments) => demo::run(arguments).map_err(CommandError::from),
         Command::Predict(arguments) => predict::run(arguments),
         Command::Compare(arguments) => compare::run(arguments),
         Command::Check(arguments) => check::run(arguments),

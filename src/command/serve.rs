@@ -110,7 +110,7 @@ pub fn run(arguments: &Arguments) -> Result<(), ServeError> {
     let server = runtime.block_on(Server::start(config))?;
     // One line on standard output, for programs that started this one with port 0.
     println!("listening on http://{}", server.address);
-    let workers = runtime.block_on(server.run())?;
+    let workers = runtime.block_on(server.run_until(stop_signal()))?;
     workers.stop(grace);
     // What still computes for a request that nobody waits for ends with the process.
     runtime.shutdown_background();
@@ -146,19 +146,22 @@ impl Server {
         Ok(Server { address, listener, service, workers })
     }
 
-    /// Answers requests until the process is told to stop; the workers are still at work then.
-    pub async fn run(self) -> Result<Workers, ServeError> {
+    /// Answers requests until `stop` is done; the workers are still at work then.
+    pub async fn run_until(
+        self,
+        stop: impl Future<Output = ()> + Send + 'static,
+    ) -> Result<Workers, ServeError> {
         let deadline = self.service.config.grace;
         let (stopping, mut stopped) = tokio::sync::watch::channel(());
-        let served = axum::serve(self.listener, api::router(self.service)).with_graceful_shutdown(
-            async move {
-                stop_signal().await;
+        let served = axum::serve(self.listener, api::router(self.service))
+            .with_graceful_shutdown(async move {
+                stop.await;
                 tracing::info!("stopping");
                 drop(stopping);
             },
         );
         let served = tokio::spawn(served.into_future());
-        // The sender goes when the signal comes.
+        // The sender goes when it is time to stop.
         let _ = stopped.changed().await;
         // A client that never ends its request does not keep the process from ending.
         if tokio::time::timeout(deadline, served).await.is_err() {
@@ -168,7 +171,8 @@ impl Server {
     }
 }
 
-async fn stop_signal() {
+/// Done when the process is told to stop: SIGTERM or SIGINT.
+pub async fn stop_signal() {
     use tokio::signal::unix::{SignalKind, signal};
     let mut terminate = match signal(SignalKind::terminate()) {
         Ok(signal) => signal,

@@ -4,6 +4,7 @@ mod bad_documents;
 mod bad_meshes;
 mod bad_requests;
 mod cases;
+mod demo;
 mod faults;
 mod helpers;
 mod jobs;

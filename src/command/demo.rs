@@ -1,0 +1,306 @@
+//! `facies demo`: the main job from end to end, through the API of a service in this process.
+
+mod client;
+mod report;
+mod scene;
+
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use bytes::Bytes;
+use indicatif::{ProgressBar, ProgressStyle};
+use serde_json::Value;
+
+use super::serve::{ServeError, Server, stop_signal};
+use crate::config::Config;
+use crate::format::{self, FormatError, Mesh, ReadLimits, WriteError};
+use crate::jobs::worker::Workers;
+use crate::mesh::half_head::{HalfHead, STANDARD_FINENESS, half_head};
+use crate::mesh::refinement::refine;
+use crate::mesh::{TriangleSurface, VolumeMesh};
+use crate::telemetry;
+use client::{Client, ClientError};
+use report::Report;
+
+/// How often the state of a job is asked for.
+const LOOK: Duration = Duration::from_millis(100);
+
+#[derive(Clone, Debug, clap::Args)]
+pub struct Arguments {
+    /// Leave the service running afterwards and print its addresses
+    #[arg(long)]
+    serve: bool,
+    /// Folder for the results
+    #[arg(long, value_name = "DIR", default_value = "facies-demo")]
+    out: PathBuf,
+    /// Folder of the service's database and files [default: OUT/service]
+    #[arg(long, value_name = "DIR")]
+    data: Option<PathBuf>,
+}
+
+#[derive(Debug, thiserror::Error)]
+pub enum DemoError {
+    #[error("{0}")]
+    Serve(#[from] ServeError),
+    #[error("{0}")]
+    Client(#[from] ClientError),
+    #[error("{0}")]
+    Write(#[from] WriteError),
+    #[error("the predicted skin: {0}")]
+    Skin(#[from] FormatError),
+    #[error("{path}: {source}")]
+    File { path: PathBuf, source: std::io::Error },
+    #[error("job {job} is {status}: {detail}")]
+    Job { job: String, status: String, detail: String },
+    #[error("the answer to {what} lacks `{member}`")]
+    Answer { what: &'static str, member: &'static str },
+}
+
+impl DemoError {
+    /// Whether another setting would help.
+    pub fn is_setting(&self) -> bool {
+        matches!(self, DemoError::Serve(error) if error.is_setting())
+    }
+
+    /// Whether everything works and a job failed nevertheless.
+    pub fn is_failed_job(&self) -> bool {
+        matches!(self, DemoError::Job { .. })
+    }
+}
+
+/// Runs the demo; with `--serve` it returns when the process is told to stop.
+pub fn run(arguments: &Arguments) -> Result<(), DemoError> {
+    let runtime = tokio::runtime::Builder::new_multi_thread()
+        .enable_all()
+        .build()
+        .map_err(ServeError::from)?;
+    let (workers, done) = runtime.block_on(beside_the_service(arguments))?;
+    workers.stop(Duration::ZERO);
+    runtime.shutdown_background();
+    done
+}
+
+/// Starts the service on a free port of this machine, runs the demo, and ends the service.
+async fn beside_the_service(
+    arguments: &Arguments,
+) -> Result<(Workers, Result<(), DemoError>), DemoError> {
+    let data = arguments.data.clone().unwrap_or_else(|| arguments.out.join("service"));
+    let config = Config::new(|name| setting(name, &data)).map_err(ServeError::from)?;
+    telemetry::start(&config.log).map_err(ServeError::from)?;
+    let server = Server::start(config).await?;
+    let client = Client { address: server.address };
+    let (stop, stopped) = tokio::sync::oneshot::channel::<()>();
+    let serving = tokio::spawn(server.run_until(async {
+        // Whether it is sent or dropped, the demo is over.
+        let _ = stopped.await;
+    }));
+    println!("service on http://{}, its data in {}", client.address, data.display());
+    let done = show(arguments, client).await;
+    if let (true, Ok(jobs)) = (arguments.serve, &done) {
+        println!("\nlistening on http://{} (stop with Ctrl-C)", client.address);
+        println!("  {:<20}http://{}/docs", "the API", client.address);
+        for job in jobs {
+            println!("  {:<20}http://{}{}", job.name, client.address, job.path());
+        }
+        stop_signal().await;
+    }
+    drop(stop);
+    let workers = serving.await.map_err(|error| ServeError::Io(error.into()))??;
+    Ok((workers, done.map(|_| ())))
+}
+
+async fn show(arguments: &Arguments, client: Client) -> Result<[Done; 3], DemoError> {
+    let started = Instant::now();
+
+    // 1. The half head, its plan, and what becomes of its skin.
+    let head = half_head(STANDARD_FINENESS);
+    let coarse = predict(&client, &head, &head.mesh, ("half head", &scene::FILES)).await?;
+    let files = fetch_files(&client, &coarse, &arguments.out).await?;
+
+    // 2. The same with every edge halved, and how far the two are apart.
+    let finer = refine(&head.mesh);
+    let fine = predict(&client, &head, &finer, ("every edge halved", &["skin.vtp"])).await?;
+    let fine_skin = client.bytes(&fine.file("skin.vtp")).await?;
+    let compared = compare(&client, &coarse, &fine_skin).await?;
+    let skins = [client.bytes(&coarse.file("skin.vtp")).await?, fine_skin];
+
+    // 3. What came out.
+    let report = Report {
+        coarse: &coarse.results,
+        fine: &fine.results,
+        comparison: &compared.results,
+        node_wise: node_wise_distances(&skins)?,
+        upload_s: [coarse.upload_s, fine.upload_s, compared.upload_s],
+    };
+    println!("\n{}", report.table());
+    println!("files");
+    for file in &files {
+        println!("  {}", file.display());
+    }
+    println!("\n{:.1} s in all", started.elapsed().as_secs_f64());
+    Ok([coarse, fine, compared])
+}
+
+/// The settings of the service in the demo; the others keep their defaults.
+fn setting(name: &str, data: &Path) -> Option<String> {
+    match name {
+        "bind" => Some("127.0.0.1:0".to_owned()),
+        "data" => Some(data.display().to_string()),
+        // One job at a time gets all processors.
+        "threads-per-job" => {
+            let processors = std::thread::available_parallelism().map_or(1, usize::from);
+            Some(processors.min(64).to_string())
+        }
+        "log-format" => Some("text".to_owned()),
+        "log-level" => Some("warn".to_owned()),
+        _ => None,
+    }
+}
+
+/// A job that is done.
+struct Done {
+    name: String,
+    id: String,
+    /// From the start of the encoding to the answer about the meshes.
+    upload_s: f64,
+    results: Value,
+}
+
+impl Done {
+    fn path(&self) -> String {
+        format!("/v1/jobs/{}", self.id)
+    }
+
+    fn file(&self, name: &str) -> String {
+        format!("{}/results/{name}", self.path())
+    }
+}
+
+/// Two calls, as a planner makes them: the case with its meshes, and the job with its plan.
+async fn predict(
+    client: &Client,
+    head: &HalfHead,
+    volume: &VolumeMesh,
+    (name, files): (&str, &[&str]),
+) -> Result<Done, DemoError> {
+    let bar = progress_bar(name);
+    bar.set_message("upload");
+    let started = Instant::now();
+    let form = scene::case_form(head, volume, name)?;
+    let case = client.form("/v1/cases", &form).await?;
+    let case = text(&case, "POST /v1/cases", "id")?;
+    let upload_s = started.elapsed().as_secs_f64();
+    let done = run_job(client, name, &scene::prediction_of(&case, files), bar).await?;
+    Ok(Done { upload_s, ..done })
+}
+
+async fn compare(client: &Client, coarse: &Done, skin: &Bytes) -> Result<Done, DemoError> {
+    let name = "comparison";
+    let bar = progress_bar(name);
+    let started = Instant::now();
+    let path = "/v1/meshes?units=mm&frame=LPS&role=skin";
+    let mesh = client.upload(path, "application/vnd.vtk.xml", skin.clone()).await?;
+    let mesh = text(&mesh, "POST /v1/meshes", "id")?;
+    let upload_s = started.elapsed().as_secs_f64();
+    let done = run_job(client, name, &scene::comparison_of(&coarse.id, &mesh), bar).await?;
+    Ok(Done { upload_s, ..done })
+}
+
+/// Posts a job and follows it to its end.
+async fn run_job(
+    client: &Client,
+    name: &str,
+    document: &Value,
+    bar: ProgressBar,
+) -> Result<Done, DemoError> {
+    let mut state = client.post("/v1/jobs", document).await?;
+    let id = text(&state, "POST /v1/jobs", "id")?;
+    let known = state["deduplicated"].as_bool().unwrap_or(false);
+    loop {
+        let status = text(&state, "GET /v1/jobs/{id}", "status")?;
+        bar.set_position(state["progress"].as_u64().unwrap_or(0));
+        bar.set_message(doing(&state));
+        match status.as_str() {
+            "successful" => break,
+            "accepted" | "running" => tokio::time::sleep(LOOK).await,
+            _ => {
+                bar.abandon();
+                let error = &state["error"];
+                let detail = error["detail"].as_str().unwrap_or("no reason given").to_owned();
+                return Err(DemoError::Job { job: id, status, detail });
+            }
+        }
+        state = client.get(&format!("/v1/jobs/{id}")).await?;
+    }
+    bar.finish_and_clear();
+    let results = client.get(&format!("/v1/jobs/{id}/results")).await?;
+    let known = if known { ", known from an earlier run" } else { "" };
+    println!("{name}: {:.1} s{known}", bar.elapsed().as_secs_f64());
+    Ok(Done { name: name.to_owned(), id, upload_s: 0.0, results })
+}
+
+fn doing(state: &Value) -> String {
+    let phase = state["phase"].as_str().or(state["status"].as_str()).unwrap_or_default();
+    match (state["iteration"].as_u64(), state["residual"].as_f64()) {
+        (Some(iteration), Some(residual)) => {
+            format!("{phase}, iteration {iteration}, residual {residual:.1e}")
+        }
+        _ => phase.to_owned(),
+    }
+}
+
+fn progress_bar(name: &str) -> ProgressBar {
+    let bar = ProgressBar::new(100);
+    let style = ProgressStyle::with_template("{prefix:29} [{bar:30}] {percent:>3} %  {wide_msg}");
+    if let Ok(style) = style {
+        bar.set_style(style.progress_chars("=> "));
+    }
+    bar.set_prefix(name.to_owned());
+    bar
+}
+
+fn text(document: &Value, what: &'static str, member: &'static str) -> Result<String, DemoError> {
+    let value = document[member].as_str();
+    value.map(str::to_owned).ok_or(DemoError::Answer { what, member })
+}
+
+/// Writes the files of a job into a folder and tells where they are.
+async fn fetch_files(
+    client: &Client,
+    job: &Done,
+    folder: &Path,
+) -> Result<Vec<PathBuf>, DemoError> {
+    std::fs::create_dir_all(folder)
+        .map_err(|source| DemoError::File { path: folder.to_owned(), source })?;
+    let mut written = Vec::new();
+    for name in scene::FILES.into_iter().chain(["result.json"]) {
+        let bytes = client.bytes(&job.file(name)).await?;
+        let path = folder.join(name);
+        std::fs::write(&path, &bytes)
+            .map_err(|source| DemoError::File { path: path.clone(), source })?;
+        written.push(path);
+    }
+    Ok(written)
+}
+
+/// How far the same node is from itself in the two predictions, in mm: refinement keeps the numbers.
+fn node_wise_distances(skins: &[Bytes; 2]) -> Result<Vec<f64>, DemoError> {
+    let mut surfaces: Vec<TriangleSurface> = Vec::new();
+    for bytes in skins {
+        match format::read(bytes, &ReadLimits::default())?.mesh {
+            Mesh::Surface(surface) => surfaces.push(surface),
+            Mesh::Volume(_) => {
+                return Err(DemoError::Answer { what: "skin.vtp", member: "triangles" });
+            }
+        }
+    }
+    let [coarse, fine] = [&surfaces[0], &surfaces[1]];
+    let [Some(ours), Some(theirs)] = [coarse, fine].map(|surface| surface.node_ids.as_ref()) else {
+        return Err(DemoError::Answer { what: "skin.vtp", member: "node_id" });
+    };
+    let distance = |(point, node): (usize, &u32)| {
+        let other = theirs.binary_search(node).ok()?;
+        Some((fine.points[other] - coarse.points[point]).norm())
+    };
+    Ok(ours.iter().enumerate().filter_map(distance).collect())
+}
