@@ -153,8 +153,8 @@ impl Server {
     ) -> Result<Workers, ServeError> {
         let deadline = self.service.config.grace;
         let (stopping, mut stopped) = tokio::sync::watch::channel(());
-        let served = axum::serve(self.listener, api::router(self.service))
-            .with_graceful_shutdown(async move {
+        let served = axum::serve(self.listener, api::router(self.service)).with_graceful_shutdown(
+            async move {
                 stop.await;
                 tracing::info!("stopping");
                 drop(stopping);
