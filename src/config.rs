@@ -22,11 +22,7 @@ impl Setting {
 }
 
 const fn setting(name: &'static str, default: &'static str, about: &'static str) -> Setting {
-    Setting {
-        name,
-        default,
-        about,
-    }
+    Setting { name, default, about }
 }
 
 /// All settings of `facies serve`.
@@ -36,26 +32,14 @@ pub const SETTINGS: [Setting; 15] = [
         "127.0.0.1:8080",
         "address and port to listen on; port 0 takes a free one; any address but loopback needs an api-key",
     ),
-    setting(
-        "data",
-        "facies-data",
-        "folder of the database, the blobs and the temporary files",
-    ),
+    setting("data", "facies-data", "folder of the database, the blobs and the temporary files"),
     setting(
         "api-key",
         "",
         "asked for as `Authorization: Bearer KEY` on everything but /healthz and /readyz; 16 to 255 visible characters; without it nobody is asked",
     ),
-    setting(
-        "workers",
-        "2",
-        "jobs solved at the same time; 0 to 64, 0 leaves the jobs to others",
-    ),
-    setting(
-        "threads-per-job",
-        "1",
-        "threads of one job; 1 to 64; the results do not depend on it",
-    ),
+    setting("workers", "2", "jobs solved at the same time; 0 to 64, 0 leaves the jobs to others"),
+    setting("threads-per-job", "1", "threads of one job; 1 to 64; the results do not depend on it"),
     setting(
         "lease-s",
         "15",
@@ -76,21 +60,13 @@ pub const SETTINGS: [Setting; 15] = [
         "10",
         "seconds that running jobs get to finish after SIGTERM before they are given back; 0 to 3600",
     ),
-    setting(
-        "upload-mib",
-        "256",
-        "largest body of an upload in MiB; 1 to 4096",
-    ),
+    setting("upload-mib", "256", "largest body of an upload in MiB; 1 to 4096"),
     setting(
         "body-idle-s",
         "30",
         "seconds a client may stay silent in the middle of a body; 0.1 to 600",
     ),
-    setting(
-        "mesh-cache-mib",
-        "1024",
-        "memory for parsed meshes in MiB; 0 to 1048576",
-    ),
+    setting("mesh-cache-mib", "1024", "memory for parsed meshes in MiB; 0 to 1048576"),
     setting(
         "free-space-floor-mib",
         "256",
@@ -138,11 +114,7 @@ impl Secret {
     pub fn matches(&self, other: &str) -> bool {
         let (own, other) = (self.0.as_bytes(), other.as_bytes());
         own.len() == other.len()
-            && own
-                .iter()
-                .zip(other)
-                .fold(0, |difference, (a, b)| difference | (a ^ b))
-                == 0
+            && own.iter().zip(other).fold(0, |difference, (a, b)| difference | (a ^ b)) == 0
     }
 }
 
@@ -155,11 +127,7 @@ impl std::fmt::Debug for Secret {
 #[derive(Debug, PartialEq, thiserror::Error)]
 pub enum ConfigError {
     #[error("{name} is `{value}`, and has to be {wanted}")]
-    Value {
-        name: &'static str,
-        value: String,
-        wanted: &'static str,
-    },
+    Value { name: &'static str, value: String, wanted: &'static str },
     #[error("api-key has to have 16 to 255 visible characters")]
     ApiKey,
     #[error(
@@ -192,10 +160,7 @@ impl Config {
             body_idle: read.seconds("body-idle-s", 0.1, 600.0)?,
             mesh_cache_bytes: read.whole("mesh-cache-mib", 0..=MIB)? * MIB,
             free_space_floor_bytes: (read.whole("free-space-floor-mib", 0..=MIB)? * MIB) as u64,
-            log: LogConfig {
-                json: read.json_log()?,
-                filter: (read.text)("log-level"),
-            },
+            log: LogConfig { json: read.json_log()?, filter: (read.text)("log-level") },
         };
         config.checked()
     }
@@ -215,10 +180,7 @@ impl Config {
 }
 
 fn default_of(name: &str) -> &'static str {
-    SETTINGS
-        .iter()
-        .find(|setting| setting.name == name)
-        .map_or("", |setting| setting.default)
+    SETTINGS.iter().find(|setting| setting.name == name).map_or("", |setting| setting.default)
 }
 
 struct Reader<Text> {
@@ -232,15 +194,11 @@ impl<Text: Fn(&str) -> String> Reader<Text> {
         wanted: &'static str,
     ) -> Result<T, ConfigError> {
         let value = (self.text)(name);
-        value
-            .parse()
-            .ok()
-            .filter(|_| !value.is_empty())
-            .ok_or(ConfigError::Value {
-                name,
-                value,
-                wanted,
-            })
+        value.parse().ok().filter(|_| !value.is_empty()).ok_or(ConfigError::Value {
+            name,
+            value,
+            wanted,
+        })
     }
 
     fn whole(
@@ -284,15 +242,9 @@ impl<Text: Fn(&str) -> String> Reader<Text> {
 }
 
 fn out_of_range(name: &'static str, value: String) -> ConfigError {
-    let wanted = SETTINGS
-        .iter()
-        .find(|setting| setting.name == name)
-        .map_or("", |setting| setting.about);
-    ConfigError::Value {
-        name,
-        value,
-        wanted,
-    }
+    let wanted =
+        SETTINGS.iter().find(|setting| setting.name == name).map_or("", |setting| setting.about);
+    ConfigError::Value { name, value, wanted }
 }
 
 #[cfg(test)]
@@ -301,10 +253,7 @@ mod tests {
 
     fn config(given: &[(&str, &str)]) -> Result<Config, ConfigError> {
         Config::new(|name| {
-            given
-                .iter()
-                .find(|(key, _)| *key == name)
-                .map(|(_, value)| (*value).to_owned())
+            given.iter().find(|(key, _)| *key == name).map(|(_, value)| (*value).to_owned())
         })
     }
 
@@ -319,10 +268,7 @@ mod tests {
     #[test]
     fn an_address_that_others_reach_needs_a_key() {
         let open = ("bind", "0.0.0.0:80");
-        assert!(matches!(
-            config(&[open]),
-            Err(ConfigError::OpenWithoutKey(_))
-        ));
+        assert!(matches!(config(&[open]), Err(ConfigError::OpenWithoutKey(_))));
         assert!(config(&[open, ("api-key", "0123456789abcdef")]).is_ok());
     }
 

@@ -29,9 +29,7 @@ struct Bounds {
 
 /// What a request says its body is, in lower case and without parameters.
 pub fn content_type(headers: &HeaderMap) -> String {
-    let value = headers
-        .get(header::CONTENT_TYPE)
-        .and_then(|value| value.to_str().ok());
+    let value = headers.get(header::CONTENT_TYPE).and_then(|value| value.to_str().ok());
     let name = value.unwrap_or_default().split(';').next();
     name.unwrap_or_default().trim().to_ascii_lowercase()
 }
@@ -40,10 +38,8 @@ pub fn content_type(headers: &HeaderMap) -> String {
 pub fn unsupported(found: &str, accepted: &'static str) -> ApiError {
     let found = if found.is_empty() { "missing" } else { found };
     let detail = format!("the Content-Type is {found}, and has to be one of {accepted}");
-    ApiError::new("unsupported-media-type", detail).header(
-        header::HeaderName::from_static("accept-post"),
-        HeaderValue::from_static(accepted),
-    )
+    ApiError::new("unsupported-media-type", detail)
+        .header(header::HeaderName::from_static("accept-post"), HeaderValue::from_static(accepted))
 }
 
 /// The whole JSON body.
@@ -75,17 +71,12 @@ pub async fn upload(service: &Service, request: Request) -> ApiResult<Bytes> {
     }
     let found = format!("sha-256=:{}:", STANDARD.encode(found));
     let detail = format!("{} bytes came, and their digest is {found}", bytes.len());
-    Err(Problem::new("digest-mismatch", detail)
-        .with("digest", found)
-        .into())
+    Err(Problem::new("digest-mismatch", detail).with("digest", found).into())
 }
 
 async fn whole(service: &Service, request: Request, most: usize) -> ApiResult<Bytes> {
     check_encoding(request.headers())?;
-    let bounds = Bounds {
-        bytes: most,
-        idle: service.config.body_idle,
-    };
+    let bounds = Bounds { bytes: most, idle: service.config.body_idle };
     check_length(request.headers(), bounds.bytes)?;
     let mut frames = std::pin::pin!(bounded(request.into_body(), bounds));
     let mut bytes = BytesMut::new();
@@ -98,10 +89,7 @@ async fn whole(service: &Service, request: Request, most: usize) -> ApiResult<By
 /// The parts of a multipart body by their names, all of them within the bounds of one upload.
 pub async fn parts(service: &Service, request: Request) -> ApiResult<Vec<(String, Bytes)>> {
     check_encoding(request.headers())?;
-    let bounds = Bounds {
-        bytes: service.config.upload_bytes,
-        idle: service.config.body_idle,
-    };
+    let bounds = Bounds { bytes: service.config.upload_bytes, idle: service.config.body_idle };
     check_length(request.headers(), bounds.bytes)?;
     // The multipart reader wraps what it meets, so the reason for the end of the stream is kept beside it.
     let reason: Arc<Mutex<Option<ApiError>>> = Arc::default();
@@ -127,39 +115,28 @@ async fn read_parts(request: Request, most: usize) -> ApiResult<Vec<(String, Byt
         .await
         .map_err(|error| malformed(error.body_text()))?;
     let mut parts: Vec<(String, Bytes)> = Vec::new();
-    while let Some(part) = multipart
-        .next_field()
-        .await
-        .map_err(|error| malformed(error.body_text()))?
+    while let Some(part) =
+        multipart.next_field().await.map_err(|error| malformed(error.body_text()))?
     {
         if parts.len() == most {
             let detail = format!("the body has more than {most} parts");
-            return Err(Problem::new("payload-too-large", detail)
-                .with("limit", most)
-                .into());
+            return Err(Problem::new("payload-too-large", detail).with("limit", most).into());
         }
         let Some(name) = part.name().map(str::to_owned) else {
             return Err(malformed(format!("part {} has no name", parts.len() + 1)));
         };
         if parts.iter().any(|(other, _)| *other == name) {
-            return Err(malformed(format!(
-                "part {} has the name of another",
-                parts.len() + 1
-            )));
+            return Err(malformed(format!("part {} has the name of another", parts.len() + 1)));
         }
-        let bytes = part
-            .bytes()
-            .await
-            .map_err(|error| malformed(error.body_text()))?;
+        let bytes = part.bytes().await.map_err(|error| malformed(error.body_text()))?;
         parts.push((name, bytes));
     }
     Ok(parts)
 }
 
 fn check_encoding(headers: &HeaderMap) -> ApiResult<()> {
-    let encoding = headers
-        .get(header::CONTENT_ENCODING)
-        .map(|value| value.to_str().unwrap_or("unreadable"));
+    let encoding =
+        headers.get(header::CONTENT_ENCODING).map(|value| value.to_str().unwrap_or("unreadable"));
     match encoding {
         None | Some("identity") => Ok(()),
         Some(encoding) => {
@@ -167,10 +144,7 @@ fn check_encoding(headers: &HeaderMap) -> ApiResult<()> {
                 "the Content-Encoding is {encoding}: send the body as it is, or use the compression of its own format"
             );
             let error = ApiError::new("unsupported-media-type", detail);
-            Err(error.header(
-                header::ACCEPT_ENCODING,
-                HeaderValue::from_static("identity"),
-            ))
+            Err(error.header(header::ACCEPT_ENCODING, HeaderValue::from_static("identity")))
         }
     }
 }
@@ -188,9 +162,7 @@ fn check_length(headers: &HeaderMap, most: usize) -> ApiResult<()> {
 
 fn too_large(most: usize) -> ApiError {
     let detail = format!("the body has more than {most} bytes");
-    Problem::new("payload-too-large", detail)
-        .with("limit", most)
-        .into()
+    Problem::new("payload-too-large", detail).with("limit", most).into()
 }
 
 /// The frames of a body until it is too large or too slow.
@@ -227,11 +199,8 @@ fn bounded(body: Body, bounds: Bounds) -> impl Stream<Item = ApiResult<Bytes>> {
 }
 
 fn too_slow(count: usize) -> ApiError {
-    ApiError::new(
-        "request-timeout",
-        format!("the body came too slowly: {count} bytes so far"),
-    )
-    .header(header::CONNECTION, HeaderValue::from_static("close"))
+    ApiError::new("request-timeout", format!("the body came too slowly: {count} bytes so far"))
+        .header(header::CONNECTION, HeaderValue::from_static("close"))
 }
 
 /// The SHA-256 of a Content-Digest (RFC 9530); other algorithms say nothing here.
@@ -246,18 +215,10 @@ fn content_digest(headers: &HeaderMap) -> ApiResult<Option<Vec<u8>>> {
         )
     };
     let value = value.to_str().map_err(|_| wrong())?;
-    let entry = value
-        .split(',')
-        .find_map(|entry| entry.trim().strip_prefix("sha-256="));
+    let entry = value.split(',').find_map(|entry| entry.trim().strip_prefix("sha-256="));
     let Some(entry) = entry else { return Ok(None) };
-    let inner = entry
-        .strip_prefix(':')
-        .and_then(|entry| entry.split(':').next())
-        .ok_or_else(wrong)?;
+    let inner =
+        entry.strip_prefix(':').and_then(|entry| entry.split(':').next()).ok_or_else(wrong)?;
     let digest = STANDARD.decode(inner).map_err(|_| wrong())?;
-    if digest.len() == 32 {
-        Ok(Some(digest))
-    } else {
-        Err(wrong())
-    }
+    if digest.len() == 32 { Ok(Some(digest)) } else { Err(wrong()) }
 }

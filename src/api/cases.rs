@@ -121,9 +121,8 @@ type Parts = Vec<(String, Bytes)>;
 /// The document and the meshes of a form.
 fn split(mut parts: Parts) -> ApiResult<(Bytes, Parts)> {
     let at = parts.iter().position(|(name, _)| name == CASE_PART);
-    let at = at.ok_or_else(|| {
-        ApiError::new("malformed-multipart", "the form has no part `case`")
-    })?;
+    let at =
+        at.ok_or_else(|| ApiError::new("malformed-multipart", "the form has no part `case`"))?;
     let (_, document) = parts.remove(at);
     Ok((document, parts))
 }
@@ -235,7 +234,8 @@ fn in_part(error: ApiError, name: &str) -> ApiError {
 
 /// Loose parts may be held by the sets that a plan names.
 fn needs_a_plan(problem: &Problem) -> bool {
-    !problem.errors.is_empty() && problem.errors.iter().all(|error| error.code == "underconstrained")
+    !problem.errors.is_empty()
+        && problem.errors.iter().all(|error| error.code == "underconstrained")
 }
 
 /// Checks a prediction over stored meshes and those of a request.
@@ -303,11 +303,7 @@ async fn list(
         (status = 304, description = "the client has it already"),
     )
 )]
-async fn show(
-    State(service): State<Service>,
-    Id(id): Id,
-    headers: HeaderMap,
-) -> ApiResult {
+async fn show(State(service): State<Service>, Id(id): Id, headers: HeaderMap) -> ApiResult {
     let row = row_of(&service, &id).await?;
     let version = row.version.to_string();
     if conditional::is_known(&headers, &version) {
@@ -329,11 +325,7 @@ async fn show(
         (status = 428, description = "If-Match is missing"),
     )
 )]
-async fn remove(
-    State(service): State<Service>,
-    Id(id): Id,
-    headers: HeaderMap,
-) -> ApiResult {
+async fn remove(State(service): State<Service>, Id(id): Id, headers: HeaderMap) -> ApiResult {
     let row = row_of(&service, &id).await?;
     conditional::require_match(&headers, &row.version.to_string())?;
     match service.store.delete_case(&id, Some(row.version)).await? {
@@ -350,11 +342,7 @@ async fn remove(
     request_body = CheckRequest,
     responses((status = 200, description = "the counts of joined, fixed, sliding and free nodes", body = CheckDocument))
 )]
-async fn check(
-    State(service): State<Service>,
-    Id(id): Id,
-    request: Request,
-) -> ApiResult {
+async fn check(State(service): State<Service>, Id(id): Id, request: Request) -> ApiResult {
     let bytes = body::json(&service, request).await?;
     let spec: PredictDocument = strict::parse(&bytes, &service.limits)?;
     let row = row_of(&service, &id).await?;
@@ -366,7 +354,8 @@ async fn check(
     }
     let input = job_input::predict_input(&service, &row, spec).await?;
     let document = checked(&service, input, BTreeMap::new()).await;
-    let document = document.map_err(|error| error.map_problem(|problem| problem.moved("/spec", "")))?;
+    let document =
+        document.map_err(|error| error.map_problem(|problem| problem.moved("/spec", "")))?;
     Ok(json(StatusCode::OK, &document))
 }
 

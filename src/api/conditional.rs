@@ -45,17 +45,14 @@ pub fn require_match(headers: &HeaderMap, current: &str) -> ApiResult<()> {
 pub fn other_version(current: &str) -> ApiError {
     let quoted = format!("\"{current}\"");
     let detail = format!("the current version is {quoted}");
-    Problem::new("precondition-failed", detail)
-        .with("etag", quoted)
-        .into()
+    Problem::new("precondition-failed", detail).with("etag", quoted).into()
 }
 
 /// True when the client has this version already.
 pub fn is_known(headers: &HeaderMap, current: &str) -> bool {
     let quoted = format!("\"{current}\"");
     tags(headers, header::IF_NONE_MATCH).is_some_and(|tags| {
-        tags.iter()
-            .any(|tag| tag == "*" || tag.strip_prefix("W/").unwrap_or(tag) == quoted)
+        tags.iter().any(|tag| tag == "*" || tag.strip_prefix("W/").unwrap_or(tag) == quoted)
     })
 }
 
@@ -95,9 +92,7 @@ pub fn file(
     set(&mut response, header::CONTENT_DISPOSITION, &disposition);
     set(&mut response, header::ACCEPT_RANGES, "bytes");
     set(&mut response, header::CACHE_CONTROL, "private, no-cache");
-    response
-        .headers_mut()
-        .insert(header::ETAG, entity_tag(tag));
+    response.headers_mut().insert(header::ETAG, entity_tag(tag));
     Ok(response)
 }
 
@@ -144,9 +139,7 @@ fn single_range(text: &str, total: u64) -> ApiResult<Option<(u64, u64)>> {
 
 fn outside(total: u64) -> ApiError {
     let detail = format!("the file has {total} bytes");
-    let error: ApiError = Problem::new("range-not-satisfiable", detail)
-        .with("bytes", total)
-        .into();
+    let error: ApiError = Problem::new("range-not-satisfiable", detail).with("bytes", total).into();
     match HeaderValue::from_str(&format!("bytes */{total}")) {
         Ok(value) => error.header(header::CONTENT_RANGE, value),
         Err(_) => error,

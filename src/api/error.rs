@@ -17,24 +17,17 @@ fn kind_of(code: &str) -> (StatusCode, &'static str) {
         "malformed-json" => (StatusCode::BAD_REQUEST, "The body is not valid JSON"),
         "malformed-multipart" => (StatusCode::BAD_REQUEST, "The body is not valid multipart"),
         "malformed-request" => (StatusCode::BAD_REQUEST, "The request could not be read"),
-        "digest-mismatch" => (
-            StatusCode::BAD_REQUEST,
-            "The body differs from its Content-Digest",
-        ),
+        "digest-mismatch" => (StatusCode::BAD_REQUEST, "The body differs from its Content-Digest"),
         "invalid-parameter" => (StatusCode::BAD_REQUEST, "A parameter is not valid"),
         "unauthorized" => (StatusCode::UNAUTHORIZED, "A key is needed"),
         "not-found" => (StatusCode::NOT_FOUND, "There is nothing here"),
         "no-such-job" => (StatusCode::NOT_FOUND, "There is no such job"),
         "no-such-output" => (StatusCode::NOT_FOUND, "The job has no such file"),
         "result-not-ready" => (StatusCode::NOT_FOUND, "The job has not ended"),
-        "method-not-allowed" => (
-            StatusCode::METHOD_NOT_ALLOWED,
-            "The resource does not answer to this method",
-        ),
-        "not-acceptable" => (
-            StatusCode::NOT_ACCEPTABLE,
-            "The resource has no such representation",
-        ),
+        "method-not-allowed" => {
+            (StatusCode::METHOD_NOT_ALLOWED, "The resource does not answer to this method")
+        }
+        "not-acceptable" => (StatusCode::NOT_ACCEPTABLE, "The resource has no such representation"),
         "request-timeout" => (StatusCode::REQUEST_TIMEOUT, "The body came too slowly"),
         "conflict-in-use" => (StatusCode::CONFLICT, "Something refers to it"),
         "conflict" => (StatusCode::CONFLICT, "It changed meanwhile"),
@@ -45,32 +38,23 @@ fn kind_of(code: &str) -> (StatusCode, &'static str) {
         ),
         "payload-too-large" => (StatusCode::PAYLOAD_TOO_LARGE, "The body is too large"),
         "uri-too-long" => (StatusCode::URI_TOO_LONG, "The address is too long"),
-        "unsupported-media-type" => (
-            StatusCode::UNSUPPORTED_MEDIA_TYPE,
-            "The body is of a kind that is not read here",
-        ),
-        "range-not-satisfiable" => (
-            StatusCode::RANGE_NOT_SATISFIABLE,
-            "The range is outside the file",
-        ),
-        "header-too-large" => (
-            StatusCode::REQUEST_HEADER_FIELDS_TOO_LARGE,
-            "The headers are too large",
-        ),
+        "unsupported-media-type" => {
+            (StatusCode::UNSUPPORTED_MEDIA_TYPE, "The body is of a kind that is not read here")
+        }
+        "range-not-satisfiable" => {
+            (StatusCode::RANGE_NOT_SATISFIABLE, "The range is outside the file")
+        }
+        "header-too-large" => {
+            (StatusCode::REQUEST_HEADER_FIELDS_TOO_LARGE, "The headers are too large")
+        }
         "internal" => (StatusCode::INTERNAL_SERVER_ERROR, "Something broke here"),
-        "integrity" => (
-            StatusCode::INTERNAL_SERVER_ERROR,
-            "A stored file is damaged",
-        ),
+        "integrity" => (StatusCode::INTERNAL_SERVER_ERROR, "A stored file is damaged"),
         "not-ready" | "queue-full" | "shutting-down" => {
             (StatusCode::SERVICE_UNAVAILABLE, "Come back later")
         }
         "storage-full" => (StatusCode::INSUFFICIENT_STORAGE, "The disk is full"),
         // Everything else is something wrong with what was sent, and the code says what.
-        _ => (
-            StatusCode::UNPROCESSABLE_ENTITY,
-            "The request was understood and is refused",
-        ),
+        _ => (StatusCode::UNPROCESSABLE_ENTITY, "The request was understood and is refused"),
     }
 }
 
@@ -93,9 +77,7 @@ impl ApiError {
     }
 
     pub fn invalid_parameter(name: &str, detail: impl Into<String>) -> Self {
-        Problem::new("invalid-parameter", detail)
-            .with("parameter", name)
-            .into()
+        Problem::new("invalid-parameter", detail).with("parameter", name).into()
     }
 
     pub fn header(mut self, name: HeaderName, value: HeaderValue) -> Self {
@@ -118,10 +100,7 @@ impl ApiError {
 
 impl From<Problem> for ApiError {
     fn from(problem: Problem) -> Self {
-        ApiError {
-            problem,
-            headers: Vec::new(),
-        }
+        ApiError { problem, headers: Vec::new() }
     }
 }
 
@@ -148,9 +127,7 @@ impl IntoResponse for ApiError {
         let (status, _) = kind_of(self.problem.code);
         let mut response = status.into_response();
         if status == StatusCode::SERVICE_UNAVAILABLE {
-            response
-                .headers_mut()
-                .insert(header::RETRY_AFTER, HeaderValue::from(RETRY_AFTER_S));
+            response.headers_mut().insert(header::RETRY_AFTER, HeaderValue::from(RETRY_AFTER_S));
         }
         response.headers_mut().extend(self.headers);
         response.extensions_mut().insert(self.problem);
@@ -177,14 +154,10 @@ pub fn with_problem_body(mut response: Response, request_id: &str) -> Response {
     let body = serde_json::to_vec(&document).unwrap_or_default();
     let (mut parts, _) = response.into_parts();
     parts.headers.remove(header::CONTENT_LENGTH);
-    parts.headers.insert(
-        header::CONTENT_TYPE,
-        HeaderValue::from_static("application/problem+json"),
-    );
-    parts.headers.insert(
-        header::CACHE_CONTROL,
-        HeaderValue::from_static("private, no-store"),
-    );
+    parts
+        .headers
+        .insert(header::CONTENT_TYPE, HeaderValue::from_static("application/problem+json"));
+    parts.headers.insert(header::CACHE_CONTROL, HeaderValue::from_static("private, no-store"));
     Response::from_parts(parts, body.into())
 }
 
@@ -196,13 +169,10 @@ fn problem_for(status: StatusCode) -> Problem {
             "method-not-allowed",
             "the header Allow names the methods that are answered",
         ),
-        StatusCode::PAYLOAD_TOO_LARGE => {
-            Problem::new("payload-too-large", "the body is too large")
+        StatusCode::PAYLOAD_TOO_LARGE => Problem::new("payload-too-large", "the body is too large"),
+        StatusCode::UNSUPPORTED_MEDIA_TYPE => {
+            Problem::new("unsupported-media-type", "the Content-Type is not read here")
         }
-        StatusCode::UNSUPPORTED_MEDIA_TYPE => Problem::new(
-            "unsupported-media-type",
-            "the Content-Type is not read here",
-        ),
         status if status.is_client_error() => {
             Problem::new("malformed-request", "the request could not be read")
         }

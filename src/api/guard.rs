@@ -52,11 +52,8 @@ pub async fn surround(State(service): State<Service>, request: Request, next: Ne
 
 /// The id that the client gave, when it is one that can stand in a log; else one of ours.
 fn request_id(headers: &HeaderMap) -> String {
-    let given = headers
-        .get(REQUEST_ID)
-        .and_then(|value| value.to_str().ok());
-    let is_plain =
-        |byte: u8| byte.is_ascii_alphanumeric() || matches!(byte, b'.' | b'_' | b'-');
+    let given = headers.get(REQUEST_ID).and_then(|value| value.to_str().ok());
+    let is_plain = |byte: u8| byte.is_ascii_alphanumeric() || matches!(byte, b'.' | b'_' | b'-');
     match given {
         Some(id) if (1..=64).contains(&id.len()) && id.bytes().all(is_plain) => id.to_owned(),
         _ => uuid::Uuid::now_v7().to_string(),
@@ -64,26 +61,16 @@ fn request_id(headers: &HeaderMap) -> String {
 }
 
 fn check_head(service: &Service, request: &Request) -> Result<(), ApiError> {
-    let uri_length = request
-        .uri()
-        .path_and_query()
-        .map_or(0, |uri| uri.as_str().len());
+    let uri_length = request.uri().path_and_query().map_or(0, |uri| uri.as_str().len());
     if uri_length > LONGEST_URI {
         let detail = format!("the address has {uri_length} bytes, {LONGEST_URI} are allowed");
-        return Err(Problem::new("uri-too-long", detail)
-            .with("limit", LONGEST_URI)
-            .into());
+        return Err(Problem::new("uri-too-long", detail).with("limit", LONGEST_URI).into());
     }
-    let head: usize = request
-        .headers()
-        .iter()
-        .map(|(name, value)| name.as_str().len() + value.len())
-        .sum();
+    let head: usize =
+        request.headers().iter().map(|(name, value)| name.as_str().len() + value.len()).sum();
     if head > LARGEST_HEAD {
         let detail = format!("the headers have {head} bytes, {LARGEST_HEAD} are allowed");
-        return Err(Problem::new("header-too-large", detail)
-            .with("limit", LARGEST_HEAD)
-            .into());
+        return Err(Problem::new("header-too-large", detail).with("limit", LARGEST_HEAD).into());
     }
     check_key(service, request)
 }
@@ -105,10 +92,8 @@ fn check_key(service: &Service, request: &Request) -> Result<(), ApiError> {
     if given.is_some_and(|given| key.matches(given)) {
         return Ok(());
     }
-    let error = ApiError::new(
-        "unauthorized",
-        "send the key of the service as `Authorization: Bearer KEY`",
-    );
+    let error =
+        ApiError::new("unauthorized", "send the key of the service as `Authorization: Bearer KEY`");
     Err(error.header(header::WWW_AUTHENTICATE, HeaderValue::from_static("Bearer")))
 }
 

@@ -143,11 +143,7 @@ fn answer(status: StatusCode, job: &JobRow, deduplicated: bool, wait: Option<u32
         ("Retry-After" = Option<u32>, description = "seconds after which to look again"),
         ("Preference-Applied" = Option<String>, description = "the wait that was granted"))))
 )]
-async fn show(
-    State(service): State<Service>,
-    Id(id): Id,
-    headers: HeaderMap,
-) -> ApiResult {
+async fn show(State(service): State<Service>, Id(id): Id, headers: HeaderMap) -> ApiResult {
     let wait = wanted_wait(&headers, service.limits.wait_s);
     let job = wait_for_end(&service.store, &id, wait.unwrap_or(0)).await?;
     answer(StatusCode::OK, &job.ok_or_else(no_such_job)?, false, wait)

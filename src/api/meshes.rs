@@ -13,9 +13,9 @@ use super::error::{ApiError, ApiResult};
 use super::parameters::{Id, Parameters};
 use super::{Service, body, conditional, json, json_only, time, with_header};
 use crate::jobs::upload::{ExportFormat, Statement, Upload, export, read_upload};
+use crate::schema::canonical::sha256_hex;
 use crate::schema::case::{FrameName, LengthUnit};
 use crate::schema::mesh::{MeshDocument, MeshKind};
-use crate::schema::canonical::sha256_hex;
 use crate::store::{MeshDeletion, MeshRow};
 
 const READ_HERE: &str = "model/stl, model/obj, application/vnd.ply, application/vnd.vtk, \
@@ -178,11 +178,7 @@ async fn row_of(service: &Service, id: &str) -> ApiResult<MeshRow> {
         (status = 304, description = "the client has it already"),
     )
 )]
-async fn show(
-    State(service): State<Service>,
-    Id(id): Id,
-    headers: HeaderMap,
-) -> ApiResult {
+async fn show(State(service): State<Service>, Id(id): Id, headers: HeaderMap) -> ApiResult {
     let row = row_of(&service, &id).await?;
     if conditional::is_known(&headers, &row.sha256) {
         return Ok(conditional::not_modified(&row.sha256));

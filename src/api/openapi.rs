@@ -80,9 +80,8 @@ fn add_problems(path: &str, operation: &mut Operation) {
     }
     let told = &mut operation.responses.responses;
     for (status, description) in problems {
-        told.entry(status.to_owned()).or_insert_with(|| {
-            RefOr::T(ResponseBuilder::new().description(description).build())
-        });
+        told.entry(status.to_owned())
+            .or_insert_with(|| RefOr::T(ResponseBuilder::new().description(description).build()));
     }
     for (status, response) in told.iter_mut() {
         let RefOr::T(response) = response else { continue };

@@ -85,11 +85,7 @@ async fn read(service: &Service, request: Request) -> ApiResult<String> {
     request_body = PlanDocument,
     responses((status = 201, description = "kept", body = PlanView, headers(("Location" = String, description = "the plan"), ("ETag" = String, description = "its version"))))
 )]
-async fn create(
-    State(service): State<Service>,
-    Id(case): Id,
-    request: Request,
-) -> ApiResult {
+async fn create(State(service): State<Service>, Id(case): Id, request: Request) -> ApiResult {
     let document = read(&service, request).await?;
     let id = uuid::Uuid::now_v7().to_string();
     if !service.store.add_plan(&case, &id, &document).await? {

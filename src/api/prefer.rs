@@ -25,11 +25,7 @@ pub fn wanted_wait(headers: &HeaderMap, cap: u32) -> Option<u32> {
 }
 
 /// Waits until a job has ended, is gone, or the time is up, and tells how it is then.
-pub async fn wait_for_end(
-    store: &Store,
-    id: &str,
-    seconds: u32,
-) -> ApiResult<Option<JobRow>> {
+pub async fn wait_for_end(store: &Store, id: &str, seconds: u32) -> ApiResult<Option<JobRow>> {
     let until = Instant::now() + Duration::from_secs(seconds.into());
     let mut changes = store.job_changes();
     loop {

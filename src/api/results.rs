@@ -89,7 +89,8 @@ async fn file(
 ) -> ApiResult {
     successful(&service, &job).await?;
     let row = service.store.job_file(&job, &name).await?;
-    let row = row.ok_or_else(|| ApiError::new("no-such-output", "the job has no file of this name"))?;
+    let row =
+        row.ok_or_else(|| ApiError::new("no-such-output", "the job has no file of this name"))?;
     guard::check_accept(&headers, row.media_type.split(';').next().unwrap_or_default())?;
     if conditional::is_known(&headers, &row.blob) {
         return Ok(conditional::not_modified(&row.blob));

@@ -34,14 +34,13 @@ impl HealthError {
 
 /// Asks for /healthz.
 pub fn run(arguments: &Arguments) -> Result<(), HealthError> {
-    let address: SocketAddr = arguments
-        .bind
-        .parse()
-        .map_err(|_| HealthError::Address(arguments.bind.clone()))?;
+    let address: SocketAddr =
+        arguments.bind.parse().map_err(|_| HealthError::Address(arguments.bind.clone()))?;
     let mut connection = TcpStream::connect_timeout(&on_this_machine(address), PATIENCE)?;
     connection.set_read_timeout(Some(PATIENCE))?;
     connection.set_write_timeout(Some(PATIENCE))?;
-    connection.write_all(b"GET /healthz HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n")?;
+    connection
+        .write_all(b"GET /healthz HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n")?;
     let mut answer = String::new();
     connection.take(4096).read_to_string(&mut answer)?;
     let first = answer.lines().next().unwrap_or_default();

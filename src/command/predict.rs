@@ -26,10 +26,7 @@ pub struct Arguments {
 /// Tells what is held, solves, writes the result and the documents, and prints a table.
 pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let mut asked = arguments.scene.documents()?;
-    let outputs = asked.file.spec.outputs.get_or_insert_with(usual_outputs);
-    if asked.file.case.bones.is_empty() {
-        outputs.retain(|name| *name != OutputName::BonesVtp);
-    }
+    asked.file.spec.outputs.get_or_insert_with(usual_outputs);
     let limits = Limits::default();
     let input = asked.file.to_input();
 

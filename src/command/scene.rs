@@ -96,7 +96,7 @@ impl SceneArguments {
                 let folder = path.parent().unwrap_or(Path::new("")).to_owned();
                 (read::<CaseFile>(path)?, folder)
             }
-            (None, Some(mesh)) => (self.from_mesh(mesh)?, PathBuf::new()),
+            (None, Some(mesh)) => (self.documents_of(mesh)?, PathBuf::new()),
             (None, None) => {
                 let detail = "give --case, or --mesh and --plan";
                 return Err(CommandError::Usage(detail.to_owned()));
@@ -106,7 +106,7 @@ impl SceneArguments {
         Ok(Asked { file, folder, sources })
     }
 
-    fn from_mesh(&self, mesh: &Path) -> Result<CaseFile, CommandError> {
+    fn documents_of(&self, mesh: &Path) -> Result<CaseFile, CommandError> {
         let plan: PlanDocument = match &self.plan {
             Some(path) => read(path)?,
             None => PlanDocument::default(),
@@ -131,7 +131,7 @@ impl SceneArguments {
 
     fn material(&self) -> Option<MaterialDocument> {
         let given = self.young_modulus_kpa.is_some() || self.poisson_ratio.is_some();
-        given.then(|| MaterialDocument {
+        given.then_some(MaterialDocument {
             young_modulus_kpa: self.young_modulus_kpa,
             poisson_ratio: self.poisson_ratio,
             density_g_per_cm3: None,

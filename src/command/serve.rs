@@ -153,12 +153,13 @@ impl Server {
     ) -> Result<Workers, ServeError> {
         let deadline = self.service.config.grace;
         let (stopping, mut stopped) = tokio::sync::watch::channel(());
-        let served = axum::serve(self.listener, api::router(self.service))
-            .with_graceful_shutdown(async move {
+        let served = axum::serve(self.listener, api::router(self.service)).with_graceful_shutdown(
+            async move {
                 stop.await;
                 tracing::info!("stopping");
                 drop(stopping);
-            });
+            },
+        );
         let served = tokio::spawn(served.into_future());
         // The sender goes when it is time to stop.
         let _ = stopped.changed().await;

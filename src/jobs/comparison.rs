@@ -18,7 +18,7 @@ use crate::registration::Place;
 use crate::schema::compare::{
     AlignDocument, AlignMethod, CompareToDocument, NodeWise as NodeWiseName, PlaceDocument,
 };
-use crate::schema::prediction::{InputDocument, ResultDocument};
+use crate::schema::prediction::ResultDocument;
 use crate::schema::spec::OutputName;
 use crate::schema::validation::ComparisonDocument;
 use crate::schema::{Faults, Pointer, Problem, canonical};
@@ -29,13 +29,12 @@ use crate::validation::{
 /// Time a comparison may take, in seconds; a prediction that compares has its own budget.
 const WALL_S: f64 = 600.0;
 
-/// A comparison and where its other surface came from.
+/// What a comparison found.
 pub struct Compared {
     pub document: ComparisonDocument,
     /// At each point of the prediction in mm, positive outside the actual surface.
     pub signed_distance: Vec<f64>,
     pub warnings: Vec<Warning>,
-    pub inputs: Vec<InputDocument>,
 }
 
 /// The two surfaces of a comparison and where in the documents they stand.
@@ -51,17 +50,15 @@ pub fn compare_skin(
     input: &PredictInput,
     prepared: &Prepared,
     skin: &PredictedSkin,
-    place: &Workplace,
     clock: &Observed,
 ) -> Result<Option<Compared>, JobError> {
-    let Some(spec) = &input.spec.compare_to else {
+    let (Some(spec), Some(actual)) = (&input.spec.compare_to, &prepared.actual) else {
         return Ok(None);
     };
     let at = Pointer::root().key("spec").key("compare_to");
-    let actual = fetch(place.sources, &spec.actual.mesh, &at.key("actual").key("mesh"))?;
     let frame = prepared.case.frame;
     let stated = (frame != Frame::Unspecified).then_some(frame);
-    let pair = Pair { prediction: &skin.surface, prediction_frame: stated, actual: &actual, at };
+    let pair = Pair { prediction: &skin.surface, prediction_frame: stated, actual, at };
     pair.compare(spec, clock).map(Some)
 }
 
@@ -92,11 +89,9 @@ pub fn compare_job(
 
     // 3. Files.
     clock.phase(Phase::Write);
-    let mut inputs = vec![prediction.to_input("prediction")];
-    inputs.extend(compared.inputs.iter().cloned());
     let origin = Origin {
         spec_hash: input.spec_hash(&prediction.sha256, &actual.sha256),
-        inputs,
+        inputs: vec![prediction.to_input("prediction"), actual.to_input("actual")],
         frame: frame.unwrap_or_default(),
         queue_s: input.queue_s,
     };
@@ -141,7 +136,6 @@ impl Pair<'_> {
             document: ComparisonDocument::new(&comparison, spec.samples_per_mm2),
             signed_distance: signed_distance.clone(),
             warnings: warnings.clone(),
-            inputs: vec![self.actual.to_input("actual")],
         })
     }
 
@@ -194,7 +188,8 @@ fn fetch_prediction(
     }
 }
 
-fn fetch(sources: &dyn MeshSource, id: &str, at: &Pointer) -> Result<StoredMesh, JobError> {
+/// A mesh of the documents.
+pub fn fetch(sources: &dyn MeshSource, id: &str, at: &Pointer) -> Result<StoredMesh, JobError> {
     found(sources.mesh(id), id, at)
 }
 

@@ -143,7 +143,7 @@ fn thinned(history: &[f64]) -> Vec<f64> {
     let step = history.len().div_ceil(TOLD_RESIDUALS).max(1);
     let mut told: Vec<f64> = history.iter().copied().step_by(step).collect();
     if let Some(&last) = history.last()
-        && (history.len() - 1) % step != 0
+        && !(history.len() - 1).is_multiple_of(step)
     {
         told.push(last);
     }

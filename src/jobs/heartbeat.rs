@@ -113,34 +113,26 @@ impl Heartbeat {
         };
         let (stop, stopped) = channel();
         let (connected, connection) = channel();
-        let runtime = tokio::runtime::Builder::new_current_thread()
-            .enable_all()
-            .build()?;
-        let thread = std::thread::Builder::new()
-            .name("heartbeat".into())
-            .spawn(move || {
-                let store = match runtime.block_on(store.again()) {
-                    Ok(store) => store,
-                    Err(error) => {
-                        // Nobody listens any more when the process is about to end.
-                        let _ = connected.send(Err(error));
-                        return;
-                    }
-                };
-                let _ = connected.send(Ok(()));
-                let look = LOOK.min(pulse.interval);
-                let mut reaped = None;
-                while stopped.recv_timeout(look) == Err(RecvTimeoutError::Timeout) {
-                    runtime.block_on(pulse.beat(&store, &mut reaped));
+        let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
+        let thread = std::thread::Builder::new().name("heartbeat".into()).spawn(move || {
+            let store = match runtime.block_on(store.again()) {
+                Ok(store) => store,
+                Err(error) => {
+                    // Nobody listens any more when the process is about to end.
+                    let _ = connected.send(Err(error));
+                    return;
                 }
-                runtime.block_on(store.close());
-            })?;
+            };
+            let _ = connected.send(Ok(()));
+            let look = LOOK.min(pulse.interval);
+            let mut reaped = None;
+            while stopped.recv_timeout(look) == Err(RecvTimeoutError::Timeout) {
+                runtime.block_on(pulse.beat(&store, &mut reaped));
+            }
+            runtime.block_on(store.close());
+        })?;
         connection.recv().map_err(|_| StoreError::Interrupted)??;
-        Ok(Heartbeat {
-            held,
-            stop: Some(stop),
-            thread: Some(thread),
-        })
+        Ok(Heartbeat { held, stop: Some(stop), thread: Some(thread) })
     }
 
     /// Keeps a lease alive until `let_go`.

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use super::comparison::fetch;
 use super::failure::JobError;
 use super::source::{MeshSource, SourceError, StoredMesh, StoredShape};
 use crate::mesh::Warning;
@@ -21,6 +22,7 @@ use crate::schema::{
 /// A job as it is queued: everything that decides its result, but for the meshes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
+#[expect(clippy::large_enum_variant, reason = "there is one for each job, not thousands in a row")]
 pub enum JobInput {
     Predict(PredictInput),
     Compare(CompareInput),
@@ -55,6 +57,8 @@ pub struct Prepared {
     pub quality: QualityReport,
     pub spec_hash: String,
     pub inputs: Vec<InputDocument>,
+    /// The surface that the skin is to be compared with.
+    pub actual: Option<StoredMesh>,
     /// Of the meshes and of the conversion; those of the scene are in the scene.
     pub warnings: Vec<Warning>,
 }
@@ -72,20 +76,24 @@ impl PredictInput {
     /// pointers start at `/case`, `/plan` and `/spec`.
     pub fn prepare(&self, sources: &dyn MeshSource, limits: &Limits) -> Result<Prepared, JobError> {
         let stored = self.fetch(sources)?;
+        let actual = self.fetch_actual(sources)?;
         let meshes = self.case_meshes(&stored)?;
         let converted = self.convert(&meshes, limits)?;
         let scene = Scene::new(&converted.case, &converted.plan, &converted.settings)
             .map_err(|errors| JobError::Refused(errors.into()))?;
         let quality = quality(&converted.case.volume);
-        let mut warnings = reader_warnings(&stored);
+        let meshes_read = stored.values().chain(&actual);
+        let mut warnings: Vec<Warning> =
+            meshes_read.flat_map(|mesh| mesh.warnings.iter().cloned()).collect();
         warnings.extend(converted.warnings);
         warnings.extend(quality.warnings());
         Ok(Prepared {
             case: converted.case,
             scene,
             quality,
-            spec_hash: self.spec_hash(&stored),
-            inputs: self.inputs(&stored),
+            spec_hash: self.spec_hash(&stored, actual.as_ref()),
+            inputs: self.inputs(&stored, actual.as_ref()),
+            actual,
             warnings,
         })
     }
@@ -160,13 +168,33 @@ impl PredictInput {
         Ok(CaseMeshes { volume: volume.ok_or_else(missing)?, surfaces })
     }
 
+    fn fetch_actual(&self, sources: &dyn MeshSource) -> Result<Option<StoredMesh>, JobError> {
+        let Some(compare_to) = &self.spec.compare_to else {
+            return Ok(None);
+        };
+        let at = Pointer::from_text("/spec/compare_to/actual/mesh");
+        fetch(sources, &compare_to.actual.mesh, &at).map(Some)
+    }
+
     /// The hash of everything that decides the numbers.
-    fn spec_hash(&self, stored: &BTreeMap<String, StoredMesh>) -> String {
-        let content = |id: &str| stored.get(id).map(|mesh| mesh.sha256.clone());
+    fn spec_hash(
+        &self,
+        stored: &BTreeMap<String, StoredMesh>,
+        actual: Option<&StoredMesh>,
+    ) -> String {
+        let actual_id = self.spec.compare_to.as_ref().map(|spec| spec.actual.mesh.as_str());
+        let content = |id: &str| {
+            let compared = actual.filter(|_| actual_id == Some(id));
+            stored.get(id).or(compared).map(|mesh| mesh.sha256.clone())
+        };
         canonical::predict_hash(&self.case, &self.plan, &self.spec, &content)
     }
 
-    fn inputs(&self, stored: &BTreeMap<String, StoredMesh>) -> Vec<InputDocument> {
+    fn inputs(
+        &self,
+        stored: &BTreeMap<String, StoredMesh>,
+        actual: Option<&StoredMesh>,
+    ) -> Vec<InputDocument> {
         let role = |id: &str| {
             if *id == self.case.volume {
                 return "volume".to_owned();
@@ -177,12 +205,9 @@ impl PredictInput {
         let mut inputs: Vec<InputDocument> =
             stored.iter().map(|(id, mesh)| mesh.to_input(&role(id))).collect();
         inputs.sort_by(|a, b| b.role.cmp(&a.role));
+        inputs.extend(actual.map(|mesh| mesh.to_input("actual")));
         inputs
     }
-}
-
-fn reader_warnings(stored: &BTreeMap<String, StoredMesh>) -> Vec<Warning> {
-    stored.values().flat_map(|mesh| mesh.warnings.iter().cloned()).collect()
 }
 
 impl StoredMesh {

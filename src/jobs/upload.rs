@@ -9,9 +9,9 @@ use super::source::{StoredMesh, StoredShape};
 use crate::format::{self, FormatError, Member, ReadLimits, ReadMesh, SurfaceOutput, VolumeOutput};
 use crate::mesh::{Frame, Warning};
 use crate::schema::Problem;
+use crate::schema::canonical::sha256_hex;
 use crate::schema::case::{FrameName, LengthUnit};
 use crate::schema::mesh::MeshDocument;
-use crate::schema::canonical::sha256_hex;
 use crate::schema::warning::WarningDocument;
 use crate::store::NewMesh;
 
@@ -72,7 +72,8 @@ pub fn read_upload(
     };
     let frame = read.frame.or(statement.frame.map(Frame::from)).unwrap_or_default();
     let units = statement.units.unwrap_or_default();
-    let mesh = StoredMesh { frame: Some(frame), ..StoredMesh::new(read, units, sha256_of_bytes.clone()) };
+    let mesh =
+        StoredMesh { frame: Some(frame), ..StoredMesh::new(read, units, sha256_of_bytes.clone()) };
     let stored = Bytes::from(encode(&mesh.shape, frame)?);
     let row = NewMesh {
         id,
@@ -137,9 +138,9 @@ fn check_scale(diagonal: f64, statement: &Statement) -> Result<Option<Warning>, 
         return Ok(None);
     }
     let others = [LengthUnit::Mm, LengthUnit::M, LengthUnit::Um];
-    let fitting = others.into_iter().find(|unit| {
-        *unit != units && USUAL_DIAGONAL_MM.contains(&(diagonal * unit.in_mm()))
-    });
+    let fitting = others
+        .into_iter()
+        .find(|unit| *unit != units && USUAL_DIAGONAL_MM.contains(&(diagonal * unit.in_mm())));
     let hint = fitting.map_or(String::new(), |unit| format!("; in {} it would fit", unit.name()));
     let detail = format!(
         "the diagonal of the bounding box is {diagonal_mm:.4} mm, that of a head or its parts 50 to 600 mm{hint}"
@@ -155,10 +156,7 @@ fn check_scale(diagonal: f64, statement: &Statement) -> Result<Option<Warning>, 
 }
 
 /// A mesh in another format, as `GET /v1/meshes/{id}/content` hands it out.
-pub fn export(
-    mesh: &StoredMesh,
-    format: ExportFormat,
-) -> Result<Vec<u8>, Problem> {
+pub fn export(mesh: &StoredMesh, format: ExportFormat) -> Result<Vec<u8>, Problem> {
     let frame = mesh.frame.unwrap_or_default();
     if format == ExportFormat::Vtu {
         let StoredShape::Volume(_) = mesh.shape else {
@@ -208,4 +206,3 @@ impl ExportFormat {
         }
     }
 }
-

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use super::check::warning_documents;
-use super::comparison::{Compared, compare_job, compare_skin};
+use super::comparison::{compare_job, compare_skin};
 use super::failure::JobError;
 use super::input::{JobInput, PredictInput, Prepared};
 use super::observed::Observed;
@@ -20,7 +20,7 @@ use crate::schema::prediction::{
     DisplacementDocument, FileDocument, ResultDocument, StatisticsDocument,
 };
 use crate::schema::spec::OutputName;
-use crate::schema::validation::StatDocument;
+use crate::schema::validation::{ComparisonDocument, StatDocument};
 use crate::schema::{Limits, Triple};
 use crate::validation::{Statistics, StatisticsError};
 
@@ -72,14 +72,12 @@ fn predict_job(
 
     // 3. Against another surface, if asked.
     clock.phase(Phase::Compare);
-    let compared = compare_skin(input, &prepared, &skin, place, &clock)?;
+    let compared = compare_skin(input, &prepared, &skin, &clock)?;
     let mut warnings = prepared.warnings.clone();
     warnings.extend(prediction.warnings.iter().cloned());
-    let mut inputs = prepared.inputs.clone();
     if let Some(compared) = &compared {
         skin.signed_distance = Some(compared.signed_distance.clone());
         warnings.extend(compared.warnings.iter().cloned());
-        inputs.extend(compared.inputs.iter().cloned());
     }
     clock.check()?;
 
@@ -88,7 +86,7 @@ fn predict_job(
     let finished = Finished {
         origin: Origin {
             spec_hash: prepared.spec_hash.clone(),
-            inputs,
+            inputs: prepared.inputs.clone(),
             frame: prepared.case.frame,
             queue_s: input.queue_s,
         },
@@ -96,24 +94,32 @@ fn predict_job(
         prediction: &prediction,
         skin: &skin,
         statistics,
+        comparison: compared.map(|compared| compared.document),
+        warnings,
     };
     let mut folder = ResultFolder::open(place.out)?;
     finished.write_files(&input.files(), &mut folder)?;
 
     // 5. The manifest.
-    let result = finished.result(input, compared, &warnings, &clock, folder.files.clone());
+    let result = finished.result(input, &clock, folder.files.clone());
     folder.add(OutputName::ResultJson, &encode_result(&result)?)?;
     Ok(JobOutput { result, files: folder.files })
 }
 
 impl PredictInput {
-    /// The files to write but for `result.json`: those asked for, or skin and moved bones.
+    /// The files to write but for `result.json`: those asked for, or skin and moved bones. A case
+    /// without bones has no file of them.
     fn files(&self) -> Vec<OutputName> {
         let mut files = self.spec.files();
-        if self.spec.outputs.is_none() && !self.case.bones.is_empty() {
+        if self.spec.outputs.is_none() {
             files.push(OutputName::BonesVtp);
         }
-        files.retain(|name| *name != OutputName::ResultJson);
+        let has_bones = !self.case.bones.is_empty();
+        files.retain(|name| match name {
+            OutputName::ResultJson => false,
+            OutputName::BonesVtp => has_bones,
+            _ => true,
+        });
         files
     }
 }
@@ -125,6 +131,8 @@ struct Finished<'a> {
     prediction: &'a Prediction,
     skin: &'a PredictedSkin,
     statistics: StatisticsDocument,
+    comparison: Option<ComparisonDocument>,
+    warnings: Vec<Warning>,
 }
 
 impl Finished<'_> {
@@ -154,8 +162,6 @@ impl Finished<'_> {
     fn result(
         &self,
         input: &PredictInput,
-        compared: Option<Compared>,
-        warnings: &[Warning],
         clock: &Observed,
         files: Vec<FileDocument>,
     ) -> ResultDocument {
@@ -167,11 +173,11 @@ impl Finished<'_> {
             job: input.job.clone(),
             files,
             statistics: Some(self.statistics.clone()),
-            comparison: compared.map(|compared| compared.document),
+            comparison: self.comparison.clone(),
             numerical_error_mm: None,
             reaction_mn: triples(&self.prediction.reactions),
             provenance,
-            warnings: warning_documents(warnings.iter()),
+            warnings: warning_documents(self.warnings.iter()),
         }
     }
 }

@@ -64,7 +64,12 @@ impl From<std::io::Error> for Failure {
 
 /// From a claimed job to files in a folder. A later version may do it in a process of its own.
 pub trait Work: Send + Sync {
-    fn work(&self, claim: &Claim, folder: &Path, progress: &dyn Progress) -> Result<Finished, Failure>;
+    fn work(
+        &self,
+        claim: &Claim,
+        folder: &Path,
+        progress: &dyn Progress,
+    ) -> Result<Finished, Failure>;
 }
 
 /// The worker slots of this process.

@@ -48,3 +48,33 @@ fn deformation(mesh: &VolumeMesh, displacement: &[Vector], cell: usize) -> CellD
     principal_strain.sort_by(|a, b| b.total_cmp(a));
     CellDeformation { det_f, principal_strain }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::CellShape;
+    use crate::mesh::sample::block;
+
+    #[test]
+    fn a_hexahedron_folded_at_one_corner_only_has_a_negative_determinant() {
+        let mesh = block(Vector::new(1.0, 1.0, 1.0), [1, 1, 1], CellShape::Hex8);
+        let mut displacement = vec![Vector::zeros(); 8];
+        let corner = mesh.nodes.iter().position(|x| *x == Vector::new(1.0, 1.0, 1.0));
+        displacement[corner.expect("a unit cube has this corner")] = Vector::new(-0.9, -0.9, -0.9);
+        let folded = deformations(&mesh, &displacement)[0];
+        assert!(folded.det_f < 0.0, "{}", folded.det_f);
+    }
+
+    #[test]
+    fn a_stretch_along_z_is_the_largest_principal_strain() {
+        let mesh = block(Vector::new(2.0, 2.0, 2.0), [1, 1, 1], CellShape::Wedge6);
+        let stretched: Vec<Vector> =
+            mesh.nodes.iter().map(|x| Vector::new(-0.01 * x.x, 0.0, 0.02 * x.z)).collect();
+        for cell in deformations(&mesh, &stretched) {
+            for (found, expected) in cell.principal_strain.iter().zip([0.02, 0.0, -0.01]) {
+                assert!((found - expected).abs() < 1e-15);
+            }
+            assert!((cell.det_f - 0.99 * 1.02).abs() < 1e-15);
+        }
+    }
+}

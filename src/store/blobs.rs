@@ -21,23 +21,14 @@ impl Blobs {
     pub fn open(folder: &Path) -> Result<Blobs, StoreError> {
         std::fs::create_dir_all(folder)?;
         let objects = LocalFileSystem::new_with_prefix(folder)?.with_fsync(true);
-        Ok(Blobs {
-            objects: Arc::new(objects),
-        })
+        Ok(Blobs { objects: Arc::new(objects) })
     }
 
     /// Stores bytes under their hash, durably; bytes that are there already stay as they are.
     pub async fn put(&self, sha256: &str, bytes: Bytes) -> Result<(), StoreError> {
-        let options = PutOptions {
-            mode: PutMode::Create,
-            ..PutOptions::default()
-        };
+        let options = PutOptions { mode: PutMode::Create, ..PutOptions::default() };
         let payload = PutPayload::from(bytes);
-        match self
-            .objects
-            .put_opts(&place(sha256), payload, options)
-            .await
-        {
+        match self.objects.put_opts(&place(sha256), payload, options).await {
             Ok(_) | Err(object_store::Error::AlreadyExists { .. }) => Ok(()),
             Err(error) => Err(error.into()),
         }
@@ -53,10 +44,7 @@ impl Blobs {
         .await
         .map_err(|_| StoreError::Interrupted)?;
         if found != sha256 {
-            return Err(StoreError::Integrity {
-                sha256: sha256.to_owned(),
-                found,
-            });
+            return Err(StoreError::Integrity { sha256: sha256.to_owned(), found });
         }
         Ok(bytes)
     }

@@ -69,10 +69,7 @@ fn case_row(row: &Row) -> Result<CaseRow, sqlx::Error> {
 
 impl Store {
     pub async fn case(&self, id: &str) -> Result<Option<CaseRow>, StoreError> {
-        let row = sqlx::query(BY_ID)
-            .bind(id)
-            .fetch_optional(self.database.reader())
-            .await?;
+        let row = sqlx::query(BY_ID).bind(id).fetch_optional(self.database.reader()).await?;
         Ok(row.as_ref().map(case_row).transpose()?)
     }
 
@@ -126,10 +123,7 @@ impl Store {
         }
         let mut blobs = column(&mut transaction, FILES_OF_CASE, id).await?;
         let meshes = column(&mut transaction, MESHES_OF_CASE, id).await?;
-        sqlx::query("DELETE FROM cases WHERE id = $1")
-            .bind(id)
-            .execute(&mut *transaction)
-            .await?;
+        sqlx::query("DELETE FROM cases WHERE id = $1").bind(id).execute(&mut *transaction).await?;
         for mesh in meshes {
             blobs.extend(column(&mut transaction, DELETE_UNUSED_MESH, &mesh).await?);
         }
@@ -146,10 +140,7 @@ async fn column(
     sql: &'static str,
     id: &str,
 ) -> Result<Vec<String>, sqlx::Error> {
-    let rows = sqlx::query(sql)
-        .bind(id)
-        .fetch_all(&mut **transaction)
-        .await?;
+    let rows = sqlx::query(sql).bind(id).fetch_all(&mut **transaction).await?;
     rows.iter().map(|row| row.try_get(0)).collect()
 }
 

@@ -43,10 +43,7 @@ impl Database {
     /// Opens the database, creates it if it is not there, and brings its schema up to date.
     pub async fn open(file: &Path) -> Result<Database, StoreError> {
         let database = Database::connect(file.to_owned()).await?;
-        MIGRATIONS
-            .run(&database.writer)
-            .await
-            .map_err(schema_error)?;
+        MIGRATIONS.run(&database.writer).await.map_err(schema_error)?;
         sqlx::query(CLOCK).execute(&database.writer).await?;
         Ok(database)
     }
@@ -101,11 +98,7 @@ fn schema_error(error: MigrateError) -> StoreError {
     match error {
         MigrateError::VersionMissing(found) => StoreError::SchemaTooNew {
             found,
-            known: MIGRATIONS
-                .iter()
-                .map(|step| step.version)
-                .max()
-                .unwrap_or(0),
+            known: MIGRATIONS.iter().map(|step| step.version).max().unwrap_or(0),
         },
         MigrateError::Execute(error) => StoreError::Database(error),
         other => StoreError::Schema(other.to_string()),

@@ -135,10 +135,7 @@ fn job_row(row: &Row) -> Result<JobRow, sqlx::Error> {
 
 impl Store {
     pub async fn job(&self, id: &str) -> Result<Option<JobRow>, StoreError> {
-        let row = sqlx::query(BY_ID)
-            .bind(id)
-            .fetch_optional(self.database.reader())
-            .await?;
+        let row = sqlx::query(BY_ID).bind(id).fetch_optional(self.database.reader()).await?;
         match row {
             Some(row) => Ok(Some(self.with_tags(job_row(&row)?).await?)),
             None => Ok(None),
@@ -168,10 +165,7 @@ impl Store {
             .bind(&job.id)
             .fetch_all(self.database.reader())
             .await?;
-        job.tags = rows
-            .iter()
-            .map(|row| row.try_get(0))
-            .collect::<Result<_, _>>()?;
+        job.tags = rows.iter().map(|row| row.try_get(0)).collect::<Result<_, _>>()?;
         Ok(job)
     }
 
@@ -205,10 +199,7 @@ impl Store {
     /// Ends a job that is accepted or running, removes one that has ended.
     pub async fn dismiss(&self, id: &str) -> Result<Dismissal, StoreError> {
         let mut transaction = self.database.begin().await?;
-        let dismissed = sqlx::query(DISMISS)
-            .bind(id)
-            .execute(&mut *transaction)
-            .await?;
+        let dismissed = sqlx::query(DISMISS).bind(id).execute(&mut *transaction).await?;
         if dismissed.rows_affected() == 1 {
             transaction.commit().await?;
             self.jobs_changed();
@@ -218,14 +209,8 @@ impl Store {
             .bind(id)
             .fetch_all(&mut *transaction)
             .await?;
-        let blobs = rows
-            .iter()
-            .map(|row| row.try_get(0))
-            .collect::<Result<Vec<String>, _>>()?;
-        let removed = sqlx::query(REMOVE)
-            .bind(id)
-            .execute(&mut *transaction)
-            .await?;
+        let blobs = rows.iter().map(|row| row.try_get(0)).collect::<Result<Vec<String>, _>>()?;
+        let removed = sqlx::query(REMOVE).bind(id).execute(&mut *transaction).await?;
         transaction.commit().await?;
         self.jobs_changed();
         self.delete_unreferenced_blobs(blobs).await?;

@@ -122,11 +122,7 @@ impl Store {
         let Some(row) = row else { return Ok(None) };
         self.jobs_changed();
         Ok(Some(Claim {
-            lease: Lease {
-                job: row.try_get("id")?,
-                token,
-                attempt: row.try_get("attempt")?,
-            },
+            lease: Lease { job: row.try_get("id")?, token, attempt: row.try_get("attempt")? },
             kind: row.try_get("kind")?,
             document: row.try_get("document")?,
             created: row.try_get("created")?,
@@ -208,19 +204,12 @@ impl Store {
 
     /// Ends a job whose own fault it is; false when it is not ours any more.
     pub async fn fail(&self, lease: &Lease, error: &str) -> Result<bool, StoreError> {
-        self.end(
-            sqlx::query(FAIL)
-                .bind(&lease.job)
-                .bind(&lease.token)
-                .bind(error),
-        )
-        .await
+        self.end(sqlx::query(FAIL).bind(&lease.job).bind(&lease.token).bind(error)).await
     }
 
     /// Gives a job back untouched, for a worker that is about to stop.
     pub async fn release(&self, lease: &Lease) -> Result<bool, StoreError> {
-        self.end(sqlx::query(RELEASE).bind(&lease.job).bind(&lease.token))
-            .await
+        self.end(sqlx::query(RELEASE).bind(&lease.job).bind(&lease.token)).await
     }
 
     /// Gives a job back that failed through no fault of its own, or fails it when that was the last attempt.
@@ -269,11 +258,8 @@ impl Store {
 
     /// One file of a successful job.
     pub async fn job_file(&self, job: &str, name: &str) -> Result<Option<FileRow>, StoreError> {
-        let row = sqlx::query(FILE)
-            .bind(job)
-            .bind(name)
-            .fetch_optional(self.database.reader())
-            .await?;
+        let row =
+            sqlx::query(FILE).bind(job).bind(name).fetch_optional(self.database.reader()).await?;
         let Some(row) = row else { return Ok(None) };
         Ok(Some(FileRow {
             name: row.try_get("name")?,

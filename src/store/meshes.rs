@@ -58,10 +58,7 @@ fn mesh_row(row: &Row) -> Result<MeshRow, sqlx::Error> {
 
 impl Store {
     pub async fn mesh(&self, id: &str) -> Result<Option<MeshRow>, StoreError> {
-        let row = sqlx::query(COLUMNS)
-            .bind(id)
-            .fetch_optional(self.database.reader())
-            .await?;
+        let row = sqlx::query(COLUMNS).bind(id).fetch_optional(self.database.reader()).await?;
         Ok(row.as_ref().map(mesh_row).transpose()?)
     }
 
@@ -112,8 +109,7 @@ impl Store {
         match deleted {
             Ok(None) => Ok(MeshDeletion::NotFound),
             Ok(Some(row)) => {
-                self.delete_unreferenced_blobs(vec![row.try_get("blob")?])
-                    .await?;
+                self.delete_unreferenced_blobs(vec![row.try_get("blob")?]).await?;
                 Ok(MeshDeletion::Deleted)
             }
             Err(error) if is_reference(&error) => Ok(MeshDeletion::InUse),

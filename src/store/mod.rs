@@ -82,10 +82,7 @@ impl StoreError {
 
 fn is_full(error: &std::io::Error) -> bool {
     use std::io::ErrorKind;
-    matches!(
-        error.kind(),
-        ErrorKind::StorageFull | ErrorKind::QuotaExceeded
-    )
+    matches!(error.kind(), ErrorKind::StorageFull | ErrorKind::QuotaExceeded)
 }
 
 /// The database, the blobs and the folder for files under way.
@@ -119,10 +116,7 @@ impl Store {
 
     /// The same store over connections of its own, for a thread with an async runtime of its own.
     pub async fn again(&self) -> Result<Store, StoreError> {
-        Ok(Store {
-            database: self.database.again().await?,
-            ..self.clone()
-        })
+        Ok(Store { database: self.database.again().await?, ..self.clone() })
     }
 
     pub fn folder(&self) -> &Path {
@@ -145,15 +139,12 @@ impl Store {
     }
 
     fn jobs_changed(&self) {
-        self.changes
-            .send_modify(|count| *count = count.wrapping_add(1));
+        self.changes.send_modify(|count| *count = count.wrapping_add(1));
     }
 
     /// Whether the database answers.
     pub async fn ping(&self) -> Result<(), StoreError> {
-        sqlx::query("SELECT now_ms FROM clock")
-            .execute(self.database.reader())
-            .await?;
+        sqlx::query("SELECT now_ms FROM clock").execute(self.database.reader()).await?;
         Ok(())
     }
 

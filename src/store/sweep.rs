@@ -29,13 +29,9 @@ impl Store {
             temporary += 1;
         }
         temporary += remove_staged(&self.folder.join("blobs"))?;
-        let rows = sqlx::query(REFERENCED)
-            .fetch_all(self.database.writer())
-            .await?;
-        let referenced = rows
-            .iter()
-            .map(|row| row.try_get(0))
-            .collect::<Result<HashSet<String>, _>>()?;
+        let rows = sqlx::query(REFERENCED).fetch_all(self.database.writer()).await?;
+        let referenced =
+            rows.iter().map(|row| row.try_get(0)).collect::<Result<HashSet<String>, _>>()?;
         let mut blobs = 0;
         for blob in self.blobs.list().await? {
             if !referenced.contains(&blob) {
@@ -53,10 +49,8 @@ impl Store {
     ) -> Result<(), StoreError> {
         let _alone = self.uncommitted.write().await;
         for blob in blobs {
-            let row = sqlx::query(REFERENCES_OF)
-                .bind(&blob)
-                .fetch_one(self.database.writer())
-                .await?;
+            let row =
+                sqlx::query(REFERENCES_OF).bind(&blob).fetch_one(self.database.writer()).await?;
             if row.try_get::<i64, _>(0)? == 0 {
                 self.blobs.delete(&blob).await?;
             }
@@ -66,11 +60,7 @@ impl Store {
 }
 
 fn remove(path: &Path) -> std::io::Result<()> {
-    if path.is_dir() {
-        std::fs::remove_dir_all(path)
-    } else {
-        std::fs::remove_file(path)
-    }
+    if path.is_dir() { std::fs::remove_dir_all(path) } else { std::fs::remove_file(path) }
 }
 
 /// Blobs that were being written carry a `#` in their name until they are linked to their place.
@@ -80,10 +70,7 @@ fn remove_staged(folder: &Path) -> std::io::Result<usize> {
         let path = entry?.path();
         if path.is_dir() {
             removed += remove_staged(&path)?;
-        } else if path
-            .file_name()
-            .is_some_and(|name| name.to_string_lossy().contains('#'))
-        {
+        } else if path.file_name().is_some_and(|name| name.to_string_lossy().contains('#')) {
             std::fs::remove_file(path)?;
             removed += 1;
         }

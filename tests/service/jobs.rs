@@ -34,7 +34,8 @@ async fn every_file_of_the_manifest_is_served_with_its_hash_and_in_ranges() {
     let server = Server::start();
     let case = server.case(&SMALL).await;
     let mut spec = spec(&case, 1.0);
-    spec["outputs"] = json!(["skin.vtp", "skin.stl", "skin.ply", "skin.glb", "skin.csv", "volume.vtu"]);
+    spec["outputs"] =
+        json!(["skin.vtp", "skin.stl", "skin.ply", "skin.glb", "skin.csv", "volume.vtu"]);
     let job = server.job(&spec).await.expect(StatusCode::OK);
     let id = job["id"].as_str().unwrap();
     let manifest = ask(server.get(&format!("/v1/jobs/{id}/results"))).await.expect(StatusCode::OK);
@@ -47,7 +48,10 @@ async fn every_file_of_the_manifest_is_served_with_its_hash_and_in_ranges() {
         let answer = ask(server.get(&path)).await;
         assert_eq!(answer.status, StatusCode::OK, "{name}");
         assert_eq!(answer.header("content-type"), file["media_type"].as_str().unwrap());
-        assert_eq!(facies::schema::canonical::sha256_hex(&answer.bytes), file["sha256"].as_str().unwrap());
+        assert_eq!(
+            facies::schema::canonical::sha256_hex(&answer.bytes),
+            file["sha256"].as_str().unwrap()
+        );
         assert_eq!(answer.bytes.len() as u64, file["bytes"].as_u64().unwrap());
         let tag = answer.header("etag").to_owned();
         let known = ask(server.get(&path).header("if-none-match", &tag)).await;
@@ -62,7 +66,8 @@ async fn every_file_of_the_manifest_is_served_with_its_hash_and_in_ranges() {
     assert_eq!(result.expect(StatusCode::OK)["statistics"], manifest["statistics"]);
     let missing = ask(server.get(&format!("/v1/jobs/{id}/results/skin.obj"))).await;
     missing.problem(404, "no-such-output");
-    let picture = server.get(&format!("/v1/jobs/{id}/results/skin.stl")).header("accept", "image/png");
+    let picture =
+        server.get(&format!("/v1/jobs/{id}/results/skin.stl")).header("accept", "image/png");
     ask(picture).await.problem(406, "not-acceptable");
 }
 
@@ -138,7 +143,9 @@ async fn jobs_are_listed_in_pages_newest_first_and_by_what_they_are() {
         let page = ask(server.get(&format!("/v1/jobs?{query}"))).await.expect(StatusCode::OK);
         assert_eq!(page["items"].as_array().unwrap().len(), count, "{query}");
     }
-    for query in ["cursor=forged", "limit=0", "limit=201", "limit=x", "status=zombie", "stauts=failed"] {
+    for query in
+        ["cursor=forged", "limit=0", "limit=201", "limit=x", "status=zombie", "stauts=failed"]
+    {
         let answer = ask(server.get(&format!("/v1/jobs?{query}"))).await;
         answer.problem_of(query, 400, "invalid-parameter");
     }
@@ -160,7 +167,8 @@ async fn a_prediction_is_compared_with_another_surface() {
     assert!(both.is_object(), "{compared}");
     let text = both.to_string();
     assert!(text.contains("hausdorff"), "{text}");
-    let in_use = ask(server.delete(&format!("/v1/meshes/{}", actual["id"].as_str().unwrap()))).await;
+    let in_use =
+        ask(server.delete(&format!("/v1/meshes/{}", actual["id"].as_str().unwrap()))).await;
     in_use.problem(409, "conflict-in-use");
 }
 
@@ -177,7 +185,8 @@ async fn an_identity_plan_moves_nothing() {
 async fn a_wait_is_granted_up_to_its_cap_and_told() {
     let server = Server::start_with(&["--workers", "0"]);
     let case = server.case(&SMALL).await;
-    let job = ask(server.post("/v1/jobs").json(&spec(&case, 1.0))).await.expect(StatusCode::CREATED);
+    let job =
+        ask(server.post("/v1/jobs").json(&spec(&case, 1.0))).await.expect(StatusCode::CREATED);
     let path = format!("/v1/jobs/{}", job["id"].as_str().unwrap());
     let none = ask(server.get(&path).header("prefer", "wait=-1")).await;
     assert_eq!((none.status, none.header("preference-applied")), (StatusCode::OK, ""));

@@ -70,9 +70,7 @@ fn file(content: &'static str) -> PublishedFile {
 
 fn blob_count(folder: &Path) -> usize {
     let folders = std::fs::read_dir(folder.join("blobs")).unwrap();
-    folders
-        .map(|entry| std::fs::read_dir(entry.unwrap().path()).unwrap().count())
-        .sum()
+    folders.map(|entry| std::fs::read_dir(entry.unwrap().path()).unwrap().count()).sum()
 }
 
 #[tokio::test]
@@ -81,10 +79,7 @@ async fn a_job_is_claimed_by_one_worker_only() {
     let id = enqueue(&store, "a").await;
     let other = store.again().await.unwrap();
     let (first, second) = tokio::join!(store.claim(LEASE), other.claim(LEASE));
-    let claims: Vec<Claim> = [first, second]
-        .into_iter()
-        .filter_map(Result::unwrap)
-        .collect();
+    let claims: Vec<Claim> = [first, second].into_iter().filter_map(Result::unwrap).collect();
     assert_eq!(claims.len(), 1);
     assert_eq!(claims[0].lease.job, id);
     assert_eq!(job(&store, &id).await.attempt, 1);
@@ -188,11 +183,7 @@ async fn progress_never_falls() {
     let id = enqueue(&store, "a").await;
     let lease = store.claim(LEASE).await.unwrap().unwrap().lease;
     for (progress, shown) in [(30, 30), (10, 30), (31, 31)] {
-        let point = Point {
-            phase: Some("solve"),
-            progress,
-            ..Point::default()
-        };
+        let point = Point { phase: Some("solve"), progress, ..Point::default() };
         assert!(store.renew(&lease, LEASE, &point).await.unwrap());
         assert_eq!(job(&store, &id).await.progress, shown);
     }

@@ -48,10 +48,7 @@ impl Work for Scripted {
                     media_type: "application/json".into(),
                     path,
                 };
-                Ok(Finished {
-                    result: "{}".into(),
-                    files: vec![file],
-                })
+                Ok(Finished { result: "{}".into(), files: vec![file] })
             }
         }
     }
@@ -71,16 +68,10 @@ async fn slot() -> Slot {
         let found = settings.iter().find(|(key, _)| *key == name);
         found.map(|(_, value)| (*value).to_owned())
     });
-    let work = Arc::new(Scripted {
-        storage_faults: AtomicUsize::new(0),
-    });
+    let work = Arc::new(Scripted { storage_faults: AtomicUsize::new(0) });
     let runtime = tokio::runtime::Handle::current();
     let workers = Workers::start(store.clone(), &config.unwrap(), work, runtime).unwrap();
-    Slot {
-        folder,
-        store,
-        workers,
-    }
+    Slot { folder, store, workers }
 }
 
 impl Slot {
@@ -104,8 +95,7 @@ impl Slot {
     }
 
     async fn starts(&self, id: &str) -> JobRow {
-        self.reaches(id, |job| job.status == JobStatus::Running)
-            .await
+        self.reaches(id, |job| job.status == JobStatus::Running).await
     }
 
     async fn ends(&self, id: &str) -> JobRow {
@@ -168,9 +158,7 @@ async fn a_long_job_keeps_its_lease() {
     let id = slot.accept("until stopped").await;
     let first = slot.starts(&id).await;
     // Two leases later by the clock of the database.
-    let later = slot
-        .reaches(&id, |job| job.updated > first.updated + 2000)
-        .await;
+    let later = slot.reaches(&id, |job| job.updated > first.updated + 2000).await;
     assert_eq!((later.status, later.attempt), (JobStatus::Running, 1));
     slot.store.dismiss(&id).await.unwrap();
     slot.stop(LONG).await;

@@ -328,3 +328,63 @@ fn add_scaled(sum: &mut [f64; 6], factor: f64, values: &[f32; 6]) {
         *sum += factor * f64::from(*value);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use super::*;
+    use crate::solver::BlockMatrix;
+
+    /// A chain of 90 rows along a helix, tied to their neighbours; row 40 has axes of its own.
+    fn chain() -> (BlockMatrix, Vec<Vector3<f64>>, BTreeMap<usize, Matrix3<f64>>) {
+        let cliques: Vec<[u32; 2]> = (0..89).map(|row| [row, row + 1]).collect();
+        let mut matrix = BlockMatrix::from_cliques(90, cliques.iter().map(<[u32; 2]>::as_slice));
+        for [a, b] in cliques.iter().map(|pair| pair.map(|row| row as usize)) {
+            for k in 0..3 {
+                matrix.block_mut(a, a)[4 * k] += 1.0;
+                matrix.block_mut(b, b)[4 * k] += 1.0;
+                matrix.block_mut(a, b)[4 * k] -= 1.0;
+                matrix.block_mut(b, a)[4 * k] -= 1.0;
+            }
+        }
+        let position = |row: u32| {
+            let angle = f64::from(row) * 0.3;
+            Vector3::new(5.0 * angle.cos(), 5.0 * angle.sin(), 0.2 * f64::from(row))
+        };
+        let turned = nalgebra::Rotation3::from_euler_angles(0.4, -0.7, 1.1).into_inner();
+        (matrix, (0..90).map(position).collect(), BTreeMap::from([(40, turned)]))
+    }
+
+    #[test]
+    fn a_rigid_movement_of_all_aggregates_is_that_movement_of_all_rows() {
+        let (matrix, positions, axes) = chain();
+        let (held, right_hand_side) = (vec![false; 270], vec![0.0; 270]);
+        let system = LinearSystem {
+            matrix: &matrix,
+            held: &held,
+            right_hand_side: &right_hand_side,
+            positions: &positions,
+            axes: &axes,
+        };
+        let (shift, turn) = (Vector3::new(0.3, -0.2, 0.5), Vector3::new(0.1, 0.2, -0.3));
+        let moved = |x: &Vector3<f64>| shift + turn.cross(x);
+        let first = Prolongator::finest(&system);
+        assert!(first.centres.len() > 2, "the chain has several aggregates");
+        let coarse: Vec<f32> = first
+            .centres
+            .iter()
+            .flat_map(|centre| moved(centre).iter().chain(&turn).copied().collect::<Vec<_>>())
+            .map(|value| value as f32)
+            .collect();
+        let fine = first.prolong(&coarse);
+        for (row, position) in positions.iter().enumerate() {
+            let frame = axes.get(&row).map_or_else(Matrix3::identity, Matrix3::transpose);
+            let expected = frame * moved(position);
+            for (k, value) in expected.iter().enumerate() {
+                let found = f64::from(fine[3 * row + k]);
+                assert!((found - value).abs() < 1e-5, "row {row}: {found} instead of {value}");
+            }
+        }
+    }
+}
