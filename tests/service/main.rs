@@ -5,6 +5,9 @@ mod bad_meshes;
 mod bad_requests;
 mod cases;
 mod faults;
+#[allow(dead_code, reason = "the tests of the formats use the rest")]
+#[path = "../mechanics/formats_samples.rs"]
+mod formats_samples;
 mod helpers;
 mod jobs;
 mod meshes;
