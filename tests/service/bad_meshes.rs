@@ -65,7 +65,7 @@ fn volumes() -> Vec<(&'static str, Vec<u8>, u16, &'static str)> {
         ("32 an entity", vtu("", "<VTKFile", "<!DOCTYPE x [<!ENTITY a SYSTEM \"/etc/passwd\">]><VTKFile"), 422, "mesh-parse"),
         ("35 a pyramid", pyramid.into(), 422, "mesh-parse"),
         ("36 some inverted", inverted.into(), 422, "mesh-inverted-elements"),
-        ("40 a name of 10 kB", ascii_vtu(&TETRAHEDRON, &[(10, &[0, 1, 2, 3])], &named).into(), 422, "mesh-parse"),
+        ("40 a name of 10 kB", ascii_vtu(&TETRAHEDRON, &[(10, &[0, 1, 2, 3])], &named).into(), 422, "mesh-limits"),
         ("46 5.1 million points", vtu("", "NumberOfPoints=\"4\"", "NumberOfPoints=\"5100000\""), 422, "mesh-limits"),
     ]
 }

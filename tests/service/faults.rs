@@ -144,7 +144,7 @@ async fn a_full_disk_refuses_uploads_fails_jobs_and_serves_what_is_there() {
         let disk = rustix::fs::statvfs(disk.0.path()).unwrap();
         (disk.f_bavail * disk.f_frsize) as usize
     };
-    std::fs::write(&filler, vec![0; free().saturating_sub(600 << 10)]).unwrap();
+    std::fs::write(&filler, vec![0; free().saturating_sub(100 << 10)]).unwrap();
     let large = Block { cells: [40, 40, 10] };
     let answer = server.upload(large.vtu()).await;
     answer.problem(507, "storage-full");

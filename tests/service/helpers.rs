@@ -227,7 +227,7 @@ impl Block {
             "schema": 1, "units": "mm", "volume": "block", "tags": ["test"],
             "segments": [{"name": "bone", "nodes": {"node_set": "z_min"}}],
             "fixed": [{"node_set": "z_max"}],
-            "landmarks": {"middle": [30, 30, 15]},
+            "landmarks": {"middle": [30, 60, 15]},
         })
     }
 
