@@ -3,7 +3,7 @@
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use axum::body::Body;
+use axum::body::{Body, BodyDataStream};
 use axum::extract::{FromRequest, Multipart, Request};
 use axum::http::{HeaderMap, HeaderValue, header};
 use base64::Engine;
@@ -25,6 +25,43 @@ const SLOW_AFTER: Duration = Duration::from_secs(30);
 struct Bounds {
     bytes: usize,
     idle: Duration,
+}
+
+/// What a client may go on sending after its request was refused, and for how long: one that still
+/// writes when the connection closes hears no answer.
+const DRAINED_BYTES: usize = 8 << 20;
+const DRAINED_FOR: Duration = Duration::from_secs(1);
+
+/// The part of a body that its handler has not read.
+pub struct Unread(Arc<tokio::sync::Mutex<BodyDataStream>>);
+
+/// A body, and a hold on what will be left of it.
+pub fn held(body: Body) -> (Body, Unread) {
+    let frames = Arc::new(tokio::sync::Mutex::new(body.into_data_stream()));
+    let unread = Unread(frames.clone());
+    let frames = futures::stream::unfold(frames, |frames| async {
+        let frame = frames.lock().await.next().await;
+        frame.map(|frame| (frame, frames))
+    });
+    (Body::from_stream(frames), unread)
+}
+
+impl Unread {
+    /// Reads and forgets what is left, within bounds.
+    pub async fn drain(self) {
+        let mut frames = self.0.lock().await;
+        let mut drained = 0;
+        let drain = async {
+            while let Some(Ok(frame)) = frames.next().await {
+                drained += frame.len();
+                if drained > DRAINED_BYTES {
+                    break;
+                }
+            }
+        };
+        // When the time is up the connection closes with what is still on its way.
+        let _ = tokio::time::timeout(DRAINED_FOR, drain).await;
+    }
 }
 
 /// What a request says its body is, in lower case and without parameters.
@@ -115,12 +152,16 @@ async fn read_parts(request: Request, most: usize) -> ApiResult<Vec<(String, Byt
         .await
         .map_err(|error| malformed(error.body_text()))?;
     let mut parts: Vec<(String, Bytes)> = Vec::new();
-    while let Some(part) =
-        multipart.next_field().await.map_err(|error| malformed(error.body_text()))?
+    let mut unread = 0;
+    while let Some(part) = multipart
+        .next_field()
+        .await
+        .map_err(|error| malformed(error.body_text()))?
     {
         if parts.len() == most {
-            let detail = format!("the body has more than {most} parts");
-            return Err(Problem::new("payload-too-large", detail).with("limit", most).into());
+            // A client that still writes hears no answer, so the rest is passed over.
+            unread += 1;
+            continue;
         }
         let Some(name) = part.name().map(str::to_owned) else {
             return Err(malformed(format!("part {} has no name", parts.len() + 1)));
@@ -131,7 +172,11 @@ async fn read_parts(request: Request, most: usize) -> ApiResult<Vec<(String, Byt
         let bytes = part.bytes().await.map_err(|error| malformed(error.body_text()))?;
         parts.push((name, bytes));
     }
-    Ok(parts)
+    if unread == 0 {
+        return Ok(parts);
+    }
+    let detail = format!("the body has {} parts, at most {most} are read", most + unread);
+    Err(Problem::new("payload-too-large", detail).with("limit", most).into())
 }
 
 fn check_encoding(headers: &HeaderMap) -> ApiResult<()> {

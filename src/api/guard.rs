@@ -8,7 +8,7 @@ use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
 use tracing::Instrument;
 
-use super::Service;
+use super::{Service, body};
 use super::error::{ApiError, with_problem_body};
 use crate::schema::problem::Problem;
 
@@ -27,11 +27,18 @@ pub async fn surround(State(service): State<Service>, request: Request, next: Ne
         .get::<MatchedPath>()
         .map_or_else(|| "unmatched".to_owned(), |path| path.as_str().to_owned());
     let span = tracing::info_span!("request", request.id = %id);
+    let (head, body) = request.into_parts();
+    let (body, unread) = body::held(body);
+    let request = Request::from_parts(head, body);
     let answered = async {
-        match check_head(&service, &request) {
+        let response = match check_head(&service, &request) {
             Ok(()) => next.run(request).await,
             Err(error) => error.into_response(),
+        };
+        if response.status().is_client_error() {
+            unread.drain().await;
         }
+        response
     };
     let response = answered.instrument(span.clone()).await;
     let mut response = with_problem_body(response, &id);

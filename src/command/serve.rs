@@ -66,7 +66,8 @@ impl Arguments {
 
 impl Args for Arguments {
     fn augment_args(command: Command) -> Command {
-        SETTINGS.iter().fold(command, |command, setting| {
+        // Given twice, the last one counts, as it does in shells and container files.
+        SETTINGS.iter().fold(command.args_override_self(true), |command, setting| {
             let default = match setting.default {
                 "" => String::new(),
                 default => format!(" [default: {default}]"),

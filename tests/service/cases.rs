@@ -1,1 +1,128 @@
+//! Cases: kept with their meshes in one request, checked before anything is solved, erased with all of it.
 
+use reqwest::StatusCode;
+use reqwest::multipart::Part;
+use serde_json::json;
+
+use crate::helpers::{SMALL, Server, ask, spec};
+
+#[tokio::test]
+async fn a_case_comes_with_its_meshes_or_refers_to_those_that_are_there() {
+    let server = Server::start();
+    let form = ask(server.post("/v1/cases").multipart(SMALL.form(&SMALL.case()))).await;
+    let case = form.expect(StatusCode::CREATED);
+    let id = case["id"].as_str().unwrap();
+    assert_eq!(form.header("location"), format!("/v1/cases/{id}"));
+    let mesh = &case["meshes"][0]["id"];
+    assert_eq!(case["case"]["volume"], *mesh);
+    let classes = &case["check"]["classes"];
+    assert_eq!((&classes["joined"]["bone"], &classes["fixed"]), (&json!(25), &json!(25)));
+
+    let mut document = SMALL.case();
+    document["volume"] = mesh.clone();
+    let second = ask(server.post("/v1/cases").json(&document)).await.expect(StatusCode::CREATED);
+    assert_eq!(second["case"], case["case"]);
+    let shown = ask(server.get(&format!("/v1/cases/{id}"))).await;
+    assert_eq!(shown.expect(StatusCode::OK), case);
+    let known = ask(server.get(&format!("/v1/cases/{id}")).header("if-none-match", "\"1\"")).await;
+    assert_eq!(known.status, StatusCode::NOT_MODIFIED);
+    for (query, count) in [("", 2), ("?tag=test", 2), ("?tag=other", 0), ("?limit=1", 1)] {
+        let page = ask(server.get(&format!("/v1/cases{query}"))).await.expect(StatusCode::OK);
+        assert_eq!(page["items"].as_array().unwrap().len(), count, "{query}");
+    }
+}
+
+#[tokio::test]
+async fn a_check_counts_what_holds_the_nodes_and_solves_nothing() {
+    let server = Server::start_with(&["--workers", "0"]);
+    let case = server.case(&SMALL).await;
+    let path = format!("/v1/cases/{case}/check");
+    let plan = json!({"plan": {"segments": [{"name": "bone", "translation_mm": [1, 0, 0]}]}});
+    let report = ask(server.post(&path).json(&plan)).await.expect(StatusCode::OK);
+    assert_eq!(report["classes"]["free"], 75);
+    assert_eq!(report["unknowns"], 225);
+    ask(server.post(&path).json(&json!({}))).await.expect(StatusCode::OK);
+    let unknown = json!({"plan": {"segments": [{"name": "nose", "translation_mm": [1, 0, 0]}]}});
+    let problem = ask(server.post(&path).json(&unknown)).await.problem(422, "unknown-segment");
+    assert_eq!(problem["errors"][0]["pointer"], "/plan/segments/0/name");
+    let residual = json!({"tolerance": {"relative_residual": 0}});
+    let problem = ask(server.post(&path).json(&residual)).await.problem(422, "validation-failed");
+    assert_eq!(problem["errors"][0]["pointer"], "/tolerance/relative_residual");
+}
+
+#[tokio::test]
+async fn what_is_wrong_with_a_case_is_told_and_nothing_of_it_is_kept() {
+    let server = Server::start();
+    let refused = async |change: &dyn Fn(&mut serde_json::Value)| {
+        let mut case = SMALL.case();
+        change(&mut case);
+        ask(server.post("/v1/cases").multipart(SMALL.form(&case))).await
+    };
+    let answer = refused(&|case| case["fixed"] = json!([{"node_set": "nowhere"}])).await;
+    let problem = answer.problem(422, "validation-failed");
+    assert_eq!(problem["errors"][0]["pointer"], "/fixed/0");
+    let answer = refused(&|case| case["bones"] = json!([{"name": "jaw", "mesh": "jaw"}])).await;
+    let problem = answer.problem(422, "validation-failed");
+    assert_eq!(problem["errors"][0]["pointer"], "/bones/0/mesh");
+    let answer = refused(&|case| case["volume"] = json!("other")).await;
+    answer.problem(422, "unused-part");
+    let answer = refused(&|case| case["frame"] = json!("up")).await;
+    answer.problem(422, "validation-failed");
+
+    let form = SMALL.form(&SMALL.case()).part("bad", Part::text("not a mesh"));
+    let answer = ask(server.post("/v1/cases").multipart(form)).await;
+    assert_eq!(answer.problem(415, "unsupported-media-type")["part"], "bad");
+    let no_case = reqwest::multipart::Form::new().part("block", Part::bytes(SMALL.vtu()));
+    let answer = ask(server.post("/v1/cases").multipart(no_case)).await;
+    answer.problem(400, "malformed-multipart");
+
+    let listed = ask(server.get("/v1/cases")).await.expect(StatusCode::OK);
+    assert_eq!(listed["items"], json!([]));
+    let blobs = std::fs::read_dir(server.path().join("blobs")).unwrap().count();
+    assert_eq!(blobs, 0, "no mesh of a refused case is kept");
+}
+
+#[tokio::test]
+async fn a_case_that_only_a_plan_holds_is_kept() {
+    let server = Server::start();
+    let mut document = SMALL.case();
+    document["segments"] = json!([]);
+    document["fixed"] = json!([]);
+    let answer = ask(server.post("/v1/cases").multipart(SMALL.form(&document))).await;
+    let case = answer.expect(StatusCode::CREATED);
+    assert!(case.get("check").is_none());
+    let mut loose = spec(case["id"].as_str().unwrap(), 1.0);
+    loose["plan"] = json!({"segments": []});
+    let answer = ask(server.post("/v1/jobs").json(&loose)).await;
+    answer.problem(422, "underconstrained");
+    loose["plan"] = json!({"segments": [{"name": "z_min", "translation_mm": [1, 0, 0]}]});
+    server.job(&loose).await.expect(StatusCode::OK);
+}
+
+#[tokio::test]
+async fn erasing_a_case_takes_its_jobs_results_and_meshes_along() {
+    let server = Server::start();
+    let case = server.case(&SMALL).await;
+    let shared = server.upload(SMALL.vtu()).await.expect(StatusCode::CREATED);
+    let path = format!("/v1/cases/{case}");
+    let meshes = ask(server.get(&path)).await.json()["meshes"].clone();
+    let own = format!("/v1/meshes/{}", meshes[0]["id"].as_str().unwrap());
+    ask(server.delete(&own)).await.problem(409, "conflict-in-use");
+    let job = server.job(&spec(&case, 1.0)).await.expect(StatusCode::OK);
+    let job = format!("/v1/jobs/{}", job["id"].as_str().unwrap());
+    ask(server.delete(&path)).await.problem(428, "precondition-required");
+    ask(server.delete(&path).header("if-match", "\"9\"")).await.problem(412, "precondition-failed");
+    let erased = ask(server.delete(&path).header("if-match", "\"1\"")).await;
+    assert_eq!(erased.status, StatusCode::NO_CONTENT);
+    ask(server.get(&path)).await.problem(404, "not-found");
+    ask(server.get(&job)).await.problem(404, "no-such-job");
+    ask(server.get(&own)).await.problem(404, "not-found");
+    let kept = format!("/v1/meshes/{}", shared["id"].as_str().unwrap());
+    ask(server.get(&kept)).await.expect(StatusCode::OK);
+    let files = |name: &str| {
+        let folders = std::fs::read_dir(server.path().join(name)).unwrap();
+        let count = |folder: std::path::PathBuf| std::fs::read_dir(folder).unwrap().count();
+        folders.map(|folder| count(folder.unwrap().path())).sum::<usize>()
+    };
+    assert_eq!(files("blobs"), 1, "the mesh that was uploaded by itself stays");
+}

@@ -42,7 +42,13 @@ impl Server {
     }
 
     pub fn start_in(folder: TempDir, arguments: &[&str]) -> Server {
-        let mut child = serve(folder.path()).args(arguments).spawn().unwrap();
+        let mut command = serve(folder.path());
+        command.args(arguments);
+        Server::start_command(command, folder)
+    }
+
+    pub fn start_command(mut command: Command, folder: TempDir) -> Server {
+        let mut child = command.spawn().unwrap();
         let mut line = String::new();
         let stdout = child.stdout.take().unwrap();
         BufReader::new(stdout).read_line(&mut line).unwrap();
@@ -53,10 +59,6 @@ impl Server {
 
     pub fn path(&self) -> &Path {
         self.folder.path()
-    }
-
-    pub fn process(&self) -> u32 {
-        self.child.id()
     }
 
     /// SIGKILL, as by a power cut; the folder stays.
@@ -225,7 +227,7 @@ impl Block {
             "schema": 1, "units": "mm", "volume": "block", "tags": ["test"],
             "segments": [{"name": "bone", "nodes": {"node_set": "z_min"}}],
             "fixed": [{"node_set": "z_max"}],
-            "landmarks": {"middle": [30, 30, 15]},
+            "landmarks": {"middle": [30, 60, 15]},
         })
     }
 

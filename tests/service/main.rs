@@ -6,6 +6,9 @@ mod bad_requests;
 mod cases;
 mod demo;
 mod faults;
+#[allow(dead_code, reason = "the tests of the formats use the rest")]
+#[path = "../mechanics/formats_samples.rs"]
+mod formats_samples;
 mod helpers;
 mod jobs;
 mod meshes;

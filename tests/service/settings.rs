@@ -1,1 +1,143 @@
+//! The start and the end of the process.
 
+use std::process::{Command, Output};
+
+use reqwest::StatusCode;
+use tempfile::TempDir;
+
+use crate::helpers::{SMALL, Server, ask, serve, spec};
+
+fn run(command: &mut Command) -> Output {
+    command.stderr(std::process::Stdio::piped()).output().unwrap()
+}
+
+/// The one line that a start with these arguments ends with, and its exit code.
+fn refused(arguments: &[&str]) -> (Option<i32>, String) {
+    let folder = TempDir::new().unwrap();
+    let output = run(serve(folder.path()).args(arguments));
+    let text = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(text.lines().count(), 1, "{text}");
+    assert!(output.stdout.is_empty());
+    (output.status.code(), text)
+}
+
+#[test]
+fn a_wrong_setting_stops_the_start_with_one_line_and_78() {
+    for (arguments, named) in [
+        (["--workers", "many"], "workers"),
+        (["--upload-mib", "0"], "upload-mib"),
+        (["--heartbeat-s", "2"], "heartbeat-s"),
+        (["--log-format", "xml"], "log-format"),
+        (["--log-level", "=="], "log-level"),
+        (["--api-key", "short"], "api-key"),
+    ] {
+        let (code, line) = refused(&arguments);
+        assert_eq!(code, Some(78), "{line}");
+        assert!(line.contains(named), "{line}");
+    }
+}
+
+#[test]
+fn a_setting_is_taken_from_the_environment_too() {
+    let folder = TempDir::new().unwrap();
+    let output = run(serve(folder.path()).env("FACIES_WORKERS", "-1"));
+    assert_eq!(output.status.code(), Some(78));
+    assert!(String::from_utf8(output.stderr).unwrap().contains("workers is `-1`"));
+}
+
+#[test]
+fn a_port_that_is_taken_and_a_folder_that_is_served_are_told() {
+    let server = Server::start();
+    let folder = TempDir::new().unwrap();
+    let mut taken = Command::new(env!("CARGO_BIN_EXE_facies"));
+    taken.args(["serve", "--bind", server.host(), "--data"]).arg(folder.path());
+    let output = run(&mut taken);
+    assert_eq!(output.status.code(), Some(78));
+    assert!(String::from_utf8(output.stderr).unwrap().contains(server.host()));
+    let output = run(&mut serve(server.path()));
+    assert_eq!(output.status.code(), Some(78));
+    assert!(String::from_utf8(output.stderr).unwrap().contains("another facies"));
+}
+
+/// Without a terminal a bind to all interfaces is refused before anything listens.
+fn all_interfaces(folder: &TempDir) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_facies"));
+    command.args(["serve", "--bind", "0.0.0.0:0", "--data"]).arg(folder.path());
+    command
+}
+
+#[test]
+fn an_address_that_others_reach_needs_a_key() {
+    let folder = TempDir::new().unwrap();
+    let output = run(&mut all_interfaces(&folder));
+    assert_eq!(output.status.code(), Some(78));
+    assert!(String::from_utf8(output.stderr).unwrap().contains("api-key"));
+}
+
+#[tokio::test]
+async fn a_key_is_asked_for_on_everything_but_health() {
+    const KEY: &str = "0123456789abcdef";
+    let server = Server::start_with(&["--api-key", KEY]);
+    for path in ["/healthz", "/readyz"] {
+        assert_eq!(ask(server.get(path)).await.status, StatusCode::OK, "{path}");
+    }
+    let with = |value: &str| server.get("/v1/limits").header("authorization", value);
+    for request in [
+        server.get("/v1/limits"),
+        server.get(&format!("/v1/limits?api_key={KEY}")),
+        server.get("/docs/"),
+        server.get("/nothing"),
+        with("Bearer wrong-wrong-wrong"),
+        with(&format!("Basic {KEY}")),
+        with(KEY),
+    ] {
+        let answer = ask(request).await;
+        answer.problem(401, "unauthorized");
+        assert_eq!(answer.header("www-authenticate"), "Bearer");
+    }
+    let allowed = ask(with(&format!("bearer {KEY}"))).await;
+    assert_eq!(allowed.status, StatusCode::OK);
+}
+
+#[tokio::test]
+async fn health_tells_that_the_process_lives_and_that_it_can_work() {
+    let server = Server::start();
+    assert_eq!(ask(server.get("/healthz")).await.expect(StatusCode::OK)["status"], "ok");
+    assert_eq!(ask(server.get("/readyz")).await.expect(StatusCode::OK)["status"], "ok");
+    let mut asked = Command::new(env!("CARGO_BIN_EXE_facies"));
+    assert!(run(asked.args(["health", "--bind", server.host()])).status.success());
+    let full = Server::start_with(&["--free-space-floor-mib", "1048576"]);
+    let answer = ask(full.get("/readyz")).await;
+    let problem = answer.problem(503, "not-ready");
+    assert_eq!(problem["checks"], serde_json::json!(["free-space"]));
+    assert!(!answer.header("retry-after").is_empty());
+    let gone = server.host().to_owned();
+    drop(server);
+    let mut asked = Command::new(env!("CARGO_BIN_EXE_facies"));
+    assert_eq!(run(asked.args(["health", "--bind", &gone])).status.code(), Some(3));
+}
+
+#[tokio::test]
+async fn logs_name_the_request_and_the_job_and_no_patient() {
+    let folder = TempDir::new().unwrap();
+    let log = folder.path().join("log");
+    let mut command = serve(&folder.path().join("data"));
+    command.stderr(std::fs::File::create(&log).unwrap());
+    let server = Server::start_command(command, TempDir::new().unwrap());
+    let mut case = SMALL.case();
+    case["name"] = "Jane Roe".into();
+    let stored = ask(server.post("/v1/cases").multipart(SMALL.form(&case))).await;
+    let case = stored.expect(StatusCode::CREATED)["id"].as_str().unwrap().to_owned();
+    let request = server.post("/v1/jobs").header("prefer", "wait=30").json(&spec(&case, 1.0));
+    let job = ask(request.header("x-request-id", "my-request")).await.expect(StatusCode::OK);
+    let (_, ended) = server.terminate();
+    assert!(ended);
+    let text = std::fs::read_to_string(&log).unwrap();
+    let lines: Vec<serde_json::Value> =
+        text.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    let id = job["id"].as_str().unwrap();
+    assert!(lines.iter().any(|line| line["span"]["job.id"] == id && line["duration_ms"].is_f64()));
+    assert!(lines.iter().any(|line| line["span"]["request.id"] == "my-request"));
+    assert!(!text.contains("Jane"), "{text}");
+    assert!(!text.contains("/v1/cases/0"), "paths with ids are not logged");
+}
