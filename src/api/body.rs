@@ -153,10 +153,8 @@ async fn read_parts(request: Request, most: usize) -> ApiResult<Vec<(String, Byt
         .map_err(|error| malformed(error.body_text()))?;
     let mut parts: Vec<(String, Bytes)> = Vec::new();
     let mut unread = 0;
-    while let Some(part) = multipart
-        .next_field()
-        .await
-        .map_err(|error| malformed(error.body_text()))?
+    while let Some(part) =
+        multipart.next_field().await.map_err(|error| malformed(error.body_text()))?
     {
         if parts.len() == most {
             // A client that still writes hears no answer, so the rest is passed over.

@@ -8,8 +8,8 @@ use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
 use tracing::Instrument;
 
-use super::{Service, body};
 use super::error::{ApiError, with_problem_body};
+use super::{Service, body};
 use crate::schema::problem::Problem;
 
 const REQUEST_ID: &str = "x-request-id";

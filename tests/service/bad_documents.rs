@@ -27,7 +27,11 @@ fn matrix(change: impl Fn(&mut [f64; 16])) -> Value {
 fn plans() -> Vec<Row> {
     let at = "/plan/segments/0";
     let twice = json!([{"name": "bone", "translation_mm": [1, 0, 0]}, {"name": "bone", "translation_mm": [1, 0, 0]}]);
-    let turned = |deg: f64| moved(json!({"rotation_deg": [deg, 0, 0], "pivot_mm": [0, 0, 0], "translation_mm": [0, 0, 0]}));
+    let turned = |deg: f64| {
+        moved(
+            json!({"rotation_deg": [deg, 0, 0], "pivot_mm": [0, 0, 0], "translation_mm": [0, 0, 0]}),
+        )
+    };
     let far = |mm: f64| moved(json!({"translation_mm": [mm, 0, 0]}));
     vec![
         ("50 scale", matrix(|m| m[0] = 1.1), "plan-not-rigid", at),
@@ -39,9 +43,19 @@ fn plans() -> Vec<Row> {
         ("52 null", moved(json!({"translation_mm": [null, 0, 0]})), "validation-failed", at),
         ("52 text", moved(json!({"translation_mm": ["3", 0, 0]})), "validation-failed", at),
         ("53 misspelt", moved(json!({"translation": [1, 0, 0]})), "validation-failed", at),
-        ("55 unknown segment", json!({"plan": {"segments": [{"name": "nose", "translation_mm": [1, 0, 0]}]}}), "unknown-segment", at),
+        (
+            "55 unknown segment",
+            json!({"plan": {"segments": [{"name": "nose", "translation_mm": [1, 0, 0]}]}}),
+            "unknown-segment",
+            at,
+        ),
         ("55 twice", json!({"plan": {"segments": twice}}), "validation-failed", "/plan/segments"),
-        ("60 activation", json!({"plan": {"muscle_activation": {"masseter_l": 1.5}}}), "validation-failed", "/plan/muscle_activation"),
+        (
+            "60 activation",
+            json!({"plan": {"muscle_activation": {"masseter_l": 1.5}}}),
+            "validation-failed",
+            "/plan/muscle_activation",
+        ),
     ]
 }
 
@@ -54,14 +68,34 @@ fn specs() -> Vec<Row> {
         ("58 E 0", tissue(json!({"young_modulus_kpa": 0})), "validation-failed", at),
         ("58 E 1e20", tissue(json!({"young_modulus_kpa": 1e20})), "validation-failed", at),
         ("58 density", tissue(json!({"density_g_per_cm3": -1})), "validation-failed", at),
-        ("59 unknown region", json!({"materials": {"bark": {"young_modulus_kpa": 1}}}), "validation-failed", "/materials/bark"),
-        ("61 tolerance 0", json!({"tolerance": {"relative_residual": 0}}), "validation-failed", "/tolerance/relative_residual"),
-        ("61 tolerance 1e-300", json!({"tolerance": {"relative_residual": 1e-300}}), "validation-failed", "/tolerance/relative_residual"),
+        (
+            "59 unknown region",
+            json!({"materials": {"bark": {"young_modulus_kpa": 1}}}),
+            "validation-failed",
+            "/materials/bark",
+        ),
+        (
+            "61 tolerance 0",
+            json!({"tolerance": {"relative_residual": 0}}),
+            "validation-failed",
+            "/tolerance/relative_residual",
+        ),
+        (
+            "61 tolerance 1e-300",
+            json!({"tolerance": {"relative_residual": 1e-300}}),
+            "validation-failed",
+            "/tolerance/relative_residual",
+        ),
         ("61 budget 0", json!({"budget": {"wall_s": 0}}), "validation-failed", "/budget/wall_s"),
         ("61 steps", json!({"steps": 1e9}), "validation-failed", "/steps"),
         ("62 path", json!({"outputs": ["../../x"]}), "validation-failed", "/outputs/0"),
         ("62 unknown format", json!({"outputs": ["skin.obj"]}), "validation-failed", "/outputs/0"),
-        ("63 nobody's mesh", json!({"compare_to": {"actual": {"mesh": uuid::Uuid::now_v7()}}}), "validation-failed", "/compare_to/actual/mesh"),
+        (
+            "63 nobody's mesh",
+            json!({"compare_to": {"actual": {"mesh": uuid::Uuid::now_v7()}}}),
+            "validation-failed",
+            "/compare_to/actual/mesh",
+        ),
         ("case", json!({"case": "../../etc"}), "validation-failed", "/case"),
         ("plan id", json!({"plan": null}), "validation-failed", "/plan"),
     ]
@@ -92,7 +126,12 @@ async fn what_is_not_json_is_refused_with_its_place() {
     for (name, body, status, code) in [
         ("52 NaN", b"{\"kind\": NaN}".to_vec(), 400, "malformed-json"),
         ("52 1e999", b"{\"kind\": 1e999}".to_vec(), 400, "malformed-json"),
-        ("54 twice", b"{\"kind\": \"predict\", \"kind\": \"predict\"}".to_vec(), 422, "validation-failed"),
+        (
+            "54 twice",
+            b"{\"kind\": \"predict\", \"kind\": \"predict\"}".to_vec(),
+            422,
+            "validation-failed",
+        ),
         ("75 deep", deep.into_bytes(), 400, "malformed-json"),
         ("75 large", large.into_bytes(), 413, "payload-too-large"),
         ("75 utf-16", utf16, 400, "malformed-json"),
@@ -129,11 +168,10 @@ async fn a_comparison_is_refused_where_its_surfaces_are_not_there() {
     let server = Server::start_with(&["--workers", "0"]);
     let mesh = server.upload(SMALL.vtu()).await.expect(StatusCode::CREATED);
     let case = server.case(&SMALL).await;
-    let waiting = ask(server.post("/v1/jobs").json(&spec(&case, 1.0))).await.expect(StatusCode::CREATED);
+    let waiting =
+        ask(server.post("/v1/jobs").json(&spec(&case, 1.0))).await.expect(StatusCode::CREATED);
     let nobody = uuid::Uuid::now_v7();
-    let compare = |prediction: Value, actual: Value| {
-        json!({"kind": "compare", "prediction": prediction, "actual": {"mesh": actual}})
-    };
+    let compare = |prediction: Value, actual: Value| json!({"kind": "compare", "prediction": prediction, "actual": {"mesh": actual}});
     for (spec, pointer) in [
         (compare(json!({"mesh": mesh["id"]}), json!(nobody)), "/actual/mesh"),
         (compare(json!({"mesh": nobody}), mesh["id"].clone()), "/prediction/mesh"),

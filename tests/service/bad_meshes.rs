@@ -40,9 +40,19 @@ fn surfaces() -> Vec<(&'static str, Vec<u8>, u16, &'static str)> {
         ("19 index beyond", changed(OBJ, "3/1", "9"), 422, "mesh-index-out-of-range"),
         ("19 index 0", changed(OBJ, "3/1", "0"), 422, "mesh-index-out-of-range"),
         ("19 index before", changed(OBJ, "3/1", "-9"), 422, "mesh-index-out-of-range"),
-        ("21 65 corners", format!("v 0 0 0\nv 9 0 0\nv 0 9 0\nf{}", " 1 2 3".repeat(22)).into(), 422, "mesh-limits"),
+        (
+            "21 65 corners",
+            format!("v 0 0 0\nv 9 0 0\nv 0 9 0\nf{}", " 1 2 3".repeat(22)).into(),
+            422,
+            "mesh-limits",
+        ),
         ("22 decimal comma", changed(OBJ, "v 100 0", "v 100,5 0"), 422, "mesh-parse"),
-        ("24 4e9 vertices", changed(PLY, "element vertex 4\r", "element vertex 4000000000\r"), 422, "mesh-limits"),
+        (
+            "24 4e9 vertices",
+            changed(PLY, "element vertex 4\r", "element vertex 4000000000\r"),
+            422,
+            "mesh-limits",
+        ),
     ]
 }
 
@@ -59,14 +69,44 @@ fn volumes() -> Vec<(&'static str, Vec<u8>, u16, &'static str)> {
     );
     vec![
         ("29 4e9 points", changed(VTK, "POINTS 4", "POINTS 4000000000"), 422, "mesh-limits"),
-        ("29 2^64-1 points", changed(VTK, "POINTS 4", "POINTS 18446744073709551615"), 422, "mesh-limits"),
-        ("30 4e9 points", vtu("", "NumberOfPoints=\"4\"", "NumberOfPoints=\"4000000000\""), 422, "mesh-limits"),
-        ("30 two points more", vtu("", "NumberOfPoints=\"4\"", "NumberOfPoints=\"6\""), 422, "mesh-parse"),
-        ("32 an entity", vtu("", "<VTKFile", "<!DOCTYPE x [<!ENTITY a SYSTEM \"/etc/passwd\">]><VTKFile"), 422, "mesh-parse"),
+        (
+            "29 2^64-1 points",
+            changed(VTK, "POINTS 4", "POINTS 18446744073709551615"),
+            422,
+            "mesh-limits",
+        ),
+        (
+            "30 4e9 points",
+            vtu("", "NumberOfPoints=\"4\"", "NumberOfPoints=\"4000000000\""),
+            422,
+            "mesh-limits",
+        ),
+        (
+            "30 two points more",
+            vtu("", "NumberOfPoints=\"4\"", "NumberOfPoints=\"6\""),
+            422,
+            "mesh-parse",
+        ),
+        (
+            "32 an entity",
+            vtu("", "<VTKFile", "<!DOCTYPE x [<!ENTITY a SYSTEM \"/etc/passwd\">]><VTKFile"),
+            422,
+            "mesh-parse",
+        ),
         ("35 a pyramid", pyramid.into(), 422, "mesh-parse"),
         ("36 some inverted", inverted.into(), 422, "mesh-inverted-elements"),
-        ("40 a name of 10 kB", ascii_vtu(&TETRAHEDRON, &[(10, &[0, 1, 2, 3])], &named).into(), 422, "mesh-limits"),
-        ("46 5.1 million points", vtu("", "NumberOfPoints=\"4\"", "NumberOfPoints=\"5100000\""), 422, "mesh-limits"),
+        (
+            "40 a name of 10 kB",
+            ascii_vtu(&TETRAHEDRON, &[(10, &[0, 1, 2, 3])], &named).into(),
+            422,
+            "mesh-limits",
+        ),
+        (
+            "46 5.1 million points",
+            vtu("", "NumberOfPoints=\"4\"", "NumberOfPoints=\"5100000\""),
+            422,
+            "mesh-limits",
+        ),
     ]
 }
 
@@ -137,18 +177,13 @@ async fn a_frame_that_contradicts_the_file_is_refused() {
     let request = server.post("/v1/meshes?frame=RAS").header("content-type", "model/stl").body(STL);
     ask(request).await.problem_of("17", 422, "frame-conflict");
     let case = serde_json::json!({"schema": 1, "units": "mm", "frame": "RAS", "volume": "block"});
-    let marked = crate::formats_samples::ascii_vtu(
-        &TETRAHEDRON,
-        &[(10, &[0, 1, 2, 3])],
-        "<PointData/>",
-    );
+    let marked =
+        crate::formats_samples::ascii_vtu(&TETRAHEDRON, &[(10, &[0, 1, 2, 3])], "<PointData/>");
     let marked = marked.replace(
         "<UnstructuredGrid>",
         "<UnstructuredGrid><FieldData><DataArray type=\"String\" Name=\"SPACE\" NumberOfTuples=\"1\" format=\"ascii\">76 80 83 0</DataArray></FieldData>",
     );
-    let form = reqwest::multipart::Form::new()
-        .text("case", case.to_string())
-        .text("block", marked);
+    let form = reqwest::multipart::Form::new().text("case", case.to_string()).text("block", marked);
     ask(server.post("/v1/cases").multipart(form)).await.problem_of("17", 422, "frame-conflict");
 }
 

@@ -94,7 +94,9 @@ async fn what_is_too_long_is_refused_with_its_limit() {
     let request = || server.post("/v1/meshes").header("content-type", "model/stl");
     let declared = ask(request().body(bytes.clone())).await;
     assert_eq!(declared.problem(413, "payload-too-large")["limit"], 1 << 20);
-    let frames = futures::stream::iter(bytes.chunks(1 << 16).map(|c| Ok::<_, std::io::Error>(c.to_vec())).collect::<Vec<_>>());
+    let frames = futures::stream::iter(
+        bytes.chunks(1 << 16).map(|c| Ok::<_, std::io::Error>(c.to_vec())).collect::<Vec<_>>(),
+    );
     let chunked = request().body(reqwest::Body::wrap_stream(frames)).send().await;
     // The server may close the connection before the last chunk was sent.
     if let Ok(answer) = chunked {
@@ -142,7 +144,8 @@ async fn a_body_that_stops_coming_is_given_up() {
 #[tokio::test]
 async fn other_origins_are_not_allowed_in() {
     let server = Server::start();
-    let request = server.request(Method::OPTIONS, "/v1/jobs").header("origin", "https://elsewhere.example");
+    let request =
+        server.request(Method::OPTIONS, "/v1/jobs").header("origin", "https://elsewhere.example");
     let answer = ask(request.header("access-control-request-method", "POST")).await;
     assert!(answer.headers.get("access-control-allow-origin").is_none(), "83");
 }

@@ -36,7 +36,10 @@ async fn a_killed_server_loses_no_job_and_finishes_it_once() {
     for file in job["results"]["files"].as_array().unwrap() {
         let name = file["name"].as_str().unwrap();
         let answer = ask(server.get(&format!("/v1/jobs/{id}/results/{name}"))).await;
-        assert_eq!(facies::schema::canonical::sha256_hex(&answer.bytes), file["sha256"].as_str().unwrap());
+        assert_eq!(
+            facies::schema::canonical::sha256_hex(&answer.bytes),
+            file["sha256"].as_str().unwrap()
+        );
     }
     let left = std::fs::read_dir(server.path().join("tmp")).unwrap().count();
     assert_eq!(left, 0, "the files of the first attempt are gone");

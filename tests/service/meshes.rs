@@ -42,7 +42,8 @@ async fn an_upload_is_reported_and_the_same_bytes_are_the_same_mesh() {
     let second = ask(upload()).await;
     assert_eq!(second.expect(StatusCode::OK)["id"], id);
     let other_unit = server.post("/v1/meshes?units=m&allow_any_scale=true");
-    let other_unit = other_unit.header("content-type", "application/octet-stream").body(bytes.clone());
+    let other_unit =
+        other_unit.header("content-type", "application/octet-stream").body(bytes.clone());
     assert_ne!(ask(other_unit).await.expect(StatusCode::CREATED)["id"], id);
 
     let shown = ask(server.get(&format!("/v1/meshes/{id}"))).await;

@@ -23,7 +23,11 @@ fn every_error_that_is_described_is_a_problem() {
                 assert!(!response["description"].as_str().unwrap().is_empty(), "{place}");
                 if status.starts_with(['4', '5']) {
                     let content = response["content"].as_object().unwrap();
-                    assert_eq!(content.keys().collect::<Vec<_>>(), ["application/problem+json"], "{place}");
+                    assert_eq!(
+                        content.keys().collect::<Vec<_>>(),
+                        ["application/problem+json"],
+                        "{place}"
+                    );
                     seen += 1;
                 }
             }
