@@ -1,5 +1,7 @@
 //! The service from outside: the real server, its store, its queue.
 
+#![allow(clippy::unwrap_used)]
+
 mod bad_documents;
 mod bad_meshes;
 mod bad_requests;
