@@ -1,6 +1,7 @@
 //! facies predicts how a face will look after the bones under it are moved.
 //!
-//! The modules stand in the order of the path that a job takes; ARCHITECTURE.md tells who may use whom.
+//! A job takes the path `format`, `plan`, `boundary`, `model`, `solver`, `prediction`, `validation`; around it stand
+//! `schema`, `store`, `jobs`, `api` and `command`. ARCHITECTURE.md tells who may use whom.
 
 pub mod api;
 pub mod boundary;

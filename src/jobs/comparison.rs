@@ -141,36 +141,29 @@ impl Pair<'_> {
 
     /// Surfaces in different frames cannot be compared.
     fn check_frames(&self) -> Result<(), JobError> {
-        let mut faults = Faults::default();
-        if let (Some(prediction), Some(actual)) = (self.prediction_frame, self.actual.frame)
-            && prediction != actual
-        {
-            let detail = format!("the prediction is in frame {prediction}, the actual in {actual}");
-            faults.add(&self.at.key("actual").key("mesh"), "frame-conflict", detail);
+        match (self.prediction_frame, self.actual.frame) {
+            (Some(prediction), Some(actual)) if prediction != actual => {
+                let detail =
+                    format!("the prediction is in frame {prediction}, the actual in {actual}");
+                let at = self.at.key("actual").key("mesh");
+                Err(Problem::at(&at, "frame-conflict", detail).into())
+            }
+            _ => Ok(()),
         }
-        Ok(faults.into_result()?)
     }
 
     fn judge(&self, error: ComparisonError, clock: &Observed) -> JobError {
-        let refuse = |at: Pointer| {
-            let mut faults = Faults::default();
-            faults.add(&at, error.code(), error.to_string());
-            faults.into_result().err()
-        };
-        let refused = match &error {
+        let at = match &error {
             ComparisonError::Cancelled => return clock.stopped(),
             ComparisonError::Alignment(_) | ComparisonError::LandmarkOutside { .. } => {
                 return JobError::Alignment(error.to_string());
             }
-            ComparisonError::EmptyRegion { name } => refuse(self.at.key("regions").key(name)),
-            ComparisonError::NotCorresponding { .. } => refuse(self.at.key("node_wise")),
-            ComparisonError::TooManySamples { .. } => refuse(self.at.key("samples_per_mm2")),
-            ComparisonError::Surface { .. } | ComparisonError::Statistics(_) => {
-                refuse(self.at.clone())
-            }
+            ComparisonError::EmptyRegion { name } => self.at.key("regions").key(name),
+            ComparisonError::NotCorresponding { .. } => self.at.key("node_wise"),
+            ComparisonError::TooManySamples { .. } => self.at.key("samples_per_mm2"),
+            ComparisonError::Surface { .. } | ComparisonError::Statistics(_) => self.at.clone(),
         };
-        let unplaced = || Problem::new("validation-failed", error.to_string());
-        JobError::Refused(refused.unwrap_or_else(unplaced))
+        JobError::Refused(Problem::at(&at, error.code(), error.to_string()))
     }
 }
 
@@ -199,17 +192,13 @@ fn found(
     id: &str,
     at: &Pointer,
 ) -> Result<StoredMesh, JobError> {
-    let mut faults = Faults::default();
-    match result {
-        Ok(mesh) => return Ok(mesh),
-        Err(SourceError::Unknown { .. }) => {
-            faults.add(at, "unknown-mesh", format!("there is no mesh {id:?}"));
+    result.map_err(|error| match error {
+        SourceError::Unknown { .. } => {
+            Problem::at(at, "unknown-mesh", format!("there is no mesh {id:?}")).into()
         }
-        Err(SourceError::Refused { code, detail, .. }) => faults.add(at, code, detail),
-        Err(other) => return Err(JobError::Source(other)),
-    }
-    let refused = faults.into_result().err();
-    Err(refused.map_or(JobError::Source(SourceError::Unknown { id: id.to_owned() }), Into::into))
+        SourceError::Refused { code, detail, .. } => Problem::at(at, code, detail).into(),
+        other => JobError::Source(other),
+    })
 }
 
 /// `skin.vtp` of a comparison: the prediction with its distance at each point.

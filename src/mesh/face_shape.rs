@@ -6,7 +6,7 @@
 //! where t narrows the chin and l lets the rows climb along the jaw towards the ears. Bumps and hollows (sums of Gaussians
 //! in x and z, pushed towards the front) make nose, eyes, lips and chin. Bone follows a part of them
 //! at the tissue thickness of the row. Made to look like a face, not measured on one; thicknesses are
-//! in the range of the tissue depth tables (Manhein et al., Journal of Forensic Sciences 45, 2000).
+//! in the range that is usual for adults.
 
 use super::Vector;
 

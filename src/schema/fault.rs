@@ -107,7 +107,7 @@ impl Faults {
         }
     }
 
-    fn into_problem(self) -> Problem {
+    pub(super) fn into_problem(self) -> Problem {
         let shared =
             CATALOGUE.iter().find(|code| self.errors.iter().all(|error| error.code == **code));
         let count = self.errors.len() + self.unreported;

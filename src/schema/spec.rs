@@ -196,27 +196,24 @@ impl JobDocument {
     pub fn parse(bytes: &[u8], limits: &Limits) -> Result<JobDocument, Problem> {
         let value = strict::parse_value(bytes, limits)?;
         let at = Pointer::root().key("kind");
-        let mut faults = Faults::default();
-        match value.get("kind").and_then(Value::as_str) {
-            Some("predict") => {
+        match value.get("kind").map(Value::as_str) {
+            Some(Some("predict")) => {
                 let document: PredictDocument = strict::from_value(value)?;
+                let mut faults = Faults::default();
                 document.check_for_service(&mut faults);
-                faults.into_result()?;
-                return Ok(JobDocument::Predict(document));
+                faults.into_result().map(|()| JobDocument::Predict(document))
             }
-            Some("compare") => {
-                return strict::from_value(value).map(JobDocument::Compare);
-            }
-            Some(other) => {
+            Some(Some("compare")) => strict::from_value(value).map(JobDocument::Compare),
+            Some(Some(other)) => {
                 let detail = format!("`{other}` is not a kind of job; `predict` and `compare` are");
-                faults.add(&at, "unknown-word", detail);
+                Err(Problem::at(&at, "unknown-word", detail))
             }
+            Some(None) => Err(Problem::at(&at, "wrong-type", "the kind of a job is a word")),
             None => {
-                faults.add(&at, "missing-field", "missing field `kind`: `predict` or `compare`")
+                let detail = "missing field `kind`: `predict` or `compare`";
+                Err(Problem::at(&at, "missing-field", detail))
             }
         }
-        faults.into_result()?;
-        unreachable!("a body without a known kind has a fault")
     }
 }
 
