@@ -36,7 +36,7 @@ pub const SETTINGS: [Setting; 15] = [
     setting(
         "api-key",
         "",
-        "asked for as `Authorization: Bearer KEY` on everything but /healthz and /readyz; 16 to 255 visible characters; without it nobody is asked",
+        "asked for as `Authorization: Bearer KEY` on everything but /healthz, /readyz and the documentation; 16 to 255 visible characters; without it nobody is asked",
     ),
     setting("workers", "2", "jobs solved at the same time; 0 to 64, 0 leaves the jobs to others"),
     setting("threads-per-job", "1", "threads of one job; 1 to 64; the results do not depend on it"),

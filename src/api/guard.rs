@@ -86,7 +86,7 @@ fn check_key(service: &Service, request: &Request) -> Result<(), ApiError> {
     let Some(key) = &service.config.api_key else {
         return Ok(());
     };
-    if matches!(request.uri().path(), "/healthz" | "/readyz") {
+    if is_open(request.uri().path()) {
         return Ok(());
     }
     let given = request
@@ -102,6 +102,11 @@ fn check_key(service: &Service, request: &Request) -> Result<(), ApiError> {
     let error =
         ApiError::new("unauthorized", "send the key of the service as `Authorization: Bearer KEY`");
     Err(error.header(header::WWW_AUTHENTICATE, HeaderValue::from_static("Bearer")))
+}
+
+/// Probes carry no key, and a browser cannot send one for the documentation, which holds no data.
+fn is_open(path: &str) -> bool {
+    matches!(path, "/healthz" | "/readyz" | "/openapi.json" | "/docs") || path.starts_with("/docs/")
 }
 
 /// For routes that answer in JSON only.

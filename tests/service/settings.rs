@@ -75,17 +75,17 @@ fn an_address_that_others_reach_needs_a_key() {
 }
 
 #[tokio::test]
-async fn a_key_is_asked_for_on_everything_but_health() {
+async fn a_key_is_asked_for_on_everything_but_health_and_documentation() {
     const KEY: &str = "0123456789abcdef";
     let server = Server::start_with(&["--api-key", KEY]);
-    for path in ["/healthz", "/readyz"] {
+    for path in ["/healthz", "/readyz", "/docs/", "/openapi.json"] {
         assert_eq!(ask(server.get(path)).await.status, StatusCode::OK, "{path}");
     }
     let with = |value: &str| server.get("/v1/limits").header("authorization", value);
     for request in [
         server.get("/v1/limits"),
         server.get(&format!("/v1/limits?api_key={KEY}")),
-        server.get("/docs/"),
+        server.get("/documents"),
         server.get("/nothing"),
         with("Bearer wrong-wrong-wrong"),
         with(&format!("Basic {KEY}")),
