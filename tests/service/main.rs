@@ -1,5 +1,4 @@
 //! The service from outside: the real server, its store, its queue.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on panics")]
 
 #![allow(clippy::unwrap_used)]
 
