@@ -37,7 +37,7 @@ impl MeshSource for FileSource {
             let (code, detail) = (error.code(), error.to_string());
             SourceError::Refused { id: id.to_owned(), code, detail }
         })?;
-        let stored = StoredMesh::new(mesh, self.units, canonical::sha256_hex(&bytes));
+        let stored = StoredMesh::new(mesh, Some(self.units), canonical::sha256_hex(&bytes));
         read.insert(id.to_owned(), stored.clone());
         Ok(stored)
     }

@@ -131,6 +131,7 @@ impl PredictInput {
             }
             match sources.mesh(&id) {
                 Ok(mesh) => {
+                    self.check_units(&at, &mesh, &mut faults);
                     stored.insert(id, mesh);
                 }
                 Err(SourceError::Unknown { .. }) => {
@@ -142,6 +143,14 @@ impl PredictInput {
         }
         faults.into_result()?;
         Ok(stored)
+    }
+
+    fn check_units(&self, at: &Pointer, mesh: &StoredMesh, faults: &mut Faults) {
+        if let Some(units) = mesh.units.filter(|units| *units != self.case.units) {
+            let (own, of_case) = (units.name(), self.case.units.name());
+            let detail = format!("the mesh was uploaded in {own}, and the case is in {of_case}");
+            faults.add(at, "units-conflict", detail);
+        }
     }
 
     fn case_meshes(&self, stored: &BTreeMap<String, StoredMesh>) -> Result<CaseMeshes, JobError> {

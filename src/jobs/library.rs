@@ -127,7 +127,7 @@ impl Library {
         Ok(StoredMesh {
             shape,
             frame: document.report.space.or(document.frame).map(Frame::from),
-            units: document.units.unwrap_or_default(),
+            units: document.units,
             warnings: Vec::new(),
             sha256: row.sha256,
         })
@@ -140,7 +140,7 @@ impl Library {
         let parsed = tokio::task::spawn_blocking(move || format::read(&bytes, &limits)).await;
         let parsed = parsed.map_err(|_| StoreError::Interrupted)?;
         let parsed = parsed.map_err(|error| StoreError::Schema(format!("stored mesh: {error}")))?;
-        Ok(StoredMesh::new(parsed, LengthUnit::Mm, sha256))
+        Ok(StoredMesh::new(parsed, Some(LengthUnit::Mm), sha256))
     }
 
     /// The skin that a successful prediction wrote; `None` where the job has none.

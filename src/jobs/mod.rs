@@ -10,6 +10,7 @@ pub mod library;
 pub mod numerics;
 pub mod observed;
 mod output;
+mod overlap;
 mod pictures;
 mod provenance;
 pub mod report;

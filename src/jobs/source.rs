@@ -20,8 +20,8 @@ pub struct StoredMesh {
     pub shape: StoredShape,
     /// The frame that a mark in the file names.
     pub frame: Option<Frame>,
-    /// The unit in which it was uploaded; a case states its own.
-    pub units: LengthUnit,
+    /// The unit stated when it was uploaded, which must be that of a case that uses it.
+    pub units: Option<LengthUnit>,
     /// What the reader had to say.
     pub warnings: Vec<Warning>,
     /// SHA-256 in hexadecimal.
@@ -47,7 +47,7 @@ pub enum SourceError {
 
 impl StoredMesh {
     /// A mesh that was just read from bytes with this hash.
-    pub fn new(read: ReadMesh, units: LengthUnit, sha256: String) -> Self {
+    pub fn new(read: ReadMesh, units: Option<LengthUnit>, sha256: String) -> Self {
         let shape = match read.mesh {
             Mesh::Volume(volume) => StoredShape::Volume(Arc::new(volume)),
             Mesh::Surface(surface) => StoredShape::Surface(Arc::new(surface)),
@@ -63,15 +63,16 @@ impl StoredMesh {
         }
     }
 
-    /// The same surface in mm.
+    /// The same surface in mm; without a stated unit it is in mm already.
     pub fn surface_in_mm(&self) -> Arc<TriangleSurface> {
         let surface = self.surface();
-        if self.units == LengthUnit::Mm {
+        let units = self.units.unwrap_or_default();
+        if units == LengthUnit::Mm {
             return surface;
         }
         let mut scaled = (*surface).clone();
         for point in &mut scaled.points {
-            *point *= self.units.in_mm();
+            *point *= units.in_mm();
         }
         Arc::new(scaled)
     }

@@ -71,9 +71,10 @@ pub fn read_upload(
         report,
     };
     let frame = read.frame.or(statement.frame.map(Frame::from)).unwrap_or_default();
-    let units = statement.units.unwrap_or_default();
-    let mesh =
-        StoredMesh { frame: Some(frame), ..StoredMesh::new(read, units, sha256_of_bytes.clone()) };
+    let mesh = StoredMesh {
+        frame: Some(frame),
+        ..StoredMesh::new(read, statement.units, sha256_of_bytes.clone())
+    };
     let stored = Bytes::from(encode(&mesh.shape, frame)?);
     let row = NewMesh {
         id,

@@ -9,6 +9,7 @@ use super::failure::JobError;
 use super::input::{JobInput, PredictInput, Prepared};
 use super::observed::Observed;
 use super::output::ResultFolder;
+use super::overlap::overlaps;
 use super::pictures::displacement_picture;
 use super::provenance::{Origin, add_method, encode_result, solver_document};
 use super::skin_files::PredictedSkin;
@@ -75,6 +76,7 @@ fn predict_job(
     let compared = compare_skin(input, &prepared, &skin, &clock)?;
     let mut warnings = prepared.warnings.clone();
     warnings.extend(prediction.warnings.iter().cloned());
+    warnings.extend(overlaps(&prepared.case, &prepared.scene, &prediction));
     if let Some(compared) = &compared {
         skin.signed_distance = Some(compared.signed_distance.clone());
         warnings.extend(compared.warnings.iter().cloned());

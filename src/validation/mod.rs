@@ -4,6 +4,7 @@ pub mod alignment;
 pub mod comparison;
 mod correspondence;
 pub mod distance;
+pub mod penetration;
 pub mod statistics;
 
 pub use alignment::{Alignment, AlignmentReport, LandmarkPair};

@@ -34,7 +34,7 @@ fn stored(shape: StoredShape, sha256: &str) -> StoredMesh {
     StoredMesh {
         shape,
         frame: None,
-        units: LengthUnit::Mm,
+        units: Some(LengthUnit::Mm),
         warnings: Vec::new(),
         sha256: sha256.to_owned(),
     }
@@ -54,12 +54,26 @@ fn plate() -> TriangleSurface {
     }
 }
 
+/// A bone of 10 x 10 x 10 mm inside the block, its lowest corner at (x, 20, 20).
+fn cube(x: f64) -> TriangleSurface {
+    let mesh = sample::block(Vector::new(10.0, 10.0, 10.0), [2, 2, 2], CellShape::Hex8);
+    let mut surface = mesh.surface_of(&mesh.boundary_faces());
+    surface.points.iter_mut().for_each(|point| *point += Vector::new(x, 20.0, 20.0));
+    surface.node_ids = None;
+    surface
+}
+
 fn meshes() -> Meshes {
     let volume = |factor, name| stored(StoredShape::Volume(block(factor).into()), name);
     Meshes(BTreeMap::from([
         ("block", volume(1.0, "sha of block")),
-        ("block in m", volume(1e-3, "sha of block in m")),
+        (
+            "block in m",
+            StoredMesh { units: Some(LengthUnit::M), ..volume(1e-3, "sha of block in m") },
+        ),
         ("plate", stored(StoredShape::Surface(plate().into()), "sha of plate")),
+        ("left cube", stored(StoredShape::Surface(cube(20.0).into()), "sha of left cube")),
+        ("right cube", stored(StoredShape::Surface(cube(32.0).into()), "sha of right cube")),
     ]))
 }
 
@@ -144,7 +158,10 @@ fn an_identity_plan_moves_nothing() {
 #[test]
 fn a_mesh_in_metres_gives_the_same_millimetres() {
     let out = tempfile::tempdir().unwrap();
-    let in_metres = CASE.replace("\"mm\"", "\"m\"").replace("\"block\"", "\"block in m\"");
+    let in_metres = CASE
+        .replace("\"mm\"", "\"m\"")
+        .replace("\"block\"", "\"block in m\"")
+        .replace(r#""bones":[{"name":"base","mesh":"plate"}],"#, "");
     let millimetres = predict(CASE, TURN, "{}", &out.path().join("mm")).unwrap();
     let metres = predict(&in_metres, TURN, "{}", &out.path().join("m")).unwrap();
     let of = |done: &JobOutput| done.result.statistics.clone().unwrap().skin.nodes.max;
@@ -302,4 +319,43 @@ fn a_queued_job_survives_being_written_and_read() {
     let input = JobInput::Predict(predict_input(CASE, TURN, ALL));
     let text = serde_json::to_string(&input).unwrap();
     assert_eq!(serde_json::from_str::<JobInput>(&text).unwrap(), input);
+}
+
+#[test]
+fn bones_that_a_plan_pushes_together_or_through_the_skin_are_warned_of_with_their_depth() {
+    let case = r#"{"units":"mm","volume":"block","skin":{"node_set":"z_max"},
+        "bones":[{"name":"left","mesh":"left cube"},{"name":"right","mesh":"right cube"}],
+        "segments":[{"name":"left","nodes":{"node_set":"x_min"}},{"name":"right","nodes":{"node_set":"x_max"}}],
+        "materials":{"*":{"young_modulus_kpa":15,"poisson_ratio":0.4}}}"#;
+    let warned = |movement: &str| {
+        let plan = format!(r#"{{"segments":[{{"name":"left","translation_mm":{movement}}}]}}"#);
+        let out = tempfile::tempdir().unwrap();
+        let warnings = predict(case, &plan, "{}", out.path()).unwrap().result.warnings;
+        let about_bones = warnings.into_iter().filter(|warning| warning.code.starts_with("bone"));
+        about_bones
+            .map(|warning| (warning.code.clone(), warning.numbers["depth_mm"].as_f64().unwrap()))
+            .collect::<Vec<_>>()
+    };
+    // 2 mm lie between the cubes, and 10 mm between them and the skin.
+    assert_eq!(warned("[1.9,0,0]"), []);
+    let pushed = warned("[5,0,0]");
+    assert_eq!(pushed.len(), 1);
+    assert_eq!(pushed[0].0, "bones-overlap");
+    assert!((pushed[0].1 - 3.0).abs() < 1e-9, "{pushed:?}");
+    // At x = 20 to 30 mm of 80 the skin follows by roughly two thirds: 45 mm take the cube through it.
+    assert_eq!(warned("[0,0,20]"), []);
+    let lifted = warned("[0,0,45]");
+    assert_eq!(lifted.len(), 1, "{lifted:?}");
+    assert!(
+        lifted[0].0 == "bone-through-skin" && lifted[0].1 > 1.0 && lifted[0].1 < 15.0,
+        "{lifted:?}"
+    );
+}
+
+#[test]
+fn a_mesh_uploaded_in_another_unit_than_the_case_states_is_refused() {
+    let case = CASE.replace(r#""units":"mm""#, r#""units":"m""#);
+    let out = tempfile::tempdir().unwrap();
+    let error = predict(&case, TURN, "{}", out.path()).unwrap_err();
+    assert!(error.to_string().contains("uploaded in mm"), "{error}");
 }

@@ -1,6 +1,5 @@
 //! The service from outside: the real server, its store, its queue.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on panics")]
-#![allow(clippy::unwrap_used)]
 
 mod bad_documents;
 mod bad_meshes;
