@@ -13,18 +13,20 @@ use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 use super::error::{ApiError, ApiResult};
+use super::guard::check_accept;
 use super::meshes::{TakenIn, document_of, take_in};
 use super::paging::Page;
 use super::parameters::{Id, Parameters};
 use super::{Service, body, conditional, job_input, json, json_only, time, with_header};
 use crate::jobs::upload::{Statement, Upload};
-use crate::jobs::{PredictInput, StoredMesh};
+use crate::jobs::{CheckReport, PredictInput, StoredMesh};
 use crate::schema::check::CheckDocument;
 use crate::schema::mesh::MeshDocument;
 use crate::schema::{CaseDocument, Faults, Limits, PredictDocument, Problem, strict};
 use crate::store::{CaseRow, Change, NewCase};
 
 const JSON: &str = "application/json";
+const SVG: &str = "image/svg+xml";
 const MULTIPART: &str = "multipart/form-data";
 const READ_HERE: &str = "application/json, multipart/form-data";
 /// The part of a form that holds the document; the other parts are meshes.
@@ -32,7 +34,7 @@ const CASE_PART: &str = "case";
 
 pub fn router() -> OpenApiRouter<Service> {
     let router = OpenApiRouter::new().routes(routes!(create, list));
-    json_only(router.routes(routes!(show, remove)).routes(routes!(check)))
+    json_only(router.routes(routes!(show, remove))).routes(routes!(check))
 }
 
 /// A case as it is kept.
@@ -193,7 +195,7 @@ impl Draft {
         let extra = self.uploads.iter().map(|upload| (upload.row.id.clone(), upload.mesh.clone()));
         let checked = checked(service, input, extra.collect()).await;
         match checked {
-            Ok(document) => Ok(Some(document)),
+            Ok(report) => Ok(Some(report.document)),
             Err(error) if needs_a_plan(&error.problem) => Ok(None),
             Err(error) => Err(error.problem.moved("/case", "").into()),
         }
@@ -243,11 +245,11 @@ async fn checked(
     service: &Service,
     input: PredictInput,
     extra: BTreeMap<String, StoredMesh>,
-) -> ApiResult<CheckDocument> {
+) -> ApiResult<CheckReport> {
     let sources = service.library.source(Handle::current(), extra);
     let limits: Limits = (*service.limits).clone();
     let report = service.compute(move || crate::jobs::check(&input, &sources, &limits)).await?;
-    report.map(|report| report.document).map_err(job_input::refusal)
+    report.map_err(job_input::refusal)
 }
 
 async fn row_of(service: &Service, id: &str) -> ApiResult<CaseRow> {
@@ -336,13 +338,21 @@ async fn remove(State(service): State<Service>, Id(id): Id, headers: HeaderMap) 
 }
 
 /// What a job with this spec would be held by and take, without solving anything. The body is the spec
-/// that would be posted to /v1/jobs; `case` may be left out, and without a plan nothing moves.
+/// that would be posted to /v1/jobs; `case` may be left out, and without a plan nothing moves. A client
+/// that accepts `image/svg+xml` only gets a picture of the boundary, coloured by what holds it.
 #[utoipa::path(
     post, path = "/v1/cases/{id}/check", tag = "cases", params(("id" = uuid::Uuid, Path, description = "the case")),
     request_body = CheckRequest,
-    responses((status = 200, description = "the counts of joined, fixed, sliding and free nodes", body = CheckDocument))
+    responses((
+        status = 200, description = "the counts of joined, fixed, sliding and free nodes, or their picture",
+        content((CheckDocument = "application/json"), (String = "image/svg+xml"))
+    ))
 )]
 async fn check(State(service): State<Service>, Id(id): Id, request: Request) -> ApiResult {
+    let wants_counts = check_accept(request.headers(), JSON).is_ok();
+    if !wants_counts {
+        check_accept(request.headers(), SVG)?;
+    }
     let bytes = body::json(&service, request).await?;
     let spec: PredictDocument = strict::parse(&bytes, &service.limits)?;
     let row = row_of(&service, &id).await?;
@@ -353,10 +363,14 @@ async fn check(State(service): State<Service>, Id(id): Id, request: Request) -> 
         faults.into_result()?;
     }
     let input = job_input::predict_input(&service, &row, spec).await?;
-    let document = checked(&service, input, BTreeMap::new()).await;
-    let document =
-        document.map_err(|error| error.map_problem(|problem| problem.moved("/spec", "")))?;
-    Ok(json(StatusCode::OK, &document))
+    let to_spec = |error: ApiError| error.map_problem(|problem| problem.moved("/spec", ""));
+    let report = checked(&service, input, BTreeMap::new()).await.map_err(to_spec)?;
+    if wants_counts {
+        return Ok(json(StatusCode::OK, &report.document));
+    }
+    let picture = service.compute(move || report.picture()).await?.map_err(job_input::refusal)?;
+    let headers = [(header::CONTENT_TYPE, SVG), (header::CACHE_CONTROL, "private, no-store")];
+    Ok((headers, picture).into_response())
 }
 
 /// The spec of a prediction in which everything may be left out.

@@ -28,7 +28,7 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
     if let Some(out) = &arguments.out {
         let document = canonical::to_value(&report.document);
         write(&out.join("check.json"), format!("{document:#}\n"))?;
-        write(&out.join("classes.svg"), &report.picture)?;
+        write(&out.join("classes.svg"), &report.picture()?)?;
         println!("wrote      {}", out.join("check.json").display());
         println!("wrote      {}", out.join("classes.svg").display());
     }

@@ -17,11 +17,17 @@ const PAIRS_OF_WEDGE: f64 = 10.0;
 /// Bytes of a 3x3 block with its column, held as matrix and as preconditioner.
 const BYTES_OF_PAIR: f64 = 2.0 * 76.0;
 
-/// The counts and the picture of a check.
+/// The counts of a check, and the picture on demand: drawing takes longer than counting.
 pub struct CheckReport {
     pub document: CheckDocument,
-    /// `classes.svg`.
-    pub picture: String,
+    prepared: Prepared,
+}
+
+impl CheckReport {
+    /// `classes.svg`: the boundary coloured by what holds it.
+    pub fn picture(&self) -> Result<String, JobError> {
+        self.prepared.classes_picture()
+    }
 }
 
 /// Checks a case and a plan without solving; an empty plan checks the case alone.
@@ -31,7 +37,7 @@ pub fn check(
     limits: &Limits,
 ) -> Result<CheckReport, JobError> {
     let prepared = input.prepare(sources, limits)?;
-    Ok(CheckReport { document: prepared.summary(input), picture: prepared.classes_picture()? })
+    Ok(CheckReport { document: prepared.summary(input), prepared })
 }
 
 impl Prepared {

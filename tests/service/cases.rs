@@ -42,6 +42,11 @@ async fn a_check_counts_what_holds_the_nodes_and_solves_nothing() {
     assert_eq!(report["classes"]["free"], 75);
     assert_eq!(report["unknowns"], 225);
     ask(server.post(&path).json(&json!({}))).await.expect(StatusCode::OK);
+    let drawn = ask(server.post(&path).json(&plan).header("accept", "image/svg+xml")).await;
+    assert_eq!(drawn.status, StatusCode::OK);
+    assert_eq!(drawn.header("content-type"), "image/svg+xml");
+    let neither = server.post(&path).json(&plan).header("accept", "image/png");
+    ask(neither).await.problem(406, "not-acceptable");
     let unknown = json!({"plan": {"segments": [{"name": "nose", "translation_mm": [1, 0, 0]}]}});
     let problem = ask(server.post(&path).json(&unknown)).await.problem(422, "unknown-segment");
     assert_eq!(problem["errors"][0]["pointer"], "/plan/segments/0/name");
