@@ -151,7 +151,7 @@ fn put_surfaces(folder: &Path) {
 #[test]
 fn files_of_other_programs_hold_what_these_wrote() {
     let Some(folder) = interop_folder().map(|folder| folder.join("from_others")) else {
-        eprintln!("skipped: FACIES_INTEROP is not set; tests/interop/run sets it");
+        crate::shared::say_skipped("FACIES_INTEROP is not set; tests/interop/run sets it");
         return;
     };
     let list: Vec<Value> =

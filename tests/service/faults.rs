@@ -120,7 +120,7 @@ impl SmallDisk {
         if mounted.is_ok_and(|output| output.status.success()) {
             return Some(SmallDisk(folder));
         }
-        eprintln!("skipped: a small disk can be mounted by root only");
+        crate::shared::say_skipped("a small disk can be mounted by root only");
         None
     }
 }

@@ -17,4 +17,7 @@ mod openapi;
 mod plans;
 mod queue;
 mod settings;
+#[path = "../shared/mod.rs"]
+#[allow(dead_code, reason = "other tests use the rest")]
+mod shared;
 mod worker;

@@ -1,5 +1,6 @@
 //! Data that is not part of the project: a test that needs it is skipped, and says so, where it is absent.
 
+use std::io::Write;
 use std::path::PathBuf;
 
 /// A file of the shared data: under `FACIES_SHARED`, or under `../shared` beside the project.
@@ -10,6 +11,12 @@ pub fn shared_data(file: &str) -> Option<PathBuf> {
     if path.exists() {
         return Some(path);
     }
-    eprintln!("skipped: {} is not here", path.display());
+    say_skipped(&format!("{} is not here", path.display()));
     None
+}
+
+/// Says why a test does nothing. Written to the stream itself: what a test prints is shown only when it fails.
+pub fn say_skipped(why: &str) {
+    let line = format!("skipped: {why}\n");
+    std::io::stderr().write_all(line.as_bytes()).expect("standard error takes a line");
 }
