@@ -1,25 +1,35 @@
 //! What a plan pushes into what: warned of, since nothing in the model stops it.
 
-use crate::mesh::{SurfaceSearch, TriangleSurface, Warning};
+use crate::mesh::{SurfaceSearch, TriangleSurface, Vector, Warning};
 use crate::plan::RigidMovement;
-use crate::prediction::{Case, Prediction, Scene};
+use crate::prediction::{Bone, Case, Prediction, Scene};
 use crate::validation::penetration::{Side, reach};
 
 /// A plan has to push this much deeper than the scan had it, in mm: surfaces of one scan touch.
 const NOTICEABLE: f64 = 0.1;
 
-/// A bone before and after its segment has moved.
-struct MovedBone<'a> {
+/// A bone where it was scanned, and how the plan moves it.
+struct PlannedBone<'a> {
     name: &'a str,
+    surface: &'a TriangleSurface,
+    search: SurfaceSearch,
     movement: RigidMovement,
-    before: &'a TriangleSurface,
-    after: TriangleSurface,
+}
+
+/// How deep something reaches into or out of something else, in mm.
+#[derive(Clone, Copy)]
+struct Depth {
+    before: f64,
+    after: f64,
 }
 
 /// A warning for each pair of bones that a plan pushes into each other, and for each bone that it
 /// pushes through the predicted skin.
 pub fn overlaps(case: &Case, scene: &Scene, prediction: &Prediction) -> Vec<Warning> {
-    let bones = moved_bones(case, scene);
+    let bones = planned_bones(case, scene);
+    if bones.is_empty() {
+        return Vec::new();
+    }
     let mut warnings = Vec::new();
     for (number, bone) in bones.iter().enumerate() {
         for other in bones[number + 1..].iter().filter(|other| other.movement != bone.movement) {
@@ -27,52 +37,66 @@ pub fn overlaps(case: &Case, scene: &Scene, prediction: &Prediction) -> Vec<Warn
                 "the plan pushes bones {:?} and {:?} into each other",
                 bone.name, other.name
             );
-            let there = depths(bone, (other.before, &other.after), Side::Inside);
-            let back = depths(other, (bone.before, &bone.after), Side::Inside);
+            let (there, back) = (bone.reach_into(other), other.reach_into(bone));
             let deepest =
-                there.zip(back).map(|(there, back)| (there.0.max(back.0), there.1.max(back.1)));
-            warnings.extend(deeper("bones-overlap", detail, deepest));
+                Depth { before: there.before.max(back.before), after: there.after.max(back.after) };
+            warnings.extend(deepest.warning("bones-overlap", detail));
         }
     }
-    let skin = (&scene.skin.surface, &scene.skin.moved(&prediction.displacement));
-    for bone in &bones {
-        let detail = format!("bone {:?} comes through the predicted skin", bone.name);
-        warnings.extend(deeper("bone-through-skin", detail, depths(bone, skin, Side::Outside)));
+    let skin = &scene.skin;
+    let moved = SurfaceSearch::new(&skin.moved(&prediction.displacement));
+    if let (Ok(before), Ok(after)) = (SurfaceSearch::new(&skin.surface), moved) {
+        for bone in &bones {
+            let detail = format!("bone {:?} comes through the predicted skin", bone.name);
+            let depth = bone.through(&before, &after);
+            warnings.extend(depth.warning("bone-through-skin", detail));
+        }
     }
     warnings
 }
 
-fn moved_bones<'a>(case: &'a Case, scene: &Scene) -> Vec<MovedBone<'a>> {
-    let movement = |name: &str| {
-        let segment = scene.segments.iter().find(|segment| segment.name == name);
-        segment.map_or_else(RigidMovement::default, |segment| segment.movement)
+/// The bones of the case; one without any area touches nothing and is left out.
+fn planned_bones<'a>(case: &'a Case, scene: &Scene) -> Vec<PlannedBone<'a>> {
+    let planned = |bone: &'a Bone| {
+        let surface = case.surfaces.get(&bone.surface)?;
+        let search = SurfaceSearch::new(surface).ok()?;
+        let segment = scene.segment(&bone.name).map(|number| &scene.segments[number]);
+        let movement = segment.map_or_else(RigidMovement::default, |segment| segment.movement);
+        Some(PlannedBone { name: &bone.name, surface, search, movement })
     };
-    let surfaces =
-        case.bones.iter().filter_map(|bone| Some((bone, case.surfaces.get(&bone.surface)?)));
-    surfaces
-        .map(|(bone, before)| {
-            let movement = movement(&bone.name);
-            let mut after = (**before).clone();
-            after.points.iter_mut().for_each(|point| *point = movement.apply(point));
-            MovedBone { name: &bone.name, movement, before, after }
-        })
-        .collect()
+    case.bones.iter().filter_map(planned).collect()
 }
 
-/// How far a bone reaches to a side of a surface, before and after.
-fn depths(
-    bone: &MovedBone,
-    surface: (&TriangleSurface, &TriangleSurface),
-    side: Side,
-) -> Option<(f64, f64)> {
-    let (before, after) =
-        (SurfaceSearch::new(surface.0).ok()?, SurfaceSearch::new(surface.1).ok()?);
-    Some((reach(bone.before, side, &before), reach(&bone.after, side, &after)))
+impl PlannedBone<'_> {
+    /// How deep this bone reaches into another one. Only the movement of one against the other counts,
+    /// so the other stays where its search was prepared.
+    fn reach_into(&self, other: &PlannedBone) -> Depth {
+        let relative = self.movement.then(&other.movement.inverse());
+        let after = self.moved_by(&relative);
+        Depth {
+            before: reach(&self.surface.points, Side::Inside, &other.search),
+            after: reach(&after, Side::Inside, &other.search),
+        }
+    }
+
+    /// How far this bone reaches out of the skin.
+    fn through(&self, before: &SurfaceSearch, after: &SurfaceSearch) -> Depth {
+        Depth {
+            before: reach(&self.surface.points, Side::Outside, before),
+            after: reach(&self.moved_by(&self.movement), Side::Outside, after),
+        }
+    }
+
+    fn moved_by(&self, movement: &RigidMovement) -> Vec<Vector> {
+        self.surface.points.iter().map(|point| movement.apply(point)).collect()
+    }
 }
 
-fn deeper(code: &'static str, detail: String, depths: Option<(f64, f64)>) -> Option<Warning> {
-    let (before, after) = depths?;
-    let warning =
-        Warning::new(code, detail).with("depth_mm", after).with("depth_before_mm", before);
-    (after > before + NOTICEABLE).then_some(warning)
+impl Depth {
+    fn warning(self, code: &'static str, detail: String) -> Option<Warning> {
+        let warning = Warning::new(code, detail)
+            .with("depth_mm", self.after)
+            .with("depth_before_mm", self.before);
+        (self.after > self.before + NOTICEABLE).then_some(warning)
+    }
 }

@@ -59,7 +59,7 @@ pub fn encode_bones(
         let Some(surface) = case.surfaces.get(&bone.surface) else {
             continue;
         };
-        let number = scene.segments.iter().position(|segment| segment.name == bone.name);
+        let number = scene.segment(&bone.name);
         let first = moved.points.len() as u32;
         for point in &surface.points {
             let by = number.map_or_else(Vector::zeros, |number| {

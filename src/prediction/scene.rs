@@ -110,6 +110,11 @@ impl Scene {
             .collect()
     }
 
+    /// The number of the segment of that name.
+    pub fn segment(&self, name: &str) -> Option<usize> {
+        self.segments.iter().position(|segment| segment.name == name)
+    }
+
     /// How many nodes each class has, by the name of the segment or of the class.
     pub fn class_counts(&self) -> BTreeMap<String, usize> {
         let mut counts: BTreeMap<String, usize> = BTreeMap::new();
