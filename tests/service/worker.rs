@@ -82,7 +82,13 @@ impl Slot {
         job.id
     }
 
+    /// The job as soon as it is as wanted; a job that never comes to that fails the test instead of holding it up.
     async fn reaches(&self, id: &str, wanted: impl Fn(&JobRow) -> bool) -> JobRow {
+        let reached = tokio::time::timeout(Duration::from_secs(60), self.watch(id, wanted));
+        reached.await.expect("a job comes to what is wanted of it within a minute")
+    }
+
+    async fn watch(&self, id: &str, wanted: impl Fn(&JobRow) -> bool) -> JobRow {
         let mut changes = self.store.job_changes();
         loop {
             changes.mark_unchanged();
