@@ -30,6 +30,15 @@ pub struct Problem<'a> {
     pub tolerance: Tolerance,
 }
 
+/// One of several things that happen to the same tissue.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LoadCase {
+    /// For each hold its displacement in mm along its held axes, in its frame.
+    pub held: Vec<Vector>,
+    /// For each node, in mN.
+    pub forces: Vec<Vector>,
+}
+
 /// Nodal displacement in mm, and for each hold the force in mN that it exerts on the tissue.
 pub struct Equilibrium {
     pub displacement: Vec<Vector>,
@@ -48,6 +57,24 @@ pub enum LinearFemError {
 }
 
 impl Problem<'_> {
+    /// Solves for each of several load cases, for which the tissue is assembled once.
+    pub fn solve_cases(
+        &self,
+        cases: &[LoadCase],
+        observer: &dyn Observer,
+    ) -> Result<Vec<Equilibrium>, LinearFemError> {
+        let one = |case: &LoadCase| {
+            let mut holds = self.holds.to_vec();
+            for (hold, values) in holds.iter_mut().zip(&case.held) {
+                hold.set_values(values);
+            }
+            let tissue = Tissue { ..self.tissue };
+            let problem = Problem { tissue, holds: &holds, forces: &case.forces, ..*self };
+            problem.solve(observer)
+        };
+        cases.iter().map(one).collect()
+    }
+
     /// Solves for equilibrium.
     pub fn solve(&self, observer: &dyn Observer) -> Result<Equilibrium, LinearFemError> {
         // 1. The matrix, with sliding nodes in their own frames.

@@ -1,0 +1,1 @@
+//! Inverse planning: the movements of segments that bring the skin closest to where it is wanted.
