@@ -24,6 +24,7 @@ mod jobs;
 mod patch;
 mod quality;
 mod registration;
+mod response;
 mod scenes;
 mod solvers;
 mod surfaces;
