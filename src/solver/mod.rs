@@ -4,8 +4,10 @@
 pub mod block_matrix;
 pub mod cholesky;
 pub mod conjugate_gradient;
+pub mod mixed;
 pub mod multigrid;
 pub mod ordering;
+pub mod sparse_rows;
 mod vector;
 
 use std::collections::BTreeMap;
