@@ -11,6 +11,7 @@ use rayon::prelude::*;
 use super::assembly::{InvertedCell, Tissue, rotate_into_frames};
 use super::constrained::Constrained;
 use super::linear_fem::{Equilibrium, LinearFemError, LoadCase, Observer, Problem};
+use super::load::FaceLoad;
 use super::reference_cell;
 use crate::boundary::{Hold, midpoint};
 use crate::element::tetrahedron10;
@@ -18,8 +19,6 @@ use crate::material::LinearElastic;
 use crate::mesh::volume::BoundaryFace;
 use crate::mesh::{CellShape, Vector, VolumeMesh};
 use crate::solver::{self, Block, BlockMatrix, LinearSystem, SolverError};
-
-use super::load::FaceLoad;
 
 /// Cells whose matrices are computed side by side before they are added in cell order.
 const CHUNK: usize = 2048;
@@ -69,6 +68,10 @@ impl EdgeNodes {
                 self.between(corners[a], corners[b])
             }
         })
+    }
+
+    fn of_cells(&self, mesh: &VolumeMesh) -> Vec<[u32; 10]> {
+        (0..mesh.cells.len()).map(|cell| self.of_cell(mesh, cell)).collect()
     }
 
     /// Adds f_i = int N_i t dA over flat triangles: a third at the middle of each edge, nothing at corners.
@@ -148,15 +151,14 @@ fn sorted([a, b]: [u32; 2]) -> [u32; 2] {
     [a.min(b), a.max(b)]
 }
 
-/// Solves for each load case. Holds may name edge nodes themselves; forces may leave them out. Displacement
-/// and reactions are those of the nodes of the mesh and of the given holds: what an edge node's hold
-/// exerts counts half at each of its ends.
+/// Solves for each load case; the matrix is made once. Holds may name edge nodes themselves; forces may
+/// leave them out. Displacement and reactions are those of the nodes of the mesh and of the given holds: what
+/// an edge node's hold exerts counts half at each of its ends.
 pub fn solve_cases(
     problem: &Problem,
     cases: &[LoadCase],
     observer: &dyn Observer,
 ) -> Result<Vec<Equilibrium>, LinearFemError> {
-    // 1. Edge nodes, what holds them, and the matrix.
     observer.assembling();
     let mesh = problem.tissue.mesh;
     let edges = EdgeNodes::new(mesh);
@@ -164,60 +166,84 @@ pub fn solve_cases(
     let assembled = assemble(&problem.tissue, &edges, observer)?;
     let mut matrix = assembled.ok_or(SolverError::Stopped)?;
     rotate_into_frames(&mut matrix, &holds);
-
-    // 2. What holds and frames make of it.
+    let quadratic = Quadratic { problem, edges, holds, parents, matrix };
     observer.solving();
-    let frames = Constrained { holds: &holds, nodes: edges.node_count() };
-    let (axes, positions) = (frames.own_axes(), edges.positions(mesh));
-    let cells: Vec<[u32; 10]> =
-        (0..mesh.cells.len()).map(|cell| edges.of_cell(mesh, cell)).collect();
-    let held = frames.held_unknowns(cells.iter().map(<[u32; 10]>::as_slice));
-    let watch = |iteration, residual| observer.iterated(iteration, residual);
+    cases.iter().map(|case| quadratic.solve(case, observer)).collect()
+}
 
-    // 3. Each load case.
-    let solve = |case: &LoadCase| {
-        let mut moved = problem.holds.to_vec();
-        for (hold, values) in moved.iter_mut().zip(&case.held) {
-            hold.set_values(values);
-        }
-        let own = holds[moved.len()..].iter().zip(&parents);
-        let middles = own.filter_map(|(hold, &[a, b])| {
-            midpoint::between(hold.node, &moved[a], &moved[b]).map(|hold| *hold.values())
-        });
-        let values: Vec<Vector> = moved.iter().map(|hold| *hold.values()).chain(middles).collect();
+/// What is the same for all load cases.
+struct Quadratic<'a> {
+    problem: &'a Problem<'a>,
+    edges: EdgeNodes,
+    /// Those of the problem and then those of edge nodes.
+    holds: Vec<Hold>,
+    /// For each of the latter the two holds between which it lies.
+    parents: Vec<[usize; 2]>,
+    matrix: BlockMatrix,
+}
+
+impl Quadratic<'_> {
+    fn solve(
+        &self,
+        case: &LoadCase,
+        observer: &dyn Observer,
+    ) -> Result<Equilibrium, LinearFemError> {
+        // 1. What is known, and what it leaves to the free unknowns.
+        let mesh = self.problem.tissue.mesh;
+        let frames = Constrained { holds: &self.holds, nodes: self.edges.node_count() };
+        let cells = self.edges.of_cells(mesh);
+        let held = frames.held_unknowns(cells.iter().map(<[u32; 10]>::as_slice));
         let mut forces = case.forces.clone();
-        forces.resize(edges.node_count(), Vector::zeros());
-        let (known, acting) = (frames.known_displacement(&values), frames.acting_forces(&forces));
+        forces.resize(self.edges.node_count(), Vector::zeros());
+        let known = frames.known_displacement(&self.values(case));
+        let acting = frames.acting_forces(&forces);
         let mut right_hand_side = vec![0.0; known.len()];
-        matrix.multiply(&known, &mut right_hand_side);
+        self.matrix.multiply(&known, &mut right_hand_side);
         for (index, value) in right_hand_side.iter_mut().enumerate() {
             *value = if held[index] { 0.0 } else { acting[index] - *value };
         }
+
+        // 2. The free unknowns.
         let system = LinearSystem {
-            matrix: &matrix,
+            matrix: &self.matrix,
             held: &held,
             right_hand_side: &right_hand_side,
-            positions: &positions,
-            axes: &axes,
+            positions: &self.edges.positions(mesh),
+            axes: &frames.own_axes(),
         };
-        let solution = solver::solve(&system, &problem.tolerance, &watch)?;
+        let watch = |iteration, residual| observer.iterated(iteration, residual);
+        let solution = solver::solve(&system, &self.problem.tolerance, &watch)?;
+
+        // 3. Displacement and reactions, back in the frame of the coordinates.
         let total: Vec<f64> = known.iter().zip(&solution.unknowns).map(|(b, x)| b + x).collect();
         let mut internal = vec![0.0; total.len()];
-        matrix.multiply(&total, &mut internal);
+        self.matrix.multiply(&total, &mut internal);
         if internal.iter().any(|force| !force.is_finite()) {
             return Err(SolverError::NotFinite.into());
         }
         let mut displacement = frames.to_coordinates(&total);
         displacement.truncate(mesh.nodes.len());
         let mut reactions = frames.reactions(&internal, &acting);
-        let of_edges = reactions.split_off(moved.len());
-        for (force, ends) in of_edges.into_iter().zip(&parents) {
+        let of_edges = reactions.split_off(self.problem.holds.len());
+        for (force, ends) in of_edges.into_iter().zip(&self.parents) {
             ends.iter().for_each(|&end| reactions[end] += force * 0.5);
         }
         let unknowns = held.iter().filter(|held| !**held).count();
         Ok(Equilibrium { displacement, reactions, solution, unknowns })
-    };
-    cases.iter().map(solve).collect()
+    }
+
+    /// The values of all holds in this load case.
+    fn values(&self, case: &LoadCase) -> Vec<Vector> {
+        let mut given = self.problem.holds.to_vec();
+        for (hold, values) in given.iter_mut().zip(&case.held) {
+            hold.set_values(values);
+        }
+        let of_edges = self.holds[given.len()..].iter().zip(&self.parents);
+        let middles = of_edges.filter_map(|(hold, &[a, b])| {
+            midpoint::between(hold.node, &given[a], &given[b]).map(|hold| *hold.values())
+        });
+        given.iter().map(|hold| *hold.values()).chain(middles).collect()
+    }
 }
 
 /// K over all nodes, in kPa mm.
@@ -227,8 +253,7 @@ fn assemble(
     observer: &dyn Observer,
 ) -> Result<Option<BlockMatrix>, InvertedCell> {
     let mesh = tissue.mesh;
-    let cells: Vec<[u32; 10]> =
-        (0..mesh.cells.len()).map(|cell| edges.of_cell(mesh, cell)).collect();
+    let cells = edges.of_cells(mesh);
     let cliques = cells.iter().map(<[u32; 10]>::as_slice);
     let mut matrix = BlockMatrix::from_cliques(edges.node_count(), cliques);
     for begin in (0..cells.len()).step_by(CHUNK) {

@@ -26,10 +26,10 @@ use crate::mesh::{CellShape, Vector};
 use crate::solver::mixed::{self, Coupling, MixedSystem};
 use crate::solver::multigrid::Multigrid;
 use crate::solver::sparse_rows::{Couplings, SparseRows};
-use crate::solver::{BlockMatrix, LinearSystem, SolverError};
+use crate::solver::{BlockMatrix, LinearSystem, SolverError, Tolerance};
 
-/// Vectors of all unknowns that the iteration keeps.
-const VECTORS: usize = 14;
+/// Vectors of all unknowns that the iteration keeps at most.
+const VECTORS: usize = 2 * mixed::MOST_DIRECTIONS + 6;
 
 /// Solves for each load case; matrices and hierarchy are made once. `Solution::unknowns` has the free
 /// displacements and then the pressures in kPa.
@@ -38,73 +38,98 @@ pub fn solve_cases(
     cases: &[LoadCase],
     observer: &dyn Observer,
 ) -> Result<Vec<Equilibrium>, LinearFemError> {
-    // 1. The matrices, with sliding nodes in their own frames.
     observer.assembling();
-    let mesh = problem.tissue.mesh;
-    let frames = Constrained { holds: problem.holds, nodes: mesh.nodes.len() };
-    let axes = frames.own_axes();
-    let assembled = shear_stiffness(&problem.tissue, observer)?;
-    let mut stiffness = assembled.ok_or(SolverError::Stopped)?;
-    rotate_into_frames(&mut stiffness, problem.holds);
-    let coupling = couple(&problem.tissue, &axes)?;
-    let held = frames.held_unknowns(mesh.cells.iter().map(|(_, nodes)| nodes));
-    check_memory(&stiffness, &coupling, problem.tolerance.memory_mb)?;
-
-    // 2. The hierarchy.
+    let matrices = Matrices::assemble(problem, observer)?;
     observer.solving();
-    let nothing = vec![0.0; held.len()];
-    let unloaded = LinearSystem {
-        matrix: &stiffness,
-        held: &held,
-        right_hand_side: &nothing,
-        positions: &mesh.nodes,
-        axes: &axes,
-    };
-    let multigrid = Multigrid::new(&unloaded);
+    let nothing = vec![0.0; matrices.held.len()];
+    let multigrid = Multigrid::new(&matrices.system(&problem.tissue.mesh.nodes, &nothing));
+    let solver = (&multigrid, &problem.tolerance);
+    cases.iter().map(|case| matrices.solve(problem, case, solver, observer)).collect()
+}
 
-    // 3. What is known, the free unknowns, and the reactions, for each load case.
-    let watch = |iteration, residual| observer.iterated(iteration, residual);
-    let solve = |case: &LoadCase| {
+/// What is the same for all load cases; sliding nodes are written in their own frames.
+struct Matrices {
+    stiffness: BlockMatrix,
+    coupling: Coupling,
+    held: Vec<bool>,
+    axes: BTreeMap<usize, Matrix3<f64>>,
+}
+
+impl Matrices {
+    fn assemble(problem: &Problem, observer: &dyn Observer) -> Result<Self, LinearFemError> {
+        let mesh = problem.tissue.mesh;
+        let frames = Constrained { holds: problem.holds, nodes: mesh.nodes.len() };
+        let axes = frames.own_axes();
+        let assembled = shear_stiffness(&problem.tissue, observer)?;
+        let mut stiffness = assembled.ok_or(SolverError::Stopped)?;
+        rotate_into_frames(&mut stiffness, problem.holds);
+        let coupling = couple(&problem.tissue, &axes)?;
+        check_memory(&stiffness, &coupling, problem.tolerance.memory_mb)?;
+        let held = frames.held_unknowns(mesh.cells.iter().map(|(_, nodes)| nodes));
+        Ok(Matrices { stiffness, coupling, held, axes })
+    }
+
+    fn system<'a>(
+        &'a self,
+        positions: &'a [Vector],
+        right_hand_side: &'a [f64],
+    ) -> LinearSystem<'a> {
+        let Matrices { stiffness: matrix, held, axes, .. } = self;
+        LinearSystem { matrix, held, right_hand_side, positions, axes }
+    }
+
+    fn solve(
+        &self,
+        problem: &Problem,
+        case: &LoadCase,
+        (multigrid, tolerance): (&Multigrid, &Tolerance),
+        observer: &dyn Observer,
+    ) -> Result<Equilibrium, LinearFemError> {
+        // 1. What is known, and what it leaves to the free unknowns.
+        let positions = &problem.tissue.mesh.nodes;
+        let frames = Constrained { holds: problem.holds, nodes: positions.len() };
         let known = frames.known_displacement(&case.held);
         let acting = frames.acting_forces(&case.forces);
-        let (forces, volumes) = right_hand_sides(&stiffness, &coupling, &held, [&known, &acting]);
-        let loaded = LinearSystem { right_hand_side: &forces, ..unloaded };
-        let mixed = MixedSystem { stiffness: loaded, coupling: &coupling, volumes: &volumes };
-        let solution = mixed::solve(&mixed, &multigrid, &problem.tolerance, &watch)?;
-        let (free, pressures) = solution.unknowns.split_at(held.len());
+        let (forces, volumes) = self.right_hand_sides(&known, &acting);
+
+        // 2. The free displacements and the pressures.
+        let mixed = MixedSystem {
+            stiffness: self.system(positions, &forces),
+            coupling: &self.coupling,
+            volumes: &volumes,
+        };
+        let watch = |iteration, residual| observer.iterated(iteration, residual);
+        let solution = mixed::solve(&mixed, multigrid, tolerance, &watch)?;
+        let (free, pressures) = solution.unknowns.split_at(self.held.len());
+
+        // 3. Displacement and reactions, back in the frame of the coordinates.
         let total: Vec<f64> = known.iter().zip(free).map(|(known, free)| known + free).collect();
         let mut internal = vec![0.0; total.len()];
-        stiffness.multiply(&total, &mut internal);
-        coupling.gradient.add_expanded(pressures, &mut internal);
+        self.stiffness.multiply(&total, &mut internal);
+        self.coupling.gradient.add_expanded(pressures, &mut internal);
         if internal.iter().any(|force| !force.is_finite()) {
             return Err(SolverError::NotFinite.into());
         }
         Ok(Equilibrium {
             displacement: frames.to_coordinates(&total),
             reactions: frames.reactions(&internal, &acting),
-            unknowns: held.iter().filter(|held| !**held).count() + pressures.len(),
+            unknowns: self.held.iter().filter(|held| !**held).count() + pressures.len(),
             solution,
         })
-    };
-    cases.iter().map(solve).collect()
-}
-
-/// f - K u_b over free unknowns, and -B u_b.
-fn right_hand_sides(
-    stiffness: &BlockMatrix,
-    coupling: &Coupling,
-    held: &[bool],
-    [known, acting]: [&[f64]; 2],
-) -> (Vec<f64>, Vec<f64>) {
-    let mut forces = vec![0.0; known.len()];
-    stiffness.multiply(known, &mut forces);
-    for (index, force) in forces.iter_mut().enumerate() {
-        *force = if held[index] { 0.0 } else { acting[index] - *force };
     }
-    let mut volumes = vec![0.0; coupling.mass.len()];
-    coupling.divergence.contract(known, &mut volumes);
-    volumes.iter_mut().for_each(|volume| *volume = -*volume);
-    (forces, volumes)
+
+    /// f - K u_b over free unknowns, and -B u_b.
+    fn right_hand_sides(&self, known: &[f64], acting: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        let mut forces = vec![0.0; known.len()];
+        self.stiffness.multiply(known, &mut forces);
+        for (index, force) in forces.iter_mut().enumerate() {
+            *force = if self.held[index] { 0.0 } else { acting[index] - *force };
+        }
+        let mut volumes = vec![0.0; self.coupling.mass.len()];
+        self.coupling.divergence.contract(known, &mut volumes);
+        volumes.iter_mut().for_each(|volume| *volume = -*volume);
+        (forces, volumes)
+    }
 }
 
 fn check_memory(

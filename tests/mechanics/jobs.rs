@@ -131,8 +131,8 @@ fn skin_and_bone_follow_a_rigid_movement_of_everything_that_is_held() {
     let skin = surface(&out.path().join("skin.vtp"));
     let rest = block(1.0);
     for (point, &node) in skin.points.iter().zip(skin.node_ids.as_ref().unwrap()) {
-        // Rounding of a solve of a few hundred unknowns.
-        assert!((point - rest.nodes[node as usize] - moved).norm() < 1e-9);
+        // The residual of the job is 1e-8 of the forces that hold 3.7 mm.
+        assert!((point - rest.nodes[node as usize] - moved).norm() < 1e-6);
     }
     let bone = surface(&out.path().join("bones.vtp"));
     for (point, before) in bone.points.iter().zip(plate().points) {
