@@ -2,6 +2,7 @@
 
 pub mod conditions;
 pub mod hold;
+pub mod midpoint;
 pub mod selection;
 pub mod sliding;
 pub mod support;

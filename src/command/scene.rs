@@ -69,6 +69,8 @@ enum ElementArgument {
     Auto,
     Plain,
     MeanDilatation,
+    Stabilised,
+    Quadratic,
 }
 
 impl UnitArgument {
@@ -123,6 +125,8 @@ impl SceneArguments {
             ElementArgument::Auto => ElementName::Auto,
             ElementArgument::Plain => ElementName::Plain,
             ElementArgument::MeanDilatation => ElementName::MeanDilatation,
+            ElementArgument::Stabilised => ElementName::Stabilised,
+            ElementArgument::Quadratic => ElementName::Quadratic,
         };
         let materials = self.material().map(|material| [("*".to_owned(), material)].into());
         let spec = PredictDocument { element, materials, ..PredictDocument::default() };

@@ -4,6 +4,7 @@
 //! Every rule integrates the stiffness of an undistorted cell exactly.
 
 mod hexahedron8;
+pub mod tetrahedron10;
 mod tetrahedron4;
 mod wedge6;
 

@@ -64,6 +64,12 @@ impl LinearElastic {
         self.young_modulus / (2.0 * (1.0 + self.poisson_ratio))
     }
 
+    /// The material with the same shear modulus and density whose Lamé constant lambda is zero.
+    pub fn shear_only(&self) -> Self {
+        let young_modulus = 2.0 * self.shear_modulus();
+        LinearElastic { young_modulus, poisson_ratio: 0.0, density: self.density }
+    }
+
     /// The bulk modulus K = lambda + 2 mu / 3 in kPa.
     pub fn bulk_modulus(&self) -> f64 {
         self.young_modulus / (3.0 * (1.0 - 2.0 * self.poisson_ratio))

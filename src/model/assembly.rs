@@ -48,22 +48,60 @@ pub struct Numbering {
 }
 
 impl Numbering {
-    /// `held` tells the nodes without a free unknown.
+    /// For the nodes of a mesh. `held` tells those without a free unknown.
     pub fn new(mesh: &VolumeMesh, held: &[bool]) -> Self {
-        let rows = mesh.nodes.len();
         let mut cliques = Cliques::default();
         mesh.cells.iter().for_each(|(_, nodes)| cliques.push(nodes.iter().copied()));
-        let around = CliquesOfRow::new(&cliques, rows);
-        let layout = Layout::new(&cliques, &around, held, 3, far_end(&mesh.nodes));
+        Numbering::of(&cliques, &mesh.nodes, held)
+    }
+
+    /// For nodes at positions that stand in cells of any kind.
+    pub fn of(cliques: &Cliques, positions: &[Vector], held: &[bool]) -> Self {
+        let rows = positions.len();
+        let around = CliquesOfRow::new(cliques, rows);
+        let layout = Layout::new(cliques, &around, held, 3, far_end(positions));
         let cliques = cliques.renumbered(&layout.clique_order, &layout.place);
         let around = CliquesOfRow::new(&cliques, rows);
         let pattern = Arc::new(Pattern::new(&cliques, &around, rows));
         Numbering { layout: Arc::new(layout), pattern, cliques, around }
     }
 
+    /// Values of nodes in the order of rows.
+    pub fn by_row<T: Copy>(&self, of_node: &[T]) -> Vec<T> {
+        let mut by_row = of_node.to_vec();
+        for (value, &row) in of_node.iter().zip(&self.layout.place) {
+            by_row[row as usize] = *value;
+        }
+        by_row
+    }
+
     /// The row of a node.
     pub fn row(&self, node: u32) -> usize {
         self.layout.place[node as usize] as usize
+    }
+}
+
+impl Numbering {
+    /// Adds the matrices of whole cells, given by their places in the order of the layout; false where it
+    /// was told to stop.
+    pub fn add_cells<M: AsRef<[Block]> + Send>(
+        &self,
+        matrix: &mut HalfMatrix<f64, 3>,
+        cliques: &[usize],
+        keep_going: &dyn Fn() -> bool,
+        cell_matrix: impl Fn(usize) -> Result<M, InvertedCell> + Sync,
+    ) -> Result<bool, InvertedCell> {
+        for chunk in cliques.chunks(CHUNK) {
+            if !keep_going() {
+                return Ok(false);
+            }
+            let cell = |&clique: &usize| cell_matrix(self.layout.clique_order[clique] as usize);
+            let matrices: Vec<Result<M, InvertedCell>> = chunk.par_iter().map(cell).collect();
+            for (&clique, blocks) in chunk.iter().zip(matrices) {
+                add_cell(matrix, self.cliques.members(clique), blocks?.as_ref());
+            }
+        }
+        Ok(true)
     }
 }
 
@@ -105,17 +143,9 @@ impl Tissue<'_> {
         );
         let others: Vec<usize> =
             (0..order.len()).filter(|&clique| simplices[clique].is_none()).collect();
-        for chunk in others.chunks(CHUNK) {
-            if !keep_going() {
-                return Ok(None);
-            }
-            let matrices: Vec<Result<Vec<Block>, InvertedCell>> =
-                chunk.par_iter().map(|&clique| self.cell_matrix(order[clique] as usize)).collect();
-            for (&clique, blocks) in chunk.iter().zip(matrices) {
-                add_cell(&mut matrix, numbering.cliques.members(clique), &blocks?);
-            }
-        }
-        Ok(Some(matrix))
+        let finished =
+            numbering.add_cells(&mut matrix, &others, keep_going, |cell| self.cell_matrix(cell))?;
+        Ok(finished.then_some(matrix))
     }
 
     /// `None` for cells that are not tetrahedra.

@@ -5,11 +5,13 @@
 
 use rayon::prelude::*;
 
-use super::assembly::{InvertedCell, Numbering, Tissue, partly_held, turn_into_axes};
+use super::assembly::{InvertedCell, Numbering, Tissue};
+use super::constrained::{Constrained, Known, free_unknowns, held_nodes, product_at_holds};
 use crate::boundary::Hold;
 use crate::mesh::Vector;
-use crate::solver::lanes::Lanes;
-use crate::solver::{self, Solution, SolverError, System, Tolerance, Unknowns};
+use crate::solver::cliques::Cliques;
+use crate::solver::half_matrix::HalfMatrix;
+use crate::solver::{self, Solution, SolverError, Tolerance, Unknowns};
 
 /// What the solution tells and asks while it runs.
 pub trait Observer {
@@ -70,168 +72,69 @@ impl Problem<'_> {
         cases: &[LoadCase],
         observer: &dyn Observer,
     ) -> Result<Vec<Equilibrium>, LinearFemError> {
-        // 1. The matrix, with sliding nodes along their own axes.
         observer.assembling();
-        let numbering = Numbering::new(self.tissue.mesh, &self.held_nodes());
+        let mesh = self.tissue.mesh;
+        let mut cells = Cliques::default();
+        mesh.cells.iter().for_each(|(_, nodes)| cells.push(nodes.iter().copied()));
+        let held = held_nodes(&cells, mesh.nodes.len(), self.holds);
+        let numbering = Numbering::of(&cells, &mesh.nodes, &held);
         let assembled = self.tissue.assemble(&numbering, &|| !observer.is_stopped())?;
-        let mut matrix = assembled.ok_or(SolverError::Stopped)?;
-        let partly_held = partly_held(self.holds, &numbering);
-        turn_into_axes(&mut matrix, &partly_held);
-        let mut positions = vec![Vector::zeros(); matrix.rows()];
-        for (position, &row) in self.tissue.mesh.nodes.iter().zip(&numbering.layout.place) {
-            positions[row as usize] = *position;
-        }
-        let layout = numbering.layout.clone();
-        let system = System { layout, matrix, partly_held, positions };
-
-        // 2. What is known, and the forces it leaves on the free unknowns.
-        observer.solving();
-        let known: Vec<Known> = cases.par_iter().map(|case| self.known(case, &numbering)).collect();
-        let right_hand_sides: Vec<Unknowns> =
-            known.par_iter().map(|known| known.right_hand_side(&system)).collect();
-
-        // 3. The free unknowns.
-        let watch = |iteration, residual| observer.iterated(iteration, residual);
-        let solutions = solver::solve(&system, &right_hand_sides, &self.tolerance, &watch)
-            .map_err(|error| in_nodes(error, &numbering))?;
-
-        // 4. Displacement and reactions, back along the axes of the coordinates.
-        let finished: Vec<Equilibrium> = known
-            .into_par_iter()
-            .zip(solutions)
-            .map(|(known, solution)| self.equilibrium(known, solution, &system, &numbering))
-            .collect();
-        let displacements = finished.iter().flat_map(|equilibrium| &equilibrium.displacement);
-        if displacements.flatten().any(|value| !value.is_finite()) {
-            return Err(SolverError::NotFinite.into());
-        }
-        Ok(finished)
-    }
-
-    /// True for nodes held in all directions, and for nodes without a cell, which nothing couples.
-    fn held_nodes(&self) -> Vec<bool> {
-        let mut held = vec![true; self.tissue.mesh.nodes.len()];
-        for (_, nodes) in self.tissue.mesh.cells.iter() {
-            nodes.iter().for_each(|&node| held[node as usize] = false);
-        }
-        self.holds
-            .iter()
-            .filter(|hold| hold.count() == 3)
-            .for_each(|hold| held[hold.node as usize] = true);
-        held
-    }
-
-    fn known(&self, case: &LoadCase, numbering: &Numbering) -> Known {
-        let rows = self.tissue.mesh.nodes.len();
-        let mut known = Known { displacement: vec![[[0.0]; 3]; rows], force: vec![[0.0; 3]; rows] };
-        for (force, &row) in case.forces.iter().zip(&numbering.layout.place) {
-            known.force[row as usize] = (*force).into();
-        }
-        for (hold, values) in self.holds.iter().zip(&case.held) {
-            let row = numbering.row(hold.node);
-            known.displacement[row] =
-                std::array::from_fn(|k| [if k < hold.count() { values[k] } else { 0.0 }]);
-            if !hold.is_aligned() {
-                let own = hold.axes().transpose() * case.forces[hold.node as usize];
-                known.force[row] = own.into();
-            }
-        }
-        known
-    }
-
-    fn equilibrium(
-        &self,
-        known: Known,
-        solution: Solution,
-        system: &System,
-        numbering: &Numbering,
-    ) -> Equilibrium {
-        let Known { displacement: mut total, force } = known;
-        for (total, unknowns) in total.iter_mut().zip(&solution.unknowns) {
-            for (total, unknown) in total.iter_mut().zip(unknowns) {
-                total[0] += unknown;
-            }
-        }
-        let reactions = self.reactions(&total, &force, system, numbering);
-        let mut displacement: Vec<Vector> = numbering
-            .layout
-            .place
-            .iter()
-            .map(|&row| Vector::from(total[row as usize].map(|[value]| value)))
-            .collect();
-        for hold in self.holds.iter().filter(|hold| !hold.is_aligned()) {
-            let own = displacement[hold.node as usize];
-            displacement[hold.node as usize] = hold.axes() * own;
-        }
-        let held: usize =
-            system.partly_held.iter().flat_map(|row| row.held).filter(|held| *held).count();
-        let unknowns = 3 * system.layout.free - held;
-        Equilibrium { displacement, reactions, solution, unknowns }
-    }
-
-    /// K u - f along the held axes of each hold.
-    fn reactions(
-        &self,
-        total: &[Lanes<f64, 3, 1>],
-        force: &[[f64; 3]],
-        system: &System,
-        numbering: &Numbering,
-    ) -> Vec<Vector> {
-        let internal = product_at_holds(system, total);
-        self.holds
-            .iter()
-            .map(|hold| {
-                let row = numbering.row(hold.node);
-                let own = Vector::from_fn(|k, _| match k < hold.count() {
-                    true => internal[row][k][0] - force[row][k],
-                    false => 0.0,
-                });
-                hold.axes() * own
-            })
-            .collect()
+        let matrix = assembled.ok_or(SolverError::Stopped)?;
+        let constrained = Constrained { holds: self.holds, numbering: &numbering };
+        let positions = &mesh.nodes;
+        solve_displacement(Assembled { constrained, matrix, positions }, self, cases, observer)
     }
 }
 
-/// What a load case states, by row, along the axes of the rows.
-struct Known {
-    /// Zero where free.
-    displacement: Vec<Lanes<f64, 3, 1>>,
-    force: Unknowns,
+/// A stiffness matrix over numbered nodes at positions.
+pub(super) struct Assembled<'a> {
+    pub constrained: Constrained<'a>,
+    pub matrix: HalfMatrix<f64, 3>,
+    pub positions: &'a [Vector],
 }
 
-impl Known {
-    /// f - K u_b of the free unknowns, zero for held ones.
-    fn right_hand_side(&self, system: &System) -> Unknowns {
-        let product = product_at_holds(system, &self.displacement);
-        let mut result: Unknowns = self.force[..system.layout.free].to_vec();
-        for (value, [x, y, z]) in result.iter_mut().zip(&product) {
-            *value = [value[0] - x[0], value[1] - y[0], value[2] - z[0]];
+/// Solves for displacements alone, for each load case.
+pub(super) fn solve_displacement(
+    assembled: Assembled,
+    problem: &Problem,
+    cases: &[LoadCase],
+    observer: &dyn Observer,
+) -> Result<Vec<Equilibrium>, LinearFemError> {
+    // 1. What is known, and the forces it leaves on the free unknowns.
+    observer.solving();
+    let Assembled { constrained, matrix, positions } = assembled;
+    let system = constrained.system(matrix, positions);
+    let known: Vec<Known> = cases.par_iter().map(|case| constrained.known(case)).collect();
+    let right_hand_sides: Vec<Unknowns> =
+        known.par_iter().map(|known| known.right_hand_side(&system)).collect();
+
+    // 2. The free unknowns.
+    let watch = |iteration, residual| observer.iterated(iteration, residual);
+    let solutions = solver::solve(&system, &right_hand_sides, &problem.tolerance, &watch)
+        .map_err(|error| constrained.in_nodes(error))?;
+
+    // 3. Displacement and reactions, back along the axes of the coordinates.
+    let equilibrium = |(known, solution): (Known, Solution)| {
+        let total = known.total(&solution.unknowns);
+        let internal = product_at_holds(&system, &total);
+        Equilibrium {
+            displacement: constrained.displacement(&total),
+            reactions: constrained.reactions(&internal, &known.force),
+            solution,
+            unknowns: free_unknowns(&system),
         }
-        for partly in &system.partly_held {
-            for (value, _) in result[partly.row].iter_mut().zip(partly.held).filter(|(_, h)| *h) {
-                *value = 0.0;
-            }
-        }
-        result
-    }
+    };
+    let equilibria: Vec<Equilibrium> =
+        known.into_par_iter().zip(solutions).map(equilibrium).collect();
+    check_finite(&equilibria)?;
+    Ok(equilibria)
 }
 
-/// K x where it is of use: in the rows of held nodes, and what held nodes do to free ones. Partly held
-/// nodes lie among the free ones, and with them every row counts.
-fn product_at_holds(system: &System, x: &[Lanes<f64, 3, 1>]) -> Vec<Lanes<f64, 3, 1>> {
-    let mut product = vec![[[0.0]; 3]; x.len()];
-    let first = if system.partly_held.is_empty() { system.layout.free } else { 0 };
-    system.matrix.add_rows(first..x.len(), x, &mut product);
-    product
-}
-
-/// A row of the solver is a node of the mesh.
-fn in_nodes(error: SolverError, numbering: &Numbering) -> SolverError {
-    match error {
-        SolverError::NotPositiveDefinite { row } => {
-            let node = numbering.layout.place.iter().position(|&place| place as usize == row);
-            SolverError::NotPositiveDefinite { row: node.unwrap_or(row) }
-        }
-        other => other,
+/// No answer has a value that is not a number.
+pub(super) fn check_finite(equilibria: &[Equilibrium]) -> Result<(), SolverError> {
+    let vectors = equilibria.iter().flat_map(|e| e.displacement.iter().chain(&e.reactions));
+    match vectors.flatten().all(|value| value.is_finite()) {
+        true => Ok(()),
+        false => Err(SolverError::NotFinite),
     }
 }

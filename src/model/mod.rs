@@ -1,8 +1,11 @@
 //! Ways of modelling: conditions, materials and mesh in, nodal displacement out.
 
 pub mod assembly;
+mod constrained;
 pub mod linear_fem;
 pub mod load;
+pub mod quadratic;
+pub mod stabilised;
 pub mod stiffness;
 pub mod strain;
 

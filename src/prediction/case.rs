@@ -107,12 +107,17 @@ pub enum Load {
 /// The element for tetrahedra and the treatment of volume change in the other cells.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ElementChoice {
-    /// Mean dilatation for hex8 and wedge6, the plain element for tet4.
+    /// The same as `Stabilised`.
     #[default]
     Auto,
     /// Full integration for every shape.
     Plain,
+    /// Mean dilatation for hex8 and wedge6, the plain element for tet4.
     MeanDilatation,
+    /// Mean dilatation for hex8 and wedge6, displacement and stabilised pressure for tet4.
+    Stabilised,
+    /// Tetrahedra with a node in the middle of each edge; no other shapes.
+    Quadratic,
 }
 
 /// How the numbers are to be found.

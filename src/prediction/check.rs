@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::case::{Case, Load, Plan, RegionNames};
+use super::case::{Case, ElementChoice, Load, Plan, RegionNames};
 use super::problem::Problems;
 use super::scene::Scene;
 use super::skin::{self, Skin};
@@ -11,8 +11,9 @@ use crate::boundary::support::loose_parts;
 use crate::boundary::{Conditions, HeldNodes, NodeClass, NodeSelection, Selector};
 use crate::material::LinearElastic;
 use crate::mesh::volume::BoundaryFace;
-use crate::mesh::{Vector, Warning};
+use crate::mesh::{CellShape, Vector, Warning};
 use crate::model::load::{FaceLoad, add_face_load, add_gravity};
+use crate::model::quadratic::EdgeNodes;
 
 /// The state of one check: what is asked, and what was found wrong so far.
 pub(super) struct Check<'a> {
@@ -136,8 +137,30 @@ impl<'a> Check<'a> {
         self.boundary.iter().filter(|face| face.nodes().iter().all(listed)).copied().collect()
     }
 
+    /// Refuses an element that some cell of the mesh cannot be.
+    pub(super) fn element(&mut self, element: ElementChoice) {
+        let cells = &self.case.volume.cells;
+        let other = cells.iter().find(|(shape, _)| *shape != CellShape::Tet4);
+        if let (ElementChoice::Quadratic, Some((shape, _))) = (element, other) {
+            let detail = format!(
+                "quadratic elements are made of tet4 only, and the mesh has {} cells: \
+                 `auto` serves every shape",
+                shape.name()
+            );
+            self.problems.add("/spec/element", "method-not-available", detail);
+        }
+    }
+
     pub(super) fn add_loads(&mut self, plan: &Plan, scene: &mut Scene) {
+        if plan.loads.is_empty() {
+            return;
+        }
         let mut forces = std::mem::take(&mut scene.forces);
+        let edges = scene.edge_nodes();
+        if let Some(edges) = &edges {
+            forces.resize(edges.node_count(), Vector::zeros());
+        }
+        let edges = edges.as_ref();
         for (index, load) in plan.loads.iter().enumerate() {
             let pointer = format!("/plan/loads/{index}");
             match load {
@@ -147,13 +170,20 @@ impl<'a> Check<'a> {
                     }
                 }
                 Load::Traction { faces, traction } => {
-                    self.face_load(faces, FaceLoad::Traction(*traction), &pointer, &mut forces);
+                    let faces = self.loaded_faces(faces, &pointer);
+                    self.face_load(&faces, FaceLoad::Traction(*traction), edges, &mut forces);
                 }
                 Load::Pressure { faces, pressure } => {
-                    self.face_load(faces, FaceLoad::Pressure(*pressure), &pointer, &mut forces);
+                    let faces = self.loaded_faces(faces, &pointer);
+                    self.face_load(&faces, FaceLoad::Pressure(*pressure), edges, &mut forces);
                 }
                 Load::Gravity { acceleration } => {
-                    if let Err(error) = add_gravity(&scene.tissue(), *acceleration, &mut forces) {
+                    let tissue = scene.tissue();
+                    let added = match edges {
+                        Some(edges) => edges.add_gravity(&tissue, *acceleration, &mut forces),
+                        None => add_gravity(&tissue, *acceleration, &mut forces),
+                    };
+                    if let Err(error) = added {
                         self.problems.add(
                             "/case/volume",
                             "mesh-inverted-elements",
@@ -167,19 +197,26 @@ impl<'a> Check<'a> {
     }
 
     fn face_load(
-        &mut self,
-        selection: &NodeSelection,
+        &self,
+        faces: &[BoundaryFace],
         load: FaceLoad,
-        pointer: &str,
+        edges: Option<&EdgeNodes>,
         forces: &mut [Vector],
     ) {
+        match edges {
+            Some(edges) => edges.add_face_load(&self.case.volume, faces, load, forces),
+            None => add_face_load(&self.case.volume, faces, load, forces),
+        }
+    }
+
+    fn loaded_faces(&mut self, selection: &NodeSelection, pointer: &str) -> Vec<BoundaryFace> {
         let nodes = self.select(selection, &format!("{pointer}/faces"));
         let faces = self.faces_within(&nodes);
         if faces.is_empty() && !nodes.is_empty() {
             let detail = "no boundary face has all of its nodes in the selection".to_owned();
             self.problems.add(format!("{pointer}/faces"), "empty-selection", detail);
         }
-        add_face_load(&self.case.volume, &faces, load, forces);
+        faces
     }
 
     pub(super) fn support(&mut self, scene: &Scene) {

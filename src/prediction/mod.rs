@@ -21,9 +21,9 @@ pub use skin::Skin;
 
 pub use crate::boundary::NodeClass;
 use crate::mesh::{Vector, Warning};
-use crate::model::linear_fem::{Equilibrium, LinearFemError, Observer, Problem};
+use crate::model::linear_fem::{Equilibrium, LinearFemError, Observer};
 use crate::model::strain::{CellDeformation, deformations};
-use crate::solver::{SolverError, Tolerance};
+use crate::solver::SolverError;
 
 /// A landmark farther than this from the tissue, in mm, is told to move as something it is not part of.
 const LANDMARK_FAR: f64 = 2.0;
@@ -47,14 +47,15 @@ pub struct Prediction {
 /// How the equations were solved.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SolverReport {
-    /// `cholesky`, `conjugate_gradient`, or `none` where nothing moves.
+    /// `cholesky`, `conjugate_gradient`, `conjugate_residual` with pressures, or `none` where nothing moves.
     pub name: &'static str,
     pub preconditioner: &'static str,
     /// Why this solver was chosen.
     pub why: String,
+    /// Free displacements and, with stabilised tetrahedra, pressures.
     pub unknowns: usize,
     pub iterations: usize,
-    /// |f - K u| / |f_D| of the free rows, recomputed at the end.
+    /// |f - K u| / |f_D| of the free rows, recomputed at the end; with pressures as `solver::mixed` says.
     pub relative_residual: f64,
     pub wanted_residual: f64,
     /// The elements used, e.g. `hex8 mean dilatation`.
@@ -81,13 +82,8 @@ pub enum PredictionError {
 pub fn predict(scene: &Scene, progress: &dyn Progress) -> Result<Prediction, PredictionError> {
     // 1. Equilibrium.
     let wanted = scene.settings.relative_residual;
-    let problem = Problem {
-        tissue: scene.tissue(),
-        holds: &scene.conditions.holds,
-        forces: &scene.forces,
-        tolerance: Tolerance { relative_residual: wanted, memory_mb: scene.settings.memory_mb },
-    };
-    let equilibrium = problem.solve(&Followed { progress, wanted })?;
+    let solved = scene.solve_cases(&[scene.load_case()], &Followed { progress, wanted })?;
+    let equilibrium = solved.into_iter().next().ok_or(PredictionError::NotFinite)?;
 
     // 2. What it does to the tissue and to the landmarks.
     progress.phase(Phase::Surface);

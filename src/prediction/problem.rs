@@ -10,14 +10,14 @@ const MOST_PROBLEMS: usize = 50;
 #[error("{} problems, the first: {}", .0.len(), .0[0])]
 pub struct SceneErrors(pub Vec<SceneError>);
 
-/// One thing wrong, and where: a JSON pointer that starts with `/case` or `/plan`.
+/// One thing wrong, and where: a JSON pointer that starts with `/case`, `/plan` or `/spec`.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{pointer}: {detail}")]
 pub struct SceneError {
     pub pointer: String,
     /// A stable word: `empty-selection`, `unknown-set`, `unknown-array`, `unknown-surface`,
     /// `unknown-region`, `unknown-segment`, `duplicate-segment`, `missing-material`, `plan-conflict`,
-    /// `sliding-normal-zero`, `underconstrained` or `mesh-inverted-elements`.
+    /// `sliding-normal-zero`, `underconstrained`, `method-not-available` or `mesh-inverted-elements`.
     pub code: &'static str,
     pub detail: String,
 }

@@ -11,11 +11,23 @@ use crate::boundary::{Conditions, NodeClass, tearing};
 use crate::material::LinearElastic;
 use crate::mesh::{CellShape, Vector, VolumeMesh, Warning};
 use crate::model::assembly::Tissue;
+use crate::model::linear_fem::{Equilibrium, LinearFemError, LoadCase, Observer, Problem};
+use crate::model::quadratic::EdgeNodes;
 use crate::model::stiffness::Dilatation;
+use crate::model::{quadratic, stabilised};
 use crate::plan::PlannedSegment;
+use crate::solver::Tolerance;
 
 /// Poisson's ratio above which elements without mean dilatation are known to lock (VERIFICATION V.4, V.29).
 const LOCKING: f64 = 0.45;
+
+/// What a tetrahedron is taken as.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Tetrahedron {
+    Plain,
+    Stabilised,
+    Quadratic,
+}
 
 /// Mesh, materials and conditions, ready to be solved.
 pub struct Scene {
@@ -30,7 +42,7 @@ pub struct Scene {
     pub conditions: Conditions,
     /// Segments by the number in `NodeClass::Joined`, with the movement each makes.
     pub segments: Vec<PlannedSegment>,
-    /// For each node, in mN.
+    /// For each node, in mN; quadratic elements have those of edge nodes after them.
     pub forces: Vec<Vector>,
     pub landmarks: BTreeMap<String, Vector>,
     pub settings: Settings,
@@ -68,6 +80,7 @@ impl Scene {
             settings: settings.clone(),
             warnings: Vec::new(),
         };
+        check.element(settings.element);
         check.problems.give_up_if_any()?;
         check.add_loads(plan, &mut scene);
 
@@ -88,12 +101,60 @@ impl Scene {
             materials: &self.materials,
             material_of_cell: &self.region_of_cell,
             dilatation: match self.element {
-                ElementChoice::Plain => |_| Dilatation::Pointwise,
-                ElementChoice::Auto | ElementChoice::MeanDilatation => |shape| match shape {
-                    CellShape::Tet4 => Dilatation::Pointwise,
-                    CellShape::Hex8 | CellShape::Wedge6 => Dilatation::Mean,
-                },
+                ElementChoice::Plain | ElementChoice::Quadratic => |_| Dilatation::Pointwise,
+                ElementChoice::Auto | ElementChoice::MeanDilatation | ElementChoice::Stabilised => {
+                    |shape| match shape {
+                        CellShape::Tet4 => Dilatation::Pointwise,
+                        CellShape::Hex8 | CellShape::Wedge6 => Dilatation::Mean,
+                    }
+                }
             },
+        }
+    }
+
+    /// What tetrahedra are taken as.
+    fn tetrahedron(&self) -> Tetrahedron {
+        match self.element {
+            ElementChoice::Plain | ElementChoice::MeanDilatation => Tetrahedron::Plain,
+            ElementChoice::Auto | ElementChoice::Stabilised => Tetrahedron::Stabilised,
+            ElementChoice::Quadratic => Tetrahedron::Quadratic,
+        }
+    }
+
+    fn has_tetrahedra(&self) -> bool {
+        self.mesh.cells.iter().any(|(shape, _)| shape == CellShape::Tet4)
+    }
+
+    /// The middles of edges, where the element has nodes there.
+    pub fn edge_nodes(&self) -> Option<EdgeNodes> {
+        (self.tetrahedron() == Tetrahedron::Quadratic).then(|| EdgeNodes::new(&self.mesh))
+    }
+
+    /// What the plan of this scene does to its tissue.
+    pub fn load_case(&self) -> LoadCase {
+        let held = self.conditions.holds.iter().map(|hold| *hold.values()).collect();
+        LoadCase { held, forces: self.forces.clone() }
+    }
+
+    /// Solves for each of several load cases with the elements of this scene; the tissue is assembled once.
+    pub fn solve_cases(
+        &self,
+        cases: &[LoadCase],
+        observer: &dyn Observer,
+    ) -> Result<Vec<Equilibrium>, LinearFemError> {
+        let Settings { relative_residual, memory_mb, .. } = self.settings;
+        let problem = Problem {
+            tissue: self.tissue(),
+            holds: &self.conditions.holds,
+            forces: &self.forces,
+            tolerance: Tolerance { relative_residual, memory_mb },
+        };
+        match self.tetrahedron() {
+            Tetrahedron::Quadratic => quadratic::solve_cases(&problem, cases, observer),
+            Tetrahedron::Stabilised if self.has_tetrahedra() => {
+                stabilised::solve_cases(&problem, cases, observer)
+            }
+            Tetrahedron::Stabilised | Tetrahedron::Plain => problem.solve_cases(cases, observer),
         }
     }
 
@@ -103,9 +164,11 @@ impl Scene {
         [CellShape::Tet4, CellShape::Hex8, CellShape::Wedge6]
             .into_iter()
             .filter(|shape| self.mesh.cells.iter().any(|(other, _)| other == *shape))
-            .map(|shape| match dilatation(shape) {
-                Dilatation::Pointwise => format!("{} plain", shape.name()),
-                Dilatation::Mean => format!("{} mean dilatation", shape.name()),
+            .map(|shape| match (shape, self.tetrahedron(), dilatation(shape)) {
+                (CellShape::Tet4, Tetrahedron::Stabilised, _) => "tet4 stabilised".to_owned(),
+                (CellShape::Tet4, Tetrahedron::Quadratic, _) => "tet10 quadratic".to_owned(),
+                (_, _, Dilatation::Pointwise) => format!("{} plain", shape.name()),
+                (_, _, Dilatation::Mean) => format!("{} mean dilatation", shape.name()),
             })
             .collect()
     }
@@ -139,7 +202,8 @@ impl Scene {
         let cells = self.mesh.cells.iter().zip(&self.region_of_cell);
         let locks = |shape: CellShape, region: u16| {
             let nu = self.materials[region as usize].poisson_ratio();
-            nu > LOCKING && dilatation(shape) == Dilatation::Pointwise
+            let is_plain = shape != CellShape::Tet4 || self.tetrahedron() == Tetrahedron::Plain;
+            nu > LOCKING && is_plain && dilatation(shape) == Dilatation::Pointwise
         };
         let locking = cells.filter(|((shape, _), region)| locks(*shape, **region)).count();
         let largest = self.materials.iter().map(LinearElastic::poisson_ratio).fold(0.0, f64::max);

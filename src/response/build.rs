@@ -8,10 +8,9 @@ use super::linearity::{self, Linearity};
 use super::{COLUMNS_PER_SEGMENT, Response, ResponseSegment, superposition};
 use crate::boundary::NodeClass;
 use crate::mesh::Vector;
-use crate::model::linear_fem::{Equilibrium, LoadCase, Problem};
+use crate::model::linear_fem::{Equilibrium, LoadCase};
 use crate::plan::RigidMovement;
 use crate::prediction::{Followed, Phase, PredictionError, Progress, Scene, SolverReport, report};
-use crate::solver::Tolerance;
 
 /// Bytes of one node in one load case: its force, its displacement, its unknowns.
 const BYTES_OF_NODE: f64 = 72.0;
@@ -99,13 +98,7 @@ pub fn build(
 
     // 2. The tissue for each of them.
     let wanted = scene.settings.relative_residual;
-    let problem = Problem {
-        tissue: scene.tissue(),
-        holds: &scene.conditions.holds,
-        forces: &zeros,
-        tolerance: Tolerance { relative_residual: wanted, memory_mb: scene.settings.memory_mb },
-    };
-    let solved = problem
+    let solved = scene
         .solve_cases(&cases, &Followed { progress, wanted })
         .map_err(PredictionError::from)?;
 

@@ -36,13 +36,16 @@ pub enum MethodName {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ElementName {
-    /// Mean dilatation for hex8 and wedge6, the plain element for tet4.
+    /// `stabilised`: no element locks.
     #[default]
     Auto,
-    /// Full integration for every shape.
+    /// Full integration for every shape; locks above a Poisson ratio of 0.45, with a warning.
     Plain,
+    /// Mean dilatation for hex8 and wedge6, the plain element for tet4.
     MeanDilatation,
+    /// Mean dilatation for hex8 and wedge6, displacement and stabilised pressure for tet4.
     Stabilised,
+    /// Tetrahedra with a node in the middle of each edge; refused for other shapes.
     Quadratic,
 }
 
@@ -68,20 +71,15 @@ pub fn check_method(method: MethodName, at: &Pointer, faults: &mut Faults) {
     }
 }
 
-/// The element of the path; refuses one that is not built.
-pub fn check_element(
-    element: ElementName,
-    at: &Pointer,
-    faults: &mut Faults,
-) -> Option<ElementChoice> {
-    match element {
-        ElementName::Auto => Some(ElementChoice::Auto),
-        ElementName::Plain => Some(ElementChoice::Plain),
-        ElementName::MeanDilatation => Some(ElementChoice::MeanDilatation),
-        ElementName::Stabilised | ElementName::Quadratic => {
-            let detail = "this element is not available; `auto`, `plain` and `mean_dilatation` are";
-            faults.add(at, "method-not-available", detail);
-            None
+impl ElementName {
+    /// The element of the path.
+    pub fn choice(self) -> ElementChoice {
+        match self {
+            ElementName::Auto => ElementChoice::Auto,
+            ElementName::Plain => ElementChoice::Plain,
+            ElementName::MeanDilatation => ElementChoice::MeanDilatation,
+            ElementName::Stabilised => ElementChoice::Stabilised,
+            ElementName::Quadratic => ElementChoice::Quadratic,
         }
     }
 }
@@ -126,8 +124,14 @@ pub fn available_methods() -> MethodList {
     MethodList {
         methods: vec![MethodDocument {
             name: MethodName::FemLinear,
-            title: "linear elasticity at small strain, finite elements of first order".to_owned(),
-            elements: vec![ElementName::Auto, ElementName::Plain, ElementName::MeanDilatation],
+            title: "linear elasticity at small strain, finite elements".to_owned(),
+            elements: vec![
+                ElementName::Auto,
+                ElementName::Plain,
+                ElementName::MeanDilatation,
+                ElementName::Stabilised,
+                ElementName::Quadratic,
+            ],
             cells: words(&["tet4", "hex8", "wedge6"]),
             reads: words(&[
                 "case.segments",

@@ -157,7 +157,7 @@ pub struct SolverDocument {
     pub why: String,
     pub unknowns: u64,
     pub iterations: u64,
-    /// |f - K u| / |f_D| of the free rows, computed anew at the end.
+    /// |f - K u| / |f_D| of the free rows, computed anew at the end; with pressures, of both equations.
     pub relative_residual: f64,
     pub wanted_residual: f64,
     pub elements: Vec<String>,

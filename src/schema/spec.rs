@@ -15,7 +15,7 @@ use super::plan::PlanDocument;
 use super::problem::Problem;
 use super::response::ResponseDocument;
 use super::strict;
-use crate::prediction::{ElementChoice, Settings};
+use crate::prediction::Settings;
 
 /// The body of `POST /v1/jobs`, told apart by `kind`.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
@@ -93,7 +93,8 @@ pub enum ContactName {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ToleranceDocument {
-    /// |f - K u| / |f_D| of the free rows; in [1e-14, 1e-2].
+    /// |f - K u| / |f_D| of the free rows; in [1e-14, 1e-2]. With pressures, those of both equations,
+    /// a volume that is left over counted as the forces that its pressure would put on the nodes.
     #[serde(default = "usual_residual")]
     #[schema(default = 1e-8, minimum = 1e-14, maximum = 1e-2)]
     pub relative_residual: f64,
@@ -237,7 +238,6 @@ impl PredictDocument {
     pub fn to_settings(&self, limits: &Limits, faults: &mut Faults) -> Settings {
         let at = Pointer::root().key("spec");
         methods::check_method(self.method, &at.key("method"), faults);
-        let element = methods::check_element(self.element, &at.key("element"), faults);
         let residual = self.tolerance.relative_residual;
         let place = at.key("tolerance").key("relative_residual");
         faults.check_range(&place, residual, 1e-14..=1e-2, "");
@@ -250,7 +250,7 @@ impl PredictDocument {
             compare_to.check(&at.key("compare_to"), limits, faults);
         }
         Settings {
-            element: element.unwrap_or(ElementChoice::Auto),
+            element: self.element.choice(),
             sliding: self.contact == ContactName::Sliding,
             relative_residual: residual,
             memory_mb: memory,

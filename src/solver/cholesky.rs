@@ -56,8 +56,8 @@ impl Refined<'_> {
         watch: Watch,
         why: &str,
     ) -> Result<Solution, SolverError> {
-        let right_hand_side = interleave::<1>(std::slice::from_ref(right_hand_side));
-        let [scale] = norm(&right_hand_side);
+        let right_hand_side = interleave::<1, 3>(std::slice::from_ref(right_hand_side));
+        let [scale] = norm(right_hand_side.as_flattened());
         let mut x = vec![[[0.0; 1]; 3]; right_hand_side.len()];
         let mut residual = right_hand_side.clone();
         let mut history = vec![if scale > 0.0 { 1.0 } else { 0.0 }];
@@ -69,7 +69,7 @@ impl Refined<'_> {
             }
             self.free.correct(self.factor, &residual, &mut x);
             self.system.residual(&right_hand_side, &x, &mut residual);
-            let relative = norm(&residual)[0] / scale;
+            let relative = norm(residual.as_flattened())[0] / scale;
             if !relative.is_finite() {
                 return Err(SolverError::NotFinite);
             }

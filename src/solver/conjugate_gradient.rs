@@ -8,7 +8,7 @@
 
 use super::lanes::Lanes;
 use super::multigrid::{Multigrid, Workspace};
-use super::vector::{advance, column, dot, interleave, norm, turn, two_dots};
+use super::vector::{advance, column, dot, interleave, largest, norm, ratio, turn, two_dots};
 use super::{Solution, SolverError, System, Tolerance, Unknowns, Watch};
 
 /// Iterations without a new smallest residual after which no more progress is expected.
@@ -43,11 +43,6 @@ pub fn solve(
     Ok(solutions)
 }
 
-/// Zero where the divisor is: a right-hand side that has converged does not move.
-fn ratio(value: f64, divisor: f64) -> f64 {
-    if divisor == 0.0 { 0.0 } else { value / divisor }
-}
-
 struct Run<'a, const N: usize> {
     system: &'a System,
     multigrid: &'a Multigrid,
@@ -69,14 +64,14 @@ struct Run<'a, const N: usize> {
 
 impl<'a, const N: usize> Run<'a, N> {
     fn new(system: &'a System, multigrid: &'a Multigrid, columns: &[Unknowns]) -> Self {
-        let right_hand_side = interleave::<N>(columns);
+        let right_hand_side = interleave::<N, 3>(columns);
         let zeros = || vec![[[0.0; N]; 3]; right_hand_side.len()];
         Run {
             system,
             multigrid,
             columns: columns.len(),
             workspace: multigrid.workspace(),
-            scale: norm(&right_hand_side),
+            scale: norm(right_hand_side.as_flattened()),
             x: zeros(),
             r: zeros(),
             p: zeros(),
@@ -110,26 +105,27 @@ impl<'a, const N: usize> Run<'a, N> {
     }
 
     fn relative_residuals(&self) -> [f64; N] {
-        let norms = norm(&self.r);
+        let norms = norm(self.r.as_flattened());
         std::array::from_fn(|n| ratio(norms[n], self.scale[n]))
     }
 
     fn iterate(&mut self, wanted: f64, watch: Watch) -> Result<(), SolverError> {
         let correction = self.multigrid.apply(&self.r, &mut self.workspace);
-        turn(&mut self.p, &[0.0; N], correction.values, &correction.scale);
-        let mut rho = dot(&self.r, &self.p);
+        let z = correction.values.as_flattened();
+        turn(self.p.as_flattened_mut(), &[0.0; N], z, &correction.scale);
+        let mut rho = dot(self.r.as_flattened(), self.p.as_flattened());
         let mut residuals = self.relative_residuals();
         let (mut smallest, mut smallest_at) = (f64::INFINITY, self.iterations);
         loop {
             self.system.multiply(&self.p, &mut self.product);
-            let curvature = dot(&self.p, &self.product);
+            let curvature = dot(self.p.as_flattened(), self.product.as_flattened());
             let is_open: [bool; N] = std::array::from_fn(|n| residuals[n] > wanted);
             if (0..N).any(|n| is_open[n] && !(curvature[n] > 0.0 && rho[n].is_finite())) {
                 return Err(self.not_converged(wanted));
             }
             let step: [f64; N] =
                 std::array::from_fn(|n| if is_open[n] { rho[n] / curvature[n] } else { 0.0 });
-            advance(&mut self.x, &mut self.r, &step, &self.p, &self.product);
+            self.advance(&step);
             self.iterations += 1;
             (0..N).filter(|&n| is_open[n]).for_each(|n| self.own_iterations[n] += 1);
             residuals = self.relative_residuals();
@@ -149,15 +145,21 @@ impl<'a, const N: usize> Run<'a, N> {
                 return Err(self.not_converged(wanted));
             }
             let correction = self.multigrid.apply(&self.r, &mut self.workspace);
+            let z = correction.values.as_flattened();
             let [along_residual, along_product] =
-                two_dots(&self.r, &self.product, correction.values);
+                two_dots(self.r.as_flattened(), self.product.as_flattened(), z);
             // The part of the new correction along the last change of the residual, r - r_old = -step K p.
             let scale = correction.scale;
             let factor: [f64; N] =
                 std::array::from_fn(|n| ratio(-step[n] * along_product[n] * scale[n], rho[n]));
             rho = std::array::from_fn(|n| along_residual[n] * scale[n]);
-            turn(&mut self.p, &factor, correction.values, &scale);
+            turn(self.p.as_flattened_mut(), &factor, z, &scale);
         }
+    }
+
+    fn advance(&mut self, step: &[f64; N]) {
+        let (x, r) = (self.x.as_flattened_mut(), self.r.as_flattened_mut());
+        advance(x, r, step, self.p.as_flattened(), self.product.as_flattened());
     }
 
     /// Keeps every residual up to 100, then every tenth, for the report of a failure.
@@ -189,9 +191,4 @@ impl<'a, const N: usize> Run<'a, N> {
             })
             .collect()
     }
-}
-
-/// NaN counts as the largest.
-fn largest<const N: usize>(residuals: &[f64; N]) -> f64 {
-    residuals.iter().fold(0.0, |largest, &r| if r > largest || r.is_nan() { r } else { largest })
 }

@@ -7,8 +7,10 @@ pub mod conjugate_gradient;
 pub mod half_matrix;
 pub mod lanes;
 pub mod layout;
+pub mod mixed;
 pub mod multigrid;
 pub mod ordering;
+pub mod sparse_rows;
 mod vector;
 mod vectorised;
 
@@ -165,9 +167,12 @@ impl System {
         product: &mut [Lanes<f64, 3, N>],
     ) {
         self.matrix.multiply(&self.layout, x, product);
-        for partly in &self.partly_held {
-            partly.clear_held(&mut product[partly.row]);
-        }
+        self.clear_held(product);
+    }
+
+    /// Zeros where held.
+    fn clear_held<const N: usize>(&self, values: &mut [Lanes<f64, 3, N>]) {
+        self.partly_held.iter().for_each(|partly| partly.clear_held(&mut values[partly.row]));
     }
 
     /// f - K x, zero where held, into `residual`.

@@ -4,8 +4,8 @@ use facies::mesh::sample::block;
 use facies::mesh::{CellShape, Vector};
 use facies::plan::{PlannedSegment, RigidMovement};
 use facies::prediction::{
-    Case, CaseSegment, NodeClass, Plan, Scene, Settings, Sliding, SlidingNormal, Unobserved,
-    predict,
+    Case, CaseSegment, ElementChoice, NodeClass, Plan, Scene, Settings, Sliding, SlidingNormal,
+    Unobserved, predict,
 };
 
 use crate::scenes::{case_of, exact, hold, largest_error, material, set, solve};
@@ -193,16 +193,24 @@ fn an_inverted_tetrahedron_is_reported_and_not_solved() {
 }
 
 #[test]
-fn plain_tetrahedra_warn_of_locking_above_nu_0_45_and_mean_dilatation_does_not() {
-    let warned = |shape: CellShape, nu: f64| {
+fn plain_tetrahedra_warn_of_locking_above_nu_0_45_and_no_other_element_does() {
+    let warned = |shape: CellShape, nu: f64, element: ElementChoice| {
         let mut case = jaw_and_skull(shape);
         case.materials.insert("*".to_owned(), material(15.0, nu));
-        let scene = Scene::new(&case, &Plan::default(), &Settings::default()).unwrap();
+        let settings = Settings { element, ..Settings::default() };
+        let scene = Scene::new(&case, &Plan::default(), &settings).unwrap();
         scene.warnings.iter().any(|warning| warning.code == "locking")
     };
-    assert!(warned(CellShape::Tet4, 0.46));
-    assert!(!warned(CellShape::Tet4, 0.45));
-    assert!(!warned(CellShape::Hex8, 0.499));
+    for element in [ElementChoice::Plain, ElementChoice::MeanDilatation] {
+        assert!(warned(CellShape::Tet4, 0.46, element));
+        assert!(!warned(CellShape::Tet4, 0.45, element));
+    }
+    assert!(warned(CellShape::Hex8, 0.46, ElementChoice::Plain));
+    for element in [ElementChoice::Auto, ElementChoice::Stabilised] {
+        assert!(!warned(CellShape::Tet4, 0.499, element));
+        assert!(!warned(CellShape::Hex8, 0.499, element));
+    }
+    assert!(!warned(CellShape::Tet4, 0.499, ElementChoice::Quadratic));
 }
 
 #[test]

@@ -3,10 +3,13 @@
 use std::f64::consts::PI;
 
 use facies::boundary::Hold;
+use facies::element::tetrahedron10;
 use facies::material::LinearElastic;
 use facies::mesh::sample::block;
 use facies::mesh::{CellShape, Vector, VolumeMesh};
-use facies::model::linear_fem::{Observer, Problem};
+use facies::model::linear_fem::{LoadCase, Observer, Problem};
+use facies::model::quadratic::{self, EdgeNodes};
+use facies::model::stabilised;
 use facies::model::{assembly::Tissue, reference_cell, stiffness::Dilatation};
 use facies::solver::Tolerance;
 
@@ -59,8 +62,29 @@ fn for_each_point(mesh: &VolumeMesh, mut visit: impl FnMut(&[u32], &[f64], &Vect
     }
 }
 
+fn on_boundary(x: &Vector) -> bool {
+    x.iter().any(|c| c.abs() < 1e-9 || (c - 1.0).abs() < 1e-9)
+}
+
 /// The L2 norm of u_h - u on an n x n x n cube, with u given on the whole boundary.
 fn l2_error(n: usize, shape: CellShape, nu: f64, dilatation: fn(CellShape) -> Dilatation) -> f64 {
+    let solve = |problem: &Problem| problem.solve(&Silent).unwrap().displacement;
+    l2_error_of(n, shape, nu, (dilatation, &solve))
+}
+
+type Solve<'a> = &'a dyn Fn(&Problem) -> Vec<Vector>;
+
+fn load_case(problem: &Problem) -> LoadCase {
+    let held = problem.holds.iter().map(|hold| *hold.values()).collect();
+    LoadCase { held, forces: problem.forces.to_vec() }
+}
+
+fn l2_error_of(
+    n: usize,
+    shape: CellShape,
+    nu: f64,
+    (dilatation, solve): (fn(CellShape) -> Dilatation, Solve),
+) -> f64 {
     let mesh = block(Vector::new(1.0, 1.0, 1.0), [n, n, n], shape);
     let material = material(1.0, nu);
     let mut forces = vec![Vector::zeros(); mesh.nodes.len()];
@@ -70,7 +94,6 @@ fn l2_error(n: usize, shape: CellShape, nu: f64, dilatation: fn(CellShape) -> Di
             forces[node as usize] += force * *value;
         }
     });
-    let on_boundary = |x: &Vector| x.iter().any(|c| c.abs() < 1e-9 || (c - 1.0).abs() < 1e-9);
     let boundary = mesh.nodes.iter().enumerate().filter(|(_, x)| on_boundary(x));
     let holds: Vec<Hold> =
         boundary.map(|(node, x)| Hold::at(node as u32, manufactured(x))).collect();
@@ -86,7 +109,7 @@ fn l2_error(n: usize, shape: CellShape, nu: f64, dilatation: fn(CellShape) -> Di
         forces: &forces,
         tolerance: Tolerance { relative_residual: 1e-10, memory_mb: 4000.0 },
     };
-    let displacement = problem.solve(&Silent).unwrap().displacement;
+    let displacement = solve(&problem);
     let mut squared = 0.0;
     for_each_point(&mesh, |nodes, values, position, volume| {
         let found: Vector =
@@ -132,5 +155,67 @@ fn plain_tetrahedra_lose_their_order_at_nu_0_49() {
     for coarse in [4, 8] {
         let order = order(coarse, CellShape::Tet4, 0.49, |_| Dilatation::Pointwise);
         assert!(order < 1.6, "order {order:.2} from {coarse} cells");
+    }
+}
+
+#[test]
+fn halving_stabilised_tetrahedra_quarters_the_displacement_error_up_to_nu_0_4999() {
+    let solve = |problem: &Problem| {
+        let solved = stabilised::solve_cases(problem, &[load_case(problem)], &Silent).unwrap();
+        solved.into_iter().next().unwrap().displacement
+    };
+    for nu in [0.49, 0.4999] {
+        let error = |n| l2_error_of(n, CellShape::Tet4, nu, (|_| Dilatation::Pointwise, &solve));
+        let order = (error(16) / error(32)).log2();
+        println!("nu {nu}: order {order:.2}");
+        assert!(order >= 1.9, "nu {nu}: order {order:.2}");
+    }
+}
+
+/// The root mean square error at the nodes, with u given at the boundary's nodes and edge middles.
+fn quadratic_error(n: usize, nu: f64) -> f64 {
+    let mesh = block(Vector::new(1.0, 1.0, 1.0), [n, n, n], CellShape::Tet4);
+    let edges = EdgeNodes::new(&mesh);
+    let positions = edges.positions(&mesh);
+    let material = material(1.0, nu);
+    let mut forces = vec![Vector::zeros(); positions.len()];
+    for cell in 0..mesh.cells.len() {
+        let corners: Vec<Vector> = mesh.corners(cell).collect();
+        let volume = reference_cell(CellShape::Tet4).points[0].at(&corners).unwrap().volume;
+        for point in tetrahedron10::points() {
+            let position = corners.iter().zip(&point).map(|(x, l)| x * *l).sum();
+            let force = body_force(&position, &material) * (volume / 4.0);
+            let nodes = edges.of_cell(&mesh, cell);
+            for (node, value) in nodes.into_iter().zip(tetrahedron10::values(&point)) {
+                forces[node as usize] += force * value;
+            }
+        }
+    }
+    let held = positions.iter().enumerate().filter(|(_, x)| on_boundary(x));
+    let holds: Vec<Hold> = held.map(|(node, x)| Hold::at(node as u32, manufactured(x))).collect();
+    let material_of_cell = vec![0; mesh.cells.len()];
+    let problem = Problem {
+        tissue: Tissue {
+            mesh: &mesh,
+            materials: &[material],
+            material_of_cell: &material_of_cell,
+            dilatation: |_| Dilatation::Pointwise,
+        },
+        holds: &holds,
+        forces: &forces,
+        tolerance: Tolerance { relative_residual: 1e-10, memory_mb: 4000.0 },
+    };
+    let solved = quadratic::solve_cases(&problem, &[load_case(&problem)], &Silent).unwrap();
+    let errors = mesh.nodes.iter().zip(&solved[0].displacement);
+    let squared: f64 = errors.map(|(x, u)| (u - manufactured(x)).norm_squared()).sum();
+    (squared / mesh.nodes.len() as f64).sqrt()
+}
+
+#[test]
+fn halving_quadratic_tetrahedra_divides_the_displacement_error_by_seven() {
+    for nu in [0.3, 0.49] {
+        let order = (quadratic_error(4, nu) / quadratic_error(8, nu)).log2();
+        println!("nu {nu}: order {order:.2}");
+        assert!(order >= 2.8, "nu {nu}: order {order:.2}");
     }
 }

@@ -485,8 +485,6 @@ fn methods_that_are_not_built_are_refused_by_name() {
         let text = format!(r#"{{"method":"{name}"}}"#);
         assert_eq!(refused(settings(&text)), one(code, code, "/spec/method"), "{name}");
     }
-    let quadratic = settings(r#"{"element":"quadratic"}"#);
-    assert_eq!(refused(quadratic), one(code, code, "/spec/element"));
     let misspelt = settings(r#"{"method":"fem"}"#);
     assert_eq!(refused(misspelt), one("validation-failed", "unknown-word", "/method"));
 }

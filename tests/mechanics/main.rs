@@ -11,6 +11,7 @@ mod conditions;
 mod convergence;
 mod distances;
 mod documents;
+mod elements;
 mod formats_check;
 mod formats_damage;
 mod formats_hostile;

@@ -31,10 +31,7 @@ pub fn system_of(
     mesh.node_set(set).unwrap().iter().for_each(|&node| held[node as usize] = true);
     let numbering = Numbering::new(mesh, &held);
     let matrix = tissue.assemble(&numbering, &|| true).unwrap().unwrap();
-    let mut positions = vec![Vector::zeros(); held.len()];
-    for (position, &row) in mesh.nodes.iter().zip(&numbering.layout.place) {
-        positions[row as usize] = *position;
-    }
+    let positions = numbering.by_row(&mesh.nodes);
     System { layout: numbering.layout, matrix, partly_held: Vec::new(), positions }
 }
 

@@ -1,0 +1,67 @@
+//! What holds the middle of an edge between two held nodes.
+
+use super::hold::Hold;
+
+/// The smallest cosine between directions of the two ends that count as one direction, bent by the surface.
+const SAME_DIRECTION: f64 = 0.7;
+
+/// The middle of an edge is held along the directions in which both ends are held, each the mean of the
+/// two ends' directions and values. Between nodes of one segment that is the rigid movement at the
+/// midpoint; between sliding nodes of a curved wall the middle slides across the mean normal. `None` where
+/// the ends have no direction in common.
+pub fn between(node: u32, first: &Hold, second: &Hold) -> Option<Hold> {
+    if first.count() == 3 && second.count() == 3 {
+        return Some(Hold::at(node, (first.values() + second.values()) * 0.5));
+    }
+    let (fewer, more) =
+        if first.count() <= second.count() { (first, second) } else { (second, first) };
+    let mut hold = Hold::free(node);
+    for held in 0..fewer.count() {
+        let axis = fewer.axes().column(held).into_owned();
+        let parts = more.axes().transpose() * axis;
+        let parts = parts.map_with_location(|k, _, part| if k < more.count() { part } else { 0.0 });
+        let length = parts.norm();
+        if length < SAME_DIRECTION {
+            continue;
+        }
+        let other = more.axes() * parts / length;
+        let other_value = parts.dot(more.values()) / length;
+        let sum = axis + other;
+        hold.add(&sum.normalize(), (fewer.values()[held] + other_value) / sum.norm());
+    }
+    (hold.count() > 0).then_some(hold)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::Vector;
+
+    fn sliding(node: u32, normal: Vector, value: f64) -> Hold {
+        let mut hold = Hold::free(node);
+        hold.add(&normal.normalize(), value);
+        hold
+    }
+
+    #[test]
+    fn the_middle_of_a_wall_edge_slides_across_the_same_normal() {
+        let normal = Vector::new(0.3, -0.5, 0.8);
+        let middle = between(7, &sliding(0, normal, 1.0), &sliding(1, normal, 2.0)).unwrap();
+        assert_eq!((middle.node, middle.count()), (7, 1));
+        let displacement = middle.axes() * middle.values();
+        assert!((displacement - normal.normalize() * 1.5).norm() < 1e-15);
+    }
+
+    #[test]
+    fn between_a_fixed_and_a_sliding_node_the_middle_is_held_across_only() {
+        let fixed = Hold::at(0, Vector::new(1.0, 0.0, 4.0));
+        let middle = between(2, &fixed, &sliding(1, Vector::z(), 2.0)).unwrap();
+        assert_eq!(middle.count(), 1);
+        assert!((middle.axes() * middle.values() - Vector::new(0.0, 0.0, 3.0)).norm() < 1e-15);
+    }
+
+    #[test]
+    fn walls_that_meet_at_a_corner_leave_the_edge_across_it_free() {
+        assert_eq!(between(2, &sliding(0, Vector::x(), 0.0), &sliding(1, Vector::y(), 0.0)), None);
+    }
+}

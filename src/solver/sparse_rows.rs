@@ -1,0 +1,179 @@
+//! Compressed rows of small values: scalars, or vectors for the coupling of pressure and displacement.
+
+use rayon::prelude::*;
+
+use super::lanes::Lanes;
+use super::vectorised::vectorised;
+
+/// Rows handled by one thread at a time.
+const ROW_CHUNK: usize = 1024;
+
+/// A sparse matrix, columns ascending in each row.
+#[derive(Clone, Debug)]
+pub struct SparseRows<T> {
+    start: Vec<u32>,
+    columns: Vec<u32>,
+    values: Vec<T>,
+}
+
+/// The four rows and columns that each tetrahedron couples.
+pub struct Couplings<'a> {
+    pub rows: &'a [[u32; 4]],
+    pub columns: &'a [[u32; 4]],
+}
+
+/// A value of a sparse matrix.
+pub trait Entry: Copy + Send + Sync {
+    fn add(&mut self, other: Self);
+}
+
+impl Entry for f64 {
+    fn add(&mut self, other: f64) {
+        *self += other;
+    }
+}
+
+impl Entry for [f64; 3] {
+    fn add(&mut self, other: [f64; 3]) {
+        self.iter_mut().zip(other).for_each(|(sum, value)| *sum += value);
+    }
+}
+
+impl<T: Entry> SparseRows<T> {
+    /// The sum of 4 x 4 cell matrices; `value(cell, row, column)` with local numbers. Cells are added in
+    /// their order, whatever the number of threads.
+    pub fn assemble(
+        row_count: usize,
+        couplings: &Couplings,
+        value: impl Fn(usize, usize, usize) -> T + Sync,
+    ) -> Self {
+        let (first, cells) = cells_around(row_count, couplings.rows);
+        let chunks: Vec<Vec<Vec<(u32, T)>>> = (0..row_count.div_ceil(ROW_CHUNK))
+            .into_par_iter()
+            .map(|chunk| {
+                let rows = chunk * ROW_CHUNK..((chunk + 1) * ROW_CHUNK).min(row_count);
+                rows.map(|row| {
+                    let mut entries: Vec<(u32, T)> = Vec::with_capacity(24);
+                    for &place in &cells[first[row]..first[row + 1]] {
+                        let (cell, local) = (place as usize / 4, place as usize % 4);
+                        for (k, &column) in couplings.columns[cell].iter().enumerate() {
+                            let part = value(cell, local, k);
+                            match entries.iter_mut().find(|(known, _)| *known == column) {
+                                Some((_, sum)) => sum.add(part),
+                                None => entries.push((column, part)),
+                            }
+                        }
+                    }
+                    entries.sort_unstable_by_key(|(column, _)| *column);
+                    entries
+                })
+                .collect()
+            })
+            .collect();
+        let mut matrix = SparseRows { start: vec![0], columns: Vec::new(), values: Vec::new() };
+        for entries in chunks.into_iter().flatten() {
+            matrix.columns.extend(entries.iter().map(|(column, _)| column));
+            matrix.values.extend(entries.iter().map(|(_, value)| value));
+            matrix.start.push(matrix.columns.len() as u32);
+        }
+        matrix
+    }
+
+    pub fn rows(&self) -> usize {
+        self.start.len() - 1
+    }
+
+    /// The columns of a row and their values.
+    pub fn row(&self, row: usize) -> impl Iterator<Item = (usize, &T)> {
+        let range = self.start[row] as usize..self.start[row + 1] as usize;
+        self.columns[range.clone()].iter().map(|&c| c as usize).zip(&self.values[range])
+    }
+
+    /// Memory in MB.
+    pub fn megabytes(&self) -> f64 {
+        (self.columns.len() * (4 + size_of::<T>()) + self.start.len() * 4) as f64 / 1e6
+    }
+}
+
+/// For each row the places `4 cell + local` at which cells name it: those of row r stand between the
+/// r-th and the next entry of the first list.
+fn cells_around(row_count: usize, rows: &[[u32; 4]]) -> (Vec<usize>, Vec<u32>) {
+    let mut first = vec![0_usize; row_count + 1];
+    for &row in rows.as_flattened() {
+        first[row as usize + 1] += 1;
+    }
+    for row in 0..row_count {
+        first[row + 1] += first[row];
+    }
+    let mut next = first.clone();
+    let mut places = vec![0; first[row_count]];
+    for (place, &row) in rows.as_flattened().iter().enumerate() {
+        places[next[row as usize]] = place as u32;
+        next[row as usize] += 1;
+    }
+    (first, places)
+}
+
+impl SparseRows<f64> {
+    /// `product` = A x, for N right-hand sides.
+    pub fn multiply<const N: usize>(&self, x: &[[f64; N]], product: &mut [[f64; N]]) {
+        product.par_chunks_mut(ROW_CHUNK).enumerate().for_each(|(chunk, product)| {
+            vectorised(
+                #[inline(always)]
+                || {
+                    for (local, sums) in product.iter_mut().enumerate() {
+                        *sums = [0.0; N];
+                        for (column, value) in self.row(chunk * ROW_CHUNK + local) {
+                            for n in 0..N {
+                                sums[n] += value * x[column][n];
+                            }
+                        }
+                    }
+                },
+            );
+        });
+    }
+}
+
+impl SparseRows<[f64; 3]> {
+    /// `product` = A x for x of three unknowns a column. Columns beyond the end of x count as zero.
+    pub fn contract<const N: usize>(&self, x: &[Lanes<f64, 3, N>], product: &mut [[f64; N]]) {
+        product.par_chunks_mut(ROW_CHUNK).enumerate().for_each(|(chunk, product)| {
+            vectorised(
+                #[inline(always)]
+                || {
+                    for (local, sums) in product.iter_mut().enumerate() {
+                        *sums = [0.0; N];
+                        for (column, v) in self.row(chunk * ROW_CHUNK + local) {
+                            let Some(x) = x.get(column) else { break };
+                            for n in 0..N {
+                                sums[n] += v[0] * x[0][n] + v[1] * x[1][n] + v[2] * x[2][n];
+                            }
+                        }
+                    }
+                },
+            );
+        });
+    }
+
+    /// `product` += A x for x of one unknown a column, three results a row. Only the first rows are wanted
+    /// where `product` is shorter.
+    pub fn add_expanded<const N: usize>(&self, x: &[[f64; N]], product: &mut [Lanes<f64, 3, N>]) {
+        product.par_chunks_mut(ROW_CHUNK).enumerate().for_each(|(chunk, product)| {
+            vectorised(
+                #[inline(always)]
+                || {
+                    for (local, sums) in product.iter_mut().enumerate() {
+                        for (column, v) in self.row(chunk * ROW_CHUNK + local) {
+                            for c in 0..3 {
+                                for n in 0..N {
+                                    sums[c][n] += v[c] * x[column][n];
+                                }
+                            }
+                        }
+                    }
+                },
+            );
+        });
+    }
+}
