@@ -21,6 +21,7 @@ mod formats_samples;
 mod formats_shared_data;
 mod formats_surface;
 mod jobs;
+mod optimisation;
 mod patch;
 mod quality;
 mod registration;
