@@ -25,6 +25,7 @@ mod optimisation;
 mod patch;
 mod quality;
 mod registration;
+mod response;
 mod scenes;
 mod solvers;
 mod surfaces;
