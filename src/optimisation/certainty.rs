@@ -21,6 +21,8 @@ pub struct Certainty {
     pub determined: Vec<Parameter>,
     /// Their covariance in mm and radians.
     pub covariance: DMatrix<f64>,
+    /// How many independent combinations the targets determine.
+    pub rank: usize,
     /// Combinations that could be added to the plan without a change at any target, to first order.
     pub undetermined: Vec<Vec<Weight>>,
 }
@@ -50,6 +52,7 @@ impl Certainty {
         Certainty {
             determined: seen.iter().map(|&place| free[place]).collect(),
             covariance,
+            rank: free.len() - blind.len(),
             undetermined: readable(blind).iter().map(|way| weights(&free, way)).collect(),
         }
     }

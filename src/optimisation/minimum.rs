@@ -14,9 +14,11 @@ use super::unknowns::Unknowns;
 
 /// The undamped step in mm, or degrees, at which the minimum is found.
 const SMALL_STEP: f64 = 1e-8;
-/// It is found as well where no step promises to lower the sum by more than its rounding.
+/// It is found as well where no step promises to lower the sum by more than this share, a hundred
+/// thousandth of a standard error in the movement, or by more than rounding.
+const SMALL_PROMISE: f64 = 1e-10;
 const ROUNDING: f64 = 1e-13;
-/// Surgery takes ten; targets that are tens of mm apart from any skin have been seen to take 150.
+/// Surgery takes ten; targets tens of mm away from any skin have been seen to take 150.
 const MOST_ITERATIONS: usize = 1000;
 
 /// Dampings as shares of the largest eigenvalue of JᵀJ: the first one, and the one below which there is none.
@@ -43,17 +45,21 @@ pub fn minimise(unknowns: &Unknowns, reduction: &Reduction) -> Result<Minimum, O
         let linearised = Linearised::new(jacobian, residual.clone());
         let room = Room { lower: &unknowns.lower - &at, upper: &unknowns.upper - &at };
         step = linearised.step(0.0, &room);
-        let rounding = ROUNDING * residual.norm() * (residual.norm() + reduction.size());
+        let size = residual.norm();
+        let small = SMALL_PROMISE * size * size + ROUNDING * size * reduction.size();
         let mut is_found = step.amax() <= SMALL_STEP;
+        // A damping left over from before says nothing about what larger steps could do.
+        let mut is_long = damping == 0.0;
         while !is_found {
             let damped = linearised.step(damping * linearised.largest, &room);
             let promised = linearised.promise(&damped);
             let next = unknowns.within(&at + &damped);
             let next_residual = residual_at(&next);
             let kept = (residual.norm_squared() - next_residual.norm_squared()) / promised;
-            is_found = promised <= rounding;
-            if kept < 0.25 {
+            is_found = is_long && promised <= small;
+            if kept.is_nan() || kept < 0.25 {
                 damping = (4.0 * damping).max(FIRST_DAMPING);
+                is_long = true;
             }
             if kept > 1e-4 && !is_found {
                 (at, residual) = (next, next_residual);

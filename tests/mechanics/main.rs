@@ -22,6 +22,7 @@ mod formats_shared_data;
 mod formats_surface;
 mod jobs;
 mod optimisation;
+mod optimise_jobs;
 mod patch;
 mod quality;
 mod registration;
