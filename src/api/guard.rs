@@ -119,30 +119,7 @@ pub async fn accepts_json(request: Request, next: Next) -> Response {
 
 /// Whether the client takes a media type (RFC 9110, section 12.5.1).
 pub fn check_accept(headers: &HeaderMap, offered: &str) -> Result<(), ApiError> {
-    let mut ranges = headers
-        .get_all(header::ACCEPT)
-        .iter()
-        .filter_map(|value| value.to_str().ok())
-        .flat_map(|value| value.split(','))
-        .filter(|range| !range.trim().is_empty())
-        .peekable();
-    if ranges.peek().is_none() {
-        return Ok(());
-    }
-    let mut best = (0, false);
-    for range in ranges {
-        let mut parts = range.split(';').map(str::trim);
-        let name = parts.next().unwrap_or_default().to_ascii_lowercase();
-        let refused = parts.any(|parameter| {
-            let quality = parameter.strip_prefix("q=").unwrap_or("1");
-            quality.parse::<f32>().is_ok_and(|quality| quality <= 0.0)
-        });
-        let precision = precision_of(&name, offered);
-        if precision > best.0 {
-            best = (precision, !refused);
-        }
-    }
-    if best.1 {
+    if liking(headers, offered).1 > 0.0 {
         return Ok(());
     }
     let detail = format!("the answer is {offered}, which the header Accept does not allow");

@@ -35,7 +35,8 @@ pub fn router() -> OpenApiRouter<Service> {
 #[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
 struct ResponseParameters {
-    /// The job that built the response. Default: the newest that was built for the case as it is now.
+    /// The job that built the response. Default: the newest that was built for the case as it is now,
+    /// whatever materials and segments its spec names; the answer says which.
     #[param(format = Uuid)]
     job: Option<String>,
 }

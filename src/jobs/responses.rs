@@ -305,3 +305,61 @@ fn parsed(description: &[u8], columns: &[u8], rest: &[u8]) -> Result<LoadedRespo
         description,
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::response::{Columns, ResponseSegment};
+    use crate::schema::response::{ColumnsDocument, ResponseOrigin};
+
+    /// A response of one segment that takes 4 * (36 + 2) + 28 bytes for each node.
+    fn loaded(nodes: u32) -> Arc<LoadedResponse> {
+        let segments = vec![ResponseSegment { name: "jaw".into(), centre: Vector::zeros() }];
+        let corner = Vector::zeros();
+        let linearity =
+            Linearity { thickness: 1.0, something_stays: true, boxes: vec![[corner, corner]] };
+        let solver = crate::prediction::SolverReport {
+            name: "none",
+            preconditioner: "none",
+            why: String::new(),
+            unknowns: 0,
+            iterations: 0,
+            relative_residual: 0.0,
+            wanted_residual: 0.0,
+            elements: Vec::new(),
+        };
+        let values = vec![0.0; 36 * nodes as usize];
+        let nodes: Vec<u32> = (0..nodes).collect();
+        let rest = TriangleSurface {
+            points: vec![Vector::zeros(); nodes.len()],
+            ..TriangleSurface::default()
+        };
+        let columns = Columns { segments, nodes, values, linearity: linearity.clone(), solver };
+        let (file, layout, sha256) = (String::new(), String::new(), String::new());
+        let origin = ResponseOrigin {
+            job: None,
+            key: String::new(),
+            frame: crate::mesh::Frame::Lps,
+            mesh_centre: Vector::zeros(),
+            staying: Vec::new(),
+            columns: ColumnsDocument { file, layout, count: 12, bytes: 0, sha256 },
+        };
+        let description = ResponseDescription::new(&columns, origin);
+        let response = columns.to_response();
+        Arc::new(LoadedResponse { description, response, linearity, rest })
+    }
+
+    #[test]
+    fn the_response_that_was_not_used_for_longest_makes_room() {
+        let mut memory = Memory::new(180 * 10);
+        memory.keep("a", loaded(4));
+        memory.keep("b", loaded(4));
+        assert!(memory.get("a").is_some());
+        memory.keep("c", loaded(4));
+        assert!(memory.get("b").is_none());
+        assert!(memory.get("a").is_some() && memory.get("c").is_some());
+        memory.keep("too large", loaded(11));
+        assert!(memory.get("too large").is_none() && memory.get("a").is_some());
+        assert_eq!(memory.used, 180 * 8);
+    }
+}

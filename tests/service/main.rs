@@ -17,6 +17,7 @@ mod openapi;
 mod optimise;
 mod plans;
 mod queue;
+mod response;
 mod settings;
 #[path = "../shared/mod.rs"]
 #[allow(dead_code, reason = "other tests use the rest")]
