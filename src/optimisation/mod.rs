@@ -25,6 +25,7 @@ use minimum::minimise;
 use reduction::Reduction;
 use unknowns::Unknowns;
 
+pub use bounded_step::UNDETERMINED;
 pub use certainty::{Certainty, Weight};
 
 /// Numbers that move a segment.

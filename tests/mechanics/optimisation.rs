@@ -154,27 +154,38 @@ fn a_planted_plan_is_found_again_from_its_skin() {
     assert!(found.iterations <= 10, "{}", found.iterations);
 }
 
+/// A plan of two segments that turn by at most `degrees` about each axis, and by 90 degrees in all.
+fn random_plan(random: &mut Random, degrees: f64) -> [[f64; 6]; 2] {
+    let mut number = |k: usize| match k {
+        0..3 => random.between(-55.0, 55.0),
+        _ => random.between(-degrees, degrees),
+    };
+    loop {
+        let plan = planted([(); 2].map(|()| std::array::from_fn(&mut number)));
+        if (0..2).all(|segment| movement(segment, &plan[segment]).angle() <= TAU / 4.0) {
+            return plan;
+        }
+    }
+}
+
 #[test]
 fn any_plan_within_the_limits_of_the_service_is_found_from_rest() {
     let response = response(&skin());
     let mut random = Random(1);
-    for draw in 0..200 {
-        let mut number = |k: usize| match k {
-            0..3 => random.between(-55.0, 55.0),
-            _ => random.between(-85.0, 85.0),
-        };
-        let plan = loop {
-            let plan = planted([(); 2].map(|()| std::array::from_fn(&mut number)));
-            // A segment turns by at most 90 degrees in all.
-            if (0..2).all(|segment| movement(segment, &plan[segment]).angle() <= TAU / 4.0) {
-                break plan;
+    for (points, degrees) in [(100, 85.0), (8, 60.0)] {
+        for draw in 0..200 {
+            let plan = random_plan(&mut random, degrees);
+            let mut target = every_node(&moved_skin(&response, &plan), 1.0);
+            while target.goals.len() > points {
+                let place = random.between(0.0, target.goals.len() as f64) as usize;
+                target.goals.swap_remove(place);
             }
-        };
-        let targets = [every_node(&moved_skin(&response, &plan), 1.0)];
-        let found = found(&response, &bounds(57.0, 90.0), &targets);
-        let (mm, degrees) = difference(&found.parameters, &plan);
-        // Near 90 degrees about y the other two angles hardly differ, and single precision shows.
-        assert!(mm < 1e-5 && degrees < 1e-5, "draw {draw}: {mm} mm, {degrees} degrees");
+            let found = found(&response, &bounds(57.0, 90.0), &[target]);
+            let (mm, degrees) = difference(&found.parameters, &plan);
+            // Near 90 degrees about y the other two angles hardly differ, and few points determine little.
+            let place = format!("{points} points, draw {draw}: {mm} mm, {degrees} degrees");
+            assert!(mm < 1e-4 && degrees < 1e-4, "{place}");
+        }
     }
 }
 
