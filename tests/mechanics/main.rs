@@ -20,6 +20,7 @@ mod formats_round_trip;
 mod formats_samples;
 mod formats_shared_data;
 mod formats_surface;
+mod hard_systems;
 mod jobs;
 mod optimisation;
 mod optimise_jobs;
