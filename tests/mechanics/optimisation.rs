@@ -399,7 +399,10 @@ fn a_question_without_an_answer_is_refused() {
     };
     let free = bounds(25.0, 30.0);
     let held = bounds(0.0, 0.0);
-    assert_eq!(ask(&response, &held, &[wanted.clone()]), OptimisationError::NothingFree);
+    assert_eq!(
+        ask(&response, &held, std::slice::from_ref(&wanted)),
+        OptimisationError::NothingFree
+    );
     let mut nothing = wanted.clone();
     nothing.goals.iter_mut().for_each(|goal| goal.displacement = [None; 3]);
     assert_eq!(ask(&response, &free, &[nothing]), OptimisationError::NoTarget);
