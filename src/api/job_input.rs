@@ -88,16 +88,16 @@ pub async fn of_response(service: &Service, mut spec: ResponseDocument) -> ApiRe
 }
 
 /// What is known of a job when it is accepted, beside its document.
-struct Accepted {
-    kind: JobKind,
-    case_id: Option<String>,
-    spec_hash: String,
-    tags: Vec<String>,
-    mesh_ids: Vec<String>,
+pub struct Accepted {
+    pub kind: JobKind,
+    pub case_id: Option<String>,
+    pub spec_hash: String,
+    pub tags: Vec<String>,
+    pub mesh_ids: Vec<String>,
 }
 
 impl Accepted {
-    fn with(self, input: &JobInput) -> ApiResult<NewJob> {
+    pub fn with(self, input: &JobInput) -> ApiResult<NewJob> {
         let engine = serde_json::to_string(&EngineDocument::this()).map_err(ApiError::internal)?;
         Ok(NewJob {
             id: uuid::Uuid::now_v7().to_string(),
@@ -150,7 +150,7 @@ fn mesh_ids(input: &PredictInput) -> Vec<String> {
 }
 
 /// A case that has to be there.
-async fn require_case(service: &Service, case: &str) -> ApiResult<CaseRow> {
+pub async fn require_case(service: &Service, case: &str) -> ApiResult<CaseRow> {
     let row = match id(case) {
         Some(id) => service.store.case(&id).await?,
         None => None,
@@ -197,7 +197,7 @@ fn fault(at: &str, code: &str, detail: &str) -> ApiError {
 }
 
 /// A body that is the spec knows nothing of `/spec`.
-fn in_spec(problem: Problem) -> Problem {
+pub fn in_spec(problem: Problem) -> Problem {
     problem.moved("/spec", "")
 }
 

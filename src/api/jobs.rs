@@ -14,7 +14,7 @@ use super::paging::Page;
 use super::parameters::{Id, Parameters, no_such_job};
 use super::prefer::{wait_for_end, wanted_wait};
 use super::results::RETRY_AFTER_S;
-use super::{Service, body, job_input, json, json_only, with_header};
+use super::{Service, body, job_input, json, json_only, optimise_input, with_header};
 use crate::schema::job::{JobKind, JobStatus, StatusInfo};
 use crate::schema::spec::JobDocument;
 use crate::schema::strict;
@@ -23,7 +23,7 @@ use crate::store::{Dismissal, Enqueued, JobFilter, JobRow};
 /// Jobs that may wait at the same time.
 const LONGEST_QUEUE: i64 = 10_000;
 /// Kinds that the description of the service names and that are not built.
-const LATER_KINDS: [&str; 3] = ["optimise", "study", "batch"];
+const LATER_KINDS: [&str; 2] = ["study", "batch"];
 
 pub fn router() -> OpenApiRouter<Service> {
     let router = OpenApiRouter::new().routes(routes!(create, list));
@@ -81,6 +81,7 @@ async fn create(State(service): State<Service>, request: Request) -> ApiResult {
         JobDocument::Predict(spec) => job_input::of_prediction(&service, spec).await?,
         JobDocument::Compare(spec) => job_input::of_comparison(&service, spec).await?,
         JobDocument::Response(spec) => job_input::of_response(&service, spec).await?,
+        JobDocument::Optimise(spec) => optimise_input::of_optimisation(&service, spec).await?,
     };
     let (id, deduplicated) = match service.store.enqueue(&accepted, LONGEST_QUEUE).await? {
         Enqueued::Accepted => (accepted.id, false),
@@ -113,8 +114,9 @@ fn refuse_later_kinds(service: &Service, bytes: &[u8]) -> ApiResult<()> {
     let value = strict::parse_value(bytes, &service.limits)?;
     match value.get("kind").and_then(serde_json::Value::as_str) {
         Some(kind) if LATER_KINDS.contains(&kind) => {
-            let detail =
-                format!("jobs of kind {kind} are not available; predict, compare and response are");
+            let detail = format!(
+                "jobs of kind {kind} are not available; predict, compare, response and optimise are"
+            );
             Err(ApiError::new("kind-not-available", detail))
         }
         _ => Ok(()),

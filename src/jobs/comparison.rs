@@ -103,6 +103,7 @@ pub fn compare_job(
         files: folder.files.clone(),
         statistics: None,
         comparison: Some(compared.document.clone()),
+        optimisation: None,
         numerical_error_mm: None,
         reaction_mn: BTreeMap::new(),
         provenance: origin.provenance(&clock),

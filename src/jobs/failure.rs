@@ -5,6 +5,7 @@ use serde_json::{Map, Value, json};
 use super::source::SourceError;
 use crate::chart::PngError;
 use crate::format::WriteError;
+use crate::optimisation::OptimisationError;
 use crate::prediction::PredictionError;
 use crate::schema::Problem;
 use crate::schema::job::{ErrorClass, JobErrorDocument};
@@ -20,6 +21,8 @@ pub enum JobError {
     Refused(Problem),
     #[error(transparent)]
     Prediction(#[from] PredictionError),
+    #[error("no plan was found: {0}")]
+    Optimisation(#[from] OptimisationError),
     #[error("{which} ran out: {allowed} {unit} are allowed")]
     Budget { which: &'static str, allowed: f64, unit: &'static str },
     #[error("stopped on request")]
@@ -52,6 +55,7 @@ impl JobError {
             }
             JobError::Prediction(PredictionError::Inverted { .. }) => ErrorClass::Input,
             JobError::Prediction(_)
+            | JobError::Optimisation(_)
             | JobError::NotFinite { .. }
             | JobError::Statistics(_)
             | JobError::Encode(_) => ErrorClass::Numerical,
@@ -81,9 +85,10 @@ impl JobError {
             JobError::Source(SourceError::Unknown { .. }) => "not-found",
             JobError::Source(SourceError::Refused { code, .. }) => code,
             JobError::Source(SourceError::Unreadable { .. }) | JobError::Write { .. } => "storage",
-            JobError::NotFinite { .. } | JobError::Statistics(_) | JobError::Encode(_) => {
-                "solver-diverged"
-            }
+            JobError::Optimisation(_)
+            | JobError::NotFinite { .. }
+            | JobError::Statistics(_)
+            | JobError::Encode(_) => "solver-diverged",
             JobError::Picture(_) => "internal",
         }
     }
@@ -126,6 +131,11 @@ impl JobError {
             JobError::Prediction(PredictionError::OverBudget { needed_mb, allowed_mb }) => {
                 json!({ "which": "memory", "needed_mb": needed_mb, "allowed_mb": allowed_mb })
             }
+            JobError::Optimisation(OptimisationError::NotConverged {
+                iterations,
+                step,
+                wanted,
+            }) => json!({ "iterations": iterations, "step": step, "wanted": wanted }),
             JobError::Budget { which, allowed, unit } => {
                 json!({ "which": which, format!("allowed_{unit}"): allowed })
             }

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::comparison::fetch;
 use super::failure::JobError;
+use super::optimisation::OptimiseInput;
 use super::response::ResponseInput;
 use super::source::{MeshSource, SourceError, StoredMesh, StoredShape};
 use crate::mesh::Warning;
@@ -28,6 +29,7 @@ pub enum JobInput {
     Predict(PredictInput),
     Compare(CompareInput),
     Response(ResponseInput),
+    Optimise(OptimiseInput),
 }
 
 /// A prediction: the case and the plan in full beside the spec.

@@ -51,6 +51,7 @@ fn read_input(claim: &Claim) -> Result<JobInput, Failure> {
         JobInput::Predict(input) => (input.job, input.queue_s) = (job, queue_s),
         JobInput::Compare(input) => (input.job, input.queue_s) = (job, queue_s),
         JobInput::Response(input) => (input.job, input.queue_s) = (job, queue_s),
+        JobInput::Optimise(input) => (input.job, input.queue_s) = (job, queue_s),
     }
     Ok(input)
 }

@@ -123,6 +123,7 @@ pub fn response_job(
         files: folder.files.clone(),
         statistics: None,
         comparison: None,
+        optimisation: None,
         numerical_error_mm: None,
         reaction_mn: BTreeMap::new(),
         provenance,

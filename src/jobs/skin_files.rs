@@ -20,10 +20,18 @@ pub struct PredictedSkin {
 impl PredictedSkin {
     pub fn new(skin: &Skin, prediction: &Prediction) -> Self {
         let nodes = skin.nodes().iter();
-        let displacement: Vec<Vector> =
-            nodes.map(|&node| prediction.displacement[node as usize]).collect();
+        let displacement = nodes.map(|&node| prediction.displacement[node as usize]).collect();
+        Self::of_displacement(skin, displacement)
+    }
+
+    /// The skin with one displacement in mm for each of its points.
+    pub fn of_displacement(skin: &Skin, displacement: Vec<Vector>) -> Self {
+        let mut surface = skin.surface.clone();
+        for (point, moved) in surface.points.iter_mut().zip(&displacement) {
+            *point += moved;
+        }
         PredictedSkin {
-            surface: skin.moved(&prediction.displacement),
+            surface,
             magnitude: displacement.iter().map(Vector::norm).collect(),
             displacement,
             signed_distance: None,

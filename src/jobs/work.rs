@@ -8,6 +8,7 @@ use super::comparison::{compare_job, compare_skin};
 use super::failure::JobError;
 use super::input::{JobInput, PredictInput, Prepared};
 use super::observed::Observed;
+use super::optimisation::optimise_job;
 use super::output::ResultFolder;
 use super::overlap::overlaps;
 use super::pictures::displacement_picture;
@@ -18,6 +19,7 @@ use super::source::MeshSource;
 use super::tissue_files::{encode_bones, encode_volume};
 use crate::mesh::{Vector, Warning};
 use crate::prediction::{Phase, Prediction, Progress, Skin, predict};
+use crate::schema::optimisation::OptimisationDocument;
 use crate::schema::prediction::{
     DisplacementDocument, FileDocument, ResultDocument, StatisticsDocument,
 };
@@ -52,6 +54,7 @@ pub fn work(
         JobInput::Predict(input) => predict_job(input, place, progress),
         JobInput::Compare(input) => compare_job(input, place, progress),
         JobInput::Response(input) => response_job(input, place, progress),
+        JobInput::Optimise(input) => optimise_job(input, place, progress),
     }
 }
 
@@ -66,54 +69,78 @@ fn predict_job(
     let prepared = input.prepare(place.sources, place.limits)?;
     clock.check()?;
 
-    // 2. The displacement of the tissue and of its skin.
+    // 2. The displacement of the tissue.
     let prediction = predict(&prepared.scene, &clock).map_err(|error| clock.judge(error))?;
-    clock.phase(Phase::Surface);
-    let mut skin = PredictedSkin::new(&prepared.scene.skin, &prediction);
-    let statistics = statistics(&prepared.scene.skin, &skin, &prediction)?;
-    clock.check()?;
+    let predicted = Predicted { prepared, prediction, optimisation: None };
+    predicted.publish(input, &clock, place.out)
+}
 
-    // 3. Against another surface, if asked.
-    clock.phase(Phase::Compare);
-    let compared = compare_skin(input, &prepared, &skin, &clock)?;
-    let mut warnings = prepared.warnings.clone();
-    warnings.extend(prediction.warnings.iter().cloned());
-    warnings.extend(overlaps(&prepared.case, &prepared.scene, &prediction));
-    if let Some(compared) = &compared {
-        skin.signed_distance = Some(compared.signed_distance.clone());
-        warnings.extend(compared.warnings.iter().cloned());
+/// A prediction that is to be measured, compared and written.
+pub(super) struct Predicted {
+    pub prepared: Prepared,
+    pub prediction: Prediction,
+    /// How its plan was found, if it was not stated.
+    pub optimisation: Option<OptimisationDocument>,
+}
+
+impl Predicted {
+    pub fn publish(
+        self,
+        input: &PredictInput,
+        clock: &Observed,
+        out: &Path,
+    ) -> Result<JobOutput, JobError> {
+        let Predicted { prepared, prediction, optimisation } = self;
+
+        // 1. The displacement of the skin.
+        clock.phase(Phase::Surface);
+        let mut skin = PredictedSkin::new(&prepared.scene.skin, &prediction);
+        let statistics = statistics(&prepared.scene.skin, &skin, &prediction.landmarks)?;
+        clock.check()?;
+
+        // 2. Against another surface, if asked.
+        clock.phase(Phase::Compare);
+        let compared = compare_skin(input, &prepared, &skin, clock)?;
+        let mut warnings = prepared.warnings.clone();
+        warnings.extend(prediction.warnings.iter().cloned());
+        warnings.extend(overlaps(&prepared.case, &prepared.scene, &prediction));
+        if let Some(compared) = &compared {
+            skin.signed_distance = Some(compared.signed_distance.clone());
+            warnings.extend(compared.warnings.iter().cloned());
+        }
+        clock.check()?;
+
+        // 3. Files.
+        clock.phase(Phase::Write);
+        let finished = Finished {
+            origin: Origin {
+                spec_hash: prepared.spec_hash.clone(),
+                inputs: prepared.inputs.clone(),
+                frame: prepared.case.frame,
+                queue_s: input.queue_s,
+            },
+            prepared: &prepared,
+            prediction: &prediction,
+            skin: &skin,
+            statistics,
+            comparison: compared.map(|compared| compared.document),
+            optimisation,
+            warnings,
+        };
+        let mut folder = ResultFolder::open(out)?;
+        finished.write_files(&input.files(), &mut folder)?;
+
+        // 4. The manifest.
+        let result = finished.result(input, clock, folder.files.clone());
+        folder.add(OutputName::ResultJson, &encode_result(&result)?)?;
+        Ok(JobOutput { result, files: folder.files })
     }
-    clock.check()?;
-
-    // 4. Files.
-    clock.phase(Phase::Write);
-    let finished = Finished {
-        origin: Origin {
-            spec_hash: prepared.spec_hash.clone(),
-            inputs: prepared.inputs.clone(),
-            frame: prepared.case.frame,
-            queue_s: input.queue_s,
-        },
-        prepared: &prepared,
-        prediction: &prediction,
-        skin: &skin,
-        statistics,
-        comparison: compared.map(|compared| compared.document),
-        warnings,
-    };
-    let mut folder = ResultFolder::open(place.out)?;
-    finished.write_files(&input.files(), &mut folder)?;
-
-    // 5. The manifest.
-    let result = finished.result(input, &clock, folder.files.clone());
-    folder.add(OutputName::ResultJson, &encode_result(&result)?)?;
-    Ok(JobOutput { result, files: folder.files })
 }
 
 impl PredictInput {
     /// The files to write but for `result.json`: those asked for, or skin and moved bones. A case
     /// without bones has no file of them.
-    fn files(&self) -> Vec<OutputName> {
+    pub(super) fn files(&self) -> Vec<OutputName> {
         let mut files = self.spec.files();
         if self.spec.outputs.is_none() {
             files.push(OutputName::BonesVtp);
@@ -136,6 +163,7 @@ struct Finished<'a> {
     skin: &'a PredictedSkin,
     statistics: StatisticsDocument,
     comparison: Option<ComparisonDocument>,
+    optimisation: Option<OptimisationDocument>,
     warnings: Vec<Warning>,
 }
 
@@ -178,6 +206,7 @@ impl Finished<'_> {
             files,
             statistics: Some(self.statistics.clone()),
             comparison: self.comparison.clone(),
+            optimisation: self.optimisation.clone(),
             numerical_error_mm: None,
             reaction_mn: triples(&self.prediction.reactions),
             provenance,
@@ -187,10 +216,10 @@ impl Finished<'_> {
 }
 
 /// How far the skin, its parts and the landmarks move.
-fn statistics(
+pub(super) fn statistics(
     skin: &Skin,
     predicted: &PredictedSkin,
-    prediction: &Prediction,
+    landmarks: &BTreeMap<String, Vector>,
 ) -> Result<StatisticsDocument, StatisticsError> {
     let areas = skin.surface.point_areas();
     let over = |points: &[u32]| -> Result<DisplacementDocument, StatisticsError> {
@@ -206,7 +235,7 @@ fn statistics(
     for (name, points) in &skin.regions {
         regions.insert(name.clone(), over(points)?);
     }
-    let landmarks = triples(&prediction.landmarks);
+    let landmarks = triples(landmarks);
     Ok(StatisticsDocument { skin: over(&everywhere)?, regions, landmarks })
 }
 

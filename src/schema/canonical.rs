@@ -6,6 +6,7 @@ use sha2::{Digest, Sha256};
 
 use super::case::CaseDocument;
 use super::compare::CompareDocument;
+use super::optimise::OptimiseDocument;
 use super::plan::PlanDocument;
 use super::response::ResponseDocument;
 use super::spec::PredictDocument;
@@ -53,6 +54,29 @@ pub fn predict_hash(
         "engine": env!("CARGO_PKG_VERSION"),
         "case": to_value(&case),
         "plan": to_value(&plan),
+        "spec": spec.content(),
+    }))
+}
+
+/// The hash of inverse planning: contents of meshes in place of their ids, names and tags left out.
+pub fn optimise_hash(
+    case: &CaseDocument,
+    spec: &OptimiseDocument,
+    content_of: &dyn Fn(&str) -> Option<String>,
+) -> String {
+    let mut case = case.clone();
+    case.name = None;
+    case.tags.clear();
+    let mut spec = spec.clone();
+    for (_, id) in case.mesh_references_mut() {
+        replace(id, content_of);
+    }
+    for id in spec.surfaces_mut() {
+        replace(id, content_of);
+    }
+    hash(&json!({
+        "engine": env!("CARGO_PKG_VERSION"),
+        "case": to_value(&case),
         "spec": spec.content(),
     }))
 }

@@ -50,6 +50,7 @@ pub enum JobKind {
     Predict,
     Compare,
     Response,
+    Optimise,
 }
 
 impl JobKind {
@@ -58,13 +59,14 @@ impl JobKind {
             JobKind::Predict => "predict",
             JobKind::Compare => "compare",
             JobKind::Response => "response",
+            JobKind::Optimise => "optimise",
         }
     }
 
     /// The kind a stored word names.
     pub fn from_name(name: &str) -> Option<JobKind> {
-        use JobKind::{Compare, Predict, Response};
-        [Predict, Compare, Response].into_iter().find(|kind| kind.name() == name)
+        use JobKind::{Compare, Optimise, Predict, Response};
+        [Predict, Compare, Response, Optimise].into_iter().find(|kind| kind.name() == name)
     }
 }
 

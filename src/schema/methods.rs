@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use super::fault::{Faults, Pointer};
+use crate::optimisation::UNDETERMINED;
 use crate::prediction::ElementChoice;
 use crate::response::COLUMNS_PER_SEGMENT;
 use crate::response::linearity::LINEAR_RANGE_MM;
@@ -91,6 +92,21 @@ pub struct MethodList {
     /// What `auto` chooses, and why.
     pub auto: String,
     pub response: ResponseMethod,
+    pub optimise: OptimiseMethod,
+}
+
+/// How jobs of kind `optimise` find a plan.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct OptimiseMethod {
+    /// Those whose skin is linear in the movements.
+    pub methods: Vec<MethodName>,
+    /// What is minimised, and how.
+    pub minimises: String,
+    /// How `standard_error` and `covariance` come about.
+    pub certainty: String,
+    /// A combination of parameters is undetermined where it moves the targets by less than this share of
+    /// what the strongest one does.
+    pub undetermined_below: f64,
 }
 
 /// What jobs of kind `response` build.
@@ -159,6 +175,16 @@ pub fn available_methods() -> MethodList {
                 the nearest held node, theta the largest rotation; an order of magnitude"
                 .to_owned(),
             linear_range_mm: LINEAR_RANGE_MM,
+        },
+        optimise: OptimiseMethod {
+            methods: vec![MethodName::FemLinear],
+            minimises: "sum of (residual / sigma_mm)^2 over translations and angles within their bounds, by \
+                Levenberg and Marquardt's method from rest, on a response of the segments"
+                .to_owned(),
+            certainty: "(J^T J)^-1 of the parameters that are not at a bound, J the derivative of residual / \
+                sigma_mm: right where errors are independent with standard deviation sigma_mm"
+                .to_owned(),
+            undetermined_below: UNDETERMINED,
         },
     }
 }

@@ -10,7 +10,7 @@ use crate::mesh::Vector;
 use crate::plan::RigidMovement;
 
 /// Farthest coordinate of a pivot: beyond any scanner's origin in use.
-const FARTHEST_PIVOT_MM: f64 = 1e8;
+pub const FARTHEST_PIVOT_MM: f64 = 1e8;
 
 /// The order in which the three rotations act.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]

@@ -7,6 +7,7 @@ use utoipa::ToSchema;
 
 use super::Triple;
 use super::case::{FrameName, LengthUnit};
+use super::optimisation::OptimisationDocument;
 use super::validation::{ComparisonDocument, StatDocument};
 use super::warning::WarningDocument;
 
@@ -30,6 +31,10 @@ pub struct ResultDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub comparison: Option<ComparisonDocument>,
+    /// Of inverse planning.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub optimisation: Option<OptimisationDocument>,
     /// Null where it was not estimated.
     pub numerical_error_mm: Option<NumericalErrorDocument>,
     /// What each segment, and `fixed`, `sliding` and `prescribed` nodes, exert on the tissue.

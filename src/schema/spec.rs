@@ -11,6 +11,7 @@ use super::fault::{Faults, Pointer};
 use super::limits::Limits;
 use super::material::MaterialDocuments;
 use super::methods::{self, ElementName, MethodName};
+use super::optimise::OptimiseDocument;
 use super::plan::PlanDocument;
 use super::problem::Problem;
 use super::response::ResponseDocument;
@@ -24,6 +25,7 @@ pub enum JobDocument {
     Predict(PredictDocument),
     Compare(CompareDocument),
     Response(ResponseDocument),
+    Optimise(OptimiseDocument),
 }
 
 /// `predict`.
@@ -208,15 +210,16 @@ impl JobDocument {
             }
             Some(Some("compare")) => strict::from_value(value).map(JobDocument::Compare),
             Some(Some("response")) => strict::from_value(value).map(JobDocument::Response),
+            Some(Some("optimise")) => strict::from_value(value).map(JobDocument::Optimise),
             Some(Some(other)) => {
                 let detail = format!(
-                    "`{other}` is not a kind of job; `predict`, `compare` and `response` are"
+                    "`{other}` is not a kind of job; `predict`, `compare`, `response` and `optimise` are"
                 );
                 Err(Problem::at(&at, "unknown-word", detail))
             }
             Some(None) => Err(Problem::at(&at, "wrong-type", "the kind of a job is a word")),
             None => {
-                let detail = "missing field `kind`: `predict`, `compare` or `response`";
+                let detail = "missing field `kind`: `predict`, `compare`, `response` or `optimise`";
                 Err(Problem::at(&at, "missing-field", detail))
             }
         }

@@ -22,6 +22,11 @@ pub struct PartialTriple(pub [Option<f64>; 3]);
 #[serde(transparent)]
 pub struct Matrix4x4(pub [f64; 16]);
 
+/// Lowest and highest value for each of x, y and z.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct Intervals(pub [[f64; 2]; 3]);
+
 /// Centre and radius of a sphere: x, y, z, r.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(transparent)]
@@ -78,3 +83,16 @@ number_row!(PartialTriple, 3, true, "x, y, z, each of which may be null");
 number_row!(Matrix4x4, 16, false, "a 4x4 matrix, row by row");
 number_row!(Sphere, 4, false, "centre and radius: x, y, z, r");
 number_row!(CornerPair, 6, false, "lowest and highest corner: x0, y0, z0, x1, y1, z1");
+
+impl PartialSchema for Intervals {
+    fn schema() -> RefOr<Schema> {
+        let array = ArrayBuilder::new()
+            .items(numbers(2, false, "lowest, highest"))
+            .min_items(Some(3))
+            .max_items(Some(3))
+            .description(Some("for x, y and z the lowest and the highest value"));
+        array.into()
+    }
+}
+
+impl ToSchema for Intervals {}

@@ -23,6 +23,8 @@ mod formats_shared_data;
 mod formats_surface;
 mod hard_systems;
 mod jobs;
+mod optimisation;
+mod optimise_jobs;
 mod patch;
 mod quality;
 mod registration;

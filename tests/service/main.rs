@@ -14,6 +14,7 @@ mod helpers;
 mod jobs;
 mod meshes;
 mod openapi;
+mod optimise;
 mod plans;
 mod queue;
 mod response;

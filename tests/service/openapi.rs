@@ -62,4 +62,5 @@ async fn limits_and_methods_are_told() {
         (&response["columns_per_segment"], &response["linear_range_mm"]),
         (&12.into(), &0.5.into())
     );
+    assert_eq!(methods["optimise"]["undetermined_below"], 1e-5);
 }
