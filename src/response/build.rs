@@ -98,9 +98,8 @@ pub fn build(
 
     // 2. The tissue for each of them.
     let wanted = scene.settings.relative_residual;
-    let solved = scene
-        .solve_cases(&cases, &Followed { progress, wanted })
-        .map_err(PredictionError::from)?;
+    let solved =
+        scene.solve_cases(&cases, &Followed { progress, wanted }).map_err(PredictionError::from)?;
 
     // 3. Its skin.
     progress.phase(Phase::Surface);

@@ -25,7 +25,6 @@ pub fn solve(
     right_hand_sides: &[Unknowns],
     tolerance: &Tolerance,
     watch: Watch,
-    why: &str,
 ) -> Result<Vec<Solution>, SolverError> {
     let free = FreeUnknowns::new(system, ordering);
     let columns = free.lower_columns(system);
@@ -36,7 +35,7 @@ pub fn solve(
         .iter()
         .map(|right_hand_side| {
             let refined = Refined { system, free: &free, factor: &factor };
-            refined.solve(right_hand_side, tolerance.relative_residual, watch, why)
+            refined.solve(right_hand_side, tolerance.relative_residual, watch)
         })
         .collect()
 }
@@ -54,7 +53,6 @@ impl Refined<'_> {
         right_hand_side: &Unknowns,
         wanted: f64,
         watch: Watch,
-        why: &str,
     ) -> Result<Solution, SolverError> {
         let right_hand_side = interleave::<1, 3>(std::slice::from_ref(right_hand_side));
         let [scale] = norm(right_hand_side.as_flattened());
@@ -82,7 +80,7 @@ impl Refined<'_> {
             unknowns: column(&x, 0),
             method: "cholesky",
             preconditioner: "none",
-            why: why.to_owned(),
+            why: String::new(),
             iterations: history.len() - 1,
             relative_residual: history[history.len() - 1],
         })
@@ -131,9 +129,9 @@ impl FreeUnknowns {
                 }
             }
             for (column, block) in system.matrix.lower_row(row) {
-                for i in 0..3 {
-                    for j in 0..3 {
-                        put(places[i], self.place[column][j], block[i][j]);
+                for (&place, values) in places.iter().zip(block) {
+                    for (&other, &value) in self.place[column].iter().zip(values) {
+                        put(place, other, value);
                     }
                 }
             }

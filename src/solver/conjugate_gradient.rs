@@ -29,15 +29,14 @@ pub fn solve(
     right_hand_sides: &[Unknowns],
     tolerance: &Tolerance,
     watch: Watch,
-    why: &str,
 ) -> Result<Vec<Solution>, SolverError> {
     let multigrid = Multigrid::new(system);
     let mut solutions = Vec::with_capacity(right_hand_sides.len());
     for columns in right_hand_sides.chunks(TOGETHER) {
         solutions.extend(match columns.len() {
-            1 => Run::<1>::new(system, &multigrid, columns).solve(tolerance, watch, why)?,
-            2..=4 => Run::<4>::new(system, &multigrid, columns).solve(tolerance, watch, why)?,
-            _ => Run::<TOGETHER>::new(system, &multigrid, columns).solve(tolerance, watch, why)?,
+            1 => Run::<1>::new(system, &multigrid, columns).solve(tolerance, watch)?,
+            2..=4 => Run::<4>::new(system, &multigrid, columns).solve(tolerance, watch)?,
+            _ => Run::<TOGETHER>::new(system, &multigrid, columns).solve(tolerance, watch)?,
         });
     }
     Ok(solutions)
@@ -83,12 +82,7 @@ impl<'a, const N: usize> Run<'a, N> {
         }
     }
 
-    fn solve(
-        mut self,
-        tolerance: &Tolerance,
-        watch: Watch,
-        why: &str,
-    ) -> Result<Vec<Solution>, SolverError> {
+    fn solve(mut self, tolerance: &Tolerance, watch: Watch) -> Result<Vec<Solution>, SolverError> {
         let wanted = tolerance.relative_residual;
         for restart in 0..=MOST_RESTARTS {
             match restart {
@@ -97,7 +91,7 @@ impl<'a, const N: usize> Run<'a, N> {
             }
             let residuals = self.relative_residuals();
             if largest(&residuals) <= wanted {
-                return Ok(self.solutions(&residuals, why));
+                return Ok(self.solutions(&residuals));
             }
             self.iterate(wanted, watch)?;
         }
@@ -179,14 +173,14 @@ impl<'a, const N: usize> Run<'a, N> {
         }
     }
 
-    fn solutions(self, residuals: &[f64; N], why: &str) -> Vec<Solution> {
+    fn solutions(self, residuals: &[f64; N]) -> Vec<Solution> {
         (0..self.columns)
             .map(|n| Solution {
                 relative_residual: residuals[n],
                 unknowns: column(&self.x, n),
                 method: "conjugate_gradient",
                 preconditioner: "multigrid",
-                why: why.to_owned(),
+                why: String::new(),
                 iterations: self.own_iterations[n],
             })
             .collect()

@@ -67,7 +67,7 @@ pub struct Solution {
     pub unknowns: Unknowns,
     pub method: &'static str,
     pub preconditioner: &'static str,
-    /// Why this method was chosen, with the numbers.
+    /// Why this method was chosen, with the numbers; empty where nothing chose.
     pub why: String,
     pub iterations: usize,
     /// Recomputed from the solution at the end.
@@ -122,11 +122,12 @@ pub fn solve(
         let ordering = ordering::minimum_degree(system);
         if ordering.factor_mb + iterations_mb <= tolerance.memory_mb {
             let why = format!("{rows} rows are few enough to factorise");
-            return cholesky::solve(system, &ordering, right_hand_sides, tolerance, watch, &why);
+            let solved = cholesky::solve(system, &ordering, right_hand_sides, tolerance, watch);
+            return solved.map(|solutions| because(solutions, &why));
         }
     }
     let why = format!("{rows} rows are cheaper to iterate than to factorise");
-    match conjugate_gradient::solve(system, right_hand_sides, tolerance, watch, &why) {
+    match conjugate_gradient::solve(system, right_hand_sides, tolerance, watch) {
         Err(stalled @ SolverError::NotConverged { .. }) if rows <= ORDERING_ROWS => {
             let ordering = ordering::minimum_degree(system);
             let fits = ordering.factor_mb + iterations_mb <= tolerance.memory_mb;
@@ -134,10 +135,16 @@ pub fn solve(
                 return Err(stalled);
             }
             let why = format!("conjugate gradients stalled: {stalled}");
-            cholesky::solve(system, &ordering, right_hand_sides, tolerance, watch, &why)
+            cholesky::solve(system, &ordering, right_hand_sides, tolerance, watch)
+                .map(|solutions| because(solutions, &why))
         }
-        other => other,
+        other => other.map(|solutions| because(solutions, &why)),
     }
+}
+
+fn because(mut solutions: Vec<Solution>, why: &str) -> Vec<Solution> {
+    solutions.iter_mut().for_each(|solution| why.clone_into(&mut solution.why));
+    solutions
 }
 
 fn nothing_to_solve(rows: usize) -> Solution {

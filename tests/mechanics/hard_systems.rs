@@ -28,7 +28,7 @@ fn cube(shape: CellShape) -> VolumeMesh {
 /// Iterations, after a check against a factorisation; `None` where the iterations said that they failed.
 fn checked(system: &System, what: &str) -> Option<usize> {
     let right = [forces(system, 3)];
-    let iterated = match conjugate_gradient::solve(system, &right, &TOLERANCE, &go_on, "") {
+    let iterated = match conjugate_gradient::solve(system, &right, &TOLERANCE, &go_on) {
         Ok(mut solutions) => solutions.remove(0),
         Err(SolverError::NotConverged { history, residual, .. }) => {
             assert!(!history.is_empty() && residual > 1e-10, "{what}: {residual:.1e}");
@@ -37,7 +37,7 @@ fn checked(system: &System, what: &str) -> Option<usize> {
         Err(other) => panic!("{what}: {other}"),
     };
     let order = ordering::minimum_degree(system);
-    let factorised = cholesky::solve(system, &order, &right, &TOLERANCE, &go_on, "").unwrap();
+    let factorised = cholesky::solve(system, &order, &right, &TOLERANCE, &go_on).unwrap();
     let difference = largest_difference(&iterated.unknowns, &factorised[0].unknowns);
     let relative = difference / largest(&factorised[0].unknowns);
     // A residual of 1e-10 leaves an error of that times the condition number at most.

@@ -69,8 +69,8 @@ fn cholesky_and_conjugate_gradients_agree() {
     let system = clamped_block();
     let right = [forces(&system, 0), forces(&system, 1)];
     let order = ordering::minimum_degree(&system);
-    let direct = cholesky::solve(&system, &order, &right, &EXACT, &go_on, "").unwrap();
-    let iterative = conjugate_gradient::solve(&system, &right, &EXACT, &go_on, "").unwrap();
+    let direct = cholesky::solve(&system, &order, &right, &EXACT, &go_on).unwrap();
+    let iterative = conjugate_gradient::solve(&system, &right, &EXACT, &go_on).unwrap();
     for (direct, iterative) in direct.iter().zip(&iterative) {
         let difference = largest_difference(&direct.unknowns, &iterative.unknowns);
         assert!(difference < 1e-9 * largest(&direct.unknowns));
@@ -85,10 +85,10 @@ fn right_hand_sides_solved_together_are_those_solved_alone() {
     for count in [2, 5, 11] {
         let mut right: Vec<Unknowns> = (0..count).map(|seed| forces(&system, seed)).collect();
         right[1] = vec![[0.0; 3]; system.layout.free];
-        let together = conjugate_gradient::solve(&system, &right, &tolerance, &go_on, "").unwrap();
+        let together = conjugate_gradient::solve(&system, &right, &tolerance, &go_on).unwrap();
         assert_eq!(together.len(), count);
         for (right, solution) in right.into_iter().zip(&together) {
-            let alone = conjugate_gradient::solve(&system, &[right], &tolerance, &go_on, "");
+            let alone = conjugate_gradient::solve(&system, &[right], &tolerance, &go_on);
             let alone = &alone.unwrap()[0];
             let difference = largest_difference(&alone.unknowns, &solution.unknowns);
             assert!(difference <= 1e-8 * largest(&alone.unknowns), "{difference:.1e}");
@@ -106,7 +106,7 @@ fn one_thread_and_three_give_the_same_bits() {
     let right = [forces(&system, 0)];
     let with_threads = |count| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(count).build().unwrap();
-        pool.install(|| conjugate_gradient::solve(&system, &right, &tolerance, &go_on, ""))
+        pool.install(|| conjugate_gradient::solve(&system, &right, &tolerance, &go_on))
             .unwrap()
             .remove(0)
     };
@@ -122,7 +122,7 @@ fn a_residual_nobody_can_reach_ends_with_the_history_and_not_with_an_answer() {
     let tolerance = Tolerance { relative_residual: 1e-30, ..EXACT };
     for result in [
         solve(&system, &right, &tolerance, &go_on),
-        conjugate_gradient::solve(&system, &right, &tolerance, &go_on, ""),
+        conjugate_gradient::solve(&system, &right, &tolerance, &go_on),
     ] {
         let Err(SolverError::NotConverged { history, residual, .. }) = result else {
             panic!("{result:?}");
@@ -136,7 +136,7 @@ fn a_solver_stops_when_it_is_asked_to() {
     let system = clamped_block();
     let right = [forces(&system, 0)];
     let watch = |iteration, _| iteration < 3;
-    let stopped = conjugate_gradient::solve(&system, &right, &EXACT, &watch, "");
+    let stopped = conjugate_gradient::solve(&system, &right, &EXACT, &watch);
     assert_eq!(stopped.unwrap_err(), SolverError::Stopped);
 }
 
@@ -173,7 +173,7 @@ fn iterations_hardly_grow_with_the_mesh() {
         let system = sphere(cells_along, cells_radial);
         let tolerance = Tolerance { relative_residual: 1e-8, ..EXACT };
         let right = [forces(&system, 0)];
-        conjugate_gradient::solve(&system, &right, &tolerance, &go_on, "").unwrap()[0].iterations
+        conjugate_gradient::solve(&system, &right, &tolerance, &go_on).unwrap()[0].iterations
     };
     let (coarse, fine) = (iterations(10, 3), iterations(20, 6));
     assert!(fine < 50, "{fine} iterations for eight times the cells of {coarse}");

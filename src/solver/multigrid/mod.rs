@@ -39,9 +39,14 @@ const DENSE_ROWS: usize = 30;
 /// A hierarchy for one matrix and one set of held unknowns.
 pub struct Multigrid {
     finest: Smoother<3>,
+    partly_held: Vec<PartlyHeld>,
+    below: Below,
+}
+
+/// All that lies below the finest level.
+struct Below {
     /// From the finest to the first coarse level.
     first: Prolongator,
-    partly_held: Vec<PartlyHeld>,
     levels: Vec<CoarseLevel>,
     coarsest: DenseInverse,
     coarsest_rows: usize,
@@ -79,8 +84,69 @@ impl<const N: usize> CoarseWorkspace<N> {
 impl Multigrid {
     /// Builds the hierarchy.
     pub fn new(system: &System) -> Self {
-        let free = &system.positions[..system.layout.free];
         let special = Special::new(system);
+        let mask = |row: usize, column: usize, block: &mut [[f64; 3]; 3]| {
+            special.mask(row, column, block);
+        };
+        let (finest, below) = rayon::join(
+            || Smoother::new(&system.matrix, system.layout.clone(), mask),
+            || Below::new(system, &special),
+        );
+        let partly_held = system.partly_held.clone();
+        Multigrid { finest, partly_held, below }
+    }
+
+    pub fn megabytes(&self) -> f64 {
+        let Below { first, levels, .. } = &self.below;
+        let coarse = levels.iter().map(|l| l.smoother.megabytes() + l.below.megabytes());
+        self.finest.megabytes() + first.megabytes() + coarse.sum::<f64>()
+    }
+
+    pub fn workspace<const N: usize>(&self) -> Workspace<N> {
+        let zeros = || vec![[[0.0; N]; 3]; self.finest.rows()];
+        let Below { first, levels, coarsest_rows, .. } = &self.below;
+        let rows = levels.iter().map(|level| level.smoother.rows());
+        let above = [first].into_iter().chain(levels.iter().map(|level| &level.below));
+        let coarse = above
+            .zip(rows.chain([*coarsest_rows]))
+            .map(|(above, rows)| CoarseWorkspace::new(above, rows))
+            .collect();
+        Workspace { right: zeros(), x: zeros(), rest: zeros(), coarse }
+    }
+
+    /// One V cycle from zero for each right-hand side: the answer approximates K^-1 `residual`, times
+    /// `scale` for each right-hand side.
+    pub fn apply<'w, const N: usize>(
+        &self,
+        residual: &[Lanes<f64, 3, N>],
+        workspace: &'w mut Workspace<N>,
+    ) -> Correction<'w, N> {
+        let scale = largest(residual);
+        let inverse = scale.map(|scale| if scale > 0.0 { scale.recip() } else { 0.0 });
+        for (right, residual) in workspace.right.iter_mut().zip(residual) {
+            for c in 0..3 {
+                for n in 0..N {
+                    right[c][n] = (residual[c][n] * inverse[n]) as f32;
+                }
+            }
+        }
+        let Workspace { right, x, rest, coarse } = workspace;
+        self.finest.forward(right, x, rest);
+        self.partly_held.iter().for_each(|row| row.to_coordinates(&mut rest[row.row]));
+        let below = &mut coarse[0];
+        self.below.first.restrict(rest, &mut below.partial, &mut below.right);
+        self.below.descend(0, coarse);
+        self.partly_held.iter().for_each(|row| row.to_coordinates(&mut x[row.row]));
+        self.below.first.add_prolonged(&mut coarse[0].x, x);
+        self.partly_held.iter().for_each(|row| row.to_own_axes(&mut x[row.row]));
+        self.finest.backward(x, right);
+        Correction { values: x, scale }
+    }
+}
+
+impl Below {
+    fn new(system: &System, special: &Special) -> Self {
+        let free = &system.positions[..system.layout.free];
         let origin = mean(free);
         let ties = Ties::new(&system.matrix, &system.layout, |row| special.axes(row));
         let weights = Weights::new(&ties, free, FIRST_AGGREGATE);
@@ -107,62 +173,8 @@ impl Multigrid {
             centres = next_centres;
             current = next;
         }
-        let mask = |row: usize, column: usize, block: &mut [[f64; 3]; 3]| {
-            special.mask(row, column, block);
-        };
-        Multigrid {
-            finest: Smoother::new(&system.matrix, system.layout.clone(), mask),
-            first,
-            partly_held: system.partly_held.clone(),
-            levels,
-            coarsest_rows: current.matrix.rows(),
-            coarsest: dense(&current.matrix),
-        }
-    }
-
-    pub fn megabytes(&self) -> f64 {
-        let coarse = self.levels.iter().map(|l| l.smoother.megabytes() + l.below.megabytes());
-        self.finest.megabytes() + self.first.megabytes() + coarse.sum::<f64>()
-    }
-
-    pub fn workspace<const N: usize>(&self) -> Workspace<N> {
-        let zeros = || vec![[[0.0; N]; 3]; self.finest.rows()];
-        let rows = self.levels.iter().map(|level| level.smoother.rows());
-        let above = [&self.first].into_iter().chain(self.levels.iter().map(|level| &level.below));
-        let coarse = above
-            .zip(rows.chain([self.coarsest_rows]))
-            .map(|(above, rows)| CoarseWorkspace::new(above, rows))
-            .collect();
-        Workspace { right: zeros(), x: zeros(), rest: zeros(), coarse }
-    }
-
-    /// One V cycle from zero for each right-hand side: the answer approximates K^-1 `residual`, times
-    /// `scale` for each right-hand side.
-    pub fn apply<'w, const N: usize>(
-        &self,
-        residual: &[Lanes<f64, 3, N>],
-        workspace: &'w mut Workspace<N>,
-    ) -> Correction<'w, N> {
-        let scale = largest(residual);
-        let inverse = scale.map(|scale| if scale > 0.0 { scale.recip() } else { 0.0 });
-        for (right, residual) in workspace.right.iter_mut().zip(residual) {
-            for c in 0..3 {
-                for n in 0..N {
-                    right[c][n] = (residual[c][n] * inverse[n]) as f32;
-                }
-            }
-        }
-        let Workspace { right, x, rest, coarse } = workspace;
-        self.finest.forward(right, x, rest);
-        self.partly_held.iter().for_each(|row| row.to_coordinates(&mut rest[row.row]));
-        let below = &mut coarse[0];
-        self.first.restrict(rest, &mut below.partial, &mut below.right);
-        self.descend(0, coarse);
-        self.partly_held.iter().for_each(|row| row.to_coordinates(&mut x[row.row]));
-        self.first.add_prolonged(&mut coarse[0].x, x);
-        self.partly_held.iter().for_each(|row| row.to_own_axes(&mut x[row.row]));
-        self.finest.backward(x, right);
-        Correction { values: x, scale }
+        let (coarsest, coarsest_rows) = (dense(&current.matrix), current.matrix.rows());
+        Below { first, levels, coarsest, coarsest_rows }
     }
 
     fn descend<const N: usize>(&self, depth: usize, workspace: &mut [CoarseWorkspace<N>]) {

@@ -66,12 +66,25 @@ impl Weights {
     /// D, which draw weights to zero there.
     pub fn new(ties: &Ties, positions: &[Vector3<f64>], size: usize) -> Self {
         let (group, aggregates) = aggregate(ties, size);
+        let chunks: Vec<(Vec<u32>, Vec<Weight>)> = (0..ties.rows().div_ceil(CHUNK))
+            .into_par_iter()
+            .map(|chunk| {
+                let (mut counts, mut weights) = (Vec::new(), Vec::with_capacity(3 * CHUNK));
+                let mut of_row: Vec<Weight> = Vec::new();
+                for row in chunk * CHUNK..((chunk + 1) * CHUNK).min(ties.rows()) {
+                    smooth(row, &group, ties, &mut of_row);
+                    counts.push(of_row.len() as u32);
+                    weights.extend_from_slice(&of_row);
+                }
+                (counts, weights)
+            })
+            .collect();
         let mut table = Table { starts: vec![0], weights: Vec::with_capacity(3 * ties.rows()) };
-        let mut row_weights: Vec<Weight> = Vec::new();
-        for row in 0..ties.rows() {
-            smooth(row, &group, ties, &mut row_weights);
-            table.weights.extend_from_slice(&row_weights);
-            table.starts.push(table.weights.len() as u32);
+        for (counts, weights) in chunks {
+            for count in counts {
+                table.starts.push(table.starts[table.starts.len() - 1] + count);
+            }
+            table.weights.extend(weights);
         }
         Weights { table, aggregates, centres: centres(&group, aggregates, positions) }
     }
@@ -170,8 +183,9 @@ impl Prolongator {
             }
             for c in 0..3 {
                 let (a, b) = ((c + 1) % 3, (c + 2) % 3);
-                for n in 0..N {
-                    total[3 + c][n] -= centre[a] * total[b][n] - centre[b] * total[a][n];
+                let (force_a, force_b) = (total[a], total[b]);
+                for (n, moment) in total[3 + c].iter_mut().enumerate() {
+                    *moment -= centre[a] * force_b[n] - centre[b] * force_a[n];
                 }
             }
         }
@@ -217,9 +231,9 @@ impl Prolongator {
         for (movement, centre) in coarse.iter_mut().zip(&self.centres) {
             for c in 0..3 {
                 let (a, b) = ((c + 1) % 3, (c + 2) % 3);
-                for n in 0..N {
-                    movement[c][n] -=
-                        movement[3 + a][n] * centre[b] - movement[3 + b][n] * centre[a];
+                let (turn_a, turn_b) = (movement[3 + a], movement[3 + b]);
+                for (n, shift) in movement[c].iter_mut().enumerate() {
+                    *shift -= turn_a[n] * centre[b] - turn_b[n] * centre[a];
                 }
             }
         }

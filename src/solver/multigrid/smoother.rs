@@ -12,6 +12,9 @@ use crate::solver::lanes::{Lanes, add_product, subtract_product, subtract_transp
 use crate::solver::layout::Layout;
 use crate::solver::vectorised::vectorised;
 
+/// Rows that one thread prepares at a time.
+const CHUNK: usize = 4096;
+
 /// The free rows of a matrix, ready to be swept.
 pub(super) struct Smoother<const B: usize> {
     pattern: Arc<Pattern>,
@@ -28,21 +31,38 @@ impl<const B: usize> Smoother<B> {
     pub fn new(
         matrix: &HalfMatrix<f64, B>,
         layout: Arc<Layout>,
-        mask: impl Fn(usize, usize, &mut [[f64; B]; B]),
+        mask: impl Fn(usize, usize, &mut [[f64; B]; B]) + Sync,
     ) -> Self {
-        let mut lower = Vec::with_capacity(matrix.pattern.range(layout.free.max(1) - 1).end);
-        let mut inverse_diagonal = Vec::with_capacity(layout.free);
-        for row in 0..layout.free {
-            for (column, block) in matrix.lower_row(row) {
-                let mut block = *block;
-                mask(row, column, &mut block);
-                lower.push(block.map(|values| values.map(|value| value as f32)));
-            }
-            let mut diagonal = matrix.diagonal[row];
-            mask(row, row, &mut diagonal);
-            inverse_diagonal.push(inverse_block(&diagonal));
+        let pattern = matrix.pattern.clone();
+        let masked = |row: usize, column: usize, block: &[[f64; B]; B]| {
+            let mut block = *block;
+            mask(row, column, &mut block);
+            block
+        };
+        let end = if layout.free == 0 { 0 } else { pattern.range(layout.free - 1).end };
+        let mut lower = vec![[[0.0; B]; B]; end];
+        let mut rest = lower.as_mut_slice();
+        let mut chunks = Vec::new();
+        for first in (0..layout.free).step_by(CHUNK) {
+            let rows = first..(first + CHUNK).min(layout.free);
+            let count = pattern.range(rows.end - 1).end - pattern.range(first).start;
+            let (own, others) = rest.split_at_mut(count);
+            rest = others;
+            chunks.push((rows, own));
         }
-        Smoother { pattern: matrix.pattern.clone(), layout, lower, inverse_diagonal }
+        let inverse_diagonal = chunks
+            .into_par_iter()
+            .flat_map_iter(|(rows, blocks)| {
+                let lower = rows.clone().flat_map(|row| {
+                    matrix.lower_row(row).map(move |(column, block)| (row, column, block))
+                });
+                for (target, (row, column, block)) in blocks.iter_mut().zip(lower) {
+                    *target = masked(row, column, block).map(|v| v.map(|value| value as f32));
+                }
+                rows.map(|row| inverse_block(&masked(row, row, &matrix.diagonal[row])))
+            })
+            .collect();
+        Smoother { pattern, layout, lower, inverse_diagonal }
     }
 
     pub fn rows(&self) -> usize {
@@ -64,12 +84,12 @@ impl<const B: usize> Smoother<B> {
         shares.zip(&self.layout.parts).for_each(|((x, rest), part)| {
             vectorised(
                 #[inline(always)]
-                || self.forward_rows(part.clone(), right, x, rest, part.start),
+                || self.forward_rows(part.clone(), right, Share { first: part.start, x, rest }),
             );
         });
         vectorised(
             #[inline(always)]
-            || self.forward_rows(self.layout.separator(), right, x, rest, 0),
+            || self.forward_rows(self.layout.separator(), right, Share { first: 0, x, rest }),
         );
     }
 
@@ -78,31 +98,33 @@ impl<const B: usize> Smoother<B> {
     pub fn backward<const N: usize>(&self, x: &mut Vector<B, N>, remaining: &mut Vector<B, N>) {
         vectorised(
             #[inline(always)]
-            || self.backward_rows(self.layout.separator(), x, remaining, 0),
+            || self.backward_rows(self.layout.separator(), Share { first: 0, x, rest: remaining }),
         );
         let shares = self.layout.split(x).into_par_iter().zip(self.layout.split(remaining));
         shares.zip(&self.layout.parts).for_each(|((x, remaining), part)| {
             vectorised(
                 #[inline(always)]
-                || self.backward_rows(part.clone(), x, remaining, part.start),
+                || {
+                    self.backward_rows(
+                        part.clone(),
+                        Share { first: part.start, x, rest: remaining },
+                    )
+                },
             );
         });
     }
 
-    /// `x` and `rest` begin at row `first`.
     #[inline(always)]
     fn forward_rows<const N: usize>(
         &self,
         rows: Range<usize>,
         right: &Vector<B, N>,
-        x: &mut Vector<B, N>,
-        rest: &mut Vector<B, N>,
-        first: usize,
+        share: Share<B, N>,
     ) {
+        let Share { first, x, rest } = share;
         for row in rows {
-            let range = self.pattern.range(row);
             let columns = self.pattern.columns(row);
-            let blocks = &self.lower[range];
+            let blocks = &self.lower[self.pattern.range(row)];
             let mut sum = right[row];
             for (&column, block) in columns.iter().zip(blocks) {
                 subtract_product(&mut sum, block, &x[column as usize - first]);
@@ -117,19 +139,12 @@ impl<const B: usize> Smoother<B> {
         }
     }
 
-    /// `x` and `remaining` begin at row `first`.
     #[inline(always)]
-    fn backward_rows<const N: usize>(
-        &self,
-        rows: Range<usize>,
-        x: &mut Vector<B, N>,
-        remaining: &mut Vector<B, N>,
-        first: usize,
-    ) {
+    fn backward_rows<const N: usize>(&self, rows: Range<usize>, share: Share<B, N>) {
+        let Share { first, x, rest: remaining } = share;
         for row in rows.rev() {
-            let range = self.pattern.range(row);
             let columns = self.pattern.columns(row);
-            let blocks = &self.lower[range];
+            let blocks = &self.lower[self.pattern.range(row)];
             let mut sum = remaining[row - first];
             for (&column, block) in columns.iter().zip(blocks) {
                 subtract_product(&mut sum, block, &x[column as usize - first]);
@@ -142,4 +157,12 @@ impl<const B: usize> Smoother<B> {
             }
         }
     }
+}
+
+/// The rows that one thread sweeps: those of a part, or all of them for the separator.
+struct Share<'a, const B: usize, const N: usize> {
+    /// The row with which the vectors begin.
+    first: usize,
+    x: &'a mut Vector<B, N>,
+    rest: &'a mut Vector<B, N>,
 }
