@@ -42,11 +42,6 @@ impl Hold {
         &self.values
     }
 
-    /// Holds the node elsewhere along the same axes.
-    pub fn set_values(&mut self, values: &Vector) {
-        self.values = Vector::from_fn(|k, _| if k < self.count { values[k] } else { 0.0 });
-    }
-
     /// True where the frame is that of the coordinates.
     pub fn is_aligned(&self) -> bool {
         self.axes == Matrix3::identity()

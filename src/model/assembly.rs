@@ -1,18 +1,27 @@
 //! The stiffness matrix of a mesh.
 
+use std::sync::Arc;
+
 use rayon::prelude::*;
 
 use super::stiffness::{Dilatation, cell_stiffness};
 use crate::boundary::Hold;
 use crate::material::LinearElastic;
 use crate::mesh::{CellShape, Vector, VolumeMesh};
-use crate::solver::{Block, BlockMatrix};
+use crate::solver::cliques::{Cliques, CliquesOfRow};
+use crate::solver::half_matrix::{HalfMatrix, Pattern, RowChunk};
+use crate::solver::layout::Layout;
+use crate::solver::{Block, PartlyHeld};
 
 /// Cells whose matrices are computed side by side before they are added in cell order, which keeps the
 /// bits independent of the number of threads.
 const CHUNK: usize = 4096;
 
+/// Rows that one thread assembles at a time.
+const ROW_CHUNK: usize = 1024;
+
 /// Tissue as an element formulation sees it.
+#[derive(Clone, Copy)]
 pub struct Tissue<'a> {
     pub mesh: &'a VolumeMesh,
     pub materials: &'a [LinearElastic],
@@ -28,7 +37,100 @@ pub struct InvertedCell {
     pub cell: usize,
 }
 
+/// Where nodes and cells go in the matrix. It depends on the cells and on which nodes are held, and
+/// serves any materials.
+pub struct Numbering {
+    pub layout: Arc<Layout>,
+    pub pattern: Arc<Pattern>,
+    /// Places of the nodes of each cell, cells in the order of the layout.
+    cliques: Cliques,
+    around: CliquesOfRow,
+}
+
+impl Numbering {
+    /// `held` tells the nodes without a free unknown.
+    pub fn new(mesh: &VolumeMesh, held: &[bool]) -> Self {
+        let rows = mesh.nodes.len();
+        let mut cliques = Cliques::default();
+        mesh.cells.iter().for_each(|(_, nodes)| cliques.push(nodes.iter().copied()));
+        let around = CliquesOfRow::new(&cliques, rows);
+        let layout = Layout::new(&cliques, &around, held, 3);
+        let cliques = cliques.renumbered(&layout.clique_order, &layout.place);
+        let around = CliquesOfRow::new(&cliques, rows);
+        let pattern = Arc::new(Pattern::new(&cliques, &around, rows));
+        Numbering { layout: Arc::new(layout), pattern, cliques, around }
+    }
+
+    /// The row of a node.
+    pub fn row(&self, node: u32) -> usize {
+        self.layout.place[node as usize] as usize
+    }
+}
+
+/// What rows need of a tetrahedron: gradients of the shape functions, and lambda V and mu V.
+#[derive(Clone, Copy)]
+struct Simplex {
+    gradients: [Vector; 4],
+    lambda: f64,
+    mu: f64,
+}
+
 impl Tissue<'_> {
+    /// K over all nodes, held or not, in kPa mm.
+    pub fn assemble(
+        &self,
+        numbering: &Numbering,
+        keep_going: &dyn Fn() -> bool,
+    ) -> Result<Option<HalfMatrix<f64, 3>>, InvertedCell> {
+        let mut matrix = HalfMatrix::zeros(numbering.pattern.clone());
+        let order = &numbering.layout.clique_order;
+        let simplices: Vec<Option<Simplex>> =
+            order.par_iter().map(|&cell| self.simplex(cell as usize)).collect::<Result<_, _>>()?;
+        if !keep_going() {
+            return Ok(None);
+        }
+        matrix.row_chunks(ROW_CHUNK).into_par_iter().for_each_init(
+            || vec![0_u32; numbering.pattern.rows()],
+            |at, chunk| add_rows(numbering, &simplices, chunk, at),
+        );
+        let others: Vec<usize> =
+            (0..order.len()).filter(|&clique| simplices[clique].is_none()).collect();
+        for chunk in others.chunks(CHUNK) {
+            if !keep_going() {
+                return Ok(None);
+            }
+            let matrices: Vec<Result<Vec<Block>, InvertedCell>> =
+                chunk.par_iter().map(|&clique| self.cell_matrix(order[clique] as usize)).collect();
+            for (&clique, blocks) in chunk.iter().zip(matrices) {
+                add_cell(&mut matrix, numbering.cliques.members(clique), &blocks?);
+            }
+        }
+        Ok(Some(matrix))
+    }
+
+    /// `None` for cells that are not tetrahedra.
+    fn simplex(&self, cell: usize) -> Result<Option<Simplex>, InvertedCell> {
+        if self.mesh.cells.shape(cell) != CellShape::Tet4 {
+            return Ok(None);
+        }
+        let corner = |k: usize| self.mesh.nodes[self.mesh.cells.nodes(cell)[k] as usize];
+        let (a, b, c) = (corner(1) - corner(0), corner(2) - corner(0), corner(3) - corner(0));
+        let normal = b.cross(&c);
+        let six_volumes = a.dot(&normal);
+        if six_volumes.is_nan() || six_volumes <= 0.0 {
+            return Err(InvertedCell { cell });
+        }
+        let (g1, g2, g3) =
+            (normal / six_volumes, c.cross(&a) / six_volumes, a.cross(&b) / six_volumes);
+        let material = &self.materials[self.material_of_cell[cell] as usize];
+        let volume = six_volumes / 6.0;
+        Ok(Some(Simplex {
+            gradients: [-(g1 + g2 + g3), g1, g2, g3],
+            lambda: material.lambda() * volume,
+            mu: material.shear_modulus() * volume,
+        }))
+    }
+
     fn cell_matrix(&self, cell: usize) -> Result<Vec<Block>, InvertedCell> {
         let mut corners = [Vector::zeros(); crate::element::MAX_NODES];
         let mut count = 0;
@@ -41,56 +143,108 @@ impl Tissue<'_> {
         cell_stiffness(shape, &corners[..count], material, (self.dilatation)(shape))
             .ok_or(InvertedCell { cell })
     }
+}
 
-    /// K over all nodes, held or not, in kPa mm.
-    pub fn assemble(
-        &self,
-        keep_going: &dyn Fn() -> bool,
-    ) -> Result<Option<BlockMatrix>, InvertedCell> {
-        let cells = &self.mesh.cells;
-        let cliques = (0..cells.len()).map(|cell| cells.nodes(cell));
-        let mut matrix = BlockMatrix::from_cliques(self.mesh.nodes.len(), cliques);
-        for begin in (0..cells.len()).step_by(CHUNK) {
-            if !keep_going() {
-                return Ok(None);
+impl Simplex {
+    /// V [ lambda g_j g_k^T + mu g_k g_j^T + mu (g_j . g_k) I ], METHODS A2.
+    #[inline]
+    fn add_block(&self, j: usize, k: usize, block: &mut Block) {
+        let (gj, gk) = (&self.gradients[j], &self.gradients[k]);
+        let diagonal = self.mu * (gj.x * gk.x + gj.y * gk.y + gj.z * gk.z);
+        for r in 0..3 {
+            for c in 0..3 {
+                block[r][c] += self.lambda * gj[r] * gk[c] + self.mu * gk[r] * gj[c];
             }
-            let chunk = begin..(begin + CHUNK).min(cells.len());
-            let matrices: Vec<Result<Vec<Block>, InvertedCell>> =
-                chunk.clone().into_par_iter().map(|cell| self.cell_matrix(cell)).collect();
-            for (cell, blocks) in chunk.zip(matrices) {
-                add_cell(&mut matrix, cells.nodes(cell), &blocks?);
-            }
+            block[r][r] += diagonal;
         }
-        Ok(Some(matrix))
     }
 }
 
-fn add_cell(matrix: &mut BlockMatrix, nodes: &[u32], blocks: &[Block]) {
-    for (j, &row) in nodes.iter().enumerate() {
-        for (k, &column) in nodes.iter().enumerate() {
+/// Row by row: no two threads write to the same block, and cells are added in their order. `at` is
+/// scratch: where the block of each column of the row lies.
+fn add_rows(
+    numbering: &Numbering,
+    simplices: &[Option<Simplex>],
+    chunk: RowChunk<f64, 3>,
+    at: &mut [u32],
+) {
+    let begin = numbering.pattern.range(chunk.first).start;
+    for (local, diagonal) in chunk.diagonal.iter_mut().enumerate() {
+        let row = chunk.first + local;
+        let offset = numbering.pattern.range(row).start - begin;
+        for (k, &column) in numbering.pattern.columns(row).iter().enumerate() {
+            at[column as usize] = (offset + k) as u32;
+        }
+        for &clique in numbering.around.of(row) {
+            let Some(simplex) = &simplices[clique as usize] else { continue };
+            let members = numbering.cliques.members(clique as usize);
+            let Some(j) = members.iter().position(|&member| member as usize == row) else {
+                continue;
+            };
+            simplex.add_block(j, j, diagonal);
+            for (k, &column) in members.iter().enumerate() {
+                if (column as usize) < row {
+                    simplex.add_block(j, k, &mut chunk.lower[at[column as usize] as usize]);
+                }
+            }
+        }
+    }
+}
+
+fn add_cell(matrix: &mut HalfMatrix<f64, 3>, rows: &[u32], blocks: &[Block]) {
+    for (j, &row) in rows.iter().enumerate() {
+        for (k, &column) in rows.iter().enumerate().filter(|(_, column)| **column <= row) {
             let sum = matrix.block_mut(row as usize, column as usize);
-            for (sum, value) in sum.iter_mut().zip(&blocks[j * nodes.len() + k]) {
+            let block = &blocks[j * rows.len() + k];
+            for (sum, value) in sum.as_flattened_mut().iter_mut().zip(block.as_flattened()) {
                 *sum += value;
             }
         }
     }
 }
 
-/// Writes the rows and columns of nodes with a frame of their own in that frame: Q^T K Q.
-pub fn rotate_into_frames(matrix: &mut BlockMatrix, holds: &[Hold]) {
-    for hold in holds.iter().filter(|hold| !hold.is_aligned()) {
-        let node = hold.node as usize;
-        let q = hold.axes();
-        for neighbour in matrix.columns(node).to_vec() {
-            let neighbour = neighbour as usize;
-            let row = matrix.block_mut(node, neighbour);
-            let old = *row;
-            *row =
-                std::array::from_fn(|e| (0..3).map(|m| q[(m, e / 3)] * old[3 * m + e % 3]).sum());
-            let column = matrix.block_mut(neighbour, node);
-            let old = *column;
-            *column =
-                std::array::from_fn(|e| (0..3).map(|m| old[3 * (e / 3) + m] * q[(m, e % 3)]).sum());
+/// The rows of held nodes that keep free unknowns.
+pub fn partly_held(holds: &[Hold], numbering: &Numbering) -> Vec<PartlyHeld> {
+    holds
+        .iter()
+        .map(|hold| (hold, numbering.row(hold.node)))
+        .filter(|(hold, row)| *row < numbering.layout.free && hold.count() > 0)
+        .map(|(hold, row)| PartlyHeld {
+            row,
+            held: std::array::from_fn(|k| k < hold.count()),
+            axes: *hold.axes(),
+        })
+        .collect()
+}
+
+/// Writes the rows and columns of nodes with axes of their own in those axes: Q^T K Q.
+pub fn turn_into_axes(matrix: &mut HalfMatrix<f64, 3>, partly_held: &[PartlyHeld]) {
+    if partly_held.is_empty() {
+        return;
+    }
+    let mut axes = vec![None; matrix.rows()];
+    for partly in partly_held {
+        axes[partly.row] = Some(partly.axes);
+    }
+    let pattern = matrix.pattern.clone();
+    for row in 0..matrix.rows() {
+        let turned = |block: &Block, column: usize| -> Block {
+            let mut result = nalgebra::Matrix3::from_fn(|i, j| block[i][j]);
+            if let Some(q) = &axes[row] {
+                result = q.transpose() * result;
+            }
+            if let Some(q) = &axes[column] {
+                result *= q;
+            }
+            std::array::from_fn(|i| std::array::from_fn(|j| result[(i, j)]))
+        };
+        if axes[row].is_some() {
+            matrix.diagonal[row] = turned(&matrix.diagonal[row], row);
+        }
+        for (at, &column) in pattern.range(row).zip(pattern.columns(row)) {
+            if axes[row].is_some() || axes[column as usize].is_some() {
+                matrix.lower[at] = turned(&matrix.lower[at], column as usize);
+            }
         }
     }
 }

@@ -59,7 +59,9 @@ pub fn cell_stiffness(
             }
         }
     }
-    Some(blocks.iter().map(|block| std::array::from_fn(|e| block[(e / 3, e % 3)])).collect())
+    let rows =
+        |block: &Matrix3<f64>| std::array::from_fn(|i| std::array::from_fn(|j| block[(i, j)]));
+    Some(blocks.iter().map(rows).collect())
 }
 
 /// V [ lambda g_j g_k^T + mu g_k g_j^T + mu (g_j . g_k) I ] for all pairs of nodes.

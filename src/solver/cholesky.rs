@@ -10,96 +10,136 @@ use faer::sparse::linalg::cholesky::{
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, MatMut, Par, Side};
 
+use super::lanes::Lanes;
 use super::ordering::Ordering;
-use super::vector::norm;
-use super::{LinearSystem, Solution, SolverError, Tolerance, Watch, residual_of};
+use super::vector::{column, interleave, norm};
+use super::{Solution, SolverError, System, Tolerance, Unknowns, Watch};
 
 /// Corrections after which a residual that is still too large will stay so.
 const MOST_REFINEMENTS: usize = 6;
 
 /// Solves by a factorisation in the given order. The factorisation itself cannot be interrupted.
 pub fn solve(
-    system: &LinearSystem,
+    system: &System,
     ordering: &Ordering,
+    right_hand_sides: &[Unknowns],
     tolerance: &Tolerance,
     watch: Watch,
-    why: String,
-) -> Result<Solution, SolverError> {
+    why: &str,
+) -> Result<Vec<Solution>, SolverError> {
     let free = FreeUnknowns::new(system, ordering);
     let columns = free.lower_columns(system);
     let symbolic = columns.symbolic(&free)?;
     let mut values = vec![0.0; symbolic.len_val()];
     let factor = columns.factorise(&symbolic, &mut values, &free)?;
+    right_hand_sides
+        .iter()
+        .map(|right_hand_side| {
+            let refined = Refined { system, free: &free, factor: &factor };
+            refined.solve(right_hand_side, tolerance.relative_residual, watch, why)
+        })
+        .collect()
+}
 
-    let wanted = tolerance.relative_residual;
-    let scale = norm(system.right_hand_side);
-    let mut x = vec![0.0; system.right_hand_side.len()];
-    let mut residual = system.right_hand_side.to_vec();
-    let mut history = vec![1.0];
-    while history[history.len() - 1] > wanted {
-        let refinements = history.len() - 1;
-        if refinements > MOST_REFINEMENTS {
-            let (iterations, residual) = (refinements, history[refinements]);
-            return Err(SolverError::NotConverged { iterations, residual, wanted, history });
+/// A factor and the system whose residual refines what it solves.
+struct Refined<'a> {
+    system: &'a System,
+    free: &'a FreeUnknowns,
+    factor: &'a LltRef<'a, usize, f64>,
+}
+
+impl Refined<'_> {
+    fn solve(
+        &self,
+        right_hand_side: &Unknowns,
+        wanted: f64,
+        watch: Watch,
+        why: &str,
+    ) -> Result<Solution, SolverError> {
+        let right_hand_side = interleave::<1>(std::slice::from_ref(right_hand_side));
+        let [scale] = norm(&right_hand_side);
+        let mut x = vec![[[0.0; 1]; 3]; right_hand_side.len()];
+        let mut residual = right_hand_side.clone();
+        let mut history = vec![if scale > 0.0 { 1.0 } else { 0.0 }];
+        while history[history.len() - 1] > wanted {
+            let refinements = history.len() - 1;
+            if refinements > MOST_REFINEMENTS {
+                let (iterations, residual) = (refinements, history[refinements]);
+                return Err(SolverError::NotConverged { iterations, residual, wanted, history });
+            }
+            self.free.correct(self.factor, &residual, &mut x);
+            self.system.residual(&right_hand_side, &x, &mut residual);
+            let relative = norm(&residual)[0] / scale;
+            if !relative.is_finite() {
+                return Err(SolverError::NotFinite);
+            }
+            history.push(relative);
+            if !watch(history.len() - 1, relative) {
+                return Err(SolverError::Stopped);
+            }
         }
-        free.correct(&factor, &residual, &mut x);
-        residual_of(system, &x, &mut residual);
-        let relative = norm(&residual) / scale;
-        if !relative.is_finite() {
-            return Err(SolverError::NotFinite);
-        }
-        history.push(relative);
-        if !watch(history.len() - 1, relative) {
-            return Err(SolverError::Stopped);
-        }
+        Ok(Solution {
+            unknowns: column(&x, 0),
+            method: "cholesky",
+            preconditioner: "none",
+            why: why.to_owned(),
+            iterations: history.len() - 1,
+            relative_residual: history[history.len() - 1],
+        })
     }
-    Ok(Solution {
-        unknowns: x,
-        method: "cholesky",
-        preconditioner: "none",
-        why,
-        iterations: history.len() - 1,
-        relative_residual: history[history.len() - 1],
-    })
 }
 
 /// The unknowns that are not held, numbered in elimination order.
 struct FreeUnknowns {
-    /// The unknown at each place of the elimination order.
-    unknown: Vec<usize>,
-    /// The place of each unknown; `usize::MAX` where held.
-    place: Vec<usize>,
+    /// The row and component at each place of the elimination order.
+    unknown: Vec<(usize, usize)>,
+    /// The place of each component of each row; `usize::MAX` where held.
+    place: Vec<[usize; 3]>,
 }
 
 impl FreeUnknowns {
-    fn new(system: &LinearSystem, ordering: &Ordering) -> Self {
-        let unknown: Vec<usize> = ordering
+    fn new(system: &System, ordering: &Ordering) -> Self {
+        let mut held = vec![[false; 3]; system.layout.free];
+        for partly in &system.partly_held {
+            held[partly.row] = partly.held;
+        }
+        let unknown: Vec<(usize, usize)> = ordering
             .order
             .iter()
-            .flat_map(|&row| 3 * row..3 * row + 3)
-            .filter(|&unknown| !system.held[unknown])
+            .flat_map(|&row| (0..3).map(move |component| (row, component)))
+            .filter(|&(row, component)| !held[row][component])
             .collect();
-        let mut place = vec![usize::MAX; system.held.len()];
-        for (at, &unknown) in unknown.iter().enumerate() {
-            place[unknown] = at;
+        let mut place = vec![[usize::MAX; 3]; system.layout.free];
+        for (at, &(row, component)) in unknown.iter().enumerate() {
+            place[row][component] = at;
         }
         FreeUnknowns { unknown, place }
     }
 
     /// The lower triangle in elimination order, column by column.
-    fn lower_columns(&self, system: &LinearSystem) -> Columns {
-        let mut columns = Columns { starts: vec![0], rows: Vec::new(), values: Vec::new() };
-        let mut entries: Vec<(usize, f64)> = Vec::new();
-        for (column, &unknown) in self.unknown.iter().enumerate() {
-            entries.clear();
-            for (other, block) in system.matrix.row(unknown / 3) {
-                for component in 0..3 {
-                    let row = self.place[3 * other + component];
-                    if row != usize::MAX && row >= column {
-                        entries.push((row, block[3 * (unknown % 3) + component]));
+    fn lower_columns(&self, system: &System) -> Columns {
+        let mut entries: Vec<Vec<(usize, f64)>> = vec![Vec::new(); self.unknown.len()];
+        let mut put = |row: usize, column: usize, value: f64| {
+            if row != usize::MAX && column != usize::MAX {
+                entries[row.min(column)].push((row.max(column), value));
+            }
+        };
+        for (row, places) in self.place.iter().enumerate() {
+            for i in 0..3 {
+                for j in 0..=i {
+                    put(places[i], places[j], system.matrix.diagonal[row][i][j]);
+                }
+            }
+            for (column, block) in system.matrix.lower_row(row) {
+                for i in 0..3 {
+                    for j in 0..3 {
+                        put(places[i], self.place[column][j], block[i][j]);
                     }
                 }
             }
+        }
+        let mut columns = Columns { starts: vec![0], rows: Vec::new(), values: Vec::new() };
+        for mut entries in entries {
             entries.sort_unstable_by_key(|&(row, _)| row);
             columns.rows.extend(entries.iter().map(|&(row, _)| row));
             columns.values.extend(entries.iter().map(|&(_, value)| value));
@@ -109,14 +149,20 @@ impl FreeUnknowns {
     }
 
     /// x += K^-1 residual.
-    fn correct(&self, factor: &LltRef<'_, usize, f64>, residual: &[f64], x: &mut [f64]) {
-        let mut ordered: Vec<f64> = self.unknown.iter().map(|&unknown| residual[unknown]).collect();
+    fn correct(
+        &self,
+        factor: &LltRef<'_, usize, f64>,
+        residual: &[Lanes<f64, 3, 1>],
+        x: &mut [Lanes<f64, 3, 1>],
+    ) {
+        let mut ordered: Vec<f64> =
+            self.unknown.iter().map(|&(row, component)| residual[row][component][0]).collect();
         let mut memory = MemBuffer::new(factor.solve_in_place_scratch::<f64>(1, Par::Seq));
         let rows = ordered.len();
         let column = MatMut::from_column_major_slice_mut(&mut ordered, rows, 1);
         factor.solve_in_place_with_conj(Conj::No, column, Par::Seq, MemStack::new(&mut memory));
-        for (&unknown, correction) in self.unknown.iter().zip(&ordered) {
-            x[unknown] += correction;
+        for (&(row, component), correction) in self.unknown.iter().zip(&ordered) {
+            x[row][component][0] += correction;
         }
     }
 }
@@ -165,8 +211,8 @@ impl Columns {
                 Default::default(),
             )
             .map_err(|LltError::NonPositivePivot { index }| {
-                let unknown = free.unknown.get(index).copied().unwrap_or_default();
-                SolverError::NotPositiveDefinite { row: unknown / 3 }
+                let (row, _) = free.unknown.get(index).copied().unwrap_or_default();
+                SolverError::NotPositiveDefinite { row }
             })
     }
 

@@ -1,13 +1,15 @@
-//! Conjugate gradients preconditioned by one multigrid cycle.
+//! Conjugate gradients preconditioned by one multigrid cycle, for one or several right-hand sides at once.
 //!
 //! Hestenes, Stiefel 1952, in the preconditioned form of Saad, Iterative Methods for Sparse Linear
 //! Systems, 2nd ed., algorithm 9.1, with the flexible (Polak-Ribiere) step of Golub, Ye 1999, because the
 //! cycle is rounded to f32. The recursive residual decides when to look, the true residual f - K x
-//! decides when to stop.
+//! decides when to stop. Several right-hand sides share each pass over matrix and hierarchy; each has
+//! its own steps, and stands still once it has converged.
 
-use super::multigrid::Multigrid;
-use super::vector::{add_scaled, dot, norm, scale_and_add};
-use super::{LinearSystem, Solution, SolverError, Tolerance, Watch, residual_of};
+use super::lanes::Lanes;
+use super::multigrid::{Multigrid, Workspace};
+use super::vector::{advance, column, dot, interleave, norm, turn, two_dots};
+use super::{Solution, SolverError, System, Tolerance, Unknowns, Watch};
 
 /// Iterations without a new smallest residual after which no more progress is expected.
 const PATIENCE: usize = 2000;
@@ -18,82 +20,120 @@ const MOST_ITERATIONS: usize = 50_000;
 /// How often a true residual above the recursive one restarts the iteration.
 const MOST_RESTARTS: usize = 8;
 
-/// Solves until the true relative residual is met, or says where it stalled.
+/// Right-hand sides that share one pass.
+const TOGETHER: usize = 8;
+
+/// Solves until every true relative residual is met, or says where it stalled.
 pub fn solve(
-    system: &LinearSystem,
+    system: &System,
+    right_hand_sides: &[Unknowns],
     tolerance: &Tolerance,
     watch: Watch,
-    why: String,
-) -> Result<Solution, SolverError> {
+    why: &str,
+) -> Result<Vec<Solution>, SolverError> {
     let multigrid = Multigrid::new(system);
-    let mut run = Run::new(system, &multigrid);
-    let wanted = tolerance.relative_residual;
-    for _ in 0..=MOST_RESTARTS {
-        run.restart();
-        if run.relative_residual() <= wanted {
-            return Ok(run.solution(why));
-        }
-        run.iterate(wanted, watch)?;
+    let mut solutions = Vec::with_capacity(right_hand_sides.len());
+    for columns in right_hand_sides.chunks(TOGETHER) {
+        solutions.extend(match columns.len() {
+            1 => Run::<1>::new(system, &multigrid, columns).solve(tolerance, watch, why)?,
+            2..=4 => Run::<4>::new(system, &multigrid, columns).solve(tolerance, watch, why)?,
+            _ => Run::<TOGETHER>::new(system, &multigrid, columns).solve(tolerance, watch, why)?,
+        });
     }
-    Err(run.not_converged(wanted))
+    Ok(solutions)
 }
 
-struct Run<'a> {
-    system: &'a LinearSystem<'a>,
+/// Zero where the divisor is: a right-hand side that has converged does not move.
+fn ratio(value: f64, divisor: f64) -> f64 {
+    if divisor == 0.0 { 0.0 } else { value / divisor }
+}
+
+struct Run<'a, const N: usize> {
+    system: &'a System,
     multigrid: &'a Multigrid,
-    scale: f64,
-    x: Vec<f64>,
-    r: Vec<f64>,
-    z: Vec<f64>,
-    p: Vec<f64>,
-    product: Vec<f64>,
+    columns: usize,
+    workspace: Workspace<N>,
+    right_hand_side: Vec<Lanes<f64, 3, N>>,
+    /// |f|
+    scale: [f64; N],
+    x: Vec<Lanes<f64, 3, N>>,
+    r: Vec<Lanes<f64, 3, N>>,
+    p: Vec<Lanes<f64, 3, N>>,
+    product: Vec<Lanes<f64, 3, N>>,
     iterations: usize,
+    /// Iterations of each right-hand side.
+    own_iterations: [usize; N],
+    /// The largest relative residual.
     history: Vec<f64>,
 }
 
-impl<'a> Run<'a> {
-    fn new(system: &'a LinearSystem<'a>, multigrid: &'a Multigrid) -> Self {
-        let zeros = || vec![0.0; system.right_hand_side.len()];
+impl<'a, const N: usize> Run<'a, N> {
+    fn new(system: &'a System, multigrid: &'a Multigrid, columns: &[Unknowns]) -> Self {
+        let right_hand_side = interleave::<N>(columns);
+        let zeros = || vec![[[0.0; N]; 3]; right_hand_side.len()];
         Run {
             system,
             multigrid,
-            scale: norm(system.right_hand_side),
+            columns: columns.len(),
+            workspace: multigrid.workspace(),
+            scale: norm(&right_hand_side),
             x: zeros(),
             r: zeros(),
-            z: zeros(),
             p: zeros(),
             product: zeros(),
+            right_hand_side,
             iterations: 0,
+            own_iterations: [0; N],
             history: Vec::new(),
         }
     }
 
-    /// Takes the residual from the solution itself.
-    fn restart(&mut self) {
-        residual_of(self.system, &self.x, &mut self.r);
+    fn solve(
+        mut self,
+        tolerance: &Tolerance,
+        watch: Watch,
+        why: &str,
+    ) -> Result<Vec<Solution>, SolverError> {
+        let wanted = tolerance.relative_residual;
+        for restart in 0..=MOST_RESTARTS {
+            match restart {
+                0 => self.r.copy_from_slice(&self.right_hand_side),
+                _ => self.system.residual(&self.right_hand_side, &self.x, &mut self.r),
+            }
+            let residuals = self.relative_residuals();
+            if largest(&residuals) <= wanted {
+                return Ok(self.solutions(&residuals, why));
+            }
+            self.iterate(wanted, watch)?;
+        }
+        Err(self.not_converged(wanted))
     }
 
-    fn relative_residual(&self) -> f64 {
-        norm(&self.r) / self.scale
+    fn relative_residuals(&self) -> [f64; N] {
+        let norms = norm(&self.r);
+        std::array::from_fn(|n| ratio(norms[n], self.scale[n]))
     }
 
     fn iterate(&mut self, wanted: f64, watch: Watch) -> Result<(), SolverError> {
-        self.precondition();
-        self.p.copy_from_slice(&self.z);
-        let mut rho = dot(&self.r, &self.z);
+        let correction = self.multigrid.apply(&self.r, &mut self.workspace);
+        turn(&mut self.p, &[0.0; N], correction.values, &correction.scale);
+        let mut rho = dot(&self.r, &self.p);
+        let mut residuals = self.relative_residuals();
         let (mut smallest, mut smallest_at) = (f64::INFINITY, self.iterations);
         loop {
-            self.system.matrix.multiply(&self.p, &mut self.product);
-            self.clear_held();
+            self.system.multiply(&self.p, &mut self.product);
             let curvature = dot(&self.p, &self.product);
-            if curvature.is_nan() || curvature <= 0.0 {
+            let is_open: [bool; N] = std::array::from_fn(|n| residuals[n] > wanted);
+            if (0..N).any(|n| is_open[n] && !(curvature[n] > 0.0 && rho[n].is_finite())) {
                 return Err(self.not_converged(wanted));
             }
-            let step = rho / curvature;
-            add_scaled(&mut self.x, step, &self.p);
-            add_scaled(&mut self.r, -step, &self.product);
+            let step: [f64; N] =
+                std::array::from_fn(|n| if is_open[n] { rho[n] / curvature[n] } else { 0.0 });
+            advance(&mut self.x, &mut self.r, &step, &self.p, &self.product);
             self.iterations += 1;
-            let residual = self.relative_residual();
+            (0..N).filter(|&n| is_open[n]).for_each(|n| self.own_iterations[n] += 1);
+            residuals = self.relative_residuals();
+            let residual = largest(&residuals);
             self.remember(residual);
             if !watch(self.iterations, residual) {
                 return Err(SolverError::Stopped);
@@ -108,26 +148,16 @@ impl<'a> Run<'a> {
             if !residual.is_finite() || stalled || self.iterations >= MOST_ITERATIONS {
                 return Err(self.not_converged(wanted));
             }
-            self.precondition();
-            let next_rho = dot(&self.r, &self.z);
+            let correction = self.multigrid.apply(&self.r, &mut self.workspace);
+            let [along_residual, along_product] =
+                two_dots(&self.r, &self.product, correction.values);
             // The part of the new correction along the last change of the residual, r - r_old = -step K p.
-            let along = -step * dot(&self.product, &self.z);
-            scale_and_add(&mut self.p, along / rho, &self.z);
-            rho = next_rho;
+            let scale = correction.scale;
+            let factor: [f64; N] =
+                std::array::from_fn(|n| ratio(-step[n] * along_product[n] * scale[n], rho[n]));
+            rho = std::array::from_fn(|n| along_residual[n] * scale[n]);
+            turn(&mut self.p, &factor, correction.values, &scale);
         }
-    }
-
-    fn clear_held(&mut self) {
-        let held = self.system.held;
-        for (value, held) in self.product.iter_mut().zip(held) {
-            if *held {
-                *value = 0.0;
-            }
-        }
-    }
-
-    fn precondition(&mut self) {
-        self.multigrid.apply(&self.r, &mut self.z);
     }
 
     /// Keeps every residual up to 100, then every tenth, for the report of a failure.
@@ -137,25 +167,31 @@ impl<'a> Run<'a> {
         }
     }
 
-    fn not_converged(&self, wanted: f64) -> SolverError {
-        let mut residual = vec![0.0; self.x.len()];
-        residual_of(self.system, &self.x, &mut residual);
+    fn not_converged(&mut self, wanted: f64) -> SolverError {
+        self.system.residual(&self.right_hand_side, &self.x, &mut self.r);
         SolverError::NotConverged {
             iterations: self.iterations,
-            residual: norm(&residual) / self.scale,
+            residual: largest(&self.relative_residuals()),
             wanted,
             history: self.history.clone(),
         }
     }
 
-    fn solution(self, why: String) -> Solution {
-        Solution {
-            relative_residual: self.relative_residual(),
-            unknowns: self.x,
-            method: "conjugate_gradient",
-            preconditioner: "multigrid",
-            why,
-            iterations: self.iterations,
-        }
+    fn solutions(self, residuals: &[f64; N], why: &str) -> Vec<Solution> {
+        (0..self.columns)
+            .map(|n| Solution {
+                relative_residual: residuals[n],
+                unknowns: column(&self.x, n),
+                method: "conjugate_gradient",
+                preconditioner: "multigrid",
+                why: why.to_owned(),
+                iterations: self.own_iterations[n],
+            })
+            .collect()
     }
+}
+
+/// NaN counts as the largest.
+fn largest<const N: usize>(residuals: &[f64; N]) -> f64 {
+    residuals.iter().fold(0.0, |largest, &r| if r > largest || r.is_nan() { r } else { largest })
 }

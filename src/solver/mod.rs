@@ -1,31 +1,50 @@
 //! Symmetric positive definite systems of 3x3 blocks: matrices, residuals, tolerances, and the choice
 //! between a factorisation and iterations.
 
-pub mod block_matrix;
 pub mod cholesky;
+pub mod cliques;
 pub mod conjugate_gradient;
+pub mod half_matrix;
+pub mod lanes;
+pub mod layout;
 pub mod multigrid;
 pub mod ordering;
 mod vector;
+mod vectorised;
 
-use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use nalgebra::{Matrix3, Vector3};
 
-pub use block_matrix::{Block, BlockMatrix};
-pub use vector::norm;
+pub use half_matrix::HalfMatrix;
+use lanes::{Lanes, Real};
+use layout::Layout;
 
-/// K x = f for the free unknowns. Unknown 3 i + c is component c of row i.
-pub struct LinearSystem<'a> {
-    pub matrix: &'a BlockMatrix,
-    /// True where an unknown is held at zero; such rows of the equations are left out.
-    pub held: &'a [bool],
-    /// Zero where held.
-    pub right_hand_side: &'a [f64],
+/// A 3x3 block, row-major.
+pub type Block = [[f64; 3]; 3];
+
+/// One value for each component of each row.
+pub type Unknowns = Vec<[f64; 3]>;
+
+/// K x = f for the free unknowns. Rows are numbered by place.
+pub struct System {
+    pub layout: Arc<Layout>,
+    /// All rows, held ones last.
+    pub matrix: HalfMatrix<f64, 3>,
+    /// Free rows that are not free in all three unknowns, or have axes of their own.
+    pub partly_held: Vec<PartlyHeld>,
     /// Where each row stands, in mm: rigid movements of neighbourhoods are what varies slowly.
-    pub positions: &'a [Vector3<f64>],
-    /// Rows whose unknowns are along axes of their own, one axis a column.
-    pub axes: &'a BTreeMap<usize, Matrix3<f64>>,
+    pub positions: Vec<Vector3<f64>>,
+}
+
+/// A row with unknowns along its own axes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PartlyHeld {
+    pub row: usize,
+    /// True where an unknown is held at zero; such equations are left out.
+    pub held: [bool; 3],
+    /// One axis a column.
+    pub axes: Matrix3<f64>,
 }
 
 /// What a solution has to meet and what finding it may take.
@@ -42,7 +61,8 @@ pub type Watch<'a> = &'a dyn Fn(usize, f64) -> bool;
 /// A solution that meets its tolerance, and how it was found.
 #[derive(Clone, Debug)]
 pub struct Solution {
-    pub unknowns: Vec<f64>,
+    /// For each free row.
+    pub unknowns: Unknowns,
     pub method: &'static str,
     pub preconditioner: &'static str,
     /// Why this method was chosen, with the numbers.
@@ -66,58 +86,61 @@ pub enum SolverError {
     OverBudget { needed_mb: f64, allowed_mb: f64 },
 }
 
-/// Up to this many multiplications a factorisation takes about as long as iterations do, or less.
-/// Measured on face-like shells and the hexahedral face (docs/performance.md).
+/// Up to this many rows a factorisation takes about as long as iterations do, or less.
+const CHOLESKY_ROWS: usize = 2_500;
+
+/// Up to this many multiplications, about half a second, a factorisation may stand in for iterations
+/// that stall. It cannot be interrupted.
 const CHOLESKY_WORK: f64 = 6e9;
 
 /// Above this many rows even the ordering of a factorisation costs more than it can save.
 const ORDERING_ROWS: usize = 150_000;
 
-/// Solves by Cholesky where its predicted work and memory are small, by conjugate gradients otherwise,
-/// and by Cholesky once more where conjugate gradients stall and the factor fits into memory.
+/// Solves for each right-hand side: by Cholesky where the system is small, by conjugate gradients
+/// otherwise, and by Cholesky once more where those stall and the factor is affordable.
 pub fn solve(
-    system: &LinearSystem,
+    system: &System,
+    right_hand_sides: &[Unknowns],
     tolerance: &Tolerance,
     watch: Watch,
-) -> Result<Solution, SolverError> {
-    if system.right_hand_side.iter().any(|value| !value.is_finite()) {
+) -> Result<Vec<Solution>, SolverError> {
+    if right_hand_sides.iter().flatten().flatten().any(|value| !value.is_finite()) {
         return Err(SolverError::NotFinite);
     }
-    if norm(system.right_hand_side) == 0.0 {
-        return Ok(nothing_to_solve(system.right_hand_side.len()));
+    if right_hand_sides.iter().flatten().flatten().all(|value| *value == 0.0) {
+        return Ok(right_hand_sides.iter().map(|f| nothing_to_solve(f.len())).collect());
     }
-    let iterations_mb = system.matrix.megabytes();
+    let iterations_mb = system.megabytes();
     if iterations_mb > tolerance.memory_mb {
         let (needed_mb, allowed_mb) = (iterations_mb, tolerance.memory_mb);
         return Err(SolverError::OverBudget { needed_mb, allowed_mb });
     }
-    if system.matrix.rows() > ORDERING_ROWS {
-        let why = format!("{} rows are too many to factorise", system.matrix.rows());
-        return conjugate_gradient::solve(system, tolerance, watch, why);
+    let rows = system.layout.free;
+    if rows <= CHOLESKY_ROWS {
+        let ordering = ordering::minimum_degree(system);
+        if ordering.factor_mb + iterations_mb <= tolerance.memory_mb {
+            let why = format!("{rows} rows are few enough to factorise");
+            return cholesky::solve(system, &ordering, right_hand_sides, tolerance, watch, &why);
+        }
     }
-    let ordering = ordering::minimum_degree(system.matrix);
-    let fits = ordering.factor_mb + iterations_mb <= tolerance.memory_mb;
-    let cost = format!(
-        "a factor would take {:.1e} multiplications and {:.0} MB",
-        ordering.multiplications, ordering.factor_mb
-    );
-    if fits && ordering.multiplications <= CHOLESKY_WORK {
-        return cholesky::solve(system, &ordering, tolerance, watch, cost);
-    }
-    match conjugate_gradient::solve(system, tolerance, watch, cost) {
-        Err(SolverError::NotConverged { iterations, residual, .. }) if fits => {
-            let why = format!(
-                "conjugate gradients stalled at {residual:.1e} after {iterations} iterations"
-            );
-            cholesky::solve(system, &ordering, tolerance, watch, why)
+    let why = format!("{rows} rows are cheaper to iterate than to factorise");
+    match conjugate_gradient::solve(system, right_hand_sides, tolerance, watch, &why) {
+        Err(stalled @ SolverError::NotConverged { .. }) if rows <= ORDERING_ROWS => {
+            let ordering = ordering::minimum_degree(system);
+            let fits = ordering.factor_mb + iterations_mb <= tolerance.memory_mb;
+            if !fits || ordering.multiplications > CHOLESKY_WORK {
+                return Err(stalled);
+            }
+            let why = format!("conjugate gradients stalled: {stalled}");
+            cholesky::solve(system, &ordering, right_hand_sides, tolerance, watch, &why)
         }
         other => other,
     }
 }
 
-fn nothing_to_solve(unknowns: usize) -> Solution {
+fn nothing_to_solve(rows: usize) -> Solution {
     Solution {
-        unknowns: vec![0.0; unknowns],
+        unknowns: vec![[0.0; 3]; rows],
         method: "none",
         preconditioner: "none",
         why: "nothing moves and nothing acts".to_owned(),
@@ -126,10 +149,70 @@ fn nothing_to_solve(unknowns: usize) -> Solution {
     }
 }
 
-/// f - K x with zeros where held, into `residual`.
-fn residual_of(system: &LinearSystem, unknowns: &[f64], residual: &mut [f64]) {
-    system.matrix.multiply(unknowns, residual);
-    for (index, value) in residual.iter_mut().enumerate() {
-        *value = if system.held[index] { 0.0 } else { system.right_hand_side[index] - *value };
+impl System {
+    /// Memory of the matrix, of a multigrid hierarchy for it and of the vectors of the iterations, in MB.
+    pub fn megabytes(&self) -> f64 {
+        // The hierarchy has half of the bytes of the finest level and some 40 % of that for coarser ones.
+        let hierarchy = 0.7 * self.matrix.megabytes();
+        let vectors = self.layout.free as f64 * (4.0 * 24.0 + 3.0 * 12.0 + 64.0) / 1e6;
+        self.matrix.megabytes() + hierarchy + vectors
+    }
+
+    /// K x over the free unknowns; zero where held.
+    pub fn multiply<const N: usize>(
+        &self,
+        x: &[Lanes<f64, 3, N>],
+        product: &mut [Lanes<f64, 3, N>],
+    ) {
+        self.matrix.multiply(&self.layout, x, product);
+        for partly in &self.partly_held {
+            partly.clear_held(&mut product[partly.row]);
+        }
+    }
+
+    /// f - K x, zero where held, into `residual`.
+    fn residual<const N: usize>(
+        &self,
+        right_hand_side: &[Lanes<f64, 3, N>],
+        x: &[Lanes<f64, 3, N>],
+        residual: &mut [Lanes<f64, 3, N>],
+    ) {
+        self.multiply(x, residual);
+        for (value, right) in residual.iter_mut().zip(right_hand_side) {
+            for c in 0..3 {
+                for n in 0..N {
+                    value[c][n] = right[c][n] - value[c][n];
+                }
+            }
+        }
+    }
+}
+
+impl PartlyHeld {
+    fn clear_held<T: Real, const N: usize>(&self, values: &mut Lanes<T, 3, N>) {
+        for (value, _) in values.iter_mut().zip(self.held).filter(|(_, held)| *held) {
+            *value = [T::default(); N];
+        }
+    }
+
+    /// From the row's own axes to those of the coordinates.
+    fn to_coordinates<const N: usize>(&self, values: &mut Lanes<f32, 3, N>) {
+        let own = *values;
+        for (i, value) in values.iter_mut().enumerate() {
+            for n in 0..N {
+                value[n] = (0..3).map(|k| self.axes[(i, k)] as f32 * own[k][n]).sum();
+            }
+        }
+    }
+
+    /// Back to the row's own axes, with zeros where held.
+    fn to_own_axes<const N: usize>(&self, values: &mut Lanes<f32, 3, N>) {
+        let coordinates = *values;
+        for (i, value) in values.iter_mut().enumerate() {
+            for n in 0..N {
+                value[n] = (0..3).map(|k| self.axes[(k, i)] as f32 * coordinates[k][n]).sum();
+            }
+        }
+        self.clear_held(values);
     }
 }

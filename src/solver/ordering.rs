@@ -4,9 +4,9 @@ use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::sparse::SymbolicSparseColMatRef;
 use faer::sparse::linalg::amd;
 
-use super::BlockMatrix;
+use super::System;
 
-/// An elimination order of the rows.
+/// An elimination order of the free rows.
 pub struct Ordering {
     /// `order[k]` is the row that is eliminated as the k-th.
     pub order: Vec<usize>,
@@ -18,13 +18,14 @@ pub struct Ordering {
 
 /// Approximate minimum degree on the graph of the blocks (Amestoy, Davis, Duff 1996): nine times less
 /// to order than the unknowns, and the three unknowns of a row stay together.
-pub fn minimum_degree(matrix: &BlockMatrix) -> Ordering {
-    let rows = matrix.rows();
+pub fn minimum_degree(system: &System) -> Ordering {
+    let rows = system.layout.free;
     let mut starts = Vec::with_capacity(rows + 1);
     starts.push(0);
     let mut upper: Vec<usize> = Vec::new();
     for row in 0..rows {
-        upper.extend(matrix.columns(row).iter().map(|&c| c as usize).filter(|&c| c <= row));
+        upper.extend(system.matrix.pattern.columns(row).iter().map(|&c| c as usize));
+        upper.push(row);
         starts.push(upper.len());
     }
     let pattern = SymbolicSparseColMatRef::new_checked(rows, rows, &starts, None, &upper);

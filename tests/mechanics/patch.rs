@@ -3,10 +3,11 @@
 use facies::boundary::Hold;
 use facies::mesh::sample::block;
 use facies::mesh::{CellShape, Vector, VolumeMesh};
+use facies::model::assembly::Numbering;
 use facies::model::assembly::Tissue;
-use facies::model::stiffness::Dilatation;
+use facies::model::stiffness::{Dilatation, cell_stiffness};
 use facies::prediction::{ElementChoice, Settings};
-use facies::solver::BlockMatrix;
+use facies::solver::HalfMatrix;
 use nalgebra::DMatrix;
 
 use crate::scenes::{SHAPES, case_of, exact, largest_error, material, on_the_boundary, solve};
@@ -67,24 +68,40 @@ fn an_affine_field_has_the_same_principal_strains_in_every_cell() {
     }
 }
 
-fn assembled(mesh: &VolumeMesh, dilatation: fn(CellShape) -> Dilatation) -> BlockMatrix {
-    let materials = [material(15.0, 0.49)];
-    let material_of_cell = vec![0; mesh.cells.len()];
-    let tissue =
-        Tissue { mesh, materials: &materials, material_of_cell: &material_of_cell, dilatation };
-    tissue.assemble(&|| true).unwrap().unwrap()
+/// A matrix whose rows are not in the order of the nodes.
+struct Assembled {
+    matrix: HalfMatrix<f64, 3>,
+    numbering: Numbering,
 }
 
-fn dense(matrix: &BlockMatrix) -> DMatrix<f64> {
-    let mut dense = DMatrix::zeros(3 * matrix.rows(), 3 * matrix.rows());
-    for row in 0..matrix.rows() {
-        for (column, block) in matrix.row(row) {
-            for (entry, value) in block.iter().enumerate() {
-                dense[(3 * row + entry / 3, 3 * column + entry % 3)] = *value;
-            }
-        }
+impl Assembled {
+    fn new(mesh: &VolumeMesh, dilatation: fn(CellShape) -> Dilatation) -> Self {
+        let materials = [material(15.0, 0.49)];
+        let material_of_cell = vec![0; mesh.cells.len()];
+        let tissue =
+            Tissue { mesh, materials: &materials, material_of_cell: &material_of_cell, dilatation };
+        let numbering = Numbering::new(mesh, &vec![false; mesh.nodes.len()]);
+        let matrix = tissue.assemble(&numbering, &|| true).unwrap().unwrap();
+        Assembled { matrix, numbering }
     }
-    dense
+
+    fn dense(&self) -> DMatrix<f64> {
+        let rows = self.matrix.rows();
+        let mut dense = DMatrix::zeros(3 * rows, 3 * rows);
+        for row in 0..rows {
+            let mut put = |column: usize, block: &[[f64; 3]; 3]| {
+                for i in 0..3 {
+                    for j in 0..3 {
+                        dense[(3 * row + i, 3 * column + j)] = block[i][j];
+                        dense[(3 * column + j, 3 * row + i)] = block[i][j];
+                    }
+                }
+            };
+            put(row, &self.matrix.diagonal[row]);
+            self.matrix.lower_row(row).for_each(|(column, block)| put(column, block));
+        }
+        dense
+    }
 }
 
 #[test]
@@ -93,12 +110,15 @@ fn a_small_rigid_movement_stores_no_energy() {
         (Vector::new(1.0, 2.0, 3.0).normalize() * 1e-3, Vector::new(0.1, -0.2, 0.3));
     for shape in SHAPES {
         let mesh = distorted_block(shape);
-        let matrix = assembled(&mesh, |_| Dilatation::Mean);
-        let rigid: Vec<f64> =
-            mesh.nodes.iter().flat_map(|x| <[f64; 3]>::from(axis.cross(x) + shift)).collect();
-        let mut forces = vec![0.0; rigid.len()];
-        matrix.multiply(&rigid, &mut forces);
-        let energy: f64 = rigid.iter().zip(&forces).map(|(u, f)| u * f).sum::<f64>() / 2.0;
+        let assembled = Assembled::new(&mesh, |_| Dilatation::Mean);
+        let mut rigid = vec![[[0.0]; 3]; mesh.nodes.len()];
+        for (x, &row) in mesh.nodes.iter().zip(&assembled.numbering.layout.place) {
+            rigid[row as usize] = <[f64; 3]>::from(axis.cross(x) + shift).map(|value| [value]);
+        }
+        let mut forces = vec![[[0.0]; 3]; rigid.len()];
+        assembled.matrix.multiply(&assembled.numbering.layout, &rigid, &mut forces);
+        let (rigid, forces) = (rigid.as_flattened(), forces.as_flattened());
+        let energy: f64 = rigid.iter().zip(forces).map(|([u], [f])| u * f).sum::<f64>() / 2.0;
         // The shift is 0.3 mm: rounding leaves about 1e-16 of E V |u|^2 / h^2 there.
         assert!(energy.abs() < 1e-15 * 15.0 * 27.0, "{shape:?}: {energy:.2e}");
     }
@@ -110,9 +130,9 @@ fn the_stiffness_matrix_has_exactly_six_rigid_modes() {
         for dilatation in
             [|_| Dilatation::Mean, |_| Dilatation::Pointwise] as [fn(CellShape) -> Dilatation; 2]
         {
-            let matrix = assembled(&distorted_block(shape), dilatation);
+            let matrix = Assembled::new(&distorted_block(shape), dilatation).dense();
             let mut eigenvalues: Vec<f64> =
-                dense(&matrix).symmetric_eigenvalues().iter().copied().collect();
+                matrix.symmetric_eigenvalues().iter().copied().collect();
             eigenvalues.sort_by(f64::total_cmp);
             let largest = eigenvalues[eigenvalues.len() - 1];
             assert!(
@@ -126,11 +146,27 @@ fn the_stiffness_matrix_has_exactly_six_rigid_modes() {
 }
 
 #[test]
-fn the_assembled_matrix_is_symmetric() {
+fn the_assembled_matrix_is_the_sum_of_its_cells() {
     for shape in SHAPES {
-        let matrix = dense(&assembled(&distorted_block(shape), |_| Dilatation::Mean));
-        let asymmetry = (&matrix - matrix.transpose()).amax();
-        assert!(asymmetry < 1e-13 * matrix.amax(), "{shape:?}: {asymmetry:.2e}");
+        let mesh = distorted_block(shape);
+        let assembled = Assembled::new(&mesh, |_| Dilatation::Mean);
+        let mut sum = DMatrix::zeros(3 * mesh.nodes.len(), 3 * mesh.nodes.len());
+        for (cell, (_, nodes)) in mesh.cells.iter().enumerate() {
+            let corners: Vec<Vector> = mesh.corners(cell).collect();
+            let blocks =
+                cell_stiffness(shape, &corners, &material(15.0, 0.49), Dilatation::Mean).unwrap();
+            for (k, block) in blocks.iter().enumerate() {
+                let row = assembled.numbering.row(nodes[k / nodes.len()]);
+                let column = assembled.numbering.row(nodes[k % nodes.len()]);
+                for i in 0..3 {
+                    for j in 0..3 {
+                        sum[(3 * row + i, 3 * column + j)] += block[i][j];
+                    }
+                }
+            }
+        }
+        let difference = (assembled.dense() - &sum).amax();
+        assert!(difference < 1e-12 * sum.amax(), "{shape:?}: {difference:.2e}");
     }
 }
 

@@ -1,92 +1,126 @@
 //! Factorisation and iterations against each other, and how they fail.
 
-use std::collections::BTreeMap;
-
 use facies::mesh::sample::{ThickSphere, block, thick_sphere_octant};
 use facies::mesh::{CellShape, Vector, VolumeMesh};
-use facies::model::assembly::Tissue;
+use facies::model::assembly::{Numbering, Tissue};
 use facies::model::stiffness::Dilatation;
 use facies::solver::{
-    BlockMatrix, LinearSystem, SolverError, Tolerance, cholesky, conjugate_gradient, ordering,
-    solve,
+    SolverError, System, Tolerance, Unknowns, cholesky, conjugate_gradient, ordering, solve,
 };
-use nalgebra::Matrix3;
 
 use crate::scenes::material;
 
 const EXACT: Tolerance = Tolerance { relative_residual: 1e-12, memory_mb: 1000.0 };
 
-/// A matrix, what is held, what acts, and where its rows stand.
-struct Clamped {
-    matrix: BlockMatrix,
-    held: Vec<bool>,
-    forces: Vec<f64>,
-    mesh: VolumeMesh,
-    axes: BTreeMap<usize, Matrix3<f64>>,
+/// A mesh held at one of its node sets, and no load.
+fn held_mesh(mesh: &VolumeMesh, set: &str, poisson_ratio: f64) -> System {
+    let materials = [material(15.0, poisson_ratio)];
+    let material_of_cell = vec![0; mesh.cells.len()];
+    let tissue = Tissue {
+        mesh,
+        materials: &materials,
+        material_of_cell: &material_of_cell,
+        dilatation: |_| Dilatation::Mean,
+    };
+    let mut held = vec![false; mesh.nodes.len()];
+    mesh.node_set(set).unwrap().iter().for_each(|&node| held[node as usize] = true);
+    let numbering = Numbering::new(mesh, &held);
+    let matrix = tissue.assemble(&numbering, &|| true).unwrap().unwrap();
+    let mut positions = vec![Vector::zeros(); held.len()];
+    for (position, &row) in mesh.nodes.iter().zip(&numbering.layout.place) {
+        positions[row as usize] = *position;
+    }
+    System { layout: numbering.layout, matrix, partly_held: Vec::new(), positions }
 }
 
-impl Clamped {
-    /// A mesh held at one of its node sets, with a force on every free unknown.
-    fn new(mesh: VolumeMesh, set: &str, poisson_ratio: f64) -> Self {
-        let materials = [material(15.0, poisson_ratio)];
-        let material_of_cell = vec![0; mesh.cells.len()];
-        let tissue = Tissue {
-            mesh: &mesh,
-            materials: &materials,
-            material_of_cell: &material_of_cell,
-            dilatation: |_| Dilatation::Mean,
-        };
-        let matrix = tissue.assemble(&|| true).unwrap().unwrap();
-        let mut held = vec![false; 3 * mesh.nodes.len()];
-        for &node in mesh.node_set(set).unwrap() {
-            held[3 * node as usize..3 * node as usize + 3].fill(true);
-        }
-        let force = |i: usize| if held[i] { 0.0 } else { ((i * 7919) % 101) as f64 - 50.0 };
-        let forces = (0..held.len()).map(force).collect();
-        Clamped { matrix, held, forces, mesh, axes: BTreeMap::new() }
-    }
+fn clamped_block() -> System {
+    let block = block(Vector::new(10.0, 8.0, 6.0), [6, 5, 4], CellShape::Hex8);
+    held_mesh(&block, "x_min", 0.4)
+}
 
-    fn block() -> Self {
-        Clamped::new(block(Vector::new(10.0, 8.0, 6.0), [6, 5, 4], CellShape::Hex8), "x_min", 0.4)
-    }
+fn sphere(cells_along: usize, cells_radial: usize) -> System {
+    let sphere = ThickSphere { inner_radius: 60.0, outer_radius: 80.0, cells_radial, cells_along };
+    held_mesh(&thick_sphere_octant(sphere, CellShape::Tet4), "inner", 0.46)
+}
 
-    fn system(&self) -> LinearSystem<'_> {
-        LinearSystem {
-            matrix: &self.matrix,
-            held: &self.held,
-            right_hand_side: &self.forces,
-            positions: &self.mesh.nodes,
-            axes: &self.axes,
-        }
-    }
+/// A force on every free unknown; each seed gives another.
+fn forces(system: &System, seed: usize) -> Unknowns {
+    let force = |i: usize| ((i * (7919 + 2 * seed)) % 101) as f64 - 50.0;
+    (0..system.layout.free).map(|row| std::array::from_fn(|c| force(3 * row + c))).collect()
+}
+
+fn go_on(_: usize, _: f64) -> bool {
+    true
+}
+
+fn largest_difference(a: &Unknowns, b: &Unknowns) -> f64 {
+    let pairs = a.as_flattened().iter().zip(b.as_flattened());
+    pairs.fold(0.0, |largest, (a, b)| largest.max((a - b).abs()))
+}
+
+fn largest(a: &Unknowns) -> f64 {
+    a.as_flattened().iter().fold(0.0, |largest, a| largest.max(a.abs()))
 }
 
 #[test]
 fn cholesky_and_conjugate_gradients_agree() {
-    let clamped = Clamped::block();
-    let system = clamped.system();
-    let go_on = |_, _| true;
-    let order = ordering::minimum_degree(&clamped.matrix);
-    let direct = cholesky::solve(&system, &order, &EXACT, &go_on, String::new()).unwrap();
-    let iterative = conjugate_gradient::solve(&system, &EXACT, &go_on, String::new()).unwrap();
-    let largest = direct.unknowns.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
-    for (a, b) in direct.unknowns.iter().zip(&iterative.unknowns) {
-        assert!((a - b).abs() < 1e-9 * largest);
-    }
-    for solution in [&direct, &iterative] {
-        assert!(solution.relative_residual <= 1e-12);
-        assert!(clamped.held.iter().zip(&solution.unknowns).all(|(held, x)| !held || *x == 0.0));
+    let system = clamped_block();
+    let right = [forces(&system, 0), forces(&system, 1)];
+    let order = ordering::minimum_degree(&system);
+    let direct = cholesky::solve(&system, &order, &right, &EXACT, &go_on, "").unwrap();
+    let iterative = conjugate_gradient::solve(&system, &right, &EXACT, &go_on, "").unwrap();
+    for (direct, iterative) in direct.iter().zip(&iterative) {
+        let difference = largest_difference(&direct.unknowns, &iterative.unknowns);
+        assert!(difference < 1e-9 * largest(&direct.unknowns));
+        assert!(direct.relative_residual <= 1e-12 && iterative.relative_residual <= 1e-12);
     }
 }
 
 #[test]
+fn right_hand_sides_solved_together_are_those_solved_alone() {
+    let system = sphere(12, 4);
+    let tolerance = Tolerance { relative_residual: 1e-10, ..EXACT };
+    for count in [2, 5, 11] {
+        let mut right: Vec<Unknowns> = (0..count).map(|seed| forces(&system, seed)).collect();
+        right[1] = vec![[0.0; 3]; system.layout.free];
+        let together = conjugate_gradient::solve(&system, &right, &tolerance, &go_on, "").unwrap();
+        assert_eq!(together.len(), count);
+        for (right, solution) in right.into_iter().zip(&together) {
+            let alone = conjugate_gradient::solve(&system, &[right], &tolerance, &go_on, "");
+            let alone = &alone.unwrap()[0];
+            let difference = largest_difference(&alone.unknowns, &solution.unknowns);
+            assert!(difference <= 1e-8 * largest(&alone.unknowns), "{difference:.1e}");
+            assert!(solution.relative_residual <= 1e-10);
+        }
+        assert!(together[1].unknowns.iter().all(|u| *u == [0.0; 3]), "nothing acts on the second");
+    }
+}
+
+#[test]
+fn one_thread_and_three_give_the_same_bits() {
+    let system = sphere(24, 6);
+    assert!(system.layout.parts.len() > 1, "parts for threads are what is tested");
+    let tolerance = Tolerance { relative_residual: 1e-8, ..EXACT };
+    let right = [forces(&system, 0)];
+    let with_threads = |count| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(count).build().unwrap();
+        pool.install(|| conjugate_gradient::solve(&system, &right, &tolerance, &go_on, ""))
+            .unwrap()
+            .remove(0)
+    };
+    let (one, three) = (with_threads(1), with_threads(3));
+    assert_eq!(one.iterations, three.iterations);
+    assert_eq!(one.unknowns, three.unknowns);
+}
+
+#[test]
 fn a_residual_nobody_can_reach_ends_with_the_history_and_not_with_an_answer() {
-    let clamped = Clamped::block();
-    let system = clamped.system();
+    let system = clamped_block();
+    let right = [forces(&system, 0)];
     let tolerance = Tolerance { relative_residual: 1e-30, ..EXACT };
     for result in [
-        solve(&system, &tolerance, &|_, _| true),
-        conjugate_gradient::solve(&system, &tolerance, &|_, _| true, String::new()),
+        solve(&system, &right, &tolerance, &go_on),
+        conjugate_gradient::solve(&system, &right, &tolerance, &go_on, ""),
     ] {
         let Err(SolverError::NotConverged { history, residual, .. }) = result else {
             panic!("{result:?}");
@@ -97,28 +131,27 @@ fn a_residual_nobody_can_reach_ends_with_the_history_and_not_with_an_answer() {
 
 #[test]
 fn a_solver_stops_when_it_is_asked_to() {
-    let clamped = Clamped::block();
-    let system = clamped.system();
-    let stopped =
-        conjugate_gradient::solve(&system, &EXACT, &|iteration, _| iteration < 3, String::new());
+    let system = clamped_block();
+    let right = [forces(&system, 0)];
+    let watch = |iteration, _| iteration < 3;
+    let stopped = conjugate_gradient::solve(&system, &right, &EXACT, &watch, "");
     assert_eq!(stopped.unwrap_err(), SolverError::Stopped);
 }
 
 #[test]
 fn a_singular_matrix_is_refused_by_the_factorisation() {
-    let clamped = Clamped::block();
-    let free = vec![false; clamped.held.len()];
-    let system = LinearSystem { held: &free, ..clamped.system() };
-    let result = solve(&system, &EXACT, &|_, _| true);
+    let mut mesh = block(Vector::new(10.0, 8.0, 6.0), [6, 5, 4], CellShape::Hex8);
+    mesh.node_sets.insert("nothing".to_owned(), Vec::new());
+    let system = held_mesh(&mesh, "nothing", 0.4);
+    let result = solve(&system, &[forces(&system, 0)], &EXACT, &go_on);
     assert!(result.is_err(), "{result:?}");
 }
 
 #[test]
 fn a_matrix_larger_than_the_memory_is_refused_with_both_numbers() {
-    let clamped = Clamped::block();
-    let system = clamped.system();
+    let system = clamped_block();
     let tolerance = Tolerance { memory_mb: 0.1, ..EXACT };
-    let result = solve(&system, &tolerance, &|_, _| true).unwrap_err();
+    let result = solve(&system, &[forces(&system, 0)], &tolerance, &go_on).unwrap_err();
     assert!(
         matches!(result, SolverError::OverBudget { allowed_mb: 0.1, needed_mb } if needed_mb > 0.1)
     );
@@ -126,22 +159,19 @@ fn a_matrix_larger_than_the_memory_is_refused_with_both_numbers() {
 
 #[test]
 fn values_that_are_not_finite_are_refused() {
-    let mut clamped = Clamped::block();
-    clamped.forces[100] = f64::NAN;
-    assert_eq!(solve(&clamped.system(), &EXACT, &|_, _| true).unwrap_err(), SolverError::NotFinite);
+    let system = clamped_block();
+    let mut right = forces(&system, 0);
+    right[30][1] = f64::NAN;
+    assert_eq!(solve(&system, &[right], &EXACT, &go_on).unwrap_err(), SolverError::NotFinite);
 }
 
 #[test]
 fn iterations_hardly_grow_with_the_mesh() {
     let iterations = |cells_along: usize, cells_radial: usize| {
-        let sphere =
-            ThickSphere { inner_radius: 60.0, outer_radius: 80.0, cells_radial, cells_along };
-        let clamped = Clamped::new(thick_sphere_octant(sphere, CellShape::Tet4), "inner", 0.46);
-        let tolerance = Tolerance { relative_residual: 1e-8, memory_mb: 1000.0 };
-        let watch = |_, _| true;
-        conjugate_gradient::solve(&clamped.system(), &tolerance, &watch, String::new())
-            .unwrap()
-            .iterations
+        let system = sphere(cells_along, cells_radial);
+        let tolerance = Tolerance { relative_residual: 1e-8, ..EXACT };
+        let right = [forces(&system, 0)];
+        conjugate_gradient::solve(&system, &right, &tolerance, &go_on, "").unwrap()[0].iterations
     };
     let (coarse, fine) = (iterations(10, 3), iterations(20, 6));
     assert!(fine < 50, "{fine} iterations for eight times the cells of {coarse}");

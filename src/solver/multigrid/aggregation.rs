@@ -1,23 +1,19 @@
 //! Groups of neighbouring rows.
 
-use super::rows::BlockRows;
+use super::ties::Ties;
 
-/// No group: a row that is held altogether.
-pub(super) const NONE: u32 = u32::MAX;
+/// Not in a group yet.
+const NONE: u32 = u32::MAX;
 
 /// For each row its group: grown from the lowest free row over its neighbours up to `size` rows.
 /// A group of less than a quarter of that joins the neighbour it is tied to most. Groups are numbered in the
 /// order of their lowest rows.
-pub(super) fn aggregate<const B: usize>(
-    matrix: &impl BlockRows<B>,
-    size: usize,
-    takes_part: impl Fn(usize) -> bool,
-) -> (Vec<u32>, usize) {
-    let mut group = vec![NONE; matrix.rows()];
+pub(super) fn aggregate(ties: &Ties, size: usize) -> (Vec<u32>, usize) {
+    let mut group = vec![NONE; ties.rows()];
     let mut sizes: Vec<usize> = Vec::new();
     let mut members: Vec<usize> = Vec::with_capacity(size);
-    for seed in 0..matrix.rows() {
-        if group[seed] != NONE || !takes_part(seed) {
+    for seed in 0..ties.rows() {
+        if group[seed] != NONE {
             continue;
         }
         let number = sizes.len() as u32;
@@ -26,9 +22,8 @@ pub(super) fn aggregate<const B: usize>(
         group[seed] = number;
         let mut next = 0;
         while next < members.len() && members.len() < size {
-            for (column, tie) in matrix.ties(members[next]) {
-                if members.len() < size && group[column] == NONE && tie > 0.0 && takes_part(column)
-                {
+            for (column, tie) in ties.of(members[next]) {
+                if members.len() < size && group[column] == NONE && tie > 0.0 {
                     group[column] = number;
                     members.push(column);
                 }
@@ -37,7 +32,7 @@ pub(super) fn aggregate<const B: usize>(
         }
         sizes.push(members.len());
         if 4 * members.len() < size
-            && let Some(host) = strongest_neighbour(matrix, &members, &group, number)
+            && let Some(host) = strongest_neighbour(ties, &members, &group, number)
         {
             members.iter().for_each(|&row| group[row] = host);
             sizes[host as usize] += members.len();
@@ -48,24 +43,19 @@ pub(super) fn aggregate<const B: usize>(
 }
 
 /// The group to which the members are tied most; `None` where they have no neighbour in another group.
-fn strongest_neighbour<const B: usize>(
-    matrix: &impl BlockRows<B>,
-    members: &[usize],
-    group: &[u32],
-    own: u32,
-) -> Option<u32> {
-    let mut ties: Vec<(u32, f64)> = Vec::new();
+fn strongest_neighbour(ties: &Ties, members: &[usize], group: &[u32], own: u32) -> Option<u32> {
+    let mut sums: Vec<(u32, f32)> = Vec::new();
     for &row in members {
-        for (column, tie) in matrix.ties(row) {
+        for (column, tie) in ties.of(row) {
             let other = group[column];
             if other == NONE || other == own || tie == 0.0 {
                 continue;
             }
-            match ties.iter_mut().find(|(known, _)| *known == other) {
+            match sums.iter_mut().find(|(known, _)| *known == other) {
                 Some((_, sum)) => *sum += tie,
-                None => ties.push((other, tie)),
+                None => sums.push((other, tie)),
             }
         }
     }
-    ties.into_iter().max_by(|a, b| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0))).map(|(other, _)| other)
+    sums.into_iter().max_by(|a, b| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0))).map(|(other, _)| other)
 }

@@ -7,90 +7,297 @@
 //! Brezina 1996 (smoothed aggregation), with the smoothing moved from vectors to scalar weights.
 //!
 //! A cycle is V(1,1): a forward Gauss-Seidel sweep before and a backward one after the coarse
-//! correction, which keeps the preconditioner symmetric. Matrices are f32: a preconditioner needs no
-//! more digits, and reads half the memory.
+//! correction, which keeps the preconditioner symmetric.
 
 mod aggregation;
-mod dense;
-mod half_matrix;
+mod galerkin;
+mod inverse;
 mod prolongator;
-mod rows;
+mod smoother;
+mod ties;
 
-use dense::DenseInverse;
-use half_matrix::HalfMatrix;
-use prolongator::Prolongator;
-use rows::BlockRows;
+use std::sync::Arc;
 
-use super::LinearSystem;
+use nalgebra::{Matrix3, Vector3};
+
+use galerkin::{Coarse, Wide, galerkin};
+use inverse::DenseInverse;
+use prolongator::{Prolongator, Weights};
+use smoother::Smoother;
+use ties::Ties;
+
+use super::lanes::Lanes;
+use super::{PartlyHeld, System};
 
 /// Rows of the first aggregates, and of the later ones.
 const FIRST_AGGREGATE: usize = 20;
 const LATER_AGGREGATE: usize = 10;
 
 /// Coarse rows at which the dense inverse takes over.
-const DENSE_ROWS: usize = 40;
+const DENSE_ROWS: usize = 30;
 
 /// A hierarchy for one matrix and one set of held unknowns.
 pub struct Multigrid {
-    finest: HalfMatrix<3>,
+    finest: Smoother<3>,
     /// From the finest to the first coarse level.
-    first: Prolongator<3>,
+    first: Prolongator,
+    partly_held: Vec<PartlyHeld>,
     levels: Vec<CoarseLevel>,
     coarsest: DenseInverse,
+    coarsest_rows: usize,
 }
 
 /// A coarse level with a still coarser one below it.
 struct CoarseLevel {
-    matrix: HalfMatrix<6>,
-    below: Prolongator<6>,
+    smoother: Smoother<6>,
+    below: Prolongator,
+}
+
+/// What one cycle writes to, for N right-hand sides.
+pub struct Workspace<const N: usize> {
+    right: Vec<Lanes<f32, 3, N>>,
+    x: Vec<Lanes<f32, 3, N>>,
+    rest: Vec<Lanes<f32, 3, N>>,
+    coarse: Vec<CoarseWorkspace<N>>,
+}
+
+struct CoarseWorkspace<const N: usize> {
+    right: Vec<Lanes<f32, 6, N>>,
+    x: Vec<Lanes<f32, 6, N>>,
+    rest: Vec<Lanes<f32, 6, N>>,
+}
+
+impl<const N: usize> CoarseWorkspace<N> {
+    fn new(rows: usize) -> Self {
+        let zeros = || vec![[[0.0; N]; 6]; rows];
+        CoarseWorkspace { right: zeros(), x: zeros(), rest: zeros() }
+    }
 }
 
 impl Multigrid {
     /// Builds the hierarchy.
-    pub fn new(system: &LinearSystem) -> Self {
-        let first = Prolongator::finest(system);
-        let mut matrix = first.galerkin(system);
-        let mut centres = first.centres.clone();
+    pub fn new(system: &System) -> Self {
+        let free = system.layout.free;
+        let special = Special::new(system);
+        let origin = mean(&system.positions[..free]);
+        let ties = Ties::new(&system.matrix, &system.layout, |row| special.axes(row));
+        let weights = Weights::new(&ties, &system.positions[..free], FIRST_AGGREGATE);
+        let basis = |row: usize| special.basis(row, &(system.positions[row] - origin));
+        let coarse = galerkin(&system.matrix, &system.layout, &weights, &basis, &origin);
+        let mut centres = in_places(&weights.centres, &coarse.layout);
+        let first = weights.into_prolongator(&coarse.layout.place, &system.positions[..free]);
         let mut levels = Vec::new();
-        while matrix.rows() > DENSE_ROWS {
-            let below = Prolongator::coarse(&matrix, &centres);
-            if below.centres.len() >= matrix.rows() {
-                break;
+        let mut current = coarse;
+        while current.matrix.rows() > DENSE_ROWS {
+            let Some((weights, next)) = coarsen(&current, &centres, &origin) else { break };
+            let next_centres = in_places(&weights.centres, &next.layout);
+            let below = weights.into_prolongator(&next.layout.place, &centres);
+            let layout = Arc::new(current.layout);
+            let smoother = Smoother::new(&current.matrix, layout, |_, _, _| ());
+            levels.push(CoarseLevel { smoother, below });
+            centres = next_centres;
+            current = next;
+        }
+        let mask = |row: usize, column: usize, block: &mut [[f64; 3]; 3]| {
+            special.mask(row, column, block);
+        };
+        Multigrid {
+            finest: Smoother::new(&system.matrix, system.layout.clone(), mask),
+            first,
+            partly_held: system.partly_held.clone(),
+            levels,
+            coarsest_rows: current.matrix.rows(),
+            coarsest: dense(&current.matrix),
+        }
+    }
+
+    pub fn megabytes(&self) -> f64 {
+        let coarse = self.levels.iter().map(|l| l.smoother.megabytes() + l.below.megabytes());
+        self.finest.megabytes() + self.first.megabytes() + coarse.sum::<f64>()
+    }
+
+    pub fn workspace<const N: usize>(&self) -> Workspace<N> {
+        let zeros = || vec![[[0.0; N]; 3]; self.finest.rows()];
+        let rows = self.levels.iter().map(|level| level.smoother.rows());
+        let coarse = rows.chain([self.coarsest_rows]).map(CoarseWorkspace::new).collect();
+        Workspace { right: zeros(), x: zeros(), rest: zeros(), coarse }
+    }
+
+    /// One V cycle from zero for each right-hand side: the answer approximates K^-1 `residual`, times
+    /// `scale` for each right-hand side.
+    pub fn apply<'w, const N: usize>(
+        &self,
+        residual: &[Lanes<f64, 3, N>],
+        workspace: &'w mut Workspace<N>,
+    ) -> Correction<'w, N> {
+        let scale = largest(residual);
+        let inverse = scale.map(|scale| if scale > 0.0 { scale.recip() } else { 0.0 });
+        for (right, residual) in workspace.right.iter_mut().zip(residual) {
+            for c in 0..3 {
+                for n in 0..N {
+                    right[c][n] = (residual[c][n] * inverse[n]) as f32;
+                }
             }
-            let next = below.galerkin(&matrix);
-            centres.clone_from(&below.centres);
-            levels.push(CoarseLevel { matrix: HalfMatrix::of(&matrix), below });
-            matrix = next;
         }
-        let coarsest = DenseInverse::of(&matrix);
-        Multigrid { finest: HalfMatrix::of(system), first, levels, coarsest }
+        let Workspace { right, x, rest, coarse } = workspace;
+        self.finest.forward(right, x, rest);
+        self.partly_held.iter().for_each(|row| row.to_coordinates(&mut rest[row.row]));
+        self.first.restrict(rest, &mut coarse[0].right);
+        self.descend(0, coarse);
+        self.partly_held.iter().for_each(|row| row.to_coordinates(&mut x[row.row]));
+        self.first.add_prolonged(&coarse[0].x, x);
+        self.partly_held.iter().for_each(|row| row.to_own_axes(&mut x[row.row]));
+        self.finest.backward(x, right);
+        Correction { values: x, scale }
     }
 
-    /// One V cycle from zero: `correction` approximates K^-1 `residual`.
-    pub fn apply(&self, residual: &[f64], correction: &mut [f64]) {
-        // f32 holds 38 decades; scaling by the largest entry keeps every residual inside them.
-        let scale = residual.iter().fold(0.0_f64, |largest, r| largest.max(r.abs()));
-        if scale == 0.0 {
-            correction.fill(0.0);
-            return;
-        }
-        let scaled: Vec<f32> = residual.iter().map(|r| (r / scale) as f32).collect();
-        let result = self.finest.cycle(&scaled, |rest| {
-            let below = self.first.restrict(rest);
-            self.first.prolong(&self.descend(0, below))
-        });
-        for (correction, value) in correction.iter_mut().zip(result) {
-            *correction = f64::from(value) * scale;
+    fn descend<const N: usize>(&self, depth: usize, workspace: &mut [CoarseWorkspace<N>]) {
+        let Some((own, below)) = workspace.split_first_mut() else { return };
+        let Some(level) = self.levels.get(depth) else {
+            return self.coarsest.apply(&own.right, &mut own.x);
+        };
+        level.smoother.forward(&own.right, &mut own.x, &mut own.rest);
+        level.below.restrict(&own.rest, &mut below[0].right);
+        self.descend(depth + 1, below);
+        level.below.add_prolonged(&below[0].x, &mut own.x);
+        level.smoother.backward(&mut own.x, &mut own.right);
+    }
+}
+
+/// What a cycle answers: `values` times `scale` of each right-hand side.
+pub struct Correction<'w, const N: usize> {
+    pub values: &'w [Lanes<f32, 3, N>],
+    pub scale: [f64; N],
+}
+
+/// f32 holds 38 decades; scaling by the largest entry keeps every residual inside them.
+fn largest<const N: usize>(residual: &[Lanes<f64, 3, N>]) -> [f64; N] {
+    let mut largest = [0.0_f64; N];
+    for values in residual {
+        for component in values {
+            for n in 0..N {
+                largest[n] = largest[n].max(component[n].abs());
+            }
         }
     }
+    largest
+}
 
-    fn descend(&self, depth: usize, residual: Vec<f32>) -> Vec<f32> {
-        match self.levels.get(depth) {
-            None => self.coarsest.apply(&residual),
-            Some(level) => level.matrix.cycle(&residual, |rest| {
-                let below = level.below.restrict(rest);
-                level.below.prolong(&self.descend(depth + 1, below))
-            }),
+/// `None` where the rows cannot be grouped any further.
+fn coarsen(
+    current: &Coarse,
+    centres: &[Vector3<f64>],
+    origin: &Vector3<f64>,
+) -> Option<(Weights, Coarse)> {
+    let ties = Ties::new(&current.matrix, &current.layout, |_| None);
+    let weights = Weights::new(&ties, centres, LATER_AGGREGATE);
+    if weights.aggregates >= current.matrix.rows() {
+        return None;
+    }
+    // A row of a coarse level is moved about its own centre.
+    let basis = |row: usize| {
+        let arm = centres[row] - origin;
+        let movement = movement(&arm);
+        std::array::from_fn(|i| {
+            std::array::from_fn(|k| match i {
+                0..3 => movement[i][k],
+                _ => f64::from(u8::from(i == k)),
+            })
+        })
+    };
+    let next = galerkin(&current.matrix, &current.layout, &weights, &basis, origin);
+    Some((weights, next))
+}
+
+/// [ I | R(arm) ]: what a movement of the origin does at the end of an arm.
+fn movement(arm: &Vector3<f64>) -> Wide<3> {
+    let turn = -arm.cross_matrix();
+    std::array::from_fn(|i| {
+        std::array::from_fn(|k| match k {
+            0..3 => f64::from(u8::from(i == k)),
+            _ => turn[(i, k - 3)],
+        })
+    })
+}
+
+fn mean(positions: &[Vector3<f64>]) -> Vector3<f64> {
+    positions.iter().sum::<Vector3<f64>>() / positions.len().max(1) as f64
+}
+
+fn in_places(centres: &[Vector3<f64>], layout: &super::layout::Layout) -> Vec<Vector3<f64>> {
+    let mut placed = vec![Vector3::zeros(); centres.len()];
+    for (centre, &place) in centres.iter().zip(&layout.place) {
+        placed[place as usize] = *centre;
+    }
+    placed
+}
+
+fn dense(matrix: &super::HalfMatrix<f64, 6>) -> DenseInverse {
+    let size = 6 * matrix.rows();
+    let mut values = vec![0.0; size * size];
+    for row in 0..matrix.rows() {
+        let mut put = |column: usize, block: &[[f64; 6]; 6]| {
+            for i in 0..6 {
+                for j in 0..6 {
+                    values[(6 * row + i) * size + 6 * column + j] = block[i][j];
+                    values[(6 * column + j) * size + 6 * row + i] = block[i][j];
+                }
+            }
+        };
+        put(row, &matrix.diagonal[row]);
+        matrix.lower_row(row).for_each(|(column, block)| put(column, block));
+    }
+    DenseInverse::of(values, size)
+}
+
+/// The few rows that are partly held or have axes of their own.
+struct Special<'a> {
+    rows: &'a [PartlyHeld],
+    /// For each free row its entry in `rows`, or `u32::MAX`.
+    of_row: Vec<u32>,
+}
+
+impl<'a> Special<'a> {
+    fn new(system: &'a System) -> Self {
+        let mut of_row = vec![u32::MAX; system.matrix.rows()];
+        for (index, partly) in system.partly_held.iter().enumerate() {
+            of_row[partly.row] = index as u32;
+        }
+        Special { rows: &system.partly_held, of_row }
+    }
+
+    fn of(&self, row: usize) -> Option<&'a PartlyHeld> {
+        self.rows.get(self.of_row[row] as usize)
+    }
+
+    fn axes(&self, row: usize) -> Option<&'a Matrix3<f64>> {
+        self.of(row).map(|partly| &partly.axes)
+    }
+
+    /// What a movement of the origin does to the free unknowns of a row.
+    fn basis(&self, row: usize, arm: &Vector3<f64>) -> Wide<3> {
+        let plain = movement(arm);
+        let Some(partly) = self.of(row) else { return plain };
+        std::array::from_fn(|i| {
+            std::array::from_fn(|k| match partly.held[i] {
+                true => 0.0,
+                false => (0..3).map(|m| partly.axes[(m, i)] * plain[m][k]).sum(),
+            })
+        })
+    }
+
+    fn mask(&self, row: usize, column: usize, block: &mut [[f64; 3]; 3]) {
+        if let Some(partly) = self.of(row) {
+            for (values, held) in block.iter_mut().zip(partly.held) {
+                if held {
+                    *values = [0.0; 3];
+                }
+            }
+        }
+        if let Some(partly) = self.of(column) {
+            for (j, _) in partly.held.iter().enumerate().filter(|(_, held)| **held) {
+                block.iter_mut().for_each(|values| values[j] = 0.0);
+            }
         }
     }
 }

@@ -1,0 +1,89 @@
+//! The unknowns of one row for one or several right-hand sides, and what a block does to them.
+
+use std::ops::{Add, AddAssign, Mul, Sub, SubAssign};
+
+/// B components of N right-hand sides: the N values of a component lie side by side, for the
+/// vector units of the processor.
+pub type Lanes<T, const B: usize, const N: usize> = [[T; N]; B];
+
+/// f32 and f64.
+pub trait Real:
+    Copy
+    + Default
+    + Send
+    + Sync
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + AddAssign
+    + SubAssign
+    + 'static
+{
+}
+
+impl Real for f32 {}
+impl Real for f64 {}
+
+/// sum += A x.
+#[inline(always)]
+pub(super) fn add_product<T: Real, const B: usize, const N: usize>(
+    sum: &mut Lanes<T, B, N>,
+    block: &[[T; B]; B],
+    x: &Lanes<T, B, N>,
+) {
+    for r in 0..B {
+        for c in 0..B {
+            for n in 0..N {
+                sum[r][n] += block[r][c] * x[c][n];
+            }
+        }
+    }
+}
+
+/// sum += A^T x.
+#[inline(always)]
+pub(super) fn add_transposed<T: Real, const B: usize, const N: usize>(
+    sum: &mut Lanes<T, B, N>,
+    block: &[[T; B]; B],
+    x: &Lanes<T, B, N>,
+) {
+    for r in 0..B {
+        for c in 0..B {
+            for n in 0..N {
+                sum[c][n] += block[r][c] * x[r][n];
+            }
+        }
+    }
+}
+
+/// sum -= A x.
+#[inline(always)]
+pub(super) fn subtract_product<T: Real, const B: usize, const N: usize>(
+    sum: &mut Lanes<T, B, N>,
+    block: &[[T; B]; B],
+    x: &Lanes<T, B, N>,
+) {
+    for r in 0..B {
+        for c in 0..B {
+            for n in 0..N {
+                sum[r][n] -= block[r][c] * x[c][n];
+            }
+        }
+    }
+}
+
+/// sum -= A^T x.
+#[inline(always)]
+pub(super) fn subtract_transposed<T: Real, const B: usize, const N: usize>(
+    sum: &mut Lanes<T, B, N>,
+    block: &[[T; B]; B],
+    x: &Lanes<T, B, N>,
+) {
+    for r in 0..B {
+        for c in 0..B {
+            for n in 0..N {
+                sum[c][n] -= block[r][c] * x[r][n];
+            }
+        }
+    }
+}

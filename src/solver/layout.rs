@@ -1,0 +1,165 @@
+//! The order in which rows are stored: neighbours near each other, independent parts for threads,
+//! held rows last.
+//!
+//! Free rows are numbered breadth first from one end of the mesh to the other (Cuthill, McKee 1969,
+//! without sorting by degree), so that the rows a row is coupled to lie close by in memory. That order is
+//! cut into parts. Rows of a part that are coupled to an earlier part make the separator, which comes
+//! after all parts: parts couple only within themselves and with the separator, so that threads
+//! can sweep them at once, and the result is that of one sequential sweep in this order.
+//! Rows held altogether come last: the matrix of the free rows is the leading block.
+
+use std::ops::Range;
+
+use super::cliques::{Cliques, CliquesOfRow};
+
+/// Free unknowns below which one thread is faster than two.
+const PARTS_FROM: usize = 12_000;
+
+/// Free unknowns above which there are four parts and not two.
+const FOUR_PARTS_FROM: usize = 400_000;
+
+/// A numbering of rows by place.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Layout {
+    /// The place of each row.
+    pub place: Vec<u32>,
+    /// Cliques in the order in which rows meet them.
+    pub clique_order: Vec<u32>,
+    /// Places that couple only among themselves and with the separator.
+    pub parts: Vec<Range<usize>>,
+    /// Places below this are free; the separator reaches from the last part to here.
+    pub free: usize,
+}
+
+impl Layout {
+    /// Orders the rows that the cliques couple, each of that many unknowns. `held` tells the rows without
+    /// any free one.
+    pub fn new(cliques: &Cliques, around: &CliquesOfRow, held: &[bool], unknowns: usize) -> Self {
+        let rows = held.len();
+        let (order, clique_order) = breadth_first(cliques, around, rows);
+        let free_order: Vec<u32> = order.iter().copied().filter(|&r| !held[r as usize]).collect();
+        let free = free_order.len();
+        let count = match free * unknowns {
+            0..PARTS_FROM => 1,
+            PARTS_FROM..FOUR_PARTS_FROM => 2,
+            _ => 4,
+        };
+        let part_of = parts_of_rows(cliques, &free_order, rows, count);
+        let mut place = vec![0; rows];
+        let mut next = 0;
+        let mut parts = Vec::with_capacity(count);
+        for part in 0..=count as u8 {
+            let begin = next;
+            for &row in free_order.iter().filter(|&&row| part_of[row as usize] == part) {
+                place[row as usize] = next as u32;
+                next += 1;
+            }
+            if usize::from(part) < count {
+                parts.push(begin..next);
+            }
+        }
+        for &row in order.iter().filter(|&&row| held[row as usize]) {
+            place[row as usize] = next as u32;
+            next += 1;
+        }
+        Layout { place, clique_order, parts, free }
+    }
+
+    /// Places that couple with several parts.
+    pub fn separator(&self) -> Range<usize> {
+        self.parts.last().map_or(0, |part| part.end)..self.free
+    }
+
+    /// The values of each part, and those of all places for the separator to follow.
+    pub(super) fn split<'a, V>(&self, mut values: &'a mut [V]) -> Vec<&'a mut [V]> {
+        let mut shares = Vec::with_capacity(self.parts.len());
+        for part in &self.parts {
+            let (share, rest) = values.split_at_mut(part.len());
+            shares.push(share);
+            values = rest;
+        }
+        shares
+    }
+}
+
+/// Rows from one end to the other, and the cliques as they are met. Rows without a clique come last.
+fn breadth_first(cliques: &Cliques, around: &CliquesOfRow, rows: usize) -> (Vec<u32>, Vec<u32>) {
+    let mut search = Search::new(cliques, around, rows);
+    // A first pass finds an end of each connected piece, the second starts there.
+    let mut ends = Vec::new();
+    for row in 0..rows {
+        if !search.seen[row] && !around.of(row).is_empty() {
+            search.run(row as u32);
+            ends.extend(search.order.last());
+        }
+    }
+    let mut search = Search::new(cliques, around, rows);
+    ends.into_iter().for_each(|end| search.run(end));
+    search.order.extend((0..rows as u32).filter(|&row| around.of(row as usize).is_empty()));
+    (search.order, search.clique_order)
+}
+
+struct Search<'a> {
+    cliques: &'a Cliques,
+    around: &'a CliquesOfRow,
+    seen: Vec<bool>,
+    met: Vec<bool>,
+    order: Vec<u32>,
+    clique_order: Vec<u32>,
+}
+
+impl<'a> Search<'a> {
+    fn new(cliques: &'a Cliques, around: &'a CliquesOfRow, rows: usize) -> Self {
+        Search {
+            cliques,
+            around,
+            seen: vec![false; rows],
+            met: vec![false; cliques.len()],
+            order: Vec::with_capacity(rows),
+            clique_order: Vec::with_capacity(cliques.len()),
+        }
+    }
+
+    /// Each clique is opened once: the first of its rows reaches all others.
+    fn run(&mut self, start: u32) {
+        let mut next = self.order.len();
+        self.seen[start as usize] = true;
+        self.order.push(start);
+        while next < self.order.len() {
+            for &clique in self.around.of(self.order[next] as usize) {
+                if std::mem::replace(&mut self.met[clique as usize], true) {
+                    continue;
+                }
+                self.clique_order.push(clique);
+                for &row in self.cliques.members(clique as usize) {
+                    if !std::mem::replace(&mut self.seen[row as usize], true) {
+                        self.order.push(row);
+                    }
+                }
+            }
+            next += 1;
+        }
+    }
+}
+
+/// The part of each free row, `count` for the separator; held rows get `u8::MAX`.
+fn parts_of_rows(cliques: &Cliques, free_order: &[u32], rows: usize, count: usize) -> Vec<u8> {
+    let mut part_of = vec![u8::MAX; rows];
+    for (at, &row) in free_order.iter().enumerate() {
+        part_of[row as usize] = (at * count / free_order.len()) as u8;
+    }
+    if count == 1 {
+        return part_of;
+    }
+    let cut = part_of.clone();
+    for clique in 0..cliques.len() {
+        let members = cliques.members(clique);
+        let first = members.iter().map(|&row| cut[row as usize]).min().unwrap_or_default();
+        for &row in members {
+            if cut[row as usize] != u8::MAX && cut[row as usize] > first {
+                part_of[row as usize] = count as u8;
+            }
+        }
+    }
+    part_of
+}
