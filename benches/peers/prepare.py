@@ -40,6 +40,7 @@ def main(size, material, folder, *flags):
         np.save(folder / f"{name}.npy", content)
     report = {
         "unknowns": 3 * (len(indptr) - 1),
+        "columns": right.shape[2],
         "assembly_s": float(np.median(seconds[1:])),
         "assembly_cpu_s": float(np.median(cpu[1:])),
         "peak_mb": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024,
