@@ -26,7 +26,7 @@ const fn setting(name: &'static str, default: &'static str, about: &'static str)
 }
 
 /// All settings of `facies serve`.
-pub const SETTINGS: [Setting; 15] = [
+pub const SETTINGS: [Setting; 16] = [
     setting(
         "bind",
         "127.0.0.1:8080",
@@ -67,6 +67,7 @@ pub const SETTINGS: [Setting; 15] = [
         "seconds a client may stay silent in the middle of a body; 0.1 to 600",
     ),
     setting("mesh-cache-mib", "1024", "memory for parsed meshes in MiB; 0 to 1048576"),
+    setting("response-cache-mib", "256", "memory for plan responses in MiB; 0 to 1048576"),
     setting(
         "free-space-floor-mib",
         "256",
@@ -95,6 +96,7 @@ pub struct Config {
     pub upload_bytes: usize,
     pub body_idle: Duration,
     pub mesh_cache_bytes: usize,
+    pub response_cache_bytes: usize,
     pub free_space_floor_bytes: u64,
     pub log: LogConfig,
 }
@@ -159,6 +161,7 @@ impl Config {
             upload_bytes: read.whole("upload-mib", 1..=4096)? * MIB,
             body_idle: read.seconds("body-idle-s", 0.1, 600.0)?,
             mesh_cache_bytes: read.whole("mesh-cache-mib", 0..=MIB)? * MIB,
+            response_cache_bytes: read.whole("response-cache-mib", 0..=MIB)? * MIB,
             free_space_floor_bytes: (read.whole("free-space-floor-mib", 0..=MIB)? * MIB) as u64,
             log: LogConfig { json: read.json_log()?, filter: (read.text)("log-level") },
         };

@@ -23,6 +23,7 @@ fn kind_of(code: &str) -> (StatusCode, &'static str) {
         "not-found" => (StatusCode::NOT_FOUND, "There is nothing here"),
         "no-such-job" => (StatusCode::NOT_FOUND, "There is no such job"),
         "no-such-output" => (StatusCode::NOT_FOUND, "The job has no such file"),
+        "response-not-built" => (StatusCode::NOT_FOUND, "The case has no response"),
         "result-not-ready" => (StatusCode::NOT_FOUND, "The job has not ended"),
         "method-not-allowed" => {
             (StatusCode::METHOD_NOT_ALLOWED, "The resource does not answer to this method")
@@ -30,6 +31,7 @@ fn kind_of(code: &str) -> (StatusCode, &'static str) {
         "not-acceptable" => (StatusCode::NOT_ACCEPTABLE, "The resource has no such representation"),
         "request-timeout" => (StatusCode::REQUEST_TIMEOUT, "The body came too slowly"),
         "conflict-in-use" => (StatusCode::CONFLICT, "Something refers to it"),
+        "response-stale" => (StatusCode::CONFLICT, "The response is older than its case"),
         "conflict" => (StatusCode::CONFLICT, "It changed meanwhile"),
         "precondition-failed" => (StatusCode::PRECONDITION_FAILED, "It has another version"),
         "precondition-required" => (

@@ -119,34 +119,44 @@ pub async fn accepts_json(request: Request, next: Next) -> Response {
 
 /// Whether the client takes a media type (RFC 9110, section 12.5.1).
 pub fn check_accept(headers: &HeaderMap, offered: &str) -> Result<(), ApiError> {
-    let mut ranges = headers
-        .get_all(header::ACCEPT)
-        .iter()
-        .filter_map(|value| value.to_str().ok())
-        .flat_map(|value| value.split(','))
-        .filter(|range| !range.trim().is_empty())
-        .peekable();
-    if ranges.peek().is_none() {
-        return Ok(());
-    }
-    let mut best = (0, false);
-    for range in ranges {
-        let mut parts = range.split(';').map(str::trim);
-        let name = parts.next().unwrap_or_default().to_ascii_lowercase();
-        let refused = parts.any(|parameter| {
-            let quality = parameter.strip_prefix("q=").unwrap_or("1");
-            quality.parse::<f32>().is_ok_and(|quality| quality <= 0.0)
-        });
-        let precision = precision_of(&name, offered);
-        if precision > best.0 {
-            best = (precision, !refused);
-        }
-    }
-    if best.1 {
+    if liking(headers, offered).1 > 0.0 {
         return Ok(());
     }
     let detail = format!("the answer is {offered}, which the header Accept does not allow");
     Err(ApiError::new("not-acceptable", detail))
+}
+
+/// Which of several media types a client likes best; of equals the one it names most precisely, then the first.
+pub fn preferred(headers: &HeaderMap, offered: &[&str]) -> Result<usize, ApiError> {
+    let mut best: Option<(usize, f32, u8)> = None;
+    for (number, offer) in offered.iter().enumerate() {
+        let (precision, quality) = liking(headers, offer);
+        let better = |(_, most, precisest)| (quality, precision) > (most, precisest);
+        if quality > 0.0 && best.is_none_or(better) {
+            best = Some((number, quality, precision));
+        }
+    }
+    let detail = || format!("the header Accept allows none of {}", offered.join(", "));
+    best.map(|(number, ..)| number).ok_or_else(|| ApiError::new("not-acceptable", detail()))
+}
+
+/// How precisely a client names a media type, and how well it likes it, from 0 to 1.
+fn liking(headers: &HeaderMap, offered: &str) -> (u8, f32) {
+    let values = headers.get_all(header::ACCEPT).iter().filter_map(|value| value.to_str().ok());
+    let mut ranges = values
+        .flat_map(|value| value.split(','))
+        .filter(|range| !range.trim().is_empty())
+        .peekable();
+    if ranges.peek().is_none() {
+        return (1, 1.0);
+    }
+    let likings = ranges.map(|range| {
+        let mut parts = range.split(';').map(str::trim);
+        let name = parts.next().unwrap_or_default().to_ascii_lowercase();
+        let quality = parts.find_map(|parameter| parameter.strip_prefix("q=")?.parse().ok());
+        (precision_of(&name, offered), quality.unwrap_or(1.0))
+    });
+    likings.fold((0, 0.0), |best, liking| if liking.0 > best.0 { liking } else { best })
 }
 
 /// How precisely a range names what is offered; 0 when it does not.
@@ -191,6 +201,23 @@ mod tests {
         assert!(!accepts("image/png", "application/json"));
         assert!(!accepts("*/*, application/json;q=0", "application/json"));
         assert!(!accepts("application/json; q=0.0", "application/json"));
+    }
+
+    #[test]
+    fn the_best_liked_of_several_kinds_is_chosen_and_the_first_of_equals() {
+        let offered = ["application/json", "application/octet-stream", "model/gltf-binary"];
+        let chosen = |accept: &str| {
+            let mut headers = HeaderMap::new();
+            headers.insert(header::ACCEPT, accept.parse().unwrap());
+            preferred(&headers, &offered).ok()
+        };
+        assert_eq!(preferred(&HeaderMap::new(), &offered).unwrap(), 0);
+        assert_eq!(chosen("*/*"), Some(0));
+        assert_eq!(chosen("application/octet-stream, */*"), Some(1));
+        assert_eq!(chosen("application/*;q=0.5, model/gltf-binary"), Some(2));
+        assert_eq!(chosen("*/*, application/json;q=0"), Some(1));
+        assert_eq!(chosen("application/octet-stream;q=0.4, model/gltf-binary;q=0.6"), Some(2));
+        assert_eq!(chosen("text/html"), None);
     }
 
     #[test]

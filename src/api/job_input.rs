@@ -7,22 +7,18 @@ use tokio::runtime::Handle;
 use super::Service;
 use super::error::{ApiError, ApiResult};
 use super::parameters::id;
-use crate::jobs::{CompareInput, JobError, JobInput, PredictInput};
+use crate::jobs::{CompareInput, JobError, JobInput, PredictInput, ResponseInput};
 use crate::schema::job::{JobKind, JobStatus};
 use crate::schema::prediction::EngineDocument;
 use crate::schema::{
     CaseDocument, CompareDocument, Faults, Limits, PlanDocument, Pointer, PredictDocument, Problem,
+    ResponseDocument,
 };
 use crate::store::{CaseRow, NewJob};
 
 /// A prediction: its case and plan as they are at this moment, checked together with the meshes.
 pub async fn of_prediction(service: &Service, spec: PredictDocument) -> ApiResult<NewJob> {
-    let case_id = spec.case.clone().unwrap_or_default();
-    let row = match id(&case_id) {
-        Some(id) => service.store.case(&id).await?,
-        None => None,
-    };
-    let row = row.ok_or_else(|| fault("/case", "unknown-case", "there is no such case"))?;
+    let row = require_case(service, spec.case.as_deref().unwrap_or_default()).await?;
     let input = predict_input(service, &row, spec).await?;
     let mesh_ids = mesh_ids(&input);
     if let Some(compare_to) = &input.spec.compare_to {
@@ -68,6 +64,27 @@ pub async fn of_comparison(service: &Service, spec: CompareDocument) -> ApiResul
     let tags = spec.tags.clone();
     let new = Accepted { kind: JobKind::Compare, case_id, spec_hash, tags, mesh_ids };
     new.with(&JobInput::Compare(CompareInput { job: None, queue_s: None, spec }))
+}
+
+/// A plan response: its case as it is at this moment, checked with its meshes.
+pub async fn of_response(service: &Service, mut spec: ResponseDocument) -> ApiResult<NewJob> {
+    let row = require_case(service, &spec.case).await?;
+    spec.case.clone_from(&row.id);
+    let case: CaseDocument = serde_json::from_str(&row.document).map_err(ApiError::internal)?;
+    let (mesh_ids, tags) = (case.mesh_ids(), spec.tags.clone());
+    let input = ResponseInput { job: None, queue_s: None, case, spec };
+    let sources = service.library.source(Handle::current(), BTreeMap::new());
+    let limits: Limits = (*service.limits).clone();
+    let (input, prepared) = service
+        .compute(move || {
+            let key = input.prepare(&sources, &limits).map(|prepared| prepared.key);
+            (input, key)
+        })
+        .await?;
+    let spec_hash = prepared.map_err(|error| refusal(error).map_problem(in_spec))?;
+    let case_id = Some(row.id);
+    let new = Accepted { kind: JobKind::Response, case_id, spec_hash, tags, mesh_ids };
+    new.with(&JobInput::Response(input))
 }
 
 /// What is known of a job when it is accepted, beside its document.
@@ -130,6 +147,15 @@ fn mesh_ids(input: &PredictInput) -> Vec<String> {
     }
     ids.extend(input.spec.compare_to.iter().map(|compare_to| compare_to.actual.mesh.clone()));
     ids
+}
+
+/// A case that has to be there.
+async fn require_case(service: &Service, case: &str) -> ApiResult<CaseRow> {
+    let row = match id(case) {
+        Some(id) => service.store.case(&id).await?,
+        None => None,
+    };
+    row.ok_or_else(|| fault("/case", "unknown-case", "there is no such case"))
 }
 
 /// The hash of a mesh that has to be there.

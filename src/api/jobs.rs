@@ -23,7 +23,7 @@ use crate::store::{Dismissal, Enqueued, JobFilter, JobRow};
 /// Jobs that may wait at the same time.
 const LONGEST_QUEUE: i64 = 10_000;
 /// Kinds that the description of the service names and that are not built.
-const LATER_KINDS: [&str; 4] = ["response", "optimise", "study", "batch"];
+const LATER_KINDS: [&str; 3] = ["optimise", "study", "batch"];
 
 pub fn router() -> OpenApiRouter<Service> {
     let router = OpenApiRouter::new().routes(routes!(create, list));
@@ -80,6 +80,7 @@ async fn create(State(service): State<Service>, request: Request) -> ApiResult {
     let accepted = match JobDocument::parse(&bytes, &service.limits)? {
         JobDocument::Predict(spec) => job_input::of_prediction(&service, spec).await?,
         JobDocument::Compare(spec) => job_input::of_comparison(&service, spec).await?,
+        JobDocument::Response(spec) => job_input::of_response(&service, spec).await?,
     };
     let (id, deduplicated) = match service.store.enqueue(&accepted, LONGEST_QUEUE).await? {
         Enqueued::Accepted => (accepted.id, false),
@@ -112,7 +113,8 @@ fn refuse_later_kinds(service: &Service, bytes: &[u8]) -> ApiResult<()> {
     let value = strict::parse_value(bytes, &service.limits)?;
     match value.get("kind").and_then(serde_json::Value::as_str) {
         Some(kind) if LATER_KINDS.contains(&kind) => {
-            let detail = format!("jobs of kind {kind} are not available; predict and compare are");
+            let detail =
+                format!("jobs of kind {kind} are not available; predict, compare and response are");
             Err(ApiError::new("kind-not-available", detail))
         }
         _ => Ok(()),

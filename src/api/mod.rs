@@ -16,6 +16,7 @@ mod paging;
 mod parameters;
 mod plans;
 mod prefer;
+mod responses;
 mod results;
 mod time;
 
@@ -33,6 +34,7 @@ use utoipa_axum::router::OpenApiRouter;
 
 use crate::config::Config;
 use crate::jobs::library::Library;
+use crate::jobs::responses::Responses;
 use crate::schema::Limits;
 use crate::store::Store;
 
@@ -48,6 +50,7 @@ pub struct Service {
     pub limits: Arc<Limits>,
     pub store: Store,
     pub library: Library,
+    pub responses: Responses,
     parsing: Arc<Semaphore>,
 }
 
@@ -55,6 +58,7 @@ impl Service {
     pub fn new(config: Config, store: Store, library: Library) -> Self {
         let limits = Limits { upload_bytes: config.upload_bytes as u64, ..Limits::default() };
         Service {
+            responses: Responses::new(store.clone(), config.response_cache_bytes),
             config: Arc::new(config),
             limits: Arc::new(limits),
             store,
@@ -84,6 +88,7 @@ fn resources() -> OpenApiRouter<Service> {
         .merge(plans::router())
         .merge(jobs::router())
         .merge(results::router())
+        .merge(responses::router())
 }
 
 /// Everything that is served.

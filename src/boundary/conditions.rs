@@ -51,6 +51,8 @@ pub struct HeldNodes {
 pub struct Conditions {
     pub classes: Vec<NodeClass>,
     pub holds: Vec<Hold>,
+    /// Nodes that more than one segment holds, ascending; the first of the segments has them.
+    pub shared: Vec<u32>,
     pub warnings: Vec<Warning>,
 }
 
@@ -90,7 +92,9 @@ pub fn combine(positions: &[Vector], held: &HeldNodes) -> Result<Conditions, Con
         .filter_map(|(node, conditions)| conditions.hold(node as u32))
         .collect();
     let classes = nodes.iter().map(NodeConditions::class).collect();
-    Ok(Conditions { classes, holds, warnings: overlaps(&nodes).into_iter().collect() })
+    let numbered = (0_u32..).zip(&nodes);
+    let shared = numbered.filter(|(_, node)| node.segments > 1).map(|(node, _)| node).collect();
+    Ok(Conditions { classes, holds, shared, warnings: overlaps(&nodes).into_iter().collect() })
 }
 
 /// Everything said about one node.
@@ -98,6 +102,8 @@ pub fn combine(positions: &[Vector], held: &HeldNodes) -> Result<Conditions, Con
 struct NodeConditions {
     prescribed: [Option<f64>; 3],
     joined: Option<(usize, Vector)>,
+    /// How many segments hold the node.
+    segments: u32,
     fixed: bool,
     across: Vec<Vector>,
 }
@@ -126,6 +132,7 @@ impl NodeConditions {
         segment: usize,
         displacement: Vector,
     ) -> Result<(), ConditionError> {
+        self.segments += 1;
         if let Some((first, other)) = self.joined {
             let distance = (other - displacement).norm();
             if distance > CONTRADICTION {

@@ -3,6 +3,7 @@
 use std::net::SocketAddr;
 use std::sync::Arc;
 
+use axum::serve::ListenerExt as _;
 use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
 use tokio::net::TcpListener;
 use tokio::runtime::Handle;
@@ -154,13 +155,18 @@ impl Server {
     ) -> Result<Workers, ServeError> {
         let deadline = self.service.config.grace;
         let (stopping, mut stopped) = tokio::sync::watch::channel(());
-        let served = axum::serve(self.listener, api::router(self.service)).with_graceful_shutdown(
-            async move {
+        // The last piece of an answer is not held back until the client has confirmed the ones before it.
+        let listener = self.listener.tap_io(|stream| {
+            if let Err(error) = stream.set_nodelay(true) {
+                tracing::debug!(%error, "TCP_NODELAY");
+            }
+        });
+        let served =
+            axum::serve(listener, api::router(self.service)).with_graceful_shutdown(async move {
                 stop.await;
                 tracing::info!("stopping");
                 drop(stopping);
-            },
-        );
+            });
         let served = tokio::spawn(served.into_future());
         // The sender goes when it is time to stop.
         let _ = stopped.changed().await;

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::comparison::fetch;
 use super::failure::JobError;
+use super::response::ResponseInput;
 use super::source::{MeshSource, SourceError, StoredMesh, StoredShape};
 use crate::mesh::Warning;
 use crate::mesh::quality::{QualityReport, quality};
@@ -26,6 +27,7 @@ use crate::schema::{
 pub enum JobInput {
     Predict(PredictInput),
     Compare(CompareInput),
+    Response(ResponseInput),
 }
 
 /// A prediction: the case and the plan in full beside the spec.
@@ -57,6 +59,8 @@ pub struct Prepared {
     pub quality: QualityReport,
     pub spec_hash: String,
     pub inputs: Vec<InputDocument>,
+    /// The SHA-256 of each mesh of the case by its id.
+    pub contents: BTreeMap<String, String>,
     /// The surface that the skin is to be compared with.
     pub actual: Option<StoredMesh>,
     /// Of the meshes and of the conversion; those of the scene are in the scene.
@@ -93,6 +97,7 @@ impl PredictInput {
             quality,
             spec_hash: self.spec_hash(&stored, actual.as_ref()),
             inputs: self.inputs(&stored, actual.as_ref()),
+            contents: stored.iter().map(|(id, mesh)| (id.clone(), mesh.sha256.clone())).collect(),
             actual,
             warnings,
         })

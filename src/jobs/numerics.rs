@@ -14,7 +14,7 @@ use crate::schema::Limits;
 use crate::schema::job::ErrorClass;
 use crate::store::Claim;
 
-/// Predictions and comparisons over stored meshes.
+/// Jobs over stored meshes.
 pub struct Numerics {
     pub source: LibrarySource,
     pub limits: Limits,
@@ -50,6 +50,7 @@ fn read_input(claim: &Claim) -> Result<JobInput, Failure> {
     match &mut input {
         JobInput::Predict(input) => (input.job, input.queue_s) = (job, queue_s),
         JobInput::Compare(input) => (input.job, input.queue_s) = (job, queue_s),
+        JobInput::Response(input) => (input.job, input.queue_s) = (job, queue_s),
     }
     Ok(input)
 }

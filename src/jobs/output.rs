@@ -22,12 +22,16 @@ impl<'a> ResultFolder<'a> {
     }
 
     pub fn add(&mut self, name: OutputName, bytes: &[u8]) -> Result<(), JobError> {
-        let file = name.file_name();
+        self.add_file(name.file_name(), name.media_type(), bytes)
+    }
+
+    /// A file that no client asks for by name in a spec.
+    pub fn add_file(&mut self, file: &str, media_type: &str, bytes: &[u8]) -> Result<(), JobError> {
         std::fs::write(self.folder.join(file), bytes)
             .map_err(|source| JobError::Write { file: file.to_owned(), source })?;
         self.files.push(FileDocument {
             name: file.to_owned(),
-            media_type: name.media_type().to_owned(),
+            media_type: media_type.to_owned(),
             bytes: bytes.len() as u64,
             sha256: canonical::sha256_hex(bytes),
         });

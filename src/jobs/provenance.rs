@@ -6,7 +6,7 @@ use super::failure::JobError;
 use super::observed::{Observed, now_rfc3339, peak_rss_mb};
 use crate::mesh::quality::QualityReport;
 use crate::mesh::{Frame, VolumeMesh};
-use crate::prediction::Prediction;
+use crate::prediction::SolverReport;
 use crate::schema::case::LengthUnit;
 use crate::schema::methods::MethodName;
 use crate::schema::prediction::{
@@ -79,9 +79,8 @@ pub fn add_method(
     });
 }
 
-/// How the solver of a prediction reports itself.
-pub fn solver_document(prediction: &Prediction) -> SolverDocument {
-    let solver = &prediction.solver;
+/// How a solver reports itself.
+pub fn solver_document(solver: &SolverReport) -> SolverDocument {
     SolverDocument {
         name: solver.name.to_owned(),
         preconditioner: solver.preconditioner.to_owned(),

@@ -12,6 +12,7 @@ use super::output::ResultFolder;
 use super::overlap::overlaps;
 use super::pictures::displacement_picture;
 use super::provenance::{Origin, add_method, encode_result, solver_document};
+use super::response::response_job;
 use super::skin_files::PredictedSkin;
 use super::source::MeshSource;
 use super::tissue_files::{encode_bones, encode_volume};
@@ -50,6 +51,7 @@ pub fn work(
     match input {
         JobInput::Predict(input) => predict_job(input, place, progress),
         JobInput::Compare(input) => compare_job(input, place, progress),
+        JobInput::Response(input) => response_job(input, place, progress),
     }
 }
 
@@ -139,7 +141,7 @@ struct Finished<'a> {
 
 impl Finished<'_> {
     fn write_files(&self, names: &[OutputName], folder: &mut ResultFolder) -> Result<(), JobError> {
-        let field_data = self.origin.field_data(&solver_document(self.prediction));
+        let field_data = self.origin.field_data(&solver_document(&self.prediction.solver));
         let scene = &self.prepared.scene;
         let frame = self.origin.frame;
         for &name in names {
@@ -168,7 +170,7 @@ impl Finished<'_> {
         files: Vec<FileDocument>,
     ) -> ResultDocument {
         let mut provenance = self.origin.provenance(clock);
-        let solver = solver_document(self.prediction);
+        let solver = solver_document(&self.prediction.solver);
         let mesh = (&*self.prepared.scene.mesh, &self.prepared.quality);
         add_method(&mut provenance, input.spec.method, mesh, solver);
         ResultDocument {

@@ -54,7 +54,7 @@ impl Numbering {
         let mut cliques = Cliques::default();
         mesh.cells.iter().for_each(|(_, nodes)| cliques.push(nodes.iter().copied()));
         let around = CliquesOfRow::new(&cliques, rows);
-        let layout = Layout::new(&cliques, &around, held, 3);
+        let layout = Layout::new(&cliques, &around, held, 3, far_end(&mesh.nodes));
         let cliques = cliques.renumbered(&layout.clique_order, &layout.place);
         let around = CliquesOfRow::new(&cliques, rows);
         let pattern = Arc::new(Pattern::new(&cliques, &around, rows));
@@ -65,6 +65,16 @@ impl Numbering {
     pub fn row(&self, node: u32) -> usize {
         self.layout.place[node as usize] as usize
     }
+}
+
+/// The node at one end of the longest extent.
+fn far_end(nodes: &[Vector]) -> usize {
+    let infinite = Vector::repeat(f64::INFINITY);
+    let (low, high) =
+        nodes.iter().fold((infinite, -infinite), |(low, high), x| (low.inf(x), high.sup(x)));
+    let axis = (high - low).imax();
+    let ends = (0..nodes.len()).min_by(|&a, &b| nodes[a][axis].total_cmp(&nodes[b][axis]));
+    ends.unwrap_or_default()
 }
 
 /// What rows need of a tetrahedron: gradients of the shape functions, and lambda V and mu V.

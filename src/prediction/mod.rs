@@ -109,10 +109,10 @@ pub fn predict(scene: &Scene, progress: &dyn Progress) -> Result<Prediction, Pre
     })
 }
 
-/// Passes the solver's words on to the progress of the prediction.
-struct Followed<'a> {
-    progress: &'a dyn Progress,
-    wanted: f64,
+/// Passes the solver's words on to the progress of the work.
+pub(crate) struct Followed<'a> {
+    pub(crate) progress: &'a dyn Progress,
+    pub(crate) wanted: f64,
 }
 
 impl Observer for Followed<'_> {
@@ -148,7 +148,7 @@ fn reactions(scene: &Scene, equilibrium: &Equilibrium) -> BTreeMap<String, Vecto
     sums
 }
 
-fn report(scene: &Scene, equilibrium: &Equilibrium) -> SolverReport {
+pub(crate) fn report(scene: &Scene, equilibrium: &Equilibrium) -> SolverReport {
     SolverReport {
         name: equilibrium.solution.method,
         preconditioner: equilibrium.solution.preconditioner,

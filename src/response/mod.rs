@@ -5,6 +5,13 @@
 //! the twelve numbers of each segment: exact for every finite movement (Cotin, Delingette, Ayache
 //! 1999, "pre-calculus"; VERIFICATION V.43).
 
+pub mod build;
+pub mod linearity;
+mod superposition;
+
+pub use build::{Columns, ResponseError, build, chosen};
+pub use linearity::{Linearity, Nonlinearity};
+
 use crate::mesh::Vector;
 use crate::plan::RigidMovement;
 
@@ -43,19 +50,6 @@ pub fn coefficients(movement: &RigidMovement, centre: &Vector) -> [f64; COLUMNS_
 impl Response {
     /// The displacement of each skin node in mm, for one movement of each segment.
     pub fn apply(&self, movements: &[RigidMovement]) -> Vec<Vector> {
-        let mut displacement = vec![Vector::zeros(); self.nodes.len()];
-        let coefficients = self
-            .segments
-            .iter()
-            .zip(movements)
-            .flat_map(|(segment, movement)| coefficients(movement, &segment.centre));
-        for (coefficient, column) in
-            coefficients.zip(self.columns.chunks_exact(3 * self.nodes.len()))
-        {
-            for (sum, value) in displacement.iter_mut().zip(column.chunks_exact(3)) {
-                *sum += Vector::from_fn(|k, _| coefficient * f64::from(value[k]));
-            }
-        }
-        displacement
+        superposition::apply(&self.segments, movements, &self.columns, self.nodes.len())
     }
 }

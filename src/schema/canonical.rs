@@ -7,6 +7,7 @@ use sha2::{Digest, Sha256};
 use super::case::CaseDocument;
 use super::compare::CompareDocument;
 use super::plan::PlanDocument;
+use super::response::ResponseDocument;
 use super::spec::PredictDocument;
 
 /// A document as a value whose keys are sorted.
@@ -67,6 +68,28 @@ pub fn compare_hash(spec: &CompareDocument, content_of: &dyn Fn(&str) -> Option<
     }
     replace(&mut spec.actual.mesh, content_of);
     hash(&json!({ "engine": env!("CARGO_PKG_VERSION"), "spec": to_value(&spec) }))
+}
+
+/// The key of a response: the case but for its name, tags, landmarks and skin regions, contents of meshes in
+/// place of their ids. The case's own id is part of it, so that a response goes when its case is erased.
+pub fn response_key(
+    case: &CaseDocument,
+    spec: &ResponseDocument,
+    content_of: &dyn Fn(&str) -> Option<String>,
+) -> String {
+    let mut case = case.clone();
+    case.name = None;
+    case.tags.clear();
+    case.landmarks.clear();
+    case.skin_regions.clear();
+    for (_, id) in case.mesh_references_mut() {
+        replace(id, content_of);
+    }
+    hash(&json!({
+        "engine": env!("CARGO_PKG_VERSION"),
+        "case": to_value(&case),
+        "spec": spec.content(),
+    }))
 }
 
 fn replace(id: &mut String, content_of: &dyn Fn(&str) -> Option<String>) {

@@ -19,6 +19,8 @@ const CATALOGUE: &[&str] = &[
     "frame-conflict",
     "method-not-available",
     "missing-material",
+    "not-in-response",
+    "not-linear",
     "plan-conflict",
     "plan-not-rigid",
     "plan-out-of-range",

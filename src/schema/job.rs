@@ -49,6 +49,7 @@ impl JobStatus {
 pub enum JobKind {
     Predict,
     Compare,
+    Response,
 }
 
 impl JobKind {
@@ -56,12 +57,14 @@ impl JobKind {
         match self {
             JobKind::Predict => "predict",
             JobKind::Compare => "compare",
+            JobKind::Response => "response",
         }
     }
 
     /// The kind a stored word names.
     pub fn from_name(name: &str) -> Option<JobKind> {
-        [JobKind::Predict, JobKind::Compare].into_iter().find(|kind| kind.name() == name)
+        use JobKind::{Compare, Predict, Response};
+        [Predict, Compare, Response].into_iter().find(|kind| kind.name() == name)
     }
 }
 

@@ -5,6 +5,8 @@ use utoipa::ToSchema;
 
 use super::fault::{Faults, Pointer};
 use crate::prediction::ElementChoice;
+use crate::response::COLUMNS_PER_SEGMENT;
+use crate::response::linearity::LINEAR_RANGE_MM;
 
 /// Why `auto` is what it is.
 pub const WHY_LINEAR: &str = "auto: fem_linear is the only model built so far";
@@ -90,6 +92,19 @@ pub struct MethodList {
     pub methods: Vec<MethodDocument>,
     /// What `auto` chooses, and why.
     pub auto: String,
+    pub response: ResponseMethod,
+}
+
+/// What jobs of kind `response` build.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct ResponseMethod {
+    /// The linear ones.
+    pub methods: Vec<MethodName>,
+    pub columns_per_segment: u32,
+    /// How `nonlinearity_estimate_mm` of an applied plan comes about.
+    pub nonlinearity_estimate: String,
+    /// The estimate above which an answer is outside the linear range.
+    pub linear_range_mm: f64,
 }
 
 /// A way of modelling that a spec may ask for.
@@ -132,5 +147,14 @@ pub fn available_methods() -> MethodList {
             ]),
         }],
         auto: WHY_LINEAR.to_owned(),
+        response: ResponseMethod {
+            methods: vec![MethodName::FemLinear],
+            columns_per_segment: COLUMNS_PER_SEGMENT as u32,
+            nonlinearity_estimate: "0.15 d^2 / h + 2.7 h (1 - cos theta): d the largest movement in mm of a \
+                segment against another or against what stays, h the median distance in mm from the skin to \
+                the nearest held node, theta the largest rotation; an order of magnitude"
+                .to_owned(),
+            linear_range_mm: LINEAR_RANGE_MM,
+        },
     }
 }

@@ -13,6 +13,7 @@ use super::material::MaterialDocuments;
 use super::methods::{self, ElementName, MethodName};
 use super::plan::PlanDocument;
 use super::problem::Problem;
+use super::response::ResponseDocument;
 use super::strict;
 use crate::prediction::{ElementChoice, Settings};
 
@@ -22,6 +23,7 @@ use crate::prediction::{ElementChoice, Settings};
 pub enum JobDocument {
     Predict(PredictDocument),
     Compare(CompareDocument),
+    Response(ResponseDocument),
 }
 
 /// `predict`.
@@ -204,13 +206,16 @@ impl JobDocument {
                 faults.into_result().map(|()| JobDocument::Predict(document))
             }
             Some(Some("compare")) => strict::from_value(value).map(JobDocument::Compare),
+            Some(Some("response")) => strict::from_value(value).map(JobDocument::Response),
             Some(Some(other)) => {
-                let detail = format!("`{other}` is not a kind of job; `predict` and `compare` are");
+                let detail = format!(
+                    "`{other}` is not a kind of job; `predict`, `compare` and `response` are"
+                );
                 Err(Problem::at(&at, "unknown-word", detail))
             }
             Some(None) => Err(Problem::at(&at, "wrong-type", "the kind of a job is a word")),
             None => {
-                let detail = "missing field `kind`: `predict` or `compare`";
+                let detail = "missing field `kind`: `predict`, `compare` or `response`";
                 Err(Problem::at(&at, "missing-field", detail))
             }
         }

@@ -32,11 +32,17 @@ pub struct Layout {
 }
 
 impl Layout {
-    /// Orders the rows that the cliques couple, each of that many unknowns. `held` tells the rows without
-    /// any free one.
-    pub fn new(cliques: &Cliques, around: &CliquesOfRow, held: &[bool], unknowns: usize) -> Self {
+    /// Orders the rows that the cliques couple, each of that many unknowns, from the row `start` on.
+    /// `held` tells the rows without any free unknown.
+    pub fn new(
+        cliques: &Cliques,
+        around: &CliquesOfRow,
+        held: &[bool],
+        unknowns: usize,
+        start: usize,
+    ) -> Self {
         let rows = held.len();
-        let (order, clique_order) = breadth_first(cliques, around, rows);
+        let (order, clique_order) = breadth_first(cliques, around, rows, start);
         let free_order: Vec<u32> = order.iter().copied().filter(|&r| !held[r as usize]).collect();
         let free = free_order.len();
         let count = match free * unknowns {
@@ -82,64 +88,42 @@ impl Layout {
     }
 }
 
-/// Rows from one end to the other, and the cliques as they are met. Rows without a clique come last.
-fn breadth_first(cliques: &Cliques, around: &CliquesOfRow, rows: usize) -> (Vec<u32>, Vec<u32>) {
-    let mut search = Search::new(cliques, around, rows);
-    // A first pass finds an end of each connected piece, the second starts there.
-    let mut ends = Vec::new();
-    for row in 0..rows {
-        if !search.seen[row] && !around.of(row).is_empty() {
-            search.run(row as u32);
-            ends.extend(search.order.last());
+/// Rows from `start` on, and the cliques as they are met. Rows without a clique come last.
+fn breadth_first(
+    cliques: &Cliques,
+    around: &CliquesOfRow,
+    rows: usize,
+    start: usize,
+) -> (Vec<u32>, Vec<u32>) {
+    let mut seen = vec![false; rows];
+    let mut is_met = vec![false; cliques.len()];
+    let mut order: Vec<u32> = Vec::with_capacity(rows);
+    let mut clique_order = Vec::with_capacity(cliques.len());
+    let has_clique = |row: &usize| !around.of(*row).is_empty();
+    for first in [start].into_iter().chain(0..rows).filter(has_clique) {
+        if std::mem::replace(&mut seen[first], true) {
+            continue;
         }
-    }
-    let mut search = Search::new(cliques, around, rows);
-    ends.into_iter().for_each(|end| search.run(end));
-    search.order.extend((0..rows as u32).filter(|&row| around.of(row as usize).is_empty()));
-    (search.order, search.clique_order)
-}
-
-struct Search<'a> {
-    cliques: &'a Cliques,
-    around: &'a CliquesOfRow,
-    seen: Vec<bool>,
-    met: Vec<bool>,
-    order: Vec<u32>,
-    clique_order: Vec<u32>,
-}
-
-impl<'a> Search<'a> {
-    fn new(cliques: &'a Cliques, around: &'a CliquesOfRow, rows: usize) -> Self {
-        Search {
-            cliques,
-            around,
-            seen: vec![false; rows],
-            met: vec![false; cliques.len()],
-            order: Vec::with_capacity(rows),
-            clique_order: Vec::with_capacity(cliques.len()),
-        }
-    }
-
-    /// Each clique is opened once: the first of its rows reaches all others.
-    fn run(&mut self, start: u32) {
-        let mut next = self.order.len();
-        self.seen[start as usize] = true;
-        self.order.push(start);
-        while next < self.order.len() {
-            for &clique in self.around.of(self.order[next] as usize) {
-                if std::mem::replace(&mut self.met[clique as usize], true) {
+        let mut next = order.len();
+        order.push(first as u32);
+        while next < order.len() {
+            for &clique in around.of(order[next] as usize) {
+                // Each clique is opened once: the first of its rows reaches all others.
+                if std::mem::replace(&mut is_met[clique as usize], true) {
                     continue;
                 }
-                self.clique_order.push(clique);
-                for &row in self.cliques.members(clique as usize) {
-                    if !std::mem::replace(&mut self.seen[row as usize], true) {
-                        self.order.push(row);
+                clique_order.push(clique);
+                for &row in cliques.members(clique as usize) {
+                    if !std::mem::replace(&mut seen[row as usize], true) {
+                        order.push(row);
                     }
                 }
             }
             next += 1;
         }
     }
+    order.extend((0..rows as u32).filter(|&row| !seen[row as usize]));
+    (order, clique_order)
 }
 
 /// The part of each free row, `count` for the separator; held rows get `u8::MAX`.

@@ -1,5 +1,6 @@
 //! Factorisation and iterations against each other, and how they fail.
 
+use facies::material::LinearElastic;
 use facies::mesh::sample::{ThickSphere, block, thick_sphere_octant};
 use facies::mesh::{CellShape, Vector, VolumeMesh};
 use facies::model::assembly::{Numbering, Tissue};
@@ -12,16 +13,20 @@ use crate::scenes::material;
 
 const EXACT: Tolerance = Tolerance { relative_residual: 1e-12, memory_mb: 1000.0 };
 
-/// A mesh held at one of its node sets, and no load.
+/// A mesh of one material held at one of its node sets.
 fn held_mesh(mesh: &VolumeMesh, set: &str, poisson_ratio: f64) -> System {
-    let materials = [material(15.0, poisson_ratio)];
     let material_of_cell = vec![0; mesh.cells.len()];
-    let tissue = Tissue {
-        mesh,
-        materials: &materials,
-        material_of_cell: &material_of_cell,
-        dilatation: |_| Dilatation::Mean,
-    };
+    system_of(mesh, set, &[material(15.0, poisson_ratio)], &material_of_cell)
+}
+
+/// The matrix of a mesh held at one of its node sets.
+pub fn system_of(
+    mesh: &VolumeMesh,
+    set: &str,
+    materials: &[LinearElastic],
+    material_of_cell: &[u16],
+) -> System {
+    let tissue = Tissue { mesh, materials, material_of_cell, dilatation: |_| Dilatation::Mean };
     let mut held = vec![false; mesh.nodes.len()];
     mesh.node_set(set).unwrap().iter().for_each(|&node| held[node as usize] = true);
     let numbering = Numbering::new(mesh, &held);
@@ -44,21 +49,21 @@ fn sphere(cells_along: usize, cells_radial: usize) -> System {
 }
 
 /// A force on every free unknown; each seed gives another.
-fn forces(system: &System, seed: usize) -> Unknowns {
+pub fn forces(system: &System, seed: usize) -> Unknowns {
     let force = |i: usize| ((i * (7919 + 2 * seed)) % 101) as f64 - 50.0;
     (0..system.layout.free).map(|row| std::array::from_fn(|c| force(3 * row + c))).collect()
 }
 
-fn go_on(_: usize, _: f64) -> bool {
+pub fn go_on(_: usize, _: f64) -> bool {
     true
 }
 
-fn largest_difference(a: &Unknowns, b: &Unknowns) -> f64 {
+pub fn largest_difference(a: &Unknowns, b: &Unknowns) -> f64 {
     let pairs = a.as_flattened().iter().zip(b.as_flattened());
     pairs.fold(0.0, |largest, (a, b)| largest.max((a - b).abs()))
 }
 
-fn largest(a: &Unknowns) -> f64 {
+pub fn largest(a: &Unknowns) -> f64 {
     a.as_flattened().iter().fold(0.0, |largest, a| largest.max(a.abs()))
 }
 

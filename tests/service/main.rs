@@ -16,6 +16,7 @@ mod meshes;
 mod openapi;
 mod plans;
 mod queue;
+mod response;
 mod settings;
 #[path = "../shared/mod.rs"]
 #[allow(dead_code, reason = "other tests use the rest")]

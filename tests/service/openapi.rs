@@ -57,4 +57,9 @@ async fn limits_and_methods_are_told() {
     assert_eq!((&limits["upload_bytes"], &limits["wait_s"]), (&(256 << 20).into(), &30.into()));
     let methods = ask(server.get("/v1/methods")).await.expect(StatusCode::OK);
     assert_eq!(methods["methods"][0]["name"], "fem_linear");
+    let response = &methods["response"];
+    assert_eq!(
+        (&response["columns_per_segment"], &response["linear_range_mm"]),
+        (&12.into(), &0.5.into())
+    );
 }

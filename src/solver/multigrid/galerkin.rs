@@ -1,6 +1,6 @@
 //! The coarse matrix P^T A P.
 //!
-//! With T_i = [ I | R(x_i - o) ] about one origin o for all rows, P_iI = w_iI T_i S_I, where S_I moves the
+//! With T_i = [ I | R(x_i - o) ] about one origin o for all rows, R(d) w = w x d, P_iI = w_iI T_i S_I, where S_I moves the
 //! point of reference from o to the centre of the aggregate. So the sum over rows needs no arms:
 //! (P^T A P)_IJ = S_I^T ( sum_ij w_iI w_jJ T_i^T A_ij T_j ) S_J. A is read as L + D/2 and the result
 //! added to its transpose.
@@ -15,6 +15,10 @@ use super::prolongator::{Weight, Weights};
 use crate::solver::cliques::{Cliques, CliquesOfRow};
 use crate::solver::half_matrix::{HalfMatrix, Pattern};
 use crate::solver::layout::Layout;
+use crate::solver::vectorised::vectorised;
+
+/// Aggregates that most aggregates meet below themselves.
+const ROOM: usize = 16;
 
 /// B rows of six movements.
 pub(super) type Wide<const B: usize> = [[f64; 6]; B];
@@ -27,7 +31,11 @@ struct Accumulator {
 
 impl Accumulator {
     fn new(aggregates: usize) -> Self {
-        Accumulator { partners: vec![Vec::new(); aggregates], blocks: vec![Vec::new(); aggregates] }
+        let with_room = |_| Vec::with_capacity(ROOM);
+        Accumulator {
+            partners: (0..aggregates).map(|_| Vec::with_capacity(ROOM)).collect(),
+            blocks: (0..aggregates).map(with_room).collect(),
+        }
     }
 
     fn block(&mut self, aggregate: u32, partner: u32) -> &mut [[f64; 6]; 6] {
@@ -59,31 +67,39 @@ pub(super) struct Coarse {
     pub layout: Layout,
 }
 
-/// `basis` gives T_i about `origin`, in the axes of the row, with zeros where it is held.
-pub(super) fn galerkin<const B: usize>(
-    matrix: &HalfMatrix<f64, B>,
-    layout: &Layout,
-    weights: &Weights,
-    basis: &(impl Fn(usize) -> Wide<B> + Sync),
-    origin: &Vector3<f64>,
-) -> Coarse {
+/// A level to be made coarser. Positions are those of its rows; `turned` writes a block, given its row and
+/// column, along the axes of the coordinates, with zeros where it is held.
+pub(super) struct Fine<'a, const B: usize, F> {
+    pub matrix: &'a HalfMatrix<f64, B>,
+    pub layout: &'a Layout,
+    pub positions: &'a [Vector3<f64>],
+    pub origin: Vector3<f64>,
+    pub turned: F,
+}
+
+/// P^T A P for the prolongator with these weights.
+pub(super) fn galerkin<const B: usize, F>(fine: &Fine<B, F>, weights: &Weights) -> Coarse
+where
+    F: Fn(usize, usize, &[[f64; B]; B]) -> [[f64; B]; B] + Sync,
+{
+    let layout = fine.layout;
     let mut ranges = layout.parts.clone();
     ranges.push(layout.separator());
     let sums: Vec<Accumulator> =
-        ranges.into_par_iter().map(|rows| accumulate(matrix, rows, weights, basis)).collect();
+        ranges.into_par_iter().map(|rows| accumulate(fine, rows, weights)).collect();
     let mut pairs = Cliques::default();
     for (aggregate, partner, _) in sums.iter().flat_map(Accumulator::entries) {
         pairs.push([aggregate as u32, partner]);
     }
     let aggregates = weights.aggregates;
     let around = CliquesOfRow::new(&pairs, aggregates);
-    let layout = Layout::new(&pairs, &around, &vec![false; aggregates], 6);
+    let layout = Layout::new(&pairs, &around, &vec![false; aggregates], 6, 0);
     let renumbered = pairs.renumbered(&layout.clique_order, &layout.place);
     let around = CliquesOfRow::new(&renumbered, aggregates);
     let pattern = Arc::new(Pattern::new(&renumbered, &around, aggregates));
     let mut coarse = HalfMatrix::zeros(pattern);
     let shift: Vec<Matrix6<f64>> =
-        weights.centres.iter().map(|centre| shift(&(origin - centre))).collect();
+        weights.centres.iter().map(|centre| shift(&(fine.origin - centre))).collect();
     for (aggregate, partner, block) in sums.iter().flat_map(Accumulator::entries) {
         let block = Matrix6::from_fn(|i, j| block[i][j]);
         let moved = shift[aggregate].transpose() * block * shift[partner as usize];
@@ -112,49 +128,59 @@ fn shift(arm: &Vector3<f64>) -> Matrix6<f64> {
 }
 
 /// The share of a range of rows.
-fn accumulate<const B: usize>(
-    matrix: &HalfMatrix<f64, B>,
+fn accumulate<const B: usize, F>(
+    fine: &Fine<B, F>,
     rows: Range<usize>,
     weights: &Weights,
-    basis: &impl Fn(usize) -> Wide<B>,
-) -> Accumulator {
+) -> Accumulator
+where
+    F: Fn(usize, usize, &[[f64; B]; B]) -> [[f64; B]; B],
+{
     let mut sums = Accumulator::new(weights.aggregates);
     let mut products: Vec<(u32, Wide<B>)> = Vec::new();
-    for row in rows {
-        products.clear();
-        let own = basis(row);
-        let half = matrix.diagonal[row].map(|values| values.map(|value| 0.5 * value));
-        add_product(&mut products, &half, &own, weights.of(row));
-        for (column, block) in matrix.lower_row(row) {
-            add_product(&mut products, block, &basis(column), weights.of(column));
-        }
-        for (partner, product) in &products {
-            let block = transposed_product(&own, product);
-            for &Weight { partner: aggregate, weight } in weights.of(row) {
-                let sum = sums.block(aggregate, *partner);
-                for (sum, values) in sum.iter_mut().zip(&block) {
-                    for (sum, value) in sum.iter_mut().zip(values) {
-                        *sum += f64::from(weight) * value;
+    vectorised(
+        #[inline(always)]
+        || {
+            for row in rows.clone() {
+                products.clear();
+                let arm = fine.positions[row] - fine.origin;
+                let own = (fine.turned)(row, row, &fine.matrix.diagonal[row]);
+                let half = own.map(|values| values.map(|value| 0.5 * value));
+                add_product(&mut products, &half, &arm, weights.of(row));
+                for (column, block) in fine.matrix.lower_row(row) {
+                    let block = (fine.turned)(row, column, block);
+                    let arm = fine.positions[column] - fine.origin;
+                    add_product(&mut products, &block, &arm, weights.of(column));
+                }
+                for (partner, product) in &products {
+                    let block = transposed_product(&arm, product);
+                    for &Weight { partner: aggregate, weight } in weights.of(row) {
+                        add_scaled(sums.block(aggregate, *partner), f64::from(weight), &block);
                     }
                 }
             }
-        }
-    }
+        },
+    );
     sums
 }
 
-/// Adds w_jJ A_ij T_j for all J.
+/// Adds w_jJ A_ij T_j for all J, with A T = [ A_u | A_u R + A_w ] for the columns of A that act on
+/// displacement and, on coarse levels, on rotation.
+#[inline(always)]
 fn add_product<const B: usize>(
     products: &mut Vec<(u32, Wide<B>)>,
     block: &[[f64; B]; B],
-    basis: &Wide<B>,
+    arm: &Vector3<f64>,
     weights: &[Weight],
 ) {
     let mut product = [[0.0; 6]; B];
-    for r in 0..B {
-        for c in 0..B {
-            for k in 0..6 {
-                product[r][k] += block[r][c] * basis[c][k];
+    for (product, values) in product.iter_mut().zip(block) {
+        for c in 0..3 {
+            let (a, b) = ((c + 1) % 3, (c + 2) % 3);
+            product[c] = values[c];
+            product[3 + c] = arm[a] * values[b] - arm[b] * values[a];
+            if B == 6 {
+                product[3 + c] += values[3 + c];
             }
         }
     }
@@ -163,21 +189,30 @@ fn add_product<const B: usize>(
             products.push((partner, [[0.0; 6]; B]));
             products.len() - 1
         });
-        for (sum, values) in products[at].1.iter_mut().zip(&product) {
-            for (sum, value) in sum.iter_mut().zip(values) {
-                *sum += f64::from(weight) * value;
-            }
+        add_scaled(&mut products[at].1, f64::from(weight), &product);
+    }
+}
+
+#[inline(always)]
+fn add_scaled<const B: usize>(sum: &mut Wide<B>, factor: f64, values: &Wide<B>) {
+    for (sum, values) in sum.iter_mut().zip(values) {
+        for k in 0..6 {
+            sum[k] += factor * values[k];
         }
     }
 }
 
 /// T^T product.
-fn transposed_product<const B: usize>(basis: &Wide<B>, product: &Wide<B>) -> [[f64; 6]; 6] {
+#[inline(always)]
+fn transposed_product<const B: usize>(arm: &Vector3<f64>, product: &Wide<B>) -> [[f64; 6]; 6] {
     let mut block = [[0.0; 6]; 6];
-    for (basis, product) in basis.iter().zip(product) {
-        for i in 0..6 {
-            for k in 0..6 {
-                block[i][k] += basis[i] * product[k];
+    for c in 0..3 {
+        let (a, b) = ((c + 1) % 3, (c + 2) % 3);
+        block[c] = product[c];
+        for k in 0..6 {
+            block[3 + c][k] = arm[a] * product[b][k] - arm[b] * product[a][k];
+            if B == 6 {
+                block[3 + c][k] += product[3 + c][k];
             }
         }
     }

@@ -10,25 +10,34 @@ const SINGULAR: f64 = 1e-6;
 
 /// The inverse of a diagonal block.
 pub(super) fn inverse_block<const B: usize>(block: &[[f64; B]; B]) -> [[f32; B]; B] {
-    let mut values: Vec<f64> = block.as_flattened().to_vec();
-    invert(&mut values, B);
-    std::array::from_fn(|i| std::array::from_fn(|j| values[B * i + j] as f32))
+    let mut values = *block;
+    let mut scratch = ([0.0; B], [false; B], [0.0; B]);
+    let (scale, done, pivot_row) = (&mut scratch.0, &mut scratch.1, &mut scratch.2);
+    invert(values.as_flattened_mut(), B, Scratch { scale, done, pivot_row });
+    values.map(|values| values.map(|value| value as f32))
+}
+
+/// As long as the matrix is wide.
+struct Scratch<'a> {
+    scale: &'a mut [f64],
+    done: &'a mut [bool],
+    pivot_row: &'a mut [f64],
 }
 
 /// Replaces a row-major matrix by its inverse. Gauss-Jordan elimination on the diagonal, largest pivot
 /// first, after scaling: rotations and translations differ in unit.
-fn invert(a: &mut [f64], size: usize) {
-    let scale: Vec<f64> = (0..size)
-        .map(|i| a[i * size + i])
-        .map(|value| if value > 0.0 { value.sqrt().recip() } else { 0.0 })
-        .collect();
+fn invert(a: &mut [f64], size: usize, scratch: Scratch) {
+    let Scratch { scale, done, pivot_row } = scratch;
+    for (i, scale) in scale.iter_mut().enumerate() {
+        let value = a[i * size + i];
+        *scale = if value > 0.0 { value.sqrt().recip() } else { 0.0 };
+    }
     for i in 0..size {
         for j in 0..size {
             a[i * size + j] *= scale[i] * scale[j];
         }
     }
-    let mut done = vec![false; size];
-    let mut pivot_row = vec![0.0; size];
+    done.fill(false);
     for _ in 0..size {
         let open = (0..size).filter(|&i| !done[i]);
         let largest = open.max_by(|&i, &j| a[i * size + i].total_cmp(&a[j * size + j]));
@@ -36,7 +45,7 @@ fn invert(a: &mut [f64], size: usize) {
             break;
         };
         done[pivot] = true;
-        sweep(a, size, pivot, &mut pivot_row);
+        sweep(a, size, pivot, pivot_row);
     }
     for i in 0..size {
         for j in 0..size {
@@ -74,7 +83,10 @@ pub(super) struct DenseInverse {
 impl DenseInverse {
     /// Of a row-major matrix.
     pub fn of(mut dense: Vec<f64>, size: usize) -> Self {
-        invert(&mut dense, size);
+        let (mut scale, mut done, mut pivot_row) =
+            (vec![0.0; size], vec![false; size], vec![0.0; size]);
+        let scratch = Scratch { scale: &mut scale, done: &mut done, pivot_row: &mut pivot_row };
+        invert(&mut dense, size, scratch);
         DenseInverse { values: dense.iter().map(|value| *value as f32).collect(), size }
     }
 

@@ -20,7 +20,7 @@ use std::sync::Arc;
 
 use nalgebra::{Matrix3, Vector3};
 
-use galerkin::{Coarse, Wide, galerkin};
+use galerkin::{Coarse, Fine, galerkin};
 use inverse::DenseInverse;
 use prolongator::{Prolongator, Weights};
 use smoother::Smoother;
@@ -65,34 +65,43 @@ struct CoarseWorkspace<const N: usize> {
     right: Vec<Lanes<f32, 6, N>>,
     x: Vec<Lanes<f32, 6, N>>,
     rest: Vec<Lanes<f32, 6, N>>,
+    /// Shares of `right` before they are added.
+    partial: Vec<Vec<Lanes<f32, 6, N>>>,
 }
 
 impl<const N: usize> CoarseWorkspace<N> {
-    fn new(rows: usize) -> Self {
+    fn new(above: &Prolongator, rows: usize) -> Self {
         let zeros = || vec![[[0.0; N]; 6]; rows];
-        CoarseWorkspace { right: zeros(), x: zeros(), rest: zeros() }
+        CoarseWorkspace { right: zeros(), x: zeros(), rest: zeros(), partial: above.partial_sums() }
     }
 }
 
 impl Multigrid {
     /// Builds the hierarchy.
     pub fn new(system: &System) -> Self {
-        let free = system.layout.free;
+        let free = &system.positions[..system.layout.free];
         let special = Special::new(system);
-        let origin = mean(&system.positions[..free]);
+        let origin = mean(free);
         let ties = Ties::new(&system.matrix, &system.layout, |row| special.axes(row));
-        let weights = Weights::new(&ties, &system.positions[..free], FIRST_AGGREGATE);
-        let basis = |row: usize| special.basis(row, &(system.positions[row] - origin));
-        let coarse = galerkin(&system.matrix, &system.layout, &weights, &basis, &origin);
-        let mut centres = in_places(&weights.centres, &coarse.layout);
-        let first = weights.into_prolongator(&coarse.layout.place, &system.positions[..free]);
+        let weights = Weights::new(&ties, free, FIRST_AGGREGATE);
+        let fine = Fine {
+            matrix: &system.matrix,
+            layout: &system.layout,
+            positions: free,
+            origin,
+            turned: |row, column, block: &_| special.to_coordinates(row, column, block),
+        };
+        let mut current = galerkin(&fine, &weights);
+        let mut centres = in_places(&weights.centres, &current.layout);
+        let place = &current.layout.place;
+        let first = weights.into_prolongator(place, free, system.layout.clone(), &origin);
         let mut levels = Vec::new();
-        let mut current = coarse;
         while current.matrix.rows() > DENSE_ROWS {
             let Some((weights, next)) = coarsen(&current, &centres, &origin) else { break };
             let next_centres = in_places(&weights.centres, &next.layout);
-            let below = weights.into_prolongator(&next.layout.place, &centres);
             let layout = Arc::new(current.layout);
+            let place = &next.layout.place;
+            let below = weights.into_prolongator(place, &centres, layout.clone(), &origin);
             let smoother = Smoother::new(&current.matrix, layout, |_, _, _| ());
             levels.push(CoarseLevel { smoother, below });
             centres = next_centres;
@@ -119,7 +128,11 @@ impl Multigrid {
     pub fn workspace<const N: usize>(&self) -> Workspace<N> {
         let zeros = || vec![[[0.0; N]; 3]; self.finest.rows()];
         let rows = self.levels.iter().map(|level| level.smoother.rows());
-        let coarse = rows.chain([self.coarsest_rows]).map(CoarseWorkspace::new).collect();
+        let above = [&self.first].into_iter().chain(self.levels.iter().map(|level| &level.below));
+        let coarse = above
+            .zip(rows.chain([self.coarsest_rows]))
+            .map(|(above, rows)| CoarseWorkspace::new(above, rows))
+            .collect();
         Workspace { right: zeros(), x: zeros(), rest: zeros(), coarse }
     }
 
@@ -142,10 +155,11 @@ impl Multigrid {
         let Workspace { right, x, rest, coarse } = workspace;
         self.finest.forward(right, x, rest);
         self.partly_held.iter().for_each(|row| row.to_coordinates(&mut rest[row.row]));
-        self.first.restrict(rest, &mut coarse[0].right);
+        let below = &mut coarse[0];
+        self.first.restrict(rest, &mut below.partial, &mut below.right);
         self.descend(0, coarse);
         self.partly_held.iter().for_each(|row| row.to_coordinates(&mut x[row.row]));
-        self.first.add_prolonged(&coarse[0].x, x);
+        self.first.add_prolonged(&mut coarse[0].x, x);
         self.partly_held.iter().for_each(|row| row.to_own_axes(&mut x[row.row]));
         self.finest.backward(x, right);
         Correction { values: x, scale }
@@ -157,9 +171,10 @@ impl Multigrid {
             return self.coarsest.apply(&own.right, &mut own.x);
         };
         level.smoother.forward(&own.right, &mut own.x, &mut own.rest);
-        level.below.restrict(&own.rest, &mut below[0].right);
+        let next = &mut below[0];
+        level.below.restrict(&own.rest, &mut next.partial, &mut next.right);
         self.descend(depth + 1, below);
-        level.below.add_prolonged(&below[0].x, &mut own.x);
+        level.below.add_prolonged(&mut below[0].x, &mut own.x);
         level.smoother.backward(&mut own.x, &mut own.right);
     }
 }
@@ -194,30 +209,15 @@ fn coarsen(
     if weights.aggregates >= current.matrix.rows() {
         return None;
     }
-    // A row of a coarse level is moved about its own centre.
-    let basis = |row: usize| {
-        let arm = centres[row] - origin;
-        let movement = movement(&arm);
-        std::array::from_fn(|i| {
-            std::array::from_fn(|k| match i {
-                0..3 => movement[i][k],
-                _ => f64::from(u8::from(i == k)),
-            })
-        })
+    let fine = Fine {
+        matrix: &current.matrix,
+        layout: &current.layout,
+        positions: centres,
+        origin: *origin,
+        turned: |_, _, block: &[[f64; 6]; 6]| *block,
     };
-    let next = galerkin(&current.matrix, &current.layout, &weights, &basis, origin);
+    let next = galerkin(&fine, &weights);
     Some((weights, next))
-}
-
-/// [ I | R(arm) ]: what a movement of the origin does at the end of an arm.
-fn movement(arm: &Vector3<f64>) -> Wide<3> {
-    let turn = -arm.cross_matrix();
-    std::array::from_fn(|i| {
-        std::array::from_fn(|k| match k {
-            0..3 => f64::from(u8::from(i == k)),
-            _ => turn[(i, k - 3)],
-        })
-    })
 }
 
 fn mean(positions: &[Vector3<f64>]) -> Vector3<f64> {
@@ -274,16 +274,22 @@ impl<'a> Special<'a> {
         self.of(row).map(|partly| &partly.axes)
     }
 
-    /// What a movement of the origin does to the free unknowns of a row.
-    fn basis(&self, row: usize, arm: &Vector3<f64>) -> Wide<3> {
-        let plain = movement(arm);
-        let Some(partly) = self.of(row) else { return plain };
-        std::array::from_fn(|i| {
-            std::array::from_fn(|k| match partly.held[i] {
-                true => 0.0,
-                false => (0..3).map(|m| partly.axes[(m, i)] * plain[m][k]).sum(),
-            })
-        })
+    /// A block along the axes of the coordinates, with zeros where it is held.
+    fn to_coordinates(&self, row: usize, column: usize, block: &[[f64; 3]; 3]) -> [[f64; 3]; 3] {
+        let (own, other) = (self.of(row), self.of(column));
+        if own.is_none() && other.is_none() {
+            return *block;
+        }
+        let mut masked = *block;
+        self.mask(row, column, &mut masked);
+        let mut turned = Matrix3::from_fn(|i, j| masked[i][j]);
+        if let Some(partly) = own {
+            turned = partly.axes * turned;
+        }
+        if let Some(partly) = other {
+            turned *= partly.axes.transpose();
+        }
+        std::array::from_fn(|i| std::array::from_fn(|j| turned[(i, j)]))
     }
 
     fn mask(&self, row: usize, column: usize, block: &mut [[f64; 3]; 3]) {

@@ -3,6 +3,9 @@
 //! P_iI = w_iI [ I | R(x_i - c_I) ]: scalar weights that add up to one in each row, times the exact rigid
 //! movement of aggregate I about its centre. Only the weights are stored; arms come from positions.
 
+use std::ops::Range;
+use std::sync::Arc;
+
 use nalgebra::Vector3;
 use rayon::prelude::*;
 
@@ -10,6 +13,7 @@ use super::aggregation::aggregate;
 use super::smoother::Vector;
 use super::ties::Ties;
 use crate::solver::lanes::Lanes;
+use crate::solver::layout::Layout;
 use crate::solver::vectorised::vectorised;
 
 /// Damping of the Jacobi step that smooths the weights.
@@ -22,7 +26,7 @@ const SMALL: f32 = 0.03;
 const CHUNK: usize = 4096;
 
 /// A partner and its weight.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy)]
 pub(super) struct Weight {
     pub partner: u32,
     pub weight: f32,
@@ -30,43 +34,23 @@ pub(super) struct Weight {
 
 pub(super) struct Prolongator {
     /// For each row its aggregates.
-    by_row: Table,
-    /// For each aggregate its rows.
-    by_aggregate: Table,
+    weights: Table,
+    layout: Arc<Layout>,
+    /// Positions and centres are told from a point in their midst, so that f32 loses little.
     positions: Vec<[f32; 3]>,
     centres: Vec<[f32; 3]>,
 }
 
 /// Lists of weights.
-#[derive(Clone)]
 struct Table {
     starts: Vec<u32>,
     weights: Vec<Weight>,
 }
 
 impl Table {
+    #[inline(always)]
     fn of(&self, index: usize) -> &[Weight] {
         &self.weights[self.starts[index] as usize..self.starts[index + 1] as usize]
-    }
-
-    /// The same weights seen from the partners.
-    fn transposed(&self, partners: usize) -> Table {
-        let mut starts = vec![0_u32; partners + 1];
-        for weight in &self.weights {
-            starts[weight.partner as usize + 1] += 1;
-        }
-        for partner in 0..partners {
-            starts[partner + 1] += starts[partner];
-        }
-        let mut next = starts.clone();
-        let mut weights = vec![Weight { partner: 0, weight: 0.0 }; self.weights.len()];
-        for row in 0..self.starts.len() - 1 {
-            for &Weight { partner, weight } in self.of(row) {
-                weights[next[partner as usize] as usize] = Weight { partner: row as u32, weight };
-                next[partner as usize] += 1;
-            }
-        }
-        Table { starts, weights }
     }
 }
 
@@ -96,22 +80,24 @@ impl Weights {
         self.table.of(row)
     }
 
-    /// `place` renumbers the aggregates.
-    pub fn into_prolongator(mut self, place: &[u32], positions: &[Vector3<f64>]) -> Prolongator {
+    /// `place` renumbers the aggregates. Positions are those of the rows of `layout`.
+    pub fn into_prolongator(
+        mut self,
+        place: &[u32],
+        positions: &[Vector3<f64>],
+        layout: Arc<Layout>,
+        origin: &Vector3<f64>,
+    ) -> Prolongator {
         for weight in &mut self.table.weights {
             weight.partner = place[weight.partner as usize];
         }
-        let single = |p: &Vector3<f64>| [p.x as f32, p.y as f32, p.z as f32];
+        let single = |p: &Vector3<f64>| <[f64; 3]>::from(p - origin).map(|value| value as f32);
         let mut centres = vec![[0.0; 3]; self.aggregates];
         for (centre, &place) in self.centres.iter().zip(place) {
             centres[place as usize] = single(centre);
         }
-        Prolongator {
-            by_aggregate: self.table.transposed(self.aggregates),
-            by_row: self.table,
-            positions: positions.iter().map(single).collect(),
-            centres,
-        }
+        let positions = positions.iter().map(single).collect();
+        Prolongator { weights: self.table, layout, positions, centres }
     }
 }
 
@@ -149,61 +135,95 @@ fn smooth(row: usize, group: &[u32], ties: &Ties, weights: &mut Vec<Weight>) {
 
 impl Prolongator {
     pub fn megabytes(&self) -> f64 {
-        (16 * self.by_row.weights.len() + 16 * self.positions.len() + 16 * self.centres.len())
-            as f64
-            / 1e6
+        let (weights, rows) = (self.weights.weights.len(), self.positions.len());
+        (8 * weights + 16 * rows + 12 * self.centres.len()) as f64 / 1e6
     }
 
-    /// P^T residual.
+    /// What `restrict` needs: a sum of its own for each part and for the separator.
+    pub fn partial_sums<const N: usize>(&self) -> Vec<Vec<Lanes<f32, 6, N>>> {
+        vec![vec![[[0.0; N]; 6]; self.centres.len()]; self.layout.parts.len() + 1]
+    }
+
+    /// P^T residual. Moments are summed about the origin and then told about each centre.
     pub fn restrict<const B: usize, const N: usize>(
         &self,
         residual: &Vector<B, N>,
+        partial: &mut [Vec<Lanes<f32, 6, N>>],
         coarse: &mut Vector<6, N>,
     ) {
-        coarse.par_chunks_mut(CHUNK / 16).enumerate().for_each(|(chunk, coarse)| {
+        let separator = self.layout.separator();
+        let ranges = self.layout.parts.par_iter().cloned().chain([separator].into_par_iter());
+        partial.par_iter_mut().zip(ranges).for_each(|(sums, rows)| {
             vectorised(
                 #[inline(always)]
-                || {
-                    for (local, sums) in coarse.iter_mut().enumerate() {
-                        *sums = self.restrict_to(chunk * (CHUNK / 16) + local, residual);
-                    }
-                },
+                || self.restrict_rows(rows.clone(), residual, sums),
             );
         });
+        for (aggregate, (total, centre)) in coarse.iter_mut().zip(&self.centres).enumerate() {
+            *total = [[0.0; N]; 6];
+            for sums in &*partial {
+                for (total, sum) in total.iter_mut().zip(&sums[aggregate]) {
+                    for n in 0..N {
+                        total[n] += sum[n];
+                    }
+                }
+            }
+            for c in 0..3 {
+                let (a, b) = ((c + 1) % 3, (c + 2) % 3);
+                for n in 0..N {
+                    total[3 + c][n] -= centre[a] * total[b][n] - centre[b] * total[a][n];
+                }
+            }
+        }
     }
 
     #[inline(always)]
-    fn restrict_to<const B: usize, const N: usize>(
+    fn restrict_rows<const B: usize, const N: usize>(
         &self,
-        aggregate: usize,
+        rows: Range<usize>,
         residual: &Vector<B, N>,
-    ) -> Lanes<f32, 6, N> {
-        let centre = self.centres[aggregate];
-        let mut sums = [[0.0; N]; 6];
-        for &Weight { partner, weight } in self.by_aggregate.of(aggregate) {
-            let arm = arm(&self.positions[partner as usize], &centre);
-            let force = &residual[partner as usize];
-            for n in 0..N {
-                let f = [weight * force[0][n], weight * force[1][n], weight * force[2][n]];
-                for c in 0..3 {
-                    sums[c][n] += f[c];
-                    let (a, b) = ((c + 1) % 3, (c + 2) % 3);
-                    sums[3 + c][n] += arm[a] * f[b] - arm[b] * f[a];
+        sums: &mut Vector<6, N>,
+    ) {
+        sums.fill([[0.0; N]; 6]);
+        for row in rows {
+            let (force, x) = (&residual[row], &self.positions[row]);
+            let mut own = [[0.0; N]; 6];
+            for c in 0..3 {
+                let (a, b) = ((c + 1) % 3, (c + 2) % 3);
+                own[c] = force[c];
+                for n in 0..N {
+                    own[3 + c][n] = x[a] * force[b][n] - x[b] * force[a][n];
                     if B == 6 {
-                        sums[3 + c][n] += weight * force[3 + c][n];
+                        own[3 + c][n] += force[3 + c][n];
+                    }
+                }
+            }
+            for &Weight { partner, weight } in self.weights.of(row) {
+                for (sum, own) in sums[partner as usize].iter_mut().zip(&own) {
+                    for n in 0..N {
+                        sum[n] += weight * own[n];
                     }
                 }
             }
         }
-        sums
     }
 
-    /// fine += P coarse.
+    /// fine += P coarse. Leaves the movements of the aggregates told about the origin.
     pub fn add_prolonged<const B: usize, const N: usize>(
         &self,
-        coarse: &Vector<6, N>,
+        coarse: &mut Vector<6, N>,
         fine: &mut Vector<B, N>,
     ) {
+        for (movement, centre) in coarse.iter_mut().zip(&self.centres) {
+            for c in 0..3 {
+                let (a, b) = ((c + 1) % 3, (c + 2) % 3);
+                for n in 0..N {
+                    movement[c][n] -=
+                        movement[3 + a][n] * centre[b] - movement[3 + b][n] * centre[a];
+                }
+            }
+        }
+        let coarse = &*coarse;
         fine.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, fine)| {
             vectorised(
                 #[inline(always)]
@@ -223,24 +243,23 @@ impl Prolongator {
         coarse: &Vector<6, N>,
         values: &mut Lanes<f32, B, N>,
     ) {
-        for &Weight { partner, weight } in self.by_row.of(row) {
-            let arm = arm(&self.positions[row], &self.centres[partner as usize]);
-            let movement = &coarse[partner as usize];
+        let mut own = [[0.0; N]; 6];
+        for &Weight { partner, weight } in self.weights.of(row) {
+            for (own, movement) in own.iter_mut().zip(&coarse[partner as usize]) {
+                for n in 0..N {
+                    own[n] += weight * movement[n];
+                }
+            }
+        }
+        let x = &self.positions[row];
+        for c in 0..3 {
+            let (a, b) = ((c + 1) % 3, (c + 2) % 3);
             for n in 0..N {
-                for c in 0..3 {
-                    let (a, b) = ((c + 1) % 3, (c + 2) % 3);
-                    let turned = movement[3 + a][n] * arm[b] - movement[3 + b][n] * arm[a];
-                    values[c][n] += weight * (movement[c][n] + turned);
-                    if B == 6 {
-                        values[3 + c][n] += weight * movement[3 + c][n];
-                    }
+                values[c][n] += own[c][n] + (own[3 + a][n] * x[b] - own[3 + b][n] * x[a]);
+                if B == 6 {
+                    values[3 + c][n] += own[3 + c][n];
                 }
             }
         }
     }
-}
-
-#[inline(always)]
-fn arm(position: &[f32; 3], centre: &[f32; 3]) -> [f32; 3] {
-    [position[0] - centre[0], position[1] - centre[1], position[2] - centre[2]]
 }

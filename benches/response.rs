@@ -1,0 +1,120 @@
+//! Plan response: how long its columns take to build, and to add up.
+//!
+//! `cargo bench --bench response [-- SIZE …]` adds up 24 columns of 14 000 nodes on one thread, then builds the
+//! response of the half head of the demo and of the shells of the shared data that are named.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::Instant;
+
+use facies::boundary::NodeSelection;
+use facies::format::{Mesh, ReadLimits, read};
+use facies::material::LinearElastic;
+use facies::mesh::half_head::{STANDARD_FINENESS, half_head};
+use facies::mesh::{Vector, VolumeMesh};
+use facies::plan::RigidMovement;
+use facies::prediction::{Case, CaseSegment, Plan, Scene, Settings, Unobserved};
+use facies::response::{Columns, Response, ResponseSegment, build};
+
+const NODES: usize = 14_000;
+const REPEATS: usize = 2001;
+
+fn main() {
+    let sizes: Vec<String> = std::env::args().skip(1).filter(|a| !a.starts_with("--")).collect();
+    println!("| response | skin nodes | columns | build s | apply ms, median | p99 | GB/s |");
+    println!("| --- | --- | --- | --- | --- | --- | --- |");
+    row("made up", None, &made_up());
+    let head = half_head(STANDARD_FINENESS).mesh;
+    built("half head of the demo", &half_head_case(head));
+    for size in sizes {
+        match shell(&size) {
+            Some(mesh) => built(&format!("shell {size}"), &shell_case(mesh)),
+            None => println!("skipped: there is no shell {size}; FACIES_SHARED names its folder"),
+        }
+    }
+}
+
+/// Columns of the size of a face, with numbers of no meaning.
+fn made_up() -> Response {
+    let segment = |name: &str| ResponseSegment { name: name.to_owned(), centre: Vector::zeros() };
+    let wave = |index: usize| (index as f32 * 0.37).sin() * 40.0;
+    Response {
+        segments: vec![segment("maxilla"), segment("mandible")],
+        nodes: (0..NODES as u32).collect(),
+        columns: (0..24 * 3 * NODES).map(wave).collect(),
+    }
+}
+
+fn built(name: &str, case: &Case) {
+    let scene = Scene::new(case, &Plan::default(), &Settings::default()).expect("a valid case");
+    let started = Instant::now();
+    let columns: Columns = build(&scene, &[], &Unobserved).expect("the columns converge");
+    let seconds = started.elapsed().as_secs_f64();
+    row(name, Some(seconds), &columns.to_response());
+}
+
+fn row(name: &str, build_s: Option<f64>, response: &Response) {
+    let mut times = Vec::with_capacity(REPEATS);
+    let mut checksum = 0.0;
+    for repeat in 0..REPEATS {
+        let angles = Vector::new(0.1, 0.2, 0.3) * (1.0 + repeat as f64 * 1e-3);
+        let movement = RigidMovement::about_pivot(angles, Vector::x(), Vector::y());
+        let movements = vec![movement; response.segments.len()];
+        let started = Instant::now();
+        let moved = response.apply(&movements);
+        times.push(started.elapsed().as_secs_f64() * 1e3);
+        checksum += moved[repeat % moved.len()].x;
+    }
+    assert!(checksum.is_finite());
+    times.sort_by(f64::total_cmp);
+    let median = times[REPEATS / 2];
+    let gigabytes = response.columns.len() as f64 * 4.0 / 1e9;
+    let columns = response.columns.len() / (3 * response.nodes.len());
+    println!(
+        "| {name} | {} | {columns} | {} | {median:.3} | {:.3} | {:.1} |",
+        response.nodes.len(),
+        build_s.map_or_else(|| "-".to_owned(), |seconds| format!("{seconds:.2}")),
+        times[REPEATS * 99 / 100],
+        gigabytes / (median * 1e-3)
+    );
+}
+
+fn half_head_case(mesh: VolumeMesh) -> Case {
+    let set = |name: &str| NodeSelection::NodeSet(name.to_owned());
+    let segment = |name: &str| CaseSegment { name: name.to_owned(), nodes: set(name) };
+    Case {
+        skin: Some(set("skin")),
+        segments: vec![segment("maxilla"), segment("mandible")],
+        fixed: vec![set("skull"), set("rim")],
+        ..of_one_material(mesh, 0.45)
+    }
+}
+
+fn shell(size: &str) -> Option<VolumeMesh> {
+    let root = std::env::var_os("FACIES_SHARED")
+        .map_or_else(|| PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../shared"), PathBuf::from);
+    let bytes = std::fs::read(root.join(format!("data/shell/{size}.vtu"))).ok()?;
+    match read(&bytes, &ReadLimits::default()).ok()?.mesh {
+        Mesh::Volume(mesh) => Some(mesh),
+        Mesh::Surface(_) => None,
+    }
+}
+
+/// Materials (a) of the shells.
+fn shell_case(mesh: VolumeMesh) -> Case {
+    let label = |value| NodeSelection::Label { array: "tag".to_owned(), value };
+    let segment = |name: &str, value| CaseSegment { name: name.to_owned(), nodes: label(value) };
+    Case {
+        skin: Some(label(5)),
+        segments: vec![segment("maxilla", 2), segment("mandible", 3)],
+        fixed: vec![label(1), label(4)],
+        ..of_one_material(mesh, 0.46)
+    }
+}
+
+fn of_one_material(mesh: VolumeMesh, nu: f64) -> Case {
+    let material = LinearElastic::new(15.0, nu, 1.0).expect("within the ranges");
+    let materials = BTreeMap::from([("*".to_owned(), material)]);
+    Case { volume: Arc::new(mesh), materials, ..Case::default() }
+}

@@ -1,0 +1,218 @@
+//! Plan responses: the columns for clients that add them up themselves, and the skin for one plan.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use axum::extract::{Request, State};
+use axum::http::{HeaderMap, HeaderName, StatusCode, header};
+use axum::response::{IntoResponse, Response};
+use serde::Deserialize;
+use utoipa::IntoParams;
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+use super::error::{ApiError, ApiResult};
+use super::guard::preferred;
+use super::parameters::{Id, Parameters, id as spelled};
+use super::{Service, body, conditional, with_header};
+use crate::format::WriteError;
+use crate::jobs::response::{
+    COLUMNS_FILE, COLUMNS_MEDIA_TYPE, DESCRIPTION_FILE, DESCRIPTION_MEDIA_TYPE,
+};
+use crate::jobs::responses::{Applied, FoundResponse, LoadedResponse, MissingResponse};
+use crate::schema::response::{
+    AppliedDocument, AppliedSummary, ApplyDocument, ResponseDescription,
+};
+use crate::schema::strict;
+
+const GLB_MEDIA_TYPE: &str = "model/gltf-binary";
+
+pub fn router() -> OpenApiRouter<Service> {
+    OpenApiRouter::new().routes(routes!(show)).routes(routes!(apply))
+}
+
+#[derive(Deserialize, IntoParams)]
+#[serde(deny_unknown_fields)]
+#[into_params(parameter_in = Query)]
+struct ResponseParameters {
+    /// The job that built the response. Default: the newest that was built for the case as it is now,
+    /// whatever materials and segments its spec names; the answer says which.
+    #[param(format = Uuid)]
+    job: Option<String>,
+}
+
+/// The response that a request means.
+async fn find(
+    service: &Service,
+    case: &str,
+    parameters: &ResponseParameters,
+) -> ApiResult<FoundResponse> {
+    let job = match &parameters.job {
+        Some(text) => {
+            let unknown = || refusal(MissingResponse::NotOfCase { job: text.clone() });
+            Some(spelled(text).ok_or_else(unknown)?)
+        }
+        None => None,
+    };
+    service.responses.find(case, job.as_deref()).await.map_err(refusal)
+}
+
+fn refusal(missing: MissingResponse) -> ApiError {
+    let detail = missing.to_string();
+    match missing {
+        MissingResponse::NoCase => ApiError::not_found("case"),
+        MissingResponse::NotBuilt | MissingResponse::NotOfCase { .. } => {
+            ApiError::new("response-not-built", detail)
+        }
+        MissingResponse::Stale { job } => {
+            ApiError::new("response-stale", detail).map_problem(|problem| problem.with("job", job))
+        }
+        MissingResponse::Store(error) => error.into(),
+    }
+}
+
+/// The columns of a response, or how to read them. A front end that has both moves the skin without asking
+/// again: u = sum over segments of column 12 s + 4 i + j times (R - I)_ij (j < 3) or t_i (j = 3), with x
+/// measured from the segment's centre.
+#[utoipa::path(
+    get, path = "/v1/cases/{id}/response", tag = "responses",
+    params(("id" = uuid::Uuid, Path, description = "the case"), ResponseParameters),
+    responses(
+        (status = 200, description = "the description, or the columns as little-endian f32 [column][node][xyz] in mm", content(
+            (ResponseDescription = "application/json"), (Vec<u8> = "application/octet-stream")),
+            headers(("ETag" = String, description = "the hash of the content"))),
+        (status = 206, description = "the range that was asked for", content(
+            (String = "application/json"), (Vec<u8> = "application/octet-stream"))),
+        (status = 304, description = "the client has it already"),
+        (status = 404, description = "there is no such case, or no response was built"),
+        (status = 409, description = "the case or the program changed since the response was built"),
+        (status = 416, description = "the range is outside the file"),
+    )
+)]
+async fn show(
+    State(service): State<Service>,
+    Id(id): Id,
+    Parameters(parameters): Parameters<ResponseParameters>,
+    headers: HeaderMap,
+) -> ApiResult {
+    let wanted = preferred(&headers, &[DESCRIPTION_MEDIA_TYPE, COLUMNS_MEDIA_TYPE])?;
+    let found = find(&service, &id, &parameters).await?;
+    let file = [DESCRIPTION_FILE, COLUMNS_FILE][wanted];
+    let row = service.store.job_file(&found.job, file).await?;
+    let row = row.ok_or_else(|| refusal(MissingResponse::NotBuilt))?;
+    let response = if conditional::is_known(&headers, &row.blob) {
+        conditional::not_modified(&row.blob)
+    } else {
+        let bytes = service.store.read_blob(&row.blob).await?;
+        conditional::file(&headers, &bytes, (&row.media_type, &row.name), &row.blob)?
+    };
+    let response = with_header(response, header::VARY, "Accept");
+    Ok(with_header(response, HeaderName::from_static("facies-job"), &found.job))
+}
+
+/// The skin after a plan, exact within linear elasticity, in milliseconds. Segments that the plan does not
+/// name stay where they are. What linearity leaves out is estimated as 0.15 d^2 / h + 2.7 h (1 - cos theta)
+/// with d the largest movement of a segment against another or against what stays, h the thickness of the
+/// tissue and theta the largest rotation: an order of magnitude. Above 0.5 mm the answer carries the
+/// warning `outside-linear-range`. Beside a binary body the numbers stand in headers.
+#[utoipa::path(
+    post, path = "/v1/cases/{id}/response/apply", tag = "responses",
+    params(("id" = uuid::Uuid, Path, description = "the case"), ResponseParameters),
+    request_body = ApplyDocument,
+    responses(
+        (status = 200, description = "displacement of the skin nodes in mm; as octets little-endian f32 xyz a node in the order of `node_ids`; or the moved skin", content(
+            (AppliedDocument = "application/json"), (Vec<u8> = "application/octet-stream"), (Vec<u8> = "model/gltf-binary")),
+            headers(
+                ("Facies-Job" = String, description = "the job that built the response"),
+                ("Facies-Max-Mm" = f64, description = "the largest displacement of a skin node"),
+                ("Facies-Largest-Rotation-Deg" = f64, description = "the largest rotation of a segment"),
+                ("Facies-Nonlinearity-Estimate-Mm" = f64, description = "an order of magnitude of what linearity leaves out"),
+                ("Facies-Within-Linear-Range" = bool, description = "whether that is at most 0.5 mm"),
+                ("Facies-Warning" = Option<String>, description = "outside-linear-range"),
+                ("Server-Timing" = String, description = "milliseconds to find the response, to add up its columns, and to write the answer"))),
+        (status = 404, description = "there is no such case, or no response was built"),
+        (status = 409, description = "the case or the program changed since the response was built"),
+        (status = 422, description = "the plan asks for what the response does not know: loads, prescribed displacements, other segments, movements beyond the limits"),
+    )
+)]
+async fn apply(
+    State(service): State<Service>,
+    Id(id): Id,
+    Parameters(parameters): Parameters<ResponseParameters>,
+    request: Request,
+) -> ApiResult {
+    let started = Instant::now();
+    let offered = [DESCRIPTION_MEDIA_TYPE, COLUMNS_MEDIA_TYPE, GLB_MEDIA_TYPE];
+    let media_type = offered[preferred(request.headers(), &offered)?];
+    let bytes = body::json(&service, request).await?;
+    let document: ApplyDocument = strict::parse(&bytes, &service.limits)?;
+    let found = find(&service, &id, &parameters).await?;
+    let loaded = service.responses.load(&found).await?;
+    let movements = loaded.description.movements(&document.plan, &service.limits)?;
+    let loading = started.elapsed();
+
+    // Numerics keep off the threads that answer; a turn on one that may block costs some 20 µs. No permit is
+    // asked for: a parse of a large mesh would hold it for seconds.
+    let job = found.job.clone();
+    let computed = tokio::task::spawn_blocking(move || {
+        let started = Instant::now();
+        let applied = loaded.apply(&movements);
+        let applying = started.elapsed();
+        let body = encoded(&loaded, &applied, media_type, &job);
+        (body, applied.summary, applying, started.elapsed() - applying)
+    });
+    let (body, summary, applying, writing) = computed.await.map_err(ApiError::internal)?;
+    let body = body.map_err(ApiError::internal)?;
+    let times = [("load", loading), ("apply", applying), ("write", writing)];
+    let times = times.map(|(name, time)| format!("{name};dur={:.3}", time.as_secs_f64() * 1e3));
+    let response = with_summary((StatusCode::OK, body).into_response(), &found.job, &summary);
+    let response = with_header(response, header::CONTENT_TYPE, media_type);
+    Ok(with_header(response, HeaderName::from_static("server-timing"), &times.join(", ")))
+}
+
+/// The body of an answer.
+fn encoded(
+    loaded: &Arc<LoadedResponse>,
+    applied: &Applied,
+    media_type: &str,
+    job: &str,
+) -> Result<Vec<u8>, WriteError> {
+    match media_type {
+        COLUMNS_MEDIA_TYPE => Ok(applied.to_bytes()),
+        GLB_MEDIA_TYPE => loaded.glb(applied),
+        _ => {
+            let document = AppliedDocument {
+                job: job.to_owned(),
+                node_ids: loaded.description.node_ids.clone(),
+                displacement_mm: applied.to_triples(),
+                summary: applied.summary,
+                warnings: applied.summary.warnings(),
+            };
+            let failed = |_| WriteError::NonFinite { array: "displacement_mm".into(), count: 1 };
+            serde_json::to_vec(&document).map_err(failed)
+        }
+    }
+}
+
+/// The numbers of an answer as headers.
+fn with_summary(response: Response, job: &str, summary: &AppliedSummary) -> Response {
+    let numbers = [
+        ("cache-control", "private, no-store".to_owned()),
+        ("vary", "Accept".to_owned()),
+        ("facies-job", job.to_owned()),
+        ("facies-max-mm", summary.max_mm.to_string()),
+        ("facies-largest-rotation-deg", summary.largest_rotation_deg.to_string()),
+        ("facies-nonlinearity-estimate-mm", summary.nonlinearity_estimate_mm.to_string()),
+        ("facies-within-linear-range", summary.within_linear_range.to_string()),
+    ];
+    let response = numbers.into_iter().fold(response, |response, (name, value)| {
+        with_header(response, HeaderName::from_static(name), &value)
+    });
+    match summary.within_linear_range {
+        true => response,
+        false => {
+            let name = HeaderName::from_static("facies-warning");
+            with_header(response, name, AppliedSummary::OUTSIDE)
+        }
+    }
+}

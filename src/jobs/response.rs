@@ -1,0 +1,165 @@
+//! The job that builds a plan response: its columns, their description, and the skin they move.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+use super::check::warning_documents;
+use super::failure::JobError;
+use super::input::{PredictInput, Prepared};
+use super::observed::Observed;
+use super::output::ResultFolder;
+use super::provenance::{Origin, add_method, encode_result, solver_document};
+use super::source::MeshSource;
+use super::work::{JobOutput, Workplace};
+use crate::format::{SurfaceOutput, vtp};
+use crate::prediction::{Phase, Progress};
+use crate::response::{Columns, ResponseError, build, chosen};
+use crate::schema::case_conversion::centre;
+use crate::schema::prediction::ResultDocument;
+use crate::schema::response::{ColumnsDocument, ResponseDescription, ResponseOrigin};
+use crate::schema::spec::OutputName;
+use crate::schema::{CaseDocument, Faults, Limits, PlanDocument, ResponseDocument, canonical};
+
+/// f32 little-endian, [column][node][xyz].
+pub const COLUMNS_FILE: &str = "response.f32";
+pub const COLUMNS_MEDIA_TYPE: &str = "application/octet-stream";
+/// How to read the columns, and what applying a plan needs.
+pub const DESCRIPTION_FILE: &str = "response.json";
+pub const DESCRIPTION_MEDIA_TYPE: &str = "application/json";
+/// The skin before anything moves, its points in the order of a column.
+pub const REST_FILE: &str = "skin_at_rest.vtp";
+
+/// A response: the case in full beside the spec.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ResponseInput {
+    /// The id of the job; absent on the command line.
+    pub job: Option<String>,
+    /// From acceptance to start.
+    pub queue_s: Option<f64>,
+    pub case: CaseDocument,
+    pub spec: ResponseDocument,
+}
+
+/// A response whose documents are sound.
+pub struct PreparedResponse {
+    pub key: String,
+    prepared: Prepared,
+}
+
+impl ResponseInput {
+    /// Fetches the meshes and checks the documents as those of a prediction in which nothing moves.
+    pub fn prepare(
+        &self,
+        sources: &dyn MeshSource,
+        limits: &Limits,
+    ) -> Result<PreparedResponse, JobError> {
+        let mut faults = Faults::default();
+        self.spec.check(limits, &mut faults);
+        faults.into_result()?;
+        let still = PredictInput {
+            job: None,
+            queue_s: None,
+            case: self.case.clone(),
+            plan: PlanDocument::default(),
+            spec: self.spec.to_prediction(),
+        };
+        let prepared = still.prepare(sources, limits)?;
+        chosen(&prepared.scene, &self.spec.segments).map_err(|error| self.judge(error))?;
+        let content = |id: &str| prepared.contents.get(id).cloned();
+        let key = canonical::response_key(&self.case, &self.spec, &content);
+        Ok(PreparedResponse { key, prepared })
+    }
+
+    fn judge(&self, error: ResponseError) -> JobError {
+        match error {
+            ResponseError::Prediction(error) => error.into(),
+            refused => JobError::Refused(self.spec.refusal(&refused)),
+        }
+    }
+}
+
+/// Builds a response and writes its files.
+pub fn response_job(
+    input: &ResponseInput,
+    place: &Workplace,
+    progress: &dyn Progress,
+) -> Result<JobOutput, JobError> {
+    let clock = Observed::start(progress, input.spec.budget.wall_s);
+
+    // 1. Documents and meshes, checked together.
+    let PreparedResponse { key, prepared } = input.prepare(place.sources, place.limits)?;
+    clock.check()?;
+
+    // 2. The columns.
+    let columns =
+        build(&prepared.scene, &input.spec.segments, &clock).map_err(|error| match error {
+            ResponseError::Prediction(error) => clock.judge(error),
+            other => input.judge(other),
+        })?;
+    clock.check()?;
+
+    // 3. Files.
+    clock.phase(Phase::Write);
+    let origin = Origin {
+        spec_hash: key,
+        inputs: prepared.inputs.clone(),
+        frame: prepared.case.frame,
+        queue_s: input.queue_s,
+    };
+    let solver = solver_document(&columns.solver);
+    let mut folder = ResultFolder::open(place.out)?;
+    write_columns(&origin, (input, &prepared), &columns, &mut folder)?;
+    let mut rest = SurfaceOutput::plain(&prepared.scene.skin.surface, origin.frame);
+    rest.field_data = origin.field_data(&solver);
+    folder.add_file(REST_FILE, OutputName::SkinVtp.media_type(), &vtp::write(&rest)?)?;
+
+    // 4. The manifest.
+    let mut provenance = origin.provenance(&clock);
+    let mesh = (&*prepared.scene.mesh, &prepared.quality);
+    add_method(&mut provenance, input.spec.method, mesh, solver);
+    let result = ResultDocument {
+        job: input.job.clone(),
+        files: folder.files.clone(),
+        statistics: None,
+        comparison: None,
+        numerical_error_mm: None,
+        reaction_mn: BTreeMap::new(),
+        provenance,
+        warnings: warning_documents(prepared.warnings.iter().chain(&prepared.scene.warnings)),
+    };
+    folder.add(OutputName::ResultJson, &encode_result(&result)?)?;
+    Ok(JobOutput { result, files: folder.files })
+}
+
+/// The columns and their description.
+fn write_columns(
+    origin: &Origin,
+    (input, prepared): (&ResponseInput, &Prepared),
+    columns: &Columns,
+    folder: &mut ResultFolder,
+) -> Result<(), JobError> {
+    let values = columns.values.iter().map(|&value| value as f32);
+    let bytes: Vec<u8> = values.flat_map(f32::to_le_bytes).collect();
+    folder.add_file(COLUMNS_FILE, COLUMNS_MEDIA_TYPE, &bytes)?;
+    let moved = |name: &str| columns.segments.iter().any(|segment| segment.name == name);
+    let names = prepared.scene.segments.iter().map(|segment| segment.name.clone());
+    let origin = ResponseOrigin {
+        job: input.job.clone(),
+        key: origin.spec_hash.clone(),
+        frame: origin.frame,
+        mesh_centre: centre(&prepared.case.volume),
+        staying: names.filter(|name| !moved(name)).collect(),
+        columns: ColumnsDocument {
+            file: COLUMNS_FILE.to_owned(),
+            layout: "f32 little-endian [column][node][xyz], mm".to_owned(),
+            count: (columns.values.len() / (3 * columns.nodes.len()).max(1)) as u64,
+            bytes: bytes.len() as u64,
+            sha256: canonical::sha256_hex(&bytes),
+        },
+    };
+    let description = ResponseDescription::new(columns, origin);
+    let text = serde_json::to_vec(&description)
+        .map_err(|error| JobError::NotFinite { what: error.to_string() })?;
+    folder.add_file(DESCRIPTION_FILE, DESCRIPTION_MEDIA_TYPE, &text)
+}

@@ -1,0 +1,358 @@
+//! A plan response: the job that builds it, its description, and what applying a plan to it answers.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+use super::canonical;
+use super::case::FrameName;
+use super::fault::{Faults, Pointer};
+use super::limits::Limits;
+use super::material::MaterialDocuments;
+use super::methods::{ElementName, MethodName};
+use super::plan::{PlanContext, PlanDocument};
+use super::prediction::EngineDocument;
+use super::problem::Problem;
+use super::spec::{BudgetDocument, PredictDocument, ToleranceDocument};
+use super::{CornerPair, Triple, WarningDocument};
+use crate::mesh::{Frame, Vector};
+use crate::plan::RigidMovement;
+use crate::response::linearity::LINEAR_RANGE_MM;
+use crate::response::{Columns, Linearity, Nonlinearity, ResponseError, ResponseSegment};
+
+/// `response`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum ResponseKind {
+    #[default]
+    Response,
+}
+
+/// A plan response: twelve solutions for each segment, of which every movement of the segments is a sum.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ResponseDocument {
+    #[serde(default)]
+    #[schema(required)]
+    pub kind: ResponseKind,
+    /// The id of the case.
+    pub case: String,
+    /// Linear methods only.
+    #[serde(default)]
+    pub method: MethodName,
+    #[serde(default)]
+    pub element: ElementName,
+    /// Over the materials of the case, field by field.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub materials: Option<MaterialDocuments>,
+    /// Names of segments of the case; default: all. The others stay where they are.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub segments: Vec<String>,
+    #[serde(default)]
+    pub tolerance: ToleranceDocument,
+    #[serde(default)]
+    pub budget: BudgetDocument,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub tags: Vec<String>,
+}
+
+impl ResponseDocument {
+    /// The prediction of the same tissue, with which it shares its checks.
+    pub fn to_prediction(&self) -> PredictDocument {
+        PredictDocument {
+            method: self.method,
+            element: self.element,
+            materials: self.materials.clone(),
+            tolerance: self.tolerance,
+            budget: self.budget,
+            tags: self.tags.clone(),
+            ..PredictDocument::default()
+        }
+    }
+
+    /// What decides the numbers, for the key: no tags, segments in no order.
+    pub fn content(&self) -> serde_json::Value {
+        let mut plain = self.clone();
+        plain.tags.clear();
+        plain.segments.sort_unstable();
+        canonical::to_value(&plain)
+    }
+
+    /// Refuses an empty list, names that are given twice, and more names than are allowed.
+    pub fn check(&self, limits: &Limits, faults: &mut Faults) {
+        let at = Pointer::root().key("spec").key("segments");
+        faults.check_length(&at, self.segments.len(), limits.list_entries as usize);
+        for (index, name) in self.segments.iter().enumerate() {
+            if self.segments[..index].contains(name) {
+                let detail = format!("segment `{name}` is named more than once");
+                faults.add(&at.index(index), "duplicate-name", detail);
+            }
+        }
+    }
+
+    /// The refusal of a scene that has no response.
+    pub fn refusal(&self, error: &ResponseError) -> Problem {
+        let root = Pointer::root();
+        let segments = root.key("spec").key("segments");
+        let (at, code) = match error {
+            ResponseError::UnknownSegment { name, .. } => {
+                let place = self.segments.iter().position(|other| other == name);
+                (segments.index(place.unwrap_or_default()), "unknown-segment")
+            }
+            ResponseError::SharedNodes { .. } => {
+                (root.key("case").key("segments"), "plan-conflict")
+            }
+            ResponseError::NoSegments | ResponseError::EmptySegment { .. } => {
+                (root.key("case").key("segments"), "empty-selection")
+            }
+            ResponseError::Loaded | ResponseError::Prediction(_) => (root, "not-linear"),
+        };
+        let problem = Problem::at(&at, code, error.to_string());
+        match error {
+            ResponseError::SharedNodes { count, first } => {
+                problem.with("count", *count as u64).with("first_node", *first)
+            }
+            _ => problem,
+        }
+    }
+}
+
+/// What a response knows: how to read its columns, and what applying a plan needs.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct ResponseDescription {
+    /// The job that built it; absent from results of the command line.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub job: Option<String>,
+    /// SHA-256 over everything that the columns depend on.
+    pub key: String,
+    pub engine: EngineDocument,
+    pub frame: FrameName,
+    /// Column 12 s + 4 i + j of the s-th segment multiplies (R - I)_ij (j < 3) or t_i (j = 3).
+    pub segments: Vec<ResponseSegmentDocument>,
+    /// Segments of the case that stay where they are.
+    pub staying: Vec<String>,
+    /// Nodes of the volume mesh, ascending: the order within a column.
+    pub node_ids: Vec<u32>,
+    pub columns: ColumnsDocument,
+    pub linearity: LinearityDocument,
+    /// The centre of the bounding box of the mesh, whose displacement is limited.
+    pub mesh_centre_mm: Triple,
+}
+
+/// A segment that the columns can move: x' = x + (R - I)(x - centre) + t.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct ResponseSegmentDocument {
+    pub name: String,
+    /// From where x is measured: the mean of the segment's nodes.
+    pub centre_mm: Triple,
+    /// The box around the segment's nodes.
+    pub box_mm: CornerPair,
+}
+
+/// The binary file of the columns.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct ColumnsDocument {
+    pub file: String,
+    /// `f32 little-endian [column][node][xyz], mm`.
+    pub layout: String,
+    pub count: u64,
+    pub bytes: u64,
+    pub sha256: String,
+}
+
+/// What the estimate of nonlinearity needs to know of the case.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct LinearityDocument {
+    /// The median distance from the skin to the nearest held node.
+    pub thickness_mm: f64,
+    /// Whether something is held that no segment of the response moves.
+    pub something_stays: bool,
+    /// The estimate above which an answer is outside the linear range.
+    pub range_mm: f64,
+}
+
+/// What a response is the answer of.
+pub struct ResponseOrigin {
+    pub job: Option<String>,
+    pub key: String,
+    pub frame: Frame,
+    pub mesh_centre: Vector,
+    pub staying: Vec<String>,
+    pub columns: ColumnsDocument,
+}
+
+impl ResponseDescription {
+    pub fn new(columns: &Columns, origin: ResponseOrigin) -> Self {
+        let segments = columns.segments.iter().zip(&columns.linearity.boxes);
+        ResponseDescription {
+            job: origin.job,
+            key: origin.key,
+            engine: EngineDocument::this(),
+            frame: origin.frame.into(),
+            segments: segments
+                .map(|(segment, [low, high])| ResponseSegmentDocument {
+                    name: segment.name.clone(),
+                    centre_mm: segment.centre.into(),
+                    box_mm: CornerPair([low.x, low.y, low.z, high.x, high.y, high.z]),
+                })
+                .collect(),
+            staying: origin.staying,
+            node_ids: columns.nodes.clone(),
+            columns: origin.columns,
+            linearity: LinearityDocument {
+                thickness_mm: columns.linearity.thickness,
+                something_stays: columns.linearity.something_stays,
+                range_mm: LINEAR_RANGE_MM,
+            },
+            mesh_centre_mm: origin.mesh_centre.into(),
+        }
+    }
+
+    pub fn response_segments(&self) -> Vec<ResponseSegment> {
+        let segments = self.segments.iter();
+        segments
+            .map(|segment| ResponseSegment {
+                name: segment.name.clone(),
+                centre: segment.centre_mm.into(),
+            })
+            .collect()
+    }
+
+    pub fn to_linearity(&self) -> Linearity {
+        let corners = |CornerPair([a, b, c, d, e, f]): CornerPair| {
+            [Vector::new(a, b, c), Vector::new(d, e, f)]
+        };
+        Linearity {
+            thickness: self.linearity.thickness_mm,
+            something_stays: self.linearity.something_stays,
+            boxes: self.segments.iter().map(|segment| corners(segment.box_mm)).collect(),
+        }
+    }
+
+    /// One movement for each segment of the response; those that the plan does not name stay.
+    /// Pointers start at `/plan`.
+    pub fn movements(
+        &self,
+        plan: &PlanDocument,
+        limits: &Limits,
+    ) -> Result<Vec<RigidMovement>, Problem> {
+        let mut faults = Faults::default();
+        let at = Pointer::root().key("plan");
+        for (name, is_empty) in
+            [("prescribed", plan.prescribed.is_empty()), ("loads", plan.loads.is_empty())]
+        {
+            if !is_empty {
+                let detail = format!("a response knows movements of segments and no `{name}`");
+                faults.add(&at.key(name), "not-in-response", detail);
+            }
+        }
+        let segments_only = PlanDocument {
+            segments: plan.segments.clone(),
+            frame: plan.frame,
+            ..PlanDocument::default()
+        };
+        let centre = self.mesh_centre_mm.into();
+        let context = PlanContext { frame: self.frame.into(), centre, limits };
+        let planned = segments_only.to_plan(&at, &context, &mut faults).segments;
+        for (index, segment) in plan.segments.iter().enumerate() {
+            let name = segment.name.trim();
+            let movement = planned.iter().find(|planned| planned.name == name);
+            let moves =
+                movement.is_some_and(|planned| planned.movement != RigidMovement::default());
+            let place = at.key("segments").index(index).key("name");
+            self.check_name(name, moves, &place, &mut faults);
+        }
+        faults.into_result()?;
+        let by_name: BTreeMap<&str, RigidMovement> =
+            planned.iter().map(|segment| (segment.name.as_str(), segment.movement)).collect();
+        let of = |segment: &ResponseSegmentDocument| by_name.get(segment.name.trim()).copied();
+        Ok(self.segments.iter().map(|segment| of(segment).unwrap_or_default()).collect())
+    }
+
+    fn check_name(&self, name: &str, moves: bool, at: &Pointer, faults: &mut Faults) {
+        let mut known = self.segments.iter().map(|segment| segment.name.trim());
+        if known.any(|known| known == name) {
+            return;
+        }
+        if !self.staying.iter().any(|staying| staying.trim() == name) {
+            let names: Vec<&str> = self.segments.iter().map(|other| other.name.as_str()).collect();
+            let detail = format!(
+                "the case has no segment {name:?}; the response moves: {}",
+                names.join(", ")
+            );
+            faults.add(at, "unknown-segment", detail);
+        } else if moves {
+            let detail =
+                format!("the response was built without segment {name:?}, which has to stay");
+            faults.add(at, "not-in-response", detail);
+        }
+    }
+}
+
+/// The body of `POST /v1/cases/{id}/response/apply`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ApplyDocument {
+    pub plan: PlanDocument,
+}
+
+/// The displacement of the skin for a plan, and how far it can be trusted.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct AppliedDocument {
+    /// The job that built the response.
+    pub job: String,
+    /// Nodes of the volume mesh, ascending.
+    pub node_ids: Vec<u32>,
+    /// For each of them.
+    #[schema(value_type = Vec<Triple>)]
+    pub displacement_mm: Vec<[f32; 3]>,
+    #[serde(flatten)]
+    pub summary: AppliedSummary,
+    pub warnings: Vec<WarningDocument>,
+}
+
+/// What is told beside the displacement, in headers where the body is binary.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct AppliedSummary {
+    /// The largest displacement of a skin node.
+    pub max_mm: f64,
+    /// The largest rotation of a segment.
+    pub largest_rotation_deg: f64,
+    /// An order of magnitude of what linearity leaves out, mean over the skin.
+    pub nonlinearity_estimate_mm: f64,
+    /// Whether the estimate is at most 0.5 mm.
+    pub within_linear_range: bool,
+}
+
+impl AppliedSummary {
+    pub fn new(displacement: &[Vector], nonlinearity: &Nonlinearity) -> Self {
+        let squared = displacement.iter().map(Vector::norm_squared).fold(0.0, f64::max);
+        AppliedSummary {
+            max_mm: squared.sqrt(),
+            largest_rotation_deg: nonlinearity.largest_rotation.to_degrees(),
+            nonlinearity_estimate_mm: nonlinearity.estimate,
+            within_linear_range: nonlinearity.is_within_linear_range(),
+        }
+    }
+
+    /// The word of warning that goes with an answer outside the linear range.
+    pub const OUTSIDE: &'static str = "outside-linear-range";
+
+    pub fn warnings(&self) -> Vec<WarningDocument> {
+        if self.within_linear_range {
+            return Vec::new();
+        }
+        let detail = format!(
+            "linearity leaves out about {:.1} mm, more than {LINEAR_RANGE_MM} mm",
+            self.nonlinearity_estimate_mm
+        );
+        vec![WarningDocument {
+            code: Self::OUTSIDE.to_owned(),
+            detail,
+            numbers: serde_json::Map::new(),
+        }]
+    }
+}

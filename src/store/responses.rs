@@ -1,0 +1,49 @@
+//! Plan responses of a case: which there are, and what they were built for.
+
+use sqlx::Row as _;
+
+use super::{Store, StoreError};
+
+/// A case with the jobs that have built a response of it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct CaseResponses {
+    /// The version of the case.
+    pub version: i64,
+    /// Successful jobs, newest first.
+    pub jobs: Vec<String>,
+}
+
+/// What a response was built for.
+#[derive(Clone, Debug)]
+pub struct ResponseRow {
+    /// The document of its job.
+    pub document: String,
+    /// The key that it had then.
+    pub key: String,
+}
+
+const RESPONSES: &str = "SELECT cases.version, jobs.id FROM cases LEFT JOIN jobs \
+     ON jobs.case_id = cases.id AND jobs.kind = 'response' AND jobs.status = 'successful' \
+     WHERE cases.id = $1 ORDER BY jobs.id DESC";
+
+impl Store {
+    /// The responses of a case; `None` where there is no such case.
+    pub async fn responses(&self, case: &str) -> Result<Option<CaseResponses>, StoreError> {
+        let rows = sqlx::query(RESPONSES).bind(case).fetch_all(self.database.reader()).await?;
+        let Some(first) = rows.first() else { return Ok(None) };
+        let version = first.try_get(0)?;
+        let jobs = rows.iter().map(|row| row.try_get::<Option<String>, _>(1));
+        let jobs = jobs.collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect();
+        Ok(Some(CaseResponses { version, jobs }))
+    }
+
+    /// What a job was built for; `None` where it went meanwhile.
+    pub async fn response(&self, job: &str) -> Result<Option<ResponseRow>, StoreError> {
+        let row = sqlx::query("SELECT document, spec_hash FROM jobs WHERE id = $1")
+            .bind(job)
+            .fetch_optional(self.database.reader())
+            .await?;
+        let Some(row) = row else { return Ok(None) };
+        Ok(Some(ResponseRow { document: row.try_get(0)?, key: row.try_get(1)? }))
+    }
+}

@@ -1,0 +1,365 @@
+//! Plan responses over HTTP: built once, applied many times, refused when they do not fit.
+
+use reqwest::StatusCode;
+use serde_json::{Value, json};
+use sqlx::sqlite::{SqliteConnectOptions, SqlitePool};
+
+use crate::helpers::{Answer, Block, SMALL, Server, ask};
+
+const OCTETS: &str = "application/octet-stream";
+
+/// A block with two bones under its ends, the lower of the sides along a wall.
+async fn case(server: &Server) -> String {
+    let mut case = SMALL.case();
+    case["skin"] = json!({"node_set": "z_max"});
+    case["segments"] = json!([
+        {"name": "left", "nodes": {"node_set": "x_min"}},
+        {"name": "right", "nodes": {"node_set": "x_max"}},
+    ]);
+    case["fixed"] = json!([{"node_set": "z_min"}]);
+    case["sliding"] = json!([{"nodes": {"node_set": "y_min"}}]);
+    kept(server, &SMALL, &case).await
+}
+
+async fn kept(server: &Server, block: &Block, case: &Value) -> String {
+    let answer = ask(server.post("/v1/cases").multipart(block.form(case))).await;
+    answer.expect(StatusCode::CREATED)["id"].as_str().unwrap().to_owned()
+}
+
+async fn built(server: &Server, spec: Value) -> Value {
+    let job = server.job(&spec).await.expect(StatusCode::OK);
+    assert_eq!(job["status"], "successful", "{job}");
+    job
+}
+
+/// 25 mm and 30 degrees of the left bone, something else of the right one.
+fn plan() -> Value {
+    json!({"segments": [
+        {"name": "right", "translation_mm": [3, -2, 1]},
+        {"name": "left", "translation_mm": [15, 20, 0], "rotation_deg": [0, 30, 0], "pivot_mm": [0, 30, 15]},
+    ]})
+}
+
+async fn apply(server: &Server, case: &str, plan: &Value, accept: &str) -> Answer {
+    let path = format!("/v1/cases/{case}/response/apply");
+    ask(server.post(&path).header("accept", accept).json(&json!({"plan": plan}))).await
+}
+
+fn floats(bytes: &[u8]) -> Vec<f32> {
+    let (values, rest) = bytes.as_chunks::<4>();
+    assert!(rest.is_empty());
+    values.iter().map(|&value| f32::from_le_bytes(value)).collect()
+}
+
+/// node_id to displacement, from the lines of `skin.csv`.
+fn predicted(text: &str) -> Vec<(u32, [f64; 3])> {
+    let mut lines = text.lines();
+    let head: Vec<&str> = lines.next().unwrap().split(',').collect();
+    let column = |name: &str| head.iter().position(|other| *other == name).unwrap();
+    let id = column("node_id");
+    let axes = ["ux_mm", "uy_mm", "uz_mm"].map(column);
+    let row = |line: &str| {
+        let cells: Vec<&str> = line.split(',').collect();
+        (cells[id].parse().unwrap(), axes.map(|axis| cells[axis].parse().unwrap()))
+    };
+    lines.map(row).collect()
+}
+
+#[tokio::test]
+async fn a_plan_applied_to_a_response_is_the_prediction_of_that_plan() {
+    let server = Server::start();
+    let case = case(&server).await;
+    let job = built(&server, json!({"kind": "response", "case": case})).await;
+    let mut spec =
+        json!({"kind": "predict", "case": case, "plan": plan(), "outputs": ["skin.csv"]});
+    spec["tolerance"] = json!({"relative_residual": 1e-12});
+    let direct = built(&server, spec).await;
+    let path = format!("/v1/jobs/{}/results/skin.csv", direct["id"].as_str().unwrap());
+    let text = String::from_utf8(ask(server.get(&path)).await.bytes).unwrap();
+    let exact = predicted(&text);
+
+    let answer = apply(&server, &case, &plan(), "application/json").await;
+    let told = answer.expect(StatusCode::OK);
+    let ids: Vec<u32> = serde_json::from_value(told["node_ids"].clone()).unwrap();
+    let moved: Vec<[f64; 3]> = serde_json::from_value(told["displacement_mm"].clone()).unwrap();
+    assert_eq!(ids, exact.iter().map(|(id, _)| *id).collect::<Vec<_>>());
+    let mut largest: f64 = 0.0;
+    for (moved, (_, exact)) in moved.iter().zip(&exact) {
+        let difference: f64 = moved.iter().zip(exact).map(|(u, v)| (u - v).powi(2)).sum();
+        assert!(difference.sqrt() < 1e-4, "{moved:?} {exact:?}");
+        largest = largest.max(exact.iter().map(|v| v * v).sum::<f64>().sqrt());
+    }
+    assert!((told["max_mm"].as_f64().unwrap() - largest).abs() < 1e-4);
+    assert!((told["largest_rotation_deg"].as_f64().unwrap() - 30.0).abs() < 1e-9);
+    assert_eq!(told["within_linear_range"], false);
+    assert_eq!(told["warnings"][0]["code"], "outside-linear-range");
+    assert_eq!(told["job"], job["id"]);
+    assert!(answer.header("server-timing").contains("apply;dur="));
+
+    // The same numbers as octets, with the rest as headers.
+    let octets = apply(&server, &case, &plan(), OCTETS).await;
+    assert_eq!((octets.status, octets.header("content-type")), (StatusCode::OK, OCTETS));
+    let values: Vec<f32> = floats(&octets.bytes);
+    assert_eq!(values.len(), 3 * ids.len());
+    let flat = moved.as_flattened();
+    assert!(values.iter().zip(flat).all(|(value, other)| *value == *other as f32));
+    let told_mm: f64 = octets.header("facies-max-mm").parse().unwrap();
+    assert_eq!(told_mm, told["max_mm"].as_f64().unwrap());
+    assert_eq!(octets.header("facies-job"), job["id"].as_str().unwrap());
+    assert_eq!(octets.header("facies-within-linear-range"), "false");
+    assert_eq!(octets.header("facies-warning"), "outside-linear-range");
+}
+
+#[tokio::test]
+async fn the_columns_are_served_in_ranges_and_give_the_same_skin_to_who_adds_them_up() {
+    let server = Server::start();
+    let case = case(&server).await;
+    let job = built(&server, json!({"kind": "response", "case": case})).await;
+    let path = format!("/v1/cases/{case}/response");
+    let description = ask(server.get(&path)).await;
+    let told = description.expect(StatusCode::OK);
+    assert_eq!((&told["job"], &told["key"]), (&job["id"], &job["spec_hash"]));
+    let whole = ask(server.get(&path).header("accept", OCTETS)).await;
+    assert_eq!((whole.status, whole.header("content-type")), (StatusCode::OK, OCTETS));
+    assert_eq!(
+        whole.header("etag"),
+        format!("\"{}\"", told["columns"]["sha256"].as_str().unwrap())
+    );
+    let columns = floats(&whole.bytes);
+    let nodes = told["node_ids"].as_array().unwrap().len();
+    assert_eq!(columns.len(), 24 * 3 * nodes);
+
+    // What a front end does: a translation along z is column 12 s + 11 times its length.
+    let shift = json!({"segments": [{"name": "right", "translation_mm": [0, 0, 2.0]}]});
+    let applied = floats(&apply(&server, &case, &shift, OCTETS).await.bytes);
+    let column = &columns[(12 + 11) * 3 * nodes..][..3 * nodes];
+    assert!(applied.iter().zip(column).all(|(u, c)| *u == 2.0 * c));
+
+    for (accept, all) in [(OCTETS, &whole), ("application/json", &description)] {
+        let tag = all.header("etag").to_owned();
+        let ask_for = |name: &'static str, value: &str| {
+            ask(server.get(&path).header("accept", accept).header(name, value.to_owned()))
+        };
+        let known = ask_for("if-none-match", &tag).await;
+        assert_eq!((known.status, known.bytes.len()), (StatusCode::NOT_MODIFIED, 0));
+        let part = ask_for("range", "bytes=5-9").await;
+        assert_eq!(
+            (part.status, &part.bytes[..]),
+            (StatusCode::PARTIAL_CONTENT, &all.bytes[5..=9])
+        );
+        ask_for("range", "bytes=99999999-").await.problem(416, "range-not-satisfiable");
+    }
+    ask(server.get(&path).header("accept", "image/png")).await.problem(406, "not-acceptable");
+    let files = job["results"]["files"].as_array().unwrap();
+    let names: Vec<&str> = files.iter().map(|file| file["name"].as_str().unwrap()).collect();
+    assert_eq!(names, ["response.f32", "response.json", "skin_at_rest.vtp"]);
+}
+
+#[tokio::test]
+async fn the_moved_skin_is_readable_as_gltf() {
+    let server = Server::start();
+    let case = case(&server).await;
+    built(&server, json!({"kind": "response", "case": case})).await;
+    let shift = json!({"segments": [{"name": "left", "translation_mm": [2, 0, 0]}]});
+    let answer = apply(&server, &case, &shift, "model/gltf-binary").await;
+    assert_eq!(
+        (answer.status, answer.header("content-type")),
+        (StatusCode::OK, "model/gltf-binary")
+    );
+    assert_eq!(&answer.bytes[..4], b"glTF");
+    let number =
+        |at: usize| u32::from_le_bytes(answer.bytes[at..at + 4].try_into().unwrap()) as usize;
+    assert_eq!(number(8), answer.bytes.len());
+    let text = &answer.bytes[20..20 + number(12)];
+    let document: Value = serde_json::from_slice(text).unwrap();
+    let positions = &document["accessors"][1];
+    assert_eq!(positions["count"], 25);
+    // The corner of the block at x = 60 mm stays, the one at 0 moves to 2 mm.
+    assert!((positions["min"][0].as_f64().unwrap() - 0.002).abs() < 1e-6);
+    assert!((positions["max"][0].as_f64().unwrap() - 0.060).abs() < 1e-6);
+    assert_eq!(answer.header("facies-within-linear-range"), "true");
+}
+
+#[tokio::test]
+async fn a_response_is_built_once_and_goes_with_its_case() {
+    let server = Server::start();
+    let case = case(&server).await;
+    let missing = apply(&server, &case, &plan(), OCTETS).await;
+    missing.problem(404, "response-not-built");
+    let path = format!("/v1/cases/{case}/response");
+    ask(server.get(&path)).await.problem(404, "response-not-built");
+    let unknown = "01890000-0000-7000-8000-000000000000";
+    apply(&server, unknown, &plan(), OCTETS).await.problem(404, "not-found");
+
+    let first = built(&server, json!({"kind": "response", "case": case})).await;
+    let again = json!({"kind": "response", "case": case, "tags": ["again"], "method": "auto"});
+    let again = server.job(&again).await.expect(StatusCode::OK);
+    assert_eq!((&again["id"], &again["deduplicated"]), (&first["id"], &json!(true)));
+    // Other materials are another response; the newest answers unless one is named.
+    let soft = json!({"*": {"young_modulus_kpa": 5, "poisson_ratio": 0.3}});
+    let other = built(&server, json!({"kind": "response", "case": case, "materials": soft})).await;
+    assert_ne!(other["id"], first["id"]);
+    let newest = apply(&server, &case, &plan(), OCTETS).await;
+    assert_eq!(newest.header("facies-job"), other["id"].as_str().unwrap());
+    let named = |job: &str| {
+        let path = format!("/v1/cases/{case}/response/apply?job={job}");
+        ask(server.post(&path).header("accept", OCTETS).json(&json!({"plan": plan()})))
+    };
+    let old = named(first["id"].as_str().unwrap()).await;
+    assert_eq!(old.header("facies-job"), first["id"].as_str().unwrap());
+    assert_ne!(old.bytes, newest.bytes);
+    for job in [unknown, "nonsense"] {
+        named(job).await.problem(404, "response-not-built");
+    }
+    let removed = ask(server.delete(&format!("/v1/jobs/{}", other["id"].as_str().unwrap()))).await;
+    assert_eq!(removed.status, StatusCode::NO_CONTENT);
+    let left = apply(&server, &case, &plan(), OCTETS).await;
+    assert_eq!((left.status, left.bytes), (StatusCode::OK, old.bytes));
+
+    let erased = ask(server.delete(&format!("/v1/cases/{case}")).header("if-match", "*")).await;
+    assert_eq!(erased.status, StatusCode::NO_CONTENT);
+    apply(&server, &case, &plan(), OCTETS).await.problem(404, "not-found");
+    let job = format!("/v1/jobs/{}", first["id"].as_str().unwrap());
+    ask(server.get(&job)).await.problem(404, "no-such-job");
+    let blobs = std::fs::read_dir(server.path().join("blobs")).unwrap();
+    let left = blobs.flat_map(|folder| std::fs::read_dir(folder.unwrap().path()).unwrap()).count();
+    assert_eq!(left, 0, "nothing of the case is left on the disk");
+}
+
+#[tokio::test]
+async fn a_response_of_a_case_that_changed_is_stale() {
+    let server = Server::start();
+    let case = case(&server).await;
+    let job = built(&server, json!({"kind": "response", "case": case})).await;
+    assert_eq!(apply(&server, &case, &plan(), OCTETS).await.status, StatusCode::OK);
+    let options = SqliteConnectOptions::new().filename(server.path().join("facies.db"));
+    let database = SqlitePool::connect_with(options).await.unwrap();
+    let change = |field: &'static str, value: Value| {
+        let (database, case) = (database.clone(), case.clone());
+        async move {
+            sqlx::query(
+                "UPDATE cases SET version = version + 1, document = json_set(document, $1, json($2)) WHERE id = $3",
+            )
+            .bind(field)
+            .bind(value.to_string())
+            .bind(case)
+            .execute(&database)
+            .await
+            .unwrap();
+        }
+    };
+    // A name, tags and landmarks change no column.
+    change("$.landmarks", json!({"tip": [1, 2, 3]})).await;
+    assert_eq!(apply(&server, &case, &plan(), OCTETS).await.status, StatusCode::OK);
+    change("$.materials", json!({"*": {"young_modulus_kpa": 5, "poisson_ratio": 0.3}})).await;
+    let stale = apply(&server, &case, &plan(), OCTETS).await.problem(409, "response-stale");
+    assert_eq!(stale["job"], job["id"]);
+    let path = format!("/v1/cases/{case}/response?job={}", job["id"].as_str().unwrap());
+    ask(server.get(&path)).await.problem(409, "response-stale");
+    // Built anew, it answers again.
+    built(&server, json!({"kind": "response", "case": case})).await;
+    assert_eq!(apply(&server, &case, &plan(), OCTETS).await.status, StatusCode::OK);
+    change("$.sliding", json!([])).await;
+    apply(&server, &case, &plan(), OCTETS).await.problem(409, "response-stale");
+}
+
+#[tokio::test]
+async fn a_plan_that_the_response_cannot_follow_is_refused_with_the_place() {
+    let server = Server::start();
+    let case = case(&server).await;
+    built(&server, json!({"kind": "response", "case": case, "segments": ["left"]})).await;
+    let shift =
+        |name: &str, x: f64| json!({"segments": [{"name": name, "translation_mm": [x, 0, 0]}]});
+    let cases = [
+        ("other", shift("right", 1.0), "not-in-response", "/plan/segments/0/name"),
+        ("unknown", shift("chin", 1.0), "unknown-segment", "/plan/segments/0/name"),
+        ("a node set", shift("z_max", 1.0), "unknown-segment", "/plan/segments/0/name"),
+        ("far", shift("left", 200.0), "plan-out-of-range", "/plan/segments/0/translation_mm"),
+        (
+            "prescribed",
+            json!({"prescribed": [{"nodes": {"node_set": "z_max"}, "displacement_mm": [1, 0, 0]}]}),
+            "not-in-response",
+            "/plan/prescribed",
+        ),
+        (
+            "loads",
+            json!({"loads": [{"gravity_m_per_s2": [0, 0, -9.81]}]}),
+            "not-in-response",
+            "/plan/loads",
+        ),
+        ("frame", json!({"frame": "LPS", "segments": []}), "frame-conflict", "/plan/frame"),
+    ];
+    for (name, plan, code, pointer) in cases {
+        let problem = apply(&server, &case, &plan, OCTETS).await.problem_of(name, 422, code);
+        assert_eq!(problem["errors"][0]["pointer"], pointer, "{name}");
+    }
+    let bad = ask(server.post(&format!("/v1/cases/{case}/response/apply")).json(&json!({}))).await;
+    bad.problem(422, "validation-failed");
+    let sided = apply(&server, &case, &shift("right", 0.0), OCTETS).await;
+    assert_eq!(
+        sided.status,
+        StatusCode::OK,
+        "a segment without columns may be named when it stays"
+    );
+    assert!(floats(&sided.bytes).iter().all(|value| *value == 0.0));
+}
+
+#[tokio::test]
+async fn a_response_that_cannot_be_built_is_refused_before_it_is_queued() {
+    let server = Server::start();
+    let mut document = SMALL.case();
+    document["segments"] = json!([
+        {"name": "bone", "nodes": {"node_set": "z_min"}},
+        {"name": "side", "nodes": {"node_set": "x_min"}},
+    ]);
+    let shared = kept(&server, &SMALL, &document).await;
+    let spec = |case: &str| json!({"kind": "response", "case": case});
+    let problem = server.job(&spec(&shared)).await.problem(422, "plan-conflict");
+    // The edge that both sets of the 4 x 4 x 4 block have.
+    assert_eq!(
+        (&problem["count"], &problem["errors"][0]["pointer"]),
+        (&json!(5), &json!("/case/segments"))
+    );
+    document["segments"] = json!([]);
+    let empty = kept(&server, &SMALL, &document).await;
+    server.job(&spec(&empty)).await.problem(422, "empty-selection");
+
+    let case = case(&server).await;
+    let with = |field: &str, value: Value| {
+        let mut spec = spec(&case);
+        spec[field] = value;
+        spec
+    };
+    let unknown = server.job(&with("segments", json!(["left", "chin"]))).await;
+    let problem = unknown.problem(422, "unknown-segment");
+    assert_eq!(problem["errors"][0]["pointer"], "/segments/1");
+    let twice = server.job(&with("segments", json!(["left", "left"]))).await;
+    twice.problem(422, "validation-failed");
+    server.job(&with("method", json!("msm"))).await.problem(422, "method-not-available");
+    let tolerance = server.job(&with("tolerance", json!({"relative_residual": 1.0}))).await;
+    assert_eq!(
+        tolerance.problem(422, "validation-failed")["errors"][0]["pointer"],
+        "/tolerance/relative_residual"
+    );
+    server.job(&with("plan", json!({}))).await.problem(422, "validation-failed");
+    server.job(&spec("nonsense")).await.problem(422, "validation-failed");
+    let job = server.job(&with("budget", json!({"wall_s": 0.001}))).await;
+    let job = job.json();
+    assert_eq!(
+        (&job["status"], &job["error"]["type"]),
+        (&json!("failed"), &json!("budget-exceeded"))
+    );
+}
+
+#[tokio::test]
+async fn a_response_survives_a_memory_without_room_and_a_restart() {
+    let server = Server::start_with(&["--response-cache-mib", "0"]);
+    let case = case(&server).await;
+    built(&server, json!({"kind": "response", "case": case})).await;
+    let before = apply(&server, &case, &plan(), OCTETS).await;
+    assert_eq!(before.status, StatusCode::OK);
+    let (folder, _) = server.terminate();
+    let server = Server::start_in(folder, &[]);
+    let after = apply(&server, &case, &plan(), OCTETS).await;
+    assert_eq!((after.status, after.bytes), (StatusCode::OK, before.bytes));
+}
