@@ -7,7 +7,7 @@
 //! setup and solve. "Products" divide it by one plain f64 product on one thread in the same process.
 //! `RAYON_NUM_THREADS` sets the threads. `--columns` solves for the 24 columns of a plan response instead of
 //! the standard load. `--displacement` writes (column, node, component) as little-endian f64. Without the
-//! data it says so and ends.
+//! data it says so and ends. A size with a `+` at its end is that shell with every edge halved.
 
 mod measure;
 
@@ -20,6 +20,8 @@ use facies::boundary::NodeClass;
 use facies::mesh::Vector;
 use facies::model::linear_fem::{LoadCase, Observer, Problem};
 use facies::prediction::{Case, ElementChoice, Phase, Plan, Progress, Scene, Settings, predict};
+use facies::schema::methods::check_element;
+use facies::schema::{Faults, Pointer};
 use facies::solver::Tolerance;
 use measure::yardstick::PlainBlocks;
 use measure::{median, process, shell};
@@ -92,12 +94,12 @@ fn options() -> Options {
     options
 }
 
+/// The element that documents call so.
 fn element(name: &str) -> ElementChoice {
-    match name {
-        "auto" => ElementChoice::Auto,
-        "plain" => ElementChoice::Plain,
-        other => panic!("no element {other:?}: auto or plain"),
-    }
+    let known = serde_json::from_value(json!(name));
+    let known = known.unwrap_or_else(|error| panic!("no element {name:?}: {error}"));
+    let chosen = check_element(known, &Pointer::root(), &mut Faults::default());
+    chosen.unwrap_or_else(|| panic!("element {name:?} is not built"))
 }
 
 fn run(options: &Options, size: &str) {

@@ -7,14 +7,19 @@ use std::sync::Arc;
 use facies::boundary::NodeSelection;
 use facies::format::{Mesh, ReadLimits, read};
 use facies::material::LinearElastic;
+use facies::mesh::refinement::refine;
 use facies::mesh::{Vector, VolumeMesh};
 use facies::plan::{PlannedSegment, RigidMovement};
 use facies::prediction::{Case, CaseSegment, Plan, RegionNames};
 
 pub const SEGMENTS: [&str; 2] = ["maxilla", "mandible"];
 
-/// The shell of that size, or none, said aloud, where the data is not here.
+/// The shell of that size, with every edge halved for a `+` at the end of its name; or none, said aloud,
+/// where the data is not here.
 pub fn load(size: &str) -> Option<VolumeMesh> {
+    if let Some(coarse) = size.strip_suffix('+') {
+        return load(coarse).map(|mesh| refine(&mesh));
+    }
     let root = std::env::var_os("FACIES_SHARED")
         .map_or_else(|| PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../shared"), PathBuf::from);
     let path = root.join(format!("data/shell/{size}.vtu"));
