@@ -5,6 +5,7 @@ peer.py NAME SYSTEM_FOLDER RUNS THREADS [--warm]. NAME is a module of solvers/, 
     prepare(system)          brings the matrix into the form that the peer wants; not timed
     setup(prepared, threads) factorises, or builds a hierarchy
     solve(state, right)      one right-hand side (n) or several (n, columns); answers solution and iterations
+    release(state)           where Python alone does not give the memory back
 """
 
 import importlib
@@ -72,12 +73,14 @@ def main(name, folder, runs, threads, *flags):
     right = system.right[:, 0].copy() if system.right.shape[1] == 1 else system.right
     laps = []
     for _ in range(int(runs) + ("--warm" in flags)):
-        state = None  # the memory of the run before is free before the next one begins
         begin = clocks()
         state = module.setup(prepared, int(threads))
         middle = clocks()
         solution, iterations = module.solve(state, right)
         laps.append((middle - begin, clocks() - middle))
+        # The memory of a run is free before the next one begins.
+        getattr(module, "release", lambda state: None)(state)
+        del state
     setup, solve = np.median(laps["--warm" in flags :], axis=0)
     report = {
         "setup_s": setup[0],

@@ -63,7 +63,7 @@ def markdown(rows, machine, absent, checked):
         parts += [f"### {count(threads)}: the same in processor seconds", times(here, "total_cpu_s")]
         parts += [f"### {count(threads)}: added memory, MB", times(here, "added_mb", "{:.0f}")]
         parts += [f"### {count(threads)}: iterations", times(here, "iterations", "{:.0f}")]
-    parts += ["### Phases on the largest common shell, one thread", phases(single)]
+    parts += phases(single)
     many = [row for row in rows if row["columns"] > 1]
     if many:
         parts += ["### 24 right-hand sides, the columns of a plan response", columns(many)]
@@ -93,13 +93,16 @@ def times(rows, value, shown="{:.3g}"):
 
 def phases(rows):
     one = [row for row in rows if row["threads"] == 1 and row["material"] == "a" and "error" not in row]
+    if not one:
+        return []
     size = "300k" if any(row["size"] == "300k" for row in one) else one[-1]["size"]
     lines = [["tool", "assembly s", "setup s", "solve s", "iterations", "residual", "difference mm"]]
     for row in (row for row in one if row["size"] == size):
         numbers = [f"{row[f'{part}_s']:.3g}" for part in ("assembly", "setup", "solve")]
         last = [f"{row['iterations']:.0f}", f"{row['residual']:.1e}", f"{row['difference_mm']:.1e}"]
         lines.append([by_name(row["program"]).title, *numbers, *last])
-    return f"{size} (a). Setup of facies is its check of the scene; its solve includes the hierarchy.\n\n" + table(lines)
+    told = "Setup of facies is its check of the scene; its solve includes the hierarchy."
+    return [f"### Phases, {size} (a), one thread", told, table(lines)]
 
 
 def columns(rows):

@@ -17,3 +17,8 @@ def setup(matrix, threads):
 def solve(state, right):
     solver, matrix = state
     return solver.solve(matrix, right), 1
+
+
+def release(state):
+    solver, _ = state
+    solver.free_memory(everything=True)

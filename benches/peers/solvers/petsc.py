@@ -65,3 +65,7 @@ def solve(solver, right):
     solution = np.zeros_like(right)
     solver.solve(PETSc.Vec().createWithArray(right), PETSc.Vec().createWithArray(solution))
     return solution, solver.getIterationNumber()
+
+
+def release(solver):
+    solver.destroy()
