@@ -1,143 +1,320 @@
 //! Whole predictions on the face-like shells of the shared data: time of each phase and peak memory.
 //!
-//! `cargo bench --bench shells [-- SIZE …]` prints one row for each size and material; each runs in a
-//! process of its own, so that its peak memory is its own. Without the data it says so and ends.
+//! `cargo bench --bench shells [-- SIZE … --materials abcd --element plain --repeats 5 --columns --json FILE
+//! --displacement FILE]` prints one row for each size and material, and appends it to FILE as a line of
+//! JSON. Each row is the median of several runs, after one that warms up, in a process of its own, so that
+//! its peak memory is its own. Wall time is from mesh in memory to displacement in memory: check, assembly,
+//! setup and solve. "Products" divide it by one plain f64 product on one thread in the same process.
+//! `RAYON_NUM_THREADS` sets the threads. `--columns` solves for the 24 columns of a plan response instead of
+//! the standard load. `--displacement` writes (column, node, component) as little-endian f64. Without the
+//! data it says so and ends. A size with a `+` at its end is that shell with every edge halved.
 
-use std::collections::BTreeMap;
-use std::path::PathBuf;
+mod measure;
+
+use std::io::Write;
 use std::process::Command;
-use std::sync::{Arc, Mutex};
+use std::sync::Mutex;
 use std::time::Instant;
 
-use facies::boundary::NodeSelection;
-use facies::format::{Mesh, ReadLimits, read};
-use facies::material::LinearElastic;
-use facies::mesh::{Vector, VolumeMesh};
-use facies::plan::{PlannedSegment, RigidMovement};
-use facies::prediction::{
-    Case, CaseSegment, Phase, Plan, Progress, RegionNames, Scene, Settings, predict,
-};
+use facies::boundary::NodeClass;
+use facies::mesh::Vector;
+use facies::model::linear_fem::{LoadCase, Observer, Problem};
+use facies::prediction::{Case, ElementChoice, Phase, Plan, Progress, Scene, Settings, predict};
+use facies::schema::methods::ElementName;
+use facies::solver::Tolerance;
+use measure::yardstick::PlainBlocks;
+use measure::{median, process, shell};
+use serde_json::{Value, json};
+
+const HEAD: &str = "| shell | material | element | threads | unknowns | wall s | check s | assemble s | \
+    solve s | cpu s | products | iterations | residual | added MB |\n\
+    | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |";
+
+struct Options {
+    sizes: Vec<String>,
+    materials: String,
+    element: String,
+    repeats: usize,
+    columns: bool,
+    json: Option<String>,
+    displacement: Option<String>,
+    /// In this process, the only size and material.
+    here: bool,
+}
 
 fn main() {
-    let arguments: Vec<String> =
-        std::env::args().skip(1).filter(|a| !a.starts_with("--")).collect();
-    if let [size, material, "run"] = arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
-        return run(size, material);
+    let options = options();
+    if options.here {
+        return run(&options, &options.sizes[0]);
     }
-    let sizes: Vec<&str> = match arguments.is_empty() {
-        true => vec!["30k", "100k", "300k"],
-        false => arguments.iter().map(String::as_str).collect(),
-    };
-    println!(
-        "| shell | material | unknowns | read s | check s | assemble s | solve s | measures s | iterations | residual | peak MB |"
-    );
-    println!("| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |");
-    for size in sizes {
-        for material in ["a", "b", "c", "d"] {
-            let program = std::env::current_exe().expect("this program has a path");
-            let status = Command::new(program).args([size, material, "run"]).status();
-            if !status.is_ok_and(|status| status.success()) {
+    println!("{HEAD}");
+    let program = std::env::current_exe().expect("this program has a path");
+    for size in &options.sizes {
+        for material in options.materials.chars() {
+            let mut child = Command::new(&program);
+            child.args(std::env::args().skip(1).filter(|given| !options.sizes.contains(given)));
+            child.args([size, "--materials", &material.to_string(), "--here"]);
+            if !child.status().is_ok_and(|status| status.success()) {
                 println!("| {size} | {material} | failed |");
             }
         }
     }
 }
 
-fn run(size: &str, material: &str) {
-    let root = std::env::var_os("FACIES_SHARED")
-        .map_or_else(|| PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../shared"), PathBuf::from);
-    let path = root.join(format!("data/shell/{size}.vtu"));
-    let Ok(bytes) = std::fs::read(&path) else {
-        println!("skipped: {} is not here", path.display());
-        return;
+fn options() -> Options {
+    let mut options = Options {
+        sizes: Vec::new(),
+        materials: "abcd".to_owned(),
+        element: "plain".to_owned(),
+        repeats: 5,
+        columns: false,
+        json: None,
+        displacement: None,
+        here: false,
     };
-    let clock = Clock::default();
-    let read = read(&bytes, &ReadLimits::default()).expect("the shells are valid");
-    let Mesh::Volume(mesh) = read.mesh else { panic!("a shell is a volume mesh") };
-    clock.lap("read");
-    let (case, plan) = standard_load(mesh, material);
-    let scene = Scene::new(&case, &plan, &Settings::default()).expect("the standard load is valid");
-    clock.lap("check");
-    let answer = predict(&scene, &clock).expect("the standard load converges");
-    clock.lap("measures");
-    let laps = clock.laps.lock().expect("nobody panicked with the laps").1.clone();
-    let seconds =
-        |name: &str| laps.iter().filter(|(lap, _)| *lap == name).map(|(_, s)| s).sum::<f64>();
-    println!(
-        "| {size} | {material} | {} | {:.3} | {:.3} | {:.3} | {:.3} | {:.3} | {} {} | {:.1e} | {:.0} |",
-        answer.solver.unknowns,
-        seconds("read"),
-        seconds("check"),
-        seconds("assemble"),
-        seconds("solve"),
-        seconds("measures"),
-        answer.solver.iterations,
-        answer.solver.name,
-        answer.solver.relative_residual,
-        peak_megabytes()
-    );
+    let mut given = std::env::args().skip(1);
+    while let Some(argument) = given.next() {
+        let mut value = || given.next().unwrap_or_else(|| panic!("{argument} needs a value"));
+        match argument.as_str() {
+            "--bench" => {} // cargo says so to every bench
+            "--materials" => options.materials = value(),
+            "--element" => options.element = value(),
+            "--repeats" => options.repeats = value().parse().expect("--repeats is a number"),
+            "--json" => options.json = Some(value()),
+            "--displacement" => options.displacement = Some(value()),
+            "--columns" => options.columns = true,
+            "--here" => options.here = true,
+            size => options.sizes.push(size.to_owned()),
+        }
+    }
+    if options.sizes.is_empty() {
+        options.sizes = ["30k", "100k", "300k"].map(str::to_owned).to_vec();
+    }
+    options
 }
 
-/// The standard load of the shells, as their README states it.
-fn standard_load(mesh: VolumeMesh, material: &str) -> (Case, Plan) {
-    let label = |value| NodeSelection::Label { array: "tag".to_owned(), value };
-    let elastic = |e, nu| LinearElastic::new(e, nu, 1.0).expect("within the ranges");
-    let (soft, stiff) = match material {
-        "a" => (elastic(15.0, 0.46), None),
-        "b" => (elastic(3.0, 0.46), Some(elastic(790.0, 0.43))),
-        "c" => (elastic(15.0, 0.49), None),
-        _ => (elastic(15.0, 0.499), None),
+/// The element that documents call so.
+fn element(name: &str) -> ElementChoice {
+    let known: Result<ElementName, _> = serde_json::from_value(json!(name));
+    known.unwrap_or_else(|error| panic!("no element {name:?}: {error}")).choice()
+}
+
+fn run(options: &Options, size: &str) {
+    let material = options.materials.as_str();
+    let Some(mesh) = shell::load(size) else { return };
+    let (case, plan) = shell::standard_load(mesh, material);
+    let settings = Settings { element: element(&options.element), ..Settings::default() };
+    process::forget_peak();
+    let base_mb = process::resident_mb();
+    let solve = if options.columns { columns } else { standard };
+    let mut runs = Vec::new();
+    for _ in 0..=options.repeats {
+        runs.push(solve(&case, &plan, &settings));
+    }
+    let added_mb = process::peak_mb() - base_mb;
+    runs.remove(0);
+    runs.sort_by(|a, b| a.wall().total_cmp(&b.wall()));
+    let cpu = median(runs.iter().map(|run| run.cpu).collect());
+    let run = runs.swap_remove(runs.len() / 2);
+    let product = product_seconds(&case, &plan, &settings);
+    let row = json!({
+        "size": size,
+        "material": material,
+        "element": options.element,
+        "threads": rayon::current_num_threads(),
+        "columns": run.displacements.len(),
+        "unknowns": run.unknowns,
+        "wall_s": run.wall(),
+        "check_s": run.check,
+        "assemble_s": run.assemble,
+        "solve_s": run.solve,
+        "cpu_s": cpu,
+        "product_s": product,
+        "products": run.wall() / product,
+        "iterations": run.iterations,
+        "method": run.method,
+        "residual": run.residual,
+        "added_mb": added_mb,
+    });
+    report(options, &row, &run.displacements);
+}
+
+/// One prediction, or one set of columns: seconds of each phase, and what came out.
+struct Run {
+    check: f64,
+    assemble: f64,
+    solve: f64,
+    cpu: f64,
+    unknowns: usize,
+    iterations: usize,
+    method: &'static str,
+    residual: f64,
+    displacements: Vec<Vec<Vector>>,
+}
+
+impl Run {
+    fn wall(&self) -> f64 {
+        self.check + self.assemble + self.solve
+    }
+}
+
+fn standard(case: &Case, plan: &Plan, settings: &Settings) -> Run {
+    let clock = Clock::default();
+    let scene = Scene::new(case, plan, settings).expect("the standard load is valid");
+    let answer = predict(&scene, &clock).expect("the standard load converges");
+    let laps = clock.finished();
+    Run {
+        check: laps.seconds("check"),
+        assemble: laps.seconds("assemble"),
+        solve: laps.seconds("solve"),
+        cpu: laps.cpu,
+        unknowns: answer.solver.unknowns,
+        iterations: answer.solver.iterations,
+        method: answer.solver.name,
+        residual: answer.solver.relative_residual,
+        displacements: vec![answer.displacement],
+    }
+}
+
+/// The columns of a plan response, all at once.
+fn columns(case: &Case, plan: &Plan, settings: &Settings) -> Run {
+    let clock = Clock::default();
+    let scene = Scene::new(case, plan, settings).expect("the standard load is valid");
+    let problem = Problem {
+        tissue: scene.tissue(),
+        holds: &scene.conditions.holds,
+        forces: &scene.forces,
+        tolerance: Tolerance {
+            relative_residual: settings.relative_residual,
+            memory_mb: settings.memory_mb,
+        },
     };
-    let mut materials = BTreeMap::from([("*".to_owned(), soft)]);
-    materials.extend(stiff.map(|stiff| ("stiff".to_owned(), stiff)));
-    let names = BTreeMap::from([(1, "stiff".to_owned())]);
-    let segment = |name: &str, value| CaseSegment { name: name.to_owned(), nodes: label(value) };
-    let case = Case {
-        volume: Arc::new(mesh),
-        regions: Some(RegionNames { array: "band".to_owned(), names }),
-        skin: Some(label(5)),
-        segments: vec![segment("maxilla", 2), segment("mandible", 3)],
-        fixed: vec![label(1), label(4)],
-        materials,
-        ..Case::default()
+    let cases = response_cases(&scene);
+    let equilibria = problem.solve_cases(&cases, &clock).expect("the columns converge");
+    clock.phase(Phase::Surface);
+    let laps = clock.finished();
+    let worst = |value: fn(&facies::solver::Solution) -> f64| {
+        equilibria.iter().map(|one| value(&one.solution)).fold(0.0, f64::max)
     };
-    let turn = 3.0_f64.to_radians();
-    let moved = |name: &str, axis: Vector, pivot: Vector, along: Vector| PlannedSegment {
-        name: name.to_owned(),
-        movement: RigidMovement::about_pivot(axis * turn, pivot, along.normalize() * 8.0),
-    };
-    let segments = vec![
-        moved("maxilla", Vector::x(), Vector::new(0.0, 50.0, -10.0), Vector::new(0.0, 7.0, -4.0)),
-        moved("mandible", Vector::z(), Vector::new(0.0, 40.0, -50.0), Vector::new(0.0, -7.0, 4.0)),
-    ];
-    (case, Plan { segments, ..Plan::default() })
+    Run {
+        check: laps.seconds("check"),
+        assemble: laps.seconds("assemble"),
+        solve: laps.seconds("solve"),
+        cpu: laps.cpu,
+        unknowns: equilibria[0].unknowns,
+        iterations: worst(|solution| solution.iterations as f64) as usize,
+        method: equilibria[0].solution.method,
+        residual: worst(|solution| solution.relative_residual),
+        displacements: equilibria.into_iter().map(|one| one.displacement).collect(),
+    }
+}
+
+/// Column 12 s + 4 i + j multiplies (R - I)_ij (j < 3) or t_i (j = 3) of segment s, about the mean of its nodes.
+fn response_cases(scene: &Scene) -> Vec<LoadCase> {
+    let mut cases = Vec::new();
+    for name in shell::SEGMENTS {
+        let joined = scene.segment(name).map(|number| NodeClass::Joined(number as u32));
+        let is_joined = |node: usize| Some(scene.conditions.classes[node]) == joined;
+        let nodes: Vec<usize> = (0..scene.mesh.nodes.len()).filter(|&n| is_joined(n)).collect();
+        let sum: Vector = nodes.iter().map(|&node| scene.mesh.nodes[node]).sum();
+        let centre = sum / nodes.len() as f64;
+        for column in 0..12 {
+            let of_node = |node: usize| {
+                let x = scene.mesh.nodes[node] - centre;
+                let factor = if column % 4 < 3 { x[column % 4] } else { 1.0 };
+                Vector::from_fn(|i, _| if i == column / 4 { factor } else { 0.0 })
+            };
+            let held =
+                scene.conditions.holds.iter().map(|hold| match is_joined(hold.node as usize) {
+                    true => of_node(hold.node as usize),
+                    false => Vector::zeros(),
+                });
+            cases.push(LoadCase { held: held.collect(), forces: scene.forces.clone() });
+        }
+    }
+    cases
+}
+
+/// One plain product over the free nodes, on one thread.
+fn product_seconds(case: &Case, plan: &Plan, settings: &Settings) -> f64 {
+    let scene = Scene::new(case, plan, settings).expect("the standard load is valid");
+    let is_free = |node: usize| scene.conditions.classes[node] == NodeClass::Free;
+    PlainBlocks::new(&scene.mesh, is_free).seconds(1)
+}
+
+fn report(options: &Options, row: &Value, displacements: &[Vec<Vector>]) {
+    let text = |name: &str| row[name].as_str().unwrap_or_default().to_owned();
+    let number = |name: &str| row[name].as_f64().unwrap_or(f64::NAN);
+    println!(
+        "| {} | {} | {} | {} | {} | {:.3} | {:.3} | {:.3} | {:.3} | {:.3} | {:.0} | {} {} | {:.1e} | {:.0} |",
+        text("size"),
+        text("material"),
+        text("element"),
+        row["threads"],
+        row["unknowns"],
+        number("wall_s"),
+        number("check_s"),
+        number("assemble_s"),
+        number("solve_s"),
+        number("cpu_s"),
+        number("products"),
+        row["iterations"],
+        text("method"),
+        number("residual"),
+        number("added_mb"),
+    );
+    if let Some(path) = &options.json {
+        let file = std::fs::File::options().create(true).append(true).open(path);
+        let written = file.and_then(|mut file| writeln!(file, "{row}"));
+        written.expect("the JSON file can be written");
+    }
+    if let Some(path) = &options.displacement {
+        let values = displacements.iter().flatten().flatten();
+        let bytes: Vec<u8> = values.flat_map(|value| value.to_le_bytes()).collect();
+        std::fs::write(path, bytes).expect("the displacement file can be written");
+    }
 }
 
 /// Seconds between laps; the phases of a prediction are laps of their own.
-struct Clock {
-    laps: Mutex<(Instant, Vec<(&'static str, f64)>)>,
-    phase: Mutex<&'static str>,
+struct Clock(Mutex<Laps>);
+
+struct Laps {
+    begin: Instant,
+    current: &'static str,
+    laps: Vec<(&'static str, f64)>,
+    cpu: f64,
+}
+
+impl Laps {
+    fn seconds(&self, name: &str) -> f64 {
+        self.laps.iter().filter(|(lap, _)| *lap == name).map(|(_, seconds)| seconds).sum()
+    }
 }
 
 impl Default for Clock {
     fn default() -> Self {
-        Clock { laps: Mutex::new((Instant::now(), Vec::new())), phase: Mutex::new("check") }
+        let (laps, cpu) = (Vec::new(), process::cpu_seconds());
+        Clock(Mutex::new(Laps { begin: Instant::now(), current: "check", laps, cpu }))
     }
 }
 
 impl Clock {
-    fn lap(&self, name: &'static str) {
-        let mut laps = self.laps.lock().expect("nobody panicked with the laps");
-        let seconds = laps.0.elapsed().as_secs_f64();
-        laps.1.push((name, seconds));
-        laps.0 = Instant::now();
+    fn finished(self) -> Laps {
+        self.0.into_inner().expect("nobody panicked with the laps")
     }
 }
 
 impl Progress for Clock {
     fn phase(&self, phase: Phase) {
-        let mut current = self.phase.lock().expect("nobody panicked with the phase");
-        self.lap(std::mem::replace(&mut *current, phase.name()));
+        let mut laps = self.0.lock().expect("nobody panicked with the laps");
+        let name = std::mem::replace(&mut laps.current, phase.name());
+        let seconds = laps.begin.elapsed().as_secs_f64();
+        laps.laps.push((name, seconds));
+        if phase == Phase::Surface {
+            // Displacement is in memory; what follows is not part of the time.
+            laps.cpu = process::cpu_seconds() - laps.cpu;
+        }
+        laps.begin = Instant::now();
     }
 
     fn iteration(&self, _iteration: usize, _relative_residual: f64, _wanted: f64) {}
@@ -147,10 +324,20 @@ impl Progress for Clock {
     }
 }
 
-/// The largest resident size of this process so far, where the system tells it.
-fn peak_megabytes() -> f64 {
-    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
-    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
-    let kilobytes = line.and_then(|rest| rest.split_whitespace().next()?.parse::<f64>().ok());
-    kilobytes.unwrap_or(f64::NAN) / 1024.0
+impl Observer for Clock {
+    fn assembling(&self) {
+        self.phase(Phase::Assemble);
+    }
+
+    fn solving(&self) {
+        self.phase(Phase::Solve);
+    }
+
+    fn iterated(&self, _iteration: usize, _relative_residual: f64) -> bool {
+        true
+    }
+
+    fn is_stopped(&self) -> bool {
+        false
+    }
 }

@@ -170,13 +170,16 @@ impl Shared {
         let _inside = span.enter();
         tracing::info!(kind = %claim.kind, "job started");
         let folder = self.store.attempt_folder(&lease.job, lease.attempt);
-        let made = self.make(claim, &folder, &job, pool);
-        let ended = made.and_then(|finished| self.publish(lease, finished));
-        let status = self.conclude(lease, &job, ended);
-        self.heartbeat.let_go(lease);
+        let made = self.make(claim, &folder, &job, pool).and_then(|finished| {
+            let files = read_files(finished.files)?;
+            Ok((finished.result, files))
+        });
         if let Err(error) = remove_attempt(&folder) {
             tracing::warn!(%error, "the files of an attempt were left to the next start");
         }
+        let ended = made.and_then(|(result, files)| self.publish(lease, &result, &files));
+        let status = self.conclude(lease, &job, ended);
+        self.heartbeat.let_go(lease);
         let duration_ms = started.elapsed().as_secs_f64() * 1e3;
         tracing::info!(status, duration_ms, "job ended");
     }
@@ -206,20 +209,15 @@ impl Shared {
     }
 
     /// Stores the files and makes them and the manifest visible at once; false when the job is not ours.
-    fn publish(&self, lease: &Lease, finished: Finished) -> Result<bool, Failure> {
-        let mut files = Vec::with_capacity(finished.files.len());
-        for file in finished.files {
-            let bytes = Bytes::from(std::fs::read(&file.path)?);
-            files.push(PublishedFile {
-                name: file.name,
-                media_type: file.media_type,
-                sha256: sha256_hex(&bytes),
-                bytes,
-            });
-        }
+    fn publish(
+        &self,
+        lease: &Lease,
+        result: &str,
+        files: &[PublishedFile],
+    ) -> Result<bool, Failure> {
         let until = Instant::now() + self.lease;
         loop {
-            let published = self.store.publish(lease, &finished.result, &files);
+            let published = self.store.publish(lease, result, files);
             match self.runtime.block_on(published) {
                 Err(error) if error.is_unavailable() && Instant::now() < until => {
                     tracing::warn!(%error, "the result waits for the database");
@@ -276,6 +274,15 @@ impl Shared {
             }
         }
     }
+}
+
+fn read_files(files: Vec<FinishedFile>) -> std::io::Result<Vec<PublishedFile>> {
+    let read = |file: FinishedFile| {
+        let bytes = Bytes::from(std::fs::read(&file.path)?);
+        let sha256 = sha256_hex(&bytes);
+        Ok(PublishedFile { name: file.name, media_type: file.media_type, sha256, bytes })
+    };
+    files.into_iter().map(read).collect()
 }
 
 /// Removes the folder of an attempt, and that of its job when it was the only one.

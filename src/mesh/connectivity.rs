@@ -13,9 +13,26 @@ pub(super) struct SharedFace {
     pub local: u8,
 }
 
-/// All faces of all cells, those with the same nodes side by side.
+/// All faces of all cells in the order of their nodes, those with the same nodes side by side.
 pub(super) fn sorted_faces(mesh: &VolumeMesh) -> Vec<SharedFace> {
-    let mut faces = Vec::with_capacity(mesh.cells.len() * 4);
+    // A counting sort by the lowest node leaves some twenty faces to sort at each.
+    let mut next = vec![0_u32; mesh.nodes.len() + 1];
+    for_each_face(mesh, |face| next[face.nodes[0] as usize + 1] += 1);
+    for node in 0..mesh.nodes.len() {
+        next[node + 1] += next[node];
+    }
+    let none = SharedFace { nodes: [u32::MAX; 4], cell: u32::MAX, local: u8::MAX };
+    let mut faces = vec![none; next[mesh.nodes.len()] as usize];
+    for_each_face(mesh, |face| {
+        let place = &mut next[face.nodes[0] as usize];
+        faces[*place as usize] = face;
+        *place += 1;
+    });
+    faces.par_chunk_by_mut(|a, b| a.nodes[0] == b.nodes[0]).for_each(<[_]>::sort_unstable);
+    faces
+}
+
+fn for_each_face(mesh: &VolumeMesh, mut visit: impl FnMut(SharedFace)) {
     for (cell, (shape, cell_nodes)) in mesh.cells.iter().enumerate() {
         for (local, face) in shape.faces().iter().enumerate() {
             let mut nodes = [u32::MAX; 4];
@@ -23,11 +40,9 @@ pub(super) fn sorted_faces(mesh: &VolumeMesh) -> Vec<SharedFace> {
                 *slot = cell_nodes[node];
             }
             nodes.sort_unstable();
-            faces.push(SharedFace { nodes, cell: cell as u32, local: local as u8 });
+            visit(SharedFace { nodes, cell: cell as u32, local: local as u8 });
         }
     }
-    faces.par_sort_unstable();
-    faces
 }
 
 /// For each cell the number of its part: cells that share a face belong together. Parts are numbered

@@ -114,7 +114,7 @@ impl Report<'_> {
             let solver = &provenance["solver"];
             let word = |value: &Value| value.as_str().unwrap_or("-").to_owned();
             lines.push(format!(
-                "{name}: {}, {}, {} ({})",
+                "{name}: {}, {}",
                 word(&provenance["method"]),
                 solver["elements"]
                     .as_array()
@@ -123,6 +123,9 @@ impl Report<'_> {
                     .map(word)
                     .collect::<Vec<_>>()
                     .join(", "),
+            ));
+            lines.push(format!(
+                "  solved by {} ({})",
                 word(&solver["name"]),
                 word(&solver["preconditioner"]),
             ));
