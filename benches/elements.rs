@@ -1,7 +1,8 @@
 //! Elements against each other, as tables of docs/accuracy.md: `cargo bench --bench elements`.
 //!
 //! The slab of six tetrahedra a cell against quadratic cells of 2 mm, then the face-like shell of the shared
-//! data against quadratic elements on the same mesh. Time is that of a whole prediction after its check.
+//! data against quadratic elements on the same mesh, then the time of a larger shell. Time is that of a whole
+//! prediction after its check, the least of three for the larger shell.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -21,8 +22,13 @@ use facies::prediction::{
 
 fn main() {
     slabs();
-    for size in ["30k", "100k"] {
-        shell(size);
+    if let Some(mesh) = mesh_of("30k") {
+        shell(&mesh);
+    }
+    for size in ["100k", "300k"] {
+        if let Some(mesh) = mesh_of(size) {
+            times(size, &mesh);
+        }
     }
 }
 
@@ -101,18 +107,46 @@ fn slabs() {
     println!();
 }
 
-fn shell(size: &str) {
+fn mesh_of(size: &str) -> Option<Arc<VolumeMesh>> {
     let root = std::env::var_os("FACIES_SHARED")
         .map_or_else(|| PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../shared"), PathBuf::from);
     let path = root.join(format!("data/shell/{size}.vtu"));
     let Ok(bytes) = std::fs::read(&path) else {
         println!("skipped: {} is not here", path.display());
-        return;
+        return None;
     };
     let read = read(&bytes, &ReadLimits::default()).expect("the shells are valid");
     let Mesh::Volume(mesh) = read.mesh else { panic!("a shell is a volume mesh") };
-    let mesh = Arc::new(mesh);
-    println!("Shell {size}: difference of the skin to quadratic elements on the same mesh, mm\n");
+    Some(Arc::new(mesh))
+}
+
+fn times(size: &str, mesh: &Arc<VolumeMesh>) {
+    println!("Shell {size}: time\n");
+    println!("| material | element | unknowns | iterations | s | times plain at nu 0.46 |");
+    println!("| --- | --- | --- | --- | --- | --- |");
+    let mut plain = None;
+    for (element, nu) in [
+        (ElementChoice::Plain, 0.46),
+        (ElementChoice::Stabilised, 0.3),
+        (ElementChoice::Stabilised, 0.46),
+        (ElementChoice::Stabilised, 0.499),
+        (ElementChoice::Stabilised, 0.4999),
+    ] {
+        let (case, plan) = standard_load(mesh, elastic(15.0, nu), None);
+        let runs = [(); 3].map(|()| run(&case, &plan, element));
+        let seconds = runs.iter().map(|(_, seconds)| *seconds).fold(f64::INFINITY, f64::min);
+        let solver = &runs[0].0.solver;
+        let ratio = seconds / *plain.get_or_insert(seconds);
+        println!(
+            "| nu {nu} | {} | {} | {} | {seconds:.3} | {ratio:.2} |",
+            solver.elements[0], solver.unknowns, solver.iterations
+        );
+    }
+    println!();
+}
+
+fn shell(mesh: &Arc<VolumeMesh>) {
+    println!("Shell 30k: difference of the skin to quadratic elements on the same mesh, mm\n");
     println!("| material | element | unknowns | mean | largest | iterations | s |");
     println!("| --- | --- | --- | --- | --- | --- | --- |");
     for (name, soft, stiff) in [
@@ -123,7 +157,7 @@ fn shell(size: &str) {
         ("nu 0.4999", elastic(15.0, 0.4999), None),
         ("stiff bands", elastic(3.0, 0.46), Some(elastic(790.0, 0.43))),
     ] {
-        let (case, plan) = standard_load(&mesh, soft, stiff);
+        let (case, plan) = standard_load(mesh, soft, stiff);
         let settings = Settings { element: ElementChoice::Quadratic, ..Settings::default() };
         let scene = Scene::new(&case, &plan, &settings).expect("the standard load is valid");
         let quadratic = run(&case, &plan, ElementChoice::Quadratic);

@@ -6,7 +6,7 @@
 use nalgebra::{Matrix6, Vector6};
 
 use super::hold::Hold;
-use crate::mesh::connectivity::parts_by_face;
+use crate::mesh::connectivity::Faces;
 use crate::mesh::{Vector, VolumeMesh};
 
 /// A rigid movement is held when its eigenvalue exceeds this share of the largest one: a part may be
@@ -24,8 +24,8 @@ pub struct LoosePart {
 }
 
 /// The parts of the mesh that the holds do not keep in place.
-pub fn loose_parts(mesh: &VolumeMesh, holds: &[Hold]) -> Vec<LoosePart> {
-    let mut parts = Parts::new(mesh);
+pub fn loose_parts(mesh: &VolumeMesh, faces: &Faces, holds: &[Hold]) -> Vec<LoosePart> {
+    let mut parts = Parts::new(mesh, &faces.parts());
     for hold in holds {
         for held in 0..hold.count() {
             let axis = hold.axes().column(held).into_owned();
@@ -88,26 +88,37 @@ struct Parts {
 }
 
 impl Parts {
-    fn new(mesh: &VolumeMesh) -> Self {
-        let part_of_cell = parts_by_face(mesh);
-        let cells = mesh.cells.iter().zip(&part_of_cell);
-        let mut pairs: Vec<(u32, u32)> = cells
-            .flat_map(|((_, nodes), &part)| nodes.iter().map(move |&node| (node, part)))
-            .collect();
-        pairs.sort_unstable();
-        pairs.dedup();
+    fn new(mesh: &VolumeMesh, part_of_cell: &[u32]) -> Self {
+        // The parts of the cells around each node, several times each.
+        let mut first = vec![0_usize; mesh.nodes.len() + 1];
+        mesh.cells
+            .iter()
+            .for_each(|(_, nodes)| nodes.iter().for_each(|&n| first[n as usize + 1] += 1));
+        for node in 0..mesh.nodes.len() {
+            first[node + 1] += first[node];
+        }
+        let mut next = first.clone();
+        let mut around = vec![0_u32; first[mesh.nodes.len()]];
+        for ((_, nodes), &part) in mesh.cells.iter().zip(part_of_cell) {
+            for &node in nodes {
+                around[next[node as usize]] = part;
+                next[node as usize] += 1;
+            }
+        }
         let count = part_of_cell.iter().max().map_or(0, |last| *last as usize + 1);
         let mut nodes_of: Vec<Vec<u32>> = vec![Vec::new(); count];
-        let mut start = vec![0; mesh.nodes.len() + 1];
-        for &(node, part) in &pairs {
-            nodes_of[part as usize].push(node);
-            start[node as usize + 1] += 1;
-        }
+        let mut parts = Parts { bodies: Vec::new(), start: vec![0], body_of: Vec::new() };
         for node in 0..mesh.nodes.len() {
-            start[node + 1] += start[node];
+            let own = &mut around[first[node]..first[node + 1]];
+            own.sort_unstable();
+            for same in own.chunk_by(|a, b| a == b) {
+                nodes_of[same[0] as usize].push(node as u32);
+                parts.body_of.push(same[0]);
+            }
+            parts.start.push(parts.body_of.len());
         }
-        let bodies = nodes_of.into_iter().map(|nodes| Body::new(mesh, nodes)).collect();
-        Parts { bodies, start, body_of: pairs.into_iter().map(|(_, part)| part).collect() }
+        parts.bodies = nodes_of.into_iter().map(|nodes| Body::new(mesh, nodes)).collect();
+        parts
     }
 
     fn places_of(&self, node: u32) -> std::ops::Range<usize> {

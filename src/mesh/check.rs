@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use super::connectivity::{parts_by_face, sorted_faces};
+use super::connectivity::Faces;
 use super::jacobian::signed_volume;
 use super::surface_edges::count_edges;
 use super::{CellShape, TriangleSurface, Vector, VolumeMesh, Warning};
@@ -202,15 +202,13 @@ fn duplicates(nodes: &[Vector]) -> u64 {
 
 /// Faces that belong to more than two cells.
 fn nonmanifold_faces(mesh: &VolumeMesh) -> u64 {
-    let faces = sorted_faces(mesh);
-    let shared = faces.chunk_by(|one, other| one.nodes == other.nodes);
-    shared.filter(|group| group.len() > 2).count() as u64
+    Faces::new(mesh).shared().filter(|group| group.len() > 2).count() as u64
 }
 
 /// Cells of each part of a volume mesh, largest first; parts hang together by faces.
 fn volume_parts(mesh: &VolumeMesh) -> Vec<u64> {
     let mut sizes = Vec::new();
-    for part in parts_by_face(mesh) {
+    for part in Faces::new(mesh).parts() {
         let part = part as usize;
         sizes.resize(sizes.len().max(part + 1), 0);
         sizes[part] += 1;

@@ -14,59 +14,70 @@ pub(super) struct SharedFace {
 }
 
 /// All faces of all cells in the order of their nodes, those with the same nodes side by side.
-pub(super) fn sorted_faces(mesh: &VolumeMesh) -> Vec<SharedFace> {
-    // A counting sort by the lowest node leaves some twenty faces to sort at each.
-    let mut next = vec![0_u32; mesh.nodes.len() + 1];
-    for_each_face(mesh, |face| next[face.nodes[0] as usize + 1] += 1);
-    for node in 0..mesh.nodes.len() {
-        next[node + 1] += next[node];
-    }
-    let none = SharedFace { nodes: [u32::MAX; 4], cell: u32::MAX, local: u8::MAX };
-    let mut faces = vec![none; next[mesh.nodes.len()] as usize];
-    for_each_face(mesh, |face| {
-        let place = &mut next[face.nodes[0] as usize];
-        faces[*place as usize] = face;
-        *place += 1;
-    });
-    faces.par_chunk_by_mut(|a, b| a.nodes[0] == b.nodes[0]).for_each(<[_]>::sort_unstable);
-    faces
+pub struct Faces {
+    sorted: Vec<SharedFace>,
+    cells: usize,
 }
 
-fn for_each_face(mesh: &VolumeMesh, mut visit: impl FnMut(SharedFace)) {
-    for (cell, (shape, cell_nodes)) in mesh.cells.iter().enumerate() {
-        for (local, face) in shape.faces().iter().enumerate() {
-            let mut nodes = [u32::MAX; 4];
-            for (slot, &node) in nodes.iter_mut().zip(*face) {
-                *slot = cell_nodes[node];
+impl Faces {
+    pub fn new(mesh: &VolumeMesh) -> Self {
+        // A counting sort by the lowest node leaves some twenty faces to sort at each.
+        let mut next = vec![0_u32; mesh.nodes.len() + 1];
+        for (shape, nodes) in mesh.cells.iter() {
+            for face in shape.faces() {
+                let lowest = face.iter().map(|&local| nodes[local]).min();
+                next[lowest.map_or(0, |lowest| lowest as usize + 1)] += 1;
             }
-            nodes.sort_unstable();
-            visit(SharedFace { nodes, cell: cell as u32, local: local as u8 });
         }
+        for node in 0..mesh.nodes.len() {
+            next[node + 1] += next[node];
+        }
+        let none = SharedFace { nodes: [u32::MAX; 4], cell: u32::MAX, local: u8::MAX };
+        let mut sorted = vec![none; next[mesh.nodes.len()] as usize];
+        for (cell, (shape, cell_nodes)) in mesh.cells.iter().enumerate() {
+            for (local, face) in shape.faces().iter().enumerate() {
+                let mut nodes = [u32::MAX; 4];
+                for (slot, &node) in nodes.iter_mut().zip(*face) {
+                    *slot = cell_nodes[node];
+                }
+                nodes.sort_unstable();
+                let place = &mut next[nodes[0] as usize];
+                sorted[*place as usize] =
+                    SharedFace { nodes, cell: cell as u32, local: local as u8 };
+                *place += 1;
+            }
+        }
+        let by_lowest = sorted.par_chunk_by_mut(|a, b| a.nodes[0] == b.nodes[0]);
+        by_lowest.for_each(<[_]>::sort_unstable);
+        Faces { sorted, cells: mesh.cells.len() }
     }
-}
 
-/// For each cell the number of its part: cells that share a face belong together. Parts are numbered
-/// in the order of their lowest cells. Parts that touch in a node or an edge only stay apart.
-pub fn parts_by_face(mesh: &VolumeMesh) -> Vec<u32> {
-    let mut parent: Vec<u32> = (0..mesh.cells.len() as u32).collect();
-    for same in sorted_faces(mesh).chunk_by(|a, b| a.nodes == b.nodes) {
-        for pair in same.windows(2) {
+    /// The faces with the same nodes, one group after the other.
+    pub(super) fn shared(&self) -> impl Iterator<Item = &[SharedFace]> {
+        self.sorted.chunk_by(|a, b| a.nodes == b.nodes)
+    }
+
+    /// For each cell the number of its part: cells that share a face belong together. Parts are numbered
+    /// in the order of their lowest cells. Parts that touch in a node or an edge only stay apart.
+    pub fn parts(&self) -> Vec<u32> {
+        let mut parent: Vec<u32> = (0..self.cells as u32).collect();
+        for pair in self.shared().flat_map(|same| same.windows(2)) {
             let (a, b) = (root(&mut parent, pair[0].cell), root(&mut parent, pair[1].cell));
             parent[a.max(b) as usize] = a.min(b);
         }
+        let mut part_of_root = vec![u32::MAX; parent.len()];
+        let mut parts = 0;
+        (0..parent.len() as u32)
+            .map(|cell| {
+                let root = root(&mut parent, cell) as usize;
+                if part_of_root[root] == u32::MAX {
+                    part_of_root[root] = parts;
+                    parts += 1;
+                }
+                part_of_root[root]
+            })
+            .collect()
     }
-    let mut part_of_root = vec![u32::MAX; parent.len()];
-    let mut parts = 0;
-    (0..parent.len() as u32)
-        .map(|cell| {
-            let root = root(&mut parent, cell) as usize;
-            if part_of_root[root] == u32::MAX {
-                part_of_root[root] = parts;
-                parts += 1;
-            }
-            part_of_root[root]
-        })
-        .collect()
 }
 
 /// The lowest cell of the part so far, halving paths on the way.

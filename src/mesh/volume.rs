@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 
-use super::connectivity::sorted_faces;
+use super::connectivity::Faces;
 use super::{TriangleSurface, Vector};
 
 /// The shape of a first-order cell. Local node order is that of VTK for tetrahedra and hexahedra;
@@ -180,12 +180,13 @@ impl VolumeMesh {
 
     /// The faces that belong to one cell only, in the order of cells and of the faces of each.
     pub fn boundary_faces(&self) -> Vec<BoundaryFace> {
-        let faces = sorted_faces(self);
-        let mut alone: Vec<(u32, u8)> = faces
-            .chunk_by(|a, b| a.nodes == b.nodes)
-            .filter(|same| same.len() == 1)
-            .map(|same| (same[0].cell, same[0].local))
-            .collect();
+        self.boundary_of(&Faces::new(self))
+    }
+
+    /// The same from faces that are known already.
+    pub fn boundary_of(&self, faces: &Faces) -> Vec<BoundaryFace> {
+        let alone = faces.shared().filter(|same| same.len() == 1);
+        let mut alone: Vec<(u32, u8)> = alone.map(|same| (same[0].cell, same[0].local)).collect();
         alone.par_sort_unstable();
         alone.into_iter().map(|(cell, local)| self.face(cell, local)).collect()
     }

@@ -10,6 +10,7 @@ use crate::boundary::conditions::combine;
 use crate::boundary::support::loose_parts;
 use crate::boundary::{Conditions, HeldNodes, NodeClass, NodeSelection, Selector};
 use crate::material::LinearElastic;
+use crate::mesh::connectivity::Faces;
 use crate::mesh::volume::BoundaryFace;
 use crate::mesh::{CellShape, Vector, Warning};
 use crate::model::load::{FaceLoad, add_face_load, add_gravity};
@@ -219,8 +220,8 @@ impl<'a> Check<'a> {
         faces
     }
 
-    pub(super) fn support(&mut self, scene: &Scene) {
-        let loose = loose_parts(&scene.mesh, &scene.conditions.holds);
+    pub(super) fn support(&mut self, scene: &Scene, faces: &Faces) {
+        let loose = loose_parts(&scene.mesh, faces, &scene.conditions.holds);
         for part in &loose {
             let detail = format!(
                 "the part of {} nodes that contains node {} can move freely in {} of the 6 rigid ways: \

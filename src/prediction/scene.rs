@@ -9,6 +9,7 @@ use super::problem::SceneErrors;
 use super::skin::Skin;
 use crate::boundary::{Conditions, NodeClass, tearing};
 use crate::material::LinearElastic;
+use crate::mesh::connectivity::Faces;
 use crate::mesh::{CellShape, Vector, VolumeMesh, Warning};
 use crate::model::assembly::Tissue;
 use crate::model::linear_fem::{Equilibrium, LinearFemError, LoadCase, Observer, Problem};
@@ -53,7 +54,8 @@ pub struct Scene {
 impl Scene {
     /// Checks a case and a plan together; says everything that is wrong, not the first thing only.
     pub fn new(case: &Case, plan: &Plan, settings: &Settings) -> Result<Scene, SceneErrors> {
-        let boundary = case.volume.boundary_faces();
+        let faces = Faces::new(&case.volume);
+        let boundary = case.volume.boundary_of(&faces);
         let mut check = Check::new(case, &boundary);
 
         // 1. Tissue.
@@ -85,7 +87,7 @@ impl Scene {
         check.add_loads(plan, &mut scene);
 
         // 4. What cannot be solved, and what a reader must know.
-        check.support(&scene);
+        check.support(&scene, &faces);
         check.problems.give_up_if_any()?;
         scene.warnings = scene.conditions.warnings.clone();
         scene.warnings.extend(check.warnings);
