@@ -8,7 +8,7 @@
 
 use super::lanes::Lanes;
 use super::multigrid::{Multigrid, Workspace};
-use super::vector::{advance, column, dot, interleave, largest, norm, ratio, turn, two_dots};
+use super::vector::{advance, column, dot, interleave, largest, norm, ratio, turn};
 use super::{Solution, SolverError, System, Tolerance, Unknowns, Watch};
 
 /// Iterations without a new smallest residual after which no more progress is expected.
@@ -99,7 +99,10 @@ impl<'a, const N: usize> Run<'a, N> {
     }
 
     fn relative_residuals(&self) -> [f64; N] {
-        let norms = norm(self.r.as_flattened());
+        self.relative(&norm(self.r.as_flattened()))
+    }
+
+    fn relative(&self, norms: &[f64; N]) -> [f64; N] {
         std::array::from_fn(|n| ratio(norms[n], self.scale[n]))
     }
 
@@ -119,10 +122,10 @@ impl<'a, const N: usize> Run<'a, N> {
             }
             let step: [f64; N] =
                 std::array::from_fn(|n| if is_open[n] { rho[n] / curvature[n] } else { 0.0 });
-            self.advance(&step);
+            let norms = self.advance(&step);
             self.iterations += 1;
             (0..N).filter(|&n| is_open[n]).for_each(|n| self.own_iterations[n] += 1);
-            residuals = self.relative_residuals();
+            residuals = self.relative(&norms);
             let residual = largest(&residuals);
             self.remember(residual);
             if !watch(self.iterations, residual) {
@@ -140,8 +143,8 @@ impl<'a, const N: usize> Run<'a, N> {
             }
             let correction = self.multigrid.apply(&self.r, &mut self.workspace);
             let z = correction.values.as_flattened();
-            let [along_residual, along_product] =
-                two_dots(self.r.as_flattened(), self.product.as_flattened(), z);
+            let along_residual = dot(self.r.as_flattened(), z);
+            let along_product = dot(self.product.as_flattened(), z);
             // The part of the new correction along the last change of the residual, r - r_old = -step K p.
             let scale = correction.scale;
             let factor: [f64; N] =
@@ -151,9 +154,10 @@ impl<'a, const N: usize> Run<'a, N> {
         }
     }
 
-    fn advance(&mut self, step: &[f64; N]) {
+    /// Takes a step; returns the norm of what is left.
+    fn advance(&mut self, step: &[f64; N]) -> [f64; N] {
         let (x, r) = (self.x.as_flattened_mut(), self.r.as_flattened_mut());
-        advance(x, r, step, self.p.as_flattened(), self.product.as_flattened());
+        advance(x, r, step, self.p.as_flattened(), self.product.as_flattened())
     }
 
     /// Keeps every residual up to 100, then every tenth, for the report of a failure.

@@ -271,7 +271,10 @@ impl<'a, const N: usize> Run<'a, N> {
     }
 
     fn relative_residuals(&self) -> [f64; N] {
-        let norms = norm(&self.r);
+        self.relative(&norm(&self.r))
+    }
+
+    fn relative(&self, norms: &[f64; N]) -> [f64; N] {
         std::array::from_fn(|n| ratio(norms[n], self.scale[n]))
     }
 
@@ -294,10 +297,10 @@ impl<'a, const N: usize> Run<'a, N> {
                     self.keep = MOST_DIRECTIONS / N;
                 }
             }
-            advance(&mut self.x, &mut self.r, &step, &new.change, &new.product);
+            let norms = advance(&mut self.x, &mut self.r, &step, &new.change, &new.product);
             self.keep(new);
             self.iterations += 1;
-            residuals = self.relative_residuals();
+            residuals = self.relative(&norms);
             let residual = largest(&residuals);
             if self.iterations <= 100 || self.iterations.is_multiple_of(10) {
                 self.history.push(residual);

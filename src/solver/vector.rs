@@ -4,41 +4,57 @@
 
 use rayon::prelude::*;
 
+use super::vectorised::vectorised;
+
 /// Unknowns summed by one thread before partial sums are added in order.
 const CHUNK: usize = 12_288;
 
-/// Adds what each unknown gives, one by one within chunks, chunk by chunk.
-fn sum<const N: usize, const M: usize>(
-    unknowns: usize,
-    of_unknown: impl Fn(usize, &mut [[f64; N]; M]) + Sync,
-) -> [[f64; N]; M] {
-    let partial: Vec<[[f64; N]; M]> = (0..unknowns.div_ceil(CHUNK))
-        .into_par_iter()
-        .map(|chunk| {
-            let mut sums = [[0.0; N]; M];
-            for unknown in chunk * CHUNK..((chunk + 1) * CHUNK).min(unknowns) {
-                of_unknown(unknown, &mut sums);
-            }
-            sums
-        })
-        .collect();
-    let mut total = [[0.0; N]; M];
+/// Sums that run side by side within a chunk, so that none waits for the one before. The number of
+/// right-hand sides divides it.
+const ABREAST: usize = 8;
+
+/// Adds partial sums in the order of the chunks.
+fn total<const N: usize>(partial: impl IntoIterator<Item = [f64; ABREAST]>) -> [f64; N] {
+    let mut total = [0.0; N];
     for sums in partial {
-        for (total, sums) in total.as_flattened_mut().iter_mut().zip(sums.as_flattened()) {
-            *total += sums;
+        for (place, sum) in sums.iter().enumerate() {
+            total[place % N] += sum;
         }
     }
     total
 }
 
-/// The scalar product of each right-hand side.
-pub fn dot<const N: usize>(a: &[[f64; N]], b: &[[f64; N]]) -> [f64; N] {
-    let [sums] = sum(a.len(), |i, [sums]: &mut [[f64; N]; 1]| {
-        for n in 0..N {
-            sums[n] += a[i][n] * b[i][n];
+/// The scalar product within a chunk.
+#[inline(always)]
+fn add_products<T: Copy + Into<f64>>(a: &[f64], b: &[T], sums: &mut [f64; ABREAST]) {
+    let ((a, a_rest), (b, b_rest)) = (a.as_chunks::<ABREAST>(), b.as_chunks::<ABREAST>());
+    for (a, b) in a.iter().zip(b) {
+        for k in 0..ABREAST {
+            sums[k] += a[k] * b[k].into();
         }
-    });
-    sums
+    }
+    for (sum, (a, b)) in sums.iter_mut().zip(a_rest.iter().zip(b_rest)) {
+        *sum += a * (*b).into();
+    }
+}
+
+/// The scalar product of each right-hand side; the second vector may be f32.
+pub fn dot<const N: usize, T>(a: &[[f64; N]], b: &[[T; N]]) -> [f64; N]
+where
+    T: Copy + Into<f64> + Sync,
+{
+    let chunks = a.par_chunks(CHUNK).zip(b.par_chunks(CHUNK));
+    let partial: Vec<[f64; ABREAST]> = chunks
+        .map(|(a, b)| {
+            let mut sums = [0.0; ABREAST];
+            vectorised(
+                #[inline(always)]
+                || add_products(a.as_flattened(), b.as_flattened(), &mut sums),
+            );
+            sums
+        })
+        .collect();
+    total(partial)
 }
 
 /// The Euclidean norm of each right-hand side.
@@ -46,34 +62,35 @@ pub fn norm<const N: usize>(a: &[[f64; N]]) -> [f64; N] {
     dot(a, a).map(f64::sqrt)
 }
 
-/// a . z and b . z, with z in f32.
-pub fn two_dots<const N: usize>(a: &[[f64; N]], b: &[[f64; N]], z: &[[f32; N]]) -> [[f64; N]; 2] {
-    sum(a.len(), |i, [first, second]: &mut [[f64; N]; 2]| {
-        for n in 0..N {
-            let z = f64::from(z[i][n]);
-            first[n] += a[i][n] * z;
-            second[n] += b[i][n] * z;
-        }
-    })
-}
-
-/// x += step p and r -= step y.
+/// x += step p and r -= step y; returns the norm of r.
 pub fn advance<const N: usize>(
     x: &mut [[f64; N]],
     r: &mut [[f64; N]],
     step: &[f64; N],
     p: &[[f64; N]],
     y: &[[f64; N]],
-) {
+) -> [f64; N] {
     let chunks = x.par_chunks_mut(CHUNK).zip(r.par_chunks_mut(CHUNK));
-    chunks.zip(p.par_chunks(CHUNK).zip(y.par_chunks(CHUNK))).for_each(|((x, r), (p, y))| {
-        for (((x, r), p), y) in x.iter_mut().zip(r).zip(p).zip(y) {
-            for n in 0..N {
-                x[n] += step[n] * p[n];
-                r[n] -= step[n] * y[n];
-            }
-        }
-    });
+    let chunks = chunks.zip(p.par_chunks(CHUNK).zip(y.par_chunks(CHUNK)));
+    let partial: Vec<[f64; ABREAST]> = chunks
+        .map(|((x, r), (p, y))| {
+            let mut sums = [0.0; ABREAST];
+            vectorised(
+                #[inline(always)]
+                || {
+                    for (((x, r), p), y) in x.iter_mut().zip(&mut *r).zip(p).zip(y) {
+                        for n in 0..N {
+                            x[n] += step[n] * p[n];
+                            r[n] -= step[n] * y[n];
+                        }
+                    }
+                    add_products(r.as_flattened(), r.as_flattened(), &mut sums);
+                },
+            );
+            sums
+        })
+        .collect();
+    total(partial).map(f64::sqrt)
 }
 
 /// p = scale z + factor p.

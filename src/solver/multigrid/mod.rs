@@ -19,6 +19,7 @@ mod ties;
 use std::sync::Arc;
 
 use nalgebra::{Matrix3, Vector3};
+use rayon::prelude::*;
 
 use galerkin::{Coarse, Fine, galerkin};
 use inverse::DenseInverse;
@@ -27,11 +28,15 @@ use smoother::Smoother;
 use ties::Ties;
 
 use super::lanes::Lanes;
+use super::vector::{norm, ratio};
 use super::{PartlyHeld, System};
 
 /// Rows of the first aggregates, and of the later ones.
 const FIRST_AGGREGATE: usize = 20;
 const LATER_AGGREGATE: usize = 10;
+
+/// Rows that one thread scales at a time.
+const CHUNK: usize = 4096;
 
 /// Coarse rows at which the dense inverse takes over.
 const DENSE_ROWS: usize = 30;
@@ -121,15 +126,18 @@ impl Multigrid {
         residual: &[Lanes<f64, 3, N>],
         workspace: &'w mut Workspace<N>,
     ) -> Correction<'w, N> {
-        let scale = largest(residual);
-        let inverse = scale.map(|scale| if scale > 0.0 { scale.recip() } else { 0.0 });
-        for (right, residual) in workspace.right.iter_mut().zip(residual) {
-            for c in 0..3 {
+        // f32 holds 38 decades; scaled by its norm, no residual leaves them.
+        let scale = norm(residual.as_flattened());
+        let inverse = scale.map(|scale| ratio(1.0, scale));
+        let chunks = workspace.right.par_chunks_mut(CHUNK).zip(residual.par_chunks(CHUNK));
+        chunks.for_each(|(right, residual)| {
+            let values = right.as_flattened_mut().iter_mut().zip(residual.as_flattened());
+            for (right, residual) in values {
                 for n in 0..N {
-                    right[c][n] = (residual[c][n] * inverse[n]) as f32;
+                    right[n] = (residual[n] * inverse[n]) as f32;
                 }
             }
-        }
+        });
         let Workspace { right, x, rest, coarse } = workspace;
         self.finest.forward(right, x, rest);
         self.partly_held.iter().for_each(|row| row.to_coordinates(&mut rest[row.row]));
@@ -195,19 +203,6 @@ impl Below {
 pub struct Correction<'w, const N: usize> {
     pub values: &'w [Lanes<f32, 3, N>],
     pub scale: [f64; N],
-}
-
-/// f32 holds 38 decades; scaling by the largest entry keeps every residual inside them.
-fn largest<const N: usize>(residual: &[Lanes<f64, 3, N>]) -> [f64; N] {
-    let mut largest = [0.0_f64; N];
-    for values in residual {
-        for component in values {
-            for n in 0..N {
-                largest[n] = largest[n].max(component[n].abs());
-            }
-        }
-    }
-    largest
 }
 
 /// `None` where the rows cannot be grouped any further.
