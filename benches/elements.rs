@@ -4,36 +4,30 @@
 //! data against quadratic elements on the same mesh, then the time of a larger shell. Time is that of a whole
 //! prediction after its check, the least of three for the larger shell.
 
+#[path = "measure/shell.rs"]
+mod measured;
+
 use std::collections::BTreeMap;
-use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
 
 use facies::boundary::NodeSelection;
-use facies::format::{Mesh, ReadLimits, read};
-use facies::material::LinearElastic;
 use facies::mesh::sample::block;
 use facies::mesh::{CellShape, Vector, VolumeMesh};
-use facies::plan::{PlannedSegment, RigidMovement};
 use facies::prediction::{
-    Case, CaseSegment, ElementChoice, Plan, Prediction, Prescribed, RegionNames, Scene, Settings,
-    Unobserved, predict,
+    Case, ElementChoice, Plan, Prediction, Prescribed, Scene, Settings, Unobserved, predict,
 };
 
 fn main() {
     slabs();
-    if let Some(mesh) = mesh_of("30k") {
+    if let Some(mesh) = measured::load("30k") {
         shell(&mesh);
     }
     for size in ["100k", "300k"] {
-        if let Some(mesh) = mesh_of(size) {
+        if let Some(mesh) = measured::load(size) {
             times(size, &mesh);
         }
     }
-}
-
-fn elastic(young_modulus: f64, poisson_ratio: f64) -> LinearElastic {
-    LinearElastic::new(young_modulus, poisson_ratio, 1.0).expect("within the ranges")
 }
 
 fn run(case: &Case, plan: &Plan, element: ElementChoice) -> (Prediction, f64) {
@@ -67,7 +61,7 @@ fn slab(h: f64, nu: f64, element: ElementChoice) -> (SkinPoints, Prediction, f64
         hold("far", [Some(0.0); 3]),
         hold("y_min", [None, Some(0.0), None]),
     ];
-    let materials = BTreeMap::from([("*".to_owned(), elastic(15.0, nu))]);
+    let materials = measured::homogeneous(nu);
     let case = Case { volume: Arc::new(mesh), materials, ..Case::default() };
     let (answer, seconds) = run(&case, &Plan { prescribed, ..Plan::default() }, element);
     let mut points = SkinPoints::new();
@@ -107,19 +101,6 @@ fn slabs() {
     println!();
 }
 
-fn mesh_of(size: &str) -> Option<Arc<VolumeMesh>> {
-    let root = std::env::var_os("FACIES_SHARED")
-        .map_or_else(|| PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../shared"), PathBuf::from);
-    let path = root.join(format!("data/shell/{size}.vtu"));
-    let Ok(bytes) = std::fs::read(&path) else {
-        println!("skipped: {} is not here", path.display());
-        return None;
-    };
-    let read = read(&bytes, &ReadLimits::default()).expect("the shells are valid");
-    let Mesh::Volume(mesh) = read.mesh else { panic!("a shell is a volume mesh") };
-    Some(Arc::new(mesh))
-}
-
 fn times(size: &str, mesh: &Arc<VolumeMesh>) {
     println!("Shell {size}: time\n");
     println!("| material | element | unknowns | iterations | s | times plain at nu 0.46 |");
@@ -132,7 +113,7 @@ fn times(size: &str, mesh: &Arc<VolumeMesh>) {
         (ElementChoice::Stabilised, 0.499),
         (ElementChoice::Stabilised, 0.4999),
     ] {
-        let (case, plan) = standard_load(mesh, elastic(15.0, nu), None);
+        let (case, plan) = measured::standard_load(mesh, measured::homogeneous(nu));
         let runs = [(); 3].map(|()| run(&case, &plan, element));
         let seconds = runs.iter().map(|(_, seconds)| *seconds).fold(f64::INFINITY, f64::min);
         let solver = &runs[0].0.solver;
@@ -149,15 +130,11 @@ fn shell(mesh: &Arc<VolumeMesh>) {
     println!("Shell 30k: difference of the skin to quadratic elements on the same mesh, mm\n");
     println!("| material | element | unknowns | mean | largest | iterations | s |");
     println!("| --- | --- | --- | --- | --- | --- | --- |");
-    for (name, soft, stiff) in [
-        ("nu 0.3", elastic(15.0, 0.3), None),
-        ("nu 0.46", elastic(15.0, 0.46), None),
-        ("nu 0.49", elastic(15.0, 0.49), None),
-        ("nu 0.499", elastic(15.0, 0.499), None),
-        ("nu 0.4999", elastic(15.0, 0.4999), None),
-        ("stiff bands", elastic(3.0, 0.46), Some(elastic(790.0, 0.43))),
-    ] {
-        let (case, plan) = standard_load(mesh, soft, stiff);
+    let same = [0.3, 0.46, 0.49, 0.499, 0.4999];
+    let same = same.map(|nu| (format!("nu {nu}"), measured::homogeneous(nu)));
+    let bands = ("stiff bands".to_owned(), measured::materials("b"));
+    for (name, materials) in same.into_iter().chain([bands]) {
+        let (case, plan) = measured::standard_load(mesh, materials);
         let settings = Settings { element: ElementChoice::Quadratic, ..Settings::default() };
         let scene = Scene::new(&case, &plan, &settings).expect("the standard load is valid");
         let quadratic = run(&case, &plan, ElementChoice::Quadratic);
@@ -180,36 +157,4 @@ fn shell(mesh: &Arc<VolumeMesh>) {
         report(&quadratic);
     }
     println!();
-}
-
-/// The standard load of the shells, as their README states it.
-fn standard_load(
-    mesh: &Arc<VolumeMesh>,
-    soft: LinearElastic,
-    stiff: Option<LinearElastic>,
-) -> (Case, Plan) {
-    let label = |value| NodeSelection::Label { array: "tag".to_owned(), value };
-    let mut materials = BTreeMap::from([("*".to_owned(), soft)]);
-    materials.extend(stiff.map(|stiff| ("stiff".to_owned(), stiff)));
-    let names = BTreeMap::from([(1, "stiff".to_owned())]);
-    let segment = |name: &str, value| CaseSegment { name: name.to_owned(), nodes: label(value) };
-    let case = Case {
-        volume: mesh.clone(),
-        regions: Some(RegionNames { array: "band".to_owned(), names }),
-        skin: Some(label(5)),
-        segments: vec![segment("maxilla", 2), segment("mandible", 3)],
-        fixed: vec![label(1), label(4)],
-        materials,
-        ..Case::default()
-    };
-    let turn = 3.0_f64.to_radians();
-    let moved = |name: &str, axis: Vector, pivot: Vector, along: Vector| PlannedSegment {
-        name: name.to_owned(),
-        movement: RigidMovement::about_pivot(axis * turn, pivot, along.normalize() * 8.0),
-    };
-    let segments = vec![
-        moved("maxilla", Vector::x(), Vector::new(0.0, 50.0, -10.0), Vector::new(0.0, 7.0, -4.0)),
-        moved("mandible", Vector::z(), Vector::new(0.0, 40.0, -50.0), Vector::new(0.0, -7.0, 4.0)),
-    ];
-    (case, Plan { segments, ..Plan::default() })
 }

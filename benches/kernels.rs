@@ -30,7 +30,7 @@ fn main() {
     }
     for size in sizes {
         let Some(mesh) = shell::load(&size) else { return };
-        let (case, plan) = shell::standard_load(mesh, "a");
+        let (case, plan) = shell::standard_load(&mesh, shell::homogeneous(0.46));
         let settings = Settings { element: ElementChoice::Plain, ..Settings::default() };
         let scene = Scene::new(&case, &plan, &settings).expect("the standard load is valid");
         let table = Table::new(&size, &scene, triad);

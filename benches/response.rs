@@ -3,14 +3,13 @@
 //! `cargo bench --bench response [-- SIZE …]` adds up 24 columns of 14 000 nodes on one thread, then builds the
 //! response of the half head of the demo and of the shells of the shared data that are named.
 
-use std::collections::BTreeMap;
-use std::path::PathBuf;
+#[path = "measure/shell.rs"]
+mod measured;
+
 use std::sync::Arc;
 use std::time::Instant;
 
 use facies::boundary::NodeSelection;
-use facies::format::{Mesh, ReadLimits, read};
-use facies::material::LinearElastic;
 use facies::mesh::half_head::{STANDARD_FINENESS, half_head};
 use facies::mesh::{Vector, VolumeMesh};
 use facies::plan::RigidMovement;
@@ -28,9 +27,9 @@ fn main() {
     let head = half_head(STANDARD_FINENESS).mesh;
     built("half head of the demo", &half_head_case(head));
     for size in sizes {
-        match shell(&size) {
-            Some(mesh) => built(&format!("shell {size}"), &shell_case(mesh)),
-            None => println!("skipped: there is no shell {size}; FACIES_SHARED names its folder"),
+        if let Some(mesh) = measured::load(&size) {
+            let (case, _) = measured::standard_load(&mesh, measured::materials("a"));
+            built(&format!("shell {size}"), &case);
         }
     }
 }
@@ -87,34 +86,8 @@ fn half_head_case(mesh: VolumeMesh) -> Case {
         skin: Some(set("skin")),
         segments: vec![segment("maxilla"), segment("mandible")],
         fixed: vec![set("skull"), set("rim")],
-        ..of_one_material(mesh, 0.45)
+        volume: Arc::new(mesh),
+        materials: measured::homogeneous(0.45),
+        ..Case::default()
     }
-}
-
-fn shell(size: &str) -> Option<VolumeMesh> {
-    let root = std::env::var_os("FACIES_SHARED")
-        .map_or_else(|| PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../shared"), PathBuf::from);
-    let bytes = std::fs::read(root.join(format!("data/shell/{size}.vtu"))).ok()?;
-    match read(&bytes, &ReadLimits::default()).ok()?.mesh {
-        Mesh::Volume(mesh) => Some(mesh),
-        Mesh::Surface(_) => None,
-    }
-}
-
-/// Materials (a) of the shells.
-fn shell_case(mesh: VolumeMesh) -> Case {
-    let label = |value| NodeSelection::Label { array: "tag".to_owned(), value };
-    let segment = |name: &str, value| CaseSegment { name: name.to_owned(), nodes: label(value) };
-    Case {
-        skin: Some(label(5)),
-        segments: vec![segment("maxilla", 2), segment("mandible", 3)],
-        fixed: vec![label(1), label(4)],
-        ..of_one_material(mesh, 0.46)
-    }
-}
-
-fn of_one_material(mesh: VolumeMesh, nu: f64) -> Case {
-    let material = LinearElastic::new(15.0, nu, 1.0).expect("within the ranges");
-    let materials = BTreeMap::from([("*".to_owned(), material)]);
-    Case { volume: Arc::new(mesh), materials, ..Case::default() }
 }

@@ -102,7 +102,7 @@ fn element(name: &str) -> ElementChoice {
 fn run(options: &Options, size: &str) {
     let material = options.materials.as_str();
     let Some(mesh) = shell::load(size) else { return };
-    let (case, plan) = shell::standard_load(mesh, material);
+    let (case, plan) = shell::standard_load(&mesh, shell::materials(material));
     let settings = Settings { element: element(&options.element), ..Settings::default() };
     process::forget_peak();
     let base_mb = process::resident_mb();

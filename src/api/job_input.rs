@@ -7,12 +7,14 @@ use tokio::runtime::Handle;
 use super::Service;
 use super::error::{ApiError, ApiResult};
 use super::parameters::id;
-use crate::jobs::{CompareInput, JobError, JobInput, PredictInput, ResponseInput};
+use crate::jobs::{
+    CompareInput, JobError, JobInput, MeshSource, OptimiseInput, PredictInput, ResponseInput,
+};
 use crate::schema::job::{JobKind, JobStatus};
 use crate::schema::prediction::EngineDocument;
 use crate::schema::{
-    CaseDocument, CompareDocument, Faults, Limits, PlanDocument, Pointer, PredictDocument, Problem,
-    ResponseDocument,
+    CaseDocument, CompareDocument, Faults, Limits, OptimiseDocument, PlanDocument, Pointer,
+    PredictDocument, Problem, ResponseDocument,
 };
 use crate::store::{CaseRow, NewJob};
 
@@ -25,15 +27,10 @@ pub async fn of_prediction(service: &Service, spec: PredictDocument) -> ApiResul
         require_mesh(service, "/compare_to/actual/mesh", &compare_to.actual.mesh).await?;
     }
     let tags = input.spec.tags.clone();
-    let sources = service.library.source(Handle::current(), BTreeMap::new());
-    let limits: Limits = (*service.limits).clone();
-    let (input, prepared) = service
-        .compute(move || {
-            let spec_hash = input.prepare(&sources, &limits).map(|prepared| prepared.spec_hash);
-            (input, spec_hash)
-        })
-        .await?;
-    let spec_hash = prepared.map_err(|error| refusal(error).map_problem(in_spec))?;
+    let prepare = |input: &PredictInput, sources: &dyn MeshSource, limits: &Limits| {
+        input.prepare(sources, limits).map(|prepared| prepared.spec_hash)
+    };
+    let (input, spec_hash) = prepared(service, input, prepare).await?;
     let new = Accepted { kind: JobKind::Predict, case_id: Some(row.id), spec_hash, tags, mesh_ids };
     new.with(&JobInput::Predict(input))
 }
@@ -73,31 +70,60 @@ pub async fn of_response(service: &Service, mut spec: ResponseDocument) -> ApiRe
     let case: CaseDocument = serde_json::from_str(&row.document).map_err(ApiError::internal)?;
     let (mesh_ids, tags) = (case.mesh_ids(), spec.tags.clone());
     let input = ResponseInput { job: None, queue_s: None, case, spec };
-    let sources = service.library.source(Handle::current(), BTreeMap::new());
-    let limits: Limits = (*service.limits).clone();
-    let (input, prepared) = service
-        .compute(move || {
-            let key = input.prepare(&sources, &limits).map(|prepared| prepared.key);
-            (input, key)
-        })
-        .await?;
-    let spec_hash = prepared.map_err(|error| refusal(error).map_problem(in_spec))?;
+    let prepare = |input: &ResponseInput, sources: &dyn MeshSource, limits: &Limits| {
+        input.prepare(sources, limits).map(|prepared| prepared.key)
+    };
+    let (input, spec_hash) = prepared(service, input, prepare).await?;
     let case_id = Some(row.id);
     let new = Accepted { kind: JobKind::Response, case_id, spec_hash, tags, mesh_ids };
     new.with(&JobInput::Response(input))
 }
 
+/// Inverse planning: its case as it is at this moment, checked with its meshes.
+pub async fn of_optimisation(service: &Service, mut spec: OptimiseDocument) -> ApiResult<NewJob> {
+    let row = require_case(service, &spec.case).await?;
+    spec.case.clone_from(&row.id);
+    let case: CaseDocument = serde_json::from_str(&row.document).map_err(ApiError::internal)?;
+    let tags = spec.tags.clone();
+    let input = OptimiseInput { job: None, queue_s: None, case, spec };
+    let mesh_ids = input.mesh_ids();
+    let prepare = |input: &OptimiseInput, sources: &dyn MeshSource, limits: &Limits| {
+        input.prepare(sources, limits).map(|prepared| prepared.spec_hash)
+    };
+    let (input, spec_hash) = prepared(service, input, prepare).await?;
+    let case_id = Some(row.id);
+    let new = Accepted { kind: JobKind::Optimise, case_id, spec_hash, tags, mesh_ids };
+    new.with(&JobInput::Optimise(input))
+}
+
+/// Checks a job with its meshes, off the async threads; gives it back with the hash that `prepare` finds.
+async fn prepared<I: Send + 'static>(
+    service: &Service,
+    input: I,
+    prepare: fn(&I, &dyn MeshSource, &Limits) -> Result<String, JobError>,
+) -> ApiResult<(I, String)> {
+    let sources = service.library.source(Handle::current(), BTreeMap::new());
+    let limits: Limits = (*service.limits).clone();
+    let (input, hash) = service
+        .compute(move || {
+            let hash = prepare(&input, &sources, &limits);
+            (input, hash)
+        })
+        .await?;
+    Ok((input, hash.map_err(|error| refusal(error).map_problem(in_spec))?))
+}
+
 /// What is known of a job when it is accepted, beside its document.
-pub struct Accepted {
-    pub kind: JobKind,
-    pub case_id: Option<String>,
-    pub spec_hash: String,
-    pub tags: Vec<String>,
-    pub mesh_ids: Vec<String>,
+struct Accepted {
+    kind: JobKind,
+    case_id: Option<String>,
+    spec_hash: String,
+    tags: Vec<String>,
+    mesh_ids: Vec<String>,
 }
 
 impl Accepted {
-    pub fn with(self, input: &JobInput) -> ApiResult<NewJob> {
+    fn with(self, input: &JobInput) -> ApiResult<NewJob> {
         let engine = serde_json::to_string(&EngineDocument::this()).map_err(ApiError::internal)?;
         Ok(NewJob {
             id: uuid::Uuid::now_v7().to_string(),
@@ -150,7 +176,7 @@ fn mesh_ids(input: &PredictInput) -> Vec<String> {
 }
 
 /// A case that has to be there.
-pub async fn require_case(service: &Service, case: &str) -> ApiResult<CaseRow> {
+async fn require_case(service: &Service, case: &str) -> ApiResult<CaseRow> {
     let row = match id(case) {
         Some(id) => service.store.case(&id).await?,
         None => None,
@@ -197,7 +223,7 @@ fn fault(at: &str, code: &str, detail: &str) -> ApiError {
 }
 
 /// A body that is the spec knows nothing of `/spec`.
-pub fn in_spec(problem: Problem) -> Problem {
+fn in_spec(problem: Problem) -> Problem {
     problem.moved("/spec", "")
 }
 

@@ -14,7 +14,7 @@ use super::paging::Page;
 use super::parameters::{Id, Parameters, no_such_job};
 use super::prefer::{wait_for_end, wanted_wait};
 use super::results::RETRY_AFTER_S;
-use super::{Service, body, job_input, json, json_only, optimise_input, with_header};
+use super::{Service, body, job_input, json, json_only, with_header};
 use crate::schema::job::{JobKind, JobStatus, StatusInfo};
 use crate::schema::spec::JobDocument;
 use crate::schema::strict;
@@ -81,7 +81,7 @@ async fn create(State(service): State<Service>, request: Request) -> ApiResult {
         JobDocument::Predict(spec) => job_input::of_prediction(&service, spec).await?,
         JobDocument::Compare(spec) => job_input::of_comparison(&service, spec).await?,
         JobDocument::Response(spec) => job_input::of_response(&service, spec).await?,
-        JobDocument::Optimise(spec) => optimise_input::of_optimisation(&service, spec).await?,
+        JobDocument::Optimise(spec) => job_input::of_optimisation(&service, spec).await?,
     };
     let (id, deduplicated) = match service.store.enqueue(&accepted, LONGEST_QUEUE).await? {
         Enqueued::Accepted => (accepted.id, false),

@@ -12,7 +12,6 @@ mod job_view;
 mod jobs;
 mod meshes;
 mod openapi;
-mod optimise_input;
 mod paging;
 mod parameters;
 mod plans;

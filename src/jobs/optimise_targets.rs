@@ -6,13 +6,10 @@ use super::optimisation::OptimiseInput;
 use super::source::MeshSource;
 use crate::mesh::{SurfaceSearch, Warning};
 use crate::optimisation::{Goal, SkinPoint, Target};
-use crate::prediction::Skin;
+use crate::prediction::{LANDMARK_FAR, Skin};
 use crate::response::{ResponseError, chosen};
 use crate::schema::optimise::TargetDocument;
 use crate::schema::{Faults, Limits, Pointer, Problem, canonical};
-
-/// A landmark farther than this from the skin, in mm, is told to move as something it is not part of.
-const LANDMARK_FAR: f64 = 2.0;
 
 /// Inverse planning whose documents are sound.
 pub struct PreparedOptimisation {

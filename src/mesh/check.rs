@@ -52,8 +52,9 @@ pub struct MeshReport {
 
 impl MeshReport {
     pub fn of_volume(mesh: &VolumeMesh) -> MeshReport {
-        let surface = mesh.surface_of(&mesh.boundary_faces());
-        let parts = volume_parts(mesh);
+        let faces = Faces::new(mesh);
+        let surface = mesh.surface_of(&mesh.boundary_of(&faces));
+        let parts = volume_parts(&faces);
         let referenced = mesh.cells.iter().flat_map(|(_, nodes)| nodes);
         let mut report = MeshReport {
             nodes: mesh.nodes.len() as u64,
@@ -65,7 +66,7 @@ impl MeshReport {
             components: parts.len() as u64,
             open_edges: 0,
             nonmanifold_edges: count_edges(&surface.sorted_sides()).nonmanifold,
-            nonmanifold_faces: nonmanifold_faces(mesh),
+            nonmanifold_faces: nonmanifold_faces(&faces),
             unreferenced_nodes: unreferenced(mesh.nodes.len(), referenced),
             duplicate_nodes: duplicates(&mesh.nodes),
             largest_components: largest(&parts),
@@ -201,14 +202,14 @@ fn duplicates(nodes: &[Vector]) -> u64 {
 }
 
 /// Faces that belong to more than two cells.
-fn nonmanifold_faces(mesh: &VolumeMesh) -> u64 {
-    Faces::new(mesh).shared().filter(|group| group.len() > 2).count() as u64
+fn nonmanifold_faces(faces: &Faces) -> u64 {
+    faces.shared().filter(|group| group.len() > 2).count() as u64
 }
 
 /// Cells of each part of a volume mesh, largest first; parts hang together by faces.
-fn volume_parts(mesh: &VolumeMesh) -> Vec<u64> {
+fn volume_parts(faces: &Faces) -> Vec<u64> {
     let mut sizes = Vec::new();
-    for part in Faces::new(mesh).parts() {
+    for part in faces.parts() {
         let part = part as usize;
         sizes.resize(sizes.len().max(part + 1), 0);
         sizes[part] += 1;

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::stiffness::{Dilatation, cell_stiffness};
+use super::stiffness::{Dilatation, add_pair, cell_stiffness, tetrahedron};
 use crate::boundary::Hold;
 use crate::material::LinearElastic;
 use crate::mesh::{CellShape, Vector, VolumeMesh};
@@ -50,9 +50,7 @@ pub struct Numbering {
 impl Numbering {
     /// For the nodes of a mesh. `held` tells those without a free unknown.
     pub fn new(mesh: &VolumeMesh, held: &[bool]) -> Self {
-        let mut cliques = Cliques::default();
-        mesh.cells.iter().for_each(|(_, nodes)| cliques.push(nodes.iter().copied()));
-        Numbering::of(&cliques, &mesh.nodes, held)
+        Numbering::of(&nodes_of_cells(mesh), &mesh.nodes, held)
     }
 
     /// For nodes at positions that stand in cells of any kind.
@@ -79,9 +77,7 @@ impl Numbering {
     pub fn row(&self, node: u32) -> usize {
         self.layout.place[node as usize] as usize
     }
-}
 
-impl Numbering {
     /// Adds the matrices of whole cells, given by their places in the order of the layout; false where it
     /// was told to stop.
     pub fn add_cells<M: AsRef<[Block]> + Send>(
@@ -103,6 +99,13 @@ impl Numbering {
         }
         Ok(true)
     }
+}
+
+/// The nodes of each cell of a mesh.
+pub(super) fn nodes_of_cells(mesh: &VolumeMesh) -> Cliques {
+    let mut cliques = Cliques::default();
+    mesh.cells.iter().for_each(|(_, nodes)| cliques.push(nodes.iter().copied()));
+    cliques
 }
 
 /// The node at one end of the longest extent.
@@ -153,19 +156,10 @@ impl Tissue<'_> {
         if self.mesh.cells.shape(cell) != CellShape::Tet4 {
             return Ok(None);
         }
-        let corner = |k: usize| self.mesh.nodes[self.mesh.cells.nodes(cell)[k] as usize];
-        let (a, b, c) = (corner(1) - corner(0), corner(2) - corner(0), corner(3) - corner(0));
-        let normal = b.cross(&c);
-        let six_volumes = a.dot(&normal);
-        if six_volumes.is_nan() || six_volumes <= 0.0 {
-            return Err(InvertedCell { cell });
-        }
-        let (g1, g2, g3) =
-            (normal / six_volumes, c.cross(&a) / six_volumes, a.cross(&b) / six_volumes);
+        let (volume, gradients) = tetrahedron(self.mesh, cell)?;
         let material = &self.materials[self.material_of_cell[cell] as usize];
-        let volume = six_volumes / 6.0;
         Ok(Some(Simplex {
-            gradients: [-(g1 + g2 + g3), g1, g2, g3],
+            gradients,
             lambda: material.lambda() * volume,
             mu: material.shear_modulus() * volume,
         }))
@@ -186,17 +180,9 @@ impl Tissue<'_> {
 }
 
 impl Simplex {
-    /// V [ lambda g_j g_k^T + mu g_k g_j^T + mu (g_j . g_k) I ], METHODS A2.
     #[inline]
     fn add_block(&self, j: usize, k: usize, block: &mut Block) {
-        let (gj, gk) = (&self.gradients[j], &self.gradients[k]);
-        let diagonal = self.mu * (gj.x * gk.x + gj.y * gk.y + gj.z * gk.z);
-        for r in 0..3 {
-            for c in 0..3 {
-                block[r][c] += self.lambda * gj[r] * gk[c] + self.mu * gk[r] * gj[c];
-            }
-            block[r][r] += diagonal;
-        }
+        add_pair(block, [&self.gradients[j], &self.gradients[k]], self.lambda, self.mu);
     }
 }
 

@@ -22,15 +22,16 @@ pub struct Known {
     pub force: Unknowns,
 }
 
-/// True for nodes held in all directions, and for nodes of no cell, which nothing couples.
-pub fn held_nodes(cells: &Cliques, nodes: usize, holds: &[Hold]) -> Vec<bool> {
-    let mut held = vec![true; nodes];
+/// The numbering of nodes at positions. Nodes held in all directions have no free unknown, nor have nodes
+/// of no cell, which nothing couples.
+pub fn number(cells: &Cliques, positions: &[Vector], holds: &[Hold]) -> Numbering {
+    let mut held = vec![true; positions.len()];
     for cell in 0..cells.len() {
         cells.members(cell).iter().for_each(|&node| held[node as usize] = false);
     }
     let whole = holds.iter().filter(|hold| hold.count() == 3);
     whole.for_each(|hold| held[hold.node as usize] = true);
-    held
+    Numbering::of(cells, positions, &held)
 }
 
 impl Constrained<'_> {

@@ -5,11 +5,10 @@
 
 use rayon::prelude::*;
 
-use super::assembly::{InvertedCell, Numbering, Tissue};
-use super::constrained::{Constrained, Known, free_unknowns, held_nodes, product_at_holds};
+use super::assembly::{InvertedCell, Tissue, nodes_of_cells};
+use super::constrained::{Constrained, Known, free_unknowns, number, product_at_holds};
 use crate::boundary::Hold;
 use crate::mesh::Vector;
-use crate::solver::cliques::Cliques;
 use crate::solver::half_matrix::HalfMatrix;
 use crate::solver::{self, Solution, SolverError, Tolerance, Unknowns};
 
@@ -74,10 +73,7 @@ impl Problem<'_> {
     ) -> Result<Vec<Equilibrium>, LinearFemError> {
         observer.assembling();
         let mesh = self.tissue.mesh;
-        let mut cells = Cliques::default();
-        mesh.cells.iter().for_each(|(_, nodes)| cells.push(nodes.iter().copied()));
-        let held = held_nodes(&cells, mesh.nodes.len(), self.holds);
-        let numbering = Numbering::of(&cells, &mesh.nodes, &held);
+        let numbering = number(&nodes_of_cells(mesh), &mesh.nodes, self.holds);
         let assembled = self.tissue.assemble(&numbering, &|| !observer.is_stopped())?;
         let matrix = assembled.ok_or(SolverError::Stopped)?;
         let constrained = Constrained { holds: self.holds, numbering: &numbering };

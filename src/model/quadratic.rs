@@ -9,17 +9,17 @@
 use rayon::prelude::*;
 
 use super::assembly::{InvertedCell, Numbering, Tissue};
-use super::constrained::{Constrained, held_nodes};
+use super::constrained::{Constrained, number};
 use super::linear_fem::{
     Assembled, Equilibrium, LinearFemError, LoadCase, Observer, Problem, solve_displacement,
 };
 use super::load::FaceLoad;
-use super::reference_cell;
+use super::stiffness::{add_pair, tetrahedron};
 use crate::boundary::{Hold, midpoint};
 use crate::element::tetrahedron10;
 use crate::material::LinearElastic;
 use crate::mesh::volume::BoundaryFace;
-use crate::mesh::{CellShape, Vector, VolumeMesh};
+use crate::mesh::{Vector, VolumeMesh};
 use crate::solver::cliques::Cliques;
 use crate::solver::{Block, HalfMatrix, SolverError};
 
@@ -99,7 +99,7 @@ impl EdgeNodes {
         forces: &mut [Vector],
     ) -> Result<(), InvertedCell> {
         for cell in 0..tissue.mesh.cells.len() {
-            let (volume, _) = volume_and_gradients(tissue.mesh, cell)?;
+            let (volume, _) = tetrahedron(tissue.mesh, cell)?;
             let density = tissue.materials[tissue.material_of_cell[cell] as usize].density();
             let weight = acceleration * (density * volume);
             for (k, node) in self.of_cell(tissue.mesh, cell).into_iter().enumerate() {
@@ -163,8 +163,7 @@ pub fn solve_cases(
     let mut cells = Cliques::default();
     (0..mesh.cells.len()).for_each(|cell| cells.push(edges.of_cell(mesh, cell)));
     let positions = edges.positions(mesh);
-    let held = held_nodes(&cells, positions.len(), &holds);
-    let numbering = Numbering::of(&cells, &positions, &held);
+    let numbering = number(&cells, &positions, &holds);
     let matrix = assemble(&problem.tissue, &numbering, observer)?.ok_or(SolverError::Stopped)?;
 
     // 2. Each load case with values for edge nodes too.
@@ -218,7 +217,7 @@ fn assemble(
     let all: Vec<usize> = (0..tissue.mesh.cells.len()).collect();
     let keep_going = || !observer.is_stopped();
     let finished = numbering.add_cells(&mut matrix, &all, &keep_going, |cell| {
-        let (volume, gradients) = volume_and_gradients(tissue.mesh, cell)?;
+        let (volume, gradients) = tetrahedron(tissue.mesh, cell)?;
         let material = &tissue.materials[tissue.material_of_cell[cell] as usize];
         Ok(cell_stiffness(volume, &gradients, material))
     })?;
@@ -236,26 +235,8 @@ fn cell_stiffness(
     for point in tetrahedron10::points() {
         let g = tetrahedron10::gradients(&point, of_barycentric);
         for (entry, block) in blocks.iter_mut().enumerate() {
-            let (gj, gk) = (&g[entry / 10], &g[entry % 10]);
-            let diagonal = mu * gj.dot(gk);
-            for (r, row) in block.iter_mut().enumerate() {
-                for (c, value) in row.iter_mut().enumerate() {
-                    *value += lambda * gj[r] * gk[c] + mu * gk[r] * gj[c];
-                }
-                row[r] += diagonal;
-            }
+            add_pair(block, [&g[entry / 10], &g[entry % 10]], lambda, mu);
         }
     }
     blocks
-}
-
-/// The volume of a tetrahedron and the gradients of its barycentric coordinates.
-fn volume_and_gradients(
-    mesh: &VolumeMesh,
-    cell: usize,
-) -> Result<(f64, [Vector; 4]), InvertedCell> {
-    let corners: Vec<Vector> = mesh.corners(cell).collect();
-    let point = reference_cell(CellShape::Tet4).points[0].at(&corners);
-    let point = point.ok_or(InvertedCell { cell })?;
-    Ok((point.volume, std::array::from_fn(|corner| point.gradients[corner])))
 }

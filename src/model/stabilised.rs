@@ -18,13 +18,12 @@ use std::collections::BTreeMap;
 use nalgebra::Matrix3;
 use rayon::prelude::*;
 
-use super::assembly::{InvertedCell, Numbering, Tissue};
-use super::constrained::{Constrained, Known, free_unknowns, held_nodes, product_at_holds};
+use super::assembly::{InvertedCell, Numbering, Tissue, nodes_of_cells};
+use super::constrained::{Constrained, Known, free_unknowns, number, product_at_holds};
 use super::linear_fem::{Equilibrium, LinearFemError, LoadCase, Observer, Problem, check_finite};
-use super::reference_cell;
+use super::stiffness::tetrahedron;
 use crate::material::LinearElastic;
 use crate::mesh::{CellShape, Vector};
-use crate::solver::cliques::Cliques;
 use crate::solver::mixed::{self, Coupling, MixedRightHandSide, MixedSolution, MixedSystem};
 use crate::solver::sparse_rows::{Couplings, SparseRows};
 use crate::solver::{HalfMatrix, SolverError, System};
@@ -41,10 +40,7 @@ pub fn solve_cases(
     // 1. The matrices, with sliding nodes along their own axes.
     observer.assembling();
     let mesh = problem.tissue.mesh;
-    let mut cells = Cliques::default();
-    mesh.cells.iter().for_each(|(_, nodes)| cells.push(nodes.iter().copied()));
-    let held = held_nodes(&cells, mesh.nodes.len(), problem.holds);
-    let numbering = Numbering::of(&cells, &mesh.nodes, &held);
+    let numbering = number(&nodes_of_cells(mesh), &mesh.nodes, problem.holds);
     let constrained = Constrained { holds: problem.holds, numbering: &numbering };
     let assembled = shear_stiffness(&problem.tissue, &numbering, observer)?;
     let matrix = assembled.ok_or(SolverError::Stopped)?;
@@ -218,18 +214,13 @@ fn cell_terms(
     cell: usize,
     axes: &BTreeMap<u32, Matrix3<f64>>,
 ) -> Result<CellTerms, InvertedCell> {
-    let mut corners = [Vector::zeros(); 4];
-    for (slot, corner) in corners.iter_mut().zip(tissue.mesh.corners(cell)) {
-        *slot = corner;
-    }
-    let point = &reference_cell(CellShape::Tet4).points[0];
-    let point = point.at(&corners).ok_or(InvertedCell { cell })?;
+    let (volume, gradients) = tetrahedron(tissue.mesh, cell)?;
     let material = &tissue.materials[tissue.material_of_cell[cell] as usize];
     let nodes = tissue.mesh.cells.nodes(cell);
     let gradients = std::array::from_fn(|corner| match axes.get(&nodes[corner]) {
-        Some(axes) => axes.transpose() * point.gradients[corner],
-        None => point.gradients[corner],
+        Some(axes) => axes.transpose() * gradients[corner],
+        None => gradients[corner],
     });
     let (mu, lambda) = (material.shear_modulus(), material.lambda());
-    Ok(CellTerms { volume: point.volume, gradients, mu, lambda })
+    Ok(CellTerms { volume, gradients, mu, lambda })
 }

@@ -8,12 +8,11 @@
 //! with K the bulk modulus and gbar_j = (1/V) sum_q V_q g_j. One volume change a cell does not lock
 //! as nu goes to 1/2.
 
-use nalgebra::Matrix3;
-
+use super::assembly::InvertedCell;
 use super::reference_cell;
-use crate::element::{MAX_NODES, PhysicalPoint};
+use crate::element::MAX_NODES;
 use crate::material::LinearElastic;
-use crate::mesh::{CellShape, Vector};
+use crate::mesh::{CellShape, Vector, VolumeMesh};
 use crate::solver::Block;
 
 /// How the volume change of a cell is taken.
@@ -35,7 +34,7 @@ pub fn cell_stiffness(
 ) -> Option<Vec<Block>> {
     let reference = reference_cell(shape);
     let count = reference.node_count;
-    let mut blocks = vec![Matrix3::zeros(); count * count];
+    let mut blocks = vec![[[0.0; 3]; 3]; count * count];
     let mu = material.shear_modulus();
     let mut volume = 0.0;
     let mut mean_gradients = [Vector::zeros(); MAX_NODES];
@@ -49,39 +48,50 @@ pub fn cell_stiffness(
             Dilatation::Pointwise => material.lambda(),
             Dilatation::Mean => -2.0 / 3.0 * mu,
         };
-        add_point(&mut blocks, count, &point, lambda, mu);
+        let (lambda, mu) = (lambda * point.volume, mu * point.volume);
+        for (entry, block) in blocks.iter_mut().enumerate() {
+            let pair = [&point.gradients[entry / count], &point.gradients[entry % count]];
+            add_pair(block, pair, lambda, mu);
+        }
     }
     if dilatation == Dilatation::Mean {
         let factor = material.bulk_modulus() / volume;
-        for j in 0..count {
-            for k in 0..count {
-                blocks[j * count + k] += mean_gradients[j] * mean_gradients[k].transpose() * factor;
+        for (entry, block) in blocks.iter_mut().enumerate() {
+            let (gj, gk) = (&mean_gradients[entry / count], &mean_gradients[entry % count]);
+            for (r, row) in block.iter_mut().enumerate() {
+                row.iter_mut().zip(gk).for_each(|(value, gk)| *value += gj[r] * gk * factor);
             }
         }
     }
-    let rows =
-        |block: &Matrix3<f64>| std::array::from_fn(|i| std::array::from_fn(|j| block[(i, j)]));
-    Some(blocks.iter().map(rows).collect())
+    Some(blocks)
 }
 
-/// V [ lambda g_j g_k^T + mu g_k g_j^T + mu (g_j . g_k) I ] for all pairs of nodes.
-fn add_point(
-    blocks: &mut [Matrix3<f64>],
-    count: usize,
-    point: &PhysicalPoint,
-    lambda: f64,
-    mu: f64,
-) {
-    let (lambda, mu) = (lambda * point.volume, mu * point.volume);
-    for j in 0..count {
-        for k in 0..count {
-            let (gj, gk) = (&point.gradients[j], &point.gradients[k]);
-            let mut block = gj * gk.transpose() * lambda + gk * gj.transpose() * mu;
-            let diagonal = mu * gj.dot(gk);
-            for component in 0..3 {
-                block[(component, component)] += diagonal;
-            }
-            blocks[j * count + k] += block;
+/// block += lambda g_j g_k^T + mu g_k g_j^T + mu (g_j . g_k) I, with moduli times the volume of a point
+/// (METHODS A2).
+#[inline]
+pub(super) fn add_pair(block: &mut Block, [gj, gk]: [&Vector; 2], lambda: f64, mu: f64) {
+    let diagonal = mu * gj.dot(gk);
+    for (r, row) in block.iter_mut().enumerate() {
+        for (c, value) in row.iter_mut().enumerate() {
+            *value += lambda * gj[r] * gk[c] + mu * gk[r] * gj[c];
         }
+        row[r] += diagonal;
     }
+}
+
+/// The volume of a tetrahedron in mm³ and the gradients of its barycentric coordinates in 1/mm.
+pub(super) fn tetrahedron(
+    mesh: &VolumeMesh,
+    cell: usize,
+) -> Result<(f64, [Vector; 4]), InvertedCell> {
+    let nodes = mesh.cells.nodes(cell);
+    let side = |k: usize| mesh.nodes[nodes[k] as usize] - mesh.nodes[nodes[0] as usize];
+    let (a, b, c) = (side(1), side(2), side(3));
+    let normal = b.cross(&c);
+    let six_volumes = a.dot(&normal);
+    if six_volumes.is_nan() || six_volumes <= 0.0 {
+        return Err(InvertedCell { cell });
+    }
+    let (g1, g2, g3) = (normal / six_volumes, c.cross(&a) / six_volumes, a.cross(&b) / six_volumes);
+    Ok((six_volumes / 6.0, [-(g1 + g2 + g3), g1, g2, g3]))
 }

@@ -26,7 +26,7 @@ use crate::model::strain::{CellDeformation, deformations};
 use crate::solver::SolverError;
 
 /// A landmark farther than this from the tissue, in mm, is told to move as something it is not part of.
-const LANDMARK_FAR: f64 = 2.0;
+pub const LANDMARK_FAR: f64 = 2.0;
 
 /// The answer. Node and cell order are those of the volume mesh of the case.
 #[derive(Clone, Debug)]

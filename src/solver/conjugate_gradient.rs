@@ -6,7 +6,7 @@
 //! decides when to stop. Several right-hand sides share each pass over matrix and hierarchy; each has
 //! its own steps, and stands still once it has converged.
 
-use super::lanes::Lanes;
+use super::lanes::{Lanes, MOST_LANES};
 use super::multigrid::{Multigrid, Workspace};
 use super::vector::{advance, column, dot, interleave, largest, norm, ratio, turn};
 use super::{Solution, SolverError, System, Tolerance, Unknowns, Watch};
@@ -20,9 +20,6 @@ const MOST_ITERATIONS: usize = 50_000;
 /// How often a true residual above the recursive one restarts the iteration.
 const MOST_RESTARTS: usize = 8;
 
-/// Right-hand sides that share one pass.
-const TOGETHER: usize = 8;
-
 /// Solves until every true relative residual is met, or says where it stalled.
 pub fn solve(
     system: &System,
@@ -32,11 +29,11 @@ pub fn solve(
 ) -> Result<Vec<Solution>, SolverError> {
     let multigrid = Multigrid::new(system);
     let mut solutions = Vec::with_capacity(right_hand_sides.len());
-    for columns in right_hand_sides.chunks(TOGETHER) {
+    for columns in right_hand_sides.chunks(MOST_LANES) {
         solutions.extend(match columns.len() {
             1 => Run::<1>::new(system, &multigrid, columns).solve(tolerance, watch)?,
             2..=4 => Run::<4>::new(system, &multigrid, columns).solve(tolerance, watch)?,
-            _ => Run::<TOGETHER>::new(system, &multigrid, columns).solve(tolerance, watch)?,
+            _ => Run::<MOST_LANES>::new(system, &multigrid, columns).solve(tolerance, watch)?,
         });
     }
     Ok(solutions)

@@ -1,6 +1,6 @@
 //! The unknowns of one row for one or several right-hand sides, and what a block does to them.
 
-use std::ops::{Add, AddAssign, Mul, Sub, SubAssign};
+use std::ops::{AddAssign, Mul, Neg};
 
 /// B components of N right-hand sides: the N values of a component lie side by side, for the
 /// vector units of the processor.
@@ -8,16 +8,7 @@ pub type Lanes<T, const B: usize, const N: usize> = [[T; N]; B];
 
 /// f32 and f64.
 pub trait Real:
-    Copy
-    + Default
-    + Send
-    + Sync
-    + Add<Output = Self>
-    + Sub<Output = Self>
-    + Mul<Output = Self>
-    + AddAssign
-    + SubAssign
-    + 'static
+    Copy + Default + Send + Sync + AddAssign + Mul<Output = Self> + Neg<Output = Self>
 {
 }
 
@@ -56,34 +47,13 @@ pub(super) fn add_transposed<T: Real, const B: usize, const N: usize>(
     }
 }
 
-/// sum -= A x.
+/// Exact, like every change of sign.
 #[inline(always)]
-pub(super) fn subtract_product<T: Real, const B: usize, const N: usize>(
-    sum: &mut Lanes<T, B, N>,
-    block: &[[T; B]; B],
+pub(super) fn negated<T: Real, const B: usize, const N: usize>(
     x: &Lanes<T, B, N>,
-) {
-    for r in 0..B {
-        for c in 0..B {
-            for n in 0..N {
-                sum[r][n] -= block[r][c] * x[c][n];
-            }
-        }
-    }
+) -> Lanes<T, B, N> {
+    x.map(|component| component.map(|value| -value))
 }
 
-/// sum -= A^T x.
-#[inline(always)]
-pub(super) fn subtract_transposed<T: Real, const B: usize, const N: usize>(
-    sum: &mut Lanes<T, B, N>,
-    block: &[[T; B]; B],
-    x: &Lanes<T, B, N>,
-) {
-    for r in 0..B {
-        for c in 0..B {
-            for n in 0..N {
-                sum[c][n] -= block[r][c] * x[r][n];
-            }
-        }
-    }
-}
+/// Right-hand sides that share a pass at most: the f32 lanes of a vector register of 256 bits.
+pub const MOST_LANES: usize = 8;

@@ -16,11 +16,11 @@
 
 use std::collections::VecDeque;
 
-use super::lanes::Lanes;
+use super::lanes::{Lanes, MOST_LANES};
 use super::multigrid::{Multigrid, Workspace};
 use super::sparse_rows::SparseRows;
 use super::vector::{advance, column, dot, interleave, largest, norm, ratio, scale, subtract_all};
-use super::{Solution, SolverError, System, Tolerance, Unknowns, Watch};
+use super::{Solution, SolverError, System, Tolerance, Unknowns, Watch, nothing_to_solve};
 
 /// Directions to which a new one is made conjugate: of 2, 4, 8 and all, four take within one iteration of
 /// all on shells, and each costs as much as a quarter of a product.
@@ -33,9 +33,6 @@ pub const MOST_DIRECTIONS: usize = 60;
 /// A step that takes less than this part of the residual stands still: the next direction is then made from
 /// the last product instead of the residual (ORTHODIR; Young, Jea 1980), which has hardly changed.
 const STANDSTILL: f64 = 0.1;
-
-/// Right-hand sides that share one pass.
-const TOGETHER: usize = 8;
 
 /// S = D / 3.
 const SCHUR: f64 = 3.0;
@@ -98,17 +95,29 @@ pub fn solve(
     tolerance: &Tolerance,
     watch: Watch,
 ) -> Result<Vec<MixedSolution>, SolverError> {
+    let is_zero = |right: &MixedRightHandSide| {
+        let mut values = right.forces.as_flattened().iter().chain(right.volumes.as_flattened());
+        values.all(|value| *value == 0.0)
+    };
+    if right_hand_sides.iter().all(is_zero) {
+        let pressures = vec![[0.0]; system.coupling.mass.len()];
+        let rest = |right: &MixedRightHandSide| MixedSolution {
+            solution: nothing_to_solve(right.forces.len()),
+            pressures: pressures.clone(),
+        };
+        return Ok(right_hand_sides.iter().map(rest).collect());
+    }
     let multigrid = Multigrid::new(system.stiffness);
     let wanted = tolerance.relative_residual;
     let alone = |right: &MixedRightHandSide| {
         Run::<1>::new(system, &multigrid, std::slice::from_ref(right)).solve(wanted, watch)
     };
     let mut solutions = Vec::with_capacity(right_hand_sides.len());
-    for chunk in right_hand_sides.chunks(TOGETHER) {
+    for chunk in right_hand_sides.chunks(MOST_LANES) {
         let together = match chunk.len() {
             1 => alone(&chunk[0]),
             2..=4 => Run::<4>::new(system, &multigrid, chunk).solve(wanted, watch),
-            _ => Run::<TOGETHER>::new(system, &multigrid, chunk).solve(wanted, watch),
+            _ => Run::<MOST_LANES>::new(system, &multigrid, chunk).solve(wanted, watch),
         };
         match together {
             // Alone each may keep more directions.

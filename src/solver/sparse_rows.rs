@@ -2,6 +2,7 @@
 
 use rayon::prelude::*;
 
+use super::cliques::{Cliques, CliquesOfRow};
 use super::lanes::Lanes;
 use super::vectorised::vectorised;
 
@@ -47,15 +48,21 @@ impl<T: Entry> SparseRows<T> {
         couplings: &Couplings,
         value: impl Fn(usize, usize, usize) -> T + Sync,
     ) -> Self {
-        let (first, cells) = cells_around(row_count, couplings.rows);
+        let mut cliques = Cliques::default();
+        couplings.rows.iter().for_each(|rows| cliques.push(*rows));
+        let around = CliquesOfRow::new(&cliques, row_count);
         let chunks: Vec<Vec<Vec<(u32, T)>>> = (0..row_count.div_ceil(ROW_CHUNK))
             .into_par_iter()
             .map(|chunk| {
                 let rows = chunk * ROW_CHUNK..((chunk + 1) * ROW_CHUNK).min(row_count);
                 rows.map(|row| {
                     let mut entries: Vec<(u32, T)> = Vec::with_capacity(24);
-                    for &place in &cells[first[row]..first[row + 1]] {
-                        let (cell, local) = (place as usize / 4, place as usize % 4);
+                    for &cell in around.of(row) {
+                        let cell = cell as usize;
+                        let mut named = couplings.rows[cell].iter();
+                        let Some(local) = named.position(|&named| named as usize == row) else {
+                            continue;
+                        };
                         for (k, &column) in couplings.columns[cell].iter().enumerate() {
                             let part = value(cell, local, k);
                             match entries.iter_mut().find(|(known, _)| *known == column) {
@@ -93,25 +100,6 @@ impl<T: Entry> SparseRows<T> {
     pub fn megabytes(&self) -> f64 {
         (self.columns.len() * (4 + size_of::<T>()) + self.start.len() * 4) as f64 / 1e6
     }
-}
-
-/// For each row the places `4 cell + local` at which cells name it: those of row r stand between the
-/// r-th and the next entry of the first list.
-fn cells_around(row_count: usize, rows: &[[u32; 4]]) -> (Vec<usize>, Vec<u32>) {
-    let mut first = vec![0_usize; row_count + 1];
-    for &row in rows.as_flattened() {
-        first[row as usize + 1] += 1;
-    }
-    for row in 0..row_count {
-        first[row + 1] += first[row];
-    }
-    let mut next = first.clone();
-    let mut places = vec![0; first[row_count]];
-    for (place, &row) in rows.as_flattened().iter().enumerate() {
-        places[next[row as usize]] = place as u32;
-        next[row as usize] += 1;
-    }
-    (first, places)
 }
 
 impl SparseRows<f64> {

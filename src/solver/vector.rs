@@ -4,6 +4,7 @@
 
 use rayon::prelude::*;
 
+use super::lanes::MOST_LANES;
 use super::vectorised::vectorised;
 
 /// Unknowns summed by one thread before partial sums are added in order.
@@ -11,7 +12,7 @@ const CHUNK: usize = 12_288;
 
 /// Sums that run side by side within a chunk, so that none waits for the one before. The number of
 /// right-hand sides divides it.
-const ABREAST: usize = 8;
+const ABREAST: usize = MOST_LANES;
 
 /// Adds partial sums in the order of the chunks.
 fn total<const N: usize>(partial: impl IntoIterator<Item = [f64; ABREAST]>) -> [f64; N] {

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 
 use super::inverse::inverse_block;
 use crate::solver::half_matrix::{HalfMatrix, Pattern};
-use crate::solver::lanes::{Lanes, add_product, subtract_product, subtract_transposed};
+use crate::solver::lanes::{Lanes, add_product, add_transposed, negated};
 use crate::solver::layout::Layout;
 use crate::solver::vectorised::vectorised;
 
@@ -125,16 +125,16 @@ impl<const B: usize> Smoother<B> {
         for row in rows {
             let columns = self.pattern.columns(row);
             let blocks = &self.lower[self.pattern.range(row)];
-            let mut sum = right[row];
+            let mut sum = negated(&right[row]);
             for (&column, block) in columns.iter().zip(blocks) {
-                subtract_product(&mut sum, block, &x[column as usize - first]);
+                add_product(&mut sum, block, &x[column as usize - first]);
             }
-            let mut solved = [[0.0; N]; B];
-            add_product(&mut solved, &self.inverse_diagonal[row], &sum);
-            x[row - first] = solved;
+            let mut taken = [[0.0; N]; B];
+            add_product(&mut taken, &self.inverse_diagonal[row], &sum);
+            x[row - first] = negated(&taken);
             rest[row - first] = [[0.0; N]; B];
             for (&column, block) in columns.iter().zip(blocks) {
-                subtract_transposed(&mut rest[column as usize - first], block, &solved);
+                add_transposed(&mut rest[column as usize - first], block, &taken);
             }
         }
     }
@@ -145,15 +145,15 @@ impl<const B: usize> Smoother<B> {
         for row in rows.rev() {
             let columns = self.pattern.columns(row);
             let blocks = &self.lower[self.pattern.range(row)];
-            let mut sum = remaining[row - first];
+            let mut sum = negated(&remaining[row - first]);
             for (&column, block) in columns.iter().zip(blocks) {
-                subtract_product(&mut sum, block, &x[column as usize - first]);
+                add_product(&mut sum, block, &x[column as usize - first]);
             }
-            let mut solved = [[0.0; N]; B];
-            add_product(&mut solved, &self.inverse_diagonal[row], &sum);
-            x[row - first] = solved;
+            let mut taken = [[0.0; N]; B];
+            add_product(&mut taken, &self.inverse_diagonal[row], &sum);
+            x[row - first] = negated(&taken);
             for (&column, block) in columns.iter().zip(blocks) {
-                subtract_transposed(&mut remaining[column as usize - first], block, &solved);
+                add_transposed(&mut remaining[column as usize - first], block, &taken);
             }
         }
     }
