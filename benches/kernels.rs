@@ -9,7 +9,8 @@ mod measure;
 
 use facies::boundary::NodeClass;
 use facies::model::assembly::{Numbering, partly_held};
-use facies::model::linear_fem::{Observer, Problem};
+use facies::model::equilibrium::Observer;
+use facies::model::linear_fem::Problem;
 use facies::prediction::{ElementChoice, Scene, Settings};
 use facies::solver::multigrid::Multigrid;
 use facies::solver::{System, Tolerance};

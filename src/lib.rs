@@ -22,5 +22,6 @@ pub mod response;
 pub mod schema;
 pub mod solver;
 pub mod store;
+pub mod study;
 pub mod telemetry;
 pub mod validation;

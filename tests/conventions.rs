@@ -7,7 +7,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Module, and the modules of ours that it may use.
-const TABLE: [(&str, &[&str]); 22] = [
+const TABLE: [(&str, &[&str]); 23] = [
     ("mesh", &[]),
     ("material", &[]),
     ("element", &[]),
@@ -25,6 +25,20 @@ const TABLE: [(&str, &[&str]); 22] = [
     ("response", &["mesh", "plan", "boundary", "material", "solver", "model", "prediction"]),
     ("optimisation", &["mesh", "plan", "response"]),
     (
+        "study",
+        &[
+            "mesh",
+            "plan",
+            "boundary",
+            "material",
+            "solver",
+            "model",
+            "prediction",
+            "response",
+            "validation",
+        ],
+    ),
+    (
         "schema",
         &[
             "mesh",
@@ -39,6 +53,7 @@ const TABLE: [(&str, &[&str]); 22] = [
             "optimisation",
             "registration",
             "validation",
+            "study",
         ],
     ),
     ("store", &["schema", "config"]),
@@ -54,6 +69,7 @@ const TABLE: [(&str, &[&str]); 22] = [
             "response",
             "optimisation",
             "validation",
+            "study",
             "chart",
             "schema",
             "store",
@@ -71,7 +87,7 @@ const SERVICE_CRATES: [&str; 4] = ["axum", "sqlx", "tokio", "utoipa"];
 /// What the numerics must not read, so that the same scene gives the same numbers.
 const OUTSIDE_WORLD: [&str; 4] = ["std::fs", "std::env", "std::time", "std::net"];
 
-const NUMERICS: [&str; 14] = [
+const NUMERICS: [&str; 15] = [
     "mesh",
     "material",
     "element",
@@ -85,6 +101,7 @@ const NUMERICS: [&str; 14] = [
     "model",
     "prediction",
     "response",
+    "study",
     "optimisation",
 ];
 

@@ -149,7 +149,7 @@ impl JobError {
 }
 
 /// At most 200 entries, evenly spread, with the last.
-fn thinned(history: &[f64]) -> Vec<f64> {
+pub(super) fn thinned(history: &[f64]) -> Vec<f64> {
     let step = history.len().div_ceil(TOLD_RESIDUALS).max(1);
     let mut told: Vec<f64> = history.iter().copied().step_by(step).collect();
     if let Some(&last) = history.last()

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::failure::JobError;
+use super::failure::{JobError, thinned};
 use super::observed::{Observed, now_rfc3339, peak_rss_mb};
 use crate::mesh::quality::QualityReport;
 use crate::mesh::{Frame, VolumeMesh};
@@ -68,7 +68,7 @@ pub fn add_method(
     solver: SolverDocument,
 ) {
     let (mesh, quality) = mesh;
-    provenance.method = Some("fem_linear".to_owned());
+    provenance.method = Some(method.chosen().name().to_owned());
     provenance.why = Some(method.why().to_owned());
     provenance.solver = Some(solver);
     provenance.mesh = Some(MeshSummaryDocument {
@@ -90,7 +90,8 @@ pub fn solver_document(solver: &SolverReport) -> SolverDocument {
         relative_residual: solver.relative_residual,
         wanted_residual: solver.wanted_residual,
         elements: solver.elements.clone(),
-        steps: 1,
+        history: thinned(&solver.history),
+        steps: solver.steps,
     }
 }
 

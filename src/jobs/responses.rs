@@ -325,6 +325,8 @@ mod tests {
             unknowns: 0,
             iterations: 0,
             relative_residual: 0.0,
+            history: Vec::new(),
+            steps: 1,
             wanted_residual: 0.0,
             elements: Vec::new(),
         };

@@ -1,7 +1,7 @@
 //! Holds and forces as what is known of a linear system: along the axes of the holds, by row, and back.
 
 use super::assembly::{Numbering, partly_held, turn_into_axes};
-use super::linear_fem::LoadCase;
+use super::equilibrium::LoadCase;
 use crate::boundary::Hold;
 use crate::mesh::Vector;
 use crate::solver::cliques::Cliques;

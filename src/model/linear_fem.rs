@@ -5,21 +5,13 @@
 
 use rayon::prelude::*;
 
-use super::assembly::{InvertedCell, Tissue, nodes_of_cells};
+use super::assembly::{Tissue, nodes_of_cells};
 use super::constrained::{Constrained, Known, free_unknowns, number, product_at_holds};
+use super::equilibrium::{Convergence, Equilibrium, LoadCase, ModelError, Observer};
 use crate::boundary::Hold;
 use crate::mesh::Vector;
 use crate::solver::half_matrix::HalfMatrix;
 use crate::solver::{self, Solution, SolverError, Tolerance, Unknowns};
-
-/// What the solution tells and asks while it runs.
-pub trait Observer {
-    fn assembling(&self);
-    fn solving(&self);
-    /// Whether to go on after an iteration with this relative residual.
-    fn iterated(&self, iteration: usize, relative_residual: f64) -> bool;
-    fn is_stopped(&self) -> bool;
-}
 
 /// A mechanical problem: tissue, what holds it and what acts on it.
 pub struct Problem<'a> {
@@ -30,35 +22,9 @@ pub struct Problem<'a> {
     pub tolerance: Tolerance,
 }
 
-/// One of several things that happen to the same tissue.
-#[derive(Clone, Debug, PartialEq)]
-pub struct LoadCase {
-    /// For each hold its displacement in mm along its held axes, in its frame.
-    pub held: Vec<Vector>,
-    /// For each node, in mN.
-    pub forces: Vec<Vector>,
-}
-
-/// Nodal displacement in mm, and for each hold the force in mN that it exerts on the tissue.
-pub struct Equilibrium {
-    pub displacement: Vec<Vector>,
-    pub reactions: Vec<Vector>,
-    pub solution: Solution,
-    /// Unknowns that are not held.
-    pub unknowns: usize,
-}
-
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum LinearFemError {
-    #[error(transparent)]
-    Inverted(#[from] InvertedCell),
-    #[error(transparent)]
-    Solver(#[from] SolverError),
-}
-
 impl Problem<'_> {
     /// Solves for equilibrium.
-    pub fn solve(&self, observer: &dyn Observer) -> Result<Equilibrium, LinearFemError> {
+    pub fn solve(&self, observer: &dyn Observer) -> Result<Equilibrium, ModelError> {
         let held = self.holds.iter().map(|hold| *hold.values()).collect();
         let case = LoadCase { held, forces: self.forces.to_vec() };
         let mut equilibria = self.solve_cases(&[case], observer)?;
@@ -70,7 +36,7 @@ impl Problem<'_> {
         &self,
         cases: &[LoadCase],
         observer: &dyn Observer,
-    ) -> Result<Vec<Equilibrium>, LinearFemError> {
+    ) -> Result<Vec<Equilibrium>, ModelError> {
         observer.assembling();
         let mesh = self.tissue.mesh;
         let numbering = number(&nodes_of_cells(mesh), &mesh.nodes, self.holds);
@@ -95,7 +61,7 @@ pub(super) fn solve_displacement(
     problem: &Problem,
     cases: &[LoadCase],
     observer: &dyn Observer,
-) -> Result<Vec<Equilibrium>, LinearFemError> {
+) -> Result<Vec<Equilibrium>, ModelError> {
     // 1. What is known, and the forces it leaves on the free unknowns.
     observer.solving();
     let Assembled { constrained, matrix, positions } = assembled;
@@ -116,8 +82,9 @@ pub(super) fn solve_displacement(
         Equilibrium {
             displacement: constrained.displacement(&total),
             reactions: constrained.reactions(&internal, &known.force),
-            solution,
+            convergence: Convergence::of(&solution),
             unknowns: free_unknowns(&system),
+            warnings: Vec::new(),
         }
     };
     let equilibria: Vec<Equilibrium> =

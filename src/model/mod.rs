@@ -2,6 +2,7 @@
 
 pub mod assembly;
 mod constrained;
+pub mod equilibrium;
 pub mod linear_fem;
 pub mod load;
 pub mod quadratic;

@@ -10,9 +10,8 @@ use rayon::prelude::*;
 
 use super::assembly::{InvertedCell, Numbering, Tissue};
 use super::constrained::{Constrained, number};
-use super::linear_fem::{
-    Assembled, Equilibrium, LinearFemError, LoadCase, Observer, Problem, solve_displacement,
-};
+use super::equilibrium::{Equilibrium, LoadCase, ModelError, Observer};
+use super::linear_fem::{Assembled, Problem, solve_displacement};
 use super::load::FaceLoad;
 use super::stiffness::{add_pair, tetrahedron};
 use crate::boundary::{Hold, midpoint};
@@ -154,7 +153,7 @@ pub fn solve_cases(
     problem: &Problem,
     cases: &[LoadCase],
     observer: &dyn Observer,
-) -> Result<Vec<Equilibrium>, LinearFemError> {
+) -> Result<Vec<Equilibrium>, ModelError> {
     // 1. The matrix over corners and edge nodes.
     observer.assembling();
     let mesh = problem.tissue.mesh;

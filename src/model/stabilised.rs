@@ -20,7 +20,8 @@ use rayon::prelude::*;
 
 use super::assembly::{InvertedCell, Numbering, Tissue, nodes_of_cells};
 use super::constrained::{Constrained, Known, free_unknowns, number, product_at_holds};
-use super::linear_fem::{Equilibrium, LinearFemError, LoadCase, Observer, Problem, check_finite};
+use super::equilibrium::{Convergence, Equilibrium, LoadCase, ModelError, Observer};
+use super::linear_fem::{Problem, check_finite};
 use super::stiffness::tetrahedron;
 use crate::material::LinearElastic;
 use crate::mesh::{CellShape, Vector};
@@ -36,7 +37,7 @@ pub fn solve_cases(
     problem: &Problem,
     cases: &[LoadCase],
     observer: &dyn Observer,
-) -> Result<Vec<Equilibrium>, LinearFemError> {
+) -> Result<Vec<Equilibrium>, ModelError> {
     // 1. The matrices, with sliding nodes along their own axes.
     observer.assembling();
     let mesh = problem.tissue.mesh;
@@ -74,7 +75,8 @@ pub fn solve_cases(
         Equilibrium {
             displacement: constrained.displacement(&total),
             reactions: constrained.reactions(&internal, &known.force),
-            solution: mixed.solution,
+            convergence: Convergence::of(&mixed.solution),
+            warnings: Vec::new(),
             unknowns: free_unknowns(&stiffness) + coupling.mass.len(),
         }
     };

@@ -120,9 +120,18 @@ pub enum ElementChoice {
     Quadratic,
 }
 
+/// The way of modelling, with what only it has to be told.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum Method {
+    /// Linear finite elements at small strain.
+    #[default]
+    FemLinear,
+}
+
 /// How the numbers are to be found.
 #[derive(Clone, Debug)]
 pub struct Settings {
+    pub method: Method,
     pub element: ElementChoice,
     /// False lets sliding nodes go free.
     pub sliding: bool,
@@ -135,6 +144,7 @@ pub struct Settings {
 impl Default for Settings {
     fn default() -> Self {
         Settings {
+            method: Method::FemLinear,
             element: ElementChoice::Auto,
             sliding: true,
             relative_residual: 1e-8,

@@ -11,8 +11,8 @@ mod skin;
 use std::collections::BTreeMap;
 
 pub use case::{
-    Bone, Case, CaseSegment, ElementChoice, Load, Plan, Prescribed, RegionNames, Settings, Sliding,
-    SlidingNormal,
+    Bone, Case, CaseSegment, ElementChoice, Load, Method, Plan, Prescribed, RegionNames, Settings,
+    Sliding, SlidingNormal,
 };
 pub use problem::{SceneError, SceneErrors};
 pub use progress::{Phase, Progress, Unobserved};
@@ -21,7 +21,7 @@ pub use skin::Skin;
 
 pub use crate::boundary::NodeClass;
 use crate::mesh::{Vector, Warning};
-use crate::model::linear_fem::{Equilibrium, LinearFemError, Observer};
+use crate::model::equilibrium::{Equilibrium, ModelError, Observer};
 use crate::model::strain::{CellDeformation, deformations};
 use crate::solver::SolverError;
 
@@ -57,6 +57,10 @@ pub struct SolverReport {
     pub iterations: usize,
     /// |f - K u| / |f_D| of the free rows, recomputed at the end; with pressures as `solver::mixed` says.
     pub relative_residual: f64,
+    /// The relative residual after each iteration, of methods that have their own iterations to show.
+    pub history: Vec<f64>,
+    /// Steps of load or time.
+    pub steps: u32,
     pub wanted_residual: f64,
     /// The elements used, e.g. `hex8 mean dilatation`.
     pub elements: Vec<String>,
@@ -78,12 +82,11 @@ pub enum PredictionError {
     NotFinite,
 }
 
-/// Solves a scene. The same scene gives the same bits on any number of threads.
+/// Solves a scene by the method it asks for. The same scene gives the same bits on any number of threads.
 pub fn predict(scene: &Scene, progress: &dyn Progress) -> Result<Prediction, PredictionError> {
     // 1. Equilibrium.
     let wanted = scene.settings.relative_residual;
-    let solved = scene.solve_cases(&[scene.load_case()], &Followed { progress, wanted })?;
-    let equilibrium = solved.into_iter().next().ok_or(PredictionError::NotFinite)?;
+    let equilibrium = scene.solve(&Followed { progress, wanted })?;
 
     // 2. What it does to the tissue and to the landmarks.
     progress.phase(Phase::Surface);
@@ -93,6 +96,7 @@ pub fn predict(scene: &Scene, progress: &dyn Progress) -> Result<Prediction, Pre
 
     // 3. What a reader must know.
     let mut warnings = scene.warnings.clone();
+    warnings.extend(equilibrium.warnings.iter().cloned());
     warnings.extend(inverted_cells(&deformation));
     warnings.extend(far_landmarks(&landmarks));
     Ok(Prediction {
@@ -145,13 +149,16 @@ fn reactions(scene: &Scene, equilibrium: &Equilibrium) -> BTreeMap<String, Vecto
 }
 
 pub(crate) fn report(scene: &Scene, equilibrium: &Equilibrium) -> SolverReport {
+    let found = &equilibrium.convergence;
     SolverReport {
-        name: equilibrium.solution.method,
-        preconditioner: equilibrium.solution.preconditioner,
-        why: equilibrium.solution.why.clone(),
+        name: found.method,
+        preconditioner: found.preconditioner,
+        why: found.why.clone(),
         unknowns: equilibrium.unknowns,
-        iterations: equilibrium.solution.iterations,
-        relative_residual: equilibrium.solution.relative_residual,
+        iterations: found.iterations,
+        relative_residual: found.relative_residual,
+        history: found.history.clone(),
+        steps: found.steps,
         wanted_residual: scene.settings.relative_residual,
         elements: scene.elements(),
     }
@@ -177,19 +184,19 @@ fn far_landmarks(landmarks: &BTreeMap<String, (Vector, f64)>) -> Vec<Warning> {
     .collect()
 }
 
-impl From<LinearFemError> for PredictionError {
-    fn from(error: LinearFemError) -> Self {
+impl From<ModelError> for PredictionError {
+    fn from(error: ModelError) -> Self {
         match error {
-            LinearFemError::Inverted(inverted) => PredictionError::Inverted { cell: inverted.cell },
-            LinearFemError::Solver(SolverError::Stopped) => PredictionError::Cancelled,
-            LinearFemError::Solver(SolverError::NotFinite) => PredictionError::NotFinite,
-            LinearFemError::Solver(SolverError::NotPositiveDefinite { row }) => {
+            ModelError::Inverted(inverted) => PredictionError::Inverted { cell: inverted.cell },
+            ModelError::Solver(SolverError::Stopped) => PredictionError::Cancelled,
+            ModelError::Solver(SolverError::NotFinite) => PredictionError::NotFinite,
+            ModelError::Solver(SolverError::NotPositiveDefinite { row }) => {
                 PredictionError::Singular { node: row }
             }
-            LinearFemError::Solver(SolverError::OverBudget { needed_mb, allowed_mb }) => {
+            ModelError::Solver(SolverError::OverBudget { needed_mb, allowed_mb }) => {
                 PredictionError::OverBudget { needed_mb, allowed_mb }
             }
-            LinearFemError::Solver(SolverError::NotConverged {
+            ModelError::Solver(SolverError::NotConverged {
                 iterations,
                 residual,
                 wanted,

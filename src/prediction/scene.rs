@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use super::case::{Case, ElementChoice, Plan, Settings};
+use super::case::{Case, ElementChoice, Method, Plan, Settings};
 use super::check::Check;
 use super::problem::SceneErrors;
 use super::skin::Skin;
@@ -12,7 +12,8 @@ use crate::material::LinearElastic;
 use crate::mesh::connectivity::Faces;
 use crate::mesh::{CellShape, Vector, VolumeMesh, Warning};
 use crate::model::assembly::Tissue;
-use crate::model::linear_fem::{Equilibrium, LinearFemError, LoadCase, Observer, Problem};
+use crate::model::equilibrium::{Equilibrium, LoadCase, ModelError, Observer};
+use crate::model::linear_fem::Problem;
 use crate::model::quadratic::EdgeNodes;
 use crate::model::stiffness::Dilatation;
 use crate::model::{quadratic, stabilised};
@@ -138,12 +139,23 @@ impl Scene {
         LoadCase { held, forces: self.forces.clone() }
     }
 
-    /// Solves for each of several load cases with the elements of this scene; the tissue is assembled once.
+    /// Solves the scene by the method of its settings.
+    pub fn solve(&self, observer: &dyn Observer) -> Result<Equilibrium, ModelError> {
+        match &self.settings.method {
+            Method::FemLinear => {
+                let mut solved = self.solve_cases(&[self.load_case()], observer)?;
+                Ok(solved.remove(0))
+            }
+        }
+    }
+
+    /// Solves for each of several load cases with linear finite elements, those of this scene; the tissue is
+    /// assembled once.
     pub fn solve_cases(
         &self,
         cases: &[LoadCase],
         observer: &dyn Observer,
-    ) -> Result<Vec<Equilibrium>, LinearFemError> {
+    ) -> Result<Vec<Equilibrium>, ModelError> {
         let Settings { relative_residual, memory_mb, .. } = self.settings;
         let problem = Problem {
             tissue: self.tissue(),

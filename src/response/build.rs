@@ -8,7 +8,7 @@ use super::linearity::{self, Linearity};
 use super::{COLUMNS_PER_SEGMENT, Response, ResponseSegment, superposition};
 use crate::boundary::NodeClass;
 use crate::mesh::Vector;
-use crate::model::linear_fem::{Equilibrium, LoadCase};
+use crate::model::equilibrium::{Equilibrium, LoadCase};
 use crate::plan::RigidMovement;
 use crate::prediction::{Followed, Phase, PredictionError, Progress, Scene, SolverReport, report};
 
@@ -183,7 +183,7 @@ fn check_memory(scene: &Scene, columns: usize) -> Result<(), PredictionError> {
 /// The report of the column that took most iterations, with the largest residual of all.
 fn hardest(scene: &Scene, solved: &[Equilibrium]) -> Result<SolverReport, ResponseError> {
     let reports = solved.iter().map(|equilibrium| report(scene, equilibrium));
-    let residuals = solved.iter().map(|equilibrium| equilibrium.solution.relative_residual);
+    let residuals = solved.iter().map(|equilibrium| equilibrium.convergence.relative_residual);
     let largest = residuals.fold(0.0, f64::max);
     let hardest = reports.max_by_key(|report| report.iterations);
     let hardest = hardest.ok_or(ResponseError::NoSegments)?;

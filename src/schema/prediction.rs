@@ -166,6 +166,11 @@ pub struct SolverDocument {
     pub relative_residual: f64,
     pub wanted_residual: f64,
     pub elements: Vec<String>,
+    /// The relative residual after each iteration, at most 200 of them, of methods that have their own
+    /// iterations to show.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub history: Vec<f64>,
+    /// Steps of load or time.
     pub steps: u32,
 }
 

@@ -16,7 +16,7 @@ use super::plan::PlanDocument;
 use super::problem::Problem;
 use super::response::ResponseDocument;
 use super::strict;
-use crate::prediction::Settings;
+use crate::prediction::{Method, Settings};
 
 /// The body of `POST /v1/jobs`, told apart by `kind`.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
@@ -253,6 +253,7 @@ impl PredictDocument {
             compare_to.check(&at.key("compare_to"), limits, faults);
         }
         Settings {
+            method: Method::FemLinear,
             element: self.element.choice(),
             sliding: self.contact == ContactName::Sliding,
             relative_residual: residual,

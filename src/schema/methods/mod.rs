@@ -1,5 +1,7 @@
 //! `GET /v1/methods`: the ways of modelling, by the names a spec may give.
 
+mod fem_linear;
+
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
@@ -54,6 +56,32 @@ impl MethodName {
     /// Whether it is built.
     pub fn is_available(self) -> bool {
         matches!(self, MethodName::Auto | MethodName::FemLinear)
+    }
+
+    /// The method that is used: what `auto` chooses, or the one asked for.
+    pub fn chosen(self) -> MethodName {
+        match self {
+            MethodName::Auto => MethodName::FemLinear,
+            named => named,
+        }
+    }
+
+    /// As it stands in documents.
+    pub fn name(self) -> &'static str {
+        match self {
+            MethodName::Auto => "auto",
+            MethodName::FemLinear => "fem_linear",
+            MethodName::FemCorotational => "fem_corotational",
+            MethodName::FemNeoHookean => "fem_neo_hookean",
+            MethodName::FemMooneyRivlin => "fem_mooney_rivlin",
+            MethodName::FemOgden => "fem_ogden",
+            MethodName::FemRubinBodner => "fem_rubin_bodner",
+            MethodName::Mtm => "mtm",
+            MethodName::MtmTi => "mtm_ti",
+            MethodName::Msm => "msm",
+            MethodName::Dvs => "dvs",
+            MethodName::ThicknessWarp => "thickness_warp",
+        }
     }
 
     pub fn why(self) -> &'static str {
@@ -126,46 +154,34 @@ pub struct ResponseMethod {
 pub struct MethodDocument {
     pub name: MethodName,
     pub title: String,
-    /// The elements it knows.
+    /// What it takes for granted, and what it cannot represent.
+    pub assumptions: Vec<String>,
+    /// The elements it knows; none where it has no elements.
     pub elements: Vec<ElementName>,
     /// The cell shapes it takes.
     pub cells: Vec<String>,
     /// The fields of case, plan and spec that it reads.
     pub reads: Vec<String>,
+    /// What only it has to be told, in the field of the spec that has its name.
+    pub parameters: Vec<ParameterDocument>,
+}
+
+/// A parameter of a method.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct ParameterDocument {
+    /// As it stands in the spec, with its unit.
+    pub name: String,
+    pub meaning: String,
+    /// As JSON.
+    pub default: serde_json::Value,
+    /// As text, e.g. `(0, 100]` or `static | backward_euler`.
+    pub range: String,
 }
 
 /// The methods that are built.
 pub fn available_methods() -> MethodList {
-    let words = |list: &[&str]| list.iter().map(|word| (*word).to_owned()).collect();
     MethodList {
-        methods: vec![MethodDocument {
-            name: MethodName::FemLinear,
-            title: "linear elasticity at small strain, finite elements".to_owned(),
-            elements: vec![
-                ElementName::Auto,
-                ElementName::Plain,
-                ElementName::MeanDilatation,
-                ElementName::Stabilised,
-                ElementName::Quadratic,
-            ],
-            cells: words(&["tet4", "hex8", "wedge6"]),
-            reads: words(&[
-                "case.segments",
-                "case.fixed",
-                "case.sliding",
-                "case.materials.young_modulus_kpa",
-                "case.materials.poisson_ratio",
-                "case.materials.density_g_per_cm3",
-                "plan.segments",
-                "plan.prescribed",
-                "plan.loads",
-                "spec.contact",
-                "spec.element",
-                "spec.materials",
-                "spec.tolerance.relative_residual",
-                "spec.budget",
-            ]),
-        }],
+        methods: vec![fem_linear::document()],
         auto: WHY_LINEAR.to_owned(),
         response: ResponseMethod {
             methods: vec![MethodName::FemLinear],
@@ -187,4 +203,8 @@ pub fn available_methods() -> MethodList {
             undetermined_below: UNDETERMINED,
         },
     }
+}
+
+fn words(list: &[&str]) -> Vec<String> {
+    list.iter().map(|word| (*word).to_owned()).collect()
 }

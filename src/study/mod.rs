@@ -1,0 +1,17 @@
+//! Methods side by side on the same scenes: how long each takes, and how far each is from the truth.
+
+pub mod report;
+pub mod variant;
+
+pub use report::{Errors, Outcome, Report, Row, SceneReport};
+pub use variant::{Materials, Study, StudyScene, Truth, Variant};
+
+/// What the caller measures while the study computes: numerics know neither clock nor memory.
+pub trait Stopwatch: Sync {
+    /// Seconds since some moment.
+    fn seconds(&self) -> f64;
+    /// Starts anew to look for the most memory in use.
+    fn forget_peak(&self);
+    /// The most memory in use since then in MB, where the system tells.
+    fn peak_mb(&self) -> Option<f64>;
+}

@@ -1,0 +1,79 @@
+//! What a study finds: one row for each method, mesh level, material, plan and scene.
+
+use std::collections::BTreeMap;
+
+/// All rows in the order of the study: scene, plan, material, level, variant.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Report {
+    pub scenes: Vec<SceneReport>,
+    pub rows: Vec<Row>,
+}
+
+/// A scene at level 0 and what is held for true in it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SceneReport {
+    pub name: String,
+    pub nodes: usize,
+    pub cells: usize,
+    pub skin_nodes: usize,
+    /// In words, e.g. `tet10 quadratic, every edge halved once, 69 301 unknowns`.
+    pub truth: String,
+    /// What the truth itself is off by, mean and p95 over the skin in mm, by extrapolation; none for a
+    /// closed form.
+    pub truth_error_mm: Option<[f64; 2]>,
+    /// Making the truth, in s; not part of any row.
+    pub truth_s: f64,
+}
+
+/// One method on one scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Row {
+    pub scene: String,
+    pub plan: String,
+    pub method: String,
+    /// The variant.
+    pub label: String,
+    /// The elements in use, e.g. `tet4 stabilised`; empty where there are none.
+    pub element: String,
+    pub material: String,
+    pub level: u32,
+    pub outcome: Outcome,
+}
+
+/// What came of a row.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Outcome {
+    Solved(Solved),
+    /// Refused or failed: the stable word, and the sentence with its numbers.
+    Failed {
+        code: String,
+        detail: String,
+    },
+}
+
+/// A row with numbers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Solved {
+    pub unknowns: usize,
+    pub iterations: usize,
+    /// Median over the repeats of mesh in memory to displacement in memory, on one thread.
+    pub wall_s: f64,
+    pub peak_mb: Option<f64>,
+    /// |u - u_truth| at the skin nodes of level 0, by area.
+    pub node_wise: Errors,
+    /// From the predicted skin of level 0 to the closest point of the true one, by area.
+    pub closest_point: Errors,
+    /// Node-wise, for each named part of the skin.
+    pub regions: BTreeMap<String, Errors>,
+    pub smallest_det_f: f64,
+    /// Codes of the warnings.
+    pub warnings: Vec<String>,
+}
+
+/// In mm, by area; p95 is the smallest value whose cumulative weight reaches 95 %.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Errors {
+    pub mean: f64,
+    pub p95: f64,
+    pub max: f64,
+}

@@ -1,0 +1,56 @@
+//! What a study runs: scenes with plans and a truth, crossed with methods, materials and mesh levels.
+
+use std::collections::BTreeMap;
+
+use crate::material::LinearElastic;
+use crate::mesh::Vector;
+use crate::prediction::{Case, ElementChoice, Plan, Settings};
+
+/// Every scene with every variant, material, plan and level.
+pub struct Study {
+    pub scenes: Vec<StudyScene>,
+    pub variants: Vec<Variant>,
+    /// Level n halves every edge n times.
+    pub levels: Vec<u32>,
+    /// Solves of each row, of which the median time is told; at least 1.
+    pub repeats: usize,
+}
+
+/// A case with the plans that move it, and what is held for true.
+pub struct StudyScene {
+    pub name: String,
+    pub case: Case,
+    /// At least one, each with its name.
+    pub plans: Vec<(String, Plan)>,
+    /// At least one.
+    pub materials: Vec<Materials>,
+    pub truth: Truth,
+}
+
+/// Materials of all regions, under a name for the row.
+pub struct Materials {
+    pub name: String,
+    pub by_region: BTreeMap<String, LinearElastic>,
+}
+
+/// A way of modelling under a name for the row.
+pub struct Variant {
+    /// The method as documents call it.
+    pub method: String,
+    /// What tells this variant from others of the same method; the method where nothing does.
+    pub label: String,
+    pub settings: Settings,
+}
+
+/// Where the displacement that errors are measured against comes from.
+pub enum Truth {
+    /// Displacement in mm of a point, for a plan and the materials, from a formula.
+    ClosedForm(ClosedForm),
+    /// Linear finite elements on the mesh of level 0 with every edge halved `times` times.
+    Refined { times: u32, element: ElementChoice },
+    /// Displacement in mm at each skin node of level 0, from elsewhere.
+    Known(Vec<Vector>),
+}
+
+/// Displacement in mm of a point of the scene, for a plan and materials of the scene.
+pub type ClosedForm = fn(&Vector, &Plan, &Materials) -> Vector;
