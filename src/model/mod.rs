@@ -5,6 +5,7 @@ mod constrained;
 pub mod equilibrium;
 pub mod linear_fem;
 pub mod load;
+pub mod membrane;
 pub mod quadratic;
 pub mod stabilised;
 pub mod stiffness;

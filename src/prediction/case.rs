@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::boundary::NodeSelection;
-use crate::material::LinearElastic;
+use crate::material::{LinearElastic, PlaneStress};
 use crate::mesh::{Frame, TriangleSurface, Vector, VolumeMesh};
 use crate::plan::PlannedSegment;
 
@@ -26,6 +26,25 @@ pub struct Case {
     pub sliding: Vec<Sliding>,
     /// By region name; `*` serves every region without an entry of its own.
     pub materials: BTreeMap<String, LinearElastic>,
+    /// Where the fibres run, by region name or `*`; of use where a material has fibres.
+    pub fibres: BTreeMap<String, FibreDirection>,
+}
+
+/// The course of fibres or of lines of the skin; its sign and its length do not matter.
+#[derive(Clone, Debug, PartialEq)]
+pub enum FibreDirection {
+    /// The same everywhere.
+    Uniform(Vector),
+    /// A vector array of the volume mesh: of cells for fibres, of nodes for lines of the skin.
+    Array(String),
+}
+
+/// The skin as a sheet that resists stretching beside the tissue under it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SkinMembrane {
+    pub sheet: PlaneStress,
+    /// The course of its lines; absent where the sheet is isotropic.
+    pub lines: Option<FibreDirection>,
 }
 
 /// A bone surface; it moves with the segment of the same name, if there is one.
@@ -126,6 +145,24 @@ pub enum Method {
     /// Linear finite elements at small strain.
     #[default]
     FemLinear,
+    /// The mass-tensor of tetrahedra with fibres: force = V g_j.C.g_k u, the plain finite element.
+    MassTensorTransverse,
+}
+
+impl Method {
+    /// Whether its tissue may be stiffer along fibres than across them.
+    pub fn knows_fibres(&self) -> bool {
+        match self {
+            Method::FemLinear | Method::MassTensorTransverse => true,
+        }
+    }
+
+    /// Whether the skin may be a membrane of its own.
+    pub fn knows_membrane(&self) -> bool {
+        match self {
+            Method::FemLinear | Method::MassTensorTransverse => true,
+        }
+    }
 }
 
 /// How the numbers are to be found.
@@ -139,6 +176,8 @@ pub struct Settings {
     pub relative_residual: f64,
     /// What matrix and solver may take, in MB.
     pub memory_mb: f64,
+    /// Absent: the skin is tissue like the rest.
+    pub membrane: Option<SkinMembrane>,
 }
 
 impl Default for Settings {
@@ -149,6 +188,7 @@ impl Default for Settings {
             sliding: true,
             relative_residual: 1e-8,
             memory_mb: 4000.0,
+            membrane: None,
         }
     }
 }

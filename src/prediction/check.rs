@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::case::{Case, ElementChoice, Load, Plan, RegionNames};
+use super::case::{Case, ElementChoice, Load, Method, Plan, RegionNames, Settings};
 use super::problem::Problems;
 use super::scene::Scene;
 use super::skin::{self, Skin};
@@ -138,18 +138,38 @@ impl<'a> Check<'a> {
         self.boundary.iter().filter(|face| face.nodes().iter().all(listed)).copied().collect()
     }
 
-    /// Refuses an element that some cell of the mesh cannot be.
-    pub(super) fn element(&mut self, element: ElementChoice) {
+    /// The element in use; refuses one that the method or some cell of the mesh cannot be.
+    pub(super) fn element(&mut self, settings: &Settings) -> ElementChoice {
         let cells = &self.case.volume.cells;
         let other = cells.iter().find(|(shape, _)| *shape != CellShape::Tet4);
-        if let (ElementChoice::Quadratic, Some((shape, _))) = (element, other) {
-            let detail = format!(
-                "quadratic elements are made of tet4 only, and the mesh has {} cells: \
-                 `auto` serves every shape",
-                shape.name()
-            );
-            self.problems.add("/spec/element", "method-not-available", detail);
+        match (&settings.method, settings.element) {
+            (Method::FemLinear, ElementChoice::Quadratic) => {
+                if let Some((shape, _)) = other {
+                    let detail = format!(
+                        "quadratic elements are made of tet4 only, and the mesh has {} cells: \
+                         `auto` serves every shape",
+                        shape.name()
+                    );
+                    self.problems.add("/spec/element", "method-not-available", detail);
+                }
+            }
+            (Method::FemLinear, _) => {}
+            (Method::MassTensorTransverse, element) => {
+                if let Some((shape, _)) = other {
+                    let detail = format!(
+                        "mass-tensors are those of tet4, and the mesh has {} cells: `fem_linear` serves them",
+                        shape.name()
+                    );
+                    self.problems.add("/spec/method", "method-not-available", detail);
+                }
+                if !matches!(element, ElementChoice::Auto | ElementChoice::Plain) {
+                    let detail = "mass-tensors are those of plain tetrahedra".to_owned();
+                    self.problems.add("/spec/element", "method-not-available", detail);
+                }
+                return ElementChoice::Plain;
+            }
         }
+        settings.element
     }
 
     pub(super) fn add_loads(&mut self, plan: &Plan, scene: &mut Scene) {

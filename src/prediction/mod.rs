@@ -2,6 +2,7 @@
 
 pub mod case;
 mod check;
+mod fibres;
 mod held;
 mod problem;
 pub mod progress;
@@ -11,8 +12,8 @@ mod skin;
 use std::collections::BTreeMap;
 
 pub use case::{
-    Bone, Case, CaseSegment, ElementChoice, Load, Method, Plan, Prescribed, RegionNames, Settings,
-    Sliding, SlidingNormal,
+    Bone, Case, CaseSegment, ElementChoice, FibreDirection, Load, Method, Plan, Prescribed,
+    RegionNames, Settings, SkinMembrane, Sliding, SlidingNormal,
 };
 pub use problem::{SceneError, SceneErrors};
 pub use progress::{Phase, Progress, Unobserved};

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use super::case::{Case, ElementChoice, Method, Plan, Settings};
 use super::check::Check;
+use super::fibres::Tissues;
 use super::problem::SceneErrors;
 use super::skin::Skin;
 use crate::boundary::{Conditions, NodeClass, tearing};
@@ -14,6 +15,7 @@ use crate::mesh::{CellShape, Vector, VolumeMesh, Warning};
 use crate::model::assembly::Tissue;
 use crate::model::equilibrium::{Equilibrium, LoadCase, ModelError, Observer};
 use crate::model::linear_fem::Problem;
+use crate::model::membrane::Membrane;
 use crate::model::quadratic::EdgeNodes;
 use crate::model::stiffness::Dilatation;
 use crate::model::{quadratic, stabilised};
@@ -40,6 +42,11 @@ pub struct Scene {
     pub region_of_cell: Vec<u16>,
     /// For each region.
     pub materials: Vec<LinearElastic>,
+    /// For each cell the direction of its fibres, of length 1 or zero where it has none; empty where no
+    /// region has fibres.
+    pub fibres: Vec<Vector>,
+    pub membrane: Option<Membrane>,
+    /// What cells are taken as; that of the settings where the method leaves a choice.
     pub element: ElementChoice,
     pub conditions: Conditions,
     /// Segments by the number in `NodeClass::Joined`, with the movement each makes.
@@ -61,7 +68,11 @@ impl Scene {
 
         // 1. Tissue.
         let (regions, region_of_cell) = check.regions();
-        let materials = check.materials(&regions);
+        let mut materials = check.materials(&regions);
+        let (of_cell, of_region) = (&region_of_cell, &mut materials);
+        let tissues = Tissues { regions: &regions, region_of_cell: of_cell, materials: of_region };
+        let fibres = check.fibres(tissues, &settings.method);
+        let element = check.element(settings);
 
         // 2. What every node is held to.
         let (segments, held) = check.held_nodes(plan, settings.sliding);
@@ -69,13 +80,16 @@ impl Scene {
 
         // 3. The skin and what acts on the tissue.
         let skin = check.skin(&conditions);
+        let membrane = check.membrane(&skin, settings);
         let mut scene = Scene {
             mesh: case.volume.clone(),
             skin,
             regions,
             region_of_cell,
             materials,
-            element: settings.element,
+            fibres,
+            membrane,
+            element,
             conditions,
             segments,
             forces: vec![Vector::zeros(); case.volume.nodes.len()],
@@ -83,7 +97,6 @@ impl Scene {
             settings: settings.clone(),
             warnings: Vec::new(),
         };
-        check.element(settings.element);
         check.problems.give_up_if_any()?;
         check.add_loads(plan, &mut scene);
 
@@ -103,6 +116,8 @@ impl Scene {
             mesh: &self.mesh,
             materials: &self.materials,
             material_of_cell: &self.region_of_cell,
+            fibres: &self.fibres,
+            membrane: self.membrane.as_ref(),
             dilatation: match self.element {
                 ElementChoice::Plain | ElementChoice::Quadratic => |_| Dilatation::Pointwise,
                 ElementChoice::Auto | ElementChoice::MeanDilatation | ElementChoice::Stabilised => {
@@ -142,7 +157,8 @@ impl Scene {
     /// Solves the scene by the method of its settings.
     pub fn solve(&self, observer: &dyn Observer) -> Result<Equilibrium, ModelError> {
         match &self.settings.method {
-            Method::FemLinear => {
+            // A mass-tensor is the block of two nodes of a plain tetrahedron.
+            Method::FemLinear | Method::MassTensorTransverse => {
                 let mut solved = self.solve_cases(&[self.load_case()], observer)?;
                 Ok(solved.remove(0))
             }
@@ -156,7 +172,7 @@ impl Scene {
         cases: &[LoadCase],
         observer: &dyn Observer,
     ) -> Result<Vec<Equilibrium>, ModelError> {
-        let Settings { relative_residual, memory_mb, .. } = self.settings;
+        let &Settings { relative_residual, memory_mb, .. } = &self.settings;
         let problem = Problem {
             tissue: self.tissue(),
             holds: &self.conditions.holds,
@@ -184,6 +200,10 @@ impl Scene {
                 (_, _, Dilatation::Pointwise) => format!("{} plain", shape.name()),
                 (_, _, Dilatation::Mean) => format!("{} mean dilatation", shape.name()),
             })
+            .chain(self.membrane.as_ref().map(|_| match self.tetrahedron() {
+                Tetrahedron::Quadratic => "tri6 membrane".to_owned(),
+                Tetrahedron::Plain | Tetrahedron::Stabilised => "tri3 membrane".to_owned(),
+            }))
             .collect()
     }
 

@@ -11,6 +11,7 @@ use super::case::CaseDocument;
 use super::fault::{Faults, Pointer};
 use super::limits::Limits;
 use super::material::MaterialDocuments;
+use super::membrane::MembraneDocument;
 use super::methods::{ElementName, MethodName};
 use super::movement::FARTHEST_PIVOT_MM;
 use super::plan::{PlanDocument, PlanSegmentDocument};
@@ -60,6 +61,10 @@ pub struct OptimiseDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub materials: Option<MaterialDocuments>,
+    /// Absent: the skin is tissue like the rest.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub membrane: Option<MembraneDocument>,
     #[serde(default)]
     pub tolerance: ToleranceDocument,
     #[serde(default)]
@@ -187,6 +192,7 @@ impl OptimiseDocument {
             method: self.method,
             element: self.element,
             materials: self.materials.clone(),
+            membrane: self.membrane.clone(),
             segments: self.moving(),
             tolerance: self.tolerance,
             budget: self.budget,

@@ -10,6 +10,7 @@ use super::case::FrameName;
 use super::fault::{Faults, Pointer};
 use super::limits::Limits;
 use super::material::MaterialDocuments;
+use super::membrane::MembraneDocument;
 use super::methods::{ElementName, MethodName};
 use super::plan::{PlanContext, PlanDocument};
 use super::prediction::EngineDocument;
@@ -47,6 +48,10 @@ pub struct ResponseDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub materials: Option<MaterialDocuments>,
+    /// Absent: the skin is tissue like the rest.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub membrane: Option<MembraneDocument>,
     /// Names of segments of the case; default: all. The others stay where they are.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub segments: Vec<String>,
@@ -65,6 +70,7 @@ impl ResponseDocument {
             method: self.method,
             element: self.element,
             materials: self.materials.clone(),
+            membrane: self.membrane.clone(),
             tolerance: self.tolerance,
             budget: self.budget,
             tags: self.tags.clone(),

@@ -10,6 +10,7 @@ use super::compare::{CompareDocument, CompareToDocument};
 use super::fault::{Faults, Pointer};
 use super::limits::Limits;
 use super::material::MaterialDocuments;
+use super::membrane::MembraneDocument;
 use super::methods::{self, ElementName, MethodName};
 use super::optimise::OptimiseDocument;
 use super::plan::PlanDocument;
@@ -62,6 +63,10 @@ pub struct PredictDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub materials: Option<MaterialDocuments>,
+    /// Absent: the skin is tissue like the rest.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub membrane: Option<MembraneDocument>,
     #[serde(default)]
     pub contact: ContactName,
     #[serde(default)]
@@ -252,12 +257,18 @@ impl PredictDocument {
         if let Some(compare_to) = &self.compare_to {
             compare_to.check(&at.key("compare_to"), limits, faults);
         }
+        let membrane = self.membrane.as_ref();
+        let membrane = membrane.and_then(|sheet| sheet.to_membrane(&at.key("membrane"), faults));
         Settings {
-            method: Method::FemLinear,
+            method: match self.method {
+                MethodName::MtmTi => Method::MassTensorTransverse,
+                _ => Method::FemLinear,
+            },
             element: self.element.choice(),
             sliding: self.contact == ContactName::Sliding,
             relative_residual: residual,
             memory_mb: memory,
+            membrane,
         }
     }
 

@@ -1,6 +1,7 @@
 //! `GET /v1/methods`: the ways of modelling, by the names a spec may give.
 
 mod fem_linear;
+mod mtm_ti;
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
@@ -55,7 +56,7 @@ pub enum ElementName {
 impl MethodName {
     /// Whether it is built.
     pub fn is_available(self) -> bool {
-        matches!(self, MethodName::Auto | MethodName::FemLinear)
+        matches!(self, MethodName::Auto | MethodName::FemLinear | MethodName::MtmTi)
     }
 
     /// The method that is used: what `auto` chooses, or the one asked for.
@@ -95,7 +96,9 @@ impl MethodName {
 /// Refuses a method that is not built, naming those that are.
 pub fn check_method(method: MethodName, at: &Pointer, faults: &mut Faults) {
     if !method.is_available() {
-        let detail = "this method is not available; `auto` and `fem_linear` are";
+        let methods = available_methods().methods.into_iter();
+        let names: Vec<String> = methods.map(|row| format!("`{}`", row.name.name())).collect();
+        let detail = format!("this method is not available; `auto` and {} are", names.join(", "));
         faults.add(at, "method-not-available", detail);
     }
 }
@@ -181,10 +184,10 @@ pub struct ParameterDocument {
 /// The methods that are built.
 pub fn available_methods() -> MethodList {
     MethodList {
-        methods: vec![fem_linear::document()],
+        methods: vec![fem_linear::document(), mtm_ti::document()],
         auto: WHY_LINEAR.to_owned(),
         response: ResponseMethod {
-            methods: vec![MethodName::FemLinear],
+            methods: vec![MethodName::FemLinear, MethodName::MtmTi],
             columns_per_segment: COLUMNS_PER_SEGMENT as u32,
             nonlinearity_estimate: "0.15 d^2 / h + 2.7 h (1 - cos theta): d the largest movement in mm of a \
                 segment against another or against what stays, h the median distance in mm from the skin to \
@@ -193,7 +196,7 @@ pub fn available_methods() -> MethodList {
             linear_range_mm: LINEAR_RANGE_MM,
         },
         optimise: OptimiseMethod {
-            methods: vec![MethodName::FemLinear],
+            methods: vec![MethodName::FemLinear, MethodName::MtmTi],
             minimises: "sum of (residual / sigma_mm)^2 over translations and angles within their bounds, by \
                 Levenberg and Marquardt's method from rest, on a response of the segments"
                 .to_owned(),
