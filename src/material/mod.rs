@@ -1,5 +1,7 @@
 //! What tissue does: the constants of a material point. Knows no mesh.
 
+pub mod mixture;
+
 /// Isotropic linear elastic tissue at small strain.
 ///
 /// sigma = lambda tr(eps) I + 2 mu eps, with lambda = E nu / ((1 + nu)(1 - 2 nu)) and

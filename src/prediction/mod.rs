@@ -3,6 +3,7 @@
 pub mod case;
 mod check;
 mod held;
+pub mod hounsfield;
 mod problem;
 pub mod progress;
 pub mod scene;
@@ -14,6 +15,7 @@ pub use case::{
     Bone, Case, CaseSegment, ElementChoice, Load, Method, Plan, Prescribed, RegionNames, Settings,
     Sliding, SlidingNormal,
 };
+pub use hounsfield::{Hounsfield, ImagedTissue, Mixing, TissueShare, TissueWindow};
 pub use problem::{SceneError, SceneErrors};
 pub use progress::{Phase, Progress, Unobserved};
 pub use scene::Scene;

@@ -7,6 +7,7 @@ pub mod case_conversion;
 pub mod check;
 pub mod compare;
 pub mod fault;
+pub mod hounsfield;
 pub mod job;
 pub mod limits;
 pub mod load;
