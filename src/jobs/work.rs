@@ -95,7 +95,8 @@ impl Predicted {
         // 1. The displacement of the skin.
         clock.phase(Phase::Surface);
         let mut skin = PredictedSkin::new(&prepared.scene.skin, &prediction);
-        let statistics = statistics(&prepared.scene.skin, &skin, &prediction.landmarks)?;
+        let mut statistics = statistics(&prepared.scene.skin, &skin, &prediction.landmarks)?;
+        statistics.imaged = prepared.scene.imaged.as_ref().map(Into::into);
         clock.check()?;
 
         // 2. Against another surface, if asked.
@@ -237,7 +238,7 @@ pub(super) fn statistics(
         regions.insert(name.clone(), over(points)?);
     }
     let landmarks = triples(landmarks);
-    Ok(StatisticsDocument { skin: over(&everywhere)?, regions, landmarks })
+    Ok(StatisticsDocument { skin: over(&everywhere)?, regions, landmarks, imaged: None })
 }
 
 fn triples(vectors: &BTreeMap<String, Vector>) -> BTreeMap<String, Triple> {

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use super::hounsfield::Hounsfield;
 use crate::boundary::NodeSelection;
 use crate::material::{LinearElastic, PlaneStress};
 use crate::mesh::{Frame, TriangleSurface, Vector, VolumeMesh};
@@ -26,6 +27,8 @@ pub struct Case {
     pub sliding: Vec<Sliding>,
     /// By region name; `*` serves every region without an entry of its own.
     pub materials: BTreeMap<String, LinearElastic>,
+    /// Materials by what an image shows, over those of the regions.
+    pub hounsfield: Option<Hounsfield>,
     /// Where the fibres run, by region name or `*`; of use where a material has fibres.
     pub fibres: BTreeMap<String, FibreDirection>,
 }

@@ -4,6 +4,7 @@ pub mod case;
 mod check;
 mod fibres;
 mod held;
+pub mod hounsfield;
 mod problem;
 pub mod progress;
 pub mod scene;
@@ -15,6 +16,7 @@ pub use case::{
     Bone, Case, CaseSegment, ElementChoice, FibreDirection, Load, Method, Plan, Prescribed,
     RegionNames, Settings, SkinMembrane, Sliding, SlidingNormal,
 };
+pub use hounsfield::{Hounsfield, ImagedTissue, Mixing, TissueShare, TissueWindow};
 pub use problem::{SceneError, SceneErrors};
 pub use progress::{Phase, Progress, Unobserved};
 pub use scene::Scene;

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use super::case::{Case, ElementChoice, Method, Plan, Settings};
 use super::check::Check;
 use super::fibres::Tissues;
+use super::hounsfield::ImagedTissue;
 use super::problem::SceneErrors;
 use super::skin::Skin;
 use crate::boundary::{Conditions, NodeClass, tearing};
@@ -40,8 +41,13 @@ pub struct Scene {
     /// Region names, and for each cell its entry.
     pub regions: Vec<String>,
     pub region_of_cell: Vec<u16>,
-    /// For each region.
+    /// For each region, then what an image adds.
     pub materials: Vec<LinearElastic>,
+    /// For each cell its entry in `materials`, and the one whose pressure it takes part in.
+    pub material_of_cell: Vec<u16>,
+    pub pressure_of_cell: Vec<u16>,
+    /// What an image shows of each cell, where materials are taken from one.
+    pub imaged: Option<ImagedTissue>,
     /// For each cell the direction of its fibres, of length 1 or zero where it has none; empty where no
     /// region has fibres.
     pub fibres: Vec<Vector>,
@@ -73,6 +79,7 @@ impl Scene {
         let tissues = Tissues { regions: &regions, region_of_cell: of_cell, materials: of_region };
         let fibres = check.fibres(tissues, &settings.method);
         let element = check.element(settings);
+        let tissue = check.tissue_of_cells(&region_of_cell, materials);
 
         // 2. What every node is held to.
         let (segments, held) = check.held_nodes(plan, settings.sliding);
@@ -86,7 +93,10 @@ impl Scene {
             skin,
             regions,
             region_of_cell,
-            materials,
+            materials: tissue.materials,
+            material_of_cell: tissue.material_of_cell,
+            pressure_of_cell: tissue.pressure_of_cell,
+            imaged: tissue.imaged,
             fibres,
             membrane,
             element,
@@ -115,7 +125,8 @@ impl Scene {
         Tissue {
             mesh: &self.mesh,
             materials: &self.materials,
-            material_of_cell: &self.region_of_cell,
+            material_of_cell: &self.material_of_cell,
+            pressure_of_cell: &self.pressure_of_cell,
             fibres: &self.fibres,
             membrane: self.membrane.as_ref(),
             dilatation: match self.element {
@@ -233,13 +244,13 @@ impl Scene {
 
     fn locking(&self) -> Option<Warning> {
         let dilatation = self.tissue().dilatation;
-        let cells = self.mesh.cells.iter().zip(&self.region_of_cell);
-        let locks = |shape: CellShape, region: u16| {
-            let nu = self.materials[region as usize].poisson_ratio();
+        let cells = self.mesh.cells.iter().zip(&self.material_of_cell);
+        let locks = |shape: CellShape, material: u16| {
+            let nu = self.materials[material as usize].poisson_ratio();
             let is_plain = shape != CellShape::Tet4 || self.tetrahedron() == Tetrahedron::Plain;
             nu > LOCKING && is_plain && dilatation(shape) == Dilatation::Pointwise
         };
-        let locking = cells.filter(|((shape, _), region)| locks(*shape, **region)).count();
+        let locking = cells.filter(|((shape, _), material)| locks(*shape, **material)).count();
         let largest = self.materials.iter().map(LinearElastic::poisson_ratio).fold(0.0, f64::max);
         let detail = format!(
             "{locking} plain cells have a Poisson ratio above {LOCKING}: they lock, and the skin moves too little"

@@ -8,6 +8,7 @@ pub mod check;
 pub mod compare;
 pub mod fault;
 pub mod fibre;
+pub mod hounsfield;
 pub mod job;
 pub mod limits;
 pub mod load;
