@@ -128,7 +128,7 @@ impl Predicted {
             warnings,
         };
         let mut folder = ResultFolder::open(out)?;
-        finished.write_files(&input.files(), &mut folder)?;
+        finished.write_files(input, &mut folder)?;
 
         // 4. The manifest.
         let result = finished.result(input, clock, folder.files.clone());
@@ -168,11 +168,12 @@ struct Finished<'a> {
 }
 
 impl Finished<'_> {
-    fn write_files(&self, names: &[OutputName], folder: &mut ResultFolder) -> Result<(), JobError> {
-        let field_data = self.origin.field_data(&solver_document(&self.prediction.solver));
+    fn write_files(&self, input: &PredictInput, folder: &mut ResultFolder) -> Result<(), JobError> {
+        let solver = solver_document(&self.prediction.solver);
+        let field_data = self.origin.field_data(input.spec.method, &solver);
         let scene = &self.prepared.scene;
         let frame = self.origin.frame;
-        for &name in names {
+        for name in input.files() {
             let bytes = match name {
                 OutputName::VolumeVtu => encode_volume(scene, self.prediction, frame, &field_data)?,
                 OutputName::BonesVtp => encode_bones(&self.prepared.case, scene, &field_data)?,

@@ -5,6 +5,8 @@ use std::collections::BTreeMap;
 use crate::boundary::NodeSelection;
 use crate::material::LinearElastic;
 use crate::mesh::{Frame, TriangleSurface, Vector, VolumeMesh};
+use crate::model::mass_spring::MassSpringSettings;
+use crate::model::mass_tensor::MassTensorSettings;
 use crate::plan::PlannedSegment;
 
 /// A patient's scene. All lengths in mm, all coordinates in `frame`.
@@ -126,6 +128,10 @@ pub enum Method {
     /// Linear finite elements at small strain.
     #[default]
     FemLinear,
+    /// Springs along the edges of tetrahedra.
+    MassSpring(MassSpringSettings),
+    /// The energy of plain linear tetrahedra, brought to rest as its settings say.
+    MassTensor(MassTensorSettings),
 }
 
 /// How the numbers are to be found.

@@ -10,6 +10,8 @@ pub mod fault;
 pub mod job;
 pub mod limits;
 pub mod load;
+pub mod mass_spring;
+pub mod mass_tensor;
 pub mod material;
 pub mod mesh;
 pub mod methods;

@@ -9,6 +9,8 @@ use super::case_conversion::check_tags;
 use super::compare::{CompareDocument, CompareToDocument};
 use super::fault::{Faults, Pointer};
 use super::limits::Limits;
+use super::mass_spring::MassSpringDocument;
+use super::mass_tensor::MassTensorDocument;
 use super::material::MaterialDocuments;
 use super::methods::{self, ElementName, MethodName};
 use super::optimise::OptimiseDocument;
@@ -56,6 +58,14 @@ pub struct PredictDocument {
     pub plan_id: Option<String>,
     #[serde(default)]
     pub method: MethodName,
+    /// Only with the method `msm`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub msm: Option<MassSpringDocument>,
+    /// Only with the method `mtm`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub mtm: Option<MassTensorDocument>,
     #[serde(default)]
     pub element: ElementName,
     /// Over the materials of the case, field by field.
@@ -253,11 +263,28 @@ impl PredictDocument {
             compare_to.check(&at.key("compare_to"), limits, faults);
         }
         Settings {
-            method: Method::FemLinear,
+            method: self.to_method(&at, faults),
             element: self.element.choice(),
             sliding: self.contact == ContactName::Sliding,
             relative_residual: residual,
             memory_mb: memory,
+        }
+    }
+
+    /// The method with its own settings; those of another method are refused.
+    fn to_method(&self, at: &Pointer, faults: &mut Faults) -> Method {
+        methods::check_own(MethodName::Msm, self.msm.is_some(), self.method, at, faults);
+        methods::check_own(MethodName::Mtm, self.mtm.is_some(), self.method, at, faults);
+        match self.method.chosen() {
+            MethodName::Msm => {
+                let own = self.msm.unwrap_or_default();
+                Method::MassSpring(own.to_settings(&at.key("msm"), faults))
+            }
+            MethodName::Mtm => {
+                let own = self.mtm.unwrap_or_default();
+                Method::MassTensor(own.to_settings(&at.key("mtm"), faults))
+            }
+            _ => Method::FemLinear,
         }
     }
 

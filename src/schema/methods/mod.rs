@@ -1,6 +1,8 @@
 //! `GET /v1/methods`: the ways of modelling, by the names a spec may give.
 
 mod fem_linear;
+mod msm;
+mod mtm;
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
@@ -12,7 +14,7 @@ use crate::response::COLUMNS_PER_SEGMENT;
 use crate::response::linearity::LINEAR_RANGE_MM;
 
 /// Why `auto` is what it is.
-pub const WHY_LINEAR: &str = "auto: fem_linear is the only model built so far";
+pub const WHY_LINEAR: &str = "auto: fem_linear, until something chooses between models";
 /// Why a method that was asked for by name is used.
 pub const WHY_ASKED: &str = "asked for by the spec";
 
@@ -55,7 +57,7 @@ pub enum ElementName {
 impl MethodName {
     /// Whether it is built.
     pub fn is_available(self) -> bool {
-        matches!(self, MethodName::Auto | MethodName::FemLinear)
+        matches!(self, MethodName::Auto | MethodName::FemLinear | MethodName::Msm | MethodName::Mtm)
     }
 
     /// The method that is used: what `auto` chooses, or the one asked for.
@@ -95,8 +97,34 @@ impl MethodName {
 /// Refuses a method that is not built, naming those that are.
 pub fn check_method(method: MethodName, at: &Pointer, faults: &mut Faults) {
     if !method.is_available() {
-        let detail = "this method is not available; `auto` and `fem_linear` are";
+        let known = available_methods().methods.into_iter().map(|method| method.name.name());
+        let known: Vec<&str> = known.collect();
+        let detail = format!("this method is not available; `auto` is, and {}", known.join(", "));
         faults.add(at, "method-not-available", detail);
+    }
+}
+
+/// Refuses, for plan responses, a method whose skin is not linear in the movements, or that has none of its own.
+pub fn check_linear(method: MethodName, at: &Pointer, faults: &mut Faults) {
+    if method.is_available() && method.chosen() != MethodName::FemLinear {
+        let detail = "responses are built by `fem_linear`";
+        faults.add(at, "method-not-available", detail);
+    }
+}
+
+/// Refuses settings of a method in the spec of another one.
+pub fn check_own(
+    own: MethodName,
+    is_given: bool,
+    method: MethodName,
+    at: &Pointer,
+    faults: &mut Faults,
+) {
+    if is_given && method.chosen() != own {
+        let name = own.name();
+        let detail =
+            format!("these are settings of `{name}`, and the method is `{}`", method.name());
+        faults.add(&at.key(name), "method-mismatch", detail);
     }
 }
 
@@ -181,7 +209,7 @@ pub struct ParameterDocument {
 /// The methods that are built.
 pub fn available_methods() -> MethodList {
     MethodList {
-        methods: vec![fem_linear::document()],
+        methods: vec![fem_linear::document(), msm::document(), mtm::document()],
         auto: WHY_LINEAR.to_owned(),
         response: ResponseMethod {
             methods: vec![MethodName::FemLinear],
