@@ -24,7 +24,8 @@ use crate::prediction::{Method, Settings};
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 #[serde(untagged)]
 pub enum JobDocument {
-    Predict(PredictDocument),
+    // By far the largest of the documents.
+    Predict(Box<PredictDocument>),
     Compare(CompareDocument),
     Response(ResponseDocument),
     Optimise(OptimiseDocument),
@@ -216,7 +217,7 @@ impl JobDocument {
                 let document: PredictDocument = strict::from_value(value)?;
                 let mut faults = Faults::default();
                 document.check_for_service(&mut faults);
-                faults.into_result().map(|()| JobDocument::Predict(document))
+                faults.into_result().map(|()| JobDocument::Predict(Box::new(document)))
             }
             Some(Some("compare")) => strict::from_value(value).map(JobDocument::Compare),
             Some(Some("response")) => strict::from_value(value).map(JobDocument::Response),
