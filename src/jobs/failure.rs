@@ -72,9 +72,9 @@ impl JobError {
             JobError::Refused(problem) => problem.code,
             JobError::Prediction(error) => match error {
                 PredictionError::Cancelled => "cancelled",
-                PredictionError::NotConverged { .. } | PredictionError::NotFinite => {
-                    "solver-diverged"
-                }
+                PredictionError::NotConverged { .. }
+                | PredictionError::Diverged { .. }
+                | PredictionError::NotFinite => "solver-diverged",
                 PredictionError::Singular { .. } => "matrix-singular",
                 PredictionError::Inverted { .. } => "element-inverted",
                 PredictionError::OverBudget { .. } => "budget-exceeded",
@@ -124,6 +124,17 @@ impl JobError {
                 "iterations": iterations,
                 "residual": residual,
                 "wanted": wanted,
+                "residual_history": thinned(history),
+            }),
+            JobError::Prediction(PredictionError::Diverged {
+                iterations,
+                growth,
+                residual,
+                history,
+            }) => json!({
+                "iterations": iterations,
+                "growth": growth,
+                "residual": residual,
                 "residual_history": thinned(history),
             }),
             JobError::Prediction(PredictionError::Singular { node }) => json!({ "node": node }),

@@ -6,6 +6,8 @@ use super::hounsfield::Hounsfield;
 use crate::boundary::NodeSelection;
 use crate::material::{LinearElastic, PlaneStress};
 use crate::mesh::{Frame, TriangleSurface, Vector, VolumeMesh};
+use crate::model::mass_spring::MassSpringSettings;
+use crate::model::mass_tensor::MassTensorSettings;
 use crate::plan::PlannedSegment;
 
 /// A patient's scene. All lengths in mm, all coordinates in `frame`.
@@ -148,6 +150,10 @@ pub enum Method {
     /// Linear finite elements at small strain.
     #[default]
     FemLinear,
+    /// Springs along the edges of tetrahedra.
+    MassSpring(MassSpringSettings),
+    /// The energy of plain linear tetrahedra, brought to rest as its settings say.
+    MassTensor(MassTensorSettings),
     /// The mass-tensor of tetrahedra with fibres: force = V g_j.C.g_k u, the plain finite element.
     MassTensorTransverse,
 }
@@ -157,13 +163,15 @@ impl Method {
     pub fn knows_fibres(&self) -> bool {
         match self {
             Method::FemLinear | Method::MassTensorTransverse => true,
+            Method::MassSpring(_) | Method::MassTensor(_) => false,
         }
     }
 
     /// Whether the skin may be a membrane of its own.
     pub fn knows_membrane(&self) -> bool {
         match self {
-            Method::FemLinear | Method::MassTensorTransverse => true,
+            Method::FemLinear | Method::MassTensorTransverse | Method::MassTensor(_) => true,
+            Method::MassSpring(_) => false,
         }
     }
 }

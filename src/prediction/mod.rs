@@ -50,7 +50,8 @@ pub struct Prediction {
 /// How the equations were solved.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SolverReport {
-    /// `cholesky`, `conjugate_gradient`, `conjugate_residual` with pressures, or `none` where nothing moves.
+    /// `cholesky`, `conjugate_gradient`, `conjugate_residual` with pressures, what the method's own iterations are
+    /// called, or `none` where nothing moves.
     pub name: &'static str,
     pub preconditioner: &'static str,
     /// Why this solver was chosen.
@@ -75,6 +76,10 @@ pub enum PredictionError {
     Cancelled,
     #[error("residual {residual:.2e} after {iterations} iterations, wanted {wanted:.2e}")]
     NotConverged { iterations: usize, residual: f64, wanted: f64, history: Vec<f64> },
+    #[error(
+        "diverged: the residual grew {growth:.3} times an iteration, to {residual:.1e} after {iterations}"
+    )]
+    Diverged { iterations: usize, growth: f64, residual: f64, history: Vec<f64> },
     #[error("the matrix is singular at node {node}")]
     Singular { node: usize },
     #[error("cell {cell} is inverted or flat")]
@@ -167,11 +172,11 @@ pub(crate) fn report(scene: &Scene, equilibrium: &Equilibrium) -> SolverReport {
     }
 }
 
-/// A linear answer that turns cells inside out says so.
+/// An answer that turns cells inside out says so.
 fn inverted_cells(deformation: &[CellDeformation]) -> Option<Warning> {
     let inverted = deformation.iter().filter(|cell| cell.det_f <= 0.0).count();
     let smallest = deformation.iter().map(|cell| cell.det_f).fold(f64::INFINITY, f64::min);
-    let detail = format!("the linear displacement turns {inverted} cells inside out");
+    let detail = format!("the displacement turns {inverted} cells inside out");
     let warning = Warning::new("cells-inverted", detail).with("cells", inverted as f64);
     (inverted > 0).then(|| warning.with("smallest_det_f", smallest))
 }
@@ -205,6 +210,9 @@ impl From<ModelError> for PredictionError {
                 wanted,
                 history,
             }) => PredictionError::NotConverged { iterations, residual, wanted, history },
+            ModelError::Solver(SolverError::Diverged { iterations, growth, residual, history }) => {
+                PredictionError::Diverged { iterations, growth, residual, history }
+            }
         }
     }
 }

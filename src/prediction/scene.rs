@@ -16,10 +16,11 @@ use crate::mesh::{CellShape, Vector, VolumeMesh, Warning};
 use crate::model::assembly::Tissue;
 use crate::model::equilibrium::{Equilibrium, LoadCase, ModelError, Observer};
 use crate::model::linear_fem::Problem;
+use crate::model::mass_spring::POISSON_RATIO;
 use crate::model::membrane::Membrane;
 use crate::model::quadratic::EdgeNodes;
 use crate::model::stiffness::Dilatation;
-use crate::model::{quadratic, stabilised};
+use crate::model::{mass_spring, mass_tensor, quadratic, stabilised};
 use crate::plan::PlannedSegment;
 use crate::solver::Tolerance;
 
@@ -117,6 +118,7 @@ impl Scene {
         scene.warnings.extend(check.warnings);
         scene.warnings.extend(tearing::tearing(&scene.mesh, &scene.conditions.holds));
         scene.warnings.extend(scene.locking());
+        scene.warnings.extend(scene.built_in_poisson_ratio());
         Ok(scene)
     }
 
@@ -173,6 +175,23 @@ impl Scene {
                 let mut solved = self.solve_cases(&[self.load_case()], observer)?;
                 Ok(solved.remove(0))
             }
+            Method::MassSpring(settings) => {
+                mass_spring::solve(&self.problem(), settings, &self.load_case(), observer)
+            }
+            Method::MassTensor(settings) => {
+                mass_tensor::solve(&self.problem(), settings, &self.load_case(), observer)
+            }
+        }
+    }
+
+    /// Tissue, holds and loads as models see them.
+    fn problem(&self) -> Problem<'_> {
+        let Settings { relative_residual, memory_mb, .. } = self.settings;
+        Problem {
+            tissue: self.tissue(),
+            holds: &self.conditions.holds,
+            forces: &self.forces,
+            tolerance: Tolerance { relative_residual, memory_mb },
         }
     }
 
@@ -183,13 +202,7 @@ impl Scene {
         cases: &[LoadCase],
         observer: &dyn Observer,
     ) -> Result<Vec<Equilibrium>, ModelError> {
-        let &Settings { relative_residual, memory_mb, .. } = &self.settings;
-        let problem = Problem {
-            tissue: self.tissue(),
-            holds: &self.conditions.holds,
-            forces: &self.forces,
-            tolerance: Tolerance { relative_residual, memory_mb },
-        };
+        let problem = self.problem();
         match self.tetrahedron() {
             Tetrahedron::Quadratic => quadratic::solve_cases(&problem, cases, observer),
             Tetrahedron::Stabilised if self.has_tetrahedra() => {
@@ -199,8 +212,11 @@ impl Scene {
         }
     }
 
-    /// The elements in use, e.g. `hex8 mean dilatation`.
+    /// The elements in use, e.g. `hex8 mean dilatation`; none where there are none.
     pub fn elements(&self) -> Vec<String> {
+        if matches!(self.settings.method, Method::MassSpring(_)) {
+            return Vec::new();
+        }
         let dilatation = self.tissue().dilatation;
         [CellShape::Tet4, CellShape::Hex8, CellShape::Wedge6]
             .into_iter()
@@ -240,6 +256,23 @@ impl Scene {
             }
             other => other.name().to_owned(),
         }
+    }
+
+    /// Springs have the Poisson ratio that they have.
+    fn built_in_poisson_ratio(&self) -> Option<Warning> {
+        let Method::MassSpring(_) = self.settings.method else { return None };
+        let stated = self.regions.iter().zip(&self.materials);
+        let others: Vec<String> = stated
+            .filter(|(_, material)| material.poisson_ratio() != POISSON_RATIO)
+            .map(|(region, material)| format!("{region} {}", material.poisson_ratio()))
+            .collect();
+        let instead = match others.is_empty() {
+            true => String::new(),
+            false => format!(", and not that of the materials: {}", others.join(", ")),
+        };
+        let detail = format!("springs have a Poisson ratio of 1/4 on average{instead}");
+        let warning = Warning::new("built-in-poisson-ratio", detail);
+        Some(warning.with("poisson_ratio", POISSON_RATIO))
     }
 
     fn locking(&self) -> Option<Warning> {

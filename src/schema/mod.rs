@@ -12,6 +12,8 @@ pub mod hounsfield;
 pub mod job;
 pub mod limits;
 pub mod load;
+pub mod mass_spring;
+pub mod mass_tensor;
 pub mod material;
 pub mod membrane;
 pub mod mesh;

@@ -23,6 +23,8 @@ mod formats_shared_data;
 mod formats_surface;
 mod hard_systems;
 mod jobs;
+mod mass_spring;
+mod mass_tensor;
 mod optimisation;
 mod optimise_jobs;
 mod patch;

@@ -1,6 +1,8 @@
 //! `GET /v1/methods`: the ways of modelling, by the names a spec may give.
 
 mod fem_linear;
+mod msm;
+mod mtm;
 mod mtm_ti;
 
 use serde::{Deserialize, Serialize};
@@ -13,7 +15,7 @@ use crate::response::COLUMNS_PER_SEGMENT;
 use crate::response::linearity::LINEAR_RANGE_MM;
 
 /// Why `auto` is what it is.
-pub const WHY_LINEAR: &str = "auto: fem_linear is the only model built so far";
+pub const WHY_LINEAR: &str = "auto: fem_linear, until something chooses between models";
 /// Why a method that was asked for by name is used.
 pub const WHY_ASKED: &str = "asked for by the spec";
 
@@ -56,7 +58,8 @@ pub enum ElementName {
 impl MethodName {
     /// Whether it is built.
     pub fn is_available(self) -> bool {
-        matches!(self, MethodName::Auto | MethodName::FemLinear | MethodName::MtmTi)
+        use MethodName::{Auto, FemLinear, Msm, Mtm, MtmTi};
+        matches!(self, Auto | FemLinear | Msm | Mtm | MtmTi)
     }
 
     /// The method that is used: what `auto` chooses, or the one asked for.
@@ -100,6 +103,31 @@ pub fn check_method(method: MethodName, at: &Pointer, faults: &mut Faults) {
         let names: Vec<String> = methods.map(|row| format!("`{}`", row.name.name())).collect();
         let detail = format!("this method is not available; `auto` and {} are", names.join(", "));
         faults.add(at, "method-not-available", detail);
+    }
+}
+
+/// Refuses, for plan responses, a method whose skin is not linear in the movements, or that has none of its own.
+pub fn check_linear(method: MethodName, at: &Pointer, faults: &mut Faults) {
+    let is_linear = matches!(method.chosen(), MethodName::FemLinear | MethodName::MtmTi);
+    if method.is_available() && !is_linear {
+        let detail = "responses are built by `fem_linear` and `mtm_ti`";
+        faults.add(at, "method-not-available", detail);
+    }
+}
+
+/// Refuses settings of a method in the spec of another one.
+pub fn check_own(
+    own: MethodName,
+    is_given: bool,
+    method: MethodName,
+    at: &Pointer,
+    faults: &mut Faults,
+) {
+    if is_given && method.chosen() != own {
+        let name = own.name();
+        let detail =
+            format!("these are settings of `{name}`, and the method is `{}`", method.name());
+        faults.add(&at.key(name), "method-mismatch", detail);
     }
 }
 
@@ -184,7 +212,12 @@ pub struct ParameterDocument {
 /// The methods that are built.
 pub fn available_methods() -> MethodList {
     MethodList {
-        methods: vec![fem_linear::document(), mtm_ti::document()],
+        methods: vec![
+            fem_linear::document(),
+            msm::document(),
+            mtm::document(),
+            mtm_ti::document(),
+        ],
         auto: WHY_LINEAR.to_owned(),
         response: ResponseMethod {
             methods: vec![MethodName::FemLinear, MethodName::MtmTi],
