@@ -25,6 +25,7 @@ mod hard_systems;
 mod jobs;
 mod optimisation;
 mod optimise_jobs;
+mod paired;
 mod patch;
 mod quality;
 mod registration;
