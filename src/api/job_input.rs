@@ -13,11 +13,11 @@ use crate::jobs::{
 };
 use crate::schema::job::{JobKind, JobStatus};
 use crate::schema::prediction::EngineDocument;
+use crate::schema::study::SceneReference;
 use crate::schema::{
     CaseDocument, CompareDocument, Faults, Limits, OptimiseDocument, PlanDocument, Pointer,
     PredictDocument, Problem, ReportDocument, ResponseDocument, StudyDocument,
 };
-use crate::schema::study::SceneReference;
 use crate::store::{CaseRow, NewJob};
 
 /// A prediction: its case and plan as they are at this moment, checked together with the meshes.
@@ -33,7 +33,14 @@ pub async fn of_prediction(service: &Service, spec: PredictDocument) -> ApiResul
         input.prepare(sources, limits).map(|prepared| prepared.spec_hash)
     };
     let (input, spec_hash) = prepared(service, input, prepare).await?;
-    let new = Accepted { kind: JobKind::Predict, case_id: Some(row.id), shared_cases: Vec::new(), spec_hash, tags, mesh_ids };
+    let new = Accepted {
+        kind: JobKind::Predict,
+        case_id: Some(row.id),
+        shared_cases: Vec::new(),
+        spec_hash,
+        tags,
+        mesh_ids,
+    };
     new.with(&JobInput::Predict(input))
 }
 
@@ -61,7 +68,14 @@ pub async fn of_comparison(service: &Service, spec: CompareDocument) -> ApiResul
     let content_of = |id: &str| contents.get(id).cloned();
     let spec_hash = crate::schema::canonical::compare_hash(&spec, &content_of);
     let tags = spec.tags.clone();
-    let new = Accepted { kind: JobKind::Compare, case_id, shared_cases: Vec::new(), spec_hash, tags, mesh_ids };
+    let new = Accepted {
+        kind: JobKind::Compare,
+        case_id,
+        shared_cases: Vec::new(),
+        spec_hash,
+        tags,
+        mesh_ids,
+    };
     new.with(&JobInput::Compare(CompareInput { job: None, queue_s: None, spec }))
 }
 
@@ -77,7 +91,14 @@ pub async fn of_response(service: &Service, mut spec: ResponseDocument) -> ApiRe
     };
     let (input, spec_hash) = prepared(service, input, prepare).await?;
     let case_id = Some(row.id);
-    let new = Accepted { kind: JobKind::Response, case_id, shared_cases: Vec::new(), spec_hash, tags, mesh_ids };
+    let new = Accepted {
+        kind: JobKind::Response,
+        case_id,
+        shared_cases: Vec::new(),
+        spec_hash,
+        tags,
+        mesh_ids,
+    };
     new.with(&JobInput::Response(input))
 }
 
@@ -94,7 +115,14 @@ pub async fn of_optimisation(service: &Service, mut spec: OptimiseDocument) -> A
     };
     let (input, spec_hash) = prepared(service, input, prepare).await?;
     let case_id = Some(row.id);
-    let new = Accepted { kind: JobKind::Optimise, case_id, shared_cases: Vec::new(), spec_hash, tags, mesh_ids };
+    let new = Accepted {
+        kind: JobKind::Optimise,
+        case_id,
+        shared_cases: Vec::new(),
+        spec_hash,
+        tags,
+        mesh_ids,
+    };
     new.with(&JobInput::Optimise(input))
 }
 
@@ -129,8 +157,7 @@ pub async fn of_study(service: &Service, mut spec: StudyDocument) -> ApiResult<N
         [only] => (Some(only.clone()), Vec::new()),
         _ => (None, ids),
     };
-    let new =
-        Accepted { kind: JobKind::Study, case_id, shared_cases, spec_hash, tags, mesh_ids };
+    let new = Accepted { kind: JobKind::Study, case_id, shared_cases, spec_hash, tags, mesh_ids };
     new.with(&JobInput::Study(input))
 }
 
@@ -262,9 +289,7 @@ async fn predicted_skin(
         return Err(fault(at, "result-not-ready", &detail));
     }
     let skin = service.store.job_file(&row.id, "skin.vtp").await?;
-    let skin = skin.ok_or_else(|| {
-        fault(at, "no-such-output", "the job wrote no skin.vtp")
-    })?;
+    let skin = skin.ok_or_else(|| fault(at, "no-such-output", "the job wrote no skin.vtp"))?;
     Ok((skin.blob, row.case_id))
 }
 

@@ -14,11 +14,11 @@ use super::parameters::{Id, Parameters, id as spelled};
 use super::results::successful;
 use super::{Service, conditional, with_header};
 use crate::jobs::judgement::{Baseline, judge};
-use crate::jobs::study_report::encode_report;
 use crate::jobs::study_files::{
     CHART_SVG, CSV_MEDIA_TYPE, JSON_MEDIA_TYPE, JUNIT_MEDIA_TYPE, REPORT_CSV, REPORT_JSON,
     REPORT_JUNIT, SVG_MEDIA_TYPE, csv, junit,
 };
+use crate::jobs::study_report::encode_report;
 use crate::schema::ReportDocument;
 use crate::schema::job::{JobKind, JobStatus};
 use crate::store::FileRow;
@@ -120,8 +120,9 @@ async fn report(
         let answer = conditional::file(&headers, &bytes, (&row.media_type, &row.name), &row.blob)?;
         return Ok(told(answer, outcome));
     };
-    let baseline = spelled(baseline)
-        .ok_or_else(|| ApiError::invalid_parameter("baseline", "the baseline is the id of a job"))?;
+    let baseline = spelled(baseline).ok_or_else(|| {
+        ApiError::invalid_parameter("baseline", "the baseline is the id of a job")
+    })?;
     let earlier = stored_report(&service, &baseline).await?;
     match &earlier {
         Some((_, earlier)) => judge(&mut report, &Baseline::Report(earlier)),

@@ -44,7 +44,8 @@ mod tests {
         assert!(block.iter().step_by(4096).map(|&byte| u64::from(byte)).sum::<u64>() > 0);
         assert!(with > before.max(600.0), "{before} {with}");
         drop(block);
-        let can_forget = std::fs::OpenOptions::new().write(true).open("/proc/self/clear_refs").is_ok();
+        let can_forget =
+            std::fs::OpenOptions::new().write(true).open("/proc/self/clear_refs").is_ok();
         watch.forget_peak();
         let after = watch.peak_mb().unwrap_or_default();
         assert!(!can_forget || after < with - 300.0, "{with} {after}");

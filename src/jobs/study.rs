@@ -1,6 +1,7 @@
 //! The job of a study: rows one after the other, the report in every form, its charts and its outcome.
 
 use std::collections::BTreeMap;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use serde::{Deserialize, Serialize};
 
@@ -25,13 +26,13 @@ use crate::prediction::{Phase, Progress};
 use crate::schema::prediction::{InputDocument, ResultDocument};
 use crate::schema::report::ReportDocument;
 use crate::schema::spec::OutputName;
-use crate::schema::{
-    CaseDocument, Faults, Limits, Pointer, Problem, StudyDocument, canonical,
-};
-use crate::study::{Study, StudyError, run};
+use crate::schema::{CaseDocument, Faults, Limits, Pointer, Problem, StudyDocument, canonical};
+use crate::study::{Stopwatch, Study, StudyError, StudyScene, run};
 
-/// Over the time of its rows, what a study may take for its truths, in multiples of the same budget.
-const TRUTH_SHARE: f64 = 2.0;
+/// What a study may take in all: its budget once for rows, once for truths, and a minute for the rest, in s.
+fn whole_budget(rows_s: f64) -> f64 {
+    2.0 * rows_s + 60.0
+}
 
 /// A study: its cases and its baseline in full beside the spec.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -75,9 +76,9 @@ impl StudyInput {
             variants,
             levels: self.spec.levels.clone(),
             repeats: self.spec.repeats as usize,
-            wall_s: self.spec.budget.wall_s,
+            budget_s: self.spec.budget.wall_s,
         };
-        let (rows, most) = (study.rows(), limits.study_rows as usize);
+        let (rows, most) = (most_rows(&study), limits.study_rows as usize);
         if rows > most {
             let detail = format!("the study has {rows} rows, at most {most} are allowed");
             return Err(Problem::at(&Pointer::root().key("spec"), "too-many", detail).into());
@@ -108,20 +109,45 @@ impl StudyInput {
     }
 }
 
-/// Passes on which row is solved, and nothing of the iterations inside: they begin anew with every row.
-struct Rows<'a>(&'a Observed<'a>);
+/// How many rows a study has, with those that turn out to be the truth itself.
+fn most_rows(study: &Study) -> usize {
+    let of_scene = |scene: &StudyScene| scene.plans.len() * scene.materials.len();
+    let places: usize = study.scenes.iter().map(of_scene).sum();
+    places * study.variants.len() * study.levels.len()
+}
+
+/// Measures rows and tells which one is solved, but nothing of the iterations inside: they begin anew with every
+/// row.
+struct Rows<'a> {
+    clock: &'a Observed<'a>,
+    stopwatch: MachineStopwatch,
+    begun: AtomicUsize,
+    most: usize,
+}
+
+impl Stopwatch for Rows<'_> {
+    fn seconds(&self) -> f64 {
+        self.stopwatch.seconds()
+    }
+
+    /// A study does so where a row begins.
+    fn forget_peak(&self) {
+        self.clock.step(self.begun.fetch_add(1, Ordering::Relaxed), self.most);
+        self.stopwatch.forget_peak();
+    }
+
+    fn peak_mb(&self) -> Option<f64> {
+        self.stopwatch.peak_mb()
+    }
+}
 
 impl Progress for Rows<'_> {
     fn phase(&self, _phase: Phase) {}
 
     fn iteration(&self, _iteration: usize, _relative_residual: f64, _wanted: f64) {}
 
-    fn step(&self, done: usize, of: usize) {
-        self.0.step(done, of);
-    }
-
     fn is_cancelled(&self) -> bool {
-        self.0.is_cancelled()
+        self.clock.is_cancelled()
     }
 }
 
@@ -131,7 +157,7 @@ pub fn study_job(
     place: &Workplace,
     progress: &dyn Progress,
 ) -> Result<JobOutput, JobError> {
-    let clock = Observed::start(progress, TRUTH_SHARE * input.spec.budget.wall_s);
+    let clock = Observed::start(progress, whole_budget(input.spec.budget.wall_s));
 
     // 1. Documents and meshes, checked together.
     let prepared = input.prepare(place.sources, place.limits)?;
@@ -139,7 +165,13 @@ pub fn study_job(
 
     // 2. Rows and truths.
     clock.phase(Phase::Solve);
-    let found = run(&prepared.study, &MachineStopwatch::start(), &Rows(&clock));
+    let rows = Rows {
+        clock: &clock,
+        stopwatch: MachineStopwatch::start(),
+        begun: AtomicUsize::new(0),
+        most: most_rows(&prepared.study),
+    };
+    let found = run(&prepared.study, &rows, &rows);
     let found = found.map_err(|error| match error {
         StudyError::Cancelled => clock.stopped(),
         other => JobError::Study(other),

@@ -73,7 +73,11 @@ fn failed(rows: &[&RowDocument], series: usize, level: u32) -> Vec<LadderFailure
         }
     }
     let failure = |(kind, detail, count): (&str, &str, usize)| {
-        let of = if rows.len() > 1 { format!(" ({count} of {} rows)", rows.len()) } else { String::new() };
+        let of = if rows.len() > 1 {
+            format!(" ({count} of {} rows)", rows.len())
+        } else {
+            String::new()
+        };
         let words: String = detail.chars().take(REASON).collect();
         LadderFailure { series, level, reason: format!("{kind}{of}: {words}") }
     };

@@ -192,8 +192,7 @@ fn test_case(cases: &mut String, row: &RowDocument) {
     let class = escaped(&format!("study.{}.{}", row.scene, row.plan));
     let name = escaped(&format!("{}, {}, level {}", row.label, row.material, row.level));
     let time = row.numbers.as_ref().map_or(0.0, |numbers| numbers.wall_s);
-    *cases +=
-        &format!("    <testcase classname=\"{class}\" name=\"{name}\" time=\"{time:.6}\">");
+    *cases += &format!("    <testcase classname=\"{class}\" name=\"{name}\" time=\"{time:.6}\">");
     let reasons = row.reasons.join("; ");
     let kind = row.error.as_ref().map_or(row.verdict.name(), |error| error.kind.as_str());
     match row.verdict {

@@ -1,12 +1,12 @@
 //! What a study found as the document that clients read.
 
-use super::provenance::first_null;
 use super::failure::JobError;
+use super::provenance::first_null;
 use crate::schema::prediction::{EngineDocument, NOT_A_DEVICE};
 use crate::schema::report::{
     ConvergenceDocument, ErrorsDocument, NumbersDocument, ReportDocument, RowDocument,
-    RowErrorDocument, RowStatus, RowVerdict, RulesDocument, SignedRankDocument,
-    StudySceneDocument, TruthErrorDocument, VariantComparisonDocument, VerdictDocument,
+    RowErrorDocument, RowStatus, RowVerdict, RulesDocument, SignedRankDocument, StudySceneDocument,
+    TruthErrorDocument, VariantComparisonDocument, VerdictDocument,
 };
 use crate::schema::study::StudyDocument;
 use crate::study::convergence::{Series, series};
@@ -22,7 +22,11 @@ pub struct ReportOrigin {
 }
 
 /// The report, not judged yet.
-pub fn report_document(report: &Report, spec: &StudyDocument, origin: ReportOrigin) -> ReportDocument {
+pub fn report_document(
+    report: &Report,
+    spec: &StudyDocument,
+    origin: ReportOrigin,
+) -> ReportDocument {
     let comparisons = compare_variants(&report.rows);
     let mut rows: Vec<RowDocument> = report.rows.iter().map(row_document).collect();
     for scene in &report.scenes {
@@ -69,9 +73,8 @@ fn mark_front(rows: &mut [RowDocument], scene: &str) {
         }
     }
     for (plan, material) in groups {
-        let is_own = |row: &RowDocument| {
-            row.scene == scene && row.plan == plan && row.material == material
-        };
+        let is_own =
+            |row: &RowDocument| row.scene == scene && row.plan == plan && row.material == material;
         let own = rows.iter().enumerate().filter(|(_, row)| is_own(row));
         let (places, points): (Vec<usize>, Vec<[f64; 2]>) = own
             .filter_map(|(place, row)| {

@@ -20,9 +20,8 @@ use crate::study::sweep::{self, SweepError};
 use crate::study::{Materials, StudyScene, Truth, Variant, methods};
 
 /// Fields of a `predict` spec that have their own place in a study.
-const OF_THE_STUDY: [&str; 9] = [
-    "kind", "case", "plan", "plan_id", "materials", "budget", "outputs", "compare_to", "tags",
-];
+const OF_THE_STUDY: [&str; 9] =
+    ["kind", "case", "plan", "plan_id", "materials", "budget", "outputs", "compare_to", "tags"];
 
 /// Where the documents of a study stand.
 pub(super) struct Documents<'a> {
@@ -51,7 +50,7 @@ impl Documents<'_> {
     /// The variants of all methods, each with a label of its own.
     pub fn variants(&self, faults: &mut Faults) -> Vec<Variant> {
         let at = spec_at().key("methods");
-        let mut variants = match &self.spec.methods {
+        let mut variants: Vec<Variant> = match &self.spec.methods {
             None => {
                 let mut names: Vec<String> =
                     methods::available().into_iter().map(|variant| variant.method).collect();
@@ -60,7 +59,9 @@ impl Documents<'_> {
             }
             Some(entries) => {
                 let entries = entries.iter().enumerate();
-                entries.flat_map(|(index, entry)| self.entry(entry, &at.index(index), faults)).collect()
+                entries
+                    .flat_map(|(index, entry)| self.entry(entry, &at.index(index), faults))
+                    .collect()
             }
         };
         for variant in &mut variants {
@@ -68,7 +69,8 @@ impl Documents<'_> {
         }
         for (index, variant) in variants.iter().enumerate() {
             if variants[..index].iter().any(|other| other.label == variant.label) {
-                let detail = format!("two variants are called {:?}; give one a `label`", variant.label);
+                let detail =
+                    format!("two variants are called {:?}; give one a `label`", variant.label);
                 faults.add(&at, "duplicate-name", detail);
             }
         }
@@ -87,7 +89,8 @@ impl Documents<'_> {
         ];
         for (place, names) in named {
             for (index, name) in names.into_iter().enumerate().filter(|(_, name)| !labels(name)) {
-                let detail = format!("no variant is called {name:?}; there are: {}", known.join(", "));
+                let detail =
+                    format!("no variant is called {name:?}; there are: {}", known.join(", "));
                 faults.add(&place.index(index), "unknown-label", detail);
             }
         }
@@ -129,11 +132,18 @@ impl Documents<'_> {
     }
 
     /// A variant that says itself what it is: a `predict` spec without what belongs to the study.
-    fn stated(&self, mut entry: Value, at: &Pointer, faults: &mut Faults) -> Result<Variant, Problem> {
+    fn stated(
+        &self,
+        mut entry: Value,
+        at: &Pointer,
+        faults: &mut Faults,
+    ) -> Result<Variant, Problem> {
         let label = entry.as_object_mut().and_then(|members| members.remove("label"));
         for name in OF_THE_STUDY {
             if entry.as_object_mut().is_some_and(|members| members.remove(name).is_some()) {
-                let detail = format!("unknown field `{name}`: it belongs to the study and not to one of its methods");
+                let detail = format!(
+                    "unknown field `{name}`: it belongs to the study and not to one of its methods"
+                );
                 faults.add(&at.key(name), "unknown-field", detail);
             }
         }
@@ -189,7 +199,8 @@ impl Documents<'_> {
             let all: Vec<String> = scene.plans.iter().map(|(plan, _)| plan.clone()).collect();
             scene.plans.retain(|(plan, _)| wanted.iter().any(|(_, wanted)| wanted == plan));
             if scene.plans.is_empty() {
-                let detail = format!("scene {name} has none of these plans; it has: {}", all.join(", "));
+                let detail =
+                    format!("scene {name} has none of these plans; it has: {}", all.join(", "));
                 faults.add(&spec_at().key("plans"), "unknown-plan", detail);
             }
         }
@@ -220,7 +231,8 @@ impl Documents<'_> {
 
     /// A case with each plan, and with each of the materials.
     fn case_scene(&self, reference: &CaseReference, found: &mut Scenes) -> Result<(), JobError> {
-        let missing = || Problem::at(&spec_at().key("scenes"), "unknown-case", "there is no such case");
+        let missing =
+            || Problem::at(&spec_at().key("scenes"), "unknown-case", "there is no such case");
         let case = self.cases.get(&reference.case).ok_or_else(missing)?;
         let given = |index: usize| self.spec.materials.get(index).cloned();
         let mut plans = Vec::new();
@@ -237,7 +249,8 @@ impl Documents<'_> {
             name: self.spec.materials.first().map_or_else(|| "case".to_owned(), material_name),
             by_region: first.case.materials.clone(),
         }];
-        let plan = self.spec.plan_documents().first().map(|(index, plan)| (*index, (*plan).clone()));
+        let plan =
+            self.spec.plan_documents().first().map(|(index, plan)| (*index, (*plan).clone()));
         for (index, document) in self.spec.materials.iter().enumerate().skip(1) {
             let (at, plan) = plan.clone().unwrap_or_default();
             let prepared = input(case, plan, given(index)).prepare(self.sources, self.limits);
@@ -247,7 +260,7 @@ impl Documents<'_> {
         let name = reference.name.clone().or_else(|| case.name.clone());
         let truth = usual_truth(&first.case);
         let mut scene = StudyScene {
-            name: name.unwrap_or_else(|| reference.case.clone()),
+            name: name.unwrap_or_else(|| format!("case {}", found.scenes.len() + 1)),
             case: first.case.clone(),
             plans,
             materials,
@@ -308,7 +321,7 @@ impl Documents<'_> {
                 if !matches!(scene.truth, Truth::ClosedForm(_)) =>
             {
                 let detail = format!("scene {} has no closed form", scene.name);
-                faults.add(&at.key("closed_form"), "not-linear", detail);
+                faults.add(&at.key("closed_form"), "no-closed-form", detail);
             }
             _ => {}
         }

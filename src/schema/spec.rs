@@ -222,7 +222,8 @@ impl JobDocument {
             }
             Some(None) => Err(Problem::at(&at, "wrong-type", "the kind of a job is a word")),
             None => {
-                let detail = "missing field `kind`: `predict`, `compare`, `response`, `optimise` or `study`";
+                let detail =
+                    "missing field `kind`: `predict`, `compare`, `response`, `optimise` or `study`";
                 Err(Problem::at(&at, "missing-field", detail))
             }
         }

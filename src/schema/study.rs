@@ -101,7 +101,7 @@ pub enum SceneReference {
 #[serde(deny_unknown_fields)]
 pub struct CaseReference {
     pub case: String,
-    /// As rows and charts call it. Default: the name of the case, or its id.
+    /// As rows and charts call it. Default: the name of the case, or its place in the list.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub name: Option<String>,
@@ -239,7 +239,7 @@ impl Default for TolerancesDocument {
 #[serde(deny_unknown_fields)]
 pub struct StudyBudgetDocument {
     /// After this time no further row is begun, and the study ends as incomplete with the rows it has; the truth of
-    /// those is still found, for at most as long again.
+    /// those is still found, for at most as long again and a minute.
     #[serde(default = "usual_wall")]
     #[schema(default = 3600.0, exclusive_minimum = 0.0)]
     pub wall_s: f64,

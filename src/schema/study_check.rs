@@ -106,7 +106,8 @@ impl StudyDocument {
         let one_case = self.scenes.len() == 1 && self.case_ids().len() == 1;
         let one_row = self.plans.len() == 1 && self.materials.len() <= 1 && self.sweep.is_empty();
         if truth.job.is_some() && !(one_case && one_row) {
-            let detail = "the skin of a job is the truth of one case with one plan and one material";
+            let detail =
+                "the skin of a job is the truth of one case with one plan and one material";
             faults.add(&at.key("job"), "wrong-type", detail);
         }
     }
@@ -148,10 +149,9 @@ impl StudyDocument {
             );
         }
         let tolerances = at.key("tolerances");
-        for (name, ratio) in [
-            ("p95_ratio", self.tolerances.p95_ratio),
-            ("wall_ratio", self.tolerances.wall_ratio),
-        ] {
+        for (name, ratio) in
+            [("p95_ratio", self.tolerances.p95_ratio), ("wall_ratio", self.tolerances.wall_ratio)]
+        {
             faults.check_range(&tolerances.key(name), ratio, 1.0..=1000.0, "");
         }
         let budget = at.key("budget");

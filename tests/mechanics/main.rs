@@ -32,4 +32,5 @@ mod registration;
 mod response;
 mod scenes;
 mod solvers;
+mod study_report;
 mod surfaces;

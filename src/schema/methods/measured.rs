@@ -91,9 +91,8 @@ fn parse(table: &str) -> Result<Vec<Row>, String> {
         if text(7)? != "solved" {
             continue;
         }
-        let number = |place: usize| {
-            text(place)?.parse::<f64>().map_err(|error| format!("{error}: {line}"))
-        };
+        let number =
+            |place: usize| text(place)?.parse::<f64>().map_err(|error| format!("{error}: {line}"));
         rows.push(Row {
             scene: text(0)?,
             method: text(1)?,

@@ -7,11 +7,11 @@ use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use super::fault::{Faults, Pointer};
-pub use measured::MeasuredDocument;
 use crate::optimisation::UNDETERMINED;
 use crate::prediction::ElementChoice;
 use crate::response::COLUMNS_PER_SEGMENT;
 use crate::response::linearity::LINEAR_RANGE_MM;
+pub use measured::MeasuredDocument;
 
 /// Why `auto` is what it is.
 pub const WHY_LINEAR: &str = "auto: fem_linear is the only model built so far";
