@@ -1,5 +1,7 @@
 //! Methods side by side on the same scenes: how long each takes, and how far each is from the truth.
 
+pub mod paired;
+pub mod pairwise;
 pub mod report;
 pub mod variant;
 
