@@ -30,5 +30,7 @@ mod quality;
 mod registration;
 mod response;
 mod scenes;
+mod slab_table;
 mod solvers;
+mod study;
 mod surfaces;
