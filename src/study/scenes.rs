@@ -10,8 +10,7 @@ pub use sphere::{sphere, sphere_of};
 
 use std::collections::BTreeMap;
 
-use super::methods;
-use super::variant::{Materials, Study, StudyScene, Truth};
+use super::variant::{Materials, StudyScene, Truth};
 use crate::material::{LinearElastic, MaterialError};
 use crate::mesh::{CellShape, Vector, VolumeMesh};
 use crate::plan::{PlannedSegment, RigidMovement};
@@ -32,25 +31,6 @@ pub fn scene_of(name: &str) -> Option<StudyScene> {
         "half_head" => Some(half_head()),
         _ => None,
     }
-}
-
-/// Sphere, slab and half head with every method at levels 0 and 1.
-pub fn usual_study() -> Study {
-    Study {
-        scenes: vec![sphere(), slab(), half_head()],
-        variants: methods::available(),
-        levels: vec![0, 1],
-        repeats: 3,
-        budget_s: f64::INFINITY,
-    }
-}
-
-/// The slab with its first plan and material and every method: a minute at most.
-pub fn small_study() -> Study {
-    let mut scene = slab();
-    scene.plans.truncate(1);
-    scene.materials.truncate(1);
-    Study { scenes: vec![scene], ..usual_study() }
 }
 
 /// What is held for true of a case without more knowledge: quadratic tetrahedra on halved edges where the mesh is made

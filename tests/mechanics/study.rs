@@ -12,11 +12,11 @@ use facies::prediction::{
     Unobserved,
 };
 use facies::study::report::Solved;
-use facies::study::scenes::{slab, slab_hex, small_study, sphere_of};
+use facies::study::scenes::{SCENES, scene_of, slab, slab_hex, sphere_of, usual_truth};
 use facies::study::sweep::{Judged, SweepError, Values, best, combinations};
 use facies::study::{
     Errors, Materials, NOT_RUN, Outcome, Report, Row, Stopwatch, Study, StudyError, StudyScene,
-    Truth, Variant, convergence, pareto, run,
+    Truth, Variant, convergence, methods, pareto, run,
 };
 
 use crate::scenes::{case_of, material, set, solve};
@@ -451,8 +451,11 @@ fn a_series_of_three_levels_has_an_order_and_a_limit() {
 }
 
 #[test]
-fn the_small_study_has_a_row_for_each_method_and_knows_how_good_its_truth_is() {
-    let study = small_study();
+fn on_the_slab_elements_come_in_the_order_of_the_table_and_the_truth_knows_its_own_error() {
+    let mut scene = slab();
+    scene.plans.truncate(1);
+    scene.materials.truncate(1);
+    let study = study(scene, methods::of_method("fem_linear"), &[0, 1]);
     let report = of(&study);
     let scene = &report.scenes[0];
     println!("{} {:?}", scene.truth, scene.truth_error_mm);
@@ -474,8 +477,41 @@ fn the_small_study_has_a_row_for_each_method_and_knows_how_good_its_truth_is() {
 }
 
 #[test]
-fn materials_are_named_by_what_they_are() {
-    let Materials { name, by_region } = &slab().materials[0];
-    assert_eq!(name, "nu 0.46");
-    assert_eq!(by_region["*"].poisson_ratio(), 0.46);
+fn every_scene_of_the_program_is_accepted_with_each_of_its_plans_and_materials() {
+    for name in SCENES {
+        let scene = scene_of(name).unwrap();
+        assert_eq!(scene.name, name);
+        let mut names: Vec<&str> = scene.plans.iter().map(|(plan, _)| plan.as_str()).collect();
+        names.dedup();
+        assert_eq!(names.len(), scene.plans.len());
+        for Materials { by_region, .. } in &scene.materials {
+            for (plan, movement) in &scene.plans {
+                let case = Case { materials: by_region.clone(), ..scene.case.clone() };
+                let made = Scene::new(&case, movement, &Settings::default());
+                let made = made.unwrap_or_else(|errors| panic!("{name} {plan}: {errors}"));
+                let codes = made.warnings.iter().map(|warning| warning.code).collect::<Vec<_>>();
+                // The symmetry planes of slab and sphere end on what is held altogether.
+                assert!(
+                    codes.iter().all(|code| *code == "conditions-overlap"),
+                    "{plan}: {codes:?}"
+                );
+                assert!(made.skin.nodes().len() > 60);
+            }
+        }
+    }
+    assert!(scene_of("nowhere").is_none());
+}
+
+#[test]
+fn a_case_without_a_truth_of_its_own_gets_a_finer_mesh() {
+    let of = |shape| {
+        let mesh = block(Vector::new(4.0, 4.0, 4.0), [2, 2, 2], shape);
+        usual_truth(&case_of(mesh, material(15.0, 0.46)))
+    };
+    let quadratic = ElementChoice::Quadratic;
+    assert!(
+        matches!(of(CellShape::Tet4), Truth::Refined { times: 1, element } if element == quadratic)
+    );
+    let mean = ElementChoice::MeanDilatation;
+    assert!(matches!(of(CellShape::Hex8), Truth::Refined { times: 2, element } if element == mean));
 }
