@@ -95,9 +95,9 @@ impl<'a> SceneWork<'a> {
 
         // 2. What the methods answer, for each plan and material.
         let mut attempts = Vec::new();
-        for plan in 0..self.scene.plans.len() {
+        for ((_, plan), skin) in self.scene.plans.iter().zip(&skins) {
             for materials in &self.scene.materials {
-                attempts.push(self.attempts(&mut levels, (plan, materials), &skins[plan])?);
+                attempts.push(self.attempts(&mut levels, (plan, materials), skin)?);
             }
         }
 
@@ -142,10 +142,9 @@ impl<'a> SceneWork<'a> {
     fn attempts(
         &self,
         levels: &mut Levels,
-        (plan, materials): (usize, &Materials),
+        (plan, materials): (&Plan, &Materials),
         skin: &Result<Skin, Refusal>,
     ) -> Result<Vec<Attempt<'a>>, StudyError> {
-        let (_, plan) = &self.scene.plans[plan];
         let mut attempts = Vec::new();
         for &level in &self.study.levels {
             for variant in &self.study.variants {
