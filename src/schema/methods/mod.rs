@@ -101,8 +101,7 @@ impl MethodName {
 /// Refuses a method that is not built, naming those that are.
 pub fn check_method(method: MethodName, at: &Pointer, faults: &mut Faults) {
     if !method.is_available() {
-        let methods = available_methods().methods.into_iter();
-        let names: Vec<String> = methods.map(|row| format!("`{}`", row.name.name())).collect();
+        let names: Vec<String> = documents().map(|row| format!("`{}`", row.name.name())).collect();
         let detail = format!("this method is not available; `auto` and {} are", names.join(", "));
         faults.add(at, "method-not-available", detail);
     }
