@@ -5,13 +5,16 @@
 #[path = "../shared/mod.rs"]
 mod shared;
 
+mod anisotropy;
 mod closed_form;
 mod comparison;
 mod conditions;
 mod convergence;
 mod distances;
 mod documents;
+mod documents_fibres;
 mod elements;
+mod fibres;
 mod formats_check;
 mod formats_damage;
 mod formats_hostile;
@@ -23,6 +26,7 @@ mod formats_shared_data;
 mod formats_surface;
 mod hard_systems;
 mod jobs;
+mod membrane;
 mod optimisation;
 mod optimise_jobs;
 mod patch;
@@ -30,5 +34,6 @@ mod quality;
 mod registration;
 mod response;
 mod scenes;
+mod sliding;
 mod solvers;
 mod surfaces;
