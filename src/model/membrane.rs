@@ -147,3 +147,37 @@ impl Triangle {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::material::Sheet;
+
+    #[test]
+    fn a_quadratic_displacement_stores_the_energy_of_its_linear_strain() {
+        // u = (x², x y) on the triangle (0,0), (2,0), (0,1): eps = (2x, x, y/2), and the energy is the integral
+        // of t/2 [C11 4x² + 2 C12 2x² + C22 x² + C66 y²], where x² has the integral 2/3 and y² 1/6.
+        let (e, nu, t) = (200.0, 0.3, 1.5);
+        let sheet = Sheet { thickness: t, young_modulus: e, poisson_ratio: nu, along_lines: None };
+        let nodes = [[0.0, 0.0], [2.0, 0.0], [0.0, 1.0]].map(|[x, y]| Vector::new(x, y, 0.0));
+        let membrane = Membrane {
+            sheet: PlaneStress::new(&sheet).unwrap(),
+            triangles: vec![[0, 1, 2]],
+            lines: Vec::new(),
+        };
+        let mesh = VolumeMesh { nodes: nodes.to_vec(), ..VolumeMesh::default() };
+        let (triangle, _) = membrane.in_space(&mesh).next().unwrap();
+        let middle = |a: usize, b: usize| (nodes[a] + nodes[b]) * 0.5;
+        let places = [nodes[0], nodes[1], nodes[2], middle(0, 1), middle(1, 2), middle(2, 0)];
+        let moved = places.map(|p| Vector::new(p.x * p.x, p.x * p.y, 3.0));
+        let blocks = triangle.quadratic();
+        let mut twice_energy = 0.0;
+        for (entry, block) in blocks.iter().enumerate() {
+            let block = nalgebra::Matrix3::from_fn(|i, j| block[i][j]);
+            twice_energy += moved[entry / 6].dot(&(block * moved[entry % 6]));
+        }
+        let (c11, c66) = (e / (1.0 - nu * nu), e / (2.0 * (1.0 + nu)));
+        let exact = t * ((c11 * (4.0 + 4.0 * nu + 1.0)) * 2.0 / 3.0 + c66 / 6.0);
+        assert!((twice_energy / exact - 1.0).abs() < 1e-13, "{twice_energy} {exact}");
+    }
+}

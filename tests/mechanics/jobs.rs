@@ -188,6 +188,21 @@ fn the_manifest_is_what_stands_in_the_folder() {
 }
 
 #[test]
+fn a_job_says_which_method_and_elements_it_used() {
+    let out = tempfile::tempdir().unwrap();
+    let fibred = CASE.replace(
+        r#""poisson_ratio":0.4"#,
+        r#""poisson_ratio":0.4,"fibre":{"young_modulus_kpa":60,"direction":[1,0,0]}"#,
+    );
+    let spec = r#"{"method":"mtm_ti","membrane":{},"outputs":["skin.ply"]}"#;
+    let done = predict(&fibred, TURN, spec, out.path()).unwrap();
+    let provenance = done.result.provenance;
+    assert_eq!(provenance.method.unwrap(), "mtm_ti");
+    assert_eq!(provenance.solver.unwrap().elements, ["tet4 plain", "tri3 membrane"]);
+    assert!(done.result.warnings.iter().all(|warning| warning.code != "fibres-missing"));
+}
+
+#[test]
 fn a_skin_is_compared_within_its_own_job() {
     let out = tempfile::tempdir().unwrap();
     let first = out.path().join("first");

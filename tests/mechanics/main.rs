@@ -5,13 +5,16 @@
 #[path = "../shared/mod.rs"]
 mod shared;
 
+mod anisotropy;
 mod closed_form;
 mod comparison;
 mod conditions;
 mod convergence;
 mod distances;
 mod documents;
+mod documents_fibres;
 mod elements;
+mod fibres;
 mod formats_check;
 mod formats_damage;
 mod formats_hostile;
@@ -25,6 +28,7 @@ mod hard_systems;
 mod jobs;
 mod mass_spring;
 mod mass_tensor;
+mod membrane;
 mod optimisation;
 mod optimise_jobs;
 mod paired;
@@ -34,6 +38,7 @@ mod registration;
 mod response;
 mod scenes;
 mod slab_table;
+mod sliding;
 mod solvers;
 mod study;
 mod study_report;

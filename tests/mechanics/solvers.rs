@@ -31,6 +31,8 @@ pub fn system_of(
         materials,
         material_of_cell,
         pressure_of_cell: material_of_cell,
+        fibres: &[],
+        membrane: None,
         dilatation: |_| Dilatation::Mean,
     };
     let mut held = vec![false; mesh.nodes.len()];
