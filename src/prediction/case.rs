@@ -128,6 +128,16 @@ pub enum Method {
     FemLinear,
 }
 
+impl Method {
+    /// True where strain is the symmetric part of the displacement gradient, so that turning is taken for
+    /// stretching.
+    pub fn is_small_strain(&self) -> bool {
+        match self {
+            Method::FemLinear => true,
+        }
+    }
+}
+
 /// How the numbers are to be found.
 #[derive(Clone, Debug)]
 pub struct Settings {

@@ -7,6 +7,8 @@ mod problem;
 pub mod progress;
 pub mod scene;
 mod skin;
+mod small_strain;
+mod stiff_layer;
 
 use std::collections::BTreeMap;
 
@@ -82,6 +84,19 @@ pub enum PredictionError {
     NotFinite,
 }
 
+impl PredictionError {
+    /// The stable word of the error catalogue.
+    pub fn code(&self) -> &'static str {
+        match self {
+            PredictionError::Cancelled => "cancelled",
+            PredictionError::NotConverged { .. } | PredictionError::NotFinite => "solver-diverged",
+            PredictionError::Singular { .. } => "matrix-singular",
+            PredictionError::Inverted { .. } => "element-inverted",
+            PredictionError::OverBudget { .. } => "budget-exceeded",
+        }
+    }
+}
+
 /// Solves a scene by the method it asks for. The same scene gives the same bits on any number of threads.
 pub fn predict(scene: &Scene, progress: &dyn Progress) -> Result<Prediction, PredictionError> {
     // 1. Equilibrium.
@@ -98,6 +113,7 @@ pub fn predict(scene: &Scene, progress: &dyn Progress) -> Result<Prediction, Pre
     let mut warnings = scene.warnings.clone();
     warnings.extend(equilibrium.warnings.iter().cloned());
     warnings.extend(inverted_cells(&deformation));
+    warnings.extend(small_strain::left(scene, &deformation));
     warnings.extend(far_landmarks(&landmarks));
     Ok(Prediction {
         reactions: reactions(scene, &equilibrium),
@@ -169,7 +185,9 @@ fn inverted_cells(deformation: &[CellDeformation]) -> Option<Warning> {
     let inverted = deformation.iter().filter(|cell| cell.det_f <= 0.0).count();
     let smallest = deformation.iter().map(|cell| cell.det_f).fold(f64::INFINITY, f64::min);
     let detail = format!("the linear displacement turns {inverted} cells inside out");
-    let warning = Warning::new("cells-inverted", detail).with("cells", inverted as f64);
+    let warning = Warning::new("cells-inverted", detail)
+        .with("cells", inverted as f64)
+        .with("share", inverted as f64 / deformation.len().max(1) as f64);
     (inverted > 0).then(|| warning.with("smallest_det_f", smallest))
 }
 

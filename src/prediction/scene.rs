@@ -7,6 +7,7 @@ use super::case::{Case, ElementChoice, Method, Plan, Settings};
 use super::check::Check;
 use super::problem::SceneErrors;
 use super::skin::Skin;
+use super::stiff_layer;
 use crate::boundary::{Conditions, NodeClass, tearing};
 use crate::material::LinearElastic;
 use crate::mesh::connectivity::Faces;
@@ -94,6 +95,7 @@ impl Scene {
         scene.warnings.extend(check.warnings);
         scene.warnings.extend(tearing::tearing(&scene.mesh, &scene.conditions.holds));
         scene.warnings.extend(scene.locking());
+        scene.warnings.extend(stiff_layer::thin_stiff_layers(&scene));
         Ok(scene)
     }
 
@@ -126,6 +128,11 @@ impl Scene {
 
     fn has_tetrahedra(&self) -> bool {
         self.mesh.cells.iter().any(|(shape, _)| shape == CellShape::Tet4)
+    }
+
+    /// Whether displacement is linear along every edge.
+    pub(super) fn is_first_order(&self) -> bool {
+        self.tetrahedron() != Tetrahedron::Quadratic
     }
 
     /// The middles of edges, where the element has nodes there.

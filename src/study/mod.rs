@@ -1,6 +1,7 @@
 //! Methods side by side on the same scenes: how long each takes, and how far each is from the truth.
 
 pub mod report;
+pub mod stability;
 pub mod variant;
 
 pub use report::{Errors, Outcome, Report, Row, SceneReport};
