@@ -7,12 +7,14 @@ pub mod colour;
 mod displacement;
 mod legend;
 pub mod raster;
+mod stability_map;
 mod svg;
 pub mod view;
 
 pub use classes::{ClassKind, ClassesPicture, NodeClasses};
 pub use displacement::DisplacementPicture;
 pub use raster::{Image, PngError};
+pub use stability_map::{Mark, StabilityAxis, StabilityMap};
 pub use view::{Outlook, front_of};
 
 /// A position in mm.

@@ -97,7 +97,8 @@ mod tests {
         let mesh = block(Vector::new(2.0, 2.0, 2.0), [1, 1, 1], CellShape::Hex8);
         let stretch = Matrix3::from_diagonal(&Vector::new(1.2, 1.0, 0.7));
         for degrees in [0.0_f64, 7.0, 45.0, 120.0, 180.0] {
-            let turn = nalgebra::Rotation3::from_axis_angle(&Vector::y_axis(), degrees.to_radians());
+            let turn =
+                nalgebra::Rotation3::from_axis_angle(&Vector::y_axis(), degrees.to_radians());
             let moved = |x: &Vector| turn * stretch * x - x;
             let displacement: Vec<Vector> = mesh.nodes.iter().map(moved).collect();
             let found = deformations(&mesh, &displacement)[0].rotation.to_degrees();

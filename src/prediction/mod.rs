@@ -2,6 +2,7 @@
 
 pub mod case;
 mod check;
+mod cut;
 mod held;
 mod problem;
 pub mod progress;

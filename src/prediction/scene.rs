@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use super::case::{Case, ElementChoice, Method, Plan, Settings};
 use super::check::Check;
+use super::cut;
 use super::problem::SceneErrors;
 use super::skin::Skin;
 use super::stiff_layer;
@@ -93,6 +94,7 @@ impl Scene {
         check.problems.give_up_if_any()?;
         scene.warnings = scene.conditions.warnings.clone();
         scene.warnings.extend(check.warnings);
+        scene.warnings.extend(cut::duplicate_nodes(&scene.mesh, &check.boundary_nodes));
         scene.warnings.extend(tearing::tearing(&scene.mesh, &scene.conditions.holds));
         scene.warnings.extend(scene.locking());
         scene.warnings.extend(stiff_layer::thin_stiff_layers(&scene));

@@ -9,7 +9,9 @@ use crate::mesh::refinement::refine;
 use crate::mesh::sample::{ThickSphere, block, thick_sphere_octant};
 use crate::mesh::{CellShape, Vector, VolumeMesh};
 use crate::plan::{PlannedSegment, RigidMovement};
-use crate::prediction::{Case, CaseSegment, ElementChoice, Plan, Prescribed, RegionNames, Settings};
+use crate::prediction::{
+    Case, CaseSegment, ElementChoice, Plan, Prescribed, RegionNames, Settings,
+};
 
 /// Soft tissue where nothing else is asked: kPa and Poisson's ratio, g/cm³ (METHODS, part B).
 pub const YOUNG_MODULUS: f64 = 15.0;
@@ -40,7 +42,6 @@ pub fn set(name: &str) -> NodeSelection {
 pub fn tissue(material: LinearElastic) -> BTreeMap<String, LinearElastic> {
     BTreeMap::from([("*".to_owned(), material)])
 }
-
 
 /// A layer of 48 x 48 mm between these levels. Sets: `patch`, 16 x 16 mm in the middle of the bottom, `far`,
 /// the bottom beyond a free ring of this width in mm, `base`, the whole bottom, and `skin`. Cell array
@@ -104,10 +105,7 @@ pub fn halved(mut case: Case) -> Case {
 
 /// Segment `jaw` moved.
 pub fn jaw(movement: RigidMovement) -> Plan {
-    Plan {
-        segments: vec![PlannedSegment { name: "jaw".to_owned(), movement }],
-        ..Plan::default()
-    }
+    Plan { segments: vec![PlannedSegment { name: "jaw".to_owned(), movement }], ..Plan::default() }
 }
 
 /// A translation in mm.
