@@ -101,7 +101,11 @@ impl StabilityMap<'_> {
                 };
                 document.rectangle(stripe, "#f4f5f7", 0.0);
             }
-            document.text([MARGIN, y + 15.0], NAMES - 10.0, Style::of(13.0).bold(), name);
+            let style = Style::of(12.0).bold();
+            let lines = wrapped(name, NAMES - 10.0, style);
+            for (line, words) in lines.iter().take(2).enumerate() {
+                document.text([MARGIN, y + 14.0 + 15.0 * line as f64], NAMES - 10.0, style, words);
+            }
         }
         let mut x = MARGIN + NAMES;
         for axis in axes {

@@ -4,6 +4,7 @@ pub mod case;
 mod check;
 mod cut;
 mod held;
+mod off_wall;
 mod problem;
 pub mod progress;
 pub mod scene;
@@ -115,6 +116,7 @@ pub fn predict(scene: &Scene, progress: &dyn Progress) -> Result<Prediction, Pre
     warnings.extend(equilibrium.warnings.iter().cloned());
     warnings.extend(inverted_cells(&deformation));
     warnings.extend(small_strain::left(scene, &deformation));
+    warnings.extend(off_wall::left_wall(scene, &equilibrium.displacement));
     warnings.extend(far_landmarks(&landmarks));
     Ok(Prediction {
         reactions: reactions(scene, &equilibrium),

@@ -2,7 +2,7 @@
 //!
 //! e = p95 over free skin nodes of l (2 (1 - cos theta) + 0.9 s^2), in mm
 //!
-//! l: the distance in mm to the nearest held node. theta: the rotation, s: the largest principal strain in
+//! l: the distance in mm to the nearest node that cannot slide. theta: the rotation, s: the largest principal strain in
 //! amount, both means over the cells around the node.
 //!
 //! What small strain leaves out is half of grad u^T grad u: 1 - cos theta where tissue turns, s^2 / 2 where it
@@ -18,7 +18,7 @@
 use rayon::prelude::*;
 
 use super::Scene;
-use crate::boundary::NodeClass;
+use crate::boundary::{Hold, NodeClass};
 use crate::mesh::{Vector, Warning};
 use crate::model::strain::CellDeformation;
 
@@ -97,14 +97,18 @@ fn around_skin_nodes(scene: &Scene, deformation: &[CellDeformation]) -> Vec<[f64
     sums.iter().map(|[rotation, strain, cells]| [rotation / cells, strain / cells]).collect()
 }
 
+/// The holds of nodes that cannot slide.
+fn holds_in_place(scene: &Scene) -> impl Iterator<Item = &Hold> {
+    scene.conditions.holds.iter().filter(|hold| hold.count() == 3)
+}
+
 /// Evenly chosen free nodes among some points of the skin.
 fn measured(scene: &Scene, points: &[u32], around: &[[f64; 2]]) -> Vec<AtNode> {
     let node_of = |point: u32| scene.skin.nodes()[point as usize] as usize;
     let is_free = |point: &u32| scene.conditions.classes[node_of(*point)] == NodeClass::Free;
     let free: Vec<u32> = points.iter().copied().filter(is_free).collect();
     let place = |node: usize| scene.mesh.nodes[node];
-    let held: Vec<Vector> =
-        scene.conditions.holds.iter().map(|hold| place(hold.node as usize)).collect();
+    let held: Vec<Vector> = holds_in_place(scene).map(|hold| place(hold.node as usize)).collect();
     let step = free.len().div_ceil(MEASURED_NODES).max(1);
     let chosen: Vec<u32> = free.into_iter().step_by(step).collect();
     chosen

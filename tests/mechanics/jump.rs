@@ -141,3 +141,53 @@ fn three_solutions_give_the_field_of_every_movement() {
         assert!((a - b).norm() < 1e-5, "{a} {b}");
     }
 }
+
+/// The bands are a tenth around what was found; the true limit of a quadratic field on finer cells lies lower still,
+/// because the strain at the edge of the patch grows without limit as cells shrink.
+#[test]
+fn behind_a_free_ring_of_25_mm_the_field_inverts_near_14_mm() {
+    for (shape, element, expected) in [
+        (Tet4, Quadratic, 13.65),
+        (Tet4, Stabilised, 15.03),
+        (Tet4, Plain, 19.09),
+        (Hex8, MeanDilatation, 19.33),
+        (Hex8, Plain, 24.10),
+    ] {
+        let found = first_inversion(5.0, 25.0, shape, element);
+        assert!((found / expected - 1.0).abs() < 0.1, "{shape:?} {element:?}: {found}");
+    }
+}
+
+/// Between a node that moves and one that is held, h apart, nothing is left to elasticity: the cell between them is
+/// flat when the patch has come h closer, s 25 mm = h, which is a movement of 1.077 h: 5.4 mm with nodes 5 mm apart
+/// and 2.7 mm with nodes 2.5 mm apart, near 3 mm. The turn and the Gauss points of hexahedra, which lie
+/// inside them, add a fifth.
+#[test]
+fn beside_held_nodes_the_field_inverts_when_the_patch_has_crossed_one_cell() {
+    for (h, shape, element) in [
+        (5.0, Tet4, Plain),
+        (5.0, Tet4, Stabilised),
+        (5.0, Tet4, Quadratic),
+        (5.0, Hex8, MeanDilatation),
+        (5.0, Hex8, Plain),
+        (2.5, Tet4, Plain),
+        (2.5, Tet4, Stabilised),
+        (2.5, Hex8, MeanDilatation),
+    ] {
+        let found = first_inversion(h, 0.0, shape, element);
+        let crossed = 1.077 * h;
+        assert!(found > crossed && found < 1.2 * crossed, "{shape:?} {element:?} {h}: {found}");
+    }
+}
+
+#[test]
+fn an_inverted_field_says_how_many_cells_and_what_share_of_all() {
+    let scene = scene(5.0, 0.0, Tet4, Stabilised);
+    let told = predict(&scene, &Unobserved).unwrap();
+    let inverted = told.deformation.iter().filter(|cell| cell.det_f <= 0.0).count() as f64;
+    let warning = told.warnings.iter().find(|w| w.code == "cells-inverted").unwrap();
+    let number = |name: &str| warning.numbers.iter().find(|n| n.0 == name).unwrap().1;
+    assert!(inverted > 0.0 && number("cells") == inverted);
+    assert_eq!(number("share"), inverted / told.deformation.len() as f64);
+    assert!(number("smallest_det_f") <= 0.0);
+}

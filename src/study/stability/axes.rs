@@ -4,8 +4,8 @@
 use std::sync::Arc;
 
 use super::scenes::{
-    CELL, LEVELS, POISSON_RATIO, YOUNG_MODULUS, halved, jaw, layer, on_bone, set, shape_for, shift,
-    swelling, tissue, with_region,
+    CELL, LEVELS, POISSON_RATIO, YOUNG_MODULUS, around_ball, halved, jaw, layer, on_bone, set,
+    shape_for, shift, swelling, tissue, with_region,
 };
 use super::{Axis, Probe, Refusal, Truth, Variant};
 use crate::material::{LinearElastic, MaterialError};
@@ -19,6 +19,7 @@ pub fn every() -> Vec<Axis> {
         poisson_ratio(),
         movement(),
         rotation(),
+        sliding(),
         aspect(),
         stiffness_contrast(),
         jump(),
@@ -153,6 +154,32 @@ fn usual_case(levels: &[f64], ring: f64, shape: CellShape) -> Result<Case, Refus
     Ok(on_bone(layer(levels, ring, shape), tissue(material)))
 }
 
+// Sliding on a curved wall.
+
+fn sliding() -> Axis {
+    Axis {
+        name: "sliding",
+        title: "Sliding on a ball",
+        unit: "deg",
+        scene: "octant of a thick sphere, radii 60 and 72 mm, nu 0.43, that slides on the ball in it; its face at \
+            x = 0 turns about z",
+        reference: "symmetry: all tissue turns with that face",
+        bound_mm: HALF_A_MILLIMETRE,
+        values: numbers(&[1.0, 2.0, 5.0, 10.0, 15.0, 20.0, 30.0, 45.0]),
+        probe: |degrees, variant| {
+            let material = material(YOUNG_MODULUS, POISSON_RATIO, "*")?;
+            let case = around_ball(material, shape_for(&variant.settings));
+            found(case, jaw(about_z(degrees)), variant)
+        },
+        truth: |degrees| Truth::Formula(Box::new(move |x| about_z(degrees).displacement(x))),
+    }
+}
+
+fn about_z(degrees: f64) -> RigidMovement {
+    let angles = Vector::new(0.0, 0.0, degrees.to_radians());
+    RigidMovement::about_pivot(angles, Vector::zeros(), Vector::zeros())
+}
+
 // Flat and folded cells.
 
 fn aspect() -> Axis {
@@ -226,8 +253,8 @@ fn stiff_case(contrast: f64, shape: CellShape) -> Result<Case, Refusal> {
 fn jump() -> Axis {
     Axis {
         name: "jump",
-        title: "Jump to held bone, one cell away",
-        unit: "mm",
+        title: "Jump to held bone",
+        unit: "mm, one cell of 4",
         scene: "the layer of `poisson_ratio`, nu 0.43, held all around its patch beyond one cell of 4 mm",
         reference: "linear finite elements, quadratic, every edge halved: what linearity leaves out is not seen",
         bound_mm: HALF_A_MILLIMETRE,

@@ -10,7 +10,8 @@ use crate::mesh::sample::{ThickSphere, block, thick_sphere_octant};
 use crate::mesh::{CellShape, Vector, VolumeMesh};
 use crate::plan::{PlannedSegment, RigidMovement};
 use crate::prediction::{
-    Case, CaseSegment, ElementChoice, Plan, Prescribed, RegionNames, Settings,
+    Case, CaseSegment, ElementChoice, Plan, Prescribed, RegionNames, Settings, Sliding,
+    SlidingNormal,
 };
 
 /// Soft tissue where nothing else is asked: kPa and Poisson's ratio, g/cm³ (METHODS, part B).
@@ -113,12 +114,33 @@ pub fn shift(by: Vector) -> RigidMovement {
     RigidMovement::about_pivot(Vector::zeros(), Vector::zeros(), by)
 }
 
+fn octant(shape: CellShape) -> VolumeMesh {
+    let sphere =
+        ThickSphere { inner_radius: 60.0, outer_radius: 72.0, cells_radial: 3, cells_along: 8 };
+    thick_sphere_octant(sphere, shape)
+}
+
+/// The octant of the same sphere around a ball on which it slides; segment `jaw` is its face at x = 0.
+pub fn around_ball(material: LinearElastic, shape: CellShape) -> Case {
+    let mut mesh = octant(shape);
+    let jaw = mesh.node_sets["x_min"].clone();
+    let wall = mesh.node_sets["inner"].iter().filter(|node| jaw.binary_search(node).is_err());
+    let wall = wall.copied().collect();
+    mesh.node_sets.insert("wall".to_owned(), wall);
+    Case {
+        volume: Arc::new(mesh),
+        materials: tissue(material),
+        segments: vec![CaseSegment { name: "jaw".to_owned(), nodes: set("x_min") }],
+        sliding: vec![Sliding { nodes: set("wall"), normal: SlidingNormal::Surface }],
+        skin: Some(set("outer")),
+        ..Case::default()
+    }
+}
+
 /// The thick sphere of VERIFICATION V.7, radii 60 and 72 mm: an octant between planes of symmetry, its inner
 /// wall pushed outwards by `by` mm.
 pub fn swelling(by: f64, material: LinearElastic, shape: CellShape) -> (Case, Plan) {
-    let sphere =
-        ThickSphere { inner_radius: 60.0, outer_radius: 72.0, cells_radial: 3, cells_along: 8 };
-    let mut mesh = thick_sphere_octant(sphere, shape);
+    let mut mesh = octant(shape);
     let outwards = mesh.nodes.iter().map(|x| x.normalize() * by).collect();
     mesh.node_vectors.insert("outwards".to_owned(), outwards);
     let plane = |name: &str, axis: usize| {
