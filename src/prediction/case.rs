@@ -174,6 +174,15 @@ impl Method {
             Method::MassSpring(_) => false,
         }
     }
+
+    /// True where strain is the symmetric part of the displacement gradient, so that turning is taken for
+    /// stretching.
+    pub fn is_small_strain(&self) -> bool {
+        match self {
+            Method::FemLinear | Method::MassTensorTransverse | Method::MassTensor(_) => true,
+            Method::MassSpring(_) => false,
+        }
+    }
 }
 
 /// How the numbers are to be found.

@@ -20,7 +20,7 @@ use crate::model::quadratic::EdgeNodes;
 pub(super) struct Check<'a> {
     pub(super) case: &'a Case,
     pub(super) boundary: &'a [BoundaryFace],
-    boundary_nodes: Vec<u32>,
+    pub(super) boundary_nodes: Vec<u32>,
     pub(super) problems: Problems,
     pub(super) warnings: Vec<Warning>,
 }

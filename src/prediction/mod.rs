@@ -2,13 +2,17 @@
 
 pub mod case;
 mod check;
+mod cut;
 mod fibres;
 mod held;
 pub mod hounsfield;
+mod off_wall;
 mod problem;
 pub mod progress;
 pub mod scene;
 mod skin;
+mod small_strain;
+mod stiff_layer;
 
 use std::collections::BTreeMap;
 
@@ -121,6 +125,8 @@ pub fn predict(scene: &Scene, progress: &dyn Progress) -> Result<Prediction, Pre
     let mut warnings = scene.warnings.clone();
     warnings.extend(equilibrium.warnings.iter().cloned());
     warnings.extend(inverted_cells(&deformation));
+    warnings.extend(small_strain::left(scene, &deformation));
+    warnings.extend(off_wall::left_wall(scene, &equilibrium.displacement));
     warnings.extend(far_landmarks(&landmarks));
     Ok(Prediction {
         reactions: reactions(scene, &equilibrium),
@@ -192,7 +198,9 @@ pub(crate) fn inverted_cells(deformation: &[CellDeformation]) -> Option<Warning>
     let inverted = deformation.iter().filter(|cell| cell.det_f <= 0.0).count();
     let smallest = deformation.iter().map(|cell| cell.det_f).fold(f64::INFINITY, f64::min);
     let detail = format!("the displacement turns {inverted} cells inside out");
-    let warning = Warning::new("cells-inverted", detail).with("cells", inverted as f64);
+    let warning = Warning::new("cells-inverted", detail)
+        .with("cells", inverted as f64)
+        .with("share", inverted as f64 / deformation.len().max(1) as f64);
     (inverted > 0).then(|| warning.with("smallest_det_f", smallest))
 }
 

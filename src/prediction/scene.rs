@@ -5,10 +5,12 @@ use std::sync::Arc;
 
 use super::case::{Case, ElementChoice, Method, Plan, Settings};
 use super::check::Check;
+use super::cut;
 use super::fibres::Tissues;
 use super::hounsfield::ImagedTissue;
 use super::problem::SceneErrors;
 use super::skin::Skin;
+use super::stiff_layer;
 use crate::boundary::{Conditions, NodeClass, tearing};
 use crate::material::LinearElastic;
 use crate::mesh::connectivity::Faces;
@@ -116,8 +118,10 @@ impl Scene {
         check.problems.give_up_if_any()?;
         scene.warnings = scene.conditions.warnings.clone();
         scene.warnings.extend(check.warnings);
+        scene.warnings.extend(cut::duplicate_nodes(&scene.mesh, &check.boundary_nodes));
         scene.warnings.extend(tearing::tearing(&scene.mesh, &scene.conditions.holds));
         scene.warnings.extend(scene.locking());
+        scene.warnings.extend(stiff_layer::thin_stiff_layers(&scene));
         scene.warnings.extend(scene.built_in_poisson_ratio());
         Ok(scene)
     }
@@ -154,6 +158,11 @@ impl Scene {
 
     fn has_tetrahedra(&self) -> bool {
         self.mesh.cells.iter().any(|(shape, _)| shape == CellShape::Tet4)
+    }
+
+    /// Whether displacement is linear along every edge.
+    pub(super) fn is_first_order(&self) -> bool {
+        self.tetrahedron() != Tetrahedron::Quadratic
     }
 
     /// The middles of edges, where the element has nodes there.
