@@ -75,15 +75,7 @@ impl JobError {
     pub fn kind(&self) -> &'static str {
         match self {
             JobError::Refused(problem) => problem.code,
-            JobError::Prediction(error) => match error {
-                PredictionError::Cancelled => "cancelled",
-                PredictionError::NotConverged { .. } | PredictionError::NotFinite => {
-                    "solver-diverged"
-                }
-                PredictionError::Singular { .. } => "matrix-singular",
-                PredictionError::Inverted { .. } => "element-inverted",
-                PredictionError::OverBudget { .. } => "budget-exceeded",
-            },
+            JobError::Prediction(error) => error.code(),
             JobError::Budget { .. } => "budget-exceeded",
             JobError::Cancelled => "cancelled",
             JobError::Alignment(_) => "alignment-failed",

@@ -82,6 +82,19 @@ pub enum PredictionError {
     NotFinite,
 }
 
+impl PredictionError {
+    /// The stable word of the error catalogue.
+    pub fn code(&self) -> &'static str {
+        match self {
+            PredictionError::Cancelled => "cancelled",
+            PredictionError::NotConverged { .. } | PredictionError::NotFinite => "solver-diverged",
+            PredictionError::Singular { .. } => "matrix-singular",
+            PredictionError::Inverted { .. } => "element-inverted",
+            PredictionError::OverBudget { .. } => "budget-exceeded",
+        }
+    }
+}
+
 /// Solves a scene by the method it asks for. The same scene gives the same bits on any number of threads.
 pub fn predict(scene: &Scene, progress: &dyn Progress) -> Result<Prediction, PredictionError> {
     // 1. Equilibrium.
@@ -165,7 +178,7 @@ pub(crate) fn report(scene: &Scene, equilibrium: &Equilibrium) -> SolverReport {
 }
 
 /// A linear answer that turns cells inside out says so.
-fn inverted_cells(deformation: &[CellDeformation]) -> Option<Warning> {
+pub(crate) fn inverted_cells(deformation: &[CellDeformation]) -> Option<Warning> {
     let inverted = deformation.iter().filter(|cell| cell.det_f <= 0.0).count();
     let smallest = deformation.iter().map(|cell| cell.det_f).fold(f64::INFINITY, f64::min);
     let detail = format!("the linear displacement turns {inverted} cells inside out");

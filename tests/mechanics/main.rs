@@ -31,6 +31,8 @@ mod quality;
 mod registration;
 mod response;
 mod scenes;
+mod slab_table;
 mod solvers;
+mod study;
 mod study_report;
 mod surfaces;
