@@ -53,7 +53,11 @@ impl JobError {
             JobError::Prediction(PredictionError::OverBudget { .. }) | JobError::Budget { .. } => {
                 ErrorClass::Budget
             }
-            JobError::Prediction(PredictionError::Inverted { .. }) => ErrorClass::Input,
+            JobError::Prediction(
+                PredictionError::Inverted { .. }
+                | PredictionError::StepAboveLimit { .. }
+                | PredictionError::NoBone,
+            ) => ErrorClass::Input,
             JobError::Prediction(_)
             | JobError::Optimisation(_)
             | JobError::NotFinite { .. }
@@ -78,6 +82,8 @@ impl JobError {
                 PredictionError::Singular { .. } => "matrix-singular",
                 PredictionError::Inverted { .. } => "element-inverted",
                 PredictionError::OverBudget { .. } => "budget-exceeded",
+                PredictionError::StepAboveLimit { .. } => "step-above-limit",
+                PredictionError::NoBone => "no-bone",
             },
             JobError::Budget { .. } => "budget-exceeded",
             JobError::Cancelled => "cancelled",
@@ -130,6 +136,9 @@ impl JobError {
             JobError::Prediction(PredictionError::Inverted { cell }) => json!({ "element": cell }),
             JobError::Prediction(PredictionError::OverBudget { needed_mb, allowed_mb }) => {
                 json!({ "which": "memory", "needed_mb": needed_mb, "allowed_mb": allowed_mb })
+            }
+            JobError::Prediction(PredictionError::StepAboveLimit { step_s, limit_s }) => {
+                json!({ "step_s": step_s, "limit_s": limit_s })
             }
             JobError::Optimisation(OptimisationError::NotConverged {
                 iterations,

@@ -6,9 +6,11 @@ pub mod equilibrium;
 pub mod linear_fem;
 pub mod load;
 pub mod quadratic;
+pub mod spline;
 pub mod stabilised;
 pub mod stiffness;
 pub mod strain;
+pub mod thickness_warp;
 
 use crate::element::{self, ReferenceCell};
 use crate::mesh::CellShape;

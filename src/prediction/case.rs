@@ -5,6 +5,8 @@ use std::collections::BTreeMap;
 use crate::boundary::NodeSelection;
 use crate::material::LinearElastic;
 use crate::mesh::{Frame, TriangleSurface, Vector, VolumeMesh};
+use crate::model::spline::VolumeSpline;
+use crate::model::thickness_warp::ThicknessWarp;
 use crate::plan::PlannedSegment;
 
 /// A patient's scene. All lengths in mm, all coordinates in `frame`.
@@ -126,6 +128,10 @@ pub enum Method {
     /// Linear finite elements at small strain.
     #[default]
     FemLinear,
+    /// A lattice of control points over the tissue.
+    VolumeSpline(VolumeSpline),
+    /// Tissue that rides on the nearest bone.
+    ThicknessWarp(ThicknessWarp),
 }
 
 /// How the numbers are to be found.

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::case::{Case, ElementChoice, Load, Plan, RegionNames};
+use super::case::{Case, ElementChoice, Load, Method, Plan, RegionNames};
 use super::problem::Problems;
 use super::scene::Scene;
 use super::skin::{self, Skin};
@@ -149,6 +149,14 @@ impl<'a> Check<'a> {
                 shape.name()
             );
             self.problems.add("/spec/element", "method-not-available", detail);
+        }
+    }
+
+    /// Refuses what a method would have to ignore in silence.
+    pub(super) fn method(&mut self, method: &Method, plan: &Plan) {
+        if matches!(method, Method::ThicknessWarp(_)) && !plan.loads.is_empty() {
+            let detail = "thickness_warp follows bone and knows no forces".to_owned();
+            self.problems.add("/plan/loads", "method-not-available", detail);
         }
     }
 

@@ -16,7 +16,8 @@ use crate::model::equilibrium::{Equilibrium, LoadCase, ModelError, Observer};
 use crate::model::linear_fem::Problem;
 use crate::model::quadratic::EdgeNodes;
 use crate::model::stiffness::Dilatation;
-use crate::model::{quadratic, stabilised};
+use crate::model::thickness_warp::Warped;
+use crate::model::{quadratic, spline, stabilised};
 use crate::plan::PlannedSegment;
 use crate::solver::Tolerance;
 
@@ -84,6 +85,7 @@ impl Scene {
             warnings: Vec::new(),
         };
         check.element(settings.element);
+        check.method(&settings.method, plan);
         check.problems.give_up_if_any()?;
         check.add_loads(plan, &mut scene);
 
@@ -146,6 +148,25 @@ impl Scene {
                 let mut solved = self.solve_cases(&[self.load_case()], observer)?;
                 Ok(solved.remove(0))
             }
+            Method::VolumeSpline(spline) => spline::solve(&self.problem(), spline, observer),
+            Method::ThicknessWarp(warp) => {
+                let movement = |segment: u32, x: &Vector| {
+                    self.segments[segment as usize].movement.displacement(x)
+                };
+                let (mesh, conditions) = (&*self.mesh, &self.conditions);
+                Warped { mesh, conditions, movement: &movement }.solve(warp)
+            }
+        }
+    }
+
+    /// The mechanical problem that finite elements and splines solve.
+    fn problem(&self) -> Problem<'_> {
+        let Settings { relative_residual, memory_mb, .. } = self.settings;
+        Problem {
+            tissue: self.tissue(),
+            holds: &self.conditions.holds,
+            forces: &self.forces,
+            tolerance: Tolerance { relative_residual, memory_mb },
         }
     }
 
@@ -156,13 +177,7 @@ impl Scene {
         cases: &[LoadCase],
         observer: &dyn Observer,
     ) -> Result<Vec<Equilibrium>, ModelError> {
-        let Settings { relative_residual, memory_mb, .. } = self.settings;
-        let problem = Problem {
-            tissue: self.tissue(),
-            holds: &self.conditions.holds,
-            forces: &self.forces,
-            tolerance: Tolerance { relative_residual, memory_mb },
-        };
+        let problem = self.problem();
         match self.tetrahedron() {
             Tetrahedron::Quadratic => quadratic::solve_cases(&problem, cases, observer),
             Tetrahedron::Stabilised if self.has_tetrahedra() => {
@@ -174,6 +189,11 @@ impl Scene {
 
     /// The elements in use, e.g. `hex8 mean dilatation`.
     pub fn elements(&self) -> Vec<String> {
+        match &self.settings.method {
+            Method::FemLinear => {}
+            Method::VolumeSpline(spline) => return vec![spline.element()],
+            Method::ThicknessWarp(_) => return Vec::new(),
+        }
         let dilatation = self.tissue().dilatation;
         [CellShape::Tet4, CellShape::Hex8, CellShape::Wedge6]
             .into_iter()
@@ -219,12 +239,13 @@ impl Scene {
             let is_plain = shape != CellShape::Tet4 || self.tetrahedron() == Tetrahedron::Plain;
             nu > LOCKING && is_plain && dilatation(shape) == Dilatation::Pointwise
         };
+        let has_elements = self.settings.method == Method::FemLinear;
         let locking = cells.filter(|((shape, _), region)| locks(*shape, **region)).count();
         let largest = self.materials.iter().map(LinearElastic::poisson_ratio).fold(0.0, f64::max);
         let detail = format!(
             "{locking} plain cells have a Poisson ratio above {LOCKING}: they lock, and the skin moves too little"
         );
         let warning = Warning::new("locking", detail).with("cells", locking as f64);
-        (locking > 0).then(|| warning.with("largest_poisson_ratio", largest))
+        (locking > 0 && has_elements).then(|| warning.with("largest_poisson_ratio", largest))
     }
 }

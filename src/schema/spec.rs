@@ -7,6 +7,7 @@ use utoipa::ToSchema;
 use super::canonical;
 use super::case_conversion::check_tags;
 use super::compare::{CompareDocument, CompareToDocument};
+use super::dvs::DvsDocument;
 use super::fault::{Faults, Pointer};
 use super::limits::Limits;
 use super::material::MaterialDocuments;
@@ -16,6 +17,7 @@ use super::plan::PlanDocument;
 use super::problem::Problem;
 use super::response::ResponseDocument;
 use super::strict;
+use super::thickness_warp::ThicknessWarpDocument;
 use crate::prediction::{Method, Settings};
 
 /// The body of `POST /v1/jobs`, told apart by `kind`.
@@ -58,6 +60,14 @@ pub struct PredictDocument {
     pub method: MethodName,
     #[serde(default)]
     pub element: ElementName,
+    /// Only where `method` is `dvs`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub dvs: Option<DvsDocument>,
+    /// Only where `method` is `thickness_warp`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub thickness_warp: Option<ThicknessWarpDocument>,
     /// Over the materials of the case, field by field.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
@@ -253,11 +263,42 @@ impl PredictDocument {
             compare_to.check(&at.key("compare_to"), limits, faults);
         }
         Settings {
-            method: Method::FemLinear,
+            method: self.to_method(&at, faults),
             element: self.element.choice(),
             sliding: self.contact == ContactName::Sliding,
             relative_residual: residual,
             memory_mb: memory,
+        }
+    }
+
+    /// The method with its own settings; those of another one are refused.
+    fn to_method(&self, at: &Pointer, faults: &mut Faults) -> Method {
+        let chosen = self.method.chosen();
+        let given = [
+            ("dvs", self.dvs.is_some(), MethodName::Dvs),
+            ("thickness_warp", self.thickness_warp.is_some(), MethodName::ThicknessWarp),
+        ];
+        for (name, _, _) in given.iter().filter(|(_, given, user)| *given && *user != chosen) {
+            let detail = format!("`{name}` is for that method, and this is `{}`", chosen.name());
+            faults.add(&at.key(name), "method-mismatch", detail);
+        }
+        if matches!(chosen, MethodName::Dvs | MethodName::ThicknessWarp)
+            && self.element != ElementName::Auto
+        {
+            let detail =
+                format!("`{}` has no elements; only `auto` leaves that open", chosen.name());
+            faults.add(&at.key("element"), "method-mismatch", detail);
+        }
+        match chosen {
+            MethodName::Dvs => {
+                let document = self.dvs.unwrap_or_default();
+                Method::VolumeSpline(document.to_method(&at.key("dvs"), faults))
+            }
+            MethodName::ThicknessWarp => {
+                let document = self.thickness_warp.unwrap_or_default();
+                Method::ThicknessWarp(document.to_method(&at.key("thickness_warp"), faults))
+            }
+            _ => Method::FemLinear,
         }
     }
 

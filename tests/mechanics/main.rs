@@ -31,4 +31,6 @@ mod registration;
 mod response;
 mod scenes;
 mod solvers;
+mod spline_volume;
 mod surfaces;
+mod thickness_warp;

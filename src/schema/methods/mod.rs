@@ -1,6 +1,8 @@
 //! `GET /v1/methods`: the ways of modelling, by the names a spec may give.
 
+mod dvs;
 mod fem_linear;
+mod thickness_warp;
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
@@ -12,7 +14,7 @@ use crate::response::COLUMNS_PER_SEGMENT;
 use crate::response::linearity::LINEAR_RANGE_MM;
 
 /// Why `auto` is what it is.
-pub const WHY_LINEAR: &str = "auto: fem_linear is the only model built so far";
+pub const WHY_LINEAR: &str = "auto: fem_linear, until a chooser exists";
 /// Why a method that was asked for by name is used.
 pub const WHY_ASKED: &str = "asked for by the spec";
 
@@ -55,7 +57,10 @@ pub enum ElementName {
 impl MethodName {
     /// Whether it is built.
     pub fn is_available(self) -> bool {
-        matches!(self, MethodName::Auto | MethodName::FemLinear)
+        matches!(
+            self,
+            MethodName::Auto | MethodName::FemLinear | MethodName::Dvs | MethodName::ThicknessWarp
+        )
     }
 
     /// The method that is used: what `auto` chooses, or the one asked for.
@@ -95,7 +100,8 @@ impl MethodName {
 /// Refuses a method that is not built, naming those that are.
 pub fn check_method(method: MethodName, at: &Pointer, faults: &mut Faults) {
     if !method.is_available() {
-        let detail = "this method is not available; `auto` and `fem_linear` are";
+        let detail =
+            "this method is not available; `auto`, `fem_linear`, `dvs` and `thickness_warp` are";
         faults.add(at, "method-not-available", detail);
     }
 }
@@ -181,7 +187,7 @@ pub struct ParameterDocument {
 /// The methods that are built.
 pub fn available_methods() -> MethodList {
     MethodList {
-        methods: vec![fem_linear::document()],
+        methods: vec![fem_linear::document(), dvs::document(), thickness_warp::document()],
         auto: WHY_LINEAR.to_owned(),
         response: ResponseMethod {
             methods: vec![MethodName::FemLinear],
@@ -202,6 +208,20 @@ pub fn available_methods() -> MethodList {
                 .to_owned(),
             undetermined_below: UNDETERMINED,
         },
+    }
+}
+
+fn parameter(
+    name: &str,
+    meaning: &str,
+    default: serde_json::Value,
+    range: &str,
+) -> ParameterDocument {
+    ParameterDocument {
+        name: name.to_owned(),
+        meaning: meaning.to_owned(),
+        default,
+        range: range.to_owned(),
     }
 }
 
