@@ -8,6 +8,8 @@ use crate::material::{LinearElastic, PlaneStress};
 use crate::mesh::{Frame, TriangleSurface, Vector, VolumeMesh};
 use crate::model::mass_spring::MassSpringSettings;
 use crate::model::mass_tensor::MassTensorSettings;
+use crate::model::spline::VolumeSpline;
+use crate::model::thickness_warp::ThicknessWarp;
 use crate::plan::PlannedSegment;
 
 /// A patient's scene. All lengths in mm, all coordinates in `frame`.
@@ -156,32 +158,32 @@ pub enum Method {
     MassTensor(MassTensorSettings),
     /// The mass-tensor of tetrahedra with fibres: force = V g_j.C.g_k u, the plain finite element.
     MassTensorTransverse,
+    /// A lattice of control points over the tissue.
+    VolumeSpline(VolumeSpline),
+    /// Tissue that rides on the nearest bone.
+    ThicknessWarp(ThicknessWarp),
 }
 
 impl Method {
+    /// Whether it solves for the nodes of elements.
+    pub fn is_of_elements(&self) -> bool {
+        matches!(self, Method::FemLinear | Method::MassTensor(_) | Method::MassTensorTransverse)
+    }
+
     /// Whether its tissue may be stiffer along fibres than across them.
     pub fn knows_fibres(&self) -> bool {
-        match self {
-            Method::FemLinear | Method::MassTensorTransverse => true,
-            Method::MassSpring(_) | Method::MassTensor(_) => false,
-        }
+        matches!(self, Method::FemLinear | Method::MassTensorTransverse)
     }
 
     /// Whether the skin may be a membrane of its own.
     pub fn knows_membrane(&self) -> bool {
-        match self {
-            Method::FemLinear | Method::MassTensorTransverse | Method::MassTensor(_) => true,
-            Method::MassSpring(_) => false,
-        }
+        self.is_of_elements()
     }
 
     /// True where strain is the symmetric part of the displacement gradient, so that turning is taken for
     /// stretching.
     pub fn is_small_strain(&self) -> bool {
-        match self {
-            Method::FemLinear | Method::MassTensorTransverse | Method::MassTensor(_) => true,
-            Method::MassSpring(_) => false,
-        }
+        self.is_of_elements() || matches!(self, Method::VolumeSpline(_))
     }
 }
 

@@ -142,6 +142,7 @@ impl<'a> Check<'a> {
     /// cannot be.
     pub(super) fn element(&mut self, settings: &Settings) -> ElementChoice {
         let asked = settings.element;
+        let own = &[ElementChoice::Auto];
         let (who, choices, used): (_, &[ElementChoice], _) = match &settings.method {
             Method::FemLinear => {
                 if asked == ElementChoice::Quadratic {
@@ -149,13 +150,17 @@ impl<'a> Check<'a> {
                 }
                 return asked;
             }
-            Method::MassSpring(_) => ("the mass-spring model", &[ElementChoice::Auto], asked),
+            Method::VolumeSpline(_) => ("the volume spline", own, asked),
+            Method::ThicknessWarp(_) => ("the thickness-preserving warp", own, asked),
+            Method::MassSpring(_) => ("the mass-spring model", own, asked),
             Method::MassTensor(_) | Method::MassTensorTransverse => {
                 let plain = ElementChoice::Plain;
                 ("the mass-tensor model", &[ElementChoice::Auto, ElementChoice::Plain], plain)
             }
         };
-        self.tetrahedra_only("/case/volume", &format!("{who} is"));
+        if !matches!(settings.method, Method::VolumeSpline(_) | Method::ThicknessWarp(_)) {
+            self.tetrahedra_only("/case/volume", &format!("{who} is"));
+        }
         if !choices.contains(&asked) {
             let detail = format!("{who} has no choice of elements: `auto` is what it is made of");
             self.problems.add("/spec/element", "method-not-available", detail);
@@ -173,6 +178,14 @@ impl<'a> Check<'a> {
                 shape.name()
             );
             self.problems.add(pointer, "method-not-available", detail);
+        }
+    }
+
+    /// Refuses what a method would have to ignore in silence.
+    pub(super) fn method(&mut self, method: &Method, plan: &Plan) {
+        if matches!(method, Method::ThicknessWarp(_)) && !plan.loads.is_empty() {
+            let detail = "thickness_warp follows bone and knows no forces".to_owned();
+            self.problems.add("/plan/loads", "method-not-available", detail);
         }
     }
 

@@ -92,6 +92,12 @@ pub enum PredictionError {
     OverBudget { needed_mb: f64, allowed_mb: f64 },
     #[error("the solution has values that are not finite")]
     NotFinite,
+    #[error(
+        "a step of {step_s:.3e} s grows without bound: explicit steps may take up to {limit_s:.3e} s"
+    )]
+    StepAboveLimit { step_s: f64, limit_s: f64 },
+    #[error("no face of the tissue lies on bone: a warp has nothing to follow")]
+    NoBone,
 }
 
 impl PredictionError {
@@ -104,6 +110,8 @@ impl PredictionError {
             | PredictionError::NotFinite => "solver-diverged",
             PredictionError::Singular { .. } => "matrix-singular",
             PredictionError::Inverted { .. } => "element-inverted",
+            PredictionError::StepAboveLimit { .. } => "step-above-limit",
+            PredictionError::NoBone => "no-bone",
             PredictionError::OverBudget { .. } => "budget-exceeded",
         }
     }
@@ -218,6 +226,10 @@ fn far_landmarks(landmarks: &BTreeMap<String, (Vector, f64)>) -> Vec<Warning> {
 impl From<ModelError> for PredictionError {
     fn from(error: ModelError) -> Self {
         match error {
+            ModelError::StepAboveLimit { step_s, limit_s } => {
+                PredictionError::StepAboveLimit { step_s, limit_s }
+            }
+            ModelError::NoBone => PredictionError::NoBone,
             ModelError::Inverted(inverted) => PredictionError::Inverted { cell: inverted.cell },
             ModelError::Solver(SolverError::Stopped) => PredictionError::Cancelled,
             ModelError::Solver(SolverError::NotFinite) => PredictionError::NotFinite,

@@ -22,7 +22,8 @@ use crate::model::mass_spring::POISSON_RATIO;
 use crate::model::membrane::Membrane;
 use crate::model::quadratic::EdgeNodes;
 use crate::model::stiffness::Dilatation;
-use crate::model::{mass_spring, mass_tensor, quadratic, stabilised};
+use crate::model::thickness_warp::Warped;
+use crate::model::{mass_spring, mass_tensor, quadratic, spline, stabilised};
 use crate::plan::PlannedSegment;
 use crate::solver::Tolerance;
 
@@ -110,6 +111,7 @@ impl Scene {
             settings: settings.clone(),
             warnings: Vec::new(),
         };
+        check.method(&settings.method, plan);
         check.problems.give_up_if_any()?;
         check.add_loads(plan, &mut scene);
 
@@ -190,6 +192,14 @@ impl Scene {
             Method::MassTensor(settings) => {
                 mass_tensor::solve(&self.problem(), settings, &self.load_case(), observer)
             }
+            Method::VolumeSpline(spline) => spline::solve(&self.problem(), spline, observer),
+            Method::ThicknessWarp(warp) => {
+                let movement = |segment: u32, x: &Vector| {
+                    self.segments[segment as usize].movement.displacement(x)
+                };
+                let (mesh, conditions) = (&*self.mesh, &self.conditions);
+                Warped { mesh, conditions, movement: &movement }.solve(warp)
+            }
         }
     }
 
@@ -223,8 +233,10 @@ impl Scene {
 
     /// The elements in use, e.g. `hex8 mean dilatation`; none where there are none.
     pub fn elements(&self) -> Vec<String> {
-        if matches!(self.settings.method, Method::MassSpring(_)) {
-            return Vec::new();
+        match &self.settings.method {
+            Method::MassSpring(_) | Method::ThicknessWarp(_) => return Vec::new(),
+            Method::VolumeSpline(spline) => return vec![spline.element()],
+            Method::FemLinear | Method::MassTensor(_) | Method::MassTensorTransverse => {}
         }
         let dilatation = self.tissue().dilatation;
         [CellShape::Tet4, CellShape::Hex8, CellShape::Wedge6]
@@ -292,12 +304,13 @@ impl Scene {
             let is_plain = shape != CellShape::Tet4 || self.tetrahedron() == Tetrahedron::Plain;
             nu > LOCKING && is_plain && dilatation(shape) == Dilatation::Pointwise
         };
+        let has_elements = self.settings.method.is_of_elements();
         let locking = cells.filter(|((shape, _), material)| locks(*shape, **material)).count();
         let largest = self.materials.iter().map(LinearElastic::poisson_ratio).fold(0.0, f64::max);
         let detail = format!(
             "{locking} plain cells have a Poisson ratio above {LOCKING}: they lock, and the skin moves too little"
         );
         let warning = Warning::new("locking", detail).with("cells", locking as f64);
-        (locking > 0).then(|| warning.with("largest_poisson_ratio", largest))
+        (locking > 0 && has_elements).then(|| warning.with("largest_poisson_ratio", largest))
     }
 }

@@ -115,6 +115,7 @@ impl ResponseDocument {
             ResponseError::NoSegments | ResponseError::EmptySegment { .. } => {
                 (root.key("case").key("segments"), "empty-selection")
             }
+            ResponseError::OtherMethod => (root.key("spec").key("method"), "not-linear"),
             ResponseError::Loaded | ResponseError::Prediction(_) => (root, "not-linear"),
         };
         let problem = Problem::at(&at, code, error.to_string());

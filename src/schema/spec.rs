@@ -7,6 +7,7 @@ use utoipa::ToSchema;
 use super::canonical;
 use super::case_conversion::check_tags;
 use super::compare::{CompareDocument, CompareToDocument};
+use super::dvs::DvsDocument;
 use super::fault::{Faults, Pointer};
 use super::limits::Limits;
 use super::mass_spring::MassSpringDocument;
@@ -20,6 +21,7 @@ use super::problem::Problem;
 use super::response::ResponseDocument;
 use super::strict;
 use super::study::StudyDocument;
+use super::thickness_warp::ThicknessWarpDocument;
 use crate::prediction::{Method, Settings};
 
 /// The body of `POST /v1/jobs`, told apart by `kind`.
@@ -72,6 +74,14 @@ pub struct PredictDocument {
     pub mtm: Option<MassTensorDocument>,
     #[serde(default)]
     pub element: ElementName,
+    /// Only with the method `dvs`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub dvs: Option<DvsDocument>,
+    /// Only with the method `thickness_warp`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub thickness_warp: Option<ThicknessWarpDocument>,
     /// Over the materials of the case, field by field.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
@@ -284,10 +294,17 @@ impl PredictDocument {
         }
     }
 
-    /// The method with its own settings; those of another method are refused.
+    /// The method with its own settings; those of another one are refused.
     fn to_method(&self, at: &Pointer, faults: &mut Faults) -> Method {
-        methods::check_own(MethodName::Msm, self.msm.is_some(), self.method, at, faults);
-        methods::check_own(MethodName::Mtm, self.mtm.is_some(), self.method, at, faults);
+        let own = [
+            (MethodName::Msm, self.msm.is_some()),
+            (MethodName::Mtm, self.mtm.is_some()),
+            (MethodName::Dvs, self.dvs.is_some()),
+            (MethodName::ThicknessWarp, self.thickness_warp.is_some()),
+        ];
+        for (name, is_given) in own {
+            methods::check_own(name, is_given, self.method, at, faults);
+        }
         match self.method.chosen() {
             MethodName::Msm => {
                 let own = self.msm.unwrap_or_default();
@@ -298,6 +315,14 @@ impl PredictDocument {
                 Method::MassTensor(own.to_settings(&at.key("mtm"), faults))
             }
             MethodName::MtmTi => Method::MassTensorTransverse,
+            MethodName::Dvs => {
+                let own = self.dvs.unwrap_or_default();
+                Method::VolumeSpline(own.to_method(&at.key("dvs"), faults))
+            }
+            MethodName::ThicknessWarp => {
+                let own = self.thickness_warp.unwrap_or_default();
+                Method::ThicknessWarp(own.to_method(&at.key("thickness_warp"), faults))
+            }
             _ => Method::FemLinear,
         }
     }

@@ -126,7 +126,7 @@ fn a_thick_sphere_of_quadratic_tetrahedra_moves_as_the_closed_form() {
 }
 
 /// The slab of V.29 with cells of h mm and nu.
-fn slab(h: f64, nu: f64) -> (Case, Plan) {
+pub fn slab(h: f64, nu: f64) -> (Case, Plan) {
     let cells = [60.0, 30.0, 12.0].map(|size: f64| (size / h) as usize);
     let mut mesh = block(Vector::new(60.0, 30.0, 12.0), cells, CellShape::Tet4);
     mesh.nodes.iter_mut().for_each(|x| x.x -= 30.0);
@@ -150,7 +150,7 @@ fn slab(h: f64, nu: f64) -> (Case, Plan) {
 }
 
 /// Displacements at the 45 skin points of V.29, in a fixed order.
-fn at_skin_points(case: &Case, answer: &Prediction) -> Vec<Vector> {
+pub fn at_skin_points(case: &Case, answer: &Prediction) -> Vec<Vector> {
     let mut found = BTreeMap::new();
     for (x, u) in case.volume.nodes.iter().zip(&answer.displacement) {
         let on_grid = |c: f64| (c / 6.0 - (c / 6.0).round()).abs() < 1e-9;

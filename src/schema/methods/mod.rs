@@ -1,10 +1,12 @@
 //! `GET /v1/methods`: the ways of modelling, by the names a spec may give.
 
+mod dvs;
 mod fem_linear;
 mod measured;
 mod msm;
 mod mtm;
 mod mtm_ti;
+mod thickness_warp;
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
@@ -60,8 +62,8 @@ pub enum ElementName {
 impl MethodName {
     /// Whether it is built.
     pub fn is_available(self) -> bool {
-        use MethodName::{Auto, FemLinear, Msm, Mtm, MtmTi};
-        matches!(self, Auto | FemLinear | Msm | Mtm | MtmTi)
+        use MethodName::{Auto, Dvs, FemLinear, Msm, Mtm, MtmTi, ThicknessWarp};
+        matches!(self, Auto | FemLinear | Msm | Mtm | MtmTi | Dvs | ThicknessWarp)
     }
 
     /// The method that is used: what `auto` chooses, or the one asked for.
@@ -239,7 +241,15 @@ pub struct ParameterDocument {
 
 /// What is told of each method that is built.
 fn documents() -> impl Iterator<Item = MethodDocument> {
-    [fem_linear::document(), msm::document(), mtm::document(), mtm_ti::document()].into_iter()
+    [
+        fem_linear::document(),
+        mtm::document(),
+        mtm_ti::document(),
+        msm::document(),
+        dvs::document(),
+        thickness_warp::document(),
+    ]
+    .into_iter()
 }
 
 /// The methods that are built.
@@ -266,6 +276,20 @@ pub fn available_methods() -> MethodList {
                 .to_owned(),
             undetermined_below: UNDETERMINED,
         },
+    }
+}
+
+fn parameter(
+    name: &str,
+    meaning: &str,
+    default: serde_json::Value,
+    range: &str,
+) -> ParameterDocument {
+    ParameterDocument {
+        name: name.to_owned(),
+        meaning: meaning.to_owned(),
+        default,
+        range: range.to_owned(),
     }
 }
 
