@@ -3,6 +3,8 @@
 use super::variant::Variant;
 use crate::model::mass_spring::{MassSpringSettings, Search};
 use crate::model::mass_tensor::{Iterations, MassTensorSettings};
+use crate::model::spline::{Stiffness, VolumeSpline};
+use crate::model::thickness_warp::ThicknessWarp;
 use crate::prediction::{ElementChoice, Method, Settings};
 use crate::solver::stationary::{Iteration, Stationary};
 
@@ -12,6 +14,9 @@ const OWN_ITERATIONS_RESIDUAL: f64 = 1e-5;
 
 /// Sweeps after which the papers' own iterations are given up.
 const OWN_ITERATIONS: usize = 50_000;
+
+/// Links of the lattice in mN/mm, which is N/m (paper 000).
+const PAPER_STIFFNESS: f64 = 80.0;
 
 /// All of them, each with its usual settings.
 pub fn available() -> Vec<Variant> {
@@ -40,6 +45,15 @@ pub fn available() -> Vec<Variant> {
             springs
         },
     ));
+    let lattice = Stiffness::Lattice(PAPER_STIFFNESS);
+    all.extend([("dvs galerkin", Stiffness::Galerkin), ("dvs lattice", lattice)].map(
+        |(label, stiffness)| {
+            let spline = VolumeSpline { stiffness, ..VolumeSpline::default() };
+            variant("dvs", label, Method::VolumeSpline(spline))
+        },
+    ));
+    let warp = Method::ThicknessWarp(ThicknessWarp::default());
+    all.push(variant("thickness_warp", "thickness_warp", warp));
     all
 }
 
