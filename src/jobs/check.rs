@@ -62,6 +62,7 @@ impl Prepared {
                     .map(|(name, points)| (name.clone(), points.len() as u64))
                     .collect(),
             },
+            imaged: scene.imaged.as_ref().map(Into::into),
             unknowns: (3 * nodes - held) as u64,
             memory_mb: expected_memory_mb(scene),
             method: input.spec.method.chosen().name().to_owned(),

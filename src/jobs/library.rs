@@ -28,6 +28,7 @@ fn size_of(shape: &StoredShape) -> usize {
             4 * (numbers + in_sets) + per_node * volume.nodes.len() + per_cell * volume.cells.len()
         }
         StoredShape::Surface(surface) => 28 * surface.points.len() + 12 * surface.triangles.len(),
+        StoredShape::Image(image) => image.voxels().bytes(),
     }
 }
 

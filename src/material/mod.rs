@@ -1,6 +1,7 @@
 //! What tissue does: the constants of a material point. Knows no mesh.
 
 pub mod elastic_tensor;
+pub mod mixture;
 pub mod plane_stress;
 pub mod transversely_isotropic;
 

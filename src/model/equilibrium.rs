@@ -58,7 +58,7 @@ impl Convergence {
             why: solution.why.clone(),
             iterations: solution.iterations,
             relative_residual: solution.relative_residual,
-            history: Vec::new(),
+            history: solution.history.clone(),
             steps: 1,
         }
     }

@@ -5,6 +5,8 @@ mod constrained;
 pub mod equilibrium;
 pub mod linear_fem;
 pub mod load;
+pub mod mass_spring;
+pub mod mass_tensor;
 pub mod membrane;
 pub mod quadratic;
 pub mod stabilised;

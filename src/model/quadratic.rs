@@ -20,7 +20,7 @@ use crate::material::ElasticTensor;
 use crate::mesh::volume::BoundaryFace;
 use crate::mesh::{Vector, VolumeMesh};
 use crate::solver::cliques::Cliques;
-use crate::solver::{Block, HalfMatrix, SolverError};
+use crate::solver::{self, Block, HalfMatrix, SolverError, System, Unknowns, Watch};
 
 /// The middles of the edges of a mesh of tetrahedra, numbered after its nodes.
 pub struct EdgeNodes {
@@ -181,7 +181,10 @@ pub fn solve_cases(
         .collect();
     let constrained = Constrained { holds: &holds, numbering: &numbering };
     let assembled = Assembled { constrained, matrix, positions: &positions };
-    let mut equilibria = solve_displacement(assembled, problem, &cases, observer)?;
+    let solve = |system: &System, right_hand_sides: &[Unknowns], watch: Watch| {
+        solver::solve(system, right_hand_sides, &problem.tolerance, watch)
+    };
+    let mut equilibria = solve_displacement(assembled, &cases, observer, &solve)?;
 
     // 3. Back to the nodes of the mesh.
     for equilibrium in &mut equilibria {

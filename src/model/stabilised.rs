@@ -11,11 +11,12 @@
 //! Source: Dohrmann, Bochev, A stabilized finite element method for the Stokes problem based on polynomial
 //! pressure projections, International Journal for Numerical Methods in Fluids 46, 2004; the compressible
 //! term M / lambda is that of linear elasticity.
-//! A node has one pressure for each material around it, because pressure jumps where stiffness does.
+//! A node has one pressure for each material around it, because pressure jumps where stiffness does; mixtures
+//! take part in the pressure of their largest part.
 //! Hexahedra and wedges keep their mean dilatation and have no pressure; nor have tetrahedra with nu = 0,
 //! whose pressure is zero.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use nalgebra::Matrix3;
 use rayon::prelude::*;
@@ -134,13 +135,16 @@ impl PressureCells {
     /// Numbers the pressures: corners share one where they share node and material.
     fn new(tissue: &Tissue, numbering: &Numbering) -> Self {
         let materials = tissue.materials;
-        let same = |material| materials.iter().position(|other| other == material);
-        let kinds: Vec<usize> =
-            materials.iter().enumerate().map(|(own, m)| same(m).unwrap_or(own)).collect();
-        let mut cells_of_kind: BTreeMap<usize, Vec<u32>> = BTreeMap::new();
+        let used: BTreeSet<u16> = tissue.pressure_of_cell.iter().copied().collect();
+        let same = |own: u16| {
+            let is_same = |other: &&u16| materials[**other as usize] == materials[own as usize];
+            used.iter().find(is_same).copied().unwrap_or(own)
+        };
+        let kinds: BTreeMap<u16, u16> = used.iter().map(|&own| (own, same(own))).collect();
+        let mut cells_of_kind: BTreeMap<u16, Vec<u32>> = BTreeMap::new();
         for &cell in &numbering.layout.clique_order {
             let (cell, shape) = (cell as usize, tissue.mesh.cells.shape(cell as usize));
-            let kind = kinds[tissue.material_of_cell[cell] as usize];
+            let kind = kinds[&tissue.pressure_of_cell[cell]];
             if shape == CellShape::Tet4 && tissue.tensor(cell).pressure_part().lambda > 0.0 {
                 cells_of_kind.entry(kind).or_default().push(cell as u32);
             }

@@ -2,9 +2,12 @@
 
 use std::collections::BTreeMap;
 
+use super::hounsfield::Hounsfield;
 use crate::boundary::NodeSelection;
 use crate::material::{LinearElastic, PlaneStress};
 use crate::mesh::{Frame, TriangleSurface, Vector, VolumeMesh};
+use crate::model::mass_spring::MassSpringSettings;
+use crate::model::mass_tensor::MassTensorSettings;
 use crate::plan::PlannedSegment;
 
 /// A patient's scene. All lengths in mm, all coordinates in `frame`.
@@ -26,6 +29,8 @@ pub struct Case {
     pub sliding: Vec<Sliding>,
     /// By region name; `*` serves every region without an entry of its own.
     pub materials: BTreeMap<String, LinearElastic>,
+    /// Materials by what an image shows, over those of the regions.
+    pub hounsfield: Option<Hounsfield>,
     /// Where the fibres run, by region name or `*`; of use where a material has fibres.
     pub fibres: BTreeMap<String, FibreDirection>,
 }
@@ -145,6 +150,10 @@ pub enum Method {
     /// Linear finite elements at small strain.
     #[default]
     FemLinear,
+    /// Springs along the edges of tetrahedra.
+    MassSpring(MassSpringSettings),
+    /// The energy of plain linear tetrahedra, brought to rest as its settings say.
+    MassTensor(MassTensorSettings),
     /// The mass-tensor of tetrahedra with fibres: force = V g_j.C.g_k u, the plain finite element.
     MassTensorTransverse,
 }
@@ -154,13 +163,24 @@ impl Method {
     pub fn knows_fibres(&self) -> bool {
         match self {
             Method::FemLinear | Method::MassTensorTransverse => true,
+            Method::MassSpring(_) | Method::MassTensor(_) => false,
         }
     }
 
     /// Whether the skin may be a membrane of its own.
     pub fn knows_membrane(&self) -> bool {
         match self {
-            Method::FemLinear | Method::MassTensorTransverse => true,
+            Method::FemLinear | Method::MassTensorTransverse | Method::MassTensor(_) => true,
+            Method::MassSpring(_) => false,
+        }
+    }
+
+    /// True where strain is the symmetric part of the displacement gradient, so that turning is taken for
+    /// stretching.
+    pub fn is_small_strain(&self) -> bool {
+        match self {
+            Method::FemLinear | Method::MassTensorTransverse | Method::MassTensor(_) => true,
+            Method::MassSpring(_) => false,
         }
     }
 }

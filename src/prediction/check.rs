@@ -20,7 +20,7 @@ use crate::model::quadratic::EdgeNodes;
 pub(super) struct Check<'a> {
     pub(super) case: &'a Case,
     pub(super) boundary: &'a [BoundaryFace],
-    boundary_nodes: Vec<u32>,
+    pub(super) boundary_nodes: Vec<u32>,
     pub(super) problems: Problems,
     pub(super) warnings: Vec<Warning>,
 }
@@ -138,38 +138,42 @@ impl<'a> Check<'a> {
         self.boundary.iter().filter(|face| face.nodes().iter().all(listed)).copied().collect()
     }
 
-    /// The element in use; refuses one that the method or some cell of the mesh cannot be.
+    /// The element that the method uses. Refuses one that it does not have or that some cell of the mesh
+    /// cannot be.
     pub(super) fn element(&mut self, settings: &Settings) -> ElementChoice {
-        let cells = &self.case.volume.cells;
-        let other = cells.iter().find(|(shape, _)| *shape != CellShape::Tet4);
-        match (&settings.method, settings.element) {
-            (Method::FemLinear, ElementChoice::Quadratic) => {
-                if let Some((shape, _)) = other {
-                    let detail = format!(
-                        "quadratic elements are made of tet4 only, and the mesh has {} cells: \
-                         `auto` serves every shape",
-                        shape.name()
-                    );
-                    self.problems.add("/spec/element", "method-not-available", detail);
+        let asked = settings.element;
+        let (who, choices, used): (_, &[ElementChoice], _) = match &settings.method {
+            Method::FemLinear => {
+                if asked == ElementChoice::Quadratic {
+                    self.tetrahedra_only("/spec/element", "quadratic elements are");
                 }
+                return asked;
             }
-            (Method::FemLinear, _) => {}
-            (Method::MassTensorTransverse, element) => {
-                if let Some((shape, _)) = other {
-                    let detail = format!(
-                        "mass-tensors are those of tet4, and the mesh has {} cells: `fem_linear` serves them",
-                        shape.name()
-                    );
-                    self.problems.add("/spec/method", "method-not-available", detail);
-                }
-                if !matches!(element, ElementChoice::Auto | ElementChoice::Plain) {
-                    let detail = "mass-tensors are those of plain tetrahedra".to_owned();
-                    self.problems.add("/spec/element", "method-not-available", detail);
-                }
-                return ElementChoice::Plain;
+            Method::MassSpring(_) => ("the mass-spring model", &[ElementChoice::Auto], asked),
+            Method::MassTensor(_) | Method::MassTensorTransverse => {
+                let plain = ElementChoice::Plain;
+                ("the mass-tensor model", &[ElementChoice::Auto, ElementChoice::Plain], plain)
             }
+        };
+        self.tetrahedra_only("/case/volume", &format!("{who} is"));
+        if !choices.contains(&asked) {
+            let detail = format!("{who} has no choice of elements: `auto` is what it is made of");
+            self.problems.add("/spec/element", "method-not-available", detail);
         }
-        settings.element
+        used
+    }
+
+    /// Refuses a mesh with cells of other shapes.
+    fn tetrahedra_only(&mut self, pointer: &str, who: &str) {
+        let mut cells = self.case.volume.cells.iter();
+        if let Some((shape, _)) = cells.find(|(shape, _)| *shape != CellShape::Tet4) {
+            let detail = format!(
+                "{who} made of tet4 only, and the mesh has {} cells: `fem_linear` with the element \
+                 `auto` serves every shape",
+                shape.name()
+            );
+            self.problems.add(pointer, "method-not-available", detail);
+        }
     }
 
     pub(super) fn add_loads(&mut self, plan: &Plan, scene: &mut Scene) {

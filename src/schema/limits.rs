@@ -17,6 +17,8 @@ pub struct Limits {
     pub mesh_nodes: u64,
     pub mesh_triangles: u64,
     pub mesh_cells: u64,
+    /// Of an image.
+    pub image_voxels: u64,
     /// Corners of one polygon of a surface file.
     pub polygon_corners: u32,
     /// Decoded size of a file.
@@ -43,6 +45,8 @@ pub struct Limits {
     /// Largest budget of memory of one job.
     pub memory_mb: f64,
     pub samples_per_mm2: f64,
+    /// Scenes times plans times materials times levels times variants of a study.
+    pub study_rows: u32,
 }
 
 impl Default for Limits {
@@ -55,6 +59,7 @@ impl Default for Limits {
             mesh_nodes: 5_000_000,
             mesh_triangles: 10_000_000,
             mesh_cells: 4_000_000,
+            image_voxels: 1 << 27,
             polygon_corners: 64,
             decoded_bytes: 512 << 20,
             decoded_ratio: 10,
@@ -69,6 +74,7 @@ impl Default for Limits {
             wall_s: 86_400.0,
             memory_mb: 1_000_000.0,
             samples_per_mm2: 100.0,
+            study_rows: 2000,
         }
     }
 }

@@ -72,7 +72,7 @@ impl MaterialDocument {
         }
     }
 
-    fn to_isotropic(&self, at: &Pointer, faults: &mut Faults) -> Option<LinearElastic> {
+    pub(super) fn to_isotropic(&self, at: &Pointer, faults: &mut Faults) -> Option<LinearElastic> {
         let missing = [
             ("young_modulus_kpa", self.young_modulus_kpa.is_none()),
             ("poisson_ratio", self.poisson_ratio.is_none()),

@@ -12,7 +12,7 @@ use super::fault::{Faults, Pointer};
 use super::limits::Limits;
 use super::material::MaterialDocuments;
 use super::membrane::MembraneDocument;
-use super::methods::{ElementName, MethodName};
+use super::methods::{self, ElementName, MethodName};
 use super::movement::FARTHEST_PIVOT_MM;
 use super::plan::{PlanDocument, PlanSegmentDocument};
 use super::response::ResponseDocument;
@@ -131,6 +131,7 @@ impl OptimiseDocument {
     /// Adds what is wrong with it, but for what only the meshes can tell; pointers start at `/spec`.
     pub fn check(&self, case: &CaseDocument, limits: &Limits, faults: &mut Faults) {
         let root = Pointer::root().key("spec");
+        methods::check_linear(self.method, &root.key("method"), faults);
         let at = root.key("targets");
         if self.targets.is_empty() {
             faults.add(&at, "missing-field", "at least one target is needed");

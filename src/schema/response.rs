@@ -11,7 +11,7 @@ use super::fault::{Faults, Pointer};
 use super::limits::Limits;
 use super::material::MaterialDocuments;
 use super::membrane::MembraneDocument;
-use super::methods::{ElementName, MethodName};
+use super::methods::{self, ElementName, MethodName};
 use super::plan::{PlanContext, PlanDocument};
 use super::prediction::EngineDocument;
 use super::problem::Problem;
@@ -86,9 +86,11 @@ impl ResponseDocument {
         canonical::to_value(&plain)
     }
 
-    /// Refuses an empty list, names that are given twice, and more names than are allowed.
+    /// Refuses methods without a response, names that are given twice, and more names than are allowed.
     pub fn check(&self, limits: &Limits, faults: &mut Faults) {
-        let at = Pointer::root().key("spec").key("segments");
+        let spec = Pointer::root().key("spec");
+        methods::check_linear(self.method, &spec.key("method"), faults);
+        let at = spec.key("segments");
         faults.check_length(&at, self.segments.len(), limits.list_entries as usize);
         for (index, name) in self.segments.iter().enumerate() {
             if self.segments[..index].contains(name) {

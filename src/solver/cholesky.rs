@@ -81,6 +81,7 @@ impl Refined<'_> {
             method: "cholesky",
             preconditioner: "none",
             why: String::new(),
+            history: Vec::new(),
             iterations: history.len() - 1,
             relative_residual: history[history.len() - 1],
         })

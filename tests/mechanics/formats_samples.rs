@@ -88,14 +88,14 @@ pub fn error_of(bytes: &[u8]) -> String {
 pub fn volume(read: ReadMesh) -> VolumeMesh {
     match read.mesh {
         Mesh::Volume(mesh) => mesh,
-        Mesh::Surface(_) => panic!("a surface was read"),
+        _ => panic!("a volume mesh was expected"),
     }
 }
 
 pub fn surface(read: ReadMesh) -> TriangleSurface {
     match read.mesh {
         Mesh::Surface(surface) => surface,
-        Mesh::Volume(_) => panic!("a volume mesh was read"),
+        _ => panic!("a surface was expected"),
     }
 }
 

@@ -103,7 +103,7 @@ fn predict(case: &str, plan: &str, spec: &str, out: &Path) -> Result<JobOutput, 
 fn surface(path: &Path) -> TriangleSurface {
     match format::read(&fs::read(path).unwrap(), &ReadLimits::default()).unwrap().mesh {
         Mesh::Surface(surface) => surface,
-        Mesh::Volume(_) => panic!("a surface"),
+        _ => panic!("a surface"),
     }
 }
 

@@ -83,6 +83,7 @@ impl Assembled {
             mesh,
             materials: &materials,
             material_of_cell: &material_of_cell,
+            pressure_of_cell: &material_of_cell,
             fibres: &[],
             membrane: None,
             dilatation,

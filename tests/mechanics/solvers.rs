@@ -30,6 +30,7 @@ pub fn system_of(
         mesh,
         materials,
         material_of_cell,
+        pressure_of_cell: material_of_cell,
         fibres: &[],
         membrane: None,
         dilatation: |_| Dilatation::Mean,
