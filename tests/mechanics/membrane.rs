@@ -180,7 +180,7 @@ fn tissue_and_skin_of_one_poisson_ratio_share_a_stretch_by_their_stiffness() {
 fn lines_follow_an_array_of_nodes_whatever_its_signs() {
     let (mut case, plan) = bar(CellShape::Hex8);
     let mut mesh = (*case.volume).clone();
-    let flip = |node: usize| if node % 2 == 0 { 3.0 } else { -0.1 };
+    let flip = |node: usize| if node.is_multiple_of(2) { 3.0 } else { -0.1 };
     let lines = (0..mesh.nodes.len()).map(|node| Vector::new(1.0, 0.0, 0.3) * flip(node));
     mesh.node_vectors.insert("langer".to_owned(), lines.collect());
     case.volume = mesh.into();
