@@ -41,9 +41,13 @@ fn run(case: &Case, plan: &Plan, element: ElementChoice) -> (Prediction, f64) {
 /// The skin points of the slab by their place on the 6 mm grid.
 type SkinPoints = BTreeMap<[i32; 2], Vector>;
 
-fn slab(h: f64, nu: f64, element: ElementChoice) -> (SkinPoints, Prediction, f64) {
+fn slab(
+    (shape, element): (CellShape, ElementChoice),
+    h: f64,
+    nu: f64,
+) -> (SkinPoints, Prediction, f64) {
     let cells = [60.0, 30.0, 12.0].map(|size: f64| (size / h).round() as usize);
-    let mut mesh = block(Vector::new(60.0, 30.0, 12.0), cells, CellShape::Tet4);
+    let mut mesh = block(Vector::new(60.0, 30.0, 12.0), cells, shape);
     mesh.nodes.iter_mut().for_each(|x| x.x -= 30.0);
     let select = |inside: &dyn Fn(&Vector) -> bool| -> Vec<u32> {
         let nodes = mesh.nodes.iter().enumerate().filter(|(_, x)| x.z < 1e-9 && inside(x));
@@ -80,16 +84,19 @@ fn slabs() {
     println!("| nu | element | h mm | unknowns | error | iterations | s |");
     println!("| --- | --- | --- | --- | --- | --- | --- |");
     for nu in [0.3, 0.46, 0.49, 0.499] {
-        let (reference, ..) = slab(2.0, nu, ElementChoice::Quadratic);
-        for (element, h) in [
-            (ElementChoice::Plain, 3.0),
-            (ElementChoice::Plain, 1.5),
-            (ElementChoice::Stabilised, 3.0),
-            (ElementChoice::Stabilised, 1.5),
-            (ElementChoice::Quadratic, 6.0),
-            (ElementChoice::Quadratic, 3.0),
+        let (tet4, hex8) = (CellShape::Tet4, CellShape::Hex8);
+        let (reference, ..) = slab((tet4, ElementChoice::Quadratic), 2.0, nu);
+        for (shape, element, h) in [
+            (tet4, ElementChoice::Plain, 3.0),
+            (tet4, ElementChoice::Plain, 1.5),
+            (tet4, ElementChoice::Stabilised, 3.0),
+            (tet4, ElementChoice::Stabilised, 1.5),
+            (tet4, ElementChoice::Quadratic, 6.0),
+            (tet4, ElementChoice::Quadratic, 3.0),
+            (hex8, ElementChoice::MeanDilatation, 3.0),
+            (hex8, ElementChoice::MeanDilatation, 1.5),
         ] {
-            let (found, answer, seconds) = slab(h, nu, element);
+            let (found, answer, seconds) = slab((shape, element), h, nu);
             let error = found.iter().map(|(place, u)| (u - reference[place]).norm()).sum::<f64>()
                 / found.len() as f64;
             println!(

@@ -18,7 +18,8 @@ pub struct Hold {
 }
 
 impl Hold {
-    pub(super) fn free(node: u32) -> Self {
+    /// A node that nothing holds; among holds it says that the middle of an edge is free between held ends.
+    pub fn free(node: u32) -> Self {
         Hold { node, axes: Matrix3::identity(), values: Vector::zeros(), count: 0 }
     }
 

@@ -31,6 +31,8 @@ pub enum CommandError {
     Write { path: PathBuf, source: io::Error },
     #[error(transparent)]
     Job(#[from] JobError),
+    #[error("{probes} answers are wrong and carry no warning")]
+    SilentlyWrong { probes: usize },
     #[error(transparent)]
     Demo(#[from] DemoError),
     #[error(transparent)]
@@ -45,6 +47,7 @@ impl CommandError {
             CommandError::Usage(_) | CommandError::Document { .. } | CommandError::Read { .. } => {
                 REFUSED
             }
+            CommandError::SilentlyWrong { .. } => FAILED,
             CommandError::Write { .. } => INFRASTRUCTURE,
             CommandError::Demo(error) if error.is_failed_job() => FAILED,
             CommandError::Demo(error) if error.is_setting() => CONFIGURATION,

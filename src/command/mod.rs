@@ -12,6 +12,8 @@ pub mod predict;
 mod scene;
 mod screen;
 pub mod serve;
+pub mod stability;
+pub mod study;
 
 use std::process::ExitCode;
 
@@ -37,6 +39,8 @@ enum Command {
     Compare(compare::Arguments),
     /// Tell what a case and a plan mean, without solving
     Check(check::Arguments),
+    /// Hold methods against each other
+    Study(study::Arguments),
     /// Serve the API, with workers in the same process
     Serve(serve::Arguments),
     /// Ask the service on this machine whether it is alive
@@ -52,6 +56,7 @@ pub fn run(facies: &Facies) -> ExitCode {
         Command::Predict(arguments) => predict::run(arguments),
         Command::Compare(arguments) => compare::run(arguments),
         Command::Check(arguments) => check::run(arguments),
+        Command::Study(arguments) => study::run(arguments),
         Command::Serve(arguments) => serve::run(arguments).map_err(CommandError::from),
         Command::Health(arguments) => health::run(arguments).map_err(CommandError::from),
         Command::Openapi => openapi::run(),

@@ -9,6 +9,7 @@ use crate::optimisation::OptimisationError;
 use crate::prediction::PredictionError;
 use crate::schema::Problem;
 use crate::schema::job::{ErrorClass, JobErrorDocument};
+use crate::study::StudyError;
 use crate::validation::StatisticsError;
 
 /// Residuals of a diverged solver that are told; a history has one for each iteration.
@@ -23,6 +24,8 @@ pub enum JobError {
     Prediction(#[from] PredictionError),
     #[error("no plan was found: {0}")]
     Optimisation(#[from] OptimisationError),
+    #[error("the study could not be run: {0}")]
+    Study(#[from] StudyError),
     #[error("{which} ran out: {allowed} {unit} are allowed")]
     Budget { which: &'static str, allowed: f64, unit: &'static str },
     #[error("stopped on request")]
@@ -53,7 +56,13 @@ impl JobError {
             JobError::Prediction(PredictionError::OverBudget { .. }) | JobError::Budget { .. } => {
                 ErrorClass::Budget
             }
-            JobError::Prediction(PredictionError::Inverted { .. }) => ErrorClass::Input,
+            JobError::Prediction(
+                PredictionError::Inverted { .. }
+                | PredictionError::StepAboveLimit { .. }
+                | PredictionError::NoBone,
+            ) => ErrorClass::Input,
+            JobError::Study(StudyError::Threads(_)) => ErrorClass::Infrastructure,
+            JobError::Study(_) => ErrorClass::Input,
             JobError::Prediction(_)
             | JobError::Optimisation(_)
             | JobError::NotFinite { .. }
@@ -70,15 +79,7 @@ impl JobError {
     pub fn kind(&self) -> &'static str {
         match self {
             JobError::Refused(problem) => problem.code,
-            JobError::Prediction(error) => match error {
-                PredictionError::Cancelled => "cancelled",
-                PredictionError::NotConverged { .. } | PredictionError::NotFinite => {
-                    "solver-diverged"
-                }
-                PredictionError::Singular { .. } => "matrix-singular",
-                PredictionError::Inverted { .. } => "element-inverted",
-                PredictionError::OverBudget { .. } => "budget-exceeded",
-            },
+            JobError::Prediction(error) => error.code(),
             JobError::Budget { .. } => "budget-exceeded",
             JobError::Cancelled => "cancelled",
             JobError::Alignment(_) => "alignment-failed",
@@ -89,7 +90,8 @@ impl JobError {
             | JobError::NotFinite { .. }
             | JobError::Statistics(_)
             | JobError::Encode(_) => "solver-diverged",
-            JobError::Picture(_) => "internal",
+            JobError::Study(StudyError::Threads(_)) | JobError::Picture(_) => "internal",
+            JobError::Study(_) => "validation-failed",
         }
     }
 
@@ -126,10 +128,24 @@ impl JobError {
                 "wanted": wanted,
                 "residual_history": thinned(history),
             }),
+            JobError::Prediction(PredictionError::Diverged {
+                iterations,
+                growth,
+                residual,
+                history,
+            }) => json!({
+                "iterations": iterations,
+                "growth": growth,
+                "residual": residual,
+                "residual_history": thinned(history),
+            }),
             JobError::Prediction(PredictionError::Singular { node }) => json!({ "node": node }),
             JobError::Prediction(PredictionError::Inverted { cell }) => json!({ "element": cell }),
             JobError::Prediction(PredictionError::OverBudget { needed_mb, allowed_mb }) => {
                 json!({ "which": "memory", "needed_mb": needed_mb, "allowed_mb": allowed_mb })
+            }
+            JobError::Prediction(PredictionError::StepAboveLimit { step_s, limit_s }) => {
+                json!({ "step_s": step_s, "limit_s": limit_s })
             }
             JobError::Optimisation(OptimisationError::NotConverged {
                 iterations,

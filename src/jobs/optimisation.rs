@@ -169,7 +169,7 @@ impl Found {
             frame,
             queue_s: input.queue_s,
         };
-        let field_data = origin.field_data(&self.solver);
+        let field_data = origin.field_data(input.spec.method, &self.solver);
         let mut folder = ResultFolder::open(place.out)?;
         for name in input.files() {
             let bytes = match name {
@@ -194,6 +194,7 @@ impl Found {
             statistics: Some(statistics),
             comparison: None,
             optimisation: Some(self.document),
+            study: None,
             numerical_error_mm: None,
             reaction_mn: BTreeMap::new(),
             provenance,

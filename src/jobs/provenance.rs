@@ -45,12 +45,12 @@ impl Origin {
     }
 
     /// Texts for result files. No times: the same job writes the same bytes.
-    pub fn field_data(&self, solver: &SolverDocument) -> Vec<(String, String)> {
+    pub fn field_data(&self, method: MethodName, solver: &SolverDocument) -> Vec<(String, String)> {
         let provenance = json!({
             "engine": EngineDocument::this(),
             "spec_hash": self.spec_hash,
             "inputs": self.inputs,
-            "method": "fem_linear",
+            "method": method.chosen().name(),
             "solver": solver,
             "frame": self.frame.name(),
             "units": "mm",
@@ -109,7 +109,7 @@ pub fn encode_result(result: &ResultDocument) -> Result<Vec<u8>, JobError> {
 }
 
 /// The place of the first null that does not belong into a result.
-fn first_null(value: &Value, at: String) -> Option<String> {
+pub(super) fn first_null(value: &Value, at: String) -> Option<String> {
     match value {
         Value::Null if at != "/numerical_error_mm" => Some(at),
         Value::Array(entries) => {

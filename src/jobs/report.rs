@@ -36,6 +36,7 @@ pub fn mesh_report(read: &ReadMesh) -> MeshReport {
         node_labels: BTreeMap::new(),
         cell_labels: BTreeMap::new(),
         node_vectors: Vec::new(),
+        cell_vectors: Vec::new(),
         ignored_arrays: read.ignored_arrays.clone(),
         min_quality: None,
         image: None,
@@ -76,6 +77,7 @@ fn describe(volume: &VolumeMesh, report: &mut MeshReport) {
     report.cell_labels = values(&volume.cell_labels);
     report.min_quality = Some(quality(volume).smallest_scaled_jacobian);
     report.node_vectors = volume.node_vectors.keys().cloned().collect();
+    report.cell_vectors = volume.cell_vectors.keys().cloned().collect();
 }
 
 fn sizes(sets: &BTreeMap<String, Vec<u32>>) -> BTreeMap<String, u64> {

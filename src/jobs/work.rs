@@ -16,6 +16,7 @@ use super::provenance::{Origin, add_method, encode_result, solver_document};
 use super::response::response_job;
 use super::skin_files::PredictedSkin;
 use super::source::MeshSource;
+use super::study::study_job;
 use super::tissue_files::{encode_bones, encode_volume};
 use crate::mesh::{Vector, Warning};
 use crate::prediction::{Phase, Prediction, Progress, Skin, predict};
@@ -55,6 +56,7 @@ pub fn work(
         JobInput::Compare(input) => compare_job(input, place, progress),
         JobInput::Response(input) => response_job(input, place, progress),
         JobInput::Optimise(input) => optimise_job(input, place, progress),
+        JobInput::Study(input) => study_job(input, place, progress),
     }
 }
 
@@ -129,7 +131,7 @@ impl Predicted {
             warnings,
         };
         let mut folder = ResultFolder::open(out)?;
-        finished.write_files(&input.files(), &mut folder)?;
+        finished.write_files(input, &mut folder)?;
 
         // 4. The manifest.
         let result = finished.result(input, clock, folder.files.clone());
@@ -169,11 +171,12 @@ struct Finished<'a> {
 }
 
 impl Finished<'_> {
-    fn write_files(&self, names: &[OutputName], folder: &mut ResultFolder) -> Result<(), JobError> {
-        let field_data = self.origin.field_data(&solver_document(&self.prediction.solver));
+    fn write_files(&self, input: &PredictInput, folder: &mut ResultFolder) -> Result<(), JobError> {
+        let solver = solver_document(&self.prediction.solver);
+        let field_data = self.origin.field_data(input.spec.method, &solver);
         let scene = &self.prepared.scene;
         let frame = self.origin.frame;
-        for &name in names {
+        for name in input.files() {
             let bytes = match name {
                 OutputName::VolumeVtu => encode_volume(scene, self.prediction, frame, &field_data)?,
                 OutputName::BonesVtp => encode_bones(&self.prepared.case, scene, &field_data)?,
@@ -208,6 +211,7 @@ impl Finished<'_> {
             statistics: Some(self.statistics.clone()),
             comparison: self.comparison.clone(),
             optimisation: self.optimisation.clone(),
+            study: None,
             numerical_error_mm: None,
             reaction_mn: triples(&self.prediction.reactions),
             provenance,

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::case::{CaseDocument, FrameName, LengthUnit, NormalDocument};
 use super::fault::{Faults, Pointer};
 use super::limits::Limits;
-use super::material::{MaterialDocuments, PlacedMaterials, merge_materials};
+use super::material::{MaterialDocuments, Merged, PlacedMaterials, merge_materials};
 use crate::boundary::NodeSelection;
 use crate::image::ImageVolume;
 use crate::mesh::{Frame, TriangleSurface, Vector, VolumeMesh, Warning};
@@ -52,7 +52,8 @@ impl CaseDocument {
             at: Pointer::root().key("spec").key("materials"),
             materials: spec_materials,
         };
-        let (materials, mut warnings) = merge_materials(&own, &spec, limits, faults);
+        let Merged { materials, fibres, mut warnings } =
+            merge_materials(&own, &spec, limits, faults);
         warnings.extend(frame_warning);
         warnings.extend(unusual_size(&volume, self.units));
         let regions = self.to_regions(&at.key("regions"), faults);
@@ -71,6 +72,7 @@ impl CaseDocument {
             sliding: self.to_sliding(&at.key("sliding"), limits, faults),
             hounsfield: self.to_hounsfield(&at.key("hounsfield"), meshes, limits, faults),
             materials,
+            fibres,
             volume,
         };
         (case, warnings)

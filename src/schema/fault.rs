@@ -17,6 +17,7 @@ const CATALOGUE: &[&str] = &[
     "alignment-failed",
     "empty-selection",
     "frame-conflict",
+    "method-mismatch",
     "method-not-available",
     "missing-material",
     "not-in-response",
@@ -125,6 +126,17 @@ impl Faults {
         let mut problem = Problem::new(shared.copied().unwrap_or("validation-failed"), detail);
         problem.errors = self.errors;
         problem
+    }
+
+    /// Takes over what a problem holds; one without places is a mistake of the whole document.
+    pub fn join(&mut self, problem: Problem) {
+        if problem.errors.is_empty() {
+            self.add(&Pointer::root(), problem.code, problem.detail);
+        } else {
+            for error in problem.errors {
+                self.add(&Pointer::from_text(&error.pointer), &error.code, error.detail);
+            }
+        }
     }
 
     /// Refuses a number outside a closed range, and whatever is not a number.

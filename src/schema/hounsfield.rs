@@ -144,7 +144,12 @@ impl HounsfieldDocument {
                 faults.add(&at, "out-of-range", detail);
             }
             let name = tissue.name.trim().to_owned();
-            let material = tissue.material.to_material(&at.key("material"), faults);
+            let place = at.key("material");
+            if tissue.material.fibre.is_some() {
+                let detail = "an image does not show where fibres run: give them to a region";
+                faults.add(&place.key("fibre"), "method-not-available", detail);
+            }
+            let material = tissue.material.to_isotropic(&place, faults);
             tissues.extend(material.map(|material| TissueWindow {
                 name,
                 from_hu,

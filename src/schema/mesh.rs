@@ -62,6 +62,9 @@ pub struct MeshReport {
     /// Arrays of vectors, for displacements prescribed by array.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub node_vectors: Vec<String>,
+    /// Arrays of vectors of cells, for fibre directions.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub cell_vectors: Vec<String>,
     /// Arrays of the file that nothing reads.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub ignored_arrays: Vec<String>,

@@ -1,10 +1,25 @@
 //! Methods side by side on the same scenes: how long each takes, and how far each is from the truth.
 
+mod answer;
+pub mod convergence;
+mod error;
+mod levels;
+pub mod methods;
+pub mod paired;
+pub mod pairwise;
+pub mod pareto;
 pub mod report;
+mod run;
+pub mod scenes;
+pub mod stability;
+pub mod sweep;
+mod truth;
 pub mod variant;
 
-pub use report::{Errors, Outcome, Report, Row, SceneReport};
-pub use variant::{Materials, Study, StudyScene, Truth, Variant};
+pub use answer::LONG_S;
+pub use report::{Errors, Outcome, Report, Row, SceneReport, Solved};
+pub use run::{NOT_RUN, StudyError, run};
+pub use variant::{ClosedForm, Materials, Study, StudyScene, Truth, Variant};
 
 /// What the caller measures while the study computes: numerics know neither clock nor memory.
 pub trait Stopwatch: Sync {

@@ -19,7 +19,7 @@ pub struct SceneReport {
     /// In words, e.g. `tet10 quadratic, every edge halved once, 69 301 unknowns`.
     pub truth: String,
     /// What the truth itself is off by, mean and p95 over the skin in mm, by extrapolation; none for a
-    /// closed form.
+    /// closed form. Of the plan and the material for which it is largest.
     pub truth_error_mm: Option<[f64; 2]>,
     /// Making the truth, in s; not part of any row.
     pub truth_s: f64,
@@ -58,7 +58,13 @@ pub struct Solved {
     pub iterations: usize,
     /// Median over the repeats of mesh in memory to displacement in memory, on one thread.
     pub wall_s: f64,
+    /// The solves that the time is the median of: as many as the study asks for, or fewer once they took
+    /// [`super::LONG_S`] together.
+    pub repeats: usize,
+    /// The most that the process had in use during the first of them.
     pub peak_mb: Option<f64>,
+    /// Mean of |u| over the skin nodes of level 0 in mm, by area.
+    pub skin_mean_mm: f64,
     /// |u - u_truth| at the skin nodes of level 0, by area.
     pub node_wise: Errors,
     /// From the predicted skin of level 0 to the closest point of the true one, by area.

@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use crate::material::LinearElastic;
-use crate::mesh::Vector;
-use crate::prediction::{Case, ElementChoice, Plan, Settings};
+use crate::mesh::{Vector, VolumeMesh};
+use crate::prediction::{Case, ElementChoice, FibreDirection, Plan, Settings};
 
 /// Every scene with every variant, material, plan and level.
 pub struct Study {
@@ -12,8 +12,11 @@ pub struct Study {
     pub variants: Vec<Variant>,
     /// Level n halves every edge n times.
     pub levels: Vec<u32>,
-    /// Solves of each row, of which the median time is told; at least 1.
+    /// Solves of each row, of which the median time is told; at least 1. Rows that take long are solved
+    /// less often: see [`super::report::Solved::repeats`].
     pub repeats: usize,
+    /// No row is begun once the study has taken this long, in s; infinite where it may take its time.
+    pub budget_s: f64,
 }
 
 /// A case with the plans that move it, and what is held for true.
@@ -31,6 +34,8 @@ pub struct StudyScene {
 pub struct Materials {
     pub name: String,
     pub by_region: BTreeMap<String, LinearElastic>,
+    /// Courses of fibres over those of the case.
+    pub fibres: BTreeMap<String, FibreDirection>,
 }
 
 /// A way of modelling under a name for the row.
@@ -44,13 +49,20 @@ pub struct Variant {
 
 /// Where the displacement that errors are measured against comes from.
 pub enum Truth {
-    /// Displacement in mm of a point, for a plan and the materials, from a formula.
     ClosedForm(ClosedForm),
     /// Linear finite elements on the mesh of level 0 with every edge halved `times` times.
-    Refined { times: u32, element: ElementChoice },
+    Refined {
+        times: u32,
+        element: ElementChoice,
+    },
     /// Displacement in mm at each skin node of level 0, from elsewhere.
     Known(Vec<Vector>),
 }
 
-/// Displacement in mm of a point of the scene, for a plan and materials of the scene.
-pub type ClosedForm = fn(&Vector, &Plan, &Materials) -> Vector;
+/// A formula, and the walls between which it holds.
+pub struct ClosedForm {
+    /// In mm at a point of the scene, for a plan and materials of the scene.
+    pub displacement: fn(&Vector, &Plan, &Materials) -> Vector,
+    /// Brings the nodes of a refined mesh onto the walls: new nodes lie on chords of curved ones.
+    pub walls: fn(&mut VolumeMesh),
+}

@@ -127,6 +127,22 @@ fn what_is_wrong_with_windows_is_told_with_its_place() {
 }
 
 #[test]
+fn a_region_with_fibres_is_labelled_and_not_mixed() {
+    let fibred = |mixing: &'static str| {
+        move |case: &mut Value| {
+            case["hounsfield"]["mixing"] = json!(mixing);
+            case["materials"]["*"]["fibre"] =
+                json!({"young_modulus_kpa": 60, "direction": [1, 0, 0]});
+        }
+    };
+    let place = "/case/hounsfield/mixing".to_owned();
+    assert_eq!(refused(fibred("fraction")), ("method-not-available".to_owned(), place));
+    let mut labelled = case();
+    fibred("mean")(&mut labelled);
+    assert!(check(&input(&labelled, &json!({})), &meshes(), &Limits::default()).is_ok());
+}
+
+#[test]
 fn an_image_is_no_mesh_and_a_mesh_no_image() {
     let wrong = |place: &str| ("wrong-mesh".to_owned(), place.to_owned());
     let image = "/case/hounsfield/image";

@@ -1,0 +1,51 @@
+//! The meshes of a scene: level 0, and each further one with every edge halved once more.
+
+use std::sync::Arc;
+
+use super::answer::Refusal;
+use super::variant::{Materials, StudyScene, Truth};
+use crate::mesh::VolumeMesh;
+use crate::mesh::refinement::refine;
+use crate::prediction::Case;
+
+/// Finer meshes are refused: their matrices would not fit the memory of one machine.
+const MOST_CELLS: f64 = 8e6;
+
+/// The meshes of a scene by level, as far as they are made.
+pub(super) struct Levels<'a> {
+    scene: &'a StudyScene,
+    made: Vec<Arc<VolumeMesh>>,
+}
+
+impl<'a> Levels<'a> {
+    pub(super) fn of(scene: &'a StudyScene) -> Self {
+        Levels { scene, made: vec![scene.case.volume.clone()] }
+    }
+
+    /// The case of the scene on the mesh of a level, of these materials.
+    pub(super) fn case(&mut self, level: u32, materials: &Materials) -> Result<Case, Refusal> {
+        let volume = self.mesh(level)?;
+        let mut case =
+            Case { volume, materials: materials.by_region.clone(), ..self.scene.case.clone() };
+        case.fibres.extend(materials.fibres.clone());
+        Ok(case)
+    }
+
+    fn mesh(&mut self, level: u32) -> Result<Arc<VolumeMesh>, Refusal> {
+        let cells = self.scene.case.volume.cells.len() as f64 * 8f64.powf(f64::from(level));
+        if cells > MOST_CELLS {
+            let detail = format!(
+                "level {level} has {cells:.2e} cells, at most {MOST_CELLS:.0e} are allowed"
+            );
+            return Err(Refusal::new("budget-exceeded", detail));
+        }
+        while self.made.len() <= level as usize {
+            let mut finer = refine(&self.made[self.made.len() - 1]);
+            if let Truth::ClosedForm(formula) = &self.scene.truth {
+                (formula.walls)(&mut finer);
+            }
+            self.made.push(Arc::new(finer));
+        }
+        Ok(self.made[level as usize].clone())
+    }
+}

@@ -1,0 +1,228 @@
+//! The study itself: rows first, each alone in memory, then the truth they are held against.
+
+use std::collections::BTreeSet;
+
+use super::Stopwatch;
+use super::answer::{Answer, Bench, NoAnswer, Refusal};
+use super::error::TrueSkin;
+use super::levels::Levels;
+use super::report::{Outcome, Report, Row, SceneReport, Solved};
+use super::truth::{Asked, is_the_truth};
+use super::variant::{Materials, Study, StudyScene, Variant};
+use crate::prediction::{Plan, Progress, Scene, Settings, Skin};
+
+/// The code of rows that were not begun, because the time of the study was used up.
+pub const NOT_RUN: &str = "not-run";
+
+/// Why there is no report at all; whatever goes wrong in a row is told there.
+#[derive(Debug, thiserror::Error)]
+pub enum StudyError {
+    #[error("stopped on request")]
+    Cancelled,
+    #[error("the study has no {what}")]
+    Empty { what: &'static str },
+    #[error("two {what}s are called {name:?}")]
+    Repeated { what: &'static str, name: String },
+    #[error("no thread to compute on: {0}")]
+    Threads(#[from] rayon::ThreadPoolBuildError),
+}
+
+/// Runs every scene with every plan, material, level and variant. The same study gives the same report but for times
+/// and memory. Combinations that are the truth themselves have no row.
+pub fn run(
+    study: &Study,
+    stopwatch: &dyn Stopwatch,
+    progress: &dyn Progress,
+) -> Result<Report, StudyError> {
+    check(study)?;
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
+    let bench = Bench { pool, repeats: study.repeats, stopwatch, progress };
+    let begun = stopwatch.seconds();
+    let mut report = Report::default();
+    for scene in &study.scenes {
+        let (about, rows) = SceneWork { study, scene, bench: &bench, begun }.run()?;
+        report.scenes.push(about);
+        report.rows.extend(rows);
+    }
+    Ok(report)
+}
+
+/// An empty study is an error, and so are two things of one name: rows could not be told apart.
+fn check(study: &Study) -> Result<(), StudyError> {
+    distinct("scene", study.scenes.iter().map(|scene| scene.name.clone()))?;
+    distinct("variant", study.variants.iter().map(|variant| variant.label.clone()))?;
+    distinct("level", study.levels.iter().map(u32::to_string))?;
+    for scene in &study.scenes {
+        distinct("plan", scene.plans.iter().map(|(name, _)| name.clone()))?;
+        distinct("material", scene.materials.iter().map(|materials| materials.name.clone()))?;
+    }
+    if study.repeats == 0 { Err(StudyError::Empty { what: "repeat" }) } else { Ok(()) }
+}
+
+fn distinct(what: &'static str, names: impl Iterator<Item = String>) -> Result<(), StudyError> {
+    let mut seen = BTreeSet::new();
+    for name in names {
+        if seen.contains(&name) {
+            return Err(StudyError::Repeated { what, name });
+        }
+        seen.insert(name);
+    }
+    if seen.is_empty() { Err(StudyError::Empty { what }) } else { Ok(()) }
+}
+
+/// The rows of one scene.
+struct SceneWork<'a> {
+    study: &'a Study,
+    scene: &'a StudyScene,
+    bench: &'a Bench<'a>,
+    /// When the study began, in s of the stopwatch.
+    begun: f64,
+}
+
+/// What came of one combination.
+struct Attempt<'a> {
+    level: u32,
+    variant: &'a Variant,
+    answer: Result<Answer, Refusal>,
+}
+
+impl<'a> SceneWork<'a> {
+    fn run(&self) -> Result<(SceneReport, Vec<Row>), StudyError> {
+        // 1. The skin that errors are measured on.
+        let mut levels = Levels::of(self.scene);
+        let skins: Vec<Result<Skin, Refusal>> =
+            self.scene.plans.iter().map(|(_, plan)| self.skin(&mut levels, plan)).collect();
+
+        // 2. What the methods answer, for each plan and material.
+        let mut attempts = Vec::new();
+        for ((_, plan), skin) in self.scene.plans.iter().zip(&skins) {
+            for materials in &self.scene.materials {
+                attempts.push(self.attempts(&mut levels, (plan, materials), skin)?);
+            }
+        }
+
+        // 3. What is true.
+        let begin = self.bench.stopwatch.seconds();
+        let asked = Asked { scene: self.scene, skins: &skins, progress: self.bench.progress };
+        let has_answers = attempts.iter().flatten().any(|attempt| attempt.answer.is_ok());
+        let truths = if has_answers { asked.find(&mut levels)? } else { asked.nothing() };
+        let truth_s = self.bench.stopwatch.seconds() - begin;
+
+        // 4. How far apart they are.
+        let mut rows = Vec::new();
+        let mut attempts = attempts.into_iter();
+        for (((plan, _), skin), of_plan) in self.scene.plans.iter().zip(&skins).zip(&truths.skins) {
+            for (materials, truth) in self.scene.materials.iter().zip(of_plan) {
+                let truth = TrueSkin::of(skin, truth);
+                for attempt in attempts.next().into_iter().flatten() {
+                    rows.push(self.row(plan, materials, attempt, &truth));
+                }
+            }
+        }
+        let about = SceneReport {
+            name: self.scene.name.clone(),
+            nodes: self.scene.case.volume.nodes.len(),
+            cells: self.scene.case.volume.cells.len(),
+            skin_nodes: skins.iter().flatten().map(|skin| skin.nodes().len()).next().unwrap_or(0),
+            truth: truths.words,
+            truth_error_mm: truths.error_mm,
+            truth_s,
+        };
+        Ok((about, rows))
+    }
+
+    fn skin(&self, levels: &mut Levels, plan: &Plan) -> Result<Skin, Refusal> {
+        let materials = self.scene.materials.first();
+        let materials = materials.ok_or_else(|| Refusal::new("missing-material", "no material"))?;
+        let case = levels.case(0, materials)?;
+        let scene = Scene::new(&case, plan, &Settings::default());
+        scene.map(|scene| scene.skin).map_err(|errors| Refusal::from(&errors))
+    }
+
+    fn attempts(
+        &self,
+        levels: &mut Levels,
+        (plan, materials): (&Plan, &Materials),
+        skin: &Result<Skin, Refusal>,
+    ) -> Result<Vec<Attempt<'a>>, StudyError> {
+        let mut attempts = Vec::new();
+        for &level in &self.study.levels {
+            for variant in &self.study.variants {
+                if self.bench.progress.is_cancelled() {
+                    return Err(StudyError::Cancelled);
+                }
+                if is_the_truth(self.scene, &variant.settings, level) {
+                    continue;
+                }
+                let answer = self.attempt(levels, (level, materials), plan, (variant, skin));
+                attempts.push(match answer {
+                    Ok(answer) => Attempt { level, variant, answer: Ok(answer) },
+                    Err(NoAnswer::Refused(why)) => Attempt { level, variant, answer: Err(why) },
+                    Err(NoAnswer::Cancelled) => return Err(StudyError::Cancelled),
+                });
+            }
+        }
+        Ok(attempts)
+    }
+
+    fn attempt(
+        &self,
+        levels: &mut Levels,
+        (level, materials): (u32, &Materials),
+        plan: &Plan,
+        (variant, skin): (&Variant, &Result<Skin, Refusal>),
+    ) -> Result<Answer, NoAnswer> {
+        if self.bench.stopwatch.seconds() - self.begun > self.study.budget_s {
+            let detail = format!("the {} s of the study were used up", self.study.budget_s);
+            return Err(Refusal::new(NOT_RUN, detail).into());
+        }
+        let skin = skin.as_ref().map_err(Refusal::clone)?;
+        let case = levels.case(level, materials)?;
+        self.bench.answer(&case, plan, &variant.settings, skin.nodes())
+    }
+
+    fn row(
+        &self,
+        plan: &str,
+        materials: &Materials,
+        attempt: Attempt,
+        truth: &Result<TrueSkin, Refusal>,
+    ) -> Row {
+        let Attempt { level, variant, answer } = attempt;
+        let element = answer.as_ref().map_or_else(|_| String::new(), |a| a.elements.clone());
+        let outcome = match answer.and_then(|answer| solved(answer, truth)) {
+            Ok(solved) => Outcome::Solved(solved),
+            Err(Refusal { code, detail }) => Outcome::Failed { code, detail },
+        };
+        Row {
+            scene: self.scene.name.clone(),
+            plan: plan.to_owned(),
+            method: variant.method.clone(),
+            label: variant.label.clone(),
+            element,
+            material: materials.name.clone(),
+            level,
+            outcome,
+        }
+    }
+}
+
+fn solved(answer: Answer, truth: &Result<TrueSkin, Refusal>) -> Result<Solved, Refusal> {
+    let truth = truth.as_ref().map_err(Refusal::clone)?;
+    let measured = truth
+        .measure(&answer.displacement)
+        .map_err(|error| Refusal::new("not-measured", error.to_string()))?;
+    Ok(Solved {
+        unknowns: answer.unknowns,
+        iterations: answer.iterations,
+        wall_s: answer.wall_s,
+        repeats: answer.repeats,
+        peak_mb: answer.peak_mb,
+        skin_mean_mm: measured.skin_mean_mm,
+        node_wise: measured.node_wise,
+        closest_point: measured.closest_point,
+        regions: measured.regions,
+        smallest_det_f: answer.smallest_det_f,
+        warnings: answer.warnings,
+    })
+}

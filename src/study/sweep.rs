@@ -1,0 +1,124 @@
+//! Sweeps over the constants of regions (METHODS row 17; paper 001 varies nu and E of muscle and of the
+//! tissue around it): every combination as materials of a study, and the best of them.
+
+use std::collections::BTreeMap;
+
+use super::report::{Outcome, Report, Row};
+use super::variant::Materials;
+use crate::material::{LinearElastic, MaterialError};
+
+/// More combinations are refused.
+pub const MOST_COMBINATIONS: usize = 1000;
+
+/// The values that the constants of a region take; an empty list leaves the constant as it is.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Values {
+    /// In kPa.
+    pub young_modulus: Vec<f64>,
+    pub poisson_ratio: Vec<f64>,
+}
+
+/// Why a sweep is refused.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SweepError {
+    #[error("the sweep has {combinations} combinations, at most {MOST_COMBINATIONS} are allowed")]
+    TooMany { combinations: usize },
+    #[error("region {region:?} has no material that a sweep could start from")]
+    UnknownRegion { region: String },
+    #[error("region {region:?}: {source}")]
+    Material { region: String, source: MaterialError },
+}
+
+/// Every combination of the values, over the materials of a case. The last constant of the last region varies
+/// fastest; names tell what varies: `muscle E 300 kPa nu 0.44, soft nu 0.46`.
+pub fn combinations(
+    base: &BTreeMap<String, LinearElastic>,
+    sweep: &BTreeMap<String, Values>,
+) -> Result<Vec<Materials>, SweepError> {
+    let count =
+        |values: &Values| values.young_modulus.len().max(1) * values.poisson_ratio.len().max(1);
+    let combinations =
+        sweep.values().fold(1, |product: usize, values| product.saturating_mul(count(values)));
+    if combinations > MOST_COMBINATIONS {
+        return Err(SweepError::TooMany { combinations });
+    }
+    let mut all =
+        vec![Materials { name: String::new(), by_region: base.clone(), fibres: BTreeMap::new() }];
+    for (region, values) in sweep {
+        let start = base.get(region).or_else(|| base.get("*"));
+        let start = start.ok_or_else(|| SweepError::UnknownRegion { region: region.clone() })?;
+        let choices = choices(region, start, values)?;
+        all = all
+            .iter()
+            .flat_map(|before| {
+                choices.iter().map(|(name, material)| with(before, region, name, material))
+            })
+            .collect();
+    }
+    Ok(all)
+}
+
+/// What a region may become, each with its name; one nameless choice where nothing varies.
+fn choices(
+    region: &str,
+    start: &LinearElastic,
+    values: &Values,
+) -> Result<Vec<(String, LinearElastic)>, SweepError> {
+    let varied = |values: &[f64]| match values {
+        [] => vec![None],
+        values => values.iter().copied().map(Some).collect::<Vec<_>>(),
+    };
+    let mut choices = Vec::new();
+    for e in varied(&values.young_modulus) {
+        for nu in varied(&values.poisson_ratio) {
+            let words: Vec<String> =
+                [e.map(|e| format!(" E {e} kPa")), nu.map(|nu| format!(" nu {nu}"))]
+                    .into_iter()
+                    .flatten()
+                    .collect();
+            let material = LinearElastic::new(
+                e.unwrap_or(start.young_modulus()),
+                nu.unwrap_or(start.poisson_ratio()),
+                start.density(),
+            )
+            .map_err(|source| SweepError::Material { region: region.to_owned(), source })?;
+            let called = if region == "*" { "all" } else { region };
+            let name =
+                if words.is_empty() { String::new() } else { called.to_owned() + &words.concat() };
+            choices.push((name, material));
+        }
+    }
+    Ok(choices)
+}
+
+fn with(before: &Materials, region: &str, name: &str, material: &LinearElastic) -> Materials {
+    let mut by_region = before.by_region.clone();
+    by_region.insert(region.to_owned(), *material);
+    let names = [before.name.as_str(), name].into_iter().filter(|name| !name.is_empty());
+    Materials { name: names.collect::<Vec<_>>().join(", "), by_region, fibres: BTreeMap::new() }
+}
+
+/// Which rows a sweep is judged by.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Judged<'a> {
+    pub scene: &'a str,
+    pub plan: &'a str,
+    pub label: &'a str,
+    pub level: u32,
+}
+
+/// The row whose materials leave the least mean node-wise error; the first of equal ones.
+pub fn best<'r>(report: &'r Report, judged: &Judged) -> Option<&'r Row> {
+    let wanted = |row: &&Row| {
+        row.scene == judged.scene
+            && row.plan == judged.plan
+            && row.label == judged.label
+            && row.level == judged.level
+    };
+    let error = |row: &'r Row| match &row.outcome {
+        Outcome::Solved(solved) => Some((row, solved.node_wise.mean)),
+        Outcome::Failed { .. } => None,
+    };
+    let rows = report.rows.iter().filter(wanted).filter_map(error);
+    rows.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(row, _)| row)
+}

@@ -1,0 +1,384 @@
+//! What is held for true in a scene, at the skin nodes of level 0.
+//!
+//! A refined truth is linear finite elements on a finer mesh. It is linear in the movements of segments, so
+//! that twelve load cases a segment serve every plan that is made of movements (`response`).
+//! Its own error is told by extrapolation from the mesh before it:
+//!
+//! e = |u_t - u_(t-1)| / (2^p - 1)        p = log2(mean |u_(t-1) - u_(t-2)| / mean |u_t - u_(t-1)|)
+//!
+//! With two meshes only p = 1: where held tissue meets free tissue u grows with the root of the distance, and
+//! twice its exponent is the order at which such a place spoils the rest, whatever the element.
+
+use super::StudyError;
+use super::answer::{NoAnswer, Refusal, solve};
+use super::error;
+use super::levels::Levels;
+use super::variant::{ClosedForm, Materials, StudyScene, Truth};
+use crate::mesh::{CellShape, Vector, VolumeMesh};
+use crate::plan::RigidMovement;
+use crate::prediction::{
+    Case, ElementChoice, Method, Plan, PredictionError, Progress, Scene, Settings, Skin,
+};
+use crate::response::{self, Columns, ResponseError};
+
+/// Refined truths are solved to this relative residual, and may take this much memory.
+const RESIDUAL: f64 = 1e-10;
+const MEMORY_MB: f64 = 12_000.0;
+
+/// Plans for each segment from which on twelve columns cost less than a solve for each plan.
+const PLANS_A_SEGMENT: usize = 3;
+
+/// Orders outside of this are chance: the meshes are too coarse to show one.
+const ORDERS: std::ops::RangeInclusive<f64> = 0.5..=4.0;
+
+/// The displacement of skin nodes in mm, or why there is none.
+pub(super) type Found = Result<Vec<Vector>, Refusal>;
+
+/// What is true, and what is told of it.
+pub(super) struct Truths {
+    /// For each plan, for each material.
+    pub skins: Vec<Vec<Found>>,
+    pub words: String,
+    /// Mean and p95 in mm.
+    pub error_mm: Option<[f64; 2]>,
+}
+
+/// A scene whose truth is wanted.
+pub(super) struct Asked<'a> {
+    pub scene: &'a StudyScene,
+    /// For each plan, at level 0.
+    pub skins: &'a [Result<Skin, Refusal>],
+    pub progress: &'a dyn Progress,
+}
+
+/// Whether a variant at a level is the discretisation that is held for true, or a finer one of its kind.
+pub(super) fn is_the_truth(scene: &StudyScene, settings: &Settings, level: u32) -> bool {
+    let mesh = &scene.case.volume;
+    match &scene.truth {
+        Truth::Refined { times, element } => {
+            level >= *times
+                && settings.method == Method::FemLinear
+                && in_effect(settings.element, mesh) == in_effect(*element, mesh)
+        }
+        Truth::ClosedForm(_) | Truth::Known(_) => false,
+    }
+}
+
+/// One name for element choices that come to the same on this mesh.
+fn in_effect(element: ElementChoice, mesh: &VolumeMesh) -> ElementChoice {
+    let has_tetrahedra = mesh.cells.iter().any(|(shape, _)| shape == CellShape::Tet4);
+    match element {
+        ElementChoice::Auto => ElementChoice::Stabilised,
+        ElementChoice::MeanDilatation if !has_tetrahedra => ElementChoice::Stabilised,
+        other => other,
+    }
+}
+
+impl Asked<'_> {
+    pub(super) fn find(&self, levels: &mut Levels) -> Result<Truths, StudyError> {
+        match &self.scene.truth {
+            Truth::ClosedForm(formula) => Ok(self.closed_form(formula)),
+            Truth::Known(displacement) => Ok(self.known(displacement)),
+            Truth::Refined { times, element } => self.refined(levels, *times, *element),
+        }
+    }
+
+    /// Where no answer is to be held against it.
+    pub(super) fn nothing(&self) -> Truths {
+        let none = || Err(Refusal::new("truth-failed", "no method has an answer"));
+        let skins = self.each(|_, _, _| none());
+        Truths { skins, words: "not sought: no method has an answer".to_owned(), error_mm: None }
+    }
+
+    fn closed_form(&self, formula: &ClosedForm) -> Truths {
+        let nodes = &self.scene.case.volume.nodes;
+        let skins = self.each(|plan, materials, skin| {
+            let at = |&node: &u32| (formula.displacement)(&nodes[node as usize], plan, materials);
+            Ok(skin.nodes().iter().map(at).collect())
+        });
+        Truths { skins, words: "closed form".to_owned(), error_mm: None }
+    }
+
+    fn known(&self, displacement: &[Vector]) -> Truths {
+        let skins = self.each(|_, _, skin| match skin.nodes().len() == displacement.len() {
+            true => Ok(displacement.to_vec()),
+            false => {
+                let (given, nodes) = (displacement.len(), skin.nodes().len());
+                let detail = format!("{given} displacements are given for {nodes} skin nodes");
+                Err(Refusal::new("truth-failed", detail))
+            }
+        });
+        Truths { skins, words: "given with the scene".to_owned(), error_mm: None }
+    }
+
+    /// What holds for each plan and each material.
+    fn each(&self, found: impl Fn(&Plan, &Materials, &Skin) -> Found) -> Vec<Vec<Found>> {
+        let plans = self.scene.plans.iter().zip(self.skins);
+        plans
+            .map(|((_, plan), skin)| {
+                let materials = self.scene.materials.iter();
+                let of = |materials| found(plan, materials, skin.as_ref().map_err(Refusal::clone)?);
+                materials.map(of).collect()
+            })
+            .collect()
+    }
+
+    fn refined(
+        &self,
+        levels: &mut Levels,
+        times: u32,
+        element: ElementChoice,
+    ) -> Result<Truths, StudyError> {
+        // 1. The finest mesh and, for its error, one or two before it.
+        let mut fields: Vec<Vec<Vec<Found>>> = Vec::new();
+        let mut words = String::new();
+        for level in times.saturating_sub(2)..=times {
+            let mut of_level = vec![Vec::new(); self.scene.plans.len()];
+            for materials in &self.scene.materials {
+                let solved = self.solve_plans(levels, (level, materials), element)?;
+                words = solved.words;
+                for (plan, found) in of_level.iter_mut().zip(solved.skins) {
+                    plan.push(found);
+                }
+            }
+            fields.push(of_level);
+        }
+
+        // 2. What is told of it.
+        let own = self.largest_error(&fields);
+        let finest = fields.pop().unwrap_or_default();
+        let own_words = match &own {
+            Some(own) if own.is_observed => {
+                format!("own error extrapolated with the observed order {:.1}", own.order)
+            }
+            Some(_) => "own error extrapolated with order 1, which is assumed".to_owned(),
+            None => "own error not known".to_owned(),
+        };
+        let words = format!("{words}, {}; {own_words}", halved(times));
+        Ok(Truths { skins: finest, words, error_mm: own.map(|own| own.mean_and_p95) })
+    }
+
+    fn solve_plans(
+        &self,
+        levels: &mut Levels,
+        (level, materials): (u32, &Materials),
+        element: ElementChoice,
+    ) -> Result<Solved, StudyError> {
+        let settings = Settings {
+            element,
+            relative_residual: RESIDUAL,
+            memory_mb: MEMORY_MB,
+            ..Settings::default()
+        };
+        let case = match levels.case(level, materials) {
+            Ok(case) => case,
+            Err(refusal) => {
+                let skins = self.scene.plans.iter().map(|_| Err(refusal.clone())).collect();
+                return Ok(Solved { skins, words: "none".to_owned() });
+            }
+        };
+        let finer = Finer { case, settings, progress: self.progress };
+        let columns = finer.columns(&self.scene.plans)?;
+        let mut words = columns.as_ref().map_or_else(String::new, |columns| {
+            let elements = columns.solver.elements.join(", ");
+            described(&elements, columns.solver.unknowns, ", plans summed from unit movements")
+        });
+        let mut skins = Vec::new();
+        for ((_, plan), skin) in self.scene.plans.iter().zip(self.skins) {
+            let nodes = match skin {
+                Ok(skin) => skin.nodes(),
+                Err(refusal) => {
+                    skins.push(Err(refusal.clone()));
+                    continue;
+                }
+            };
+            skins.push(match &columns {
+                Some(columns) if is_of_segments(plan, &finer.case) => sum(columns, plan, nodes),
+                _ => match finer.direct(plan, nodes) {
+                    Ok((found, about)) => {
+                        words = if words.is_empty() { about } else { words };
+                        Ok(found)
+                    }
+                    Err(NoAnswer::Cancelled) => return Err(StudyError::Cancelled),
+                    Err(NoAnswer::Refused(refusal)) => Err(refusal),
+                },
+            });
+        }
+        Ok(Solved { skins, words })
+    }
+
+    /// That of the plan and the material for which it is largest.
+    fn largest_error(&self, fields: &[Vec<Vec<Found>>]) -> Option<OwnError> {
+        let mut largest: Option<OwnError> = None;
+        for (plan, skin) in self.skins.iter().enumerate() {
+            let Ok(skin) = skin else { continue };
+            let areas = skin.surface.point_areas();
+            for material in 0..self.scene.materials.len() {
+                let found = fields.iter().map(|of_level| of_level[plan][material].as_ref().ok());
+                let Some(found) = found.collect::<Option<Vec<_>>>() else { continue };
+                let Some(own) = own_error(&found, &areas) else { continue };
+                if largest.as_ref().is_none_or(|l| l.mean_and_p95[0] < own.mean_and_p95[0]) {
+                    largest = Some(own);
+                }
+            }
+        }
+        largest
+    }
+}
+
+/// The plans on one mesh.
+struct Solved {
+    skins: Vec<Found>,
+    words: String,
+}
+
+/// How far the finest of some fields is from the limit.
+struct OwnError {
+    order: f64,
+    is_observed: bool,
+    mean_and_p95: [f64; 2],
+}
+
+/// From the same field on two or three meshes, coarsest first.
+fn own_error(fields: &[&Vec<Vector>], areas: &[f64]) -> Option<OwnError> {
+    let steps: Vec<_> = fields
+        .windows(2)
+        .map(|pair| {
+            let apart: Vec<f64> =
+                pair[0].iter().zip(pair[1]).map(|(a, b)| (a - b).norm()).collect();
+            error::errors(&apart, areas)
+        })
+        .collect::<Result<_, _>>()
+        .ok()?;
+    let last = steps.last()?;
+    let observed = match steps.as_slice() {
+        [before, last] => (before.mean / last.mean).log2(),
+        _ => f64::NAN,
+    };
+    let is_observed = observed.is_finite();
+    let order = if is_observed { observed.clamp(*ORDERS.start(), *ORDERS.end()) } else { 1.0 };
+    let share = 1.0 / (order.exp2() - 1.0);
+    Some(OwnError { order, is_observed, mean_and_p95: [last.mean * share, last.p95 * share] })
+}
+
+/// A finer case to be solved as the truth.
+struct Finer<'a> {
+    case: Case,
+    settings: Settings,
+    progress: &'a dyn Progress,
+}
+
+impl Finer<'_> {
+    /// The columns of the segments that plans move, where they are worth their time; none where plans are
+    /// solved one by one.
+    fn columns(&self, plans: &[(String, Plan)]) -> Result<Option<Columns>, StudyError> {
+        let sums =
+            plans.iter().map(|(_, plan)| plan).filter(|plan| is_of_segments(plan, &self.case));
+        let mut moved: Vec<String> = sums
+            .clone()
+            .flat_map(|plan| &plan.segments)
+            .filter(|segment| segment.movement != RigidMovement::default())
+            .map(|segment| segment.name.clone())
+            .collect();
+        moved.sort_unstable();
+        moved.dedup();
+        if moved.is_empty() || sums.count() <= PLANS_A_SEGMENT * moved.len() {
+            return Ok(None);
+        }
+        let Ok(scene) = Scene::new(&self.case, &Plan::default(), &self.settings) else {
+            return Ok(None);
+        };
+        match response::build(&scene, &moved, self.progress) {
+            Ok(columns) => Ok(Some(columns)),
+            Err(ResponseError::Prediction(PredictionError::Cancelled)) => {
+                Err(StudyError::Cancelled)
+            }
+            // What is in the way is told plan by plan.
+            Err(_) => Ok(None),
+        }
+    }
+
+    /// A plan solved by itself, and the words for how.
+    fn direct(&self, plan: &Plan, nodes: &[u32]) -> Result<(Vec<Vector>, String), NoAnswer> {
+        let (scene, equilibrium) = solve(&self.case, plan, &self.settings, self.progress)?;
+        let found = nodes.iter().map(|&node| equilibrium.displacement[node as usize]).collect();
+        Ok((found, described(&scene.elements().join(", "), equilibrium.unknowns, "")))
+    }
+}
+
+/// Whether all that a plan does is to move segments of the case.
+fn is_of_segments(plan: &Plan, case: &Case) -> bool {
+    let is_of_case = |name: &str| case.segments.iter().any(|segment| segment.name == name);
+    plan.prescribed.is_empty()
+        && plan.loads.is_empty()
+        && plan.segments.iter().all(|segment| is_of_case(&segment.name))
+}
+
+/// The plan as a sum of columns, at some of their nodes.
+fn sum(columns: &Columns, plan: &Plan, nodes: &[u32]) -> Found {
+    let movement = |name: &str| {
+        let planned = plan.segments.iter().find(|planned| planned.name == name);
+        planned.map_or_else(RigidMovement::default, |planned| planned.movement)
+    };
+    let movements: Vec<RigidMovement> =
+        columns.segments.iter().map(|segment| movement(&segment.name)).collect();
+    let whole = columns.apply(&movements);
+    let at = |node: &u32| {
+        let place = columns.nodes.binary_search(node).map_err(|_| {
+            let detail = format!("node {node} of the skin is not on the skin of the refined mesh");
+            Refusal::new("truth-failed", detail)
+        })?;
+        Ok(whole[place])
+    };
+    nodes.iter().map(at).collect()
+}
+
+fn described(elements: &str, unknowns: usize, how: &str) -> String {
+    format!("{elements}, {} unknowns{how}", grouped(unknowns))
+}
+
+fn halved(times: u32) -> String {
+    match times {
+        0 => "on the mesh of level 0".to_owned(),
+        1 => "every edge of level 0 halved once".to_owned(),
+        2 => "every edge of level 0 halved twice".to_owned(),
+        times => format!("every edge of level 0 halved {times} times"),
+    }
+}
+
+/// A number with a space between groups of three digits.
+fn grouped(number: usize) -> String {
+    let digits = number.to_string();
+    let mut text = String::new();
+    for (place, digit) in digits.chars().enumerate() {
+        if place > 0 && (digits.len() - place).is_multiple_of(3) {
+            text.push(' ');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Vector, grouped, own_error};
+
+    #[test]
+    fn the_error_of_the_finest_field_is_extrapolated_from_the_steps_before() {
+        let on = |h: f64| vec![Vector::new(1.0 + 0.2 * h * h, 0.0, 0.0)];
+        let fields = [on(4.0), on(2.0), on(1.0)];
+        let fields: Vec<_> = fields.iter().collect();
+        let own = own_error(&fields, &[1.0]).expect("three fields");
+        // Rounding only.
+        assert!(own.is_observed && (own.order - 2.0).abs() < 1e-12);
+        assert!((own.mean_and_p95[0] - 0.2).abs() < 1e-12);
+        let own = own_error(&fields[1..], &[1.0]).expect("two fields");
+        assert!(!own.is_observed && (own.mean_and_p95[0] - 0.6).abs() < 1e-12);
+        assert!(own_error(&fields[2..], &[1.0]).is_none());
+    }
+
+    #[test]
+    fn numbers_are_grouped_by_three_digits() {
+        assert_eq!([7, 693, 69_301, 1_234_567].map(grouped), ["7", "693", "69 301", "1 234 567"]);
+    }
+}
