@@ -16,8 +16,8 @@ use crate::material::mixture::mixture;
 use crate::mesh::jacobian::signed_volume;
 use crate::mesh::{Vector, VolumeMesh, Warning};
 
-/// Assembly numbers each material a second time, for tetrahedra with pressures, in 16 bits.
-const MOST_MATERIALS: usize = 1 << 15;
+/// Cells name their material in 16 bits.
+const MOST_MATERIALS: usize = u16::MAX as usize;
 /// Where windows and images are told to be wrong.
 const PLACE: &str = "/case/hounsfield";
 
@@ -97,6 +97,7 @@ impl Check<'_> {
         let regions = region_of_cell.iter().map(|&region| region as usize + 1).max().unwrap_or(0);
         if let Some(hounsfield) = &self.case.hounsfield
             && materials.len() >= regions
+            && self.can_mix(hounsfield, &materials)
             && let Some(sampled) = self.sampled(hounsfield)
         {
             let tissue =
@@ -110,6 +111,19 @@ impl Check<'_> {
             pressure_of_cell: region_of_cell.to_vec(),
             imaged: None,
         }
+    }
+
+    /// A mixture has one bulk and one shear modulus: a region with fibres has others.
+    fn can_mix(&mut self, hounsfield: &Hounsfield, materials: &[LinearElastic]) -> bool {
+        let fibred = materials.iter().filter(|material| material.has_fibre()).count();
+        if hounsfield.mixing == Mixing::Mean || fibred == 0 {
+            return true;
+        }
+        let detail = format!(
+            "`fraction` mixes isotropic tissue, and {fibred} regions have fibres: `mean` leaves them as they are"
+        );
+        self.problems.add(format!("{PLACE}/mixing"), "method-not-available", detail);
+        false
     }
 
     fn sampled(&mut self, hounsfield: &Hounsfield) -> Option<SampledCells> {

@@ -10,6 +10,7 @@ fn limits() -> ReadLimits {
         nodes: 1000,
         triangles: 1000,
         cells: 1000,
+        voxels: 1000,
         decoded_floor_bytes: 1 << 16,
         ..ReadLimits::default()
     }

@@ -166,6 +166,7 @@ fn files_of_other_programs_hold_what_these_wrote() {
         let description = match read.mesh {
             Mesh::Volume(mesh) => describe_volume(&mesh, Frame::Unspecified),
             Mesh::Surface(surface) => describe_surface(&surface, Frame::Unspecified),
+            Mesh::Image(_) => panic!("an image among the meshes"),
         };
         for (key, wanted) in expected["mesh"].as_object().unwrap() {
             let tolerance = expected["tolerance"].as_f64().unwrap();

@@ -172,7 +172,44 @@ pub fn one_of_each() -> Vec<(&'static str, Vec<u8>)> {
         ("stl ascii", STL.as_bytes().to_vec()),
         ("ply ascii", PLY.as_bytes().to_vec()),
         ("obj", OBJ.as_bytes().to_vec()),
+        ("nrrd", nrrd(NRRD, &VOXELS.map(i16::to_le_bytes).concat())),
+        (
+            "nrrd gzip",
+            nrrd(&NRRD.replace("raw", "gzip"), &gzip(&VOXELS.map(i16::to_le_bytes).concat())),
+        ),
     ]
+}
+
+/// An image of 3 x 2 x 4 voxels.
+pub const NRRD: &str = "NRRD0004
+# Complete NRRD file format specification at:
+type: short
+dimension: 3
+space: left-posterior-superior
+sizes: 3 2 4
+space directions: (30,0,0) (0,40,0) (0,0,20)
+kinds: domain domain domain
+endian: little
+encoding: raw
+space origin: (1, -2, 3.5)
+patient:=Jane Roe
+
+";
+
+pub const VOXELS: [i16; 24] = [
+    -1000, -30, 0, 40, 100, 3000, 1, 2, 3, 4, 5, 6, -7, -8, -9, -10, -11, -12, 13, 14, 15, 16, 17,
+    -18,
+];
+
+pub fn nrrd(header: &str, voxels: &[u8]) -> Vec<u8> {
+    [header.as_bytes(), voxels].concat()
+}
+
+pub fn gzip(bytes: &[u8]) -> Vec<u8> {
+    use std::io::Write;
+    let mut encoder = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
+    encoder.write_all(bytes).unwrap();
+    encoder.finish().unwrap()
 }
 
 pub const VTK: &str = "# vtk DataFile Version 3.0

@@ -11,6 +11,7 @@ mod faults;
 #[path = "../mechanics/formats_samples.rs"]
 mod formats_samples;
 mod helpers;
+mod images;
 mod jobs;
 mod meshes;
 mod openapi;

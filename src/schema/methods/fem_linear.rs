@@ -27,6 +27,7 @@ pub(super) fn document() -> MethodDocument {
             "case.materials.young_modulus_kpa",
             "case.materials.poisson_ratio",
             "case.materials.density_g_per_cm3",
+            "case.hounsfield",
             "case.materials.fibre",
             "plan.segments",
             "plan.prescribed",
