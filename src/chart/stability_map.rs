@@ -18,6 +18,8 @@ pub struct StabilityAxis {
     pub title: String,
     /// Empty where the values are words.
     pub unit: String,
+    /// What counts as right, e.g. `right to 0.5 mm`.
+    pub bound: String,
     pub values: Vec<String>,
     /// [row][value]; none where the value means nothing to the method.
     pub marks: Vec<Vec<Option<Mark>>>,
@@ -34,12 +36,14 @@ pub struct StabilityMap<'a> {
 
 const WIDTH: f64 = 1100.0;
 const MARGIN: f64 = 28.0;
-const NAMES: f64 = 186.0;
-const GAP: f64 = 26.0;
-const CELL: [f64; 2] = [23.0, 21.0];
+const NAMES: f64 = 136.0;
+const GAP: f64 = 22.0;
+const CELL: [f64; 2] = [20.0, 20.0];
 const ROW: f64 = 39.0;
-/// Above the first row of a panel: its title, its unit, its values.
-const PANEL_HEAD: f64 = 84.0;
+/// Above the first row of a panel: its title, its unit, its bound, its values.
+const PANEL_HEAD: f64 = 98.0;
+/// Room for the title of an axis with few values.
+const NARROWEST: f64 = 150.0;
 
 const LEGEND: [(Mark, &str); 5] = [
     (Mark::Good, "right, no warning"),
@@ -117,14 +121,14 @@ impl StabilityMap<'_> {
 
 impl StabilityAxis {
     fn width(&self) -> f64 {
-        // Room for the title of an axis with few values.
-        (CELL[0] * self.values.len() as f64).max(190.0)
+        (CELL[0] * self.values.len() as f64).max(NARROWEST)
     }
 
     fn draw(&self, document: &mut Document, [x, top]: [f64; 2]) {
-        let room = self.width() + GAP - 6.0;
+        let room = self.width() + GAP - 4.0;
         document.text([x, top + 16.0], room, Style::of(14.0).bold(), &self.title);
-        document.text([x, top + 32.0], room, Style::of(11.0).faint(), &self.unit);
+        document.text([x, top + 31.0], room, Style::of(11.0).faint(), &self.unit);
+        document.text([x, top + 45.0], room, Style::of(11.0).faint(), &self.bound);
         let first = top + PANEL_HEAD;
         for (place, words) in self.values.iter().enumerate() {
             let at = [x + CELL[0] * (place as f64 + 0.42), first - 7.0];
@@ -233,6 +237,7 @@ mod tests {
         let axis = StabilityAxis {
             title: "Movement".to_owned(),
             unit: "mm".to_owned(),
+            bound: String::new(),
             values,
             marks: vec![marks],
         };
@@ -254,6 +259,7 @@ mod tests {
         let axis = || StabilityAxis {
             title: String::new(),
             unit: String::new(),
+            bound: String::new(),
             values: vec![String::new(); 9],
             marks: Vec::new(),
         };
@@ -261,6 +267,6 @@ mod tests {
         let map = StabilityMap { title: "", subtitle: "", rows: &[], axes: &axes };
         let bands: Vec<usize> = map.bands().iter().map(Vec::len).collect();
         assert_eq!(bands.iter().sum::<usize>(), 8);
-        assert!(bands.iter().all(|axes| (1..=4).contains(axes)), "{bands:?}");
+        assert!(bands.iter().all(|axes| (1..=5).contains(axes)), "{bands:?}");
     }
 }

@@ -70,12 +70,8 @@ pub fn picture(found: &Map) -> String {
     };
     let axis = |axis: &AxisMap| StabilityAxis {
         title: axis.title.to_owned(),
-        unit: format!(
-            "{}{}right to {} mm",
-            axis.unit,
-            if axis.unit.is_empty() { "" } else { "; " },
-            axis.bound_mm
-        ),
+        unit: axis.unit.to_owned(),
+        bound: format!("right to {} mm", axis.bound_mm),
         values: axis.values.iter().map(|(_, words)| words.clone()).collect(),
         marks: axis
             .findings

@@ -322,8 +322,8 @@ fn push_node(nodes: &mut Vec<Vector>, at: Vector) -> u32 {
 fn contradiction() -> Axis {
     Axis {
         name: "contradiction",
-        title: "Two segments, one node",
-        unit: "mm apart",
+        title: "Conflicting segments",
+        unit: "mm apart at one node",
         scene: "the layer of `poisson_ratio`, nu 0.43, one node of its patch held by a second segment too",
         reference: FINER,
         bound_mm: TENTH_OF_MOVEMENT,
