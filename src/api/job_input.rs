@@ -9,12 +9,14 @@ use super::error::{ApiError, ApiResult};
 use super::parameters::id;
 use crate::jobs::{
     CompareInput, JobError, JobInput, MeshSource, OptimiseInput, PredictInput, ResponseInput,
+    StudyInput,
 };
 use crate::schema::job::{JobKind, JobStatus};
 use crate::schema::prediction::EngineDocument;
+use crate::schema::study::SceneReference;
 use crate::schema::{
     CaseDocument, CompareDocument, Faults, Limits, OptimiseDocument, PlanDocument, Pointer,
-    PredictDocument, Problem, ResponseDocument,
+    PredictDocument, Problem, ReportDocument, ResponseDocument, StudyDocument,
 };
 use crate::store::{CaseRow, NewJob};
 
@@ -31,7 +33,14 @@ pub async fn of_prediction(service: &Service, spec: PredictDocument) -> ApiResul
         input.prepare(sources, limits).map(|prepared| prepared.spec_hash)
     };
     let (input, spec_hash) = prepared(service, input, prepare).await?;
-    let new = Accepted { kind: JobKind::Predict, case_id: Some(row.id), spec_hash, tags, mesh_ids };
+    let new = Accepted {
+        kind: JobKind::Predict,
+        case_id: Some(row.id),
+        shared_cases: Vec::new(),
+        spec_hash,
+        tags,
+        mesh_ids,
+    };
     new.with(&JobInput::Predict(input))
 }
 
@@ -52,14 +61,21 @@ pub async fn of_comparison(service: &Service, spec: CompareDocument) -> ApiResul
         mesh_ids.push(mesh.clone());
     }
     if let Some(job) = &spec.prediction.job {
-        let (skin, case) = predicted_skin(service, job).await?;
+        let (skin, case) = predicted_skin(service, "/prediction/job", job).await?;
         contents.insert(job.clone(), skin);
         case_id = case;
     }
     let content_of = |id: &str| contents.get(id).cloned();
     let spec_hash = crate::schema::canonical::compare_hash(&spec, &content_of);
     let tags = spec.tags.clone();
-    let new = Accepted { kind: JobKind::Compare, case_id, spec_hash, tags, mesh_ids };
+    let new = Accepted {
+        kind: JobKind::Compare,
+        case_id,
+        shared_cases: Vec::new(),
+        spec_hash,
+        tags,
+        mesh_ids,
+    };
     new.with(&JobInput::Compare(CompareInput { job: None, queue_s: None, spec }))
 }
 
@@ -75,7 +91,14 @@ pub async fn of_response(service: &Service, mut spec: ResponseDocument) -> ApiRe
     };
     let (input, spec_hash) = prepared(service, input, prepare).await?;
     let case_id = Some(row.id);
-    let new = Accepted { kind: JobKind::Response, case_id, spec_hash, tags, mesh_ids };
+    let new = Accepted {
+        kind: JobKind::Response,
+        case_id,
+        shared_cases: Vec::new(),
+        spec_hash,
+        tags,
+        mesh_ids,
+    };
     new.with(&JobInput::Response(input))
 }
 
@@ -92,8 +115,62 @@ pub async fn of_optimisation(service: &Service, mut spec: OptimiseDocument) -> A
     };
     let (input, spec_hash) = prepared(service, input, prepare).await?;
     let case_id = Some(row.id);
-    let new = Accepted { kind: JobKind::Optimise, case_id, spec_hash, tags, mesh_ids };
+    let new = Accepted {
+        kind: JobKind::Optimise,
+        case_id,
+        shared_cases: Vec::new(),
+        spec_hash,
+        tags,
+        mesh_ids,
+    };
     new.with(&JobInput::Optimise(input))
+}
+
+/// A study: its cases and its baseline as they are at this moment, its scenes made and checked.
+pub async fn of_study(service: &Service, mut spec: StudyDocument) -> ApiResult<NewJob> {
+    let mut cases = BTreeMap::new();
+    for (index, scene) in spec.scenes.iter_mut().enumerate() {
+        let SceneReference::Case(reference) = scene else { continue };
+        let row = require_case(service, &reference.case).await;
+        let at = format!("/scenes/{index}/case");
+        let row = row.map_err(|error| error.map_problem(|problem| problem.moved("/case", &at)))?;
+        reference.case.clone_from(&row.id);
+        let case: CaseDocument = serde_json::from_str(&row.document).map_err(ApiError::internal)?;
+        cases.insert(row.id, case);
+    }
+    let baseline = match &spec.baseline {
+        None => None,
+        Some(job) => Some(Box::new(baseline(service, job).await?)),
+    };
+    if let Some(job) = spec.truth.as_ref().and_then(|truth| truth.job.as_ref()) {
+        predicted_skin(service, "/truth/job", job).await?;
+    }
+    let ids: Vec<String> = cases.keys().cloned().collect();
+    let tags = spec.tags.clone();
+    let input = StudyInput { job: None, queue_s: None, cases, baseline, spec };
+    let mesh_ids = input.mesh_ids();
+    let prepare = |input: &StudyInput, sources: &dyn MeshSource, limits: &Limits| {
+        input.prepare(sources, limits).map(|prepared| prepared.spec_hash)
+    };
+    let (input, spec_hash) = prepared(service, input, prepare).await?;
+    let (case_id, shared_cases) = match ids.as_slice() {
+        [only] => (Some(only.clone()), Vec::new()),
+        _ => (None, ids),
+    };
+    let new = Accepted { kind: JobKind::Study, case_id, shared_cases, spec_hash, tags, mesh_ids };
+    new.with(&JobInput::Study(input))
+}
+
+/// The report of the study that another is to be held against.
+async fn baseline(service: &Service, job: &str) -> ApiResult<ReportDocument> {
+    const AT: &str = "/baseline";
+    let id = id(job).ok_or_else(|| fault(AT, "unknown-job", "there is no such job"))?;
+    if service.store.job(&id).await?.is_none() {
+        return Err(fault(AT, "unknown-job", "there is no such job"));
+    }
+    let found = super::report::stored_report(service, &id).await?;
+    let missing = || fault(AT, "no-such-output", "the job is no study that has ended well");
+    Ok(found.ok_or_else(missing)?.1)
 }
 
 /// Checks a job with its meshes, off the async threads; gives it back with the hash that `prepare` finds.
@@ -117,6 +194,7 @@ async fn prepared<I: Send + 'static>(
 struct Accepted {
     kind: JobKind,
     case_id: Option<String>,
+    shared_cases: Vec<String>,
     spec_hash: String,
     tags: Vec<String>,
     mesh_ids: Vec<String>,
@@ -129,6 +207,7 @@ impl Accepted {
             id: uuid::Uuid::now_v7().to_string(),
             kind: self.kind.name(),
             case_id: self.case_id,
+            shared_cases: self.shared_cases,
             document: serde_json::to_string(input).map_err(ApiError::internal)?,
             spec_hash: self.spec_hash,
             engine,
@@ -195,21 +274,22 @@ async fn require_mesh(service: &Service, at: &str, mesh: &str) -> ApiResult<Stri
 }
 
 /// The hash of the skin that a job predicted, and the job's case.
-async fn predicted_skin(service: &Service, job: &str) -> ApiResult<(String, Option<String>)> {
-    const AT: &str = "/prediction/job";
+async fn predicted_skin(
+    service: &Service,
+    at: &str,
+    job: &str,
+) -> ApiResult<(String, Option<String>)> {
     let row = match id(job) {
         Some(id) => service.store.job(&id).await?,
         None => None,
     };
-    let row = row.ok_or_else(|| fault(AT, "unknown-job", "there is no such job"))?;
+    let row = row.ok_or_else(|| fault(at, "unknown-job", "there is no such job"))?;
     if row.status != JobStatus::Successful {
         let detail = format!("the job is {}, and has to be successful", row.status.name());
-        return Err(fault(AT, "result-not-ready", &detail));
+        return Err(fault(at, "result-not-ready", &detail));
     }
     let skin = service.store.job_file(&row.id, "skin.vtp").await?;
-    let skin = skin.ok_or_else(|| {
-        fault(AT, "no-such-output", "the job wrote no skin.vtp, which a comparison reads")
-    })?;
+    let skin = skin.ok_or_else(|| fault(at, "no-such-output", "the job wrote no skin.vtp"))?;
     Ok((skin.blob, row.case_id))
 }
 

@@ -65,6 +65,9 @@ fn links(row: &JobRow) -> Vec<Link> {
     let own = format!("/v1/jobs/{}", row.id);
     let results = format!("{own}/results");
     let mut links = vec![link(own, "self")];
+    if row.status == JobStatus::Successful && row.kind == JobKind::Study.name() {
+        links.push(link(format!("/v1/jobs/{}/report", row.id), "describedby"));
+    }
     if row.status == JobStatus::Successful {
         links.push(link(results, "http://www.opengis.net/def/rel/ogc/1.0/results"));
     }

@@ -23,7 +23,7 @@ use crate::store::{Dismissal, Enqueued, JobFilter, JobRow};
 /// Jobs that may wait at the same time.
 const LONGEST_QUEUE: i64 = 10_000;
 /// Kinds that the description of the service names and that are not built.
-const LATER_KINDS: [&str; 2] = ["study", "batch"];
+const LATER_KINDS: [&str; 1] = ["batch"];
 
 pub fn router() -> OpenApiRouter<Service> {
     let router = OpenApiRouter::new().routes(routes!(create, list));
@@ -82,6 +82,7 @@ async fn create(State(service): State<Service>, request: Request) -> ApiResult {
         JobDocument::Compare(spec) => job_input::of_comparison(&service, spec).await?,
         JobDocument::Response(spec) => job_input::of_response(&service, spec).await?,
         JobDocument::Optimise(spec) => job_input::of_optimisation(&service, spec).await?,
+        JobDocument::Study(spec) => job_input::of_study(&service, spec).await?,
     };
     let (id, deduplicated) = match service.store.enqueue(&accepted, LONGEST_QUEUE).await? {
         Enqueued::Accepted => (accepted.id, false),
@@ -115,7 +116,7 @@ fn refuse_later_kinds(service: &Service, bytes: &[u8]) -> ApiResult<()> {
     match value.get("kind").and_then(serde_json::Value::as_str) {
         Some(kind) if LATER_KINDS.contains(&kind) => {
             let detail = format!(
-                "jobs of kind {kind} are not available; predict, compare, response and optimise are"
+                "jobs of kind {kind} are not available; predict, compare, response, optimise and study are"
             );
             Err(ApiError::new("kind-not-available", detail))
         }

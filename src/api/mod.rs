@@ -16,6 +16,7 @@ mod paging;
 mod parameters;
 mod plans;
 mod prefer;
+mod report;
 mod responses;
 mod results;
 mod time;
@@ -88,6 +89,7 @@ fn resources() -> OpenApiRouter<Service> {
         .merge(plans::router())
         .merge(jobs::router())
         .merge(results::router())
+        .merge(report::router())
         .merge(responses::router())
 }
 

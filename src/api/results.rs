@@ -22,7 +22,7 @@ pub fn router() -> OpenApiRouter<Service> {
 }
 
 /// The job, when it has results.
-async fn successful(service: &Service, id: &str) -> ApiResult<JobRow> {
+pub(super) async fn successful(service: &Service, id: &str) -> ApiResult<JobRow> {
     let job = service.store.job(id).await?.ok_or_else(no_such_job)?;
     match job.status {
         JobStatus::Successful => Ok(job),

@@ -2,16 +2,22 @@
 //!
 //! Knows nothing of meshes or jobs: it takes points, triangles, values and names.
 
+mod axis;
+mod callout;
 mod classes;
 pub mod colour;
 mod displacement;
+mod ladder;
+mod ladder_legend;
 mod legend;
 pub mod raster;
 mod svg;
+mod symbol;
 pub mod view;
 
 pub use classes::{ClassKind, ClassesPicture, NodeClasses};
 pub use displacement::DisplacementPicture;
+pub use ladder::{LadderFailure, LadderMark, LadderPicture};
 pub use raster::{Image, PngError};
 pub use view::{Outlook, front_of};
 

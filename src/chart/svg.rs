@@ -19,7 +19,10 @@ pub struct Style {
     /// Font size in units of the document.
     pub size: f64,
     pub bold: bool,
-    pub faint: bool,
+    /// The colour of the letters.
+    pub ink: &'static str,
+    /// A white edge around the letters, for words over lines.
+    pub edge: bool,
     pub anchor: Anchor,
 }
 
@@ -27,11 +30,39 @@ pub struct Style {
 pub enum Anchor {
     Start,
     Middle,
+    End,
+}
+
+/// How a path is drawn.
+#[derive(Clone, Copy)]
+pub struct Paint<'a> {
+    /// A colour or `none`.
+    pub fill: &'a str,
+    pub fill_opacity: f64,
+    /// A colour or `none`.
+    pub stroke: &'a str,
+    pub stroke_width: f64,
+    /// Lengths of dashes and gaps; empty for an unbroken line.
+    pub dashes: &'a str,
+    pub opacity: f64,
+}
+
+impl<'a> Paint<'a> {
+    /// An unbroken line without an inside.
+    pub fn line(stroke: &'a str, stroke_width: f64) -> Self {
+        Paint { fill: "none", stroke, stroke_width, ..Paint::inside("none") }
+    }
+
+    /// An inside without a line around it.
+    pub fn inside(fill: &'a str) -> Self {
+        let (stroke, stroke_width) = ("none", 0.0);
+        Paint { fill, fill_opacity: 1.0, stroke, stroke_width, dashes: "", opacity: 1.0 }
+    }
 }
 
 impl Style {
     pub fn of(size: f64) -> Self {
-        Style { size, bold: false, faint: false, anchor: Anchor::Start }
+        Style { size, bold: false, ink: INK, edge: false, anchor: Anchor::Start }
     }
 
     pub fn bold(self) -> Self {
@@ -39,11 +70,23 @@ impl Style {
     }
 
     pub fn faint(self) -> Self {
-        Style { faint: true, ..self }
+        self.coloured(FAINT_INK)
+    }
+
+    pub fn coloured(self, ink: &'static str) -> Self {
+        Style { ink, ..self }
+    }
+
+    pub fn edged(self) -> Self {
+        Style { edge: true, ..self }
     }
 
     pub fn middle(self) -> Self {
         Style { anchor: Anchor::Middle, ..self }
+    }
+
+    pub fn end(self) -> Self {
+        Style { anchor: Anchor::End, ..self }
     }
 }
 
@@ -93,17 +136,52 @@ impl Document {
         );
     }
 
+    /// A path in the words of SVG (moves, lines, arcs), with coordinates of the document.
+    pub fn path(&mut self, steps: &str, paint: Paint) {
+        let Paint { fill, fill_opacity, stroke, stroke_width, dashes, opacity } = paint;
+        let dashes = match dashes {
+            "" => String::new(),
+            dashes => format!(" stroke-dasharray=\"{dashes}\""),
+        };
+        self.body += &format!(
+            "<path d=\"{steps}\" fill=\"{fill}\" fill-opacity=\"{fill_opacity:.2}\" stroke=\"{stroke}\" stroke-width=\"{stroke_width}\" stroke-linejoin=\"round\" opacity=\"{opacity:.2}\"{dashes}/>\n"
+        );
+    }
+
+    /// What follows until [`Document::close`] belongs together; a viewer shows the words beside the pointer.
+    pub fn open(&mut self, class: &str, words: &str) {
+        let words = escaped(words);
+        self.body += &format!("<g class=\"{class}\"><title>{words}</title>\n");
+    }
+
+    pub fn close(&mut self) {
+        self.body += "</g>\n";
+    }
+
+    /// Words that run upwards, their middle at the point.
+    pub fn text_upwards(&mut self, [x, y]: [f64; 2], room: f64, style: Style, words: &str) {
+        self.body += &format!("<g transform=\"translate({x:.1} {y:.1}) rotate(-90)\">\n");
+        self.text([0.0, 0.0], room, style.middle(), words);
+        self.close();
+    }
+
     /// Words on one line, at most `room` wide: what does not fit is cut and marked by an ellipsis.
     pub fn text(&mut self, [x, y]: [f64; 2], room: f64, style: Style, words: &str) {
         let anchor = match style.anchor {
             Anchor::Start => "start",
             Anchor::Middle => "middle",
+            Anchor::End => "end",
         };
         let weight = if style.bold { "600" } else { "400" };
-        let fill = if style.faint { FAINT_INK } else { INK };
+        let (size, fill) = (style.size, style.ink);
+        let edge = match style.edge {
+            true => {
+                " stroke=\"#ffffff\" stroke-width=\"3\" stroke-linejoin=\"round\" paint-order=\"stroke\""
+            }
+            false => "",
+        };
         self.body += &format!(
-            "<text x=\"{x:.1}\" y=\"{y:.1}\" font-size=\"{}\" font-weight=\"{weight}\" text-anchor=\"{anchor}\" fill=\"{fill}\">{}</text>\n",
-            style.size,
+            "<text x=\"{x:.1}\" y=\"{y:.1}\" font-size=\"{size}\" font-weight=\"{weight}\" text-anchor=\"{anchor}\" fill=\"{fill}\"{edge}>{}</text>\n",
             escaped(&fitting(words, room, style)),
         );
     }

@@ -12,6 +12,7 @@ pub mod predict;
 mod scene;
 mod screen;
 pub mod serve;
+pub mod study;
 
 use std::process::ExitCode;
 
@@ -35,6 +36,8 @@ enum Command {
     Predict(predict::Arguments),
     /// Measure the distances between two surfaces
     Compare(compare::Arguments),
+    /// Hold methods against each other: how long each takes, how far it is from the truth
+    Study(study::Arguments),
     /// Tell what a case and a plan mean, without solving
     Check(check::Arguments),
     /// Serve the API, with workers in the same process
@@ -51,6 +54,7 @@ pub fn run(facies: &Facies) -> ExitCode {
         Command::Demo(arguments) => demo::run(arguments).map_err(CommandError::from),
         Command::Predict(arguments) => predict::run(arguments),
         Command::Compare(arguments) => compare::run(arguments),
+        Command::Study(arguments) => study::run(arguments),
         Command::Check(arguments) => check::run(arguments),
         Command::Serve(arguments) => serve::run(arguments).map_err(CommandError::from),
         Command::Health(arguments) => health::run(arguments).map_err(CommandError::from),

@@ -37,6 +37,11 @@ impl Progress for TerminalProgress {
         self.0.tick();
     }
 
+    fn step(&self, done: usize, of: usize) {
+        self.0.set_message(format!("row {} of {of}", (done + 1).min(of)));
+        self.0.tick();
+    }
+
     fn is_cancelled(&self) -> bool {
         false
     }

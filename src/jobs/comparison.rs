@@ -104,6 +104,7 @@ pub fn compare_job(
         statistics: None,
         comparison: Some(compared.document.clone()),
         optimisation: None,
+        study: None,
         numerical_error_mm: None,
         reaction_mn: BTreeMap::new(),
         provenance: origin.provenance(&clock),
@@ -188,7 +189,7 @@ pub fn fetch(sources: &dyn MeshSource, id: &str, at: &Pointer) -> Result<StoredM
 }
 
 /// A mesh that is not there or not a mesh is a mistake at a place of the documents.
-fn found(
+pub(super) fn found(
     result: Result<StoredMesh, SourceError>,
     id: &str,
     at: &Pointer,

@@ -9,6 +9,7 @@ use crate::optimisation::OptimisationError;
 use crate::prediction::PredictionError;
 use crate::schema::Problem;
 use crate::schema::job::{ErrorClass, JobErrorDocument};
+use crate::study::StudyError;
 use crate::validation::StatisticsError;
 
 /// Residuals of a diverged solver that are told; a history has one for each iteration.
@@ -23,6 +24,8 @@ pub enum JobError {
     Prediction(#[from] PredictionError),
     #[error("no plan was found: {0}")]
     Optimisation(#[from] OptimisationError),
+    #[error("the study could not be run: {0}")]
+    Study(#[from] StudyError),
     #[error("{which} ran out: {allowed} {unit} are allowed")]
     Budget { which: &'static str, allowed: f64, unit: &'static str },
     #[error("stopped on request")]
@@ -54,6 +57,8 @@ impl JobError {
                 ErrorClass::Budget
             }
             JobError::Prediction(PredictionError::Inverted { .. }) => ErrorClass::Input,
+            JobError::Study(StudyError::Threads(_)) => ErrorClass::Infrastructure,
+            JobError::Study(_) => ErrorClass::Input,
             JobError::Prediction(_)
             | JobError::Optimisation(_)
             | JobError::NotFinite { .. }
@@ -81,7 +86,8 @@ impl JobError {
             | JobError::NotFinite { .. }
             | JobError::Statistics(_)
             | JobError::Encode(_) => "solver-diverged",
-            JobError::Picture(_) => "internal",
+            JobError::Study(StudyError::Threads(_)) | JobError::Picture(_) => "internal",
+            JobError::Study(_) => "validation-failed",
         }
     }
 

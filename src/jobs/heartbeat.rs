@@ -86,6 +86,14 @@ impl Progress for RunningJob {
         });
     }
 
+    fn step(&self, done: usize, of: usize) {
+        let share = done as f64 / of.max(1) as f64;
+        self.advance(|point| {
+            point.iteration = i64::try_from(done).ok();
+            point.progress = SOLVE_BEGINS + ((SOLVE_ENDS - SOLVE_BEGINS) as f64 * share) as i64;
+        });
+    }
+
     fn is_cancelled(&self) -> bool {
         self.stopped.load(Ordering::Relaxed)
     }

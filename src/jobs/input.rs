@@ -9,6 +9,7 @@ use super::failure::JobError;
 use super::optimisation::OptimiseInput;
 use super::response::ResponseInput;
 use super::source::{MeshSource, SourceError, StoredMesh, StoredShape};
+use super::study::StudyInput;
 use crate::mesh::Warning;
 use crate::mesh::quality::{QualityReport, quality};
 use crate::prediction::{Case, Plan, Scene, Settings};
@@ -30,6 +31,7 @@ pub enum JobInput {
     Compare(CompareInput),
     Response(ResponseInput),
     Optimise(OptimiseInput),
+    Study(StudyInput),
 }
 
 /// A prediction: the case and the plan in full beside the spec.
@@ -57,6 +59,7 @@ pub struct CompareInput {
 /// A prediction whose documents are sound: what the path takes, and where it came from.
 pub struct Prepared {
     pub case: Case,
+    pub plan: Plan,
     pub scene: Scene,
     pub quality: QualityReport,
     pub spec_hash: String,
@@ -95,6 +98,7 @@ impl PredictInput {
         warnings.extend(quality.warnings());
         Ok(Prepared {
             case: converted.case,
+            plan: converted.plan,
             scene,
             quality,
             spec_hash: self.spec_hash(&stored, actual.as_ref()),

@@ -52,6 +52,7 @@ fn read_input(claim: &Claim) -> Result<JobInput, Failure> {
         JobInput::Compare(input) => (input.job, input.queue_s) = (job, queue_s),
         JobInput::Response(input) => (input.job, input.queue_s) = (job, queue_s),
         JobInput::Optimise(input) => (input.job, input.queue_s) = (job, queue_s),
+        JobInput::Study(input) => (input.job, input.queue_s) = (job, queue_s),
     }
     Ok(input)
 }

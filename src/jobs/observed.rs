@@ -113,6 +113,10 @@ impl Progress for Observed<'_> {
         self.inner.iteration(iteration, relative_residual, wanted);
     }
 
+    fn step(&self, done: usize, of: usize) {
+        self.inner.step(done, of);
+    }
+
     fn is_cancelled(&self) -> bool {
         self.inner.is_cancelled() || self.is_over_budget()
     }

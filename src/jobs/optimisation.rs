@@ -194,6 +194,7 @@ impl Found {
             statistics: Some(statistics),
             comparison: None,
             optimisation: Some(self.document),
+            study: None,
             numerical_error_mm: None,
             reaction_mn: BTreeMap::new(),
             provenance,

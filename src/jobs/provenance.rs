@@ -109,7 +109,7 @@ pub fn encode_result(result: &ResultDocument) -> Result<Vec<u8>, JobError> {
 }
 
 /// The place of the first null that does not belong into a result.
-fn first_null(value: &Value, at: String) -> Option<String> {
+pub(super) fn first_null(value: &Value, at: String) -> Option<String> {
     match value {
         Value::Null if at != "/numerical_error_mm" => Some(at),
         Value::Array(entries) => {

@@ -124,6 +124,7 @@ pub fn response_job(
         statistics: None,
         comparison: None,
         optimisation: None,
+        study: None,
         numerical_error_mm: None,
         reaction_mn: BTreeMap::new(),
         provenance,

@@ -16,6 +16,7 @@ use super::provenance::{Origin, add_method, encode_result, solver_document};
 use super::response::response_job;
 use super::skin_files::PredictedSkin;
 use super::source::MeshSource;
+use super::study::study_job;
 use super::tissue_files::{encode_bones, encode_volume};
 use crate::mesh::{Vector, Warning};
 use crate::prediction::{Phase, Prediction, Progress, Skin, predict};
@@ -55,6 +56,7 @@ pub fn work(
         JobInput::Compare(input) => compare_job(input, place, progress),
         JobInput::Response(input) => response_job(input, place, progress),
         JobInput::Optimise(input) => optimise_job(input, place, progress),
+        JobInput::Study(input) => study_job(input, place, progress),
     }
 }
 
@@ -207,6 +209,7 @@ impl Finished<'_> {
             statistics: Some(self.statistics.clone()),
             comparison: self.comparison.clone(),
             optimisation: self.optimisation.clone(),
+            study: None,
             numerical_error_mm: None,
             reaction_mn: triples(&self.prediction.reactions),
             provenance,

@@ -35,6 +35,9 @@ pub trait Progress: Sync {
     /// One more iteration of the solver, with its relative residual and the one asked for.
     fn iteration(&self, iteration: usize, relative_residual: f64, wanted: f64);
 
+    /// A part of the work is done, of so many that are alike.
+    fn step(&self, _done: usize, _of: usize) {}
+
     /// True when the work is to end at its next check with a `cancelled` error.
     fn is_cancelled(&self) -> bool;
 }

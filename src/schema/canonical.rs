@@ -10,6 +10,7 @@ use super::optimise::OptimiseDocument;
 use super::plan::PlanDocument;
 use super::response::ResponseDocument;
 use super::spec::PredictDocument;
+use super::study::StudyDocument;
 
 /// A document as a value whose keys are sorted.
 pub fn to_value(document: &impl Serialize) -> Value {
@@ -78,6 +79,38 @@ pub fn optimise_hash(
         "engine": env!("CARGO_PKG_VERSION"),
         "case": to_value(&case),
         "spec": spec.content(),
+    }))
+}
+
+/// The hash of a study: its cases with contents of meshes in place of their ids, in the order of its scenes, and the
+/// report that it is held against; names of cases stay, since rows carry them.
+pub fn study_hash(
+    cases: &[&CaseDocument],
+    spec: &StudyDocument,
+    baseline: Option<&Value>,
+    content_of: &dyn Fn(&str) -> Option<String>,
+) -> String {
+    let mut cases: Vec<CaseDocument> = cases.iter().map(|case| (*case).clone()).collect();
+    for case in &mut cases {
+        case.tags.clear();
+        for (_, id) in case.mesh_references_mut() {
+            replace(id, content_of);
+        }
+    }
+    let mut spec = spec.clone();
+    for plan in spec.plan_documents_mut() {
+        for (_, id) in plan.surface_references_mut() {
+            replace(id, content_of);
+        }
+    }
+    if let Some(job) = spec.truth.as_mut().and_then(|truth| truth.job.as_mut()) {
+        replace(job, content_of);
+    }
+    hash(&json!({
+        "engine": env!("CARGO_PKG_VERSION"),
+        "cases": cases.iter().map(to_value).collect::<Vec<_>>(),
+        "spec": spec.content(),
+        "baseline": baseline,
     }))
 }
 

@@ -127,6 +127,17 @@ impl Faults {
         problem
     }
 
+    /// Takes over what a problem holds; one without places is a mistake of the whole document.
+    pub fn join(&mut self, problem: Problem) {
+        if problem.errors.is_empty() {
+            self.add(&Pointer::root(), problem.code, problem.detail);
+        } else {
+            for error in problem.errors {
+                self.add(&Pointer::from_text(&error.pointer), &error.code, error.detail);
+            }
+        }
+    }
+
     /// Refuses a number outside a closed range, and whatever is not a number.
     pub fn check_range(
         &mut self,

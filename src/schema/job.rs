@@ -51,6 +51,7 @@ pub enum JobKind {
     Compare,
     Response,
     Optimise,
+    Study,
 }
 
 impl JobKind {
@@ -60,13 +61,14 @@ impl JobKind {
             JobKind::Compare => "compare",
             JobKind::Response => "response",
             JobKind::Optimise => "optimise",
+            JobKind::Study => "study",
         }
     }
 
     /// The kind a stored word names.
     pub fn from_name(name: &str) -> Option<JobKind> {
-        use JobKind::{Compare, Optimise, Predict, Response};
-        [Predict, Compare, Response, Optimise].into_iter().find(|kind| kind.name() == name)
+        use JobKind::{Compare, Optimise, Predict, Response, Study};
+        [Predict, Compare, Response, Optimise, Study].into_iter().find(|kind| kind.name() == name)
     }
 }
 

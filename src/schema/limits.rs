@@ -43,6 +43,8 @@ pub struct Limits {
     /// Largest budget of memory of one job.
     pub memory_mb: f64,
     pub samples_per_mm2: f64,
+    /// Scenes times plans times materials times levels times variants of a study.
+    pub study_rows: u32,
 }
 
 impl Default for Limits {
@@ -69,6 +71,7 @@ impl Default for Limits {
             wall_s: 86_400.0,
             memory_mb: 1_000_000.0,
             samples_per_mm2: 100.0,
+            study_rows: 2000,
         }
     }
 }

@@ -8,6 +8,7 @@ use utoipa::ToSchema;
 use super::Triple;
 use super::case::{FrameName, LengthUnit};
 use super::optimisation::OptimisationDocument;
+use super::report::StudySummaryDocument;
 use super::validation::{ComparisonDocument, StatDocument};
 use super::warning::WarningDocument;
 
@@ -35,6 +36,10 @@ pub struct ResultDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub optimisation: Option<OptimisationDocument>,
+    /// Of a study.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub study: Option<StudySummaryDocument>,
     /// Null where it was not estimated.
     pub numerical_error_mm: Option<NumericalErrorDocument>,
     /// What each segment, and `fixed`, `sliding` and `prescribed` nodes, exert on the tissue.

@@ -16,6 +16,7 @@ use super::plan::PlanDocument;
 use super::problem::Problem;
 use super::response::ResponseDocument;
 use super::strict;
+use super::study::StudyDocument;
 use crate::prediction::{Method, Settings};
 
 /// The body of `POST /v1/jobs`, told apart by `kind`.
@@ -26,6 +27,7 @@ pub enum JobDocument {
     Compare(CompareDocument),
     Response(ResponseDocument),
     Optimise(OptimiseDocument),
+    Study(StudyDocument),
 }
 
 /// `predict`.
@@ -211,15 +213,17 @@ impl JobDocument {
             Some(Some("compare")) => strict::from_value(value).map(JobDocument::Compare),
             Some(Some("response")) => strict::from_value(value).map(JobDocument::Response),
             Some(Some("optimise")) => strict::from_value(value).map(JobDocument::Optimise),
+            Some(Some("study")) => strict::from_value(value).map(JobDocument::Study),
             Some(Some(other)) => {
                 let detail = format!(
-                    "`{other}` is not a kind of job; `predict`, `compare`, `response` and `optimise` are"
+                    "`{other}` is not a kind of job; `predict`, `compare`, `response`, `optimise` and `study` are"
                 );
                 Err(Problem::at(&at, "unknown-word", detail))
             }
             Some(None) => Err(Problem::at(&at, "wrong-type", "the kind of a job is a word")),
             None => {
-                let detail = "missing field `kind`: `predict`, `compare`, `response` or `optimise`";
+                let detail =
+                    "missing field `kind`: `predict`, `compare`, `response`, `optimise` or `study`";
                 Err(Problem::at(&at, "missing-field", detail))
             }
         }

@@ -47,7 +47,11 @@ const INSERT: &str = "INSERT INTO cases (id, document, report, version, created,
      VALUES ($1, $2, $3, 1, (SELECT now_ms FROM clock), (SELECT now_ms FROM clock))";
 /// What a case leaves when it goes: the files of its jobs.
 const FILES_OF_CASE: &str = "SELECT job_files.blob FROM job_files \
-     JOIN jobs ON jobs.id = job_files.job_id WHERE jobs.case_id = $1";
+     JOIN jobs ON jobs.id = job_files.job_id WHERE jobs.case_id = $1 \
+     OR jobs.id IN (SELECT job_id FROM job_cases WHERE case_id = $1)";
+/// Jobs of several cases; those of one go with it.
+const DELETE_SHARED_JOBS: &str =
+    "DELETE FROM jobs WHERE id IN (SELECT job_id FROM job_cases WHERE case_id = $1)";
 const MESHES_OF_CASE: &str = "SELECT mesh_id FROM case_meshes WHERE case_id = $1";
 const DELETE_UNUSED_MESH: &str = "DELETE FROM meshes WHERE id = $1 AND standalone = 0 \
      AND NOT EXISTS (SELECT 1 FROM case_meshes WHERE mesh_id = $1) \
@@ -123,6 +127,7 @@ impl Store {
         }
         let mut blobs = column(&mut transaction, FILES_OF_CASE, id).await?;
         let meshes = column(&mut transaction, MESHES_OF_CASE, id).await?;
+        sqlx::query(DELETE_SHARED_JOBS).bind(id).execute(&mut *transaction).await?;
         sqlx::query("DELETE FROM cases WHERE id = $1").bind(id).execute(&mut *transaction).await?;
         for mesh in meshes {
             blobs.extend(column(&mut transaction, DELETE_UNUSED_MESH, &mesh).await?);

@@ -13,6 +13,8 @@ pub struct NewJob {
     pub id: String,
     pub kind: &'static str,
     pub case_id: Option<String>,
+    /// All cases of a job that reads several; it goes when one of them is erased.
+    pub shared_cases: Vec<String>,
     /// Everything the job needs, resolved.
     pub document: String,
     pub spec_hash: String,
@@ -237,6 +239,15 @@ async fn insert_job(transaction: &mut Transaction, job: &NewJob) -> Result<(), s
             .bind(tag)
             .execute(&mut **transaction)
             .await?;
+    }
+    for case in &job.shared_cases {
+        sqlx::query(
+            "INSERT INTO job_cases (job_id, case_id) VALUES ($1, $2) ON CONFLICT DO NOTHING",
+        )
+        .bind(&job.id)
+        .bind(case)
+        .execute(&mut **transaction)
+        .await?;
     }
     for mesh in &job.mesh_ids {
         sqlx::query(

@@ -5,6 +5,8 @@ pub mod convergence;
 mod error;
 mod levels;
 pub mod methods;
+pub mod paired;
+pub mod pairwise;
 pub mod pareto;
 pub mod report;
 mod run;

@@ -22,4 +22,5 @@ mod settings;
 #[path = "../shared/mod.rs"]
 #[allow(dead_code, reason = "other tests use the rest")]
 mod shared;
+mod study;
 mod worker;

@@ -26,6 +26,7 @@ pub fn new_job(document: &str, hash: &str) -> NewJob {
         id: uuid::Uuid::now_v7().to_string(),
         kind: "predict",
         case_id: None,
+        shared_cases: Vec::new(),
         document: document.into(),
         spec_hash: hash.into(),
         engine: "test".into(),

@@ -1,6 +1,7 @@
 //! `GET /v1/methods`: the ways of modelling, by the names a spec may give.
 
 mod fem_linear;
+mod measured;
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
@@ -10,6 +11,7 @@ use crate::optimisation::UNDETERMINED;
 use crate::prediction::ElementChoice;
 use crate::response::COLUMNS_PER_SEGMENT;
 use crate::response::linearity::LINEAR_RANGE_MM;
+pub use measured::MeasuredDocument;
 
 /// Why `auto` is what it is.
 pub const WHY_LINEAR: &str = "auto: fem_linear is the only model built so far";
@@ -101,6 +103,17 @@ pub fn check_method(method: MethodName, at: &Pointer, faults: &mut Faults) {
 }
 
 impl ElementName {
+    /// As it stands in documents.
+    pub fn name(self) -> &'static str {
+        match self {
+            ElementName::Auto => "auto",
+            ElementName::Plain => "plain",
+            ElementName::MeanDilatation => "mean_dilatation",
+            ElementName::Stabilised => "stabilised",
+            ElementName::Quadratic => "quadratic",
+        }
+    }
+
     /// The element of the path.
     pub fn choice(self) -> ElementChoice {
         match self {
@@ -116,7 +129,7 @@ impl ElementName {
 /// The answer of `GET /v1/methods`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct MethodList {
-    pub methods: Vec<MethodDocument>,
+    pub methods: Vec<MeasuredMethod>,
     /// What `auto` chooses, and why.
     pub auto: String,
     pub response: ResponseMethod,
@@ -147,6 +160,22 @@ pub struct ResponseMethod {
     pub nonlinearity_estimate: String,
     /// The estimate above which an answer is outside the linear range.
     pub linear_range_mm: f64,
+}
+
+/// A way of modelling, and where it stands on the chart of speed and accuracy.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct MeasuredMethod {
+    #[serde(flatten)]
+    pub method: MethodDocument,
+    /// What the study that comes with the program measured; its truths, machine and command are in
+    /// docs/speed-and-accuracy.md.
+    pub measured: Vec<MeasuredDocument>,
+}
+
+impl MeasuredMethod {
+    fn of(method: MethodDocument) -> Self {
+        MeasuredMethod { measured: measured::measured(method.name.name()), method }
+    }
 }
 
 /// A way of modelling that a spec may ask for.
@@ -181,7 +210,7 @@ pub struct ParameterDocument {
 /// The methods that are built.
 pub fn available_methods() -> MethodList {
     MethodList {
-        methods: vec![fem_linear::document()],
+        methods: [fem_linear::document()].into_iter().map(MeasuredMethod::of).collect(),
         auto: WHY_LINEAR.to_owned(),
         response: ResponseMethod {
             methods: vec![MethodName::FemLinear],

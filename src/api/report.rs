@@ -1,0 +1,184 @@
+//! The report of a study: as JSON, table, test results or chart, judged against any earlier study.
+
+use axum::extract::State;
+use axum::http::{HeaderMap, StatusCode, header};
+use axum::response::IntoResponse;
+use serde::Deserialize;
+use utoipa::{IntoParams, ToSchema};
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+use super::error::{ApiError, ApiResult};
+use super::guard::preferred;
+use super::parameters::{Id, Parameters, id as spelled};
+use super::results::successful;
+use super::{Service, conditional, with_header};
+use crate::jobs::judgement::{Baseline, judge};
+use crate::jobs::study_files::{
+    CHART_SVG, CSV_MEDIA_TYPE, JSON_MEDIA_TYPE, JUNIT_MEDIA_TYPE, REPORT_CSV, REPORT_JSON,
+    REPORT_JUNIT, SVG_MEDIA_TYPE, csv, junit,
+};
+use crate::jobs::study_report::encode_report;
+use crate::schema::ReportDocument;
+use crate::schema::job::{JobKind, JobStatus};
+use crate::store::FileRow;
+
+pub fn router() -> OpenApiRouter<Service> {
+    OpenApiRouter::new().routes(routes!(report))
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, ToSchema)]
+#[serde(rename_all = "lowercase")]
+enum ReportFormat {
+    Json,
+    Csv,
+    Junit,
+    Svg,
+}
+
+const FORMATS: [ReportFormat; 4] =
+    [ReportFormat::Json, ReportFormat::Csv, ReportFormat::Junit, ReportFormat::Svg];
+
+impl ReportFormat {
+    fn media_type(self) -> &'static str {
+        match self {
+            ReportFormat::Json => JSON_MEDIA_TYPE,
+            ReportFormat::Csv => CSV_MEDIA_TYPE,
+            ReportFormat::Junit => JUNIT_MEDIA_TYPE,
+            ReportFormat::Svg => SVG_MEDIA_TYPE,
+        }
+    }
+
+    fn file(self) -> &'static str {
+        match self {
+            ReportFormat::Json => REPORT_JSON,
+            ReportFormat::Csv => REPORT_CSV,
+            ReportFormat::Junit => REPORT_JUNIT,
+            ReportFormat::Svg => CHART_SVG,
+        }
+    }
+}
+
+#[derive(Deserialize, IntoParams)]
+#[serde(deny_unknown_fields)]
+#[into_params(parameter_in = Query)]
+struct ReportParameters {
+    /// Default: what the header Accept likes best, else `json`.
+    format: Option<ReportFormat>,
+    /// Judges the study anew against the study of this job. Default: the baseline of its spec.
+    #[param(format = Uuid)]
+    baseline: Option<String>,
+}
+
+/// The report of a study: every row with its time and its error, the fronts, comparisons of variants, and the outcome:
+/// `pass`, `worse`, `incomplete` or `no-baseline`. A row is worse where it exceeds a threshold of the spec, where its p95
+/// error grew by more than 5 % and 1e-4 mm over the baseline, or its time by more than half and 20 ms, unless the spec
+/// states other ratios; a row that fails is worse unless it is expected to or failed the same way before.
+/// The test results have a failure or an error exactly where the outcome is not `pass`. The chart shows all scenes;
+/// a study of several has one for each among its files.
+#[utoipa::path(
+    get, path = "/v1/jobs/{id}/report", tag = "jobs",
+    params(("id" = uuid::Uuid, Path, description = "the job"), ReportParameters),
+    responses(
+        (status = 200, description = "the report", content(
+            (ReportDocument = "application/json"), (String = "text/csv"), (String = "application/xml"),
+            (String = "image/svg+xml")),
+            headers(("Facies-Outcome" = String, description = "pass, worse, incomplete or no-baseline"))),
+        (status = 206, description = "the range that was asked for", content(
+            (String = "application/json"), (String = "text/csv"), (String = "application/xml"),
+            (String = "image/svg+xml"))),
+        (status = 304, description = "the client has it already"),
+        (status = 404, description = "there is no such job, it is no study, or it has not ended"),
+        (status = 416, description = "the range is outside the report"),
+        (status = 422, description = "the job failed or was dismissed"),
+    )
+)]
+async fn report(
+    State(service): State<Service>,
+    Id(id): Id,
+    Parameters(parameters): Parameters<ReportParameters>,
+    headers: HeaderMap,
+) -> ApiResult {
+    let format = wanted(&parameters, &headers)?;
+    let job = successful(&service, &id).await?;
+    if job.kind != JobKind::Study.name() {
+        let detail = format!("a job of kind {} has no report; a study has", job.kind);
+        return Err(ApiError::new("no-such-output", detail));
+    }
+    let stored = stored_report(&service, &id).await?;
+    let (row, mut report) = stored.ok_or_else(|| ApiError::internal("a study without report"))?;
+    let Some(baseline) = &parameters.baseline else {
+        let outcome = report.verdict.outcome.name();
+        let row = match format {
+            ReportFormat::Json => row,
+            other => file(&service, &id, other.file()).await?,
+        };
+        if conditional::is_known(&headers, &row.blob) {
+            return Ok(conditional::not_modified(&row.blob));
+        }
+        let bytes = service.store.read_blob(&row.blob).await?;
+        let answer = conditional::file(&headers, &bytes, (&row.media_type, &row.name), &row.blob)?;
+        return Ok(told(answer, outcome));
+    };
+    let baseline = spelled(baseline).ok_or_else(|| {
+        ApiError::invalid_parameter("baseline", "the baseline is the id of a job")
+    })?;
+    let earlier = stored_report(&service, &baseline).await?;
+    match &earlier {
+        Some((_, earlier)) => judge(&mut report, &Baseline::Report(earlier)),
+        None => {
+            let why = format!("job {baseline} is no study that has ended well");
+            judge(&mut report, &Baseline::Missing(why));
+        }
+    }
+    let outcome = report.verdict.outcome.name();
+    let body = match format {
+        ReportFormat::Json => encode_report(&report).map_err(ApiError::internal)?,
+        ReportFormat::Csv => csv(&report).into_bytes(),
+        ReportFormat::Junit => junit(&report).into_bytes(),
+        ReportFormat::Svg => {
+            let row = file(&service, &id, CHART_SVG).await?;
+            service.store.read_blob(&row.blob).await?.to_vec()
+        }
+    };
+    let answer = (StatusCode::OK, body).into_response();
+    let answer = with_header(answer, header::CONTENT_TYPE, format.media_type());
+    let answer = with_header(answer, header::CACHE_CONTROL, "private, no-store");
+    Ok(told(answer, outcome))
+}
+
+/// The format that is asked for; the parameter is more explicit than the header.
+fn wanted(parameters: &ReportParameters, headers: &HeaderMap) -> ApiResult<ReportFormat> {
+    if let Some(format) = parameters.format {
+        return Ok(format);
+    }
+    let plain = |format: ReportFormat| format.media_type().split(';').next().unwrap_or_default();
+    Ok(FORMATS[preferred(headers, &FORMATS.map(plain))?])
+}
+
+fn told(answer: axum::response::Response, outcome: &str) -> axum::response::Response {
+    let name = header::HeaderName::from_static("facies-outcome");
+    with_header(with_header(answer, header::VARY, "Accept"), name, outcome)
+}
+
+async fn file(service: &Service, job: &str, name: &str) -> ApiResult<FileRow> {
+    let row = service.store.job_file(job, name).await?;
+    row.ok_or_else(|| ApiError::internal(format!("a study without {name}")))
+}
+
+/// The report of a job, where it has one.
+pub(super) async fn stored_report(
+    service: &Service,
+    job: &str,
+) -> ApiResult<Option<(FileRow, ReportDocument)>> {
+    let is_study = |row: &crate::store::JobRow| {
+        row.kind == JobKind::Study.name() && row.status == JobStatus::Successful
+    };
+    if !service.store.job(job).await?.is_some_and(|row| is_study(&row)) {
+        return Ok(None);
+    }
+    let Some(row) = service.store.job_file(job, REPORT_JSON).await? else { return Ok(None) };
+    let bytes = service.store.read_blob(&row.blob).await?;
+    let report = serde_json::from_slice(&bytes).map_err(ApiError::internal)?;
+    Ok(Some((row, report)))
+}

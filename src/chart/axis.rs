@@ -1,0 +1,105 @@
+//! Axes whose steps are factors: every power of ten is as long as the others.
+
+/// A range of positive numbers on a stretch of the picture.
+#[derive(Clone, Copy, Debug)]
+pub struct LogAxis {
+    /// The numbers at the ends.
+    pub low: f64,
+    pub high: f64,
+    /// Where the ends are drawn.
+    pub from: f64,
+    pub to: f64,
+}
+
+/// A place of an axis that is marked.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tick {
+    pub value: f64,
+    /// Whether it is told; the others are fine lines.
+    pub labelled: bool,
+}
+
+/// Powers of ten below which 2 and 5 are labelled as well.
+const FEW_DECADES: f64 = 1.7;
+
+impl LogAxis {
+    /// A range that holds all values and all of `least`, with some air, drawn between two places.
+    /// Values that are not positive and finite count as the nearer end of what can be drawn.
+    pub fn covering(values: impl Iterator<Item = f64>, least: [f64; 2], ends: [f64; 2]) -> Self {
+        let (low, high) = values
+            .map(drawable)
+            .fold((f64::INFINITY, 0.0f64), |(low, high), value| (low.min(value), high.max(value)));
+        let air = 1.5;
+        LogAxis {
+            low: (low / air).min(least[0]),
+            high: (high * air).max(least[1]),
+            from: ends[0],
+            to: ends[1],
+        }
+    }
+
+    /// Where a value is drawn; values outside the range at the nearer end.
+    pub fn place(&self, value: f64) -> f64 {
+        let share = (drawable(value) / self.low).ln() / (self.high / self.low).ln();
+        self.from + (self.to - self.from) * share.clamp(0.0, 1.0)
+    }
+
+    /// Whole multiples of powers of ten inside the range, ascending.
+    pub fn ticks(&self) -> Vec<Tick> {
+        let first = self.low.log10().floor() as i32;
+        let last = self.high.log10().floor() as i32;
+        let is_short = (self.high / self.low).log10() < FEW_DECADES;
+        let mut ticks = Vec::new();
+        for power in first..=last {
+            for digit in 1..=9 {
+                // A quotient of whole numbers is the double nearest to the decimal: 0.003 and no 0.0030000000000000005.
+                let scale = 10f64.powi(power.abs());
+                let digits = f64::from(digit);
+                let value = if power < 0 { digits / scale } else { digits * scale };
+                let labelled = digit == 1 || (is_short && (digit == 2 || digit == 5));
+                if (self.low..=self.high).contains(&value) {
+                    ticks.push(Tick { value, labelled });
+                }
+            }
+        }
+        ticks
+    }
+}
+
+/// The nearest number that has a place on a logarithmic axis.
+fn drawable(value: f64) -> f64 {
+    if value.is_nan() { MOST } else { value.clamp(LEAST, MOST) }
+}
+
+const LEAST: f64 = 1e-6;
+const MOST: f64 = 1e6;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_power_of_ten_is_as_long_as_the_others() {
+        let axis = LogAxis { low: 0.01, high: 10.0, from: 100.0, to: 400.0 };
+        for (value, place) in [(0.01, 100.0), (0.1, 200.0), (1.0, 300.0), (10.0, 400.0)] {
+            assert!((axis.place(value) - place).abs() < 1e-9);
+        }
+        let labelled: Vec<f64> =
+            axis.ticks().iter().filter(|tick| tick.labelled).map(|tick| tick.value).collect();
+        assert_eq!(labelled, [0.01, 0.1, 1.0, 10.0]);
+        assert_eq!(axis.ticks().len(), 28);
+    }
+
+    #[test]
+    fn a_short_range_has_more_labels_and_odd_values_have_a_place() {
+        let axis = LogAxis::covering([0.3, 2.0].into_iter(), [0.5, 1.0], [0.0, 100.0]);
+        let labelled: Vec<f64> =
+            axis.ticks().iter().filter(|tick| tick.labelled).map(|tick| tick.value).collect();
+        assert_eq!(labelled, [0.2, 0.5, 1.0, 2.0]);
+        for value in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e-300] {
+            assert!((0.0..=100.0).contains(&axis.place(value)), "{value}");
+        }
+        let empty = LogAxis::covering(std::iter::empty(), [0.5, 1.0], [0.0, 100.0]);
+        assert!(empty.place(0.7).is_finite() && empty.low > 0.0 && empty.high.is_finite());
+    }
+}

@@ -1,0 +1,138 @@
+//! Tests of the chart of speed and accuracy.
+
+use super::*;
+
+fn mark(series: usize, level: u32, [wall_s, error_mm]: [f64; 2], on_front: bool) -> LadderMark {
+    LadderMark { series, level, wall_s, error_mm, on_front, runs: Vec::new() }
+}
+
+fn names(list: &[&str]) -> Vec<String> {
+    list.iter().map(|name| (*name).to_owned()).collect()
+}
+
+fn drawn(marks: &[LadderMark], failures: &[LadderFailure]) -> String {
+    let series = names(&["fem <linear>", "msm", "warp & \"fit\""]);
+    let notes = names(&["Reproduced by a command."]);
+    let picture = LadderPicture {
+        title: "a < b",
+        subtitle: "c & d",
+        series: &series,
+        marks,
+        failures,
+        notes: &notes,
+    };
+    picture.to_svg()
+}
+
+/// Attributes of every element, read as XML.
+fn read(svg: &str) -> Vec<(String, Vec<(String, String)>)> {
+    let mut reader = quick_xml::Reader::from_str(svg);
+    let mut elements = Vec::new();
+    loop {
+        match reader.read_event().unwrap() {
+            quick_xml::events::Event::Start(start) | quick_xml::events::Event::Empty(start) => {
+                let name = start.name().as_ref().to_vec();
+                let attributes = start.attributes().map(|attribute| {
+                    let attribute = attribute.unwrap();
+                    let text = |bytes: &[u8]| String::from_utf8(bytes.to_vec()).unwrap();
+                    (text(attribute.key.as_ref()), text(&attribute.value))
+                });
+                elements.push((String::from_utf8(name).unwrap(), attributes.collect()));
+            }
+            quick_xml::events::Event::Eof => return elements,
+            _ => {}
+        }
+    }
+}
+
+fn count(svg: &str, class: &str) -> usize {
+    svg.matches(&format!("<g class=\"{class}\">")).count()
+}
+
+#[test]
+fn every_mark_run_and_failure_is_drawn() {
+    let mut marks = vec![
+        mark(0, 0, [0.1, 0.5], true),
+        mark(0, 1, [1.0, 0.05], true),
+        mark(1, 0, [2.0, 0.9], false),
+    ];
+    marks[2].runs = vec![[1.9, 0.8], [2.1, 1.0]];
+    let failures = [
+        LadderFailure { series: 1, level: 1, reason: "solver-diverged".into() },
+        LadderFailure { series: 2, level: 0, reason: "method-not-available".into() },
+    ];
+    let svg = drawn(&marks, &failures);
+    assert_eq!(["mark", "run", "failure", "front"].map(|class| count(&svg, class)), [3, 2, 2, 1]);
+    for words in ["a &lt; b", "c &amp; d", "solver-diverged", "Reproduced by a command."] {
+        assert!(svg.contains(words), "{words}");
+    }
+    assert!(svg.contains("fem &lt;linear&gt;, level 1: 1 s, p95 error 0.050 mm"));
+    assert_eq!(count(&drawn(&marks, &[]), "failure"), 0);
+}
+
+#[test]
+fn the_front_only_ever_goes_right_and_down() {
+    let marks = [
+        mark(0, 0, [3.0, 0.02], true),
+        mark(0, 1, [0.1, 0.5], true),
+        mark(1, 0, [0.02, 2.0], true),
+        mark(1, 1, [5.0, 3.0], false),
+    ];
+    let svg = drawn(&marks, &[]);
+    let group = svg.split("<g class=\"front\">").nth(1).unwrap();
+    let steps = group.split("<path d=\"M").nth(2).unwrap().split('"').next().unwrap();
+    let corners: Vec<Vec<f64>> = steps
+        .split('L')
+        .map(|corner| corner.split(' ').map(|number| number.parse().unwrap()).collect())
+        .collect();
+    assert!(corners.len() >= 7, "{corners:?}");
+    for pair in corners.windows(2) {
+        let (right, down) = (pair[1][0] - pair[0][0], pair[1][1] - pair[0][1]);
+        assert!(right >= 0.0 && down >= 0.0 && (right == 0.0) != (down == 0.0), "{pair:?}");
+    }
+}
+
+#[test]
+fn odd_numbers_leave_a_picture_that_can_be_drawn() {
+    for odd in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e-300, 1e300] {
+        let marks = [
+            mark(0, 0, [odd, 0.5], true),
+            mark(1, 0, [0.1, odd], true),
+            mark(9, 0, [1.0, 1.0], false),
+        ];
+        let svg = drawn(&marks, &[]);
+        for (element, attributes) in read(&svg) {
+            for (name, value) in attributes {
+                let ours = !value.contains("sans-serif") && name != "class";
+                let broken = value.contains("NaN") || value.contains("inf");
+                assert!(!ours || !broken, "{odd}: {element} {name} {value}");
+            }
+        }
+    }
+    assert!(!drawn(&[], &[]).contains("NaN"));
+}
+
+#[test]
+fn everything_lies_inside_the_picture() {
+    let marks: Vec<LadderMark> = (0..60)
+        .map(|n| {
+            mark(n % 3, (n % 2) as u32, [1.07f64.powi(n as i32), 0.9f64.powi(n as i32)], n % 4 == 0)
+        })
+        .collect();
+    let failures: Vec<LadderFailure> = (0..9)
+        .map(|n| LadderFailure { series: n % 3, level: 0, reason: "a long reason ".repeat(20) })
+        .collect();
+    let svg = drawn(&marks, &failures);
+    let elements = read(&svg);
+    let number = |attributes: &[(String, String)], wanted: &str| {
+        let found = attributes.iter().find(|(name, _)| name == wanted);
+        found.and_then(|(_, value)| value.parse::<f64>().ok())
+    };
+    let height = number(&elements[0].1, "height").unwrap();
+    for (element, attributes) in &elements {
+        if element == "text" {
+            let [x, y] = ["x", "y"].map(|name| number(attributes, name).unwrap());
+            assert!((0.0..=WIDTH).contains(&x) && (-1.0..=height).contains(&y), "{x} {y}");
+        }
+    }
+}

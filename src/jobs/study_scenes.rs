@@ -1,0 +1,391 @@
+//! The documents of a study as scenes, variants and truths; everything that is wrong is told with its place.
+
+use std::collections::BTreeMap;
+
+use serde_json::Value;
+
+use super::failure::JobError;
+use super::input::{PredictInput, Prepared};
+use super::source::{MeshSource, StoredMesh};
+use crate::mesh::{Vector, Warning};
+use crate::schema::material::{PlacedMaterials, merge_materials};
+use crate::schema::methods::{ElementName, MethodName};
+use crate::schema::prediction::InputDocument;
+use crate::schema::study::{CaseReference, SceneReference, StudyDocument, TruthDocument};
+use crate::schema::{
+    CaseDocument, Faults, Limits, MaterialDocuments, Pointer, PredictDocument, Problem, strict,
+};
+use crate::study::scenes::{scene_of, usual_truth};
+use crate::study::sweep::{self, SweepError};
+use crate::study::{Materials, StudyScene, Truth, Variant, methods};
+
+/// Fields of a `predict` spec that have their own place in a study.
+const OF_THE_STUDY: [&str; 9] =
+    ["kind", "case", "plan", "plan_id", "materials", "budget", "outputs", "compare_to", "tags"];
+
+/// Where the documents of a study stand.
+pub(super) struct Documents<'a> {
+    pub spec: &'a StudyDocument,
+    /// The cases of the spec by their ids.
+    pub cases: &'a BTreeMap<String, CaseDocument>,
+    pub sources: &'a dyn MeshSource,
+    pub limits: &'a Limits,
+}
+
+/// Scenes, and where they came from.
+#[derive(Default)]
+pub(super) struct Scenes {
+    pub scenes: Vec<StudyScene>,
+    pub inputs: Vec<InputDocument>,
+    /// The SHA-256 of each mesh and of the skin of the truth's job, by its id.
+    pub contents: BTreeMap<String, String>,
+    pub warnings: Vec<Warning>,
+}
+
+fn spec_at() -> Pointer {
+    Pointer::root().key("spec")
+}
+
+impl Documents<'_> {
+    /// The variants of all methods, each with a label of its own.
+    pub fn variants(&self, faults: &mut Faults) -> Vec<Variant> {
+        let at = spec_at().key("methods");
+        let mut variants: Vec<Variant> = match &self.spec.methods {
+            None => {
+                let mut names: Vec<String> =
+                    methods::available().into_iter().map(|variant| variant.method).collect();
+                names.dedup();
+                names.iter().flat_map(|name| self.named(name)).collect()
+            }
+            Some(entries) => {
+                let entries = entries.iter().enumerate();
+                entries
+                    .flat_map(|(index, entry)| self.entry(entry, &at.index(index), faults))
+                    .collect()
+            }
+        };
+        for variant in &mut variants {
+            variant.settings.memory_mb = self.spec.budget.memory_mb;
+        }
+        for (index, variant) in variants.iter().enumerate() {
+            if variants[..index].iter().any(|other| other.label == variant.label) {
+                let detail =
+                    format!("two variants are called {:?}; give one a `label`", variant.label);
+                faults.add(&at, "duplicate-name", detail);
+            }
+        }
+        self.check_labels(&variants, faults);
+        variants
+    }
+
+    /// Labels that the rules of the outcome name.
+    fn check_labels(&self, variants: &[Variant], faults: &mut Faults) {
+        let labels = |label: &str| variants.iter().any(|variant| variant.label == label);
+        let known: Vec<&str> = variants.iter().map(|variant| variant.label.as_str()).collect();
+        let thresholds = self.spec.thresholds.iter().flat_map(|bounds| &bounds.labels);
+        let named = [
+            (spec_at().key("thresholds").key("labels"), thresholds.collect::<Vec<_>>()),
+            (spec_at().key("expected_failures"), self.spec.expected_failures.iter().collect()),
+        ];
+        for (place, names) in named {
+            for (index, name) in names.into_iter().enumerate().filter(|(_, name)| !labels(name)) {
+                let detail =
+                    format!("no variant is called {name:?}; there are: {}", known.join(", "));
+                faults.add(&place.index(index), "unknown-label", detail);
+            }
+        }
+    }
+
+    fn entry(&self, entry: &Value, at: &Pointer, faults: &mut Faults) -> Vec<Variant> {
+        let parsed = match entry {
+            Value::String(_) => strict::from_value::<MethodName>(entry.clone()).map(|method| {
+                crate::schema::methods::check_method(method, at, faults);
+                self.named(method.chosen().name())
+            }),
+            entry => self.stated(entry.clone(), at, faults).map(|variant| vec![variant]),
+        };
+        parsed.unwrap_or_else(|problem| {
+            faults.join(problem.moved("", at.as_str()));
+            Vec::new()
+        })
+    }
+
+    /// The variants of a method by its name: the usual ones, or one for each element of the study.
+    fn named(&self, method: &str) -> Vec<Variant> {
+        let usual = methods::of_method(method);
+        let has_elements = crate::schema::methods::available_methods()
+            .methods
+            .iter()
+            .any(|known| known.method.name.name() == method && !known.method.elements.is_empty());
+        match (usual.first(), self.spec.elements.as_slice()) {
+            (Some(first), elements @ [_, ..]) if has_elements => elements
+                .iter()
+                .map(|element| {
+                    let mut settings = first.settings.clone();
+                    settings.element = element.choice();
+                    let label = format!("{method} {}", element.name());
+                    Variant { method: method.to_owned(), label, settings }
+                })
+                .collect(),
+            _ => usual,
+        }
+    }
+
+    /// A variant that says itself what it is: a `predict` spec without what belongs to the study.
+    fn stated(
+        &self,
+        mut entry: Value,
+        at: &Pointer,
+        faults: &mut Faults,
+    ) -> Result<Variant, Problem> {
+        let label = entry.as_object_mut().and_then(|members| members.remove("label"));
+        for name in OF_THE_STUDY {
+            if entry.as_object_mut().is_some_and(|members| members.remove(name).is_some()) {
+                let detail = format!(
+                    "unknown field `{name}`: it belongs to the study and not to one of its methods"
+                );
+                faults.add(&at.key(name), "unknown-field", detail);
+            }
+        }
+        let label = match label {
+            None => None,
+            Some(Value::String(label)) => {
+                faults.check_name(&at.key("label"), &label, self.limits.name_characters as usize);
+                Some(label)
+            }
+            Some(_) => {
+                faults.add(&at.key("label"), "wrong-type", "a label is a text");
+                None
+            }
+        };
+        let spec: PredictDocument = strict::from_value(entry)?;
+        let mut own = Faults::default();
+        let settings = spec.to_settings(self.limits, &mut own);
+        if let Err(problem) = own.into_result() {
+            faults.join(problem.moved("/spec", at.as_str()));
+        }
+        let method = spec.method.chosen().name();
+        let label = label.unwrap_or_else(|| match spec.element {
+            ElementName::Auto => method.to_owned(),
+            element => format!("{method} {}", element.name()),
+        });
+        Ok(Variant { method: method.to_owned(), label, settings })
+    }
+
+    /// Every scene of the spec.
+    pub fn scenes(&self, faults: &mut Faults) -> Result<Scenes, JobError> {
+        let mut found = Scenes::default();
+        let at = spec_at().key("scenes");
+        for (index, reference) in self.spec.scenes.iter().enumerate() {
+            match reference {
+                SceneReference::Name(name) => found.scenes.extend(self.own_scene(name, faults)),
+                SceneReference::Case(reference) => {
+                    self.case_scene((index, reference), &mut found)?;
+                }
+            }
+            let names = found.scenes.iter().map(|scene| &scene.name);
+            let last = found.scenes.last().map(|scene| scene.name.clone()).unwrap_or_default();
+            if names.filter(|name| **name == last).count() > 1 {
+                let detail = format!("two scenes are called {last:?}; give one a `name`");
+                faults.add(&at.index(index), "duplicate-name", detail);
+            }
+        }
+        self.check_plan_names(&found.scenes, faults);
+        Ok(found)
+    }
+
+    fn own_scene(&self, name: &str, faults: &mut Faults) -> Option<StudyScene> {
+        let mut scene = scene_of(name)?;
+        let wanted = self.spec.plan_names();
+        if !wanted.is_empty() {
+            let all: Vec<String> = scene.plans.iter().map(|(plan, _)| plan.clone()).collect();
+            scene.plans.retain(|(plan, _)| wanted.iter().any(|(_, wanted)| wanted == plan));
+            if scene.plans.is_empty() {
+                let detail =
+                    format!("scene {name} has none of these plans; it has: {}", all.join(", "));
+                faults.add(&spec_at().key("plans"), "unknown-plan", detail);
+            }
+        }
+        if !self.spec.materials.is_empty() {
+            scene.materials.clear();
+            for (index, document) in self.spec.materials.iter().enumerate() {
+                let at = spec_at().key("materials").index(index);
+                let given = PlacedMaterials { at, materials: Some(document) };
+                let none = PlacedMaterials { at: spec_at(), materials: None };
+                let (by_region, _) = merge_materials(&given, &none, self.limits, faults);
+                scene.materials.push(Materials { name: material_name(document), by_region });
+            }
+        }
+        self.sweep(&mut scene, faults);
+        self.truth(&mut scene, faults);
+        Some(scene)
+    }
+
+    fn check_plan_names(&self, scenes: &[StudyScene], faults: &mut Faults) {
+        let named = |wanted: &str| {
+            scenes.iter().any(|scene| scene.plans.iter().any(|(plan, _)| plan == wanted))
+        };
+        for (index, name) in self.spec.plan_names().into_iter().filter(|(_, name)| !named(name)) {
+            let detail = format!("no scene by name has a plan called {name:?}");
+            faults.add(&spec_at().key("plans").index(index), "unknown-plan", detail);
+        }
+    }
+
+    /// A case with each plan, and with each of the materials.
+    fn case_scene(
+        &self,
+        (index, reference): (usize, &CaseReference),
+        found: &mut Scenes,
+    ) -> Result<(), JobError> {
+        let missing =
+            || Problem::at(&spec_at().key("scenes"), "unknown-case", "there is no such case");
+        let case = self.cases.get(&reference.case).ok_or_else(missing)?;
+        let given = |index: usize| self.spec.materials.get(index).cloned();
+        let documents = self.spec.plans_of(index, reference);
+        let mut plans = Vec::new();
+        let mut first: Option<Prepared> = None;
+        for (number, (at, document)) in (1..).zip(&documents) {
+            let input = input(case, (*document).clone(), given(0));
+            let prepared = input.prepare(self.sources, self.limits);
+            let prepared = prepared.map_err(|error| moved(error, at, 0))?;
+            plans.push((format!("plan {number}"), prepared.plan.clone()));
+            first = first.or(Some(prepared));
+        }
+        let Some(first) = first else { return Ok(()) };
+        let mut materials = vec![Materials {
+            name: self.spec.materials.first().map_or_else(|| "case".to_owned(), material_name),
+            by_region: first.case.materials.clone(),
+        }];
+        for (index, document) in self.spec.materials.iter().enumerate().skip(1) {
+            let Some((at, plan)) = documents.first() else { break };
+            let input = input(case, (*plan).clone(), given(index));
+            let prepared = input.prepare(self.sources, self.limits);
+            let by_region = prepared.map_err(|error| moved(error, at, index))?.case.materials;
+            materials.push(Materials { name: material_name(document), by_region });
+        }
+        let name = reference.name.clone().or_else(|| case.name.clone());
+        let truth = usual_truth(&first.case);
+        let mut scene = StudyScene {
+            name: name.unwrap_or_else(|| format!("case {}", found.scenes.len() + 1)),
+            case: first.case.clone(),
+            plans,
+            materials,
+            truth,
+        };
+        let mut faults = Faults::default();
+        self.sweep(&mut scene, &mut faults);
+        self.truth(&mut scene, &mut faults);
+        faults.into_result()?;
+        if let Some(job) = self.spec.truth.as_ref().and_then(|truth| truth.job.as_ref()) {
+            let at = spec_at().key("truth").key("job");
+            let skin = super::comparison::found(self.sources.predicted_skin(job), job, &at)?;
+            found.contents.insert(job.clone(), skin.sha256.clone());
+            found.inputs.push(skin.to_input("truth"));
+            scene.truth = Truth::Known(known_displacement(&skin, &first, &at)?);
+        }
+        found.contents.extend(first.contents.clone());
+        found.inputs.extend(first.inputs.iter().cloned());
+        found.warnings.extend(first.warnings.iter().cloned());
+        found.scenes.push(scene);
+        Ok(())
+    }
+
+    /// Every combination of the swept values in place of the materials of the scene.
+    fn sweep(&self, scene: &mut StudyScene, faults: &mut Faults) {
+        if self.spec.sweep.is_empty() {
+            return;
+        }
+        let values = |of: &crate::schema::study::SweepDocument| sweep::Values {
+            young_modulus: of.young_modulus_kpa.clone(),
+            poisson_ratio: of.poisson_ratio.clone(),
+        };
+        let swept: BTreeMap<String, sweep::Values> =
+            self.spec.sweep.iter().map(|(region, of)| (region.clone(), values(of))).collect();
+        let at = spec_at().key("sweep");
+        match sweep::combinations(&scene.case.materials, &swept) {
+            Ok(materials) => scene.materials = materials,
+            Err(error) => {
+                let (place, code) = match &error {
+                    SweepError::TooMany { .. } => (at, "too-many"),
+                    SweepError::UnknownRegion { region } => (at.key(region), "unknown-region"),
+                    SweepError::Material { region, .. } => (at.key(region), "out-of-range"),
+                };
+                faults.add(&place, code, error.to_string());
+            }
+        }
+    }
+
+    /// What the spec holds for true, if it says so.
+    fn truth(&self, scene: &mut StudyScene, faults: &mut Faults) {
+        let at = spec_at().key("truth");
+        match &self.spec.truth {
+            Some(TruthDocument { refine: Some(times), element, .. }) => {
+                let element = element.unwrap_or(ElementName::Quadratic).choice();
+                scene.truth = Truth::Refined { times: *times, element };
+            }
+            Some(TruthDocument { closed_form: true, .. })
+                if !matches!(scene.truth, Truth::ClosedForm(_)) =>
+            {
+                let detail = format!("scene {} has no closed form", scene.name);
+                faults.add(&at.key("closed_form"), "no-closed-form", detail);
+            }
+            _ => {}
+        }
+    }
+}
+
+/// One plan and one set of materials on a case.
+fn input(
+    case: &CaseDocument,
+    plan: crate::schema::PlanDocument,
+    materials: Option<MaterialDocuments>,
+) -> PredictInput {
+    let spec = PredictDocument { materials, ..PredictDocument::default() };
+    PredictInput { job: None, queue_s: None, case: case.clone(), plan, spec }
+}
+
+/// Places of a prediction as places of the study.
+fn moved(error: JobError, plan: &Pointer, materials: usize) -> JobError {
+    let JobError::Refused(problem) = error else { return error };
+    let spec = spec_at();
+    let problem = problem
+        .moved("/plan", plan.as_str())
+        .moved("/spec/materials", spec.key("materials").index(materials).as_str());
+    JobError::Refused(problem)
+}
+
+/// The displacement of each skin node to where a predicted skin has it.
+fn known_displacement(
+    skin: &StoredMesh,
+    prepared: &Prepared,
+    at: &Pointer,
+) -> Result<Vec<Vector>, JobError> {
+    let predicted = skin.surface_in_mm();
+    let rest = &prepared.scene.skin;
+    let numbers = predicted.node_ids.as_deref().unwrap_or_default();
+    if numbers != rest.nodes() || predicted.points.len() != rest.surface.points.len() {
+        let detail = format!(
+            "the skin of that job has {} nodes, that of the case {}, and their numbers have to be the same",
+            predicted.points.len(),
+            rest.nodes().len()
+        );
+        return Err(Problem::at(at, "not-corresponding", detail).into());
+    }
+    let pairs = predicted.points.iter().zip(&rest.surface.points);
+    Ok(pairs.map(|(moved, rest)| moved - rest).collect())
+}
+
+/// What is stated, in words: `muscle E 300 kPa nu 0.44, * nu 0.46`.
+fn material_name(document: &MaterialDocuments) -> String {
+    let region = |(name, of): (&String, &crate::schema::MaterialDocument)| {
+        let mut words = if name == "*" { "all".to_owned() } else { name.clone() };
+        if let Some(modulus) = of.young_modulus_kpa {
+            words += &format!(" E {modulus} kPa");
+        }
+        if let Some(ratio) = of.poisson_ratio {
+            words += &format!(" nu {ratio}");
+        }
+        words
+    };
+    document.iter().map(region).collect::<Vec<_>>().join(", ")
+}

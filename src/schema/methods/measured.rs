@@ -1,0 +1,154 @@
+//! Where each method stands on the chart of speed and accuracy: read from the table of the study that is kept with the
+//! program.
+
+use std::sync::OnceLock;
+
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+/// What `facies study` wrote.
+const TABLE: &str = include_str!("../../../docs/speed-and-accuracy.csv");
+
+/// One variant of a method on one scene and mesh level: medians over the plans and materials of the study.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct MeasuredDocument {
+    pub scene: String,
+    /// The variant.
+    pub label: String,
+    /// How often each edge was halved.
+    pub level: u32,
+    pub unknowns: u64,
+    /// From mesh in memory to displacement in memory, on one thread.
+    pub wall_s: f64,
+    /// The error that 95 % of the skin's area stay below.
+    pub p95_mm: f64,
+    /// Rows behind the medians.
+    pub rows: u64,
+}
+
+/// A row of the table that has numbers.
+#[derive(Clone, Debug, PartialEq)]
+struct Row {
+    scene: String,
+    method: String,
+    label: String,
+    level: u32,
+    unknowns: u64,
+    wall_s: f64,
+    p95_mm: f64,
+}
+
+/// The places of a method, in the order of the table.
+pub fn measured(method: &str) -> Vec<MeasuredDocument> {
+    static ROWS: OnceLock<Vec<Row>> = OnceLock::new();
+    let rows = ROWS.get_or_init(|| parse(TABLE).unwrap_or_default());
+    let mut places: Vec<(&Row, Vec<&Row>)> = Vec::new();
+    for row in rows.iter().filter(|row| row.method == method) {
+        let same = |first: &Row| {
+            (&first.scene, &first.label, first.level) == (&row.scene, &row.label, row.level)
+        };
+        match places.iter_mut().find(|(first, _)| same(first)) {
+            Some((_, all)) => all.push(row),
+            None => places.push((row, vec![row])),
+        }
+    }
+    let document = |(first, all): (&Row, Vec<&Row>)| MeasuredDocument {
+        scene: first.scene.clone(),
+        label: first.label.clone(),
+        level: first.level,
+        unknowns: first.unknowns,
+        wall_s: median(all.iter().map(|row| row.wall_s).collect()),
+        p95_mm: median(all.iter().map(|row| row.p95_mm).collect()),
+        rows: all.len() as u64,
+    };
+    places.into_iter().map(document).collect()
+}
+
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_unstable_by(f64::total_cmp);
+    values.get(values.len().saturating_sub(1) / 2).copied().unwrap_or_default()
+}
+
+/// The rows with numbers, or the line that is none.
+fn parse(table: &str) -> Result<Vec<Row>, String> {
+    let mut lines = table.lines();
+    let head = cells(lines.next().unwrap_or_default());
+    let column = |name: &str| {
+        head.iter().position(|cell| cell == name).ok_or_else(|| format!("no column {name}"))
+    };
+    let places = ["scene", "method", "label", "level", "unknowns", "wall_s", "p95_mm", "status"];
+    let places = places.map(column);
+    let mut at = [0; 8];
+    for (at, place) in at.iter_mut().zip(places) {
+        *at = place?;
+    }
+    let mut rows = Vec::new();
+    for line in lines.filter(|line| !line.is_empty()) {
+        let cells = cells(line);
+        let text = |number: usize| {
+            cells.get(at[number]).cloned().ok_or_else(|| format!("a cell is missing: {line}"))
+        };
+        if text(7)? != "solved" {
+            continue;
+        }
+        let number =
+            |place: usize| text(place)?.parse::<f64>().map_err(|error| format!("{error}: {line}"));
+        rows.push(Row {
+            scene: text(0)?,
+            method: text(1)?,
+            label: text(2)?,
+            level: number(3)? as u32,
+            unknowns: number(4)? as u64,
+            wall_s: number(5)?,
+            p95_mm: number(6)?,
+        });
+    }
+    Ok(rows)
+}
+
+/// The cells of a line (RFC 4180); no cell of the table holds a line break.
+fn cells(line: &str) -> Vec<String> {
+    let mut cells = vec![String::new()];
+    let mut quoted = false;
+    let mut letters = line.trim_end_matches('\r').chars().peekable();
+    while let Some(letter) = letters.next() {
+        let cell = cells.last_mut().expect("there is always one");
+        match letter {
+            '"' if quoted && letters.peek() == Some(&'"') => {
+                letters.next();
+                cell.push('"');
+            }
+            '"' => quoted = !quoted,
+            ',' if !quoted => cells.push(String::new()),
+            letter => cell.push(letter),
+        }
+    }
+    cells
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::schema::methods::available_methods;
+
+    #[test]
+    fn every_available_method_has_its_place_on_the_chart() {
+        let rows = parse(TABLE).unwrap();
+        assert!(rows.iter().all(|row| row.wall_s > 0.0 && row.p95_mm >= 0.0 && row.unknowns > 0));
+        for method in available_methods().methods {
+            let name = method.method.name.name();
+            let places = measured(name);
+            assert!(!places.is_empty(), "docs/speed-and-accuracy.csv has no row of {name}");
+            assert_eq!(method.measured, places);
+        }
+    }
+
+    #[test]
+    fn quoted_cells_and_broken_tables_are_read_as_what_they_are() {
+        assert_eq!(cells("a,\"b, \"\"c\"\"\",,d\r"), ["a", "b, \"c\"", "", "d"]);
+        assert!(parse("scene,label\n").is_err());
+        let head = "scene,method,label,level,unknowns,wall_s,p95_mm,status";
+        assert!(parse(&format!("{head}\na,b,c,x,1,1,1,solved")).is_err());
+        assert_eq!(parse(&format!("{head}\na,b,c,0,,,,failed")), Ok(Vec::new()));
+    }
+}
