@@ -143,6 +143,6 @@ fn face(name: &str) -> Option<VolumeMesh> {
     };
     match read(&bytes, &ReadLimits::default()).expect("the faces are valid").mesh {
         Mesh::Volume(mesh) => Some(mesh),
-        Mesh::Surface(_) => None,
+        _ => None,
     }
 }

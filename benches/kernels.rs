@@ -158,7 +158,7 @@ impl<'a> Table<'a> {
             let taken = on_threads(threads, || {
                 seconds(5, || {
                     let equilibrium = problem.solve(&Silent).expect("the standard load converges");
-                    iterations = equilibrium.solution.iterations;
+                    iterations = equilibrium.convergence.iterations;
                 })
             });
             let name = format!("whole solution, {iterations} iterations");

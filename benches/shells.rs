@@ -18,7 +18,8 @@ use std::time::Instant;
 
 use facies::boundary::NodeClass;
 use facies::mesh::Vector;
-use facies::model::linear_fem::{LoadCase, Observer, Problem};
+use facies::model::equilibrium::{Convergence, LoadCase, Observer};
+use facies::model::linear_fem::Problem;
 use facies::prediction::{Case, ElementChoice, Phase, Plan, Progress, Scene, Settings, predict};
 use facies::schema::methods::ElementName;
 use facies::solver::Tolerance;
@@ -193,8 +194,8 @@ fn columns(case: &Case, plan: &Plan, settings: &Settings) -> Run {
     let equilibria = problem.solve_cases(&cases, &clock).expect("the columns converge");
     clock.phase(Phase::Surface);
     let laps = clock.finished();
-    let worst = |value: fn(&facies::solver::Solution) -> f64| {
-        equilibria.iter().map(|one| value(&one.solution)).fold(0.0, f64::max)
+    let worst = |value: fn(&Convergence) -> f64| {
+        equilibria.iter().map(|one| value(&one.convergence)).fold(0.0, f64::max)
     };
     Run {
         check: laps.seconds("check"),
@@ -203,7 +204,7 @@ fn columns(case: &Case, plan: &Plan, settings: &Settings) -> Run {
         cpu: laps.cpu,
         unknowns: equilibria[0].unknowns,
         iterations: worst(|solution| solution.iterations as f64) as usize,
-        method: equilibria[0].solution.method,
+        method: equilibria[0].convergence.method,
         residual: worst(|solution| solution.relative_residual),
         displacements: equilibria.into_iter().map(|one| one.displacement).collect(),
     }

@@ -10,6 +10,7 @@ pub mod command;
 pub mod config;
 pub mod element;
 pub mod format;
+pub mod image;
 pub mod jobs;
 pub mod material;
 pub mod mesh;

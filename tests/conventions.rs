@@ -7,7 +7,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Module, and the modules of ours that it may use.
-const TABLE: [(&str, &[&str]); 23] = [
+const TABLE: [(&str, &[&str]); 24] = [
     ("mesh", &[]),
     ("material", &[]),
     ("element", &[]),
@@ -16,12 +16,13 @@ const TABLE: [(&str, &[&str]); 23] = [
     ("chart", &[]),
     ("telemetry", &["config"]),
     ("registration", &["mesh", "solver"]),
-    ("format", &["mesh"]),
+    ("image", &["mesh"]),
+    ("format", &["mesh", "image"]),
     ("plan", &["mesh"]),
     ("validation", &["mesh", "registration"]),
     ("boundary", &["mesh", "plan"]),
     ("model", &["mesh", "boundary", "material", "element", "solver"]),
-    ("prediction", &["mesh", "plan", "boundary", "material", "solver", "model"]),
+    ("prediction", &["mesh", "image", "plan", "boundary", "material", "solver", "model"]),
     ("response", &["mesh", "plan", "boundary", "material", "solver", "model", "prediction"]),
     ("optimisation", &["mesh", "plan", "response"]),
     (
@@ -42,6 +43,7 @@ const TABLE: [(&str, &[&str]); 23] = [
         "schema",
         &[
             "mesh",
+            "image",
             "format",
             "plan",
             "boundary",
@@ -61,6 +63,7 @@ const TABLE: [(&str, &[&str]); 23] = [
         "jobs",
         &[
             "mesh",
+            "image",
             "registration",
             "format",
             "plan",

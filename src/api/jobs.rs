@@ -78,7 +78,7 @@ async fn create(State(service): State<Service>, request: Request) -> ApiResult {
     let bytes = body::json(&service, request).await?;
     refuse_later_kinds(&service, &bytes)?;
     let accepted = match JobDocument::parse(&bytes, &service.limits)? {
-        JobDocument::Predict(spec) => job_input::of_prediction(&service, spec).await?,
+        JobDocument::Predict(spec) => job_input::of_prediction(&service, *spec).await?,
         JobDocument::Compare(spec) => job_input::of_comparison(&service, spec).await?,
         JobDocument::Response(spec) => job_input::of_response(&service, spec).await?,
         JobDocument::Optimise(spec) => job_input::of_optimisation(&service, spec).await?,

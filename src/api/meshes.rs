@@ -19,7 +19,7 @@ use crate::schema::mesh::{MeshDocument, MeshKind};
 use crate::store::{MeshDeletion, MeshRow};
 
 const READ_HERE: &str = "model/stl, model/obj, application/vnd.ply, application/vnd.vtk, \
-     application/vnd.vtk.xml, application/x-gmsh, application/octet-stream, multipart/form-data";
+     application/vnd.vtk.xml, application/x-gmsh, application/x-nrrd, application/octet-stream, multipart/form-data";
 const MULTIPART: &str = "multipart/form-data";
 
 pub fn router() -> OpenApiRouter<Service> {
@@ -32,9 +32,10 @@ pub fn router() -> OpenApiRouter<Service> {
 #[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
 pub struct UploadParameters {
-    /// The frame of the coordinates; a `SPACE=` mark in the file has to agree.
+    /// The frame of the coordinates; a `SPACE=` mark in the file has to agree. The `space` of an image has the
+    /// last word.
     frame: Option<FrameName>,
-    /// The unit of length of the file. Default: mm.
+    /// The unit of length of the file. Default: mm. An image is in mm or in its own `space units`.
     units: Option<LengthUnit>,
     /// What the mesh is used for, a word of at most 32 letters; kept and not interpreted.
     #[param(pattern = "^[A-Za-z0-9_-]{1,32}$")]
@@ -62,7 +63,7 @@ impl UploadParameters {
     }
 }
 
-/// Stores a mesh: VTU, VTP, VTK legacy, Gmsh, STL, PLY or OBJ, told apart by content.
+/// Stores a mesh: VTU, VTP, VTK legacy, Gmsh, STL, PLY or OBJ, or an image: NRRD; told apart by content.
 /// Bytes that were stored before are not stored again.
 #[utoipa::path(
     post, path = "/v1/meshes", tag = "meshes", params(UploadParameters),
@@ -70,6 +71,7 @@ impl UploadParameters {
         (Vec<u8> = "application/octet-stream"), (Vec<u8> = "model/stl"), (Vec<u8> = "model/obj"),
         (Vec<u8> = "application/vnd.ply"), (Vec<u8> = "application/vnd.vtk"),
         (Vec<u8> = "application/vnd.vtk.xml"), (Vec<u8> = "application/x-gmsh"),
+        (Vec<u8> = "application/x-nrrd"),
         (MeshForm = "multipart/form-data"),
     )),
     responses(
@@ -191,7 +193,8 @@ async fn show(State(service): State<Service>, Id(id): Id, headers: HeaderMap) ->
 #[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
 struct ContentParameters {
-    /// `vtu` (volumes only), `vtp`, `stl` or `ply`; of a volume the last three hold the boundary.
+    /// `vtu` (volumes only), `vtp`, `stl` or `ply`; of a volume the last three hold the boundary. `nrrd` (images
+    /// only).
     #[param(inline)]
     format: Option<ContentFormat>,
 }
@@ -203,6 +206,7 @@ enum ContentFormat {
     Vtp,
     Stl,
     Ply,
+    Nrrd,
 }
 
 impl From<ContentFormat> for ExportFormat {
@@ -212,6 +216,7 @@ impl From<ContentFormat> for ExportFormat {
             ContentFormat::Vtp => ExportFormat::Vtp,
             ContentFormat::Stl => ExportFormat::Stl,
             ContentFormat::Ply => ExportFormat::Ply,
+            ContentFormat::Nrrd => ExportFormat::Nrrd,
         }
     }
 }
@@ -222,9 +227,11 @@ impl From<ContentFormat> for ExportFormat {
     params(("id" = uuid::Uuid, Path, description = "the mesh"), ContentParameters),
     responses(
         (status = 200, description = "the file", content(
-            (Vec<u8> = "application/vnd.vtk.xml"), (Vec<u8> = "model/stl"), (Vec<u8> = "application/vnd.ply"))),
+            (Vec<u8> = "application/vnd.vtk.xml"), (Vec<u8> = "model/stl"), (Vec<u8> = "application/vnd.ply"),
+            (Vec<u8> = "application/x-nrrd"))),
         (status = 206, description = "the range that was asked for", content(
-            (Vec<u8> = "application/vnd.vtk.xml"), (Vec<u8> = "model/stl"), (Vec<u8> = "application/vnd.ply"))),
+            (Vec<u8> = "application/vnd.vtk.xml"), (Vec<u8> = "model/stl"), (Vec<u8> = "application/vnd.ply"),
+            (Vec<u8> = "application/x-nrrd"))),
         (status = 304, description = "the client has it already"),
         (status = 416, description = "the range is outside the file"),
         (status = 422, description = "the mesh has no such form"),
@@ -241,6 +248,7 @@ async fn content(
     let stored_as = match document.report.kind {
         MeshKind::Volume => ExportFormat::Vtu,
         MeshKind::Surface => ExportFormat::Vtp,
+        MeshKind::Image => ExportFormat::Nrrd,
     };
     let format = parameters.format.map_or(stored_as, ExportFormat::from);
     super::guard::check_accept(&headers, format.media_type())?;

@@ -31,13 +31,11 @@ fn read(svg: &str) -> Vec<(String, Vec<(String, String)>)> {
     loop {
         match reader.read_event().unwrap() {
             quick_xml::events::Event::Start(start) | quick_xml::events::Event::Empty(start) => {
-                let name = start.name().as_ref().to_vec();
                 let attributes = start.attributes().map(|attribute| {
                     let attribute = attribute.unwrap();
-                    let text = |bytes: &[u8]| String::from_utf8(bytes.to_vec()).unwrap();
-                    (text(attribute.key.as_ref()), text(&attribute.value))
+                    (attribute.key.as_ref().to_owned(), attribute.value.to_string())
                 });
-                elements.push((String::from_utf8(name).unwrap(), attributes.collect()));
+                elements.push((start.name().as_ref().to_owned(), attributes.collect()));
             }
             quick_xml::events::Event::Eof => return elements,
             _ => {}

@@ -11,6 +11,7 @@ mod ladder;
 mod ladder_legend;
 mod legend;
 pub mod raster;
+mod stability_map;
 mod svg;
 mod symbol;
 pub mod view;
@@ -19,6 +20,7 @@ pub use classes::{ClassKind, ClassesPicture, NodeClasses};
 pub use displacement::DisplacementPicture;
 pub use ladder::{LadderFailure, LadderMark, LadderPicture};
 pub use raster::{Image, PngError};
+pub use stability_map::{Mark, StabilityAxis, StabilityMap};
 pub use view::{Outlook, front_of};
 
 /// A position in mm.

@@ -165,6 +165,23 @@ impl Document {
         self.close();
     }
 
+    /// A line through several points in a colour of its own.
+    pub fn stroke(&mut self, points: &[[f64; 2]], colour: &str, width: f64) {
+        let points: Vec<String> = points.iter().map(|[x, y]| format!("{x:.1},{y:.1}")).collect();
+        self.body += &format!(
+            "<polyline points=\"{}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"{width}\" stroke-linecap=\"round\" stroke-linejoin=\"round\"/>\n",
+            points.join(" "),
+        );
+    }
+
+    /// Words that rise by this many degrees from where they begin.
+    pub fn rising_text(&mut self, at: [f64; 2], degrees: f64, style: Style, words: &str) {
+        let [x, y] = at;
+        self.body += &format!("<g transform=\"rotate({:.1} {x:.1} {y:.1})\">", -degrees);
+        self.text(at, f64::INFINITY, style, words);
+        self.body += "</g>\n";
+    }
+
     /// Words on one line, at most `room` wide: what does not fit is cut and marked by an ellipsis.
     pub fn text(&mut self, [x, y]: [f64; 2], room: f64, style: Style, words: &str) {
         let anchor = match style.anchor {

@@ -82,7 +82,7 @@ impl Symbol {
             Shape::Star(points) => {
                 let step = 180.0 / f64::from(points);
                 let at = |k: u32| {
-                    let length = if k % 2 == 0 { 1.55 } else { 0.7 };
+                    let length = if k.is_multiple_of(2) { 1.55 } else { 0.7 };
                     corner(radius * length, step * f64::from(k))
                 };
                 closed((0..2 * points).map(at).collect())

@@ -289,7 +289,7 @@ fn node_wise_distances(skins: &[Bytes; 2]) -> Result<Vec<f64>, DemoError> {
     for bytes in skins {
         match format::read(bytes, &ReadLimits::default())?.mesh {
             Mesh::Surface(surface) => surfaces.push(surface),
-            Mesh::Volume(_) => {
+            Mesh::Volume(_) | Mesh::Image(_) => {
                 return Err(DemoError::Answer { what: "skin.vtp", member: "triangles" });
             }
         }

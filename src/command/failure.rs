@@ -35,6 +35,8 @@ pub enum CommandError {
     /// A study that did not pass: `worse`, `incomplete` or `no-baseline`.
     #[error("the outcome is {}: {}", outcome.name(), reasons.join("; "))]
     Verdict { outcome: OutcomeName, reasons: Vec<String> },
+    #[error("{probes} answers are wrong and carry no warning")]
+    SilentlyWrong { probes: usize },
     #[error(transparent)]
     Demo(#[from] DemoError),
     #[error(transparent)]
@@ -49,6 +51,7 @@ impl CommandError {
             CommandError::Usage(_) | CommandError::Document { .. } | CommandError::Read { .. } => {
                 REFUSED
             }
+            CommandError::SilentlyWrong { .. } => FAILED,
             CommandError::Write { .. } => INFRASTRUCTURE,
             CommandError::Verdict { outcome, .. } => outcome.exit_code(),
             CommandError::Demo(error) if error.is_failed_job() => FAILED,

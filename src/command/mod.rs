@@ -12,6 +12,7 @@ pub mod predict;
 mod scene;
 mod screen;
 pub mod serve;
+pub mod stability;
 pub mod study;
 
 use std::process::ExitCode;

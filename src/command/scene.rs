@@ -138,7 +138,7 @@ impl SceneArguments {
         given.then_some(MaterialDocument {
             young_modulus_kpa: self.young_modulus_kpa,
             poisson_ratio: self.poisson_ratio,
-            density_g_per_cm3: None,
+            ..MaterialDocument::default()
         })
     }
 }

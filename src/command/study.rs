@@ -9,12 +9,14 @@ use super::documents::{CaseFile, read};
 use super::failure::CommandError;
 use super::files::FileSource;
 use super::screen::{TerminalProgress, print_warnings};
+use super::stability;
 use crate::jobs::study_files::REPORT_JSON;
 use crate::jobs::work::Workplace;
 use crate::jobs::{JobInput, StudyInput, work};
 use crate::schema::report::{OutcomeName, ReportDocument, RowDocument};
 use crate::schema::study::{CaseReference, PlanReference, SceneReference, ThresholdsDocument};
 use crate::schema::{CaseDocument, Limits, MaterialDocument, StudyDocument};
+use crate::study::methods;
 
 /// The scenes and levels of a study that names none.
 const USUAL_SCENES: [&str; 3] = ["sphere", "slab", "half_head"];
@@ -44,6 +46,12 @@ pub struct Arguments {
     /// Solves of each row, whose median time is told
     #[arg(long, value_name = "N")]
     repeats: Option<u32>,
+    /// Instead of a study: map where each method fails, what it does as movements, materials and meshes become
+    /// impossible
+    #[arg(long, conflicts_with_all = [
+        "small", "scene", "case", "method", "level", "repeats", "spec", "baseline", "threshold_p95_mm",
+    ])]
+    stability: bool,
     /// A study document; the other arguments stand above it. Its cases are files as those of --case
     #[arg(long, value_name = "FILE")]
     spec: Option<PathBuf>,
@@ -60,6 +68,9 @@ pub struct Arguments {
 
 /// Runs the study, writes its report and prints its rows. Not passing is an error with the exit code of the outcome.
 pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
+    if arguments.stability {
+        return stability::run(&arguments.out, &methods::available());
+    }
     let input = arguments.input()?;
     let limits = Limits::default();
     let sources = FileSource::of_any_unit(Path::new(""));

@@ -2,7 +2,7 @@
 //!
 //! A point array `set_NAME` is the node set NAME and a cell array `elset_NAME` the cell set NAME,
 //! where non-zero means in. Every other integer array with at most [`MOST_LABELS`] values is a
-//! label array. Real point arrays of three components are vectors. The rest is ignored by name.
+//! label array. Real arrays of three components are vectors. The rest is ignored by name.
 
 use std::collections::BTreeSet;
 
@@ -38,21 +38,13 @@ pub(super) struct Arrays {
 }
 
 impl Arrays {
-    /// Whether a point array can mean something; one that cannot is noted and need not be decoded.
-    pub fn wants_point_array(&mut self, name: &str, components: u64, is_integer: bool) -> bool {
+    /// Whether an array of points or cells can mean something; one that cannot is noted and need not be
+    /// decoded.
+    pub fn wants(&mut self, name: &str, components: u64, is_integer: bool) -> bool {
         let wanted = match is_integer {
             true => components == 1,
             false => components == 3,
         };
-        self.note(name, wanted)
-    }
-
-    /// The same for a cell array.
-    pub fn wants_cell_array(&mut self, name: &str, components: u64, is_integer: bool) -> bool {
-        self.note(name, is_integer && components == 1)
-    }
-
-    fn note(&mut self, name: &str, wanted: bool) -> bool {
         let wanted = wanted && !name.trim().is_empty();
         if !wanted {
             self.ignored.push(name.to_string());
@@ -100,20 +92,44 @@ impl Arrays {
             self.place_point_array(array, mesh, warnings, limits)?;
         }
         for array in std::mem::take(&mut self.cells) {
-            let Values::Integers(values) = array.values else {
-                self.ignored.push(array.name);
-                continue;
-            };
-            let name = checked_name(&array.name, limits)?;
-            if let Some(set) = set_name(&name, "elset_") {
-                insert(&mut mesh.cell_sets, set.to_string(), members(&values))?;
-            } else if has_few_values(&values) {
-                insert(&mut mesh.cell_labels, name, values)?;
-            } else {
-                self.ignored.push(array.name);
-            }
+            self.place_cell_array(array, mesh, warnings, limits)?;
         }
         Ok(())
+    }
+
+    fn place_cell_array(
+        &mut self,
+        array: NamedArray,
+        mesh: &mut VolumeMesh,
+        warnings: &mut Vec<Warning>,
+        limits: &ReadLimits,
+    ) -> Result<(), FormatError> {
+        let name = checked_name(&array.name, limits)?;
+        match array.values {
+            Values::Vectors(mut vectors) => {
+                // Directions often have no value where there is no muscle.
+                let wrong = vectors.iter_mut().filter(|vector| !is_finite(**vector));
+                let count = wrong.map(|vector| *vector = Vector::zeros()).count();
+                if count > 0 {
+                    let detail = format!(
+                        "cell array {name:?} has {count} vectors that are not finite; they are taken as zero"
+                    );
+                    let warning = Warning::new("array-nonfinite", detail);
+                    warnings.push(warning.with("count", count as f64));
+                }
+                insert(&mut mesh.cell_vectors, name, vectors)
+            }
+            Values::Integers(values) => {
+                if let Some(set) = set_name(&name, "elset_") {
+                    insert(&mut mesh.cell_sets, set.to_string(), members(&values))
+                } else if has_few_values(&values) {
+                    insert(&mut mesh.cell_labels, name, values)
+                } else {
+                    self.ignored.push(name);
+                    Ok(())
+                }
+            }
+        }
     }
 
     fn place_point_array(

@@ -2,12 +2,17 @@
 
 use super::error::FormatError;
 
+/// Deflate makes at most 1032 bytes of one; a header that promises more lies.
+pub(super) const MOST_BYTES_OF_ONE: u64 = 1032;
+
 /// Bounds of a reader. The defaults are the published limits of the service.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReadLimits {
     pub nodes: u64,
     pub triangles: u64,
     pub cells: u64,
+    /// Of an image.
+    pub voxels: u64,
     /// Bytes that all compressed arrays of a file may decode to.
     pub decoded_bytes: u64,
     /// The same as a multiple of the whole file. No ratio is asked of a single array: a constant
@@ -27,6 +32,7 @@ impl Default for ReadLimits {
             nodes: 5_000_000,
             triangles: 10_000_000,
             cells: 4_000_000,
+            voxels: 1 << 27,
             decoded_bytes: 512 << 20,
             decoded_ratio: 10.0,
             decoded_floor_bytes: 16 << 20,
@@ -47,6 +53,10 @@ impl ReadLimits {
 
     pub(super) fn check_cells(&self, declared: u64) -> Result<(), FormatError> {
         within("cells", declared, self.cells)
+    }
+
+    pub(super) fn check_voxels(&self, declared: u64) -> Result<(), FormatError> {
+        within("voxels", declared, self.voxels)
     }
 
     /// A table that mixes points, lines, polygons and cells cannot be longer than this.

@@ -1,4 +1,4 @@
-//! Bytes to mesh and back.
+//! Bytes to mesh or image and back.
 //!
 //! Readers are written for hostile input: every count is compared with the bytes that are left
 //! and with [`ReadLimits`] before memory is taken, and [`read`] ends with one check of the whole
@@ -14,6 +14,8 @@ mod gmsh;
 mod gmsh_elements;
 mod gmsh_groups;
 pub mod limits;
+pub mod nrrd;
+mod nrrd_header;
 mod obj;
 pub mod output;
 mod parsed;
@@ -37,6 +39,7 @@ pub use error::{FormatError, Member, Place};
 pub use limits::ReadLimits;
 pub use output::{ArrayValues, NamedValues, SurfaceOutput, VolumeOutput, WriteError};
 
+use crate::image::ImageVolume;
 use crate::mesh::{Frame, TriangleSurface, VolumeMesh, Warning};
 
 /// A format that is read.
@@ -49,6 +52,7 @@ pub enum MeshFormat {
     Stl,
     Ply,
     Obj,
+    Nrrd,
 }
 
 impl MeshFormat {
@@ -67,6 +71,7 @@ impl MeshFormat {
             MeshFormat::Stl => "STL",
             MeshFormat::Ply => "PLY",
             MeshFormat::Obj => "OBJ",
+            MeshFormat::Nrrd => "NRRD",
         }
     }
 
@@ -79,29 +84,31 @@ impl MeshFormat {
             MeshFormat::Stl => "model/stl",
             MeshFormat::Ply => "application/vnd.ply",
             MeshFormat::Obj => "model/obj",
+            MeshFormat::Nrrd => "application/x-nrrd",
         }
     }
 }
 
-/// A mesh of either kind, in the unit of its file.
+/// A mesh of either kind in the unit of its file, or an image in mm.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Mesh {
     Volume(VolumeMesh),
     Surface(TriangleSurface),
+    Image(ImageVolume),
 }
 
-/// A mesh and what its file said beside it.
+/// A mesh or an image, and what its file said beside it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReadMesh {
     pub format: MeshFormat,
     pub mesh: Mesh,
-    /// The frame of a `SPACE=` mark.
+    /// The frame of a `SPACE=` mark, or of the `space` of an image.
     pub frame: Option<Frame>,
     pub ignored_arrays: Vec<String>,
     pub warnings: Vec<Warning>,
 }
 
-/// Reads a mesh of any known format.
+/// Reads a mesh or an image of any known format.
 pub fn read(bytes: &[u8], limits: &ReadLimits) -> Result<ReadMesh, FormatError> {
     let bytes = without_byte_order_mark(bytes);
     if bytes.iter().all(u8::is_ascii_whitespace) {
@@ -117,6 +124,7 @@ pub fn read(bytes: &[u8], limits: &ReadLimits) -> Result<ReadMesh, FormatError> 
         MeshFormat::Stl => stl::read(bytes, limits),
         MeshFormat::Ply => ply::read(bytes, limits),
         MeshFormat::Obj => obj::read(bytes, limits),
+        MeshFormat::Nrrd => return nrrd::read(bytes, limits),
     }?;
     parsed.into_mesh(format, limits)
 }

@@ -145,6 +145,9 @@ impl VolumeOutput<'_> {
         for (name, vectors) in &self.mesh.node_vectors {
             check_array(name, ArrayValues::Vectors(vectors), nodes)?;
         }
+        for (name, vectors) in &self.mesh.cell_vectors {
+            check_array(name, ArrayValues::Vectors(vectors), cells)?;
+        }
         for (name, labels) in &self.mesh.node_labels {
             check_length(name, labels.len(), nodes)?;
         }

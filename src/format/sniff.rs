@@ -13,7 +13,7 @@ const FOREIGN: [(&[u8], &str); 12] = [
     (b"\x1f\x8b", "it is compressed with gzip"),
     (b"BZh", "it is compressed with bzip2"),
     (b"\x28\xb5\x2f\xfd", "it is compressed with zstd"),
-    (b"NRRD", "it is an NRRD volume"),
+    (b"NRRD", "it is an NRRD file of a version that is not read here"),
     (b"glTF", "it is a glTF file, which is written here but not read"),
     (b"{", "it is a JSON document"),
     (b"\x89HDF", "it is an HDF5 file"),
@@ -31,6 +31,9 @@ pub(super) fn sniff(bytes: &[u8]) -> Option<MeshFormat> {
     if is_binary_stl_of_exact_length(bytes) {
         // The length of 84 + 50 n bytes says more than a header that starts with "solid".
         return Some(MeshFormat::Stl);
+    }
+    if bytes.starts_with(b"NRRD000") {
+        return Some(MeshFormat::Nrrd);
     }
     if is_foreign(bytes) {
         return None;
@@ -74,7 +77,7 @@ pub(super) fn foreign_kind(bytes: &[u8]) -> &'static str {
     if start.starts_with(b"<") {
         return "it is XML, but neither a VTK UnstructuredGrid nor a PolyData";
     }
-    "expected one of VTU, VTP, VTK, Gmsh, STL, PLY, OBJ"
+    "expected one of VTU, VTP, VTK, Gmsh, STL, PLY, OBJ, or NRRD"
 }
 
 fn is_foreign(bytes: &[u8]) -> bool {

@@ -13,13 +13,10 @@ use std::io::Read;
 use flate2::read::ZlibDecoder;
 
 use super::error::{FormatError, Place};
-use super::limits::{DecodeBudget, ReadLimits, room_for};
+use super::limits::{DecodeBudget, MOST_BYTES_OF_ONE, ReadLimits, room_for};
 use super::scalar::Scalar;
 use super::vtk_document::{Appended, Content, DataArray, Document};
 use super::vtk_source::Source;
-
-/// Deflate makes at most 1032 bytes of one; a block that promises more lies.
-const MOST_BYTES_OF_ONE: u64 = 1032;
 
 pub(super) struct Decoder<'d, 'a> {
     document: &'d Document<'a>,

@@ -162,11 +162,15 @@ pub(super) fn split_counted_lists(
 
 fn keep_values(arrays: &mut [NamedArray], kept: &[usize]) {
     for array in arrays {
-        if let Values::Integers(values) = &mut array.values {
-            let chosen = kept.iter().filter_map(|&cell| values.get(cell).copied());
-            *values = chosen.collect();
+        match &mut array.values {
+            Values::Integers(values) => *values = chosen(values, kept),
+            Values::Vectors(values) => *values = chosen(values, kept),
         }
     }
+}
+
+fn chosen<T: Copy>(values: &[T], kept: &[usize]) -> Vec<T> {
+    kept.iter().filter_map(|&cell| values.get(cell).copied()).collect()
 }
 
 /// Decodes the arrays of a section that a mesh may want, one tuple for each of `count` elements.
@@ -181,11 +185,7 @@ pub(super) fn decode_named(
         let is_integer = array.scalar.is_some_and(Scalar::is_integer);
         // Text has no components that could be wanted.
         let components = array.scalar.map_or(0, |_| array.components);
-        let is_wanted = match section {
-            Section::PointData => arrays.wants_point_array(&array.name, components, is_integer),
-            _ => arrays.wants_cell_array(&array.name, components, is_integer),
-        };
-        if !is_wanted {
+        if !arrays.wants(&array.name, components, is_integer) {
             decoder.pass_over(array)?;
             continue;
         }

@@ -170,10 +170,9 @@ impl LegacyReader<'_, '_> {
         let arrays = &mut self.parsed.arrays;
         let is_wanted = match self.owner {
             Owner::Dataset => false,
-            Owner::Points => arrays.wants_point_array(&name, components, scalar.is_integer()),
-            Owner::Cells => {
-                arrays.wants_cell_array(&name, components, scalar.is_integer() && has_cells)
-            }
+            // Attributes of poly data have no components that could be wanted.
+            Owner::Cells if !has_cells => arrays.wants(&name, 0, true),
+            _ => arrays.wants(&name, components, scalar.is_integer()),
         };
         if !is_wanted {
             return self.skip(scalar, count);

@@ -154,4 +154,7 @@ fn write_cell_data(file: &mut VtkFile, output: &VolumeOutput) {
     for (name, labels) in mesh.cell_labels.iter().filter(|(name, _)| !is_taken(name)) {
         file.array(name, 1, Numbers::Integers(labels));
     }
+    for (name, vectors) in mesh.cell_vectors.iter().filter(|(name, _)| !is_taken(name)) {
+        file.array(name, 3, Numbers::Vectors(vectors));
+    }
 }

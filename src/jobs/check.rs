@@ -62,9 +62,10 @@ impl Prepared {
                     .map(|(name, points)| (name.clone(), points.len() as u64))
                     .collect(),
             },
+            imaged: scene.imaged.as_ref().map(Into::into),
             unknowns: (3 * nodes - held) as u64,
             memory_mb: expected_memory_mb(scene),
-            method: "fem_linear".to_owned(),
+            method: input.spec.method.chosen().name().to_owned(),
             why: input.spec.method.why().to_owned(),
             warnings: warnings.map(WarningDocument::from).collect(),
         }

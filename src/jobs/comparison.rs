@@ -9,7 +9,7 @@ use super::observed::Observed;
 use super::output::ResultFolder;
 use super::provenance::{Origin, encode_result};
 use super::skin_files::PredictedSkin;
-use super::source::{MeshSource, SourceError, StoredMesh};
+use super::source::{MeshSource, SourceError, StoredMesh, StoredShape};
 use super::work::{JobOutput, Workplace};
 use crate::format::{ArrayValues, NamedValues, SurfaceOutput, vtp};
 use crate::mesh::{Frame, TriangleSurface, Vector, Warning};
@@ -82,7 +82,8 @@ pub fn compare_job(
 
     // 2. Distances.
     clock.phase(Phase::Compare);
-    let surface = prediction.surface_in_mm();
+    let wrong = || no_surface(&at.key("prediction"));
+    let surface = prediction.surface_in_mm().ok_or_else(wrong)?;
     let frame = prediction.frame;
     let pair = Pair { prediction: &surface, prediction_frame: frame, actual: &actual, at };
     let compared = pair.compare(&input.spec.to_compare_to(), &clock)?;
@@ -129,7 +130,8 @@ impl Pair<'_> {
     fn compare(&self, spec: &CompareToDocument, clock: &Observed) -> Result<Compared, JobError> {
         self.check_frames()?;
         let settings = settings(spec);
-        let actual = self.actual.surface_in_mm();
+        let wrong = || no_surface(&self.at.key("actual").key("mesh"));
+        let actual = self.actual.surface_in_mm().ok_or_else(wrong)?;
         let stop = || clock.is_cancelled();
         let comparison = compare(self.prediction, &actual, &settings, &stop)
             .map_err(|error| self.judge(error, clock))?;
@@ -194,13 +196,21 @@ pub(super) fn found(
     id: &str,
     at: &Pointer,
 ) -> Result<StoredMesh, JobError> {
-    result.map_err(|error| match error {
+    let found = result.map_err(|error| match error {
         SourceError::Unknown { .. } => {
             Problem::at(at, "unknown-mesh", format!("there is no mesh {id:?}")).into()
         }
         SourceError::Refused { code, detail, .. } => Problem::at(at, code, detail).into(),
         other => JobError::Source(other),
-    })
+    })?;
+    match found.shape {
+        StoredShape::Image(_) => Err(no_surface(at)),
+        _ => Ok(found),
+    }
+}
+
+fn no_surface(at: &Pointer) -> JobError {
+    Problem::at(at, "wrong-mesh", "this is an image, and a mesh is needed").into()
 }
 
 /// `skin.vtp` of a comparison: the prediction with its distance at each point.

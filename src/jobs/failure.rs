@@ -56,7 +56,11 @@ impl JobError {
             JobError::Prediction(PredictionError::OverBudget { .. }) | JobError::Budget { .. } => {
                 ErrorClass::Budget
             }
-            JobError::Prediction(PredictionError::Inverted { .. }) => ErrorClass::Input,
+            JobError::Prediction(
+                PredictionError::Inverted { .. }
+                | PredictionError::StepAboveLimit { .. }
+                | PredictionError::NoBone,
+            ) => ErrorClass::Input,
             JobError::Study(StudyError::Threads(_)) => ErrorClass::Infrastructure,
             JobError::Study(_) => ErrorClass::Input,
             JobError::Prediction(_)
@@ -124,10 +128,24 @@ impl JobError {
                 "wanted": wanted,
                 "residual_history": thinned(history),
             }),
+            JobError::Prediction(PredictionError::Diverged {
+                iterations,
+                growth,
+                residual,
+                history,
+            }) => json!({
+                "iterations": iterations,
+                "growth": growth,
+                "residual": residual,
+                "residual_history": thinned(history),
+            }),
             JobError::Prediction(PredictionError::Singular { node }) => json!({ "node": node }),
             JobError::Prediction(PredictionError::Inverted { cell }) => json!({ "element": cell }),
             JobError::Prediction(PredictionError::OverBudget { needed_mb, allowed_mb }) => {
                 json!({ "which": "memory", "needed_mb": needed_mb, "allowed_mb": allowed_mb })
+            }
+            JobError::Prediction(PredictionError::StepAboveLimit { step_s, limit_s }) => {
+                json!({ "step_s": step_s, "limit_s": limit_s })
             }
             JobError::Optimisation(OptimisationError::NotConverged {
                 iterations,

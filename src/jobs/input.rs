@@ -137,11 +137,13 @@ impl PredictInput {
         let mut stored = BTreeMap::new();
         let mut faults = Faults::default();
         for (at, id) in wanted {
-            if stored.contains_key(&id) {
+            if let Some(mesh) = stored.get(&id) {
+                check_kind(&at, mesh, &mut faults);
                 continue;
             }
             match sources.mesh(&id) {
                 Ok(mesh) => {
+                    check_kind(&at, &mesh, &mut faults);
                     self.check_units(&at, &mesh, &mut faults);
                     stored.insert(id, mesh);
                 }
@@ -165,27 +167,25 @@ impl PredictInput {
     }
 
     fn case_meshes(&self, stored: &BTreeMap<String, StoredMesh>) -> Result<CaseMeshes, JobError> {
-        let mut faults = Faults::default();
         let mut surfaces = BTreeMap::new();
-        let mut volume = None;
+        let (mut volume, mut image) = (None, None);
         for (id, mesh) in stored {
+            let frame = mesh.frame;
             match &mesh.shape {
                 StoredShape::Volume(shared) if *id == self.case.volume => {
-                    volume = Some(NamedMesh { mesh: shared.clone(), frame: mesh.frame });
+                    volume = Some(NamedMesh { mesh: shared.clone(), frame });
                 }
-                StoredShape::Surface(_) if *id == self.case.volume => {
-                    let detail = "this mesh is a surface, and a volume is needed";
-                    faults.add(&Pointer::from_text("/case/volume"), "wrong-mesh", detail);
+                StoredShape::Image(shared) => {
+                    image = Some(NamedMesh { mesh: shared.clone(), frame })
                 }
-                _ => {
-                    let named = NamedMesh { mesh: mesh.surface(), frame: mesh.frame };
-                    surfaces.insert(id.clone(), named);
+                StoredShape::Volume(_) | StoredShape::Surface(_) => {
+                    let named = mesh.surface().map(|mesh| NamedMesh { mesh, frame });
+                    surfaces.extend(named.map(|named| (id.clone(), named)));
                 }
             }
         }
-        faults.into_result()?;
         let missing = || JobError::Source(SourceError::Unknown { id: self.case.volume.clone() });
-        Ok(CaseMeshes { volume: volume.ok_or_else(missing)?, surfaces })
+        Ok(CaseMeshes { volume: volume.ok_or_else(missing)?, surfaces, image })
     }
 
     fn fetch_actual(&self, sources: &dyn MeshSource) -> Result<Option<StoredMesh>, JobError> {
@@ -219,6 +219,9 @@ impl PredictInput {
             if *id == self.case.volume {
                 return "volume".to_owned();
             }
+            if self.case.hounsfield.as_ref().is_some_and(|hounsfield| hounsfield.image == id) {
+                return "image".to_owned();
+            }
             let bone = self.case.bones.iter().find(|bone| bone.mesh == id);
             bone.map_or_else(|| "surface".to_owned(), |bone| format!("bone {}", bone.name))
         };
@@ -230,16 +233,38 @@ impl PredictInput {
     }
 }
 
+/// Refuses a surface or an image where a volume is needed, a mesh where an image is, and an image elsewhere.
+fn check_kind(at: &Pointer, mesh: &StoredMesh, faults: &mut Faults) {
+    let (is, needed) = match (at.as_str(), &mesh.shape) {
+        ("/case/volume", StoredShape::Volume(_)) => return,
+        ("/case/volume", StoredShape::Surface(_)) => ("this mesh is a surface", "a volume"),
+        ("/case/volume", StoredShape::Image(_)) => ("this is an image", "a volume"),
+        ("/case/hounsfield/image", StoredShape::Image(_)) => return,
+        ("/case/hounsfield/image", _) => ("this is a mesh", "an image"),
+        (_, StoredShape::Image(_)) => ("this is an image", "a mesh"),
+        _ => return,
+    };
+    faults.add(at, "wrong-mesh", format!("{is}, and {needed} is needed"));
+}
+
 impl StoredMesh {
     /// How provenance names this mesh.
     pub fn to_input(&self, role: &str) -> InputDocument {
-        let (nodes, cells, triangles) = match &self.shape {
-            StoredShape::Volume(mesh) => (mesh.nodes.len(), Some(mesh.cells.len() as u64), None),
+        let count = |count: usize| Some(count as u64);
+        let (nodes, cells, triangles, voxels) = match &self.shape {
+            StoredShape::Volume(mesh) => (mesh.nodes.len(), count(mesh.cells.len()), None, None),
             StoredShape::Surface(mesh) => {
-                (mesh.points.len(), None, Some(mesh.triangles.len() as u64))
+                (mesh.points.len(), None, count(mesh.triangles.len()), None)
             }
+            StoredShape::Image(image) => (0, None, None, count(image.voxels().len())),
         };
-        let sha256 = self.sha256.clone();
-        InputDocument { role: role.to_owned(), sha256, nodes: nodes as u64, cells, triangles }
+        InputDocument {
+            role: role.to_owned(),
+            sha256: self.sha256.clone(),
+            nodes: nodes as u64,
+            cells,
+            triangles,
+            voxels,
+        }
     }
 }

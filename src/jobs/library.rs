@@ -22,12 +22,13 @@ fn size_of(shape: &StoredShape) -> usize {
         StoredShape::Volume(volume) => {
             let numbers: usize = volume.cells.iter().map(|(_, nodes)| nodes.len() + 2).sum();
             let per_node = 24 + 8 * volume.node_labels.len() + 24 * volume.node_vectors.len();
-            let per_cell = 8 * volume.cell_labels.len();
+            let per_cell = 8 * volume.cell_labels.len() + 24 * volume.cell_vectors.len();
             let sets = volume.node_sets.values().chain(volume.cell_sets.values());
             let in_sets: usize = sets.map(Vec::len).sum();
             4 * (numbers + in_sets) + per_node * volume.nodes.len() + per_cell * volume.cells.len()
         }
         StoredShape::Surface(surface) => 28 * surface.points.len() + 12 * surface.triangles.len(),
+        StoredShape::Image(image) => image.voxels().bytes(),
     }
 }
 

@@ -169,7 +169,7 @@ impl Found {
             frame,
             queue_s: input.queue_s,
         };
-        let field_data = origin.field_data(&self.solver);
+        let field_data = origin.field_data(input.spec.method, &self.solver);
         let mut folder = ResultFolder::open(place.out)?;
         for name in input.files() {
             let bytes = match name {

@@ -45,12 +45,12 @@ impl Origin {
     }
 
     /// Texts for result files. No times: the same job writes the same bytes.
-    pub fn field_data(&self, solver: &SolverDocument) -> Vec<(String, String)> {
+    pub fn field_data(&self, method: MethodName, solver: &SolverDocument) -> Vec<(String, String)> {
         let provenance = json!({
             "engine": EngineDocument::this(),
             "spec_hash": self.spec_hash,
             "inputs": self.inputs,
-            "method": "fem_linear",
+            "method": method.chosen().name(),
             "solver": solver,
             "frame": self.frame.name(),
             "units": "mm",

@@ -1,27 +1,31 @@
-//! The report of an uploaded mesh.
+//! The report of an uploaded mesh or image.
 
 use std::collections::BTreeMap;
 
 use crate::format::{Mesh, ReadMesh};
+use crate::image::{ImageVolume, Voxels};
 use crate::mesh::quality::quality;
 use crate::mesh::{Vector, VolumeMesh};
-use crate::schema::mesh::{MeshKind, MeshReport};
-use crate::schema::{CornerPair, WarningDocument};
+use crate::schema::mesh::{ImageReport, MeshKind, MeshReport};
+use crate::schema::{CornerPair, Triple, WarningDocument};
 
 /// What a mesh file holds, in the units of the file.
 pub fn mesh_report(read: &ReadMesh) -> MeshReport {
-    let (kind, points, triangles) = match &read.mesh {
+    let (kind, (low, high), nodes, triangles) = match &read.mesh {
         Mesh::Volume(volume) => {
             let boundary = volume.boundary_faces();
             let triangles = boundary.iter().map(|face| face.triangles().count()).sum();
-            (MeshKind::Volume, &volume.nodes, triangles)
+            (MeshKind::Volume, bounding_box(&volume.nodes), volume.nodes.len(), triangles)
         }
-        Mesh::Surface(surface) => (MeshKind::Surface, &surface.points, surface.triangles.len()),
+        Mesh::Surface(surface) => {
+            let points = &surface.points;
+            (MeshKind::Surface, bounding_box(points), points.len(), surface.triangles.len())
+        }
+        Mesh::Image(image) => (MeshKind::Image, image.bounds(), 0, 0),
     };
-    let (low, high) = bounding_box(points);
     let mut report = MeshReport {
         kind,
-        nodes: points.len() as u64,
+        nodes: nodes as u64,
         cells: BTreeMap::new(),
         triangles: triangles as u64,
         bounding_box: CornerPair([low.x, low.y, low.z, high.x, high.y, high.z]),
@@ -32,14 +36,35 @@ pub fn mesh_report(read: &ReadMesh) -> MeshReport {
         node_labels: BTreeMap::new(),
         cell_labels: BTreeMap::new(),
         node_vectors: Vec::new(),
+        cell_vectors: Vec::new(),
         ignored_arrays: read.ignored_arrays.clone(),
         min_quality: None,
+        image: None,
         warnings: read.warnings.iter().map(WarningDocument::from).collect(),
     };
-    if let Mesh::Volume(volume) = &read.mesh {
-        describe(volume, &mut report);
+    match &read.mesh {
+        Mesh::Volume(volume) => describe(volume, &mut report),
+        Mesh::Image(image) => report.image = Some(image_report(image)),
+        Mesh::Surface(_) => {}
     }
     report
+}
+
+fn image_report(image: &ImageVolume) -> ImageReport {
+    let (lowest_hu, highest_hu) = image.range();
+    let kept_as = match image.voxels() {
+        Voxels::I16(_) => "int16",
+        Voxels::F32(_) => "float32",
+    };
+    ImageReport {
+        size: image.size().iter().map(|&size| size as u64).collect(),
+        spacing_mm: Triple(image.spacing()),
+        origin_mm: image.placement().origin.into(),
+        directions: image.directions().map(Triple::from).to_vec(),
+        lowest_hu,
+        highest_hu,
+        kept_as: kept_as.to_owned(),
+    }
 }
 
 fn describe(volume: &VolumeMesh, report: &mut MeshReport) {
@@ -52,6 +77,7 @@ fn describe(volume: &VolumeMesh, report: &mut MeshReport) {
     report.cell_labels = values(&volume.cell_labels);
     report.min_quality = Some(quality(volume).smallest_scaled_jacobian);
     report.node_vectors = volume.node_vectors.keys().cloned().collect();
+    report.cell_vectors = volume.cell_vectors.keys().cloned().collect();
 }
 
 fn sizes(sets: &BTreeMap<String, Vec<u32>>) -> BTreeMap<String, u64> {

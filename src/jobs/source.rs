@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use crate::format::{Mesh, ReadMesh};
+use crate::image::ImageVolume;
 use crate::mesh::{Frame, TriangleSurface, VolumeMesh, Warning};
 use crate::schema::case::LengthUnit;
 
@@ -28,11 +29,13 @@ pub struct StoredMesh {
     pub sha256: String,
 }
 
-/// A mesh of either kind, shared by the jobs that use it.
+/// A mesh of either kind or an image, shared by the jobs that use it.
 #[derive(Clone, Debug)]
 pub enum StoredShape {
     Volume(Arc<VolumeMesh>),
     Surface(Arc<TriangleSurface>),
+    /// In mm.
+    Image(Arc<ImageVolume>),
 }
 
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -46,34 +49,39 @@ pub enum SourceError {
 }
 
 impl StoredMesh {
-    /// A mesh that was just read from bytes with this hash.
+    /// A mesh that was just read from bytes with this hash. An image has no unit to be stated: it is in mm.
     pub fn new(read: ReadMesh, units: Option<LengthUnit>, sha256: String) -> Self {
         let shape = match read.mesh {
             Mesh::Volume(volume) => StoredShape::Volume(Arc::new(volume)),
             Mesh::Surface(surface) => StoredShape::Surface(Arc::new(surface)),
+            Mesh::Image(image) => StoredShape::Image(Arc::new(image)),
         };
+        let units = units.filter(|_| !matches!(shape, StoredShape::Image(_)));
         StoredMesh { shape, frame: read.frame, units, warnings: read.warnings, sha256 }
     }
 
-    /// The surface, or the boundary of the volume.
-    pub fn surface(&self) -> Arc<TriangleSurface> {
+    /// The surface, or the boundary of the volume; an image has none.
+    pub fn surface(&self) -> Option<Arc<TriangleSurface>> {
         match &self.shape {
-            StoredShape::Surface(surface) => surface.clone(),
-            StoredShape::Volume(volume) => Arc::new(volume.surface_of(&volume.boundary_faces())),
+            StoredShape::Surface(surface) => Some(surface.clone()),
+            StoredShape::Volume(volume) => {
+                Some(Arc::new(volume.surface_of(&volume.boundary_faces())))
+            }
+            StoredShape::Image(_) => None,
         }
     }
 
     /// The same surface in mm; without a stated unit it is in mm already.
-    pub fn surface_in_mm(&self) -> Arc<TriangleSurface> {
-        let surface = self.surface();
+    pub fn surface_in_mm(&self) -> Option<Arc<TriangleSurface>> {
+        let surface = self.surface()?;
         let units = self.units.unwrap_or_default();
         if units == LengthUnit::Mm {
-            return surface;
+            return Some(surface);
         }
         let mut scaled = (*surface).clone();
         for point in &mut scaled.points {
             *point *= units.in_mm();
         }
-        Arc::new(scaled)
+        Some(Arc::new(scaled))
     }
 }

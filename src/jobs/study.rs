@@ -86,7 +86,7 @@ impl StudyInput {
         let content = |id: &str| scenes.contents.get(id).cloned();
         let cases: Vec<&CaseDocument> =
             self.spec.case_ids().into_iter().filter_map(|id| self.cases.get(id)).collect();
-        let baseline = self.baseline.as_ref().map(|report| canonical::to_value(report));
+        let baseline = self.baseline.as_ref().map(canonical::to_value);
         let spec_hash = canonical::study_hash(&cases, &self.spec, baseline.as_ref(), &content);
         Ok(PreparedStudy { study, spec_hash, inputs: scenes.inputs, warnings: scenes.warnings })
     }

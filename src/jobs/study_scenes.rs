@@ -212,8 +212,12 @@ impl Documents<'_> {
                 let at = spec_at().key("materials").index(index);
                 let given = PlacedMaterials { at, materials: Some(document) };
                 let none = PlacedMaterials { at: spec_at(), materials: None };
-                let (by_region, _) = merge_materials(&given, &none, self.limits, faults);
-                scene.materials.push(Materials { name: material_name(document), by_region });
+                let merged = merge_materials(&given, &none, self.limits, faults);
+                scene.materials.push(Materials {
+                    name: material_name(document),
+                    by_region: merged.materials,
+                    fibres: merged.fibres,
+                });
             }
         }
         self.sweep(&mut scene, faults);
@@ -255,13 +259,18 @@ impl Documents<'_> {
         let mut materials = vec![Materials {
             name: self.spec.materials.first().map_or_else(|| "case".to_owned(), material_name),
             by_region: first.case.materials.clone(),
+            fibres: first.case.fibres.clone(),
         }];
         for (index, document) in self.spec.materials.iter().enumerate().skip(1) {
             let Some((at, plan)) = documents.first() else { break };
             let input = input(case, (*plan).clone(), given(index));
             let prepared = input.prepare(self.sources, self.limits);
-            let by_region = prepared.map_err(|error| moved(error, at, index))?.case.materials;
-            materials.push(Materials { name: material_name(document), by_region });
+            let case = prepared.map_err(|error| moved(error, at, index))?.case;
+            materials.push(Materials {
+                name: material_name(document),
+                by_region: case.materials,
+                fibres: case.fibres,
+            });
         }
         let name = reference.name.clone().or_else(|| case.name.clone());
         let truth = usual_truth(&first.case);
@@ -360,7 +369,9 @@ fn known_displacement(
     prepared: &Prepared,
     at: &Pointer,
 ) -> Result<Vec<Vector>, JobError> {
-    let predicted = skin.surface_in_mm();
+    let Some(predicted) = skin.surface_in_mm() else {
+        return Err(Problem::at(at, "wrong-mesh", "the result of that job is no surface").into());
+    };
     let rest = &prepared.scene.skin;
     let numbers = predicted.node_ids.as_deref().unwrap_or_default();
     if numbers != rest.nodes() || predicted.points.len() != rest.surface.points.len() {

@@ -2,10 +2,13 @@
 
 use crate::format::{ArrayValues, NamedValues, SurfaceOutput, VolumeOutput, WriteError, vtp, vtu};
 use crate::mesh::{Frame, TriangleSurface, Vector};
-use crate::prediction::{Case, Prediction, Scene};
+use crate::prediction::{Case, ImagedTissue, Prediction, Scene};
 
 /// `segment` of a point of a bone that moves with no segment.
 const NO_SEGMENT: i64 = -1;
+
+/// `hounsfield_mean` of a cell that reaches beyond the image.
+const NO_IMAGE: f64 = -32768.0;
 
 /// `volume.vtu`: predicted positions, and how each cell is deformed.
 pub fn encode_volume(
@@ -24,9 +27,23 @@ pub fn encode_volume(
     let det_f: Vec<f64> = prediction.deformation.iter().map(|cell| cell.det_f).collect();
     let strain: Vec<Vector> =
         prediction.deformation.iter().map(|cell| Vector::from(cell.principal_strain)).collect();
+    let imaged = scene.imaged.as_ref().map(|imaged| ImagedArrays::new(scene, imaged));
     let named = |name, values| NamedValues { name, values };
     let mut field_data = field_data.to_vec();
     field_data.push(("region_names".to_owned(), scene.regions.join("\n")));
+    let mut cell_arrays = vec![
+        named("region", ArrayValues::Integers(&region)),
+        named("det_f", ArrayValues::Reals(&det_f)),
+        named("principal_strain", ArrayValues::Vectors(&strain)),
+    ];
+    if let Some(imaged) = &imaged {
+        field_data.push(("tissue_names".to_owned(), imaged.names.join("\n")));
+        cell_arrays.extend([
+            named("hounsfield_mean", ArrayValues::Reals(&imaged.mean)),
+            named("tissue", ArrayValues::Integers(&imaged.tissue)),
+            named("young_modulus_kpa", ArrayValues::Reals(&imaged.young_modulus)),
+        ]);
+    }
     vtu::write(&VolumeOutput {
         mesh,
         positions: &positions,
@@ -36,13 +53,30 @@ pub fn encode_volume(
             named("displacement_magnitude_mm", ArrayValues::Reals(&magnitude)),
             named("node_id", ArrayValues::Integers(&node_id)),
         ],
-        cell_arrays: vec![
-            named("region", ArrayValues::Integers(&region)),
-            named("det_f", ArrayValues::Reals(&det_f)),
-            named("principal_strain", ArrayValues::Vectors(&strain)),
-        ],
+        cell_arrays,
         field_data,
     })
+}
+
+/// What an image says about each cell: its mean, -32768 where the cell reaches beyond the image; the number of
+/// its tissue in `tissue_names`, -1 where it keeps the material of its region; and the stiffness that follows.
+struct ImagedArrays {
+    names: Vec<String>,
+    mean: Vec<f64>,
+    tissue: Vec<i64>,
+    young_modulus: Vec<f64>,
+}
+
+impl ImagedArrays {
+    fn new(scene: &Scene, imaged: &ImagedTissue) -> Self {
+        let material = |&material: &u16| scene.materials[material as usize].young_modulus();
+        ImagedArrays {
+            names: imaged.tissues.iter().map(|(name, _)| name.clone()).collect(),
+            mean: imaged.mean.iter().map(|mean| mean.unwrap_or(NO_IMAGE)).collect(),
+            tissue: imaged.tissue_of_cell.iter().map(|t| t.map_or(-1, i64::from)).collect(),
+            young_modulus: scene.material_of_cell.iter().map(material).collect(),
+        }
+    }
 }
 
 /// `bones.vtp`: every bone of the case where its segment takes it. `segment` counts the segments named in

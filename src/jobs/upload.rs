@@ -6,7 +6,9 @@ use serde_json::Value;
 
 use super::report::mesh_report;
 use super::source::{StoredMesh, StoredShape};
-use crate::format::{self, FormatError, Member, ReadLimits, ReadMesh, SurfaceOutput, VolumeOutput};
+use crate::format::{
+    self, FormatError, Member, Mesh, ReadLimits, ReadMesh, SurfaceOutput, VolumeOutput,
+};
 use crate::mesh::{Frame, Warning};
 use crate::schema::Problem;
 use crate::schema::canonical::sha256_hex;
@@ -53,9 +55,14 @@ pub fn read_upload(
     standalone: bool,
 ) -> Result<Upload, Problem> {
     let read = format::read(bytes, &ReadLimits::default()).map_err(|error| problem_of(&error))?;
+    let is_image = matches!(read.mesh, Mesh::Image(_));
+    let units = statement.units.filter(|_| !is_image);
     let mut report = mesh_report(&read);
-    check_frame(&read, statement)?;
-    let scale = check_scale(report.diagonal, statement)?;
+    // The frame stated for a form of several parts is that of the case, to which an image is turned.
+    if !is_image {
+        check_frame(&read, statement)?;
+    }
+    let scale = check_scale(report.diagonal, units.unwrap_or_default(), statement.allow_any_scale)?;
     report.warnings.extend(scale.as_ref().map(WarningDocument::from));
     let id = uuid::Uuid::now_v7().to_string();
     let document = MeshDocument {
@@ -66,15 +73,13 @@ pub fn read_upload(
         // Filled in from the clock of the database when it is read.
         created: String::new(),
         role: statement.role.clone(),
-        units: statement.units,
+        units,
         frame: statement.frame,
         report,
     };
     let frame = read.frame.or(statement.frame.map(Frame::from)).unwrap_or_default();
-    let mesh = StoredMesh {
-        frame: Some(frame),
-        ..StoredMesh::new(read, statement.units, sha256_of_bytes.clone())
-    };
+    let mesh =
+        StoredMesh { frame: Some(frame), ..StoredMesh::new(read, units, sha256_of_bytes.clone()) };
     let stored = Bytes::from(encode(&mesh.shape, frame)?);
     let row = NewMesh {
         id,
@@ -93,6 +98,7 @@ fn encode(shape: &StoredShape, frame: Frame) -> Result<Vec<u8>, Problem> {
     let written = match shape {
         StoredShape::Volume(volume) => format::vtu::write(&VolumeOutput::plain(volume, frame)),
         StoredShape::Surface(surface) => format::vtp::write(&SurfaceOutput::plain(surface, frame)),
+        StoredShape::Image(image) => Ok(format::nrrd::write(image, frame)),
     };
     written.map_err(not_written)
 }
@@ -132,8 +138,11 @@ fn check_frame(read: &ReadMesh, statement: &Statement) -> Result<(), Problem> {
     }
 }
 
-fn check_scale(diagonal: f64, statement: &Statement) -> Result<Option<Warning>, Problem> {
-    let units = statement.units.unwrap_or_default();
+fn check_scale(
+    diagonal: f64,
+    units: LengthUnit,
+    allow_any_scale: bool,
+) -> Result<Option<Warning>, Problem> {
     let diagonal_mm = diagonal * units.in_mm();
     if USUAL_DIAGONAL_MM.contains(&diagonal_mm) {
         return Ok(None);
@@ -146,7 +155,7 @@ fn check_scale(diagonal: f64, statement: &Statement) -> Result<Option<Warning>, 
     let detail = format!(
         "the diagonal of the bounding box is {diagonal_mm:.4} mm, that of a head or its parts 50 to 600 mm{hint}"
     );
-    if POSSIBLE_DIAGONAL_MM.contains(&diagonal_mm) || statement.allow_any_scale {
+    if POSSIBLE_DIAGONAL_MM.contains(&diagonal_mm) || allow_any_scale {
         return Ok(Some(Warning::new("units-suspect", detail).with("diagonal_mm", diagonal_mm)));
     }
     let problem = Problem::new("units-suspect", detail).with("diagonal_mm", diagonal_mm);
@@ -159,19 +168,22 @@ fn check_scale(diagonal: f64, statement: &Statement) -> Result<Option<Warning>, 
 /// A mesh in another format, as `GET /v1/meshes/{id}/content` hands it out.
 pub fn export(mesh: &StoredMesh, format: ExportFormat) -> Result<Vec<u8>, Problem> {
     let frame = mesh.frame.unwrap_or_default();
-    if format == ExportFormat::Vtu {
-        let StoredShape::Volume(_) = mesh.shape else {
-            let detail = "a surface has no VTU form; vtp, stl and ply are there";
-            return Err(Problem::new("format-not-available", detail));
-        };
-        return encode(&mesh.shape, frame);
-    }
     let surface = mesh.surface();
-    let output = SurfaceOutput::plain(&surface, frame);
-    let written = match format {
-        ExportFormat::Vtu | ExportFormat::Vtp => format::vtp::write(&output),
-        ExportFormat::Stl => format::stl::write(&output),
-        ExportFormat::Ply => format::ply::write(&output),
+    let surface = surface.as_deref().map(|surface| SurfaceOutput::plain(surface, frame));
+    let written = match (format, &mesh.shape, &surface) {
+        (ExportFormat::Vtu, StoredShape::Volume(_), _)
+        | (ExportFormat::Nrrd, StoredShape::Image(_), _) => return encode(&mesh.shape, frame),
+        (ExportFormat::Vtp, _, Some(surface)) => format::vtp::write(surface),
+        (ExportFormat::Stl, _, Some(surface)) => format::stl::write(surface),
+        (ExportFormat::Ply, _, Some(surface)) => format::ply::write(surface),
+        (_, StoredShape::Image(_), _) => {
+            return Err(Problem::new("format-not-available", "an image has the form nrrd only"));
+        }
+        _ => {
+            let detail = "a surface has no VTU form, and no mesh has an NRRD form; \
+                 vtp, stl and ply are there";
+            return Err(Problem::new("format-not-available", detail));
+        }
     };
     written.map_err(not_written)
 }
@@ -183,11 +195,17 @@ pub enum ExportFormat {
     Vtp,
     Stl,
     Ply,
+    Nrrd,
 }
 
 impl ExportFormat {
-    pub const ALL: [ExportFormat; 4] =
-        [ExportFormat::Vtu, ExportFormat::Vtp, ExportFormat::Stl, ExportFormat::Ply];
+    pub const ALL: [ExportFormat; 5] = [
+        ExportFormat::Vtu,
+        ExportFormat::Vtp,
+        ExportFormat::Stl,
+        ExportFormat::Ply,
+        ExportFormat::Nrrd,
+    ];
 
     /// The word in the request and the extension of the file.
     pub fn name(self) -> &'static str {
@@ -196,6 +214,7 @@ impl ExportFormat {
             ExportFormat::Vtp => "vtp",
             ExportFormat::Stl => "stl",
             ExportFormat::Ply => "ply",
+            ExportFormat::Nrrd => "nrrd",
         }
     }
 
@@ -204,6 +223,7 @@ impl ExportFormat {
             ExportFormat::Vtu | ExportFormat::Vtp => "application/vnd.vtk.xml",
             ExportFormat::Stl => "model/stl",
             ExportFormat::Ply => "application/vnd.ply",
+            ExportFormat::Nrrd => "application/x-nrrd",
         }
     }
 }

@@ -97,7 +97,8 @@ impl Predicted {
         // 1. The displacement of the skin.
         clock.phase(Phase::Surface);
         let mut skin = PredictedSkin::new(&prepared.scene.skin, &prediction);
-        let statistics = statistics(&prepared.scene.skin, &skin, &prediction.landmarks)?;
+        let mut statistics = statistics(&prepared.scene.skin, &skin, &prediction.landmarks)?;
+        statistics.imaged = prepared.scene.imaged.as_ref().map(Into::into);
         clock.check()?;
 
         // 2. Against another surface, if asked.
@@ -130,7 +131,7 @@ impl Predicted {
             warnings,
         };
         let mut folder = ResultFolder::open(out)?;
-        finished.write_files(&input.files(), &mut folder)?;
+        finished.write_files(input, &mut folder)?;
 
         // 4. The manifest.
         let result = finished.result(input, clock, folder.files.clone());
@@ -170,11 +171,12 @@ struct Finished<'a> {
 }
 
 impl Finished<'_> {
-    fn write_files(&self, names: &[OutputName], folder: &mut ResultFolder) -> Result<(), JobError> {
-        let field_data = self.origin.field_data(&solver_document(&self.prediction.solver));
+    fn write_files(&self, input: &PredictInput, folder: &mut ResultFolder) -> Result<(), JobError> {
+        let solver = solver_document(&self.prediction.solver);
+        let field_data = self.origin.field_data(input.spec.method, &solver);
         let scene = &self.prepared.scene;
         let frame = self.origin.frame;
-        for &name in names {
+        for name in input.files() {
             let bytes = match name {
                 OutputName::VolumeVtu => encode_volume(scene, self.prediction, frame, &field_data)?,
                 OutputName::BonesVtp => encode_bones(&self.prepared.case, scene, &field_data)?,
@@ -239,7 +241,7 @@ pub(super) fn statistics(
         regions.insert(name.clone(), over(points)?);
     }
     let landmarks = triples(landmarks);
-    Ok(StatisticsDocument { skin: over(&everywhere)?, regions, landmarks })
+    Ok(StatisticsDocument { skin: over(&everywhere)?, regions, landmarks, imaged: None })
 }
 
 fn triples(vectors: &BTreeMap<String, Vector>) -> BTreeMap<String, Triple> {

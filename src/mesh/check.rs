@@ -47,6 +47,7 @@ pub struct MeshReport {
     pub node_labels: BTreeMap<String, BTreeMap<i64, u64>>,
     pub cell_labels: BTreeMap<String, BTreeMap<i64, u64>>,
     pub node_vectors: Vec<String>,
+    pub cell_vectors: Vec<String>,
     pub warnings: Vec<Warning>,
 }
 
@@ -75,6 +76,7 @@ impl MeshReport {
             node_labels: occurrences(&mesh.node_labels),
             cell_labels: occurrences(&mesh.cell_labels),
             node_vectors: mesh.node_vectors.keys().cloned().collect(),
+            cell_vectors: mesh.cell_vectors.keys().cloned().collect(),
             warnings: Vec::new(),
         };
         report.warn();

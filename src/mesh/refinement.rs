@@ -53,6 +53,9 @@ pub fn refine(mesh: &VolumeMesh) -> VolumeMesh {
             all.extend(division.parents.iter().map(|parents| mean(parents, vectors)));
             all
         }),
+        cell_vectors: each(&mesh.cell_vectors, |vectors| {
+            vectors.iter().flat_map(|&vector| [vector; 8]).collect()
+        }),
         nodes: division.nodes,
         cells,
     }

@@ -125,7 +125,9 @@ fn cells_inherit_labels_and_nodes_average_vectors() {
     mesh.cell_labels.insert("region".into(), vec![3, 5]);
     mesh.cell_sets.insert("right".into(), vec![1]);
     mesh.node_vectors.insert("u".into(), mesh.nodes.clone());
+    mesh.cell_vectors.insert("fibre".into(), vec![Vector::x(), Vector::z()]);
     let fine = refine(&mesh);
+    assert_eq!(fine.cell_vectors["fibre"], [[Vector::x(); 8], [Vector::z(); 8]].concat());
     assert_eq!(fine.cell_labels["region"], [[3; 8], [5; 8]].concat());
     assert_eq!(fine.cell_sets["right"], (8..16).collect::<Vec<u32>>());
     assert_eq!(fine.node_vectors["u"], fine.nodes);

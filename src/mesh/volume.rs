@@ -142,6 +142,8 @@ pub struct VolumeMesh {
     pub cell_labels: BTreeMap<String, Vec<i64>>,
     /// Arrays with one vector for each node, for displacements prescribed by array.
     pub node_vectors: BTreeMap<String, Vec<Vector>>,
+    /// Arrays with one vector for each cell, for fibre directions; they may be zero where there are none.
+    pub cell_vectors: BTreeMap<String, Vec<Vector>>,
 }
 
 /// A face that belongs to one cell only, oriented outwards; 3 or 4 nodes.

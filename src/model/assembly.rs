@@ -4,9 +4,11 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::stiffness::{Dilatation, add_pair, cell_stiffness, tetrahedron};
+use super::membrane::Membrane;
+use super::stiffness::{Dilatation, cell_stiffness, tetrahedron};
 use crate::boundary::Hold;
-use crate::material::LinearElastic;
+use crate::material::elastic_tensor::add_isotropic_pair;
+use crate::material::{ElasticTensor, LinearElastic};
 use crate::mesh::{CellShape, Vector, VolumeMesh};
 use crate::solver::cliques::{Cliques, CliquesOfRow};
 use crate::solver::half_matrix::{HalfMatrix, Pattern, RowChunk};
@@ -27,6 +29,12 @@ pub struct Tissue<'a> {
     pub materials: &'a [LinearElastic],
     /// For each cell its entry in `materials`.
     pub material_of_cell: &'a [u16],
+    /// For each cell the entry whose pressure it takes part in: its own, and for a mixture that of its largest
+    /// part, so that tissue that changes from cell to cell keeps a continuous pressure.
+    pub pressure_of_cell: &'a [u16],
+    /// For each cell the direction of its fibres, of length 1; empty where no material has fibres.
+    pub fibres: &'a [Vector],
+    pub membrane: Option<&'a Membrane>,
     pub dilatation: fn(CellShape) -> Dilatation,
 }
 
@@ -118,7 +126,7 @@ fn far_end(nodes: &[Vector]) -> usize {
     ends.unwrap_or_default()
 }
 
-/// What rows need of a tetrahedron: gradients of the shape functions, and lambda V and mu V.
+/// What rows need of an isotropic tetrahedron: gradients of the shape functions, and lambda V and mu V.
 #[derive(Clone, Copy)]
 struct Simplex {
     gradients: [Vector; 4],
@@ -133,10 +141,27 @@ impl Tissue<'_> {
         numbering: &Numbering,
         keep_going: &dyn Fn() -> bool,
     ) -> Result<Option<HalfMatrix<f64, 3>>, InvertedCell> {
+        self.assemble_with(numbering, keep_going, &|cell| self.tensor(cell))
+    }
+
+    /// The stiffness of the tissue of a cell.
+    pub fn tensor(&self, cell: usize) -> ElasticTensor {
+        let direction = self.fibres.get(cell).copied().unwrap_or_default();
+        self.materials[self.material_of_cell[cell] as usize].tensor(&direction)
+    }
+
+    /// K with another stiffness for each cell. The membrane is part of it.
+    pub(super) fn assemble_with(
+        &self,
+        numbering: &Numbering,
+        keep_going: &dyn Fn() -> bool,
+        tensor: &(dyn Fn(usize) -> ElasticTensor + Sync),
+    ) -> Result<Option<HalfMatrix<f64, 3>>, InvertedCell> {
         let mut matrix = HalfMatrix::zeros(numbering.pattern.clone());
         let order = &numbering.layout.clique_order;
+        let simplex = |&cell: &u32| self.simplex(cell as usize, &tensor(cell as usize));
         let simplices: Vec<Option<Simplex>> =
-            order.par_iter().map(|&cell| self.simplex(cell as usize)).collect::<Result<_, _>>()?;
+            order.par_iter().map(simplex).collect::<Result<_, _>>()?;
         if !keep_going() {
             return Ok(None);
         }
@@ -146,26 +171,30 @@ impl Tissue<'_> {
         );
         let others: Vec<usize> =
             (0..order.len()).filter(|&clique| simplices[clique].is_none()).collect();
-        let finished =
-            numbering.add_cells(&mut matrix, &others, keep_going, |cell| self.cell_matrix(cell))?;
+        let finished = numbering.add_cells(&mut matrix, &others, keep_going, |cell| {
+            self.cell_matrix(cell, &tensor(cell))
+        })?;
+        if let Some(membrane) = self.membrane {
+            membrane.add_linear(&mut matrix, numbering, self.mesh);
+        }
         Ok(finished.then_some(matrix))
     }
 
-    /// `None` for cells that are not tetrahedra.
-    fn simplex(&self, cell: usize) -> Result<Option<Simplex>, InvertedCell> {
-        if self.mesh.cells.shape(cell) != CellShape::Tet4 {
+    /// `None` for cells that are not isotropic tetrahedra.
+    fn simplex(
+        &self,
+        cell: usize,
+        tensor: &ElasticTensor,
+    ) -> Result<Option<Simplex>, InvertedCell> {
+        if self.mesh.cells.shape(cell) != CellShape::Tet4 || tensor.fibre.is_some() {
             return Ok(None);
         }
         let (volume, gradients) = tetrahedron(self.mesh, cell)?;
-        let material = &self.materials[self.material_of_cell[cell] as usize];
-        Ok(Some(Simplex {
-            gradients,
-            lambda: material.lambda() * volume,
-            mu: material.shear_modulus() * volume,
-        }))
+        let (lambda, mu) = (tensor.lambda * volume, tensor.mu * volume);
+        Ok(Some(Simplex { gradients, lambda, mu }))
     }
 
-    fn cell_matrix(&self, cell: usize) -> Result<Vec<Block>, InvertedCell> {
+    fn cell_matrix(&self, cell: usize, tensor: &ElasticTensor) -> Result<Vec<Block>, InvertedCell> {
         let mut corners = [Vector::zeros(); crate::element::MAX_NODES];
         let mut count = 0;
         for (slot, corner) in corners.iter_mut().zip(self.mesh.corners(cell)) {
@@ -173,8 +202,7 @@ impl Tissue<'_> {
             count += 1;
         }
         let shape = self.mesh.cells.shape(cell);
-        let material = &self.materials[self.material_of_cell[cell] as usize];
-        cell_stiffness(shape, &corners[..count], material, (self.dilatation)(shape))
+        cell_stiffness(shape, &corners[..count], tensor, (self.dilatation)(shape))
             .ok_or(InvertedCell { cell })
     }
 }
@@ -182,7 +210,7 @@ impl Tissue<'_> {
 impl Simplex {
     #[inline]
     fn add_block(&self, j: usize, k: usize, block: &mut Block) {
-        add_pair(block, [&self.gradients[j], &self.gradients[k]], self.lambda, self.mu);
+        add_isotropic_pair(block, [&self.gradients[j], &self.gradients[k]], self.lambda, self.mu);
     }
 }
 
@@ -217,7 +245,8 @@ fn add_rows(
     }
 }
 
-fn add_cell(matrix: &mut HalfMatrix<f64, 3>, rows: &[u32], blocks: &[Block]) {
+/// Adds the blocks of a cell, row by row, to the rows of its nodes.
+pub(super) fn add_cell(matrix: &mut HalfMatrix<f64, 3>, rows: &[u32], blocks: &[Block]) {
     for (j, &row) in rows.iter().enumerate() {
         for (k, &column) in rows.iter().enumerate().filter(|(_, column)| **column <= row) {
             let sum = matrix.block_mut(row as usize, column as usize);

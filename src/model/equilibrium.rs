@@ -58,7 +58,7 @@ impl Convergence {
             why: solution.why.clone(),
             iterations: solution.iterations,
             relative_residual: solution.relative_residual,
-            history: Vec::new(),
+            history: solution.history.clone(),
             steps: 1,
         }
     }
@@ -71,4 +71,10 @@ pub enum ModelError {
     Inverted(#[from] InvertedCell),
     #[error(transparent)]
     Solver(#[from] SolverError),
+    #[error(
+        "a step of {step_s:.3e} s grows without bound: explicit steps may take up to {limit_s:.3e} s"
+    )]
+    StepAboveLimit { step_s: f64, limit_s: f64 },
+    #[error("no face of the tissue lies on bone: a warp has nothing to follow")]
+    NoBone,
 }

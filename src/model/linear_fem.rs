@@ -11,7 +11,7 @@ use super::equilibrium::{Convergence, Equilibrium, LoadCase, ModelError, Observe
 use crate::boundary::Hold;
 use crate::mesh::Vector;
 use crate::solver::half_matrix::HalfMatrix;
-use crate::solver::{self, Solution, SolverError, Tolerance, Unknowns};
+use crate::solver::{self, Solution, SolverError, System, Tolerance, Unknowns, Watch};
 
 /// A mechanical problem: tissue, what holds it and what acts on it.
 pub struct Problem<'a> {
@@ -37,6 +37,18 @@ impl Problem<'_> {
         cases: &[LoadCase],
         observer: &dyn Observer,
     ) -> Result<Vec<Equilibrium>, ModelError> {
+        self.solve_cases_by(cases, observer, &|system, right_hand_sides, watch| {
+            solver::solve(system, right_hand_sides, &self.tolerance, watch)
+        })
+    }
+
+    /// The same with a solver of the caller's choice.
+    pub(super) fn solve_cases_by(
+        &self,
+        cases: &[LoadCase],
+        observer: &dyn Observer,
+        solve: SolveBy,
+    ) -> Result<Vec<Equilibrium>, ModelError> {
         observer.assembling();
         let mesh = self.tissue.mesh;
         let numbering = number(&nodes_of_cells(mesh), &mesh.nodes, self.holds);
@@ -44,9 +56,14 @@ impl Problem<'_> {
         let matrix = assembled.ok_or(SolverError::Stopped)?;
         let constrained = Constrained { holds: self.holds, numbering: &numbering };
         let positions = &mesh.nodes;
-        solve_displacement(Assembled { constrained, matrix, positions }, self, cases, observer)
+        let assembled = Assembled { constrained, matrix, positions };
+        solve_displacement(assembled, cases, observer, solve)
     }
 }
+
+/// How a system is solved for several right-hand sides.
+pub(super) type SolveBy<'a> =
+    &'a dyn Fn(&System, &[Unknowns], Watch) -> Result<Vec<Solution>, SolverError>;
 
 /// A stiffness matrix over numbered nodes at positions.
 pub(super) struct Assembled<'a> {
@@ -58,9 +75,9 @@ pub(super) struct Assembled<'a> {
 /// Solves for displacements alone, for each load case.
 pub(super) fn solve_displacement(
     assembled: Assembled,
-    problem: &Problem,
     cases: &[LoadCase],
     observer: &dyn Observer,
+    solve: SolveBy,
 ) -> Result<Vec<Equilibrium>, ModelError> {
     // 1. What is known, and the forces it leaves on the free unknowns.
     observer.solving();
@@ -72,8 +89,8 @@ pub(super) fn solve_displacement(
 
     // 2. The free unknowns.
     let watch = |iteration, residual| observer.iterated(iteration, residual);
-    let solutions = solver::solve(&system, &right_hand_sides, &problem.tolerance, &watch)
-        .map_err(|error| constrained.in_nodes(error))?;
+    let solutions =
+        solve(&system, &right_hand_sides, &watch).map_err(|error| constrained.in_nodes(error))?;
 
     // 3. Displacement and reactions, back along the axes of the coordinates.
     let equilibrium = |(known, solution): (Known, Solution)| {

@@ -5,10 +5,15 @@ mod constrained;
 pub mod equilibrium;
 pub mod linear_fem;
 pub mod load;
+pub mod mass_spring;
+pub mod mass_tensor;
+pub mod membrane;
 pub mod quadratic;
+pub mod spline;
 pub mod stabilised;
 pub mod stiffness;
 pub mod strain;
+pub mod thickness_warp;
 
 use crate::element::{self, ReferenceCell};
 use crate::mesh::CellShape;

@@ -2,7 +2,7 @@
 //! middle of its edges. Converges one order faster than linear tetrahedra and does not lock at nu up to
 //! about 0.499 (VERIFICATION V.4, V.29).
 //!
-//! K_jk = sum_q V/4 [ lambda g_j g_k^T + mu g_k g_j^T + mu (g_j . g_k) I ], METHODS A2.
+//! K_jk = sum_q V/4 g_j.C.g_k, METHODS A2, with fibres A3 and A4.
 //! An edge node is held where its edge lies on a boundary face all of whose nodes are held: see
 //! `boundary::midpoint`.
 
@@ -13,14 +13,14 @@ use super::constrained::{Constrained, number};
 use super::equilibrium::{Equilibrium, LoadCase, ModelError, Observer};
 use super::linear_fem::{Assembled, Problem, solve_displacement};
 use super::load::FaceLoad;
-use super::stiffness::{add_pair, tetrahedron};
+use super::stiffness::tetrahedron;
 use crate::boundary::{Hold, midpoint};
 use crate::element::tetrahedron10;
-use crate::material::LinearElastic;
+use crate::material::ElasticTensor;
 use crate::mesh::volume::BoundaryFace;
 use crate::mesh::{Vector, VolumeMesh};
 use crate::solver::cliques::Cliques;
-use crate::solver::{Block, HalfMatrix, SolverError};
+use crate::solver::{self, Block, HalfMatrix, SolverError, System, Unknowns, Watch};
 
 /// The middles of the edges of a mesh of tetrahedra, numbered after its nodes.
 pub struct EdgeNodes {
@@ -163,7 +163,8 @@ pub fn solve_cases(
     (0..mesh.cells.len()).for_each(|cell| cells.push(edges.of_cell(mesh, cell)));
     let positions = edges.positions(mesh);
     let numbering = number(&cells, &positions, &holds);
-    let matrix = assemble(&problem.tissue, &numbering, observer)?.ok_or(SolverError::Stopped)?;
+    let assembled = assemble(&problem.tissue, &numbering, &edges, observer)?;
+    let matrix = assembled.ok_or(SolverError::Stopped)?;
 
     // 2. Each load case with values for edge nodes too.
     let forces = |case: &LoadCase| {
@@ -180,7 +181,10 @@ pub fn solve_cases(
         .collect();
     let constrained = Constrained { holds: &holds, numbering: &numbering };
     let assembled = Assembled { constrained, matrix, positions: &positions };
-    let mut equilibria = solve_displacement(assembled, problem, &cases, observer)?;
+    let solve = |system: &System, right_hand_sides: &[Unknowns], watch: Watch| {
+        solver::solve(system, right_hand_sides, &problem.tolerance, watch)
+    };
+    let mut equilibria = solve_displacement(assembled, &cases, observer, &solve)?;
 
     // 3. Back to the nodes of the mesh.
     for equilibrium in &mut equilibria {
@@ -210,6 +214,7 @@ fn values(case: &LoadCase, given: &[Hold], holds: &[Hold], parents: &[[usize; 2]
 fn assemble(
     tissue: &Tissue,
     numbering: &Numbering,
+    edges: &EdgeNodes,
     observer: &dyn Observer,
 ) -> Result<Option<HalfMatrix<f64, 3>>, InvertedCell> {
     let mut matrix = HalfMatrix::zeros(numbering.pattern.clone());
@@ -217,24 +222,20 @@ fn assemble(
     let keep_going = || !observer.is_stopped();
     let finished = numbering.add_cells(&mut matrix, &all, &keep_going, |cell| {
         let (volume, gradients) = tetrahedron(tissue.mesh, cell)?;
-        let material = &tissue.materials[tissue.material_of_cell[cell] as usize];
-        Ok(cell_stiffness(volume, &gradients, material))
+        Ok(cell_stiffness(volume, &gradients, &tissue.tensor(cell)))
     })?;
+    if let Some(membrane) = tissue.membrane {
+        membrane.add_quadratic(&mut matrix, numbering, tissue.mesh, edges);
+    }
     Ok(finished.then_some(matrix))
 }
 
-fn cell_stiffness(
-    volume: f64,
-    of_barycentric: &[Vector; 4],
-    material: &LinearElastic,
-) -> Vec<Block> {
-    let quarter = volume / 4.0;
-    let (lambda, mu) = (material.lambda() * quarter, material.shear_modulus() * quarter);
+fn cell_stiffness(volume: f64, of_barycentric: &[Vector; 4], tensor: &ElasticTensor) -> Vec<Block> {
     let mut blocks = vec![[[0.0; 3]; 3]; 100];
     for point in tetrahedron10::points() {
         let g = tetrahedron10::gradients(&point, of_barycentric);
         for (entry, block) in blocks.iter_mut().enumerate() {
-            add_pair(block, [&g[entry / 10], &g[entry % 10]], lambda, mu);
+            tensor.add_pair(block, [&g[entry / 10], &g[entry % 10]], volume / 4.0);
         }
     }
     blocks

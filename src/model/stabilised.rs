@@ -5,15 +5,18 @@
 //!   int q div u - int p q / lambda - int (p - Pi p)(q - Pi q) / mu = 0        B u - C p = 0
 //! where Pi is the mean over a cell. On a tetrahedron of volume V: B_ab = V/4 grad N_b,
 //! C = M / lambda + (M - Mbar) / mu, M_ab = V/20 (1 + delta_ab), Mbar_ab = V/16.
+//! With fibres lambda and mu are those of `ElasticTensor::pressure_part`, and instead of 2 mu eps(u) stands what
+//! the pressure leaves of the stress, (stiffness - lambda (1 x 1)) eps(u), which is positive definite.
 //!
 //! Source: Dohrmann, Bochev, A stabilized finite element method for the Stokes problem based on polynomial
 //! pressure projections, International Journal for Numerical Methods in Fluids 46, 2004; the compressible
 //! term M / lambda is that of linear elasticity.
-//! A node has one pressure for each material around it, because pressure jumps where stiffness does.
+//! A node has one pressure for each material around it, because pressure jumps where stiffness does; mixtures
+//! take part in the pressure of their largest part.
 //! Hexahedra and wedges keep their mean dilatation and have no pressure; nor have tetrahedra with nu = 0,
 //! whose pressure is zero.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use nalgebra::Matrix3;
 use rayon::prelude::*;
@@ -23,7 +26,8 @@ use super::constrained::{Constrained, Known, free_unknowns, number, product_at_h
 use super::equilibrium::{Convergence, Equilibrium, LoadCase, ModelError, Observer};
 use super::linear_fem::{Problem, check_finite};
 use super::stiffness::tetrahedron;
-use crate::material::LinearElastic;
+use crate::material::ElasticTensor;
+use crate::material::elastic_tensor::PressurePart;
 use crate::mesh::{CellShape, Vector};
 use crate::solver::mixed::{self, Coupling, MixedRightHandSide, MixedSolution, MixedSystem};
 use crate::solver::sparse_rows::{Couplings, SparseRows};
@@ -100,22 +104,23 @@ fn check_memory(
     }
 }
 
-/// K: tetrahedra with 2 mu eps : eps, which is the elastic law of Young's modulus 2 mu and nu = 0.
+/// K: tetrahedra with what no pressure carries, 2 mu eps : eps where they are isotropic.
 fn shear_stiffness(
     tissue: &Tissue,
     numbering: &Numbering,
     observer: &dyn Observer,
 ) -> Result<Option<HalfMatrix<f64, 3>>, InvertedCell> {
-    let regions = tissue.materials.len() as u16;
-    let shear = tissue.materials.iter().map(LinearElastic::shear_only);
-    let materials: Vec<LinearElastic> = tissue.materials.iter().copied().chain(shear).collect();
-    let shapes = tissue.mesh.cells.iter().map(|(shape, _)| shape);
-    let material_of_cell: Vec<u16> = shapes
-        .zip(tissue.material_of_cell)
-        .map(|(shape, &region)| if shape == CellShape::Tet4 { region + regions } else { region })
-        .collect();
-    let tissue = Tissue { materials: &materials, material_of_cell: &material_of_cell, ..*tissue };
-    tissue.assemble(numbering, &|| !observer.is_stopped())
+    let tensor = |cell: usize| {
+        let tensor = tissue.tensor(cell);
+        match tissue.mesh.cells.shape(cell) {
+            CellShape::Tet4 => {
+                let lambda = tensor.lambda - tensor.pressure_part().lambda;
+                ElasticTensor { lambda, ..tensor }
+            }
+            CellShape::Hex8 | CellShape::Wedge6 => tensor,
+        }
+    };
+    tissue.assemble_with(numbering, &|| !observer.is_stopped(), &tensor)
 }
 
 /// Tetrahedra that have pressures, one for each corner.
@@ -130,14 +135,17 @@ impl PressureCells {
     /// Numbers the pressures: corners share one where they share node and material.
     fn new(tissue: &Tissue, numbering: &Numbering) -> Self {
         let materials = tissue.materials;
-        let same = |material| materials.iter().position(|other| other == material);
-        let kinds: Vec<usize> =
-            materials.iter().enumerate().map(|(own, m)| same(m).unwrap_or(own)).collect();
-        let mut cells_of_kind: BTreeMap<usize, Vec<u32>> = BTreeMap::new();
+        let used: BTreeSet<u16> = tissue.pressure_of_cell.iter().copied().collect();
+        let same = |own: u16| {
+            let is_same = |other: &&u16| materials[**other as usize] == materials[own as usize];
+            used.iter().find(is_same).copied().unwrap_or(own)
+        };
+        let kinds: BTreeMap<u16, u16> = used.iter().map(|&own| (own, same(own))).collect();
+        let mut cells_of_kind: BTreeMap<u16, Vec<u32>> = BTreeMap::new();
         for &cell in &numbering.layout.clique_order {
             let (cell, shape) = (cell as usize, tissue.mesh.cells.shape(cell as usize));
-            let kind = kinds[tissue.material_of_cell[cell] as usize];
-            if shape == CellShape::Tet4 && materials[kind].lambda() > 0.0 {
+            let kind = kinds[&tissue.pressure_of_cell[cell]];
+            if shape == CellShape::Tet4 && tissue.tensor(cell).pressure_part().lambda > 0.0 {
                 cells_of_kind.entry(kind).or_default().push(cell as u32);
             }
         }
@@ -217,12 +225,11 @@ fn cell_terms(
     axes: &BTreeMap<u32, Matrix3<f64>>,
 ) -> Result<CellTerms, InvertedCell> {
     let (volume, gradients) = tetrahedron(tissue.mesh, cell)?;
-    let material = &tissue.materials[tissue.material_of_cell[cell] as usize];
+    let PressurePart { lambda, mu } = tissue.tensor(cell).pressure_part();
     let nodes = tissue.mesh.cells.nodes(cell);
     let gradients = std::array::from_fn(|corner| match axes.get(&nodes[corner]) {
         Some(axes) => axes.transpose() * gradients[corner],
         None => gradients[corner],
     });
-    let (mu, lambda) = (material.shear_modulus(), material.lambda());
     Ok(CellTerms { volume, gradients, mu, lambda })
 }

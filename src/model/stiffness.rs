@@ -1,17 +1,20 @@
 //! Stiffness of one linear elastic cell, in 3x3 blocks for each pair of its nodes.
 //!
-//! Full integration: K_jk = sum_q V_q [ lambda g_j g_k^T + mu g_k g_j^T + mu (g_j . g_k) I ], METHODS A2.
+//! Full integration: K_jk = sum_q V_q g_j.C.g_k, isotropic
+//! K_jk = sum_q V_q [ lambda g_j g_k^T + mu g_k g_j^T + mu (g_j . g_k) I ], METHODS A2; with fibres A3, A4
+//! (`material::elastic_tensor`).
 //!
 //! Mean dilatation (B-bar; Hughes 1980; Simo, Taylor, Pister 1985): the volume change of each point is
-//! replaced by its mean over the cell, tr eps -> (1/V) sum_q V_q div u, so that
-//! K_jk = sum_q V_q mu [ g_k g_j^T + (g_j . g_k) I - 2/3 g_j g_k^T ] + K V gbar_j gbar_k^T
-//! with K the bulk modulus and gbar_j = (1/V) sum_q V_q g_j. One volume change a cell does not lock
-//! as nu goes to 1/2.
+//! replaced by its mean over the cell, eps -> dev eps + 1/3 (1/V sum_q V_q div u) 1, so that with
+//! C = C_dev + C_vol (`ElasticTensor::split_volume`)
+//! K_jk = sum_q V_q g_j.C_dev.g_k + V gbar_j.C_vol.gbar_k, gbar_j = (1/V) sum_q V_q g_j.
+//! Isotropic, C_dev has lambda = -2/3 mu, and C_vol is the bulk modulus K alone. One volume change a cell does
+//! not lock as nu goes to 1/2.
 
 use super::assembly::InvertedCell;
 use super::reference_cell;
 use crate::element::MAX_NODES;
-use crate::material::LinearElastic;
+use crate::material::ElasticTensor;
 use crate::mesh::{CellShape, Vector, VolumeMesh};
 use crate::solver::Block;
 
@@ -29,13 +32,19 @@ pub enum Dilatation {
 pub fn cell_stiffness(
     shape: CellShape,
     corners: &[Vector],
-    material: &LinearElastic,
+    tensor: &ElasticTensor,
     dilatation: Dilatation,
 ) -> Option<Vec<Block>> {
     let reference = reference_cell(shape);
     let count = reference.node_count;
     let mut blocks = vec![[[0.0; 3]; 3]; count * count];
-    let mu = material.shear_modulus();
+    let (at_points, of_mean) = match dilatation {
+        Dilatation::Pointwise => (*tensor, None),
+        Dilatation::Mean => {
+            let (of_shape, of_volume) = tensor.split_volume();
+            (of_shape, Some(of_volume))
+        }
+    };
     let mut volume = 0.0;
     let mut mean_gradients = [Vector::zeros(); MAX_NODES];
     for point in &reference.points {
@@ -44,39 +53,18 @@ pub fn cell_stiffness(
         for (mean, gradient) in mean_gradients.iter_mut().zip(&point.gradients) {
             *mean += gradient * point.volume;
         }
-        let lambda = match dilatation {
-            Dilatation::Pointwise => material.lambda(),
-            Dilatation::Mean => -2.0 / 3.0 * mu,
-        };
-        let (lambda, mu) = (lambda * point.volume, mu * point.volume);
         for (entry, block) in blocks.iter_mut().enumerate() {
             let pair = [&point.gradients[entry / count], &point.gradients[entry % count]];
-            add_pair(block, pair, lambda, mu);
+            at_points.add_pair(block, pair, point.volume);
         }
     }
-    if dilatation == Dilatation::Mean {
-        let factor = material.bulk_modulus() / volume;
+    if let Some(of_volume) = of_mean {
         for (entry, block) in blocks.iter_mut().enumerate() {
-            let (gj, gk) = (&mean_gradients[entry / count], &mean_gradients[entry % count]);
-            for (r, row) in block.iter_mut().enumerate() {
-                row.iter_mut().zip(gk).for_each(|(value, gk)| *value += gj[r] * gk * factor);
-            }
+            let pair = [&mean_gradients[entry / count], &mean_gradients[entry % count]];
+            of_volume.add_pair(block, pair, 1.0 / volume);
         }
     }
     Some(blocks)
-}
-
-/// block += lambda g_j g_k^T + mu g_k g_j^T + mu (g_j . g_k) I, with moduli times the volume of a point
-/// (METHODS A2).
-#[inline]
-pub(super) fn add_pair(block: &mut Block, [gj, gk]: [&Vector; 2], lambda: f64, mu: f64) {
-    let diagonal = mu * gj.dot(gk);
-    for (r, row) in block.iter_mut().enumerate() {
-        for (c, value) in row.iter_mut().enumerate() {
-            *value += lambda * gj[r] * gk[c] + mu * gk[r] * gj[c];
-        }
-        row[r] += diagonal;
-    }
 }
 
 /// The volume of a tetrahedron in mm³ and the gradients of its barycentric coordinates in 1/mm.

@@ -2,9 +2,14 @@
 
 use std::collections::BTreeMap;
 
+use super::hounsfield::Hounsfield;
 use crate::boundary::NodeSelection;
-use crate::material::LinearElastic;
+use crate::material::{LinearElastic, PlaneStress};
 use crate::mesh::{Frame, TriangleSurface, Vector, VolumeMesh};
+use crate::model::mass_spring::MassSpringSettings;
+use crate::model::mass_tensor::MassTensorSettings;
+use crate::model::spline::VolumeSpline;
+use crate::model::thickness_warp::ThicknessWarp;
 use crate::plan::PlannedSegment;
 
 /// A patient's scene. All lengths in mm, all coordinates in `frame`.
@@ -26,6 +31,27 @@ pub struct Case {
     pub sliding: Vec<Sliding>,
     /// By region name; `*` serves every region without an entry of its own.
     pub materials: BTreeMap<String, LinearElastic>,
+    /// Materials by what an image shows, over those of the regions.
+    pub hounsfield: Option<Hounsfield>,
+    /// Where the fibres run, by region name or `*`; of use where a material has fibres.
+    pub fibres: BTreeMap<String, FibreDirection>,
+}
+
+/// The course of fibres or of lines of the skin; its sign and its length do not matter.
+#[derive(Clone, Debug, PartialEq)]
+pub enum FibreDirection {
+    /// The same everywhere.
+    Uniform(Vector),
+    /// A vector array of the volume mesh: of cells for fibres, of nodes for lines of the skin.
+    Array(String),
+}
+
+/// The skin as a sheet that resists stretching beside the tissue under it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SkinMembrane {
+    pub sheet: PlaneStress,
+    /// The course of its lines; absent where the sheet is isotropic.
+    pub lines: Option<FibreDirection>,
 }
 
 /// A bone surface; it moves with the segment of the same name, if there is one.
@@ -126,6 +152,39 @@ pub enum Method {
     /// Linear finite elements at small strain.
     #[default]
     FemLinear,
+    /// Springs along the edges of tetrahedra.
+    MassSpring(MassSpringSettings),
+    /// The energy of plain linear tetrahedra, brought to rest as its settings say.
+    MassTensor(MassTensorSettings),
+    /// The mass-tensor of tetrahedra with fibres: force = V g_j.C.g_k u, the plain finite element.
+    MassTensorTransverse,
+    /// A lattice of control points over the tissue.
+    VolumeSpline(VolumeSpline),
+    /// Tissue that rides on the nearest bone.
+    ThicknessWarp(ThicknessWarp),
+}
+
+impl Method {
+    /// Whether it solves for the nodes of elements.
+    pub fn is_of_elements(&self) -> bool {
+        matches!(self, Method::FemLinear | Method::MassTensor(_) | Method::MassTensorTransverse)
+    }
+
+    /// Whether its tissue may be stiffer along fibres than across them.
+    pub fn knows_fibres(&self) -> bool {
+        matches!(self, Method::FemLinear | Method::MassTensorTransverse)
+    }
+
+    /// Whether the skin may be a membrane of its own.
+    pub fn knows_membrane(&self) -> bool {
+        self.is_of_elements()
+    }
+
+    /// True where strain is the symmetric part of the displacement gradient, so that turning is taken for
+    /// stretching.
+    pub fn is_small_strain(&self) -> bool {
+        self.is_of_elements() || matches!(self, Method::VolumeSpline(_))
+    }
 }
 
 /// How the numbers are to be found.
@@ -139,6 +198,8 @@ pub struct Settings {
     pub relative_residual: f64,
     /// What matrix and solver may take, in MB.
     pub memory_mb: f64,
+    /// Absent: the skin is tissue like the rest.
+    pub membrane: Option<SkinMembrane>,
 }
 
 impl Default for Settings {
@@ -149,6 +210,7 @@ impl Default for Settings {
             sliding: true,
             relative_residual: 1e-8,
             memory_mb: 4000.0,
+            membrane: None,
         }
     }
 }

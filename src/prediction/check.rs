@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::case::{Case, ElementChoice, Load, Plan, RegionNames};
+use super::case::{Case, ElementChoice, Load, Method, Plan, RegionNames, Settings};
 use super::problem::Problems;
 use super::scene::Scene;
 use super::skin::{self, Skin};
@@ -20,7 +20,7 @@ use crate::model::quadratic::EdgeNodes;
 pub(super) struct Check<'a> {
     pub(super) case: &'a Case,
     pub(super) boundary: &'a [BoundaryFace],
-    boundary_nodes: Vec<u32>,
+    pub(super) boundary_nodes: Vec<u32>,
     pub(super) problems: Problems,
     pub(super) warnings: Vec<Warning>,
 }
@@ -138,17 +138,54 @@ impl<'a> Check<'a> {
         self.boundary.iter().filter(|face| face.nodes().iter().all(listed)).copied().collect()
     }
 
-    /// Refuses an element that some cell of the mesh cannot be.
-    pub(super) fn element(&mut self, element: ElementChoice) {
-        let cells = &self.case.volume.cells;
-        let other = cells.iter().find(|(shape, _)| *shape != CellShape::Tet4);
-        if let (ElementChoice::Quadratic, Some((shape, _))) = (element, other) {
+    /// The element that the method uses. Refuses one that it does not have or that some cell of the mesh
+    /// cannot be.
+    pub(super) fn element(&mut self, settings: &Settings) -> ElementChoice {
+        let asked = settings.element;
+        let own = &[ElementChoice::Auto];
+        let (who, choices, used): (_, &[ElementChoice], _) = match &settings.method {
+            Method::FemLinear => {
+                if asked == ElementChoice::Quadratic {
+                    self.tetrahedra_only("/spec/element", "quadratic elements are");
+                }
+                return asked;
+            }
+            Method::VolumeSpline(_) => ("the volume spline", own, asked),
+            Method::ThicknessWarp(_) => ("the thickness-preserving warp", own, asked),
+            Method::MassSpring(_) => ("the mass-spring model", own, asked),
+            Method::MassTensor(_) | Method::MassTensorTransverse => {
+                let plain = ElementChoice::Plain;
+                ("the mass-tensor model", &[ElementChoice::Auto, ElementChoice::Plain], plain)
+            }
+        };
+        if !matches!(settings.method, Method::VolumeSpline(_) | Method::ThicknessWarp(_)) {
+            self.tetrahedra_only("/case/volume", &format!("{who} is"));
+        }
+        if !choices.contains(&asked) {
+            let detail = format!("{who} has no choice of elements: `auto` is what it is made of");
+            self.problems.add("/spec/element", "method-not-available", detail);
+        }
+        used
+    }
+
+    /// Refuses a mesh with cells of other shapes.
+    fn tetrahedra_only(&mut self, pointer: &str, who: &str) {
+        let mut cells = self.case.volume.cells.iter();
+        if let Some((shape, _)) = cells.find(|(shape, _)| *shape != CellShape::Tet4) {
             let detail = format!(
-                "quadratic elements are made of tet4 only, and the mesh has {} cells: \
+                "{who} made of tet4 only, and the mesh has {} cells: `fem_linear` with the element \
                  `auto` serves every shape",
                 shape.name()
             );
-            self.problems.add("/spec/element", "method-not-available", detail);
+            self.problems.add(pointer, "method-not-available", detail);
+        }
+    }
+
+    /// Refuses what a method would have to ignore in silence.
+    pub(super) fn method(&mut self, method: &Method, plan: &Plan) {
+        if matches!(method, Method::ThicknessWarp(_)) && !plan.loads.is_empty() {
+            let detail = "thickness_warp follows bone and knows no forces".to_owned();
+            self.problems.add("/plan/loads", "method-not-available", detail);
         }
     }
 

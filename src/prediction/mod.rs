@@ -2,18 +2,25 @@
 
 pub mod case;
 mod check;
+mod cut;
+mod fibres;
 mod held;
+pub mod hounsfield;
+mod off_wall;
 mod problem;
 pub mod progress;
 pub mod scene;
 mod skin;
+mod small_strain;
+mod stiff_layer;
 
 use std::collections::BTreeMap;
 
 pub use case::{
-    Bone, Case, CaseSegment, ElementChoice, Load, Method, Plan, Prescribed, RegionNames, Settings,
-    Sliding, SlidingNormal,
+    Bone, Case, CaseSegment, ElementChoice, FibreDirection, Load, Method, Plan, Prescribed,
+    RegionNames, Settings, SkinMembrane, Sliding, SlidingNormal,
 };
+pub use hounsfield::{Hounsfield, ImagedTissue, Mixing, TissueShare, TissueWindow};
 pub use problem::{SceneError, SceneErrors};
 pub use progress::{Phase, Progress, Unobserved};
 pub use scene::Scene;
@@ -47,7 +54,8 @@ pub struct Prediction {
 /// How the equations were solved.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SolverReport {
-    /// `cholesky`, `conjugate_gradient`, `conjugate_residual` with pressures, or `none` where nothing moves.
+    /// `cholesky`, `conjugate_gradient`, `conjugate_residual` with pressures, what the method's own iterations are
+    /// called, or `none` where nothing moves.
     pub name: &'static str,
     pub preconditioner: &'static str,
     /// Why this solver was chosen.
@@ -72,6 +80,10 @@ pub enum PredictionError {
     Cancelled,
     #[error("residual {residual:.2e} after {iterations} iterations, wanted {wanted:.2e}")]
     NotConverged { iterations: usize, residual: f64, wanted: f64, history: Vec<f64> },
+    #[error(
+        "diverged: the residual grew {growth:.3} times an iteration, to {residual:.1e} after {iterations}"
+    )]
+    Diverged { iterations: usize, growth: f64, residual: f64, history: Vec<f64> },
     #[error("the matrix is singular at node {node}")]
     Singular { node: usize },
     #[error("cell {cell} is inverted or flat")]
@@ -80,6 +92,12 @@ pub enum PredictionError {
     OverBudget { needed_mb: f64, allowed_mb: f64 },
     #[error("the solution has values that are not finite")]
     NotFinite,
+    #[error(
+        "a step of {step_s:.3e} s grows without bound: explicit steps may take up to {limit_s:.3e} s"
+    )]
+    StepAboveLimit { step_s: f64, limit_s: f64 },
+    #[error("no face of the tissue lies on bone: a warp has nothing to follow")]
+    NoBone,
 }
 
 impl PredictionError {
@@ -87,9 +105,13 @@ impl PredictionError {
     pub fn code(&self) -> &'static str {
         match self {
             PredictionError::Cancelled => "cancelled",
-            PredictionError::NotConverged { .. } | PredictionError::NotFinite => "solver-diverged",
+            PredictionError::NotConverged { .. }
+            | PredictionError::Diverged { .. }
+            | PredictionError::NotFinite => "solver-diverged",
             PredictionError::Singular { .. } => "matrix-singular",
             PredictionError::Inverted { .. } => "element-inverted",
+            PredictionError::StepAboveLimit { .. } => "step-above-limit",
+            PredictionError::NoBone => "no-bone",
             PredictionError::OverBudget { .. } => "budget-exceeded",
         }
     }
@@ -111,6 +133,8 @@ pub fn predict(scene: &Scene, progress: &dyn Progress) -> Result<Prediction, Pre
     let mut warnings = scene.warnings.clone();
     warnings.extend(equilibrium.warnings.iter().cloned());
     warnings.extend(inverted_cells(&deformation));
+    warnings.extend(small_strain::left(scene, &deformation));
+    warnings.extend(off_wall::left_wall(scene, &equilibrium.displacement));
     warnings.extend(far_landmarks(&landmarks));
     Ok(Prediction {
         reactions: reactions(scene, &equilibrium),
@@ -177,12 +201,14 @@ pub(crate) fn report(scene: &Scene, equilibrium: &Equilibrium) -> SolverReport {
     }
 }
 
-/// A linear answer that turns cells inside out says so.
+/// An answer that turns cells inside out says so.
 pub(crate) fn inverted_cells(deformation: &[CellDeformation]) -> Option<Warning> {
     let inverted = deformation.iter().filter(|cell| cell.det_f <= 0.0).count();
     let smallest = deformation.iter().map(|cell| cell.det_f).fold(f64::INFINITY, f64::min);
-    let detail = format!("the linear displacement turns {inverted} cells inside out");
-    let warning = Warning::new("cells-inverted", detail).with("cells", inverted as f64);
+    let detail = format!("the displacement turns {inverted} cells inside out");
+    let warning = Warning::new("cells-inverted", detail)
+        .with("cells", inverted as f64)
+        .with("share", inverted as f64 / deformation.len().max(1) as f64);
     (inverted > 0).then(|| warning.with("smallest_det_f", smallest))
 }
 
@@ -200,6 +226,10 @@ fn far_landmarks(landmarks: &BTreeMap<String, (Vector, f64)>) -> Vec<Warning> {
 impl From<ModelError> for PredictionError {
     fn from(error: ModelError) -> Self {
         match error {
+            ModelError::StepAboveLimit { step_s, limit_s } => {
+                PredictionError::StepAboveLimit { step_s, limit_s }
+            }
+            ModelError::NoBone => PredictionError::NoBone,
             ModelError::Inverted(inverted) => PredictionError::Inverted { cell: inverted.cell },
             ModelError::Solver(SolverError::Stopped) => PredictionError::Cancelled,
             ModelError::Solver(SolverError::NotFinite) => PredictionError::NotFinite,
@@ -215,6 +245,9 @@ impl From<ModelError> for PredictionError {
                 wanted,
                 history,
             }) => PredictionError::NotConverged { iterations, residual, wanted, history },
+            ModelError::Solver(SolverError::Diverged { iterations, growth, residual, history }) => {
+                PredictionError::Diverged { iterations, growth, residual, history }
+            }
         }
     }
 }

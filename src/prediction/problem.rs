@@ -17,7 +17,8 @@ pub struct SceneError {
     pub pointer: String,
     /// A stable word: `empty-selection`, `unknown-set`, `unknown-array`, `unknown-surface`,
     /// `unknown-region`, `unknown-segment`, `duplicate-segment`, `missing-material`, `plan-conflict`,
-    /// `sliding-normal-zero`, `underconstrained`, `method-not-available` or `mesh-inverted-elements`.
+    /// `sliding-normal-zero`, `underconstrained`, `method-not-available`, `fibre-direction-zero`,
+    /// `missing-field` or `mesh-inverted-elements`.
     pub code: &'static str,
     pub detail: String,
 }

@@ -5,8 +5,12 @@ use std::sync::Arc;
 
 use super::case::{Case, ElementChoice, Method, Plan, Settings};
 use super::check::Check;
+use super::cut;
+use super::fibres::Tissues;
+use super::hounsfield::ImagedTissue;
 use super::problem::SceneErrors;
 use super::skin::Skin;
+use super::stiff_layer;
 use crate::boundary::{Conditions, NodeClass, tearing};
 use crate::material::LinearElastic;
 use crate::mesh::connectivity::Faces;
@@ -14,9 +18,12 @@ use crate::mesh::{CellShape, Vector, VolumeMesh, Warning};
 use crate::model::assembly::Tissue;
 use crate::model::equilibrium::{Equilibrium, LoadCase, ModelError, Observer};
 use crate::model::linear_fem::Problem;
+use crate::model::mass_spring::POISSON_RATIO;
+use crate::model::membrane::Membrane;
 use crate::model::quadratic::EdgeNodes;
 use crate::model::stiffness::Dilatation;
-use crate::model::{quadratic, stabilised};
+use crate::model::thickness_warp::Warped;
+use crate::model::{mass_spring, mass_tensor, quadratic, spline, stabilised};
 use crate::plan::PlannedSegment;
 use crate::solver::Tolerance;
 
@@ -38,8 +45,18 @@ pub struct Scene {
     /// Region names, and for each cell its entry.
     pub regions: Vec<String>,
     pub region_of_cell: Vec<u16>,
-    /// For each region.
+    /// For each region, then what an image adds.
     pub materials: Vec<LinearElastic>,
+    /// For each cell its entry in `materials`, and the one whose pressure it takes part in.
+    pub material_of_cell: Vec<u16>,
+    pub pressure_of_cell: Vec<u16>,
+    /// What an image shows of each cell, where materials are taken from one.
+    pub imaged: Option<ImagedTissue>,
+    /// For each cell the direction of its fibres, of length 1 or zero where it has none; empty where no
+    /// region has fibres.
+    pub fibres: Vec<Vector>,
+    pub membrane: Option<Membrane>,
+    /// What cells are taken as; that of the settings where the method leaves a choice.
     pub element: ElementChoice,
     pub conditions: Conditions,
     /// Segments by the number in `NodeClass::Joined`, with the movement each makes.
@@ -61,7 +78,12 @@ impl Scene {
 
         // 1. Tissue.
         let (regions, region_of_cell) = check.regions();
-        let materials = check.materials(&regions);
+        let mut materials = check.materials(&regions);
+        let (of_cell, of_region) = (&region_of_cell, &mut materials);
+        let tissues = Tissues { regions: &regions, region_of_cell: of_cell, materials: of_region };
+        let fibres = check.fibres(tissues, &settings.method);
+        let element = check.element(settings);
+        let tissue = check.tissue_of_cells(&region_of_cell, materials);
 
         // 2. What every node is held to.
         let (segments, held) = check.held_nodes(plan, settings.sliding);
@@ -69,13 +91,19 @@ impl Scene {
 
         // 3. The skin and what acts on the tissue.
         let skin = check.skin(&conditions);
+        let membrane = check.membrane(&skin, settings);
         let mut scene = Scene {
             mesh: case.volume.clone(),
             skin,
             regions,
             region_of_cell,
-            materials,
-            element: settings.element,
+            materials: tissue.materials,
+            material_of_cell: tissue.material_of_cell,
+            pressure_of_cell: tissue.pressure_of_cell,
+            imaged: tissue.imaged,
+            fibres,
+            membrane,
+            element,
             conditions,
             segments,
             forces: vec![Vector::zeros(); case.volume.nodes.len()],
@@ -83,7 +111,7 @@ impl Scene {
             settings: settings.clone(),
             warnings: Vec::new(),
         };
-        check.element(settings.element);
+        check.method(&settings.method, plan);
         check.problems.give_up_if_any()?;
         check.add_loads(plan, &mut scene);
 
@@ -92,8 +120,11 @@ impl Scene {
         check.problems.give_up_if_any()?;
         scene.warnings = scene.conditions.warnings.clone();
         scene.warnings.extend(check.warnings);
+        scene.warnings.extend(cut::duplicate_nodes(&scene.mesh, &check.boundary_nodes));
         scene.warnings.extend(tearing::tearing(&scene.mesh, &scene.conditions.holds));
         scene.warnings.extend(scene.locking());
+        scene.warnings.extend(stiff_layer::thin_stiff_layers(&scene));
+        scene.warnings.extend(scene.built_in_poisson_ratio());
         Ok(scene)
     }
 
@@ -102,7 +133,10 @@ impl Scene {
         Tissue {
             mesh: &self.mesh,
             materials: &self.materials,
-            material_of_cell: &self.region_of_cell,
+            material_of_cell: &self.material_of_cell,
+            pressure_of_cell: &self.pressure_of_cell,
+            fibres: &self.fibres,
+            membrane: self.membrane.as_ref(),
             dilatation: match self.element {
                 ElementChoice::Plain | ElementChoice::Quadratic => |_| Dilatation::Pointwise,
                 ElementChoice::Auto | ElementChoice::MeanDilatation | ElementChoice::Stabilised => {
@@ -128,6 +162,11 @@ impl Scene {
         self.mesh.cells.iter().any(|(shape, _)| shape == CellShape::Tet4)
     }
 
+    /// Whether displacement is linear along every edge.
+    pub(super) fn is_first_order(&self) -> bool {
+        self.tetrahedron() != Tetrahedron::Quadratic
+    }
+
     /// The middles of edges, where the element has nodes there.
     pub fn edge_nodes(&self) -> Option<EdgeNodes> {
         (self.tetrahedron() == Tetrahedron::Quadratic).then(|| EdgeNodes::new(&self.mesh))
@@ -142,10 +181,36 @@ impl Scene {
     /// Solves the scene by the method of its settings.
     pub fn solve(&self, observer: &dyn Observer) -> Result<Equilibrium, ModelError> {
         match &self.settings.method {
-            Method::FemLinear => {
+            // A mass-tensor is the block of two nodes of a plain tetrahedron.
+            Method::FemLinear | Method::MassTensorTransverse => {
                 let mut solved = self.solve_cases(&[self.load_case()], observer)?;
                 Ok(solved.remove(0))
             }
+            Method::MassSpring(settings) => {
+                mass_spring::solve(&self.problem(), settings, &self.load_case(), observer)
+            }
+            Method::MassTensor(settings) => {
+                mass_tensor::solve(&self.problem(), settings, &self.load_case(), observer)
+            }
+            Method::VolumeSpline(spline) => spline::solve(&self.problem(), spline, observer),
+            Method::ThicknessWarp(warp) => {
+                let movement = |segment: u32, x: &Vector| {
+                    self.segments[segment as usize].movement.displacement(x)
+                };
+                let (mesh, conditions) = (&*self.mesh, &self.conditions);
+                Warped { mesh, conditions, movement: &movement }.solve(warp)
+            }
+        }
+    }
+
+    /// Tissue, holds and loads as models see them.
+    fn problem(&self) -> Problem<'_> {
+        let Settings { relative_residual, memory_mb, .. } = self.settings;
+        Problem {
+            tissue: self.tissue(),
+            holds: &self.conditions.holds,
+            forces: &self.forces,
+            tolerance: Tolerance { relative_residual, memory_mb },
         }
     }
 
@@ -156,13 +221,7 @@ impl Scene {
         cases: &[LoadCase],
         observer: &dyn Observer,
     ) -> Result<Vec<Equilibrium>, ModelError> {
-        let Settings { relative_residual, memory_mb, .. } = self.settings;
-        let problem = Problem {
-            tissue: self.tissue(),
-            holds: &self.conditions.holds,
-            forces: &self.forces,
-            tolerance: Tolerance { relative_residual, memory_mb },
-        };
+        let problem = self.problem();
         match self.tetrahedron() {
             Tetrahedron::Quadratic => quadratic::solve_cases(&problem, cases, observer),
             Tetrahedron::Stabilised if self.has_tetrahedra() => {
@@ -172,8 +231,13 @@ impl Scene {
         }
     }
 
-    /// The elements in use, e.g. `hex8 mean dilatation`.
+    /// The elements in use, e.g. `hex8 mean dilatation`; none where there are none.
     pub fn elements(&self) -> Vec<String> {
+        match &self.settings.method {
+            Method::MassSpring(_) | Method::ThicknessWarp(_) => return Vec::new(),
+            Method::VolumeSpline(spline) => return vec![spline.element()],
+            Method::FemLinear | Method::MassTensor(_) | Method::MassTensorTransverse => {}
+        }
         let dilatation = self.tissue().dilatation;
         [CellShape::Tet4, CellShape::Hex8, CellShape::Wedge6]
             .into_iter()
@@ -184,6 +248,10 @@ impl Scene {
                 (_, _, Dilatation::Pointwise) => format!("{} plain", shape.name()),
                 (_, _, Dilatation::Mean) => format!("{} mean dilatation", shape.name()),
             })
+            .chain(self.membrane.as_ref().map(|_| match self.tetrahedron() {
+                Tetrahedron::Quadratic => "tri6 membrane".to_owned(),
+                Tetrahedron::Plain | Tetrahedron::Stabilised => "tri3 membrane".to_owned(),
+            }))
             .collect()
     }
 
@@ -211,20 +279,38 @@ impl Scene {
         }
     }
 
+    /// Springs have the Poisson ratio that they have.
+    fn built_in_poisson_ratio(&self) -> Option<Warning> {
+        let Method::MassSpring(_) = self.settings.method else { return None };
+        let stated = self.regions.iter().zip(&self.materials);
+        let others: Vec<String> = stated
+            .filter(|(_, material)| material.poisson_ratio() != POISSON_RATIO)
+            .map(|(region, material)| format!("{region} {}", material.poisson_ratio()))
+            .collect();
+        let instead = match others.is_empty() {
+            true => String::new(),
+            false => format!(", and not that of the materials: {}", others.join(", ")),
+        };
+        let detail = format!("springs have a Poisson ratio of 1/4 on average{instead}");
+        let warning = Warning::new("built-in-poisson-ratio", detail);
+        Some(warning.with("poisson_ratio", POISSON_RATIO))
+    }
+
     fn locking(&self) -> Option<Warning> {
         let dilatation = self.tissue().dilatation;
-        let cells = self.mesh.cells.iter().zip(&self.region_of_cell);
-        let locks = |shape: CellShape, region: u16| {
-            let nu = self.materials[region as usize].poisson_ratio();
+        let cells = self.mesh.cells.iter().zip(&self.material_of_cell);
+        let locks = |shape: CellShape, material: u16| {
+            let nu = self.materials[material as usize].poisson_ratio();
             let is_plain = shape != CellShape::Tet4 || self.tetrahedron() == Tetrahedron::Plain;
             nu > LOCKING && is_plain && dilatation(shape) == Dilatation::Pointwise
         };
-        let locking = cells.filter(|((shape, _), region)| locks(*shape, **region)).count();
+        let has_elements = self.settings.method.is_of_elements();
+        let locking = cells.filter(|((shape, _), material)| locks(*shape, **material)).count();
         let largest = self.materials.iter().map(LinearElastic::poisson_ratio).fold(0.0, f64::max);
         let detail = format!(
             "{locking} plain cells have a Poisson ratio above {LOCKING}: they lock, and the skin moves too little"
         );
         let warning = Warning::new("locking", detail).with("cells", locking as f64);
-        (locking > 0).then(|| warning.with("largest_poisson_ratio", largest))
+        (locking > 0 && has_elements).then(|| warning.with("largest_poisson_ratio", largest))
     }
 }

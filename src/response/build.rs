@@ -10,7 +10,9 @@ use crate::boundary::NodeClass;
 use crate::mesh::Vector;
 use crate::model::equilibrium::{Equilibrium, LoadCase};
 use crate::plan::RigidMovement;
-use crate::prediction::{Followed, Phase, PredictionError, Progress, Scene, SolverReport, report};
+use crate::prediction::{
+    Followed, Method, Phase, PredictionError, Progress, Scene, SolverReport, report,
+};
 
 /// Bytes of one node in one load case: its force, its displacement, its unknowns.
 const BYTES_OF_NODE: f64 = 72.0;
@@ -43,6 +45,10 @@ pub enum ResponseError {
     EmptySegment { name: String },
     #[error("the scene has prescribed displacements or loads, which a response does not know")]
     Loaded,
+    #[error(
+        "responses are built with linear finite elements, and the spec asks for another method"
+    )]
+    OtherMethod,
     #[error(transparent)]
     Prediction(#[from] PredictionError),
 }
@@ -59,6 +65,9 @@ pub fn chosen(scene: &Scene, names: &[String]) -> Result<Vec<usize>, ResponseErr
         return Err(ResponseError::SharedNodes { count: scene.conditions.shared.len(), first });
     }
     let is_prescribed = |class: &NodeClass| *class == NodeClass::Prescribed;
+    if scene.settings.method != Method::FemLinear {
+        return Err(ResponseError::OtherMethod);
+    }
     if scene.conditions.classes.iter().any(is_prescribed)
         || scene.forces.iter().any(|force| *force != Vector::zeros())
     {

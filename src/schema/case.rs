@@ -7,6 +7,7 @@ use utoipa::ToSchema;
 
 use super::Triple;
 use super::fault::Pointer;
+use super::hounsfield::HounsfieldDocument;
 use super::material::MaterialDocuments;
 use super::selection::SelectionDocument;
 use crate::mesh::Frame;
@@ -57,6 +58,10 @@ pub struct CaseDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub materials: Option<MaterialDocuments>,
+    /// Materials by what an image shows, over those of the regions.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub hounsfield: Option<HounsfieldDocument>,
 }
 
 fn one() -> u32 {
@@ -200,10 +205,12 @@ impl CaseDocument {
             fixed: Vec::new(),
             sliding: Vec::new(),
             materials: None,
+            hounsfield: None,
         }
     }
 
-    /// Every mesh the case asks for, with its place: the volume, the bones, and the surfaces of selections.
+    /// Every mesh and image the case asks for, with its place: the volume, the bones, the image, and the
+    /// surfaces of selections.
     /// A selection may also name a bone; the names of bones are left out.
     pub fn mesh_references_mut(&mut self) -> Vec<(Pointer, &mut String)> {
         let root = Pointer::root();
@@ -211,6 +218,9 @@ impl CaseDocument {
         let mut found = vec![(root.key("volume"), &mut self.volume)];
         for (index, bone) in self.bones.iter_mut().enumerate() {
             found.push((root.key("bones").index(index).key("mesh"), &mut bone.mesh));
+        }
+        if let Some(hounsfield) = &mut self.hounsfield {
+            found.push((root.key("hounsfield").key("image"), &mut hounsfield.image));
         }
         let mut surfaces = Vec::new();
         if let Some(skin) = &mut self.skin {
@@ -235,7 +245,7 @@ impl CaseDocument {
         found
     }
 
-    /// The ids of all meshes the case asks for, each once, the volume first.
+    /// The ids of all meshes and images the case asks for, each once, the volume first.
     pub fn mesh_ids(&self) -> Vec<String> {
         let mut copy = self.clone();
         let mut ids: Vec<String> = Vec::new();

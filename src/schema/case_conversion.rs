@@ -6,8 +6,9 @@ use std::sync::Arc;
 use super::case::{CaseDocument, FrameName, LengthUnit, NormalDocument};
 use super::fault::{Faults, Pointer};
 use super::limits::Limits;
-use super::material::{MaterialDocuments, PlacedMaterials, merge_materials};
+use super::material::{MaterialDocuments, Merged, PlacedMaterials, merge_materials};
 use crate::boundary::NodeSelection;
+use crate::image::ImageVolume;
 use crate::mesh::{Frame, TriangleSurface, Vector, VolumeMesh, Warning};
 use crate::prediction::{Bone, Case, CaseSegment, RegionNames, Sliding, SlidingNormal};
 
@@ -29,6 +30,8 @@ pub struct CaseMeshes {
     pub volume: NamedMesh<VolumeMesh>,
     /// By the id under which bones and selections ask for them.
     pub surfaces: BTreeMap<String, NamedMesh<TriangleSurface>>,
+    /// In mm, whatever the unit of the case.
+    pub image: Option<NamedMesh<ImageVolume>>,
 }
 
 impl CaseDocument {
@@ -49,7 +52,8 @@ impl CaseDocument {
             at: Pointer::root().key("spec").key("materials"),
             materials: spec_materials,
         };
-        let (materials, mut warnings) = merge_materials(&own, &spec, limits, faults);
+        let Merged { materials, fibres, mut warnings } =
+            merge_materials(&own, &spec, limits, faults);
         warnings.extend(frame_warning);
         warnings.extend(unusual_size(&volume, self.units));
         let regions = self.to_regions(&at.key("regions"), faults);
@@ -66,7 +70,9 @@ impl CaseDocument {
             segments: self.to_segments(&at.key("segments"), limits, faults),
             fixed: self.to_fixed(&at.key("fixed"), limits, faults),
             sliding: self.to_sliding(&at.key("sliding"), limits, faults),
+            hounsfield: self.to_hounsfield(&at.key("hounsfield"), meshes, limits, faults),
             materials,
+            fibres,
             volume,
         };
         (case, warnings)
@@ -98,8 +104,11 @@ impl CaseDocument {
             .filter_map(|(id, mark)| Some((id, mark?)))
             .filter(|(_, mark)| *mark != Frame::Unspecified)
             .collect();
-        let (first_id, first) = *marks.first()?;
         let stated = self.frame != FrameName::Unspecified;
+        let image = meshes.image.as_ref().and_then(|image| image.frame);
+        let image = image.filter(|mark| *mark != Frame::Unspecified).map(|mark| ("image", mark));
+        // An image is turned to the frame of the others, so that its own mark only counts where it is alone.
+        let (first_id, first) = marks.first().copied().or(image)?;
         let frame = if stated { self.frame.into() } else { first };
         for (id, mark) in marks.into_iter().filter(|(_, mark)| *mark != frame) {
             let other = if stated { "the case".to_owned() } else { format!("mesh {first_id}") };
@@ -112,6 +121,13 @@ impl CaseDocument {
                 format!("a mesh is marked {first}, the case states no frame; coordinates are taken as they stand"),
             )
         })
+    }
+
+    /// The frame of the case, or else the first that a mesh is marked with.
+    pub(super) fn frame_of_meshes(&self, meshes: &CaseMeshes) -> Frame {
+        let surfaces = meshes.surfaces.values().map(|surface| surface.frame);
+        let frames = [Some(self.frame.into()), meshes.volume.frame].into_iter().chain(surfaces);
+        frames.flatten().find(|frame| *frame != Frame::Unspecified).unwrap_or_default()
     }
 
     /// Each surface under its id and under the name of the bone that has it.
@@ -270,7 +286,11 @@ fn bounding_box(volume: &VolumeMesh) -> Option<(Vector, Vector)> {
     Some(nodes.fold((first, first), |(low, high), node| (low.inf(node), high.sup(node))))
 }
 
-fn check_distinct<'a>(names: impl Iterator<Item = &'a str>, at: &Pointer, faults: &mut Faults) {
+pub(super) fn check_distinct<'a>(
+    names: impl Iterator<Item = &'a str>,
+    at: &Pointer,
+    faults: &mut Faults,
+) {
     let mut seen = BTreeSet::new();
     for (index, name) in names.enumerate() {
         if !seen.insert(name.trim()) {

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
+use super::hounsfield::ImagedTissueDocument;
 use super::warning::WarningDocument;
 
 /// Wrong sets are the commonest mistake: these counts show them.
@@ -14,6 +15,10 @@ pub struct CheckDocument {
     pub cells: u64,
     pub classes: ClassCounts,
     pub skin: SkinSummary,
+    /// What an image shows of the mesh, where materials come from one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub imaged: Option<ImagedTissueDocument>,
     /// Unknown displacement components.
     pub unknowns: u64,
     /// What matrix and solver are expected to take.

@@ -17,6 +17,7 @@ const CATALOGUE: &[&str] = &[
     "alignment-failed",
     "empty-selection",
     "frame-conflict",
+    "method-mismatch",
     "method-not-available",
     "missing-material",
     "not-in-response",

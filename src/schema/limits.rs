@@ -17,6 +17,8 @@ pub struct Limits {
     pub mesh_nodes: u64,
     pub mesh_triangles: u64,
     pub mesh_cells: u64,
+    /// Of an image.
+    pub image_voxels: u64,
     /// Corners of one polygon of a surface file.
     pub polygon_corners: u32,
     /// Decoded size of a file.
@@ -57,6 +59,7 @@ impl Default for Limits {
             mesh_nodes: 5_000_000,
             mesh_triangles: 10_000_000,
             mesh_cells: 4_000_000,
+            image_voxels: 1 << 27,
             polygon_corners: 64,
             decoded_bytes: 512 << 20,
             decoded_ratio: 10,

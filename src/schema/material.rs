@@ -6,9 +6,11 @@ use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use super::fault::{Faults, Pointer};
+use super::fibre::FibreDocument;
 use super::limits::Limits;
 use crate::material::{LinearElastic, MaterialError};
 use crate::mesh::Warning;
+use crate::prediction::FibreDirection;
 
 /// Serves every region without a material of its own.
 const EVERY_REGION: &str = "*";
@@ -31,6 +33,10 @@ pub struct MaterialDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false, minimum = 0.0, maximum = 100.0)]
     pub density_g_per_cm3: Option<f64>,
+    /// Absent where the material is isotropic.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub fibre: Option<FibreDocument>,
 }
 
 /// Materials by region name; `*` serves every region without an entry of its own.
@@ -43,10 +49,30 @@ impl MaterialDocument {
             young_modulus_kpa: self.young_modulus_kpa.or(base.young_modulus_kpa),
             poisson_ratio: self.poisson_ratio.or(base.poisson_ratio),
             density_g_per_cm3: self.density_g_per_cm3.or(base.density_g_per_cm3),
+            fibre: match (&self.fibre, &base.fibre) {
+                (Some(own), Some(base)) => Some(own.over(base)),
+                (own, base) => own.clone().or(base.clone()),
+            },
         }
     }
 
-    fn to_material(&self, at: &Pointer, faults: &mut Faults) -> Option<LinearElastic> {
+    /// The material and the course of its fibres, if it has any.
+    fn to_material(
+        &self,
+        at: &Pointer,
+        faults: &mut Faults,
+    ) -> Option<(LinearElastic, Option<FibreDirection>)> {
+        let isotropic = self.to_isotropic(at, faults)?;
+        match &self.fibre {
+            None => Some((isotropic, None)),
+            Some(fibre) => {
+                let (material, course) = fibre.to_fibred(isotropic, &at.key("fibre"), faults)?;
+                Some((material, Some(course)))
+            }
+        }
+    }
+
+    pub(super) fn to_isotropic(&self, at: &Pointer, faults: &mut Faults) -> Option<LinearElastic> {
         let missing = [
             ("young_modulus_kpa", self.young_modulus_kpa.is_none()),
             ("poisson_ratio", self.poisson_ratio.is_none()),
@@ -59,9 +85,9 @@ impl MaterialDocument {
             Ok(material) => Some(material),
             Err(error) => {
                 let field = match error {
-                    MaterialError::YoungModulus(_) => "young_modulus_kpa",
                     MaterialError::PoissonRatio(_) => "poisson_ratio",
                     MaterialError::Density(_) => "density_g_per_cm3",
+                    _ => "young_modulus_kpa",
                 };
                 faults.add(&at.key(field), "out-of-range", error.to_string());
                 None
@@ -76,6 +102,13 @@ pub struct PlacedMaterials<'a> {
     pub materials: Option<&'a MaterialDocuments>,
 }
 
+/// Materials by region name, the courses of their fibres, and what a reader must know.
+pub struct Merged {
+    pub materials: BTreeMap<String, LinearElastic>,
+    pub fibres: BTreeMap<String, FibreDirection>,
+    pub warnings: Vec<Warning>,
+}
+
 /// The materials of a case with those of a spec over them, field by field.
 /// A region that only the spec names starts from the case's `*`.
 pub fn merge_materials(
@@ -83,7 +116,7 @@ pub fn merge_materials(
     spec: &PlacedMaterials,
     limits: &Limits,
     faults: &mut Faults,
-) -> (BTreeMap<String, LinearElastic>, Vec<Warning>) {
+) -> Merged {
     let mut merged: BTreeMap<String, (Pointer, MaterialDocument)> = BTreeMap::new();
     let mut warnings = Vec::new();
     if case.materials.is_none() {
@@ -92,6 +125,7 @@ pub fn merge_materials(
             young_modulus_kpa: Some(young_modulus),
             poisson_ratio: Some(poisson_ratio),
             density_g_per_cm3: Some(density),
+            fibre: None,
         };
         let at = case.at.key(EVERY_REGION);
         merged.insert(EVERY_REGION.to_owned(), (at, tissue));
@@ -116,11 +150,14 @@ pub fn merge_materials(
             merged.insert(region.clone(), (at, material.over(&below)));
         }
     }
-    let materials = merged
-        .into_iter()
-        .filter_map(|(region, (at, material))| Some((region, material.to_material(&at, faults)?)))
-        .collect();
-    (materials, warnings)
+    let (mut materials, mut fibres) = (BTreeMap::new(), BTreeMap::new());
+    for (region, (at, material)) in merged {
+        if let Some((material, course)) = material.to_material(&at, faults) {
+            fibres.extend(course.map(|course| (region.clone(), course)));
+            materials.insert(region, material);
+        }
+    }
+    Merged { materials, fibres, warnings }
 }
 
 fn default_material() -> Warning {

@@ -1,13 +1,13 @@
-//! An uploaded mesh: what the file holds and what a reader of it must know.
+//! An uploaded mesh or image: what the file holds and what a reader of it must know.
 
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-use super::CornerPair;
 use super::case::{FrameName, LengthUnit};
 use super::warning::WarningDocument;
+use super::{CornerPair, Triple};
 
 /// The answer of `POST /v1/meshes` and `GET /v1/meshes/{id}`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -16,7 +16,7 @@ pub struct MeshDocument {
     /// Of the bytes that were sent, in hexadecimal.
     pub sha256: String,
     pub bytes: u64,
-    /// As sniffed from the bytes, e.g. `vtu`, `stl`, `gmsh`.
+    /// As sniffed from the bytes, e.g. `vtu`, `stl`, `gmsh`, `nrrd`.
     pub format: String,
     /// RFC 3339, UTC.
     pub created: String,
@@ -45,7 +45,7 @@ pub struct MeshReport {
     /// Lowest and highest corner.
     pub bounding_box: CornerPair,
     pub diagonal: f64,
-    /// The frame that a `SPACE=` mark in the file names.
+    /// The frame that a `SPACE=` mark in the file, or the `space` of an image, names.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub space: Option<FrameName>,
@@ -62,6 +62,9 @@ pub struct MeshReport {
     /// Arrays of vectors, for displacements prescribed by array.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub node_vectors: Vec<String>,
+    /// Arrays of vectors of cells, for fibre directions.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub cell_vectors: Vec<String>,
     /// Arrays of the file that nothing reads.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub ignored_arrays: Vec<String>,
@@ -69,6 +72,10 @@ pub struct MeshReport {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub min_quality: Option<f64>,
+    /// Of images only; their bounding box and its diagonal are mm.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub image: Option<ImageReport>,
     pub warnings: Vec<WarningDocument>,
 }
 
@@ -78,4 +85,24 @@ pub struct MeshReport {
 pub enum MeshKind {
     Volume,
     Surface,
+    /// Voxels.
+    Image,
+}
+
+/// The voxels of an image.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct ImageReport {
+    /// Voxels along each axis.
+    pub size: Vec<u64>,
+    /// How far they are apart along each axis.
+    pub spacing_mm: Triple,
+    /// The centre of the first voxel.
+    pub origin_mm: Triple,
+    /// The direction of each axis.
+    pub directions: Vec<Triple>,
+    /// The lowest value.
+    pub lowest_hu: f64,
+    pub highest_hu: f64,
+    /// How the values are kept: `int16` or `float32`.
+    pub kept_as: String,
 }

@@ -11,7 +11,8 @@ use super::case::CaseDocument;
 use super::fault::{Faults, Pointer};
 use super::limits::Limits;
 use super::material::MaterialDocuments;
-use super::methods::{ElementName, MethodName};
+use super::membrane::MembraneDocument;
+use super::methods::{self, ElementName, MethodName};
 use super::movement::FARTHEST_PIVOT_MM;
 use super::plan::{PlanDocument, PlanSegmentDocument};
 use super::response::ResponseDocument;
@@ -60,6 +61,10 @@ pub struct OptimiseDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub materials: Option<MaterialDocuments>,
+    /// Absent: the skin is tissue like the rest.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub membrane: Option<MembraneDocument>,
     #[serde(default)]
     pub tolerance: ToleranceDocument,
     #[serde(default)]
@@ -126,6 +131,7 @@ impl OptimiseDocument {
     /// Adds what is wrong with it, but for what only the meshes can tell; pointers start at `/spec`.
     pub fn check(&self, case: &CaseDocument, limits: &Limits, faults: &mut Faults) {
         let root = Pointer::root().key("spec");
+        methods::check_linear(self.method, &root.key("method"), faults);
         let at = root.key("targets");
         if self.targets.is_empty() {
             faults.add(&at, "missing-field", "at least one target is needed");
@@ -187,6 +193,7 @@ impl OptimiseDocument {
             method: self.method,
             element: self.element,
             materials: self.materials.clone(),
+            membrane: self.membrane.clone(),
             segments: self.moving(),
             tolerance: self.tolerance,
             budget: self.budget,

@@ -7,6 +7,7 @@ use utoipa::ToSchema;
 
 use super::Triple;
 use super::case::{FrameName, LengthUnit};
+use super::hounsfield::ImagedTissueDocument;
 use super::optimisation::OptimisationDocument;
 use super::report::StudySummaryDocument;
 use super::validation::{ComparisonDocument, StatDocument};
@@ -67,6 +68,10 @@ pub struct StatisticsDocument {
     pub regions: BTreeMap<String, DisplacementDocument>,
     /// The displacement of each landmark.
     pub landmarks: BTreeMap<String, Triple>,
+    /// What an image showed of the mesh, where materials come from one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub imaged: Option<ImagedTissueDocument>,
 }
 
 /// The length of the displacement over skin nodes, in mm.
@@ -144,12 +149,13 @@ impl EngineDocument {
     }
 }
 
-/// A mesh that went in.
+/// A mesh or an image that went in.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct InputDocument {
-    /// `volume`, `bone NAME`, `surface`, `prediction` or `actual`.
+    /// `volume`, `bone NAME`, `surface`, `image`, `prediction` or `actual`.
     pub role: String,
     pub sha256: String,
+    /// 0 of an image.
     pub nodes: u64,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
@@ -157,6 +163,9 @@ pub struct InputDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub triangles: Option<u64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub voxels: Option<u64>,
 }
 
 /// How the equations were solved.

@@ -10,7 +10,8 @@ use super::case::FrameName;
 use super::fault::{Faults, Pointer};
 use super::limits::Limits;
 use super::material::MaterialDocuments;
-use super::methods::{ElementName, MethodName};
+use super::membrane::MembraneDocument;
+use super::methods::{self, ElementName, MethodName};
 use super::plan::{PlanContext, PlanDocument};
 use super::prediction::EngineDocument;
 use super::problem::Problem;
@@ -47,6 +48,10 @@ pub struct ResponseDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub materials: Option<MaterialDocuments>,
+    /// Absent: the skin is tissue like the rest.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub membrane: Option<MembraneDocument>,
     /// Names of segments of the case; default: all. The others stay where they are.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub segments: Vec<String>,
@@ -65,6 +70,7 @@ impl ResponseDocument {
             method: self.method,
             element: self.element,
             materials: self.materials.clone(),
+            membrane: self.membrane.clone(),
             tolerance: self.tolerance,
             budget: self.budget,
             tags: self.tags.clone(),
@@ -80,9 +86,11 @@ impl ResponseDocument {
         canonical::to_value(&plain)
     }
 
-    /// Refuses an empty list, names that are given twice, and more names than are allowed.
+    /// Refuses methods without a response, names that are given twice, and more names than are allowed.
     pub fn check(&self, limits: &Limits, faults: &mut Faults) {
-        let at = Pointer::root().key("spec").key("segments");
+        let spec = Pointer::root().key("spec");
+        methods::check_linear(self.method, &spec.key("method"), faults);
+        let at = spec.key("segments");
         faults.check_length(&at, self.segments.len(), limits.list_entries as usize);
         for (index, name) in self.segments.iter().enumerate() {
             if self.segments[..index].contains(name) {
@@ -107,6 +115,7 @@ impl ResponseDocument {
             ResponseError::NoSegments | ResponseError::EmptySegment { .. } => {
                 (root.key("case").key("segments"), "empty-selection")
             }
+            ResponseError::OtherMethod => (root.key("spec").key("method"), "not-linear"),
             ResponseError::Loaded | ResponseError::Prediction(_) => (root, "not-linear"),
         };
         let problem = Problem::at(&at, code, error.to_string());

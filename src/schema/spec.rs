@@ -7,9 +7,13 @@ use utoipa::ToSchema;
 use super::canonical;
 use super::case_conversion::check_tags;
 use super::compare::{CompareDocument, CompareToDocument};
+use super::dvs::DvsDocument;
 use super::fault::{Faults, Pointer};
 use super::limits::Limits;
+use super::mass_spring::MassSpringDocument;
+use super::mass_tensor::MassTensorDocument;
 use super::material::MaterialDocuments;
+use super::membrane::MembraneDocument;
 use super::methods::{self, ElementName, MethodName};
 use super::optimise::OptimiseDocument;
 use super::plan::PlanDocument;
@@ -17,13 +21,15 @@ use super::problem::Problem;
 use super::response::ResponseDocument;
 use super::strict;
 use super::study::StudyDocument;
+use super::thickness_warp::ThicknessWarpDocument;
 use crate::prediction::{Method, Settings};
 
 /// The body of `POST /v1/jobs`, told apart by `kind`.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 #[serde(untagged)]
 pub enum JobDocument {
-    Predict(PredictDocument),
+    // By far the largest of the documents.
+    Predict(Box<PredictDocument>),
     Compare(CompareDocument),
     Response(ResponseDocument),
     Optimise(OptimiseDocument),
@@ -58,12 +64,32 @@ pub struct PredictDocument {
     pub plan_id: Option<String>,
     #[serde(default)]
     pub method: MethodName,
+    /// Only with the method `msm`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub msm: Option<MassSpringDocument>,
+    /// Only with the method `mtm`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub mtm: Option<MassTensorDocument>,
     #[serde(default)]
     pub element: ElementName,
+    /// Only with the method `dvs`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub dvs: Option<DvsDocument>,
+    /// Only with the method `thickness_warp`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub thickness_warp: Option<ThicknessWarpDocument>,
     /// Over the materials of the case, field by field.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub materials: Option<MaterialDocuments>,
+    /// Absent: the skin is tissue like the rest.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub membrane: Option<MembraneDocument>,
     #[serde(default)]
     pub contact: ContactName,
     #[serde(default)]
@@ -208,7 +234,7 @@ impl JobDocument {
                 let document: PredictDocument = strict::from_value(value)?;
                 let mut faults = Faults::default();
                 document.check_for_service(&mut faults);
-                faults.into_result().map(|()| JobDocument::Predict(document))
+                faults.into_result().map(|()| JobDocument::Predict(Box::new(document)))
             }
             Some(Some("compare")) => strict::from_value(value).map(JobDocument::Compare),
             Some(Some("response")) => strict::from_value(value).map(JobDocument::Response),
@@ -256,12 +282,48 @@ impl PredictDocument {
         if let Some(compare_to) = &self.compare_to {
             compare_to.check(&at.key("compare_to"), limits, faults);
         }
+        let membrane = self.membrane.as_ref();
+        let membrane = membrane.and_then(|sheet| sheet.to_membrane(&at.key("membrane"), faults));
         Settings {
-            method: Method::FemLinear,
+            method: self.to_method(&at, faults),
             element: self.element.choice(),
             sliding: self.contact == ContactName::Sliding,
             relative_residual: residual,
             memory_mb: memory,
+            membrane,
+        }
+    }
+
+    /// The method with its own settings; those of another one are refused.
+    fn to_method(&self, at: &Pointer, faults: &mut Faults) -> Method {
+        let own = [
+            (MethodName::Msm, self.msm.is_some()),
+            (MethodName::Mtm, self.mtm.is_some()),
+            (MethodName::Dvs, self.dvs.is_some()),
+            (MethodName::ThicknessWarp, self.thickness_warp.is_some()),
+        ];
+        for (name, is_given) in own {
+            methods::check_own(name, is_given, self.method, at, faults);
+        }
+        match self.method.chosen() {
+            MethodName::Msm => {
+                let own = self.msm.unwrap_or_default();
+                Method::MassSpring(own.to_settings(&at.key("msm"), faults))
+            }
+            MethodName::Mtm => {
+                let own = self.mtm.unwrap_or_default();
+                Method::MassTensor(own.to_settings(&at.key("mtm"), faults))
+            }
+            MethodName::MtmTi => Method::MassTensorTransverse,
+            MethodName::Dvs => {
+                let own = self.dvs.unwrap_or_default();
+                Method::VolumeSpline(own.to_method(&at.key("dvs"), faults))
+            }
+            MethodName::ThicknessWarp => {
+                let own = self.thickness_warp.unwrap_or_default();
+                Method::ThicknessWarp(own.to_method(&at.key("thickness_warp"), faults))
+            }
+            _ => Method::FemLinear,
         }
     }
 

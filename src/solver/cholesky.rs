@@ -18,6 +18,9 @@ use super::{Solution, SolverError, System, Tolerance, Unknowns, Watch};
 /// Corrections after which a residual that is still too large will stay so.
 const MOST_REFINEMENTS: usize = 6;
 
+/// Solves for one right-hand side with a factor that is there already.
+pub type Solve<'a> = &'a dyn Fn(&Unknowns) -> Result<Solution, SolverError>;
+
 /// Solves by a factorisation in the given order. The factorisation itself cannot be interrupted.
 pub fn solve(
     system: &System,
@@ -26,18 +29,33 @@ pub fn solve(
     tolerance: &Tolerance,
     watch: Watch,
 ) -> Result<Vec<Solution>, SolverError> {
+    let tolerance = (tolerance, watch);
+    factorised(system, ordering, tolerance, |solve| right_hand_sides.iter().map(solve).collect())
+}
+
+/// Factorises once for right-hand sides of which each follows from the solution before.
+pub fn with_factor<T>(
+    system: &System,
+    ordering: &Ordering,
+    tolerance: &Tolerance,
+    work: impl FnOnce(Solve) -> Result<T, SolverError>,
+) -> Result<T, SolverError> {
+    factorised(system, ordering, (tolerance, &|_, _| true), work)
+}
+
+fn factorised<T>(
+    system: &System,
+    ordering: &Ordering,
+    (tolerance, watch): (&Tolerance, Watch),
+    work: impl FnOnce(Solve) -> Result<T, SolverError>,
+) -> Result<T, SolverError> {
     let free = FreeUnknowns::new(system, ordering);
     let columns = free.lower_columns(system);
     let symbolic = columns.symbolic(&free)?;
     let mut values = vec![0.0; symbolic.len_val()];
     let factor = columns.factorise(&symbolic, &mut values, &free)?;
-    right_hand_sides
-        .iter()
-        .map(|right_hand_side| {
-            let refined = Refined { system, free: &free, factor: &factor };
-            refined.solve(right_hand_side, tolerance.relative_residual, watch)
-        })
-        .collect()
+    let refined = Refined { system, free: &free, factor: &factor };
+    work(&|right_hand_side| refined.solve(right_hand_side, tolerance.relative_residual, watch))
 }
 
 /// A factor and the system whose residual refines what it solves.
@@ -81,6 +99,7 @@ impl Refined<'_> {
             method: "cholesky",
             preconditioner: "none",
             why: String::new(),
+            history: Vec::new(),
             iterations: history.len() - 1,
             relative_residual: history[history.len() - 1],
         })

@@ -182,6 +182,7 @@ impl<'a, const N: usize> Run<'a, N> {
                 method: "conjugate_gradient",
                 preconditioner: "multigrid",
                 why: String::new(),
+                history: Vec::new(),
                 iterations: self.own_iterations[n],
             })
             .collect()

@@ -384,6 +384,7 @@ impl<'a, const N: usize> Run<'a, N> {
             preconditioner: "multigrid and pressure mass",
             why: format!("{} pressures make the system indefinite", p.len()),
             iterations: self.own_iterations[n],
+            history: Vec::new(),
         };
         (0..self.columns)
             .map(|n| MixedSolution { solution: solution(n), pressures: column(p, n) })

@@ -11,6 +11,7 @@ pub mod mixed;
 pub mod multigrid;
 pub mod ordering;
 pub mod sparse_rows;
+pub mod stationary;
 mod vector;
 mod vectorised;
 
@@ -72,6 +73,8 @@ pub struct Solution {
     pub iterations: usize,
     /// Recomputed from the solution at the end.
     pub relative_residual: f64,
+    /// The relative residual after each iteration, where iterations were asked for and not chosen.
+    pub history: Vec<f64>,
 }
 
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -80,6 +83,10 @@ pub enum SolverError {
     Stopped,
     #[error("residual {residual:.2e} after {iterations} iterations, wanted {wanted:.2e}")]
     NotConverged { iterations: usize, residual: f64, wanted: f64, history: Vec<f64> },
+    #[error(
+        "diverged: the residual grew {growth:.3} times an iteration, to {residual:.1e} after {iterations}"
+    )]
+    Diverged { iterations: usize, growth: f64, residual: f64, history: Vec<f64> },
     #[error("the matrix is not positive definite at row {row}")]
     NotPositiveDefinite { row: usize },
     #[error("the matrix or the right-hand side has values that are not finite")]
@@ -155,6 +162,7 @@ fn nothing_to_solve(rows: usize) -> Solution {
         why: "nothing moves and nothing acts".to_owned(),
         iterations: 0,
         relative_residual: 0.0,
+        history: Vec::new(),
     }
 }
 

@@ -25,8 +25,10 @@ impl<'a> Levels<'a> {
     /// The case of the scene on the mesh of a level, of these materials.
     pub(super) fn case(&mut self, level: u32, materials: &Materials) -> Result<Case, Refusal> {
         let volume = self.mesh(level)?;
-        let materials = materials.by_region.clone();
-        Ok(Case { volume, materials, ..self.scene.case.clone() })
+        let mut case =
+            Case { volume, materials: materials.by_region.clone(), ..self.scene.case.clone() };
+        case.fibres.extend(materials.fibres.clone());
+        Ok(case)
     }
 
     fn mesh(&mut self, level: u32) -> Result<Arc<VolumeMesh>, Refusal> {

@@ -1,7 +1,22 @@
 //! Every way of modelling that is built, as the variants of a study; a further one adds its lines here.
 
 use super::variant::Variant;
+use crate::model::mass_spring::{MassSpringSettings, Search};
+use crate::model::mass_tensor::{Iterations, MassTensorSettings};
+use crate::model::spline::{Stiffness, VolumeSpline};
+use crate::model::thickness_warp::ThicknessWarp;
 use crate::prediction::{ElementChoice, Method, Settings};
+use crate::solver::stationary::{Iteration, Stationary};
+
+/// The residual at which the papers' own iterations end: their answer is then within 0.01 mm of rest on the skin
+/// (`cargo bench --bench iterations`), and a smaller one would only make them look slower.
+const OWN_ITERATIONS_RESIDUAL: f64 = 1e-5;
+
+/// Sweeps after which the papers' own iterations are given up.
+const OWN_ITERATIONS: usize = 50_000;
+
+/// Between control points, in mN/mm: that of paper 000.
+const LINK: f64 = 80.0;
 
 /// All of them, each with its usual settings.
 pub fn available() -> Vec<Variant> {
@@ -10,7 +25,37 @@ pub fn available() -> Vec<Variant> {
         ("stabilised", ElementChoice::Stabilised),
         ("quadratic", ElementChoice::Quadratic),
     ];
-    linear.into_iter().map(|(element, choice)| fem_linear(element, choice)).collect()
+    let mut all: Vec<Variant> =
+        linear.into_iter().map(|(element, choice)| fem_linear(element, choice)).collect();
+    all.push(variant("mtm", "mtm", Method::MassTensor(MassTensorSettings::default())));
+    all.extend(
+        [
+            ("mtm gauss_seidel", Iteration::GaussSeidel),
+            ("mtm damped_jacobi", Iteration::DampedJacobi),
+            ("mtm jacobi", Iteration::Jacobi),
+        ]
+        .map(|(label, iteration)| mass_tensor(label, iteration)),
+    );
+    all.push(variant("mtm_ti", "mtm_ti", Method::MassTensorTransverse));
+    all.extend([("msm newton", Search::Newton), ("msm direct", Search::Direct)].map(
+        |(label, search)| {
+            let settings = MassSpringSettings { search, most_iterations: OWN_ITERATIONS };
+            let mut springs = variant("msm", label, Method::MassSpring(settings));
+            springs.settings.relative_residual = OWN_ITERATIONS_RESIDUAL;
+            springs
+        },
+    ));
+    let lattice = VolumeSpline { stiffness: Stiffness::Lattice(LINK), ..VolumeSpline::default() };
+    all.extend([
+        variant("dvs", "dvs galerkin", Method::VolumeSpline(VolumeSpline::default())),
+        variant("dvs", "dvs lattice", Method::VolumeSpline(lattice)),
+        variant(
+            "thickness_warp",
+            "thickness_warp",
+            Method::ThicknessWarp(ThicknessWarp::default()),
+        ),
+    ]);
+    all
 }
 
 /// Those of one method by its name in documents; none where it is not built.
@@ -18,10 +63,24 @@ pub fn of_method(method: &str) -> Vec<Variant> {
     available().into_iter().filter(|variant| variant.method == method).collect()
 }
 
-fn fem_linear(element: &str, choice: ElementChoice) -> Variant {
+fn variant(name: &str, label: &str, method: Method) -> Variant {
     Variant {
-        method: "fem_linear".to_owned(),
-        label: format!("fem_linear {element}"),
-        settings: Settings { method: Method::FemLinear, element: choice, ..Settings::default() },
+        method: name.to_owned(),
+        label: label.to_owned(),
+        settings: Settings { method, ..Settings::default() },
     }
+}
+
+fn fem_linear(element: &str, choice: ElementChoice) -> Variant {
+    let mut linear = variant("fem_linear", &format!("fem_linear {element}"), Method::FemLinear);
+    linear.settings.element = choice;
+    linear
+}
+
+fn mass_tensor(label: &str, iteration: Iteration) -> Variant {
+    let own = Stationary { iteration, relative_change: None, most_iterations: OWN_ITERATIONS };
+    let settings = MassTensorSettings { iterations: Iterations::Stationary(own) };
+    let mut tensors = variant("mtm", label, Method::MassTensor(settings));
+    tensors.settings.relative_residual = OWN_ITERATIONS_RESIDUAL;
+    tensors
 }

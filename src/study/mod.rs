@@ -11,6 +11,7 @@ pub mod pareto;
 pub mod report;
 mod run;
 pub mod scenes;
+pub mod stability;
 pub mod sweep;
 mod truth;
 pub mod variant;

@@ -42,7 +42,8 @@ pub fn combinations(
     if combinations > MOST_COMBINATIONS {
         return Err(SweepError::TooMany { combinations });
     }
-    let mut all = vec![Materials { name: String::new(), by_region: base.clone() }];
+    let mut all =
+        vec![Materials { name: String::new(), by_region: base.clone(), fibres: BTreeMap::new() }];
     for (region, values) in sweep {
         let start = base.get(region).or_else(|| base.get("*"));
         let start = start.ok_or_else(|| SweepError::UnknownRegion { region: region.clone() })?;
@@ -94,7 +95,7 @@ fn with(before: &Materials, region: &str, name: &str, material: &LinearElastic) 
     let mut by_region = before.by_region.clone();
     by_region.insert(region.to_owned(), *material);
     let names = [before.name.as_str(), name].into_iter().filter(|name| !name.is_empty());
-    Materials { name: names.collect::<Vec<_>>().join(", "), by_region }
+    Materials { name: names.collect::<Vec<_>>().join(", "), by_region, fibres: BTreeMap::new() }
 }
 
 /// Which rows a sweep is judged by.

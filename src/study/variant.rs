@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::material::LinearElastic;
 use crate::mesh::{Vector, VolumeMesh};
-use crate::prediction::{Case, ElementChoice, Plan, Settings};
+use crate::prediction::{Case, ElementChoice, FibreDirection, Plan, Settings};
 
 /// Every scene with every variant, material, plan and level.
 pub struct Study {
@@ -34,6 +34,8 @@ pub struct StudyScene {
 pub struct Materials {
     pub name: String,
     pub by_region: BTreeMap<String, LinearElastic>,
+    /// Courses of fibres over those of the case.
+    pub fibres: BTreeMap<String, FibreDirection>,
 }
 
 /// A way of modelling under a name for the row.

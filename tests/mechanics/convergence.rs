@@ -7,14 +7,14 @@ use facies::element::tetrahedron10;
 use facies::material::LinearElastic;
 use facies::mesh::sample::block;
 use facies::mesh::{CellShape, Vector, VolumeMesh};
-use facies::model::equilibrium::{LoadCase, Observer};
+use facies::model::equilibrium::LoadCase;
 use facies::model::linear_fem::Problem;
 use facies::model::quadratic::{self, EdgeNodes};
 use facies::model::stabilised;
 use facies::model::{assembly::Tissue, reference_cell, stiffness::Dilatation};
 use facies::solver::Tolerance;
 
-use crate::scenes::material;
+use crate::scenes::{Silent, material};
 
 /// u = 0.01 (sin(pi x) cos(pi y) z, x² y z, cos(pi z) x y) on the unit cube.
 fn manufactured(p: &Vector) -> Vector {
@@ -37,19 +37,6 @@ fn body_force(p: &Vector, material: &LinearElastic) -> Vector {
     );
     let (lambda, mu) = (material.lambda(), material.shear_modulus());
     -(laplacian * mu + grad_div * (lambda + mu)) * 0.01
-}
-
-struct Silent;
-
-impl Observer for Silent {
-    fn assembling(&self) {}
-    fn solving(&self) {}
-    fn iterated(&self, _iteration: usize, _relative_residual: f64) -> bool {
-        true
-    }
-    fn is_stopped(&self) -> bool {
-        false
-    }
 }
 
 /// Integrates over all cells at their quadrature points: position, shape functions, volume.
@@ -104,6 +91,9 @@ fn l2_error_of(
             mesh: &mesh,
             materials: &[material],
             material_of_cell: &material_of_cell,
+            pressure_of_cell: &material_of_cell,
+            fibres: &[],
+            membrane: None,
             dilatation,
         },
         holds: &holds,
@@ -200,6 +190,9 @@ fn quadratic_error(n: usize, nu: f64) -> f64 {
             mesh: &mesh,
             materials: &[material],
             material_of_cell: &material_of_cell,
+            pressure_of_cell: &material_of_cell,
+            fibres: &[],
+            membrane: None,
             dilatation: |_| Dilatation::Pointwise,
         },
         holds: &holds,

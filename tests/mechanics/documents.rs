@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use facies::mesh::{CellShape, Frame, Vector, VolumeMesh};
-use facies::prediction::{Load, Plan, Prescribed};
+use facies::prediction::{Load, Method, Plan, Prescribed};
 use facies::schema::case::{CaseMeshes, NamedMesh};
 use facies::schema::plan::PlanContext;
 use facies::schema::spec::JobDocument;
@@ -31,7 +31,7 @@ fn plan_in(frame: Frame, text: &str) -> Result<Plan, Problem> {
     faults.into_result().map(|()| plan)
 }
 
-fn settings(text: &str) -> Result<PredictDocument, Problem> {
+pub fn settings(text: &str) -> Result<PredictDocument, Problem> {
     let document: PredictDocument = parse(text)?;
     let mut faults = Faults::default();
     document.to_settings(&Limits::default(), &mut faults);
@@ -49,7 +49,7 @@ fn tetrahedron(frame: Option<Frame>) -> CaseMeshes {
     CaseMeshes { volume: NamedMesh { mesh: Arc::new(mesh), frame }, surfaces: BTreeMap::new() }
 }
 
-fn case_with(
+pub fn case_with(
     text: &str,
     spec: &str,
     mark: Option<Frame>,
@@ -63,18 +63,22 @@ fn case_with(
     faults.into_result().map(|()| (case, warnings.iter().map(|warning| warning.code).collect()))
 }
 
-fn case(text: &str) -> Result<(facies::prediction::Case, Vec<&'static str>), Problem> {
+pub fn case(text: &str) -> Result<(facies::prediction::Case, Vec<&'static str>), Problem> {
     case_with(text, "{}", None)
 }
 
 /// The codes and places of a refusal.
-fn refused<T>(result: Result<T, Problem>) -> (String, Vec<(String, String)>) {
+fn method_of(document: &PredictDocument) -> Method {
+    document.to_settings(&Limits::default(), &mut Faults::default()).method
+}
+
+pub fn refused<T>(result: Result<T, Problem>) -> (String, Vec<(String, String)>) {
     let problem = result.err().expect("the document is refused");
     let errors = problem.errors.into_iter().map(|error| (error.code, error.pointer));
     (problem.code.to_owned(), errors.collect())
 }
 
-fn one(code: &str, error: &str, pointer: &str) -> (String, Vec<(String, String)>) {
+pub fn one(code: &str, error: &str, pointer: &str) -> (String, Vec<(String, String)>) {
     (code.to_owned(), vec![(error.to_owned(), pointer.to_owned())])
 }
 
@@ -481,12 +485,69 @@ fn at_most_fifty_mistakes_are_listed_and_all_are_counted() {
 #[test]
 fn methods_that_are_not_built_are_refused_by_name() {
     let code = "method-not-available";
-    for name in ["fem_corotational", "fem_neo_hookean", "msm", "mtm_ti", "thickness_warp"] {
+    for name in ["fem_corotational", "fem_neo_hookean", "fem_ogden", "fem_rubin_bodner"] {
         let text = format!(r#"{{"method":"{name}"}}"#);
         assert_eq!(refused(settings(&text)), one(code, code, "/spec/method"), "{name}");
     }
     let misspelt = settings(r#"{"method":"fem"}"#);
     assert_eq!(refused(misspelt), one("validation-failed", "unknown-word", "/method"));
+}
+
+#[test]
+fn a_volume_spline_is_told_in_seconds_and_newtons_per_metre() {
+    use facies::model::spline::stepping::{Clock, Damping, Scheme};
+    use facies::model::spline::{Stiffness, VolumeSpline};
+    let method = |text: &str| method_of(&settings(text).unwrap());
+    let usual = Method::VolumeSpline(VolumeSpline::default());
+    assert_eq!(method(r#"{"method":"dvs"}"#), usual);
+    assert_eq!(method(r#"{"method":"dvs","dvs":{}}"#), usual);
+    let lattice = r#"{"method":"dvs","dvs":{"stiffness":"lattice","degree":2,"control_spacing_mm":5,
+        "damping_n_s_per_m":4,"stepping":"newmark","step_s":0.002,"hold_weight":20}}"#;
+    let stated = VolumeSpline {
+        degree: 2,
+        control_spacing: Some(5.0),
+        hold_weight: 20.0,
+        stiffness: Stiffness::Lattice(80.0),
+        damping: Damping { mass: 0.0, stiffness: 50.0 },
+        clock: Some(Clock { scheme: Scheme::Newmark, step: 2.0, end: 10_000.0 }),
+    };
+    assert_eq!(method(lattice), Method::VolumeSpline(stated));
+
+    let mismatch = "method-mismatch";
+    for (text, code, at) in [
+        (r#"{"dvs":{}}"#, mismatch, "/spec/dvs"),
+        (r#"{"method":"dvs","thickness_warp":{}}"#, mismatch, "/spec/thickness_warp"),
+        (r#"{"method":"dvs","element":"plain"}"#, mismatch, "/spec/element"),
+        (r#"{"method":"dvs","dvs":{"step_s":0.1}}"#, mismatch, "/spec/dvs/step_s"),
+        (
+            r#"{"method":"dvs","dvs":{"stiffness_n_per_m":9}}"#,
+            mismatch,
+            "/spec/dvs/stiffness_n_per_m",
+        ),
+        (r#"{"method":"dvs","dvs":{"degree":4}}"#, "out-of-range", "/spec/dvs/degree"),
+        (r#"{"method":"dvs","dvs":{"hold_weight":0}}"#, "out-of-range", "/spec/dvs/hold_weight"),
+        (
+            r#"{"method":"dvs","dvs":{"stepping":"explicit","step_s":1e-6}}"#,
+            "out-of-range",
+            "/spec/dvs/step_s",
+        ),
+    ] {
+        let whole = if code == mismatch { mismatch } else { "validation-failed" };
+        assert_eq!(refused(settings(text)), one(whole, code, at), "{text}");
+    }
+}
+
+#[test]
+fn a_warp_is_told_its_blend_radius_alone() {
+    use facies::model::thickness_warp::ThicknessWarp;
+    let text = r#"{"method":"thickness_warp","thickness_warp":{"blend_radius_mm":12}}"#;
+    let stated = Method::ThicknessWarp(ThicknessWarp { blend_radius: 12.0 });
+    assert_eq!(method_of(&settings(text).unwrap()), stated);
+    let far = r#"{"method":"thickness_warp","thickness_warp":{"blend_radius_mm":-1}}"#;
+    let at = "/spec/thickness_warp/blend_radius_mm";
+    assert_eq!(refused(settings(far)), one("validation-failed", "out-of-range", at));
+    let unused = refused(settings(r#"{"thickness_warp":{}}"#));
+    assert_eq!(unused, one("method-mismatch", "method-mismatch", "/spec/thickness_warp"));
 }
 
 #[test]

@@ -116,6 +116,27 @@ fn flat_cells_beside_solid_ones_are_left_out_with_their_values() {
 }
 
 #[test]
+fn vectors_of_cells_are_kept_with_their_cells_and_are_zero_where_they_were_not_finite() {
+    let more = "<CellData><DataArray type=\"Float32\" Name=\"fibre\" NumberOfComponents=\"3\" format=\"ascii\">\
+        7 7 7 0 1 -2 nan 0 0</DataArray></CellData>";
+    let cells: [(u8, &[u32]); 3] = [(5, &[0, 1, 2]), (10, &[0, 1, 2, 3]), (10, &[0, 1, 2, 3])];
+    let read = read_default(ascii_vtu(&TETRAHEDRON, &cells, more).as_bytes());
+    assert_eq!(warning_codes(&read), ["cells-skipped", "array-nonfinite"]);
+    assert_eq!(read.ignored_arrays, Vec::<String>::new());
+    let fibres = &volume(read).cell_vectors["fibre"];
+    assert_eq!(*fibres, [Vector::new(0.0, 1.0, -2.0), Vector::zeros()]);
+}
+
+#[test]
+fn a_legacy_file_brings_vectors_of_cells_too() {
+    let text = "# vtk DataFile Version 3.0\nmuscle\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 double\n\
+        0 0 0 100 0 0 0 100 0 0 0 100\nCELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n10\n\
+        CELL_DATA 1\nVECTORS fibre double\n0 3 4\n";
+    let mesh = volume(read_default(text.as_bytes()));
+    assert_eq!(mesh.cell_vectors["fibre"], [Vector::new(0.0, 3.0, 4.0)]);
+}
+
+#[test]
 fn an_unstructured_grid_of_flat_cells_is_a_surface() {
     let cells: [(u8, &[u32]); 2] = [(5, &[0, 1, 2]), (9, &[0, 1, 3, 2])];
     let read = read_default(ascii_vtu(&TETRAHEDRON, &cells, "").as_bytes());

@@ -41,6 +41,10 @@ pub fn mixed_mesh() -> VolumeMesh {
         )]),
         cell_labels: BTreeMap::from([("band".into(), vec![0, 1, -7])]),
         node_vectors: BTreeMap::from([("u_mm".into(), displacement.to_vec())]),
+        cell_vectors: BTreeMap::from([(
+            "fibre".into(),
+            vec![Vector::new(1.0, 0.0, -0.25), Vector::zeros(), Vector::new(0.0, 1e-9, 3.0)],
+        )]),
     }
 }
 
@@ -84,14 +88,14 @@ pub fn error_of(bytes: &[u8]) -> String {
 pub fn volume(read: ReadMesh) -> VolumeMesh {
     match read.mesh {
         Mesh::Volume(mesh) => mesh,
-        Mesh::Surface(_) => panic!("a surface was read"),
+        _ => panic!("a volume mesh was expected"),
     }
 }
 
 pub fn surface(read: ReadMesh) -> TriangleSurface {
     match read.mesh {
         Mesh::Surface(surface) => surface,
-        Mesh::Volume(_) => panic!("a volume mesh was read"),
+        _ => panic!("a surface was expected"),
     }
 }
 

@@ -103,7 +103,7 @@ fn predict(case: &str, plan: &str, spec: &str, out: &Path) -> Result<JobOutput, 
 fn surface(path: &Path) -> TriangleSurface {
     match format::read(&fs::read(path).unwrap(), &ReadLimits::default()).unwrap().mesh {
         Mesh::Surface(surface) => surface,
-        Mesh::Volume(_) => panic!("a surface"),
+        _ => panic!("a surface"),
     }
 }
 
@@ -184,7 +184,22 @@ fn the_manifest_is_what_stands_in_the_folder() {
     assert!(solver.relative_residual <= solver.wanted_residual);
     let roles: Vec<&str> = provenance.inputs.iter().map(|input| input.role.as_str()).collect();
     assert_eq!(roles, ["volume", "bone base"]);
-    assert_eq!(provenance.why.unwrap(), "auto: fem_linear is the only model built so far");
+    assert_eq!(provenance.why.unwrap(), "auto: fem_linear, until a chooser exists");
+}
+
+#[test]
+fn a_job_says_which_method_and_elements_it_used() {
+    let out = tempfile::tempdir().unwrap();
+    let fibred = CASE.replace(
+        r#""poisson_ratio":0.4"#,
+        r#""poisson_ratio":0.4,"fibre":{"young_modulus_kpa":60,"direction":[1,0,0]}"#,
+    );
+    let spec = r#"{"method":"mtm_ti","membrane":{},"outputs":["skin.ply"]}"#;
+    let done = predict(&fibred, TURN, spec, out.path()).unwrap();
+    let provenance = done.result.provenance;
+    assert_eq!(provenance.method.unwrap(), "mtm_ti");
+    assert_eq!(provenance.solver.unwrap().elements, ["tet4 plain", "tri3 membrane"]);
+    assert!(done.result.warnings.iter().all(|warning| warning.code != "fibres-missing"));
 }
 
 #[test]

@@ -79,8 +79,15 @@ impl Assembled {
     fn new(mesh: &VolumeMesh, dilatation: fn(CellShape) -> Dilatation) -> Self {
         let materials = [material(15.0, 0.49)];
         let material_of_cell = vec![0; mesh.cells.len()];
-        let tissue =
-            Tissue { mesh, materials: &materials, material_of_cell: &material_of_cell, dilatation };
+        let tissue = Tissue {
+            mesh,
+            materials: &materials,
+            material_of_cell: &material_of_cell,
+            pressure_of_cell: &material_of_cell,
+            fibres: &[],
+            membrane: None,
+            dilatation,
+        };
         let numbering = Numbering::new(mesh, &vec![false; mesh.nodes.len()]);
         let matrix = tissue.assemble(&numbering, &|| true).unwrap().unwrap();
         Assembled { matrix, numbering }
@@ -154,8 +161,8 @@ fn the_assembled_matrix_is_the_sum_of_its_cells() {
         let mut sum = DMatrix::zeros(3 * mesh.nodes.len(), 3 * mesh.nodes.len());
         for (cell, (_, nodes)) in mesh.cells.iter().enumerate() {
             let corners: Vec<Vector> = mesh.corners(cell).collect();
-            let blocks =
-                cell_stiffness(shape, &corners, &material(15.0, 0.49), Dilatation::Mean).unwrap();
+            let tensor = material(15.0, 0.49).tensor(&Vector::zeros());
+            let blocks = cell_stiffness(shape, &corners, &tensor, Dilatation::Mean).unwrap();
             for (k, block) in blocks.iter().enumerate() {
                 let row = assembled.numbering.row(nodes[k / nodes.len()]);
                 let column = assembled.numbering.row(nodes[k % nodes.len()]);

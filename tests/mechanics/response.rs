@@ -271,6 +271,16 @@ fn a_bone_that_carries_all_tissue_around_is_a_rotation_and_the_estimate_knows_th
 }
 
 #[test]
+fn a_response_of_another_method_is_refused() {
+    use facies::model::thickness_warp::ThicknessWarp;
+    let method = facies::prediction::Method::ThicknessWarp(ThicknessWarp::default());
+    let settings = Settings { method, ..Settings::default() };
+    let scene = Scene::new(&block(CellShape::Hex8), &Plan::default(), &settings).unwrap();
+    let refused = build(&scene, &[], &Unobserved);
+    assert!(matches!(refused, Err(ResponseError::OtherMethod)));
+}
+
+#[test]
 fn two_segments_that_part_are_farther_apart_than_either_moves() {
     let case = Case { skin: Some(set("z_max")), ..block(CellShape::Hex8) };
     let columns = columns(&case, &Settings::default());

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use facies::boundary::NodeSelection;
 use facies::material::LinearElastic;
 use facies::mesh::{CellShape, Vector, VolumeMesh};
+use facies::model::equilibrium::Observer;
 use facies::prediction::{
     Case, Plan, Prediction, Prescribed, Scene, Settings, Unobserved, predict,
 };
@@ -61,4 +62,18 @@ pub fn largest_error(
 ) -> f64 {
     let errors = mesh.nodes.iter().zip(displacement).map(|(x, u)| (u - field(x)).norm());
     errors.fold(0.0, f64::max)
+}
+
+/// Follows no solution and stops none.
+pub struct Silent;
+
+impl Observer for Silent {
+    fn assembling(&self) {}
+    fn solving(&self) {}
+    fn iterated(&self, _iteration: usize, _relative_residual: f64) -> bool {
+        true
+    }
+    fn is_stopped(&self) -> bool {
+        false
+    }
 }

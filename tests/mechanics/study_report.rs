@@ -140,12 +140,11 @@ fn suites(text: &str) -> Vec<(String, Vec<(String, String)>)> {
     loop {
         match reader.read_event().unwrap() {
             Event::Start(start) | Event::Empty(start) => {
-                let utf8 = |bytes: &[u8]| String::from_utf8(bytes.to_vec()).unwrap();
                 let attributes = start.attributes().map(|attribute| {
                     let attribute = attribute.unwrap();
-                    (utf8(attribute.key.as_ref().as_bytes()), attribute.value.to_string())
+                    (attribute.key.as_ref().to_owned(), attribute.value.to_string())
                 });
-                elements.push((utf8(start.name().as_ref().as_bytes()), attributes.collect()));
+                elements.push((start.name().as_ref().to_owned(), attributes.collect()));
             }
             Event::Eof => return elements,
             _ => {}

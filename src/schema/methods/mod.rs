@@ -1,7 +1,12 @@
 //! `GET /v1/methods`: the ways of modelling, by the names a spec may give.
 
+mod dvs;
 mod fem_linear;
 mod measured;
+mod msm;
+mod mtm;
+mod mtm_ti;
+mod thickness_warp;
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
@@ -14,7 +19,7 @@ use crate::response::linearity::LINEAR_RANGE_MM;
 pub use measured::MeasuredDocument;
 
 /// Why `auto` is what it is.
-pub const WHY_LINEAR: &str = "auto: fem_linear is the only model built so far";
+pub const WHY_LINEAR: &str = "auto: fem_linear, until something chooses between models";
 /// Why a method that was asked for by name is used.
 pub const WHY_ASKED: &str = "asked for by the spec";
 
@@ -57,7 +62,8 @@ pub enum ElementName {
 impl MethodName {
     /// Whether it is built.
     pub fn is_available(self) -> bool {
-        matches!(self, MethodName::Auto | MethodName::FemLinear)
+        use MethodName::{Auto, Dvs, FemLinear, Msm, Mtm, MtmTi, ThicknessWarp};
+        matches!(self, Auto | FemLinear | Msm | Mtm | MtmTi | Dvs | ThicknessWarp)
     }
 
     /// The method that is used: what `auto` chooses, or the one asked for.
@@ -97,8 +103,34 @@ impl MethodName {
 /// Refuses a method that is not built, naming those that are.
 pub fn check_method(method: MethodName, at: &Pointer, faults: &mut Faults) {
     if !method.is_available() {
-        let detail = "this method is not available; `auto` and `fem_linear` are";
+        let names: Vec<String> = documents().map(|row| format!("`{}`", row.name.name())).collect();
+        let detail = format!("this method is not available; `auto` and {} are", names.join(", "));
         faults.add(at, "method-not-available", detail);
+    }
+}
+
+/// Refuses, for plan responses, a method whose skin is not linear in the movements, or that has none of its own.
+pub fn check_linear(method: MethodName, at: &Pointer, faults: &mut Faults) {
+    let is_linear = matches!(method.chosen(), MethodName::FemLinear | MethodName::MtmTi);
+    if method.is_available() && !is_linear {
+        let detail = "responses are built by `fem_linear` and `mtm_ti`";
+        faults.add(at, "method-not-available", detail);
+    }
+}
+
+/// Refuses settings of a method in the spec of another one.
+pub fn check_own(
+    own: MethodName,
+    is_given: bool,
+    method: MethodName,
+    at: &Pointer,
+    faults: &mut Faults,
+) {
+    if is_given && method.chosen() != own {
+        let name = own.name();
+        let detail =
+            format!("these are settings of `{name}`, and the method is `{}`", method.name());
+        faults.add(&at.key(name), "method-mismatch", detail);
     }
 }
 
@@ -207,13 +239,26 @@ pub struct ParameterDocument {
     pub range: String,
 }
 
+/// What is told of each method that is built.
+fn documents() -> impl Iterator<Item = MethodDocument> {
+    [
+        fem_linear::document(),
+        mtm::document(),
+        mtm_ti::document(),
+        msm::document(),
+        dvs::document(),
+        thickness_warp::document(),
+    ]
+    .into_iter()
+}
+
 /// The methods that are built.
 pub fn available_methods() -> MethodList {
     MethodList {
-        methods: [fem_linear::document()].into_iter().map(MeasuredMethod::of).collect(),
+        methods: documents().map(MeasuredMethod::of).collect(),
         auto: WHY_LINEAR.to_owned(),
         response: ResponseMethod {
-            methods: vec![MethodName::FemLinear],
+            methods: vec![MethodName::FemLinear, MethodName::MtmTi],
             columns_per_segment: COLUMNS_PER_SEGMENT as u32,
             nonlinearity_estimate: "0.15 d^2 / h + 2.7 h (1 - cos theta): d the largest movement in mm of a \
                 segment against another or against what stays, h the median distance in mm from the skin to \
@@ -222,7 +267,7 @@ pub fn available_methods() -> MethodList {
             linear_range_mm: LINEAR_RANGE_MM,
         },
         optimise: OptimiseMethod {
-            methods: vec![MethodName::FemLinear],
+            methods: vec![MethodName::FemLinear, MethodName::MtmTi],
             minimises: "sum of (residual / sigma_mm)^2 over translations and angles within their bounds, by \
                 Levenberg and Marquardt's method from rest, on a response of the segments"
                 .to_owned(),
@@ -231,6 +276,20 @@ pub fn available_methods() -> MethodList {
                 .to_owned(),
             undetermined_below: UNDETERMINED,
         },
+    }
+}
+
+fn parameter(
+    name: &str,
+    meaning: &str,
+    default: serde_json::Value,
+    range: &str,
+) -> ParameterDocument {
+    ParameterDocument {
+        name: name.to_owned(),
+        meaning: meaning.to_owned(),
+        default,
+        range: range.to_owned(),
     }
 }
 

@@ -1,0 +1,266 @@
+//! What each method does as something is turned up: one row for each method, one panel for each axis, one small
+//! cell for each value. A wrong answer without a warning is what the eye must find first.
+
+use super::svg::{Document, Place, Style, wrapped};
+
+/// What a method did.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mark {
+    Good,
+    Warned,
+    Refused,
+    Failed,
+    Wrong,
+}
+
+/// One thing that is turned up.
+pub struct StabilityAxis {
+    pub title: String,
+    /// Empty where the values are words.
+    pub unit: String,
+    pub values: Vec<String>,
+    /// [row][value]; none where the value means nothing to the method.
+    pub marks: Vec<Vec<Option<Mark>>>,
+}
+
+/// All axes for all methods.
+pub struct StabilityMap<'a> {
+    pub title: &'a str,
+    pub subtitle: &'a str,
+    /// Names of the methods.
+    pub rows: &'a [String],
+    pub axes: &'a [StabilityAxis],
+}
+
+const WIDTH: f64 = 1100.0;
+const MARGIN: f64 = 28.0;
+const NAMES: f64 = 186.0;
+const GAP: f64 = 26.0;
+const CELL: [f64; 2] = [23.0, 21.0];
+const ROW: f64 = 39.0;
+/// Above the first row of a panel: its title, its unit, its values.
+const PANEL_HEAD: f64 = 84.0;
+
+const LEGEND: [(Mark, &str); 5] = [
+    (Mark::Good, "right, no warning"),
+    (Mark::Warned, "answers with a warning"),
+    (Mark::Refused, "refuses, says where"),
+    (Mark::Failed, "ends with an error"),
+    (Mark::Wrong, "WRONG, AND SILENT"),
+];
+
+impl StabilityMap<'_> {
+    /// The picture as one SVG document.
+    pub fn to_svg(&self) -> String {
+        let bands = self.bands();
+        let room = WIDTH - 2.0 * MARGIN;
+        let subtitle = wrapped(self.subtitle, room, Style::of(13.0));
+        let head = 62.0 + 18.0 * subtitle.len() as f64;
+        let legend = 40.0;
+        let band = PANEL_HEAD + ROW * self.rows.len() as f64 + 16.0;
+        let mut document = Document::new(WIDTH, head + legend + band * bands.len() as f64 + 8.0);
+        document.text([MARGIN, 42.0], room, Style::of(22.0).bold(), self.title);
+        for (line, words) in subtitle.iter().enumerate() {
+            let y = 66.0 + 18.0 * line as f64;
+            document.text([MARGIN, y], room, Style::of(13.0).faint(), words);
+        }
+        draw_legend(&mut document, head + 2.0);
+        for (number, axes) in bands.iter().enumerate() {
+            self.draw_band(&mut document, head + legend + band * number as f64, axes);
+        }
+        document.finish(self.title)
+    }
+
+    /// Axes side by side as far as there is room.
+    fn bands(&self) -> Vec<Vec<&StabilityAxis>> {
+        let mut bands: Vec<Vec<&StabilityAxis>> = Vec::new();
+        let mut x = f64::INFINITY;
+        for axis in self.axes {
+            if x + axis.width() > WIDTH - MARGIN {
+                bands.push(Vec::new());
+                x = MARGIN + NAMES;
+            }
+            x += axis.width() + GAP;
+            if let Some(band) = bands.last_mut() {
+                band.push(axis);
+            }
+        }
+        bands
+    }
+
+    fn draw_band(&self, document: &mut Document, top: f64, axes: &[&StabilityAxis]) {
+        let first = top + PANEL_HEAD;
+        for (row, name) in self.rows.iter().enumerate() {
+            let y = first + ROW * row as f64;
+            if row % 2 == 0 {
+                let stripe = Place {
+                    x: MARGIN - 8.0,
+                    y: y - 5.0,
+                    width: WIDTH - 2.0 * MARGIN + 16.0,
+                    height: ROW,
+                };
+                document.rectangle(stripe, "#f4f5f7", 0.0);
+            }
+            let style = Style::of(12.0).bold();
+            let lines = wrapped(name, NAMES - 10.0, style);
+            for (line, words) in lines.iter().take(2).enumerate() {
+                document.text([MARGIN, y + 14.0 + 15.0 * line as f64], NAMES - 10.0, style, words);
+            }
+        }
+        let mut x = MARGIN + NAMES;
+        for axis in axes {
+            axis.draw(document, [x, top]);
+            x += axis.width() + GAP;
+        }
+    }
+}
+
+impl StabilityAxis {
+    fn width(&self) -> f64 {
+        // Room for the title of an axis with few values.
+        (CELL[0] * self.values.len() as f64).max(190.0)
+    }
+
+    fn draw(&self, document: &mut Document, [x, top]: [f64; 2]) {
+        let room = self.width() + GAP - 6.0;
+        document.text([x, top + 16.0], room, Style::of(14.0).bold(), &self.title);
+        document.text([x, top + 32.0], room, Style::of(11.0).faint(), &self.unit);
+        let first = top + PANEL_HEAD;
+        for (place, words) in self.values.iter().enumerate() {
+            let at = [x + CELL[0] * (place as f64 + 0.42), first - 7.0];
+            document.rising_text(at, 52.0, Style::of(11.0), words);
+        }
+        for (row, marks) in self.marks.iter().enumerate() {
+            let y = first + ROW * row as f64;
+            for (place, mark) in marks.iter().enumerate() {
+                let at = [x + CELL[0] * place as f64, y];
+                if let Some(mark) = mark.filter(|mark| *mark != Mark::Wrong) {
+                    draw_mark(document, at, mark);
+                }
+            }
+            // Above their neighbours, which they overlap.
+            for (place, _) in
+                marks.iter().enumerate().filter(|(_, mark)| **mark == Some(Mark::Wrong))
+            {
+                draw_mark(document, [x + CELL[0] * place as f64, y], Mark::Wrong);
+            }
+            let style = match marks.contains(&Some(Mark::Wrong)) {
+                true => Style::of(10.0).bold(),
+                false => Style::of(10.0).faint(),
+            };
+            document.text([x, y + CELL[1] + 10.0], room, style, &self.note(marks));
+        }
+    }
+
+    /// Where the method first wrongs, or else where it first stops to answer well.
+    fn note(&self, marks: &[Option<Mark>]) -> String {
+        let first = |wanted: &dyn Fn(Mark) -> bool| {
+            let place = marks.iter().position(|mark| mark.is_some_and(wanted));
+            place.and_then(|place| Some((self.values.get(place)?, marks[place]?)))
+        };
+        if marks.iter().all(Option::is_none) {
+            return "does not apply".to_owned();
+        }
+        let not_good = |mark: Mark| mark != Mark::Good;
+        match first(&|mark| mark == Mark::Wrong).or_else(|| first(&not_good)) {
+            Some((value, Mark::Wrong)) => format!("SILENTLY WRONG at {value}"),
+            Some((value, Mark::Warned)) => format!("warns from {value}"),
+            Some((value, Mark::Refused)) => format!("refuses from {value}"),
+            Some((value, Mark::Failed)) => format!("fails from {value}"),
+            _ => "right throughout".to_owned(),
+        }
+    }
+}
+
+fn draw_legend(document: &mut Document, top: f64) {
+    let mut x = MARGIN;
+    for (mark, words) in LEGEND {
+        draw_mark(document, [x, top], mark);
+        let style = if mark == Mark::Wrong { Style::of(13.0).bold() } else { Style::of(13.0) };
+        document.text([x + CELL[0] + 6.0, top + 15.0], 190.0, style, words);
+        x += 205.0;
+    }
+}
+
+/// A cell with its sign, so that colour says nothing alone (colours after Okabe and Ito, see `colour`).
+fn draw_mark(document: &mut Document, [x, y]: [f64; 2], mark: Mark) {
+    let [width, height] = [CELL[0] - 2.0, CELL[1]];
+    let cell = Place { x: x + 1.0, y, width, height };
+    let (cx, cy) = (x + CELL[0] / 2.0, y + height / 2.0);
+    let sign = |points: &[[f64; 2]]| -> Vec<[f64; 2]> {
+        points.iter().map(|[dx, dy]| [cx + dx, cy + dy]).collect()
+    };
+    match mark {
+        Mark::Good => {
+            document.rectangle(cell, "#c5e8dc", 3.0);
+            document.stroke(&sign(&[[-4.5, 0.5], [-1.5, 4.0], [5.0, -4.0]]), "#00664b", 2.0);
+        }
+        Mark::Warned => {
+            document.rectangle(cell, "#e69f00", 3.0);
+            document.stroke(&sign(&[[0.0, -6.0], [0.0, 1.5]]), "#22262b", 2.6);
+            document.stroke(&sign(&[[0.0, 5.8], [0.0, 6.0]]), "#22262b", 2.6);
+        }
+        Mark::Refused => {
+            document.rectangle(cell, "#a9cbe6", 3.0);
+            document.stroke(&sign(&[[-5.5, 0.0], [5.5, 0.0]]), "#0b3c5d", 3.0);
+        }
+        Mark::Failed => {
+            document.rectangle(cell, "#56606b", 3.0);
+            document.stroke(&sign(&[[-4.0, -4.0], [4.0, 4.0]]), "#ffffff", 2.2);
+            document.stroke(&sign(&[[-4.0, 4.0], [4.0, -4.0]]), "#ffffff", 2.2);
+        }
+        Mark::Wrong => {
+            let around = Place {
+                x: cell.x - 3.0,
+                y: cell.y - 3.0,
+                width: width + 6.0,
+                height: height + 6.0,
+            };
+            document.rectangle(around, "#000000", 2.0);
+            document.rectangle(cell, "#e0003c", 0.0);
+            document.stroke(&sign(&[[-5.0, -6.0], [5.0, 6.0]]), "#ffffff", 3.6);
+            document.stroke(&sign(&[[-5.0, 6.0], [5.0, -6.0]]), "#ffffff", 3.6);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn drawn(marks: Vec<Option<Mark>>) -> String {
+        let values = (0..marks.len()).map(|value| format!("v{value}")).collect();
+        let axis = StabilityAxis {
+            title: "Movement".to_owned(),
+            unit: "mm".to_owned(),
+            values,
+            marks: vec![marks],
+        };
+        let rows = ["plain".to_owned()];
+        StabilityMap { title: "map", subtitle: "", rows: &rows, axes: &[axis] }.to_svg()
+    }
+
+    #[test]
+    fn a_silent_error_is_named_before_every_warning() {
+        let [good, warned, wrong] = [Mark::Good, Mark::Warned, Mark::Wrong].map(Some);
+        assert!(drawn(vec![good, warned, wrong]).contains("SILENTLY WRONG at v2"));
+        assert!(drawn(vec![good, warned, warned]).contains("warns from v1"));
+        assert!(drawn(vec![good, good]).contains("right throughout"));
+        assert!(drawn(vec![None, None]).contains("does not apply"));
+    }
+
+    #[test]
+    fn axes_that_do_not_fit_side_by_side_go_below_each_other() {
+        let axis = || StabilityAxis {
+            title: String::new(),
+            unit: String::new(),
+            values: vec![String::new(); 9],
+            marks: Vec::new(),
+        };
+        let axes: Vec<StabilityAxis> = (0..8).map(|_| axis()).collect();
+        let map = StabilityMap { title: "", subtitle: "", rows: &[], axes: &axes };
+        let bands: Vec<usize> = map.bands().iter().map(Vec::len).collect();
+        assert_eq!(bands.iter().sum::<usize>(), 8);
+        assert!(bands.iter().all(|axes| (1..=4).contains(axes)), "{bands:?}");
+    }
+}

@@ -1,0 +1,171 @@
+//! The stiffness C of a material point, isotropic or with one fibre direction a, |a| = 1.
+//!
+//! 2 W = lambda (tr E)^2 + 2 mu E:E + 2 dlam (a.Ea) tr E + 4 dmu a.E^2 a + beta (a.Ea)^2
+//!
+//! is the general transversely isotropic energy. Between two gradients of shape functions it is the block
+//!
+//! g_j.C.g_k = lambda g_j g_k^T + mu [ g_k g_j^T + (g_j.g_k) I ]
+//!           + dlam [ (a.g_k) g_j a^T + (a.g_j) a g_k^T ] + beta (a.g_j)(a.g_k) a a^T
+//!           + dmu [ (a.g_k) a g_j^T + (a.g_j) g_k a^T + (g_j.g_k) a a^T + (a.g_j)(a.g_k) I ]
+//!
+//! Source: METHODS A2 and A3; paper 002, eq. 33, in its corrected form, has beta = -(dlam + 2 dmu).
+
+use nalgebra::Vector3;
+
+type Vector = Vector3<f64>;
+type Block = [[f64; 3]; 3];
+
+/// C of a material point, in kPa.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ElasticTensor {
+    pub lambda: f64,
+    pub mu: f64,
+    /// Absent where the tissue is isotropic.
+    pub fibre: Option<AlongFibre>,
+}
+
+/// What fibres add to lambda and mu.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AlongFibre {
+    /// Of length 1.
+    pub direction: Vector,
+    pub moduli: FibreModuli,
+}
+
+/// dlam, dmu and beta in kPa.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FibreModuli {
+    pub delta_lambda: f64,
+    pub delta_mu: f64,
+    pub beta: f64,
+}
+
+/// block += lambda g_j g_k^T + mu g_k g_j^T + mu (g_j . g_k) I, with moduli times the volume of a point.
+#[inline]
+pub fn add_isotropic_pair(block: &mut Block, [gj, gk]: [&Vector; 2], lambda: f64, mu: f64) {
+    let diagonal = mu * gj.dot(gk);
+    for (r, row) in block.iter_mut().enumerate() {
+        for (c, value) in row.iter_mut().enumerate() {
+            *value += lambda * gj[r] * gk[c] + mu * gk[r] * gj[c];
+        }
+        row[r] += diagonal;
+    }
+}
+
+impl ElasticTensor {
+    pub fn isotropic(lambda: f64, mu: f64) -> Self {
+        ElasticTensor { lambda, mu, fibre: None }
+    }
+
+    /// block += weight g_j.C.g_k; the weight is the volume that a point stands for.
+    #[inline]
+    pub fn add_pair(&self, block: &mut Block, [gj, gk]: [&Vector; 2], weight: f64) {
+        add_isotropic_pair(block, [gj, gk], self.lambda * weight, self.mu * weight);
+        if let Some(fibre) = &self.fibre {
+            fibre.add_pair(block, [gj, gk], weight);
+        }
+    }
+
+    /// C as a part that resists changes of shape alone and a part that counts with the change of volume:
+    ///
+    /// C = D C D + rest, D = identity - 1/3 (1 x 1), rest with mu = dmu = beta = 0.
+    ///
+    /// With q = beta + 4 dmu, D C D has lambda = q/9 - 2/3 mu and dlam = -q/3.
+    pub fn split_volume(&self) -> (Self, Self) {
+        let q = self.fibre.map_or(0.0, |fibre| fibre.moduli.beta + 4.0 * fibre.moduli.delta_mu);
+        let lambda = q / 9.0 - 2.0 / 3.0 * self.mu;
+        let of_shape = |fibre: AlongFibre| {
+            let moduli = FibreModuli { delta_lambda: -q / 3.0, ..fibre.moduli };
+            AlongFibre { moduli, ..fibre }
+        };
+        let of_volume = |fibre: AlongFibre| {
+            let delta_lambda = fibre.moduli.delta_lambda + q / 3.0;
+            AlongFibre { moduli: FibreModuli { delta_lambda, ..FibreModuli::default() }, ..fibre }
+        };
+        (
+            ElasticTensor { lambda, mu: self.mu, fibre: self.fibre.map(of_shape) },
+            ElasticTensor {
+                lambda: self.lambda - lambda,
+                mu: 0.0,
+                fibre: self.fibre.map(of_volume),
+            },
+        )
+    }
+
+    /// The part lambda' (1 x 1) of C that a pressure p = lambda' div u can carry, so that what stays is
+    /// positive definite:
+    ///
+    /// lambda' = K - 2/3 mu', 1/K = 1.S.1 with S = C^-1, mu' the smaller of the two shear moduli.
+    ///
+    /// C - lambda' (1 x 1) is positive definite as long as lambda' < K. Isotropic: lambda' = lambda, mu' = mu.
+    /// Where it would be negative there is no such part.
+    pub fn pressure_part(&self) -> PressurePart {
+        let Some(fibre) = &self.fibre else {
+            return PressurePart { lambda: self.lambda, mu: self.mu };
+        };
+        let shear = self.mu.min(self.mu + fibre.moduli.delta_mu);
+        let BesidesLambda { along, mixed, across } = self.besides_lambda();
+        let bulk = self.lambda
+            + (along * across - 2.0 * mixed * mixed) / (2.0 * along + across - 4.0 * mixed);
+        PressurePart { lambda: (bulk - 2.0 / 3.0 * shear).max(0.0), mu: shear }
+    }
+
+    /// The smallest eigenvalue of the 6 x 6 matrix of C in kPa, shear strains as angles.
+    pub fn smallest_eigenvalue(&self) -> f64 {
+        let delta_mu = self.fibre.map_or(0.0, |fibre| fibre.moduli.delta_mu);
+        let BesidesLambda { along, mixed, across } = self.besides_lambda();
+        // Of the normal strains e1 and e2 = e3 these two remain: (C11, sqrt 2 C12; sqrt 2 C12, C22 + C23).
+        // Their determinant is linear in lambda, which keeps it exact where lambda is large.
+        let determinant = self.lambda * (across + 2.0 * along - 4.0 * mixed) + along * across
+            - 2.0 * mixed * mixed;
+        let (c11, c12, c22_c23) =
+            (self.lambda + along, self.lambda + mixed, 2.0 * self.lambda + across);
+        let spread = ((c11 - c22_c23) / 2.0).hypot(std::f64::consts::SQRT_2 * c12);
+        let normal = determinant / ((c11 + c22_c23) / 2.0 + spread);
+        normal.min(self.mu).min(self.mu + delta_mu)
+    }
+
+    fn besides_lambda(&self) -> BesidesLambda {
+        let FibreModuli { delta_lambda, delta_mu, beta } =
+            self.fibre.map_or_else(FibreModuli::default, |fibre| fibre.moduli);
+        BesidesLambda {
+            along: 2.0 * (self.mu + delta_lambda) + beta + 4.0 * delta_mu,
+            mixed: delta_lambda,
+            across: 2.0 * self.mu,
+        }
+    }
+}
+
+/// C11 - lambda, C12 - lambda and C22 + C23 - 2 lambda with the fibre along the first axis.
+struct BesidesLambda {
+    along: f64,
+    mixed: f64,
+    across: f64,
+}
+
+/// What of C a pressure carries, and the shear modulus that belongs to it, in kPa.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PressurePart {
+    pub lambda: f64,
+    pub mu: f64,
+}
+
+impl AlongFibre {
+    #[inline]
+    fn add_pair(&self, block: &mut Block, [gj, gk]: [&Vector; 2], weight: f64) {
+        let a = &self.direction;
+        let FibreModuli { delta_lambda, delta_mu, beta } = self.moduli;
+        let (dlam, dmu) = (delta_lambda * weight, delta_mu * weight);
+        let (aj, ak) = (a.dot(gj), a.dot(gk));
+        let diagonal = dmu * aj * ak;
+        let both = beta * weight * aj * ak + dmu * gj.dot(gk);
+        for (r, row) in block.iter_mut().enumerate() {
+            for (c, value) in row.iter_mut().enumerate() {
+                *value += dlam * (ak * gj[r] * a[c] + aj * a[r] * gk[c])
+                    + dmu * (ak * a[r] * gj[c] + aj * gk[r] * a[c])
+                    + both * a[r] * a[c];
+            }
+            row[r] += diagonal;
+        }
+    }
+}

@@ -1,0 +1,66 @@
+//! A point that is several tissues at once, each to its share.
+//!
+//! C = sum_i f_i C_i with sum_i f_i = 1: for isotropic tissue K = sum f_i K_i and mu = sum f_i mu_i, so
+//! E = 9 K mu / (3 K + mu) and nu = (3 K - 2 mu) / (6 K + 2 mu); METHODS row 35. All parts are strained alike
+//! (Voigt), which makes the stiffest mixture that the shares allow. Density is that of the shares too.
+//!
+//! Source: the equivalent property of Kim et al. 2012 (Mass tensor), stated there for the shares of points;
+//! that the constants are mixed and not E and nu themselves is a choice of ours.
+
+use super::LinearElastic;
+
+/// The mixture of parts with these shares, which sum to 1; there is at least one.
+pub fn mixture(parts: &[(f64, LinearElastic)]) -> LinearElastic {
+    let mean = |of: fn(&LinearElastic) -> f64| -> f64 {
+        parts.iter().map(|(share, part)| share * of(part)).sum()
+    };
+    let (bulk, shear) = (mean(LinearElastic::bulk_modulus), mean(LinearElastic::shear_modulus));
+    let young_modulus = 9.0 * bulk * shear / (3.0 * bulk + shear);
+    let poisson_ratio = (3.0 * bulk - 2.0 * shear) / (6.0 * bulk + 2.0 * shear);
+    // nu lies between those of the parts, which rounding may overstep; E may be above theirs where they differ in
+    // nu, and a law of 1e9 kPa is no tissue any more.
+    let largest = parts.iter().map(|(_, part)| part.poisson_ratio()).fold(0.0, f64::max);
+    LinearElastic::new(
+        young_modulus.min(1e9),
+        poisson_ratio.clamp(0.0, largest),
+        mean(LinearElastic::density).clamp(0.0, 100.0),
+    )
+    .expect("a mixture of valid tissues lies within the same bounds")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn tissue(young_modulus: f64, poisson_ratio: f64, density: f64) -> LinearElastic {
+        LinearElastic::new(young_modulus, poisson_ratio, density).unwrap()
+    }
+
+    #[test]
+    fn both_moduli_and_the_density_are_linear_in_the_shares() {
+        let (fat, muscle) = (tissue(3.0, 0.46, 0.9), tissue(300.0, 0.3, 1.1));
+        for share in [0.0, 0.125, 0.5, 1.0] {
+            let mixed = mixture(&[(1.0 - share, fat), (share, muscle)]);
+            let linear =
+                |of: fn(&LinearElastic) -> f64| (1.0 - share) * of(&fat) + share * of(&muscle);
+            // Rounding of E and nu, which the moduli are taken from again.
+            let close = |a: f64, b: f64| assert!((a - b).abs() < 1e-12 * b, "{share}: {a} {b}");
+            close(mixed.shear_modulus(), linear(LinearElastic::shear_modulus));
+            close(mixed.bulk_modulus(), linear(LinearElastic::bulk_modulus));
+            close(mixed.density(), linear(LinearElastic::density));
+        }
+    }
+
+    #[test]
+    fn extreme_parts_still_mix_to_a_tissue() {
+        let parts = [
+            tissue(1e9, 0.0, 0.0),
+            tissue(1e9, 0.499_999_999_999_999_9, 100.0),
+            tissue(1e-300, 0.0, 0.0),
+        ];
+        for shares in [[1.0, 0.0, 0.0], [0.5, 0.5, 0.0], [0.0, 0.25, 0.75], [0.0, 0.0, 1.0]] {
+            let mixed = mixture(&[0, 1, 2].map(|part| (shares[part], parts[part])));
+            assert!(mixed.young_modulus() > 0.0 && mixed.lambda().is_finite(), "{shares:?}");
+        }
+    }
+}

@@ -1,0 +1,103 @@
+//! A thin sheet that carries stress in its plane only, isotropic or stiffer along lines a in it.
+//!
+//! sigma = C eps with C11 = E_f / d, C22 = E_t / d, C12 = nu E_t / d, C66 = E_t / (2 (1 + nu)),
+//! d = 1 - nu^2 E_t / E_f, the first axis along a; isotropic: E_f = E_t. nu is what the sheet narrows by when it
+//! is stretched along a. In the words of `elastic_tensor`, restricted to the plane:
+//!   mu = C66, lambda = C22 - 2 C66, dlam = C12 - lambda, dmu = 0, beta = C11 - C22 - 2 dlam.
+//!
+//! Source: Timoshenko, Goodier, Theory of Elasticity, 3rd ed., 1970, section 7; orthotropic: Jones, Mechanics of
+//! Composite Materials, 2nd ed., 1999, section 2.4. Skin as such a sheet, stiffer along Langer's lines: paper 001
+//! (METHODS rows 37, 38).
+
+use super::elastic_tensor::{AlongFibre, ElasticTensor, FibreModuli};
+use super::in_range;
+use nalgebra::Vector3;
+
+/// A sheet of skin: what it is made of, and how thick it is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlaneStress {
+    thickness: f64,
+    lambda: f64,
+    mu: f64,
+    lines: Option<FibreModuli>,
+}
+
+/// Constants of a sheet, as stated.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sheet {
+    /// In mm, in (0, 20].
+    pub thickness: f64,
+    /// E_t in kPa, in (0, 1e9].
+    pub young_modulus: f64,
+    /// In [0, 0.5].
+    pub poisson_ratio: f64,
+    /// E_f in kPa along the lines, in (0, 1e9]; absent where the sheet is isotropic.
+    pub along_lines: Option<f64>,
+}
+
+/// Why there is no such sheet.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum SheetError {
+    #[error("the thickness is {0} mm, and has to be above 0 and at most 20 mm")]
+    Thickness(f64),
+    #[error("Young's modulus is {0} kPa, and has to be above 0 and at most 1e9 kPa")]
+    YoungModulus(f64),
+    #[error("Poisson's ratio is {0}, and has to be at least 0 and at most 0.5")]
+    PoissonRatio(f64),
+    #[error(
+        "Young's modulus along the lines is {0} kPa, and has to be above 0 and at most 1e9 kPa"
+    )]
+    AlongLines(f64),
+    #[error(
+        "Young's modulus along the lines is {along} kPa, and has to be above nu^2 times the one across them, \
+         {least} kPa"
+    )]
+    TooSoftAlongLines { along: f64, least: f64 },
+}
+
+impl PlaneStress {
+    pub fn new(sheet: &Sheet) -> Result<Self, SheetError> {
+        let Sheet { thickness, young_modulus, poisson_ratio, along_lines } = *sheet;
+        if !in_range(thickness, 20.0) {
+            return Err(SheetError::Thickness(thickness));
+        }
+        if !in_range(young_modulus, 1e9) {
+            return Err(SheetError::YoungModulus(young_modulus));
+        }
+        if !(0.0..=0.5).contains(&poisson_ratio) {
+            return Err(SheetError::PoissonRatio(poisson_ratio));
+        }
+        let along = along_lines.unwrap_or(young_modulus);
+        if !in_range(along, 1e9) {
+            return Err(SheetError::AlongLines(along));
+        }
+        let least = young_modulus * poisson_ratio * poisson_ratio;
+        if along <= least {
+            return Err(SheetError::TooSoftAlongLines { along, least });
+        }
+        let d = 1.0 - least / along;
+        let (c11, c22) = (along / d, young_modulus / d);
+        let mu = young_modulus / (2.0 * (1.0 + poisson_ratio));
+        let lambda = c22 - 2.0 * mu;
+        let delta_lambda = poisson_ratio * c22 - lambda;
+        let beta = c11 - c22 - 2.0 * delta_lambda;
+        let moduli = FibreModuli { delta_lambda, delta_mu: 0.0, beta };
+        Ok(PlaneStress { thickness, lambda, mu, lines: along_lines.map(|_| moduli) })
+    }
+
+    /// In mm.
+    pub fn thickness(&self) -> f64 {
+        self.thickness
+    }
+
+    /// Whether the sheet has lines along which it is stiffer or softer.
+    pub fn has_lines(&self) -> bool {
+        self.lines.is_some()
+    }
+
+    /// C for strains in the plane; the direction of the lines has length 1 and lies in it.
+    pub fn tensor(&self, lines: &Vector3<f64>) -> ElasticTensor {
+        let fibre = self.lines.map(|moduli| AlongFibre { direction: *lines, moduli });
+        ElasticTensor { lambda: self.lambda, mu: self.mu, fibre }
+    }
+}

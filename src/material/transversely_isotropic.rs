@@ -1,0 +1,125 @@
+//! Tissue with one fibre direction: stiffness E_f along it, E_t across, nu, and a shear modulus.
+//!
+//! Engineering constants (METHODS A4; paper 004 gives E_f and E_t of muscle), fibre along axis 1:
+//!   S11 = 1/E_f, S12 = S13 = -nu/E_f, S22 = S33 = 1/E_t, S23 = -nu_tt/E_t, C44 = C55 = G_ft,
+//!   nu_tt = 1 - (1 - nu) E_t/E_f.
+//! With this nu_tt pressure changes the volume alone, S 1 = 1/(3K) 1 with K = E_f / (3 (1 - 2 nu)), so that
+//! C follows without a matrix to invert:
+//!   mu = E_t / (2 (1 + nu_tt)), dmu = G_ft - mu, q = 3 (E_f / (2 (1 + nu)) - mu),
+//!   beta = q - 4 dmu, dlam = -q/3, lambda = K - 2/3 mu + q/9.
+//! Positive definite for 0 <= nu < 1/2 where E_f > E_t (1 - nu) / 2, and isotropic for E_f = E_t.
+//!
+//! Paper 002 (eq. 33, corrected in METHODS A3) has lambda, mu of E_t and nu, and lambda_a, mu_a of E_f and
+//! the same nu: dlam = lambda_a - lambda, dmu = mu_a - mu, beta = -(dlam + 2 dmu). Its moduli along and across
+//! are not E_f and E_t, and from E_f/E_t = (1 - nu) / (2 nu^2) on its energy has no lowest value.
+
+use super::elastic_tensor::{AlongFibre, ElasticTensor, FibreModuli};
+use super::{LinearElastic, MaterialError, in_range};
+use nalgebra::Vector3;
+
+/// How moduli along and across the fibre become a stiffness.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum FibreLaw {
+    /// METHODS A4.
+    #[default]
+    Engineering,
+    /// METHODS A3.
+    Paper002,
+}
+
+/// What fibres add to a tissue whose own constants are those across them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fibre {
+    /// E_f in kPa, in (0, 1e9].
+    pub young_modulus: f64,
+    /// G_ft in kPa, in (0, 1e9]; absent: E_t / (2 (1 + nu)). Paper 002's law has none of its own.
+    pub shear_modulus: Option<f64>,
+    pub law: FibreLaw,
+}
+
+/// A positive definite stiffness about a fibre.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TransverselyIsotropic {
+    lambda: f64,
+    mu: f64,
+    moduli: FibreModuli,
+}
+
+impl TransverselyIsotropic {
+    /// Fibres in a tissue with these constants across them.
+    pub fn new(across: &LinearElastic, fibre: &Fibre) -> Result<Self, MaterialError> {
+        let is_modulus = |modulus| in_range(modulus, 1e9);
+        if !is_modulus(fibre.young_modulus) {
+            return Err(MaterialError::FibreModulus(fibre.young_modulus));
+        }
+        if let Some(shear) = fibre.shear_modulus.filter(|&shear| !is_modulus(shear)) {
+            return Err(MaterialError::FibreShear(shear));
+        }
+        let stiffness = match fibre.law {
+            FibreLaw::Engineering => engineering(across, fibre)?,
+            FibreLaw::Paper002 if fibre.shear_modulus.is_some() => {
+                return Err(MaterialError::ShearOfPaper002);
+            }
+            FibreLaw::Paper002 => paper_002(across, fibre)?,
+        };
+        let smallest = stiffness.along(&Vector3::x()).smallest_eigenvalue();
+        if smallest.is_nan() || smallest <= 0.0 {
+            let nu = across.poisson_ratio();
+            return Err(MaterialError::NotPositiveDefinite {
+                ratio: fibre.young_modulus / across.young_modulus(),
+                poisson_ratio: nu,
+                eigenvalue: smallest,
+                limit: limit(nu),
+            });
+        }
+        Ok(stiffness)
+    }
+
+    /// C with the fibre along a direction of length 1.
+    pub fn along(&self, direction: &Vector3<f64>) -> ElasticTensor {
+        let fibre = AlongFibre { direction: *direction, moduli: self.moduli };
+        ElasticTensor { lambda: self.lambda, mu: self.mu, fibre: Some(fibre) }
+    }
+}
+
+/// E_f/E_t from which on the law of paper 002 is indefinite.
+fn limit(nu: f64) -> f64 {
+    (1.0 - nu) / (2.0 * nu * nu)
+}
+
+fn engineering(
+    across: &LinearElastic,
+    fibre: &Fibre,
+) -> Result<TransverselyIsotropic, MaterialError> {
+    let (along, across_modulus, nu) =
+        (fibre.young_modulus, across.young_modulus(), across.poisson_ratio());
+    if along <= across_modulus * (1.0 - nu) / 2.0 {
+        return Err(MaterialError::FibreTooSoft {
+            along,
+            across: across_modulus,
+            least: across_modulus * (1.0 - nu) / 2.0,
+        });
+    }
+    let nu_tt = 1.0 - (1.0 - nu) * across_modulus / along;
+    let mu = across_modulus / (2.0 * (1.0 + nu_tt));
+    let bulk = along / (3.0 * (1.0 - 2.0 * nu));
+    let delta_mu = fibre.shear_modulus.unwrap_or_else(|| across.shear_modulus()) - mu;
+    let q = 3.0 * (along / (2.0 * (1.0 + nu)) - mu);
+    Ok(TransverselyIsotropic {
+        lambda: bulk - 2.0 / 3.0 * mu + q / 9.0,
+        mu,
+        moduli: FibreModuli { delta_lambda: -q / 3.0, delta_mu, beta: q - 4.0 * delta_mu },
+    })
+}
+
+fn paper_002(
+    across: &LinearElastic,
+    fibre: &Fibre,
+) -> Result<TransverselyIsotropic, MaterialError> {
+    let along = LinearElastic::new(fibre.young_modulus, across.poisson_ratio(), 0.0)?;
+    let delta_lambda = along.lambda() - across.lambda();
+    let delta_mu = along.shear_modulus() - across.shear_modulus();
+    let beta = -(delta_lambda + 2.0 * delta_mu);
+    let moduli = FibreModuli { delta_lambda, delta_mu, beta };
+    Ok(TransverselyIsotropic { lambda: across.lambda(), mu: across.shear_modulus(), moduli })
+}

@@ -1,0 +1,317 @@
+//! Materials by what an image shows of each cell.
+//!
+//! `mean`: a cell is the tissue whose window its mean lies in (Zachow et al. 2006, section 3.5).
+//! `fraction`: a cell is the mixture C = sum_t f_t C_t of the tissues in whose windows its sample points lie
+//! (METHODS row 35); points in no window count as the region of the cell.
+//! A cell of which a sample point lies outside the image, or that is in no window, keeps the material of its
+//! region. Shares are rounded to steps that leave no more mixtures than numbers for them.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use super::check::Check;
+use crate::image::{ImageVolume, SampledCells, SamplingRule, Windows, sample_cells};
+use crate::material::LinearElastic;
+use crate::material::mixture::mixture;
+use crate::mesh::jacobian::signed_volume;
+use crate::mesh::{Vector, VolumeMesh, Warning};
+
+/// Assembly numbers each material a second time, for tetrahedra with pressures, in 16 bits.
+const MOST_MATERIALS: usize = 1 << 15;
+/// Where windows and images are told to be wrong.
+const PLACE: &str = "/case/hounsfield";
+
+/// An image and what its values mean.
+#[derive(Clone, Debug)]
+pub struct Hounsfield {
+    /// In mm, in the frame of the case.
+    pub image: Arc<ImageVolume>,
+    /// Points in each cell.
+    pub samples: usize,
+    /// Their windows do not overlap.
+    pub tissues: Vec<TissueWindow>,
+    pub mixing: Mixing,
+}
+
+/// A tissue and its values, `from_hu` <= value < `to_hu`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TissueWindow {
+    pub name: String,
+    pub from_hu: f64,
+    pub to_hu: f64,
+    pub material: LinearElastic,
+}
+
+/// What becomes of a cell with several tissues in it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Mixing {
+    /// It is the tissue of its mean value.
+    #[default]
+    Mean,
+    /// It is a mixture of its tissues.
+    Fraction,
+}
+
+/// What an image shows of a mesh.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ImagedTissue {
+    /// For each cell the mean of its sample points; `None` where one of them lies outside.
+    pub mean: Vec<Option<f64>>,
+    /// For each cell the tissue with the largest part in it, by its number; `None` where it is that of its region.
+    pub tissue_of_cell: Vec<Option<u16>>,
+    /// By name, in the order of the case.
+    pub tissues: Vec<(String, TissueShare)>,
+    /// What keeps the material of its region.
+    pub region: TissueShare,
+    /// Cells that reach beyond the image.
+    pub outside: usize,
+}
+
+/// How much of a mesh a tissue is.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct TissueShare {
+    /// Cells that are of it, be it in part.
+    pub cells: usize,
+    /// Of the volume of the mesh.
+    pub volume_share: f64,
+}
+
+/// The materials of a scene.
+pub(super) struct TissueOfCells {
+    pub materials: Vec<LinearElastic>,
+    pub material_of_cell: Vec<u16>,
+    pub pressure_of_cell: Vec<u16>,
+    pub imaged: Option<ImagedTissue>,
+}
+
+/// The parts of a cell in steps: those of the tissues, then that of its region.
+type Parts = Vec<u16>;
+
+impl Check<'_> {
+    /// The material of each cell: that of its region, or what an image shows.
+    pub(super) fn tissue_of_cells(
+        &mut self,
+        region_of_cell: &[u16],
+        materials: Vec<LinearElastic>,
+    ) -> TissueOfCells {
+        let regions = region_of_cell.iter().map(|&region| region as usize + 1).max().unwrap_or(0);
+        if let Some(hounsfield) = &self.case.hounsfield
+            && materials.len() >= regions
+            && let Some(sampled) = self.sampled(hounsfield)
+        {
+            let tissue =
+                imaged(&self.case.volume, hounsfield, &sampled, (region_of_cell, materials));
+            self.warnings.extend(tissue.imaged.iter().flat_map(ImagedTissue::warnings));
+            return tissue;
+        }
+        TissueOfCells {
+            materials,
+            material_of_cell: region_of_cell.to_vec(),
+            pressure_of_cell: region_of_cell.to_vec(),
+            imaged: None,
+        }
+    }
+
+    fn sampled(&mut self, hounsfield: &Hounsfield) -> Option<SampledCells> {
+        let ends: Vec<(f64, f64)> =
+            hounsfield.tissues.iter().map(|tissue| (tissue.from_hu, tissue.to_hu)).collect();
+        let Some(windows) = Windows::new(&ends).filter(|windows| !windows.is_empty()) else {
+            let detail = "the windows are none, empty or overlap".to_owned();
+            self.problems.add(format!("{PLACE}/tissues"), "windows-overlap", detail);
+            return None;
+        };
+        let rule = SamplingRule::new(hounsfield.samples);
+        let sampled = sample_cells(&self.case.volume, &hounsfield.image, &rule, &windows);
+        if sampled.mean.iter().any(Option::is_some) {
+            return Some(sampled);
+        }
+        let (low, high) = hounsfield.image.bounds();
+        let detail = format!(
+            "no cell lies inside the image, which reaches from {} to {} mm: are both in the same frame?",
+            shown(&low),
+            shown(&high)
+        );
+        self.problems.add(format!("{PLACE}/image"), "outside-image", detail);
+        None
+    }
+}
+
+fn shown(x: &Vector) -> String {
+    format!("({:.1}, {:.1}, {:.1})", x.x, x.y, x.z)
+}
+
+impl ImagedTissue {
+    fn warnings(&self) -> Vec<Warning> {
+        let cells = self.mean.len();
+        let alone = self.tissue_of_cell.iter().zip(&self.mean);
+        let in_none = alone.filter(|(tissue, mean)| tissue.is_none() && mean.is_some()).count();
+        let outside = format!(
+            "{} of {cells} cells reach beyond the image and keep the material of their region",
+            self.outside
+        );
+        let unlabelled = format!(
+            "{in_none} of {cells} cells are mostly in no window and keep the material of their region there"
+        );
+        let told =
+            [("outside-image", outside, self.outside), ("outside-windows", unlabelled, in_none)];
+        let told = told.into_iter().filter(|(_, _, count)| *count > 0);
+        told.map(|(code, detail, count)| Warning::new(code, detail).with("cells", count as f64))
+            .collect()
+    }
+}
+
+/// Materials of regions first, then those of tissues, then mixtures.
+fn imaged(
+    mesh: &VolumeMesh,
+    hounsfield: &Hounsfield,
+    sampled: &SampledCells,
+    (region_of_cell, mut materials): (&[u16], Vec<LinearElastic>),
+) -> TissueOfCells {
+    let first_tissue = materials.len();
+    materials.extend(hounsfield.tissues.iter().map(|tissue| tissue.material));
+    let parts = match hounsfield.mixing {
+        Mixing::Mean => labels(hounsfield, sampled),
+        Mixing::Fraction => shares(hounsfield, sampled, region_of_cell, materials.len()),
+    };
+    let largest: Vec<Option<u16>> = parts.iter().map(|parts| largest_tissue(parts)).collect();
+    let own = |cell: usize, tissue: Option<u16>| {
+        tissue.map_or(region_of_cell[cell], |tissue| first_tissue as u16 + tissue)
+    };
+    let pressure_of_cell: Vec<u16> =
+        largest.iter().enumerate().map(|(cell, &tissue)| own(cell, tissue)).collect();
+    let mut mixtures: BTreeMap<(u16, &Parts), u16> = BTreeMap::new();
+    let material_of_cell = parts
+        .iter()
+        .enumerate()
+        .map(|(cell, parts)| {
+            let region = region_of_cell[cell];
+            if parts.iter().filter(|part| **part > 0).count() == 1 {
+                return pressure_of_cell[cell];
+            }
+            *mixtures.entry((region, parts)).or_insert_with(|| {
+                let entries = (first_tissue..).take(parts.len() - 1).chain([region as usize]);
+                let steps: f64 = parts.iter().map(|&part| f64::from(part)).sum();
+                let shares = parts.iter().map(|&part| f64::from(part) / steps);
+                let mixed: Vec<(f64, LinearElastic)> =
+                    shares.zip(entries.map(|entry| materials[entry])).collect();
+                materials.push(mixture(&mixed));
+                (materials.len() - 1) as u16
+            })
+        })
+        .collect();
+    let imaged = describe(mesh, hounsfield, sampled, (&parts, largest));
+    TissueOfCells { materials, material_of_cell, pressure_of_cell, imaged: Some(imaged) }
+}
+
+/// The whole cell is the tissue of its mean.
+fn labels(hounsfield: &Hounsfield, sampled: &SampledCells) -> Vec<Parts> {
+    let tissues = &hounsfield.tissues;
+    let label = |mean: &Option<f64>| {
+        let inside = |mean: f64| {
+            tissues.iter().position(|tissue| (tissue.from_hu..tissue.to_hu).contains(&mean))
+        };
+        let mut parts = vec![0; tissues.len() + 1];
+        parts[mean.and_then(inside).unwrap_or(tissues.len())] = 1;
+        parts
+    };
+    sampled.mean.iter().map(label).collect()
+}
+
+/// The share of points in each window, in steps of one point or as much coarser as it takes for all materials
+/// to be numbered.
+fn shares(
+    hounsfield: &Hounsfield,
+    sampled: &SampledCells,
+    region_of_cell: &[u16],
+    pure: usize,
+) -> Vec<Parts> {
+    let samples = sampled.samples as u16;
+    let counted = |cell: usize| -> Parts {
+        let counts = sampled.counts(cell);
+        let rest = samples - counts.iter().sum::<u16>();
+        counts.iter().copied().chain([rest]).collect()
+    };
+    let counted: Vec<Parts> = (0..sampled.mean.len()).map(counted).collect();
+    let mut steps = samples;
+    loop {
+        let rounded: Vec<Parts> =
+            counted.iter().map(|parts| in_steps(parts, samples, steps)).collect();
+        let mut mixtures: Vec<(u16, &Parts)> =
+            region_of_cell.iter().copied().zip(&rounded).collect();
+        mixtures.sort_unstable();
+        mixtures.dedup();
+        // With one step every cell is pure, and there are at most 64 regions and 100 tissues.
+        if pure + mixtures.len() <= MOST_MATERIALS || steps == 1 || hounsfield.tissues.is_empty() {
+            return rounded;
+        }
+        steps /= 2;
+    }
+}
+
+/// Parts that sum to `samples` as parts that sum to `steps`: rounded down, and what is then missing given to
+/// those that lost most, the first where they lost the same.
+fn in_steps(parts: &Parts, samples: u16, steps: u16) -> Parts {
+    let scaled = |part: u16| u32::from(part) * u32::from(steps);
+    let mut rounded: Parts =
+        parts.iter().map(|&part| (scaled(part) / u32::from(samples)) as u16).collect();
+    let missing = steps - rounded.iter().sum::<u16>();
+    let mut by_loss: Vec<usize> = (0..parts.len()).collect();
+    by_loss.sort_by_key(|&at| std::cmp::Reverse(scaled(parts[at]) % u32::from(samples)));
+    by_loss.iter().take(missing as usize).for_each(|&at| rounded[at] += 1);
+    rounded
+}
+
+/// The tissue with the largest part, the first of equals; `None` where it is the region.
+fn largest_tissue(parts: &Parts) -> Option<u16> {
+    let most = parts.iter().max()?;
+    let first = parts.iter().position(|part| part == most)?;
+    (first + 1 < parts.len()).then_some(first as u16)
+}
+
+fn describe(
+    mesh: &VolumeMesh,
+    hounsfield: &Hounsfield,
+    sampled: &SampledCells,
+    (parts, tissue_of_cell): (&[Parts], Vec<Option<u16>>),
+) -> ImagedTissue {
+    let mut found = vec![TissueShare::default(); hounsfield.tissues.len() + 1];
+    let mut whole = 0.0;
+    for (cell, parts) in parts.iter().enumerate() {
+        let corners: Vec<Vector> = mesh.corners(cell).collect();
+        let volume = signed_volume(mesh.cells.shape(cell), &corners).abs();
+        let steps: f64 = parts.iter().map(|&part| f64::from(part)).sum();
+        whole += volume;
+        for (tissue, &part) in found.iter_mut().zip(parts).filter(|(_, part)| **part > 0) {
+            tissue.cells += 1;
+            tissue.volume_share += volume * f64::from(part) / steps;
+        }
+    }
+    if whole > 0.0 {
+        found.iter_mut().for_each(|tissue| tissue.volume_share /= whole);
+    }
+    let region = found.pop().unwrap_or_default();
+    let names = hounsfield.tissues.iter().map(|tissue| tissue.name.clone());
+    let tissues = names.zip(found).collect();
+    let outside = sampled.mean.iter().filter(|mean| mean.is_none()).count();
+    ImagedTissue { mean: sampled.mean.clone(), tissue_of_cell, tissues, region, outside }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn coarser_steps_keep_the_sum_and_the_largest_parts() {
+        assert_eq!(in_steps(&vec![300, 100, 112], 512, 512), [300, 100, 112]);
+        assert_eq!(in_steps(&vec![300, 100, 112], 512, 8), [5, 1, 2]);
+        assert_eq!(in_steps(&vec![171, 171, 170], 512, 1), [1, 0, 0]);
+        assert_eq!(in_steps(&vec![0, 5, 0], 5, 2), [0, 2, 0]);
+    }
+
+    #[test]
+    fn the_first_of_equal_parts_is_the_largest_and_the_region_the_last() {
+        assert_eq!(largest_tissue(&vec![3, 3, 1]), Some(0));
+        assert_eq!(largest_tissue(&vec![1, 3, 3]), Some(1));
+        assert_eq!(largest_tissue(&vec![1, 2, 3]), None);
+    }
+}

@@ -1,0 +1,43 @@
+//! Sliding nodes that leave a curved wall: small displacement slides along the tangent and not along the wall.
+//!
+//! A node that slides by t along a wall of radius r ends t^2 / 2 r off it. What is measured is how far it lies
+//! from the plane of the closest wall triangle, so that sliding past the rim of a flat wall counts as nothing.
+
+use super::Scene;
+use crate::boundary::NodeClass;
+use crate::mesh::{SurfaceSearch, Vector, Warning};
+
+/// How far off the wall a node is told to be, in mm: as for small strain.
+const OFF_WALL_MM: f64 = 0.5;
+
+/// A warning that counts the sliding nodes that are off their wall.
+pub(super) fn left_wall(scene: &Scene, displacement: &[Vector]) -> Option<Warning> {
+    let class = |node: &u32| scene.conditions.classes[*node as usize];
+    let slides = |node: &u32| class(node) == NodeClass::Sliding;
+    let nodes: Vec<u32> = (0..scene.mesh.nodes.len() as u32).filter(slides).collect();
+    if nodes.is_empty() {
+        return None;
+    }
+    let mut faces = scene.mesh.boundary_faces();
+    faces.retain(|face| {
+        let mut of_face = face.nodes().iter();
+        of_face.clone().any(slides) && of_face.all(|node| class(node) != NodeClass::Free)
+    });
+    let wall = scene.mesh.surface_of(&faces);
+    let search = SurfaceSearch::new(&wall).ok()?;
+    let distance = |node: &u32| {
+        let moved = scene.mesh.nodes[*node as usize] + displacement[*node as usize];
+        let triangle = wall.triangles[search.closest(&moved).triangle];
+        let [a, b, c] = triangle.map(|point| wall.points[point as usize]);
+        let normal = (b - a).cross(&(c - a));
+        ((moved - a).dot(&normal) / normal.norm()).abs()
+    };
+    let distances: Vec<f64> = nodes.iter().map(distance).collect();
+    let off = distances.iter().filter(|distance| **distance > OFF_WALL_MM).count();
+    let largest = distances.iter().copied().fold(0.0, f64::max);
+    let detail = format!(
+        "{off} sliding nodes leave their wall, by {largest:.1} mm at most: it is curved, and they slide straight on"
+    );
+    let warning = Warning::new("sliding-off-wall", detail).with("nodes", off as f64);
+    (off > 0).then(|| warning.with("largest_mm", largest))
+}

@@ -1,0 +1,183 @@
+//! Each probe solved within its time, and its answer held against the truth.
+
+use std::collections::BTreeMap;
+use std::rc::Rc;
+
+use super::{
+    Answer, Axis, AxisMap, Bounds, Finding, Map, Probe, Refusal, Stopwatch, Truth, Variant, Verdict,
+};
+use crate::mesh::Vector;
+use crate::prediction::{
+    Case, ElementChoice, Phase, Plan, Prediction, PredictionError, Progress, Scene, Settings,
+    Unobserved, predict,
+};
+use crate::validation::Statistics;
+
+/// Positions are told apart down to this, in mm.
+const APART: f64 = 1e-4;
+
+/// Every axis with every variant. `told` hears the name of each axis before it is begun.
+pub fn map(variants: &[Variant], axes: &[Axis], bounds: &Bounds, told: &dyn Fn(&str)) -> Map {
+    let labels = variants.iter().map(|variant| variant.label.clone()).collect();
+    let axes = axes.iter().map(|axis| {
+        told(axis.title);
+        sweep(axis, variants, bounds)
+    });
+    Map { variants: labels, axes: axes.collect() }
+}
+
+fn sweep(axis: &Axis, variants: &[Variant], bounds: &Bounds) -> AxisMap {
+    let mut findings: Vec<Vec<Option<Finding>>> = vec![Vec::new(); variants.len()];
+    let mut first = None;
+    for (value, _) in &axis.values {
+        let truth = Known::of((axis.truth)(*value), &mut first);
+        for (row, variant) in findings.iter_mut().zip(variants) {
+            row.push(match (axis.probe)(*value, variant) {
+                Ok(None) => None,
+                Ok(Some(probe)) => Some(judged(&probe, &truth, axis.bound_mm, bounds)),
+                Err(refusal) => Some(refused(refusal)),
+            });
+        }
+    }
+    AxisMap {
+        name: axis.name,
+        title: axis.title,
+        unit: axis.unit,
+        scene: axis.scene,
+        reference: axis.reference,
+        bound_mm: axis.bound_mm,
+        values: axis.values.clone(),
+        findings,
+    }
+}
+
+/// Displacement by place.
+type Places = Rc<BTreeMap<[i64; 3], Vector>>;
+
+/// The right answer, solved where it had to be.
+enum Known {
+    Formula(Box<dyn Fn(&Vector) -> Vector + Send + Sync>),
+    Solved { answer: Places, times: f64 },
+    Impossible,
+}
+
+impl Known {
+    /// `first` keeps what was solved for the first value of an axis.
+    fn of(truth: Truth, first: &mut Option<Places>) -> Self {
+        let (answer, times) = match truth {
+            Truth::Formula(formula) => return Known::Formula(formula),
+            Truth::Impossible => return Known::Impossible,
+            Truth::First { times } => (first.clone(), times),
+            Truth::Finer(scene) => (solve_finely(&scene.0, &scene.1), 1.0),
+        };
+        first.clone_from(&answer);
+        answer.map_or(Known::Impossible, |answer| Known::Solved { answer, times })
+    }
+
+    fn at(&self, point: &Vector) -> Option<Vector> {
+        match self {
+            Known::Formula(formula) => Some(formula(point)),
+            Known::Solved { answer, times } => answer.get(&place(point)).map(|u| u * *times),
+            Known::Impossible => None,
+        }
+    }
+}
+
+fn place(point: &Vector) -> [i64; 3] {
+    [point.x, point.y, point.z].map(|c| (c / APART).round() as i64)
+}
+
+fn solve_finely(case: &Case, plan: &Plan) -> Option<Places> {
+    let settings = Settings { element: ElementChoice::Quadratic, ..Settings::default() };
+    let scene = Scene::new(case, plan, &settings).ok()?;
+    let answer = predict(&scene, &Unobserved).ok()?;
+    Some(Rc::new(case.volume.nodes.iter().map(place).zip(answer.displacement).collect()))
+}
+
+fn judged(probe: &Probe, truth: &Known, bound_mm: f64, bounds: &Bounds) -> Finding {
+    let scene = match Scene::new(&probe.case, &probe.plan, &probe.settings) {
+        Ok(scene) => scene,
+        Err(errors) => {
+            let first = errors.0.into_iter().next();
+            return refused(first.map_or_else(
+                || Refusal::new("", "refused", "no reason was given"),
+                |error| Refusal::new(&error.pointer, error.code, &error.detail),
+            ));
+        }
+    };
+    let until = bounds.stopwatch.seconds() + bounds.seconds;
+    match predict(&scene, &Timed { stopwatch: bounds.stopwatch, until }) {
+        Err(PredictionError::Cancelled) => {
+            let detail = format!("not done after {} s", bounds.seconds);
+            failed(Refusal::new("", "budget-exceeded", &detail))
+        }
+        Err(error) => failed(Refusal::new("", error.code(), &error.to_string())),
+        Ok(prediction) => answered(&scene, prediction, truth, bound_mm),
+    }
+}
+
+fn answered(scene: &Scene, prediction: Prediction, truth: &Known, bound_mm: f64) -> Finding {
+    let answer = measured(scene, prediction, truth);
+    // An error that is not a number is beyond any bound.
+    let within = answer.error_mm.is_some_and(|error| error <= bound_mm);
+    let verdict = match (answer.warnings.is_empty(), within) {
+        (false, _) => Verdict::Warned,
+        (true, true) => Verdict::Good,
+        (true, false) => Verdict::Wrong,
+    };
+    Finding { verdict, answer: Some(answer), refusal: None }
+}
+
+fn measured(scene: &Scene, prediction: Prediction, truth: &Known) -> Answer {
+    let nodes = scene.skin.nodes().iter();
+    let errors: Option<Vec<f64>> = nodes
+        .map(|&node| {
+            let right = truth.at(&scene.mesh.nodes[node as usize])?;
+            Some((prediction.displacement[node as usize] - right).norm())
+        })
+        .collect();
+    let areas = scene.skin.surface.point_areas();
+    let error_mm = errors.map(|errors| match Statistics::weighted(&errors, &areas) {
+        Ok(statistics) => statistics.p95,
+        Err(_) => f64::NAN,
+    });
+    let cells = &prediction.deformation;
+    let inverted = cells.iter().filter(|cell| cell.det_f <= 0.0).count();
+    Answer {
+        error_mm,
+        smallest_det_f: cells.iter().map(|cell| cell.det_f).fold(f64::INFINITY, f64::min),
+        inverted_share: inverted as f64 / cells.len().max(1) as f64,
+        largest_rotation: cells.iter().map(|cell| cell.rotation).fold(0.0, f64::max),
+        warnings: prediction.warnings,
+    }
+}
+
+fn refused(refusal: Refusal) -> Finding {
+    Finding { verdict: Verdict::Refused, answer: None, refusal: Some(refusal) }
+}
+
+fn failed(refusal: Refusal) -> Finding {
+    Finding { verdict: Verdict::Failed, ..refused(refusal) }
+}
+
+impl Refusal {
+    pub(super) fn new(pointer: &str, code: &str, detail: &str) -> Self {
+        Refusal { pointer: pointer.to_owned(), code: code.to_owned(), detail: detail.to_owned() }
+    }
+}
+
+/// Work that is stopped at a time.
+struct Timed<'a> {
+    stopwatch: &'a dyn Stopwatch,
+    until: f64,
+}
+
+impl Progress for Timed<'_> {
+    fn phase(&self, _phase: Phase) {}
+
+    fn iteration(&self, _iteration: usize, _relative_residual: f64, _wanted: f64) {}
+
+    fn is_cancelled(&self) -> bool {
+        self.stopwatch.seconds() > self.until
+    }
+}

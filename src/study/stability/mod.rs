@@ -1,0 +1,167 @@
+//! Where methods fail: each axis turns one thing up until an answer can no longer be right, and each probe says
+//! what the method did about it.
+//!
+//! A probe is judged by the 95th percentile of |u - u*| over the skin, by area, against a bound stated for its
+//! axis. The one verdict that must never appear is `Wrong`: an answer beyond the bound without a word.
+
+pub mod axes;
+mod judge;
+mod scenes;
+
+use super::{Stopwatch, Variant};
+use crate::mesh::{Vector, Warning};
+use crate::prediction::{Case, Plan, Settings};
+
+pub use judge::map;
+
+/// One thing that is turned up, value by value.
+pub struct Axis {
+    /// A stable word.
+    pub name: &'static str,
+    pub title: &'static str,
+    /// Empty where the values are words.
+    pub unit: &'static str,
+    /// The scene and what its answers are held against, in words.
+    pub scene: &'static str,
+    pub reference: &'static str,
+    /// What the 95th percentile of the error over the skin may be, in mm.
+    pub bound_mm: f64,
+    /// From harmless to hopeless, with the words for each.
+    pub values: Vec<(f64, String)>,
+    /// The scene at a value for a variant; none where the value means nothing to it.
+    pub probe: fn(f64, &Variant) -> Result<Option<Probe>, Refusal>,
+    /// The right answer at a value.
+    pub truth: fn(f64) -> Truth,
+}
+
+/// What a method is given.
+pub struct Probe {
+    pub case: Case,
+    pub plan: Plan,
+    pub settings: Settings,
+}
+
+/// What an answer is held against.
+pub enum Truth {
+    /// Displacement in mm at a point.
+    Formula(Box<dyn Fn(&Vector) -> Vector + Send + Sync>),
+    /// Quadratic linear finite elements on a finer mesh, whose nodes include those of the skin of the probe.
+    Finer(Box<(Case, Plan)>),
+    /// That of the first value of the axis, so many times: where scene or movement differ by a factor only.
+    First { times: f64 },
+    /// There is none: only a refusal is right.
+    Impossible,
+}
+
+/// A refusal of documents: the place, the stable word and the sentence.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Refusal {
+    pub pointer: String,
+    pub code: String,
+    pub detail: String,
+}
+
+/// What a method did about a probe.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Verdict {
+    /// An answer within the bound, and no warning.
+    Good,
+    /// An answer with a warning.
+    Warned,
+    /// Refused before anything is solved.
+    Refused,
+    /// Ended with an error.
+    Failed,
+    /// An answer beyond the bound, or where there is none, without a warning.
+    Wrong,
+}
+
+impl Verdict {
+    pub fn name(self) -> &'static str {
+        match self {
+            Verdict::Good => "good",
+            Verdict::Warned => "warned",
+            Verdict::Refused => "refused",
+            Verdict::Failed => "failed",
+            Verdict::Wrong => "wrong",
+        }
+    }
+}
+
+/// The verdict on one probe with its numbers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Finding {
+    pub verdict: Verdict,
+    /// Of an answer.
+    pub answer: Option<Answer>,
+    /// Of a refusal or a failure: the place in the documents, empty for failures, the word and the sentence.
+    pub refusal: Option<Refusal>,
+}
+
+/// What is measured of an answer.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Answer {
+    /// 95th percentile over the skin by area, in mm; none where there is no truth.
+    pub error_mm: Option<f64>,
+    pub smallest_det_f: f64,
+    pub inverted_share: f64,
+    /// Of one cell, in radians.
+    pub largest_rotation: f64,
+    pub warnings: Vec<Warning>,
+}
+
+/// All axes with all variants.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Map {
+    /// The labels of the variants.
+    pub variants: Vec<String>,
+    pub axes: Vec<AxisMap>,
+}
+
+/// One axis with all variants.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AxisMap {
+    pub name: &'static str,
+    pub title: &'static str,
+    pub unit: &'static str,
+    pub scene: &'static str,
+    pub reference: &'static str,
+    pub bound_mm: f64,
+    pub values: Vec<(f64, String)>,
+    /// [variant][value]; none where the value means nothing to the variant.
+    pub findings: Vec<Vec<Option<Finding>>>,
+}
+
+impl Map {
+    /// How many probes have this verdict.
+    pub fn count(&self, verdict: Verdict) -> usize {
+        let findings = self.axes.iter().flat_map(|axis| axis.findings.iter().flatten().flatten());
+        findings.filter(|finding| finding.verdict == verdict).count()
+    }
+}
+
+impl AxisMap {
+    /// The first value at which a variant does not answer well, and what it does there.
+    pub fn first_not_good(&self, variant: usize) -> Option<(usize, Verdict)> {
+        let findings = self.findings.get(variant)?.iter().enumerate();
+        let mut judged =
+            findings.filter_map(|(value, finding)| Some((value, finding.as_ref()?.verdict)));
+        judged.find(|(_, verdict)| *verdict != Verdict::Good)
+    }
+
+    /// The first value with an answer that is wrong.
+    pub fn first_wrong(&self, variant: usize) -> Option<usize> {
+        let findings = self.findings.get(variant)?;
+        let is_wrong = |finding: &Option<Finding>| {
+            finding.as_ref().is_some_and(|finding| finding.verdict == Verdict::Wrong)
+        };
+        findings.iter().position(is_wrong)
+    }
+}
+
+/// How long probes may take, and who takes the time.
+pub struct Bounds<'a> {
+    pub stopwatch: &'a dyn Stopwatch,
+    /// For one probe, in s; what takes longer has failed with `budget-exceeded`.
+    pub seconds: f64,
+}
