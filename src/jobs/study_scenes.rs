@@ -304,12 +304,8 @@ impl Documents<'_> {
         if self.spec.sweep.is_empty() {
             return;
         }
-        let values = |of: &crate::schema::study::SweepDocument| sweep::Values {
-            young_modulus: of.young_modulus_kpa.clone(),
-            poisson_ratio: of.poisson_ratio.clone(),
-        };
-        let swept: BTreeMap<String, sweep::Values> =
-            self.spec.sweep.iter().map(|(region, of)| (region.clone(), values(of))).collect();
+        let swept = self.spec.sweep.iter().map(|(region, of)| (region.clone(), of.to_values()));
+        let swept: BTreeMap<String, sweep::Values> = swept.collect();
         let at = spec_at().key("sweep");
         match sweep::combinations(&scene.case.materials, &swept) {
             Ok(materials) => scene.materials = materials,
@@ -317,6 +313,7 @@ impl Documents<'_> {
                 let (place, code) = match &error {
                     SweepError::TooMany { .. } => (at, "too-many"),
                     SweepError::UnknownRegion { region } => (at.key(region), "unknown-region"),
+                    SweepError::Fibres { region } => (at.key(region), "method-not-available"),
                     SweepError::Material { region, .. } => (at.key(region), "out-of-range"),
                 };
                 faults.add(&place, code, error.to_string());

@@ -38,6 +38,26 @@ pub struct Tissue<'a> {
     pub dilatation: fn(CellShape) -> Dilatation,
 }
 
+impl<'a> Tissue<'a> {
+    /// Tissue without fibres, whose skin is like the rest.
+    pub fn isotropic(
+        mesh: &'a VolumeMesh,
+        materials: &'a [LinearElastic],
+        material_of_cell: &'a [u16],
+        dilatation: fn(CellShape) -> Dilatation,
+    ) -> Self {
+        Tissue {
+            mesh,
+            materials,
+            material_of_cell,
+            pressure_of_cell: material_of_cell,
+            fibres: &[],
+            membrane: None,
+            dilatation,
+        }
+    }
+}
+
 /// A cell whose Jacobian is not positive at a quadrature point.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("cell {cell} is inverted or flat")]

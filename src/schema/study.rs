@@ -14,6 +14,7 @@ use super::methods::{ElementName, MethodName};
 use super::plan::PlanDocument;
 use super::spec::{ContactName, ToleranceDocument};
 use super::text_or_object::TextOrObject;
+use crate::study::sweep::Values;
 
 /// `study`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
@@ -166,6 +167,13 @@ pub struct SweepDocument {
     pub young_modulus_kpa: Vec<f64>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub poisson_ratio: Vec<f64>,
+}
+
+impl SweepDocument {
+    pub fn to_values(&self) -> Values {
+        let young_modulus = self.young_modulus_kpa.clone();
+        Values { young_modulus, poisson_ratio: self.poisson_ratio.clone() }
+    }
 }
 
 /// What is held for true: exactly one of `refine` with `element`, `closed_form` and `job`.

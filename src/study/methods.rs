@@ -15,8 +15,8 @@ const OWN_ITERATIONS_RESIDUAL: f64 = 1e-5;
 /// Sweeps after which the papers' own iterations are given up.
 const OWN_ITERATIONS: usize = 50_000;
 
-/// Between control points, in mN/mm: that of paper 000.
-const LINK: f64 = 80.0;
+/// Links of the lattice in mN/mm, which is N/m (paper 000).
+const PAPER_STIFFNESS: f64 = 80.0;
 
 /// All of them, each with its usual settings.
 pub fn available() -> Vec<Variant> {
@@ -45,16 +45,15 @@ pub fn available() -> Vec<Variant> {
             springs
         },
     ));
-    let lattice = VolumeSpline { stiffness: Stiffness::Lattice(LINK), ..VolumeSpline::default() };
-    all.extend([
-        variant("dvs", "dvs galerkin", Method::VolumeSpline(VolumeSpline::default())),
-        variant("dvs", "dvs lattice", Method::VolumeSpline(lattice)),
-        variant(
-            "thickness_warp",
-            "thickness_warp",
-            Method::ThicknessWarp(ThicknessWarp::default()),
-        ),
-    ]);
+    let lattice = Stiffness::Lattice(PAPER_STIFFNESS);
+    all.extend([("dvs galerkin", Stiffness::Galerkin), ("dvs lattice", lattice)].map(
+        |(label, stiffness)| {
+            let spline = VolumeSpline { stiffness, ..VolumeSpline::default() };
+            variant("dvs", label, Method::VolumeSpline(spline))
+        },
+    ));
+    let warp = Method::ThicknessWarp(ThicknessWarp::default());
+    all.push(variant("thickness_warp", "thickness_warp", warp));
     all
 }
 

@@ -20,12 +20,8 @@ use crate::scenes::{case_of, hold, material, on_the_boundary, set, solve};
 const YOUNG: f64 = 15.0;
 
 fn springs_of(mesh: &VolumeMesh) -> Springs {
-    let tissue = Tissue {
-        mesh,
-        materials: &[material(YOUNG, 0.3)],
-        material_of_cell: &vec![0; mesh.cells.len()],
-        dilatation: |_| Dilatation::Pointwise,
-    };
+    let (materials, of_cell) = ([material(YOUNG, 0.3)], vec![0; mesh.cells.len()]);
+    let tissue = Tissue::isotropic(mesh, &materials, &of_cell, |_| Dilatation::Pointwise);
     Springs::new(&tissue).unwrap()
 }
 

@@ -227,12 +227,7 @@ fn the_tensors_are_the_blocks_of_the_stiffness_matrix() {
     let mesh = &case.volume;
     let materials: Vec<_> = (0..20).map(|region| case.materials[&region.to_string()]).collect();
     let of_cell: Vec<u16> = mesh.cell_labels["patch"].iter().map(|&label| label as u16).collect();
-    let tissue = Tissue {
-        mesh,
-        materials: &materials,
-        material_of_cell: &of_cell,
-        dilatation: |_| Dilatation::Pointwise,
-    };
+    let tissue = Tissue::isotropic(mesh, &materials, &of_cell, |_| Dilatation::Pointwise);
     let numbering = Numbering::new(mesh, &vec![false; mesh.nodes.len()]);
     let mut assembled = tissue.assemble(&numbering, &|| true).unwrap().unwrap();
     let mut sums = std::collections::BTreeMap::new();

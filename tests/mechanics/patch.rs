@@ -79,15 +79,7 @@ impl Assembled {
     fn new(mesh: &VolumeMesh, dilatation: fn(CellShape) -> Dilatation) -> Self {
         let materials = [material(15.0, 0.49)];
         let material_of_cell = vec![0; mesh.cells.len()];
-        let tissue = Tissue {
-            mesh,
-            materials: &materials,
-            material_of_cell: &material_of_cell,
-            pressure_of_cell: &material_of_cell,
-            fibres: &[],
-            membrane: None,
-            dilatation,
-        };
+        let tissue = Tissue::isotropic(mesh, &materials, &material_of_cell, dilatation);
         let numbering = Numbering::new(mesh, &vec![false; mesh.nodes.len()]);
         let matrix = tissue.assemble(&numbering, &|| true).unwrap().unwrap();
         Assembled { matrix, numbering }

@@ -80,13 +80,8 @@ fn quadratic_slab(h: f64, nu: f64) -> SkinPoints {
     let middles = mesh.nodes.len()..positions.len();
     let free = middles.filter(|&node| classes[node] == NodeClass::Free && base(&positions[node]));
     holds.extend(free.map(|node| Hold::free(node as u32)));
-    let material_of_cell = vec![0; mesh.cells.len()];
-    let tissue = Tissue {
-        mesh: &mesh,
-        materials: &[material(15.0, nu)],
-        material_of_cell: &material_of_cell,
-        dilatation: |_| Dilatation::Pointwise,
-    };
+    let (materials, of_cell) = ([material(15.0, nu)], vec![0; mesh.cells.len()]);
+    let tissue = Tissue::isotropic(&mesh, &materials, &of_cell, |_| Dilatation::Pointwise);
     let case = LoadCase {
         held: holds.iter().map(|hold| *hold.values()).collect(),
         forces: vec![Vector::zeros(); mesh.nodes.len()],

@@ -26,15 +26,7 @@ pub fn system_of(
     materials: &[LinearElastic],
     material_of_cell: &[u16],
 ) -> System {
-    let tissue = Tissue {
-        mesh,
-        materials,
-        material_of_cell,
-        pressure_of_cell: material_of_cell,
-        fibres: &[],
-        membrane: None,
-        dilatation: |_| Dilatation::Mean,
-    };
+    let tissue = Tissue::isotropic(mesh, materials, material_of_cell, |_| Dilatation::Mean);
     let mut held = vec![false; mesh.nodes.len()];
     mesh.node_set(set).unwrap().iter().for_each(|&node| held[node as usize] = true);
     let numbering = Numbering::new(mesh, &held);

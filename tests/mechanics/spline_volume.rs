@@ -54,8 +54,7 @@ fn galerkin(
     let materials = [material(15.0, 0.3)];
     let material_of_cell = vec![0; mesh.cells.len()];
     let dilatation = |_| Dilatation::Pointwise;
-    let tissue =
-        Tissue { mesh, materials: &materials, material_of_cell: &material_of_cell, dilatation };
+    let tissue = Tissue::isotropic(mesh, &materials, &material_of_cell, dilatation);
     let points = tissue_points(mesh).unwrap();
     let lattice = Lattice::fit(mesh, &points, 3, Some(spacing));
     let free = vec![false; lattice.points.len()];
