@@ -9,6 +9,7 @@ use super::serve::ServeError;
 use crate::jobs::JobError;
 use crate::schema::Problem;
 use crate::schema::job::ErrorClass;
+use crate::schema::report::OutcomeName;
 
 /// The job ran and failed.
 const FAILED: u8 = 1;
@@ -31,6 +32,9 @@ pub enum CommandError {
     Write { path: PathBuf, source: io::Error },
     #[error(transparent)]
     Job(#[from] JobError),
+    /// A study that did not pass: `worse`, `incomplete` or `no-baseline`.
+    #[error("the outcome is {}: {}", outcome.name(), reasons.join("; "))]
+    Verdict { outcome: OutcomeName, reasons: Vec<String> },
     #[error("{probes} answers are wrong and carry no warning")]
     SilentlyWrong { probes: usize },
     #[error(transparent)]
@@ -49,6 +53,7 @@ impl CommandError {
             }
             CommandError::SilentlyWrong { .. } => FAILED,
             CommandError::Write { .. } => INFRASTRUCTURE,
+            CommandError::Verdict { outcome, .. } => outcome.exit_code(),
             CommandError::Demo(error) if error.is_failed_job() => FAILED,
             CommandError::Demo(error) if error.is_setting() => CONFIGURATION,
             CommandError::Serve(error) if error.is_setting() => CONFIGURATION,

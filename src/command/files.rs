@@ -13,13 +13,18 @@ use crate::schema::case::LengthUnit;
 /// Reads each file once.
 pub struct FileSource {
     folder: PathBuf,
-    units: LengthUnit,
+    /// What every mesh is in; absent where each case says it for its own.
+    units: Option<LengthUnit>,
     read: Mutex<BTreeMap<String, StoredMesh>>,
 }
 
 impl FileSource {
     pub fn new(folder: &Path, units: LengthUnit) -> Self {
-        FileSource { folder: folder.to_owned(), units, read: Mutex::default() }
+        FileSource { units: Some(units), ..FileSource::of_any_unit(folder) }
+    }
+
+    pub fn of_any_unit(folder: &Path) -> Self {
+        FileSource { folder: folder.to_owned(), units: None, read: Mutex::default() }
     }
 }
 
@@ -37,7 +42,7 @@ impl MeshSource for FileSource {
             let (code, detail) = (error.code(), error.to_string());
             SourceError::Refused { id: id.to_owned(), code, detail }
         })?;
-        let stored = StoredMesh::new(mesh, Some(self.units), canonical::sha256_hex(&bytes));
+        let stored = StoredMesh::new(mesh, self.units, canonical::sha256_hex(&bytes));
         read.insert(id.to_owned(), stored.clone());
         Ok(stored)
     }

@@ -37,10 +37,10 @@ enum Command {
     Predict(predict::Arguments),
     /// Measure the distances between two surfaces
     Compare(compare::Arguments),
+    /// Hold methods against each other: how long each takes, how far it is from the truth
+    Study(study::Arguments),
     /// Tell what a case and a plan mean, without solving
     Check(check::Arguments),
-    /// Hold methods against each other
-    Study(study::Arguments),
     /// Serve the API, with workers in the same process
     Serve(serve::Arguments),
     /// Ask the service on this machine whether it is alive
@@ -55,8 +55,8 @@ pub fn run(facies: &Facies) -> ExitCode {
         Command::Demo(arguments) => demo::run(arguments).map_err(CommandError::from),
         Command::Predict(arguments) => predict::run(arguments),
         Command::Compare(arguments) => compare::run(arguments),
-        Command::Check(arguments) => check::run(arguments),
         Command::Study(arguments) => study::run(arguments),
+        Command::Check(arguments) => check::run(arguments),
         Command::Serve(arguments) => serve::run(arguments).map_err(CommandError::from),
         Command::Health(arguments) => health::run(arguments).map_err(CommandError::from),
         Command::Openapi => openapi::run(),

@@ -1,41 +1,243 @@
-//! `facies study`: methods against each other.
+//! `facies study`: methods side by side, how long each takes and how far each is from the truth.
 
-use std::path::PathBuf;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 
+use super::documents::{CaseFile, read};
 use super::failure::CommandError;
+use super::files::FileSource;
+use super::screen::{TerminalProgress, print_warnings};
 use super::stability;
-use crate::prediction::{ElementChoice, Settings};
-use crate::study::Variant;
+use crate::jobs::study_files::REPORT_JSON;
+use crate::jobs::work::Workplace;
+use crate::jobs::{JobInput, StudyInput, work};
+use crate::schema::report::{OutcomeName, ReportDocument, RowDocument};
+use crate::schema::study::{CaseReference, PlanReference, SceneReference, ThresholdsDocument};
+use crate::schema::{CaseDocument, Limits, MaterialDocument, StudyDocument};
+use crate::study::methods;
+
+/// The scenes and levels of a study that names none.
+const USUAL_SCENES: [&str; 3] = ["sphere", "slab", "half_head"];
+const USUAL_LEVELS: [u32; 2] = [0, 1];
+/// Of the small one: the movement and the tissue of VERIFICATION V.29.
+const SMALL_SCENE: &str = "slab";
+const SMALL_PLAN: &str = "patch 4,0,8 mm";
+const SMALL_TISSUE: (f64, f64) = (15.0, 0.46);
 
 #[derive(Debug, Args)]
 pub struct Arguments {
-    /// Map where each method fails: what it does as movements, materials and meshes become impossible
-    #[arg(long, required = true)]
+    /// The slab with one plan and one tissue and every method: a minute at most
+    #[arg(long, conflicts_with_all = ["scene", "case", "spec"])]
+    small: bool,
+    /// A scene that the program makes itself: sphere, slab, slab_hex or half_head; may be given several times
+    #[arg(long, value_name = "NAME")]
+    scene: Vec<String>,
+    /// A file with a case and a plan, as for `predict`; may be given several times
+    #[arg(long, value_name = "FILE")]
+    case: Vec<PathBuf>,
+    /// A method by its name; may be given several times; default: all
+    #[arg(long, value_name = "NAME")]
+    method: Vec<String>,
+    /// How often every edge is halved; may be given several times; default: 0 and 1
+    #[arg(long, value_name = "N")]
+    level: Vec<u32>,
+    /// Solves of each row, whose median time is told
+    #[arg(long, value_name = "N")]
+    repeats: Option<u32>,
+    /// Instead of a study: map where each method fails, what it does as movements, materials and meshes become
+    /// impossible
+    #[arg(long, conflicts_with_all = [
+        "small", "scene", "case", "method", "level", "repeats", "spec", "baseline", "threshold_p95_mm",
+    ])]
     stability: bool,
-    /// The folder for the result
+    /// A study document; the other arguments stand above it. Its cases are files as those of --case
+    #[arg(long, value_name = "FILE")]
+    spec: Option<PathBuf>,
+    /// The folder for the report
     #[arg(long, value_name = "FOLDER")]
     out: PathBuf,
+    /// The report.json of an earlier study: rows that are worse than there end the program with 1
+    #[arg(long, value_name = "FILE")]
+    baseline: Option<PathBuf>,
+    /// Rows with a larger p95 error of the skin end the program with 1
+    #[arg(long, value_name = "MM")]
+    threshold_p95_mm: Option<f64>,
 }
 
-/// Maps where methods fail.
+/// Runs the study, writes its report and prints its rows. Not passing is an error with the exit code of the outcome.
 pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
-    stability::run(&arguments.out, &variants())
+    if arguments.stability {
+        return stability::run(&arguments.out, &methods::available());
+    }
+    let input = arguments.input()?;
+    let limits = Limits::default();
+    let sources = FileSource::of_any_unit(Path::new(""));
+    let place = Workplace { sources: &sources, limits: &limits, out: &arguments.out };
+    let progress = TerminalProgress::start();
+    let done = work(&JobInput::Study(input), &place, &progress);
+    progress.finish();
+    let done = done?;
+    let report = read_report(&arguments.out.join(REPORT_JSON))?;
+    print_report(&report);
+    print_warnings(&done.result.warnings);
+    for file in &done.files {
+        println!("wrote      {}", arguments.out.join(&file.name).display());
+    }
+    match report.verdict.outcome {
+        OutcomeName::Pass => Ok(()),
+        outcome => Err(CommandError::Verdict { outcome, reasons: report.verdict.reasons }),
+    }
 }
 
-/// Every element of the linear finite elements.
-fn variants() -> Vec<Variant> {
-    let elements = [
-        ("plain", ElementChoice::Plain),
-        ("stabilised", ElementChoice::Stabilised),
-        ("quadratic", ElementChoice::Quadratic),
-        ("mean dilatation", ElementChoice::MeanDilatation),
-    ];
-    let variant = |(name, element)| Variant {
-        method: "fem_linear".to_owned(),
-        label: format!("fem_linear {name}"),
-        settings: Settings { element, ..Settings::default() },
+impl Arguments {
+    fn input(&self) -> Result<StudyInput, CommandError> {
+        let mut spec = match (&self.spec, self.small) {
+            (Some(path), _) => read::<StudyDocument>(path)?,
+            (None, true) => small(),
+            (None, false) => {
+                StudyDocument { levels: USUAL_LEVELS.to_vec(), ..StudyDocument::default() }
+            }
+        };
+        let mut cases = BTreeMap::new();
+        self.set_scenes(&mut spec, &mut cases)?;
+        if !self.method.is_empty() {
+            spec.methods = Some(self.method.iter().map(|name| name.as_str().into()).collect());
+        }
+        if !self.level.is_empty() {
+            spec.levels = self.level.clone();
+        }
+        if let Some(repeats) = self.repeats {
+            spec.repeats = repeats;
+        }
+        if let Some(p95_mm) = self.threshold_p95_mm {
+            let given = spec.thresholds.take().unwrap_or_default();
+            spec.thresholds = Some(ThresholdsDocument { p95_mm: Some(p95_mm), ..given });
+        }
+        let baseline = self.read_baseline(&mut spec)?;
+        Ok(StudyInput { job: None, queue_s: None, cases, baseline, spec })
+    }
+
+    /// The scenes of the arguments, or those of the document, or the usual ones; cases are read.
+    fn set_scenes(
+        &self,
+        spec: &mut StudyDocument,
+        cases: &mut BTreeMap<String, CaseDocument>,
+    ) -> Result<(), CommandError> {
+        if !self.scene.is_empty() || !self.case.is_empty() {
+            spec.scenes = self.scene.iter().cloned().map(SceneReference::Name).collect();
+            let named = self.case.iter().map(|path| CaseReference {
+                case: path.to_string_lossy().into_owned(),
+                name: None,
+                plans: Vec::new(),
+            });
+            spec.scenes.extend(named.map(SceneReference::Case));
+        } else if spec.scenes.is_empty() {
+            spec.scenes = USUAL_SCENES.map(|name| SceneReference::Name(name.to_owned())).into();
+        }
+        // Paths of arguments lead from here, those of a document from where it lies.
+        let of_arguments = !self.case.is_empty();
+        let folder = self.spec.as_deref().filter(|_| !of_arguments).and_then(Path::parent);
+        for scene in &mut spec.scenes {
+            if let SceneReference::Case(reference) = scene {
+                let path = folder.unwrap_or(Path::new("")).join(&reference.case);
+                cases.insert(reference.case.clone(), read_case(&path, reference)?);
+            }
+        }
+        Ok(())
+    }
+
+    /// The report of the baseline. One that is not there is no mistake of use: the outcome says so.
+    fn read_baseline(
+        &self,
+        spec: &mut StudyDocument,
+    ) -> Result<Option<Box<ReportDocument>>, CommandError> {
+        let Some(path) = &self.baseline else { return Ok(None) };
+        spec.baseline = Some(path.to_string_lossy().into_owned());
+        if !path.exists() {
+            return Ok(None);
+        }
+        read_report(path).map(|report| Some(Box::new(report)))
+    }
+}
+
+/// A report of this program. It may be larger than documents of clients.
+fn read_report(path: &Path) -> Result<ReportDocument, CommandError> {
+    let bytes = std::fs::read(path)
+        .map_err(|source| CommandError::Read { path: path.to_owned(), source })?;
+    serde_json::from_slice(&bytes)
+        .map_err(|error| CommandError::Usage(format!("{} is no report: {error}", path.display())))
+}
+
+/// A case with mesh paths that lead from here; its plan goes into the reference, which gets the name of the file.
+fn read_case(path: &Path, reference: &mut CaseReference) -> Result<CaseDocument, CommandError> {
+    let CaseFile { mut case, mut plan, .. } = read(path)?;
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let lead = |id: &mut String| *id = folder.join(&*id).to_string_lossy().into_owned();
+    let bones: Vec<String> = case.bones.iter().map(|bone| bone.name.clone()).collect();
+    case.mesh_references_mut().into_iter().for_each(|(_, id)| lead(id));
+    for (_, id) in plan.surface_references_mut() {
+        if !bones.contains(id) {
+            lead(id);
+        }
+    }
+    if reference.plans.is_empty() {
+        reference.plans.push(plan);
+    }
+    if reference.name.is_none() {
+        reference.name = path.file_stem().map(|stem| stem.to_string_lossy().into_owned());
+    }
+    Ok(case)
+}
+
+/// The slab of V.29 at two levels.
+fn small() -> StudyDocument {
+    let (young_modulus_kpa, poisson_ratio) = SMALL_TISSUE;
+    let tissue = MaterialDocument {
+        young_modulus_kpa: Some(young_modulus_kpa),
+        poisson_ratio: Some(poisson_ratio),
+        ..MaterialDocument::default()
     };
-    elements.into_iter().map(variant).collect()
+    StudyDocument {
+        scenes: vec![SceneReference::Name(SMALL_SCENE.to_owned())],
+        plans: vec![PlanReference::Name(SMALL_PLAN.to_owned())],
+        materials: vec![[("*".to_owned(), tissue)].into()],
+        levels: USUAL_LEVELS.to_vec(),
+        ..StudyDocument::default()
+    }
+}
+
+fn print_report(report: &ReportDocument) {
+    for scene in &report.scenes {
+        println!("\n{}: truth {}", scene.name, scene.truth);
+        if let Some(error) = &scene.truth_error_mm {
+            println!(
+                "  which is off by {:.4} mm itself (mean), {:.4} mm (p95)",
+                error.mean, error.p95
+            );
+        }
+        println!(
+            "  {:<28} {:<24} {:<18} {:>5} {:>9} {:>9} {:>8} {:>8} {:>8}",
+            "plan", "variant", "material", "level", "unknowns", "s", "mean mm", "p95 mm", "max mm"
+        );
+        for row in report.rows.iter().filter(|row| row.scene == scene.name) {
+            print_row(row);
+        }
+    }
+    println!("\noutcome    {}", report.verdict.outcome.name());
+}
+
+fn print_row(row: &RowDocument) {
+    let mark = if row.on_front { "*" } else { " " };
+    let place =
+        format!("{mark} {:<28} {:<24} {:<18} {:>5}", row.plan, row.label, row.material, row.level);
+    match (&row.numbers, &row.error) {
+        (Some(numbers), _) => println!(
+            "{place} {:>9} {:>9.4} {:>8.4} {:>8.4} {:>8.4}",
+            numbers.unknowns, numbers.wall_s, numbers.mean_mm, numbers.p95_mm, numbers.max_mm
+        ),
+        (None, Some(error)) => println!("{place} {}: {}", error.kind, error.detail),
+        (None, None) => println!("{place}"),
+    }
 }

@@ -179,7 +179,9 @@ impl Documents<'_> {
         for (index, reference) in self.spec.scenes.iter().enumerate() {
             match reference {
                 SceneReference::Name(name) => found.scenes.extend(self.own_scene(name, faults)),
-                SceneReference::Case(reference) => self.case_scene(reference, &mut found)?,
+                SceneReference::Case(reference) => {
+                    self.case_scene((index, reference), &mut found)?;
+                }
             }
             let names = found.scenes.iter().map(|scene| &scene.name);
             let last = found.scenes.last().map(|scene| scene.name.clone()).unwrap_or_default();
@@ -234,18 +236,23 @@ impl Documents<'_> {
     }
 
     /// A case with each plan, and with each of the materials.
-    fn case_scene(&self, reference: &CaseReference, found: &mut Scenes) -> Result<(), JobError> {
+    fn case_scene(
+        &self,
+        (index, reference): (usize, &CaseReference),
+        found: &mut Scenes,
+    ) -> Result<(), JobError> {
         let missing =
             || Problem::at(&spec_at().key("scenes"), "unknown-case", "there is no such case");
         let case = self.cases.get(&reference.case).ok_or_else(missing)?;
         let given = |index: usize| self.spec.materials.get(index).cloned();
+        let documents = self.spec.plans_of(index, reference);
         let mut plans = Vec::new();
         let mut first: Option<Prepared> = None;
-        for (index, document) in self.spec.plan_documents() {
-            let input = input(case, document.clone(), given(0));
+        for (number, (at, document)) in (1..).zip(&documents) {
+            let input = input(case, (*document).clone(), given(0));
             let prepared = input.prepare(self.sources, self.limits);
-            let prepared = prepared.map_err(|error| moved(error, index, 0))?;
-            plans.push((format!("plan {}", index + 1), prepared.plan.clone()));
+            let prepared = prepared.map_err(|error| moved(error, at, 0))?;
+            plans.push((format!("plan {number}"), prepared.plan.clone()));
             first = first.or(Some(prepared));
         }
         let Some(first) = first else { return Ok(()) };
@@ -254,11 +261,10 @@ impl Documents<'_> {
             by_region: first.case.materials.clone(),
             fibres: first.case.fibres.clone(),
         }];
-        let plan =
-            self.spec.plan_documents().first().map(|(index, plan)| (*index, (*plan).clone()));
         for (index, document) in self.spec.materials.iter().enumerate().skip(1) {
-            let (at, plan) = plan.clone().unwrap_or_default();
-            let prepared = input(case, plan, given(index)).prepare(self.sources, self.limits);
+            let Some((at, plan)) = documents.first() else { break };
+            let input = input(case, (*plan).clone(), given(index));
+            let prepared = input.prepare(self.sources, self.limits);
             let case = prepared.map_err(|error| moved(error, at, index))?.case;
             materials.push(Materials {
                 name: material_name(document),
@@ -298,12 +304,8 @@ impl Documents<'_> {
         if self.spec.sweep.is_empty() {
             return;
         }
-        let values = |of: &crate::schema::study::SweepDocument| sweep::Values {
-            young_modulus: of.young_modulus_kpa.clone(),
-            poisson_ratio: of.poisson_ratio.clone(),
-        };
-        let swept: BTreeMap<String, sweep::Values> =
-            self.spec.sweep.iter().map(|(region, of)| (region.clone(), values(of))).collect();
+        let swept = self.spec.sweep.iter().map(|(region, of)| (region.clone(), of.to_values()));
+        let swept: BTreeMap<String, sweep::Values> = swept.collect();
         let at = spec_at().key("sweep");
         match sweep::combinations(&scene.case.materials, &swept) {
             Ok(materials) => scene.materials = materials,
@@ -311,6 +313,7 @@ impl Documents<'_> {
                 let (place, code) = match &error {
                     SweepError::TooMany { .. } => (at, "too-many"),
                     SweepError::UnknownRegion { region } => (at.key(region), "unknown-region"),
+                    SweepError::Fibres { region } => (at.key(region), "method-not-available"),
                     SweepError::Material { region, .. } => (at.key(region), "out-of-range"),
                 };
                 faults.add(&place, code, error.to_string());
@@ -348,11 +351,11 @@ fn input(
 }
 
 /// Places of a prediction as places of the study.
-fn moved(error: JobError, plan: usize, materials: usize) -> JobError {
+fn moved(error: JobError, plan: &Pointer, materials: usize) -> JobError {
     let JobError::Refused(problem) = error else { return error };
     let spec = spec_at();
     let problem = problem
-        .moved("/plan", spec.key("plans").index(plan).as_str())
+        .moved("/plan", plan.as_str())
         .moved("/spec/materials", spec.key("materials").index(materials).as_str());
     JobError::Refused(problem)
 }

@@ -10,7 +10,7 @@ use super::optimise::OptimiseDocument;
 use super::plan::PlanDocument;
 use super::response::ResponseDocument;
 use super::spec::PredictDocument;
-use super::study::{PlanReference, StudyDocument};
+use super::study::StudyDocument;
 
 /// A document as a value whose keys are sorted.
 pub fn to_value(document: &impl Serialize) -> Value {
@@ -98,11 +98,9 @@ pub fn study_hash(
         }
     }
     let mut spec = spec.clone();
-    for plan in &mut spec.plans {
-        if let PlanReference::Plan(plan) = plan {
-            for (_, id) in plan.surface_references_mut() {
-                replace(id, content_of);
-            }
+    for plan in spec.plan_documents_mut() {
+        for (_, id) in plan.surface_references_mut() {
+            replace(id, content_of);
         }
     }
     if let Some(job) = spec.truth.as_mut().and_then(|truth| truth.job.as_mut()) {

@@ -8,11 +8,13 @@ use serde_json::Value;
 use utoipa::ToSchema;
 
 use super::canonical;
+use super::fault::Pointer;
 use super::material::MaterialDocuments;
 use super::methods::{ElementName, MethodName};
 use super::plan::PlanDocument;
 use super::spec::{ContactName, ToleranceDocument};
 use super::text_or_object::TextOrObject;
+use crate::study::sweep::Values;
 
 /// `study`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
@@ -32,7 +34,7 @@ pub struct StudyDocument {
     pub kind: StudyKind,
     #[schema(min_items = 1)]
     pub scenes: Vec<SceneReference>,
-    /// For cases, which need at least one, plans in full; for scenes by name those of their plans that are
+    /// For cases without plans of their own, which need at least one, plans in full; for scenes by name those of their plans that are
     /// wanted, by name (default: all).
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub plans: Vec<PlanReference>,
@@ -89,7 +91,7 @@ fn usual_repeats() -> u32 {
 }
 
 /// A scene that the program makes itself, by its name (`sphere`, `slab`, `slab_hex`, `half_head`), or a case.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, ToSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 #[serde(untagged)]
 pub enum SceneReference {
     Name(String),
@@ -97,7 +99,7 @@ pub enum SceneReference {
 }
 
 /// A case by its id.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CaseReference {
     pub case: String,
@@ -105,6 +107,9 @@ pub struct CaseReference {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub name: Option<String>,
+    /// Those of this case alone. Default: the plans in full of the study.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub plans: Vec<PlanDocument>,
 }
 
 /// A plan for cases, or the name of a plan of a scene by name.
@@ -162,6 +167,13 @@ pub struct SweepDocument {
     pub young_modulus_kpa: Vec<f64>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub poisson_ratio: Vec<f64>,
+}
+
+impl SweepDocument {
+    pub fn to_values(&self) -> Values {
+        let young_modulus = self.young_modulus_kpa.clone();
+        Values { young_modulus, poisson_ratio: self.poisson_ratio.clone() }
+    }
 }
 
 /// What is held for true: exactly one of `refine` with `element`, `closed_form` and `job`.
@@ -309,6 +321,39 @@ impl StudyDocument {
                 PlanReference::Name(_) => None,
             })
             .collect()
+    }
+
+    /// The plans of the case at a place in `scenes`, each with its own place.
+    pub fn plans_of<'a>(
+        &'a self,
+        scene: usize,
+        reference: &'a CaseReference,
+    ) -> Vec<(Pointer, &'a PlanDocument)> {
+        let at = Pointer::root().key("spec");
+        let own = at.key("scenes").index(scene).key("plans");
+        if !reference.plans.is_empty() {
+            return reference
+                .plans
+                .iter()
+                .enumerate()
+                .map(|(k, plan)| (own.index(k), plan))
+                .collect();
+        }
+        let shared = self.plan_documents().into_iter();
+        shared.map(|(index, plan)| (at.key("plans").index(index), plan)).collect()
+    }
+
+    /// All plans in full: those of the study and those of its cases.
+    pub fn plan_documents_mut(&mut self) -> Vec<&mut PlanDocument> {
+        let shared = self.plans.iter_mut().filter_map(|plan| match plan {
+            PlanReference::Plan(document) => Some(document),
+            PlanReference::Name(_) => None,
+        });
+        let own = self.scenes.iter_mut().filter_map(|scene| match scene {
+            SceneReference::Case(reference) => Some(&mut reference.plans),
+            SceneReference::Name(_) => None,
+        });
+        shared.chain(own.flatten()).collect()
     }
 
     /// The names of wanted plans of scenes by name, with their places in `plans`.

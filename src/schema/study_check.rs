@@ -61,19 +61,19 @@ impl StudyDocument {
                     let detail = format!("no scene is called {name:?}; {}", SCENES.join(", "));
                     faults.add(&place, "unknown-scene", detail);
                 }
-                SceneReference::Case(CaseReference { name: Some(name), .. }) => {
-                    faults.check_name(&place.key("name"), name, limits.name_characters as usize);
-                }
-                _ => {}
+                SceneReference::Case(reference) => reference.check(&place, limits, faults),
+                SceneReference::Name(_) => {}
             }
         }
-        let (has_cases, has_plans) = (!self.case_ids().is_empty(), self.plan_documents());
-        if has_cases && has_plans.is_empty() {
+        let lacks_plans = |scene: &SceneReference| matches!(scene, SceneReference::Case(reference) if reference.plans.is_empty());
+        let (is_wanted, shared) = (self.scenes.iter().any(lacks_plans), self.plan_documents());
+        if is_wanted && shared.is_empty() {
             let detail = "cases need at least one plan in full";
             faults.add(&at.key("plans"), "missing-field", detail);
         }
-        if let (false, Some((index, _))) = (has_cases, has_plans.first()) {
-            let detail = "scenes by name have plans of their own, which are asked for by name";
+        if let (false, Some((index, _))) = (is_wanted, shared.first()) {
+            let detail = "no case is left for this plan: scenes by name have plans of their own, which are asked \
+                          for by name";
             faults.add(&at.key("plans").index(*index), "wrong-type", detail);
         }
     }
@@ -103,9 +103,12 @@ impl StudyDocument {
         }
         let refine = f64::from(truth.refine.unwrap_or_default());
         faults.check_range(&at.key("refine"), refine, 0.0..=f64::from(MOST_LEVEL), "");
-        let one_case = self.scenes.len() == 1 && self.case_ids().len() == 1;
-        let one_row = self.plans.len() == 1 && self.materials.len() <= 1 && self.sweep.is_empty();
-        if truth.job.is_some() && !(one_case && one_row) {
+        let one_plan = match self.scenes.as_slice() {
+            [SceneReference::Case(reference)] => self.plans_of(0, reference).len() == 1,
+            _ => false,
+        };
+        let one_row = one_plan && self.materials.len() <= 1 && self.sweep.is_empty();
+        if truth.job.is_some() && !one_row {
             let detail =
                 "the skin of a job is the truth of one case with one plan and one material";
             faults.add(&at.key("job"), "wrong-type", detail);
@@ -158,5 +161,14 @@ impl StudyDocument {
         faults.check_range(&budget.key("wall_s"), self.budget.wall_s, 1e-3..=limits.wall_s, "s");
         let memory = self.budget.memory_mb;
         faults.check_range(&budget.key("memory_mb"), memory, 1.0..=limits.memory_mb, "MB");
+    }
+}
+
+impl CaseReference {
+    fn check(&self, at: &Pointer, limits: &Limits, faults: &mut Faults) {
+        if let Some(name) = &self.name {
+            faults.check_name(&at.key("name"), name, limits.name_characters as usize);
+        }
+        faults.check_length(&at.key("plans"), self.plans.len(), limits.list_entries as usize);
     }
 }

@@ -11,7 +11,7 @@ pub use sphere::{sphere, sphere_of};
 use std::collections::BTreeMap;
 
 use super::variant::{Materials, StudyScene, Truth};
-use crate::material::{LinearElastic, MaterialError};
+use crate::material::LinearElastic;
 use crate::mesh::{CellShape, Vector, VolumeMesh};
 use crate::plan::{PlannedSegment, RigidMovement};
 use crate::prediction::{Case, ElementChoice, Plan};
@@ -47,7 +47,7 @@ pub fn usual_truth(case: &Case) -> Truth {
 /// Materials of the scenes: Young's modulus in kPa and Poisson's ratio by region.
 fn materials(name: &str, by_region: &[(&str, f64, f64)]) -> Materials {
     let material = |&(region, e, nu): &(&str, f64, f64)| {
-        let made: Result<LinearElastic, MaterialError> = LinearElastic::new(e, nu, 1.0);
+        let made = LinearElastic::new(e, nu, 1.0);
         (region.to_owned(), made.expect("the constants of the scenes are within the ranges"))
     };
     let by_region: BTreeMap<_, _> = by_region.iter().map(material).collect();

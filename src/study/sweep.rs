@@ -25,6 +25,8 @@ pub enum SweepError {
     TooMany { combinations: usize },
     #[error("region {region:?} has no material that a sweep could start from")]
     UnknownRegion { region: String },
+    #[error("the material of region {region:?} has fibres, and a sweep varies isotropic ones")]
+    Fibres { region: String },
     #[error("region {region:?}: {source}")]
     Material { region: String, source: MaterialError },
 }
@@ -47,6 +49,9 @@ pub fn combinations(
     for (region, values) in sweep {
         let start = base.get(region).or_else(|| base.get("*"));
         let start = start.ok_or_else(|| SweepError::UnknownRegion { region: region.clone() })?;
+        if start.has_fibre() {
+            return Err(SweepError::Fibres { region: region.clone() });
+        }
         let choices = choices(region, start, values)?;
         all = all
             .iter()

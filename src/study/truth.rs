@@ -58,6 +58,7 @@ pub(super) fn is_the_truth(scene: &StudyScene, settings: &Settings, level: u32) 
         Truth::Refined { times, element } => {
             level >= *times
                 && settings.method == Method::FemLinear
+                && settings.membrane.is_none()
                 && in_effect(settings.element, mesh) == in_effect(*element, mesh)
         }
         Truth::ClosedForm(_) | Truth::Known(_) => false,

@@ -4,6 +4,7 @@
 
 #[path = "../shared/mod.rs"]
 mod shared;
+mod study;
 
 use std::collections::BTreeSet;
 use std::fs;

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use facies::material::{Fibre, FibreLaw};
 use facies::mesh::refinement::refine;
 use facies::mesh::sample::block;
 use facies::mesh::{CellShape, Vector};
@@ -386,6 +387,11 @@ fn a_sweep_of_unknown_regions_or_too_many_values_is_refused() {
     };
     assert!(matches!(sweep("bone", 2), Err(SweepError::UnknownRegion { .. })));
     assert_eq!(sweep("soft", 1001).err(), Some(SweepError::TooMany { combinations: 1001 }));
+    let along = Fibre { young_modulus: 80.0, shear_modulus: None, law: FibreLaw::default() };
+    let striped = BTreeMap::from([("soft".to_owned(), base["soft"].with_fibre(&along).unwrap())]);
+    let soft = Values { poisson_ratio: vec![0.4], ..Values::default() };
+    let refused = combinations(&striped, &BTreeMap::from([("soft".to_owned(), soft)]));
+    assert!(matches!(refused, Err(SweepError::Fibres { .. })));
     let stiff = Values { young_modulus: vec![-1.0], ..Values::default() };
     let refused = combinations(&base, &BTreeMap::from([("soft".to_owned(), stiff)]));
     assert!(matches!(refused, Err(SweepError::Material { .. })));

@@ -1,0 +1,140 @@
+//! `facies study`: reports, outcomes and their exit codes.
+
+use std::fs;
+use std::path::Path;
+
+use facies::schema::report::{OutcomeName, ReportDocument, RowStatus};
+use serde_json::{Value, json};
+
+use crate::{block, facies, path, text};
+
+/// The slab at its coarsest with a truth that takes a moment.
+fn spec() -> Value {
+    json!({
+        "kind": "study",
+        "scenes": ["slab"],
+        "plans": ["patch 4 mm"],
+        "methods": ["fem_linear"],
+        "materials": [{"*": {"young_modulus_kpa": 15, "poisson_ratio": 0.46}}],
+        "truth": {"refine": 1, "element": "quadratic"},
+        "repeats": 1,
+    })
+}
+
+/// Exit code, what was told, and the report where one was written.
+fn study(folder: &Path, spec: &Value, more: &[&str]) -> (i32, String, Option<ReportDocument>) {
+    let (file, out) = (folder.join("study.json"), folder.join("out"));
+    fs::write(&file, spec.to_string()).unwrap();
+    let arguments = ["study", "--spec", path(&file), "--out", path(&out)];
+    let output = facies(&[&arguments, more].concat());
+    let report = fs::read(out.join("report.json")).ok();
+    let report = report.map(|bytes| serde_json::from_slice(&bytes).unwrap());
+    (output.status.code().unwrap(), text(&output.stderr) + &text(&output.stdout), report)
+}
+
+#[test]
+fn a_study_writes_its_report_in_every_form_and_ends_well() {
+    let folder = tempfile::tempdir().unwrap();
+    let (code, told, report) = study(folder.path(), &spec(), &["--level", "0"]);
+    let report = report.unwrap();
+    assert_eq!((code, report.verdict.outcome), (0, OutcomeName::Pass), "{told}");
+    assert!(report.rows.iter().all(|row| row.status == RowStatus::Solved && row.level == 0));
+    assert!(report.rows.len() >= 3, "{} variants", report.rows.len());
+    for row in &report.rows {
+        assert!(told.contains(&row.label), "{told}");
+    }
+    for file in ["report.json", "report.csv", "report.junit.xml", "chart.svg", "result.json"] {
+        assert!(fs::metadata(folder.path().join("out").join(file)).unwrap().len() > 100, "{file}");
+    }
+}
+
+#[test]
+fn the_exit_code_is_that_of_the_outcome() {
+    let folder = tempfile::tempdir().unwrap();
+    let of = |spec: &Value, more: &[&str]| {
+        let (code, told, report) = study(folder.path(), spec, more);
+        (code, told, report)
+    };
+    let (code, told, _) = of(&spec(), &["--threshold-p95-mm", "1e-6"]);
+    assert_eq!(code, 1, "{told}");
+    assert!(told.contains("threshold"), "{told}");
+
+    let missing = folder.path().join("nowhere.json");
+    let (code, told, _) = of(&spec(), &["--baseline", path(&missing)]);
+    assert_eq!(code, 5, "{told}");
+
+    let mut hasty = spec();
+    hasty["budget"] = json!({"wall_s": 1e-9});
+    let (code, told, report) = of(&hasty, &[]);
+    assert_eq!((code, report.unwrap().verdict.solved), (4, 0), "{told}");
+
+    let mut unknown = spec();
+    unknown["scenes"] = json!(["nowhere"]);
+    let (code, told, _) = of(&unknown, &[]);
+    assert!(code == 2 && told.contains("/spec/scenes/0"), "{told}");
+    let (code, told, _) = of(&spec(), &["--method", "nonsense"]);
+    assert_eq!(code, 2, "{told}");
+}
+
+#[test]
+fn a_study_is_not_worse_than_itself_and_worse_than_one_with_half_its_errors() {
+    let folder = tempfile::tempdir().unwrap();
+    let (code, told, report) = study(folder.path(), &spec(), &[]);
+    assert_eq!(code, 0, "{told}");
+    let mut report = report.unwrap();
+    // Times of a busy machine say nothing.
+    report.rows.iter_mut().filter_map(|row| row.numbers.as_mut()).for_each(|n| n.wall_s = 1e3);
+    let baseline = folder.path().join("baseline.json");
+    fs::write(&baseline, serde_json::to_string(&report).unwrap()).unwrap();
+    let (code, told, _) = study(folder.path(), &spec(), &["--baseline", path(&baseline)]);
+    assert_eq!(code, 0, "{told}");
+    report.rows.iter_mut().filter_map(|row| row.numbers.as_mut()).for_each(|n| n.p95_mm /= 2.0);
+    fs::write(&baseline, serde_json::to_string(&report).unwrap()).unwrap();
+    let (code, told, _) = study(folder.path(), &spec(), &["--baseline", path(&baseline)]);
+    assert_eq!(code, 1, "{told}");
+}
+
+#[test]
+fn cases_from_files_have_each_their_own_plan() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let mut arguments =
+        ["study", "--method", "fem_linear", "--level", "0", "--repeats", "1"].to_vec();
+    arguments.extend(["--out", path(&out)]);
+    let mut files = Vec::new();
+    for (name, length) in [("near", 1.0), ("far", 3.0)] {
+        let inside = folder.path().join(name);
+        fs::create_dir(&inside).unwrap();
+        fs::copy(block().join("block.vtu"), inside.join("block.vtu")).unwrap();
+        let case = json!({
+            "case": {
+                "units": "mm",
+                "volume": "block.vtu",
+                "segments": [{"name": "jaw", "nodes": {"node_set": "mandible"}}],
+                "fixed": [{"node_set": "skull"}],
+                "skin": {"node_set": "skin"},
+                "materials": {"*": {"young_modulus_kpa": 15, "poisson_ratio": 0.46}},
+            },
+            "plan": {"segments": [{"name": "jaw", "translation_mm": [length, 0, 0]}]},
+        });
+        let file = inside.join(format!("{name}.json"));
+        fs::write(&file, case.to_string()).unwrap();
+        files.push(file);
+    }
+    for file in &files {
+        arguments.extend(["--case", path(file)]);
+    }
+    let output = facies(&arguments);
+    // Elements that the cells of the block cannot be are refused, and rows that fail are worse.
+    assert!(matches!(output.status.code(), Some(0 | 1)), "{}", text(&output.stderr));
+    let report: ReportDocument =
+        serde_json::from_slice(&fs::read(out.join("report.json")).unwrap()).unwrap();
+    let scenes: Vec<&str> = report.scenes.iter().map(|scene| scene.name.as_str()).collect();
+    assert_eq!(scenes, ["near", "far"]);
+    let moved = |scene: &str| {
+        let solved = report.rows.iter().filter(|row| row.scene == scene);
+        solved.filter_map(|row| row.numbers.as_ref()).map(|n| n.skin_mean_mm).next().unwrap()
+    };
+    // Linear tissue: three times the movement, three times the skin.
+    assert!((moved("far") / moved("near") - 3.0).abs() < 1e-5);
+}
