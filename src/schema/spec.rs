@@ -63,7 +63,7 @@ pub struct PredictDocument {
     /// Only where `method` is `dvs`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
-    pub dvs: Option<DvsDocument>,
+    pub dvs: Option<Box<DvsDocument>>,
     /// Only where `method` is `thickness_warp`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
@@ -291,7 +291,7 @@ impl PredictDocument {
         }
         match chosen {
             MethodName::Dvs => {
-                let document = self.dvs.unwrap_or_default();
+                let document = self.dvs.clone().unwrap_or_default();
                 Method::VolumeSpline(document.to_method(&at.key("dvs"), faults))
             }
             MethodName::ThicknessWarp => {

@@ -31,6 +31,7 @@ mod registration;
 mod response;
 mod scenes;
 mod solvers;
+mod spline_stepping;
 mod spline_volume;
 mod surfaces;
 mod thickness_warp;
