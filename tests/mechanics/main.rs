@@ -47,6 +47,7 @@ mod scenes;
 mod slab_table;
 mod sliding;
 mod solvers;
+mod spline_stepping;
 mod spline_volume;
 mod stability;
 mod study;

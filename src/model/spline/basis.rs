@@ -119,10 +119,10 @@ impl Basis {
         values[0] = 1.0;
         for p in 1..=degree {
             let mut from_left = 0.0;
-            for r in 0..p {
+            for (r, value) in values[..p].iter_mut().enumerate() {
                 let (left, right) = (self.knots[here + 1 + r - p], self.knots[here + 1 + r]);
-                let share = values[r] / (right - left);
-                values[r] = from_left + (right - u) * share;
+                let share = *value / (right - left);
+                *value = from_left + (right - u) * share;
                 from_left = (u - left) * share;
             }
             values[p] = from_left;

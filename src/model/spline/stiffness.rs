@@ -248,19 +248,23 @@ fn add_stiffness(moments: &[f64], [lambda, mu]: [f64; 2], members: usize, blocks
         for k in 0..=j {
             let moment = |a: usize, b: usize| moments[(9 * j + 3 * a + b) * members + k];
             let trace = moment(0, 0) + moment(1, 1) + moment(2, 2);
-            for a in 0..3 {
-                for b in 0..3 {
-                    let mut value = lambda * moment(a, b) + mu * moment(b, a);
-                    if a == b {
-                        value += mu * trace;
-                    }
-                    blocks[j * members + k][a][b] += value;
-                    if k < j {
-                        blocks[k * members + j][b][a] += value;
-                    }
-                }
+            let value = |a: usize, b: usize| {
+                let on_diagonal = if a == b { mu * trace } else { 0.0 };
+                lambda * moment(a, b) + mu * moment(b, a) + on_diagonal
+            };
+            let block: Block = std::array::from_fn(|a| std::array::from_fn(|b| value(a, b)));
+            add_block(&mut blocks[j * members + k], &block);
+            if k < j {
+                let transposed = std::array::from_fn(|a| std::array::from_fn(|b| block[b][a]));
+                add_block(&mut blocks[k * members + j], &transposed);
             }
         }
+    }
+}
+
+fn add_block(sum: &mut Block, block: &Block) {
+    for (sum, value) in sum.as_flattened_mut().iter_mut().zip(block.as_flattened()) {
+        *sum += value;
     }
 }
 
