@@ -11,7 +11,7 @@ use crate::schema::report::{
 use crate::schema::study::StudyDocument;
 use crate::study::convergence::{Series, series};
 use crate::study::pairwise::{Pairwise, compare_variants, many_comparisons};
-use crate::study::{Errors, NOT_RUN, Outcome, Report, Row, SceneReport, Solved, pareto};
+use crate::study::{Errors, NOT_RUN, Outcome, Report, Row, SceneReport, Solved, methods, pareto};
 
 /// What a report tells of its origin.
 pub struct ReportOrigin {
@@ -42,7 +42,7 @@ pub fn report_document(
         rules: RulesDocument {
             thresholds: spec.thresholds.clone(),
             tolerances: spec.tolerances,
-            expected_failures: spec.expected_failures.clone(),
+            expected_failures: expected_failures(spec),
         },
         scenes: report.scenes.iter().map(scene_document).collect(),
         rows,
@@ -185,4 +185,11 @@ fn convergence_document(of: &Series) -> ConvergenceDocument {
         order: of.order,
         limit_mm: of.limit_mm,
     }
+}
+
+/// Those of the spec, and the variant that is there to fail.
+fn expected_failures(spec: &StudyDocument) -> Vec<String> {
+    let mut labels = vec![methods::DIVERGING.to_owned()];
+    labels.extend(spec.expected_failures.iter().cloned());
+    labels
 }

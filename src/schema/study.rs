@@ -73,7 +73,8 @@ pub struct StudyDocument {
     pub baseline: Option<String>,
     #[serde(default)]
     pub tolerances: TolerancesDocument,
-    /// Labels of variants that may fail without making the outcome `worse`.
+    /// Labels of variants that may fail without making the outcome `worse`, beside `mtm jacobi`, which is there to show
+    /// that it diverges.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub expected_failures: Vec<String>,
     #[serde(default)]

@@ -52,6 +52,11 @@ impl Pattern {
         self.starts.len() - 1
     }
 
+    /// Whether there is a block for a row and a column below it.
+    pub fn couples(&self, row: usize, column: usize) -> bool {
+        self.columns(row).binary_search(&(column as u32)).is_ok()
+    }
+
     /// Where the blocks of a row lie.
     pub fn range(&self, row: usize) -> Range<usize> {
         self.starts[row] as usize..self.starts[row + 1] as usize

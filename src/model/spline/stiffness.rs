@@ -118,11 +118,15 @@ impl<'a> Assembly<'a> {
         })
     }
 
-    /// Links of that many mN/mm between neighbouring control points.
+    /// Links of that many mN/mm between neighbouring control points that some tissue lies between: where it leaves a
+    /// gap, control points on its two sides may stand next to each other.
     pub fn links(&self, stiffness: f64) -> HalfMatrix<f64, 3> {
         let mut matrix = HalfMatrix::zeros(self.numbering.pattern.clone());
         for link in self.lattice.links() {
             let [a, b] = link.map(|control| self.numbering.row(control));
+            if !matrix.pattern.couples(a.max(b), a.min(b)) {
+                continue;
+            }
             add_to_diagonal(matrix.block_mut(a, a), stiffness);
             add_to_diagonal(matrix.block_mut(b, b), stiffness);
             add_to_diagonal(matrix.block_mut(a.max(b), a.min(b)), -stiffness);
