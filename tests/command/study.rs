@@ -138,3 +138,41 @@ fn cases_from_files_have_each_their_own_plan() {
     // Linear tissue: three times the movement, three times the skin.
     assert!((moved("far") / moved("near") - 3.0).abs() < 1e-5);
 }
+
+/// The table of the small study: how far each method is from the truth, in mm (p95), and how that was known before.
+#[test]
+fn the_small_study_has_every_method_and_their_errors_stand_in_order() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let output = facies(&["study", "--small", "--repeats", "1", "--out", path(&out)]);
+    let told = text(&output.stderr) + &text(&output.stdout);
+    assert_eq!(output.status.code(), Some(0), "{told}");
+    let report: ReportDocument =
+        serde_json::from_slice(&fs::read(out.join("report.json")).unwrap()).unwrap();
+    let p95 = |label: &str, level: u32| {
+        let mut rows = report.rows.iter().filter(|row| row.label == label && row.level == level);
+        rows.next().and_then(|row| row.numbers.as_ref()).unwrap_or_else(|| panic!("{label}")).p95_mm
+    };
+    // Linear and mass-tensor models are one, however they are brought to rest: to the residuals of each.
+    for level in [0, 1] {
+        let plain = p95("fem_linear plain", level);
+        for (label, within) in
+            [("mtm", 1e-6), ("mtm_ti", 1e-6), ("mtm gauss_seidel", 0.01), ("mtm damped_jacobi", 0.01)]
+        {
+            assert!((p95(label, level) - plain).abs() < within, "{label}: {told}");
+        }
+        // What does not lock is better, what bends is best, and what knows no tissue is worst.
+        assert!(p95("fem_linear stabilised", level) < 0.5 * plain, "{told}");
+        let best = p95("fem_linear quadratic", level);
+        assert!(best < 0.5 * p95("fem_linear stabilised", level), "{told}");
+        assert!(p95("thickness_warp", level) > p95("dvs galerkin", level), "{told}");
+    }
+    assert!(p95("fem_linear quadratic", 1) < 0.1, "{told}");
+    let diverged: Vec<&str> = report
+        .rows
+        .iter()
+        .filter(|row| row.status != RowStatus::Solved)
+        .map(|row| row.label.as_str())
+        .collect();
+    assert_eq!(diverged, ["mtm jacobi"; 2], "{told}");
+}
