@@ -74,6 +74,25 @@ fn drawable(value: f64) -> f64 {
 const LEAST: f64 = 1e-6;
 const MOST: f64 = 1e6;
 
+/// Two significant digits.
+pub(super) fn rounded(value: f64) -> f64 {
+    if value <= 0.0 || !value.is_finite() {
+        return 0.0;
+    }
+    let unit = 10f64.powf(value.log10().floor() - 1.0);
+    (value / unit).round() * unit
+}
+
+/// A time in the unit that it is spoken of in.
+pub(super) fn duration(seconds: f64) -> String {
+    let neat = |value: f64| format!("{}", (value * 1e6).round() / 1e6);
+    match seconds {
+        s if s < 0.001 => format!("{} µs", neat(s * 1e6)),
+        s if s < 1.0 => format!("{} ms", neat(s * 1e3)),
+        s => format!("{} s", neat(s)),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

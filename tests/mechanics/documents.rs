@@ -266,7 +266,6 @@ fn a_volume_spline_is_told_in_seconds_and_newtons_per_metre() {
     for (text, code, at) in [
         (r#"{"dvs":{}}"#, mismatch, "/spec/dvs"),
         (r#"{"method":"dvs","thickness_warp":{}}"#, mismatch, "/spec/thickness_warp"),
-        (r#"{"method":"dvs","element":"plain"}"#, mismatch, "/spec/element"),
         (r#"{"method":"dvs","dvs":{"step_s":0.1}}"#, mismatch, "/spec/dvs/step_s"),
         (
             r#"{"method":"dvs","dvs":{"stiffness_n_per_m":9}}"#,

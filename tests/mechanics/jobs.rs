@@ -184,7 +184,7 @@ fn the_manifest_is_what_stands_in_the_folder() {
     assert!(solver.relative_residual <= solver.wanted_residual);
     let roles: Vec<&str> = provenance.inputs.iter().map(|input| input.role.as_str()).collect();
     assert_eq!(roles, ["volume", "bone base"]);
-    assert_eq!(provenance.why.unwrap(), "auto: fem_linear, until a chooser exists");
+    assert_eq!(provenance.why.unwrap(), "auto: fem_linear, until something chooses between models");
 }
 
 #[test]

@@ -74,7 +74,8 @@ fn plain_jacobi_cannot_converge_and_the_limit_of_omega_is_known() {
 fn the_condition_number_grows_as_tissue_becomes_incompressible() {
     for (nu, lambda_max, condition) in [(0.46, 2.771, 5.0e2), (0.499, 3.405, 1.9e4)] {
         let found = lambda_max / smallest_eigenvalue(&paper_block(nu));
-        assert!((found / condition - 1.0).abs() < 0.02, "nu {nu}: {found:.3e}");
+        // Published with two digits: half a unit of the second is 2.7 % of 1.9e4.
+        assert!((found / condition - 1.0).abs() < 0.027, "nu {nu}: {found:.3e}");
     }
 }
 

@@ -4,6 +4,9 @@ use serde_json::Value;
 
 use crate::validation::statistics::Statistics;
 
+/// Columns of a terminal.
+const WIDTH: usize = 80;
+
 /// The manifests of the two predictions and of their comparison.
 pub struct Report<'a> {
     pub coarse: &'a Value,
@@ -139,14 +142,24 @@ impl Report<'_> {
                 count(&provenance["threads"]),
             ));
             for warning in manifest["warnings"].as_array().into_iter().flatten() {
-                lines.push(format!(
-                    "  warning {}: {}",
-                    word(&warning["code"]),
-                    word(&warning["detail"])
-                ));
+                let (code, detail) = (word(&warning["code"]), word(&warning["detail"]));
+                lines.extend(wrapped(format!("  warning {code}:"), &detail));
             }
         }
     }
+}
+
+/// A beginning and a sentence after it, in lines that fit a terminal; the second and later ones are set in.
+fn wrapped(beginning: String, sentence: &str) -> Vec<String> {
+    let mut lines = vec![beginning];
+    for word in sentence.split(' ') {
+        let last = lines.len() - 1;
+        match lines[last].chars().count() + 1 + word.chars().count() <= WIDTH {
+            true => lines[last] += &format!(" {word}"),
+            false => lines.push(format!("    {word}")),
+        }
+    }
+    lines
 }
 
 fn length(value: &Value) -> String {
