@@ -74,8 +74,13 @@ fn drawable(value: f64) -> f64 {
 const LEAST: f64 = 1e-6;
 const MOST: f64 = 1e6;
 
+/// A mark in words.
+pub(super) fn numbers([wall_s, error_mm]: [f64; 2]) -> String {
+    format!("{}, p95 error {error_mm:.3} mm", duration(rounded(wall_s)))
+}
+
 /// Two significant digits.
-pub(super) fn rounded(value: f64) -> f64 {
+fn rounded(value: f64) -> f64 {
     if value <= 0.0 || !value.is_finite() {
         return 0.0;
     }

@@ -1,7 +1,7 @@
 //! Speed against accuracy: wall time and error of each method on each mesh, both in factors; what none beats in
 //! both is joined by a line, and what gave no answer stands in a band of its own with its reason.
 
-use super::axis::{LogAxis, duration, rounded};
+use super::axis::{LogAxis, duration, numbers};
 use super::callout::Taken;
 use super::ladder_legend::Legend;
 use super::svg::{Document, Paint, Place, Style, estimated_width, wrapped};
@@ -392,10 +392,6 @@ impl Layout {
         let corner = [x + 10.0, foot - 10.0];
         document.text(corner, width, Style::of(12.0).faint(), "↙ faster and more exact");
     }
-}
-
-fn numbers([wall_s, error_mm]: [f64; 2]) -> String {
-    format!("{}, p95 error {error_mm:.3} mm", duration(rounded(wall_s)))
 }
 
 #[cfg(test)]

@@ -8,8 +8,7 @@ use super::failure::JobError;
 use super::input::{PredictInput, Prepared};
 use super::source::{MeshSource, StoredMesh};
 use crate::mesh::{Vector, Warning};
-use crate::prediction::Case;
-use crate::schema::material::{PlacedMaterials, merge_materials};
+use crate::schema::material::{PlacedMaterials, in_words, merge_materials};
 use crate::schema::methods::{ElementName, MethodName};
 use crate::schema::prediction::InputDocument;
 use crate::schema::study::{CaseReference, SceneReference, StudyDocument, TruthDocument};
@@ -215,7 +214,7 @@ impl Documents<'_> {
                 let none = PlacedMaterials { at: spec_at(), materials: None };
                 let merged = merge_materials(&given, &none, self.limits, faults);
                 scene.materials.push(Materials {
-                    name: material_name(document),
+                    name: in_words(document),
                     by_region: merged.materials,
                     fibres: merged.fibres,
                 });
@@ -258,7 +257,7 @@ impl Documents<'_> {
         }
         let Some(first) = first else { return Ok(()) };
         let mut materials = vec![Materials {
-            name: self.spec.materials.first().map_or_else(|| "case".to_owned(), material_name),
+            name: self.spec.materials.first().map_or_else(|| "case".to_owned(), in_words),
             by_region: first.case.materials.clone(),
             fibres: first.case.fibres.clone(),
         }];
@@ -268,7 +267,7 @@ impl Documents<'_> {
             let prepared = input.prepare(self.sources, self.limits);
             let case = prepared.map_err(|error| moved(error, at, index))?.case;
             materials.push(Materials {
-                name: material_name(document),
+                name: in_words(document),
                 by_region: case.materials,
                 fibres: case.fibres,
             });
@@ -308,7 +307,7 @@ impl Documents<'_> {
         let swept = self.spec.sweep.iter().map(|(region, of)| (region.clone(), of.to_values()));
         let swept: BTreeMap<String, sweep::Values> = swept.collect();
         let at = spec_at().key("sweep");
-        for region in swept.keys().filter(|region| !has_region(&scene.case, region)) {
+        for region in swept.keys().filter(|region| !sweep::has_region(&scene.case, region)) {
             let detail = format!("scene {} has no region called {region:?}", scene.name);
             faults.add(&at.key(region), "unknown-region", detail);
         }
@@ -343,17 +342,6 @@ impl Documents<'_> {
             _ => {}
         }
     }
-}
-
-/// Whether the tissue of a case has a region of that name; `*` is all of it.
-fn has_region(case: &Case, region: &str) -> bool {
-    region == "*"
-        || match &case.regions {
-            None => region == "tissue",
-            Some(regions) => {
-                regions.names.values().any(|name| name == region) || region.parse::<i64>().is_ok()
-            }
-        }
 }
 
 /// One plan and one set of materials on a case.
@@ -397,19 +385,4 @@ fn known_displacement(
     }
     let pairs = predicted.points.iter().zip(&rest.surface.points);
     Ok(pairs.map(|(moved, rest)| moved - rest).collect())
-}
-
-/// What is stated, in words: `muscle E 300 kPa nu 0.44, * nu 0.46`.
-fn material_name(document: &MaterialDocuments) -> String {
-    let region = |(name, of): (&String, &crate::schema::MaterialDocument)| {
-        let mut words = if name == "*" { "all".to_owned() } else { name.clone() };
-        if let Some(modulus) = of.young_modulus_kpa {
-            words += &format!(" E {modulus} kPa");
-        }
-        if let Some(ratio) = of.poisson_ratio {
-            words += &format!(" nu {ratio}");
-        }
-        words
-    };
-    document.iter().map(region).collect::<Vec<_>>().join(", ")
 }

@@ -187,7 +187,7 @@ fn imaged(
         Mixing::Mean => labels(hounsfield, sampled),
         Mixing::Fraction => shares(hounsfield, sampled, region_of_cell, materials.len()),
     };
-    let largest: Vec<Option<u16>> = parts.iter().map(|parts| largest_tissue(parts)).collect();
+    let largest: Vec<Option<u16>> = parts.iter().map(largest_tissue).collect();
     let own = |cell: usize, tissue: Option<u16>| {
         tissue.map_or(region_of_cell[cell], |tissue| first_tissue as u16 + tissue)
     };

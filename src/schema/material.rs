@@ -167,3 +167,18 @@ fn default_material() -> Warning {
         .with("poisson_ratio", poisson_ratio)
         .with("density_g_per_cm3", density)
 }
+
+/// What is stated, in words: `muscle E 300 kPa nu 0.44, * nu 0.46`.
+pub fn in_words(document: &MaterialDocuments) -> String {
+    let region = |(name, of): (&String, &MaterialDocument)| {
+        let mut words = if name == "*" { "all".to_owned() } else { name.clone() };
+        if let Some(modulus) = of.young_modulus_kpa {
+            words += &format!(" E {modulus} kPa");
+        }
+        if let Some(ratio) = of.poisson_ratio {
+            words += &format!(" nu {ratio}");
+        }
+        words
+    };
+    document.iter().map(region).collect::<Vec<_>>().join(", ")
+}

@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use super::report::{Outcome, Report, Row};
 use super::variant::Materials;
 use crate::material::{LinearElastic, MaterialError};
+use crate::prediction::Case;
 
 /// More combinations are refused.
 pub const MOST_COMBINATIONS: usize = 1000;
@@ -61,6 +62,17 @@ pub fn combinations(
             .collect();
     }
     Ok(all)
+}
+
+/// Whether the tissue of a case has a region of that name; `*` is all of it.
+pub fn has_region(case: &Case, region: &str) -> bool {
+    region == "*"
+        || match &case.regions {
+            None => region == "tissue",
+            Some(regions) => {
+                regions.names.values().any(|name| name == region) || region.parse::<i64>().is_ok()
+            }
+        }
 }
 
 /// What a region may become, each with its name; one nameless choice where nothing varies.

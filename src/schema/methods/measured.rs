@@ -134,7 +134,7 @@ mod tests {
     #[test]
     fn every_available_method_has_its_place_on_the_chart() {
         let rows = parse(TABLE).unwrap();
-        assert!(rows.iter().all(|row| row.wall_s > 0.0 && row.p95_mm >= 0.0 && row.unknowns > 0));
+        assert!(rows.iter().all(|row| row.wall_s > 0.0 && row.p95_mm >= 0.0));
         for method in available_methods().methods {
             let name = method.method.name.name();
             let places = measured(name);
