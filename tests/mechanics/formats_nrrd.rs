@@ -138,6 +138,7 @@ fn spaces_and_units_are_honoured() {
 }
 
 #[test]
+#[expect(clippy::too_many_lines, reason = "a table with one line for each mistake")]
 fn a_header_that_is_wrong_is_refused_with_its_line() {
     for (from, to, line, detail) in [
         ("type: short", "type: block", 3, "type \"block\" holds no single numbers"),

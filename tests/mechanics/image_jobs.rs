@@ -182,7 +182,7 @@ fn an_image_in_the_other_frame_shows_the_same_tissue() {
     let mut unmarked = meshes();
     unmarked.0.get_mut("ct in RAS").unwrap().frame = None;
     let found = check(&input(&other, &json!({})), &unmarked, &Limits::default());
-    assert_eq!(found.err().unwrap().to_string().contains("no cell lies inside the image"), true);
+    assert!(found.err().unwrap().to_string().contains("no cell lies inside the image"));
 }
 
 fn surface_of(read: ReadMesh) -> TriangleSurface {

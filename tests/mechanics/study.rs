@@ -305,7 +305,8 @@ fn cancelling_ends_a_study() {
 #[test]
 fn a_study_of_nothing_is_an_error() {
     let full = || study(slab_with(|_| true), vec![variant("plain", ElementChoice::Plain)], &[0]);
-    let emptied: [(&str, fn(&mut Study)); 6] = [
+    type Emptying = (&'static str, fn(&mut Study));
+    let emptied: [Emptying; 6] = [
         ("scene", |study| study.scenes.clear()),
         ("variant", |study| study.variants.clear()),
         ("level", |study| study.levels.clear()),
