@@ -56,6 +56,7 @@ def expected_arrays(wanted):
     if wanted.get("colours"):
         points["colour_rgb"] = wanted["colours"]
     cells = dict(wanted.get("cell_labels", {}))
+    cells.update(wanted.get("cell_vectors", {}))
     cells.update(members(wanted.get("cell_sets", {}), len(wanted.get("cells", [])), "elset_"))
     cells.update(wanted.get("cell_arrays", {}))
     return points, cells

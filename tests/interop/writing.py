@@ -22,6 +22,7 @@ JAW = np.array([1, 1, 0, 0, 0, 0, 0, 0, 0, 0, 1])
 VECTORS = POINTS[:, ::-1] / 4
 BAND = np.array([4, 0, 120])
 FAT = np.array([0, 1, 1])
+FIBRES = np.array([[1, 0, 0], [0, 0.5, 0], [0.25, 0, 0.75]])
 SCALARS = ["int8", "uint8", "int16", "uint16", "int32", "uint32", "int64", "uint64"]
 
 SIDE = 5
@@ -57,6 +58,7 @@ def volume(frame=None, labels=None):
         "node_labels": labels or {"tag": plain(LABELS)},
         "cell_labels": {"band": plain(BAND)},
         "node_vectors": {"u_mm": plain(VECTORS)},
+        "cell_vectors": {"fibre": plain(FIBRES)},
     }
 
 
@@ -112,6 +114,7 @@ def vtk_grid(dtype=float):
     add(grid.GetPointData(), "pairs", np.zeros((len(POINTS), 2), np.int32))
     add(grid.GetCellData(), "band", BAND.astype(np.int16))
     add(grid.GetCellData(), "elset_fat", FAT.astype(np.uint8))
+    add(grid.GetCellData(), "fibre", FIBRES)
     add(grid.GetCellData(), "det_f", np.array([1.0, 0.5, 0.25]))
     return grid
 
@@ -211,6 +214,7 @@ def meshio_volume():
         cell_data={
             "band": [BAND[i : i + 1] for i in range(3)],
             "elset_fat": [FAT[i : i + 1] for i in range(3)],
+            "fibre": [FIBRES[i : i + 1] for i in range(3)],
         },
     )
 
@@ -244,7 +248,7 @@ def write_meshio_gmsh(folder):
     expected["node_sets"] = {"lower lip": [0, 1, 2]}
     expected["cell_sets"] = {"fat": [0], "physical_3_1": [1], "physical_3_121": [2]}
     expected["cell_labels"] = {"gmsh:physical": [5, 1, 121]}
-    expected["node_labels"] = expected["node_vectors"] = {}
+    expected["node_labels"] = expected["node_vectors"] = expected["cell_vectors"] = {}
     for binary in (False, True):
         name = f"meshio_gmsh22_{binary}.msh"
         meshio.write(folder / name, mesh, file_format="gmsh22", binary=binary)

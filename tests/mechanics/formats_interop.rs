@@ -23,8 +23,9 @@ fn interop_folder() -> Option<PathBuf> {
 fn describe_volume(mesh: &VolumeMesh, frame: Frame) -> Value {
     let cells: Vec<Value> =
         mesh.cells.iter().map(|(shape, nodes)| json!([shape.name(), nodes])).collect();
-    let vectors: BTreeMap<&String, Value> =
-        mesh.node_vectors.iter().map(|(name, values)| (name, vectors(values))).collect();
+    let named = |fields: &BTreeMap<String, Vec<Vector>>| -> BTreeMap<String, Value> {
+        fields.iter().map(|(name, values)| (name.clone(), vectors(values))).collect()
+    };
     json!({
         "frame": frame.name(),
         "points": vectors_of(&mesh.nodes),
@@ -33,7 +34,8 @@ fn describe_volume(mesh: &VolumeMesh, frame: Frame) -> Value {
         "cell_sets": mesh.cell_sets,
         "node_labels": mesh.node_labels,
         "cell_labels": mesh.cell_labels,
-        "node_vectors": vectors,
+        "node_vectors": named(&mesh.node_vectors),
+        "cell_vectors": named(&mesh.cell_vectors),
     })
 }
 
