@@ -16,19 +16,19 @@ pub fn router() -> OpenApiRouter<Service> {
 }
 
 /// Every bound that is enforced.
-#[utoipa::path(get, path = "/v1/limits", tag = "about", responses((status = 200, description = "the limits", body = Limits)))]
+#[utoipa::path(get, path = "/v1/limits", operation_id = "show_limits", tag = "about", responses((status = 200, description = "the limits", body = Limits)))]
 async fn limits(State(service): State<Service>) -> Response {
     json(StatusCode::OK, &*service.limits)
 }
 
 /// The ways of modelling that a spec may name.
-#[utoipa::path(get, path = "/v1/methods", tag = "about", responses((status = 200, description = "the methods", body = MethodList)))]
+#[utoipa::path(get, path = "/v1/methods", operation_id = "list_methods", tag = "about", responses((status = 200, description = "the methods", body = MethodList)))]
 async fn methods() -> Response {
     json(StatusCode::OK, &available_methods())
 }
 
 /// This description.
-#[utoipa::path(get, path = "/openapi.json", tag = "about", responses((status = 200, description = "OpenAPI 3.1", body = serde_json::Value)))]
+#[utoipa::path(get, path = "/openapi.json", operation_id = "describe_service", tag = "about", responses((status = 200, description = "OpenAPI 3.1", body = serde_json::Value)))]
 async fn description() -> Response {
     json(StatusCode::OK, &super::document())
 }

@@ -89,12 +89,20 @@ struct ListParameters {
 #[allow(dead_code, reason = "describes the form for the OpenAPI document")]
 struct CaseForm {
     case: CaseDocument,
+    #[serde(flatten)]
+    meshes: BTreeMap<String, MeshPart>,
 }
+
+/// A mesh in a part of a form.
+#[derive(ToSchema)]
+#[allow(dead_code, reason = "describes the form for the OpenAPI document")]
+#[schema(value_type = String, format = Binary)]
+struct MeshPart(Vec<u8>);
 
 /// Keeps a case. As a form it brings its meshes along: the document in the part `case` refers to the
 /// meshes by the names of their parts.
 #[utoipa::path(
-    post, path = "/v1/cases", tag = "cases", params(CreateParameters),
+    post, path = "/v1/cases", operation_id = "create_case", tag = "cases", params(CreateParameters),
     request_body(description = "the case", content((CaseDocument = "application/json"), (CaseForm = "multipart/form-data"))),
     responses((status = 201, description = "kept", body = CaseView, headers(("Location" = String, description = "the case"), ("ETag" = String, description = "its version"))))
 )]
@@ -282,7 +290,7 @@ async fn answer(service: &Service, status: StatusCode, row: &CaseRow) -> ApiResu
 
 /// Cases, newest first, without their meshes.
 #[utoipa::path(
-    get, path = "/v1/cases", tag = "cases", params(ListParameters),
+    get, path = "/v1/cases", operation_id = "list_cases", tag = "cases", params(ListParameters),
     responses((status = 200, description = "a page of them", body = CaseList))
 )]
 async fn list(
@@ -299,7 +307,7 @@ async fn list(
 
 /// One case with its meshes.
 #[utoipa::path(
-    get, path = "/v1/cases/{id}", tag = "cases", params(("id" = uuid::Uuid, Path, description = "the case")),
+    get, path = "/v1/cases/{id}", operation_id = "show_case", tag = "cases", params(("id" = uuid::Uuid, Path, description = "the case")),
     responses(
         (status = 200, description = "the case", body = CaseView, headers(("ETag" = String, description = "its version"))),
         (status = 304, description = "the client has it already"),
@@ -316,7 +324,7 @@ async fn show(State(service): State<Service>, Id(id): Id, headers: HeaderMap) ->
 
 /// Erases a case: its plans, its jobs with their results, and the meshes that came with it.
 #[utoipa::path(
-    delete, path = "/v1/cases/{id}", tag = "cases",
+    delete, path = "/v1/cases/{id}", operation_id = "erase_case", tag = "cases",
     params(
         ("id" = uuid::Uuid, Path, description = "the case"),
         ("If-Match" = Option<String>, Header, description = "the version that is meant, or *"),
@@ -341,7 +349,7 @@ async fn remove(State(service): State<Service>, Id(id): Id, headers: HeaderMap) 
 /// that would be posted to /v1/jobs; `case` may be left out, and without a plan nothing moves. A client
 /// that accepts `image/svg+xml` only gets a picture of the boundary, coloured by what holds it.
 #[utoipa::path(
-    post, path = "/v1/cases/{id}/check", tag = "cases", params(("id" = uuid::Uuid, Path, description = "the case")),
+    post, path = "/v1/cases/{id}/check", operation_id = "check_case", tag = "cases", params(("id" = uuid::Uuid, Path, description = "the case")),
     request_body = CheckRequest,
     responses((
         status = 200, description = "the counts of joined, fixed, sliding and free nodes, or their picture",

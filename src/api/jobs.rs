@@ -61,7 +61,7 @@ struct ListParameters {
 /// Accepts a job. The same inputs, whoever sends them, are the same job. With `Prefer: wait=n` the answer
 /// comes when the job has ended, at the latest after n seconds (at most 30).
 #[utoipa::path(
-    post, path = "/v1/jobs", tag = "jobs",
+    post, path = "/v1/jobs", operation_id = "create_job", tag = "jobs",
     params(("Prefer" = Option<String>, Header, description = "wait=n: wait at most n seconds for the end")),
     request_body = JobDocument,
     responses(
@@ -139,7 +139,7 @@ fn answer(status: StatusCode, job: &JobRow, deduplicated: bool, wait: Option<u32
 
 /// The state of a job; with `Prefer: wait=n` when it has ended, at the latest after n seconds (at most 30).
 #[utoipa::path(
-    get, path = "/v1/jobs/{id}", tag = "jobs",
+    get, path = "/v1/jobs/{id}", operation_id = "show_job", tag = "jobs",
     params(
         ("id" = uuid::Uuid, Path, description = "the job"),
         ("Prefer" = Option<String>, Header, description = "wait=n: wait at most n seconds for the end"),
@@ -156,7 +156,7 @@ async fn show(State(service): State<Service>, Id(id): Id, headers: HeaderMap) ->
 
 /// Jobs, newest first.
 #[utoipa::path(
-    get, path = "/v1/jobs", tag = "jobs", params(ListParameters),
+    get, path = "/v1/jobs", operation_id = "list_jobs", tag = "jobs", params(ListParameters),
     responses((status = 200, description = "a page of them", body = JobList))
 )]
 async fn list(
@@ -180,7 +180,7 @@ async fn list(
 
 /// Dismisses a job that has not ended; removes one that has, with its results.
 #[utoipa::path(
-    delete, path = "/v1/jobs/{id}", tag = "jobs", params(("id" = uuid::Uuid, Path, description = "the job")),
+    delete, path = "/v1/jobs/{id}", operation_id = "dismiss_job", tag = "jobs", params(("id" = uuid::Uuid, Path, description = "the job")),
     responses(
         (status = 200, description = "dismissed", body = StatusInfo),
         (status = 204, description = "it had ended, and is removed"),

@@ -66,7 +66,7 @@ impl UploadParameters {
 /// Stores a mesh: VTU, VTP, VTK legacy, Gmsh, STL, PLY or OBJ, or an image: NRRD; told apart by content.
 /// Bytes that were stored before are not stored again.
 #[utoipa::path(
-    post, path = "/v1/meshes", tag = "meshes", params(UploadParameters),
+    post, path = "/v1/meshes", operation_id = "upload_mesh", tag = "meshes", params(UploadParameters),
     request_body(description = "the file", content(
         (Vec<u8> = "application/octet-stream"), (Vec<u8> = "model/stl"), (Vec<u8> = "model/obj"),
         (Vec<u8> = "application/vnd.ply"), (Vec<u8> = "application/vnd.vtk"),
@@ -174,7 +174,7 @@ async fn row_of(service: &Service, id: &str) -> ApiResult<MeshRow> {
 
 /// What a mesh holds.
 #[utoipa::path(
-    get, path = "/v1/meshes/{id}", tag = "meshes", params(("id" = uuid::Uuid, Path, description = "the mesh")),
+    get, path = "/v1/meshes/{id}", operation_id = "show_mesh", tag = "meshes", params(("id" = uuid::Uuid, Path, description = "the mesh")),
     responses(
         (status = 200, description = "the report of its upload", body = MeshDocument, headers(("ETag" = String, description = "of the bytes as uploaded"))),
         (status = 304, description = "the client has it already"),
@@ -223,7 +223,7 @@ impl From<ContentFormat> for ExportFormat {
 
 /// The mesh as a file, written anew from what was understood of the upload, in its unit and frame.
 #[utoipa::path(
-    get, path = "/v1/meshes/{id}/content", tag = "meshes",
+    get, path = "/v1/meshes/{id}/content", operation_id = "download_mesh", tag = "meshes",
     params(("id" = uuid::Uuid, Path, description = "the mesh"), ContentParameters),
     responses(
         (status = 200, description = "the file", content(
@@ -266,7 +266,7 @@ async fn content(
 
 /// Deletes a mesh that no case and no job refers to.
 #[utoipa::path(
-    delete, path = "/v1/meshes/{id}", tag = "meshes", params(("id" = uuid::Uuid, Path, description = "the mesh")),
+    delete, path = "/v1/meshes/{id}", operation_id = "remove_mesh", tag = "meshes", params(("id" = uuid::Uuid, Path, description = "the mesh")),
     responses(
         (status = 204, description = "deleted"),
         (status = 409, description = "a case or a job refers to it"),

@@ -12,6 +12,7 @@ mod job_view;
 mod jobs;
 mod meshes;
 mod openapi;
+mod openapi_types;
 mod paging;
 mod parameters;
 mod plans;

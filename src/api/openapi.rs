@@ -6,7 +6,7 @@ use utoipa::openapi::{
     ContentBuilder, InfoBuilder, OpenApi, OpenApiBuilder, PathItem, Ref, RefOr, ResponseBuilder,
 };
 
-use super::resources;
+use super::{openapi_types, resources};
 use crate::schema::ProblemDocument;
 
 /// Problems that every operation may answer with: what is wrong with the head of the request, and what is
@@ -31,7 +31,13 @@ const WITH_BODY: [(&str, &str); 5] = [
 ];
 
 /// The description as it is served and as it stands in `openapi/openapi.json`.
-pub fn document() -> OpenApi {
+pub fn document() -> serde_json::Value {
+    let described = serde_json::to_value(described()).unwrap_or_default();
+    openapi_types::typed(described)
+}
+
+/// The description as the handlers and documents say it.
+fn described() -> OpenApi {
     let info = InfoBuilder::new()
         .title("facies")
         .version(env!("CARGO_PKG_VERSION"))

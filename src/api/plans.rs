@@ -81,7 +81,7 @@ async fn read(service: &Service, request: Request) -> ApiResult<String> {
 
 /// Keeps a plan with its case.
 #[utoipa::path(
-    post, path = "/v1/cases/{id}/plans", tag = "plans", params(("id" = uuid::Uuid, Path, description = "the case")),
+    post, path = "/v1/cases/{id}/plans", operation_id = "create_plan", tag = "plans", params(("id" = uuid::Uuid, Path, description = "the case")),
     request_body = PlanDocument,
     responses((status = 201, description = "kept", body = PlanView, headers(("Location" = String, description = "the plan"), ("ETag" = String, description = "its version"))))
 )]
@@ -98,7 +98,7 @@ async fn create(State(service): State<Service>, Id(case): Id, request: Request) 
 
 /// The plans of a case, newest first.
 #[utoipa::path(
-    get, path = "/v1/cases/{id}/plans", tag = "plans", params(("id" = uuid::Uuid, Path, description = "the case"), ListParameters),
+    get, path = "/v1/cases/{id}/plans", operation_id = "list_plans", tag = "plans", params(("id" = uuid::Uuid, Path, description = "the case"), ListParameters),
     responses((status = 200, description = "a page of them", body = PlanList))
 )]
 async fn list(
@@ -118,7 +118,7 @@ async fn list(
 
 /// One plan.
 #[utoipa::path(
-    get, path = "/v1/cases/{id}/plans/{plan}", tag = "plans",
+    get, path = "/v1/cases/{id}/plans/{plan}", operation_id = "show_plan", tag = "plans",
     params(("id" = uuid::Uuid, Path, description = "the case"), ("plan" = uuid::Uuid, Path, description = "the plan")),
     responses(
         (status = 200, description = "the plan", body = PlanView, headers(("ETag" = String, description = "its version"))),
@@ -140,7 +140,7 @@ async fn show(
 
 /// Replaces a plan. Jobs that were accepted keep the plan they were accepted with.
 #[utoipa::path(
-    put, path = "/v1/cases/{id}/plans/{plan}", tag = "plans",
+    put, path = "/v1/cases/{id}/plans/{plan}", operation_id = "replace_plan", tag = "plans",
     params(
         ("id" = uuid::Uuid, Path, description = "the case"), ("plan" = uuid::Uuid, Path, description = "the plan"),
         ("If-Match" = Option<String>, Header, description = "the version that is meant, or *"),
@@ -168,7 +168,7 @@ async fn replace(
 
 /// Deletes a plan. Jobs that were accepted keep it.
 #[utoipa::path(
-    delete, path = "/v1/cases/{id}/plans/{plan}", tag = "plans",
+    delete, path = "/v1/cases/{id}/plans/{plan}", operation_id = "remove_plan", tag = "plans",
     params(
         ("id" = uuid::Uuid, Path, description = "the case"), ("plan" = uuid::Uuid, Path, description = "the plan"),
         ("If-Match" = Option<String>, Header, description = "the version that is meant, or *"),

@@ -64,6 +64,7 @@ impl ReportFormat {
 #[into_params(parameter_in = Query)]
 struct ReportParameters {
     /// Default: what the header Accept likes best, else `json`.
+    #[param(inline)]
     format: Option<ReportFormat>,
     /// Judges the study anew against the study of this job. Default: the baseline of its spec.
     #[param(format = Uuid)]
@@ -77,16 +78,14 @@ struct ReportParameters {
 /// The test results have a failure or an error exactly where the outcome is not `pass`. The chart shows all scenes;
 /// a study of several has one for each among its files.
 #[utoipa::path(
-    get, path = "/v1/jobs/{id}/report", tag = "jobs",
+    get, path = "/v1/jobs/{id}/report", operation_id = "show_report", tag = "jobs",
     params(("id" = uuid::Uuid, Path, description = "the job"), ReportParameters),
     responses(
         (status = 200, description = "the report", content(
             (ReportDocument = "application/json"), (String = "text/csv"), (String = "application/xml"),
             (String = "image/svg+xml")),
             headers(("Facies-Outcome" = String, description = "pass, worse, incomplete or no-baseline"))),
-        (status = 206, description = "the range that was asked for", content(
-            (String = "application/json"), (String = "text/csv"), (String = "application/xml"),
-            (String = "image/svg+xml"))),
+        (status = 206, description = "the range that was asked for", content((Vec<u8> = "*/*"))),
         (status = 304, description = "the client has it already"),
         (status = 404, description = "there is no such job, it is no study, or it has not ended"),
         (status = 416, description = "the range is outside the report"),

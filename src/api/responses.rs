@@ -75,14 +75,13 @@ fn refusal(missing: MissingResponse) -> ApiError {
 /// again: u = sum over segments of column 12 s + 4 i + j times (R - I)_ij (j < 3) or t_i (j = 3), with x
 /// measured from the segment's centre.
 #[utoipa::path(
-    get, path = "/v1/cases/{id}/response", tag = "responses",
+    get, path = "/v1/cases/{id}/response", operation_id = "show_response", tag = "responses",
     params(("id" = uuid::Uuid, Path, description = "the case"), ResponseParameters),
     responses(
         (status = 200, description = "the description, or the columns as little-endian f32 [column][node][xyz] in mm", content(
             (ResponseDescription = "application/json"), (Vec<u8> = "application/octet-stream")),
             headers(("ETag" = String, description = "the hash of the content"))),
-        (status = 206, description = "the range that was asked for", content(
-            (String = "application/json"), (Vec<u8> = "application/octet-stream"))),
+        (status = 206, description = "the range that was asked for", content((Vec<u8> = "*/*"))),
         (status = 304, description = "the client has it already"),
         (status = 404, description = "there is no such case, or no response was built"),
         (status = 409, description = "the case or the program changed since the response was built"),
@@ -116,7 +115,7 @@ async fn show(
 /// tissue and theta the largest rotation: an order of magnitude. Above 0.5 mm the answer carries the
 /// warning `outside-linear-range`. Beside a binary body the numbers stand in headers.
 #[utoipa::path(
-    post, path = "/v1/cases/{id}/response/apply", tag = "responses",
+    post, path = "/v1/cases/{id}/response/apply", operation_id = "apply_response", tag = "responses",
     params(("id" = uuid::Uuid, Path, description = "the case"), ResponseParameters),
     request_body = ApplyDocument,
     responses(

@@ -8,7 +8,7 @@ use utoipa::ToSchema;
 use super::Triple;
 use super::fault::Pointer;
 use super::hounsfield::HounsfieldDocument;
-use super::material::MaterialDocuments;
+use super::material::{MaterialDocument, MaterialDocuments};
 use super::selection::SelectionDocument;
 use crate::mesh::Frame;
 
@@ -56,7 +56,7 @@ pub struct CaseDocument {
     pub sliding: Vec<SlidingDocument>,
     /// By region name; `*` serves every region without an entry of its own.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
+    #[schema(nullable = false, value_type = Option<BTreeMap<String, MaterialDocument>>)]
     pub materials: Option<MaterialDocuments>,
     /// Materials by what an image shows, over those of the regions.
     #[serde(default, skip_serializing_if = "Option::is_none")]

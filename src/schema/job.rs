@@ -115,6 +115,7 @@ pub struct StatusInfo {
     pub tags: Vec<String>,
     /// True where an earlier job with the same hash is the answer.
     #[serde(default)]
+    #[schema(required)]
     pub deduplicated: bool,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]

@@ -10,7 +10,7 @@ use super::canonical;
 use super::case::CaseDocument;
 use super::fault::{Faults, Pointer};
 use super::limits::Limits;
-use super::material::MaterialDocuments;
+use super::material::{MaterialDocument, MaterialDocuments};
 use super::membrane::MembraneDocument;
 use super::methods::{self, ElementName, MethodName};
 use super::movement::FARTHEST_PIVOT_MM;
@@ -59,7 +59,7 @@ pub struct OptimiseDocument {
     pub element: ElementName,
     /// Over the materials of the case, field by field.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
+    #[schema(nullable = false, value_type = Option<BTreeMap<String, MaterialDocument>>)]
     pub materials: Option<MaterialDocuments>,
     /// Absent: the skin is tissue like the rest.
     #[serde(default, skip_serializing_if = "Option::is_none")]

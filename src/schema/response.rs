@@ -9,7 +9,7 @@ use super::canonical;
 use super::case::FrameName;
 use super::fault::{Faults, Pointer};
 use super::limits::Limits;
-use super::material::MaterialDocuments;
+use super::material::{MaterialDocument, MaterialDocuments};
 use super::membrane::MembraneDocument;
 use super::methods::{self, ElementName, MethodName};
 use super::plan::{PlanContext, PlanDocument};
@@ -46,7 +46,7 @@ pub struct ResponseDocument {
     pub element: ElementName,
     /// Over the materials of the case, field by field.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
+    #[schema(nullable = false, value_type = Option<BTreeMap<String, MaterialDocument>>)]
     pub materials: Option<MaterialDocuments>,
     /// Absent: the skin is tissue like the rest.
     #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -12,7 +12,7 @@ use super::fault::{Faults, Pointer};
 use super::limits::Limits;
 use super::mass_spring::MassSpringDocument;
 use super::mass_tensor::MassTensorDocument;
-use super::material::MaterialDocuments;
+use super::material::{MaterialDocument, MaterialDocuments};
 use super::membrane::MembraneDocument;
 use super::methods::{self, ElementName, MethodName};
 use super::optimise::OptimiseDocument;
@@ -27,6 +27,13 @@ use crate::prediction::{Method, Settings};
 /// The body of `POST /v1/jobs`, told apart by `kind`.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 #[serde(untagged)]
+#[schema(discriminator(property_name = "kind", mapping(
+    ("predict" = "#/components/schemas/PredictDocument"),
+    ("compare" = "#/components/schemas/CompareDocument"),
+    ("response" = "#/components/schemas/ResponseDocument"),
+    ("optimise" = "#/components/schemas/OptimiseDocument"),
+    ("study" = "#/components/schemas/StudyDocument"),
+)))]
 pub enum JobDocument {
     // By far the largest of the documents.
     Predict(Box<PredictDocument>),
@@ -84,7 +91,7 @@ pub struct PredictDocument {
     pub thickness_warp: Option<ThicknessWarpDocument>,
     /// Over the materials of the case, field by field.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
+    #[schema(nullable = false, value_type = Option<BTreeMap<String, MaterialDocument>>)]
     pub materials: Option<MaterialDocuments>,
     /// Absent: the skin is tissue like the rest.
     #[serde(default, skip_serializing_if = "Option::is_none")]

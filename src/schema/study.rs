@@ -9,7 +9,7 @@ use utoipa::ToSchema;
 
 use super::canonical;
 use super::fault::Pointer;
-use super::material::MaterialDocuments;
+use super::material::{MaterialDocument, MaterialDocuments};
 use super::methods::{ElementName, MethodName};
 use super::plan::PlanDocument;
 use super::spec::{ContactName, ToleranceDocument};
@@ -48,6 +48,7 @@ pub struct StudyDocument {
     /// Each entry over the materials of a case, field by field; in scenes by name it stands for all regions. At most
     /// one of `materials` and `sweep`; default: those of the scene.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schema(value_type = Vec<BTreeMap<String, MaterialDocument>>)]
     pub materials: Vec<MaterialDocuments>,
     /// Every combination of these values, by region; `*` for regions without an entry.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]

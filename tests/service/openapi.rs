@@ -36,6 +36,28 @@ fn every_error_that_is_described_is_a_problem() {
     assert!(seen > 100, "{seen}");
 }
 
+/// Generators of clients name functions and types after them.
+#[test]
+fn every_operation_has_a_name_of_its_own_and_every_reference_leads_somewhere() {
+    let document = facies::api::document();
+    let mut names = std::collections::BTreeSet::new();
+    for item in document["paths"].as_object().unwrap().values() {
+        for operation in item.as_object().unwrap().values() {
+            let name = operation["operationId"].as_str().unwrap();
+            assert!(names.insert(name.to_owned()), "two operations are called {name}");
+        }
+    }
+    assert!(names.len() > 20, "{names:?}");
+    let text = document.to_string();
+    for reference in text.split("\"#/components/schemas/").skip(1) {
+        let name = reference.split('"').next().unwrap();
+        assert!(document["components"]["schemas"].get(name).is_some(), "there is no {name}");
+    }
+    for part in ["\"allOf\"", "BTreeMap", "\"uuid\""] {
+        assert!(!text.contains(part), "{part}");
+    }
+}
+
 #[tokio::test]
 async fn the_description_and_its_pages_are_served_without_a_network() {
     let server = Server::start();

@@ -1,0 +1,107 @@
+"""Runs the scripts of the GitHub action and of the GitLab job, as these files say, against a service.
+
+FACIES_ADDRESS and FACIES_API_KEY say which. Fails where an exit code or an output is not the promised one.
+"""
+
+import json
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import xml.etree.ElementTree
+
+import yaml
+
+HERE = pathlib.Path(__file__).resolve().parent
+CLIENTS = HERE.parent
+STUDY = HERE / "study" / "study.json"
+
+
+def shell(script: str, environment: dict[str, str], folder: pathlib.Path) -> int:
+    told = subprocess.run(
+        ["bash", "-euo", "pipefail", "-c", script], cwd=folder, timeout=120, check=False,
+        env={**os.environ, **environment}, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+    if told.returncode not in (0, 1, 2, 3, 4, 5):
+        print(told.stderr)
+    return told.returncode
+
+
+def action(folder: pathlib.Path, **inputs: str) -> tuple[int, dict[str, str]]:
+    """Runs the action with inputs; its exit code and its outputs."""
+    document = yaml.safe_load((CLIENTS / "github-action" / "action.yml").read_text())
+    defaults = {name: entry.get("default", "") for name, entry in document["inputs"].items()}
+    given = {**defaults, "address": os.environ["FACIES_ADDRESS"], "key": os.environ["FACIES_API_KEY"],
+             **{name.replace("_", "-"): value for name, value in inputs.items()}}
+    step = document["runs"]["steps"][0]
+    filled = {name: re.sub(r"\$\{\{ inputs\.([a-z-]+) \}\}", lambda found: given[found[1]], text)
+              for name, text in step["env"].items()}
+    outputs = folder / "outputs"
+    outputs.write_text("")
+    runner = {"GITHUB_ACTION_PATH": str(CLIENTS / "github-action"), "GITHUB_OUTPUT": str(outputs)}
+    code = shell(step["run"], {**filled, **runner}, folder)
+    return code, dict(line.split("=", 1) for line in outputs.read_text().splitlines())
+
+
+def gitlab(folder: pathlib.Path, **variables: str) -> int:
+    """Runs the script of the GitLab job with variables."""
+    job = yaml.safe_load((CLIENTS / "gitlab" / "facies-gate.yml").read_text())[".facies-gate"]
+    runner = {"CI_COMMIT_REF_SLUG": "a-branch", "FACIES_SOURCE": str(CLIENTS.parent)}
+    filled = {**job["variables"], **runner, **variables}
+    values = {name: os.path.expandvars(value.replace("$CI_COMMIT_REF_SLUG", "a-branch"))
+              for name, value in filled.items()}
+    return shell("\n".join(job["script"]), values, folder)
+
+
+def expect(what: str, found: object, wanted: object) -> None:
+    if found != wanted:
+        sys.exit(f"{what}: {found!r} instead of {wanted!r}")
+    print(f"   {what}: {found}")
+
+
+def failures(report: pathlib.Path) -> int:
+    """Test cases of the report that did not pass."""
+    root = xml.etree.ElementTree.parse(report).getroot()
+    return len(root.findall(".//failure")) + len(root.findall(".//error"))
+
+
+def changed(folder: pathlib.Path, name: str, **members: object) -> str:
+    """The study with other members, in a file from which its cases are found."""
+    study = json.loads(STUDY.read_text())
+    for scene in study["scenes"]:
+        if isinstance(scene, dict):
+            scene["case"] = str((STUDY.parent / scene["case"]).resolve())
+    path = folder / f"{name}.json"
+    path.write_text(json.dumps({**study, **members}))
+    return str(path)
+
+
+def main() -> None:
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        report = folder / "facies-report.xml"
+        code, first = action(folder, study=str(STUDY), tag="main")
+        expect("a study without a baseline", (code, first["outcome"]), (0, "pass"))
+        expect("failures in its test results", failures(report), 0)
+        code, second = action(folder, study=str(STUDY), baseline_tag="main")
+        expect("the same against itself", (code, second["outcome"]), (0, "pass"))
+        expect("which sent and solved nothing anew", second["job"], first["job"])
+        expect("the same in GitLab", gitlab(folder, STUDY=str(STUDY)), 0)
+
+        code, _ = action(folder, study=str(STUDY), baseline_tag="nobody")
+        expect("a baseline that is not there", (code, failures(report) > 0), (5, True))
+        worse = changed(folder, "worse", thresholds={"p95_mm": 1e-9})
+        expect("rows above a threshold", action(folder, study=worse)[0], 1)
+        expect("with failures in the test results", failures(report) > 0, True)
+        expect("the same in GitLab", gitlab(folder, STUDY=worse, BASELINE_TAG=""), 1)
+        expect("and without a baseline there", gitlab(folder, STUDY=worse, BASELINE_TAG="x"), 1)
+        wrong = changed(folder, "wrong", methods=["guesswork"])
+        expect("a study that is refused", action(folder, study=wrong)[0], 2)
+        expect("a wrong key", action(folder, study=str(STUDY), key="none-of-the-keys")[0], 2)
+        away = {"FACIES_ADDRESS": "http://127.0.0.1:9"}
+        script = f"python3 {HERE}/facies_gate.py {STUDY} --patience-s 1"
+        expect("a service that is not there", shell(script, away, folder), 3)
+
+
+main()

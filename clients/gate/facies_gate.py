@@ -1,0 +1,223 @@
+#!/usr/bin/env python3
+"""Posts a study of validation cases to a facies service and fails where it found a regression.
+
+The study is a document as for `facies study --spec`: its cases are files beside it, with a case and a plan.
+Meshes and cases that the service has already are not sent again. Needs Python and nothing else.
+
+Exit codes, those of `facies study`: 0 pass, 1 worse or failed, 2 refused input, 3 the service is out of
+reach, 4 incomplete, 5 no baseline.
+"""
+
+from __future__ import annotations
+
+import argparse
+import hashlib
+import json
+import os
+import pathlib
+import sys
+import time
+import urllib.error
+import urllib.parse
+import urllib.request
+
+EXIT_CODES = {"pass": 0, "worse": 1, "incomplete": 4, "no-baseline": 5}
+FAILED, REFUSED, OUT_OF_REACH = 1, 2, 3
+# No job has this id: a baseline that is asked for and not there is the service's to judge.
+NO_JOB = "00000000-0000-7000-8000-000000000000"
+
+
+class Stop(Exception):
+    """The gate ends here, with an exit code and a sentence."""
+
+    def __init__(self, code: int, why: str) -> None:
+        super().__init__(why)
+        self.code = code
+
+
+class Service:
+    """The service at an address; busy and silent moments are waited out."""
+
+    def __init__(self, address: str, key: str | None, patience_s: float) -> None:
+        self.address = address.rstrip("/")
+        self.patience_s = patience_s
+        self.headers = {} if not key else {"Authorization": f"Bearer {key}"}
+
+    def ask(self, method: str, path: str, body: bytes | None = None, **headers: str):
+        """The body and the headers of the answer."""
+        headers = {name.replace("_", "-"): value for name, value in headers.items()}
+        request = urllib.request.Request(
+            self.address + path, data=body, method=method, headers={**self.headers, **headers})
+        until = time.monotonic() + self.patience_s
+        usual = 1.0
+        while True:
+            pause, usual = usual, min(2 * usual, 20.0)
+            try:
+                with urllib.request.urlopen(request, timeout=90) as answer:
+                    return answer.read(), answer.headers
+            except urllib.error.HTTPError as error:
+                text = error.read().decode(errors="replace")
+                why = f"{method} {path}: {error.code} {text}"
+                if error.code < 500 and error.code != 429:
+                    raise Stop(REFUSED, why) from error
+                # In seconds, as the service sends it.
+                pause = float(error.headers.get("Retry-After") or pause)
+            except (urllib.error.URLError, TimeoutError, ConnectionError) as error:
+                why = f"{method} {path}: {error}"
+            if time.monotonic() + pause > until:
+                raise Stop(OUT_OF_REACH, why)
+            time.sleep(pause)
+
+    def document(self, method: str, path: str, body: object = None, **headers: str):
+        """The JSON of the answer to JSON."""
+        data = None if body is None else json.dumps(body).encode()
+        if data is not None:
+            headers["Content_Type"] = "application/json"
+        return json.loads(self.ask(method, path, data, **headers)[0])
+
+
+def read(path: pathlib.Path):
+    """A JSON file."""
+    try:
+        return json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise Stop(REFUSED, f"{path}: {error}") from error
+
+
+def mesh_places(document: object, bones: set[str]):
+    """Every member of a case or a plan that names a mesh, as the object and the key."""
+    if isinstance(document, list):
+        for entry in document:
+            yield from mesh_places(entry, bones)
+    elif isinstance(document, dict):
+        for key, value in document.items():
+            if key in ("volume", "mesh", "image", "surface") and isinstance(value, str):
+                # A selection may name a bone instead.
+                if key != "surface" or value not in bones:
+                    yield document, key
+            else:
+                yield from mesh_places(value, bones)
+
+
+class Cases:
+    """Files become meshes and cases of the service, each once."""
+
+    def __init__(self, service: Service) -> None:
+        self.service = service
+
+    def scene(self, scene: dict, folder: pathlib.Path) -> dict:
+        """The scene of a study with the id of its case in place of the file's path."""
+        path = folder / scene["case"]
+        file = read(path)
+        case, plan = file["case"], file.get("plan", {})
+        bones = {bone["name"] for bone in case.get("bones", [])}
+        units = {"units": case.get("units", "mm"), "frame": case.get("frame", "unspecified")}
+        for document, key in [*mesh_places(case, bones), *mesh_places(plan, bones)]:
+            document[key] = self.mesh(path.parent / document[key], units)
+        return {"plans": [plan], "name": path.stem, **scene, "case": self.case(case)}
+
+    def mesh(self, path: pathlib.Path, units: dict[str, str]) -> str:
+        """The id of a mesh. The service knows bytes that it has."""
+        try:
+            content = path.read_bytes()
+        except OSError as error:
+            raise Stop(REFUSED, f"{path}: {error}") from error
+        query = urllib.parse.urlencode(units)
+        answer, _ = self.service.ask(
+            "POST", f"/v1/meshes?{query}", content, Content_Type="application/octet-stream")
+        return json.loads(answer)["id"]
+
+    def case(self, case: dict) -> str:
+        """The id of a case, found again by a tag that its content makes."""
+        content = json.dumps(case, sort_keys=True).encode()
+        tag = f"gate-{hashlib.sha256(content).hexdigest()[:24]}"
+        known = self.service.document("GET", f"/v1/cases?limit=1&tag={tag}")["items"]
+        if known:
+            return known[0]["id"]
+        tagged = {**case, "tags": [*case.get("tags", []), tag]}
+        return self.service.document("POST", "/v1/cases", tagged)["id"]
+
+
+def baseline_of(service: Service, arguments: argparse.Namespace) -> str | None:
+    """The study to compare with: as given, or the newest successful one with the tag."""
+    if arguments.baseline:
+        return arguments.baseline
+    if not arguments.baseline_tag:
+        return None
+    query = urllib.parse.urlencode(
+        {"kind": "study", "status": "successful", "tag": arguments.baseline_tag, "limit": 1})
+    found = service.document("GET", f"/v1/jobs?{query}")["items"]
+    return found[0]["id"] if found else NO_JOB
+
+
+def finished(service: Service, job: dict, seconds: float) -> dict:
+    """The job once it has ended."""
+    until = time.monotonic() + seconds
+    while job["status"] in ("accepted", "running"):
+        if time.monotonic() > until:
+            raise Stop(OUT_OF_REACH, f"job {job['id']} is {job['status']} after {seconds:.0f} s")
+        job = service.document("GET", f"/v1/jobs/{job['id']}", Prefer="wait=30")
+    return job
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """The exit code of the outcome."""
+    address = os.environ.get("FACIES_ADDRESS", "")
+    if not address:
+        raise Stop(REFUSED, "FACIES_ADDRESS is not set")
+    service = Service(address, os.environ.get("FACIES_API_KEY"), arguments.patience_s)
+    path = pathlib.Path(arguments.study)
+    study = read(path)
+    cases = Cases(service)
+    study["scenes"] = [
+        cases.scene(scene, path.parent) if isinstance(scene, dict) else scene
+        for scene in study.get("scenes", [])]
+    # Before the study is posted: it must not become its own baseline.
+    baseline = baseline_of(service, arguments)
+    tags = [*study.get("tags", []), *([arguments.tag] if arguments.tag else [])]
+    job = service.document("POST", "/v1/jobs", {**study, "kind": "study", "tags": tags})
+    print(f"study {job['id']}", flush=True)
+    job = finished(service, job, arguments.timeout_s)
+    if job["status"] != "successful":
+        raise Stop(FAILED, f"job {job['id']} is {job['status']}: {json.dumps(job.get('error'))}")
+    query = f"?baseline={baseline}" if baseline else ""
+    report = f"/v1/jobs/{job['id']}/report{query}"
+    if arguments.report:
+        junit, _ = service.ask("GET", report, Accept="application/xml")
+        pathlib.Path(arguments.report).write_bytes(junit)
+    verdict = service.document("GET", report, Accept="application/json")["verdict"]
+    for reason in verdict["reasons"]:
+        print(reason)
+    print(f"{verdict['rows']} rows, {verdict['worse']} worse; outcome {verdict['outcome']}")
+    tell(job["id"], verdict["outcome"])
+    return EXIT_CODES[verdict["outcome"]]
+
+
+def tell(job: str, outcome: str) -> None:
+    """Outputs for later steps, where a pipeline reads them from a file."""
+    if place := os.environ.get("GITHUB_OUTPUT"):
+        with open(place, "a", encoding="utf-8") as outputs:
+            outputs.write(f"job={job}\noutcome={outcome}\n")
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n")[0])
+    parser.add_argument("study", help="a study document; its cases are files beside it")
+    parser.add_argument("--baseline", default="", help="the job of the study to compare with")
+    parser.add_argument("--baseline-tag", default="",
+                        help="compare with the newest successful study of this tag")
+    parser.add_argument("--tag", default="", help="a tag for this study")
+    parser.add_argument("--report", default="", help="a file for the test results (JUnit)")
+    parser.add_argument("--timeout-s", type=float, default=3600.0,
+                        help="how long to wait for the study, in seconds")
+    parser.add_argument("--patience-s", type=float, default=120.0,
+                        help="how long to repeat a request to a service that is busy or silent")
+    try:
+        return run(parser.parse_args())
+    except Stop as stop:
+        print(stop, file=sys.stderr)
+        return stop.code
+
+
+if __name__ == "__main__":
+    sys.exit(main())

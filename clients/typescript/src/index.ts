@@ -1,0 +1,60 @@
+// A typed client of a facies service. `rest.ts` is made from the OpenAPI description of the service; this
+// file adds what a description cannot say: how to connect, that a refusal is an exception, how to wait.
+import createClient, { type Client } from "openapi-fetch";
+import type { components, paths } from "./rest.js";
+
+export type Documents = components["schemas"];
+/** What `data` and `error` are read as; files are asked for with `parseAs`. */
+type Media = "application/json" | "application/problem+json";
+export type Facies = Client<paths, Media>;
+
+/** For the header Prefer: the longest that one request waits for a job. */
+export const WAIT = "wait=30";
+
+/** The service refused a request; `problem` says why. */
+export class Refused extends Error {
+  constructor(readonly problem: Documents["ProblemDocument"]) {
+    const places = (problem.errors ?? []).map((error) => `\n  ${error.pointer}: ${error.detail}`);
+    super(`${problem.status} ${problem.code}: ${problem.detail}${places.join("")}`);
+  }
+}
+
+/** A job ended without results; `job.error` says why. */
+export class JobFailed extends Error {
+  constructor(readonly job: Documents["StatusInfo"]) {
+    super(`job ${job.id} is ${job.status}: ${job.error?.detail ?? job.message}`);
+  }
+}
+
+/** A client of the service at `address`, with the key of the service where it asks for one. */
+export function connect(address: string, key?: string): Facies {
+  const headers = key === undefined ? {} : { Authorization: `Bearer ${key}` };
+  return createClient<paths, Media>({
+    baseUrl: address,
+    headers,
+    // A file is sent as it is.
+    bodySerializer: (body) => ((body as unknown) instanceof Blob ? body : JSON.stringify(body)),
+  });
+}
+
+/** What the service answered; throws `Refused` where it is a refusal. */
+export async function answered<T>(
+  answer: Promise<{ data?: T; error?: Documents["ProblemDocument"] }>,
+): Promise<T> {
+  const { data, error } = await answer;
+  if (error !== undefined) throw new Refused(error);
+  return data as T;
+}
+
+/** Waits until a job has ended well; throws `JobFailed` where it did not. */
+export async function ended(
+  facies: Facies,
+  job: Documents["StatusInfo"],
+): Promise<Documents["StatusInfo"]> {
+  while (job.status === "accepted" || job.status === "running") {
+    const params = { path: { id: job.id }, header: { Prefer: WAIT } };
+    job = await answered(facies.GET("/v1/jobs/{id}", { params }));
+  }
+  if (job.status !== "successful") throw new JobFailed(job);
+  return job;
+}
