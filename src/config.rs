@@ -26,7 +26,7 @@ const fn setting(name: &'static str, default: &'static str, about: &'static str)
 }
 
 /// All settings of `facies serve`.
-pub const SETTINGS: [Setting; 16] = [
+pub const SETTINGS: [Setting; 17] = [
     setting(
         "bind",
         "127.0.0.1:8080",
@@ -40,6 +40,11 @@ pub const SETTINGS: [Setting; 16] = [
     ),
     setting("workers", "2", "jobs solved at the same time; 0 to 64, 0 leaves the jobs to others"),
     setting("threads-per-job", "1", "threads of one job; 1 to 64; the results do not depend on it"),
+    setting(
+        "slot-memory-mib",
+        "",
+        "memory in MiB that one job may take in its process; 64 to 4194304; without it three quarters of the machine's or the container's, divided by workers",
+    ),
     setting(
         "lease-s",
         "15",
@@ -89,6 +94,7 @@ pub struct Config {
     pub api_key: Option<Secret>,
     pub workers: usize,
     pub threads_per_job: usize,
+    pub slot_memory_bytes: Option<u64>,
     pub lease: Duration,
     pub heartbeat: Duration,
     pub attempts: u32,
@@ -154,6 +160,7 @@ impl Config {
             api_key: read.api_key()?,
             workers: read.whole("workers", 0..=64)?,
             threads_per_job: read.whole("threads-per-job", 1..=64)?,
+            slot_memory_bytes: read.slot_memory()?,
             lease: read.seconds("lease-s", 0.5, 3600.0)?,
             heartbeat: read.seconds("heartbeat-s", 0.1, 1800.0)?,
             attempts: read.whole("attempts", 1..=10)? as u32,
@@ -234,6 +241,14 @@ impl<Text: Fn(&str) -> String> Reader<Text> {
         Ok(Some(Secret(key)))
     }
 
+    fn slot_memory(&self) -> Result<Option<u64>, ConfigError> {
+        const NAME: &str = "slot-memory-mib";
+        match (self.text)(NAME).as_str() {
+            "" => Ok(None),
+            _ => Ok(Some((self.whole(NAME, 64..=4 * MIB)? * MIB) as u64)),
+        }
+    }
+
     fn json_log(&self) -> Result<bool, ConfigError> {
         let value = (self.text)("log-format");
         match value.as_str() {
@@ -280,6 +295,7 @@ mod tests {
         for (name, value) in [
             ("workers", "65"),
             ("workers", "-1"),
+            ("slot-memory-mib", "63"),
             ("lease-s", "nan"),
             ("lease-s", "1e9"),
             ("upload-mib", "0"),

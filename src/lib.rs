@@ -14,6 +14,7 @@ pub mod image;
 pub mod jobs;
 pub mod material;
 pub mod mesh;
+pub mod metrics;
 pub mod model;
 pub mod optimisation;
 pub mod plan;

@@ -7,7 +7,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Module, and the modules of ours that it may use.
-const TABLE: [(&str, &[&str]); 24] = [
+const TABLE: [(&str, &[&str]); 25] = [
     ("mesh", &[]),
     ("material", &[]),
     ("element", &[]),
@@ -15,6 +15,7 @@ const TABLE: [(&str, &[&str]); 24] = [
     ("config", &[]),
     ("chart", &[]),
     ("telemetry", &["config"]),
+    ("metrics", &[]),
     ("registration", &["mesh", "solver"]),
     ("image", &["mesh"]),
     ("format", &["mesh", "image"]),
@@ -77,9 +78,13 @@ const TABLE: [(&str, &[&str]); 24] = [
             "schema",
             "store",
             "config",
+            "metrics",
         ],
     ),
-    ("api", &["mesh", "format", "plan", "response", "schema", "store", "jobs", "config"]),
+    (
+        "api",
+        &["mesh", "format", "plan", "response", "schema", "store", "jobs", "config", "metrics"],
+    ),
     ("command", &["*"]),
     ("main", &["command"]),
 ];

@@ -7,6 +7,7 @@ use super::demo::DemoError;
 use super::health::HealthError;
 use super::serve::ServeError;
 use crate::jobs::JobError;
+use crate::jobs::slot::SlotError;
 use crate::schema::Problem;
 use crate::schema::job::ErrorClass;
 use crate::schema::report::OutcomeName;
@@ -42,15 +43,18 @@ pub enum CommandError {
     #[error(transparent)]
     Serve(#[from] ServeError),
     #[error(transparent)]
+    Slot(#[from] SlotError),
+    #[error(transparent)]
     Health(#[from] HealthError),
 }
 
 impl CommandError {
     pub fn exit_code(&self) -> u8 {
         match self {
-            CommandError::Usage(_) | CommandError::Document { .. } | CommandError::Read { .. } => {
-                REFUSED
-            }
+            CommandError::Slot(SlotError::NoOrders)
+            | CommandError::Usage(_)
+            | CommandError::Document { .. }
+            | CommandError::Read { .. } => REFUSED,
             CommandError::SilentlyWrong { .. } => FAILED,
             CommandError::Write { .. } => INFRASTRUCTURE,
             CommandError::Verdict { outcome, .. } => outcome.exit_code(),
@@ -58,9 +62,10 @@ impl CommandError {
             CommandError::Demo(error) if error.is_setting() => CONFIGURATION,
             CommandError::Serve(error) if error.is_setting() => CONFIGURATION,
             CommandError::Health(error) if error.is_setting() => CONFIGURATION,
-            CommandError::Demo(_) | CommandError::Serve(_) | CommandError::Health(_) => {
-                INFRASTRUCTURE
-            }
+            CommandError::Demo(_)
+            | CommandError::Serve(_)
+            | CommandError::Slot(_)
+            | CommandError::Health(_) => INFRASTRUCTURE,
             CommandError::Job(error) => match error.class() {
                 ErrorClass::Input => REFUSED,
                 ErrorClass::Infrastructure => INFRASTRUCTURE,

@@ -12,6 +12,7 @@ pub mod predict;
 mod scene;
 mod screen;
 pub mod serve;
+pub mod slot;
 pub mod stability;
 pub mod study;
 
@@ -43,6 +44,9 @@ enum Command {
     Check(check::Arguments),
     /// Serve the API, with workers in the same process
     Serve(serve::Arguments),
+    /// Compute the jobs of one slot; started by `serve`
+    #[command(hide = true)]
+    Slot(slot::Arguments),
     /// Ask the service on this machine whether it is alive
     Health(health::Arguments),
     /// Print the OpenAPI description of the service
@@ -58,6 +62,7 @@ pub fn run(facies: &Facies) -> ExitCode {
         Command::Study(arguments) => study::run(arguments),
         Command::Check(arguments) => check::run(arguments),
         Command::Serve(arguments) => serve::run(arguments).map_err(CommandError::from),
+        Command::Slot(arguments) => slot::run(arguments).map_err(CommandError::from),
         Command::Health(arguments) => health::run(arguments).map_err(CommandError::from),
         Command::Openapi => openapi::run(),
     };

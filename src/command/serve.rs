@@ -10,9 +10,12 @@ use tokio::runtime::Handle;
 
 use crate::api::{self, Service};
 use crate::config::{Config, ConfigError, SETTINGS};
+use crate::jobs::fail_point::{self, FailPointError};
 use crate::jobs::library::Library;
-use crate::jobs::numerics::Numerics;
-use crate::jobs::worker::Workers;
+use crate::jobs::slot::protocol::Settings;
+use crate::jobs::slot::{Program, SlotSettings, SlotWork, slot_bytes};
+use crate::jobs::worker::{Work, Workers};
+use crate::metrics;
 use crate::store::{Store, StoreError};
 use crate::telemetry::{self, TelemetryError};
 
@@ -26,6 +29,10 @@ pub enum ServeError {
     Store(#[from] StoreError),
     #[error("{address} cannot be listened on: {source}")]
     Listen { address: SocketAddr, source: std::io::Error },
+    #[error("{0}")]
+    FailPoint(#[from] FailPointError),
+    #[error("metrics: {0}")]
+    Metrics(#[from] metrics_exporter_prometheus::BuildError),
     #[error("{0}")]
     Io(#[from] std::io::Error),
 }
@@ -107,6 +114,7 @@ impl FromArgMatches for Arguments {
 pub fn run(arguments: &Arguments) -> Result<(), ServeError> {
     let config = Config::new(|name| arguments.get(name))?;
     telemetry::start(&config.log)?;
+    fail_point::check()?;
     let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().build()?;
     let grace = config.grace;
     let server = runtime.block_on(Server::start(config))?;
@@ -130,6 +138,7 @@ pub struct Server {
 impl Server {
     /// Opens the store, sweeps it, listens, and starts the workers.
     pub async fn start(config: Config) -> Result<Server, ServeError> {
+        metrics::start()?;
         let store = Store::open(&config.data_dir).await?;
         let swept = store.sweep().await?;
         tracing::info!(blobs = swept.blobs, temporary = swept.temporary, "swept");
@@ -140,10 +149,15 @@ impl Server {
         let address = listener.local_addr()?;
         let library = Library::new(store.clone(), config.mesh_cache_bytes);
         let runtime = Handle::current();
-        let source = library.source(runtime.clone(), Default::default());
-        let service = Service::new(config.clone(), store.clone(), library);
-        let numerics = Numerics { source, limits: (*service.limits).clone() };
-        let workers = Workers::start(store, &config, Arc::new(numerics), runtime)?;
+        let service = Service::new(config.clone(), store.clone(), library.clone());
+        let slots = Arc::new(SlotSettings {
+            library,
+            runtime: runtime.clone(),
+            program: Program::this(&config.log.filter)?,
+            settings: slot_settings(&config, &service),
+        });
+        let work = || -> Box<dyn Work> { Box::new(SlotWork::new(slots.clone())) };
+        let workers = Workers::start(store, &config, &work, runtime)?;
         tracing::info!(%address, workers = config.workers, "serving");
         Ok(Server { address, listener, service, workers })
     }
@@ -175,6 +189,18 @@ impl Server {
             tracing::warn!("requests were cut off");
         }
         Ok(self.workers)
+    }
+}
+
+/// What the processes of the slots keep to. Meshes that they keep take a quarter of their memory at most.
+fn slot_settings(config: &Config, service: &Service) -> Settings {
+    let memory_bytes = slot_bytes(config);
+    let share = config.mesh_cache_bytes / config.workers.max(1);
+    Settings {
+        limits: (*service.limits).clone(),
+        memory_bytes,
+        cache_bytes: share.min((memory_bytes / 4) as usize),
+        threads: config.threads_per_job,
     }
 }
 

@@ -9,6 +9,7 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use crate::config::Config;
+use crate::metrics;
 use crate::prediction::{Phase, Progress};
 use crate::store::{Lease, Point, Store, StoreError};
 
@@ -117,7 +118,7 @@ impl Heartbeat {
             lease: config.lease,
             interval: config.heartbeat,
             attempts: config.attempts,
-            lost: worker_lost(config.attempts),
+            lost: worker_lost(config.attempts, None),
         };
         let (stop, stopped) = channel();
         let (connected, connection) = channel();
@@ -169,12 +170,13 @@ impl Drop for Heartbeat {
     }
 }
 
-/// The error of a job that lost its worker too often.
-fn worker_lost(attempts: u32) -> String {
+/// The error of a job that lost its worker too often; `how` tells the last time, where it is known.
+pub(super) fn worker_lost(attempts: u32, how: Option<&str>) -> String {
+    let last = how.map(|how| format!("; at last, {how}")).unwrap_or_default();
     serde_json::json!({
         "type": "worker-lost",
         "class": "infrastructure",
-        "detail": format!("the job lost its worker {attempts} times"),
+        "detail": format!("the job lost its worker {attempts} times{last}"),
         "attempts": attempts,
     })
     .to_string()
@@ -203,6 +205,15 @@ impl Pulse {
         if reaped.is_none_or(|last| last.elapsed() >= self.interval) {
             *reaped = Some(Instant::now());
             self.reap(store).await;
+            self.count(store).await;
+        }
+    }
+
+    /// Tells those who watch how many jobs wait, and how long the first of them has.
+    async fn count(&self, store: &Store) {
+        match store.queue().await {
+            Ok(queue) => metrics::queue(queue.waiting, queue.running, queue.oldest_ms),
+            Err(error) => tracing::warn!(%error, "the queue was not counted"),
         }
     }
 
@@ -223,6 +234,7 @@ impl Pulse {
         match store.reap(self.attempts, &self.lost).await {
             Ok(jobs) => {
                 for job in jobs {
+                    metrics::attempt_lost("silent");
                     tracing::warn!(
                         job.id = %job.job,
                         attempt = job.attempt,

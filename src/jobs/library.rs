@@ -1,97 +1,77 @@
-//! The meshes of the service, parsed: kept in memory while there is room, so that a job does not parse
-//! again what its check has parsed.
+//! The meshes of the service, parsed: kept in memory while there is room, so that a request does not parse
+//! again what another has parsed.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
+use serde::{Deserialize, Serialize};
 use tokio::runtime::Handle;
 
+use super::mesh_cache::MeshCache;
 use super::source::{MeshSource, SourceError, StoredMesh, StoredShape};
-use crate::format::{self, ReadLimits};
+use crate::format::{self, FormatError, ReadLimits, ReadMesh};
 use crate::mesh::Frame;
-use crate::schema::case::LengthUnit;
+use crate::schema::case::{FrameName, LengthUnit};
 use crate::schema::mesh::MeshDocument;
 use crate::store::{MeshRow, Store, StoreError};
 
 /// The result file that holds the predicted skin with its node numbers.
 const PREDICTED_SKIN: &str = "skin.vtp";
 
-/// About what a mesh takes in memory, in bytes.
-fn size_of(shape: &StoredShape) -> usize {
-    match shape {
-        StoredShape::Volume(volume) => {
-            let numbers: usize = volume.cells.iter().map(|(_, nodes)| nodes.len() + 2).sum();
-            let per_node = 24 + 8 * volume.node_labels.len() + 24 * volume.node_vectors.len();
-            let per_cell = 8 * volume.cell_labels.len() + 24 * volume.cell_vectors.len();
-            let sets = volume.node_sets.values().chain(volume.cell_sets.values());
-            let in_sets: usize = sets.map(Vec::len).sum();
-            4 * (numbers + in_sets) + per_node * volume.nodes.len() + per_cell * volume.cells.len()
+/// What is known of a stored mesh beside its bytes.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct MeshCard {
+    /// The hash of the stored bytes.
+    pub blob: String,
+    /// The hash of the bytes that were sent.
+    pub sha256: String,
+    pub frame: Option<FrameName>,
+    pub units: Option<LengthUnit>,
+}
+
+impl MeshCard {
+    fn of(row: MeshRow) -> Result<MeshCard, StoreError> {
+        let document: MeshDocument = serde_json::from_str(&row.report)
+            .map_err(|error| StoreError::Schema(format!("report of a mesh: {error}")))?;
+        Ok(MeshCard {
+            blob: row.blob,
+            sha256: row.sha256,
+            frame: document.report.space.or(document.frame),
+            units: document.units,
+        })
+    }
+
+    /// The mesh, in the unit of its file.
+    pub fn with(self, shape: StoredShape) -> StoredMesh {
+        StoredMesh {
+            shape,
+            frame: self.frame.map(Frame::from),
+            units: self.units,
+            warnings: Vec::new(),
+            sha256: self.sha256,
         }
-        StoredShape::Surface(surface) => 28 * surface.points.len() + 12 * surface.triangles.len(),
-        StoredShape::Image(image) => image.voxels().bytes(),
     }
 }
 
-/// Parsed meshes by the hash of their stored bytes, the least recently used given up first.
-struct Cache {
-    room: usize,
-    used: usize,
-    clock: u64,
-    meshes: HashMap<String, Cached>,
-}
-
-struct Cached {
-    mesh: StoredShape,
-    size: usize,
-    last_used: u64,
-}
-
-impl Cache {
-    fn get(&mut self, blob: &str) -> Option<StoredShape> {
-        self.clock += 1;
-        let cached = self.meshes.get_mut(blob)?;
-        cached.last_used = self.clock;
-        Some(cached.mesh.clone())
-    }
-
-    fn insert(&mut self, blob: &str, mesh: StoredShape) {
-        let size = size_of(&mesh);
-        if size > self.room || self.meshes.contains_key(blob) {
-            return;
-        }
-        self.clock += 1;
-        let last_used = self.clock;
-        self.used += size;
-        self.meshes.insert(blob.to_owned(), Cached { mesh, size, last_used });
-        while self.used > self.room {
-            let oldest = self.meshes.iter().min_by_key(|(_, cached)| cached.last_used);
-            let Some(oldest) = oldest.map(|(blob, _)| blob.clone()) else { break };
-            self.forget(&oldest);
-        }
-    }
-
-    fn forget(&mut self, blob: &str) {
-        if let Some(cached) = self.meshes.remove(blob) {
-            self.used -= cached.size;
-        }
-    }
+/// Parses bytes that our own writers made: they may compress better than a stranger's file is allowed to.
+pub fn parse_stored(bytes: &[u8]) -> Result<ReadMesh, FormatError> {
+    format::read(bytes, &ReadLimits { decoded_ratio: f64::INFINITY, ..ReadLimits::default() })
 }
 
 /// Stored meshes by id, parsed.
 #[derive(Clone)]
 pub struct Library {
     store: Store,
-    cache: Arc<Mutex<Cache>>,
+    cache: Arc<Mutex<MeshCache>>,
 }
 
 impl Library {
     /// A library that keeps parsed meshes of at most `room` bytes.
     pub fn new(store: Store, room: usize) -> Self {
-        let cache = Cache { room, used: 0, clock: 0, meshes: HashMap::new() };
-        Library { store, cache: Arc::new(Mutex::new(cache)) }
+        Library { store, cache: Arc::new(Mutex::new(MeshCache::new(room))) }
     }
 
-    fn cache(&self) -> MutexGuard<'_, Cache> {
+    fn cache(&self) -> MutexGuard<'_, MeshCache> {
         self.cache.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -114,40 +94,45 @@ impl Library {
 
     /// The mesh of a row, in the unit of its file; parsed on a thread that may block.
     pub async fn open(&self, row: MeshRow) -> Result<StoredMesh, StoreError> {
-        let document: MeshDocument = serde_json::from_str(&row.report)
-            .map_err(|error| StoreError::Schema(format!("report of a mesh: {error}")))?;
-        let cached = self.cache().get(&row.blob);
+        let card = MeshCard::of(row)?;
+        let cached = self.cache().get(&card.blob);
         let shape = match cached {
             Some(shape) => shape,
             None => {
-                let shape = self.read(&row.blob, row.sha256.clone()).await?.shape;
-                self.keep(&row.blob, shape.clone());
+                let shape = self.read(&card.blob, card.sha256.clone()).await?.shape;
+                self.keep(&card.blob, shape.clone());
                 shape
             }
         };
-        Ok(StoredMesh {
-            shape,
-            frame: document.report.space.or(document.frame).map(Frame::from),
-            units: document.units,
-            warnings: Vec::new(),
-            sha256: row.sha256,
-        })
+        Ok(card.with(shape))
+    }
+
+    /// What is known of a mesh, without its bytes.
+    pub async fn card(&self, id: &str) -> Result<Option<MeshCard>, StoreError> {
+        self.store.mesh(id).await?.map(MeshCard::of).transpose()
+    }
+
+    /// The blob of the skin that a successful prediction wrote; `None` where the job has none.
+    pub async fn skin_blob(&self, job: &str) -> Result<Option<String>, StoreError> {
+        Ok(self.store.job_file(job, PREDICTED_SKIN).await?.map(|file| file.blob))
+    }
+
+    /// The bytes of a blob, compared with their hash.
+    pub async fn bytes(&self, blob: &str) -> Result<bytes::Bytes, StoreError> {
+        self.store.read_blob(blob).await
     }
 
     async fn read(&self, blob: &str, sha256: String) -> Result<StoredMesh, StoreError> {
-        let bytes = self.store.read_blob(blob).await?;
-        // Our own writers may compress better than a stranger's file is allowed to.
-        let limits = ReadLimits { decoded_ratio: f64::INFINITY, ..ReadLimits::default() };
-        let parsed = tokio::task::spawn_blocking(move || format::read(&bytes, &limits)).await;
+        let bytes = self.bytes(blob).await?;
+        let parsed = tokio::task::spawn_blocking(move || parse_stored(&bytes)).await;
         let parsed = parsed.map_err(|_| StoreError::Interrupted)?;
         let parsed = parsed.map_err(|error| StoreError::Schema(format!("stored mesh: {error}")))?;
         Ok(StoredMesh::new(parsed, Some(LengthUnit::Mm), sha256))
     }
 
-    /// The skin that a successful prediction wrote; `None` where the job has none.
     async fn predicted_skin(&self, job: &str) -> Result<Option<StoredMesh>, StoreError> {
-        let Some(file) = self.store.job_file(job, PREDICTED_SKIN).await? else { return Ok(None) };
-        self.read(&file.blob, file.blob.clone()).await.map(Some)
+        let Some(blob) = self.skin_blob(job).await? else { return Ok(None) };
+        self.read(&blob, blob.clone()).await.map(Some)
     }
 
     /// The same meshes for work that is not async. Only to be asked on threads that may block.
@@ -184,30 +169,5 @@ fn found(
         Ok(Some(mesh)) => Ok(mesh),
         Ok(None) => Err(SourceError::Unknown { id: id.to_owned() }),
         Err(error) => Err(SourceError::Unreadable { id: id.to_owned(), detail: error.to_string() }),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::mesh::{TriangleSurface, Vector};
-
-    fn surface(points: usize) -> StoredShape {
-        let points = vec![Vector::zeros(); points];
-        StoredShape::Surface(Arc::new(TriangleSurface { points, ..TriangleSurface::default() }))
-    }
-
-    #[test]
-    fn the_mesh_that_was_not_used_for_longest_makes_room() {
-        let mut cache = Cache { room: 28 * 10, used: 0, clock: 0, meshes: HashMap::new() };
-        cache.insert("a", surface(4));
-        cache.insert("b", surface(4));
-        assert!(cache.get("a").is_some());
-        cache.insert("c", surface(4));
-        assert!(cache.get("b").is_none());
-        assert!(cache.get("a").is_some() && cache.get("c").is_some());
-        cache.insert("too large", surface(11));
-        assert!(cache.get("too large").is_none() && cache.get("a").is_some());
-        assert_eq!(cache.used, 28 * 8);
     }
 }

@@ -3,11 +3,13 @@
 
 pub mod check;
 pub mod comparison;
+pub mod fail_point;
 pub mod failure;
 pub mod heartbeat;
 pub mod input;
 pub mod judgement;
 pub mod library;
+mod mesh_cache;
 pub mod numerics;
 pub mod observed;
 pub mod optimisation;
@@ -20,6 +22,7 @@ pub mod report;
 pub mod response;
 pub mod responses;
 mod skin_files;
+pub mod slot;
 pub mod source;
 pub mod stopwatch;
 pub mod study;

@@ -1,52 +1,38 @@
-//! The work of the service's jobs: the job document of a claim, the meshes of the library, the numerics.
+//! One attempt at a job of the service: its document, the meshes of its worker, the numerics.
 
-use std::path::Path;
-
-use serde_json::json;
+use serde_json::{Value, json};
 
 use super::failure::JobError;
 use super::input::JobInput;
-use super::library::LibrarySource;
-use super::work::{Workplace, work};
-use super::worker::{Failure, Finished, FinishedFile, Work};
+use super::slot::protocol::{Assignment, Effort, Made, MadeFile, Outcome};
+use super::source::MeshSource;
+use super::work::{JobOutput, Workplace, work};
 use crate::prediction::Progress;
 use crate::schema::Limits;
 use crate::schema::job::ErrorClass;
-use crate::store::Claim;
 
-/// Jobs over stored meshes.
-pub struct Numerics {
-    pub source: LibrarySource,
-    pub limits: Limits,
-}
-
-impl Work for Numerics {
-    fn work(
-        &self,
-        claim: &Claim,
-        folder: &Path,
-        progress: &dyn Progress,
-    ) -> Result<Finished, Failure> {
-        let input = read_input(claim)?;
-        let place = Workplace { sources: &self.source, limits: &self.limits, out: folder };
-        let output = work(&input, &place, progress).map_err(|error| failure(&error))?;
-        let result = serde_json::to_string(&output.result)
-            .map_err(|error| internal(&format!("the manifest: {error}")))?;
-        let files = output.files.into_iter().map(|file| FinishedFile {
-            path: folder.join(&file.name),
-            name: file.name,
-            media_type: file.media_type,
-        });
-        Ok(Finished { result, files: files.collect() })
+/// Does the work of an assignment. Files are in its folder afterwards.
+pub fn attempt(
+    assignment: &Assignment,
+    sources: &dyn MeshSource,
+    limits: &Limits,
+    progress: &dyn Progress,
+) -> Outcome {
+    let input = match read_input(assignment) {
+        Ok(input) => input,
+        Err(reason) => return broken(&format!("the document of the job: {reason}")),
+    };
+    let place = Workplace { sources, limits, out: &assignment.folder };
+    match work(&input, &place, progress) {
+        Ok(output) => made(output),
+        Err(error) => failed(&error),
     }
 }
 
-/// The document of a claim, which now knows its job and how long it waited.
-fn read_input(claim: &Claim) -> Result<JobInput, Failure> {
-    let mut input: JobInput = serde_json::from_str(&claim.document)
-        .map_err(|error| internal(&format!("the document of the job: {error}")))?;
-    let job = Some(claim.lease.job.clone());
-    let queue_s = Some((claim.started - claim.created) as f64 / 1e3);
+/// The document of a job, which now knows its job and how long it waited.
+fn read_input(assignment: &Assignment) -> Result<JobInput, serde_json::Error> {
+    let mut input: JobInput = serde_json::from_str(&assignment.document)?;
+    let (job, queue_s) = (Some(assignment.job.clone()), Some(assignment.queue_s));
     match &mut input {
         JobInput::Predict(input) => (input.job, input.queue_s) = (job, queue_s),
         JobInput::Compare(input) => (input.job, input.queue_s) = (job, queue_s),
@@ -57,18 +43,44 @@ fn read_input(claim: &Claim) -> Result<JobInput, Failure> {
     Ok(input)
 }
 
-fn internal(reason: &str) -> Failure {
-    tracing::error!(%reason, "a job could not be worked on");
-    let detail = "the work broke off; the log has the details under the job's id";
-    Failure::Permanent(json!({"type": "internal", "class": "infrastructure", "detail": detail}))
+fn made(output: JobOutput) -> Outcome {
+    let result = match serde_json::to_string(&output.result) {
+        Ok(result) => result,
+        Err(error) => return broken(&format!("the manifest: {error}")),
+    };
+    let provenance = output.result.provenance;
+    let solver = provenance.solver.as_ref();
+    let files = output.files.into_iter();
+    Outcome::Done(Made {
+        result,
+        files: files
+            .map(|file| MadeFile { name: file.name, media_type: file.media_type })
+            .collect(),
+        effort: Effort {
+            unknowns: solver.map_or(0, |solver| solver.unknowns),
+            iterations: solver.map_or(0, |solver| solver.iterations),
+            method: provenance.method,
+        },
+    })
 }
 
-fn failure(error: &JobError) -> Failure {
+fn broken(reason: &str) -> Outcome {
+    tracing::error!(%reason, "a job could not be worked on");
+    Outcome::Failed(broke_off())
+}
+
+/// The error of a job that met a bug; what it was stands in the log only.
+pub(super) fn broke_off() -> Value {
+    let detail = "the work broke off; the log has the details under the job's id";
+    json!({"type": "internal", "class": "infrastructure", "detail": detail})
+}
+
+fn failed(error: &JobError) -> Outcome {
     match error.class() {
-        ErrorClass::Cancelled => Failure::Cancelled,
-        ErrorClass::Infrastructure => Failure::Storage(error.to_string()),
+        ErrorClass::Cancelled => Outcome::Cancelled,
+        ErrorClass::Infrastructure => Outcome::Storage(error.to_string()),
         ErrorClass::Numerical | ErrorClass::Input | ErrorClass::Budget => {
-            Failure::Permanent(json!(error.to_document()))
+            Outcome::Failed(json!(error.to_document()))
         }
     }
 }

@@ -26,6 +26,7 @@ impl<'a> Observed<'a> {
     pub fn start(inner: &'a dyn Progress, wall_s: f64) -> Self {
         let now = Instant::now();
         let phases = Phases { current: Phase::Validate, since: now, spent: Vec::new() };
+        inner.allowed(wall_s);
         inner.phase(Phase::Validate);
         Observed {
             inner,

@@ -1,5 +1,4 @@
-//! Worker threads: claim a job, work, publish. Each slot is a thread with a thread pool of its own, so
-//! that numerics never run where requests are answered.
+//! Worker threads: claim a job, have it worked on, publish. Each slot is a thread; numerics run elsewhere.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
@@ -12,8 +11,12 @@ use bytes::Bytes;
 use serde_json::json;
 use tokio::runtime::Handle;
 
-use super::heartbeat::{Heartbeat, RunningJob};
+use super::fail_point::{FailPoints, Injected};
+use super::heartbeat::{Heartbeat, RunningJob, worker_lost};
+use super::numerics::broke_off;
+use super::slot::protocol::Effort;
 use crate::config::Config;
+use crate::metrics;
 use crate::prediction::Progress;
 use crate::schema::canonical::sha256_hex;
 use crate::store::{Claim, Lease, PublishedFile, Store, StoreError};
@@ -22,6 +25,8 @@ use crate::store::{Claim, Lease, PublishedFile, Store, StoreError};
 const IDLE: Duration = Duration::from_secs(1);
 /// How long a solver that was told to stop may take before the process ends without it.
 const LAST_WORDS: Duration = Duration::from_secs(2);
+/// How long a slot that is not ready sleeps at most before it looks whether to stop.
+const UNREADY: Duration = Duration::from_millis(100);
 /// Between two tries to publish while the database is busy.
 const PUBLISH_PAUSE: Duration = Duration::from_millis(200);
 
@@ -30,6 +35,7 @@ pub struct Finished {
     /// JSON.
     pub result: String,
     pub files: Vec<FinishedFile>,
+    pub effort: Effort,
 }
 
 /// A file by its name in the folder of the attempt.
@@ -48,11 +54,19 @@ pub enum Failure {
     Permanent(serde_json::Value),
     /// The storage's fault: tried again.
     Storage(String),
+    /// What computed it died, and how: tried again.
+    Lost(String),
 }
 
 impl From<StoreError> for Failure {
     fn from(error: StoreError) -> Self {
         Failure::Storage(error.to_string())
+    }
+}
+
+impl From<Injected> for Failure {
+    fn from(_: Injected) -> Self {
+        Failure::Storage("a fail point erred".to_owned())
     }
 }
 
@@ -62,10 +76,15 @@ impl From<std::io::Error> for Failure {
     }
 }
 
-/// From a claimed job to files in a folder. A later version may do it in a process of its own.
-pub trait Work: Send + Sync {
+/// From a claimed job to files in a folder: the work of one slot.
+pub trait Work: Send {
+    /// Makes ready for a job before one is claimed; an error says after which wait to ask again.
+    fn prepare(&mut self) -> Result<(), Duration> {
+        Ok(())
+    }
+
     fn work(
-        &self,
+        &mut self,
         claim: &Claim,
         folder: &Path,
         progress: &dyn Progress,
@@ -82,40 +101,33 @@ struct Shared {
     store: Store,
     heartbeat: Heartbeat,
     runtime: Handle,
-    work: Arc<dyn Work>,
     lease: Duration,
     attempts: u32,
     stopping: AtomicBool,
 }
 
 impl Workers {
-    /// Starts the slots. `runtime` answers their questions to the store.
+    /// Starts the slots, each with work of its own. `runtime` answers their questions to the store.
     pub fn start(
         store: Store,
         config: &Config,
-        work: Arc<dyn Work>,
+        work: &dyn Fn() -> Box<dyn Work>,
         runtime: Handle,
     ) -> Result<Workers, StoreError> {
         let shared = Arc::new(Shared {
             heartbeat: Heartbeat::start(store.clone(), config)?,
             store,
             runtime,
-            work,
             lease: config.lease,
             attempts: config.attempts,
             stopping: AtomicBool::new(false),
         });
         let mut slots = Vec::with_capacity(config.workers);
         for slot in 0..config.workers {
-            let pool = rayon::ThreadPoolBuilder::new()
-                .num_threads(config.threads_per_job)
-                .thread_name(move |thread| format!("solver-{slot}-{thread}"))
-                .build()
-                .map_err(std::io::Error::other)?;
-            let shared = shared.clone();
+            let (shared, mut work) = (shared.clone(), work());
             let thread = std::thread::Builder::new()
                 .name(format!("worker-{slot}"))
-                .spawn(move || shared.serve(&pool))?;
+                .spawn(move || shared.serve(work.as_mut()))?;
             slots.push(thread);
         }
         Ok(Workers { shared, slots })
@@ -144,12 +156,16 @@ impl Workers {
 }
 
 impl Shared {
-    fn serve(&self, pool: &rayon::ThreadPool) {
+    fn serve(&self, work: &mut dyn Work) {
         let mut changes = self.store.job_changes();
         while !self.stopping.load(Ordering::Relaxed) {
+            if let Err(wait) = work.prepare() {
+                std::thread::sleep(wait.min(UNREADY));
+                continue;
+            }
             changes.mark_unchanged();
             match self.runtime.block_on(self.store.claim(self.lease)) {
-                Ok(Some(claim)) => self.attempt(&claim, pool),
+                Ok(Some(claim)) => self.attempt(&claim, work),
                 Ok(None) => self.runtime.block_on(async {
                     // Either a job of this process woke us, or it is time to look at the others'.
                     let _ = tokio::time::timeout(IDLE, changes.changed()).await;
@@ -162,50 +178,41 @@ impl Shared {
         }
     }
 
-    fn attempt(&self, claim: &Claim, pool: &rayon::ThreadPool) {
+    fn attempt(&self, claim: &Claim, work: &mut dyn Work) {
         let lease = &claim.lease;
         let started = Instant::now();
         let job = self.heartbeat.hold(lease.clone());
         let span = tracing::info_span!("job", job.id = %lease.job, attempt = lease.attempt);
         let _inside = span.enter();
         tracing::info!(kind = %claim.kind, "job started");
+        let fail_points = FailPoints::of(lease.attempt, &claim.document);
+        fail_points.pass_by("claim:after", &|| job.is_cancelled());
         let folder = self.store.attempt_folder(&lease.job, lease.attempt);
-        let made = self.make(claim, &folder, &job, pool).and_then(|finished| {
+        let mut effort = Effort::default();
+        let made = make(claim, &folder, &job, work).and_then(|finished| {
             let files = read_files(finished.files)?;
+            effort = finished.effort;
             Ok((finished.result, files))
         });
         if let Err(error) = remove_attempt(&folder) {
             tracing::warn!(%error, "the files of an attempt were left to the next start");
         }
-        let ended = made.and_then(|(result, files)| self.publish(lease, &result, &files));
+        let ended = made.and_then(|(result, files)| {
+            fail_points.pass("publish:before", &|| job.is_cancelled())?;
+            let published = self.publish(lease, &result, &files);
+            fail_points.pass("publish:after", &|| job.is_cancelled())?;
+            published
+        });
         let status = self.conclude(lease, &job, ended);
         self.heartbeat.let_go(lease);
-        let duration_ms = started.elapsed().as_secs_f64() * 1e3;
+        let took = started.elapsed();
+        metrics::attempt_ended(&claim.kind, status, took);
+        if status == "successful" {
+            let method = effort.method.as_deref().unwrap_or("none");
+            metrics::job_solved(method, effort.unknowns, effort.iterations, took);
+        }
+        let duration_ms = took.as_secs_f64() * 1e3;
         tracing::info!(status, duration_ms, "job ended");
-    }
-
-    /// The work, on the slot's thread pool. A panic is the job's own fault and costs no slot.
-    fn make(
-        &self,
-        claim: &Claim,
-        folder: &Path,
-        job: &RunningJob,
-        pool: &rayon::ThreadPool,
-    ) -> Result<Finished, Failure> {
-        std::fs::create_dir_all(folder)?;
-        let work = || pool.install(|| self.work.work(claim, folder, job));
-        catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|panic| {
-            let words = panic
-                .downcast_ref::<String>()
-                .map(String::as_str)
-                .or_else(|| panic.downcast_ref::<&str>().copied());
-            tracing::error!(reason = words.unwrap_or("unknown"), "a job panicked");
-            Err(Failure::Permanent(json!({
-                "type": "internal",
-                "class": "infrastructure",
-                "detail": "the work broke off; the log has the details under the job's id",
-            })))
-        })
     }
 
     /// Stores the files and makes them and the manifest visible at once; false when the job is not ours.
@@ -259,9 +266,12 @@ impl Shared {
                     "detail": "the results could not be stored",
                     "attempts": self.attempts,
                 });
-                let error = error.to_string();
-                let lost = self.store.lose(lease, self.attempts, &error);
-                ("lost", self.runtime.block_on(lost))
+                ("lost", self.lose(lease, &error.to_string()))
+            }
+            Err(Failure::Lost(how)) => {
+                tracing::error!(%how, "an attempt was lost");
+                metrics::attempt_lost("process");
+                ("lost", self.lose(lease, &worker_lost(self.attempts, Some(&how))))
             }
         };
         match written {
@@ -274,6 +284,29 @@ impl Shared {
             }
         }
     }
+
+    fn lose(&self, lease: &Lease, error: &str) -> Result<bool, StoreError> {
+        self.runtime.block_on(self.store.lose(lease, self.attempts, error))
+    }
+}
+
+/// The work. A panic on this side of it is a bug of ours and costs no slot.
+fn make(
+    claim: &Claim,
+    folder: &Path,
+    job: &RunningJob,
+    work: &mut dyn Work,
+) -> Result<Finished, Failure> {
+    std::fs::create_dir_all(folder)?;
+    let made = catch_unwind(AssertUnwindSafe(|| work.work(claim, folder, job)));
+    made.unwrap_or_else(|panic| {
+        let words = panic
+            .downcast_ref::<String>()
+            .map(String::as_str)
+            .or_else(|| panic.downcast_ref::<&str>().copied());
+        tracing::error!(reason = words.unwrap_or("unknown"), "a job panicked");
+        Err(Failure::Permanent(broke_off()))
+    })
 }
 
 fn read_files(files: Vec<FinishedFile>) -> std::io::Result<Vec<PublishedFile>> {

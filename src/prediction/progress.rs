@@ -14,6 +14,22 @@ pub enum Phase {
 }
 
 impl Phase {
+    const ALL: [Phase; 8] = [
+        Phase::Validate,
+        Phase::Mesh,
+        Phase::Assemble,
+        Phase::Solve,
+        Phase::Contact,
+        Phase::Surface,
+        Phase::Compare,
+        Phase::Write,
+    ];
+
+    /// The phase of that name.
+    pub fn from_name(name: &str) -> Option<Phase> {
+        Phase::ALL.into_iter().find(|phase| phase.name() == name)
+    }
+
     pub fn name(self) -> &'static str {
         match self {
             Phase::Validate => "validate",
@@ -37,6 +53,9 @@ pub trait Progress: Sync {
 
     /// A part of the work is done, of so many that are alike.
     fn step(&self, _done: usize, _of: usize) {}
+
+    /// The work stops by itself once it has taken so many seconds; who waits longer waits in vain.
+    fn allowed(&self, _wall_s: f64) {}
 
     /// True when the work is to end at its next check with a `cancelled` error.
     fn is_cancelled(&self) -> bool;

@@ -7,6 +7,7 @@ mod jobs;
 mod leases;
 mod meshes;
 mod plans;
+mod queue;
 mod responses;
 mod sweep;
 
@@ -22,6 +23,7 @@ pub use jobs::{Dismissal, Enqueued, JobFilter, JobRow, NewJob};
 pub use leases::{Claim, FileRow, Lease, Point, PublishedFile, Reaped};
 pub use meshes::{MeshDeletion, MeshRow, NewMesh};
 pub use plans::PlanRow;
+pub use queue::QueueRow;
 pub use responses::{CaseResponses, ResponseRow};
 pub use sweep::Swept;
 

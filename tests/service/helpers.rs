@@ -57,6 +57,17 @@ impl Server {
         Server { child, address, client: Client::new(), folder }
     }
 
+    pub fn process(&self) -> u32 {
+        self.child.id()
+    }
+
+    /// Waits for a process that ends by itself; the folder stays.
+    pub fn dies(mut self) -> TempDir {
+        self.child.wait().unwrap();
+        let empty = TempDir::new().unwrap();
+        std::mem::replace(&mut self.folder, empty)
+    }
+
     pub fn path(&self) -> &Path {
         self.folder.path()
     }

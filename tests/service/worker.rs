@@ -1,11 +1,10 @@
 //! Worker slots: what becomes of jobs that panic, are dismissed, or lose their storage.
 
 use std::path::Path;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 
 use facies::config::Config;
+use facies::jobs::slot::protocol::Effort;
 use facies::jobs::worker::{Failure, Finished, FinishedFile, Work, Workers};
 use facies::prediction::Progress;
 use facies::schema::job::JobStatus;
@@ -18,19 +17,20 @@ const LONG: Duration = Duration::from_secs(60);
 
 /// Work that does what the document of its job says.
 struct Scripted {
-    storage_faults: AtomicUsize,
+    storage_faults: usize,
 }
 
 impl Work for Scripted {
     fn work(
-        &self,
+        &mut self,
         claim: &Claim,
         folder: &Path,
         progress: &dyn Progress,
     ) -> Result<Finished, Failure> {
         match claim.document.as_str() {
             "panic" => panic!("a bug"),
-            "stored at last" if self.storage_faults.fetch_add(1, Ordering::SeqCst) < 2 => {
+            "stored at last" if self.storage_faults < 2 => {
+                self.storage_faults += 1;
                 Err(Failure::Storage("disk full".into()))
             }
             "never stored" => Err(Failure::Storage("disk full".into())),
@@ -48,7 +48,7 @@ impl Work for Scripted {
                     media_type: "application/json".into(),
                     path,
                 };
-                Ok(Finished { result: "{}".into(), files: vec![file] })
+                Ok(Finished { result: "{}".into(), files: vec![file], effort: Effort::default() })
             }
         }
     }
@@ -68,9 +68,9 @@ async fn slot() -> Slot {
         let found = settings.iter().find(|(key, _)| *key == name);
         found.map(|(_, value)| (*value).to_owned())
     });
-    let work = Arc::new(Scripted { storage_faults: AtomicUsize::new(0) });
+    let work = || -> Box<dyn Work> { Box::new(Scripted { storage_faults: 0 }) };
     let runtime = tokio::runtime::Handle::current();
-    let workers = Workers::start(store.clone(), &config.unwrap(), work, runtime).unwrap();
+    let workers = Workers::start(store.clone(), &config.unwrap(), &work, runtime).unwrap();
     Slot { folder, store, workers }
 }
 

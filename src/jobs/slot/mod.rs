@@ -1,0 +1,15 @@
+//! A slot computes one job after the other in a process of its own: an allocation that fails, a full stack or a
+//! signal ends one attempt and nothing else. The worker keeps claim, lease and publication; the process gets documents
+//! and meshes from it, and has neither database nor credentials.
+
+pub mod memory;
+pub mod process;
+pub mod protocol;
+pub mod serve;
+mod source;
+pub mod work;
+
+pub use memory::slot_bytes;
+pub use process::Program;
+pub use serve::{SlotError, serve};
+pub use work::{SlotSettings, SlotWork};

@@ -1,0 +1,143 @@
+//! What the service counts, in the words of Prometheus. Every name stands in this file once.
+
+use std::sync::OnceLock;
+use std::time::Duration;
+
+use ::metrics::{
+    Unit, counter, describe_counter, describe_gauge, describe_histogram, gauge, histogram,
+};
+use metrics_exporter_prometheus::{BuildError, Matcher, PrometheusBuilder, PrometheusHandle};
+
+const QUEUE_JOBS: &str = "facies_queue_jobs";
+const QUEUE_AGE: &str = "facies_queue_oldest_seconds";
+const ATTEMPTS: &str = "facies_attempts_total";
+const ATTEMPT_TIME: &str = "facies_attempt_seconds";
+const LOST: &str = "facies_attempts_lost_total";
+const JOB_TIME: &str = "facies_job_seconds";
+const ITERATIONS: &str = "facies_solver_iterations";
+const SLOTS_ENDED: &str = "facies_slot_processes_ended_total";
+const JOB_MEMORY: &str = "facies_job_peak_bytes";
+
+const SECONDS: [f64; 12] =
+    [0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1000.0, 3600.0];
+const COUNTS: [f64; 9] = [1.0, 10.0, 30.0, 100.0, 300.0, 1e3, 3e3, 1e4, 1e5];
+const BYTES: [f64; 9] = [64e6, 128e6, 256e6, 512e6, 1e9, 2e9, 4e9, 8e9, 32e9];
+
+static EXPORTER: OnceLock<PrometheusHandle> = OnceLock::new();
+
+/// Begins to count in this process; a second call changes nothing.
+pub fn start() -> Result<(), BuildError> {
+    if EXPORTER.get().is_some() {
+        return Ok(());
+    }
+    let builder = PrometheusBuilder::new()
+        .set_buckets_for_metric(Matcher::Suffix("_seconds".into()), &SECONDS)?
+        .set_buckets_for_metric(Matcher::Full(ITERATIONS.into()), &COUNTS)?
+        .set_buckets_for_metric(Matcher::Suffix("_bytes".into()), &BYTES)?;
+    let handle = builder.install_recorder()?;
+    // Another thread that was faster has installed the same.
+    let _ = EXPORTER.set(handle);
+    describe();
+    Ok(())
+}
+
+fn describe() {
+    describe_gauge!(QUEUE_JOBS, "jobs that wait (state waiting) or run (state running)");
+    describe_gauge!(QUEUE_AGE, Unit::Seconds, "age of the job that has waited longest");
+    describe_counter!(ATTEMPTS, "attempts at jobs, by kind of job and by how they ended");
+    describe_histogram!(ATTEMPT_TIME, Unit::Seconds, "time of an attempt, by kind of job");
+    describe_counter!(LOST, "attempts that lost what computed them, by cause");
+    describe_histogram!(
+        JOB_TIME,
+        Unit::Seconds,
+        "time of a successful job, by method and by unknowns (size)"
+    );
+    describe_histogram!(ITERATIONS, "iterations of the solver in a successful job, by method");
+    describe_counter!(SLOTS_ENDED, "processes of slots that were ended or died, by cause");
+    describe_histogram!(JOB_MEMORY, Unit::Bytes, "most memory of the process of a job");
+}
+
+/// Everything that was counted, as text for Prometheus; empty before `start`.
+pub fn render() -> String {
+    EXPORTER.get().map(PrometheusHandle::render).unwrap_or_default()
+}
+
+/// Gives up memory of samples that were rendered; to be called now and then.
+pub fn tidy() {
+    if let Some(exporter) = EXPORTER.get() {
+        exporter.run_upkeep();
+    }
+}
+
+/// Jobs that have not ended, and how long the first of those that wait has waited.
+pub fn queue(waiting: i64, running: i64, oldest_ms: i64) {
+    gauge!(QUEUE_JOBS, "state" => "waiting").set(waiting as f64);
+    gauge!(QUEUE_JOBS, "state" => "running").set(running as f64);
+    gauge!(QUEUE_AGE).set(oldest_ms as f64 / 1e3);
+    tidy();
+}
+
+/// An attempt ended as successful, failed, stopped, fenced or lost.
+pub fn attempt_ended(kind: &str, status: &'static str, took: Duration) {
+    let kind = kind.to_owned();
+    counter!(ATTEMPTS, "kind" => kind.clone(), "status" => status).increment(1);
+    histogram!(ATTEMPT_TIME, "kind" => kind).record(took.as_secs_f64());
+}
+
+/// A job was solved.
+pub fn job_solved(method: &str, unknowns: u64, iterations: u64, took: Duration) {
+    let method = method.to_owned();
+    let size = size_class(unknowns);
+    histogram!(JOB_TIME, "method" => method.clone(), "size" => size).record(took.as_secs_f64());
+    histogram!(ITERATIONS, "method" => method).record(iterations as f64);
+}
+
+/// Unknowns to the power of ten above them.
+fn size_class(unknowns: u64) -> &'static str {
+    match unknowns {
+        0 => "none",
+        1..10_000 => "below_1e4",
+        10_000..100_000 => "below_1e5",
+        100_000..1_000_000 => "below_1e6",
+        _ => "above_1e6",
+    }
+}
+
+/// An attempt lost what computed it.
+pub fn attempt_lost(cause: &'static str) {
+    counter!(LOST, "cause" => cause).increment(1);
+}
+
+/// The process of a slot died or was ended, and why.
+pub fn slot_ended(cause: &str) {
+    counter!(SLOTS_ENDED, "cause" => cause.to_owned()).increment(1);
+}
+
+/// The most memory that the process of a job took.
+pub fn job_memory(peak_bytes: u64) {
+    histogram!(JOB_MEMORY).record(peak_bytes as f64);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_was_counted_is_rendered() {
+        start().unwrap();
+        start().unwrap();
+        queue(3, 2, 1500);
+        job_solved("fem_linear", 50_000, 40, Duration::from_millis(20));
+        attempt_lost("signal");
+        let text = render();
+        for line in [
+            "facies_queue_jobs{state=\"waiting\"} 3",
+            "facies_queue_oldest_seconds 1.5",
+            "facies_job_seconds_bucket{method=\"fem_linear\",size=\"below_1e5\",le=\"0.03\"} 1",
+            "facies_solver_iterations_sum{method=\"fem_linear\"} 40",
+            "facies_attempts_lost_total{cause=\"signal\"} 1",
+        ] {
+            assert!(text.contains(line), "{line} is not in {text}");
+        }
+    }
+}

@@ -1,0 +1,153 @@
+//! Processes that die: that of a slot, that of the worker, again and again.
+
+use std::process::Command;
+
+use serde_json::Value;
+use tempfile::TempDir;
+
+use crate::helpers::{SMALL, Server, ask, serve, spec};
+use crate::invariants::{
+    MEDIUM, accepted, fails, files, shows_no_result, state, succeeds, tagged, undisturbed, works_on,
+};
+use crate::processes::{faulty, faulty_with_log, is_gone, slots, until};
+
+#[tokio::test]
+async fn a_slot_that_is_killed_in_the_middle_of_a_solution_costs_one_attempt() {
+    let server = faulty("solve:iteration:3:kill:attempt=1", &["--workers", "1"]);
+    let before = slots(&server);
+    let case = server.case(&MEDIUM).await;
+    let id = accepted(&server, &spec(&case, 2.0)).await;
+    let job = succeeds(&server, &id, 2).await;
+    assert_eq!(files(&job), undisturbed(&MEDIUM, 2.0).await);
+    assert_ne!(slots(&server), before, "another process computed the second attempt");
+}
+
+#[tokio::test]
+async fn a_worker_that_is_killed_in_the_middle_of_a_solution_is_followed_by_the_next() {
+    let server = faulty("solve:iteration:3:hold", &["--workers", "1"]);
+    let case = server.case(&MEDIUM).await;
+    let id = accepted(&server, &spec(&case, 2.0)).await;
+    until("the solver iterates", async || {
+        (state(&server, &id).await["phase"] == "solve").then_some(())
+    })
+    .await;
+    shows_no_result(&server, &id).await;
+    let orphans = slots(&server);
+    assert_eq!(orphans.len(), 1);
+    let folder = server.kill();
+    until("the slot follows its worker", async || is_gone(orphans[0]).then_some(())).await;
+
+    let server = Server::start_in(folder, &[]);
+    let job = succeeds(&server, &id, 2).await;
+    assert_eq!(files(&job), undisturbed(&MEDIUM, 2.0).await);
+    assert_eq!(std::fs::read_dir(server.path().join("tmp")).unwrap().count(), 0);
+}
+
+#[tokio::test]
+async fn a_worker_that_dies_before_or_after_it_publishes_publishes_once() {
+    for (fault, attempt) in [("publish:before:1:kill", 2), ("publish:after:1:kill", 1)] {
+        let server = faulty(fault, &["--workers", "1"]);
+        let case = server.case(&SMALL).await;
+        let posted = ask_to_accept(&server, &spec(&case, 1.0)).await;
+        let folder = server.dies();
+        let server = Server::start_in(folder, &[]);
+        let jobs = ask(server.get("/v1/jobs")).await.json();
+        let id = jobs["items"][0]["id"].as_str().unwrap().to_owned();
+        assert!(posted.is_none_or(|posted| posted == id), "{fault}");
+        let job = succeeds(&server, &id, attempt).await;
+        assert_eq!(files(&job), undisturbed(&SMALL, 1.0).await, "{fault}");
+        assert_eq!(std::fs::read_dir(server.path().join("tmp")).unwrap().count(), 0, "{fault}");
+    }
+}
+
+/// The id of a job, unless the server died before it could tell.
+async fn ask_to_accept(server: &Server, spec: &Value) -> Option<String> {
+    let answer = server.post("/v1/jobs").json(spec).send().await.ok()?;
+    let job: Value = answer.json().await.ok()?;
+    job["id"].as_str().map(str::to_owned)
+}
+
+#[tokio::test]
+async fn a_job_that_takes_all_memory_fails_with_the_numbers_and_nothing_else_does() {
+    let arguments = ["--workers", "1", "--slot-memory-mib", "200"];
+    let server = faulty("solve:begin:1:allocate:tag=poison", &arguments);
+    let case = server.case(&SMALL).await;
+    let id = accepted(&server, &tagged(&case, 1.0, "poison")).await;
+    let error = fails(&server, &id, 1).await;
+    assert_eq!((&error["type"], &error["class"]), (&"out-of-memory".into(), &"budget".into()));
+    assert_eq!(error["limit_mb"], 209.7152);
+    let asked = error["asked_mb"].as_f64().unwrap();
+    assert!((16.0..17.0).contains(&asked), "{error}");
+    works_on(&server).await;
+}
+
+#[tokio::test]
+async fn a_job_that_kills_its_slot_every_time_fails_and_the_others_go_on() {
+    for (fault, how) in [
+        ("solve:begin:1:overflow:tag=poison", "its stack was full"),
+        ("solve:begin:1:abort:tag=poison", "signal 6 ended it"),
+        ("solve:begin:1:kill:tag=poison", "signal 9 ended it"),
+    ] {
+        let server = faulty(fault, &["--workers", "2"]);
+        let case = server.case(&SMALL).await;
+        let poison = accepted(&server, &tagged(&case, 1.0, "poison")).await;
+        let mut others = Vec::new();
+        for x in [2.0, 3.0, 4.0] {
+            others.push(accepted(&server, &spec(&case, x)).await);
+        }
+        let error = fails(&server, &poison, 3).await;
+        assert_eq!((&error["type"], &error["attempts"]), (&"worker-lost".into(), &3.into()));
+        assert!(error["detail"].as_str().unwrap().contains(how), "{error}");
+        for other in others {
+            succeeds(&server, &other, 1).await;
+        }
+        works_on(&server).await;
+    }
+}
+
+#[tokio::test]
+async fn a_panic_in_the_solver_fails_its_job_and_costs_no_slot() {
+    let server = faulty("solve:begin:1:panic:tag=poison", &["--workers", "1"]);
+    let case = server.case(&SMALL).await;
+    let id = accepted(&server, &tagged(&case, 1.0, "poison")).await;
+    let error = fails(&server, &id, 1).await;
+    assert_eq!(error["type"], "internal");
+    assert!(!error.to_string().contains("fail point"), "what it was is for the log");
+    works_on(&server).await;
+}
+
+#[tokio::test]
+async fn slots_that_do_not_start_take_no_job_and_are_tried_again() {
+    let folder = TempDir::new().unwrap();
+    let log = folder.path().join("log");
+    let server = faulty_with_log("slot:start:1:abort", &["--workers", "1"], &log);
+    let case = server.case(&SMALL).await;
+    let id = accepted(&server, &spec(&case, 1.0)).await;
+    let text = until("the slot is tried four times", async || {
+        let text = std::fs::read_to_string(&log).unwrap();
+        (text.matches("the process of a slot did not start").count() >= 4).then_some(text)
+    })
+    .await;
+    assert!(text.contains("signal 6 ended it"));
+    let job = state(&server, &id).await;
+    assert_eq!((&job["status"], &job["attempt"]), (&"accepted".into(), &0.into()));
+}
+
+#[test]
+fn a_fail_point_that_cannot_be_read_stops_the_start() {
+    let folder = TempDir::new().unwrap();
+    let mut command: Command = serve(folder.path());
+    command.env("FACIES_FAULT", "solve:nowhere:1:kill").stderr(std::process::Stdio::piped());
+    let output = command.output().unwrap();
+    assert_eq!(output.status.code(), Some(78));
+    let text = String::from_utf8(output.stderr).unwrap();
+    assert!(text.lines().count() == 1 && text.contains("solve:nowhere"), "{text}");
+}
+
+#[test]
+fn a_slot_without_a_worker_says_what_it_is_and_ends() {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_facies"));
+    let output = command.arg("slot").stdin(std::process::Stdio::null()).output().unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    assert!(String::from_utf8(output.stderr).unwrap().contains("facies serve"));
+}

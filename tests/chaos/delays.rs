@@ -1,0 +1,83 @@
+//! Processes that stand still: longer than a lease, longer than a request to stop, longer than a budget.
+
+use serde_json::json;
+use sqlx::{Connection as _, Row as _};
+
+use crate::helpers::{SMALL, Server, ask, spec};
+use crate::invariants::{accepted, fails, files, state, succeeds, tagged, undisturbed, works_on};
+use crate::processes::{faulty, faulty_with_log, is_gone, is_stopped, signal, slots, until};
+
+async fn database(server: &Server) -> sqlx::SqliteConnection {
+    let file = server.path().join("facies.db");
+    let options = sqlx::sqlite::SqliteConnectOptions::new().filename(file);
+    sqlx::SqliteConnection::connect_with(&options).await.unwrap()
+}
+
+/// What another worker does with a job whose lease has run out; the data folder of SQLite serves one process, so that
+/// the test takes its part.
+const TAKE: &str = "UPDATE jobs SET losses = losses + 1, lease_token = NULL, lease_expires = NULL, \
+     status = 'accepted' WHERE status = 'running' AND lease_expires < (SELECT now_ms FROM clock)";
+
+#[tokio::test]
+async fn a_worker_that_stood_still_for_longer_than_its_lease_publishes_nothing() {
+    let folder = tempfile::TempDir::new().unwrap();
+    let log = folder.path().join("log");
+    let fault = "publish:before:1:stop:attempt=1";
+    let server = faulty_with_log(fault, &["--workers", "1"], &log);
+    let case = server.case(&SMALL).await;
+    // The answer to the request may not come any more.
+    let posted = server.post("/v1/jobs").json(&spec(&case, 1.0));
+    let posting = tokio::spawn(posted.send());
+    until("the worker stops itself", async || is_stopped(server.process()).then_some(())).await;
+
+    let mut database = database(&server).await;
+    until("the lease runs out", async || {
+        let taken = sqlx::query(TAKE).execute(&mut database).await.unwrap();
+        (taken.rows_affected() == 1).then_some(())
+    })
+    .await;
+    let row = sqlx::query("SELECT id, result FROM jobs").fetch_one(&mut database).await.unwrap();
+    let (id, result): (String, Option<String>) = (row.get(0), row.get(1));
+    assert_eq!(result, None);
+
+    signal(server.process(), "CONT");
+    posting.await.unwrap().unwrap();
+    let job = succeeds(&server, &id, 2).await;
+    assert_eq!(files(&job), undisturbed(&SMALL, 1.0).await);
+    until("the first attempt is told apart", async || {
+        std::fs::read_to_string(&log).unwrap().contains("\"status\":\"fenced\"").then_some(())
+    })
+    .await;
+}
+
+#[tokio::test]
+async fn a_job_dismissed_while_it_cannot_be_interrupted_frees_its_slot() {
+    let server = faulty("solve:begin:1:hang:tag=deaf", &["--workers", "1"]);
+    let case = server.case(&SMALL).await;
+    let id = accepted(&server, &tagged(&case, 1.0, "deaf")).await;
+    until("the job factorises", async || {
+        (state(&server, &id).await["phase"] == "solve").then_some(())
+    })
+    .await;
+    let before = slots(&server);
+    let dismissed = ask(server.delete(&format!("/v1/jobs/{id}"))).await.json();
+    assert_eq!(dismissed["status"], "dismissed");
+    // The only slot is free again once its process has been killed.
+    works_on(&server).await;
+    assert!(before.iter().all(|process| is_gone(*process)));
+    assert_eq!(state(&server, &id).await["status"], "dismissed");
+    assert!(!server.path().join("tmp").join(&id).exists());
+}
+
+#[tokio::test]
+async fn a_slot_that_stands_still_fails_its_job_over_its_budget() {
+    let server = faulty("solve:begin:1:stop:tag=still", &["--workers", "1"]);
+    let case = server.case(&SMALL).await;
+    let mut hurried = tagged(&case, 1.0, "still");
+    hurried["budget"] = json!({"wall_s": 0.2});
+    let id = accepted(&server, &hurried).await;
+    let error = fails(&server, &id, 1).await;
+    assert_eq!((&error["type"], &error["which"]), (&"budget-exceeded".into(), &"wall".into()));
+    assert_eq!(error["allowed_s"], 0.2);
+    works_on(&server).await;
+}

@@ -1,0 +1,12 @@
+//! The service under fire: real processes that are killed, stopped and starved at named points, and what must hold
+//! afterwards. The invariants are those of `invariants.rs`.
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on panics")]
+
+mod deaths;
+mod delays;
+#[allow(dead_code, reason = "the tests of the service use the rest")]
+#[path = "../service/helpers.rs"]
+mod helpers;
+mod invariants;
+mod processes;
+mod races;

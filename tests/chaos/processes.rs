@@ -1,0 +1,73 @@
+//! Processes as the system sees them.
+
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+use tempfile::TempDir;
+
+use crate::helpers::{Server, serve};
+
+/// A condition that does not come true within this time fails its test.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+/// A server whose processes break themselves as `FACIES_FAULT` says.
+pub fn faulty(fault: &str, arguments: &[&str]) -> Server {
+    let folder = TempDir::new().unwrap();
+    let mut command = serve(folder.path());
+    command.args(arguments).env("FACIES_FAULT", fault);
+    Server::start_command(command, folder)
+}
+
+/// The same with its log in a file.
+pub fn faulty_with_log(fault: &str, arguments: &[&str], log: &Path) -> Server {
+    let folder = TempDir::new().unwrap();
+    let mut command = serve(folder.path());
+    let log = std::fs::File::create(log).unwrap();
+    command.args(arguments).env("FACIES_FAULT", fault).stderr(Stdio::from(log));
+    Server::start_command(command, folder)
+}
+
+/// Waits until a condition holds.
+pub async fn until<T>(what: &str, mut condition: impl AsyncFnMut() -> Option<T>) -> T {
+    let begun = Instant::now();
+    loop {
+        if let Some(found) = condition().await {
+            return found;
+        }
+        assert!(begun.elapsed() < PATIENCE, "{what} did not happen");
+        tokio::time::sleep(Duration::from_millis(5)).await;
+    }
+}
+
+/// A field of `/proc/PROCESS/status`, while the process is there.
+fn status(process: u32, field: &str) -> Option<String> {
+    let text = std::fs::read_to_string(format!("/proc/{process}/status")).ok()?;
+    let line = text.lines().find_map(|line| line.strip_prefix(field)?.strip_prefix(':'));
+    line.map(|value| value.trim().to_owned())
+}
+
+/// The processes of the slots of a server.
+pub fn slots(server: &Server) -> Vec<u32> {
+    let parent = server.process().to_string();
+    let processes = std::fs::read_dir("/proc").unwrap().filter_map(|entry| {
+        let process: u32 = entry.ok()?.file_name().to_str()?.parse().ok()?;
+        let is_child = status(process, "PPid").as_deref() == Some(parent.as_str());
+        (is_child && !is_gone(process)).then_some(process)
+    });
+    processes.collect()
+}
+
+pub fn is_gone(process: u32) -> bool {
+    status(process, "State").is_none_or(|state| state.starts_with('Z'))
+}
+
+pub fn is_stopped(process: u32) -> bool {
+    status(process, "State").is_some_and(|state| state.starts_with('T'))
+}
+
+/// Sends a signal by its name.
+pub fn signal(process: u32, name: &str) {
+    let sent = Command::new("kill").args([&format!("-{name}"), &process.to_string()]).status();
+    assert!(sent.unwrap().success());
+}
