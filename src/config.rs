@@ -26,7 +26,7 @@ const fn setting(name: &'static str, default: &'static str, about: &'static str)
 }
 
 /// All settings of `facies serve`.
-pub const SETTINGS: [Setting; 17] = [
+pub const SETTINGS: [Setting; 21] = [
     setting(
         "bind",
         "127.0.0.1:8080",
@@ -38,6 +38,22 @@ pub const SETTINGS: [Setting; 17] = [
         "",
         "asked for as `Authorization: Bearer KEY` on everything but /healthz, /readyz and the documentation; 16 to 255 visible characters; without it nobody is asked",
     ),
+    setting(
+        "admin-bind",
+        "",
+        "address and port of a listener of its own for GET /metrics, which clients must not reach; without it there is none",
+    ),
+    setting(
+        "allowed-origins",
+        "",
+        "origins whose pages browsers let in, such as https://planning.example.org, with commas between them; without it none",
+    ),
+    setting(
+        "requests-per-minute",
+        "60000",
+        "requests of one client in a minute, above which it is told to wait; 0 to 10000000, 0 counts nobody",
+    ),
+    setting("event-streams", "8", "streams of events that one client may have open; 1 to 10000"),
     setting("workers", "2", "jobs solved at the same time; 0 to 64, 0 leaves the jobs to others"),
     setting("threads-per-job", "1", "threads of one job; 1 to 64; the results do not depend on it"),
     setting(
@@ -92,6 +108,10 @@ pub struct Config {
     pub listen: SocketAddr,
     pub data_dir: PathBuf,
     pub api_key: Option<Secret>,
+    pub admin_listen: Option<SocketAddr>,
+    pub allowed_origins: Vec<String>,
+    pub requests_per_minute: u32,
+    pub event_streams: u32,
     pub workers: usize,
     pub threads_per_job: usize,
     pub slot_memory_bytes: Option<u64>,
@@ -158,6 +178,10 @@ impl Config {
             listen: read.parsed("bind", "an address with a port, e.g. 127.0.0.1:8080")?,
             data_dir: read.parsed("data", "a folder")?,
             api_key: read.api_key()?,
+            admin_listen: read.admin_listen()?,
+            allowed_origins: read.origins()?,
+            requests_per_minute: read.whole("requests-per-minute", 0..=10_000_000)? as u32,
+            event_streams: read.whole("event-streams", 1..=10_000)? as u32,
             workers: read.whole("workers", 0..=64)?,
             threads_per_job: read.whole("threads-per-job", 1..=64)?,
             slot_memory_bytes: read.slot_memory()?,
@@ -249,6 +273,23 @@ impl<Text: Fn(&str) -> String> Reader<Text> {
         }
     }
 
+    fn admin_listen(&self) -> Result<Option<SocketAddr>, ConfigError> {
+        match (self.text)("admin-bind").as_str() {
+            "" => Ok(None),
+            _ => self.parsed("admin-bind", "an address with a port, e.g. 127.0.0.1:9090").map(Some),
+        }
+    }
+
+    fn origins(&self) -> Result<Vec<String>, ConfigError> {
+        let value = (self.text)("allowed-origins");
+        let origins = value.split(',').map(str::trim).filter(|origin| !origin.is_empty());
+        let origins: Vec<String> = origins.map(str::to_owned).collect();
+        match origins.iter().all(|origin| is_origin(origin)) {
+            true => Ok(origins),
+            false => Err(out_of_range("allowed-origins", value)),
+        }
+    }
+
     fn json_log(&self) -> Result<bool, ConfigError> {
         let value = (self.text)("log-format");
         match value.as_str() {
@@ -257,6 +298,13 @@ impl<Text: Fn(&str) -> String> Reader<Text> {
             _ => Err(out_of_range("log-format", value)),
         }
     }
+}
+
+/// Scheme, host and perhaps a port, as a browser writes them; no wildcard, which would let everybody in.
+fn is_origin(text: &str) -> bool {
+    let host = text.strip_prefix("https://").or_else(|| text.strip_prefix("http://"));
+    let plain = |byte: u8| byte.is_ascii_alphanumeric() || b".-:[]".contains(&byte);
+    host.is_some_and(|host| !host.is_empty() && host.bytes().all(plain))
 }
 
 fn out_of_range(name: &'static str, value: String) -> ConfigError {
@@ -302,6 +350,10 @@ mod tests {
             ("log-format", "xml"),
             ("api-key", "short"),
             ("bind", "localhost"),
+            ("admin-bind", "9090"),
+            ("allowed-origins", "*"),
+            ("allowed-origins", "https://a.example/path"),
+            ("event-streams", "0"),
             ("data", ""),
         ] {
             let error = config(&[(name, value)]).unwrap_err().to_string();

@@ -1,5 +1,7 @@
 //! What the service counts, in the words of Prometheus. Every name stands in this file once.
 
+pub mod http;
+
 use std::sync::OnceLock;
 use std::time::Duration;
 
@@ -32,6 +34,7 @@ pub fn start() -> Result<(), BuildError> {
     }
     let builder = PrometheusBuilder::new()
         .set_buckets_for_metric(Matcher::Suffix("_seconds".into()), &SECONDS)?
+        .set_buckets_for_metric(Matcher::Full(http::TIME.into()), &http::SECONDS)?
         .set_buckets_for_metric(Matcher::Full(ITERATIONS.into()), &COUNTS)?
         .set_buckets_for_metric(Matcher::Suffix("_bytes".into()), &BYTES)?;
     let handle = builder.install_recorder()?;
@@ -42,6 +45,7 @@ pub fn start() -> Result<(), BuildError> {
 }
 
 fn describe() {
+    http::describe();
     describe_gauge!(QUEUE_JOBS, "jobs that wait (state waiting) or run (state running)");
     describe_gauge!(QUEUE_AGE, Unit::Seconds, "age of the job that has waited longest");
     describe_counter!(ATTEMPTS, "attempts at jobs, by kind of job and by how they ended");

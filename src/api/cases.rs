@@ -5,32 +5,28 @@ use std::collections::BTreeMap;
 use axum::extract::{Request, State};
 use axum::http::{HeaderMap, StatusCode, header};
 use axum::response::IntoResponse;
-use bytes::Bytes;
 use serde::{Deserialize, Serialize};
-use tokio::runtime::Handle;
 use utoipa::{IntoParams, ToSchema};
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
+use super::case_draft::{Draft, checked, split};
 use super::error::{ApiError, ApiResult};
 use super::guard::check_accept;
-use super::meshes::{TakenIn, document_of, take_in};
+use super::idempotency::new_id;
+use super::meshes::document_of;
 use super::paging::Page;
 use super::parameters::{Id, Parameters};
 use super::{Service, body, conditional, job_input, json, json_only, time, with_header};
-use crate::jobs::upload::{Statement, Upload};
-use crate::jobs::{CheckReport, PredictInput, StoredMesh};
 use crate::schema::check::CheckDocument;
 use crate::schema::mesh::MeshDocument;
-use crate::schema::{CaseDocument, Faults, Limits, PredictDocument, Problem, strict};
-use crate::store::{CaseRow, Change, NewCase};
+use crate::schema::{CaseDocument, Faults, PredictDocument, strict};
+use crate::store::{CaseRow, Change};
 
 const JSON: &str = "application/json";
 const SVG: &str = "image/svg+xml";
 const MULTIPART: &str = "multipart/form-data";
 const READ_HERE: &str = "application/json, multipart/form-data";
-/// The part of a form that holds the document; the other parts are meshes.
-const CASE_PART: &str = "case";
 
 pub fn router() -> OpenApiRouter<Service> {
     let router = OpenApiRouter::new().routes(routes!(create, list));
@@ -102,7 +98,11 @@ struct MeshPart(Vec<u8>);
 /// Keeps a case. As a form it brings its meshes along: the document in the part `case` refers to the
 /// meshes by the names of their parts.
 #[utoipa::path(
-    post, path = "/v1/cases", operation_id = "create_case", tag = "cases", params(CreateParameters),
+    post, path = "/v1/cases", operation_id = "create_case", tag = "cases",
+    params(
+        CreateParameters,
+        ("Idempotency-Key" = Option<String>, Header, description = "a word of the client's, so that the request may be sent again"),
+    ),
     request_body(description = "the case", content((CaseDocument = "application/json"), (CaseForm = "multipart/form-data"))),
     responses((status = 201, description = "kept", body = CaseView, headers(("Location" = String, description = "the case"), ("ETag" = String, description = "its version"))))
 )]
@@ -112,152 +112,33 @@ async fn create(
     request: Request,
 ) -> ApiResult {
     let kind = body::content_type(request.headers());
-    let (document, parts) = match kind.as_str() {
+    let headers = request.headers().clone();
+    let (text, parts) = match kind.as_str() {
         JSON => (body::json(&service, request).await?, Vec::new()),
         MULTIPART => split(body::parts(&service, request).await?)?,
         _ => return Err(body::unsupported(&kind, READ_HERE)),
     };
-    let document: CaseDocument = strict::parse(&document, &service.limits)?;
+    let document: CaseDocument = strict::parse(&text, &service.limits)?;
+    let content: Vec<&[u8]> = parts
+        .iter()
+        .flat_map(|(name, bytes)| [name.as_bytes(), bytes])
+        .chain([&text[..]])
+        .collect();
+    let new = new_id(&service, &headers, "/v1/cases", &content).await?;
+    if new.is_known && service.store.case(&new.id).await?.is_some() {
+        return created(&service, &new.id).await;
+    }
     let draft = Draft::read(&service, document, parts, parameters.allow_any_scale).await?;
     let check = draft.check(&service).await?;
-    let id = draft.store(&service, check.as_ref()).await?;
-    let row = row_of(&service, &id).await?;
-    let answer = answer(&service, StatusCode::CREATED, &row).await?;
+    draft.store(&service, &new, check.as_ref()).await?;
+    created(&service, &new.id).await
+}
+
+/// The answer to a request that made a case, or found it made.
+async fn created(service: &Service, id: &str) -> ApiResult {
+    let row = row_of(service, id).await?;
+    let answer = answer(service, StatusCode::CREATED, &row).await?;
     Ok(with_header(answer, header::LOCATION, &format!("/v1/cases/{id}")))
-}
-
-type Parts = Vec<(String, Bytes)>;
-
-/// The document and the meshes of a form.
-fn split(mut parts: Parts) -> ApiResult<(Bytes, Parts)> {
-    let at = parts.iter().position(|(name, _)| name == CASE_PART);
-    let at =
-        at.ok_or_else(|| ApiError::new("malformed-multipart", "the form has no part `case`"))?;
-    let (_, document) = parts.remove(at);
-    Ok((document, parts))
-}
-
-/// A case on its way in, with the meshes that came with it.
-struct Draft {
-    document: CaseDocument,
-    uploads: Vec<Upload>,
-}
-
-impl Draft {
-    /// Reads the meshes and puts their ids where the document names their parts.
-    async fn read(
-        service: &Service,
-        mut document: CaseDocument,
-        parts: Parts,
-        allow_any_scale: Option<bool>,
-    ) -> ApiResult<Draft> {
-        let statement = Statement {
-            units: Some(document.units),
-            frame: Some(document.frame),
-            role: None,
-            allow_any_scale: allow_any_scale.unwrap_or(false),
-        };
-        let mut ids: BTreeMap<String, String> = BTreeMap::new();
-        let mut uploads: Vec<Upload> = Vec::new();
-        for (name, bytes) in parts {
-            let taken = take_in(service, bytes, &statement, false).await;
-            let id = match taken.map_err(|error| in_part(error, &name))? {
-                TakenIn::Known(row) => row.id,
-                TakenIn::New(upload) => {
-                    let same = |other: &&Upload| other.row.sha256 == upload.row.sha256;
-                    match uploads.iter().find(same) {
-                        Some(other) => other.row.id.clone(),
-                        None => {
-                            let id = upload.row.id.clone();
-                            uploads.push(*upload);
-                            id
-                        }
-                    }
-                }
-            };
-            ids.insert(name, id);
-        }
-        let mut unused: Vec<String> = ids.keys().cloned().collect();
-        for (_, reference) in document.mesh_references_mut() {
-            if let Some(id) = ids.get(reference) {
-                unused.retain(|name| name != reference);
-                *reference = id.clone();
-            }
-        }
-        if unused.is_empty() {
-            return Ok(Draft { document, uploads });
-        }
-        let detail = format!("the case refers to no part called {}", unused.join(", "));
-        Err(ApiError::new("unused-part", detail))
-    }
-
-    /// Whether the document and its meshes make sense; `None` where only a plan can tell.
-    async fn check(&self, service: &Service) -> ApiResult<Option<CheckDocument>> {
-        let input = PredictInput {
-            job: None,
-            queue_s: None,
-            case: self.document.clone(),
-            plan: Default::default(),
-            spec: PredictDocument::default(),
-        };
-        let extra = self.uploads.iter().map(|upload| (upload.row.id.clone(), upload.mesh.clone()));
-        let checked = checked(service, input, extra.collect()).await;
-        match checked {
-            Ok(report) => Ok(Some(report.document)),
-            Err(error) if needs_a_plan(&error.problem) => Ok(None),
-            Err(error) => Err(error.problem.moved("/case", "").into()),
-        }
-    }
-
-    async fn store(self, service: &Service, check: Option<&CheckDocument>) -> ApiResult<String> {
-        let id = uuid::Uuid::now_v7().to_string();
-        let text = |value: serde_json::Result<String>| value.map_err(ApiError::internal);
-        let (rows, meshes): (Vec<_>, Vec<_>) =
-            self.uploads.into_iter().map(|upload| (upload.row, upload.mesh)).unzip();
-        let new = NewCase {
-            id: id.clone(),
-            document: text(serde_json::to_string(&self.document))?,
-            report: text(serde_json::to_string(&check))?,
-            tags: self.document.tags.clone(),
-            mesh_ids: self.document.mesh_ids(),
-            meshes: rows,
-        };
-        if !service.store.add_case(&new).await? {
-            let detail = "a mesh of the case came or went meanwhile; send the case again";
-            return Err(ApiError::new("conflict", detail));
-        }
-        for (row, mesh) in new.meshes.iter().zip(meshes) {
-            service.library.keep(&row.blob, mesh.shape);
-        }
-        tracing::info!(case.id = %id, meshes = new.mesh_ids.len(), "case stored");
-        Ok(id)
-    }
-}
-
-/// Says in which part of a form a mesh was refused.
-fn in_part(error: ApiError, name: &str) -> ApiError {
-    error.map_problem(|problem| {
-        let detail = format!("part {name}: {}", problem.detail);
-        Problem { detail, ..problem }.with("part", name)
-    })
-}
-
-/// Loose parts may be held by the sets that a plan names.
-fn needs_a_plan(problem: &Problem) -> bool {
-    !problem.errors.is_empty()
-        && problem.errors.iter().all(|error| error.code == "underconstrained")
-}
-
-/// Checks a prediction over stored meshes and those of a request.
-async fn checked(
-    service: &Service,
-    input: PredictInput,
-    extra: BTreeMap<String, StoredMesh>,
-) -> ApiResult<CheckReport> {
-    let sources = service.library.source(Handle::current(), extra);
-    let limits: Limits = (*service.limits).clone();
-    let report = service.compute(move || crate::jobs::check(&input, &sources, &limits)).await?;
-    report.map_err(job_input::refusal)
 }
 
 async fn row_of(service: &Service, id: &str) -> ApiResult<CaseRow> {

@@ -62,6 +62,18 @@ pub fn not_modified(current: &str) -> Response {
     (StatusCode::NOT_MODIFIED, headers).into_response()
 }
 
+/// A document with the hash of its text as its tag, or 304 where the client has it already.
+pub async fn document(headers: &HeaderMap, response: Response) -> ApiResult {
+    let (mut head, body) = response.into_parts();
+    let bytes = axum::body::to_bytes(body, usize::MAX).await.map_err(ApiError::internal)?;
+    let tag = crate::schema::canonical::sha256_hex(&bytes);
+    if is_known(headers, &tag) {
+        return Ok(not_modified(&tag));
+    }
+    head.headers.insert(header::ETAG, entity_tag(&tag));
+    Ok(Response::from_parts(head, bytes.into()))
+}
+
 /// An immutable file with all that goes with it: tag, 304, one range.
 pub fn file(
     headers: &HeaderMap,

@@ -38,6 +38,10 @@ fn kind_of(code: &str) -> (StatusCode, &'static str) {
             StatusCode::PRECONDITION_REQUIRED,
             "The version that is meant has to be named in If-Match",
         ),
+        "gone" => (StatusCode::GONE, "It was erased"),
+        "rate-limited" | "too-many-streams" => {
+            (StatusCode::TOO_MANY_REQUESTS, "The client asks for more than one may have")
+        }
         "payload-too-large" => (StatusCode::PAYLOAD_TOO_LARGE, "The body is too large"),
         "uri-too-long" => (StatusCode::URI_TOO_LONG, "The address is too long"),
         "unsupported-media-type" => {

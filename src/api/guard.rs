@@ -8,11 +8,15 @@ use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
 use tracing::Instrument;
 
+use super::client::Client;
 use super::error::{ApiError, with_problem_body};
+use super::rate::Left;
 use super::{Service, body};
+use crate::metrics::http;
 use crate::schema::problem::Problem;
 
 const REQUEST_ID: &str = "x-request-id";
+const TRACE_PARENT: &str = "traceparent";
 const LONGEST_URI: usize = 8 << 10;
 const LARGEST_HEAD: usize = 16 << 10;
 
@@ -26,13 +30,23 @@ pub async fn surround(State(service): State<Service>, request: Request, next: Ne
         .extensions()
         .get::<MatchedPath>()
         .map_or_else(|| "unmatched".to_owned(), |path| path.as_str().to_owned());
-    let span = tracing::info_span!("request", request.id = %id);
+    let counted = http::Request::begin(method.as_str(), &route);
+    let span = tracing::info_span!("request", request.id = %id, trace.id = tracing::field::Empty);
+    if let Some(trace) = trace_id(request.headers()) {
+        span.record("trace.id", trace);
+    }
     let (head, body) = request.into_parts();
     let (body, unread) = body::held(body);
-    let request = Request::from_parts(head, body);
+    let mut request = Request::from_parts(head, body);
     let answered = async {
-        let response = match check_head(&service, &request) {
-            Ok(()) => next.run(request).await,
+        let response = match admit(&service, &mut request) {
+            Ok(left) => {
+                let mut response = next.run(request).await;
+                if let Some(left) = left {
+                    left.tell(&mut response);
+                }
+                response
+            }
             Err(error) => error.into_response(),
         };
         if response.status().is_client_error() {
@@ -42,6 +56,7 @@ pub async fn surround(State(service): State<Service>, request: Request, next: Ne
     };
     let response = answered.instrument(span.clone()).await;
     let mut response = with_problem_body(response, &id);
+    counted.answered(response.status().as_u16());
     if let Ok(value) = HeaderValue::from_str(&id) {
         response.headers_mut().insert(REQUEST_ID, value);
     }
@@ -65,6 +80,30 @@ fn request_id(headers: &HeaderMap) -> String {
         Some(id) if (1..=64).contains(&id.len()) && id.bytes().all(is_plain) => id.to_owned(),
         _ => uuid::Uuid::now_v7().to_string(),
     }
+}
+
+/// The trace that a request belongs to (W3C Trace Context, level 1, section 3.2.2), for the log.
+fn trace_id(headers: &HeaderMap) -> Option<&str> {
+    let mut parts = headers.get(TRACE_PARENT)?.to_str().ok()?.split('-');
+    let (version, trace) = (parts.next()?, parts.next()?);
+    let is_hex = |text: &str, length: usize| {
+        let digit = |byte: u8| matches!(byte, b'0'..=b'9' | b'a'..=b'f');
+        text.len() == length && text.bytes().all(digit)
+    };
+    let known = is_hex(version, 2) && version != "ff" && is_hex(trace, 32);
+    let named = trace.bytes().any(|byte| byte != b'0');
+    (known && named && is_hex(parts.next()?, 16)).then_some(trace)
+}
+
+/// Lets a request in whose head is sound and whose client has requests left; whose it is stands beside it.
+fn admit(service: &Service, request: &mut Request) -> Result<Option<Left>, ApiError> {
+    check_head(service, request)?;
+    if is_open(request.uri().path()) {
+        return Ok(None);
+    }
+    let client = Client::of(service, request.extensions());
+    request.extensions_mut().insert(client.clone());
+    service.rates.take(client)
 }
 
 fn check_head(service: &Service, request: &Request) -> Result<(), ApiError> {
@@ -218,6 +257,26 @@ mod tests {
         assert_eq!(chosen("*/*, application/json;q=0"), Some(1));
         assert_eq!(chosen("application/octet-stream;q=0.4, model/gltf-binary;q=0.6"), Some(2));
         assert_eq!(chosen("text/html"), None);
+    }
+
+    #[test]
+    fn a_trace_is_taken_over_when_it_is_one() {
+        let trace_of = |given: &str| {
+            let mut headers = HeaderMap::new();
+            headers.insert(TRACE_PARENT, given.parse().unwrap());
+            trace_id(&headers).map(str::to_owned)
+        };
+        let trace = "0af7651916cd43dd8448eb211c80319c";
+        assert_eq!(trace_of(&format!("00-{trace}-b7ad6b7169203331-01")).as_deref(), Some(trace));
+        for wrong in [
+            format!("ff-{trace}-b7ad6b7169203331-01"),
+            format!("00-{}-b7ad6b7169203331-01", "0".repeat(32)),
+            format!("00-{}-b7ad6b7169203331-01", trace.to_uppercase()),
+            format!("00-{trace}"),
+            "00-a\"b-c-01".to_owned(),
+        ] {
+            assert_eq!(trace_of(&wrong), None, "{wrong}");
+        }
     }
 
     #[test]

@@ -9,12 +9,13 @@ use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 use super::error::{ApiError, ApiResult};
+use super::idempotency::new_id;
 use super::job_view::status_info;
 use super::paging::Page;
 use super::parameters::{Id, Parameters, no_such_job};
 use super::prefer::{wait_for_end, wanted_wait};
 use super::results::RETRY_AFTER_S;
-use super::{Service, body, job_input, json, json_only, with_header};
+use super::{Service, body, conditional, job_input, json, json_only, with_header};
 use crate::schema::job::{JobKind, JobStatus, StatusInfo};
 use crate::schema::spec::JobDocument;
 use crate::schema::strict;
@@ -62,7 +63,10 @@ struct ListParameters {
 /// comes when the job has ended, at the latest after n seconds (at most 30).
 #[utoipa::path(
     post, path = "/v1/jobs", operation_id = "create_job", tag = "jobs",
-    params(("Prefer" = Option<String>, Header, description = "wait=n: wait at most n seconds for the end")),
+    params(
+        ("Prefer" = Option<String>, Header, description = "wait=n: wait at most n seconds for the end"),
+        ("Idempotency-Key" = Option<String>, Header, description = "a word of the client's, so that the request may be sent again"),
+    ),
     request_body = JobDocument,
     responses(
         (status = 201, description = "accepted", body = StatusInfo, headers(
@@ -75,18 +79,28 @@ struct ListParameters {
 )]
 async fn create(State(service): State<Service>, request: Request) -> ApiResult {
     let wait = wanted_wait(request.headers(), service.limits.wait_s);
+    let headers = request.headers().clone();
     let bytes = body::json(&service, request).await?;
     refuse_later_kinds(&service, &bytes)?;
-    let accepted = match JobDocument::parse(&bytes, &service.limits)? {
+    let document = JobDocument::parse(&bytes, &service.limits)?;
+    let new = new_id(&service, &headers, "/v1/jobs", &[&bytes]).await?;
+    if new.is_known && service.store.job(&new.id).await?.is_some() {
+        return created(&service, &new.id, false, wait).await;
+    }
+    let mut accepted = match document {
         JobDocument::Predict(spec) => job_input::of_prediction(&service, *spec).await?,
         JobDocument::Compare(spec) => job_input::of_comparison(&service, spec).await?,
         JobDocument::Response(spec) => job_input::of_response(&service, spec).await?,
         JobDocument::Optimise(spec) => job_input::of_optimisation(&service, spec).await?,
         JobDocument::Study(spec) => job_input::of_study(&service, spec).await?,
     };
+    accepted.id = new.id;
     let (id, deduplicated) = match service.store.enqueue(&accepted, LONGEST_QUEUE).await? {
         Enqueued::Accepted => (accepted.id, false),
-        Enqueued::Known(id) => (id, true),
+        Enqueued::Known(id) => {
+            let deduplicated = id != accepted.id;
+            (id, deduplicated)
+        }
         Enqueued::QueueFull => {
             let detail = format!("{LONGEST_QUEUE} jobs are waiting");
             return Err(ApiError::new("queue-full", detail));
@@ -97,7 +111,12 @@ async fn create(State(service): State<Service>, request: Request) -> ApiResult {
         }
     };
     tracing::info!(job.id = %id, deduplicated, "job accepted");
-    let job = wait_for_end(&service.store, &id, wait.unwrap_or(0)).await?;
+    created(&service, &id, deduplicated, wait).await
+}
+
+/// The answer to a request that made a job, or found it made.
+async fn created(service: &Service, id: &str, deduplicated: bool, wait: Option<u32>) -> ApiResult {
+    let job = wait_for_end(service, id, wait.unwrap_or(0)).await?;
     let job = job.ok_or_else(no_such_job)?;
     let location = format!("/v1/jobs/{id}");
     let answer = if deduplicated || job.status == JobStatus::Successful {
@@ -143,15 +162,21 @@ fn answer(status: StatusCode, job: &JobRow, deduplicated: bool, wait: Option<u32
     params(
         ("id" = uuid::Uuid, Path, description = "the job"),
         ("Prefer" = Option<String>, Header, description = "wait=n: wait at most n seconds for the end"),
+        ("If-None-Match" = Option<String>, Header, description = "the state that the client has"),
     ),
-    responses((status = 200, description = "its state, and its results once it is successful", body = StatusInfo, headers(
-        ("Retry-After" = Option<u32>, description = "seconds after which to look again"),
-        ("Preference-Applied" = Option<String>, description = "the wait that was granted"))))
+    responses(
+        (status = 200, description = "its state, and its results once it is successful", body = StatusInfo, headers(
+            ("ETag" = String, description = "the hash of this state"),
+            ("Retry-After" = Option<u32>, description = "seconds after which to look again"),
+            ("Preference-Applied" = Option<String>, description = "the wait that was granted"))),
+        (status = 304, description = "the client has it already"),
+    )
 )]
 async fn show(State(service): State<Service>, Id(id): Id, headers: HeaderMap) -> ApiResult {
     let wait = wanted_wait(&headers, service.limits.wait_s);
-    let job = wait_for_end(&service.store, &id, wait.unwrap_or(0)).await?;
-    answer(StatusCode::OK, &job.ok_or_else(no_such_job)?, false, wait)
+    let job = wait_for_end(&service, &id, wait.unwrap_or(0)).await?;
+    let answer = answer(StatusCode::OK, &job.ok_or_else(no_such_job)?, false, wait)?;
+    conditional::document(&headers, answer).await
 }
 
 /// Jobs, newest first.

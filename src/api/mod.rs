@@ -1,25 +1,34 @@
 //! HTTP: one file for each resource, each with its `router()`.
 
 mod about;
+pub mod admin;
 mod body;
+mod case_draft;
 mod cases;
+mod client;
 mod conditional;
 mod error;
+mod events;
+mod gone;
 mod guard;
 mod health;
+mod idempotency;
 mod job_input;
 mod job_view;
 mod jobs;
 mod meshes;
 mod openapi;
 mod openapi_types;
+mod origins;
 mod paging;
 mod parameters;
 mod plans;
 mod prefer;
+mod rate;
 mod report;
 mod responses;
 mod results;
+mod streams;
 mod time;
 
 use std::sync::Arc;
@@ -54,18 +63,27 @@ pub struct Service {
     pub library: Library,
     pub responses: Responses,
     parsing: Arc<Semaphore>,
+    rates: Arc<rate::Rates>,
+    pub streams: streams::Streams,
 }
 
 impl Service {
     pub fn new(config: Config, store: Store, library: Library) -> Self {
-        let limits = Limits { upload_bytes: config.upload_bytes as u64, ..Limits::default() };
+        let limits = Limits {
+            upload_bytes: config.upload_bytes as u64,
+            requests_per_minute: config.requests_per_minute,
+            event_streams: config.event_streams,
+            ..Limits::default()
+        };
         Service {
             responses: Responses::new(store.clone(), config.response_cache_bytes),
             config: Arc::new(config),
-            limits: Arc::new(limits),
+            limits: Arc::new(limits.clone()),
             store,
             library,
+            streams: streams::Streams::new(limits.event_streams),
             parsing: Arc::new(Semaphore::new(PARSED_AT_ONCE)),
+            rates: Arc::new(rate::Rates::new(limits.requests_per_minute)),
         }
     }
 
@@ -89,6 +107,7 @@ fn resources() -> OpenApiRouter<Service> {
         .merge(cases::router())
         .merge(plans::router())
         .merge(jobs::router())
+        .merge(events::router())
         .merge(results::router())
         .merge(report::router())
         .merge(responses::router())
@@ -99,13 +118,19 @@ pub fn router(service: Service) -> Router {
     let (resources, _) = resources().split_for_parts();
     let pages = utoipa_swagger_ui::SwaggerUi::new("/docs")
         .config(utoipa_swagger_ui::Config::from("/openapi.json"));
-    resources
+    let origins = origins::allowed(&service.config.allowed_origins);
+    let router = resources
+        .route_layer(from_fn_with_state(service.clone(), gone::tell))
         .merge(pages)
         .fallback(|| async { error::ApiError::not_found("resource") })
         .layer(DefaultBodyLimit::disable())
         .layer(CatchPanicLayer::custom(guard::after_panic))
         .layer(from_fn_with_state(service.clone(), guard::surround))
-        .with_state(service)
+        .with_state(service);
+    match origins {
+        Some(origins) => router.layer(origins),
+        None => router,
+    }
 }
 
 /// For routers whose answers are JSON only.

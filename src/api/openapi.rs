@@ -8,20 +8,25 @@ use utoipa::openapi::{
 
 use super::{openapi_types, resources};
 use crate::schema::ProblemDocument;
+use crate::schema::job::JobEvent;
 
 /// Problems that every operation may answer with: what is wrong with the head of the request, and what is
 /// wrong with the service.
-const ALWAYS: [(&str, &str); 8] = [
+const ALWAYS: [(&str, &str); 9] = [
     ("400", "a parameter or a header is not valid"),
     ("401", "the service asks for a key"),
     ("406", "the header Accept does not allow the answer"),
     ("414", "the address is too long"),
+    (
+        "429",
+        "the client asks for more than one may have; the header Retry-After says when to come back",
+    ),
     ("431", "the headers are too large"),
     ("500", "something broke in the service"),
     ("503", "the service is busy; the header Retry-After says when to come back"),
     ("507", "the disk of the service is full"),
 ];
-const WITH_PATH: (&str, &str) = ("404", "it is not there");
+const WITH_PATH: [(&str, &str); 2] = [("404", "it is not there"), ("410", "it was erased")];
 const WITH_BODY: [(&str, &str); 5] = [
     ("409", "something it refers to changed meanwhile"),
     ("408", "the body came too slowly"),
@@ -50,6 +55,7 @@ fn described() -> OpenApi {
     let (_, mut api) = resources().split_for_parts();
     let mut components = api.components.take().unwrap_or_default();
     add_schema::<ProblemDocument>(&mut components.schemas);
+    add_schema::<JobEvent>(&mut components.schemas);
     let mut document = OpenApiBuilder::new().info(info).components(Some(components)).build();
     document.paths = api.paths;
     for (path, item) in &mut document.paths.paths {
@@ -79,7 +85,7 @@ fn operations(item: &mut PathItem) -> impl Iterator<Item = &mut Operation> {
 fn add_problems(path: &str, operation: &mut Operation) {
     let mut problems = ALWAYS.to_vec();
     if path.contains('{') {
-        problems.push(WITH_PATH);
+        problems.extend(WITH_PATH);
     }
     if operation.request_body.is_some() {
         problems.extend(WITH_BODY);

@@ -9,6 +9,7 @@ use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 use super::error::{ApiError, ApiResult};
+use super::idempotency::{NewId, new_id};
 use super::paging::Page;
 use super::parameters::{Id, Parameters, PlanPath};
 use super::{Service, body, conditional, json, json_only, time, with_header};
@@ -81,14 +82,22 @@ async fn read(service: &Service, request: Request) -> ApiResult<String> {
 
 /// Keeps a plan with its case.
 #[utoipa::path(
-    post, path = "/v1/cases/{id}/plans", operation_id = "create_plan", tag = "plans", params(("id" = uuid::Uuid, Path, description = "the case")),
+    post, path = "/v1/cases/{id}/plans", operation_id = "create_plan", tag = "plans",
+    params(
+        ("id" = uuid::Uuid, Path, description = "the case"),
+        ("Idempotency-Key" = Option<String>, Header, description = "a word of the client's, so that the request may be sent again"),
+    ),
     request_body = PlanDocument,
     responses((status = 201, description = "kept", body = PlanView, headers(("Location" = String, description = "the plan"), ("ETag" = String, description = "its version"))))
 )]
 async fn create(State(service): State<Service>, Id(case): Id, request: Request) -> ApiResult {
+    let headers = request.headers().clone();
     let document = read(&service, request).await?;
-    let id = uuid::Uuid::now_v7().to_string();
-    if !service.store.add_plan(&case, &id, &document).await? {
+    let address = format!("/v1/cases/{case}/plans");
+    let NewId { id, is_known } =
+        new_id(&service, &headers, &address, &[document.as_bytes()]).await?;
+    let is_there = is_known && service.store.plan(&case, &id).await?.is_some();
+    if !is_there && !service.store.add_plan(&case, &id, &document).await? {
         return Err(ApiError::not_found("case"));
     }
     let row = row_of(&service, &case, &id).await?;

@@ -5,8 +5,9 @@ use std::time::Duration;
 use axum::http::HeaderMap;
 use tokio::time::Instant;
 
+use super::Service;
 use super::error::ApiResult;
-use crate::store::{JobRow, Store, StoreError};
+use crate::store::{JobRow, StoreError};
 
 /// Rows are looked at this often even when nothing was announced: another process may have changed them.
 const LOOK: Duration = Duration::from_secs(1);
@@ -24,23 +25,29 @@ pub fn wanted_wait(headers: &HeaderMap, cap: u32) -> Option<u32> {
         .map(|seconds| u32::try_from(seconds).unwrap_or(u32::MAX).min(cap))
 }
 
-/// Waits until a job has ended, is gone, or the time is up, and tells how it is then.
-pub async fn wait_for_end(store: &Store, id: &str, seconds: u32) -> ApiResult<Option<JobRow>> {
+/// Waits until a job has ended, is gone, the time is up or the process is about to stop, and tells how it is then.
+pub async fn wait_for_end(service: &Service, id: &str, seconds: u32) -> ApiResult<Option<JobRow>> {
+    let store = &service.store;
+    let mut stopping = service.streams.stopping();
     let until = Instant::now() + Duration::from_secs(seconds.into());
     let mut changes = store.job_changes();
     loop {
         changes.mark_unchanged();
         let job = store.job(id).await?;
-        let over = Instant::now() >= until;
+        let over = Instant::now() >= until || *stopping.borrow();
         match job {
             Some(job) if !job.status.is_terminal() && !over => {}
             ended => return Ok(ended),
         }
         let next = until.min(Instant::now() + LOOK);
         // Time that runs out is no error: the row is looked at again.
-        let changed = tokio::time::timeout_at(next, changes.changed()).await;
-        if matches!(changed, Ok(Err(_))) {
-            return Err(StoreError::Interrupted.into());
+        tokio::select! {
+            changed = tokio::time::timeout_at(next, changes.changed()) => {
+                if matches!(changed, Ok(Err(_))) {
+                    return Err(StoreError::Interrupted.into());
+                }
+            }
+            _ = stopping.wait_for(|stopping| *stopping) => {}
         }
     }
 }

@@ -79,7 +79,11 @@ struct ReportParameters {
 /// a study of several has one for each among its files.
 #[utoipa::path(
     get, path = "/v1/jobs/{id}/report", operation_id = "show_report", tag = "jobs",
-    params(("id" = uuid::Uuid, Path, description = "the job"), ReportParameters),
+    params(
+        ("id" = uuid::Uuid, Path, description = "the job"),
+        ("Prefer" = Option<String>, Header, description = "wait=n: wait at most n seconds for the end"),
+        ReportParameters
+    ),
     responses(
         (status = 200, description = "the report", content(
             (ReportDocument = "application/json"), (String = "text/csv"), (String = "application/xml"),
@@ -99,7 +103,7 @@ async fn report(
     headers: HeaderMap,
 ) -> ApiResult {
     let format = wanted(&parameters, &headers)?;
-    let job = successful(&service, &id).await?;
+    let job = successful(&service, &id, &headers).await?;
     if job.kind != JobKind::Study.name() {
         let detail = format!("a job of kind {} has no report; a study has", job.kind);
         return Err(ApiError::new("no-such-output", detail));

@@ -7,6 +7,7 @@ use utoipa_axum::routes;
 
 use super::error::{ApiError, ApiResult};
 use super::parameters::{FileName, Id, no_such_job};
+use super::prefer::{wait_for_end, wanted_wait};
 use super::{Service, conditional, guard, json};
 use crate::schema::job::JobStatus;
 use crate::schema::prediction::ResultDocument;
@@ -21,9 +22,14 @@ pub fn router() -> OpenApiRouter<Service> {
     manifest.routes(routes!(file))
 }
 
-/// The job, when it has results.
-pub(super) async fn successful(service: &Service, id: &str) -> ApiResult<JobRow> {
-    let job = service.store.job(id).await?.ok_or_else(no_such_job)?;
+/// The job, when it has results; a client that prefers to wait for them does so.
+pub(super) async fn successful(
+    service: &Service,
+    id: &str,
+    headers: &HeaderMap,
+) -> ApiResult<JobRow> {
+    let wait = wanted_wait(headers, service.limits.wait_s).unwrap_or(0);
+    let job = wait_for_end(service, id, wait).await?.ok_or_else(no_such_job)?;
     match job.status {
         JobStatus::Successful => Ok(job),
         JobStatus::Failed | JobStatus::Dismissed => {
@@ -48,18 +54,23 @@ pub(super) async fn successful(service: &Service, id: &str) -> ApiResult<JobRow>
 
 /// The manifest: files with their hashes, statistics, provenance.
 #[utoipa::path(
-    get, path = "/v1/jobs/{id}/results", operation_id = "show_results", tag = "jobs", params(("id" = uuid::Uuid, Path, description = "the job")),
+    get, path = "/v1/jobs/{id}/results", operation_id = "show_results", tag = "jobs",
+    params(
+        ("id" = uuid::Uuid, Path, description = "the job"),
+        ("Prefer" = Option<String>, Header, description = "wait=n: wait at most n seconds for the end"),
+    ),
     responses(
-        (status = 200, description = "the manifest", body = ResultDocument),
+        (status = 200, description = "the manifest", body = ResultDocument, headers(("ETag" = String, description = "its hash"))),
+        (status = 304, description = "the client has it already"),
         (status = 404, description = "there is no such job, or it has not ended"),
         (status = 422, description = "the job failed or was dismissed"),
     )
 )]
-async fn manifest(State(service): State<Service>, Id(id): Id) -> ApiResult {
-    let job = successful(&service, &id).await?;
+async fn manifest(State(service): State<Service>, Id(id): Id, headers: HeaderMap) -> ApiResult {
+    let job = successful(&service, &id, &headers).await?;
     let result = job.result.as_deref().unwrap_or("null");
     let result: serde_json::Value = serde_json::from_str(result).map_err(ApiError::internal)?;
-    Ok(json(StatusCode::OK, &result))
+    conditional::document(&headers, json(StatusCode::OK, &result)).await
 }
 
 /// One file of the results.
@@ -83,7 +94,7 @@ async fn file(
     FileName { job, name }: FileName,
     headers: HeaderMap,
 ) -> ApiResult {
-    successful(&service, &job).await?;
+    successful(&service, &job, &headers).await?;
     let row = service.store.job_file(&job, &name).await?;
     let row =
         row.ok_or_else(|| ApiError::new("no-such-output", "the job has no file of this name"))?;

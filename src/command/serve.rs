@@ -1,5 +1,6 @@
 //! `facies serve`: the API, with workers in the same process.
 
+use std::io::Write as _;
 use std::net::SocketAddr;
 use std::sync::Arc;
 
@@ -27,12 +28,12 @@ pub enum ServeError {
     Telemetry(#[from] TelemetryError),
     #[error("data folder: {0}")]
     Store(#[from] StoreError),
+    #[error("metrics: {0}")]
+    Metrics(#[from] metrics_exporter_prometheus::BuildError),
     #[error("{address} cannot be listened on: {source}")]
     Listen { address: SocketAddr, source: std::io::Error },
     #[error("{0}")]
     FailPoint(#[from] FailPointError),
-    #[error("metrics: {0}")]
-    Metrics(#[from] metrics_exporter_prometheus::BuildError),
     #[error("{0}")]
     Io(#[from] std::io::Error),
 }
@@ -120,6 +121,10 @@ pub fn run(arguments: &Arguments) -> Result<(), ServeError> {
     let server = runtime.block_on(Server::start(config))?;
     // One line on standard output, for programs that started this one with port 0.
     println!("listening on http://{}", server.address);
+    if let Some(address) = server.admin {
+        // Whoever started this program may have stopped reading.
+        let _ = writeln!(std::io::stdout(), "metrics on http://{address}/metrics");
+    }
     let workers = runtime.block_on(server.run_until(stop_signal()))?;
     workers.stop(grace);
     // What still computes for a request that nobody waits for ends with the process.
@@ -130,6 +135,8 @@ pub fn run(arguments: &Arguments) -> Result<(), ServeError> {
 /// A server that listens and whose workers work.
 pub struct Server {
     pub address: SocketAddr,
+    /// Where those who run the service look.
+    pub admin: Option<SocketAddr>,
     listener: TcpListener,
     service: Service,
     workers: Workers,
@@ -147,6 +154,14 @@ impl Server {
             .await
             .map_err(|source| ServeError::Listen { address, source })?;
         let address = listener.local_addr()?;
+        let admin = match config.admin_listen {
+            Some(address) => Some(
+                api::admin::listen(address, store.clone())
+                    .await
+                    .map_err(|source| ServeError::Listen { address, source })?,
+            ),
+            None => None,
+        };
         let library = Library::new(store.clone(), config.mesh_cache_bytes);
         let runtime = Handle::current();
         let service = Service::new(config.clone(), store.clone(), library.clone());
@@ -159,7 +174,7 @@ impl Server {
         let work = || -> Box<dyn Work> { Box::new(SlotWork::new(slots.clone())) };
         let workers = Workers::start(store, &config, &work, runtime)?;
         tracing::info!(%address, workers = config.workers, "serving");
-        Ok(Server { address, listener, service, workers })
+        Ok(Server { address, admin, listener, service, workers })
     }
 
     /// Answers requests until `stop` is done; the workers are still at work then.
@@ -175,12 +190,14 @@ impl Server {
                 tracing::debug!(%error, "TCP_NODELAY");
             }
         });
-        let served =
-            axum::serve(listener, api::router(self.service)).with_graceful_shutdown(async move {
-                stop.await;
-                tracing::info!("stopping");
-                drop(stopping);
-            });
+        let streams = self.service.streams.clone();
+        let answers = api::router(self.service).into_make_service_with_connect_info::<SocketAddr>();
+        let served = axum::serve(listener, answers).with_graceful_shutdown(async move {
+            stop.await;
+            streams.stop();
+            tracing::info!("stopping");
+            drop(stopping);
+        });
         let served = tokio::spawn(served.into_future());
         // The sender goes when it is time to stop.
         let _ = stopped.changed().await;

@@ -128,6 +128,31 @@ pub struct StatusInfo {
     pub links: Vec<Link>,
 }
 
+/// A state that a job was in: the `data` of an event.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct JobEvent {
+    /// From 1, without gaps: the `id` of the event.
+    pub number: u64,
+    /// RFC 3339, UTC.
+    pub at: String,
+    pub status: JobStatus,
+    /// As in statusInfo.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub phase: Option<String>,
+    /// 0 to 100, never falling.
+    #[schema(maximum = 100)]
+    pub progress: u8,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub iteration: Option<u64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub residual: Option<f64>,
+    /// How often it was started.
+    pub attempt: u32,
+}
+
 /// Why a job failed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct JobErrorDocument {

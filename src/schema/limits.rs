@@ -47,6 +47,10 @@ pub struct Limits {
     pub samples_per_mm2: f64,
     /// Scenes times plans times materials times levels times variants of a study.
     pub study_rows: u32,
+    /// Requests of one client in a minute; 0 where nobody is counted.
+    pub requests_per_minute: u32,
+    /// Streams of events that one client may have open.
+    pub event_streams: u32,
 }
 
 impl Default for Limits {
@@ -75,6 +79,8 @@ impl Default for Limits {
             memory_mb: 1_000_000.0,
             samples_per_mm2: 100.0,
             study_rows: 2000,
+            requests_per_minute: 60_000,
+            event_streams: 8,
         }
     }
 }

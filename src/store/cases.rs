@@ -4,6 +4,7 @@ use sqlx::Row as _;
 
 use super::database::{Row, Transaction, is_duplicate, is_reference};
 use super::meshes::insert_mesh;
+use super::tombstones::{bury, bury_case};
 use super::{NewMesh, Store, StoreError};
 
 /// A case to be stored, with the meshes that came in the same request.
@@ -127,10 +128,15 @@ impl Store {
         }
         let mut blobs = column(&mut transaction, FILES_OF_CASE, id).await?;
         let meshes = column(&mut transaction, MESHES_OF_CASE, id).await?;
+        bury_case(&mut transaction, id).await?;
         sqlx::query(DELETE_SHARED_JOBS).bind(id).execute(&mut *transaction).await?;
         sqlx::query("DELETE FROM cases WHERE id = $1").bind(id).execute(&mut *transaction).await?;
         for mesh in meshes {
-            blobs.extend(column(&mut transaction, DELETE_UNUSED_MESH, &mesh).await?);
+            let unused = column(&mut transaction, DELETE_UNUSED_MESH, &mesh).await?;
+            if !unused.is_empty() {
+                bury(&mut transaction, &mesh).await?;
+            }
+            blobs.extend(unused);
         }
         transaction.commit().await?;
         self.jobs_changed();

@@ -4,6 +4,8 @@ use sqlx::Row as _;
 
 use super::cases::AFTER_ALL;
 use super::database::{Row, Transaction, is_reference};
+use super::events::record;
+use super::tombstones::bury;
 use super::{Store, StoreError};
 use crate::schema::job::JobStatus;
 
@@ -189,6 +191,7 @@ impl Store {
         }
         match insert_job(&mut transaction, job).await {
             Ok(()) => {
+                record(&mut transaction, &job.id).await?;
                 transaction.commit().await?;
                 self.jobs_changed();
                 Ok(Enqueued::Accepted)
@@ -203,6 +206,7 @@ impl Store {
         let mut transaction = self.database.begin().await?;
         let dismissed = sqlx::query(DISMISS).bind(id).execute(&mut *transaction).await?;
         if dismissed.rows_affected() == 1 {
+            record(&mut transaction, id).await?;
             transaction.commit().await?;
             self.jobs_changed();
             return Ok(Dismissal::Dismissed);
@@ -213,6 +217,9 @@ impl Store {
             .await?;
         let blobs = rows.iter().map(|row| row.try_get(0)).collect::<Result<Vec<String>, _>>()?;
         let removed = sqlx::query(REMOVE).bind(id).execute(&mut *transaction).await?;
+        if removed.rows_affected() == 1 {
+            bury(&mut transaction, id).await?;
+        }
         transaction.commit().await?;
         self.jobs_changed();
         self.delete_unreferenced_blobs(blobs).await?;

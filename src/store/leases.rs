@@ -7,6 +7,7 @@ use bytes::Bytes;
 use sqlx::Row as _;
 
 use super::database::Query;
+use super::events::record;
 use super::{Store, StoreError};
 
 /// The right of one attempt to write to its job.
@@ -114,12 +115,15 @@ impl Store {
     /// Takes the oldest accepted job, if there is one. Two workers never take the same.
     pub async fn claim(&self, lease: Duration) -> Result<Option<Claim>, StoreError> {
         let token = uuid::Uuid::now_v7().to_string();
+        let mut transaction = self.database.begin().await?;
         let row = sqlx::query(CLAIM)
             .bind(&token)
             .bind(milliseconds(lease))
-            .fetch_optional(self.database.writer())
+            .fetch_optional(&mut *transaction)
             .await?;
         let Some(row) = row else { return Ok(None) };
+        record(&mut transaction, row.try_get("id")?).await?;
+        transaction.commit().await?;
         self.jobs_changed();
         Ok(Some(Claim {
             lease: Lease { job: row.try_get("id")?, token, attempt: row.try_get("attempt")? },
@@ -137,6 +141,7 @@ impl Store {
         length: Duration,
         point: &Point,
     ) -> Result<bool, StoreError> {
+        let mut transaction = self.database.begin().await?;
         let renewed = sqlx::query(RENEW)
             .bind(&lease.job)
             .bind(&lease.token)
@@ -145,8 +150,12 @@ impl Store {
             .bind(point.progress)
             .bind(point.iteration)
             .bind(point.residual)
-            .execute(self.database.writer())
+            .execute(&mut *transaction)
             .await?;
+        if renewed.rows_affected() == 1 {
+            record(&mut transaction, &lease.job).await?;
+        }
+        transaction.commit().await?;
         self.jobs_changed();
         Ok(renewed.rows_affected() == 1)
     }
@@ -197,6 +206,7 @@ impl Store {
                 .execute(&mut *transaction)
                 .await?;
         }
+        record(&mut transaction, &lease.job).await?;
         transaction.commit().await?;
         self.jobs_changed();
         Ok(true)
@@ -204,12 +214,12 @@ impl Store {
 
     /// Ends a job whose own fault it is; false when it is not ours any more.
     pub async fn fail(&self, lease: &Lease, error: &str) -> Result<bool, StoreError> {
-        self.end(sqlx::query(FAIL).bind(&lease.job).bind(&lease.token).bind(error)).await
+        self.end(lease, sqlx::query(FAIL).bind(&lease.job).bind(&lease.token).bind(error)).await
     }
 
     /// Gives a job back untouched, for a worker that is about to stop.
     pub async fn release(&self, lease: &Lease) -> Result<bool, StoreError> {
-        self.end(sqlx::query(RELEASE).bind(&lease.job).bind(&lease.token)).await
+        self.end(lease, sqlx::query(RELEASE).bind(&lease.job).bind(&lease.token)).await
     }
 
     /// Gives a job back that failed through no fault of its own, or fails it when that was the last attempt.
@@ -225,11 +235,16 @@ impl Store {
             .bind(i64::from(attempts))
             .bind(error)
             .bind(PAUSE_AFTER_LOSS_MS);
-        self.end(query).await
+        self.end(lease, query).await
     }
 
-    async fn end(&self, query: Query<'_>) -> Result<bool, StoreError> {
-        let changed = query.execute(self.database.writer()).await?;
+    async fn end(&self, lease: &Lease, query: Query<'_>) -> Result<bool, StoreError> {
+        let mut transaction = self.database.begin().await?;
+        let changed = query.execute(&mut *transaction).await?;
+        if changed.rows_affected() == 1 {
+            record(&mut transaction, &lease.job).await?;
+        }
+        transaction.commit().await?;
         self.jobs_changed();
         Ok(changed.rows_affected() == 1)
     }
@@ -237,11 +252,16 @@ impl Store {
     /// Takes jobs from workers that gave no sign of life for a lease. `error` is for those that this
     /// happened to `attempts` times.
     pub async fn reap(&self, attempts: u32, error: &str) -> Result<Vec<Reaped>, StoreError> {
+        let mut transaction = self.database.begin().await?;
         let rows = sqlx::query(REAP)
             .bind(i64::from(attempts))
             .bind(error)
-            .fetch_all(self.database.writer())
+            .fetch_all(&mut *transaction)
             .await?;
+        for row in &rows {
+            record(&mut transaction, row.try_get("id")?).await?;
+        }
+        transaction.commit().await?;
         if !rows.is_empty() {
             self.jobs_changed();
         }

@@ -4,6 +4,7 @@ use bytes::Bytes;
 use sqlx::Row as _;
 
 use super::database::{Row, Transaction, is_reference};
+use super::tombstones::bury;
 use super::{Store, StoreError};
 
 /// A mesh to be stored, with the bytes that our own writer made of it.
@@ -102,13 +103,16 @@ impl Store {
 
     /// Deletes a mesh that no case and no job refers to, and its bytes.
     pub async fn delete_mesh(&self, id: &str) -> Result<MeshDeletion, StoreError> {
+        let mut transaction = self.database.begin().await?;
         let deleted = sqlx::query("DELETE FROM meshes WHERE id = $1 RETURNING blob")
             .bind(id)
-            .fetch_optional(self.database.writer())
+            .fetch_optional(&mut *transaction)
             .await;
         match deleted {
             Ok(None) => Ok(MeshDeletion::NotFound),
             Ok(Some(row)) => {
+                bury(&mut transaction, id).await?;
+                transaction.commit().await?;
                 self.delete_unreferenced_blobs(vec![row.try_get("blob")?]).await?;
                 Ok(MeshDeletion::Deleted)
             }

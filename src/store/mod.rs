@@ -3,6 +3,8 @@
 mod blobs;
 mod cases;
 mod database;
+mod events;
+mod idempotency;
 mod jobs;
 mod leases;
 mod meshes;
@@ -10,6 +12,7 @@ mod plans;
 mod queue;
 mod responses;
 mod sweep;
+mod tombstones;
 
 use std::fs::File;
 use std::path::{Path, PathBuf};
@@ -19,6 +22,8 @@ use tokio::sync::{RwLock, watch};
 
 pub use blobs::Blobs;
 pub use cases::{CaseRow, Change, NewCase};
+pub use events::EventRow;
+pub use idempotency::Reserved;
 pub use jobs::{Dismissal, Enqueued, JobFilter, JobRow, NewJob};
 pub use leases::{Claim, FileRow, Lease, Point, PublishedFile, Reaped};
 pub use meshes::{MeshDeletion, MeshRow, NewMesh};

@@ -3,7 +3,8 @@
 use sqlx::Row as _;
 
 use super::cases::{AFTER_ALL, Change};
-use super::database::{Row, is_reference};
+use super::database::{Row, is_duplicate, is_reference};
+use super::tombstones::bury;
 use super::{Store, StoreError};
 
 #[derive(Clone, Debug)]
@@ -80,6 +81,8 @@ impl Store {
             .await;
         match inserted {
             Ok(_) => Ok(true),
+            // The same request came twice at the same time.
+            Err(error) if is_duplicate(&error) => Ok(true),
             Err(error) if is_reference(&error) => Ok(false),
             Err(error) => Err(error.into()),
         }
@@ -107,12 +110,17 @@ impl Store {
         (case_id, id): (&str, &str),
         version: Option<i64>,
     ) -> Result<Change, StoreError> {
+        let mut transaction = self.database.begin().await?;
         let changed = sqlx::query(DELETE)
             .bind(id)
             .bind(case_id)
             .bind(version.unwrap_or(0))
-            .execute(self.database.writer())
+            .execute(&mut *transaction)
             .await?;
+        if changed.rows_affected() == 1 {
+            bury(&mut transaction, id).await?;
+        }
+        transaction.commit().await?;
         self.plan_change(case_id, id, changed.rows_affected()).await
     }
 

@@ -119,9 +119,9 @@ async fn erasing_a_case_takes_its_jobs_results_and_meshes_along() {
     ask(server.delete(&path).header("if-match", "\"9\"")).await.problem(412, "precondition-failed");
     let erased = ask(server.delete(&path).header("if-match", "\"1\"")).await;
     assert_eq!(erased.status, StatusCode::NO_CONTENT);
-    ask(server.get(&path)).await.problem(404, "not-found");
-    ask(server.get(&job)).await.problem(404, "no-such-job");
-    ask(server.get(&own)).await.problem(404, "not-found");
+    ask(server.get(&path)).await.problem(410, "gone");
+    ask(server.get(&job)).await.problem(410, "gone");
+    ask(server.get(&own)).await.problem(410, "gone");
     let kept = format!("/v1/meshes/{}", shared["id"].as_str().unwrap());
     ask(server.get(&kept)).await.expect(StatusCode::OK);
     let files = |name: &str| {

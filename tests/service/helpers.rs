@@ -2,7 +2,8 @@
 
 use std::io::{BufRead, BufReader};
 use std::path::Path;
-use std::process::{Child, Command, Stdio};
+use std::process::{Child, ChildStdout, Command, Stdio};
+use std::time::{Duration, Instant};
 
 use facies::format::{VolumeOutput, vtu};
 use facies::mesh::{CellShape, Frame, Vector, sample};
@@ -14,6 +15,7 @@ use tempfile::TempDir;
 /// A service in a process of its own. It is killed when the test ends.
 pub struct Server {
     child: Child,
+    stdout: BufReader<ChildStdout>,
     address: String,
     pub client: Client,
     folder: TempDir,
@@ -50,11 +52,18 @@ impl Server {
     pub fn start_command(mut command: Command, folder: TempDir) -> Server {
         let mut child = command.spawn().unwrap();
         let mut line = String::new();
-        let stdout = child.stdout.take().unwrap();
-        BufReader::new(stdout).read_line(&mut line).unwrap();
+        let mut stdout = BufReader::new(child.stdout.take().unwrap());
+        stdout.read_line(&mut line).unwrap();
         let address = line.trim().strip_prefix("listening on ");
         let address = address.unwrap_or_else(|| panic!("the server said {line:?}")).to_owned();
-        Server { child, address, client: Client::new(), folder }
+        Server { child, stdout, address, client: Client::new(), folder }
+    }
+
+    /// What the process says after where it listens.
+    pub fn second_line(&mut self) -> String {
+        let mut line = String::new();
+        self.stdout.read_line(&mut line).unwrap();
+        line.trim().to_owned()
     }
 
     pub fn process(&self) -> u32 {
@@ -88,6 +97,20 @@ impl Server {
         let ended = self.child.wait().unwrap().success();
         let empty = TempDir::new().unwrap();
         (std::mem::replace(&mut self.folder, empty), ended)
+    }
+
+    /// The same, with the most that the process may take to end.
+    pub fn terminate_within(mut self, most: Duration) -> bool {
+        let process = self.child.id().to_string();
+        assert!(Command::new("kill").args(["-TERM", &process]).status().unwrap().success());
+        let until = Instant::now() + most;
+        while Instant::now() < until {
+            if let Some(status) = self.child.try_wait().unwrap() {
+                return status.success();
+            }
+            std::thread::sleep(Duration::from_millis(10));
+        }
+        false
     }
 
     pub fn host(&self) -> &str {

@@ -106,7 +106,7 @@ async fn a_case_comes_with_its_image_and_takes_it_along_when_it_is_erased() {
 
     let erased = server.delete(&format!("/v1/cases/{id}")).header("if-match", "\"1\"");
     assert_eq!(ask(erased).await.status, StatusCode::NO_CONTENT);
-    ask(server.get(&format!("/v1/meshes/{image}"))).await.problem(404, "not-found");
+    ask(server.get(&format!("/v1/meshes/{image}"))).await.problem(410, "gone");
 }
 
 #[tokio::test]

@@ -106,8 +106,8 @@ async fn a_job_that_is_not_waited_for_is_accepted_and_found_again() {
     assert_eq!(dismissed["status"], "dismissed");
     ask(server.get(&format!("/v1/jobs/{id}/results"))).await.problem(422, "job-failed");
     assert_eq!(ask(server.delete(&format!("/v1/jobs/{id}"))).await.status, StatusCode::NO_CONTENT);
-    ask(server.get(&format!("/v1/jobs/{id}"))).await.problem(404, "no-such-job");
-    ask(server.delete(&format!("/v1/jobs/{id}"))).await.problem(404, "no-such-job");
+    ask(server.get(&format!("/v1/jobs/{id}"))).await.problem(410, "gone");
+    ask(server.delete(&format!("/v1/jobs/{id}"))).await.problem(410, "gone");
 }
 
 #[tokio::test]

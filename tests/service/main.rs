@@ -6,16 +6,20 @@ mod bad_meshes;
 mod bad_requests;
 mod cases;
 mod demo;
+mod events;
 mod faults;
 #[allow(dead_code, reason = "the tests of the formats use the rest")]
 #[path = "../mechanics/formats_samples.rs"]
 mod formats_samples;
+#[allow(dead_code, reason = "the tests of faults use the rest")]
 mod helpers;
+mod idempotency;
 mod images;
 mod jobs;
 mod meshes;
 mod openapi;
 mod optimise;
+mod origins;
 mod plans;
 mod queue;
 mod response;
@@ -24,4 +28,5 @@ mod settings;
 #[allow(dead_code, reason = "other tests use the rest")]
 mod shared;
 mod study;
+mod watching;
 mod worker;

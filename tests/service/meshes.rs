@@ -54,8 +54,8 @@ async fn an_upload_is_reported_and_the_same_bytes_are_the_same_mesh() {
 
     let deleted = ask(server.delete(&format!("/v1/meshes/{id}"))).await;
     assert_eq!(deleted.status, StatusCode::NO_CONTENT);
-    ask(server.get(&format!("/v1/meshes/{id}"))).await.problem(404, "not-found");
-    ask(server.delete(&format!("/v1/meshes/{id}"))).await.problem(404, "not-found");
+    ask(server.get(&format!("/v1/meshes/{id}"))).await.problem(410, "gone");
+    ask(server.delete(&format!("/v1/meshes/{id}"))).await.problem(410, "gone");
     ask(upload()).await.expect(StatusCode::CREATED);
 }
 

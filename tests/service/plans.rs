@@ -49,7 +49,7 @@ async fn a_plan_is_kept_changed_by_version_and_carried_out_as_it_was() {
     ask(server.delete(&path)).await.problem(428, "precondition-required");
     let deleted = ask(server.delete(&path).header("if-match", "*")).await;
     assert_eq!(deleted.status, StatusCode::NO_CONTENT);
-    ask(server.get(&path)).await.problem(404, "not-found");
+    ask(server.get(&path)).await.problem(410, "gone");
     let gone = ask(server.post("/v1/jobs").json(&spec)).await;
     assert_eq!(gone.problem(422, "validation-failed")["errors"][0]["pointer"], "/plan_id");
 }

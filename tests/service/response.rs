@@ -218,9 +218,9 @@ async fn a_response_is_built_once_and_goes_with_its_case() {
 
     let erased = ask(server.delete(&format!("/v1/cases/{case}")).header("if-match", "*")).await;
     assert_eq!(erased.status, StatusCode::NO_CONTENT);
-    apply(&server, &case, &plan(), OCTETS).await.problem(404, "not-found");
+    apply(&server, &case, &plan(), OCTETS).await.problem(410, "gone");
     let job = format!("/v1/jobs/{}", first["id"].as_str().unwrap());
-    ask(server.get(&job)).await.problem(404, "no-such-job");
+    ask(server.get(&job)).await.problem(410, "gone");
     let blobs = std::fs::read_dir(server.path().join("blobs")).unwrap();
     let left = blobs.flat_map(|folder| std::fs::read_dir(folder.unwrap().path()).unwrap()).count();
     assert_eq!(left, 0, "nothing of the case is left on the disk");

@@ -237,7 +237,7 @@ async fn cases_are_studied_against_the_skin_of_a_job_and_go_with_their_studies()
     let erased = ask(server.delete(&path).header("if-match", "*")).await;
     assert_eq!(erased.status, StatusCode::NO_CONTENT);
     let gone = format!("/v1/jobs/{}", job["id"].as_str().unwrap());
-    ask(server.get(&gone)).await.problem(404, "no-such-job");
+    ask(server.get(&gone)).await.problem(410, "gone");
 }
 
 #[tokio::test]

@@ -1,0 +1,189 @@
+//! The events of a job as they happen (server-sent events, HTML Living Standard, section 9.2).
+
+use std::collections::VecDeque;
+use std::convert::Infallible;
+use std::time::Duration;
+
+use axum::Extension;
+use axum::extract::State;
+use axum::http::{HeaderMap, StatusCode};
+use axum::response::sse::{Event, KeepAlive, Sse};
+use axum::response::{IntoResponse, Response};
+use futures::Stream;
+use tokio::sync::watch;
+use tokio::time::Instant;
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+use super::client::Client;
+use super::error::{ApiError, ApiResult};
+use super::guard::check_accept;
+use super::parameters::{Id, no_such_job};
+use super::streams::StreamPlace;
+use super::{Service, time};
+use crate::schema::job::{JobEvent, JobStatus};
+use crate::store::{EventRow, Store, StoreError};
+
+const MEDIA_TYPE: &str = "text/event-stream";
+const LAST_ID: &str = "last-event-id";
+/// A comment in this time keeps proxies from closing a silent stream.
+const SILENCE: Duration = Duration::from_secs(15);
+/// After what time a client that lost its stream comes back.
+const RETRY: Duration = Duration::from_secs(2);
+/// The database is looked at this often even when nothing was announced.
+const LOOK: Duration = Duration::from_secs(1);
+/// And not more often than this, however much is announced.
+const PAUSE: Duration = Duration::from_millis(100);
+
+pub fn router() -> OpenApiRouter<Service> {
+    OpenApiRouter::new().routes(routes!(follow))
+}
+
+/// The events of a job, from the first or from the one after `Last-Event-ID`, until the job has ended. `event` is
+/// `state` when a job is accepted or an attempt begins, `progress` where its work stands, and `end`; `id` counts from 1
+/// without gaps; `data` is a `JobEvent`. The last thousand events of a job are kept. A stream that breaks is resumed
+/// with the id that was read last; when all was told, the answer is 204 and there is no need to come back.
+#[utoipa::path(
+    get, path = "/v1/jobs/{id}/events", operation_id = "follow_job", tag = "jobs",
+    params(
+        ("id" = uuid::Uuid, Path, description = "the job"),
+        ("Last-Event-ID" = Option<u64>, Header, description = "the id of the last event that was read"),
+    ),
+    responses(
+        (status = 200, description = "the events", content((String = "text/event-stream"))),
+        (status = 204, description = "the job has ended and everything was told"),
+    )
+)]
+async fn follow(
+    State(service): State<Service>,
+    Id(job): Id,
+    client: Option<Extension<Client>>,
+    headers: HeaderMap,
+) -> ApiResult<Response> {
+    check_accept(&headers, MEDIA_TYPE)?;
+    let after = last_id(&headers)?;
+    let row = service.store.job(&job).await?.ok_or_else(no_such_job)?;
+    let mut events = service.store.job_events(&job, after).await?.ok_or_else(no_such_job)?;
+    if events.is_empty() && after == 0 {
+        service.store.record_job(&job).await?;
+        events = service.store.job_events(&job, after).await?.ok_or_else(no_such_job)?;
+    }
+    if events.is_empty() && row.status.is_terminal() {
+        return Ok(StatusCode::NO_CONTENT.into_response());
+    }
+    let client = client.map_or_else(|| Client::named(""), |Extension(client)| client);
+    let mut told = Told {
+        place: service.streams.enter(client)?,
+        changes: service.store.job_changes(),
+        stopping: service.streams.stopping(),
+        store: service.store,
+        job,
+        after,
+        waiting: VecDeque::from([Event::default().retry(RETRY)]),
+        ended: false,
+        looked: Instant::now(),
+    };
+    told.take(&events);
+    let stream = Sse::new(told.stream()).keep_alive(KeepAlive::new().interval(SILENCE));
+    Ok(stream.into_response())
+}
+
+/// 0 where everything is to be told.
+fn last_id(headers: &HeaderMap) -> ApiResult<i64> {
+    let Some(value) = headers.get(LAST_ID) else { return Ok(0) };
+    let number = value.to_str().ok().and_then(|text| text.parse().ok());
+    let detail = "Last-Event-ID is the id of an event, a number from 0";
+    number
+        .filter(|number: &i64| *number >= 0)
+        .ok_or_else(|| ApiError::invalid_parameter("Last-Event-ID", detail))
+}
+
+/// What a stream has told and has yet to tell.
+struct Told {
+    place: StreamPlace,
+    changes: watch::Receiver<u64>,
+    stopping: watch::Receiver<bool>,
+    store: Store,
+    job: String,
+    /// The number of the last event that was taken.
+    after: i64,
+    waiting: VecDeque<Event>,
+    ended: bool,
+    looked: Instant,
+}
+
+impl Told {
+    fn stream(self) -> impl Stream<Item = Result<Event, Infallible>> {
+        futures::stream::unfold(self, |mut told| async move {
+            loop {
+                if let Some(event) = told.waiting.pop_front() {
+                    return Some((Ok(event), told));
+                }
+                if told.ended {
+                    drop(told.place);
+                    return None;
+                }
+                told.wait().await;
+                if let Err(error) = told.look().await {
+                    // The client comes back and misses nothing.
+                    tracing::warn!(job.id = %told.job, %error, "a stream of events broke off");
+                    told.ended = true;
+                }
+            }
+        })
+    }
+
+    /// Until something may have happened, or the process is about to stop.
+    async fn wait(&mut self) {
+        tokio::time::sleep_until(self.looked + PAUSE).await;
+        tokio::select! {
+            _ = tokio::time::timeout(LOOK, self.changes.changed()) => {}
+            _ = self.stopping.wait_for(|stopping| *stopping) => self.ended = true,
+        }
+    }
+
+    async fn look(&mut self) -> Result<(), StoreError> {
+        self.changes.mark_unchanged();
+        self.looked = Instant::now();
+        match self.store.job_events(&self.job, self.after).await? {
+            Some(events) => self.take(&events),
+            // It was removed.
+            None => self.ended = true,
+        }
+        Ok(())
+    }
+
+    fn take(&mut self, rows: &[EventRow]) {
+        for row in rows {
+            self.after = row.number;
+            match event(row) {
+                Ok(event) => self.waiting.push_back(event),
+                Err(error) => tracing::error!(job.id = %self.job, %error, "an event is not told"),
+            }
+        }
+        // A job that failed may have been accepted once more, so only its last state can be the end.
+        if rows.last().is_some_and(|row| row.status.is_terminal()) {
+            self.ended = true;
+        }
+    }
+}
+
+fn event(row: &EventRow) -> Result<Event, axum::Error> {
+    let name = match row.status {
+        status if status.is_terminal() => "end",
+        JobStatus::Running if row.phase.is_some() => "progress",
+        _ => "state",
+    };
+    let unsigned = |number: i64| u64::try_from(number).unwrap_or_default();
+    let data = JobEvent {
+        number: unsigned(row.number),
+        at: time::rfc3339(row.at),
+        status: row.status,
+        phase: row.phase.clone().filter(|_| row.status == JobStatus::Running),
+        progress: u8::try_from(row.progress.clamp(0, 100)).unwrap_or(100),
+        iteration: row.iteration.map(unsigned),
+        residual: row.residual,
+        attempt: u32::try_from(row.attempt).unwrap_or(u32::MAX),
+    };
+    Event::default().event(name).id(row.number.to_string()).json_data(data)
+}

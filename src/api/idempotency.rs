@@ -1,0 +1,55 @@
+//! `Idempotency-Key` (draft-ietf-httpapi-idempotency-key-header-07): a request that is sent again, because its
+//! answer got lost, makes nothing twice. The first request with a key gives an id to what it makes; the same
+//! request with the same key makes that or finds it made.
+
+use axum::http::HeaderMap;
+
+use super::error::{ApiError, ApiResult};
+use super::{Service, gone};
+use crate::schema::canonical::sha256_hex;
+use crate::schema::problem::Problem;
+use crate::store::Reserved;
+
+const HEADER: &str = "idempotency-key";
+const LONGEST: usize = 255;
+
+/// The id of what a request makes.
+pub struct NewId {
+    pub id: String,
+    /// Whether an earlier request may have made it already.
+    pub is_known: bool,
+}
+
+/// The id for what a request makes at an address: that of the first request with its key, else one of its own.
+/// `content` is all that the request says, however it is packed.
+pub async fn new_id(
+    service: &Service,
+    headers: &HeaderMap,
+    address: &str,
+    content: &[&[u8]],
+) -> ApiResult<NewId> {
+    let id = uuid::Uuid::now_v7().to_string();
+    let Some(key) = key(headers)? else { return Ok(NewId { id, is_known: false }) };
+    let key = sha256_hex(format!("{address}\n{key}").as_bytes());
+    let hashes: Vec<String> = content.iter().map(|part| sha256_hex(part)).collect();
+    let fingerprint = sha256_hex(hashes.concat().as_bytes());
+    match service.store.reserve(&key, &fingerprint, &id).await? {
+        Reserved::Fresh => Ok(NewId { id, is_known: false }),
+        Reserved::Again(id) => match service.store.erased(&id).await? {
+            Some(erased) => Err(gone::gone(&id, erased)),
+            None => Ok(NewId { id, is_known: true }),
+        },
+        Reserved::Other => {
+            let detail = "another request was sent with this Idempotency-Key";
+            Err(ApiError::new("idempotency-mismatch", detail))
+        }
+    }
+}
+
+fn key(headers: &HeaderMap) -> ApiResult<Option<&str>> {
+    let Some(value) = headers.get(HEADER) else { return Ok(None) };
+    let text = value.to_str().ok().filter(|text| (1..=LONGEST).contains(&text.len()));
+    let detail = format!("an Idempotency-Key has 1 to {LONGEST} visible characters");
+    let wrong = || Problem::new("invalid-parameter", detail).with("parameter", "Idempotency-Key");
+    text.map(Some).ok_or_else(|| wrong().into())
+}

@@ -1,0 +1,119 @@
+//! How many requests a client may send in a minute, and headers that tell it how many are left
+//! (draft-ietf-httpapi-ratelimit-headers-10).
+//!
+//! A bucket holds a minute's worth of requests and fills evenly, so that short bursts pass and long ones
+//! settle at the allowed rate. Source: the generic cell rate algorithm, ITU-T I.371, 2004, annex A.
+
+use std::collections::HashMap;
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+use axum::http::{HeaderName, HeaderValue, header};
+use axum::response::Response;
+
+use super::client::Client;
+use super::error::ApiError;
+use crate::schema::problem::Problem;
+
+const WINDOW: Duration = Duration::from_secs(60);
+/// Clients that are remembered at once; above it those with a full bucket are forgotten.
+const REMEMBERED: usize = 10_000;
+
+/// The buckets of all clients.
+pub struct Rates {
+    per_minute: u32,
+    /// When the bucket of each client will be full again.
+    full: Mutex<HashMap<Client, Instant>>,
+}
+
+/// What a client has left.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Left {
+    per_minute: u32,
+    requests: u32,
+    /// Seconds until the bucket is full again.
+    reset_s: u64,
+}
+
+impl Rates {
+    /// 0 means that nobody is counted.
+    pub fn new(per_minute: u32) -> Self {
+        Rates { per_minute, full: Mutex::default() }
+    }
+
+    /// Takes one request out of the bucket of a client; `None` where nobody is counted.
+    pub fn take(&self, client: Client) -> Result<Option<Left>, ApiError> {
+        self.take_at(client, Instant::now())
+    }
+
+    fn take_at(&self, client: Client, now: Instant) -> Result<Option<Left>, ApiError> {
+        if self.per_minute == 0 {
+            return Ok(None);
+        }
+        let one = WINDOW / self.per_minute;
+        let mut full = self.full.lock().unwrap_or_else(PoisonError::into_inner);
+        if full.len() >= REMEMBERED {
+            full.retain(|_, when| *when > now);
+        }
+        let before = full.get(&client).map_or(now, |when| (*when).max(now));
+        let after = before + one;
+        let missing = after - now;
+        if missing > WINDOW {
+            return Err(self.refusal(missing - WINDOW));
+        }
+        full.insert(client, after);
+        let left = (WINDOW - missing).as_secs_f64() / one.as_secs_f64();
+        Ok(Some(Left {
+            per_minute: self.per_minute,
+            requests: left as u32,
+            reset_s: missing.as_secs() + 1,
+        }))
+    }
+
+    fn refusal(&self, wait: Duration) -> ApiError {
+        let seconds = wait.as_secs() + 1;
+        let detail = format!("{} requests a minute are allowed", self.per_minute);
+        let problem = Problem::new("rate-limited", detail).with("limit", self.per_minute);
+        ApiError::from(problem).header(header::RETRY_AFTER, HeaderValue::from(seconds))
+    }
+}
+
+impl Left {
+    /// Writes what is left into the answer.
+    pub fn tell(&self, response: &mut Response) {
+        let policy = format!("\"requests\";q={};w={}", self.per_minute, WINDOW.as_secs());
+        let left = format!("\"requests\";r={};t={}", self.requests, self.reset_s);
+        for (name, text) in [("ratelimit-policy", policy), ("ratelimit", left)] {
+            if let Ok(value) = HeaderValue::from_str(&text) {
+                response.headers_mut().insert(HeaderName::from_static(name), value);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_bucket_is_emptied_by_a_burst_and_fills_evenly() {
+        let rates = Rates::new(60);
+        let (alice, bob) = (Client::named("alice"), Client::named("bob"));
+        let start = Instant::now();
+        for taken in 1..=60 {
+            let left = rates.take_at(alice.clone(), start).unwrap().unwrap();
+            assert_eq!(left.requests, 60 - taken);
+        }
+        assert!(rates.take_at(alice.clone(), start).is_err());
+        assert!(rates.take_at(bob, start).is_ok(), "others have buckets of their own");
+        let later = start + Duration::from_secs(2);
+        assert!(rates.take_at(alice.clone(), later).is_ok());
+        assert!(rates.take_at(alice.clone(), later).is_ok());
+        assert!(rates.take_at(alice, later).is_err());
+    }
+
+    #[test]
+    fn nobody_is_counted_at_0() {
+        assert_eq!(Rates::new(0).take(Client::named("alice")).unwrap(), None);
+    }
+}

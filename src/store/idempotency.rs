@@ -1,0 +1,54 @@
+//! Requests that are sent again: the id of what the first of them made, or would have made. No answer is
+//! kept, only the id, so that an answer that got lost is given again as the resource is now.
+
+use sqlx::Row as _;
+
+use super::{Store, StoreError};
+
+/// How long a key is remembered.
+const KEPT_MS: i64 = 24 * 3600 * 1000;
+
+/// What a key stands for.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Reserved {
+    /// Nobody used the key before; the id given is its own.
+    Fresh,
+    /// The same request was sent before, and this is the id of what it makes.
+    Again(String),
+    /// Another request was sent with this key.
+    Other,
+}
+
+const FORGET: &str = "DELETE FROM idempotency_keys WHERE created < (SELECT now_ms FROM clock) - $1";
+const RESERVE: &str = "INSERT INTO idempotency_keys (key, fingerprint, resource, created) \
+     VALUES ($1, $2, $3, (SELECT now_ms FROM clock)) ON CONFLICT (key) DO NOTHING";
+const FIND: &str = "SELECT fingerprint, resource FROM idempotency_keys WHERE key = $1";
+
+impl Store {
+    /// Gives a key the id that what its request makes is to have, unless it has one.
+    pub async fn reserve(
+        &self,
+        key: &str,
+        fingerprint: &str,
+        resource: &str,
+    ) -> Result<Reserved, StoreError> {
+        let mut transaction = self.database.begin().await?;
+        sqlx::query(FORGET).bind(KEPT_MS).execute(&mut *transaction).await?;
+        let reserved = sqlx::query(RESERVE)
+            .bind(key)
+            .bind(fingerprint)
+            .bind(resource)
+            .execute(&mut *transaction)
+            .await?;
+        let row = sqlx::query(FIND).bind(key).fetch_one(&mut *transaction).await?;
+        transaction.commit().await?;
+        if reserved.rows_affected() == 1 {
+            return Ok(Reserved::Fresh);
+        }
+        let known: String = row.try_get("fingerprint")?;
+        Ok(match known == fingerprint {
+            true => Reserved::Again(row.try_get("resource")?),
+            false => Reserved::Other,
+        })
+    }
+}
