@@ -3,9 +3,11 @@
 use std::io;
 use std::path::PathBuf;
 
+use super::admin::AdminError;
 use super::demo::DemoError;
 use super::health::HealthError;
 use super::serve::ServeError;
+use crate::config::ConfigError;
 use crate::jobs::JobError;
 use crate::schema::Problem;
 use crate::schema::job::ErrorClass;
@@ -42,6 +44,10 @@ pub enum CommandError {
     #[error(transparent)]
     Serve(#[from] ServeError),
     #[error(transparent)]
+    Admin(#[from] AdminError),
+    #[error(transparent)]
+    Config(#[from] ConfigError),
+    #[error(transparent)]
     Health(#[from] HealthError),
 }
 
@@ -58,9 +64,13 @@ impl CommandError {
             CommandError::Demo(error) if error.is_setting() => CONFIGURATION,
             CommandError::Serve(error) if error.is_setting() => CONFIGURATION,
             CommandError::Health(error) if error.is_setting() => CONFIGURATION,
-            CommandError::Demo(_) | CommandError::Serve(_) | CommandError::Health(_) => {
-                INFRASTRUCTURE
-            }
+            CommandError::Admin(error) if error.is_setting() => CONFIGURATION,
+            CommandError::Admin(AdminError::Findings { .. }) => FAILED,
+            CommandError::Config(_) => CONFIGURATION,
+            CommandError::Demo(_)
+            | CommandError::Serve(_)
+            | CommandError::Health(_)
+            | CommandError::Admin(_) => INFRASTRUCTURE,
             CommandError::Job(error) => match error.class() {
                 ErrorClass::Input => REFUSED,
                 ErrorClass::Infrastructure => INFRASTRUCTURE,

@@ -2,19 +2,23 @@
 
 use std::net::SocketAddr;
 use std::sync::Arc;
+use std::time::Duration;
 
 use axum::serve::ListenerExt as _;
-use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
 use tokio::net::TcpListener;
 use tokio::runtime::Handle;
 
+use super::settings::Arguments;
 use crate::api::{self, Service};
-use crate::config::{Config, ConfigError, SETTINGS};
+use crate::config::{Config, ConfigError};
 use crate::jobs::library::Library;
 use crate::jobs::numerics::Numerics;
 use crate::jobs::worker::Workers;
 use crate::store::{Store, StoreError};
 use crate::telemetry::{self, TelemetryError};
+
+/// Between two looks for bytes that nothing refers to.
+const SWEEP_EVERY: Duration = Duration::from_secs(3600);
 
 #[derive(Debug, thiserror::Error)]
 pub enum ServeError {
@@ -22,7 +26,7 @@ pub enum ServeError {
     Config(#[from] ConfigError),
     #[error("{0}")]
     Telemetry(#[from] TelemetryError),
-    #[error("data folder: {0}")]
+    #[error("{0}")]
     Store(#[from] StoreError),
     #[error("{address} cannot be listened on: {source}")]
     Listen { address: SocketAddr, source: std::io::Error },
@@ -35,77 +39,16 @@ impl ServeError {
     pub fn is_setting(&self) -> bool {
         match self {
             ServeError::Io(_) => false,
-            ServeError::Store(error) => matches!(
-                error,
-                StoreError::InUse
-                    | StoreError::Files(_)
-                    | StoreError::SchemaTooNew { .. }
-                    | StoreError::Schema(_)
-            ),
+            ServeError::Store(error) => error.is_setting(),
             _ => true,
         }
     }
 }
 
-/// The settings as flags; each may as well be an environment variable.
-#[derive(Clone, Debug, Default)]
-pub struct Arguments {
-    given: Vec<(&'static str, String)>,
-}
-
-impl Arguments {
-    /// What was given for a setting: by its flag, else by its variable.
-    pub fn get(&self, name: &str) -> Option<String> {
-        let flag = self.given.iter().find(|(given, _)| *given == name);
-        flag.map(|(_, value)| value.clone()).or_else(|| {
-            let setting = SETTINGS.iter().find(|setting| setting.name == name)?;
-            let value = std::env::var_os(setting.variable())?;
-            Some(value.to_string_lossy().into_owned())
-        })
-    }
-}
-
-impl Args for Arguments {
-    fn augment_args(command: Command) -> Command {
-        // Given twice, the last one counts, as it does in shells and container files.
-        SETTINGS.iter().fold(command.args_override_self(true), |command, setting| {
-            let default = match setting.default {
-                "" => String::new(),
-                default => format!(" [default: {default}]"),
-            };
-            let argument = Arg::new(setting.name)
-                .long(setting.name)
-                .value_name("VALUE")
-                .allow_hyphen_values(true)
-                .help(format!("{} [env: {}]{default}", setting.about, setting.variable()));
-            command.arg(argument)
-        })
-    }
-
-    fn augment_args_for_update(command: Command) -> Command {
-        Self::augment_args(command)
-    }
-}
-
-impl FromArgMatches for Arguments {
-    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
-        let value = |name: &'static str| {
-            let value = matches.get_one::<String>(name)?;
-            Some((name, value.clone()))
-        };
-        let given = SETTINGS.iter().filter_map(|setting| value(setting.name)).collect();
-        Ok(Arguments { given })
-    }
-
-    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
-        *self = Self::from_arg_matches(matches)?;
-        Ok(())
-    }
-}
-
 /// Serves until the process is told to stop (SIGTERM or SIGINT).
 pub fn run(arguments: &Arguments) -> Result<(), ServeError> {
-    let config = Config::new(|name| arguments.get(name))?;
+    let given = arguments.given()?;
+    let config = Config::new(|name| given.get(name))?;
     telemetry::start(&config.log)?;
     let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().build()?;
     let grace = config.grace;
@@ -130,9 +73,8 @@ pub struct Server {
 impl Server {
     /// Opens the store, sweeps it, listens, and starts the workers.
     pub async fn start(config: Config) -> Result<Server, ServeError> {
-        let store = Store::open(&config.data_dir).await?;
-        let swept = store.sweep().await?;
-        tracing::info!(blobs = swept.blobs, temporary = swept.temporary, "swept");
+        let store = Store::connect(&config.places).await?;
+        keep_swept(&store).await?;
         let address = config.listen;
         let listener = TcpListener::bind(address)
             .await
@@ -176,6 +118,23 @@ impl Server {
         }
         Ok(self.workers)
     }
+}
+
+/// Sweeps what dead processes left, at once and then every hour.
+pub async fn keep_swept(store: &Store) -> Result<(), StoreError> {
+    let swept = store.sweep().await?;
+    tracing::info!(blobs = swept.blobs, temporary = swept.temporary, "swept");
+    let store = store.clone();
+    tokio::spawn(async move {
+        loop {
+            tokio::time::sleep(SWEEP_EVERY).await;
+            match store.sweep_old_blobs().await {
+                Ok(blobs) => tracing::debug!(blobs, "swept"),
+                Err(error) => tracing::warn!(%error, "the sweep was broken off"),
+            }
+        }
+    });
+    Ok(())
 }
 
 /// Done when the process is told to stop: SIGTERM or SIGINT.

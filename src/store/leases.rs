@@ -4,9 +4,9 @@
 use std::time::Duration;
 
 use bytes::Bytes;
-use sqlx::Row as _;
 
-use super::database::Query;
+use super::database::{Statement, query};
+use super::references::{Content, hashes};
 use super::{Store, StoreError};
 
 /// The right of one attempt to write to its job.
@@ -63,13 +63,13 @@ pub struct Reaped {
     pub accepted_again: bool,
 }
 
-// Another engine adds FOR UPDATE SKIP LOCKED to the inner query.
 const CLAIM: &str = "UPDATE jobs SET status = 'running', attempt = attempt + 1, lease_token = $1, \
      lease_expires = (SELECT now_ms FROM clock) + $2, heartbeat = (SELECT now_ms FROM clock), \
      phase = NULL, iteration = NULL, residual = NULL, \
      started = COALESCE(started, (SELECT now_ms FROM clock)), updated = (SELECT now_ms FROM clock) \
      WHERE id = (SELECT id FROM jobs WHERE status = 'accepted' \
-       AND claimable_from <= (SELECT now_ms FROM clock) ORDER BY id LIMIT 1) \
+       AND claimable_from <= (SELECT now_ms FROM clock) ORDER BY id LIMIT 1 \
+       FOR UPDATE SKIP LOCKED) \
      AND status = 'accepted' RETURNING id, attempt, kind, document, created, started";
 const RENEW: &str = "UPDATE jobs SET lease_expires = (SELECT now_ms FROM clock) + $3, \
      heartbeat = (SELECT now_ms FROM clock), updated = (SELECT now_ms FROM clock), phase = $4, \
@@ -100,7 +100,8 @@ const REAP: &str = "UPDATE jobs SET losses = losses + 1, lease_token = NULL, lea
      error = CASE WHEN losses + 1 >= $1 THEN $2 END, \
      finished = CASE WHEN losses + 1 >= $1 THEN (SELECT now_ms FROM clock) END, \
      updated = (SELECT now_ms FROM clock) \
-     WHERE status = 'running' AND lease_expires < (SELECT now_ms FROM clock) \
+     WHERE id IN (SELECT id FROM jobs WHERE status = 'running' \
+       AND lease_expires < (SELECT now_ms FROM clock) FOR UPDATE SKIP LOCKED) \
      RETURNING id, attempt, status";
 const INSERT_FILE: &str =
     "INSERT INTO job_files (job_id, name, media_type, blob, bytes) VALUES ($1, $2, $3, $4, $5)";
@@ -114,7 +115,7 @@ impl Store {
     /// Takes the oldest accepted job, if there is one. Two workers never take the same.
     pub async fn claim(&self, lease: Duration) -> Result<Option<Claim>, StoreError> {
         let token = uuid::Uuid::now_v7().to_string();
-        let row = sqlx::query(CLAIM)
+        let row = query(CLAIM)
             .bind(&token)
             .bind(milliseconds(lease))
             .fetch_optional(self.database.writer())
@@ -137,7 +138,7 @@ impl Store {
         length: Duration,
         point: &Point,
     ) -> Result<bool, StoreError> {
-        let renewed = sqlx::query(RENEW)
+        let renewed = query(RENEW)
             .bind(&lease.job)
             .bind(&lease.token)
             .bind(milliseconds(length))
@@ -148,12 +149,12 @@ impl Store {
             .execute(self.database.writer())
             .await?;
         self.jobs_changed();
-        Ok(renewed.rows_affected() == 1)
+        Ok(renewed == 1)
     }
 
     /// Whether a job is ours still.
     pub async fn holds(&self, lease: &Lease) -> Result<bool, StoreError> {
-        let row = sqlx::query(HELD)
+        let row = query(HELD)
             .bind(&lease.job)
             .bind(&lease.token)
             .fetch_optional(self.database.reader())
@@ -169,32 +170,31 @@ impl Store {
         result: &str,
         files: &[PublishedFile],
     ) -> Result<bool, StoreError> {
-        let uncommitted = self.uncommitted.read().await;
+        let mut contents: Vec<Content> = Vec::new();
         for file in files {
-            self.blobs.put(&file.sha256, file.bytes.clone()).await?;
+            contents.push((file.sha256.clone(), file.bytes.clone()));
         }
-        let mut transaction = self.database.begin().await?;
-        let published = sqlx::query(SUCCEED)
+        let blobs = hashes(&contents);
+        let mut transaction = self.begin_with(contents).await?;
+        let published = query(SUCCEED)
             .bind(&lease.job)
             .bind(&lease.token)
             .bind(result)
-            .execute(&mut *transaction)
+            .execute(&mut transaction)
             .await?;
-        if published.rows_affected() != 1 {
+        if published != 1 {
             transaction.rollback().await?;
-            drop(uncommitted);
-            let blobs = files.iter().map(|file| file.sha256.clone()).collect();
-            self.delete_unreferenced_blobs(blobs).await?;
+            self.discard(blobs).await;
             return Ok(false);
         }
         for file in files {
-            sqlx::query(INSERT_FILE)
+            query(INSERT_FILE)
                 .bind(&lease.job)
                 .bind(&file.name)
                 .bind(&file.media_type)
                 .bind(&file.sha256)
                 .bind(file.bytes.len() as i64)
-                .execute(&mut *transaction)
+                .execute(&mut transaction)
                 .await?;
         }
         transaction.commit().await?;
@@ -204,12 +204,12 @@ impl Store {
 
     /// Ends a job whose own fault it is; false when it is not ours any more.
     pub async fn fail(&self, lease: &Lease, error: &str) -> Result<bool, StoreError> {
-        self.end(sqlx::query(FAIL).bind(&lease.job).bind(&lease.token).bind(error)).await
+        self.end(query(FAIL).bind(&lease.job).bind(&lease.token).bind(error)).await
     }
 
     /// Gives a job back untouched, for a worker that is about to stop.
     pub async fn release(&self, lease: &Lease) -> Result<bool, StoreError> {
-        self.end(sqlx::query(RELEASE).bind(&lease.job).bind(&lease.token)).await
+        self.end(query(RELEASE).bind(&lease.job).bind(&lease.token)).await
     }
 
     /// Gives a job back that failed through no fault of its own, or fails it when that was the last attempt.
@@ -219,7 +219,7 @@ impl Store {
         attempts: u32,
         error: &str,
     ) -> Result<bool, StoreError> {
-        let query = sqlx::query(LOSE)
+        let query = query(LOSE)
             .bind(&lease.job)
             .bind(&lease.token)
             .bind(i64::from(attempts))
@@ -228,16 +228,16 @@ impl Store {
         self.end(query).await
     }
 
-    async fn end(&self, query: Query<'_>) -> Result<bool, StoreError> {
+    async fn end(&self, query: Statement) -> Result<bool, StoreError> {
         let changed = query.execute(self.database.writer()).await?;
         self.jobs_changed();
-        Ok(changed.rows_affected() == 1)
+        Ok(changed == 1)
     }
 
     /// Takes jobs from workers that gave no sign of life for a lease. `error` is for those that this
     /// happened to `attempts` times.
     pub async fn reap(&self, attempts: u32, error: &str) -> Result<Vec<Reaped>, StoreError> {
-        let rows = sqlx::query(REAP)
+        let rows = query(REAP)
             .bind(i64::from(attempts))
             .bind(error)
             .fetch_all(self.database.writer())
@@ -258,8 +258,7 @@ impl Store {
 
     /// One file of a successful job.
     pub async fn job_file(&self, job: &str, name: &str) -> Result<Option<FileRow>, StoreError> {
-        let row =
-            sqlx::query(FILE).bind(job).bind(name).fetch_optional(self.database.reader()).await?;
+        let row = query(FILE).bind(job).bind(name).fetch_optional(self.database.reader()).await?;
         let Some(row) = row else { return Ok(None) };
         Ok(Some(FileRow {
             name: row.try_get("name")?,

@@ -1,9 +1,7 @@
 //! Plans that were stored with their case.
 
-use sqlx::Row as _;
-
 use super::cases::{AFTER_ALL, Change};
-use super::database::{Row, is_reference};
+use super::database::{Row, is_reference, query};
 use super::{Store, StoreError};
 
 #[derive(Clone, Debug)]
@@ -41,11 +39,8 @@ fn plan_row(row: &Row) -> Result<PlanRow, sqlx::Error> {
 
 impl Store {
     pub async fn plan(&self, case_id: &str, id: &str) -> Result<Option<PlanRow>, StoreError> {
-        let row = sqlx::query(BY_ID)
-            .bind(id)
-            .bind(case_id)
-            .fetch_optional(self.database.reader())
-            .await?;
+        let row =
+            query(BY_ID).bind(id).bind(case_id).fetch_optional(self.database.reader()).await?;
         Ok(row.as_ref().map(plan_row).transpose()?)
     }
 
@@ -56,7 +51,7 @@ impl Store {
         cursor: Option<&str>,
         limit: i64,
     ) -> Result<Vec<PlanRow>, StoreError> {
-        let rows = sqlx::query(LIST)
+        let rows = query(LIST)
             .bind(case_id)
             .bind(cursor.unwrap_or(AFTER_ALL))
             .bind(limit)
@@ -72,7 +67,7 @@ impl Store {
         id: &str,
         document: &str,
     ) -> Result<bool, StoreError> {
-        let inserted = sqlx::query(INSERT)
+        let inserted = query(INSERT)
             .bind(id)
             .bind(case_id)
             .bind(document)
@@ -92,14 +87,14 @@ impl Store {
         document: &str,
         version: Option<i64>,
     ) -> Result<Change, StoreError> {
-        let changed = sqlx::query(UPDATE)
+        let changed = query(UPDATE)
             .bind(document)
             .bind(id)
             .bind(case_id)
             .bind(version.unwrap_or(0))
             .execute(self.database.writer())
             .await?;
-        self.plan_change(case_id, id, changed.rows_affected()).await
+        self.plan_change(case_id, id, changed).await
     }
 
     pub async fn delete_plan(
@@ -107,13 +102,13 @@ impl Store {
         (case_id, id): (&str, &str),
         version: Option<i64>,
     ) -> Result<Change, StoreError> {
-        let changed = sqlx::query(DELETE)
+        let changed = query(DELETE)
             .bind(id)
             .bind(case_id)
             .bind(version.unwrap_or(0))
             .execute(self.database.writer())
             .await?;
-        self.plan_change(case_id, id, changed.rows_affected()).await
+        self.plan_change(case_id, id, changed).await
     }
 
     async fn plan_change(&self, case_id: &str, id: &str, rows: u64) -> Result<Change, StoreError> {
