@@ -6,11 +6,13 @@ mod bad_meshes;
 mod bad_requests;
 mod cases;
 mod demo;
+mod deployments;
 mod faults;
 #[allow(dead_code, reason = "the tests of the formats use the rest")]
 #[path = "../mechanics/formats_samples.rs"]
 mod formats_samples;
 mod helpers;
+mod hosts;
 mod images;
 mod jobs;
 mod meshes;
@@ -18,10 +20,14 @@ mod openapi;
 mod optimise;
 mod plans;
 mod queue;
+mod races;
 mod response;
+mod schema_steps;
 mod settings;
 #[path = "../shared/mod.rs"]
 #[allow(dead_code, reason = "other tests use the rest")]
 mod shared;
+mod storage;
 mod study;
+mod transfer;
 mod worker;
