@@ -5,7 +5,9 @@ use std::time::Duration;
 use bytes::Bytes;
 use facies::schema::canonical::sha256_hex;
 use facies::schema::job::JobStatus;
-use facies::store::{Claim, Dismissal, Enqueued, JobRow, NewJob, Point, PublishedFile, Store};
+use facies::store::{
+    Claim, Dismissal, Enqueued, JobFilter, JobRow, NewJob, Point, PublishedFile, Store,
+};
 use tempfile::TempDir;
 
 use crate::deployments::{Deployment, on_both};
@@ -73,6 +75,24 @@ on_both! {
     a_result_that_comes_after_the_dismissal_is_dropped
     the_same_inputs_are_the_same_job
     progress_never_falls
+    lists_come_newest_first_page_by_page
+}
+
+async fn lists_come_newest_first_page_by_page(on: Deployment) {
+    let store = on.open().await;
+    let mut ids = Vec::new();
+    for hash in ["a", "b", "c"] {
+        ids.push(enqueue(&store, hash).await);
+    }
+    ids.reverse();
+    let mut filter = JobFilter { tag: "a".into(), limit: 2, ..JobFilter::default() };
+    let listed = store.jobs(&filter).await.unwrap();
+    assert_eq!(listed.iter().map(|job| &job.id).collect::<Vec<_>>(), [&ids[0], &ids[1]]);
+    filter.cursor = Some(ids[1].clone());
+    let listed = store.jobs(&filter).await.unwrap();
+    assert_eq!(listed.iter().map(|job| &job.id).collect::<Vec<_>>(), [&ids[2]]);
+    filter.tag = "no such\0tag".into();
+    assert!(store.jobs(&filter).await.unwrap().is_empty());
 }
 
 async fn a_job_is_claimed_by_one_worker_only(on: Deployment) {

@@ -35,7 +35,8 @@ async fn no_job_is_claimed_twice(on: Deployment) {
         jobs.insert(enqueue(&stores[0], &number.to_string()).await);
     }
     let mut workers = JoinSet::new();
-    for store in stores.iter().cycle().take(8).cloned() {
+    for store in stores.iter().cycle().take(8) {
+        let store = store.clone();
         workers.spawn(async move {
             let mut claimed = Vec::new();
             while let Some(claim) = store.claim(LEASE).await.unwrap() {
@@ -52,7 +53,8 @@ async fn no_job_is_claimed_twice(on: Deployment) {
 async fn fifty_requests_with_the_same_inputs_are_one_job(on: Deployment) {
     let stores = processes(&on, 4).await;
     let mut requests = JoinSet::new();
-    for store in stores.iter().cycle().take(50).cloned() {
+    for store in stores.iter().cycle().take(50) {
+        let store = store.clone();
         let job = new_job("{}", "the same");
         requests.spawn(async move { (job.id.clone(), store.enqueue(&job, 100).await.unwrap()) });
     }
@@ -130,4 +132,22 @@ async fn a_case_is_erased_while_jobs_come(on: Deployment) {
         assert!(stores[0].mesh(&mesh.id).await.unwrap().is_none());
     }
     assert_eq!(blob_count(&stores[0]).await, 0);
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_process_that_waits_is_woken_by_the_change_of_another() {
+    let Some(on) = Deployment::shared().await else { return };
+    let stores = processes(&on, 2).await;
+    let mut changes = stores[1].job_changes();
+    let woken = async {
+        // It may not listen yet when the first change comes.
+        for number in 0.. {
+            enqueue(&stores[0], &number.to_string()).await;
+            let patience = std::time::Duration::from_secs(1);
+            if tokio::time::timeout(patience, changes.changed()).await.is_ok() {
+                return;
+            }
+        }
+    };
+    tokio::time::timeout(std::time::Duration::from_secs(60), woken).await.expect("it is woken");
 }
