@@ -1,0 +1,43 @@
+//! `facies worker`: workers without an API, beside any number of others on any hosts.
+
+use std::net::SocketAddr;
+
+use super::serve::{
+    ServeError, listen_for_admin, open, start_workers, stop_signal, tell_admin,
+};
+use super::settings::Arguments;
+use crate::config::Config;
+use crate::jobs::fail_point;
+use crate::jobs::library::Library;
+use crate::jobs::worker::Workers;
+use crate::schema::Limits;
+use crate::telemetry;
+
+/// Works until the process is told to stop (SIGTERM or SIGINT).
+pub fn run(arguments: &Arguments) -> Result<(), ServeError> {
+    let given = arguments.given()?;
+    let config = Config::without_listener(|name| given.get(name))?;
+    config.places.check_shared()?;
+    telemetry::start(&config.log)?;
+    fail_point::check()?;
+    let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().build()?;
+    let (workers, admin) = runtime.block_on(start(&config))?;
+    // One line on standard output, for programs that started this one.
+    println!("working with {} workers", config.workers);
+    tell_admin(admin);
+    runtime.block_on(stop_signal());
+    tracing::info!("stopping");
+    workers.stop(config.grace);
+    runtime.shutdown_background();
+    Ok(())
+}
+
+async fn start(config: &Config) -> Result<(Workers, Option<SocketAddr>), ServeError> {
+    let store = open(config).await?;
+    let admin = listen_for_admin(config, &store).await?;
+    let library = Library::new(store.clone(), config.mesh_cache_bytes);
+    let limits = Limits { upload_bytes: config.upload_bytes as u64, ..Limits::default() };
+    let workers = start_workers(config, store, library, &limits)?;
+    tracing::info!(workers = config.workers, "working");
+    Ok((workers, admin))
+}
