@@ -7,6 +7,7 @@ use super::svg::{Document, Place, Style, wrapped};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mark {
     Good,
+    Cautious,
     Warned,
     Refused,
     Failed,
@@ -45,9 +46,10 @@ const PANEL_HEAD: f64 = 98.0;
 /// Room for the title of an axis with few values.
 const NARROWEST: f64 = 150.0;
 
-const LEGEND: [(Mark, &str); 5] = [
-    (Mark::Good, "right, no warning"),
-    (Mark::Warned, "answers with a warning"),
+const LEGEND: [(Mark, &str); 6] = [
+    (Mark::Good, "right"),
+    (Mark::Cautious, "right, warns"),
+    (Mark::Warned, "wrong, warns"),
     (Mark::Refused, "refuses, says where"),
     (Mark::Failed, "ends with an error"),
     (Mark::Wrong, "WRONG, AND SILENT"),
@@ -156,7 +158,8 @@ impl StabilityAxis {
         }
     }
 
-    /// Where the method first wrongs, or else where it first stops to answer well.
+    /// Where the method is first silently wrong, or else where it first has no right answer, or else where it first
+    /// warns.
     fn note(&self, marks: &[Option<Mark>]) -> String {
         let first = |wanted: &dyn Fn(Mark) -> bool| {
             let place = marks.iter().position(|mark| mark.is_some_and(wanted));
@@ -165,10 +168,13 @@ impl StabilityAxis {
         if marks.iter().all(Option::is_none) {
             return "does not apply".to_owned();
         }
+        let not_right = |mark: Mark| !matches!(mark, Mark::Good | Mark::Cautious);
         let not_good = |mark: Mark| mark != Mark::Good;
-        match first(&|mark| mark == Mark::Wrong).or_else(|| first(&not_good)) {
+        let worst = first(&|mark| mark == Mark::Wrong).or_else(|| first(&not_right));
+        match worst.or_else(|| first(&not_good)) {
             Some((value, Mark::Wrong)) => format!("SILENTLY WRONG at {value}"),
-            Some((value, Mark::Warned)) => format!("warns from {value}"),
+            Some((value, Mark::Cautious)) => format!("warns from {value}"),
+            Some((value, Mark::Warned)) => format!("wrong, warns from {value}"),
             Some((value, Mark::Refused)) => format!("refuses from {value}"),
             Some((value, Mark::Failed)) => format!("fails from {value}"),
             _ => "right throughout".to_owned(),
@@ -181,8 +187,8 @@ fn draw_legend(document: &mut Document, top: f64) {
     for (mark, words) in LEGEND {
         draw_mark(document, [x, top], mark);
         let style = if mark == Mark::Wrong { Style::of(13.0).bold() } else { Style::of(13.0) };
-        document.text([x + CELL[0] + 6.0, top + 15.0], 190.0, style, words);
-        x += 205.0;
+        document.text([x + CELL[0] + 6.0, top + 15.0], 160.0, style, words);
+        x += 172.0;
     }
 }
 
@@ -198,6 +204,10 @@ fn draw_mark(document: &mut Document, [x, y]: [f64; 2], mark: Mark) {
         Mark::Good => {
             document.rectangle(cell, "#c5e8dc", 3.0);
             document.stroke(&sign(&[[-4.5, 0.5], [-1.5, 4.0], [5.0, -4.0]]), "#00664b", 2.0);
+        }
+        Mark::Cautious => {
+            document.rectangle(cell, "#f7dfa5", 3.0);
+            document.stroke(&sign(&[[-4.5, 0.5], [-1.5, 4.0], [5.0, -4.0]]), "#6b4a00", 2.0);
         }
         Mark::Warned => {
             document.rectangle(cell, "#e69f00", 3.0);
@@ -247,9 +257,11 @@ mod tests {
 
     #[test]
     fn a_silent_error_is_named_before_every_warning() {
-        let [good, warned, wrong] = [Mark::Good, Mark::Warned, Mark::Wrong].map(Some);
+        let [good, cautious] = [Mark::Good, Mark::Cautious].map(Some);
+        let [warned, wrong] = [Mark::Warned, Mark::Wrong].map(Some);
         assert!(drawn(vec![good, warned, wrong]).contains("SILENTLY WRONG at v2"));
-        assert!(drawn(vec![good, warned, warned]).contains("warns from v1"));
+        assert!(drawn(vec![cautious, good, warned]).contains("wrong, warns from v2"));
+        assert!(drawn(vec![good, cautious]).contains(">warns from v1"));
         assert!(drawn(vec![good, good]).contains("right throughout"));
         assert!(drawn(vec![None, None]).contains("does not apply"));
     }

@@ -63,6 +63,7 @@ fn print(found: &Map) {
 pub fn picture(found: &Map) -> String {
     let mark = |finding: &Finding| match finding.verdict {
         Verdict::Good => Mark::Good,
+        Verdict::Cautious => Mark::Cautious,
         Verdict::Warned => Mark::Warned,
         Verdict::Refused => Mark::Refused,
         Verdict::Failed => Mark::Failed,
@@ -117,6 +118,7 @@ fn document(found: &Map) -> Value {
         "variants": found.variants,
         "counts": {
             "good": count(Verdict::Good),
+            "cautious": count(Verdict::Cautious),
             "warned": count(Verdict::Warned),
             "refused": count(Verdict::Refused),
             "failed": count(Verdict::Failed),

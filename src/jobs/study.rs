@@ -77,6 +77,7 @@ impl StudyInput {
             levels: self.spec.levels.clone(),
             repeats: self.spec.repeats as usize,
             budget_s: self.spec.budget.wall_s,
+            row_s: self.spec.budget.row_s,
         };
         let (rows, most) = (most_rows(&study), limits.study_rows as usize);
         if rows > most {

@@ -86,6 +86,11 @@ impl LinearElastic {
         LinearElastic { fibre: None, ..self }
     }
 
+    /// Young's modulus along the fibres in kPa, where there are any.
+    pub fn fibre_modulus(&self) -> Option<f64> {
+        self.fibre.map(|fibre| fibre.young_modulus())
+    }
+
     pub fn has_fibre(&self) -> bool {
         self.fibre.is_some()
     }

@@ -40,6 +40,8 @@ pub struct Fibre {
 /// A positive definite stiffness about a fibre.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TransverselyIsotropic {
+    /// E_f in kPa.
+    young_modulus: f64,
     lambda: f64,
     mu: f64,
     moduli: FibreModuli,
@@ -75,6 +77,11 @@ impl TransverselyIsotropic {
         Ok(stiffness)
     }
 
+    /// E_f in kPa.
+    pub fn young_modulus(&self) -> f64 {
+        self.young_modulus
+    }
+
     /// C with the fibre along a direction of length 1.
     pub fn along(&self, direction: &Vector3<f64>) -> ElasticTensor {
         let fibre = AlongFibre { direction: *direction, moduli: self.moduli };
@@ -106,6 +113,7 @@ fn engineering(
     let delta_mu = fibre.shear_modulus.unwrap_or_else(|| across.shear_modulus()) - mu;
     let q = 3.0 * (along / (2.0 * (1.0 + nu)) - mu);
     Ok(TransverselyIsotropic {
+        young_modulus: along,
         lambda: bulk - 2.0 / 3.0 * mu + q / 9.0,
         mu,
         moduli: FibreModuli { delta_lambda: -q / 3.0, delta_mu, beta: q - 4.0 * delta_mu },
@@ -121,5 +129,10 @@ fn paper_002(
     let delta_mu = along.shear_modulus() - across.shear_modulus();
     let beta = -(delta_lambda + 2.0 * delta_mu);
     let moduli = FibreModuli { delta_lambda, delta_mu, beta };
-    Ok(TransverselyIsotropic { lambda: across.lambda(), mu: across.shear_modulus(), moduli })
+    Ok(TransverselyIsotropic {
+        young_modulus: fibre.young_modulus,
+        lambda: across.lambda(),
+        mu: across.shear_modulus(),
+        moduli,
+    })
 }

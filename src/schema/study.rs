@@ -257,6 +257,10 @@ pub struct StudyBudgetDocument {
     #[serde(default = "usual_wall")]
     #[schema(default = 3600.0, exclusive_minimum = 0.0)]
     pub wall_s: f64,
+    /// A solve that takes longer is given up, and its row fails with `budget-exceeded`.
+    #[serde(default = "usual_row")]
+    #[schema(default = 60.0, exclusive_minimum = 0.0)]
+    pub row_s: f64,
     /// Of each row.
     #[serde(default = "usual_memory")]
     #[schema(default = 4000.0, minimum = 1.0)]
@@ -267,13 +271,17 @@ fn usual_wall() -> f64 {
     3600.0
 }
 
+fn usual_row() -> f64 {
+    60.0
+}
+
 fn usual_memory() -> f64 {
     4000.0
 }
 
 impl Default for StudyBudgetDocument {
     fn default() -> Self {
-        StudyBudgetDocument { wall_s: usual_wall(), memory_mb: usual_memory() }
+        StudyBudgetDocument { wall_s: usual_wall(), row_s: usual_row(), memory_mb: usual_memory() }
     }
 }
 

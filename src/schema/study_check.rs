@@ -159,6 +159,7 @@ impl StudyDocument {
         }
         let budget = at.key("budget");
         faults.check_range(&budget.key("wall_s"), self.budget.wall_s, 1e-3..=limits.wall_s, "s");
+        faults.check_range(&budget.key("row_s"), self.budget.row_s, 1e-3..=limits.wall_s, "s");
         let memory = self.budget.memory_mb;
         faults.check_range(&budget.key("memory_mb"), memory, 1.0..=limits.memory_mb, "MB");
     }

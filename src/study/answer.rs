@@ -6,6 +6,7 @@
 use rayon::ThreadPool;
 
 use super::Stopwatch;
+use super::deadline::Deadline;
 use crate::mesh::Vector;
 use crate::model::equilibrium::Equilibrium;
 use crate::model::strain::deformations;
@@ -14,13 +15,15 @@ use crate::prediction::{
 };
 
 /// A row is not solved again once its solves took this long together, in s.
-pub const LONG_S: f64 = 10.0;
+pub const LONG_S: f64 = 2.0;
 
 /// What measures rows.
 pub(super) struct Bench<'a> {
     /// Of one thread.
     pub pool: ThreadPool,
     pub repeats: usize,
+    /// A solve that takes longer is given up, in s.
+    pub row_s: f64,
     pub stopwatch: &'a dyn Stopwatch,
     pub progress: &'a dyn Progress,
 }
@@ -115,7 +118,9 @@ impl Bench<'_> {
         self.stopwatch.forget_peak();
         let (scene, equilibrium) = loop {
             let begin = self.stopwatch.seconds();
-            let solved = self.pool.install(|| solve(case, plan, settings, self.progress))?;
+            let deadline = Deadline::after(self.row_s, self.stopwatch, self.progress);
+            let solved = self.pool.install(|| solve(case, plan, settings, &deadline));
+            let solved = solved.map_err(|why| self.too_late(why))?;
             times.push(self.stopwatch.seconds() - begin);
             if times.len() == 1 {
                 peak_mb = self.stopwatch.peak_mb();
@@ -146,6 +151,17 @@ impl Bench<'_> {
             smallest_det_f: deformation.iter().map(|c| c.det_f).fold(f64::INFINITY, f64::min),
             warnings,
         })
+    }
+
+    /// What was stopped, and not by the caller, has taken too long.
+    fn too_late(&self, why: NoAnswer) -> NoAnswer {
+        match why {
+            NoAnswer::Cancelled if !self.progress.is_cancelled() => {
+                let detail = format!("not solved after {} s", self.row_s);
+                Refusal::new("budget-exceeded", detail).into()
+            }
+            other => other,
+        }
     }
 }
 

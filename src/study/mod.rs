@@ -2,6 +2,7 @@
 
 mod answer;
 pub mod convergence;
+mod deadline;
 mod error;
 mod levels;
 pub mod methods;

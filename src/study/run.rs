@@ -36,7 +36,8 @@ pub fn run(
 ) -> Result<Report, StudyError> {
     check(study)?;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
-    let bench = Bench { pool, repeats: study.repeats, stopwatch, progress };
+    let Study { repeats, row_s, .. } = *study;
+    let bench = Bench { pool, repeats, row_s, stopwatch, progress };
     let begun = stopwatch.seconds();
     let mut report = Report::default();
     for scene in &study.scenes {

@@ -17,6 +17,8 @@ pub struct Study {
     pub repeats: usize,
     /// No row is begun once the study has taken this long, in s; infinite where it may take its time.
     pub budget_s: f64,
+    /// A solve that takes longer is given up, in s; infinite where it may take its time.
+    pub row_s: f64,
 }
 
 /// A case with the plans that move it, and what is held for true.

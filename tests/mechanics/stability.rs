@@ -5,12 +5,13 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use facies::command::stability::picture;
+use facies::material::{Fibre, FibreLaw};
 use facies::mesh::sample::block;
 use facies::mesh::{CellShape, Vector};
 use facies::plan::{PlannedSegment, RigidMovement};
 use facies::prediction::{
-    Case, CaseSegment, ElementChoice, Plan, Prediction, PredictionError, Scene, Settings, Sliding,
-    SlidingNormal, Unobserved, predict,
+    Case, CaseSegment, ElementChoice, FibreDirection, Plan, Prediction, PredictionError, Scene,
+    Settings, Sliding, SlidingNormal, Unobserved, predict,
 };
 use facies::registration::AlignmentError;
 use facies::study::stability::{Axis, Bounds, Finding, Map, Verdict, axes, map};
@@ -91,11 +92,14 @@ fn at(map: &Map, variant: usize, value: f64) -> &Finding {
 #[test]
 fn no_answer_is_wrong_without_a_warning() {
     // The axes that are solved in little time; all of them are in docs/stability.md.
-    let found = mapped(&variants(), &["movement", "rotation", "sliding", "jump", "loose_parts"]);
+    let found = mapped(
+        &variants(),
+        &["movement", "rotation", "sliding", "jump", "loose_parts", "fibre_ratio"],
+    );
     for axis in &found.axes {
         for (variant, findings) in found.variants.iter().zip(&axis.findings) {
             for (finding, (value, _)) in findings.iter().zip(&axis.values) {
-                let finding = finding.as_ref().unwrap();
+                let Some(finding) = finding else { continue };
                 let shown = format!("{} {variant} {value}: {finding:?}", axis.name);
                 assert_ne!(finding.verdict, Verdict::Wrong, "{shown}");
                 if let Some(answer) = &finding.answer {
@@ -177,7 +181,7 @@ fn a_flat_wall_is_never_left() {
 
 #[test]
 fn a_stiff_layer_of_one_linear_cell_is_told_of_and_one_of_two_is_not() {
-    let told = |variant: &Variant, layers: usize, stiffness: f64| {
+    let told = |variant: &Variant, layers: usize, stiffness: f64, along: f64| {
         let mut mesh = block(Vector::new(20.0, 20.0, 12.0), [4, 4, 6], shape_for(variant));
         let height = |cell: usize| {
             mesh.corners(cell).map(|x| x.z).sum::<f64>() / mesh.corners(cell).len() as f64
@@ -190,16 +194,22 @@ fn a_stiff_layer_of_one_linear_cell_is_told_of_and_one_of_two_is_not() {
         let mut case = case_of(mesh, material(15.0, 0.43));
         let names = std::collections::BTreeMap::from([(1, "stiff".to_owned())]);
         case.regions = Some(facies::prediction::RegionNames { array: "layer".to_owned(), names });
-        case.materials.insert("stiff".to_owned(), material(15.0 * stiffness, 0.43));
+        let fibre =
+            Fibre { young_modulus: 15.0 * along, shear_modulus: None, law: FibreLaw::Engineering };
+        let stiff = material(15.0 * stiffness, 0.43).with_fibre(&fibre).unwrap();
+        case.materials.insert("stiff".to_owned(), stiff);
+        let course = FibreDirection::Uniform(Vector::x());
+        case.fibres.insert("stiff".to_owned(), course);
         case.fixed.push(set("z_min"));
         let scene = Scene::new(&case, &Plan::default(), &variant.settings).unwrap();
         scene.warnings.iter().any(|warning| warning.code == "thin-stiff-layer")
     };
     for variant in variants() {
         let is_linear = variant.settings.element != ElementChoice::Quadratic;
-        assert_eq!(told(&variant, 1, 100.0), is_linear, "{}", variant.label);
-        assert!(!told(&variant, 1, 10.0), "{}", variant.label);
-        assert!(!told(&variant, 2, 100.0), "{}", variant.label);
+        assert_eq!(told(&variant, 1, 100.0, 100.0), is_linear, "{}", variant.label);
+        assert_eq!(told(&variant, 1, 1.0, 10.0), is_linear, "{}", variant.label);
+        assert!(!told(&variant, 1, 5.0, 5.0), "{}", variant.label);
+        assert!(!told(&variant, 2, 100.0, 100.0), "{}", variant.label);
     }
 }
 

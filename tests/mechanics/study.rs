@@ -47,6 +47,7 @@ fn study(scene: StudyScene, variants: Vec<Variant>, levels: &[u32]) -> Study {
         levels: levels.to_vec(),
         repeats: 1,
         budget_s: f64::INFINITY,
+        row_s: f64::INFINITY,
     }
 }
 
@@ -264,9 +265,9 @@ fn a_row_is_timed_as_often_as_asked_for_until_that_takes_long() {
         assert_eq!((row.wall_s, row.peak_mb), (1.0, Some(7.0)));
         row.repeats
     };
-    assert_eq!(timed(3), 3);
-    // Eleven solves of a second are the first to take more than ten.
-    assert_eq!(timed(40), 11);
+    assert_eq!(timed(2), 2);
+    // Three solves of a second are the first to take more than two.
+    assert_eq!(timed(40), 3);
 }
 
 #[test]
@@ -284,6 +285,19 @@ fn once_its_time_is_used_up_a_study_begins_no_row() {
     study.budget_s = 0.5;
     let report = run(&study, &Ticking(AtomicUsize::new(0)), &Unobserved).unwrap();
     assert_eq!(report.scenes[0].truth, "not sought: no method has an answer");
+}
+
+#[test]
+fn a_solve_that_takes_too_long_fails_its_row_and_no_other() {
+    let scene = slab_with(|name| name == "patch 4 mm");
+    let mut study = study(scene, vec![variant("plain", ElementChoice::Plain)], &[0, 1]);
+    study.row_s = 0.5;
+    let report = run(&study, &Ticking(AtomicUsize::new(0)), &Unobserved).unwrap();
+    for row in &report.rows {
+        let Outcome::Failed { code, detail } = &row.outcome else { panic!("it was solved") };
+        assert_eq!((code.as_str(), detail.as_str()), ("budget-exceeded", "not solved after 0.5 s"));
+    }
+    assert_eq!(report.rows.len(), 2);
 }
 
 struct Impatient;

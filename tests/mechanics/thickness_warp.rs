@@ -1,11 +1,12 @@
 //! V.36: the warp that keeps thickness.
 
 use facies::mesh::{CellShape, Vector, VolumeMesh, sample};
+use facies::model::spline::VolumeSpline;
 use facies::model::thickness_warp::ThicknessWarp;
 use facies::plan::{PlannedSegment, RigidMovement};
 use facies::prediction::{
-    Case, CaseSegment, Load, Method, Plan, Prediction, PredictionError, Scene, Settings, Sliding,
-    SlidingNormal, Unobserved, predict,
+    Case, CaseSegment, ElementChoice, Load, Method, Plan, Prediction, PredictionError, Scene,
+    Settings, Sliding, SlidingNormal, Unobserved, predict,
 };
 
 use crate::elements::slab;
@@ -156,6 +157,17 @@ fn what_a_warp_ignores_is_told_and_what_it_cannot_do_is_refused() {
     let refused = Scene::new(&case, &pressed, &with(0.0)).err().unwrap();
     let found: Vec<_> = refused.0.iter().map(|p| (p.pointer.as_str(), p.code)).collect();
     assert_eq!(found, [("/plan/loads", "method-not-available")]);
+}
+
+#[test]
+fn an_element_asked_of_a_method_without_elements_is_refused() {
+    for method in [with(0.0).method, Method::VolumeSpline(VolumeSpline::default())] {
+        let settings = Settings { method, element: ElementChoice::Plain, ..Settings::default() };
+        let refused = Scene::new(&two_bones(CellShape::Tet4), &plan(turned()), &settings).err();
+        let errors = refused.unwrap().0;
+        let found: Vec<_> = errors.iter().map(|p| (p.pointer.as_str(), p.code)).collect();
+        assert_eq!(found, [("/spec/element", "method-not-available")]);
+    }
 }
 
 #[test]

@@ -6,7 +6,7 @@
 //! places of the others. As |d| >= d . n, the springs cost no more than this step takes them to cost,
 //! so that no step raises the energy: it cannot diverge, and it is slow.
 
-use super::{Found, MassSpringSettings, Network, length};
+use super::{Found, MassSpringSettings, Network, Spring, length};
 use crate::mesh::Vector;
 use crate::model::equilibrium::{Convergence, ModelError, Observer};
 use crate::solver::SolverError;
@@ -49,17 +49,19 @@ pub(super) fn solve(
     Err(SolverError::NotConverged { iterations, residual, wanted, history }.into())
 }
 
-/// The springs of each node.
+/// The springs of each node, side by side, each seen from that node: a sweep reads them in one stream.
 struct Around {
     starts: Vec<usize>,
-    springs: Vec<u32>,
+    springs: Vec<Spring>,
 }
 
 impl Around {
     fn new(network: &Network) -> Self {
         let mut of_node = vec![Vec::new(); network.rest.len()];
-        for (number, spring) in network.springs.springs.iter().enumerate() {
-            spring.nodes.iter().for_each(|&node| of_node[node as usize].push(number as u32));
+        for spring in &network.springs.springs {
+            let [i, j] = spring.nodes;
+            of_node[i as usize].push(*spring);
+            of_node[j as usize].push(Spring { nodes: [j, i], ..*spring });
         }
         let mut starts = vec![0];
         starts.extend(of_node.iter().scan(0, |end, springs| {
@@ -74,11 +76,9 @@ impl Around {
         let mut squared = 0.0;
         for node in 0..positions.len() {
             let mut force = network.acting[node];
-            for &number in &self.springs[self.starts[node]..self.starts[node + 1]] {
-                let spring = &network.springs.springs[number as usize];
+            for spring in &self.springs[self.starts[node]..self.starts[node + 1]] {
                 let (l, n) = spring.span(positions);
-                let pull = n * (spring.stiffness * (l - spring.length));
-                force += if spring.nodes[0] == node as u32 { pull } else { -pull };
+                force += n * (spring.stiffness * (l - spring.length));
             }
             let force = network.free_part(node, force);
             squared += force.norm_squared();

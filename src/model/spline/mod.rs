@@ -111,7 +111,7 @@ pub fn solve(
         Stiffness::Galerkin => assembly.galerkin(&keep_going).ok_or_else(stopped)?,
         Stiffness::Lattice(links) => assembly.links(links),
     };
-    let resisted = rotation_resisted(spline, &lattice);
+    let resisted = rotation_resisted(spline, &assembly);
     let assembled =
         assemble(assembly, stiffness, problem, spline.hold_weight).ok_or_else(stopped)?;
 
@@ -279,15 +279,16 @@ impl Assembled<'_> {
 }
 
 /// What a lattice of links holds against the most resisted rotation by one degree.
-fn rotation_resisted(spline: &VolumeSpline, lattice: &Lattice) -> Option<Warning> {
+fn rotation_resisted(spline: &VolumeSpline, assembly: &Assembly) -> Option<Warning> {
     let Stiffness::Lattice(links) = spline.stiffness else { return None };
     let angle = 1.0_f64.to_radians();
+    let (linked, points) = (assembly.linked(), &assembly.lattice.points);
     let stretched = |axis: usize| {
         let link = |[a, b]: &[u32; 2]| {
-            let along = lattice.points[*b as usize] - lattice.points[*a as usize];
+            let along = points[*b as usize] - points[*a as usize];
             along.norm_squared() - along[axis] * along[axis]
         };
-        0.5 * links * angle * angle * lattice.links().iter().map(link).sum::<f64>()
+        0.5 * links * angle * angle * linked.iter().map(link).sum::<f64>()
     };
     let energy = (0..3).map(stretched).fold(0.0, f64::max);
     let detail = format!(

@@ -118,20 +118,27 @@ impl<'a> Assembly<'a> {
         })
     }
 
-    /// Links of that many mN/mm between neighbouring control points that some tissue lies between: where it leaves a
-    /// gap, control points on its two sides may stand next to each other.
+    /// Links of that many mN/mm between neighbouring control points.
     pub fn links(&self, stiffness: f64) -> HalfMatrix<f64, 3> {
         let mut matrix = HalfMatrix::zeros(self.numbering.pattern.clone());
-        for link in self.lattice.links() {
+        for link in self.linked() {
             let [a, b] = link.map(|control| self.numbering.row(control));
-            if !matrix.pattern.couples(a.max(b), a.min(b)) {
-                continue;
-            }
             add_to_diagonal(matrix.block_mut(a, a), stiffness);
             add_to_diagonal(matrix.block_mut(b, b), stiffness);
             add_to_diagonal(matrix.block_mut(a.max(b), a.min(b)), -stiffness);
         }
         matrix
+    }
+
+    /// Neighbouring control points that some tissue lies between: where it leaves a gap, control points on its two
+    /// sides may stand next to each other.
+    pub fn linked(&self) -> Vec<[u32; 2]> {
+        let mut links = self.lattice.links();
+        links.retain(|link| {
+            let [a, b] = link.map(|control| self.numbering.row(control));
+            self.numbering.pattern.couples(a.max(b), a.min(b))
+        });
+        links
     }
 
     /// The mass of the tissue in equal shares, in mg.

@@ -1,5 +1,4 @@
-//! What is turned up. An axis for what only one method has (a time step, a ratio of fibre stiffness) gives no
-//! probe to the others.
+//! What is turned up for every method; what only some have is in `own_axes`.
 
 use std::sync::Arc;
 
@@ -7,15 +6,14 @@ use super::scenes::{
     CELL, LEVELS, POISSON_RATIO, YOUNG_MODULUS, around_ball, halved, jaw, layer, on_bone, set,
     shape_for, shift, swelling, tissue, with_region,
 };
-use super::{Axis, Probe, Refusal, Truth, Variant};
+use super::{Axis, Probe, Refusal, Truth, Variant, own_axes};
 use crate::material::{LinearElastic, MaterialError};
 use crate::mesh::{CellShape, Vector};
 use crate::plan::{PlannedSegment, RigidMovement};
-use crate::prediction::{Case, CaseSegment, Plan};
+use crate::prediction::{Case, CaseSegment, ElementChoice, Plan, Settings};
 
-/// The axes that mean something to every method.
 pub fn every() -> Vec<Axis> {
-    vec![
+    let mut axes = vec![
         poisson_ratio(),
         movement(),
         rotation(),
@@ -25,28 +23,30 @@ pub fn every() -> Vec<Axis> {
         jump(),
         loose_parts(),
         contradiction(),
-    ]
+    ];
+    axes.extend(own_axes::every());
+    axes
 }
 
 /// A tenth of the movement of 2.24 mm that linear axes make.
-const TENTH_OF_MOVEMENT: f64 = 0.22;
+pub(super) const TENTH_OF_MOVEMENT: f64 = 0.22;
 /// Half of the least mean error that published systems report against patients.
 const HALF_A_MILLIMETRE: f64 = 0.5;
 /// The free ring around the patch, in mm.
-const RING: f64 = 8.0;
-const FINER: &str = "linear finite elements, quadratic, every edge halved";
+pub(super) const RING: f64 = 8.0;
+pub(super) const FINER: &str = "linear finite elements, quadratic, every edge halved";
 
-type Found = Result<Option<Probe>, Refusal>;
+pub(super) type Found = Result<Option<Probe>, Refusal>;
 
-fn values(list: &[(f64, &str)]) -> Vec<(f64, String)> {
+pub(super) fn values(list: &[(f64, &str)]) -> Vec<(f64, String)> {
     list.iter().map(|(value, words)| (*value, (*words).to_owned())).collect()
 }
 
-fn numbers(list: &[f64]) -> Vec<(f64, String)> {
+pub(super) fn numbers(list: &[f64]) -> Vec<(f64, String)> {
     list.iter().map(|value| (*value, value.to_string())).collect()
 }
 
-fn moved() -> Vector {
+pub(super) fn moved() -> Vector {
     Vector::new(1.0, 0.0, 2.0)
 }
 
@@ -63,13 +63,16 @@ fn material(young_modulus: f64, nu: f64, region: &str) -> Result<LinearElastic, 
     })
 }
 
-fn found(case: Case, plan: Plan, variant: &Variant) -> Found {
+pub(super) fn found(case: Case, plan: Plan, variant: &Variant) -> Found {
     Ok(Some(Probe { case, plan, settings: variant.settings.clone() }))
 }
 
 /// The truth of a case of tetrahedra on a mesh of half the size; impossible where there is no such case.
-fn finer(case: Result<Case, Refusal>, plan: Plan) -> Truth {
-    case.map_or(Truth::Impossible, |case| Truth::Finer(Box::new((halved(case), plan))))
+pub(super) fn finer(case: Result<Case, Refusal>, plan: Plan) -> Truth {
+    let settings = Settings { element: ElementChoice::Quadratic, ..Settings::default() };
+    case.map_or(Truth::Impossible, |case| {
+        Truth::Solved(Box::new(Probe { case: halved(case), plan, settings }))
+    })
 }
 
 // Poisson's ratio.
@@ -149,7 +152,7 @@ fn turn(degrees: f64) -> RigidMovement {
     RigidMovement::about_pivot(angles, Vector::new(0.0, 0.0, -40.0), Vector::zeros())
 }
 
-fn usual_case(levels: &[f64], ring: f64, shape: CellShape) -> Result<Case, Refusal> {
+pub(super) fn usual_case(levels: &[f64], ring: f64, shape: CellShape) -> Result<Case, Refusal> {
     let material = material(YOUNG_MODULUS, POISSON_RATIO, "*")?;
     Ok(on_bone(layer(levels, ring, shape), tissue(material)))
 }

@@ -3,14 +3,10 @@
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
-use super::{
-    Answer, Axis, AxisMap, Bounds, Finding, Map, Probe, Refusal, Stopwatch, Truth, Variant, Verdict,
-};
+use super::{Answer, Axis, AxisMap, Bounds, Finding, Map, Probe, Refusal, Truth, Variant, Verdict};
 use crate::mesh::Vector;
-use crate::prediction::{
-    Case, ElementChoice, Phase, Plan, Prediction, PredictionError, Progress, Scene, Settings,
-    Unobserved, predict,
-};
+use crate::prediction::{Prediction, PredictionError, Scene, Unobserved, predict};
+use crate::study::deadline::Deadline;
 use crate::validation::Statistics;
 
 /// Positions are told apart down to this, in mm.
@@ -68,7 +64,7 @@ impl Known {
             Truth::Formula(formula) => return Known::Formula(formula),
             Truth::Impossible => return Known::Impossible,
             Truth::First { times } => (first.clone(), times),
-            Truth::Finer(scene) => (solve_finely(&scene.0, &scene.1), 1.0),
+            Truth::Solved(probe) => (solve(&probe), 1.0),
         };
         first.clone_from(&answer);
         answer.map_or(Known::Impossible, |answer| Known::Solved { answer, times })
@@ -87,11 +83,10 @@ fn place(point: &Vector) -> [i64; 3] {
     [point.x, point.y, point.z].map(|c| (c / APART).round() as i64)
 }
 
-fn solve_finely(case: &Case, plan: &Plan) -> Option<Places> {
-    let settings = Settings { element: ElementChoice::Quadratic, ..Settings::default() };
-    let scene = Scene::new(case, plan, &settings).ok()?;
+fn solve(probe: &Probe) -> Option<Places> {
+    let scene = Scene::new(&probe.case, &probe.plan, &probe.settings).ok()?;
     let answer = predict(&scene, &Unobserved).ok()?;
-    Some(Rc::new(case.volume.nodes.iter().map(place).zip(answer.displacement).collect()))
+    Some(Rc::new(probe.case.volume.nodes.iter().map(place).zip(answer.displacement).collect()))
 }
 
 fn judged(probe: &Probe, truth: &Known, bound_mm: f64, bounds: &Bounds) -> Finding {
@@ -105,8 +100,8 @@ fn judged(probe: &Probe, truth: &Known, bound_mm: f64, bounds: &Bounds) -> Findi
             ));
         }
     };
-    let until = bounds.stopwatch.seconds() + bounds.seconds;
-    match predict(&scene, &Timed { stopwatch: bounds.stopwatch, until }) {
+    let deadline = Deadline::after(bounds.seconds, bounds.stopwatch, &Unobserved);
+    match predict(&scene, &deadline) {
         Err(PredictionError::Cancelled) => {
             let detail = format!("not done after {} s", bounds.seconds);
             failed(Refusal::new("", "budget-exceeded", &detail))
@@ -121,7 +116,8 @@ fn answered(scene: &Scene, prediction: Prediction, truth: &Known, bound_mm: f64)
     // An error that is not a number is beyond any bound.
     let within = answer.error_mm.is_some_and(|error| error <= bound_mm);
     let verdict = match (answer.warnings.is_empty(), within) {
-        (false, _) => Verdict::Warned,
+        (false, true) => Verdict::Cautious,
+        (false, false) => Verdict::Warned,
         (true, true) => Verdict::Good,
         (true, false) => Verdict::Wrong,
     };
@@ -163,21 +159,5 @@ fn failed(refusal: Refusal) -> Finding {
 impl Refusal {
     pub(super) fn new(pointer: &str, code: &str, detail: &str) -> Self {
         Refusal { pointer: pointer.to_owned(), code: code.to_owned(), detail: detail.to_owned() }
-    }
-}
-
-/// Work that is stopped at a time.
-struct Timed<'a> {
-    stopwatch: &'a dyn Stopwatch,
-    until: f64,
-}
-
-impl Progress for Timed<'_> {
-    fn phase(&self, _phase: Phase) {}
-
-    fn iteration(&self, _iteration: usize, _relative_residual: f64, _wanted: f64) {}
-
-    fn is_cancelled(&self) -> bool {
-        self.stopwatch.seconds() > self.until
     }
 }

@@ -6,6 +6,7 @@
 
 pub mod axes;
 mod judge;
+mod own_axes;
 mod scenes;
 
 use super::{Stopwatch, Variant};
@@ -45,8 +46,8 @@ pub struct Probe {
 pub enum Truth {
     /// Displacement in mm at a point.
     Formula(Box<dyn Fn(&Vector) -> Vector + Send + Sync>),
-    /// Quadratic linear finite elements on a finer mesh, whose nodes include those of the skin of the probe.
-    Finer(Box<(Case, Plan)>),
+    /// The answer of a better method, on a mesh whose nodes include those of the skin of the probe.
+    Solved(Box<Probe>),
     /// That of the first value of the axis, so many times: where scene or movement differ by a factor only.
     First { times: f64 },
     /// There is none: only a refusal is right.
@@ -66,7 +67,9 @@ pub struct Refusal {
 pub enum Verdict {
     /// An answer within the bound, and no warning.
     Good,
-    /// An answer with a warning.
+    /// An answer within the bound that carries a warning all the same.
+    Cautious,
+    /// An answer beyond the bound, or where there is none, with a warning.
     Warned,
     /// Refused before anything is solved.
     Refused,
@@ -80,6 +83,7 @@ impl Verdict {
     pub fn name(self) -> &'static str {
         match self {
             Verdict::Good => "good",
+            Verdict::Cautious => "cautious",
             Verdict::Warned => "warned",
             Verdict::Refused => "refused",
             Verdict::Failed => "failed",
@@ -137,25 +141,6 @@ impl Map {
     pub fn count(&self, verdict: Verdict) -> usize {
         let findings = self.axes.iter().flat_map(|axis| axis.findings.iter().flatten().flatten());
         findings.filter(|finding| finding.verdict == verdict).count()
-    }
-}
-
-impl AxisMap {
-    /// The first value at which a variant does not answer well, and what it does there.
-    pub fn first_not_good(&self, variant: usize) -> Option<(usize, Verdict)> {
-        let findings = self.findings.get(variant)?.iter().enumerate();
-        let mut judged =
-            findings.filter_map(|(value, finding)| Some((value, finding.as_ref()?.verdict)));
-        judged.find(|(_, verdict)| *verdict != Verdict::Good)
-    }
-
-    /// The first value with an answer that is wrong.
-    pub fn first_wrong(&self, variant: usize) -> Option<usize> {
-        let findings = self.findings.get(variant)?;
-        let is_wrong = |finding: &Option<Finding>| {
-            finding.as_ref().is_some_and(|finding| finding.verdict == Verdict::Wrong)
-        };
-        findings.iter().position(is_wrong)
     }
 }
 
