@@ -36,6 +36,7 @@ use utoipa_axum::router::OpenApiRouter;
 use crate::config::Config;
 use crate::jobs::library::Library;
 use crate::jobs::responses::Responses;
+use crate::jobs::slot::slot_bytes;
 use crate::schema::Limits;
 use crate::store::Store;
 
@@ -57,7 +58,10 @@ pub struct Service {
 
 impl Service {
     pub fn new(config: Config, store: Store, library: Library) -> Self {
-        let limits = Limits { upload_bytes: config.upload_bytes as u64, ..Limits::default() };
+        let mut limits = Limits { upload_bytes: config.upload_bytes as u64, ..Limits::default() };
+        if config.workers > 0 || config.slot_memory_bytes.is_some() {
+            limits.slot_memory_mb = slot_bytes(&config) as f64 / 1e6;
+        }
         Service {
             responses: Responses::new(store.clone(), config.response_cache_bytes),
             config: Arc::new(config),

@@ -7,7 +7,7 @@ use bytes::Bytes;
 use facies::schema::canonical::sha256_hex;
 use facies::schema::job::JobStatus;
 use facies::store::{
-    Claim, Dismissal, Enqueued, JobRow, NewJob, Point, PublishedFile, Store, StoreError,
+    Claim, Dismissal, Enqueued, JobRow, NewJob, Point, PublishedFile, QueueRow, Store, StoreError,
 };
 use sqlx::Connection;
 use tempfile::TempDir;
@@ -176,6 +176,20 @@ async fn the_same_inputs_are_the_same_job() {
     assert_eq!(enqueued, Enqueued::Known(id));
     let other = new_job("{}", "b");
     assert_eq!(store.enqueue(&other, 1).await.unwrap(), Enqueued::QueueFull);
+}
+
+#[tokio::test]
+async fn the_queue_is_counted_with_the_age_of_its_oldest_job() {
+    let (folder, store) = store().await;
+    assert_eq!(store.queue().await.unwrap(), QueueRow::default());
+    for hash in ["a", "b", "c"] {
+        enqueue(&store, hash).await;
+    }
+    store.claim(LEASE).await.unwrap().unwrap();
+    execute(folder.path(), "UPDATE jobs SET created = created - 5000 WHERE spec_hash = 'b'").await;
+    let queue = store.queue().await.unwrap();
+    assert_eq!((queue.waiting, queue.running), (2, 1));
+    assert!((5000..65_000).contains(&queue.oldest_ms), "{queue:?}");
 }
 
 #[tokio::test]
