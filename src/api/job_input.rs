@@ -30,7 +30,9 @@ pub async fn of_prediction(service: &Service, spec: PredictDocument) -> ApiResul
     }
     let tags = input.spec.tags.clone();
     let prepare = |input: &PredictInput, sources: &dyn MeshSource, limits: &Limits| {
-        input.prepare(sources, limits).map(|prepared| prepared.spec_hash)
+        let prepared = input.prepare(sources, limits)?;
+        prepared.admit(0, limits)?;
+        Ok(prepared.spec_hash)
     };
     let (input, spec_hash) = prepared(service, input, prepare).await?;
     let new = Accepted {
@@ -87,7 +89,9 @@ pub async fn of_response(service: &Service, mut spec: ResponseDocument) -> ApiRe
     let (mesh_ids, tags) = (case.mesh_ids(), spec.tags.clone());
     let input = ResponseInput { job: None, queue_s: None, case, spec };
     let prepare = |input: &ResponseInput, sources: &dyn MeshSource, limits: &Limits| {
-        input.prepare(sources, limits).map(|prepared| prepared.key)
+        let prepared = input.prepare(sources, limits)?;
+        prepared.admit(limits)?;
+        Ok(prepared.key)
     };
     let (input, spec_hash) = prepared(service, input, prepare).await?;
     let case_id = Some(row.id);
@@ -111,7 +115,9 @@ pub async fn of_optimisation(service: &Service, mut spec: OptimiseDocument) -> A
     let input = OptimiseInput { job: None, queue_s: None, case, spec };
     let mesh_ids = input.mesh_ids();
     let prepare = |input: &OptimiseInput, sources: &dyn MeshSource, limits: &Limits| {
-        input.prepare(sources, limits).map(|prepared| prepared.spec_hash)
+        let prepared = input.prepare(sources, limits)?;
+        prepared.rest.admit(prepared.moving, limits)?;
+        Ok(prepared.spec_hash)
     };
     let (input, spec_hash) = prepared(service, input, prepare).await?;
     let case_id = Some(row.id);

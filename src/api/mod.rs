@@ -46,6 +46,7 @@ use utoipa_axum::router::OpenApiRouter;
 use crate::config::Config;
 use crate::jobs::library::Library;
 use crate::jobs::responses::Responses;
+use crate::jobs::slot::slot_bytes;
 use crate::schema::Limits;
 use crate::store::Store;
 
@@ -67,14 +68,24 @@ pub struct Service {
     pub streams: streams::Streams,
 }
 
+/// The limits that these settings give.
+pub fn limits(config: &Config) -> Limits {
+    let mut limits = Limits {
+        upload_bytes: config.upload_bytes as u64,
+        requests_per_minute: config.requests_per_minute,
+        event_streams: config.event_streams,
+        ..Limits::default()
+    };
+    // Who has no slots does not know the memory of those of other processes, unless it is told.
+    if config.workers > 0 || config.slot_memory_bytes.is_some() {
+        limits.slot_memory_mb = slot_bytes(config) as f64 / 1e6;
+    }
+    limits
+}
+
 impl Service {
     pub fn new(config: Config, store: Store, library: Library) -> Self {
-        let limits = Limits {
-            upload_bytes: config.upload_bytes as u64,
-            requests_per_minute: config.requests_per_minute,
-            event_streams: config.event_streams,
-            ..Limits::default()
-        };
+        let limits = limits(&config);
         Service {
             responses: Responses::new(store.clone(), config.response_cache_bytes),
             config: Arc::new(config),

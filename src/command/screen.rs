@@ -71,7 +71,9 @@ pub fn print_check(check: &CheckDocument) {
     for (name, count) in &skin.regions {
         println!("  {name:<8} {count} nodes");
     }
-    println!("unknowns   {}, about {:.0} MB", check.unknowns, check.memory_mb);
+    let time = check.time_s.map(|time| format!(", {:.1} to {:.1} s", time.low, time.high));
+    let (unknowns, time) = (check.unknowns, time.unwrap_or_default());
+    println!("unknowns   {unknowns}, about {:.0} MB{time}", check.memory_mb);
     print_warnings(&check.warnings);
 }
 

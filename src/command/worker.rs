@@ -2,15 +2,13 @@
 
 use std::net::SocketAddr;
 
-use super::serve::{
-    ServeError, listen_for_admin, open, start_workers, stop_signal, tell_admin,
-};
+use super::serve::{ServeError, listen_for_admin, open, start_workers, stop_signal, tell_admin};
 use super::settings::Arguments;
+use crate::api;
 use crate::config::Config;
 use crate::jobs::fail_point;
 use crate::jobs::library::Library;
 use crate::jobs::worker::Workers;
-use crate::schema::Limits;
 use crate::telemetry;
 
 /// Works until the process is told to stop (SIGTERM or SIGINT).
@@ -36,8 +34,7 @@ async fn start(config: &Config) -> Result<(Workers, Option<SocketAddr>), ServeEr
     let store = open(config).await?;
     let admin = listen_for_admin(config, &store).await?;
     let library = Library::new(store.clone(), config.mesh_cache_bytes);
-    let limits = Limits { upload_bytes: config.upload_bytes as u64, ..Limits::default() };
-    let workers = start_workers(config, store, library, &limits)?;
+    let workers = start_workers(config, store, library, &api::limits(config))?;
     tracing::info!(workers = config.workers, "working");
     Ok((workers, admin))
 }

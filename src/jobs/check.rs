@@ -1,21 +1,14 @@
 //! What a case and a plan mean, before anything is solved.
 
+use super::expected;
 use super::failure::JobError;
 use super::input::{PredictInput, Prepared};
 use super::pictures::classes_picture;
 use super::source::MeshSource;
-use crate::mesh::{CellShape, Warning};
+use crate::mesh::Warning;
 use crate::prediction::{NodeClass, Scene};
 use crate::schema::check::{CheckDocument, ClassCounts, SkinSummary};
 use crate::schema::{Limits, WarningDocument};
-
-/// Coupled node pairs for each cell of a large mesh, both ways: six edges shared by about five
-/// tetrahedra, 26 neighbours of a node in a brick lattice with one brick a node, 20 with two wedges a node.
-const PAIRS_OF_TETRAHEDRON: f64 = 2.5;
-const PAIRS_OF_HEXAHEDRON: f64 = 26.0;
-const PAIRS_OF_WEDGE: f64 = 10.0;
-/// Bytes of a 3x3 block with its column, held as matrix and as preconditioner.
-const BYTES_OF_PAIR: f64 = 2.0 * 76.0;
 
 /// The counts of a check, and the picture on demand: drawing takes longer than counting.
 pub struct CheckReport {
@@ -64,7 +57,8 @@ impl Prepared {
             },
             imaged: scene.imaged.as_ref().map(Into::into),
             unknowns: (3 * nodes - held) as u64,
-            memory_mb: expected_memory_mb(scene),
+            memory_mb: expected::memory_mb(scene, 0),
+            time_s: expected::time_s(scene, input.spec.method),
             method: input.spec.method.chosen().name().to_owned(),
             why: input.spec.method.why().to_owned(),
             warnings: warnings.map(WarningDocument::from).collect(),
@@ -98,21 +92,6 @@ fn class_counts(scene: &Scene) -> ClassCounts {
         }
     }
     counts
-}
-
-/// About what matrix and iterations take; a factorisation is chosen only where it fits the budget too.
-fn expected_memory_mb(scene: &Scene) -> f64 {
-    let pairs: f64 = scene
-        .mesh
-        .cells
-        .iter()
-        .map(|(shape, _)| match shape {
-            CellShape::Tet4 => PAIRS_OF_TETRAHEDRON,
-            CellShape::Hex8 => PAIRS_OF_HEXAHEDRON,
-            CellShape::Wedge6 => PAIRS_OF_WEDGE,
-        })
-        .sum();
-    (pairs + scene.mesh.nodes.len() as f64) * BYTES_OF_PAIR / 1e6
 }
 
 /// Warnings as documents, without repeats.

@@ -3,6 +3,7 @@
 
 pub mod check;
 pub mod comparison;
+pub mod expected;
 pub mod fail_point;
 pub mod failure;
 pub mod heartbeat;

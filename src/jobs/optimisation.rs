@@ -56,6 +56,7 @@ pub fn optimise_job(
 
     // 1. Documents and meshes, checked together.
     let prepared = input.prepare(place.sources, place.limits)?;
+    prepared.rest.admit(prepared.moving, place.limits)?;
     clock.check()?;
 
     // 2. What each number of the movements does to the skin, and the plan.

@@ -16,6 +16,8 @@ pub struct PreparedOptimisation {
     /// The scene in which nothing moves.
     pub rest: Prepared,
     pub targets: Vec<Target>,
+    /// How many segments move.
+    pub moving: usize,
     /// Those that only inverse planning has.
     pub warnings: Vec<Warning>,
     pub spec_hash: String,
@@ -39,12 +41,13 @@ impl OptimiseInput {
         self.spec.check(&self.case, limits, &mut faults);
         faults.into_result()?;
         let rest = self.at_rest().prepare(sources, limits).map_err(|error| self.in_spec(error))?;
-        chosen(&rest.scene, &self.spec.moving()).map_err(|error| self.judge(error))?;
+        let moving = chosen(&rest.scene, &self.spec.moving());
+        let moving = moving.map_err(|error| self.judge(error))?.len();
         let mut warnings = Vec::new();
         let targets = self.targets(&rest, limits, &mut warnings)?;
         let content = |id: &str| rest.contents.get(id).cloned();
         let spec_hash = canonical::optimise_hash(&self.case, &self.spec, &content);
-        Ok(PreparedOptimisation { rest, targets, warnings, spec_hash })
+        Ok(PreparedOptimisation { rest, targets, moving, warnings, spec_hash })
     }
 
     /// The ids of all meshes that the job reads.

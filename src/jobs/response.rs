@@ -45,6 +45,14 @@ pub struct ResponseInput {
 pub struct PreparedResponse {
     pub key: String,
     prepared: Prepared,
+    segments: usize,
+}
+
+impl PreparedResponse {
+    /// Refuses a response that is expected to need more memory than a slot has.
+    pub fn admit(&self, limits: &Limits) -> Result<(), JobError> {
+        self.prepared.admit(self.segments, limits)
+    }
 }
 
 impl ResponseInput {
@@ -65,10 +73,11 @@ impl ResponseInput {
             spec: self.spec.to_prediction(),
         };
         let prepared = still.prepare(sources, limits)?;
-        chosen(&prepared.scene, &self.spec.segments).map_err(|error| self.judge(error))?;
+        let chosen = chosen(&prepared.scene, &self.spec.segments);
+        let segments = chosen.map_err(|error| self.judge(error))?.len();
         let content = |id: &str| prepared.contents.get(id).cloned();
         let key = canonical::response_key(&self.case, &self.spec, &content);
-        Ok(PreparedResponse { key, prepared })
+        Ok(PreparedResponse { key, prepared, segments })
     }
 
     fn judge(&self, error: ResponseError) -> JobError {
@@ -88,7 +97,9 @@ pub fn response_job(
     let clock = Observed::start(progress, input.spec.budget.wall_s);
 
     // 1. Documents and meshes, checked together.
-    let PreparedResponse { key, prepared } = input.prepare(place.sources, place.limits)?;
+    let checked = input.prepare(place.sources, place.limits)?;
+    checked.admit(place.limits)?;
+    let PreparedResponse { key, prepared, .. } = checked;
     clock.check()?;
 
     // 2. The columns.

@@ -64,8 +64,9 @@ impl Documents<'_> {
                     .collect()
             }
         };
+        let memory_mb = self.spec.budget.memory_mb.min(self.limits.slot_memory_mb);
         for variant in &mut variants {
-            variant.settings.memory_mb = self.spec.budget.memory_mb;
+            variant.settings.memory_mb = memory_mb;
         }
         for (index, variant) in variants.iter().enumerate() {
             if variants[..index].iter().any(|other| other.label == variant.label) {

@@ -69,6 +69,7 @@ fn predict_job(
 
     // 1. Documents and meshes, checked together.
     let prepared = input.prepare(place.sources, place.limits)?;
+    prepared.admit(0, place.limits)?;
     clock.check()?;
 
     // 2. The displacement of the tissue.

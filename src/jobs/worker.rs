@@ -189,7 +189,9 @@ impl Shared {
         fail_points.pass_by("claim:after", &|| job.is_cancelled());
         let folder = self.store.attempt_folder(&lease.job, lease.attempt);
         let mut effort = Effort::default();
-        let made = make(claim, &folder, &job, work).and_then(|finished| {
+        let made = make(claim, &folder, &job, work);
+        let worked = started.elapsed();
+        let made = made.and_then(|finished| {
             let files = read_files(finished.files)?;
             effort = finished.effort;
             Ok((finished.result, files))
@@ -211,8 +213,8 @@ impl Shared {
             let method = effort.method.as_deref().unwrap_or("none");
             metrics::job_solved(method, effort.unknowns, effort.iterations, took);
         }
-        let duration_ms = took.as_secs_f64() * 1e3;
-        tracing::info!(status, duration_ms, "job ended");
+        let (work_ms, duration_ms) = (worked.as_secs_f64() * 1e3, took.as_secs_f64() * 1e3);
+        tracing::info!(status, work_ms, duration_ms, "job ended");
     }
 
     /// Stores the files and makes them and the manifest visible at once; false when the job is not ours.

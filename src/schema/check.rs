@@ -21,12 +21,26 @@ pub struct CheckDocument {
     pub imaged: Option<ImagedTissueDocument>,
     /// Unknown displacement components.
     pub unknowns: u64,
-    /// What matrix and solver are expected to take.
+    /// What the process of the job is expected to take; above `slot_memory_mb` of the limits the job is refused.
     pub memory_mb: f64,
+    /// Where the table of measured times covers the method.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub time_s: Option<TimeBandDocument>,
     /// The method that `auto` chooses.
     pub method: String,
     pub why: String,
     pub warnings: Vec<WarningDocument>,
+}
+
+/// From mesh in memory to displacement in memory on one thread of a machine like the one that measured the table of
+/// methods: an order of magnitude, not a promise.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct TimeBandDocument {
+    /// As fast as the best row, time growing with the unknowns.
+    pub low: f64,
+    /// As slow as the worst row, time growing with their power 4/3.
+    pub high: f64,
 }
 
 /// How many nodes are held by what; each node is counted once, by the strongest that holds it.

@@ -44,6 +44,8 @@ pub struct Limits {
     pub wall_s: f64,
     /// Largest budget of memory of one job.
     pub memory_mb: f64,
+    /// Memory of the process of one job; a job that is expected to need more is refused.
+    pub slot_memory_mb: f64,
     pub samples_per_mm2: f64,
     /// Scenes times plans times materials times levels times variants of a study.
     pub study_rows: u32,
@@ -77,6 +79,7 @@ impl Default for Limits {
             centre_displacement_mm: 250.0,
             wall_s: 86_400.0,
             memory_mb: 1_000_000.0,
+            slot_memory_mb: 1_000_000.0,
             samples_per_mm2: 100.0,
             study_rows: 2000,
             requests_per_minute: 60_000,

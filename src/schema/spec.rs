@@ -296,7 +296,7 @@ impl PredictDocument {
             element: self.element.choice(),
             sliding: self.contact == ContactName::Sliding,
             relative_residual: residual,
-            memory_mb: memory,
+            memory_mb: memory.min(limits.slot_memory_mb),
             membrane,
         }
     }

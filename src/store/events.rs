@@ -51,8 +51,7 @@ impl Store {
         job: &str,
         after: i64,
     ) -> Result<Option<Vec<EventRow>>, StoreError> {
-        let rows =
-            query(AFTER).bind(job).bind(after).fetch_all(self.database.reader()).await?;
+        let rows = query(AFTER).bind(job).bind(after).fetch_all(self.database.reader()).await?;
         if rows.is_empty() {
             let found = query("SELECT 1 FROM jobs WHERE id = $1")
                 .bind(job)

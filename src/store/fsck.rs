@@ -6,6 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use bytes::Bytes;
 
 use super::database::query;
+use super::events::record;
 use super::references::new_place;
 use super::sweep::PATIENCE;
 use super::{Store, StoreError};
@@ -156,6 +157,7 @@ impl Store {
         if accepted == 1 {
             let files = "DELETE FROM job_files WHERE job_id = $1";
             query(files).bind(job).execute(&mut transaction).await?;
+            record(&mut transaction, job).await?;
         }
         transaction.commit().await?;
         self.jobs_changed();

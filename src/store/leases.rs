@@ -253,11 +253,8 @@ impl Store {
     /// happened to `attempts` times.
     pub async fn reap(&self, attempts: u32, error: &str) -> Result<Vec<Reaped>, StoreError> {
         let mut transaction = self.database.begin().await?;
-        let rows = query(REAP)
-            .bind(i64::from(attempts))
-            .bind(error)
-            .fetch_all(&mut transaction)
-            .await?;
+        let rows =
+            query(REAP).bind(i64::from(attempts)).bind(error).fetch_all(&mut transaction).await?;
         for row in &rows {
             record(&mut transaction, row.try_get("id")?).await?;
         }

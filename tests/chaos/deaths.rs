@@ -151,3 +151,35 @@ fn a_slot_without_a_worker_says_what_it_is_and_ends() {
     assert_eq!(output.status.code(), Some(2));
     assert!(String::from_utf8(output.stderr).unwrap().contains("facies serve"));
 }
+
+#[tokio::test]
+async fn a_slot_knows_neither_the_database_nor_a_key() {
+    const KEY: &str = "0123456789abcdef";
+    let folder = TempDir::new().unwrap();
+    let mut command = serve(folder.path());
+    command.env("FACIES_API_KEY", KEY);
+    let data = folder.path().to_str().unwrap().to_owned();
+    let server = Server::start_command(command, folder);
+    let slots = until("both slots are there", async || {
+        // Between fork and exec one is still a copy of its worker.
+        let begun = |slot: &u32| {
+            let line = std::fs::read_to_string(format!("/proc/{slot}/cmdline"));
+            line.is_ok_and(|line| line.starts_with("facies\0slot"))
+        };
+        let slots: Vec<u32> = slots(&server).into_iter().filter(begun).collect();
+        (slots.len() == 2).then_some(slots)
+    })
+    .await;
+    for slot in slots {
+        for file in ["environ", "cmdline"] {
+            let bytes = std::fs::read(format!("/proc/{slot}/{file}")).unwrap();
+            let text = String::from_utf8_lossy(&bytes);
+            assert!(!text.contains(KEY), "{text}");
+        }
+        let files = std::fs::read_dir(format!("/proc/{slot}/fd")).unwrap();
+        for file in files.filter_map(|file| std::fs::read_link(file.ok()?.path()).ok()) {
+            let file = file.to_str().unwrap();
+            assert!(!file.contains(&data) && !file.starts_with("socket:"), "{file}");
+        }
+    }
+}

@@ -1,7 +1,8 @@
 //! Many processes on one PostgreSQL and one store of objects, and what happens when one of them goes.
 
 use std::io::{BufRead, BufReader};
-use std::process::{Child, Command, Output, Stdio};
+use std::process::{Child, ChildStdout, Command, Output, Stdio};
+use std::time::{Duration, Instant};
 
 use facies::store::Store;
 use reqwest::StatusCode;
@@ -19,14 +20,21 @@ struct Worker(Child);
 
 impl Worker {
     fn start(on: &Deployment) -> Worker {
+        Worker::start_with(on, &[]).0
+    }
+
+    /// The worker, and what it says.
+    fn start_with(on: &Deployment, arguments: &[&str]) -> (Worker, BufReader<ChildStdout>) {
         let mut command = Command::new(env!("CARGO_BIN_EXE_facies"));
         command.args(["worker", "--workers", "1", "--lease-s", "1", "--heartbeat-s", "0.2"]);
+        command.args(arguments);
         on.bring(&mut command);
         let mut child = command.stdout(Stdio::piped()).stderr(Stdio::null()).spawn().unwrap();
         let mut line = String::new();
-        BufReader::new(child.stdout.take().unwrap()).read_line(&mut line).unwrap();
+        let mut said = BufReader::new(child.stdout.take().unwrap());
+        said.read_line(&mut line).unwrap();
         assert_eq!(line, "working with 1 workers\n");
-        Worker(child)
+        (Worker(child), said)
     }
 }
 
@@ -70,8 +78,34 @@ async fn a_job_that_one_host_accepts_is_solved_by_another_and_served_by_a_third(
         let found = facies::schema::canonical::sha256_hex(&answer.bytes);
         assert_eq!(found, file["sha256"].as_str().unwrap());
     }
+    // Who watches sees all of it, wherever it happened.
+    let told = text(&ask(first.get(&format!("/v1/jobs/{id}/events"))).await.bytes);
+    for status in ["accepted", "running", "successful"] {
+        assert!(told.contains(&format!("\"status\":\"{status}\"")), "{told}");
+    }
     let known = ask(second.post("/v1/jobs").json(&spec(&case, 1.0))).await;
     assert_eq!(known.expect(StatusCode::OK)["deduplicated"], true);
+}
+
+#[tokio::test]
+async fn a_worker_tells_what_it_counts_and_that_it_lives() {
+    let Some(on) = Deployment::shared().await else { return };
+    let (_worker, mut said) = Worker::start_with(&on, &["--admin-bind", "127.0.0.1:0"]);
+    let mut line = String::new();
+    said.read_line(&mut line).unwrap();
+    let metrics = line.trim().strip_prefix("metrics on ").unwrap();
+    let api = api(&on);
+    let case = api.case(&SMALL).await;
+    api.job(&spec(&case, 1.0)).await.expect(StatusCode::OK);
+    // It counts once the result is there for all.
+    let counted = "facies_attempts_total{kind=\"predict\",status=\"successful\"} 1";
+    let until = Instant::now() + Duration::from_secs(30);
+    while !text(&ask(api.client.get(metrics)).await.bytes).contains(counted) {
+        assert!(Instant::now() < until, "the attempt was not counted");
+        tokio::time::sleep(Duration::from_millis(20)).await;
+    }
+    let healthz = metrics.replace("/metrics", "/healthz");
+    ask(api.client.get(&healthz)).await.expect(StatusCode::OK);
 }
 
 #[tokio::test]

@@ -1,6 +1,7 @@
 //! The service from outside: the real server, its store, its queue.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on panics")]
 
+mod admission;
 mod bad_documents;
 mod bad_meshes;
 mod bad_requests;
@@ -12,7 +13,7 @@ mod faults;
 #[allow(dead_code, reason = "the tests of the formats use the rest")]
 #[path = "../mechanics/formats_samples.rs"]
 mod formats_samples;
-#[allow(dead_code, reason = "the tests of faults use the rest")]
+#[allow(dead_code, reason = "the tests under fire use the rest")]
 mod helpers;
 mod hosts;
 mod idempotency;

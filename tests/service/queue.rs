@@ -6,7 +6,7 @@ use bytes::Bytes;
 use facies::schema::canonical::sha256_hex;
 use facies::schema::job::JobStatus;
 use facies::store::{
-    Claim, Dismissal, Enqueued, JobFilter, JobRow, NewJob, Point, PublishedFile, Store,
+    Claim, Dismissal, Enqueued, JobFilter, JobRow, NewJob, Point, PublishedFile, QueueRow, Store,
 };
 use tempfile::TempDir;
 
@@ -74,6 +74,7 @@ on_both! {
     a_job_given_back_by_a_stopping_worker_loses_no_attempt
     a_result_that_comes_after_the_dismissal_is_dropped
     the_same_inputs_are_the_same_job
+    the_queue_is_counted_with_the_age_of_its_oldest_job
     progress_never_falls
     lists_come_newest_first_page_by_page
 }
@@ -191,6 +192,19 @@ async fn the_same_inputs_are_the_same_job(on: Deployment) {
     assert_eq!(enqueued, Enqueued::Known(id));
     let other = new_job("{}", "b");
     assert_eq!(store.enqueue(&other, 1).await.unwrap(), Enqueued::QueueFull);
+}
+
+async fn the_queue_is_counted_with_the_age_of_its_oldest_job(on: Deployment) {
+    let store = on.open().await;
+    assert_eq!(store.queue().await.unwrap(), QueueRow::default());
+    for hash in ["a", "b", "c"] {
+        enqueue(&store, hash).await;
+    }
+    store.claim(LEASE).await.unwrap().unwrap();
+    on.execute("UPDATE jobs SET created = created - 5000 WHERE spec_hash = 'b'").await;
+    let queue = store.queue().await.unwrap();
+    assert_eq!((queue.waiting, queue.running), (2, 1));
+    assert!((5000..65_000).contains(&queue.oldest_ms), "{queue:?}");
 }
 
 async fn progress_never_falls(on: Deployment) {

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use facies::schema::job::JobStatus;
-use facies::store::{Dismissal, Enqueued, MeshDeletion, Store};
+use facies::store::{Dismissal, Enqueued, MeshDeletion, Point, Reserved, Store};
 use tokio::task::JoinSet;
 
 use crate::deployments::{Deployment, on_both};
@@ -16,6 +16,8 @@ on_both! {
     a_dismissal_and_a_publication_have_one_winner
     bytes_that_are_stored_and_removed_at_the_same_time_are_never_missed
     a_case_is_erased_while_jobs_come
+    a_key_that_many_send_is_fresh_once
+    events_of_a_job_are_numbered_without_gaps_and_go_with_it
 }
 
 /// A process is a store with connections of its own.
@@ -150,4 +152,50 @@ async fn a_process_that_waits_is_woken_by_the_change_of_another() {
         }
     };
     tokio::time::timeout(std::time::Duration::from_secs(60), woken).await.expect("it is woken");
+}
+
+async fn a_key_that_many_send_is_fresh_once(on: Deployment) {
+    let stores = processes(&on, 4).await;
+    let mut requests = JoinSet::new();
+    for store in stores.iter().cycle().take(20) {
+        let (store, id) = (store.clone(), uuid::Uuid::now_v7().to_string());
+        requests
+            .spawn(async move { (store.reserve("a key", "a request", &id).await.unwrap(), id) });
+    }
+    let (fresh, again): (Vec<_>, Vec<_>) = requests
+        .join_all()
+        .await
+        .into_iter()
+        .partition(|(reserved, _)| *reserved == Reserved::Fresh);
+    assert_eq!(fresh.len(), 1);
+    let known = Reserved::Again(fresh[0].1.clone());
+    assert!(again.iter().all(|(reserved, _)| *reserved == known), "{again:?}");
+    let other = stores[1].reserve("a key", "another request", "an id").await.unwrap();
+    assert_eq!(other, Reserved::Other);
+}
+
+async fn events_of_a_job_are_numbered_without_gaps_and_go_with_it(on: Deployment) {
+    let stores = processes(&on, 4).await;
+    let id = enqueue(&stores[0], "a").await;
+    let lease = stores[0].claim(LEASE).await.unwrap().unwrap().lease;
+    let mut writers = JoinSet::new();
+    for (progress, store) in (1..=20).zip(stores.iter().cycle()) {
+        let (store, lease) = (store.clone(), lease.clone());
+        writers.spawn(async move {
+            let point = Point { progress, ..Point::default() };
+            assert!(store.renew(&lease, LEASE, &point).await.unwrap());
+            store.record_job(&lease.job).await.unwrap();
+        });
+    }
+    writers.join_all().await;
+    assert_eq!(stores[1].dismiss(&id).await.unwrap(), Dismissal::Dismissed);
+    let events = stores[2].job_events(&id, 0).await.unwrap().unwrap();
+    let numbers: Vec<i64> = events.iter().map(|event| event.number).collect();
+    assert_eq!(numbers, (1..=events.len() as i64).collect::<Vec<_>>());
+    assert!(events.is_sorted_by_key(|event| event.progress), "{events:?}");
+    assert_eq!(events.last().unwrap().status, JobStatus::Dismissed);
+    assert_eq!(stores[3].erased(&id).await.unwrap(), None);
+    assert_eq!(stores[3].dismiss(&id).await.unwrap(), Dismissal::Removed);
+    assert!(stores[0].erased(&id).await.unwrap().is_some());
+    assert_eq!(stores[0].job_events(&id, 0).await.unwrap(), None);
 }

@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 use std::io::{self, BufRead, BufReader, Write};
-use std::os::unix::process::ExitStatusExt as _;
+use std::os::unix::process::{CommandExt as _, ExitStatusExt as _};
 use std::process::{Child, ChildStderr, ChildStdin, ChildStdout, Command, ExitStatus, Stdio};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -13,6 +13,7 @@ use bytes::Bytes;
 
 use super::memory::{self, Usage};
 use super::protocol::{Order, Report, Settings, encode, read_message};
+use crate::jobs::fail_point;
 
 /// Lines of standard error that are kept to tell how a process died.
 const LAST_LINES: usize = 20;
@@ -124,10 +125,16 @@ pub struct Process {
 }
 
 impl Process {
-    /// Starts it on the calling thread, with which the system lets it end.
+    /// Starts it on the calling thread, with which the system lets it end. Of the environment, which may hold keys, it
+    /// gets no more than what is named here.
     pub fn start(program: &Program, settings: &Settings) -> io::Result<Process> {
+        let passed = [fail_point::VARIABLE, "RUST_BACKTRACE"];
+        let passed = passed.iter().filter_map(|name| Some((*name, std::env::var_os(name)?)));
         let mut child = Command::new(&program.file)
+            .arg0("facies")
             .args(&program.arguments)
+            .env_clear()
+            .envs(passed)
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .stderr(Stdio::piped())

@@ -25,7 +25,7 @@ const LOOK: Duration = Duration::from_millis(100);
 const GRACE: Duration = Duration::from_secs(10);
 /// How long a process may take to begin.
 const START: Duration = Duration::from_secs(30);
-/// After so many jobs a process makes room for a fresh one, whose memory is not in pieces.
+/// After so many jobs a process makes room for a fresh one.
 const JOBS_OF_A_PROCESS: usize = 1000;
 /// Waits after one death more than one in a row; each is twice the one before.
 const FIRST_WAIT: Duration = Duration::from_millis(100);
@@ -159,14 +159,9 @@ impl SlotWork {
     fn keep_or_recycle(&mut self, outcome: &Outcome, usage: Option<Usage>) {
         let Some(process) = &mut self.process else { return };
         process.jobs += 1;
-        let why = match (outcome, usage) {
-            (Outcome::Panicked(_), _) => Some("panic"),
-            _ if process.jobs >= JOBS_OF_A_PROCESS => Some("jobs"),
-            (_, Some(usage)) if usage.now_bytes > self.shared.settings.memory_bytes / 2 => {
-                Some("memory")
-            }
-            _ => None,
-        };
+        let panicked = matches!(outcome, Outcome::Panicked(_));
+        let limit = self.shared.settings.memory_bytes;
+        let why = worn_out(panicked, process.jobs, usage.map(|usage| usage.now_bytes), limit);
         if let Some(why) = why {
             tracing::info!(why, jobs = process.jobs, "a slot gets a fresh process");
             metrics::slot_ended(why);
@@ -323,6 +318,18 @@ impl Attempt<'_> {
     }
 }
 
+/// Why a process is not to be used again, if so: a bug may have left anything, many jobs leave memory in pieces, and a
+/// half of the memory that is not given back is missing in the next job.
+fn worn_out(panicked: bool, jobs: usize, bytes: Option<u64>, limit: u64) -> Option<&'static str> {
+    if panicked {
+        return Some("panic");
+    }
+    if jobs >= JOBS_OF_A_PROCESS {
+        return Some("jobs");
+    }
+    bytes.filter(|bytes| *bytes > limit / 2).map(|_| "memory")
+}
+
 fn finished(outcome: Outcome, folder: &Path) -> Result<Finished, Failure> {
     match outcome {
         Outcome::Done(Made { result, files, effort }) => Ok(Finished {
@@ -366,4 +373,18 @@ fn out_of_memory(asked_bytes: u64, limit_bytes: u64, usage: Option<Usage>) -> Va
         error["peak_mb"] = json!(megabytes(usage.peak_bytes));
     }
     error
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_process_is_used_until_it_panics_is_old_or_keeps_half_of_its_memory() {
+        assert_eq!(worn_out(false, JOBS_OF_A_PROCESS - 1, Some(500), 1000), None);
+        assert_eq!(worn_out(true, 1, Some(1), 1000), Some("panic"));
+        assert_eq!(worn_out(false, JOBS_OF_A_PROCESS, Some(1), 1000), Some("jobs"));
+        assert_eq!(worn_out(false, 1, Some(501), 1000), Some("memory"));
+        assert_eq!(worn_out(false, 1, None, 1000), None);
+    }
 }

@@ -6,6 +6,8 @@ use std::sync::OnceLock;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
+use crate::schema::check::TimeBandDocument;
+
 /// What `facies study` wrote.
 const TABLE: &str = include_str!("../../../docs/speed-and-accuracy.csv");
 
@@ -38,10 +40,32 @@ struct Row {
     p95_mm: f64,
 }
 
+fn rows() -> &'static [Row] {
+    static ROWS: OnceLock<Vec<Row>> = OnceLock::new();
+    ROWS.get_or_init(|| parse(TABLE).unwrap_or_default())
+}
+
+/// Between which times a method is expected to solve for so many unknowns, in s: from the best row of the table with
+/// time in proportion to the unknowns, to the worst with time in proportion to their power 4/3, as that of iterations
+/// whose number grows with the nodes across the mesh. Half and double allow for another machine.
+pub fn time_band(method: &str, unknowns: u64) -> Option<TimeBandDocument> {
+    let rows = rows().iter().filter(|row| row.method == method && row.unknowns > 0);
+    let mut band: Option<TimeBandDocument> = None;
+    for row in rows {
+        let ratio = unknowns as f64 / row.unknowns as f64;
+        let (low, high) =
+            (0.5 * row.wall_s * ratio, 2.0 * row.wall_s * ratio.max(ratio.powf(4.0 / 3.0)));
+        band = Some(match band {
+            None => TimeBandDocument { low, high },
+            Some(band) => TimeBandDocument { low: band.low.min(low), high: band.high.max(high) },
+        });
+    }
+    band
+}
+
 /// The places of a method, in the order of the table.
 pub fn measured(method: &str) -> Vec<MeasuredDocument> {
-    static ROWS: OnceLock<Vec<Row>> = OnceLock::new();
-    let rows = ROWS.get_or_init(|| parse(TABLE).unwrap_or_default());
+    let rows = rows();
     let mut places: Vec<(&Row, Vec<&Row>)> = Vec::new();
     for row in rows.iter().filter(|row| row.method == method) {
         let same = |first: &Row| {
@@ -141,6 +165,15 @@ mod tests {
             assert!(!places.is_empty(), "docs/speed-and-accuracy.csv has no row of {name}");
             assert_eq!(method.measured, places);
         }
+    }
+
+    /// The times of docs/performance.md, which the table knows nothing of: half a million unknowns in 1.9 to 4.3 s.
+    #[test]
+    fn the_band_of_times_holds_a_mesh_a_hundred_times_larger_than_those_of_the_table() {
+        let band = time_band("fem_linear", 504_483).unwrap();
+        assert!(band.low < 1.9 && 4.3 < band.high, "{band:?}");
+        assert!(band.low > 0.1 && band.high < 100.0, "{band:?}");
+        assert_eq!(time_band("fem_ogden", 1000), None);
     }
 
     #[test]

@@ -16,7 +16,7 @@ use crate::optimisation::UNDETERMINED;
 use crate::prediction::ElementChoice;
 use crate::response::COLUMNS_PER_SEGMENT;
 use crate::response::linearity::LINEAR_RANGE_MM;
-pub use measured::MeasuredDocument;
+pub use measured::{MeasuredDocument, time_band};
 
 /// Why `auto` is what it is.
 pub const WHY_LINEAR: &str = "auto: fem_linear, until something chooses between models";
