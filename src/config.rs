@@ -1,112 +1,21 @@
-//! Every setting of the service, read once at the start from flags and `FACIES_*` variables.
+//! Every setting of the service, read once at the start from flags, `FACIES_*` variables and a file.
+
+pub mod file;
+mod places;
+mod settings;
 
 use std::net::SocketAddr;
 use std::path::PathBuf;
 use std::time::Duration;
 
-/// One setting as it is documented: the flag is `--name`, the variable `FACIES_NAME`.
-pub struct Setting {
-    /// Lower case with dashes; names the unit.
-    pub name: &'static str,
-    /// As it would be written; empty where there is none.
-    pub default: &'static str,
-    /// What it does and its range.
-    pub about: &'static str,
-}
-
-impl Setting {
-    /// The environment variable.
-    pub fn variable(&self) -> String {
-        format!("FACIES_{}", self.name.replace('-', "_").to_uppercase())
-    }
-}
-
-const fn setting(name: &'static str, default: &'static str, about: &'static str) -> Setting {
-    Setting { name, default, about }
-}
-
-/// All settings of `facies serve`.
-pub const SETTINGS: [Setting; 21] = [
-    setting(
-        "bind",
-        "127.0.0.1:8080",
-        "address and port to listen on; port 0 takes a free one; any address but loopback needs an api-key",
-    ),
-    setting("data", "facies-data", "folder of the database, the blobs and the temporary files"),
-    setting(
-        "api-key",
-        "",
-        "asked for as `Authorization: Bearer KEY` on everything but /healthz, /readyz and the documentation; 16 to 255 visible characters; without it nobody is asked",
-    ),
-    setting(
-        "admin-bind",
-        "",
-        "address and port of a listener of its own for GET /metrics, which clients must not reach; without it there is none",
-    ),
-    setting(
-        "allowed-origins",
-        "",
-        "origins whose pages browsers let in, such as https://planning.example.org, with commas between them; without it none",
-    ),
-    setting(
-        "requests-per-minute",
-        "60000",
-        "requests of one client in a minute, above which it is told to wait; 0 to 10000000, 0 counts nobody",
-    ),
-    setting("event-streams", "8", "streams of events that one client may have open; 1 to 10000"),
-    setting("workers", "2", "jobs solved at the same time; 0 to 64, 0 leaves the jobs to others"),
-    setting("threads-per-job", "1", "threads of one job; 1 to 64; the results do not depend on it"),
-    setting(
-        "slot-memory-mib",
-        "",
-        "memory in MiB that one job may take in its process; 64 to 4194304; without it three quarters of the machine's or the container's, divided by workers",
-    ),
-    setting(
-        "lease-s",
-        "15",
-        "seconds without a sign of life after which a job is given to another worker; 0.5 to 3600",
-    ),
-    setting(
-        "heartbeat-s",
-        "5",
-        "seconds between two signs of life of a running job; 0.1 to a half of lease-s",
-    ),
-    setting(
-        "attempts",
-        "3",
-        "times a job may lose its worker or its storage before it fails; 1 to 10",
-    ),
-    setting(
-        "grace-s",
-        "10",
-        "seconds that running jobs get to finish after SIGTERM before they are given back; 0 to 3600",
-    ),
-    setting("upload-mib", "256", "largest body of an upload in MiB; 1 to 4096"),
-    setting(
-        "body-idle-s",
-        "30",
-        "seconds a client may stay silent in the middle of a body; 0.1 to 600",
-    ),
-    setting("mesh-cache-mib", "1024", "memory for parsed meshes in MiB; 0 to 1048576"),
-    setting("response-cache-mib", "256", "memory for plan responses in MiB; 0 to 1048576"),
-    setting(
-        "free-space-floor-mib",
-        "256",
-        "free disk space in MiB under which the service reports itself not ready; 0 to 1048576",
-    ),
-    setting("log-format", "json", "json or text"),
-    setting(
-        "log-level",
-        "info",
-        "error, warn, info, debug, trace, or a filter such as facies=debug,sqlx=warn",
-    ),
-];
+pub use places::{BlobsPlace, DatabasePlace, Places};
+pub use settings::{SETTINGS, Setting};
 
 /// The settings in force.
 #[derive(Clone, Debug)]
 pub struct Config {
     pub listen: SocketAddr,
-    pub data_dir: PathBuf,
+    pub places: Places,
     pub api_key: Option<Secret>,
     pub admin_listen: Option<SocketAddr>,
     pub allowed_origins: Vec<String>,
@@ -138,6 +47,15 @@ pub struct LogConfig {
 pub struct Secret(String);
 
 impl Secret {
+    pub fn new(text: String) -> Secret {
+        Secret(text)
+    }
+
+    /// The text itself, for those who have to know it.
+    pub fn reveal(&self) -> &str {
+        &self.0
+    }
+
     /// Compares in a time that depends on the length only.
     pub fn matches(&self, other: &str) -> bool {
         let (own, other) = (self.0.as_bytes(), other.as_bytes());
@@ -162,6 +80,15 @@ pub enum ConfigError {
         "heartbeat-s is {heartbeat} and lease-s {lease}: a lease has to outlast two heartbeats"
     )]
     Heartbeat { heartbeat: f64, lease: f64 },
+    #[error("database has to begin with postgres:// or postgresql://")]
+    Database,
+    #[error(
+        "{name} is not set: a worker of its own shares the database and the blobs with the API, \
+         and what is in the data folder belongs to one process"
+    )]
+    NotShared { name: &'static str },
+    #[error("{}: {reason}", path.display())]
+    File { path: PathBuf, reason: String },
     #[error("bind is {0}, which others can reach: set an api-key or bind to 127.0.0.1")]
     OpenWithoutKey(SocketAddr),
 }
@@ -171,12 +98,21 @@ const MIB: usize = 1 << 20;
 impl Config {
     /// Takes each setting from `given` (its value by its name) or from its default, and checks it.
     pub fn new(given: impl Fn(&str) -> Option<String>) -> Result<Config, ConfigError> {
+        let config = Config::without_listener(given)?;
+        if !config.listen.ip().is_loopback() && config.api_key.is_none() {
+            return Err(ConfigError::OpenWithoutKey(config.listen));
+        }
+        Ok(config)
+    }
+
+    /// The same for a process that listens nowhere.
+    pub fn without_listener(given: impl Fn(&str) -> Option<String>) -> Result<Config, ConfigError> {
         let read = Reader {
             text: |name: &str| given(name).unwrap_or_else(|| default_of(name).to_owned()),
         };
         let config = Config {
             listen: read.parsed("bind", "an address with a port, e.g. 127.0.0.1:8080")?,
-            data_dir: read.parsed("data", "a folder")?,
+            places: read.places()?,
             api_key: read.api_key()?,
             admin_listen: read.admin_listen()?,
             allowed_origins: read.origins()?,
@@ -205,9 +141,6 @@ impl Config {
                 heartbeat: self.heartbeat.as_secs_f64(),
                 lease: self.lease.as_secs_f64(),
             });
-        }
-        if !self.listen.ip().is_loopback() && self.api_key.is_none() {
-            return Err(ConfigError::OpenWithoutKey(self.listen));
         }
         Ok(self)
     }
@@ -252,6 +185,15 @@ impl<Text: Fn(&str) -> String> Reader<Text> {
             .filter(|number| (least..=most).contains(number))
             .map(Duration::from_secs_f64)
             .ok_or_else(|| out_of_range(name, value))
+    }
+
+    fn places(&self) -> Result<Places, ConfigError> {
+        let connections = self.whole("database-connections", 2..=1000)? as u32;
+        Ok(Places {
+            data: self.parsed("data", "a folder")?,
+            database: places::database((self.text)("database"), connections)?,
+            blobs: places::blobs(&(self.text)("blobs"))?,
+        })
     }
 
     fn api_key(&self) -> Result<Option<Secret>, ConfigError> {
@@ -355,11 +297,24 @@ mod tests {
             ("allowed-origins", "https://a.example/path"),
             ("event-streams", "0"),
             ("data", ""),
+            ("database", "mysql://x"),
+            ("database-connections", "1"),
+            ("blobs", "ftp://x"),
         ] {
             let error = config(&[(name, value)]).unwrap_err().to_string();
             assert!(error.contains(name), "{error}");
             assert!(!error.contains('\n'), "{error}");
         }
+    }
+
+    #[test]
+    fn a_worker_of_its_own_needs_what_others_reach() {
+        let server = ("database", "postgres://a:secret@h/d");
+        let shared = |given: &[(&str, &str)]| config(given).unwrap().places.check_shared();
+        assert!(shared(&[]).unwrap_err().to_string().starts_with("database is not set"));
+        assert!(shared(&[server]).unwrap_err().to_string().starts_with("blobs is not set"));
+        assert!(shared(&[server, ("blobs", "s3://b")]).is_ok());
+        assert!(!format!("{:?}", config(&[server]).unwrap()).contains("secret"));
     }
 
     #[test]

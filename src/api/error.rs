@@ -118,11 +118,17 @@ impl From<StoreError> for ApiError {
         }
         if error.is_unavailable() {
             tracing::warn!(%error, "storage is busy");
-            return ApiError::new("not-ready", "the database is busy");
+            return ApiError::new(
+                "not-ready",
+                "the database or the store of blobs is out of reach",
+            );
         }
-        if let StoreError::Integrity { .. } = error {
+        if let StoreError::Integrity { .. } | StoreError::Missing { .. } = error {
             tracing::error!(%error, "a blob is damaged");
-            return ApiError::new("integrity", "the stored bytes differ from their hash");
+            return ApiError::new(
+                "integrity",
+                "the stored bytes are lost or differ from their hash",
+            );
         }
         ApiError::internal(error)
     }

@@ -3,9 +3,11 @@
 use std::io;
 use std::path::PathBuf;
 
+use super::admin::AdminError;
 use super::demo::DemoError;
 use super::health::HealthError;
 use super::serve::ServeError;
+use crate::config::ConfigError;
 use crate::jobs::JobError;
 use crate::jobs::slot::SlotError;
 use crate::schema::Problem;
@@ -45,6 +47,10 @@ pub enum CommandError {
     #[error(transparent)]
     Slot(#[from] SlotError),
     #[error(transparent)]
+    Admin(#[from] AdminError),
+    #[error(transparent)]
+    Config(#[from] ConfigError),
+    #[error(transparent)]
     Health(#[from] HealthError),
 }
 
@@ -62,10 +68,14 @@ impl CommandError {
             CommandError::Demo(error) if error.is_setting() => CONFIGURATION,
             CommandError::Serve(error) if error.is_setting() => CONFIGURATION,
             CommandError::Health(error) if error.is_setting() => CONFIGURATION,
+            CommandError::Admin(error) if error.is_setting() => CONFIGURATION,
+            CommandError::Admin(AdminError::Findings { .. }) => FAILED,
+            CommandError::Config(_) => CONFIGURATION,
             CommandError::Demo(_)
             | CommandError::Serve(_)
             | CommandError::Slot(_)
-            | CommandError::Health(_) => INFRASTRUCTURE,
+            | CommandError::Health(_)
+            | CommandError::Admin(_) => INFRASTRUCTURE,
             CommandError::Job(error) => match error.class() {
                 ErrorClass::Input => REFUSED,
                 ErrorClass::Infrastructure => INFRASTRUCTURE,

@@ -4,21 +4,15 @@ use std::io::{Read, Write};
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr, TcpStream};
 use std::time::Duration;
 
-use clap::Args;
+use super::settings::Arguments;
+use crate::config::{Config, ConfigError};
 
 const PATIENCE: Duration = Duration::from_secs(2);
 
-#[derive(Debug, Args)]
-pub struct Arguments {
-    /// Address of the service; an address of all interfaces stands for this machine
-    #[arg(long, env = "FACIES_BIND", default_value = "127.0.0.1:8080")]
-    bind: String,
-}
-
 #[derive(Debug, thiserror::Error)]
 pub enum HealthError {
-    #[error("bind is `{0}`, and has to be an address with a port")]
-    Address(String),
+    #[error(transparent)]
+    Config(#[from] ConfigError),
     #[error("the service does not answer: {0}")]
     Silent(#[from] std::io::Error),
     #[error("the service answers `{0}`")]
@@ -28,14 +22,14 @@ pub enum HealthError {
 impl HealthError {
     /// Whether another setting would help.
     pub fn is_setting(&self) -> bool {
-        matches!(self, HealthError::Address(_))
+        matches!(self, HealthError::Config(_))
     }
 }
 
 /// Asks for /healthz.
 pub fn run(arguments: &Arguments) -> Result<(), HealthError> {
-    let address: SocketAddr =
-        arguments.bind.parse().map_err(|_| HealthError::Address(arguments.bind.clone()))?;
+    let given = arguments.given()?;
+    let address = Config::without_listener(|name| given.get(name))?.listen;
     let mut connection = TcpStream::connect_timeout(&on_this_machine(address), PATIENCE)?;
     connection.set_read_timeout(Some(PATIENCE))?;
     connection.set_write_timeout(Some(PATIENCE))?;

@@ -1,20 +1,25 @@
 //! The commands of the program, one file for each.
 
+pub mod admin;
 pub mod check;
 pub mod compare;
+pub mod config;
 pub mod demo;
 mod documents;
 mod failure;
 mod files;
 pub mod health;
+pub mod migrate;
 pub mod openapi;
 pub mod predict;
 mod scene;
 mod screen;
 pub mod serve;
+pub mod settings;
 pub mod slot;
 pub mod stability;
 pub mod study;
+pub mod worker;
 
 use std::process::ExitCode;
 
@@ -42,13 +47,21 @@ enum Command {
     Study(study::Arguments),
     /// Tell what a case and a plan mean, without solving
     Check(check::Arguments),
-    /// Serve the API, with workers in the same process
-    Serve(serve::Arguments),
     /// Compute the jobs of one slot; started by `serve`
     #[command(hide = true)]
     Slot(slot::Arguments),
+    /// Serve the API, with workers in the same process unless there are 0
+    Serve(settings::Arguments),
+    /// Work on the jobs of a shared database, without an API
+    Worker(settings::Arguments),
+    /// Bring the schema of the database up to date
+    Migrate(settings::Arguments),
+    /// Move, back up and check a deployment
+    Admin(admin::Arguments),
+    /// Print the settings in force, with secrets hidden
+    Config(settings::Arguments),
     /// Ask the service on this machine whether it is alive
-    Health(health::Arguments),
+    Health(settings::Arguments),
     /// Print the OpenAPI description of the service
     Openapi,
 }
@@ -63,6 +76,10 @@ pub fn run(facies: &Facies) -> ExitCode {
         Command::Check(arguments) => check::run(arguments),
         Command::Serve(arguments) => serve::run(arguments).map_err(CommandError::from),
         Command::Slot(arguments) => slot::run(arguments).map_err(CommandError::from),
+        Command::Worker(arguments) => worker::run(arguments).map_err(CommandError::from),
+        Command::Migrate(arguments) => migrate::run(arguments).map_err(CommandError::from),
+        Command::Admin(arguments) => admin::run(arguments).map_err(CommandError::from),
+        Command::Config(arguments) => config::run(arguments).map_err(CommandError::from),
         Command::Health(arguments) => health::run(arguments).map_err(CommandError::from),
         Command::Openapi => openapi::run(),
     };

@@ -3,22 +3,27 @@
 use std::io::Write as _;
 use std::net::SocketAddr;
 use std::sync::Arc;
+use std::time::Duration;
 
 use axum::serve::ListenerExt as _;
-use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
 use tokio::net::TcpListener;
 use tokio::runtime::Handle;
 
+use super::settings::Arguments;
 use crate::api::{self, Service};
-use crate::config::{Config, ConfigError, SETTINGS};
+use crate::config::{Config, ConfigError};
 use crate::jobs::fail_point::{self, FailPointError};
 use crate::jobs::library::Library;
 use crate::jobs::slot::protocol::Settings;
 use crate::jobs::slot::{Program, SlotSettings, SlotWork, slot_bytes};
 use crate::jobs::worker::{Work, Workers};
 use crate::metrics;
+use crate::schema::Limits;
 use crate::store::{Store, StoreError};
 use crate::telemetry::{self, TelemetryError};
+
+/// Between two looks for bytes that nothing refers to.
+const SWEEP_EVERY: Duration = Duration::from_secs(3600);
 
 #[derive(Debug, thiserror::Error)]
 pub enum ServeError {
@@ -26,7 +31,7 @@ pub enum ServeError {
     Config(#[from] ConfigError),
     #[error("{0}")]
     Telemetry(#[from] TelemetryError),
-    #[error("data folder: {0}")]
+    #[error("{0}")]
     Store(#[from] StoreError),
     #[error("metrics: {0}")]
     Metrics(#[from] metrics_exporter_prometheus::BuildError),
@@ -43,77 +48,16 @@ impl ServeError {
     pub fn is_setting(&self) -> bool {
         match self {
             ServeError::Io(_) => false,
-            ServeError::Store(error) => matches!(
-                error,
-                StoreError::InUse
-                    | StoreError::Files(_)
-                    | StoreError::SchemaTooNew { .. }
-                    | StoreError::Schema(_)
-            ),
+            ServeError::Store(error) => error.is_setting(),
             _ => true,
         }
     }
 }
 
-/// The settings as flags; each may as well be an environment variable.
-#[derive(Clone, Debug, Default)]
-pub struct Arguments {
-    given: Vec<(&'static str, String)>,
-}
-
-impl Arguments {
-    /// What was given for a setting: by its flag, else by its variable.
-    pub fn get(&self, name: &str) -> Option<String> {
-        let flag = self.given.iter().find(|(given, _)| *given == name);
-        flag.map(|(_, value)| value.clone()).or_else(|| {
-            let setting = SETTINGS.iter().find(|setting| setting.name == name)?;
-            let value = std::env::var_os(setting.variable())?;
-            Some(value.to_string_lossy().into_owned())
-        })
-    }
-}
-
-impl Args for Arguments {
-    fn augment_args(command: Command) -> Command {
-        // Given twice, the last one counts, as it does in shells and container files.
-        SETTINGS.iter().fold(command.args_override_self(true), |command, setting| {
-            let default = match setting.default {
-                "" => String::new(),
-                default => format!(" [default: {default}]"),
-            };
-            let argument = Arg::new(setting.name)
-                .long(setting.name)
-                .value_name("VALUE")
-                .allow_hyphen_values(true)
-                .help(format!("{} [env: {}]{default}", setting.about, setting.variable()));
-            command.arg(argument)
-        })
-    }
-
-    fn augment_args_for_update(command: Command) -> Command {
-        Self::augment_args(command)
-    }
-}
-
-impl FromArgMatches for Arguments {
-    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
-        let value = |name: &'static str| {
-            let value = matches.get_one::<String>(name)?;
-            Some((name, value.clone()))
-        };
-        let given = SETTINGS.iter().filter_map(|setting| value(setting.name)).collect();
-        Ok(Arguments { given })
-    }
-
-    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
-        *self = Self::from_arg_matches(matches)?;
-        Ok(())
-    }
-}
-
 /// Serves until the process is told to stop (SIGTERM or SIGINT).
 pub fn run(arguments: &Arguments) -> Result<(), ServeError> {
-    let config = Config::new(|name| arguments.get(name))?;
+    let given = arguments.given()?;
+    let config = Config::new(|name| given.get(name))?;
     telemetry::start(&config.log)?;
     fail_point::check()?;
     let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().build()?;
@@ -146,33 +90,17 @@ impl Server {
     /// Opens the store, sweeps it, listens, and starts the workers.
     pub async fn start(config: Config) -> Result<Server, ServeError> {
         metrics::start()?;
-        let store = Store::open(&config.data_dir).await?;
-        let swept = store.sweep().await?;
-        tracing::info!(blobs = swept.blobs, temporary = swept.temporary, "swept");
+        let store = Store::connect(&config.places).await?;
+        keep_swept(&store).await?;
         let address = config.listen;
         let listener = TcpListener::bind(address)
             .await
             .map_err(|source| ServeError::Listen { address, source })?;
         let address = listener.local_addr()?;
-        let admin = match config.admin_listen {
-            Some(address) => Some(
-                api::admin::listen(address, store.clone())
-                    .await
-                    .map_err(|source| ServeError::Listen { address, source })?,
-            ),
-            None => None,
-        };
+        let admin = admin_listener(&config, &store).await?;
         let library = Library::new(store.clone(), config.mesh_cache_bytes);
-        let runtime = Handle::current();
         let service = Service::new(config.clone(), store.clone(), library.clone());
-        let slots = Arc::new(SlotSettings {
-            library,
-            runtime: runtime.clone(),
-            program: Program::this(&config.log.filter)?,
-            settings: slot_settings(&config, &service),
-        });
-        let work = || -> Box<dyn Work> { Box::new(SlotWork::new(slots.clone())) };
-        let workers = Workers::start(store, &config, &work, runtime)?;
+        let workers = workers(&config, store, library, &service.limits)?;
         tracing::info!(%address, workers = config.workers, "serving");
         Ok(Server { address, admin, listener, service, workers })
     }
@@ -209,16 +137,61 @@ impl Server {
     }
 }
 
+/// Opens the listener for those who run the service, where one is wanted.
+pub async fn admin_listener(
+    config: &Config,
+    store: &Store,
+) -> Result<Option<SocketAddr>, ServeError> {
+    let Some(address) = config.admin_listen else { return Ok(None) };
+    let listened = api::admin::listen(address, store.clone()).await;
+    listened.map(Some).map_err(|source| ServeError::Listen { address, source })
+}
+
+/// Starts the workers of this process, each with a process of its own for its jobs.
+pub fn workers(
+    config: &Config,
+    store: Store,
+    library: Library,
+    limits: &Limits,
+) -> Result<Workers, ServeError> {
+    let runtime = Handle::current();
+    let slots = Arc::new(SlotSettings {
+        library,
+        runtime: runtime.clone(),
+        program: Program::this(&config.log.filter)?,
+        settings: slot_settings(config, limits),
+    });
+    let work = || -> Box<dyn Work> { Box::new(SlotWork::new(slots.clone())) };
+    Ok(Workers::start(store, config, &work, runtime)?)
+}
+
 /// What the processes of the slots keep to. Meshes that they keep take a quarter of their memory at most.
-fn slot_settings(config: &Config, service: &Service) -> Settings {
+fn slot_settings(config: &Config, limits: &Limits) -> Settings {
     let memory_bytes = slot_bytes(config);
     let share = config.mesh_cache_bytes / config.workers.max(1);
     Settings {
-        limits: (*service.limits).clone(),
+        limits: limits.clone(),
         memory_bytes,
         cache_bytes: share.min((memory_bytes / 4) as usize),
         threads: config.threads_per_job,
     }
+}
+
+/// Sweeps what dead processes left, at once and then every hour.
+pub async fn keep_swept(store: &Store) -> Result<(), StoreError> {
+    let swept = store.sweep().await?;
+    tracing::info!(blobs = swept.blobs, temporary = swept.temporary, "swept");
+    let store = store.clone();
+    tokio::spawn(async move {
+        loop {
+            tokio::time::sleep(SWEEP_EVERY).await;
+            match store.sweep_old_blobs().await {
+                Ok(blobs) => tracing::debug!(blobs, "swept"),
+                Err(error) => tracing::warn!(%error, "the sweep was broken off"),
+            }
+        }
+    });
+    Ok(())
 }
 
 /// Done when the process is told to stop: SIGTERM or SIGINT.

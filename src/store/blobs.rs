@@ -1,42 +1,95 @@
-//! Bytes by their SHA-256: stored meshes and result files.
+//! Bytes by their place: stored meshes and result files, in a folder or in an S3-compatible store.
 
 use std::path::Path;
 use std::sync::Arc;
+use std::time::Duration;
 
 use bytes::Bytes;
 use futures::TryStreamExt;
+use object_store::aws::AmazonS3Builder;
 use object_store::local::LocalFileSystem;
-use object_store::{ObjectStore, ObjectStoreExt, PutMode, PutOptions, PutPayload};
+use object_store::prefix::PrefixStore;
+use object_store::{ClientOptions, ObjectStore, ObjectStoreExt, PutPayload, RetryConfig};
 
 use super::StoreError;
+use crate::config::{BlobsPlace, Places, Secret};
 use crate::schema::canonical::sha256_hex;
 
-/// A folder of blobs. A blob is complete or absent: it is written beside its place, flushed, and linked.
+/// How long a store may take to accept a connection, and one request for a whole blob.
+const CONNECT_TIMEOUT: Duration = Duration::from_secs(3);
+const REQUEST_TIMEOUT: Duration = Duration::from_secs(300);
+/// How long a request is repeated before the client is told to come back.
+const RETRY_TIMEOUT: Duration = Duration::from_secs(10);
+const RETRIES: usize = 3;
+
+/// Blobs, each complete or absent: the folder writes beside the place, flushes and renames; S3 shows an object
+/// when all of it is there.
 #[derive(Clone)]
 pub struct Blobs {
     objects: Arc<dyn ObjectStore>,
 }
 
 impl Blobs {
-    pub fn open(folder: &Path) -> Result<Blobs, StoreError> {
+    pub fn open(places: &Places) -> Result<Blobs, StoreError> {
+        match &places.blobs {
+            BlobsPlace::InData => Blobs::in_folder(&places.data.join("blobs")),
+            BlobsPlace::Folder(folder) => Blobs::in_folder(folder),
+            BlobsPlace::Bucket { bucket, prefix, settings } => {
+                Blobs::in_bucket(bucket, prefix, settings)
+            }
+        }
+    }
+
+    fn in_folder(folder: &Path) -> Result<Blobs, StoreError> {
         std::fs::create_dir_all(folder)?;
         let objects = LocalFileSystem::new_with_prefix(folder)?.with_fsync(true);
         Ok(Blobs { objects: Arc::new(objects) })
     }
 
-    /// Stores bytes under their hash, durably; bytes that are there already stay as they are.
-    pub async fn put(&self, sha256: &str, bytes: Bytes) -> Result<(), StoreError> {
-        let options = PutOptions { mode: PutMode::Create, ..PutOptions::default() };
-        let payload = PutPayload::from(bytes);
-        match self.objects.put_opts(&place(sha256), payload, options).await {
-            Ok(_) | Err(object_store::Error::AlreadyExists { .. }) => Ok(()),
-            Err(error) => Err(error.into()),
+    fn in_bucket(
+        bucket: &str,
+        prefix: &str,
+        settings: &[(String, Secret)],
+    ) -> Result<Blobs, StoreError> {
+        // Whichever part of the program asks first for an encrypted connection decides by what.
+        let _ = rustls::crypto::ring::default_provider().install_default();
+        let client = ClientOptions::new()
+            .with_connect_timeout(CONNECT_TIMEOUT)
+            .with_timeout(REQUEST_TIMEOUT);
+        let retry = RetryConfig {
+            max_retries: RETRIES,
+            retry_timeout: RETRY_TIMEOUT,
+            ..RetryConfig::default()
+        };
+        let mut builder = AmazonS3Builder::new().with_client_options(client).with_retry(retry);
+        for (name, value) in settings {
+            // Those of other programs are not known.
+            if let Ok(key) = name.to_ascii_lowercase().parse() {
+                builder = builder.with_config(key, value.reveal());
+            }
         }
+        let objects = builder.with_bucket_name(bucket).build()?;
+        let objects: Arc<dyn ObjectStore> = match prefix {
+            "" => Arc::new(objects),
+            prefix => Arc::new(PrefixStore::new(objects, prefix)),
+        };
+        Ok(Blobs { objects })
     }
 
-    /// The bytes, compared with their hash: a blob that changed on disk is an error, never an answer.
-    pub async fn get(&self, sha256: &str) -> Result<Bytes, StoreError> {
-        let bytes = self.objects.get(&place(sha256)).await?.bytes().await?;
+    /// Stores bytes durably. Nobody else ever stores other bytes in the same place.
+    pub async fn put(&self, place: &str, bytes: Bytes) -> Result<(), StoreError> {
+        self.objects.put(&place.into(), PutPayload::from(bytes)).await?;
+        Ok(())
+    }
+
+    /// The bytes, compared with their hash: a blob that changed where it is kept is an error, never an answer.
+    pub async fn get(&self, place: &str, sha256: &str) -> Result<Bytes, StoreError> {
+        let missing = || StoreError::Missing { sha256: sha256.to_owned() };
+        let bytes = match self.objects.get(&place.into()).await {
+            Ok(found) => found.bytes().await?,
+            Err(object_store::Error::NotFound { .. }) => return Err(missing()),
+            Err(error) => return Err(error.into()),
+        };
         let (bytes, found) = tokio::task::spawn_blocking(move || {
             let found = sha256_hex(&bytes);
             (bytes, found)
@@ -49,24 +102,30 @@ impl Blobs {
         Ok(bytes)
     }
 
-    pub async fn delete(&self, sha256: &str) -> Result<(), StoreError> {
-        match self.objects.delete(&place(sha256)).await {
+    pub async fn delete(&self, place: &str) -> Result<(), StoreError> {
+        match self.objects.delete(&place.into()).await {
             Ok(()) | Err(object_store::Error::NotFound { .. }) => Ok(()),
             Err(error) => Err(error.into()),
         }
     }
 
-    /// The hashes of all blobs.
+    /// Whether a place holds bytes.
+    pub async fn exists(&self, place: &str) -> Result<bool, StoreError> {
+        match self.objects.head(&place.into()).await {
+            Ok(_) => Ok(true),
+            Err(object_store::Error::NotFound { .. }) => Ok(false),
+            Err(error) => Err(error.into()),
+        }
+    }
+
+    /// All places that hold bytes.
     pub async fn list(&self) -> Result<Vec<String>, StoreError> {
         let found = self.objects.list(None).try_collect::<Vec<_>>().await?;
-        Ok(found
-            .iter()
-            .filter_map(|object| object.location.filename().map(str::to_owned))
-            .collect())
+        Ok(found.iter().map(|object| object.location.to_string()).collect())
     }
-}
 
-/// Two letters of the hash as a folder keep folders small.
-fn place(sha256: &str) -> object_store::path::Path {
-    object_store::path::Path::from_iter([&sha256[..2], sha256])
+    /// Whether the store answers.
+    pub async fn ping(&self) -> Result<(), StoreError> {
+        self.exists("ready").await.map(|_| ())
+    }
 }

@@ -1,9 +1,8 @@
 //! Cases: a document that refers to meshes, with its tags.
 
-use sqlx::Row as _;
-
-use super::database::{Row, Transaction, is_duplicate, is_reference};
+use super::database::{Row, Transaction, is_duplicate, is_reference, query};
 use super::meshes::insert_mesh;
+use super::references::{Content, hashes};
 use super::tombstones::{bury, bury_case};
 use super::{NewMesh, Store, StoreError};
 
@@ -53,7 +52,9 @@ const FILES_OF_CASE: &str = "SELECT job_files.blob FROM job_files \
 /// Jobs of several cases; those of one go with it.
 const DELETE_SHARED_JOBS: &str =
     "DELETE FROM jobs WHERE id IN (SELECT job_id FROM job_cases WHERE case_id = $1)";
-const MESHES_OF_CASE: &str = "SELECT mesh_id FROM case_meshes WHERE case_id = $1";
+/// Locked, so that a request which is about to refer to one of them has either done so or finds it gone.
+const MESHES_OF_CASE: &str = "SELECT id FROM meshes \
+     WHERE id IN (SELECT mesh_id FROM case_meshes WHERE case_id = $1) ORDER BY id FOR UPDATE";
 const DELETE_UNUSED_MESH: &str = "DELETE FROM meshes WHERE id = $1 AND standalone = 0 \
      AND NOT EXISTS (SELECT 1 FROM case_meshes WHERE mesh_id = $1) \
      AND NOT EXISTS (SELECT 1 FROM job_meshes WHERE mesh_id = $1) RETURNING blob";
@@ -74,7 +75,7 @@ fn case_row(row: &Row) -> Result<CaseRow, sqlx::Error> {
 
 impl Store {
     pub async fn case(&self, id: &str) -> Result<Option<CaseRow>, StoreError> {
-        let row = sqlx::query(BY_ID).bind(id).fetch_optional(self.database.reader()).await?;
+        let row = query(BY_ID).bind(id).fetch_optional(self.database.reader()).await?;
         Ok(row.as_ref().map(case_row).transpose()?)
     }
 
@@ -85,7 +86,7 @@ impl Store {
         cursor: Option<&str>,
         limit: i64,
     ) -> Result<Vec<CaseRow>, StoreError> {
-        let rows = sqlx::query(LIST)
+        let rows = query(LIST)
             .bind(cursor.unwrap_or(AFTER_ALL))
             .bind(tag)
             .bind(limit)
@@ -96,18 +97,23 @@ impl Store {
 
     /// Stores a case and its meshes, or nothing: false when a mesh it counts on came or went meanwhile.
     pub async fn add_case(&self, case: &NewCase) -> Result<bool, StoreError> {
-        let _uncommitted = self.uncommitted.read().await;
+        let mut contents: Vec<Content> = Vec::new();
         for mesh in &case.meshes {
-            self.blobs.put(&mesh.blob, mesh.bytes.clone()).await?;
+            contents.push((mesh.blob.clone(), mesh.bytes.clone()));
         }
-        let mut transaction = self.database.begin().await?;
+        let blobs = hashes(&contents);
+        let mut transaction = self.begin_with(contents).await?;
         match insert_case(&mut transaction, case).await {
             Ok(()) => {
                 transaction.commit().await?;
                 Ok(true)
             }
-            Err(error) if is_duplicate(&error) || is_reference(&error) => Ok(false),
-            Err(error) => Err(error.into()),
+            Err(error) => {
+                transaction.rollback().await?;
+                self.discard(blobs).await;
+                let meanwhile = is_duplicate(&error) || is_reference(&error);
+                if meanwhile { Ok(false) } else { Err(error.into()) }
+            }
         }
     }
 
@@ -115,9 +121,9 @@ impl Store {
     /// nothing else refers to. A job of it that is running finds itself gone and stops.
     pub async fn delete_case(&self, id: &str, version: Option<i64>) -> Result<Change, StoreError> {
         let mut transaction = self.database.begin().await?;
-        let found = sqlx::query("SELECT version FROM cases WHERE id = $1")
+        let found = query("SELECT version FROM cases WHERE id = $1 FOR UPDATE")
             .bind(id)
-            .fetch_optional(&mut *transaction)
+            .fetch_optional(&mut transaction)
             .await?;
         let Some(found) = found else {
             return Ok(Change::NotFound);
@@ -129,8 +135,8 @@ impl Store {
         let mut blobs = column(&mut transaction, FILES_OF_CASE, id).await?;
         let meshes = column(&mut transaction, MESHES_OF_CASE, id).await?;
         bury_case(&mut transaction, id).await?;
-        sqlx::query(DELETE_SHARED_JOBS).bind(id).execute(&mut *transaction).await?;
-        sqlx::query("DELETE FROM cases WHERE id = $1").bind(id).execute(&mut *transaction).await?;
+        query(DELETE_SHARED_JOBS).bind(id).execute(&mut transaction).await?;
+        query("DELETE FROM cases WHERE id = $1").bind(id).execute(&mut transaction).await?;
         for mesh in meshes {
             let unused = column(&mut transaction, DELETE_UNUSED_MESH, &mesh).await?;
             if !unused.is_empty() {
@@ -140,7 +146,7 @@ impl Store {
         }
         transaction.commit().await?;
         self.jobs_changed();
-        self.delete_unreferenced_blobs(blobs).await?;
+        self.discard(blobs).await;
         Ok(Change::Done)
     }
 }
@@ -151,7 +157,7 @@ async fn column(
     sql: &'static str,
     id: &str,
 ) -> Result<Vec<String>, sqlx::Error> {
-    let rows = sqlx::query(sql).bind(id).fetch_all(&mut **transaction).await?;
+    let rows = query(sql).bind(id).fetch_all(&mut *transaction).await?;
     rows.iter().map(|row| row.try_get(0)).collect()
 }
 
@@ -159,27 +165,25 @@ async fn insert_case(transaction: &mut Transaction, case: &NewCase) -> Result<()
     for mesh in &case.meshes {
         insert_mesh(transaction, mesh).await?;
     }
-    sqlx::query(INSERT)
+    query(INSERT)
         .bind(&case.id)
         .bind(&case.document)
         .bind(&case.report)
-        .execute(&mut **transaction)
+        .execute(&mut *transaction)
         .await?;
     for tag in &case.tags {
-        sqlx::query("INSERT INTO case_tags (case_id, tag) VALUES ($1, $2) ON CONFLICT DO NOTHING")
+        query("INSERT INTO case_tags (case_id, tag) VALUES ($1, $2) ON CONFLICT DO NOTHING")
             .bind(&case.id)
             .bind(tag)
-            .execute(&mut **transaction)
+            .execute(&mut *transaction)
             .await?;
     }
     for mesh in &case.mesh_ids {
-        sqlx::query(
-            "INSERT INTO case_meshes (case_id, mesh_id) VALUES ($1, $2) ON CONFLICT DO NOTHING",
-        )
-        .bind(&case.id)
-        .bind(mesh)
-        .execute(&mut **transaction)
-        .await?;
+        query("INSERT INTO case_meshes (case_id, mesh_id) VALUES ($1, $2) ON CONFLICT DO NOTHING")
+            .bind(&case.id)
+            .bind(mesh)
+            .execute(&mut *transaction)
+            .await?;
     }
     Ok(())
 }

@@ -1,9 +1,7 @@
 //! The events of a job: each visible state that it was in, written in the transaction that changed it, so
 //! that who reads them later misses none.
 
-use sqlx::Row as _;
-
-use super::database::Transaction;
+use super::database::{Transaction, query};
 use super::{Store, StoreError};
 use crate::schema::job::JobStatus;
 
@@ -39,9 +37,9 @@ const AFTER: &str = "SELECT number, at, status, phase, progress, iteration, resi
 
 /// Writes down the state of a job, if it is another than the last one.
 pub(super) async fn record(transaction: &mut Transaction, job: &str) -> Result<(), sqlx::Error> {
-    let recorded = sqlx::query(RECORD).bind(job).execute(&mut **transaction).await?;
-    if recorded.rows_affected() > 0 {
-        sqlx::query(FORGET).bind(job).execute(&mut **transaction).await?;
+    let recorded = query(RECORD).bind(job).execute(&mut *transaction).await?;
+    if recorded > 0 {
+        query(FORGET).bind(job).execute(&mut *transaction).await?;
     }
     Ok(())
 }
@@ -53,10 +51,9 @@ impl Store {
         job: &str,
         after: i64,
     ) -> Result<Option<Vec<EventRow>>, StoreError> {
-        let rows =
-            sqlx::query(AFTER).bind(job).bind(after).fetch_all(self.database.reader()).await?;
+        let rows = query(AFTER).bind(job).bind(after).fetch_all(self.database.reader()).await?;
         if rows.is_empty() {
-            let found = sqlx::query("SELECT 1 FROM jobs WHERE id = $1")
+            let found = query("SELECT 1 FROM jobs WHERE id = $1")
                 .bind(job)
                 .fetch_optional(self.database.reader())
                 .await?;

@@ -1,8 +1,7 @@
 //! Requests that are sent again: the id of what the first of them made, or would have made. No answer is
 //! kept, only the id, so that an answer that got lost is given again as the resource is now.
 
-use sqlx::Row as _;
-
+use super::database::query;
 use super::{Store, StoreError};
 
 /// How long a key is remembered.
@@ -33,16 +32,16 @@ impl Store {
         resource: &str,
     ) -> Result<Reserved, StoreError> {
         let mut transaction = self.database.begin().await?;
-        sqlx::query(FORGET).bind(KEPT_MS).execute(&mut *transaction).await?;
-        let reserved = sqlx::query(RESERVE)
+        query(FORGET).bind(KEPT_MS).execute(&mut transaction).await?;
+        let reserved = query(RESERVE)
             .bind(key)
             .bind(fingerprint)
             .bind(resource)
-            .execute(&mut *transaction)
+            .execute(&mut transaction)
             .await?;
-        let row = sqlx::query(FIND).bind(key).fetch_one(&mut *transaction).await?;
+        let row = query(FIND).bind(key).fetch_one(&mut transaction).await?;
         transaction.commit().await?;
-        if reserved.rows_affected() == 1 {
+        if reserved == 1 {
             return Ok(Reserved::Fresh);
         }
         let known: String = row.try_get("fingerprint")?;

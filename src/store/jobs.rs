@@ -1,9 +1,7 @@
 //! Jobs as clients see them: accepted, looked at, listed, dismissed, removed.
 
-use sqlx::Row as _;
-
 use super::cases::AFTER_ALL;
-use super::database::{Row, Transaction, is_reference};
+use super::database::{Row, Transaction, is_reference, query};
 use super::events::record;
 use super::tombstones::bury;
 use super::{Store, StoreError};
@@ -139,7 +137,7 @@ fn job_row(row: &Row) -> Result<JobRow, sqlx::Error> {
 
 impl Store {
     pub async fn job(&self, id: &str) -> Result<Option<JobRow>, StoreError> {
-        let row = sqlx::query(BY_ID).bind(id).fetch_optional(self.database.reader()).await?;
+        let row = query(BY_ID).bind(id).fetch_optional(self.database.reader()).await?;
         match row {
             Some(row) => Ok(Some(self.with_tags(job_row(&row)?).await?)),
             None => Ok(None),
@@ -148,7 +146,7 @@ impl Store {
 
     /// Jobs newest first.
     pub async fn jobs(&self, filter: &JobFilter) -> Result<Vec<JobRow>, StoreError> {
-        let rows = sqlx::query(LIST)
+        let rows = query(LIST)
             .bind(filter.cursor.as_deref().unwrap_or(AFTER_ALL))
             .bind(&filter.status)
             .bind(&filter.kind)
@@ -165,7 +163,7 @@ impl Store {
     }
 
     async fn with_tags(&self, mut job: JobRow) -> Result<JobRow, StoreError> {
-        let rows = sqlx::query("SELECT tag FROM job_tags WHERE job_id = $1 ORDER BY tag")
+        let rows = query("SELECT tag FROM job_tags WHERE job_id = $1 ORDER BY tag")
             .bind(&job.id)
             .fetch_all(self.database.reader())
             .await?;
@@ -176,94 +174,109 @@ impl Store {
     /// Accepts a job, unless one with the same inputs is known.
     pub async fn enqueue(&self, job: &NewJob, longest_queue: i64) -> Result<Enqueued, StoreError> {
         let mut transaction = self.database.begin().await?;
-        let known = sqlx::query("SELECT id FROM jobs WHERE spec_hash = $1")
+        let known = query("SELECT id FROM jobs WHERE spec_hash = $1")
             .bind(&job.spec_hash)
-            .fetch_optional(&mut *transaction)
+            .fetch_optional(&mut transaction)
             .await?;
         if let Some(row) = known {
             return Ok(Enqueued::Known(row.try_get(0)?));
         }
-        let waiting = sqlx::query("SELECT COUNT(*) FROM jobs WHERE status = 'accepted'")
-            .fetch_one(&mut *transaction)
+        let waiting = query("SELECT COUNT(*) FROM jobs WHERE status = 'accepted'")
+            .fetch_one(&mut transaction)
             .await?;
         if waiting.try_get::<i64, _>(0)? >= longest_queue {
             return Ok(Enqueued::QueueFull);
         }
         match insert_job(&mut transaction, job).await {
-            Ok(()) => {
+            Ok(true) => {
                 record(&mut transaction, &job.id).await?;
                 transaction.commit().await?;
                 self.jobs_changed();
                 Ok(Enqueued::Accepted)
+            }
+            // Another request with the same inputs came between the question and the answer.
+            Ok(false) => {
+                transaction.rollback().await?;
+                self.known(job).await
             }
             Err(error) if is_reference(&error) => Ok(Enqueued::InputGone),
             Err(error) => Err(error.into()),
         }
     }
 
+    /// The job that was accepted in place of this one.
+    async fn known(&self, job: &NewJob) -> Result<Enqueued, StoreError> {
+        let known = query("SELECT id FROM jobs WHERE spec_hash = $1")
+            .bind(&job.spec_hash)
+            .fetch_optional(self.database.reader())
+            .await?;
+        let id = known.ok_or(StoreError::Contended)?.try_get(0)?;
+        Ok(Enqueued::Known(id))
+    }
+
     /// Ends a job that is accepted or running, removes one that has ended.
     pub async fn dismiss(&self, id: &str) -> Result<Dismissal, StoreError> {
         let mut transaction = self.database.begin().await?;
-        let dismissed = sqlx::query(DISMISS).bind(id).execute(&mut *transaction).await?;
-        if dismissed.rows_affected() == 1 {
+        let dismissed = query(DISMISS).bind(id).execute(&mut transaction).await?;
+        if dismissed == 1 {
             record(&mut transaction, id).await?;
             transaction.commit().await?;
             self.jobs_changed();
             return Ok(Dismissal::Dismissed);
         }
-        let rows = sqlx::query("SELECT blob FROM job_files WHERE job_id = $1")
+        let rows = query("SELECT blob FROM job_files WHERE job_id = $1")
             .bind(id)
-            .fetch_all(&mut *transaction)
+            .fetch_all(&mut transaction)
             .await?;
         let blobs = rows.iter().map(|row| row.try_get(0)).collect::<Result<Vec<String>, _>>()?;
-        let removed = sqlx::query(REMOVE).bind(id).execute(&mut *transaction).await?;
-        if removed.rows_affected() == 1 {
+        let removed = query(REMOVE).bind(id).execute(&mut transaction).await?;
+        if removed == 1 {
             bury(&mut transaction, id).await?;
         }
         transaction.commit().await?;
         self.jobs_changed();
-        self.delete_unreferenced_blobs(blobs).await?;
-        Ok(match removed.rows_affected() {
+        self.discard(blobs).await;
+        Ok(match removed {
             0 => Dismissal::NotFound,
             _ => Dismissal::Removed,
         })
     }
 }
 
-async fn insert_job(transaction: &mut Transaction, job: &NewJob) -> Result<(), sqlx::Error> {
-    sqlx::query(INSERT)
+/// False when a job with the same inputs was there before.
+async fn insert_job(transaction: &mut Transaction, job: &NewJob) -> Result<bool, sqlx::Error> {
+    let inserted = query(INSERT)
         .bind(&job.id)
         .bind(job.kind)
         .bind(&job.case_id)
         .bind(&job.document)
         .bind(&job.spec_hash)
         .bind(&job.engine)
-        .execute(&mut **transaction)
+        .execute(&mut *transaction)
         .await?;
+    if inserted == 0 {
+        return Ok(false);
+    }
     for tag in &job.tags {
-        sqlx::query("INSERT INTO job_tags (job_id, tag) VALUES ($1, $2) ON CONFLICT DO NOTHING")
+        query("INSERT INTO job_tags (job_id, tag) VALUES ($1, $2) ON CONFLICT DO NOTHING")
             .bind(&job.id)
             .bind(tag)
-            .execute(&mut **transaction)
+            .execute(&mut *transaction)
             .await?;
     }
     for case in &job.shared_cases {
-        sqlx::query(
-            "INSERT INTO job_cases (job_id, case_id) VALUES ($1, $2) ON CONFLICT DO NOTHING",
-        )
-        .bind(&job.id)
-        .bind(case)
-        .execute(&mut **transaction)
-        .await?;
+        query("INSERT INTO job_cases (job_id, case_id) VALUES ($1, $2) ON CONFLICT DO NOTHING")
+            .bind(&job.id)
+            .bind(case)
+            .execute(&mut *transaction)
+            .await?;
     }
     for mesh in &job.mesh_ids {
-        sqlx::query(
-            "INSERT INTO job_meshes (job_id, mesh_id) VALUES ($1, $2) ON CONFLICT DO NOTHING",
-        )
-        .bind(&job.id)
-        .bind(mesh)
-        .execute(&mut **transaction)
-        .await?;
+        query("INSERT INTO job_meshes (job_id, mesh_id) VALUES ($1, $2) ON CONFLICT DO NOTHING")
+            .bind(&job.id)
+            .bind(mesh)
+            .execute(&mut *transaction)
+            .await?;
     }
-    Ok(())
+    Ok(true)
 }

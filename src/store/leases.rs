@@ -4,10 +4,10 @@
 use std::time::Duration;
 
 use bytes::Bytes;
-use sqlx::Row as _;
 
-use super::database::Query;
+use super::database::{Statement, query};
 use super::events::record;
+use super::references::{Content, hashes};
 use super::{Store, StoreError};
 
 /// The right of one attempt to write to its job.
@@ -64,13 +64,13 @@ pub struct Reaped {
     pub accepted_again: bool,
 }
 
-// Another engine adds FOR UPDATE SKIP LOCKED to the inner query.
 const CLAIM: &str = "UPDATE jobs SET status = 'running', attempt = attempt + 1, lease_token = $1, \
      lease_expires = (SELECT now_ms FROM clock) + $2, heartbeat = (SELECT now_ms FROM clock), \
      phase = NULL, iteration = NULL, residual = NULL, \
      started = COALESCE(started, (SELECT now_ms FROM clock)), updated = (SELECT now_ms FROM clock) \
      WHERE id = (SELECT id FROM jobs WHERE status = 'accepted' \
-       AND claimable_from <= (SELECT now_ms FROM clock) ORDER BY id LIMIT 1) \
+       AND claimable_from <= (SELECT now_ms FROM clock) ORDER BY id LIMIT 1 \
+       FOR UPDATE SKIP LOCKED) \
      AND status = 'accepted' RETURNING id, attempt, kind, document, created, started";
 const RENEW: &str = "UPDATE jobs SET lease_expires = (SELECT now_ms FROM clock) + $3, \
      heartbeat = (SELECT now_ms FROM clock), updated = (SELECT now_ms FROM clock), phase = $4, \
@@ -101,7 +101,8 @@ const REAP: &str = "UPDATE jobs SET losses = losses + 1, lease_token = NULL, lea
      error = CASE WHEN losses + 1 >= $1 THEN $2 END, \
      finished = CASE WHEN losses + 1 >= $1 THEN (SELECT now_ms FROM clock) END, \
      updated = (SELECT now_ms FROM clock) \
-     WHERE status = 'running' AND lease_expires < (SELECT now_ms FROM clock) \
+     WHERE id IN (SELECT id FROM jobs WHERE status = 'running' \
+       AND lease_expires < (SELECT now_ms FROM clock) FOR UPDATE SKIP LOCKED) \
      RETURNING id, attempt, status";
 const INSERT_FILE: &str =
     "INSERT INTO job_files (job_id, name, media_type, blob, bytes) VALUES ($1, $2, $3, $4, $5)";
@@ -116,10 +117,10 @@ impl Store {
     pub async fn claim(&self, lease: Duration) -> Result<Option<Claim>, StoreError> {
         let token = uuid::Uuid::now_v7().to_string();
         let mut transaction = self.database.begin().await?;
-        let row = sqlx::query(CLAIM)
+        let row = query(CLAIM)
             .bind(&token)
             .bind(milliseconds(lease))
-            .fetch_optional(&mut *transaction)
+            .fetch_optional(&mut transaction)
             .await?;
         let Some(row) = row else { return Ok(None) };
         record(&mut transaction, row.try_get("id")?).await?;
@@ -142,7 +143,7 @@ impl Store {
         point: &Point,
     ) -> Result<bool, StoreError> {
         let mut transaction = self.database.begin().await?;
-        let renewed = sqlx::query(RENEW)
+        let renewed = query(RENEW)
             .bind(&lease.job)
             .bind(&lease.token)
             .bind(milliseconds(length))
@@ -150,19 +151,19 @@ impl Store {
             .bind(point.progress)
             .bind(point.iteration)
             .bind(point.residual)
-            .execute(&mut *transaction)
+            .execute(&mut transaction)
             .await?;
-        if renewed.rows_affected() == 1 {
+        if renewed == 1 {
             record(&mut transaction, &lease.job).await?;
         }
         transaction.commit().await?;
         self.jobs_changed();
-        Ok(renewed.rows_affected() == 1)
+        Ok(renewed == 1)
     }
 
     /// Whether a job is ours still.
     pub async fn holds(&self, lease: &Lease) -> Result<bool, StoreError> {
-        let row = sqlx::query(HELD)
+        let row = query(HELD)
             .bind(&lease.job)
             .bind(&lease.token)
             .fetch_optional(self.database.reader())
@@ -178,32 +179,31 @@ impl Store {
         result: &str,
         files: &[PublishedFile],
     ) -> Result<bool, StoreError> {
-        let uncommitted = self.uncommitted.read().await;
+        let mut contents: Vec<Content> = Vec::new();
         for file in files {
-            self.blobs.put(&file.sha256, file.bytes.clone()).await?;
+            contents.push((file.sha256.clone(), file.bytes.clone()));
         }
-        let mut transaction = self.database.begin().await?;
-        let published = sqlx::query(SUCCEED)
+        let blobs = hashes(&contents);
+        let mut transaction = self.begin_with(contents).await?;
+        let published = query(SUCCEED)
             .bind(&lease.job)
             .bind(&lease.token)
             .bind(result)
-            .execute(&mut *transaction)
+            .execute(&mut transaction)
             .await?;
-        if published.rows_affected() != 1 {
+        if published != 1 {
             transaction.rollback().await?;
-            drop(uncommitted);
-            let blobs = files.iter().map(|file| file.sha256.clone()).collect();
-            self.delete_unreferenced_blobs(blobs).await?;
+            self.discard(blobs).await;
             return Ok(false);
         }
         for file in files {
-            sqlx::query(INSERT_FILE)
+            query(INSERT_FILE)
                 .bind(&lease.job)
                 .bind(&file.name)
                 .bind(&file.media_type)
                 .bind(&file.sha256)
                 .bind(file.bytes.len() as i64)
-                .execute(&mut *transaction)
+                .execute(&mut transaction)
                 .await?;
         }
         record(&mut transaction, &lease.job).await?;
@@ -214,12 +214,12 @@ impl Store {
 
     /// Ends a job whose own fault it is; false when it is not ours any more.
     pub async fn fail(&self, lease: &Lease, error: &str) -> Result<bool, StoreError> {
-        self.end(lease, sqlx::query(FAIL).bind(&lease.job).bind(&lease.token).bind(error)).await
+        self.end(lease, query(FAIL).bind(&lease.job).bind(&lease.token).bind(error)).await
     }
 
     /// Gives a job back untouched, for a worker that is about to stop.
     pub async fn release(&self, lease: &Lease) -> Result<bool, StoreError> {
-        self.end(lease, sqlx::query(RELEASE).bind(&lease.job).bind(&lease.token)).await
+        self.end(lease, query(RELEASE).bind(&lease.job).bind(&lease.token)).await
     }
 
     /// Gives a job back that failed through no fault of its own, or fails it when that was the last attempt.
@@ -229,7 +229,7 @@ impl Store {
         attempts: u32,
         error: &str,
     ) -> Result<bool, StoreError> {
-        let query = sqlx::query(LOSE)
+        let query = query(LOSE)
             .bind(&lease.job)
             .bind(&lease.token)
             .bind(i64::from(attempts))
@@ -238,26 +238,23 @@ impl Store {
         self.end(lease, query).await
     }
 
-    async fn end(&self, lease: &Lease, query: Query<'_>) -> Result<bool, StoreError> {
+    async fn end(&self, lease: &Lease, query: Statement) -> Result<bool, StoreError> {
         let mut transaction = self.database.begin().await?;
-        let changed = query.execute(&mut *transaction).await?;
-        if changed.rows_affected() == 1 {
+        let changed = query.execute(&mut transaction).await?;
+        if changed == 1 {
             record(&mut transaction, &lease.job).await?;
         }
         transaction.commit().await?;
         self.jobs_changed();
-        Ok(changed.rows_affected() == 1)
+        Ok(changed == 1)
     }
 
     /// Takes jobs from workers that gave no sign of life for a lease. `error` is for those that this
     /// happened to `attempts` times.
     pub async fn reap(&self, attempts: u32, error: &str) -> Result<Vec<Reaped>, StoreError> {
         let mut transaction = self.database.begin().await?;
-        let rows = sqlx::query(REAP)
-            .bind(i64::from(attempts))
-            .bind(error)
-            .fetch_all(&mut *transaction)
-            .await?;
+        let rows =
+            query(REAP).bind(i64::from(attempts)).bind(error).fetch_all(&mut transaction).await?;
         for row in &rows {
             record(&mut transaction, row.try_get("id")?).await?;
         }
@@ -278,8 +275,7 @@ impl Store {
 
     /// One file of a successful job.
     pub async fn job_file(&self, job: &str, name: &str) -> Result<Option<FileRow>, StoreError> {
-        let row =
-            sqlx::query(FILE).bind(job).bind(name).fetch_optional(self.database.reader()).await?;
+        let row = query(FILE).bind(job).bind(name).fetch_optional(self.database.reader()).await?;
         let Some(row) = row else { return Ok(None) };
         Ok(Some(FileRow {
             name: row.try_get("name")?,

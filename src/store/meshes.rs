@@ -1,9 +1,8 @@
 //! Uploaded meshes: immutable, known by the hash of the bytes that came and by what was said about them.
 
 use bytes::Bytes;
-use sqlx::Row as _;
 
-use super::database::{Row, Transaction, is_reference};
+use super::database::{Row, Transaction, is_duplicate, is_reference, query};
 use super::tombstones::bury;
 use super::{Store, StoreError};
 
@@ -59,7 +58,7 @@ fn mesh_row(row: &Row) -> Result<MeshRow, sqlx::Error> {
 
 impl Store {
     pub async fn mesh(&self, id: &str) -> Result<Option<MeshRow>, StoreError> {
-        let row = sqlx::query(COLUMNS).bind(id).fetch_optional(self.database.reader()).await?;
+        let row = query(COLUMNS).bind(id).fetch_optional(self.database.reader()).await?;
         Ok(row.as_ref().map(mesh_row).transpose()?)
     }
 
@@ -69,7 +68,7 @@ impl Store {
         sha256: &str,
         options: &str,
     ) -> Result<Option<MeshRow>, StoreError> {
-        let row = sqlx::query(BY_CONTENT)
+        let row = query(BY_CONTENT)
             .bind(sha256)
             .bind(options)
             .fetch_optional(self.database.reader())
@@ -79,22 +78,24 @@ impl Store {
 
     /// Stores a mesh; false when it was there before, by whichever request came first.
     pub async fn add_mesh(&self, mesh: &NewMesh) -> Result<bool, StoreError> {
-        let _uncommitted = self.uncommitted.read().await;
-        self.blobs.put(&mesh.blob, mesh.bytes.clone()).await?;
-        let mut transaction = self.database.begin().await?;
+        let mut transaction =
+            self.begin_with(vec![(mesh.blob.clone(), mesh.bytes.clone())]).await?;
         match insert_mesh(&mut transaction, mesh).await {
             Ok(()) => {
                 transaction.commit().await?;
                 Ok(true)
             }
-            Err(error) if super::database::is_duplicate(&error) => Ok(false),
-            Err(error) => Err(error.into()),
+            Err(error) => {
+                transaction.rollback().await?;
+                self.discard(vec![mesh.blob.clone()]).await;
+                if is_duplicate(&error) { Ok(false) } else { Err(error.into()) }
+            }
         }
     }
 
     /// Keeps a mesh although the case that it came with may go.
     pub async fn keep_mesh(&self, id: &str) -> Result<(), StoreError> {
-        sqlx::query("UPDATE meshes SET standalone = 1 WHERE id = $1 AND standalone = 0")
+        query("UPDATE meshes SET standalone = 1 WHERE id = $1 AND standalone = 0")
             .bind(id)
             .execute(self.database.writer())
             .await?;
@@ -104,16 +105,16 @@ impl Store {
     /// Deletes a mesh that no case and no job refers to, and its bytes.
     pub async fn delete_mesh(&self, id: &str) -> Result<MeshDeletion, StoreError> {
         let mut transaction = self.database.begin().await?;
-        let deleted = sqlx::query("DELETE FROM meshes WHERE id = $1 RETURNING blob")
+        let deleted = query("DELETE FROM meshes WHERE id = $1 RETURNING blob")
             .bind(id)
-            .fetch_optional(&mut *transaction)
+            .fetch_optional(&mut transaction)
             .await;
         match deleted {
             Ok(None) => Ok(MeshDeletion::NotFound),
             Ok(Some(row)) => {
                 bury(&mut transaction, id).await?;
                 transaction.commit().await?;
-                self.delete_unreferenced_blobs(vec![row.try_get("blob")?]).await?;
+                self.discard(vec![row.try_get("blob")?]).await;
                 Ok(MeshDeletion::Deleted)
             }
             Err(error) if is_reference(&error) => Ok(MeshDeletion::InUse),
@@ -126,14 +127,14 @@ pub(super) async fn insert_mesh(
     transaction: &mut Transaction,
     mesh: &NewMesh,
 ) -> Result<(), sqlx::Error> {
-    sqlx::query(INSERT)
+    query(INSERT)
         .bind(&mesh.id)
         .bind(&mesh.sha256)
         .bind(&mesh.options)
         .bind(&mesh.blob)
         .bind(i64::from(mesh.standalone))
         .bind(&mesh.report)
-        .execute(&mut **transaction)
+        .execute(&mut *transaction)
         .await?;
     Ok(())
 }

@@ -4,25 +4,32 @@ mod blobs;
 mod cases;
 mod database;
 mod events;
+mod fsck;
 mod idempotency;
 mod jobs;
 mod leases;
 mod meshes;
 mod plans;
 mod queue;
+mod references;
 mod responses;
 mod sweep;
 mod tombstones;
+mod transfer;
+mod wake;
 
 use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use tokio::sync::{RwLock, watch};
+use tokio::sync::watch;
 
-pub use blobs::Blobs;
+use crate::config::{DatabasePlace, Places};
+use blobs::Blobs;
 pub use cases::{CaseRow, Change, NewCase};
+pub use database::Migrated;
 pub use events::EventRow;
+pub use fsck::{Dangling, Findings, Repaired};
 pub use idempotency::Reserved;
 pub use jobs::{Dismissal, Enqueued, JobFilter, JobRow, NewJob};
 pub use leases::{Claim, FileRow, Lease, Point, PublishedFile, Reaped};
@@ -31,8 +38,9 @@ pub use plans::PlanRow;
 pub use queue::QueueRow;
 pub use responses::{CaseResponses, ResponseRow};
 pub use sweep::Swept;
+pub use transfer::Moved;
 
-use database::Database;
+use database::{Address, Database, query};
 
 #[derive(Debug, thiserror::Error)]
 pub enum StoreError {
@@ -46,12 +54,24 @@ pub enum StoreError {
         "the database is at schema step {found} and this program knows steps up to {known}: start a newer program"
     )]
     SchemaTooNew { found: i64, known: i64 },
+    #[error(
+        "the database is at schema step {found} and this program needs step {known}: run `facies migrate`"
+    )]
+    SchemaTooOld { found: i64, known: i64 },
     #[error("the schema of the database does not fit this program: {0}")]
     Schema(String),
     #[error("another facies serves this data folder")]
     InUse,
     #[error("blob {sha256} has changed on disk, its hash is {found}")]
     Integrity { sha256: String, found: String },
+    #[error("blob {sha256} is not where it was kept")]
+    Missing { sha256: String },
+    #[error("others changed the same rows at the same time, again and again")]
+    Contended,
+    #[error("there is something in this deployment already: {table} has rows")]
+    NotEmpty { table: &'static str },
+    #[error("the export cannot be read: {0}")]
+    Export(String),
     #[error("the work was interrupted")]
     Interrupted,
 }
@@ -78,12 +98,23 @@ impl StoreError {
 
     /// True when the store is busy or out of reach, so that the same request may succeed later.
     pub fn is_unavailable(&self) -> bool {
-        const SQLITE_BUSY: &str = "5";
         match self {
-            StoreError::Database(sqlx::Error::PoolTimedOut | sqlx::Error::PoolClosed) => true,
-            StoreError::Database(sqlx::Error::Database(error)) => {
-                error.code().is_some_and(|code| code == SQLITE_BUSY)
-            }
+            StoreError::Database(error) => database::is_unavailable(error),
+            StoreError::Blobs(object_store::Error::Generic { store, .. }) => *store == "S3",
+            StoreError::Contended => true,
+            _ => false,
+        }
+    }
+
+    /// True when another setting, folder or program would help.
+    pub fn is_setting(&self) -> bool {
+        match self {
+            StoreError::InUse
+            | StoreError::Files(_)
+            | StoreError::SchemaTooNew { .. }
+            | StoreError::SchemaTooOld { .. }
+            | StoreError::Schema(_) => true,
+            StoreError::Database(error) => database::is_refused(error),
             _ => false,
         }
     }
@@ -100,27 +131,44 @@ pub struct Store {
     database: Database,
     blobs: Blobs,
     folder: PathBuf,
+    /// Whether other processes work on the same rows.
+    shared: bool,
     /// Counts the changes of jobs, for those who wait for one.
     changes: watch::Sender<u64>,
-    /// Shared while bytes are stored and their row is not committed yet; alone while blobs without a row go.
-    uncommitted: Arc<RwLock<()>>,
+    /// Counts those that this process made, to be told to the others.
+    own_changes: watch::Sender<u64>,
     _lock: Arc<File>,
 }
 
 impl Store {
-    /// Opens the store in a folder, which no other process may serve.
+    /// Opens the store that has everything in one folder, which no other process may serve.
     pub async fn open(folder: &Path) -> Result<Store, StoreError> {
-        std::fs::create_dir_all(folder.join("tmp"))?;
-        let lock = File::create(folder.join("lock"))?;
-        lock.try_lock().map_err(|_| StoreError::InUse)?;
-        Ok(Store {
-            database: Database::open(&folder.join("facies.db")).await?,
-            blobs: Blobs::open(&folder.join("blobs"))?,
-            folder: folder.to_owned(),
+        Store::connect(&Places::in_folder(folder)).await
+    }
+
+    /// Opens the store. The data folder is that of this process alone.
+    pub async fn connect(places: &Places) -> Result<Store, StoreError> {
+        std::fs::create_dir_all(places.data.join("tmp"))?;
+        let lock = lock(&places.data)?;
+        let store = Store {
+            database: Database::open(address(places)?).await?,
+            blobs: Blobs::open(places)?,
+            folder: places.data.clone(),
+            shared: matches!(places.database, DatabasePlace::Server { .. }),
             changes: watch::Sender::new(0),
-            uncommitted: Arc::default(),
+            own_changes: watch::Sender::new(0),
             _lock: Arc::new(lock),
-        })
+        };
+        store.listen_to_others();
+        Ok(store)
+    }
+
+    /// Brings the schema of the database up to date.
+    pub async fn migrate(places: &Places) -> Result<Migrated, StoreError> {
+        std::fs::create_dir_all(&places.data)?;
+        // The embedded database is open in one process at a time.
+        let _lock = lock(&places.data)?;
+        Database::migrate(address(places)?).await
     }
 
     /// The same store over connections of its own, for a thread with an async runtime of its own.
@@ -137,11 +185,6 @@ impl Store {
         self.folder.join("tmp").join(job).join(attempt.to_string())
     }
 
-    /// The bytes of a blob, compared with their hash.
-    pub async fn read_blob(&self, sha256: &str) -> Result<bytes::Bytes, StoreError> {
-        self.blobs.get(sha256).await
-    }
-
     /// Changes whenever a job does.
     pub fn job_changes(&self) -> watch::Receiver<u64> {
         self.changes.subscribe()
@@ -149,16 +192,18 @@ impl Store {
 
     fn jobs_changed(&self) {
         self.changes.send_modify(|count| *count = count.wrapping_add(1));
+        self.own_changes.send_modify(|count| *count = count.wrapping_add(1));
     }
 
     /// Whether the database answers.
     pub async fn ping(&self) -> Result<(), StoreError> {
-        sqlx::query("SELECT now_ms FROM clock").execute(self.database.reader()).await?;
+        query("SELECT now_ms FROM clock").execute(self.database.reader()).await?;
         Ok(())
     }
 
-    /// Whether the data folder takes a file.
+    /// Whether the blobs can be reached and the data folder takes a file.
     pub async fn try_write(&self) -> Result<(), StoreError> {
+        self.blobs.ping().await?;
         let place = self.folder.join("tmp").join(uuid::Uuid::now_v7().to_string());
         tokio::fs::write(&place, b"facies").await?;
         tokio::fs::remove_file(&place).await?;
@@ -174,4 +219,19 @@ impl Store {
     pub async fn close(&self) {
         self.database.close().await;
     }
+}
+
+fn lock(folder: &Path) -> Result<File, StoreError> {
+    let lock = File::create(folder.join("lock"))?;
+    lock.try_lock().map_err(|_| StoreError::InUse)?;
+    Ok(lock)
+}
+
+fn address(places: &Places) -> Result<Address, StoreError> {
+    Ok(match &places.database {
+        DatabasePlace::Embedded => Address::File(places.data.join("facies.db")),
+        DatabasePlace::Server { address, connections } => {
+            Address::server(address.reveal(), *connections)?
+        }
+    })
 }

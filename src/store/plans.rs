@@ -1,9 +1,7 @@
 //! Plans that were stored with their case.
 
-use sqlx::Row as _;
-
 use super::cases::{AFTER_ALL, Change};
-use super::database::{Row, is_duplicate, is_reference};
+use super::database::{Row, is_duplicate, is_reference, query};
 use super::tombstones::bury;
 use super::{Store, StoreError};
 
@@ -42,11 +40,8 @@ fn plan_row(row: &Row) -> Result<PlanRow, sqlx::Error> {
 
 impl Store {
     pub async fn plan(&self, case_id: &str, id: &str) -> Result<Option<PlanRow>, StoreError> {
-        let row = sqlx::query(BY_ID)
-            .bind(id)
-            .bind(case_id)
-            .fetch_optional(self.database.reader())
-            .await?;
+        let row =
+            query(BY_ID).bind(id).bind(case_id).fetch_optional(self.database.reader()).await?;
         Ok(row.as_ref().map(plan_row).transpose()?)
     }
 
@@ -57,7 +52,7 @@ impl Store {
         cursor: Option<&str>,
         limit: i64,
     ) -> Result<Vec<PlanRow>, StoreError> {
-        let rows = sqlx::query(LIST)
+        let rows = query(LIST)
             .bind(case_id)
             .bind(cursor.unwrap_or(AFTER_ALL))
             .bind(limit)
@@ -73,7 +68,7 @@ impl Store {
         id: &str,
         document: &str,
     ) -> Result<bool, StoreError> {
-        let inserted = sqlx::query(INSERT)
+        let inserted = query(INSERT)
             .bind(id)
             .bind(case_id)
             .bind(document)
@@ -95,14 +90,14 @@ impl Store {
         document: &str,
         version: Option<i64>,
     ) -> Result<Change, StoreError> {
-        let changed = sqlx::query(UPDATE)
+        let changed = query(UPDATE)
             .bind(document)
             .bind(id)
             .bind(case_id)
             .bind(version.unwrap_or(0))
             .execute(self.database.writer())
             .await?;
-        self.plan_change(case_id, id, changed.rows_affected()).await
+        self.plan_change(case_id, id, changed).await
     }
 
     pub async fn delete_plan(
@@ -111,17 +106,17 @@ impl Store {
         version: Option<i64>,
     ) -> Result<Change, StoreError> {
         let mut transaction = self.database.begin().await?;
-        let changed = sqlx::query(DELETE)
+        let changed = query(DELETE)
             .bind(id)
             .bind(case_id)
             .bind(version.unwrap_or(0))
-            .execute(&mut *transaction)
+            .execute(&mut transaction)
             .await?;
-        if changed.rows_affected() == 1 {
+        if changed == 1 {
             bury(&mut transaction, id).await?;
         }
         transaction.commit().await?;
-        self.plan_change(case_id, id, changed.rows_affected()).await
+        self.plan_change(case_id, id, changed).await
     }
 
     async fn plan_change(&self, case_id: &str, id: &str, rows: u64) -> Result<Change, StoreError> {

@@ -1,7 +1,6 @@
 //! The queue as those see it who watch the service.
 
-use sqlx::Row as _;
-
+use super::database::query;
 use super::{Store, StoreError};
 
 /// How many jobs wait and run, and how long the one that waits longest has waited.
@@ -20,7 +19,7 @@ const COUNT: &str = "SELECT (SELECT COUNT(*) FROM jobs WHERE status = 'accepted'
 impl Store {
     /// Counts the jobs that have not ended.
     pub async fn queue(&self) -> Result<QueueRow, StoreError> {
-        let row = sqlx::query(COUNT).fetch_one(self.database.reader()).await?;
+        let row = query(COUNT).fetch_one(self.database.reader()).await?;
         Ok(QueueRow {
             waiting: row.try_get("waiting")?,
             running: row.try_get("running")?,

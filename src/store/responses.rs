@@ -1,7 +1,6 @@
 //! Plan responses of a case: which there are, and what they were built for.
 
-use sqlx::Row as _;
-
+use super::database::query;
 use super::{Store, StoreError};
 
 /// A case with the jobs that have built a response of it.
@@ -29,7 +28,7 @@ const RESPONSES: &str = "SELECT cases.version, jobs.id FROM cases LEFT JOIN jobs
 impl Store {
     /// The responses of a case; `None` where there is no such case.
     pub async fn responses(&self, case: &str) -> Result<Option<CaseResponses>, StoreError> {
-        let rows = sqlx::query(RESPONSES).bind(case).fetch_all(self.database.reader()).await?;
+        let rows = query(RESPONSES).bind(case).fetch_all(self.database.reader()).await?;
         let Some(first) = rows.first() else { return Ok(None) };
         let version = first.try_get(0)?;
         let jobs = rows.iter().map(|row| row.try_get::<Option<String>, _>(1));
@@ -39,7 +38,7 @@ impl Store {
 
     /// What a job was built for; `None` where it went meanwhile.
     pub async fn response(&self, job: &str) -> Result<Option<ResponseRow>, StoreError> {
-        let row = sqlx::query("SELECT document, spec_hash FROM jobs WHERE id = $1")
+        let row = query("SELECT document, spec_hash FROM jobs WHERE id = $1")
             .bind(job)
             .fetch_optional(self.database.reader())
             .await?;

@@ -1,15 +1,18 @@
-//! What nobody refers to goes: files of attempts that ended without a result, blobs without a row.
+//! What nobody refers to goes: files of attempts that ended without a result, bytes without a row.
 
-use std::collections::HashSet;
 use std::path::Path;
+use std::time::Duration;
 
-use sqlx::Row as _;
-
+use super::database::query;
 use super::{Store, StoreError};
 
-const REFERENCED: &str = "SELECT blob FROM meshes UNION SELECT blob FROM job_files";
-const REFERENCES_OF: &str = "SELECT (SELECT COUNT(*) FROM meshes WHERE blob = $1) \
-     + (SELECT COUNT(*) FROM job_files WHERE blob = $1)";
+const UNREFERENCED: &str = "SELECT sha256 FROM blobs \
+     WHERE announced <= (SELECT now_ms FROM clock) - $1 \
+     AND NOT EXISTS (SELECT 1 FROM meshes WHERE meshes.blob = blobs.sha256) \
+     AND NOT EXISTS (SELECT 1 FROM job_files WHERE job_files.blob = blobs.sha256)";
+
+/// How long another process may take from announcing bytes to referring to them without being disturbed.
+pub(super) const PATIENCE: Duration = Duration::from_secs(3600);
 
 /// What a sweep removed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -22,40 +25,42 @@ impl Store {
     /// Removes everything that a process which died may have left. At the start only: the folder of
     /// temporary files belongs to the one process that holds the lock of the data folder.
     pub async fn sweep(&self) -> Result<Swept, StoreError> {
-        let _alone = self.uncommitted.write().await;
         let mut temporary = 0;
         for entry in std::fs::read_dir(self.folder.join("tmp"))? {
             remove(&entry?.path())?;
             temporary += 1;
         }
-        temporary += remove_staged(&self.folder.join("blobs"))?;
-        let rows = sqlx::query(REFERENCED).fetch_all(self.database.writer()).await?;
-        let referenced =
-            rows.iter().map(|row| row.try_get(0)).collect::<Result<HashSet<String>, _>>()?;
-        let mut blobs = 0;
-        for blob in self.blobs.list().await? {
-            if !referenced.contains(&blob) {
-                self.blobs.delete(&blob).await?;
-                blobs += 1;
-            }
+        let own_blobs = self.folder.join("blobs");
+        if own_blobs.exists() {
+            temporary += remove_staged(&own_blobs)?;
         }
-        Ok(Swept { blobs, temporary })
+        let patience = if self.shared { PATIENCE } else { Duration::ZERO };
+        Ok(Swept { blobs: self.sweep_blobs(patience).await?, temporary })
     }
 
-    /// Removes those of the given blobs that no row refers to.
-    pub(super) async fn delete_unreferenced_blobs(
-        &self,
-        blobs: Vec<String>,
-    ) -> Result<(), StoreError> {
-        let _alone = self.uncommitted.write().await;
-        for blob in blobs {
-            let row =
-                sqlx::query(REFERENCES_OF).bind(&blob).fetch_one(self.database.writer()).await?;
-            if row.try_get::<i64, _>(0)? == 0 {
-                self.blobs.delete(&blob).await?;
-            }
+    /// Removes bytes that were announced long ago and that nothing refers to, and those whose removal was
+    /// broken off. Bytes that no row knows stay: a database that was restored from an old backup knows less
+    /// than there is, and `facies admin fsck` tells.
+    pub async fn sweep_old_blobs(&self) -> Result<usize, StoreError> {
+        self.sweep_blobs(PATIENCE).await
+    }
+
+    pub(super) async fn sweep_blobs(&self, patience: Duration) -> Result<usize, StoreError> {
+        let patience = i64::try_from(patience.as_millis()).unwrap_or(i64::MAX);
+        let rows = query(UNREFERENCED).bind(patience).fetch_all(self.database.reader()).await?;
+        let mut removed = 0;
+        for row in rows {
+            let sha256: String = row.try_get(0)?;
+            removed += usize::from(self.discard_one(&sha256).await?);
         }
-        Ok(())
+        let rows =
+            query("SELECT place FROM discarded_blobs").fetch_all(self.database.reader()).await?;
+        for row in rows {
+            let place: String = row.try_get(0)?;
+            self.remove_bytes(&place).await?;
+            removed += 1;
+        }
+        Ok(removed)
     }
 }
 

@@ -1,9 +1,7 @@
 //! What remains of what was erased: its id and when, so that a client is told that it is gone and not that it
 //! never was.
 
-use sqlx::Row as _;
-
-use super::database::Transaction;
+use super::database::{Transaction, query};
 use super::{Store, StoreError};
 
 const BURY: &str = "INSERT INTO tombstones (id, erased) VALUES ($1, (SELECT now_ms FROM clock)) \
@@ -17,20 +15,20 @@ const BURY_CASE: &str = "INSERT INTO tombstones (id, erased) \
 
 /// Remembers one id.
 pub(super) async fn bury(transaction: &mut Transaction, id: &str) -> Result<(), sqlx::Error> {
-    sqlx::query(BURY).bind(id).execute(&mut **transaction).await?;
+    query(BURY).bind(id).execute(&mut *transaction).await?;
     Ok(())
 }
 
 /// Remembers the ids of a case, its plans and its jobs, which are about to go.
 pub(super) async fn bury_case(transaction: &mut Transaction, id: &str) -> Result<(), sqlx::Error> {
-    sqlx::query(BURY_CASE).bind(id).execute(&mut **transaction).await?;
+    query(BURY_CASE).bind(id).execute(&mut *transaction).await?;
     Ok(())
 }
 
 impl Store {
     /// When something was erased, in ms since 1970; `None` where it was not.
     pub async fn erased(&self, id: &str) -> Result<Option<i64>, StoreError> {
-        let row = sqlx::query("SELECT erased FROM tombstones WHERE id = $1")
+        let row = query("SELECT erased FROM tombstones WHERE id = $1")
             .bind(id)
             .fetch_optional(self.database.reader())
             .await?;

@@ -12,6 +12,8 @@ use reqwest::{Client, Method, RequestBuilder, Response, StatusCode};
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
+use crate::deployments::Deployment;
+
 /// A service in a process of its own. It is killed when the test ends.
 pub struct Server {
     child: Child,
@@ -28,6 +30,18 @@ pub fn serve(folder: &Path) -> Command {
         .arg("serve")
         .args(["--bind", "127.0.0.1:0", "--data"])
         .arg(folder)
+        .args(["--lease-s", "1", "--heartbeat-s", "0.2", "--free-space-floor-mib", "0"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::null());
+    command
+}
+
+/// The command that serves a deployment that others share.
+pub fn serve_shared(on: &Deployment) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_facies"));
+    command.arg("serve").args(["--bind", "127.0.0.1:0"]);
+    on.bring(&mut command);
+    command
         .args(["--lease-s", "1", "--heartbeat-s", "0.2", "--free-space-floor-mib", "0"])
         .stdout(Stdio::piped())
         .stderr(Stdio::null());
@@ -56,6 +70,8 @@ impl Server {
         stdout.read_line(&mut line).unwrap();
         let address = line.trim().strip_prefix("listening on ");
         let address = address.unwrap_or_else(|| panic!("the server said {line:?}")).to_owned();
+        // The client of tests and the store's client of S3 are one crate, which wants to be told.
+        let _ = rustls::crypto::ring::default_provider().install_default();
         Server { child, stdout, address, client: Client::new(), folder }
     }
 

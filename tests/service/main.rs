@@ -6,6 +6,7 @@ mod bad_meshes;
 mod bad_requests;
 mod cases;
 mod demo;
+mod deployments;
 mod events;
 mod faults;
 #[allow(dead_code, reason = "the tests of the formats use the rest")]
@@ -13,6 +14,7 @@ mod faults;
 mod formats_samples;
 #[allow(dead_code, reason = "the tests of faults use the rest")]
 mod helpers;
+mod hosts;
 mod idempotency;
 mod images;
 mod jobs;
@@ -22,11 +24,16 @@ mod optimise;
 mod origins;
 mod plans;
 mod queue;
+mod races;
+mod remembered;
 mod response;
+mod schema_steps;
 mod settings;
 #[path = "../shared/mod.rs"]
 #[allow(dead_code, reason = "other tests use the rest")]
 mod shared;
+mod storage;
 mod study;
+mod transfer;
 mod watching;
 mod worker;

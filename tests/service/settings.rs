@@ -141,3 +141,70 @@ async fn logs_name_the_request_and_the_job_and_no_patient() {
     assert!(!text.contains("Jane"), "{text}");
     assert!(!text.contains("/v1/cases/0"), "paths with ids are not logged");
 }
+
+#[test]
+fn settings_come_from_flags_before_variables_before_a_file() {
+    let folder = TempDir::new().unwrap();
+    let file = folder.path().join("facies.toml");
+    let text = "workers = 3\nattempts = 4\ngrace-s = 1.5\napi-key = \"0123456789abcdef\"\n\
+        database = \"postgres://facies:secret@db/facies\"\n";
+    std::fs::write(&file, text).unwrap();
+    let config = || {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_facies"));
+        command.args(["config", "--config"]).arg(&file).args(["--workers", "5"]);
+        command.env("FACIES_ATTEMPTS", "6").env("FACIES_WORKERS", "7");
+        command
+    };
+    let printed = String::from_utf8(run(&mut config()).stdout).unwrap();
+    for line in [
+        "workers = \"5\"  # --workers",
+        "attempts = \"6\"  # FACIES_ATTEMPTS",
+        "grace-s = \"1.5\"  # file",
+        "lease-s = \"15\"  # default",
+        "api-key = \"…\"  # file",
+        "database = \"postgres://facies:…@db/facies\"  # file",
+    ] {
+        assert!(printed.lines().any(|printed| printed == line), "{line}\n{printed}");
+    }
+    assert!(!printed.contains("secret") && !printed.contains("0123"));
+
+    // What is printed is a file of settings.
+    std::fs::write(&file, printed.replace('…', "0123456789abcdef")).unwrap();
+    assert!(run(&mut config()).status.success());
+
+    for (text, said) in [("worker = 3", "no setting `worker`"), ("workers = [", "line 1")] {
+        std::fs::write(&file, text).unwrap();
+        let output = run(&mut config());
+        let error = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(78), "{error}");
+        assert!(error.contains(said) && error.lines().count() == 1, "{error}");
+    }
+}
+
+#[test]
+fn a_worker_of_its_own_wants_what_others_reach() {
+    let folder = TempDir::new().unwrap();
+    let worker = |arguments: &[&str]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_facies"));
+        command.args(["worker", "--data"]).arg(folder.path()).args(arguments);
+        let output = run(&mut command);
+        assert_eq!(output.status.code(), Some(78));
+        String::from_utf8(output.stderr).unwrap()
+    };
+    assert!(worker(&[]).contains("database is not set"));
+    assert!(worker(&["--database", "postgres://h/d"]).contains("blobs is not set"));
+}
+
+#[test]
+fn every_setting_is_documented_with_its_default() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/configuration.md");
+    let text = std::fs::read_to_string(path).unwrap();
+    for setting in facies::config::SETTINGS {
+        let default = match setting.default {
+            "" => "none".to_owned(),
+            default => format!("`{default}`"),
+        };
+        let row = format!("| `{}` | {default} | ", setting.name);
+        assert!(text.contains(&row), "docs/configuration.md lacks the row {row}");
+    }
+}

@@ -1,0 +1,109 @@
+//! Settings from flags, variables and a file: a flag goes before a variable, a variable before the file.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
+
+use crate::config::{ConfigError, SETTINGS, Setting, file};
+
+/// The flag and the variable that name the file of settings.
+const FILE_FLAG: &str = "config";
+const FILE_VARIABLE: &str = "FACIES_CONFIG";
+
+/// The settings as flags; each may as well be an environment variable or a line of a file.
+#[derive(Clone, Debug, Default)]
+pub struct Arguments {
+    flags: BTreeMap<&'static str, String>,
+    file: Option<PathBuf>,
+}
+
+/// Where a value comes from.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Source {
+    Flag,
+    Variable,
+    File,
+    Default,
+}
+
+/// Every setting that was given, and where.
+pub struct Given {
+    flags: BTreeMap<&'static str, String>,
+    file: BTreeMap<&'static str, String>,
+}
+
+impl Arguments {
+    /// Reads the file of settings, if there is one.
+    pub fn given(&self) -> Result<Given, ConfigError> {
+        let variable = || std::env::var_os(FILE_VARIABLE).map(PathBuf::from);
+        let file = match self.file.clone().or_else(variable) {
+            Some(path) => file::read(&path)?,
+            None => BTreeMap::new(),
+        };
+        Ok(Given { flags: self.flags.clone(), file })
+    }
+}
+
+impl Given {
+    /// What was given for a setting.
+    pub fn get(&self, name: &str) -> Option<String> {
+        let setting = SETTINGS.iter().find(|setting| setting.name == name)?;
+        Some(self.find(setting)?.0)
+    }
+
+    /// What was given for a setting, and where.
+    pub fn find(&self, setting: &Setting) -> Option<(String, Source)> {
+        if let Some(value) = self.flags.get(setting.name) {
+            return Some((value.clone(), Source::Flag));
+        }
+        if let Some(value) = std::env::var_os(setting.variable()) {
+            return Some((value.to_string_lossy().into_owned(), Source::Variable));
+        }
+        let value = self.file.get(setting.name)?;
+        Some((value.clone(), Source::File))
+    }
+}
+
+impl Args for Arguments {
+    fn augment_args(command: Command) -> Command {
+        // Given twice, the last one counts, as it does in shells and container files.
+        let file = Arg::new(FILE_FLAG).long(FILE_FLAG).value_name("FILE").help(format!(
+            "file of settings: TOML with the names of these flags [env: {FILE_VARIABLE}]"
+        ));
+        let command = command.args_override_self(true).arg(file);
+        SETTINGS.iter().fold(command, |command, setting| {
+            let default = match setting.default {
+                "" => String::new(),
+                default => format!(" [default: {default}]"),
+            };
+            let argument = Arg::new(setting.name)
+                .long(setting.name)
+                .value_name("VALUE")
+                .allow_hyphen_values(true)
+                .help(format!("{} [env: {}]{default}", setting.about, setting.variable()));
+            command.arg(argument)
+        })
+    }
+
+    fn augment_args_for_update(command: Command) -> Command {
+        Self::augment_args(command)
+    }
+}
+
+impl FromArgMatches for Arguments {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
+        let value = |name: &'static str| {
+            let value = matches.get_one::<String>(name)?;
+            Some((name, value.clone()))
+        };
+        let flags = SETTINGS.iter().filter_map(|setting| value(setting.name)).collect();
+        let file = matches.get_one::<String>(FILE_FLAG).map(PathBuf::from);
+        Ok(Arguments { flags, file })
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
+        *self = Self::from_arg_matches(matches)?;
+        Ok(())
+    }
+}

@@ -1,0 +1,156 @@
+//! Where a deployment keeps its rows and its bytes.
+
+use std::path::{Path, PathBuf};
+
+use super::{ConfigError, Secret};
+
+/// The folder of this process, the database and the blobs.
+#[derive(Clone, Debug)]
+pub struct Places {
+    /// For this process alone: files under way, and whatever has no other place.
+    pub data: PathBuf,
+    pub database: DatabasePlace,
+    pub blobs: BlobsPlace,
+}
+
+#[derive(Clone, Debug)]
+pub enum DatabasePlace {
+    /// SQLite in the data folder, for one process.
+    Embedded,
+    /// PostgreSQL, for any number of processes.
+    Server { address: Secret, connections: u32 },
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub enum BlobsPlace {
+    /// In the data folder, for one process.
+    InData,
+    /// In a folder that several processes may share.
+    Folder(PathBuf),
+    /// In an S3-compatible store. Its settings have the names of the usual AWS_* variables.
+    Bucket { bucket: String, prefix: String, settings: Vec<(String, Secret)> },
+}
+
+impl Places {
+    /// Everything in one folder.
+    pub fn in_folder(data: &Path) -> Places {
+        Places {
+            data: data.to_owned(),
+            database: DatabasePlace::Embedded,
+            blobs: BlobsPlace::InData,
+        }
+    }
+
+    /// What keeps another process from working on the same jobs.
+    pub fn check_shared(&self) -> Result<(), ConfigError> {
+        match (&self.database, &self.blobs) {
+            (DatabasePlace::Embedded, _) => Err(ConfigError::NotShared { name: "database" }),
+            (_, BlobsPlace::InData) => Err(ConfigError::NotShared { name: "blobs" }),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// The address of a PostgreSQL, or nothing.
+pub(super) fn database(address: String, connections: u32) -> Result<DatabasePlace, ConfigError> {
+    if address.is_empty() {
+        return Ok(DatabasePlace::Embedded);
+    }
+    if !["postgres://", "postgresql://"].iter().any(|scheme| address.starts_with(scheme)) {
+        return Err(ConfigError::Database);
+    }
+    Ok(DatabasePlace::Server { address: Secret::new(address), connections })
+}
+
+/// `s3://bucket/prefix`, a folder, or nothing.
+pub(super) fn blobs(place: &str) -> Result<BlobsPlace, ConfigError> {
+    let refused = || ConfigError::Value {
+        name: "blobs",
+        value: place.to_owned(),
+        wanted: "s3://bucket, s3://bucket/prefix or a folder",
+    };
+    if place.is_empty() {
+        return Ok(BlobsPlace::InData);
+    }
+    let Some((scheme, rest)) = place.split_once("://") else {
+        return Ok(BlobsPlace::Folder(place.into()));
+    };
+    let (bucket, prefix) = rest.split_once('/').unwrap_or((rest, ""));
+    if scheme != "s3" || bucket.is_empty() {
+        return Err(refused());
+    }
+    Ok(BlobsPlace::Bucket {
+        bucket: bucket.to_owned(),
+        prefix: prefix.trim_matches('/').to_owned(),
+        settings: aws_variables(),
+    })
+}
+
+/// Endpoint, region and credentials, where every program looks for them.
+fn aws_variables() -> Vec<(String, Secret)> {
+    let variables = std::env::vars_os().filter_map(|(name, value)| {
+        let name = name.into_string().ok().filter(|name| name.starts_with("AWS_"))?;
+        Some((name, Secret::new(value.into_string().ok()?)))
+    });
+    variables.collect()
+}
+
+/// An address of a database as it may be shown: without its password.
+pub(super) fn without_password(address: &str) -> String {
+    let Some((scheme, rest)) = address.split_once("://") else { return "…".to_owned() };
+    let end = rest.find(['/', '?']).unwrap_or(rest.len());
+    let (authority, path) = rest.split_at(end);
+    let authority = match authority.rsplit_once('@') {
+        Some((user, host)) => match user.split_once(':') {
+            Some((user, _)) => format!("{user}:…@{host}"),
+            None => authority.to_owned(),
+        },
+        None => authority.to_owned(),
+    };
+    let path = match path.split_once('?') {
+        Some((path, parameters)) => {
+            let hidden = |parameter: &str| match parameter.split_once('=') {
+                Some((name, _)) if name.contains("password") => format!("{name}=…"),
+                _ => parameter.to_owned(),
+            };
+            let parameters: Vec<_> = parameters.split('&').map(hidden).collect();
+            format!("{path}?{}", parameters.join("&"))
+        }
+        None => path.to_owned(),
+    };
+    format!("{scheme}://{authority}{path}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_bucket_and_a_folder_are_told_apart() {
+        let bucket = |bucket: &str, prefix: &str| BlobsPlace::Bucket {
+            bucket: bucket.into(),
+            prefix: prefix.into(),
+            settings: aws_variables(),
+        };
+        assert_eq!(blobs("").unwrap(), BlobsPlace::InData);
+        assert_eq!(blobs("/srv/blobs").unwrap(), BlobsPlace::Folder("/srv/blobs".into()));
+        assert_eq!(blobs("s3://faces").unwrap(), bucket("faces", ""));
+        assert_eq!(blobs("s3://faces/of/ward/").unwrap(), bucket("faces", "of/ward"));
+        for wrong in ["s3://", "s3:///x", "http://x/y"] {
+            assert!(blobs(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn a_password_is_never_shown() {
+        for (address, shown) in [
+            ("postgres://a:b@h:5432/d", "postgres://a:…@h:5432/d"),
+            ("postgres://a:b@c@h/d?sslmode=require", "postgres://a:…@h/d?sslmode=require"),
+            ("postgres://a@h/d?password=x&host=y", "postgres://a@h/d?password=…&host=y"),
+            ("postgres://h/d", "postgres://h/d"),
+            ("postgres:x", "…"),
+        ] {
+            assert_eq!(without_password(address), shown);
+        }
+    }
+}

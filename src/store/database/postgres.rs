@@ -1,0 +1,113 @@
+//! What is PostgreSQL's own: its limits of time, its clock, its codes.
+
+use std::borrow::Cow;
+use std::time::Duration;
+
+use futures::TryStreamExt;
+use sqlx::postgres::{PgConnectOptions, PgConnection, PgPool, PgPoolOptions, Postgres};
+use sqlx::{AssertSqlSafe, Either, Executor, SqlSafeStr};
+
+use super::{Row, Statement, Taker, Value};
+
+/// Milliseconds since 1970 by the clock of the database, whatever the clocks of its clients show.
+pub const CLOCK: &str = "CREATE OR REPLACE VIEW clock AS \
+     SELECT CAST(EXTRACT(EPOCH FROM clock_timestamp()) * 1000 AS BIGINT) AS now_ms";
+
+/// The disk is full.
+pub const FULL: &str = "53100";
+
+/// How long a request waits for a connection before it is told to come back.
+const ACQUIRE_TIMEOUT: Duration = Duration::from_millis(2500);
+/// How long an answer may take. A server behind a broken network says nothing at all, and a heartbeat that
+/// waits for it would miss that its lease has run out.
+const ANSWER_TIMEOUT: Duration = Duration::from_secs(10);
+/// What the server keeps to by itself. A client that was cut off holds its locks no longer than this.
+const LIMITS: &str = "SET statement_timeout = '10s'; SET lock_timeout = '5s'; \
+     SET idle_in_transaction_session_timeout = '30s'; \
+     SET tcp_keepalives_idle = 10; SET tcp_keepalives_interval = 5; SET tcp_keepalives_count = 3";
+
+/// Connections that give up in time. The first is made at once, so that a wrong address is found at the start.
+pub async fn connect(options: &PgConnectOptions, connections: u32) -> Result<PgPool, sqlx::Error> {
+    PgPoolOptions::new()
+        .max_connections(connections)
+        .acquire_timeout(ACQUIRE_TIMEOUT)
+        .after_connect(|connection, _| {
+            Box::pin(async move { connection.execute(LIMITS).await.map(|_| ()) })
+        })
+        .connect_with(options.clone())
+        .await
+}
+
+/// A connection that takes its time.
+pub async fn unlimited(options: &PgConnectOptions) -> Result<PgPool, sqlx::Error> {
+    let pool = PgPoolOptions::new().max_connections(1).acquire_timeout(ACQUIRE_TIMEOUT);
+    pool.connect_with(options.clone()).await
+}
+
+/// Each statement sees what was committed before it (READ COMMITTED), so what is read in order to be
+/// changed is read with FOR UPDATE.
+pub async fn begin(pool: &PgPool) -> Result<sqlx::Transaction<'static, Postgres>, sqlx::Error> {
+    in_time(pool.begin()).await
+}
+
+/// Sees everything as it is when it begins.
+pub async fn snapshot(pool: &PgPool) -> Result<sqlx::Transaction<'static, Postgres>, sqlx::Error> {
+    pool.begin_with("BEGIN ISOLATION LEVEL REPEATABLE READ READ ONLY").await
+}
+
+/// Runs a statement to its end.
+pub async fn run(
+    connection: &mut PgConnection,
+    statement: Statement,
+    take: Taker<'_>,
+) -> Result<u64, sqlx::Error> {
+    let sql = match statement.sql {
+        Cow::Borrowed(text) => text.into_sql_str(),
+        Cow::Owned(text) => AssertSqlSafe(text).into_sql_str(),
+    };
+    let mut query = sqlx::query(sql);
+    for value in statement.values {
+        query = match value {
+            Value::Text(text) => query.bind(text.map(without_nul)),
+            Value::Integer(number) => query.bind(number),
+            Value::Real(number) => query.bind(number),
+        };
+    }
+    let answer = async {
+        let mut changed = 0;
+        let mut pieces = connection.fetch_many(query);
+        while let Some(piece) = pieces.try_next().await? {
+            match piece {
+                Either::Left(done) => changed += done.rows_affected(),
+                Either::Right(row) => take(Row::Postgres(row))?,
+            }
+        }
+        Ok(changed)
+    };
+    if statement.patient { answer.await } else { in_time(answer).await }
+}
+
+/// An answer that does not come in time is an error of the connection.
+pub async fn in_time<T>(
+    answer: impl Future<Output = Result<T, sqlx::Error>>,
+) -> Result<T, sqlx::Error> {
+    let late = || sqlx::Error::Io(std::io::ErrorKind::TimedOut.into());
+    tokio::time::timeout(ANSWER_TIMEOUT, answer).await.unwrap_or_else(|_| Err(late()))
+}
+
+/// PostgreSQL keeps no NUL in a text, and nothing that is kept has one: documents are JSON, names hold no
+/// control characters. A filter with one is turned into another that matches nothing either.
+fn without_nul(text: String) -> String {
+    if text.contains('\0') { text.replace('\0', "\u{1}") } else { text }
+}
+
+/// Connections lost (08), too many of them (53), the server stopping or starting (57P), a deadlock or
+/// another transaction in the way (40, 55P03), a limit of time (57014).
+pub fn may_succeed_later(code: &str) -> bool {
+    code != FULL && ["08", "40", "53", "55P03", "57"].iter().any(|class| code.starts_with(class))
+}
+
+/// A wrong user or password (28), no such database (3D).
+pub fn keeps_out(code: &str) -> bool {
+    code.starts_with("28") || code.starts_with("3D")
+}

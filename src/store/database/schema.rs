@@ -1,0 +1,95 @@
+//! The tables, step by step. Each step runs in a transaction: it is done or it is not.
+
+use std::sync::LazyLock;
+
+use sqlx::migrate::{MigrateError, Migration, Migrator};
+use sqlx::{AssertSqlSafe, SqlSafeStr};
+
+use super::{Pool, postgres, query, sqlite};
+use crate::store::StoreError;
+
+/// The steps as they are written, for SQLite.
+static STEPS: Migrator = sqlx::migrate!("./migrations");
+
+/// The same steps for PostgreSQL, whose texts compare byte by byte as those of SQLite do: in the order of a
+/// language `~` comes before letters, and an index would depend on the libraries of the server's system.
+static POSTGRES_STEPS: LazyLock<Migrator> = LazyLock::new(|| {
+    let translated = STEPS.iter().map(|step| {
+        let sql = step.sql.as_str().replace(" TEXT", " TEXT COLLATE \"C\"");
+        let sql = AssertSqlSafe(sql).into_sql_str();
+        Migration::new(step.version, step.description.clone(), step.migration_type, sql, false)
+    });
+    Migrator::with_migrations(translated.collect())
+});
+
+/// From which step to which a database was brought.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Migrated {
+    pub from: i64,
+    pub to: i64,
+}
+
+/// Brings the tables up to date. One process at a time does it; the others wait.
+pub async fn migrate(pool: &Pool) -> Result<Migrated, StoreError> {
+    let before = applied(pool).await?;
+    let (clock, ran) = match pool {
+        Pool::Sqlite(pool) => (sqlite::CLOCK, STEPS.run(pool).await),
+        Pool::Postgres(pool) => (postgres::CLOCK, POSTGRES_STEPS.run(pool).await),
+    };
+    ran.map_err(schema_error)?;
+    query(clock).execute(pool).await?;
+    Ok(Migrated { from: before.last().map_or(0, |step| step.0), to: newest() })
+}
+
+/// Refuses a database whose tables are not exactly those that this program works with.
+pub async fn check(pool: &Pool) -> Result<(), StoreError> {
+    let applied = applied(pool).await?;
+    let (found, known) = (applied.last().map_or(0, |step| step.0), newest());
+    if found > known {
+        return Err(StoreError::SchemaTooNew { found, known });
+    }
+    if found < known || applied.len() < STEPS.iter().count() {
+        return Err(StoreError::SchemaTooOld { found, known });
+    }
+    for step in POSTGRES_STEPS.iter() {
+        let same =
+            |(version, sum): &(i64, Vec<u8>)| *version == step.version && *sum == *step.checksum;
+        if !applied.iter().any(same) {
+            return Err(schema_error(MigrateError::VersionMismatch(step.version)));
+        }
+    }
+    Ok(())
+}
+
+/// The steps that a database has taken, with their checksums, in order.
+async fn applied(pool: &Pool) -> Result<Vec<(i64, Vec<u8>)>, StoreError> {
+    const APPLIED: &str = "SELECT version, checksum FROM _sqlx_migrations ORDER BY version";
+    let rows = match query(APPLIED).fetch_all(pool).await {
+        Err(error) if is_no_such_table(&error) => return Ok(Vec::new()),
+        rows => rows?,
+    };
+    rows.iter().map(|row| Ok((row.try_get(0)?, row.try_get(1)?))).collect()
+}
+
+/// A database in which nothing was made yet.
+fn is_no_such_table(error: &sqlx::Error) -> bool {
+    const POSTGRES_UNDEFINED_TABLE: &str = "42P01";
+    matches!(error, sqlx::Error::Database(inner)
+        if inner.code().is_some_and(|code| code == POSTGRES_UNDEFINED_TABLE)
+            || inner.message().starts_with("no such table"))
+}
+
+/// The last step that this program knows.
+pub fn newest() -> i64 {
+    STEPS.iter().map(|step| step.version).max().unwrap_or(0)
+}
+
+fn schema_error(error: MigrateError) -> StoreError {
+    match error {
+        MigrateError::VersionMissing(found) => StoreError::SchemaTooNew { found, known: newest() },
+        MigrateError::Execute(error) | MigrateError::ExecuteMigration(error, _) => {
+            StoreError::Database(error)
+        }
+        other => StoreError::Schema(other.to_string()),
+    }
+}

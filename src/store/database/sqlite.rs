@@ -1,0 +1,90 @@
+//! What is SQLite's own: its file, its one writer, its clock, its codes.
+
+use std::borrow::Cow;
+use std::path::Path;
+use std::time::Duration;
+
+use futures::TryStreamExt;
+use sqlx::sqlite::{
+    Sqlite, SqliteConnectOptions, SqliteConnection, SqliteJournalMode, SqlitePool,
+    SqlitePoolOptions, SqliteSynchronous,
+};
+use sqlx::{AssertSqlSafe, Either, Executor, SqlSafeStr};
+
+use super::{Row, Statement, Taker, Value};
+
+/// Milliseconds since 1970 by the clock of the database, for `(SELECT now_ms FROM clock)`: leases are
+/// compared with no other clock, so it does not matter how wrong the clocks of the workers are.
+pub const CLOCK: &str = "CREATE VIEW IF NOT EXISTS clock AS \
+     SELECT CAST(unixepoch('subsec') * 1000 AS INTEGER) AS now_ms";
+
+/// The disk is full.
+pub const FULL: &str = "13";
+/// Another process writes.
+pub const BUSY: &str = "5";
+
+/// How long a statement waits for another process that writes.
+const BUSY_TIMEOUT: Duration = Duration::from_secs(5);
+/// How long a request waits for a connection before it is told to come back.
+const ACQUIRE_TIMEOUT: Duration = Duration::from_secs(10);
+const READERS: u32 = 4;
+
+/// One connection that writes, so that writers queue here instead of failing with BUSY, and several that read.
+pub async fn connect(file: &Path) -> Result<(SqlitePool, SqlitePool), sqlx::Error> {
+    let options = SqliteConnectOptions::new()
+        .filename(file)
+        .create_if_missing(true)
+        .journal_mode(SqliteJournalMode::Wal)
+        // A job that was accepted and a result that was announced outlast a power cut: each commit
+        // is flushed, which NORMAL leaves to the next checkpoint.
+        .synchronous(SqliteSynchronous::Full)
+        .busy_timeout(BUSY_TIMEOUT)
+        .foreign_keys(true);
+    let pool = SqlitePoolOptions::new().acquire_timeout(ACQUIRE_TIMEOUT);
+    let writer = pool.clone().max_connections(1).connect_with(options.clone()).await?;
+    Ok((writer, pool.max_connections(READERS).connect_lazy_with(options)))
+}
+
+/// A transaction that takes the write lock at once: one that reads first and writes later fails
+/// with BUSY, without waiting, when another has written in between.
+pub async fn begin(pool: &SqlitePool) -> Result<sqlx::Transaction<'static, Sqlite>, sqlx::Error> {
+    pool.begin_with("BEGIN IMMEDIATE").await
+}
+
+/// Runs a statement to its end.
+pub async fn run(
+    connection: &mut SqliteConnection,
+    statement: Statement,
+    take: Taker<'_>,
+) -> Result<u64, sqlx::Error> {
+    let sql = match without_row_locks(statement.sql) {
+        Cow::Borrowed(text) => text.into_sql_str(),
+        Cow::Owned(text) => AssertSqlSafe(text).into_sql_str(),
+    };
+    let mut query = sqlx::query(sql);
+    for value in statement.values {
+        query = match value {
+            Value::Text(text) => query.bind(text),
+            Value::Integer(number) => query.bind(number),
+            Value::Real(number) => query.bind(number),
+        };
+    }
+    let mut changed = 0;
+    let mut pieces = connection.fetch_many(query);
+    while let Some(piece) = pieces.try_next().await? {
+        match piece {
+            Either::Left(done) => changed += done.rows_affected(),
+            Either::Right(row) => take(Row::Sqlite(row))?,
+        }
+    }
+    Ok(changed)
+}
+
+/// SQLite knows no locks of rows and needs none: whoever writes has the database to himself.
+fn without_row_locks(sql: Cow<'static, str>) -> Cow<'static, str> {
+    const LOCKS: [&str; 2] = [" FOR UPDATE SKIP LOCKED", " FOR UPDATE"];
+    LOCKS.iter().fold(sql, |sql, lock| match sql.contains(lock) {
+        true => Cow::Owned(sql.replace(lock, "")),
+        false => sql,
+    })
+}

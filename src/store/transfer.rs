@@ -1,0 +1,234 @@
+//! A whole deployment as files, to be moved to another engine or kept as a backup: a file of rows for each
+//! table, a file for each blob, and a manifest, which is written last and read first.
+//!
+//! Where bytes are is a deployment's own affair: places are left out, and made anew by the import.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs::{DirBuilder, File};
+use std::io::{BufRead, BufReader, BufWriter, Write};
+use std::os::unix::fs::DirBuilderExt;
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+use serde_json::Value as Json;
+
+use super::database::{Place, Row, Transaction, Value, newest_step, query, query_of};
+use super::references::{Content, hold};
+use super::{Store, StoreError};
+
+/// Every table with rows of a deployment, each behind those that it refers to.
+const TABLES: [&str; 13] = [
+    "meshes",
+    "cases",
+    "case_tags",
+    "case_meshes",
+    "plans",
+    "jobs",
+    "job_tags",
+    "job_cases",
+    "job_meshes",
+    "job_files",
+    "job_events",
+    "idempotency_keys",
+    "tombstones",
+];
+const REFERENCED: &str = "SELECT blob FROM meshes UNION SELECT blob FROM job_files";
+const MANIFEST: &str = "export.json";
+
+/// How much was moved.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Moved {
+    pub rows: usize,
+    pub blobs: usize,
+}
+
+#[derive(Serialize, Deserialize)]
+struct Manifest {
+    /// The schema step of the rows.
+    schema: i64,
+    rows: BTreeMap<String, usize>,
+    blobs: BTreeSet<String>,
+}
+
+/// The first line of a file of rows: the names of the columns and their types.
+#[derive(Serialize, Deserialize)]
+struct Head {
+    columns: Vec<(String, Kind)>,
+}
+
+#[derive(Clone, Copy, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum Kind {
+    Text,
+    Integer,
+    Real,
+}
+
+impl Store {
+    /// Writes everything into a new folder, as it is at this moment.
+    pub async fn export(&self, folder: &Path) -> Result<Moved, StoreError> {
+        // It holds faces of patients.
+        DirBuilder::new().mode(0o700).create(folder)?;
+        std::fs::create_dir(folder.join("blobs"))?;
+        let mut snapshot = self.database.snapshot().await?;
+        let mut manifest =
+            Manifest { schema: newest_step(), rows: BTreeMap::new(), blobs: BTreeSet::new() };
+        for table in TABLES {
+            let file = folder.join(format!("{table}.ndjson"));
+            let rows = export_table(&mut snapshot, table, &file).await?;
+            manifest.rows.insert(table.to_owned(), rows);
+        }
+        for row in query(REFERENCED).patiently().fetch_all(&mut snapshot).await? {
+            manifest.blobs.insert(row.try_get(0)?);
+        }
+        snapshot.rollback().await?;
+        for sha256 in &manifest.blobs {
+            let bytes = self.read_blob(sha256).await?;
+            write_durably(&folder.join("blobs").join(sha256), &bytes)?;
+        }
+        let text = serde_json::to_vec_pretty(&manifest).map_err(unreadable)?;
+        write_durably(&folder.join(MANIFEST), &text)?;
+        Ok(Moved { rows: manifest.rows.values().sum(), blobs: manifest.blobs.len() })
+    }
+
+    /// Takes in what was exported, all of it or nothing. Only into a deployment in which there is nothing.
+    pub async fn import(&self, folder: &Path) -> Result<Moved, StoreError> {
+        let text = std::fs::read(folder.join(MANIFEST))?;
+        let manifest: Manifest = serde_json::from_slice(&text).map_err(unreadable)?;
+        if manifest.schema != newest_step() {
+            let (found, known) = (manifest.schema, newest_step());
+            let detail = format!("it is of schema step {found}, and this program of step {known}");
+            return Err(StoreError::Export(detail));
+        }
+        self.refuse_unless_empty().await?;
+        let mut stored = Vec::with_capacity(manifest.blobs.len());
+        for sha256 in &manifest.blobs {
+            let bytes = std::fs::read(folder.join("blobs").join(sha256))?.into();
+            let content: Content = (sha256.clone(), bytes);
+            stored.extend(self.put(&[content]).await?);
+        }
+        let mut transaction = self.database.begin().await?;
+        let mut moved = Moved { rows: 0, blobs: stored.len() };
+        if !hold(&mut transaction, &stored).await? {
+            return Err(StoreError::Contended);
+        }
+        for table in TABLES {
+            let file = folder.join(format!("{table}.ndjson"));
+            let rows = import_table(&mut transaction, table, &file).await?;
+            if manifest.rows.get(table) != Some(&rows) {
+                return Err(StoreError::Export(format!("{} is cut short", file.display())));
+            }
+            moved.rows += rows;
+        }
+        transaction.commit().await?;
+        Ok(moved)
+    }
+
+    async fn refuse_unless_empty(&self) -> Result<(), StoreError> {
+        for table in TABLES {
+            let row = query_of(format!("SELECT COUNT(*) FROM {table}"))
+                .fetch_one(self.database.reader())
+                .await?;
+            if row.try_get::<i64, _>(0)? > 0 {
+                return Err(StoreError::NotEmpty { table });
+            }
+        }
+        Ok(())
+    }
+}
+
+async fn export_table(
+    snapshot: &mut Transaction,
+    table: &'static str,
+    file: &Path,
+) -> Result<usize, StoreError> {
+    let mut out = BufWriter::new(File::create(file)?);
+    let mut rows = 0;
+    let mut take = |row: Row| {
+        if rows == 0 {
+            write_line(&mut out, &Head { columns: head(&row)? })?;
+        }
+        rows += 1;
+        let values: Vec<Json> = row.values()?.into_iter().map(json).collect();
+        write_line(&mut out, &values)
+    };
+    let all = query_of(format!("SELECT * FROM {table}")).patiently();
+    all.run(Place::Transaction(snapshot), &mut take).await?;
+    out.into_inner().map_err(std::io::IntoInnerError::into_error)?.sync_all()?;
+    Ok(rows)
+}
+
+async fn import_table(
+    transaction: &mut Transaction,
+    table: &'static str,
+    file: &Path,
+) -> Result<usize, StoreError> {
+    let mut lines = BufReader::new(File::open(file)?).lines();
+    let Some(head) = lines.next() else { return Ok(0) };
+    let Head { columns } = serde_json::from_str(&head?).map_err(unreadable)?;
+    let names: Vec<&str> = columns.iter().map(|(name, _)| name.as_str()).collect();
+    let is_name = |name: &str| {
+        name.bytes().all(|byte| byte.is_ascii_lowercase() || byte.is_ascii_digit() || byte == b'_')
+    };
+    if let Some(strange) = names.iter().find(|name| !is_name(name)) {
+        return Err(StoreError::Export(format!("{table} has no column {strange:?}")));
+    }
+    let places: Vec<String> = (1..=names.len()).map(|number| format!("${number}")).collect();
+    let (names, places) = (names.join(", "), places.join(", "));
+    let insert = format!("INSERT INTO {table} ({names}) VALUES ({places})");
+    let mut rows = 0;
+    for line in lines {
+        let row: Vec<Json> = serde_json::from_str(&line?).map_err(unreadable)?;
+        let mut statement = query_of(insert.clone());
+        for (value, (_, kind)) in row.into_iter().zip(&columns) {
+            statement = statement.bind(value_of(value, *kind));
+        }
+        statement.execute(&mut *transaction).await?;
+        rows += 1;
+    }
+    Ok(rows)
+}
+
+fn head(row: &Row) -> Result<Vec<(String, Kind)>, sqlx::Error> {
+    let kind = |(name, value)| {
+        let kind = match value {
+            Value::Text(_) => Kind::Text,
+            Value::Integer(_) => Kind::Integer,
+            Value::Real(_) => Kind::Real,
+        };
+        (name, kind)
+    };
+    Ok(row.columns()?.into_iter().map(kind).collect())
+}
+
+fn json(value: Value) -> Json {
+    match value {
+        Value::Text(text) => text.into(),
+        Value::Integer(number) => number.into(),
+        Value::Real(number) => number.into(),
+    }
+}
+
+fn value_of(json: Json, kind: Kind) -> Value {
+    match kind {
+        Kind::Text => Value::Text(json.as_str().map(str::to_owned)),
+        Kind::Integer => Value::Integer(json.as_i64()),
+        Kind::Real => Value::Real(json.as_f64()),
+    }
+}
+
+fn write_line(out: &mut impl Write, line: &impl Serialize) -> Result<(), sqlx::Error> {
+    let mut text = serde_json::to_vec(line).map_err(std::io::Error::from)?;
+    text.push(b'\n');
+    Ok(out.write_all(&text)?)
+}
+
+fn write_durably(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
+    let mut file = File::create(path)?;
+    file.write_all(bytes)?;
+    file.sync_all()
+}
+
+fn unreadable(error: serde_json::Error) -> StoreError {
+    StoreError::Export(error.to_string())
+}
