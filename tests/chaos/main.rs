@@ -4,9 +4,15 @@
 
 mod deaths;
 mod delays;
+#[allow(dead_code, unused_imports, unused_macros, reason = "the tests of the service use the rest")]
+#[path = "../service/deployments.rs"]
+mod deployments;
 #[allow(dead_code, reason = "the tests of the service use the rest")]
 #[path = "../service/helpers.rs"]
 mod helpers;
 mod invariants;
 mod processes;
 mod races;
+#[allow(dead_code, reason = "other tests use the rest")]
+#[path = "../shared/mod.rs"]
+mod shared;

@@ -26,6 +26,7 @@ mod origins;
 mod plans;
 mod queue;
 mod races;
+mod remembered;
 mod response;
 mod schema_steps;
 mod settings;

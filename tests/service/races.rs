@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use facies::schema::job::JobStatus;
-use facies::store::{Dismissal, Enqueued, MeshDeletion, Point, Reserved, Store};
+use facies::store::{Dismissal, Enqueued, MeshDeletion, Point, Store};
 use tokio::task::JoinSet;
 
 use crate::deployments::{Deployment, on_both};
@@ -16,7 +16,6 @@ on_both! {
     a_dismissal_and_a_publication_have_one_winner
     bytes_that_are_stored_and_removed_at_the_same_time_are_never_missed
     a_case_is_erased_while_jobs_come
-    a_key_that_many_send_is_fresh_once
     events_of_a_job_are_numbered_without_gaps_and_go_with_it
 }
 
@@ -152,26 +151,6 @@ async fn a_process_that_waits_is_woken_by_the_change_of_another() {
         }
     };
     tokio::time::timeout(std::time::Duration::from_secs(60), woken).await.expect("it is woken");
-}
-
-async fn a_key_that_many_send_is_fresh_once(on: Deployment) {
-    let stores = processes(&on, 4).await;
-    let mut requests = JoinSet::new();
-    for store in stores.iter().cycle().take(20) {
-        let (store, id) = (store.clone(), uuid::Uuid::now_v7().to_string());
-        requests
-            .spawn(async move { (store.reserve("a key", "a request", &id).await.unwrap(), id) });
-    }
-    let (fresh, again): (Vec<_>, Vec<_>) = requests
-        .join_all()
-        .await
-        .into_iter()
-        .partition(|(reserved, _)| *reserved == Reserved::Fresh);
-    assert_eq!(fresh.len(), 1);
-    let known = Reserved::Again(fresh[0].1.clone());
-    assert!(again.iter().all(|(reserved, _)| *reserved == known), "{again:?}");
-    let other = stores[1].reserve("a key", "another request", "an id").await.unwrap();
-    assert_eq!(other, Reserved::Other);
 }
 
 async fn events_of_a_job_are_numbered_without_gaps_and_go_with_it(on: Deployment) {
