@@ -55,10 +55,14 @@ fn id_as_text(object: &mut Map<String, Value>) {
     }
 }
 
-/// A body of bytes is no list of numbers.
+/// A body of bytes is no list of numbers, and a stream that goes on is no text.
 fn bytes(object: &mut Map<String, Value>) {
     let Some(content) = object.get_mut("content").and_then(Value::as_object_mut) else { return };
-    for content in content.values_mut() {
+    for (media_type, content) in content {
+        if media_type == "text/event-stream" {
+            *content = json!({});
+            continue;
+        }
         let schema = &mut content["schema"];
         if schema["items"]["format"] == "int32" && schema["items"]["minimum"] == 0.0 {
             *schema = json!({"type": "string", "format": "binary"});
@@ -122,8 +126,9 @@ mod tests {
     fn bytes_and_ids_have_types_that_clients_have() {
         let array = json!({"type": "array", "items": {"type": "integer", "format": "int32", "minimum": 0.0}});
         let document = json!({"components": {"schemas": {}}, 
-            "content": {"model/stl": {"schema": array}}, "id": {"type": "string", "format": "uuid"}});
+            "content": {"model/stl": {"schema": array}, "text/event-stream": {"schema": {}}}, "id": {"type": "string", "format": "uuid"}});
         let typed = typed(document);
+        assert_eq!(typed["content"]["text/event-stream"], json!({}));
         assert_eq!(typed["content"]["model/stl"]["schema"]["format"], "binary");
         assert_eq!(typed["id"], json!({"type": "string", "pattern": ID_PATTERN}));
     }
