@@ -12,13 +12,8 @@ use crate::solver::stationary::{Iteration, Stationary};
 /// (`cargo bench --bench iterations`), and a smaller one would only make them look slower.
 const OWN_ITERATIONS_RESIDUAL: f64 = 1e-5;
 
-/// Sweeps after which the mass-tensor's own iterations are given up.
+/// Sweeps after which the papers' own iterations are given up.
 const OWN_ITERATIONS: usize = 50_000;
-
-/// The same for springs: Newton's and node by node agree to 0.001 mm at this residual, and where the latter is not there
-/// after so many sweeps, it folds.
-const SPRINGS_RESIDUAL: f64 = 1e-4;
-const SPRINGS_ITERATIONS: usize = 10_000;
 
 /// Links of the lattice in mN/mm, which is N/m (paper 000).
 const PAPER_STIFFNESS: f64 = 80.0;
@@ -47,9 +42,9 @@ pub fn available() -> Vec<Variant> {
     all.push(variant("mtm_ti", "mtm_ti", Method::MassTensorTransverse));
     all.extend([("msm newton", Search::Newton), ("msm direct", Search::Direct)].map(
         |(label, search)| {
-            let settings = MassSpringSettings { search, most_iterations: SPRINGS_ITERATIONS };
+            let settings = MassSpringSettings { search, most_iterations: OWN_ITERATIONS };
             let mut springs = variant("msm", label, Method::MassSpring(settings));
-            springs.settings.relative_residual = SPRINGS_RESIDUAL;
+            springs.settings.relative_residual = OWN_ITERATIONS_RESIDUAL;
             springs
         },
     ));

@@ -15,7 +15,7 @@ use crate::study::variant::{StudyScene, Truth};
 const FINENESS: usize = 2;
 
 /// Muscle of 300 kPa in tissue of 50 kPa: the optimum of Zachow et al., Linear elastic tissue model, 2006, section 3.
-/// The truth is quadratic tetrahedra of a quarter of the size.
+/// The truth is quadratic tetrahedra of half the size.
 pub fn half_head() -> StudyScene {
     let head = made(FINENESS);
     let set = |name: &str| NodeSelection::NodeSet(name.to_owned());
@@ -48,7 +48,7 @@ pub fn half_head() -> StudyScene {
         case,
         plans,
         materials: vec![tissue],
-        truth: Truth::Refined { times: 2, element: ElementChoice::Quadratic },
+        truth: Truth::Refined { times: 1, element: ElementChoice::Quadratic },
     }
 }
 

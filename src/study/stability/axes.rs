@@ -325,7 +325,7 @@ fn push_node(nodes: &mut Vec<Vector>, at: Vector) -> u32 {
 fn contradiction() -> Axis {
     Axis {
         name: "contradiction",
-        title: "Conflicting segments",
+        title: "Segments at odds",
         unit: "mm apart at one node",
         scene: "the layer of `poisson_ratio`, nu 0.43, one node of its patch held by a second segment too",
         reference: FINER,

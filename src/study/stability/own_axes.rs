@@ -38,7 +38,7 @@ fn fibre_ratio() -> Axis {
 fn fibre_ratio_of_paper() -> Axis {
     Axis {
         name: "fibre_ratio_paper_002",
-        title: "Fibre ratio, paper 002",
+        title: "Fibres, paper 002",
         unit: "E along / E across",
         scene: "the same with the stiffness that paper 002 prints",
         reference: FINER,
