@@ -257,7 +257,8 @@ pub struct StudyBudgetDocument {
     #[serde(default = "usual_wall")]
     #[schema(default = 3600.0, exclusive_minimum = 0.0)]
     pub wall_s: f64,
-    /// A solve that takes longer is given up, and its row fails with `budget-exceeded`.
+    /// A solve that takes longer is given up, and its row fails with `budget-exceeded`, as do those of the scene's later
+    /// plans with that variant and level, which are not tried.
     #[serde(default = "usual_row")]
     #[schema(default = 60.0, exclusive_minimum = 0.0)]
     pub row_s: f64,

@@ -18,8 +18,9 @@ const OWN_ITERATIONS: usize = 50_000;
 /// Links of the lattice in mN/mm, which is N/m (paper 000).
 const PAPER_STIFFNESS: f64 = 80.0;
 
-/// The variant that is on the ladder to show that it diverges.
-pub const DIVERGING: &str = "mtm jacobi";
+/// Variants that may fail: plain Jacobi is on the ladder to show that it diverges; springs node by node need more
+/// sweeps than `OWN_ITERATIONS` or the time of a row on fine meshes.
+pub const MAY_FAIL: [&str; 2] = ["mtm jacobi", "msm direct"];
 
 /// All of them, each with its usual settings.
 pub fn available() -> Vec<Variant> {
@@ -35,7 +36,7 @@ pub fn available() -> Vec<Variant> {
         [
             ("mtm gauss_seidel", Iteration::GaussSeidel),
             ("mtm damped_jacobi", Iteration::DampedJacobi),
-            (DIVERGING, Iteration::Jacobi),
+            ("mtm jacobi", Iteration::Jacobi),
         ]
         .map(|(label, iteration)| mass_tensor(label, iteration)),
     );

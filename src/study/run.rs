@@ -1,6 +1,6 @@
 //! The study itself: rows first, each alone in memory, then the truth they are held against.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::Stopwatch;
 use super::answer::{Answer, Bench, NoAnswer, Refusal};
@@ -71,6 +71,12 @@ fn distinct(what: &'static str, names: impl Iterator<Item = String>) -> Result<(
     if seen.is_empty() { Err(StudyError::Empty { what }) } else { Ok(()) }
 }
 
+/// The code of rows that exceed a budget of theirs.
+const EXCEEDED: &str = "budget-exceeded";
+
+/// Variants that exceeded a budget at a level, and with which plan: none is tried there with the next plan.
+type Exceeded<'a> = BTreeMap<(u32, &'a str), Refusal>;
+
 /// The rows of one scene.
 struct SceneWork<'a> {
     study: &'a Study,
@@ -87,6 +93,15 @@ struct Attempt<'a> {
     answer: Result<Answer, Refusal>,
 }
 
+impl<'a> Attempt<'a> {
+    /// What the rows of later plans are told, where this one exceeded a budget.
+    fn exceeded(&self, plan: &str) -> Option<((u32, &'a str), Refusal)> {
+        let why = self.answer.as_ref().err().filter(|why| why.code == EXCEEDED)?;
+        let detail = format!("not tried: {} with plan {plan:?}", why.detail);
+        Some(((self.level, self.variant.label.as_str()), Refusal::new(EXCEEDED, detail)))
+    }
+}
+
 impl<'a> SceneWork<'a> {
     fn run(&self) -> Result<(SceneReport, Vec<Row>), StudyError> {
         // 1. The skin that errors are measured on.
@@ -96,9 +111,14 @@ impl<'a> SceneWork<'a> {
 
         // 2. What the methods answer, for each plan and material.
         let mut attempts = Vec::new();
-        for ((_, plan), skin) in self.scene.plans.iter().zip(&skins) {
+        let mut exceeded = Exceeded::new();
+        for ((name, plan), skin) in self.scene.plans.iter().zip(&skins) {
             for materials in &self.scene.materials {
-                attempts.push(self.attempts(&mut levels, (plan, materials), skin)?);
+                let of_plan = self.attempts(&mut levels, &exceeded, (plan, materials), skin)?;
+                for (key, why) in of_plan.iter().filter_map(|attempt| attempt.exceeded(name)) {
+                    exceeded.entry(key).or_insert(why);
+                }
+                attempts.push(of_plan);
             }
         }
 
@@ -143,6 +163,7 @@ impl<'a> SceneWork<'a> {
     fn attempts(
         &self,
         levels: &mut Levels,
+        exceeded: &Exceeded,
         (plan, materials): (&Plan, &Materials),
         skin: &Result<Skin, Refusal>,
     ) -> Result<Vec<Attempt<'a>>, StudyError> {
@@ -153,6 +174,10 @@ impl<'a> SceneWork<'a> {
                     return Err(StudyError::Cancelled);
                 }
                 if is_the_truth(self.scene, &variant.settings, level) {
+                    continue;
+                }
+                if let Some(before) = exceeded.get(&(level, variant.label.as_str())) {
+                    attempts.push(Attempt { level, variant, answer: Err(before.clone()) });
                     continue;
                 }
                 let answer = self.attempt(levels, (level, materials), plan, (variant, skin));

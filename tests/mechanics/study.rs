@@ -300,6 +300,22 @@ fn a_solve_that_takes_too_long_fails_its_row_and_no_other() {
     assert_eq!(report.rows.len(), 2);
 }
 
+#[test]
+fn a_solve_that_takes_too_long_is_not_tried_with_the_next_plan() {
+    let scene = slab_with(|name| name.ends_with("deg"));
+    let mut study = study(scene, vec![variant("plain", ElementChoice::Plain)], &[0]);
+    study.row_s = 0.5;
+    let report = run(&study, &Ticking(AtomicUsize::new(0)), &Unobserved).unwrap();
+    let details = report.rows.iter().map(|row| match &row.outcome {
+        Outcome::Failed { code, detail } if code == "budget-exceeded" => detail.clone(),
+        _ => panic!("{} was not given up", row.plan),
+    });
+    let details: Vec<String> = details.collect();
+    assert_eq!(details[0], "not solved after 0.5 s");
+    let later = format!("not tried: not solved after 0.5 s with plan {:?}", report.rows[0].plan);
+    assert!(details.len() > 2 && details[1..].iter().all(|detail| *detail == later), "{details:?}");
+}
+
 struct Impatient;
 
 impl Progress for Impatient {

@@ -11,8 +11,8 @@ use crate::mesh::{Frame, Vector, VolumeMesh};
 use crate::prediction::{Bone, Case, CaseSegment, ElementChoice, Plan, RegionNames};
 use crate::study::variant::{StudyScene, Truth};
 
-/// 4608 tetrahedra.
-const FINENESS: usize = 2;
+/// 15 552 tetrahedra.
+const FINENESS: usize = 3;
 
 /// Muscle of 300 kPa in tissue of 50 kPa: the optimum of Zachow et al., Linear elastic tissue model, 2006, section 3.
 /// The truth is quadratic tetrahedra of half the size.
