@@ -17,6 +17,9 @@ pub struct Config {
     pub listen: SocketAddr,
     pub places: Places,
     pub api_key: Option<Secret>,
+    /// Whether a request without a key is refused.
+    pub asks_for_keys: bool,
+    pub admin_key: Option<Secret>,
     pub admin_listen: Option<SocketAddr>,
     pub allowed_origins: Vec<String>,
     pub requests_per_minute: u32,
@@ -74,8 +77,8 @@ impl std::fmt::Debug for Secret {
 pub enum ConfigError {
     #[error("{name} is `{value}`, and has to be {wanted}")]
     Value { name: &'static str, value: String, wanted: &'static str },
-    #[error("api-key has to have 16 to 255 visible characters")]
-    ApiKey,
+    #[error("{0} has to have 16 to 255 visible characters")]
+    Key(&'static str),
     #[error(
         "heartbeat-s is {heartbeat} and lease-s {lease}: a lease has to outlast two heartbeats"
     )]
@@ -89,7 +92,9 @@ pub enum ConfigError {
     NotShared { name: &'static str },
     #[error("{}: {reason}", path.display())]
     File { path: PathBuf, reason: String },
-    #[error("bind is {0}, which others can reach: set an api-key or bind to 127.0.0.1")]
+    #[error(
+        "bind is {0}, which others can reach: set an api-key, or ask-for-keys to true, or bind to 127.0.0.1"
+    )]
     OpenWithoutKey(SocketAddr),
 }
 
@@ -99,7 +104,7 @@ impl Config {
     /// Takes each setting from `given` (its value by its name) or from its default, and checks it.
     pub fn new(given: impl Fn(&str) -> Option<String>) -> Result<Config, ConfigError> {
         let config = Config::without_listener(given)?;
-        if !config.listen.ip().is_loopback() && config.api_key.is_none() {
+        if !config.listen.ip().is_loopback() && !config.asks_for_keys {
             return Err(ConfigError::OpenWithoutKey(config.listen));
         }
         Ok(config)
@@ -113,7 +118,9 @@ impl Config {
         let config = Config {
             listen: read.parsed("bind", "an address with a port, e.g. 127.0.0.1:8080")?,
             places: read.places()?,
-            api_key: read.api_key()?,
+            asks_for_keys: read.asks_for_keys()?,
+            api_key: read.key("api-key")?,
+            admin_key: read.key("admin-key")?,
             admin_listen: read.admin_listen()?,
             allowed_origins: read.origins()?,
             requests_per_minute: read.whole("requests-per-minute", 0..=10_000_000)? as u32,
@@ -196,13 +203,25 @@ impl<Text: Fn(&str) -> String> Reader<Text> {
         })
     }
 
-    fn api_key(&self) -> Result<Option<Secret>, ConfigError> {
-        let key = (self.text)("api-key");
+    fn asks_for_keys(&self) -> Result<bool, ConfigError> {
+        const NAME: &str = "ask-for-keys";
+        match (self.text)(NAME).as_str() {
+            "true" => Ok(true),
+            "false" => Ok(!(self.text)("api-key").is_empty()),
+            value => {
+                let value = value.to_owned();
+                Err(ConfigError::Value { name: NAME, value, wanted: "true or false" })
+            }
+        }
+    }
+
+    fn key(&self, name: &'static str) -> Result<Option<Secret>, ConfigError> {
+        let key = (self.text)(name);
         if key.is_empty() {
             return Ok(None);
         }
         if !(16..=255).contains(&key.len()) || !key.bytes().all(|byte| byte.is_ascii_graphic()) {
-            return Err(ConfigError::ApiKey);
+            return Err(ConfigError::Key(name));
         }
         Ok(Some(Secret(key)))
     }

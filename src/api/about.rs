@@ -1,6 +1,5 @@
 //! What the service is: its limits, its methods, its description.
 
-use axum::extract::State;
 use axum::http::StatusCode;
 use axum::response::Response;
 use utoipa_axum::router::OpenApiRouter;
@@ -17,7 +16,7 @@ pub fn router() -> OpenApiRouter<Service> {
 
 /// Every bound that is enforced.
 #[utoipa::path(get, path = "/v1/limits", operation_id = "show_limits", tag = "about", responses((status = 200, description = "the limits", body = Limits)))]
-async fn limits(State(service): State<Service>) -> Response {
+async fn limits(service: Service) -> Response {
     json(StatusCode::OK, &*service.limits)
 }
 

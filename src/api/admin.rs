@@ -1,26 +1,50 @@
-//! The listener for those who run the service: what it counts, and whether the process lives. It has an address of its own, which clients
-//! do not reach.
+//! The listener for those who run the service: what it counts, whether the process lives, and what concerns more than one
+//! tenant. It has an address of its own, which clients do not reach.
 
 use std::net::SocketAddr;
+use std::sync::Arc;
 
-use axum::Router;
-use axum::extract::State;
-use axum::http::header;
+use axum::extract::{Path, Query, Request, State};
+use axum::http::{HeaderValue, Method, StatusCode, header};
+use axum::middleware::{Next, from_fn_with_state};
 use axum::response::{IntoResponse, Response};
-use axum::routing::get;
+use axum::routing::{delete, get, post, put};
+use axum::{Json, Router};
+use serde::{Deserialize, Serialize};
 use tokio::net::TcpListener;
 
+use super::audit::{self, AuditParameters};
+use super::caller::bearer;
+use super::error::{ApiError, ApiResult};
+use super::guard::named;
+use super::{json, keys, time};
+use crate::config::Secret;
 use crate::metrics;
-use crate::store::Store;
+use crate::schema::key::{KeyDocument, RotationDocument, is_key_id, is_tenant};
+use crate::store::{Chain, Deed, LostRow, Store};
 
 const PROMETHEUS: &str = "text/plain; version=0.0.4; charset=utf-8";
 
+/// What the listener needs to know.
+#[derive(Clone)]
+struct Office {
+    store: Store,
+    /// Who is let in to more than metrics.
+    key: Option<Arc<Secret>>,
+    is_loopback: bool,
+}
+
 /// Listens on an address and answers until the process ends; the address with its port.
-pub async fn listen(address: SocketAddr, store: Store) -> std::io::Result<SocketAddr> {
+pub async fn listen(
+    address: SocketAddr,
+    key: Option<Secret>,
+    store: Store,
+) -> std::io::Result<SocketAddr> {
     let listener = TcpListener::bind(address).await?;
     let address = listener.local_addr()?;
+    let office = Office { store, key: key.map(Arc::new), is_loopback: address.ip().is_loopback() };
     tokio::spawn(async move {
-        if let Err(error) = axum::serve(listener, router(store)).await {
+        if let Err(error) = axum::serve(listener, router(office)).await {
             tracing::error!(%error, "the admin listener ended");
         }
     });
@@ -28,18 +52,189 @@ pub async fn listen(address: SocketAddr, store: Store) -> std::io::Result<Socket
     Ok(address)
 }
 
-fn router(store: Store) -> Router {
+fn router(office: Office) -> Router {
+    let administration = Router::new()
+        .route("/tenants", get(tenants))
+        .route("/tenants/{tenant}", put(set_tenant))
+        .route("/tenants/{tenant}/keys", get(list_keys).post(create_key))
+        .route("/tenants/{tenant}/keys/{id}", delete(revoke_key))
+        .route("/tenants/{tenant}/keys/{id}/rotation", post(rotate_key))
+        .route("/audit", get(list_audit))
+        .route("/audit/check", get(check_audit))
+        .route("/lost-jobs", get(lost_jobs))
+        .route("/lost-jobs/{id}/requeue", post(requeue))
+        .route_layer(from_fn_with_state(office.clone(), guard));
     Router::new()
         .route("/metrics", get(counted))
         .route("/healthz", get(async || "ok\n"))
-        .with_state(store)
+        .merge(administration)
+        .with_state(office)
 }
 
+/// Lets in who has the key, or who is on this machine where there is none; notes what was changed.
+async fn guard(State(office): State<Office>, request: Request, next: Next) -> Response {
+    let id = uuid::Uuid::now_v7().to_string();
+    let allowed = match &office.key {
+        Some(key) => bearer(request.headers()).is_some_and(|given| key.matches(given)),
+        None => office.is_loopback,
+    };
+    if !allowed {
+        let detail = "administration needs the admin-key, as `Authorization: Bearer KEY`";
+        let error = ApiError::new("unauthorized", detail)
+            .header(header::WWW_AUTHENTICATE, HeaderValue::from_static("Bearer"));
+        return named(error.into_response(), &id);
+    }
+    let deed = (*request.method() != Method::GET).then(|| Deed {
+        tenant: String::new(),
+        actor: "admin".to_owned(),
+        action: format!("{} on the admin listener", request.method()),
+        object: request.uri().path().chars().take(LONGEST_PATH).collect(),
+        outcome: String::new(),
+        request: id.clone(),
+    });
+    let mut response = next.run(request).await;
+    if let Some(mut deed) = deed {
+        deed.outcome = response.status().as_u16().to_string();
+        if let Err(error) = office.store.note(deed).await {
+            response = ApiError::from(error).into_response();
+        }
+    }
+    named(response, &id)
+}
+
+const LONGEST_PATH: usize = 200;
+
 /// What was counted, with the queue as it is at this moment.
-async fn counted(State(store): State<Store>) -> Response {
-    match store.queue().await {
+async fn counted(State(office): State<Office>) -> Response {
+    match office.store.queue().await {
         Ok(queue) => metrics::queue(queue.waiting, queue.running, queue.oldest_ms),
         Err(error) => tracing::warn!(%error, "the queue was not counted"),
     }
     ([(header::CONTENT_TYPE, PROMETHEUS)], metrics::render()).into_response()
+}
+
+impl Office {
+    /// The store in the hand of a tenant, which need not be there yet.
+    fn of(&self, tenant: &str) -> ApiResult<Store> {
+        match is_tenant(tenant) {
+            true => Ok(self.store.of_tenant(tenant)),
+            false => Err(ApiError::invalid_parameter(
+                "tenant",
+                "a tenant has 1 to 64 of a to z, 0 to 9, - and .",
+            )),
+        }
+    }
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct TenantDocument {
+    #[serde(default, skip_deserializing)]
+    name: String,
+    /// Days for which what nobody changes is kept; absent: until it is erased.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    retention_days: Option<i64>,
+}
+
+async fn tenants(State(office): State<Office>) -> ApiResult {
+    let rows = office.store.tenants().await?.into_iter();
+    let all = rows.map(|row| TenantDocument { name: row.name, retention_days: row.retention_days });
+    Ok(json(StatusCode::OK, &all.collect::<Vec<_>>()))
+}
+
+async fn set_tenant(
+    State(office): State<Office>,
+    Path(tenant): Path<String>,
+    Json(wanted): Json<TenantDocument>,
+) -> ApiResult {
+    if wanted.retention_days.is_some_and(|days| !(1..=36_500).contains(&days)) {
+        let detail = "retention_days has to be 1 to 36500";
+        return Err(ApiError::invalid_parameter("retention_days", detail));
+    }
+    office.of(&tenant)?.retain(wanted.retention_days).await?;
+    Ok(json(StatusCode::OK, &TenantDocument { name: tenant, ..wanted }))
+}
+
+async fn list_keys(State(office): State<Office>, Path(tenant): Path<String>) -> ApiResult {
+    keys::listed(&office.of(&tenant)?).await
+}
+
+async fn create_key(
+    State(office): State<Office>,
+    Path(tenant): Path<String>,
+    Json(wanted): Json<KeyDocument>,
+) -> ApiResult {
+    wanted.check()?;
+    Ok(keys::shown(office.of(&tenant)?.make_key(&wanted).await?))
+}
+
+async fn revoke_key(
+    State(office): State<Office>,
+    Path((tenant, id)): Path<(String, String)>,
+) -> ApiResult {
+    keys::revoked(&office.of(&tenant)?, key_id(&id)?).await
+}
+
+async fn rotate_key(
+    State(office): State<Office>,
+    Path((tenant, id)): Path<(String, String)>,
+    Json(rotation): Json<RotationDocument>,
+) -> ApiResult {
+    keys::rotated(&office.of(&tenant)?, key_id(&id)?, rotation).await
+}
+
+fn key_id(text: &str) -> ApiResult<&str> {
+    is_key_id(text).then_some(text).ok_or_else(|| ApiError::not_found("key"))
+}
+
+async fn list_audit(
+    State(office): State<Office>,
+    Query(parameters): Query<AuditParameters>,
+) -> ApiResult {
+    audit::page(&office.store, "", &parameters).await
+}
+
+/// Whether the log is whole, and the hash of its last row.
+async fn check_audit(State(office): State<Office>) -> ApiResult {
+    let found = match office.store.check_audit().await? {
+        Chain::Whole { rows, hash } => {
+            serde_json::json!({"status": "whole", "rows": rows, "hash": hash})
+        }
+        Chain::Broken { at } => serde_json::json!({"status": "broken", "at": at}),
+    };
+    Ok(json(StatusCode::OK, &found))
+}
+
+#[derive(Serialize)]
+struct LostJob {
+    id: String,
+    tenant: String,
+    kind: String,
+    attempts: i64,
+    finished: String,
+    error: serde_json::Value,
+}
+
+/// Jobs that failed through no fault of their own.
+async fn lost_jobs(State(office): State<Office>) -> ApiResult {
+    let rows = office.store.lost_jobs().await?;
+    let view = |row: LostRow| -> ApiResult<LostJob> {
+        Ok(LostJob {
+            id: row.id,
+            tenant: row.tenant,
+            kind: row.kind,
+            attempts: row.attempt,
+            finished: time::rfc3339(row.finished),
+            error: serde_json::from_str(&row.error).map_err(ApiError::internal)?,
+        })
+    };
+    let all = rows.into_iter().map(view).collect::<ApiResult<Vec<_>>>()?;
+    Ok(json(StatusCode::OK, &all))
+}
+
+async fn requeue(State(office): State<Office>, Path(id): Path<String>) -> ApiResult {
+    match office.store.requeue(&id).await? {
+        true => Ok(StatusCode::NO_CONTENT.into_response()),
+        false => Err(ApiError::not_found("job that was lost")),
+    }
 }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use axum::extract::{Request, State};
+use axum::extract::Request;
 use axum::http::{HeaderMap, StatusCode, header};
 use axum::response::IntoResponse;
 use serde::{Deserialize, Serialize};
@@ -107,7 +107,7 @@ struct MeshPart(Vec<u8>);
     responses((status = 201, description = "kept", body = CaseView, headers(("Location" = String, description = "the case"), ("ETag" = String, description = "its version"))))
 )]
 async fn create(
-    State(service): State<Service>,
+    service: Service,
     Parameters(parameters): Parameters<CreateParameters>,
     request: Request,
 ) -> ApiResult {
@@ -174,10 +174,7 @@ async fn answer(service: &Service, status: StatusCode, row: &CaseRow) -> ApiResu
     get, path = "/v1/cases", operation_id = "list_cases", tag = "cases", params(ListParameters),
     responses((status = 200, description = "a page of them", body = CaseList))
 )]
-async fn list(
-    State(service): State<Service>,
-    Parameters(parameters): Parameters<ListParameters>,
-) -> ApiResult {
+async fn list(service: Service, Parameters(parameters): Parameters<ListParameters>) -> ApiResult {
     let page = Page::new(parameters.cursor.as_deref(), parameters.limit)?;
     let tag = parameters.tag.unwrap_or_default();
     let mut rows = service.store.cases(&tag, page.after.as_deref(), page.rows()).await?;
@@ -194,7 +191,7 @@ async fn list(
         (status = 304, description = "the client has it already"),
     )
 )]
-async fn show(State(service): State<Service>, Id(id): Id, headers: HeaderMap) -> ApiResult {
+async fn show(service: Service, Id(id): Id, headers: HeaderMap) -> ApiResult {
     let row = row_of(&service, &id).await?;
     let version = row.version.to_string();
     if conditional::is_known(&headers, &version) {
@@ -216,7 +213,7 @@ async fn show(State(service): State<Service>, Id(id): Id, headers: HeaderMap) ->
         (status = 428, description = "If-Match is missing"),
     )
 )]
-async fn remove(State(service): State<Service>, Id(id): Id, headers: HeaderMap) -> ApiResult {
+async fn remove(service: Service, Id(id): Id, headers: HeaderMap) -> ApiResult {
     let row = row_of(&service, &id).await?;
     conditional::require_match(&headers, &row.version.to_string())?;
     match service.store.delete_case(&id, Some(row.version)).await? {
@@ -237,7 +234,7 @@ async fn remove(State(service): State<Service>, Id(id): Id, headers: HeaderMap) 
         content((CheckDocument = "application/json"), (String = "image/svg+xml"))
     ))
 )]
-async fn check(State(service): State<Service>, Id(id): Id, request: Request) -> ApiResult {
+async fn check(service: Service, Id(id): Id, request: Request) -> ApiResult {
     let wants_counts = check_accept(request.headers(), JSON).is_ok();
     if !wants_counts {
         check_accept(request.headers(), SVG)?;

@@ -20,6 +20,7 @@ fn kind_of(code: &str) -> (StatusCode, &'static str) {
         "digest-mismatch" => (StatusCode::BAD_REQUEST, "The body differs from its Content-Digest"),
         "invalid-parameter" => (StatusCode::BAD_REQUEST, "A parameter is not valid"),
         "unauthorized" => (StatusCode::UNAUTHORIZED, "A key is needed"),
+        "forbidden-scope" => (StatusCode::FORBIDDEN, "The key does not allow this"),
         "not-found" => (StatusCode::NOT_FOUND, "There is nothing here"),
         "no-such-job" => (StatusCode::NOT_FOUND, "There is no such job"),
         "no-such-output" => (StatusCode::NOT_FOUND, "The job has no such file"),

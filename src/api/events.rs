@@ -5,7 +5,6 @@ use std::convert::Infallible;
 use std::time::Duration;
 
 use axum::Extension;
-use axum::extract::State;
 use axum::http::{HeaderMap, StatusCode};
 use axum::response::sse::{Event, KeepAlive, Sse};
 use axum::response::{IntoResponse, Response};
@@ -55,7 +54,7 @@ pub fn router() -> OpenApiRouter<Service> {
     )
 )]
 async fn follow(
-    State(service): State<Service>,
+    service: Service,
     Id(job): Id,
     client: Option<Extension<Client>>,
     headers: HeaderMap,

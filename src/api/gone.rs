@@ -1,7 +1,7 @@
 //! What was erased answers 410 and not 404, whichever handler does not find it.
 
 use axum::extract::rejection::RawPathParamsRejection;
-use axum::extract::{RawPathParams, Request, State};
+use axum::extract::{RawPathParams, Request};
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
 
@@ -12,7 +12,7 @@ use crate::schema::problem::Problem;
 
 /// Looks for the tombstone of what an address names, where a handler found nothing.
 pub async fn tell(
-    State(service): State<Service>,
+    service: Service,
     parameters: Result<RawPathParams, RawPathParamsRejection>,
     request: Request,
     next: Next,

@@ -8,8 +8,9 @@ use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
 use tracing::Instrument;
 
-use super::client::Client;
-use super::error::{ApiError, with_problem_body};
+use super::caller::{self, Caller};
+use super::deeds::Begun;
+use super::error::{ApiError, ApiResult, with_problem_body};
 use super::rate::Left;
 use super::{Service, body};
 use crate::metrics::http;
@@ -39,13 +40,22 @@ pub async fn surround(State(service): State<Service>, request: Request, next: Ne
     let (body, unread) = body::held(body);
     let mut request = Request::from_parts(head, body);
     let answered = async {
-        let response = match admit(&service, &mut request) {
-            Ok(left) => {
-                let mut response = next.run(request).await;
+        let response = match admit(&service, &mut request).await {
+            Ok(Admitted { left, caller }) => {
+                let allowed =
+                    caller.as_ref().map_or(Ok(()), |c| c.require(caller::scope_of(&request)));
+                let deed = caller.and_then(|caller| Begun::of(&caller, &request, &id));
+                let mut response = match allowed {
+                    Ok(()) => next.run(request).await,
+                    Err(error) => error.into_response(),
+                };
                 if let Some(left) = left {
                     left.tell(&mut response);
                 }
-                response
+                match deed {
+                    Some(deed) => deed.note(&service.store, response).await,
+                    None => response,
+                }
             }
             Err(error) => error.into_response(),
         };
@@ -55,11 +65,8 @@ pub async fn surround(State(service): State<Service>, request: Request, next: Ne
         response
     };
     let response = answered.instrument(span.clone()).await;
-    let mut response = with_problem_body(response, &id);
+    let response = named(response, &id);
     counted.answered(response.status().as_u16());
-    if let Ok(value) = HeaderValue::from_str(&id) {
-        response.headers_mut().insert(REQUEST_ID, value);
-    }
     span.in_scope(|| {
         tracing::info!(
             http.method = %method,
@@ -69,6 +76,15 @@ pub async fn surround(State(service): State<Service>, request: Request, next: Ne
             "request"
         );
     });
+    response
+}
+
+/// An answer with the id of its request, and its body where it is a problem.
+pub fn named(response: Response, id: &str) -> Response {
+    let mut response = with_problem_body(response, id);
+    if let Ok(value) = HeaderValue::from_str(id) {
+        response.headers_mut().insert(REQUEST_ID, value);
+    }
     response
 }
 
@@ -95,18 +111,27 @@ fn trace_id(headers: &HeaderMap) -> Option<&str> {
     (known && named && is_hex(parts.next()?, 16)).then_some(trace)
 }
 
-/// Lets a request in whose head is sound and whose client has requests left; whose it is stands beside it.
-fn admit(service: &Service, request: &mut Request) -> Result<Option<Left>, ApiError> {
-    check_head(service, request)?;
-    if is_open(request.uri().path()) {
-        return Ok(None);
-    }
-    let client = Client::of(service, request.extensions());
-    request.extensions_mut().insert(client.clone());
-    service.rates.take(client)
+/// What is known of a request that is let in.
+struct Admitted {
+    left: Option<Left>,
+    caller: Option<Caller>,
 }
 
-fn check_head(service: &Service, request: &Request) -> Result<(), ApiError> {
+/// Lets a request in whose head is sound, whose caller is known and has requests left; whose it is stands beside it.
+async fn admit(service: &Service, request: &mut Request) -> ApiResult<Admitted> {
+    check_head(request)?;
+    let Some(caller) = caller::identify(service, request.uri().path(), request.headers()).await?
+    else {
+        return Ok(Admitted { left: None, caller: None });
+    };
+    let client = caller.client(request.extensions());
+    request.extensions_mut().insert(client.clone());
+    request.extensions_mut().insert(caller.clone());
+    let left = service.rates.take(client)?;
+    Ok(Admitted { left, caller: Some(caller) })
+}
+
+fn check_head(request: &Request) -> ApiResult<()> {
     let uri_length = request.uri().path_and_query().map_or(0, |uri| uri.as_str().len());
     if uri_length > LONGEST_URI {
         let detail = format!("the address has {uri_length} bytes, {LONGEST_URI} are allowed");
@@ -118,34 +143,7 @@ fn check_head(service: &Service, request: &Request) -> Result<(), ApiError> {
         let detail = format!("the headers have {head} bytes, {LARGEST_HEAD} are allowed");
         return Err(Problem::new("header-too-large", detail).with("limit", LARGEST_HEAD).into());
     }
-    check_key(service, request)
-}
-
-fn check_key(service: &Service, request: &Request) -> Result<(), ApiError> {
-    let Some(key) = &service.config.api_key else {
-        return Ok(());
-    };
-    if is_open(request.uri().path()) {
-        return Ok(());
-    }
-    let given = request
-        .headers()
-        .get(header::AUTHORIZATION)
-        .and_then(|value| value.to_str().ok())
-        .and_then(|value| value.split_once(' '))
-        .filter(|(scheme, _)| scheme.eq_ignore_ascii_case("bearer"))
-        .map(|(_, given)| given.trim());
-    if given.is_some_and(|given| key.matches(given)) {
-        return Ok(());
-    }
-    let error =
-        ApiError::new("unauthorized", "send the key of the service as `Authorization: Bearer KEY`");
-    Err(error.header(header::WWW_AUTHENTICATE, HeaderValue::from_static("Bearer")))
-}
-
-/// Probes carry no key, and a browser cannot send one for the documentation, which holds no data.
-fn is_open(path: &str) -> bool {
-    matches!(path, "/healthz" | "/readyz" | "/openapi.json" | "/docs") || path.starts_with("/docs/")
+    Ok(())
 }
 
 /// For routes that answer in JSON only.

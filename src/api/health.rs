@@ -1,6 +1,5 @@
 //! Whether the process lives, and whether it can work.
 
-use axum::extract::State;
 use axum::http::StatusCode;
 use axum::response::Response;
 use serde::{Deserialize, Serialize};
@@ -30,7 +29,7 @@ async fn healthz() -> Response {
 
 /// Whether requests will be served: the database answers, files can be written, there is space.
 #[utoipa::path(get, path = "/readyz", tag = "health", responses((status = 200, description = "ready", body = Health)))]
-async fn readyz(State(service): State<Service>) -> ApiResult {
+async fn readyz(service: Service) -> ApiResult {
     let mut failing: Vec<String> = Vec::new();
     if let Err(error) = service.store.ping().await {
         tracing::warn!(%error, "the database does not answer");

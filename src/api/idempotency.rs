@@ -30,7 +30,7 @@ pub async fn new_id(
 ) -> ApiResult<NewId> {
     let id = uuid::Uuid::now_v7().to_string();
     let Some(key) = key(headers)? else { return Ok(NewId { id, is_known: false }) };
-    let key = sha256_hex(format!("{address}\n{key}").as_bytes());
+    let key = sha256_hex(format!("{}\n{address}\n{key}", service.store.tenant()).as_bytes());
     let hashes: Vec<String> = content.iter().map(|part| sha256_hex(part)).collect();
     let fingerprint = sha256_hex(hashes.concat().as_bytes());
     match service.store.reserve(&key, &fingerprint, &id).await? {

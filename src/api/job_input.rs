@@ -212,6 +212,7 @@ impl Accepted {
         Ok(NewJob {
             id: uuid::Uuid::now_v7().to_string(),
             kind: self.kind.name(),
+            priority: self.kind.priority(),
             case_id: self.case_id,
             shared_cases: self.shared_cases,
             document: serde_json::to_string(input).map_err(ApiError::internal)?,

@@ -1,6 +1,6 @@
 //! Jobs: accepted, looked at, waited for, dismissed.
 
-use axum::extract::{Request, State};
+use axum::extract::Request;
 use axum::http::{HeaderMap, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use serde::{Deserialize, Serialize};
@@ -77,7 +77,7 @@ struct ListParameters {
             ("Preference-Applied" = Option<String>, description = "the wait that was granted"))),
     )
 )]
-async fn create(State(service): State<Service>, request: Request) -> ApiResult {
+async fn create(service: Service, request: Request) -> ApiResult {
     let wait = wanted_wait(request.headers(), service.limits.wait_s);
     let headers = request.headers().clone();
     let bytes = body::json(&service, request).await?;
@@ -172,7 +172,7 @@ fn answer(status: StatusCode, job: &JobRow, deduplicated: bool, wait: Option<u32
         (status = 304, description = "the client has it already"),
     )
 )]
-async fn show(State(service): State<Service>, Id(id): Id, headers: HeaderMap) -> ApiResult {
+async fn show(service: Service, Id(id): Id, headers: HeaderMap) -> ApiResult {
     let wait = wanted_wait(&headers, service.limits.wait_s);
     let job = wait_for_end(&service, &id, wait.unwrap_or(0)).await?;
     let answer = answer(StatusCode::OK, &job.ok_or_else(no_such_job)?, false, wait)?;
@@ -184,10 +184,7 @@ async fn show(State(service): State<Service>, Id(id): Id, headers: HeaderMap) ->
     get, path = "/v1/jobs", operation_id = "list_jobs", tag = "jobs", params(ListParameters),
     responses((status = 200, description = "a page of them", body = JobList))
 )]
-async fn list(
-    State(service): State<Service>,
-    Parameters(parameters): Parameters<ListParameters>,
-) -> ApiResult {
+async fn list(service: Service, Parameters(parameters): Parameters<ListParameters>) -> ApiResult {
     let page = Page::new(parameters.cursor.as_deref(), parameters.limit)?;
     let filter = JobFilter {
         status: parameters.status.map_or("", JobStatus::name).to_owned(),
@@ -211,7 +208,7 @@ async fn list(
         (status = 204, description = "it had ended, and is removed"),
     )
 )]
-async fn dismiss(State(service): State<Service>, Id(id): Id) -> ApiResult<Response> {
+async fn dismiss(service: Service, Id(id): Id) -> ApiResult<Response> {
     let what = service.store.dismiss(&id).await?;
     tracing::info!(job.id = %id, ?what, "job dismissed");
     match what {

@@ -1,6 +1,6 @@
 //! Meshes: uploaded once, never changed, fetched in other formats.
 
-use axum::extract::{Request, State};
+use axum::extract::Request;
 use axum::http::{HeaderMap, StatusCode, header};
 use axum::response::IntoResponse;
 use bytes::Bytes;
@@ -80,7 +80,7 @@ impl UploadParameters {
     )
 )]
 async fn upload(
-    State(service): State<Service>,
+    service: Service,
     Parameters(parameters): Parameters<UploadParameters>,
     request: Request,
 ) -> ApiResult {
@@ -180,7 +180,7 @@ async fn row_of(service: &Service, id: &str) -> ApiResult<MeshRow> {
         (status = 304, description = "the client has it already"),
     )
 )]
-async fn show(State(service): State<Service>, Id(id): Id, headers: HeaderMap) -> ApiResult {
+async fn show(service: Service, Id(id): Id, headers: HeaderMap) -> ApiResult {
     let row = row_of(&service, &id).await?;
     if conditional::is_known(&headers, &row.sha256) {
         return Ok(conditional::not_modified(&row.sha256));
@@ -238,7 +238,7 @@ impl From<ContentFormat> for ExportFormat {
     )
 )]
 async fn content(
-    State(service): State<Service>,
+    service: Service,
     Id(id): Id,
     Parameters(parameters): Parameters<ContentParameters>,
     headers: HeaderMap,
@@ -272,7 +272,7 @@ async fn content(
         (status = 409, description = "a case or a job refers to it"),
     )
 )]
-async fn remove(State(service): State<Service>, Id(id): Id) -> ApiResult {
+async fn remove(service: Service, Id(id): Id) -> ApiResult {
     let row = row_of(&service, &id).await?;
     match service.store.delete_mesh(&id).await? {
         MeshDeletion::Deleted => {

@@ -2,11 +2,14 @@
 
 mod about;
 pub mod admin;
+mod audit;
 mod body;
+mod caller;
 mod case_draft;
 mod cases;
 mod client;
 mod conditional;
+mod deeds;
 mod error;
 mod events;
 mod gone;
@@ -16,6 +19,7 @@ mod idempotency;
 mod job_input;
 mod job_view;
 mod jobs;
+mod keys;
 mod meshes;
 mod openapi;
 mod openapi_types;
@@ -98,6 +102,16 @@ impl Service {
         }
     }
 
+    /// The same service in the hand of a tenant.
+    fn of_tenant(&self, tenant: &str) -> Service {
+        Service {
+            store: self.store.of_tenant(tenant),
+            library: self.library.of_tenant(tenant),
+            responses: self.responses.of_tenant(tenant),
+            ..self.clone()
+        }
+    }
+
     /// Runs work that takes a processor for long, on a thread that may block, a few at a time.
     async fn compute<T: Send + 'static>(
         &self,
@@ -122,6 +136,8 @@ fn resources() -> OpenApiRouter<Service> {
         .merge(results::router())
         .merge(report::router())
         .merge(responses::router())
+        .merge(keys::router())
+        .merge(audit::router())
 }
 
 /// Everything that is served.

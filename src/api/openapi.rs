@@ -2,19 +2,22 @@
 
 use utoipa::ToSchema as _;
 use utoipa::openapi::path::Operation;
+use utoipa::openapi::security::{Http, HttpAuthScheme, SecurityRequirement, SecurityScheme};
 use utoipa::openapi::{
     ContentBuilder, InfoBuilder, OpenApi, OpenApiBuilder, PathItem, Ref, RefOr, ResponseBuilder,
 };
 
+use super::caller::is_open;
 use super::{openapi_types, resources};
 use crate::schema::ProblemDocument;
 use crate::schema::job::JobEvent;
 
 /// Problems that every operation may answer with: what is wrong with the head of the request, and what is
 /// wrong with the service.
-const ALWAYS: [(&str, &str); 9] = [
+const ALWAYS: [(&str, &str); 10] = [
     ("400", "a parameter or a header is not valid"),
     ("401", "the service asks for a key"),
+    ("403", "the key does not allow it"),
     ("406", "the header Accept does not allow the answer"),
     ("414", "the address is too long"),
     (
@@ -26,6 +29,10 @@ const ALWAYS: [(&str, &str); 9] = [
     ("503", "the service is busy; the header Retry-After says when to come back"),
     ("507", "the disk of the service is full"),
 ];
+/// How the description calls the key of a client.
+const KEY: &str = "key";
+const NO_SCOPES: [&str; 0] = [];
+
 const WITH_PATH: [(&str, &str); 2] = [("404", "it is not there"), ("410", "it was erased")];
 const WITH_BODY: [(&str, &str); 5] = [
     ("409", "something it refers to changed meanwhile"),
@@ -56,11 +63,16 @@ fn described() -> OpenApi {
     let mut components = api.components.take().unwrap_or_default();
     add_schema::<ProblemDocument>(&mut components.schemas);
     add_schema::<JobEvent>(&mut components.schemas);
+    let scheme = SecurityScheme::Http(Http::new(HttpAuthScheme::Bearer));
+    components.add_security_scheme(KEY, scheme);
     let mut document = OpenApiBuilder::new().info(info).components(Some(components)).build();
     document.paths = api.paths;
     for (path, item) in &mut document.paths.paths {
         for operation in operations(item) {
             add_problems(path, operation);
+            if !is_open(path) {
+                operation.security = Some(vec![SecurityRequirement::new(KEY, NO_SCOPES)]);
+            }
         }
     }
     document

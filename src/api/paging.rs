@@ -18,11 +18,7 @@ pub struct Page {
 
 impl Page {
     pub fn new(cursor: Option<&str>, limit: Option<u32>) -> ApiResult<Page> {
-        let limit = limit.unwrap_or(USUAL_PAGE);
-        if !(1..=LONGEST_PAGE).contains(&limit) {
-            let detail = format!("limit is {limit}, and has to be 1 to {LONGEST_PAGE}");
-            return Err(ApiError::invalid_parameter("limit", detail));
-        }
+        let limit = checked_limit(limit)?;
         let after = cursor.map(read_cursor).transpose()?;
         Ok(Page { after, limit: limit as usize })
     }
@@ -40,6 +36,16 @@ impl Page {
         rows.truncate(self.limit);
         rows.last().map(|row| URL_SAFE_NO_PAD.encode(id_of(row)))
     }
+}
+
+/// How many rows a page has.
+pub fn checked_limit(limit: Option<u32>) -> ApiResult<u32> {
+    let limit = limit.unwrap_or(USUAL_PAGE);
+    if (1..=LONGEST_PAGE).contains(&limit) {
+        return Ok(limit);
+    }
+    let detail = format!("limit is {limit}, and has to be 1 to {LONGEST_PAGE}");
+    Err(ApiError::invalid_parameter("limit", detail))
 }
 
 fn read_cursor(cursor: &str) -> ApiResult<String> {

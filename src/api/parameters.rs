@@ -6,6 +6,7 @@ use serde::de::DeserializeOwned;
 use uuid::Uuid;
 
 use super::error::{ApiError, ApiResult};
+use crate::schema::key::is_key_id;
 
 /// The query, in which nothing unknown stands: a misspelt parameter would be a silent default.
 pub struct Parameters<T>(pub T);
@@ -35,6 +36,21 @@ impl<S: Send + Sync> FromRequestParts<S> for Id {
         let found = path_texts(parts, state).await?;
         let id = found.first().and_then(|text| id(text));
         id.map(Id).ok_or_else(|| ApiError::not_found("resource"))
+    }
+}
+
+/// The id of a key: what stands between the two `_` of it. What is no such id names no key.
+pub struct KeyId(pub String);
+
+impl<S: Send + Sync> FromRequestParts<S> for KeyId {
+    type Rejection = ApiError;
+
+    async fn from_request_parts(parts: &mut Parts, state: &S) -> ApiResult<Self> {
+        let id = path_texts(parts, state).await?.pop().unwrap_or_default();
+        match is_key_id(&id) {
+            true => Ok(KeyId(id)),
+            false => Err(ApiError::not_found("key that is in force")),
+        }
     }
 }
 

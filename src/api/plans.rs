@@ -1,6 +1,6 @@
 //! Plans that are kept with their case. A plan may as well stand in the job that carries it out.
 
-use axum::extract::{Request, State};
+use axum::extract::Request;
 use axum::http::{HeaderMap, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use serde::{Deserialize, Serialize};
@@ -90,7 +90,7 @@ async fn read(service: &Service, request: Request) -> ApiResult<String> {
     request_body = PlanDocument,
     responses((status = 201, description = "kept", body = PlanView, headers(("Location" = String, description = "the plan"), ("ETag" = String, description = "its version"))))
 )]
-async fn create(State(service): State<Service>, Id(case): Id, request: Request) -> ApiResult {
+async fn create(service: Service, Id(case): Id, request: Request) -> ApiResult {
     let headers = request.headers().clone();
     let document = read(&service, request).await?;
     let address = format!("/v1/cases/{case}/plans");
@@ -111,7 +111,7 @@ async fn create(State(service): State<Service>, Id(case): Id, request: Request) 
     responses((status = 200, description = "a page of them", body = PlanList))
 )]
 async fn list(
-    State(service): State<Service>,
+    service: Service,
     Id(case): Id,
     Parameters(parameters): Parameters<ListParameters>,
 ) -> ApiResult {
@@ -134,11 +134,7 @@ async fn list(
         (status = 304, description = "the client has it already"),
     )
 )]
-async fn show(
-    State(service): State<Service>,
-    PlanPath { case, id }: PlanPath,
-    headers: HeaderMap,
-) -> ApiResult {
+async fn show(service: Service, PlanPath { case, id }: PlanPath, headers: HeaderMap) -> ApiResult {
     let row = row_of(&service, &case, &id).await?;
     let version = row.version.to_string();
     if conditional::is_known(&headers, &version) {
@@ -162,7 +158,7 @@ async fn show(
     )
 )]
 async fn replace(
-    State(service): State<Service>,
+    service: Service,
     PlanPath { case, id }: PlanPath,
     headers: HeaderMap,
     request: Request,
@@ -189,7 +185,7 @@ async fn replace(
     )
 )]
 async fn remove(
-    State(service): State<Service>,
+    service: Service,
     PlanPath { case, id }: PlanPath,
     headers: HeaderMap,
 ) -> ApiResult<Response> {

@@ -1,6 +1,5 @@
 //! The report of a study: as JSON, table, test results or chart, judged against any earlier study.
 
-use axum::extract::State;
 use axum::http::{HeaderMap, StatusCode, header};
 use axum::response::IntoResponse;
 use serde::Deserialize;
@@ -97,7 +96,7 @@ struct ReportParameters {
     )
 )]
 async fn report(
-    State(service): State<Service>,
+    service: Service,
     Id(id): Id,
     Parameters(parameters): Parameters<ReportParameters>,
     headers: HeaderMap,

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use axum::extract::{Request, State};
+use axum::extract::Request;
 use axum::http::{HeaderMap, HeaderName, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use serde::Deserialize;
@@ -89,7 +89,7 @@ fn refusal(missing: MissingResponse) -> ApiError {
     )
 )]
 async fn show(
-    State(service): State<Service>,
+    service: Service,
     Id(id): Id,
     Parameters(parameters): Parameters<ResponseParameters>,
     headers: HeaderMap,
@@ -135,7 +135,7 @@ async fn show(
     )
 )]
 async fn apply(
-    State(service): State<Service>,
+    service: Service,
     Id(id): Id,
     Parameters(parameters): Parameters<ResponseParameters>,
     request: Request,

@@ -1,6 +1,5 @@
 //! Results: the manifest of a job and its files.
 
-use axum::extract::State;
 use axum::http::{HeaderMap, StatusCode};
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
@@ -66,7 +65,7 @@ pub(super) async fn successful(
         (status = 422, description = "the job failed or was dismissed"),
     )
 )]
-async fn manifest(State(service): State<Service>, Id(id): Id, headers: HeaderMap) -> ApiResult {
+async fn manifest(service: Service, Id(id): Id, headers: HeaderMap) -> ApiResult {
     let job = successful(&service, &id, &headers).await?;
     let result = job.result.as_deref().unwrap_or("null");
     let result: serde_json::Value = serde_json::from_str(result).map_err(ApiError::internal)?;
@@ -89,11 +88,7 @@ async fn manifest(State(service): State<Service>, Id(id): Id, headers: HeaderMap
         (status = 422, description = "the job failed or was dismissed"),
     )
 )]
-async fn file(
-    State(service): State<Service>,
-    FileName { job, name }: FileName,
-    headers: HeaderMap,
-) -> ApiResult {
+async fn file(service: Service, FileName { job, name }: FileName, headers: HeaderMap) -> ApiResult {
     successful(&service, &job, &headers).await?;
     let row = service.store.job_file(&job, &name).await?;
     let row =

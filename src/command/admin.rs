@@ -6,7 +6,12 @@ use clap::{Args, Subcommand};
 
 use super::settings::Arguments as Settings;
 use crate::config::Config;
-use crate::store::{Findings, Store, StoreError};
+use crate::schema::key::{KeyDocument, is_tenant, scopes_of};
+use crate::schema::problem::Problem;
+use crate::store::{AuditRow, Chain, DEFAULT_TENANT, Deed, Findings, Store, StoreError};
+
+/// Rows of the audit log that are read together.
+const AUDIT_ROWS: i64 = 1000;
 
 #[derive(Debug, Args)]
 pub struct Arguments {
@@ -32,6 +37,29 @@ enum Command {
         #[command(flatten)]
         settings: Settings,
     },
+    /// Make, list, rotate and end keys
+    Key {
+        #[command(subcommand)]
+        command: KeyCommand,
+    },
+    /// How long what nobody changes is kept, for a tenant
+    Retention {
+        #[arg(long, default_value = DEFAULT_TENANT, value_parser = tenant)]
+        tenant: String,
+        /// Days; without them until it is erased
+        #[arg(long, value_parser = clap::value_parser!(i64).range(1..=36_500))]
+        days: Option<i64>,
+        #[command(flatten)]
+        settings: Settings,
+    },
+    /// Print the audit log and tell whether it is whole; exits with 1 where it is not
+    Audit {
+        /// Rows with a larger number
+        #[arg(long, default_value_t = 0)]
+        after: i64,
+        #[command(flatten)]
+        settings: Settings,
+    },
     /// Tell which rows miss their bytes and which bytes no row knows; exits with 1 where there are some
     Fsck {
         /// Read every blob and compare it with its hash
@@ -45,6 +73,61 @@ enum Command {
     },
 }
 
+#[derive(Debug, Subcommand)]
+enum KeyCommand {
+    /// Make a key and print it, this once
+    New {
+        #[arg(long, default_value = DEFAULT_TENANT, value_parser = tenant)]
+        tenant: String,
+        /// What it is for
+        #[arg(long)]
+        label: String,
+        /// Of read, write, run and admin, with commas between them
+        #[arg(long, default_value = "read,write,run")]
+        scopes: String,
+        /// Days until it ends; without them it does not
+        #[arg(long)]
+        days: Option<i64>,
+        #[command(flatten)]
+        settings: Settings,
+    },
+    /// The keys of a tenant, without their secrets
+    List {
+        #[arg(long, default_value = DEFAULT_TENANT, value_parser = tenant)]
+        tenant: String,
+        #[command(flatten)]
+        settings: Settings,
+    },
+    /// Make a key that allows the same, print it, and let the old one end after a while
+    Rotate {
+        #[arg(long, default_value = DEFAULT_TENANT, value_parser = tenant)]
+        tenant: String,
+        /// The middle part of the key
+        id: String,
+        /// How many hours the old key can still be used
+        #[arg(long, default_value_t = 24, value_parser = clap::value_parser!(i64).range(0..=8760))]
+        overlap_h: i64,
+        #[command(flatten)]
+        settings: Settings,
+    },
+    /// End a key at once
+    Revoke {
+        #[arg(long, default_value = DEFAULT_TENANT, value_parser = tenant)]
+        tenant: String,
+        /// The middle part of the key
+        id: String,
+        #[command(flatten)]
+        settings: Settings,
+    },
+}
+
+fn tenant(text: &str) -> Result<String, String> {
+    match is_tenant(text) {
+        true => Ok(text.to_owned()),
+        false => Err("a tenant has 1 to 64 of a to z, 0 to 9, - and .".to_owned()),
+    }
+}
+
 #[derive(Debug, thiserror::Error)]
 pub enum AdminError {
     #[error("{0}")]
@@ -53,6 +136,10 @@ pub enum AdminError {
     Store(#[from] StoreError),
     #[error("{0}")]
     Io(#[from] std::io::Error),
+    #[error("{0}")]
+    Refused(String),
+    #[error("the audit log was changed: row {at} does not follow from those before it")]
+    Audit { at: i64 },
     #[error("{dangling} blobs are lost or damaged, {orphans} are known to no row")]
     Findings { dangling: usize, orphans: usize },
 }
@@ -83,6 +170,17 @@ pub fn run(arguments: &Arguments) -> Result<(), AdminError> {
                 println!("imported {} rows and {} blobs", moved.rows, moved.blobs);
                 Ok(())
             }
+            Command::Key { command } => key(command).await,
+            Command::Retention { tenant, days, settings } => {
+                let store = open(settings).await?.of_tenant(tenant);
+                store.retain(*days).await?;
+                note(&store, "admin retention", "").await?;
+                let kept =
+                    days.map_or("until it is erased".to_owned(), |days| format!("{days} days"));
+                println!("what {tenant} does not change is kept {kept}");
+                Ok(())
+            }
+            Command::Audit { after, settings } => audit(&open(settings).await?, *after).await,
             Command::Fsck { read_all, repair, settings } => {
                 check(&open(settings).await?, *read_all, *repair).await
             }
@@ -94,6 +192,93 @@ async fn open(settings: &Settings) -> Result<Store, AdminError> {
     let given = settings.given()?;
     let config = Config::without_listener(|name| given.get(name))?;
     Ok(Store::connect(&config.places).await?)
+}
+
+async fn key(command: &KeyCommand) -> Result<(), AdminError> {
+    match command {
+        KeyCommand::New { tenant, label, scopes, days, settings } => {
+            let scopes = scopes_of(scopes)
+                .map_err(|word| AdminError::Refused(format!("there is no scope {word:?}")))?;
+            let wanted = KeyDocument { label: label.clone(), scopes, days: *days };
+            wanted.check().map_err(|problem| AdminError::Refused(lines(&problem)))?;
+            let store = open(settings).await?.of_tenant(tenant);
+            let key = store.make_key(&wanted).await?;
+            note(&store, "admin key new", &key.id).await?;
+            println!("{}", key.text);
+            Ok(())
+        }
+        KeyCommand::List { tenant, settings } => {
+            for row in open(settings).await?.of_tenant(tenant).keys().await? {
+                let state = match (row.revoked, row.expires) {
+                    (Some(_), _) => "revoked",
+                    (None, Some(_)) => "ends",
+                    (None, None) => "lasts",
+                };
+                println!("{}  {state:<7}  {}  {}", row.id, row.scopes, row.label);
+            }
+            Ok(())
+        }
+        KeyCommand::Rotate { tenant, id, overlap_h, settings } => {
+            let store = open(settings).await?.of_tenant(tenant);
+            let key = store.rotate_key(id, *overlap_h).await?.ok_or_else(|| no_key(id))?;
+            note(&store, "admin key rotate", id).await?;
+            println!("{}", key.text);
+            Ok(())
+        }
+        KeyCommand::Revoke { tenant, id, settings } => {
+            let store = open(settings).await?.of_tenant(tenant);
+            if !store.revoke_key(id).await? {
+                return Err(no_key(id));
+            }
+            note(&store, "admin key revoke", id).await?;
+            println!("{id} is not let in any more");
+            Ok(())
+        }
+    }
+}
+
+fn lines(problem: &Problem) -> String {
+    let faults = problem.errors.iter().map(|fault| format!("{}: {}", fault.pointer, fault.detail));
+    faults.collect::<Vec<_>>().join("; ")
+}
+
+fn no_key(id: &str) -> AdminError {
+    AdminError::Refused(format!("the tenant has no key {id:?} that is in force"))
+}
+
+async fn note(store: &Store, action: &str, object: &str) -> Result<(), AdminError> {
+    let deed = Deed {
+        tenant: store.tenant().to_owned(),
+        actor: "command".to_owned(),
+        action: action.to_owned(),
+        object: object.to_owned(),
+        outcome: "done".to_owned(),
+        request: String::new(),
+    };
+    Ok(store.note(deed).await?)
+}
+
+async fn audit(store: &Store, mut after: i64) -> Result<(), AdminError> {
+    loop {
+        let rows = store.audit(after, "", AUDIT_ROWS).await?;
+        let Some(last) = rows.last() else { break };
+        after = last.number;
+        for AuditRow { number, at, deed, .. } in &rows {
+            let Deed { tenant, actor, action, object, outcome, request } = deed;
+            println!(
+                "{number} {at} {tenant:?} {actor} {action:?} {object:?} {outcome} {request:?}"
+            );
+        }
+    }
+    match store.check_audit().await? {
+        Chain::Whole { rows, hash } => {
+            println!(
+                "{rows} rows, each following from those before it; the last has hash {hash:?}"
+            );
+            Ok(())
+        }
+        Chain::Broken { at } => Err(AdminError::Audit { at }),
+    }
 }
 
 async fn check(store: &Store, read_all: bool, repair: bool) -> Result<(), AdminError> {

@@ -146,7 +146,7 @@ pub async fn listen_for_admin(
     store: &Store,
 ) -> Result<Option<SocketAddr>, ServeError> {
     let Some(address) = config.admin_listen else { return Ok(None) };
-    let listening = api::admin::listen(address, store.clone()).await;
+    let listening = api::admin::listen(address, config.admin_key.clone(), store.clone()).await;
     Ok(Some(listening.map_err(|source| ServeError::Listen { address, source })?))
 }
 
@@ -190,19 +190,30 @@ fn slot_settings(config: &Config, limits: &Limits) -> Settings {
 
 /// Sweeps what dead processes left, at once and then every hour.
 async fn keep_swept(store: &Store) -> Result<(), StoreError> {
+    let erased = store.erase_old().await?;
     let swept = store.sweep().await?;
-    tracing::info!(blobs = swept.blobs, temporary = swept.temporary, "swept");
+    tracing::info!(erased, blobs = swept.blobs, temporary = swept.temporary, "swept");
     let store = store.clone();
     tokio::spawn(async move {
         loop {
             tokio::time::sleep(SWEEP_EVERY).await;
-            match store.sweep_old_blobs().await {
-                Ok(blobs) => tracing::debug!(blobs, "swept"),
-                Err(error) => tracing::warn!(%error, "the sweep was broken off"),
-            }
+            sweep(&store).await;
         }
     });
     Ok(())
+}
+
+/// Erases what is older than its tenant keeps it, and bytes that nothing refers to.
+async fn sweep(store: &Store) {
+    match store.erase_old().await {
+        Ok(0) => {}
+        Ok(erased) => tracing::info!(erased, "erased what is older than its tenant keeps it"),
+        Err(error) => tracing::warn!(%error, "retention was broken off"),
+    }
+    match store.sweep_old_blobs().await {
+        Ok(blobs) => tracing::debug!(blobs, "swept"),
+        Err(error) => tracing::warn!(%error, "the sweep was broken off"),
+    }
 }
 
 /// Done when the process is told to stop: SIGTERM or SIGINT.

@@ -22,7 +22,7 @@ impl Setting {
     /// A value as it may be shown.
     pub fn shown(&self, value: &str) -> String {
         match self.name {
-            "api-key" if !value.is_empty() => "…".to_owned(),
+            "api-key" | "admin-key" if !value.is_empty() => "…".to_owned(),
             "database" if !value.is_empty() => places::without_password(value),
             _ => value.to_owned(),
         }
@@ -38,7 +38,7 @@ pub const SETTINGS: &[Setting] = &[
     setting(
         "bind",
         "127.0.0.1:8080",
-        "address and port to listen on; port 0 takes a free one; any address but loopback needs an api-key",
+        "address and port to listen on; port 0 takes a free one; any address but loopback needs an api-key or ask-for-keys",
     ),
     setting(
         "data",
@@ -63,12 +63,22 @@ pub const SETTINGS: &[Setting] = &[
     setting(
         "api-key",
         "",
-        "asked for as `Authorization: Bearer KEY` on everything but /healthz, /readyz and the documentation; 16 to 255 visible characters; without it nobody is asked",
+        "a key that allows everything to the tenant `default`, sent as `Authorization: Bearer KEY`; 16 to 255 visible characters; with it every request needs a key but those to /healthz, /readyz and the documentation",
+    ),
+    setting(
+        "ask-for-keys",
+        "false",
+        "true: every request needs a key that was made by `facies admin key` or through the API, even without an api-key",
     ),
     setting(
         "admin-bind",
         "",
-        "address and port of a listener of its own for GET /metrics, which clients must not reach; without it there is none",
+        "address and port of a listener of its own for those who run the service, which clients must not reach: metrics and administration; without it there is none",
+    ),
+    setting(
+        "admin-key",
+        "",
+        "asked for by the admin listener for everything but /metrics and /healthz; 16 to 255 visible characters; without it administration is answered on loopback only",
     ),
     setting(
         "allowed-origins",

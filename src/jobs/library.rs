@@ -71,6 +71,11 @@ impl Library {
         Library { store, cache: Arc::new(Mutex::new(MeshCache::new(room))) }
     }
 
+    /// The same library in the hand of a tenant.
+    pub fn of_tenant(&self, tenant: &str) -> Self {
+        Library { store: self.store.of_tenant(tenant), cache: self.cache.clone() }
+    }
+
     fn cache(&self) -> MutexGuard<'_, MeshCache> {
         self.cache.lock().unwrap_or_else(PoisonError::into_inner)
     }

@@ -181,6 +181,11 @@ impl Responses {
         Responses { store, memory: Arc::new(Mutex::new(Memory::new(room))) }
     }
 
+    /// The same responses in the hand of a tenant.
+    pub fn of_tenant(&self, tenant: &str) -> Self {
+        Responses { store: self.store.of_tenant(tenant), memory: self.memory.clone() }
+    }
+
     fn memory(&self) -> MutexGuard<'_, Memory> {
         self.memory.lock().unwrap_or_else(PoisonError::into_inner)
     }

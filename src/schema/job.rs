@@ -65,6 +65,14 @@ impl JobKind {
         }
     }
 
+    /// Somebody waits for what one plan or one case needs; a study can wait. The smallest is first.
+    pub fn priority(self) -> i64 {
+        match self {
+            JobKind::Study => 1,
+            JobKind::Predict | JobKind::Compare | JobKind::Response | JobKind::Optimise => 0,
+        }
+    }
+
     /// The kind a stored word names.
     pub fn from_name(name: &str) -> Option<JobKind> {
         use JobKind::{Compare, Optimise, Predict, Response, Study};

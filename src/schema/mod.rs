@@ -11,6 +11,7 @@ pub mod fault;
 pub mod fibre;
 pub mod hounsfield;
 pub mod job;
+pub mod key;
 pub mod limits;
 pub mod load;
 pub mod mass_spring;

@@ -1,9 +1,7 @@
 //! Cases: a document that refers to meshes, with its tags.
 
 use super::database::{Row, Transaction, is_duplicate, is_reference, query};
-use super::meshes::insert_mesh;
 use super::references::{Content, hashes};
-use super::tombstones::{bury, bury_case};
 use super::{NewMesh, Store, StoreError};
 
 /// A case to be stored, with the meshes that came in the same request.
@@ -37,14 +35,14 @@ pub enum Change {
     NotFound,
 }
 
-const BY_ID: &str =
-    "SELECT id, document, report, version, created, updated FROM cases WHERE id = $1";
+const BY_ID: &str = "SELECT id, document, report, version, created, updated FROM cases \
+     WHERE id = $1 AND tenant = $2";
 const LIST: &str = "SELECT id, document, report, version, created, updated FROM cases \
-     WHERE id < $1 AND ($2 = '' OR EXISTS \
+     WHERE tenant = $4 AND id < $1 AND ($2 = '' OR EXISTS \
        (SELECT 1 FROM case_tags WHERE case_tags.case_id = cases.id AND case_tags.tag = $2)) \
      ORDER BY id DESC LIMIT $3";
-const INSERT: &str = "INSERT INTO cases (id, document, report, version, created, updated) \
-     VALUES ($1, $2, $3, 1, (SELECT now_ms FROM clock), (SELECT now_ms FROM clock))";
+const INSERT: &str = "INSERT INTO cases (id, document, report, tenant, version, created, updated) \
+     VALUES ($1, $2, $3, $4, 1, (SELECT now_ms FROM clock), (SELECT now_ms FROM clock))";
 /// What a case leaves when it goes: the files of its jobs.
 const FILES_OF_CASE: &str = "SELECT job_files.blob FROM job_files \
      JOIN jobs ON jobs.id = job_files.job_id WHERE jobs.case_id = $1 \
@@ -75,7 +73,11 @@ fn case_row(row: &Row) -> Result<CaseRow, sqlx::Error> {
 
 impl Store {
     pub async fn case(&self, id: &str) -> Result<Option<CaseRow>, StoreError> {
-        let row = query(BY_ID).bind(id).fetch_optional(self.database.reader()).await?;
+        let row = query(BY_ID)
+            .bind(id)
+            .bind(self.tenant())
+            .fetch_optional(self.database.reader())
+            .await?;
         Ok(row.as_ref().map(case_row).transpose()?)
     }
 
@@ -90,6 +92,7 @@ impl Store {
             .bind(cursor.unwrap_or(AFTER_ALL))
             .bind(tag)
             .bind(limit)
+            .bind(self.tenant())
             .fetch_all(self.database.reader())
             .await?;
         Ok(rows.iter().map(case_row).collect::<Result<_, _>>()?)
@@ -103,7 +106,7 @@ impl Store {
         }
         let blobs = hashes(&contents);
         let mut transaction = self.begin_with(contents).await?;
-        match insert_case(&mut transaction, case).await {
+        match self.insert_case(&mut transaction, case).await {
             Ok(()) => {
                 transaction.commit().await?;
                 Ok(true)
@@ -121,8 +124,9 @@ impl Store {
     /// nothing else refers to. A job of it that is running finds itself gone and stops.
     pub async fn delete_case(&self, id: &str, version: Option<i64>) -> Result<Change, StoreError> {
         let mut transaction = self.database.begin().await?;
-        let found = query("SELECT version FROM cases WHERE id = $1 FOR UPDATE")
+        let found = query("SELECT version FROM cases WHERE id = $1 AND tenant = $2 FOR UPDATE")
             .bind(id)
+            .bind(self.tenant())
             .fetch_optional(&mut transaction)
             .await?;
         let Some(found) = found else {
@@ -134,13 +138,13 @@ impl Store {
         }
         let mut blobs = column(&mut transaction, FILES_OF_CASE, id).await?;
         let meshes = column(&mut transaction, MESHES_OF_CASE, id).await?;
-        bury_case(&mut transaction, id).await?;
+        self.bury_case(&mut transaction, id).await?;
         query(DELETE_SHARED_JOBS).bind(id).execute(&mut transaction).await?;
         query("DELETE FROM cases WHERE id = $1").bind(id).execute(&mut transaction).await?;
         for mesh in meshes {
             let unused = column(&mut transaction, DELETE_UNUSED_MESH, &mesh).await?;
             if !unused.is_empty() {
-                bury(&mut transaction, &mesh).await?;
+                self.bury(&mut transaction, &mesh).await?;
             }
             blobs.extend(unused);
         }
@@ -148,6 +152,40 @@ impl Store {
         self.jobs_changed();
         self.discard(blobs).await;
         Ok(Change::Done)
+    }
+
+    async fn insert_case(
+        &self,
+        transaction: &mut Transaction,
+        case: &NewCase,
+    ) -> Result<(), sqlx::Error> {
+        for mesh in &case.meshes {
+            self.insert_mesh(transaction, mesh).await?;
+        }
+        query(INSERT)
+            .bind(&case.id)
+            .bind(&case.document)
+            .bind(&case.report)
+            .bind(self.tenant())
+            .execute(&mut *transaction)
+            .await?;
+        for tag in &case.tags {
+            query("INSERT INTO case_tags (case_id, tag) VALUES ($1, $2) ON CONFLICT DO NOTHING")
+                .bind(&case.id)
+                .bind(tag)
+                .execute(&mut *transaction)
+                .await?;
+        }
+        for mesh in &case.mesh_ids {
+            query(
+                "INSERT INTO case_meshes (case_id, mesh_id) VALUES ($1, $2) ON CONFLICT DO NOTHING",
+            )
+            .bind(&case.id)
+            .bind(mesh)
+            .execute(&mut *transaction)
+            .await?;
+        }
+        Ok(())
     }
 }
 
@@ -159,31 +197,4 @@ async fn column(
 ) -> Result<Vec<String>, sqlx::Error> {
     let rows = query(sql).bind(id).fetch_all(&mut *transaction).await?;
     rows.iter().map(|row| row.try_get(0)).collect()
-}
-
-async fn insert_case(transaction: &mut Transaction, case: &NewCase) -> Result<(), sqlx::Error> {
-    for mesh in &case.meshes {
-        insert_mesh(transaction, mesh).await?;
-    }
-    query(INSERT)
-        .bind(&case.id)
-        .bind(&case.document)
-        .bind(&case.report)
-        .execute(&mut *transaction)
-        .await?;
-    for tag in &case.tags {
-        query("INSERT INTO case_tags (case_id, tag) VALUES ($1, $2) ON CONFLICT DO NOTHING")
-            .bind(&case.id)
-            .bind(tag)
-            .execute(&mut *transaction)
-            .await?;
-    }
-    for mesh in &case.mesh_ids {
-        query("INSERT INTO case_meshes (case_id, mesh_id) VALUES ($1, $2) ON CONFLICT DO NOTHING")
-            .bind(&case.id)
-            .bind(mesh)
-            .execute(&mut *transaction)
-            .await?;
-    }
-    Ok(())
 }

@@ -33,7 +33,8 @@ const RECORD: &str = "INSERT INTO job_events \
 const FORGET: &str = "DELETE FROM job_events WHERE job_id = $1 AND number <= \
      (SELECT MAX(number) FROM job_events WHERE job_id = $1) - 1000";
 const AFTER: &str = "SELECT number, at, status, phase, progress, iteration, residual, attempt \
-     FROM job_events WHERE job_id = $1 AND number > $2 ORDER BY number";
+     FROM job_events WHERE job_id = $1 AND number > $2 \
+     AND EXISTS (SELECT 1 FROM jobs WHERE id = $1 AND tenant = $3) ORDER BY number";
 
 /// Writes down the state of a job, if it is another than the last one.
 pub(super) async fn record(transaction: &mut Transaction, job: &str) -> Result<(), sqlx::Error> {
@@ -51,10 +52,16 @@ impl Store {
         job: &str,
         after: i64,
     ) -> Result<Option<Vec<EventRow>>, StoreError> {
-        let rows = query(AFTER).bind(job).bind(after).fetch_all(self.database.reader()).await?;
+        let rows = query(AFTER)
+            .bind(job)
+            .bind(after)
+            .bind(self.tenant())
+            .fetch_all(self.database.reader())
+            .await?;
         if rows.is_empty() {
-            let found = query("SELECT 1 FROM jobs WHERE id = $1")
+            let found = query("SELECT 1 FROM jobs WHERE id = $1 AND tenant = $2")
                 .bind(job)
+                .bind(self.tenant())
                 .fetch_optional(self.database.reader())
                 .await?;
             return Ok(found.map(|_| Vec::new()));

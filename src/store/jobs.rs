@@ -3,8 +3,7 @@
 use super::cases::AFTER_ALL;
 use super::database::{Row, Transaction, is_reference, query};
 use super::events::record;
-use super::tombstones::bury;
-use super::{Store, StoreError};
+use super::{Store, StoreError, tenants};
 use crate::schema::job::JobStatus;
 
 /// A job to be accepted.
@@ -12,6 +11,8 @@ use crate::schema::job::JobStatus;
 pub struct NewJob {
     pub id: String,
     pub kind: &'static str,
+    /// Of the accepted jobs of a tenant those with the smallest are claimed first.
+    pub priority: i64,
     pub case_id: Option<String>,
     /// All cases of a job that reads several; it goes when one of them is erased.
     pub shared_cases: Vec<String>,
@@ -86,28 +87,31 @@ macro_rules! columns {
         "SELECT id, kind, case_id, spec_hash, engine, status, phase, progress, iteration, residual, \
          attempt, error, result, created, started, finished, updated, \
          CASE WHEN status = 'accepted' THEN (SELECT COUNT(*) FROM jobs AS before \
-           WHERE before.status = 'accepted' AND before.id < jobs.id) END AS queue_position \
+           WHERE before.status = 'accepted' AND before.tenant = jobs.tenant AND before.priority <= jobs.priority \
+           AND (before.priority < jobs.priority OR before.id < jobs.id)) END AS queue_position \
          FROM jobs WHERE "
     };
 }
 
-const BY_ID: &str = concat!(columns!(), "id = $1");
+const BY_ID: &str = concat!(columns!(), "id = $1 AND tenant = $2");
 const LIST: &str = concat!(
     columns!(),
-    "id < $1 AND ($2 = '' OR status = $2) AND ($3 = '' OR kind = $3) \
+    "tenant = $7 AND id < $1 AND ($2 = '' OR status = $2) AND ($3 = '' OR kind = $3) \
      AND ($4 = '' OR EXISTS (SELECT 1 FROM job_tags WHERE job_tags.job_id = jobs.id AND job_tags.tag = $4)) \
      AND ($5 = '' OR case_id = $5) ORDER BY id DESC LIMIT $6"
 );
-const INSERT: &str = "INSERT INTO jobs (id, kind, case_id, document, spec_hash, engine, status, \
-     progress, attempt, losses, claimable_from, created, updated) \
-     VALUES ($1, $2, $3, $4, $5, $6, 'accepted', 0, 0, 0, 0, \
+const KNOWN: &str = "SELECT id FROM jobs WHERE spec_hash = $1 AND tenant = $2";
+const INSERT: &str = "INSERT INTO jobs (id, kind, case_id, document, spec_hash, engine, tenant, priority, \
+     status, progress, attempt, losses, claimable_from, created, updated) \
+     VALUES ($1, $2, $3, $4, $5, $6, $7, $8, 'accepted', 0, 0, 0, 0, \
        (SELECT now_ms FROM clock), (SELECT now_ms FROM clock)) \
      ON CONFLICT (spec_hash) DO NOTHING";
 const DISMISS: &str = "UPDATE jobs SET status = 'dismissed', lease_token = NULL, lease_expires = NULL, \
      finished = (SELECT now_ms FROM clock), updated = (SELECT now_ms FROM clock) \
-     WHERE id = $1 AND status IN ('accepted', 'running')";
-const REMOVE: &str =
-    "DELETE FROM jobs WHERE id = $1 AND status IN ('successful', 'failed', 'dismissed')";
+     WHERE id = $1 AND tenant = $2 AND status IN ('accepted', 'running')";
+const FILES: &str = "SELECT job_files.blob FROM job_files JOIN jobs ON jobs.id = job_files.job_id \
+     WHERE jobs.id = $1 AND jobs.tenant = $2";
+const REMOVE: &str = "DELETE FROM jobs WHERE id = $1 AND tenant = $2 AND status IN ('successful', 'failed', 'dismissed')";
 
 fn job_row(row: &Row) -> Result<JobRow, sqlx::Error> {
     let status: String = row.try_get("status")?;
@@ -115,7 +119,7 @@ fn job_row(row: &Row) -> Result<JobRow, sqlx::Error> {
         id: row.try_get("id")?,
         kind: row.try_get("kind")?,
         case_id: row.try_get("case_id")?,
-        spec_hash: row.try_get("spec_hash")?,
+        spec_hash: tenants::plain(row.try_get("spec_hash")?),
         engine: row.try_get("engine")?,
         status: JobStatus::from_name(&status)
             .ok_or_else(|| sqlx::Error::Decode(format!("job status `{status}`").into()))?,
@@ -137,7 +141,11 @@ fn job_row(row: &Row) -> Result<JobRow, sqlx::Error> {
 
 impl Store {
     pub async fn job(&self, id: &str) -> Result<Option<JobRow>, StoreError> {
-        let row = query(BY_ID).bind(id).fetch_optional(self.database.reader()).await?;
+        let row = query(BY_ID)
+            .bind(id)
+            .bind(self.tenant())
+            .fetch_optional(self.database.reader())
+            .await?;
         match row {
             Some(row) => Ok(Some(self.with_tags(job_row(&row)?).await?)),
             None => Ok(None),
@@ -153,6 +161,7 @@ impl Store {
             .bind(&filter.tag)
             .bind(&filter.case_id)
             .bind(filter.limit)
+            .bind(self.tenant())
             .fetch_all(self.database.reader())
             .await?;
         let mut jobs = Vec::with_capacity(rows.len());
@@ -174,20 +183,23 @@ impl Store {
     /// Accepts a job, unless one with the same inputs is known.
     pub async fn enqueue(&self, job: &NewJob, longest_queue: i64) -> Result<Enqueued, StoreError> {
         let mut transaction = self.database.begin().await?;
-        let known = query("SELECT id FROM jobs WHERE spec_hash = $1")
-            .bind(&job.spec_hash)
+        let known = query(KNOWN)
+            .bind(self.own(&job.spec_hash))
+            .bind(self.tenant())
             .fetch_optional(&mut transaction)
             .await?;
         if let Some(row) = known {
             return Ok(Enqueued::Known(row.try_get(0)?));
         }
-        let waiting = query("SELECT COUNT(*) FROM jobs WHERE status = 'accepted'")
+        let waiting = query("SELECT COUNT(*) FROM jobs WHERE tenant = $1 AND status = 'accepted'")
+            .bind(self.tenant())
             .fetch_one(&mut transaction)
             .await?;
         if waiting.try_get::<i64, _>(0)? >= longest_queue {
             return Ok(Enqueued::QueueFull);
         }
-        match insert_job(&mut transaction, job).await {
+        self.enter(&mut transaction).await?;
+        match self.insert_job(&mut transaction, job).await {
             Ok(true) => {
                 record(&mut transaction, &job.id).await?;
                 transaction.commit().await?;
@@ -206,8 +218,9 @@ impl Store {
 
     /// The job that was accepted in place of this one.
     async fn known(&self, job: &NewJob) -> Result<Enqueued, StoreError> {
-        let known = query("SELECT id FROM jobs WHERE spec_hash = $1")
-            .bind(&job.spec_hash)
+        let known = query(KNOWN)
+            .bind(self.own(&job.spec_hash))
+            .bind(self.tenant())
             .fetch_optional(self.database.reader())
             .await?;
         let id = known.ok_or(StoreError::Contended)?.try_get(0)?;
@@ -217,21 +230,19 @@ impl Store {
     /// Ends a job that is accepted or running, removes one that has ended.
     pub async fn dismiss(&self, id: &str) -> Result<Dismissal, StoreError> {
         let mut transaction = self.database.begin().await?;
-        let dismissed = query(DISMISS).bind(id).execute(&mut transaction).await?;
+        let dismissed =
+            query(DISMISS).bind(id).bind(self.tenant()).execute(&mut transaction).await?;
         if dismissed == 1 {
             record(&mut transaction, id).await?;
             transaction.commit().await?;
             self.jobs_changed();
             return Ok(Dismissal::Dismissed);
         }
-        let rows = query("SELECT blob FROM job_files WHERE job_id = $1")
-            .bind(id)
-            .fetch_all(&mut transaction)
-            .await?;
+        let rows = query(FILES).bind(id).bind(self.tenant()).fetch_all(&mut transaction).await?;
         let blobs = rows.iter().map(|row| row.try_get(0)).collect::<Result<Vec<String>, _>>()?;
-        let removed = query(REMOVE).bind(id).execute(&mut transaction).await?;
+        let removed = query(REMOVE).bind(id).bind(self.tenant()).execute(&mut transaction).await?;
         if removed == 1 {
-            bury(&mut transaction, id).await?;
+            self.bury(&mut transaction, id).await?;
         }
         transaction.commit().await?;
         self.jobs_changed();
@@ -241,42 +252,50 @@ impl Store {
             _ => Dismissal::Removed,
         })
     }
-}
 
-/// False when a job with the same inputs was there before.
-async fn insert_job(transaction: &mut Transaction, job: &NewJob) -> Result<bool, sqlx::Error> {
-    let inserted = query(INSERT)
-        .bind(&job.id)
-        .bind(job.kind)
-        .bind(&job.case_id)
-        .bind(&job.document)
-        .bind(&job.spec_hash)
-        .bind(&job.engine)
-        .execute(&mut *transaction)
-        .await?;
-    if inserted == 0 {
-        return Ok(false);
-    }
-    for tag in &job.tags {
-        query("INSERT INTO job_tags (job_id, tag) VALUES ($1, $2) ON CONFLICT DO NOTHING")
+    /// False when a job with the same inputs was there before.
+    async fn insert_job(
+        &self,
+        transaction: &mut Transaction,
+        job: &NewJob,
+    ) -> Result<bool, sqlx::Error> {
+        let inserted = query(INSERT)
             .bind(&job.id)
-            .bind(tag)
+            .bind(job.kind)
+            .bind(&job.case_id)
+            .bind(&job.document)
+            .bind(self.own(&job.spec_hash))
+            .bind(&job.engine)
+            .bind(self.tenant())
+            .bind(job.priority)
             .execute(&mut *transaction)
             .await?;
-    }
-    for case in &job.shared_cases {
-        query("INSERT INTO job_cases (job_id, case_id) VALUES ($1, $2) ON CONFLICT DO NOTHING")
-            .bind(&job.id)
-            .bind(case)
-            .execute(&mut *transaction)
-            .await?;
-    }
-    for mesh in &job.mesh_ids {
-        query("INSERT INTO job_meshes (job_id, mesh_id) VALUES ($1, $2) ON CONFLICT DO NOTHING")
+        if inserted == 0 {
+            return Ok(false);
+        }
+        for tag in &job.tags {
+            query("INSERT INTO job_tags (job_id, tag) VALUES ($1, $2) ON CONFLICT DO NOTHING")
+                .bind(&job.id)
+                .bind(tag)
+                .execute(&mut *transaction)
+                .await?;
+        }
+        for case in &job.shared_cases {
+            query("INSERT INTO job_cases (job_id, case_id) VALUES ($1, $2) ON CONFLICT DO NOTHING")
+                .bind(&job.id)
+                .bind(case)
+                .execute(&mut *transaction)
+                .await?;
+        }
+        for mesh in &job.mesh_ids {
+            query(
+                "INSERT INTO job_meshes (job_id, mesh_id) VALUES ($1, $2) ON CONFLICT DO NOTHING",
+            )
             .bind(&job.id)
             .bind(mesh)
             .execute(&mut *transaction)
             .await?;
+        }
+        Ok(true)
     }
-    Ok(true)
 }

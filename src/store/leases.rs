@@ -22,6 +22,7 @@ pub struct Lease {
 #[derive(Clone, Debug)]
 pub struct Claim {
     pub lease: Lease,
+    pub tenant: String,
     pub kind: String,
     pub document: String,
     pub created: i64,
@@ -55,6 +56,18 @@ pub struct FileRow {
     pub bytes: i64,
 }
 
+/// A job that failed through no fault of its own.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LostRow {
+    pub id: String,
+    pub tenant: String,
+    pub kind: String,
+    pub attempt: i64,
+    pub finished: i64,
+    /// JSON.
+    pub error: String,
+}
+
 /// A job whose worker was lost.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Reaped {
@@ -68,10 +81,16 @@ const CLAIM: &str = "UPDATE jobs SET status = 'running', attempt = attempt + 1, 
      lease_expires = (SELECT now_ms FROM clock) + $2, heartbeat = (SELECT now_ms FROM clock), \
      phase = NULL, iteration = NULL, residual = NULL, \
      started = COALESCE(started, (SELECT now_ms FROM clock)), updated = (SELECT now_ms FROM clock) \
-     WHERE id = (SELECT id FROM jobs WHERE status = 'accepted' \
-       AND claimable_from <= (SELECT now_ms FROM clock) ORDER BY id LIMIT 1 \
+     WHERE id = (SELECT id FROM jobs WHERE status = 'accepted' AND tenant = \
+         (SELECT name FROM tenants WHERE EXISTS (SELECT 1 FROM jobs AS waiting \
+             WHERE waiting.tenant = tenants.name AND waiting.status = 'accepted' \
+             AND waiting.claimable_from <= (SELECT now_ms FROM clock)) \
+           ORDER BY served, name LIMIT 1) \
+       AND claimable_from <= (SELECT now_ms FROM clock) ORDER BY priority, id LIMIT 1 \
        FOR UPDATE SKIP LOCKED) \
-     AND status = 'accepted' RETURNING id, attempt, kind, document, created, started";
+     AND status = 'accepted' RETURNING id, attempt, tenant, kind, document, created, started";
+const SERVED: &str =
+    "UPDATE tenants SET served = (SELECT MAX(served) FROM tenants) + 1 WHERE name = $1";
 const RENEW: &str = "UPDATE jobs SET lease_expires = (SELECT now_ms FROM clock) + $3, \
      heartbeat = (SELECT now_ms FROM clock), updated = (SELECT now_ms FROM clock), phase = $4, \
      progress = CASE WHEN $5 > progress THEN $5 ELSE progress END, iteration = $6, residual = $7 \
@@ -104,16 +123,23 @@ const REAP: &str = "UPDATE jobs SET losses = losses + 1, lease_token = NULL, lea
      WHERE id IN (SELECT id FROM jobs WHERE status = 'running' \
        AND lease_expires < (SELECT now_ms FROM clock) FOR UPDATE SKIP LOCKED) \
      RETURNING id, attempt, status";
+/// The words of an error that is not the job's own fault, as `serde_json` writes them.
+const LOST: &str = "SELECT id, tenant, kind, attempt, finished, error FROM jobs \
+     WHERE status = 'failed' AND error LIKE '%\"class\":\"infrastructure\"%' ORDER BY id";
+const REQUEUE: &str = "UPDATE jobs SET status = 'accepted', error = NULL, losses = 0, finished = NULL, \
+     claimable_from = 0, updated = (SELECT now_ms FROM clock) \
+     WHERE id = $1 AND status = 'failed' AND error LIKE '%\"class\":\"infrastructure\"%'";
 const INSERT_FILE: &str =
     "INSERT INTO job_files (job_id, name, media_type, blob, bytes) VALUES ($1, $2, $3, $4, $5)";
-const FILE: &str =
-    "SELECT name, media_type, blob, bytes FROM job_files WHERE job_id = $1 AND name = $2";
+const FILE: &str = "SELECT name, media_type, blob, bytes FROM job_files WHERE job_id = $1 AND name = $2 \
+     AND EXISTS (SELECT 1 FROM jobs WHERE jobs.id = $1 AND jobs.tenant = $3)";
 
 /// The pause before an attempt that lost its storage is repeated, times the losses so far.
 const PAUSE_AFTER_LOSS_MS: i64 = 500;
 
 impl Store {
-    /// Takes the oldest accepted job, if there is one. Two workers never take the same.
+    /// Takes an accepted job, if there is one, of the tenant that has waited longest for its turn: the oldest of its most
+    /// urgent ones. Two workers never take the same.
     pub async fn claim(&self, lease: Duration) -> Result<Option<Claim>, StoreError> {
         let token = uuid::Uuid::now_v7().to_string();
         let mut transaction = self.database.begin().await?;
@@ -124,10 +150,13 @@ impl Store {
             .await?;
         let Some(row) = row else { return Ok(None) };
         record(&mut transaction, row.try_get("id")?).await?;
+        let tenant: String = row.try_get("tenant")?;
+        query(SERVED).bind(&tenant).execute(&mut transaction).await?;
         transaction.commit().await?;
         self.jobs_changed();
         Ok(Some(Claim {
             lease: Lease { job: row.try_get("id")?, token, attempt: row.try_get("attempt")? },
+            tenant,
             kind: row.try_get("kind")?,
             document: row.try_get("document")?,
             created: row.try_get("created")?,
@@ -273,9 +302,43 @@ impl Store {
         Ok(reaped)
     }
 
+    /// The jobs of all tenants that failed through no fault of their own.
+    pub async fn lost_jobs(&self) -> Result<Vec<LostRow>, StoreError> {
+        let rows = query(LOST).fetch_all(self.database.reader()).await?;
+        let mut lost = Vec::with_capacity(rows.len());
+        for row in &rows {
+            lost.push(LostRow {
+                id: row.try_get("id")?,
+                tenant: row.try_get("tenant")?,
+                kind: row.try_get("kind")?,
+                attempt: row.try_get("attempt")?,
+                finished: row.try_get("finished")?,
+                error: row.try_get("error")?,
+            });
+        }
+        Ok(lost)
+    }
+
+    /// Accepts such a job again; false where there is none of this id.
+    pub async fn requeue(&self, id: &str) -> Result<bool, StoreError> {
+        let mut transaction = self.database.begin().await?;
+        let changed = query(REQUEUE).bind(id).execute(&mut transaction).await?;
+        if changed == 1 {
+            record(&mut transaction, id).await?;
+        }
+        transaction.commit().await?;
+        self.jobs_changed();
+        Ok(changed == 1)
+    }
+
     /// One file of a successful job.
     pub async fn job_file(&self, job: &str, name: &str) -> Result<Option<FileRow>, StoreError> {
-        let row = query(FILE).bind(job).bind(name).fetch_optional(self.database.reader()).await?;
+        let row = query(FILE)
+            .bind(job)
+            .bind(name)
+            .bind(self.tenant())
+            .fetch_optional(self.database.reader())
+            .await?;
         let Some(row) = row else { return Ok(None) };
         Ok(Some(FileRow {
             name: row.try_get("name")?,

@@ -3,7 +3,6 @@
 use bytes::Bytes;
 
 use super::database::{Row, Transaction, is_duplicate, is_reference, query};
-use super::tombstones::bury;
 use super::{Store, StoreError};
 
 /// A mesh to be stored, with the bytes that our own writer made of it.
@@ -39,11 +38,12 @@ pub enum MeshDeletion {
     NotFound,
 }
 
-const COLUMNS: &str = "SELECT id, sha256, options, blob, report, created FROM meshes WHERE id = $1";
+const BY_ID: &str = "SELECT id, sha256, options, blob, report, created FROM meshes \
+     WHERE id = $1 AND tenant = $2";
 const BY_CONTENT: &str = "SELECT id, sha256, options, blob, report, created FROM meshes \
-     WHERE sha256 = $1 AND options = $2";
-const INSERT: &str = "INSERT INTO meshes (id, sha256, options, blob, standalone, report, created) \
-     VALUES ($1, $2, $3, $4, $5, $6, (SELECT now_ms FROM clock))";
+     WHERE sha256 = $1 AND options = $2 AND tenant = $3";
+const INSERT: &str = "INSERT INTO meshes (id, sha256, options, blob, standalone, report, tenant, created) \
+     VALUES ($1, $2, $3, $4, $5, $6, $7, (SELECT now_ms FROM clock))";
 
 fn mesh_row(row: &Row) -> Result<MeshRow, sqlx::Error> {
     Ok(MeshRow {
@@ -58,7 +58,11 @@ fn mesh_row(row: &Row) -> Result<MeshRow, sqlx::Error> {
 
 impl Store {
     pub async fn mesh(&self, id: &str) -> Result<Option<MeshRow>, StoreError> {
-        let row = query(COLUMNS).bind(id).fetch_optional(self.database.reader()).await?;
+        let row = query(BY_ID)
+            .bind(id)
+            .bind(self.tenant())
+            .fetch_optional(self.database.reader())
+            .await?;
         Ok(row.as_ref().map(mesh_row).transpose()?)
     }
 
@@ -70,7 +74,8 @@ impl Store {
     ) -> Result<Option<MeshRow>, StoreError> {
         let row = query(BY_CONTENT)
             .bind(sha256)
-            .bind(options)
+            .bind(self.own(options))
+            .bind(self.tenant())
             .fetch_optional(self.database.reader())
             .await?;
         Ok(row.as_ref().map(mesh_row).transpose()?)
@@ -80,7 +85,7 @@ impl Store {
     pub async fn add_mesh(&self, mesh: &NewMesh) -> Result<bool, StoreError> {
         let mut transaction =
             self.begin_with(vec![(mesh.blob.clone(), mesh.bytes.clone())]).await?;
-        match insert_mesh(&mut transaction, mesh).await {
+        match self.insert_mesh(&mut transaction, mesh).await {
             Ok(()) => {
                 transaction.commit().await?;
                 Ok(true)
@@ -95,8 +100,9 @@ impl Store {
 
     /// Keeps a mesh although the case that it came with may go.
     pub async fn keep_mesh(&self, id: &str) -> Result<(), StoreError> {
-        query("UPDATE meshes SET standalone = 1 WHERE id = $1 AND standalone = 0")
+        query("UPDATE meshes SET standalone = 1 WHERE id = $1 AND tenant = $2 AND standalone = 0")
             .bind(id)
+            .bind(self.tenant())
             .execute(self.database.writer())
             .await?;
         Ok(())
@@ -105,14 +111,15 @@ impl Store {
     /// Deletes a mesh that no case and no job refers to, and its bytes.
     pub async fn delete_mesh(&self, id: &str) -> Result<MeshDeletion, StoreError> {
         let mut transaction = self.database.begin().await?;
-        let deleted = query("DELETE FROM meshes WHERE id = $1 RETURNING blob")
+        let deleted = query("DELETE FROM meshes WHERE id = $1 AND tenant = $2 RETURNING blob")
             .bind(id)
+            .bind(self.tenant())
             .fetch_optional(&mut transaction)
             .await;
         match deleted {
             Ok(None) => Ok(MeshDeletion::NotFound),
             Ok(Some(row)) => {
-                bury(&mut transaction, id).await?;
+                self.bury(&mut transaction, id).await?;
                 transaction.commit().await?;
                 self.discard(vec![row.try_get("blob")?]).await;
                 Ok(MeshDeletion::Deleted)
@@ -121,20 +128,22 @@ impl Store {
             Err(error) => Err(error.into()),
         }
     }
-}
 
-pub(super) async fn insert_mesh(
-    transaction: &mut Transaction,
-    mesh: &NewMesh,
-) -> Result<(), sqlx::Error> {
-    query(INSERT)
-        .bind(&mesh.id)
-        .bind(&mesh.sha256)
-        .bind(&mesh.options)
-        .bind(&mesh.blob)
-        .bind(i64::from(mesh.standalone))
-        .bind(&mesh.report)
-        .execute(&mut *transaction)
-        .await?;
-    Ok(())
+    pub(super) async fn insert_mesh(
+        &self,
+        transaction: &mut Transaction,
+        mesh: &NewMesh,
+    ) -> Result<(), sqlx::Error> {
+        query(INSERT)
+            .bind(&mesh.id)
+            .bind(&mesh.sha256)
+            .bind(self.own(&mesh.options))
+            .bind(&mesh.blob)
+            .bind(i64::from(mesh.standalone))
+            .bind(&mesh.report)
+            .bind(self.tenant())
+            .execute(&mut *transaction)
+            .await?;
+        Ok(())
+    }
 }

@@ -1,5 +1,6 @@
 //! What is kept: rows in a database, bytes in blobs. Every query lives here, one file for each table.
 
+mod audit;
 mod blobs;
 mod cases;
 mod database;
@@ -7,6 +8,7 @@ mod events;
 mod fsck;
 mod idempotency;
 mod jobs;
+mod keys;
 mod leases;
 mod meshes;
 mod plans;
@@ -14,6 +16,7 @@ mod queue;
 mod references;
 mod responses;
 mod sweep;
+mod tenants;
 mod tombstones;
 mod transfer;
 mod wake;
@@ -25,6 +28,7 @@ use std::sync::Arc;
 use tokio::sync::watch;
 
 use crate::config::{DatabasePlace, Places};
+pub use audit::{AuditRow, Chain, Deed};
 use blobs::Blobs;
 pub use cases::{CaseRow, Change, NewCase};
 pub use database::Migrated;
@@ -32,12 +36,14 @@ pub use events::EventRow;
 pub use fsck::{Dangling, Findings, Repaired};
 pub use idempotency::Reserved;
 pub use jobs::{Dismissal, Enqueued, JobFilter, JobRow, NewJob};
-pub use leases::{Claim, FileRow, Lease, Point, PublishedFile, Reaped};
+pub use keys::KeyRow;
+pub use leases::{Claim, FileRow, Lease, LostRow, Point, PublishedFile, Reaped};
 pub use meshes::{MeshDeletion, MeshRow, NewMesh};
 pub use plans::PlanRow;
 pub use queue::QueueRow;
 pub use responses::{CaseResponses, ResponseRow};
 pub use sweep::Swept;
+pub use tenants::{DEFAULT_TENANT, TenantRow};
 pub use transfer::Moved;
 
 use database::{Address, Database, query};
@@ -74,6 +80,8 @@ pub enum StoreError {
     Export(String),
     #[error("the work was interrupted")]
     Interrupted,
+    #[error("the system has no random bytes")]
+    NoRandomness,
 }
 
 impl StoreError {
@@ -125,9 +133,11 @@ fn is_full(error: &std::io::Error) -> bool {
     matches!(error.kind(), ErrorKind::StorageFull | ErrorKind::QuotaExceeded)
 }
 
-/// The database, the blobs and the folder for files under way.
+/// The database, the blobs and the folder for files under way, in the hand of one tenant: whoever asks for a case,
+/// a mesh or a job finds those of that tenant only.
 #[derive(Clone)]
 pub struct Store {
+    tenant: Arc<str>,
     database: Database,
     blobs: Blobs,
     folder: PathBuf,
@@ -151,6 +161,7 @@ impl Store {
         std::fs::create_dir_all(places.data.join("tmp"))?;
         let lock = lock(&places.data)?;
         let store = Store {
+            tenant: DEFAULT_TENANT.into(),
             database: Database::open(address(places)?).await?,
             blobs: Blobs::open(places)?,
             folder: places.data.clone(),
@@ -174,6 +185,15 @@ impl Store {
     /// The same store over connections of its own, for a thread with an async runtime of its own.
     pub async fn again(&self) -> Result<Store, StoreError> {
         Ok(Store { database: self.database.again().await?, ..self.clone() })
+    }
+
+    /// The same store in the hand of another tenant.
+    pub fn of_tenant(&self, tenant: &str) -> Store {
+        Store { tenant: tenant.into(), ..self.clone() }
+    }
+
+    pub fn tenant(&self) -> &str {
+        &self.tenant
     }
 
     pub fn folder(&self) -> &Path {

@@ -2,7 +2,6 @@
 
 use super::cases::{AFTER_ALL, Change};
 use super::database::{Row, is_duplicate, is_reference, query};
-use super::tombstones::bury;
 use super::{Store, StoreError};
 
 #[derive(Clone, Debug)]
@@ -16,16 +15,21 @@ pub struct PlanRow {
 }
 
 const BY_ID: &str = "SELECT id, case_id, document, version, created, updated FROM plans \
-     WHERE id = $1 AND case_id = $2";
+     WHERE id = $1 AND case_id = $2 AND EXISTS \
+       (SELECT 1 FROM cases WHERE cases.id = plans.case_id AND cases.tenant = $3)";
 const LIST: &str = "SELECT id, case_id, document, version, created, updated FROM plans \
-     WHERE case_id = $1 AND id < $2 ORDER BY id DESC LIMIT $3";
+     WHERE case_id = $1 AND id < $2 AND EXISTS \
+       (SELECT 1 FROM cases WHERE cases.id = plans.case_id AND cases.tenant = $4) \
+     ORDER BY id DESC LIMIT $3";
 const INSERT: &str = "INSERT INTO plans (id, case_id, document, version, created, updated) \
-     VALUES ($1, $2, $3, 1, (SELECT now_ms FROM clock), (SELECT now_ms FROM clock))";
+     SELECT $1, id, $3, 1, (SELECT now_ms FROM clock), (SELECT now_ms FROM clock) \
+     FROM cases WHERE id = $2 AND tenant = $4";
 const UPDATE: &str = "UPDATE plans SET document = $1, version = version + 1, \
      updated = (SELECT now_ms FROM clock) \
-     WHERE id = $2 AND case_id = $3 AND ($4 = 0 OR version = $4)";
-const DELETE: &str =
-    "DELETE FROM plans WHERE id = $1 AND case_id = $2 AND ($3 = 0 OR version = $3)";
+     WHERE id = $2 AND case_id = $3 AND ($4 = 0 OR version = $4) AND EXISTS \
+       (SELECT 1 FROM cases WHERE cases.id = plans.case_id AND cases.tenant = $5)";
+const DELETE: &str = "DELETE FROM plans WHERE id = $1 AND case_id = $2 AND ($3 = 0 OR version = $3) \
+     AND EXISTS (SELECT 1 FROM cases WHERE cases.id = plans.case_id AND cases.tenant = $4)";
 
 fn plan_row(row: &Row) -> Result<PlanRow, sqlx::Error> {
     Ok(PlanRow {
@@ -40,8 +44,12 @@ fn plan_row(row: &Row) -> Result<PlanRow, sqlx::Error> {
 
 impl Store {
     pub async fn plan(&self, case_id: &str, id: &str) -> Result<Option<PlanRow>, StoreError> {
-        let row =
-            query(BY_ID).bind(id).bind(case_id).fetch_optional(self.database.reader()).await?;
+        let row = query(BY_ID)
+            .bind(id)
+            .bind(case_id)
+            .bind(self.tenant())
+            .fetch_optional(self.database.reader())
+            .await?;
         Ok(row.as_ref().map(plan_row).transpose()?)
     }
 
@@ -56,6 +64,7 @@ impl Store {
             .bind(case_id)
             .bind(cursor.unwrap_or(AFTER_ALL))
             .bind(limit)
+            .bind(self.tenant())
             .fetch_all(self.database.reader())
             .await?;
         Ok(rows.iter().map(plan_row).collect::<Result<_, _>>()?)
@@ -72,10 +81,11 @@ impl Store {
             .bind(id)
             .bind(case_id)
             .bind(document)
+            .bind(self.tenant())
             .execute(self.database.writer())
             .await;
         match inserted {
-            Ok(_) => Ok(true),
+            Ok(inserted) => Ok(inserted == 1),
             // The same request came twice at the same time.
             Err(error) if is_duplicate(&error) => Ok(true),
             Err(error) if is_reference(&error) => Ok(false),
@@ -95,6 +105,7 @@ impl Store {
             .bind(id)
             .bind(case_id)
             .bind(version.unwrap_or(0))
+            .bind(self.tenant())
             .execute(self.database.writer())
             .await?;
         self.plan_change(case_id, id, changed).await
@@ -110,10 +121,11 @@ impl Store {
             .bind(id)
             .bind(case_id)
             .bind(version.unwrap_or(0))
+            .bind(self.tenant())
             .execute(&mut transaction)
             .await?;
         if changed == 1 {
-            bury(&mut transaction, id).await?;
+            self.bury(&mut transaction, id).await?;
         }
         transaction.commit().await?;
         self.plan_change(case_id, id, changed).await

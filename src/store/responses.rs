@@ -1,7 +1,7 @@
 //! Plan responses of a case: which there are, and what they were built for.
 
 use super::database::query;
-use super::{Store, StoreError};
+use super::{Store, StoreError, tenants};
 
 /// A case with the jobs that have built a response of it.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -23,12 +23,16 @@ pub struct ResponseRow {
 
 const RESPONSES: &str = "SELECT cases.version, jobs.id FROM cases LEFT JOIN jobs \
      ON jobs.case_id = cases.id AND jobs.kind = 'response' AND jobs.status = 'successful' \
-     WHERE cases.id = $1 ORDER BY jobs.id DESC";
+     WHERE cases.id = $1 AND cases.tenant = $2 ORDER BY jobs.id DESC";
 
 impl Store {
     /// The responses of a case; `None` where there is no such case.
     pub async fn responses(&self, case: &str) -> Result<Option<CaseResponses>, StoreError> {
-        let rows = query(RESPONSES).bind(case).fetch_all(self.database.reader()).await?;
+        let rows = query(RESPONSES)
+            .bind(case)
+            .bind(self.tenant())
+            .fetch_all(self.database.reader())
+            .await?;
         let Some(first) = rows.first() else { return Ok(None) };
         let version = first.try_get(0)?;
         let jobs = rows.iter().map(|row| row.try_get::<Option<String>, _>(1));
@@ -38,11 +42,12 @@ impl Store {
 
     /// What a job was built for; `None` where it went meanwhile.
     pub async fn response(&self, job: &str) -> Result<Option<ResponseRow>, StoreError> {
-        let row = query("SELECT document, spec_hash FROM jobs WHERE id = $1")
+        let row = query("SELECT document, spec_hash FROM jobs WHERE id = $1 AND tenant = $2")
             .bind(job)
+            .bind(self.tenant())
             .fetch_optional(self.database.reader())
             .await?;
         let Some(row) = row else { return Ok(None) };
-        Ok(Some(ResponseRow { document: row.try_get(0)?, key: row.try_get(1)? }))
+        Ok(Some(ResponseRow { document: row.try_get(0)?, key: tenants::plain(row.try_get(1)?) }))
     }
 }

@@ -17,7 +17,9 @@ use super::references::{Content, hold};
 use super::{Store, StoreError};
 
 /// Every table with rows of a deployment, each behind those that it refers to.
-const TABLES: [&str; 13] = [
+const TABLES: [&str; 17] = [
+    "tenants",
+    "keys",
     "meshes",
     "cases",
     "case_tags",
@@ -31,6 +33,8 @@ const TABLES: [&str; 13] = [
     "job_events",
     "idempotency_keys",
     "tombstones",
+    "audit",
+    "audit_end",
 ];
 const REFERENCED: &str = "SELECT blob FROM meshes UNION SELECT blob FROM job_files";
 const MANIFEST: &str = "export.json";

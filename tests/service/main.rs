@@ -35,6 +35,7 @@ mod settings;
 mod shared;
 mod storage;
 mod study;
+mod tenants;
 mod transfer;
 mod watching;
 mod worker;

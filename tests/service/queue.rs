@@ -25,6 +25,7 @@ pub fn new_job(document: &str, hash: &str) -> NewJob {
     NewJob {
         id: uuid::Uuid::now_v7().to_string(),
         kind: "predict",
+        priority: 0,
         case_id: None,
         shared_cases: Vec::new(),
         document: document.into(),

@@ -4,7 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use facies::config::DatabasePlace;
-use facies::store::{NewCase, Store, StoreError};
+use facies::schema::key::{KeyDocument, Scope};
+use facies::store::{Deed, NewCase, Store, StoreError};
 
 use crate::deployments::{Deployment, on_both};
 use crate::queue::{LEASE, blob_count, enqueue, file, new_job};
@@ -31,6 +32,9 @@ async fn fill(store: &Store) {
     let erased = uuid::Uuid::now_v7().to_string();
     assert!(store.add_plan(&case.id, &erased, "{}").await.unwrap());
     store.delete_plan((&case.id, &erased), None).await.unwrap();
+    let key = KeyDocument { label: "a".into(), scopes: [Scope::Read].into(), days: None };
+    store.make_key(&key).await.unwrap();
+    store.note(Deed { action: "a deed".into(), ..Deed::default() }).await.unwrap();
     store.reserve("a key", "a request", &case.id).await.unwrap();
     enqueue(store, "done").await;
     let lease = store.claim(LEASE).await.unwrap().unwrap().lease;
@@ -65,7 +69,7 @@ async fn a_deployment_moves_to_postgresql_and_back() {
     fill(&store).await;
     let folders = ["1", "2", "3"].map(|name| first.folder().join(name));
     let moved = store.export(&folders[0]).await.unwrap();
-    assert_eq!((moved.rows, moved.blobs), (19, 2));
+    assert_eq!((moved.rows, moved.blobs), (23, 2));
     for (on, [from, to]) in [(&shared, [0, 1]), (&last, [1, 2])] {
         let store = on.open().await;
         assert_eq!(store.import(&folders[from]).await.unwrap(), moved);

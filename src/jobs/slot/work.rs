@@ -51,6 +51,8 @@ pub struct SlotWork {
 /// An attempt under way.
 struct Attempt<'a> {
     shared: &'a SlotSettings,
+    /// In the hand of the tenant of the job.
+    library: Library,
     process: &'a Process,
     progress: &'a dyn Progress,
     /// When it was told to stop.
@@ -212,6 +214,7 @@ impl Work for SlotWork {
         process.tell(&Order::Work(assignment))?;
         let mut attempt = Attempt {
             shared: &self.shared,
+            library: self.shared.library.of_tenant(&claim.tenant),
             process,
             progress,
             stopped: None,
@@ -287,7 +290,7 @@ impl Attempt<'_> {
     }
 
     fn answer(&self, question: Question) {
-        let SlotSettings { library, runtime, .. } = self.shared;
+        let (library, runtime) = (&self.library, &self.shared.runtime);
         let answer = match question {
             Question::Mesh(id) => runtime
                 .block_on(library.card(&id))

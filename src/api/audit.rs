@@ -1,0 +1,87 @@
+//! The audit log of a tenant.
+
+use axum::http::StatusCode;
+use serde::{Deserialize, Serialize};
+use utoipa::{IntoParams, ToSchema};
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+use super::error::ApiResult;
+use super::paging::checked_limit;
+use super::parameters::Parameters;
+use super::{Service, json, json_only, time};
+use crate::store::{AuditRow, Store};
+
+pub fn router() -> OpenApiRouter<Service> {
+    json_only(OpenApiRouter::new().routes(routes!(list)))
+}
+
+/// What somebody did.
+#[derive(Serialize, ToSchema)]
+pub struct AuditView {
+    pub number: i64,
+    /// RFC 3339, UTC.
+    pub at: String,
+    pub tenant: String,
+    /// The id of the key; `setting` for the key of the settings, `-` without a key, `command` on the command line.
+    pub actor: String,
+    /// Method and route.
+    pub action: String,
+    /// The id of what it was done to; empty where there is none.
+    pub object: String,
+    /// The HTTP status.
+    pub outcome: String,
+    /// The id of the request.
+    pub request: String,
+    /// SHA-256 of this row and of the hash of the row before it, of whichever tenant.
+    pub hash: String,
+}
+
+#[derive(Serialize, ToSchema)]
+pub struct AuditList {
+    pub items: Vec<AuditView>,
+}
+
+#[derive(Deserialize, IntoParams)]
+#[serde(deny_unknown_fields)]
+#[into_params(parameter_in = Query)]
+pub struct AuditParameters {
+    /// Rows with a larger number; default: 0.
+    #[param(minimum = 0)]
+    after: Option<u32>,
+    /// Default: 50.
+    #[param(minimum = 1, maximum = 200)]
+    limit: Option<u32>,
+}
+
+impl AuditView {
+    fn of(row: AuditRow) -> AuditView {
+        let AuditRow { number, at, deed, hash } = row;
+        AuditView {
+            number,
+            at: time::rfc3339(at),
+            tenant: deed.tenant,
+            actor: deed.actor,
+            action: deed.action,
+            object: deed.object,
+            outcome: deed.outcome,
+            request: deed.request,
+            hash,
+        }
+    }
+}
+
+/// A page of rows, of a tenant or, where it is empty, of all.
+pub async fn page(store: &Store, tenant: &str, parameters: &AuditParameters) -> ApiResult {
+    let limit = checked_limit(parameters.limit)?;
+    let after = i64::from(parameters.after.unwrap_or(0));
+    let rows = store.audit(after, tenant, i64::from(limit)).await?;
+    let items = rows.into_iter().map(AuditView::of).collect();
+    Ok(json(StatusCode::OK, &AuditList { items }))
+}
+
+/// What was asked for that changes something, oldest first; the next page begins after the last number of this one.
+#[utoipa::path(get, path = "/v1/audit", operation_id = "list_audit", tag = "keys", params(AuditParameters), responses((status = 200, description = "a page of it", body = AuditList)))]
+async fn list(service: Service, Parameters(parameters): Parameters<AuditParameters>) -> ApiResult {
+    page(&service.store, service.store.tenant(), &parameters).await
+}

@@ -1,0 +1,137 @@
+//! Keys of a tenant: made, listed, rotated, ended. The key itself is in the answer that makes it and nowhere else.
+
+use axum::extract::Request;
+use axum::http::{StatusCode, header};
+use axum::response::{IntoResponse, Response};
+use serde::Serialize;
+use utoipa::ToSchema;
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+use super::error::{ApiError, ApiResult};
+use super::parameters::KeyId;
+use super::{Service, body, json, json_only, time, with_header};
+use crate::schema::key::{Key, KeyDocument, RotationDocument, Scope, scopes_of};
+use crate::schema::strict;
+use crate::store::{KeyRow, Store};
+
+pub fn router() -> OpenApiRouter<Service> {
+    let router = OpenApiRouter::new().routes(routes!(list, create)).routes(routes!(revoke));
+    json_only(router.routes(routes!(rotate)))
+}
+
+/// A key without its secret.
+#[derive(Serialize, ToSchema)]
+pub struct KeyView {
+    pub id: String,
+    pub label: String,
+    pub scopes: Vec<Scope>,
+    /// RFC 3339, UTC.
+    pub created: String,
+    /// When it ends by itself.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub expires: Option<String>,
+    /// When it was ended.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub revoked: Option<String>,
+}
+
+#[derive(Serialize, ToSchema)]
+pub struct KeyList {
+    pub items: Vec<KeyView>,
+}
+
+/// A key, this once.
+#[derive(Serialize, ToSchema)]
+pub struct NewKey {
+    pub id: String,
+    /// To be sent as `Authorization: Bearer KEY`. It cannot be shown again.
+    pub key: String,
+}
+
+impl KeyView {
+    fn of(row: &KeyRow) -> ApiResult<KeyView> {
+        let scopes = scopes_of(&row.scopes).map_err(ApiError::internal)?;
+        Ok(KeyView {
+            id: row.id.clone(),
+            label: row.label.clone(),
+            scopes: scopes.into_iter().collect(),
+            created: time::rfc3339(row.created),
+            expires: row.expires.map(time::rfc3339),
+            revoked: row.revoked.map(time::rfc3339),
+        })
+    }
+}
+
+/// The keys of a tenant.
+pub async fn listed(store: &Store) -> ApiResult {
+    let rows = store.keys().await?;
+    let items = rows.iter().map(KeyView::of).collect::<ApiResult<_>>()?;
+    Ok(json(StatusCode::OK, &KeyList { items }))
+}
+
+/// The answer that shows a key.
+pub fn shown(key: Key) -> Response {
+    let place = format!("/v1/keys/{}", key.id);
+    let new = NewKey { id: key.id, key: key.text };
+    with_header(json(StatusCode::CREATED, &new), header::LOCATION, &place)
+}
+
+/// Ends a key of a tenant.
+pub async fn revoked(store: &Store, id: &str) -> ApiResult {
+    match store.revoke_key(id).await? {
+        true => Ok(StatusCode::NO_CONTENT.into_response()),
+        false => Err(no_such_key()),
+    }
+}
+
+/// Makes a key in place of another of its tenant.
+pub async fn rotated(store: &Store, id: &str, rotation: RotationDocument) -> ApiResult {
+    rotation.check()?;
+    let key = store.rotate_key(id, rotation.overlap_h).await?;
+    key.map(shown).ok_or_else(no_such_key)
+}
+
+fn no_such_key() -> ApiError {
+    ApiError::not_found("key that is in force")
+}
+
+/// The keys of the tenant, oldest first, also those that are over.
+#[utoipa::path(get, path = "/v1/keys", operation_id = "list_keys", tag = "keys", responses((status = 200, description = "the keys", body = KeyList)))]
+async fn list(service: Service) -> ApiResult {
+    listed(&service.store).await
+}
+
+/// Makes a key.
+#[utoipa::path(
+    post, path = "/v1/keys", operation_id = "create_key", tag = "keys", request_body = KeyDocument,
+    responses((status = 201, description = "the key, this once", body = NewKey, headers(("Location" = String, description = "the key"))))
+)]
+async fn create(service: Service, request: Request) -> ApiResult {
+    let bytes = body::json(&service, request).await?;
+    let wanted: KeyDocument = strict::parse(&bytes, &service.limits)?;
+    wanted.check()?;
+    Ok(shown(service.store.make_key(&wanted).await?))
+}
+
+/// Ends a key at once.
+#[utoipa::path(
+    delete, path = "/v1/keys/{id}", operation_id = "revoke_key", tag = "keys", params(("id" = String, Path, description = "the middle part of the key")),
+    responses((status = 204, description = "no request with it is let in any more"))
+)]
+async fn revoke(service: Service, KeyId(id): KeyId) -> ApiResult {
+    revoked(&service.store, &id).await
+}
+
+/// Makes a key that allows the same, and lets the old one end after a while.
+#[utoipa::path(
+    post, path = "/v1/keys/{id}/rotation", operation_id = "rotate_key", tag = "keys", params(("id" = String, Path, description = "the middle part of the key")),
+    request_body = RotationDocument,
+    responses((status = 201, description = "the new key, this once", body = NewKey, headers(("Location" = String, description = "the key"))))
+)]
+async fn rotate(service: Service, KeyId(id): KeyId, request: Request) -> ApiResult {
+    let bytes = body::json(&service, request).await?;
+    rotated(&service.store, &id, strict::parse(&bytes, &service.limits)?).await
+}

@@ -1,0 +1,189 @@
+//! Keys as they are written and what they allow.
+
+use std::collections::BTreeSet;
+
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+use super::fault::{Faults, Pointer};
+use super::problem::Problem;
+
+/// What a key allows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum Scope {
+    /// To look.
+    Read,
+    /// To store and erase meshes, cases and plans.
+    Write,
+    /// To have jobs run, and to end them.
+    Run,
+    /// To make and end keys and read the audit log of its tenant.
+    Admin,
+}
+
+impl Scope {
+    pub const ALL: [Scope; 4] = [Scope::Read, Scope::Write, Scope::Run, Scope::Admin];
+
+    pub fn name(self) -> &'static str {
+        match self {
+            Scope::Read => "read",
+            Scope::Write => "write",
+            Scope::Run => "run",
+            Scope::Admin => "admin",
+        }
+    }
+}
+
+/// Scopes from words between spaces or commas; the word that is none, where there is one.
+pub fn scopes_of(words: &str) -> Result<BTreeSet<Scope>, String> {
+    let words = words.split([' ', ',']).filter(|word| !word.is_empty());
+    words
+        .map(|word| {
+            Scope::ALL.into_iter().find(|scope| scope.name() == word).ok_or_else(|| word.to_owned())
+        })
+        .collect()
+}
+
+/// The same as words with spaces between them.
+pub fn scope_words(scopes: &BTreeSet<Scope>) -> String {
+    scopes.iter().map(|scope| scope.name()).collect::<Vec<_>>().join(" ")
+}
+
+/// A key as its owner has it: `fcs_<id>_<secret>`, 12 and 64 hexadecimal digits.
+pub struct Key {
+    pub id: String,
+    pub text: String,
+}
+
+const PREFIX: &str = "fcs";
+const ID_BYTES: usize = 6;
+const SECRET_BYTES: usize = 32;
+
+impl Key {
+    pub const RANDOM_BYTES: usize = ID_BYTES + SECRET_BYTES;
+
+    /// A new one from random bytes.
+    pub fn from_random(random: &[u8; Self::RANDOM_BYTES]) -> Key {
+        let hexadecimal: String = random.iter().map(|byte| format!("{byte:02x}")).collect();
+        let (id, secret) = hexadecimal.split_at(2 * ID_BYTES);
+        Key { id: id.to_owned(), text: format!("{PREFIX}_{id}_{secret}") }
+    }
+
+    /// None where the text has not the form of a key.
+    pub fn parse(text: &str) -> Option<Key> {
+        let mut parts = text.split('_');
+        let (prefix, id, secret) = (parts.next()?, parts.next()?, parts.next()?);
+        let is_key = prefix == PREFIX
+            && parts.next().is_none()
+            && is_hexadecimal(id, ID_BYTES)
+            && is_hexadecimal(secret, SECRET_BYTES);
+        is_key.then(|| Key { id: id.to_owned(), text: text.to_owned() })
+    }
+}
+
+/// A key to be made.
+#[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct KeyDocument {
+    /// What it is for: 1 to 100 characters, no name of a person.
+    #[schema(min_length = 1, max_length = 100)]
+    pub label: String,
+    #[schema(min_items = 1)]
+    pub scopes: BTreeSet<Scope>,
+    /// After so many days it ends; without a number it does not.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false, minimum = 1, maximum = 3650)]
+    pub days: Option<i64>,
+}
+
+/// How a key gives way to another.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RotationDocument {
+    /// How many hours the old key can still be used.
+    #[serde(default = "usual_overlap")]
+    #[schema(default = 24, minimum = 0, maximum = 8760)]
+    pub overlap_h: i64,
+}
+
+fn usual_overlap() -> i64 {
+    24
+}
+
+const MOST_DAYS: i64 = 3650;
+const MOST_OVERLAP_H: i64 = 8760;
+const LONGEST_LABEL: usize = 100;
+
+impl KeyDocument {
+    /// Its faults.
+    pub fn check(&self) -> Result<(), Problem> {
+        let mut faults = Faults::default();
+        let mut add = |at: &str, detail: &str| {
+            faults.add(&Pointer::from_text(at), "out-of-range", detail);
+        };
+        if !(1..=LONGEST_LABEL).contains(&self.label.chars().count()) {
+            add("/label", "a label has 1 to 100 characters");
+        }
+        if self.scopes.is_empty() {
+            add("/scopes", "a key allows something");
+        }
+        if self.days.is_some_and(|days| !(1..=MOST_DAYS).contains(&days)) {
+            add("/days", "a key lasts 1 to 3650 days");
+        }
+        faults.into_result()
+    }
+}
+
+impl RotationDocument {
+    /// Its faults.
+    pub fn check(&self) -> Result<(), Problem> {
+        let mut faults = Faults::default();
+        if !(0..=MOST_OVERLAP_H).contains(&self.overlap_h) {
+            let at = Pointer::from_text("/overlap_h");
+            faults.add(&at, "out-of-range", "keys overlap for 0 to 8760 hours");
+        }
+        faults.into_result()
+    }
+}
+
+/// Whether a text has the form of the id of a key.
+pub fn is_key_id(text: &str) -> bool {
+    is_hexadecimal(text, ID_BYTES)
+}
+
+fn is_hexadecimal(text: &str, bytes: usize) -> bool {
+    let is_digit = |byte: u8| matches!(byte, b'0'..=b'9' | b'a'..=b'f');
+    text.len() == 2 * bytes && text.bytes().all(is_digit)
+}
+
+/// Names of tenants: letters, digits, `-` and `.`, at most 64 of them, in lower case.
+pub fn is_tenant(name: &str) -> bool {
+    let is_plain = |byte: u8| matches!(byte, b'a'..=b'z' | b'0'..=b'9' | b'-' | b'.');
+    (1..=64).contains(&name.len()) && name.bytes().all(is_plain)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_key_is_read_as_it_was_made_and_nothing_else_is_one() {
+        let mut random = [7; 38];
+        random[0] = 0xab;
+        let key = Key::from_random(&random);
+        assert_eq!(key.id, "ab0707070707");
+        assert_eq!(key.text.len(), 3 + 1 + 12 + 1 + 64);
+        assert_eq!(Key::parse(&key.text).map(|key| key.id), Some(key.id));
+        let wrong = ["", "fcs__", "fcs_ab_cd", &key.text[1..], &key.text.to_uppercase()];
+        assert!(wrong.iter().all(|text| Key::parse(text).is_none()));
+        assert!(Key::parse(&format!("{}_", key.text)).is_none());
+    }
+
+    #[test]
+    fn scopes_are_words_of_which_every_one_is_known() {
+        let scopes = scopes_of("run read, run").unwrap();
+        assert_eq!(scope_words(&scopes), "read run");
+        assert_eq!(scopes_of("read root"), Err("root".to_owned()));
+    }
+}

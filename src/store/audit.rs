@@ -1,0 +1,156 @@
+//! The audit log: what was asked for that changes something. Rows are added, never changed; each carries a hash of
+//! itself and of the hash before it, so that a row that was changed, taken out or put in shows.
+
+use super::database::{Row, query};
+use super::{Store, StoreError};
+use crate::schema::canonical::sha256_hex;
+
+/// What somebody did.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Deed {
+    pub tenant: String,
+    /// The id of a key, or `command`.
+    pub actor: String,
+    /// Method and route, or the command.
+    pub action: String,
+    /// The id of what it was done to, empty where there is none.
+    pub object: String,
+    /// HTTP status, or `done`.
+    pub outcome: String,
+    /// The id of the request.
+    pub request: String,
+}
+
+/// A row of the log.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct AuditRow {
+    pub number: i64,
+    /// ms since 1970 by the clock of the database.
+    pub at: i64,
+    pub deed: Deed,
+    pub hash: String,
+}
+
+/// What a look at the whole log found.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Chain {
+    /// So many rows, and the hash of the last one: kept elsewhere, it shows whether the log was written anew.
+    Whole { rows: i64, hash: String },
+    /// The first row that does not follow from those before it, or the end that is not where it was noted.
+    Broken { at: i64 },
+}
+
+const BEGIN: &str =
+    "INSERT INTO audit_end (one, number, hash) VALUES (1, 0, '') ON CONFLICT (one) DO NOTHING";
+const END: &str = "SELECT number, hash, (SELECT now_ms FROM clock) AS now FROM audit_end \
+     WHERE one = 1 FOR UPDATE";
+const LOOK: &str = "SELECT number, hash FROM audit_end WHERE one = 1";
+const APPEND: &str = "INSERT INTO audit \
+     (number, at, tenant, actor, action, object, outcome, request, hash) \
+     VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9)";
+const ADVANCE: &str = "UPDATE audit_end SET number = $1, hash = $2 WHERE one = 1";
+const AFTER: &str = "SELECT number, at, tenant, actor, action, object, outcome, request, hash \
+     FROM audit WHERE number > $1 AND ($2 = '' OR tenant = $2) ORDER BY number LIMIT $3";
+
+/// Rows that are looked at together.
+const AT_ONCE: i64 = 1000;
+
+impl AuditRow {
+    /// Fields are told apart by a byte that none of them has.
+    fn hash_after(&self, previous: &str) -> String {
+        let Deed { tenant, actor, action, object, outcome, request } = &self.deed;
+        let (number, at) = (self.number.to_string(), self.at.to_string());
+        let fields: [&str; 9] =
+            [previous, &number, &at, tenant, actor, action, object, outcome, request];
+        sha256_hex(fields.join("\0").as_bytes())
+    }
+}
+
+fn audit_row(row: &Row) -> Result<AuditRow, sqlx::Error> {
+    Ok(AuditRow {
+        number: row.try_get("number")?,
+        at: row.try_get("at")?,
+        deed: Deed {
+            tenant: row.try_get("tenant")?,
+            actor: row.try_get("actor")?,
+            action: row.try_get("action")?,
+            object: row.try_get("object")?,
+            outcome: row.try_get("outcome")?,
+            request: row.try_get("request")?,
+        },
+        hash: row.try_get("hash")?,
+    })
+}
+
+impl Store {
+    /// Adds a row to the log. Whoever cannot note what he does must not do it.
+    pub async fn note(&self, deed: Deed) -> Result<(), StoreError> {
+        let mut transaction = self.database.begin().await?;
+        query(BEGIN).execute(&mut transaction).await?;
+        let end = query(END).fetch_one(&mut transaction).await?;
+        let mut row = AuditRow {
+            number: end.try_get::<i64, _>("number")? + 1,
+            at: end.try_get("now")?,
+            deed,
+            hash: String::new(),
+        };
+        row.hash = row.hash_after(&end.try_get::<String, _>("hash")?);
+        query(APPEND)
+            .bind(row.number)
+            .bind(row.at)
+            .bind(&row.deed.tenant)
+            .bind(&row.deed.actor)
+            .bind(&row.deed.action)
+            .bind(&row.deed.object)
+            .bind(&row.deed.outcome)
+            .bind(&row.deed.request)
+            .bind(&row.hash)
+            .execute(&mut transaction)
+            .await?;
+        query(ADVANCE).bind(row.number).bind(&row.hash).execute(&mut transaction).await?;
+        transaction.commit().await?;
+        Ok(())
+    }
+
+    /// Rows after a number, of a tenant or, where it is empty, of all.
+    pub async fn audit(
+        &self,
+        after: i64,
+        tenant: &str,
+        limit: i64,
+    ) -> Result<Vec<AuditRow>, StoreError> {
+        let rows = query(AFTER)
+            .bind(after)
+            .bind(tenant)
+            .bind(limit)
+            .fetch_all(self.database.reader())
+            .await?;
+        Ok(rows.iter().map(audit_row).collect::<Result<_, _>>()?)
+    }
+
+    /// Looks at every row whether it follows from the one before.
+    pub async fn check_audit(&self) -> Result<Chain, StoreError> {
+        let end = query(LOOK).fetch_optional(self.database.reader()).await?;
+        let (number, hash): (i64, String) = match end {
+            Some(end) => (end.try_get("number")?, end.try_get("hash")?),
+            None => (0, String::new()),
+        };
+        let (mut last, mut before) = (0, String::new());
+        while last < number {
+            let rows = self.audit(last, "", AT_ONCE.min(number - last)).await?;
+            if rows.is_empty() {
+                return Ok(Chain::Broken { at: last + 1 });
+            }
+            for row in rows {
+                if row.number != last + 1 || row.hash != row.hash_after(&before) {
+                    return Ok(Chain::Broken { at: last + 1 });
+                }
+                (last, before) = (row.number, row.hash);
+            }
+        }
+        match before == hash {
+            true => Ok(Chain::Whole { rows: number, hash }),
+            false => Ok(Chain::Broken { at: number }),
+        }
+    }
+}

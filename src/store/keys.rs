@@ -1,0 +1,131 @@
+//! Keys of clients. A key is `fcs_<id>_<secret>`; only the hash of the whole is stored.
+
+use super::database::{Row, query};
+use super::{Store, StoreError};
+use crate::schema::canonical::sha256_hex;
+use crate::schema::key::{Key, KeyDocument, scope_words};
+
+const HOUR_MS: i64 = 3600 * 1000;
+const DAY_MS: i64 = 24 * HOUR_MS;
+
+/// A key without its secret.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct KeyRow {
+    pub id: String,
+    pub tenant: String,
+    pub label: String,
+    /// SHA-256 of the whole key, in hexadecimal.
+    pub hash: String,
+    /// Words of [`crate::schema::key::Scope`], separated by spaces.
+    pub scopes: String,
+    pub created: i64,
+    pub expires: Option<i64>,
+    pub revoked: Option<i64>,
+}
+
+const INSERT: &str = "INSERT INTO keys (id, tenant, label, hash, scopes, created, expires) \
+     VALUES ($1, $2, $3, $4, $5, (SELECT now_ms FROM clock), \
+       (SELECT now_ms FROM clock) + CAST($6 AS BIGINT))";
+macro_rules! columns {
+    () => {
+        "SELECT id, tenant, label, hash, scopes, created, expires, revoked FROM keys "
+    };
+}
+const IN_FORCE: &str = concat!(
+    columns!(),
+    "WHERE id = $1 AND revoked IS NULL AND (expires IS NULL OR expires > (SELECT now_ms FROM clock))"
+);
+const OF_TENANT: &str = concat!(columns!(), "WHERE tenant = $1 ORDER BY created, id");
+const REVOKE: &str = "UPDATE keys SET revoked = (SELECT now_ms FROM clock) \
+     WHERE id = $1 AND tenant = $2 AND revoked IS NULL";
+const EXPIRE: &str = "UPDATE keys SET expires = (SELECT now_ms FROM clock) + $2 \
+     WHERE id = $1 AND tenant = $3 AND revoked IS NULL \
+     AND (expires IS NULL OR expires > (SELECT now_ms FROM clock) + $2)";
+
+fn key_row(row: &Row) -> Result<KeyRow, sqlx::Error> {
+    Ok(KeyRow {
+        id: row.try_get("id")?,
+        tenant: row.try_get("tenant")?,
+        label: row.try_get("label")?,
+        hash: row.try_get("hash")?,
+        scopes: row.try_get("scopes")?,
+        created: row.try_get("created")?,
+        expires: row.try_get("expires")?,
+        revoked: row.try_get("revoked")?,
+    })
+}
+
+impl Store {
+    /// Makes a key of this tenant. Only its hash is kept: whoever asked has to.
+    pub async fn make_key(&self, wanted: &KeyDocument) -> Result<Key, StoreError> {
+        let lasts_ms = wanted.days.map(|days| days * DAY_MS);
+        self.add_key(&wanted.label, &scope_words(&wanted.scopes), lasts_ms).await
+    }
+
+    async fn add_key(
+        &self,
+        label: &str,
+        scopes: &str,
+        lasts_ms: Option<i64>,
+    ) -> Result<Key, StoreError> {
+        let mut random = [0; Key::RANDOM_BYTES];
+        let source = rustls::crypto::ring::default_provider().secure_random;
+        source.fill(&mut random).map_err(|_| StoreError::NoRandomness)?;
+        let key = Key::from_random(&random);
+        let mut transaction = self.database.begin().await?;
+        self.enter(&mut transaction).await?;
+        query(INSERT)
+            .bind(&key.id)
+            .bind(self.tenant())
+            .bind(label)
+            .bind(sha256_hex(key.text.as_bytes()))
+            .bind(scopes)
+            .bind(lasts_ms)
+            .execute(&mut transaction)
+            .await?;
+        transaction.commit().await?;
+        Ok(key)
+    }
+
+    /// Makes a key that allows what another of this tenant does, which ends some time from now; `None` where there is none
+    /// in force. The new one lasts as long as the old one was made for.
+    pub async fn rotate_key(&self, id: &str, overlap_h: i64) -> Result<Option<Key>, StoreError> {
+        let old = self.key_in_force(id).await?.filter(|key| key.tenant == self.tenant());
+        let Some(old) = old else { return Ok(None) };
+        let lasts_ms = old.expires.map(|expires| expires - old.created);
+        let key = self.add_key(&old.label, &old.scopes, lasts_ms).await?;
+        self.expire_key(id, overlap_h * HOUR_MS).await?;
+        Ok(Some(key))
+    }
+
+    /// The key of this id, of whichever tenant, if it may be used now: asked anew for every request, so that a revoked key
+    /// ends at once.
+    pub async fn key_in_force(&self, id: &str) -> Result<Option<KeyRow>, StoreError> {
+        let row = query(IN_FORCE).bind(id).fetch_optional(self.database.reader()).await?;
+        Ok(row.as_ref().map(key_row).transpose()?)
+    }
+
+    /// The keys of this tenant, oldest first, also those that are over.
+    pub async fn keys(&self) -> Result<Vec<KeyRow>, StoreError> {
+        let rows = query(OF_TENANT).bind(self.tenant()).fetch_all(self.database.reader()).await?;
+        Ok(rows.iter().map(key_row).collect::<Result<_, _>>()?)
+    }
+
+    /// Ends a key of this tenant now; false when there is none that was not revoked.
+    pub async fn revoke_key(&self, id: &str) -> Result<bool, StoreError> {
+        let revoked =
+            query(REVOKE).bind(id).bind(self.tenant()).execute(self.database.writer()).await?;
+        Ok(revoked == 1)
+    }
+
+    /// Lets a key of this tenant end some time from now, if it would not end sooner.
+    async fn expire_key(&self, id: &str, after_ms: i64) -> Result<bool, StoreError> {
+        let changed = query(EXPIRE)
+            .bind(id)
+            .bind(after_ms)
+            .bind(self.tenant())
+            .execute(self.database.writer())
+            .await?;
+        Ok(changed == 1)
+    }
+}

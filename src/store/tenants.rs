@@ -1,0 +1,112 @@
+//! Tenants: those who share a deployment without knowing of each other.
+
+use super::database::{Transaction, query};
+use super::{Store, StoreError};
+
+/// Whose everything is where nobody says otherwise.
+pub const DEFAULT_TENANT: &str = "default";
+
+/// A tenant and how long what it does not change is kept.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct TenantRow {
+    pub name: String,
+    pub retention_days: Option<i64>,
+}
+
+/// Who is new, as who has had no job for long, is next; after one turn it comes behind all others.
+const ENTER: &str =
+    "INSERT INTO tenants (name, served) VALUES ($1, 0) ON CONFLICT (name) DO NOTHING";
+const RETAIN: &str = "UPDATE tenants SET retention_days = $2 WHERE name = $1";
+/// A case is as old as the youngest thing that belongs to it.
+const OLD_CASES: &str = "SELECT id FROM cases WHERE tenant = $1 \
+     AND updated < (SELECT now_ms FROM clock) - $2 \
+     AND NOT EXISTS (SELECT 1 FROM plans WHERE plans.case_id = cases.id \
+       AND plans.updated >= (SELECT now_ms FROM clock) - $2) \
+     AND NOT EXISTS (SELECT 1 FROM jobs WHERE (jobs.case_id = cases.id \
+         OR jobs.id IN (SELECT job_id FROM job_cases WHERE case_id = cases.id)) \
+       AND jobs.updated >= (SELECT now_ms FROM clock) - $2)";
+const OLD_JOBS: &str = "SELECT id FROM jobs WHERE tenant = $1 \
+     AND status IN ('successful', 'failed', 'dismissed') \
+     AND finished < (SELECT now_ms FROM clock) - $2";
+const OLD_MESHES: &str = "SELECT id FROM meshes WHERE tenant = $1 \
+     AND created < (SELECT now_ms FROM clock) - $2 \
+     AND NOT EXISTS (SELECT 1 FROM case_meshes WHERE mesh_id = meshes.id) \
+     AND NOT EXISTS (SELECT 1 FROM job_meshes WHERE mesh_id = meshes.id)";
+
+const DAY_MS: i64 = 24 * 3600 * 1000;
+
+impl Store {
+    /// A text that is unique in its table and has to be so within a tenant only.
+    pub(super) fn own(&self, text: &str) -> String {
+        match self.tenant() {
+            DEFAULT_TENANT => text.to_owned(),
+            tenant => format!("{tenant} {text}"),
+        }
+    }
+
+    /// Sees to it that the tenant has a row.
+    pub(super) async fn enter(&self, transaction: &mut Transaction) -> Result<(), sqlx::Error> {
+        query(ENTER).bind(self.tenant()).execute(&mut *transaction).await?;
+        Ok(())
+    }
+
+    /// All tenants by name.
+    pub async fn tenants(&self) -> Result<Vec<TenantRow>, StoreError> {
+        let rows = query("SELECT name, retention_days FROM tenants ORDER BY name")
+            .fetch_all(self.database.reader())
+            .await?;
+        let mut tenants = Vec::with_capacity(rows.len());
+        for row in &rows {
+            let retention_days = row.try_get("retention_days")?;
+            tenants.push(TenantRow { name: row.try_get("name")?, retention_days });
+        }
+        Ok(tenants)
+    }
+
+    /// How long what nobody changes is kept; for ever where no number is given.
+    pub async fn retain(&self, days: Option<i64>) -> Result<(), StoreError> {
+        let mut transaction = self.database.begin().await?;
+        self.enter(&mut transaction).await?;
+        query(RETAIN).bind(self.tenant()).bind(days).execute(&mut transaction).await?;
+        transaction.commit().await?;
+        Ok(())
+    }
+
+    /// Erases what nobody has changed for longer than its tenant keeps it: cases with all that belongs to them, other
+    /// jobs that have ended, meshes that nothing refers to. Returns how many.
+    pub async fn erase_old(&self) -> Result<usize, StoreError> {
+        let mut erased = 0;
+        for TenantRow { name, retention_days } in self.tenants().await? {
+            let Some(days) = retention_days else { continue };
+            let age = days.saturating_mul(DAY_MS);
+            let store = self.of_tenant(&name);
+            for case in store.old(OLD_CASES, age).await? {
+                store.delete_case(&case, None).await?;
+                erased += 1;
+            }
+            for job in store.old(OLD_JOBS, age).await? {
+                store.dismiss(&job).await?;
+                erased += 1;
+            }
+            for mesh in store.old(OLD_MESHES, age).await? {
+                store.delete_mesh(&mesh).await?;
+                erased += 1;
+            }
+        }
+        Ok(erased)
+    }
+
+    async fn old(&self, sql: &'static str, age: i64) -> Result<Vec<String>, StoreError> {
+        let rows =
+            query(sql).bind(self.tenant()).bind(age).fetch_all(self.database.reader()).await?;
+        Ok(rows.iter().map(|row| row.try_get(0)).collect::<Result<_, _>>()?)
+    }
+}
+
+/// A text as it was before [`Store::own`].
+pub(super) fn plain(text: String) -> String {
+    match text.rsplit_once(' ') {
+        Some((_, plain)) => plain.to_owned(),
+        None => text,
+    }
+}
