@@ -55,6 +55,8 @@ pub(super) enum NoAnswer {
     /// The caller wants no more.
     Cancelled,
     Refused(Refusal),
+    /// It took longer than a row may.
+    Late(Refusal),
 }
 
 impl Refusal {
@@ -158,7 +160,7 @@ impl Bench<'_> {
         match why {
             NoAnswer::Cancelled if !self.progress.is_cancelled() => {
                 let detail = format!("not solved after {} s", self.row_s);
-                Refusal::new("budget-exceeded", detail).into()
+                NoAnswer::Late(Refusal::new("budget-exceeded", detail))
             }
             other => other,
         }

@@ -71,11 +71,8 @@ fn distinct(what: &'static str, names: impl Iterator<Item = String>) -> Result<(
     if seen.is_empty() { Err(StudyError::Empty { what }) } else { Ok(()) }
 }
 
-/// The code of rows that exceed a budget of theirs.
-const EXCEEDED: &str = "budget-exceeded";
-
-/// Variants that exceeded a budget at a level, and with which plan: none is tried there with the next plan.
-type Exceeded<'a> = BTreeMap<(u32, &'a str), Refusal>;
+/// Variants that took too long at a level, and what rows of theirs are told that are not tried after that.
+type Late<'a> = BTreeMap<(u32, &'a str), Refusal>;
 
 /// The rows of one scene.
 struct SceneWork<'a> {
@@ -93,15 +90,6 @@ struct Attempt<'a> {
     answer: Result<Answer, Refusal>,
 }
 
-impl<'a> Attempt<'a> {
-    /// What the rows of later plans are told, where this one exceeded a budget.
-    fn exceeded(&self, plan: &str) -> Option<((u32, &'a str), Refusal)> {
-        let why = self.answer.as_ref().err().filter(|why| why.code == EXCEEDED)?;
-        let detail = format!("not tried: {} with plan {plan:?}", why.detail);
-        Some(((self.level, self.variant.label.as_str()), Refusal::new(EXCEEDED, detail)))
-    }
-}
-
 impl<'a> SceneWork<'a> {
     fn run(&self) -> Result<(SceneReport, Vec<Row>), StudyError> {
         // 1. The skin that errors are measured on.
@@ -111,14 +99,10 @@ impl<'a> SceneWork<'a> {
 
         // 2. What the methods answer, for each plan and material.
         let mut attempts = Vec::new();
-        let mut exceeded = Exceeded::new();
-        for ((name, plan), skin) in self.scene.plans.iter().zip(&skins) {
+        let mut late = Late::new();
+        for (plan, skin) in self.scene.plans.iter().zip(&skins) {
             for materials in &self.scene.materials {
-                let of_plan = self.attempts(&mut levels, &exceeded, (plan, materials), skin)?;
-                for (key, why) in of_plan.iter().filter_map(|attempt| attempt.exceeded(name)) {
-                    exceeded.entry(key).or_insert(why);
-                }
-                attempts.push(of_plan);
+                attempts.push(self.attempts(&mut levels, &mut late, (plan, materials), skin)?);
             }
         }
 
@@ -163,8 +147,8 @@ impl<'a> SceneWork<'a> {
     fn attempts(
         &self,
         levels: &mut Levels,
-        exceeded: &Exceeded,
-        (plan, materials): (&Plan, &Materials),
+        late: &mut Late<'a>,
+        ((name, plan), materials): (&(String, Plan), &Materials),
         skin: &Result<Skin, Refusal>,
     ) -> Result<Vec<Attempt<'a>>, StudyError> {
         let mut attempts = Vec::new();
@@ -176,7 +160,7 @@ impl<'a> SceneWork<'a> {
                 if is_the_truth(self.scene, &variant.settings, level) {
                     continue;
                 }
-                if let Some(before) = exceeded.get(&(level, variant.label.as_str())) {
+                if let Some(before) = late.get(&(level, variant.label.as_str())) {
                     attempts.push(Attempt { level, variant, answer: Err(before.clone()) });
                     continue;
                 }
@@ -184,6 +168,12 @@ impl<'a> SceneWork<'a> {
                 attempts.push(match answer {
                     Ok(answer) => Attempt { level, variant, answer: Ok(answer) },
                     Err(NoAnswer::Refused(why)) => Attempt { level, variant, answer: Err(why) },
+                    Err(NoAnswer::Late(why)) => {
+                        let detail = format!("not tried: {} with plan {name:?}", why.detail);
+                        let after = Refusal::new(&why.code, detail);
+                        late.insert((level, &variant.label), after);
+                        Attempt { level, variant, answer: Err(why) }
+                    }
                     Err(NoAnswer::Cancelled) => return Err(StudyError::Cancelled),
                 });
             }

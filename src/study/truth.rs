@@ -201,7 +201,7 @@ impl Asked<'_> {
                         Ok(found)
                     }
                     Err(NoAnswer::Cancelled) => return Err(StudyError::Cancelled),
-                    Err(NoAnswer::Refused(refusal)) => Err(refusal),
+                    Err(NoAnswer::Refused(refusal) | NoAnswer::Late(refusal)) => Err(refusal),
                 },
             });
         }

@@ -167,7 +167,7 @@ async fn a_key_of_another_tenant_finds_nothing_at_any_address() {
     for (address, document, named) in [
         ("/v1/cases", &case, "unknown-mesh"),
         ("/v1/jobs", &plan, "unknown-case"),
-        ("/v1/jobs", &compare, "unknown-job"),
+        ("/v1/jobs", &compare, "unknown-mesh"),
     ] {
         let answer = hospital.post(&theirs, address, document).await;
         assert_eq!(answer.status, StatusCode::UNPROCESSABLE_ENTITY, "{answer:?}");
