@@ -58,6 +58,8 @@ pub use openapi::document;
 
 /// Meshes that are parsed at the same time: each may take several times its size in memory.
 const PARSED_AT_ONCE: usize = 2;
+/// A tenth of the share of a processor that the threads which answer have when both want it.
+const NICENESS: i32 = 10;
 
 /// What every request may use.
 #[derive(Clone)]
@@ -112,14 +114,25 @@ impl Service {
         }
     }
 
-    /// Runs work that takes a processor for long, on a thread that may block, a few at a time.
+    /// Runs work that takes a processor for long, a few at a time, each on a thread of its own that gives way to those
+    /// that answer.
     async fn compute<T: Send + 'static>(
         &self,
         work: impl FnOnce() -> T + Send + 'static,
     ) -> error::ApiResult<T> {
         let permit = self.parsing.clone().acquire_owned().await;
         let _permit = permit.map_err(error::ApiError::internal)?;
-        tokio::task::spawn_blocking(work).await.map_err(error::ApiError::internal)
+        let (done, made) = tokio::sync::oneshot::channel();
+        let patient = move || {
+            // On Linux this is the priority of the thread; whether the system agrees changes no result.
+            let _ = rustix::process::nice(NICENESS);
+            // Nobody waits any more where the client has gone.
+            let _ = done.send(work());
+        };
+        let thread = std::thread::Builder::new().name("parser".to_owned()).spawn(patient);
+        thread.map_err(error::ApiError::internal)?;
+        // A thread that panics drops its end.
+        made.await.map_err(error::ApiError::internal)
     }
 }
 

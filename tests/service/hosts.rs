@@ -4,6 +4,7 @@ use std::io::{BufRead, BufReader};
 use std::process::{Child, ChildStdout, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
+use facies::config::DatabasePlace;
 use facies::store::Store;
 use reqwest::StatusCode;
 use serde_json::json;
@@ -11,6 +12,7 @@ use tempfile::TempDir;
 
 use crate::deployments::{Cluster, Deployment};
 use crate::helpers::{Block, SMALL, Server, ask, serve_shared, spec};
+use crate::partition::Way;
 
 /// Solved in seconds, so that a test can meet its job at work.
 const LARGE: Block = Block { cells: [44, 44, 30] };
@@ -27,8 +29,9 @@ impl Worker {
     fn start_with(on: &Deployment, arguments: &[&str]) -> (Worker, BufReader<ChildStdout>) {
         let mut command = Command::new(env!("CARGO_BIN_EXE_facies"));
         command.args(["worker", "--workers", "1", "--lease-s", "1", "--heartbeat-s", "0.2"]);
-        command.args(arguments);
         on.bring(&mut command);
+        // Of a setting that is given twice the last one counts.
+        command.args(arguments);
         let mut child = command.stdout(Stdio::piped()).stderr(Stdio::null()).spawn().unwrap();
         let mut line = String::new();
         let mut said = BufReader::new(child.stdout.take().unwrap());
@@ -121,6 +124,32 @@ async fn a_job_whose_host_is_killed_is_solved_by_another() {
     let _second = Worker::start(&on);
     let job = api.ended(&id).await;
     assert_eq!((&job["status"], &job["attempt"]), (&json!("successful"), &json!(2)));
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_worker_cut_off_from_the_database_loses_its_job_to_another_and_changes_nothing() {
+    let Some(on) = Deployment::shared().await else { return };
+    let DatabasePlace::Server { address, .. } = &on.places.database else { panic!("it is shared") };
+    let way = Way::to(address.reveal());
+    let api = api(&on);
+    let case = api.case(&LARGE).await;
+    let accept = async |x: f64| {
+        let accepted = ask(api.post("/v1/jobs").json(&spec(&case, x))).await;
+        accepted.expect(StatusCode::CREATED)["id"].as_str().unwrap().to_owned()
+    };
+    let id = accept(3.0).await;
+    let _cut_off = Worker::start_with(&on, &["--database", &way.address]);
+    assert_eq!(api.started(&id).await["status"], "running");
+    way.cut();
+    let other = Worker::start(&on);
+    let job = api.ended(&id).await;
+    assert_eq!((&job["status"], &job["attempt"]), (&json!("successful"), &json!(2)));
+    drop(other);
+    way.mend();
+    // The first one is back when it has done something else; what it had done before is not there.
+    let next = api.ended(&accept(4.0).await).await;
+    assert_eq!((&next["status"], &next["attempt"]), (&json!("successful"), &json!(1)));
+    assert_eq!(ask(api.get(&format!("/v1/jobs/{id}"))).await.json(), job);
 }
 
 #[tokio::test]

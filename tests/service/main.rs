@@ -23,6 +23,7 @@ mod meshes;
 mod openapi;
 mod optimise;
 mod origins;
+mod partition;
 mod plans;
 mod queue;
 mod races;

@@ -30,6 +30,9 @@ pub enum SlotError {
     Threads(#[from] rayon::ThreadPoolBuildError),
 }
 
+/// A tenth of the share of a processor that the API has when both want it.
+const NICENESS: i32 = 10;
+
 /// What a process has to say, one message at a time.
 pub struct Reports(Mutex<Stdout>);
 
@@ -50,6 +53,7 @@ impl Reports {
 /// Serves until standard input is closed.
 pub fn serve() -> Result<(), SlotError> {
     die_with_parent();
+    give_way();
     FailPoints::of(0, "").pass_by("slot:start", &|| false);
     let mut orders = BufReader::new(io::stdin());
     let first = read_message(&mut orders).map_err(|_| SlotError::NoOrders)?;
@@ -74,6 +78,12 @@ pub fn serve() -> Result<(), SlotError> {
         reports.tell(&Report::Ended(Box::new(Ended { outcome, memory })));
     }
     Ok(())
+}
+
+/// A processor that the API or the heartbeat wants is theirs: they need it for a moment, a job for seconds. Whether the
+/// system agrees changes no result.
+fn give_way() {
+    let _ = rustix::process::nice(NICENESS);
 }
 
 /// The system ends this process with its worker, even one that does not read any more.
