@@ -13,7 +13,7 @@ use crate::jobs::{
 };
 use crate::schema::job::{JobKind, JobStatus};
 use crate::schema::prediction::EngineDocument;
-use crate::schema::study::SceneReference;
+use crate::schema::study::{SceneReference, StudyKind};
 use crate::schema::{
     CaseDocument, CompareDocument, Faults, Limits, OptimiseDocument, PlanDocument, Pointer,
     PredictDocument, Problem, ReportDocument, ResponseDocument, StudyDocument,
@@ -144,6 +144,20 @@ pub async fn of_study(service: &Service, mut spec: StudyDocument) -> ApiResult<N
         let case: CaseDocument = serde_json::from_str(&row.document).map_err(ApiError::internal)?;
         cases.insert(row.id, case);
     }
+    for (index, item) in spec.items.iter_mut().enumerate() {
+        let row = require_case(service, &item.case).await;
+        let at = format!("/items/{index}");
+        let row = row.map_err(|error| error.map_problem(|problem| problem.moved("", &at)))?;
+        item.case.clone_from(&row.id);
+        let named = item.plan_id.take();
+        if item.plan.is_none() {
+            let plan = stored_plan(service, &row.id, named.as_deref()).await;
+            item.plan =
+                plan.map_err(|error| error.map_problem(|problem| problem.moved("", &at)))?;
+        }
+        let case: CaseDocument = serde_json::from_str(&row.document).map_err(ApiError::internal)?;
+        cases.insert(row.id, case);
+    }
     let baseline = match &spec.baseline {
         None => None,
         Some(job) => Some(Box::new(baseline(service, job).await?)),
@@ -163,7 +177,11 @@ pub async fn of_study(service: &Service, mut spec: StudyDocument) -> ApiResult<N
         [only] => (Some(only.clone()), Vec::new()),
         _ => (None, ids),
     };
-    let new = Accepted { kind: JobKind::Study, case_id, shared_cases, spec_hash, tags, mesh_ids };
+    let kind = match input.spec.kind {
+        StudyKind::Study => JobKind::Study,
+        StudyKind::Batch => JobKind::Batch,
+    };
+    let new = Accepted { kind, case_id, shared_cases, spec_hash, tags, mesh_ids };
     new.with(&JobInput::Study(input))
 }
 
@@ -231,20 +249,28 @@ pub async fn predict_input(
     mut spec: PredictDocument,
 ) -> ApiResult<PredictInput> {
     let case: CaseDocument = serde_json::from_str(&row.document).map_err(ApiError::internal)?;
-    let plan = match (spec.plan.take(), spec.plan_id.as_deref()) {
-        (Some(plan), _) => plan,
-        (None, None) => PlanDocument::default(),
-        (None, Some(text)) => {
-            let found = match id(text) {
-                Some(id) => service.store.plan(&row.id, &id).await?,
-                None => None,
-            };
-            let unknown = || fault("/plan_id", "unknown-plan", "the case has no such plan");
-            let found = found.ok_or_else(unknown)?;
-            serde_json::from_str(&found.document).map_err(ApiError::internal)?
-        }
+    let plan = match spec.plan.take() {
+        Some(plan) => Some(plan),
+        None => stored_plan(service, &row.id, spec.plan_id.as_deref()).await?,
     };
+    let plan = plan.unwrap_or_default();
     Ok(PredictInput { job: None, queue_s: None, case, plan, spec })
+}
+
+/// The plan of a case that a document names, if it names one.
+async fn stored_plan(
+    service: &Service,
+    case: &str,
+    named: Option<&str>,
+) -> ApiResult<Option<PlanDocument>> {
+    let Some(text) = named else { return Ok(None) };
+    let found = match id(text) {
+        Some(id) => service.store.plan(case, &id).await?,
+        None => None,
+    };
+    let unknown = || fault("/plan_id", "unknown-plan", "the case has no such plan");
+    let found = found.ok_or_else(unknown)?;
+    serde_json::from_str(&found.document).map(Some).map_err(ApiError::internal)
 }
 
 /// Every mesh that a prediction reads.

@@ -65,7 +65,9 @@ fn links(row: &JobRow) -> Vec<Link> {
     let own = format!("/v1/jobs/{}", row.id);
     let results = format!("{own}/results");
     let mut links = vec![link(own, "self")];
-    if row.status == JobStatus::Successful && row.kind == JobKind::Study.name() {
+    if row.status == JobStatus::Successful
+        && JobKind::from_name(&row.kind).is_some_and(JobKind::has_report)
+    {
         links.push(link(format!("/v1/jobs/{}/report", row.id), "describedby"));
     }
     if row.status == JobStatus::Successful {

@@ -18,13 +18,10 @@ use super::results::RETRY_AFTER_S;
 use super::{Service, body, conditional, job_input, json, json_only, with_header};
 use crate::schema::job::{JobKind, JobStatus, StatusInfo};
 use crate::schema::spec::JobDocument;
-use crate::schema::strict;
 use crate::store::{Dismissal, Enqueued, JobFilter, JobRow};
 
 /// Jobs that may wait at the same time.
 const LONGEST_QUEUE: i64 = 10_000;
-/// Kinds that the description of the service names and that are not built.
-const LATER_KINDS: [&str; 1] = ["batch"];
 
 pub fn router() -> OpenApiRouter<Service> {
     let router = OpenApiRouter::new().routes(routes!(create, list));
@@ -81,7 +78,6 @@ async fn create(service: Service, request: Request) -> ApiResult {
     let wait = wanted_wait(request.headers(), service.limits.wait_s);
     let headers = request.headers().clone();
     let bytes = body::json(&service, request).await?;
-    refuse_later_kinds(&service, &bytes)?;
     let document = JobDocument::parse(&bytes, &service.limits)?;
     let new = new_id(&service, &headers, "/v1/jobs", &[&bytes]).await?;
     if new.is_known && service.store.job(&new.id).await?.is_some() {
@@ -127,20 +123,6 @@ async fn created(service: &Service, id: &str, deduplicated: bool, wait: Option<u
         with_header(answer, header::LOCATION, &location)
     };
     Ok(answer)
-}
-
-/// A kind that will come is not a spelling mistake.
-fn refuse_later_kinds(service: &Service, bytes: &[u8]) -> ApiResult<()> {
-    let value = strict::parse_value(bytes, &service.limits)?;
-    match value.get("kind").and_then(serde_json::Value::as_str) {
-        Some(kind) if LATER_KINDS.contains(&kind) => {
-            let detail = format!(
-                "jobs of kind {kind} are not available; predict, compare, response, optimise and study are"
-            );
-            Err(ApiError::new("kind-not-available", detail))
-        }
-        _ => Ok(()),
-    }
 }
 
 /// The state of a job with the headers that go with it.

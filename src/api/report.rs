@@ -174,7 +174,8 @@ pub(super) async fn stored_report(
     job: &str,
 ) -> ApiResult<Option<(FileRow, ReportDocument)>> {
     let is_study = |row: &crate::store::JobRow| {
-        row.kind == JobKind::Study.name() && row.status == JobStatus::Successful
+        JobKind::from_name(&row.kind).is_some_and(JobKind::has_report)
+            && row.status == JobStatus::Successful
     };
     if !service.store.job(job).await?.is_some_and(|row| is_study(&row)) {
         return Ok(None);

@@ -14,7 +14,9 @@ use crate::jobs::study_files::REPORT_JSON;
 use crate::jobs::work::Workplace;
 use crate::jobs::{JobInput, StudyInput, work};
 use crate::schema::report::{OutcomeName, ReportDocument, RowDocument};
-use crate::schema::study::{CaseReference, PlanReference, SceneReference, ThresholdsDocument};
+use crate::schema::study::{
+    CaseReference, PlanReference, SceneReference, StudyKind, ThresholdsDocument,
+};
 use crate::schema::{CaseDocument, Limits, MaterialDocument, StudyDocument};
 use crate::study::methods;
 
@@ -133,7 +135,7 @@ impl Arguments {
                 plans: Vec::new(),
             });
             spec.scenes.extend(named.map(SceneReference::Case));
-        } else if spec.scenes.is_empty() {
+        } else if spec.scenes.is_empty() && spec.kind == StudyKind::Study {
             spec.scenes = USUAL_SCENES.map(|name| SceneReference::Name(name.to_owned())).into();
         }
         // Paths of arguments lead from here, those of a document from where it lies.
@@ -144,6 +146,15 @@ impl Arguments {
                 let path = folder.unwrap_or(Path::new("")).join(&reference.case);
                 cases.insert(reference.case.clone(), read_case(&path, reference)?);
             }
+        }
+        for item in &mut spec.items {
+            let path = folder.unwrap_or(Path::new("")).join(&item.case);
+            let mut reference =
+                CaseReference { case: item.case.clone(), name: None, plans: Vec::new() };
+            let mut case = read_case(&path, &mut reference)?;
+            case.name = case.name.or(reference.name);
+            item.plan = item.plan.take().or(reference.plans.pop());
+            cases.insert(item.case.clone(), case);
         }
         Ok(())
     }

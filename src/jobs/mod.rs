@@ -1,6 +1,7 @@
 //! From a job document to result files: one path for the service and for the command line.
 //! Around it, for the service: the meshes in memory, the queue's workers and their signs of life.
 
+mod batch;
 pub mod check;
 pub mod comparison;
 pub mod expected;

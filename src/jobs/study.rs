@@ -1,10 +1,11 @@
 //! The job of a study: rows one after the other, the report in every form, its charts and its outcome.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use serde::{Deserialize, Serialize};
 
+use super::batch::Parts;
 use super::check::warning_documents;
 use super::failure::JobError;
 use super::judgement::{Baseline, judge};
@@ -26,6 +27,7 @@ use crate::prediction::{Phase, Progress};
 use crate::schema::prediction::{InputDocument, ResultDocument};
 use crate::schema::report::ReportDocument;
 use crate::schema::spec::OutputName;
+use crate::schema::study::StudyKind;
 use crate::schema::{CaseDocument, Faults, Limits, Pointer, Problem, StudyDocument, canonical};
 use crate::study::{Stopwatch, Study, StudyError, StudyScene, run};
 
@@ -68,12 +70,19 @@ impl StudyInput {
         faults.into_result()?;
         let documents = Documents { spec: &self.spec, cases: &self.cases, sources, limits };
         let mut faults = Faults::default();
-        let variants = documents.variants(&mut faults);
-        let scenes = documents.scenes(&mut faults)?;
+        let Parts { scenes, variants, pairs } = match self.spec.kind {
+            StudyKind::Study => {
+                let variants = documents.variants(&mut faults);
+                let scenes = documents.scenes(&mut faults)?;
+                Parts { scenes, variants, pairs: BTreeSet::new() }
+            }
+            StudyKind::Batch => documents.items(&mut faults)?,
+        };
         faults.into_result()?;
         let study = Study {
             scenes: scenes.scenes,
             variants,
+            pairs,
             levels: self.spec.levels.clone(),
             repeats: self.spec.repeats as usize,
             budget_s: self.spec.budget.wall_s,
@@ -111,9 +120,11 @@ impl StudyInput {
 
 /// How many rows a study has, with those that turn out to be the truth itself.
 fn most_rows(study: &Study) -> usize {
-    let of_scene = |scene: &StudyScene| scene.plans.len() * scene.materials.len();
-    let places: usize = study.scenes.iter().map(of_scene).sum();
-    places * study.variants.len() * study.levels.len()
+    let of_scene = |(place, scene): (usize, &StudyScene)| {
+        scene.plans.len() * scene.materials.len() * study.variants_of(place).count()
+    };
+    let on_a_mesh: usize = study.scenes.iter().enumerate().map(of_scene).sum();
+    on_a_mesh * study.levels.len()
 }
 
 /// Measures rows and tells which one is solved, but nothing of the iterations inside: they begin anew with every

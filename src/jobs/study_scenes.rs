@@ -13,7 +13,8 @@ use crate::schema::methods::{ElementName, MethodName};
 use crate::schema::prediction::InputDocument;
 use crate::schema::study::{CaseReference, SceneReference, StudyDocument, TruthDocument};
 use crate::schema::{
-    CaseDocument, Faults, Limits, MaterialDocuments, Pointer, PredictDocument, Problem, strict,
+    CaseDocument, Faults, Limits, MaterialDocuments, PlanDocument, Pointer, PredictDocument,
+    Problem, strict,
 };
 use crate::study::scenes::{scene_of, usual_truth};
 use crate::study::sweep::{self, SweepError};
@@ -42,7 +43,7 @@ pub(super) struct Scenes {
     pub warnings: Vec<Warning>,
 }
 
-fn spec_at() -> Pointer {
+pub(super) fn spec_at() -> Pointer {
     Pointer::root().key("spec")
 }
 
@@ -80,7 +81,7 @@ impl Documents<'_> {
     }
 
     /// Labels that the rules of the outcome name.
-    fn check_labels(&self, variants: &[Variant], faults: &mut Faults) {
+    pub(super) fn check_labels(&self, variants: &[Variant], faults: &mut Faults) {
         let labels = |label: &str| variants.iter().any(|variant| variant.label == label);
         let known: Vec<&str> = variants.iter().map(|variant| variant.label.as_str()).collect();
         let thresholds = self.spec.thresholds.iter().flat_map(|bounds| &bounds.labels);
@@ -133,7 +134,7 @@ impl Documents<'_> {
     }
 
     /// A variant that says itself what it is: a `predict` spec without what belongs to the study.
-    fn stated(
+    pub(super) fn stated(
         &self,
         mut entry: Value,
         at: &Pointer,
@@ -242,31 +243,45 @@ impl Documents<'_> {
         (index, reference): (usize, &CaseReference),
         found: &mut Scenes,
     ) -> Result<(), JobError> {
-        let missing =
-            || Problem::at(&spec_at().key("scenes"), "unknown-case", "there is no such case");
-        let case = self.cases.get(&reference.case).ok_or_else(missing)?;
-        let given = |index: usize| self.spec.materials.get(index).cloned();
         let documents = self.spec.plans_of(index, reference);
+        let at = spec_at().key("materials");
+        let given = self.spec.materials.iter().enumerate();
+        let given: Vec<_> = given.map(|(index, given)| (at.index(index), given)).collect();
+        self.placed_scene(reference, &documents, &given, found)
+    }
+
+    /// The same with plans and materials that have a place each.
+    pub(super) fn placed_scene(
+        &self,
+        reference: &CaseReference,
+        documents: &[(Pointer, &PlanDocument)],
+        given: &[(Pointer, &MaterialDocuments)],
+        found: &mut Scenes,
+    ) -> Result<(), JobError> {
+        let missing = || Problem::at(&spec_at(), "unknown-case", "there is no such case");
+        let case = self.cases.get(&reference.case).ok_or_else(missing)?;
+        let of_the_first = given.first().map(|(_, materials)| (*materials).clone());
+        let place = |index: usize| given.get(index).map_or_else(spec_at, |(at, _)| at.clone());
         let mut plans = Vec::new();
         let mut first: Option<Prepared> = None;
-        for (number, (at, document)) in (1..).zip(&documents) {
-            let input = input(case, (*document).clone(), given(0));
+        for (number, (at, document)) in (1..).zip(documents) {
+            let input = input(case, (*document).clone(), of_the_first.clone());
             let prepared = input.prepare(self.sources, self.limits);
-            let prepared = prepared.map_err(|error| moved(error, at, 0))?;
+            let prepared = prepared.map_err(|error| moved(error, at, &place(0)))?;
             plans.push((format!("plan {number}"), prepared.plan.clone()));
             first = first.or(Some(prepared));
         }
         let Some(first) = first else { return Ok(()) };
         let mut materials = vec![Materials {
-            name: self.spec.materials.first().map_or_else(|| "case".to_owned(), in_words),
+            name: of_the_first.as_ref().map_or_else(|| "case".to_owned(), in_words),
             by_region: first.case.materials.clone(),
             fibres: first.case.fibres.clone(),
         }];
-        for (index, document) in self.spec.materials.iter().enumerate().skip(1) {
+        for (place, document) in given.iter().skip(1) {
             let Some((at, plan)) = documents.first() else { break };
-            let input = input(case, (*plan).clone(), given(index));
+            let input = input(case, (*plan).clone(), Some((*document).clone()));
             let prepared = input.prepare(self.sources, self.limits);
-            let case = prepared.map_err(|error| moved(error, at, index))?.case;
+            let case = prepared.map_err(|error| moved(error, at, place))?.case;
             materials.push(Materials {
                 name: in_words(document),
                 by_region: case.materials,
@@ -356,12 +371,10 @@ fn input(
 }
 
 /// Places of a prediction as places of the study.
-fn moved(error: JobError, plan: &Pointer, materials: usize) -> JobError {
+fn moved(error: JobError, plan: &Pointer, materials: &Pointer) -> JobError {
     let JobError::Refused(problem) = error else { return error };
-    let spec = spec_at();
-    let problem = problem
-        .moved("/plan", plan.as_str())
-        .moved("/spec/materials", spec.key("materials").index(materials).as_str());
+    let problem =
+        problem.moved("/plan", plan.as_str()).moved("/spec/materials", materials.as_str());
     JobError::Refused(problem)
 }
 

@@ -52,6 +52,7 @@ pub enum JobKind {
     Response,
     Optimise,
     Study,
+    Batch,
 }
 
 impl JobKind {
@@ -62,21 +63,29 @@ impl JobKind {
             JobKind::Response => "response",
             JobKind::Optimise => "optimise",
             JobKind::Study => "study",
+            JobKind::Batch => "batch",
         }
+    }
+
+    /// Whether its result is a report on rows.
+    pub fn has_report(self) -> bool {
+        matches!(self, JobKind::Study | JobKind::Batch)
     }
 
     /// Somebody waits for what one plan or one case needs; a study can wait. The smallest is first.
     pub fn priority(self) -> i64 {
         match self {
-            JobKind::Study => 1,
+            JobKind::Study | JobKind::Batch => 1,
             JobKind::Predict | JobKind::Compare | JobKind::Response | JobKind::Optimise => 0,
         }
     }
 
     /// The kind a stored word names.
     pub fn from_name(name: &str) -> Option<JobKind> {
-        use JobKind::{Compare, Optimise, Predict, Response, Study};
-        [Predict, Compare, Response, Optimise, Study].into_iter().find(|kind| kind.name() == name)
+        use JobKind::{Batch, Compare, Optimise, Predict, Response, Study};
+        [Predict, Compare, Response, Optimise, Study, Batch]
+            .into_iter()
+            .find(|kind| kind.name() == name)
     }
 }
 

@@ -33,6 +33,7 @@ use crate::prediction::{Method, Settings};
     ("response" = "#/components/schemas/ResponseDocument"),
     ("optimise" = "#/components/schemas/OptimiseDocument"),
     ("study" = "#/components/schemas/StudyDocument"),
+    ("batch" = "#/components/schemas/StudyDocument"),
 )))]
 pub enum JobDocument {
     // By far the largest of the documents.
@@ -246,17 +247,16 @@ impl JobDocument {
             Some(Some("compare")) => strict::from_value(value).map(JobDocument::Compare),
             Some(Some("response")) => strict::from_value(value).map(JobDocument::Response),
             Some(Some("optimise")) => strict::from_value(value).map(JobDocument::Optimise),
-            Some(Some("study")) => strict::from_value(value).map(JobDocument::Study),
+            Some(Some("study" | "batch")) => strict::from_value(value).map(JobDocument::Study),
             Some(Some(other)) => {
                 let detail = format!(
-                    "`{other}` is not a kind of job; `predict`, `compare`, `response`, `optimise` and `study` are"
+                    "`{other}` is not a kind of job; `predict`, `compare`, `response`, `optimise`, `study` and `batch` are"
                 );
                 Err(Problem::at(&at, "unknown-word", detail))
             }
             Some(None) => Err(Problem::at(&at, "wrong-type", "the kind of a job is a word")),
             None => {
-                let detail =
-                    "missing field `kind`: `predict`, `compare`, `response`, `optimise` or `study`";
+                let detail = "missing field `kind`: `predict`, `compare`, `response`, `optimise`, `study` or `batch`";
                 Err(Problem::at(&at, "missing-field", detail))
             }
         }

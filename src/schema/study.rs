@@ -7,21 +7,23 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use utoipa::ToSchema;
 
+use super::batch::ItemDocument;
 use super::canonical;
 use super::fault::Pointer;
 use super::material::{MaterialDocument, MaterialDocuments};
 use super::methods::{ElementName, MethodName};
 use super::plan::PlanDocument;
-use super::spec::{ContactName, ToleranceDocument};
+use super::spec::{ContactName, PredictDocument, ToleranceDocument};
 use super::text_or_object::TextOrObject;
 use crate::study::sweep::Values;
 
-/// `study`.
+/// `study`, or `batch`: the same report over an explicit list.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum StudyKind {
     #[default]
     Study,
+    Batch,
 }
 
 /// Methods side by side: every scene with each of its plans, method, material and mesh level. Rows are solved one
@@ -32,8 +34,15 @@ pub struct StudyDocument {
     #[serde(default)]
     #[schema(required)]
     pub kind: StudyKind,
-    #[schema(min_items = 1)]
+    /// At least one, but for a batch.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub scenes: Vec<SceneReference>,
+    /// Of a batch, in place of `scenes`, `plans`, `methods`, `elements`, `materials` and `sweep`: `predict` specs without
+    /// `budget`, `outputs`, `compare_to` and `tags`, of which each is a row at each level; `label` is what rows call its way of
+    /// modelling. Items of the same case, plan and materials are one scene.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schema(value_type = Vec<PredictDocument>)]
+    pub items: Vec<ItemDocument>,
     /// For cases without plans of their own, which need at least one, plans in full; for scenes by name those of their plans that are
     /// wanted, by name (default: all).
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -297,6 +306,7 @@ impl Default for StudyDocument {
             materials: Vec::new(),
             sweep: BTreeMap::new(),
             levels: usual_levels(),
+            items: Vec::new(),
             truth: None,
             repeats: usual_repeats(),
             thresholds: None,
@@ -318,6 +328,11 @@ impl StudyDocument {
                 && !ids.contains(&reference.case.as_str())
             {
                 ids.push(reference.case.as_str());
+            }
+        }
+        for item in &self.items {
+            if !ids.contains(&item.case.as_str()) {
+                ids.push(&item.case);
             }
         }
         ids
@@ -354,7 +369,7 @@ impl StudyDocument {
         shared.map(|(index, plan)| (at.key("plans").index(index), plan)).collect()
     }
 
-    /// All plans in full: those of the study and those of its cases.
+    /// All plans in full: those of the study, of its cases and of its items.
     pub fn plan_documents_mut(&mut self) -> Vec<&mut PlanDocument> {
         let shared = self.plans.iter_mut().filter_map(|plan| match plan {
             PlanReference::Plan(document) => Some(document),
@@ -364,7 +379,8 @@ impl StudyDocument {
             SceneReference::Case(reference) => Some(&mut reference.plans),
             SceneReference::Name(_) => None,
         });
-        shared.chain(own.flatten()).collect()
+        let of_items = self.items.iter_mut().filter_map(|item| item.plan.as_mut());
+        shared.chain(own.flatten()).chain(of_items).collect()
     }
 
     /// The names of wanted plans of scenes by name, with their places in `plans`.
@@ -387,6 +403,7 @@ impl StudyDocument {
                 reference.case.clear();
             }
         }
+        plain.items.iter_mut().for_each(|item| item.case.clear());
         canonical::to_value(&plain)
     }
 }

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use super::case_conversion::check_tags;
 use super::fault::{Faults, Pointer};
 use super::limits::Limits;
-use super::study::{CaseReference, SceneReference, StudyDocument};
+use super::study::{CaseReference, SceneReference, StudyDocument, StudyKind};
 use crate::study::scenes::SCENES;
 
 /// Halving every edge once more makes eight cells of one.
@@ -17,9 +17,13 @@ impl StudyDocument {
     /// Adds what is wrong with it, but for what scenes, methods and meshes tell; pointers start at `/spec`.
     pub fn check(&self, limits: &Limits, faults: &mut Faults) {
         let at = Pointer::root().key("spec");
-        self.check_scenes(&at, limits, faults);
+        match self.kind {
+            StudyKind::Study => self.check_scenes(&at, limits, faults),
+            StudyKind::Batch => self.check_items(&at, faults),
+        }
         let entries = limits.list_entries as usize;
         let lists = [
+            ("items", self.items.len()),
             ("plans", self.plans.len()),
             ("methods", self.methods.as_ref().map_or(0, Vec::len)),
             ("elements", self.elements.len()),
@@ -45,8 +49,31 @@ impl StudyDocument {
         check_tags(&self.tags, &at.key("tags"), limits, faults);
     }
 
+    /// A batch says everything item by item.
+    fn check_items(&self, at: &Pointer, faults: &mut Faults) {
+        if self.items.is_empty() {
+            faults.add(&at.key("items"), "missing-field", "at least one item is needed");
+        }
+        let elsewhere = [
+            ("scenes", self.scenes.is_empty()),
+            ("plans", self.plans.is_empty()),
+            ("methods", self.methods.is_none()),
+            ("elements", self.elements.is_empty()),
+            ("materials", self.materials.is_empty()),
+            ("sweep", self.sweep.is_empty()),
+        ];
+        for (name, _) in elsewhere.into_iter().filter(|(_, is_absent)| !is_absent) {
+            let detail = format!("a batch has `items`, and `{name}` belongs to a study");
+            faults.add(&at.key(name), "unknown-field", detail);
+        }
+    }
+
     fn check_scenes(&self, at: &Pointer, limits: &Limits, faults: &mut Faults) {
         let scenes = at.key("scenes");
+        if !self.items.is_empty() {
+            let detail = "a study has `scenes`, and `items` belong to a batch";
+            faults.add(&at.key("items"), "unknown-field", detail);
+        }
         if self.scenes.is_empty() {
             faults.add(&scenes, "missing-field", "at least one scene is needed");
         }
@@ -105,7 +132,7 @@ impl StudyDocument {
         faults.check_range(&at.key("refine"), refine, 0.0..=f64::from(MOST_LEVEL), "");
         let one_plan = match self.scenes.as_slice() {
             [SceneReference::Case(reference)] => self.plans_of(0, reference).len() == 1,
-            _ => false,
+            _ => self.items.len() == 1,
         };
         let one_row = one_plan && self.materials.len() <= 1 && self.sweep.is_empty();
         if truth.job.is_some() && !one_row {

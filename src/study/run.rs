@@ -40,8 +40,8 @@ pub fn run(
     let bench = Bench { pool, repeats, row_s, stopwatch, progress };
     let begun = stopwatch.seconds();
     let mut report = Report::default();
-    for scene in &study.scenes {
-        let (about, rows) = SceneWork { study, scene, bench: &bench, begun }.run()?;
+    for (place, scene) in study.scenes.iter().enumerate() {
+        let (about, rows) = SceneWork { study, place, scene, bench: &bench, begun }.run()?;
         report.scenes.push(about);
         report.rows.extend(rows);
     }
@@ -77,6 +77,8 @@ type Late<'a> = BTreeMap<(u32, &'a str), Refusal>;
 /// The rows of one scene.
 struct SceneWork<'a> {
     study: &'a Study,
+    /// Of the scene among those of the study.
+    place: usize,
     scene: &'a StudyScene,
     bench: &'a Bench<'a>,
     /// When the study began, in s of the stopwatch.
@@ -153,7 +155,7 @@ impl<'a> SceneWork<'a> {
     ) -> Result<Vec<Attempt<'a>>, StudyError> {
         let mut attempts = Vec::new();
         for &level in &self.study.levels {
-            for variant in &self.study.variants {
+            for variant in self.study.variants_of(self.place) {
                 if self.bench.progress.is_cancelled() {
                     return Err(StudyError::Cancelled);
                 }

@@ -1,15 +1,17 @@
 //! What a study runs: scenes with plans and a truth, crossed with methods, materials and mesh levels.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::material::LinearElastic;
 use crate::mesh::{Vector, VolumeMesh};
 use crate::prediction::{Case, ElementChoice, FibreDirection, Plan, Settings};
 
-/// Every scene with every variant, material, plan and level.
+/// Every scene with every variant, or with its own, and with every material, plan and level.
 pub struct Study {
     pub scenes: Vec<StudyScene>,
     pub variants: Vec<Variant>,
+    /// The scenes and variants that belong together, by their places; all with all where there is none.
+    pub pairs: BTreeSet<(usize, usize)>,
     /// Level n halves every edge n times.
     pub levels: Vec<u32>,
     /// Solves of each row, of which the median time is told; at least 1. Rows that take long are solved
@@ -19,6 +21,16 @@ pub struct Study {
     pub budget_s: f64,
     /// A solve that takes longer is given up, in s; infinite where it may take its time.
     pub row_s: f64,
+}
+
+impl Study {
+    /// The variants that a scene is solved with.
+    pub fn variants_of(&self, scene: usize) -> impl Iterator<Item = &Variant> {
+        let all = self.pairs.is_empty();
+        let variants = self.variants.iter().enumerate();
+        let own = variants.filter(move |(at, _)| all || self.pairs.contains(&(scene, *at)));
+        own.map(|(_, variant)| variant)
+    }
 }
 
 /// A case with the plans that move it, and what is held for true.

@@ -27,6 +27,7 @@ mod formats_round_trip;
 mod formats_samples;
 mod formats_shared_data;
 mod formats_surface;
+mod fuzz;
 mod hard_systems;
 mod image;
 mod image_jobs;

@@ -44,6 +44,7 @@ fn study(scene: StudyScene, variants: Vec<Variant>, levels: &[u32]) -> Study {
     Study {
         scenes: vec![scene],
         variants,
+        pairs: [].into(),
         levels: levels.to_vec(),
         repeats: 1,
         budget_s: f64::INFINITY,

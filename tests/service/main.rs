@@ -5,6 +5,7 @@ mod admission;
 mod bad_documents;
 mod bad_meshes;
 mod bad_requests;
+mod batch;
 mod cases;
 mod demo;
 mod deployments;
