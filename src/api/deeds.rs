@@ -3,6 +3,7 @@
 use axum::extract::{MatchedPath, Request};
 use axum::http::{Method, StatusCode, header};
 use axum::response::{IntoResponse, Response};
+use tracing::Instrument;
 
 use super::caller::{Caller, is_computed_at_once};
 use super::error::ApiError;
@@ -12,11 +13,11 @@ use crate::store::{Deed, Store};
 pub struct Begun(Deed);
 
 impl Begun {
-    /// None for requests that change nothing.
-    pub fn of(caller: &Caller, request: &Request, id: &str) -> Option<Begun> {
+    /// None for requests that change nothing and are not refused for their key.
+    pub fn of(caller: &Caller, request: &Request, id: &str, is_refused: bool) -> Option<Begun> {
         let route = request.extensions().get::<MatchedPath>()?.as_str();
         let looks = matches!(*request.method(), Method::GET | Method::HEAD | Method::OPTIONS);
-        if looks || is_computed_at_once(route) {
+        if !is_refused && (looks || is_computed_at_once(route)) {
             return None;
         }
         Some(Begun(Deed {
@@ -29,8 +30,23 @@ impl Begun {
         }))
     }
 
+    /// Carries out the request and notes it, also when the client goes away meanwhile: what is done is noted.
+    pub async fn follow(
+        self,
+        store: &Store,
+        run: impl Future<Output = Response> + Send + 'static,
+    ) -> Response {
+        let store = store.clone();
+        let work = async move {
+            let response = run.await;
+            self.note(&store, response).await
+        };
+        let done = tokio::spawn(work.in_current_span()).await;
+        done.unwrap_or_else(|error| ApiError::internal(error).into_response())
+    }
+
     /// Notes the request with its answer. What cannot be noted is not answered as if it were: the client comes back.
-    pub async fn note(mut self, store: &Store, response: Response) -> Response {
+    async fn note(mut self, store: &Store, response: Response) -> Response {
         self.0.outcome = response.status().as_u16().to_string();
         if response.status() == StatusCode::CREATED {
             let place = response.headers().get(header::LOCATION);

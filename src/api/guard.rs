@@ -44,18 +44,21 @@ pub async fn surround(State(service): State<Service>, request: Request, next: Ne
             Ok(Admitted { left, caller }) => {
                 let allowed =
                     caller.as_ref().map_or(Ok(()), |c| c.require(caller::scope_of(&request)));
-                let deed = caller.and_then(|caller| Begun::of(&caller, &request, &id));
-                let mut response = match allowed {
-                    Ok(()) => next.run(request).await,
-                    Err(error) => error.into_response(),
+                let deed = caller.and_then(|c| Begun::of(&c, &request, &id, allowed.is_err()));
+                let run = async move {
+                    match allowed {
+                        Ok(()) => next.run(request).await,
+                        Err(error) => error.into_response(),
+                    }
+                };
+                let mut response = match deed {
+                    Some(deed) => deed.follow(&service.store, run).await,
+                    None => run.await,
                 };
                 if let Some(left) = left {
                     left.tell(&mut response);
                 }
-                match deed {
-                    Some(deed) => deed.note(&service.store, response).await,
-                    None => response,
-                }
+                response
             }
             Err(error) => error.into_response(),
         };

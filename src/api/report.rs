@@ -103,8 +103,8 @@ async fn report(
 ) -> ApiResult {
     let format = wanted(&parameters, &headers)?;
     let job = successful(&service, &id, &headers).await?;
-    if job.kind != JobKind::Study.name() {
-        let detail = format!("a job of kind {} has no report; a study has", job.kind);
+    if !JobKind::from_name(&job.kind).is_some_and(JobKind::has_report) {
+        let detail = format!("a job of kind {} has no report; a study and a batch have", job.kind);
         return Err(ApiError::new("no-such-output", detail));
     }
     let stored = stored_report(&service, &id).await?;

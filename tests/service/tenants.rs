@@ -249,6 +249,8 @@ async fn who_runs_the_service_sees_what_was_done() {
     let belongings = Belongings::of(&hospital, &key).await;
     let reader = hospital.key("a", &["read"]).await;
     hospital.post(&reader, "/v1/jobs", &json!({})).await.problem(403, "forbidden-scope");
+    let runner = hospital.key("a", &["run"]).await;
+    hospital.get(&runner, "/v1/cases").await.problem(403, "forbidden-scope");
     let log = hospital.get(&key, "/v1/audit?limit=200").await.expect(StatusCode::OK);
     let deeds: Vec<(String, String, String)> = log["items"]
         .as_array()
@@ -265,6 +267,7 @@ async fn who_runs_the_service_sees_what_was_done() {
         ("POST /v1/cases/{id}/plans", belongings.plan.as_str(), "201"),
         ("POST /v1/keys", belongings.key.as_str(), "201"),
         ("POST /v1/jobs", "", "403"),
+        ("GET /v1/cases", "", "403"),
     ] {
         let wanted = (action.to_owned(), object.to_owned(), outcome.to_owned());
         assert!(deeds.contains(&wanted), "{wanted:?} is not in {deeds:?}");
