@@ -32,6 +32,7 @@ mod study_chart;
 pub mod study_files;
 pub mod study_report;
 mod study_scenes;
+mod study_truth;
 mod tissue_files;
 pub mod upload;
 pub mod work;

@@ -6,12 +6,13 @@ use serde_json::Value;
 
 use super::failure::JobError;
 use super::input::{PredictInput, Prepared};
-use super::source::{MeshSource, StoredMesh};
-use crate::mesh::{Vector, Warning};
+use super::source::MeshSource;
+use super::study_truth::known_displacement;
+use crate::mesh::Warning;
 use crate::schema::material::{PlacedMaterials, in_words, merge_materials};
 use crate::schema::methods::{ElementName, MethodName};
 use crate::schema::prediction::InputDocument;
-use crate::schema::study::{CaseReference, SceneReference, StudyDocument, TruthDocument};
+use crate::schema::study::{CaseReference, SceneReference, StudyDocument};
 use crate::schema::{
     CaseDocument, Faults, Limits, MaterialDocuments, PlanDocument, Pointer, PredictDocument,
     Problem, strict,
@@ -340,24 +341,6 @@ impl Documents<'_> {
             }
         }
     }
-
-    /// What the spec holds for true, if it says so.
-    fn truth(&self, scene: &mut StudyScene, faults: &mut Faults) {
-        let at = spec_at().key("truth");
-        match &self.spec.truth {
-            Some(TruthDocument { refine: Some(times), element, .. }) => {
-                let element = element.unwrap_or(ElementName::Quadratic).choice();
-                scene.truth = Truth::Refined { times: *times, element };
-            }
-            Some(TruthDocument { closed_form: true, .. })
-                if !matches!(scene.truth, Truth::ClosedForm(_)) =>
-            {
-                let detail = format!("scene {} has no closed form", scene.name);
-                faults.add(&at.key("closed_form"), "no-closed-form", detail);
-            }
-            _ => {}
-        }
-    }
 }
 
 /// One plan and one set of materials on a case.
@@ -376,27 +359,4 @@ fn moved(error: JobError, plan: &Pointer, materials: &Pointer) -> JobError {
     let problem =
         problem.moved("/plan", plan.as_str()).moved("/spec/materials", materials.as_str());
     JobError::Refused(problem)
-}
-
-/// The displacement of each skin node to where a predicted skin has it.
-fn known_displacement(
-    skin: &StoredMesh,
-    prepared: &Prepared,
-    at: &Pointer,
-) -> Result<Vec<Vector>, JobError> {
-    let Some(predicted) = skin.surface_in_mm() else {
-        return Err(Problem::at(at, "wrong-mesh", "the result of that job is no surface").into());
-    };
-    let rest = &prepared.scene.skin;
-    let numbers = predicted.node_ids.as_deref().unwrap_or_default();
-    if numbers != rest.nodes() || predicted.points.len() != rest.surface.points.len() {
-        let detail = format!(
-            "the skin of that job has {} nodes, that of the case {}, and their numbers have to be the same",
-            predicted.points.len(),
-            rest.nodes().len()
-        );
-        return Err(Problem::at(at, "not-corresponding", detail).into());
-    }
-    let pairs = predicted.points.iter().zip(&rest.surface.points);
-    Ok(pairs.map(|(moved, rest)| moved - rest).collect())
 }

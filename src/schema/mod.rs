@@ -34,6 +34,7 @@ pub mod spec;
 pub mod strict;
 pub mod study;
 mod study_check;
+mod study_reference;
 mod text_or_object;
 pub mod thickness_warp;
 pub mod validation;
