@@ -120,9 +120,9 @@ fn any_file_is_answered() {
 
 const CASE: &str = r#"{"schema":1,"name":"a","units":"mm","frame":"LPS","volume":"m","tags":["t"],
     "regions":{"array":"layer","names":{"1":"fat"}},"skin":{"node_set":"skin"},
-    "segments":[{"name":"jaw","nodes":{"array":"tag","value":2}}],"fixed":[{"box_mm":[[0,0,0],[1,2,3]]}],
+    "segments":[{"name":"jaw","nodes":{"array":"tag","value":2}}],"fixed":[{"any":[{"node_set":"skull"},{"surface":"b","within_mm":2.5}]}],
     "materials":{"*":{"young_modulus_kpa":15,"poisson_ratio":0.46}},"landmarks":{"chin":[1,2.5e1,-3]}}"#;
-const PLAN: &str = r#"{"name":"p","segments":[{"name":"jaw","translation_mm":[1,0,0],"rotation_deg":[0,0,3],
+const PLAN: &str = r#"{"segments":[{"name":"jaw","translation_mm":[1,0,0],"rotation_deg":[0,0,3],
     "pivot_mm":[0,40,-50]}],"loads":[{"gravity_m_per_s2":[0,0,-9.81]}]}"#;
 const PREDICT: &str = r#"{"kind":"predict","case":"c","method":"fem_linear","element":"auto",
     "materials":{"*":{"young_modulus_kpa":15,"poisson_ratio":0.46}},"outputs":["skin.vtp"],
@@ -179,7 +179,7 @@ fn any_document_is_answered() {
         _ => parsed::<ResponseDocument>(input),
     };
     for (name, seed) in seeds {
-        assert!(parse(name, seed.as_bytes()), "{name}");
+        assert!(parse(name, seed.as_bytes()), "{name} is no document");
     }
     let seeds = seeds.map(|(name, text)| (name, text.as_bytes().to_vec()));
     let mut read_well = 0;
