@@ -14,7 +14,7 @@ use serde::de::DeserializeOwned;
 use crate::formats_samples::one_of_each;
 
 /// Changed inputs of each kind where no time is asked for.
-const USUAL: usize = 2000;
+const USUAL: usize = 20_000;
 
 /// No input of a few kB may take longer.
 const LONGEST: Duration = Duration::from_secs(10);
