@@ -5,7 +5,7 @@ use std::net::SocketAddr;
 use std::sync::Arc;
 
 use axum::extract::{Path, Query, Request, State};
-use axum::http::{HeaderValue, Method, StatusCode, header};
+use axum::http::{Method, StatusCode, header};
 use axum::middleware::{Next, from_fn_with_state};
 use axum::response::{IntoResponse, Response};
 use axum::routing::{delete, get, post, put};
@@ -14,13 +14,16 @@ use serde::{Deserialize, Serialize};
 use tokio::net::TcpListener;
 
 use super::audit::{self, AuditParameters};
-use super::caller::bearer;
+use super::caller::{bearer, unauthorized};
+use super::deeds::carry_out;
 use super::error::{ApiError, ApiResult};
 use super::guard::named;
 use super::{json, keys, time};
 use crate::config::Secret;
 use crate::metrics;
-use crate::schema::key::{KeyDocument, RotationDocument, is_key_id, is_tenant};
+use crate::schema::key::{
+    KeyDocument, RETENTION_DAYS, RotationDocument, TENANT_NAMES, is_key_id, is_tenant,
+};
 use crate::store::{Chain, Deed, LostRow, Store};
 
 const PROMETHEUS: &str = "text/plain; version=0.0.4; charset=utf-8";
@@ -79,9 +82,8 @@ async fn guard(State(office): State<Office>, request: Request, next: Next) -> Re
         None => office.is_loopback,
     };
     if !allowed {
-        let detail = "administration needs the admin-key, as `Authorization: Bearer KEY`";
-        let error = ApiError::new("unauthorized", detail)
-            .header(header::WWW_AUTHENTICATE, HeaderValue::from_static("Bearer"));
+        let error =
+            unauthorized("administration needs the admin-key, as `Authorization: Bearer KEY`");
         return named(error.into_response(), &id);
     }
     let deed = (*request.method() != Method::GET).then(|| Deed {
@@ -92,13 +94,11 @@ async fn guard(State(office): State<Office>, request: Request, next: Next) -> Re
         outcome: String::new(),
         request: id.clone(),
     });
-    let mut response = next.run(request).await;
-    if let Some(mut deed) = deed {
-        deed.outcome = response.status().as_u16().to_string();
-        if let Err(error) = office.store.note(deed).await {
-            response = ApiError::from(error).into_response();
-        }
-    }
+    let run = next.run(request);
+    let response = match deed {
+        Some(deed) => carry_out(&office.store, run, |_| deed).await,
+        None => run.await,
+    };
     named(response, &id)
 }
 
@@ -118,10 +118,7 @@ impl Office {
     fn of(&self, tenant: &str) -> ApiResult<Store> {
         match is_tenant(tenant) {
             true => Ok(self.store.of_tenant(tenant)),
-            false => Err(ApiError::invalid_parameter(
-                "tenant",
-                "a tenant has 1 to 64 of a to z, 0 to 9, - and .",
-            )),
+            false => Err(ApiError::invalid_parameter("tenant", TENANT_NAMES)),
         }
     }
 }
@@ -147,7 +144,7 @@ async fn set_tenant(
     Path(tenant): Path<String>,
     Json(wanted): Json<TenantDocument>,
 ) -> ApiResult {
-    if wanted.retention_days.is_some_and(|days| !(1..=36_500).contains(&days)) {
+    if wanted.retention_days.is_some_and(|days| !RETENTION_DAYS.contains(&days)) {
         let detail = "retention_days has to be 1 to 36500";
         return Err(ApiError::invalid_parameter("retention_days", detail));
     }

@@ -108,7 +108,8 @@ async fn known(service: &Service, given: &str) -> ApiResult<Caller> {
     Ok(Caller { tenant: row.tenant.into(), key: row.id.into(), scopes })
 }
 
-fn unauthorized(detail: &str) -> ApiError {
+/// The refusal of one who is not known.
+pub fn unauthorized(detail: &str) -> ApiError {
     let error = ApiError::new("unauthorized", detail);
     error.header(header::WWW_AUTHENTICATE, HeaderValue::from_static("Bearer"))
 }

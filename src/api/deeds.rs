@@ -30,34 +30,36 @@ impl Begun {
         }))
     }
 
-    /// Carries out the request and notes it, also when the client goes away meanwhile: what is done is noted.
-    pub async fn follow(
-        self,
-        store: &Store,
-        run: impl Future<Output = Response> + Send + 'static,
-    ) -> Response {
-        let store = store.clone();
-        let work = async move {
-            let response = run.await;
-            self.note(&store, response).await
-        };
-        let done = tokio::spawn(work.in_current_span()).await;
-        done.unwrap_or_else(|error| ApiError::internal(error).into_response())
-    }
-
-    /// Notes the request with its answer. What cannot be noted is not answered as if it were: the client comes back.
-    async fn note(mut self, store: &Store, response: Response) -> Response {
-        self.0.outcome = response.status().as_u16().to_string();
+    /// The same, once it has been answered.
+    pub fn answered(mut self, response: &Response) -> Deed {
         if response.status() == StatusCode::CREATED {
             let place = response.headers().get(header::LOCATION);
             let made = place.and_then(|place| place.to_str().ok()?.rsplit('/').next());
             self.0.object = made.unwrap_or(&self.0.object).to_owned();
         }
-        match store.note(self.0).await {
+        self.0
+    }
+}
+
+/// Carries out a request and notes it with its answer, also when the client goes away meanwhile: what is done is noted.
+/// What cannot be noted is not answered as if it were: the client comes back.
+pub async fn carry_out(
+    store: &Store,
+    run: impl Future<Output = Response> + Send + 'static,
+    deed: impl FnOnce(&Response) -> Deed + Send + 'static,
+) -> Response {
+    let store = store.clone();
+    let work = async move {
+        let response = run.await;
+        let outcome = response.status().as_u16().to_string();
+        let deed = Deed { outcome, ..deed(&response) };
+        match store.note(deed).await {
             Ok(()) => response,
             Err(error) => ApiError::from(error).into_response(),
         }
-    }
+    };
+    let done = tokio::spawn(work.in_current_span()).await;
+    done.unwrap_or_else(|error| ApiError::internal(error).into_response())
 }
 
 /// The last part of a path that stands for an id in its route.

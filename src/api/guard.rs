@@ -9,7 +9,7 @@ use axum::response::{IntoResponse, Response};
 use tracing::Instrument;
 
 use super::caller::{self, Caller};
-use super::deeds::Begun;
+use super::deeds::{Begun, carry_out};
 use super::error::{ApiError, ApiResult, with_problem_body};
 use super::rate::Left;
 use super::{Service, body};
@@ -52,7 +52,9 @@ pub async fn surround(State(service): State<Service>, request: Request, next: Ne
                     }
                 };
                 let mut response = match deed {
-                    Some(deed) => deed.follow(&service.store, run).await,
+                    Some(deed) => {
+                        carry_out(&service.store, run, |answer| deed.answered(answer)).await
+                    }
                     None => run.await,
                 };
                 if let Some(left) = left {

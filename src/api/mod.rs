@@ -49,6 +49,7 @@ use utoipa_axum::router::OpenApiRouter;
 
 use crate::config::Config;
 use crate::jobs::library::Library;
+use crate::jobs::niceness::give_way;
 use crate::jobs::responses::Responses;
 use crate::jobs::slot::slot_bytes;
 use crate::schema::Limits;
@@ -58,8 +59,6 @@ pub use openapi::document;
 
 /// Meshes that are parsed at the same time: each may take several times its size in memory.
 const PARSED_AT_ONCE: usize = 2;
-/// A tenth of the share of a processor that the threads which answer have when both want it.
-const NICENESS: i32 = 10;
 
 /// What every request may use.
 #[derive(Clone)]
@@ -124,8 +123,7 @@ impl Service {
         let _permit = permit.map_err(error::ApiError::internal)?;
         let (done, made) = tokio::sync::oneshot::channel();
         let patient = move || {
-            // On Linux this is the priority of the thread; whether the system agrees changes no result.
-            let _ = rustix::process::nice(NICENESS);
+            give_way();
             // Nobody waits any more where the client has gone.
             let _ = done.send(work());
         };

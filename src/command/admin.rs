@@ -6,7 +6,7 @@ use clap::{Args, Subcommand};
 
 use super::settings::Arguments as Settings;
 use crate::config::Config;
-use crate::schema::key::{KeyDocument, is_tenant, scopes_of};
+use crate::schema::key::{KeyDocument, RETENTION_DAYS, TENANT_NAMES, is_tenant, scopes_of};
 use crate::schema::problem::Problem;
 use crate::store::{AuditRow, Chain, DEFAULT_TENANT, Deed, Findings, Store, StoreError};
 
@@ -47,7 +47,7 @@ enum Command {
         #[arg(long, default_value = DEFAULT_TENANT, value_parser = tenant)]
         tenant: String,
         /// Days; without them until it is erased
-        #[arg(long, value_parser = clap::value_parser!(i64).range(1..=36_500))]
+        #[arg(long, value_parser = clap::value_parser!(i64).range(RETENTION_DAYS))]
         days: Option<i64>,
         #[command(flatten)]
         settings: Settings,
@@ -124,7 +124,7 @@ enum KeyCommand {
 fn tenant(text: &str) -> Result<String, String> {
     match is_tenant(text) {
         true => Ok(text.to_owned()),
-        false => Err("a tenant has 1 to 64 of a to z, 0 to 9, - and .".to_owned()),
+        false => Err(TENANT_NAMES.to_owned()),
     }
 }
 

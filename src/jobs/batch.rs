@@ -64,11 +64,7 @@ impl Documents<'_> {
                 faults.add(&at, "duplicate-name", "the item is in the list already");
             }
         }
-        let memory_mb = self.spec.budget.memory_mb.min(self.limits.slot_memory_mb);
-        for variant in &mut parts.variants {
-            variant.settings.memory_mb = memory_mb;
-        }
-        self.check_labels(&parts.variants, faults);
+        self.bound(&mut parts.variants, faults);
         Ok(parts)
     }
 

@@ -12,6 +12,7 @@ pub mod input;
 pub mod judgement;
 pub mod library;
 mod mesh_cache;
+pub mod niceness;
 pub mod numerics;
 pub mod observed;
 pub mod optimisation;

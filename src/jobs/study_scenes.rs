@@ -66,10 +66,6 @@ impl Documents<'_> {
                     .collect()
             }
         };
-        let memory_mb = self.spec.budget.memory_mb.min(self.limits.slot_memory_mb);
-        for variant in &mut variants {
-            variant.settings.memory_mb = memory_mb;
-        }
         for (index, variant) in variants.iter().enumerate() {
             if variants[..index].iter().any(|other| other.label == variant.label) {
                 let detail =
@@ -77,12 +73,21 @@ impl Documents<'_> {
                 faults.add(&at, "duplicate-name", detail);
             }
         }
-        self.check_labels(&variants, faults);
+        self.bound(&mut variants, faults);
         variants
     }
 
+    /// Gives the variants the memory of the study, and checks the labels that the rules of the outcome name.
+    pub(super) fn bound(&self, variants: &mut [Variant], faults: &mut Faults) {
+        let memory_mb = self.spec.budget.memory_mb.min(self.limits.slot_memory_mb);
+        for variant in variants.iter_mut() {
+            variant.settings.memory_mb = memory_mb;
+        }
+        self.check_labels(variants, faults);
+    }
+
     /// Labels that the rules of the outcome name.
-    pub(super) fn check_labels(&self, variants: &[Variant], faults: &mut Faults) {
+    fn check_labels(&self, variants: &[Variant], faults: &mut Faults) {
         let labels = |label: &str| variants.iter().any(|variant| variant.label == label);
         let known: Vec<&str> = variants.iter().map(|variant| variant.label.as_str()).collect();
         let thresholds = self.spec.thresholds.iter().flat_map(|bounds| &bounds.labels);

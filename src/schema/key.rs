@@ -157,7 +157,13 @@ fn is_hexadecimal(text: &str, bytes: usize) -> bool {
     text.len() == 2 * bytes && text.bytes().all(is_digit)
 }
 
-/// Names of tenants: letters, digits, `-` and `.`, at most 64 of them, in lower case.
+/// What names of tenants are.
+pub const TENANT_NAMES: &str = "a tenant has 1 to 64 of a to z, 0 to 9, - and .";
+
+/// For how long what nobody changes may be kept before it is erased.
+pub const RETENTION_DAYS: std::ops::RangeInclusive<i64> = 1..=36_500;
+
+/// Whether a name is one of [`TENANT_NAMES`].
 pub fn is_tenant(name: &str) -> bool {
     let is_plain = |byte: u8| matches!(byte, b'a'..=b'z' | b'0'..=b'9' | b'-' | b'.');
     (1..=64).contains(&name.len()) && name.bytes().all(is_plain)

@@ -24,7 +24,6 @@ pub struct NewMesh {
 pub struct MeshRow {
     pub id: String,
     pub sha256: String,
-    pub options: String,
     pub blob: String,
     pub report: String,
     pub created: i64,
@@ -38,9 +37,9 @@ pub enum MeshDeletion {
     NotFound,
 }
 
-const BY_ID: &str = "SELECT id, sha256, options, blob, report, created FROM meshes \
+const BY_ID: &str = "SELECT id, sha256, blob, report, created FROM meshes \
      WHERE id = $1 AND tenant = $2";
-const BY_CONTENT: &str = "SELECT id, sha256, options, blob, report, created FROM meshes \
+const BY_CONTENT: &str = "SELECT id, sha256, blob, report, created FROM meshes \
      WHERE sha256 = $1 AND options = $2 AND tenant = $3";
 const INSERT: &str = "INSERT INTO meshes (id, sha256, options, blob, standalone, report, tenant, created) \
      VALUES ($1, $2, $3, $4, $5, $6, $7, (SELECT now_ms FROM clock))";
@@ -49,7 +48,6 @@ fn mesh_row(row: &Row) -> Result<MeshRow, sqlx::Error> {
     Ok(MeshRow {
         id: row.try_get("id")?,
         sha256: row.try_get("sha256")?,
-        options: row.try_get("options")?,
         blob: row.try_get("blob")?,
         report: row.try_get("report")?,
         created: row.try_get("created")?,

@@ -14,6 +14,7 @@ use super::protocol::{
 use super::source::{FullAnswer, SlotSource};
 use crate::jobs::fail_point::FailPoints;
 use crate::jobs::mesh_cache::MeshCache;
+use crate::jobs::niceness::give_way;
 use crate::jobs::numerics::attempt;
 use crate::prediction::{Phase, Progress};
 
@@ -29,9 +30,6 @@ pub enum SlotError {
     #[error("the slot has no threads: {0}")]
     Threads(#[from] rayon::ThreadPoolBuildError),
 }
-
-/// A tenth of the share of a processor that the API has when both want it.
-const NICENESS: i32 = 10;
 
 /// What a process has to say, one message at a time.
 pub struct Reports(Mutex<Stdout>);
@@ -78,12 +76,6 @@ pub fn serve() -> Result<(), SlotError> {
         reports.tell(&Report::Ended(Box::new(Ended { outcome, memory })));
     }
     Ok(())
-}
-
-/// A processor that the API or the heartbeat wants is theirs: they need it for a moment, a job for seconds. Whether the
-/// system agrees changes no result.
-fn give_way() {
-    let _ = rustix::process::nice(NICENESS);
 }
 
 /// The system ends this process with its worker, even one that does not read any more.
