@@ -70,7 +70,7 @@ pub struct StudyDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub truth: Option<TruthDocument>,
-    /// Solves of each row, whose median time is told; fewer once they take 10 s together.
+    /// Solves of each row, whose median time is told; fewer once they take 2 s together.
     #[serde(default = "usual_repeats")]
     #[schema(default = 3, minimum = 1, maximum = 20)]
     pub repeats: u32,
@@ -84,7 +84,7 @@ pub struct StudyDocument {
     #[serde(default)]
     pub tolerances: TolerancesDocument,
     /// Labels of variants that may fail without making the outcome `worse`, beside `mtm jacobi`, which is there to show
-    /// that it diverges.
+    /// that it diverges, and `msm direct`, which is slow.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub expected_failures: Vec<String>,
     #[serde(default)]

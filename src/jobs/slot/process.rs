@@ -126,10 +126,11 @@ pub struct Process {
 
 impl Process {
     /// Starts it on the calling thread, with which the system lets it end. Of the environment, which may hold keys, it
-    /// gets no more than what is named here.
+    /// gets no more than what is named here; not the wish for traces of failures either, for which a process that has
+    /// just used up its memory has none.
     pub fn start(program: &Program, settings: &Settings) -> io::Result<Process> {
-        let passed = [fail_point::VARIABLE, "RUST_BACKTRACE"];
-        let passed = passed.iter().filter_map(|name| Some((*name, std::env::var_os(name)?)));
+        let passed = std::env::var_os(fail_point::VARIABLE);
+        let passed = passed.map(|faults| (fail_point::VARIABLE, faults));
         let mut child = Command::new(&program.file)
             .arg0("facies")
             .args(&program.arguments)
