@@ -5,7 +5,7 @@ use std::net::SocketAddr;
 use std::sync::Arc;
 
 use axum::extract::{Path, Query, Request, State};
-use axum::http::{Method, StatusCode, header};
+use axum::http::{StatusCode, header};
 use axum::middleware::{Next, from_fn_with_state};
 use axum::response::{IntoResponse, Response};
 use axum::routing::{delete, get, post, put};
@@ -15,7 +15,7 @@ use tokio::net::TcpListener;
 
 use super::audit::{self, AuditParameters};
 use super::caller::{bearer, unauthorized};
-use super::deeds::carry_out;
+use super::deeds::{carry_out, deed_of_admin};
 use super::error::{ApiError, ApiResult};
 use super::guard::named;
 use super::{json, keys, time};
@@ -24,7 +24,7 @@ use crate::metrics;
 use crate::schema::key::{
     KeyDocument, RETENTION_DAYS, RotationDocument, TENANT_NAMES, is_key_id, is_tenant,
 };
-use crate::store::{Chain, Deed, LostRow, Store};
+use crate::store::{Chain, LostRow, Store};
 
 const PROMETHEUS: &str = "text/plain; version=0.0.4; charset=utf-8";
 
@@ -86,23 +86,14 @@ async fn guard(State(office): State<Office>, request: Request, next: Next) -> Re
             unauthorized("administration needs the admin-key, as `Authorization: Bearer KEY`");
         return named(error.into_response(), &id);
     }
-    let deed = (*request.method() != Method::GET).then(|| Deed {
-        tenant: String::new(),
-        actor: "admin".to_owned(),
-        action: format!("{} on the admin listener", request.method()),
-        object: request.uri().path().chars().take(LONGEST_PATH).collect(),
-        outcome: String::new(),
-        request: id.clone(),
-    });
+    let deed = deed_of_admin(&request, &id);
     let run = next.run(request);
     let response = match deed {
-        Some(deed) => carry_out(&office.store, run, |_| deed).await,
+        Some(deed) => carry_out(&office.store, deed, run).await,
         None => run.await,
     };
     named(response, &id)
 }
-
-const LONGEST_PATH: usize = 200;
 
 /// What was counted, with the queue as it is at this moment.
 async fn counted(State(office): State<Office>) -> Response {

@@ -20,16 +20,17 @@ pub fn router() -> OpenApiRouter<Service> {
 #[derive(Serialize, ToSchema)]
 pub struct AuditView {
     pub number: i64,
-    /// RFC 3339, UTC.
+    /// When it began; RFC 3339, UTC.
     pub at: String,
     pub tenant: String,
-    /// The id of the key; `setting` for the key of the settings, `-` without a key, `command` on the command line.
+    /// The id of the key; `setting` for the key of the settings, `-` without a key, `admin` on the admin listener,
+    /// `command` on the command line, `retention` for what grew too old.
     pub actor: String,
     /// Method and route.
     pub action: String,
     /// The id of what it was done to; empty where there is none.
     pub object: String,
-    /// The HTTP status.
+    /// The HTTP status; `done` or `failed` where there was no request; `unknown` where nobody lived to tell.
     pub outcome: String,
     /// The id of the request.
     pub request: String,
@@ -56,7 +57,7 @@ pub struct AuditParameters {
 
 impl AuditView {
     fn of(row: AuditRow) -> AuditView {
-        let AuditRow { number, at, deed, hash } = row;
+        let AuditRow { number, at, deed, outcome, hash } = row;
         AuditView {
             number,
             at: time::rfc3339(at),
@@ -64,7 +65,7 @@ impl AuditView {
             actor: deed.actor,
             action: deed.action,
             object: deed.object,
-            outcome: deed.outcome,
+            outcome,
             request: deed.request,
             hash,
         }

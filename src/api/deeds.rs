@@ -9,76 +9,91 @@ use super::caller::{Caller, is_computed_at_once};
 use super::error::ApiError;
 use crate::store::{Deed, Store};
 
-/// A request that is to be noted when it has been answered.
-pub struct Begun(Deed);
-
-impl Begun {
-    /// None for requests that change nothing and are not refused for their key.
-    pub fn of(caller: &Caller, request: &Request, id: &str, is_refused: bool) -> Option<Begun> {
-        let route = request.extensions().get::<MatchedPath>()?.as_str();
-        let looks = matches!(*request.method(), Method::GET | Method::HEAD | Method::OPTIONS);
-        if !is_refused && (looks || is_computed_at_once(route)) {
-            return None;
-        }
-        Some(Begun(Deed {
-            tenant: caller.tenant.to_string(),
-            actor: caller.key.to_string(),
-            action: format!("{} {route}", request.method()),
-            object: named(route, request.uri().path()),
-            outcome: String::new(),
-            request: id.to_owned(),
-        }))
+/// What a request is about to do; none for requests that change nothing and are not refused for their key.
+pub fn deed_of(caller: &Caller, request: &Request, id: &str, is_refused: bool) -> Option<Deed> {
+    let route = request.extensions().get::<MatchedPath>()?.as_str();
+    let looks = matches!(*request.method(), Method::GET | Method::HEAD | Method::OPTIONS);
+    if !is_refused && (looks || is_computed_at_once(route)) {
+        return None;
     }
-
-    /// The same, once it has been answered.
-    pub fn answered(mut self, response: &Response) -> Deed {
-        if response.status() == StatusCode::CREATED {
-            let place = response.headers().get(header::LOCATION);
-            let made = place.and_then(|place| place.to_str().ok()?.rsplit('/').next());
-            self.0.object = made.unwrap_or(&self.0.object).to_owned();
-        }
-        self.0
-    }
+    Some(Deed {
+        tenant: caller.tenant.to_string(),
+        actor: caller.key.to_string(),
+        action: format!("{} {route}", request.method()),
+        object: innermost(route, request.uri().path()),
+        request: id.to_owned(),
+    })
 }
 
-/// Carries out a request and notes it with its answer, also when the client goes away meanwhile: what is done is noted.
-/// What cannot be noted is not answered as if it were: the client comes back.
+/// The same for a request on the admin listener.
+pub fn deed_of_admin(request: &Request, id: &str) -> Option<Deed> {
+    let route = request.extensions().get::<MatchedPath>()?.as_str();
+    let path = request.uri().path();
+    let tenant = ids(route, path).find(|(pattern, _)| *pattern == "{tenant}");
+    (*request.method() != Method::GET).then(|| Deed {
+        tenant: tenant.map(|(_, tenant)| tenant).unwrap_or_default(),
+        actor: "admin".to_owned(),
+        action: format!("{} {route}", request.method()),
+        object: innermost(route, path),
+        request: id.to_owned(),
+    })
+}
+
+/// Notes a request, carries it out, and notes how it was answered, also when the client goes away meanwhile. What
+/// cannot be noted is not carried out.
 pub async fn carry_out(
     store: &Store,
+    deed: Deed,
     run: impl Future<Output = Response> + Send + 'static,
-    deed: impl FnOnce(&Response) -> Deed + Send + 'static,
 ) -> Response {
     let store = store.clone();
     let work = async move {
+        let begun = match store.begin_deed(&deed).await {
+            Ok(begun) => begun,
+            Err(error) => return ApiError::from(error).into_response(),
+        };
         let response = run.await;
+        let object = made(&response).unwrap_or(&deed.object);
         let outcome = response.status().as_u16().to_string();
-        let deed = Deed { outcome, ..deed(&response) };
-        match store.note(deed).await {
-            Ok(()) => response,
-            Err(error) => ApiError::from(error).into_response(),
+        if let Err(error) = store.end_deed(begun, object, &outcome).await {
+            tracing::error!(%error, "the audit log is not told how a request ended");
         }
+        response
     };
     let done = tokio::spawn(work.in_current_span()).await;
     done.unwrap_or_else(|error| ApiError::internal(error).into_response())
 }
 
-/// The last part of a path that stands for an id in its route.
-fn named(route: &str, path: &str) -> String {
-    let parts = route.split('/').zip(path.split('/'));
-    let ids = parts.filter(|(pattern, _)| pattern.starts_with('{'));
-    ids.map(|(_, part)| part.chars().take(LONGEST).collect()).last().unwrap_or_default()
+/// The id of what a request made.
+fn made(response: &Response) -> Option<&str> {
+    let place = response.headers().get(header::LOCATION)?;
+    let is_made = response.status() == StatusCode::CREATED;
+    place.to_str().ok()?.rsplit('/').next().filter(|_| is_made)
 }
 
-/// Ids have 36 characters; what is longer names nothing.
+/// The parts of a path that stand for an id in its route, behind their patterns.
+fn ids<'a>(route: &'a str, path: &'a str) -> impl Iterator<Item = (&'a str, String)> {
+    let parts = route.split('/').zip(path.split('/'));
+    parts
+        .filter(|(pattern, _)| pattern.starts_with('{'))
+        .map(|(pattern, part)| (pattern, part.chars().take(LONGEST).collect()))
+}
+
+/// The last of them.
+fn innermost(route: &str, path: &str) -> String {
+    ids(route, path).last().map(|(_, id)| id).unwrap_or_default()
+}
+
+/// Ids have 36 characters and names of tenants 63; what is longer names nothing.
 const LONGEST: usize = 64;
 
 #[cfg(test)]
 mod tests {
-    use super::named;
+    use super::innermost;
 
     #[test]
     fn a_deed_names_the_innermost_thing_of_its_path() {
-        assert_eq!(named("/v1/cases/{case}/plans/{id}", "/v1/cases/a/plans/b"), "b");
-        assert_eq!(named("/v1/cases", "/v1/cases"), "");
+        assert_eq!(innermost("/v1/cases/{case}/plans/{id}", "/v1/cases/a/plans/b"), "b");
+        assert_eq!(innermost("/v1/cases", "/v1/cases"), "");
     }
 }

@@ -9,7 +9,7 @@ use axum::response::{IntoResponse, Response};
 use tracing::Instrument;
 
 use super::caller::{self, Caller};
-use super::deeds::{Begun, carry_out};
+use super::deeds::{carry_out, deed_of};
 use super::error::{ApiError, ApiResult, with_problem_body};
 use super::rate::Left;
 use super::{Service, body};
@@ -44,7 +44,7 @@ pub async fn surround(State(service): State<Service>, request: Request, next: Ne
             Ok(Admitted { left, caller }) => {
                 let allowed =
                     caller.as_ref().map_or(Ok(()), |c| c.require(caller::scope_of(&request)));
-                let deed = caller.and_then(|c| Begun::of(&c, &request, &id, allowed.is_err()));
+                let deed = caller.and_then(|c| deed_of(&c, &request, &id, allowed.is_err()));
                 let run = async move {
                     match allowed {
                         Ok(()) => next.run(request).await,
@@ -52,9 +52,7 @@ pub async fn surround(State(service): State<Service>, request: Request, next: Ne
                     }
                 };
                 let mut response = match deed {
-                    Some(deed) => {
-                        carry_out(&service.store, run, |answer| deed.answered(answer)).await
-                    }
+                    Some(deed) => carry_out(&service.store, deed, run).await,
                     None => run.await,
                 };
                 if let Some(left) = left {

@@ -173,8 +173,7 @@ pub fn run(arguments: &Arguments) -> Result<(), AdminError> {
             Command::Key { command } => key(command).await,
             Command::Retention { tenant, days, settings } => {
                 let store = open(settings).await?.of_tenant(tenant);
-                store.retain(*days).await?;
-                note(&store, "admin retention", "").await?;
+                noted(&store, "admin retention", "", store.retain(*days), |_| None).await?;
                 let kept =
                     days.map_or("until it is erased".to_owned(), |days| format!("{days} days"));
                 println!("what {tenant} does not change is kept {kept}");
@@ -202,8 +201,8 @@ async fn key(command: &KeyCommand) -> Result<(), AdminError> {
             let wanted = KeyDocument { label: label.clone(), scopes, days: *days };
             wanted.check().map_err(|problem| AdminError::Refused(lines(&problem)))?;
             let store = open(settings).await?.of_tenant(tenant);
-            let key = store.make_key(&wanted).await?;
-            note(&store, "admin key new", &key.id).await?;
+            let made = store.make_key(&wanted);
+            let key = noted(&store, "admin key new", "", made, |key| Some(&key.id)).await?;
             println!("{}", key.text);
             Ok(())
         }
@@ -220,17 +219,18 @@ async fn key(command: &KeyCommand) -> Result<(), AdminError> {
         }
         KeyCommand::Rotate { tenant, id, overlap_h, settings } => {
             let store = open(settings).await?.of_tenant(tenant);
-            let key = store.rotate_key(id, *overlap_h).await?.ok_or_else(|| no_key(id))?;
-            note(&store, "admin key rotate", id).await?;
+            let rotated = store.rotate_key(id, *overlap_h);
+            let key = noted(&store, "admin key rotate", id, rotated, |_| None).await?;
+            let key = key.ok_or_else(|| no_key(id))?;
             println!("{}", key.text);
             Ok(())
         }
         KeyCommand::Revoke { tenant, id, settings } => {
             let store = open(settings).await?.of_tenant(tenant);
-            if !store.revoke_key(id).await? {
+            let revoked = store.revoke_key(id);
+            if !noted(&store, "admin key revoke", id, revoked, |_| None).await? {
                 return Err(no_key(id));
             }
-            note(&store, "admin key revoke", id).await?;
             println!("{id} is not let in any more");
             Ok(())
         }
@@ -246,16 +246,27 @@ fn no_key(id: &str) -> AdminError {
     AdminError::Refused(format!("the tenant has no key {id:?} that is in force"))
 }
 
-async fn note(store: &Store, action: &str, object: &str) -> Result<(), AdminError> {
+/// Does what the audit log knows of: what it is done to, or what it makes.
+async fn noted<T>(
+    store: &Store,
+    action: &str,
+    object: &str,
+    work: impl Future<Output = Result<T, StoreError>>,
+    made: impl Fn(&T) -> Option<&String>,
+) -> Result<T, AdminError> {
     let deed = Deed {
         tenant: store.tenant().to_owned(),
         actor: "command".to_owned(),
         action: action.to_owned(),
         object: object.to_owned(),
-        outcome: "done".to_owned(),
         request: String::new(),
     };
-    Ok(store.note(deed).await?)
+    let begun = store.begin_deed(&deed).await?;
+    let done = work.await;
+    let outcome = if done.is_ok() { "done" } else { "failed" };
+    let object = done.as_ref().ok().and_then(made).map_or(object, String::as_str);
+    store.end_deed(begun, object, outcome).await?;
+    Ok(done?)
 }
 
 async fn audit(store: &Store, mut after: i64) -> Result<(), AdminError> {
@@ -263,8 +274,8 @@ async fn audit(store: &Store, mut after: i64) -> Result<(), AdminError> {
         let rows = store.audit(after, "", AUDIT_ROWS).await?;
         let Some(last) = rows.last() else { break };
         after = last.number;
-        for AuditRow { number, at, deed, .. } in &rows {
-            let Deed { tenant, actor, action, object, outcome, request } = deed;
+        for AuditRow { number, at, deed, outcome, .. } in &rows {
+            let Deed { tenant, actor, action, object, request } = deed;
             println!(
                 "{number} {at} {tenant:?} {actor} {action:?} {object:?} {outcome} {request:?}"
             );

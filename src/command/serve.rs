@@ -22,6 +22,8 @@ use crate::schema::Limits;
 use crate::store::{Store, StoreError};
 use crate::telemetry::{self, TelemetryError};
 
+/// How long what was done may be out of the chain of the audit log.
+const CHAIN_EVERY: Duration = Duration::from_secs(2);
 /// Between two looks for bytes that nothing refers to.
 const SWEEP_EVERY: Duration = Duration::from_secs(3600);
 
@@ -137,6 +139,7 @@ pub async fn open(config: &Config) -> Result<Store, ServeError> {
     metrics::start()?;
     let store = Store::connect(&config.places).await?;
     keep_swept(&store).await?;
+    keep_chained(&store);
     Ok(store)
 }
 
@@ -201,6 +204,19 @@ async fn keep_swept(store: &Store) -> Result<(), StoreError> {
         }
     });
     Ok(())
+}
+
+/// Takes what was done into the chain of the audit log, soon after: what is in it cannot be changed unseen.
+fn keep_chained(store: &Store) {
+    let store = store.clone();
+    tokio::spawn(async move {
+        loop {
+            if let Err(error) = store.chain_deeds().await {
+                tracing::warn!(%error, "the audit log is not up to date");
+            }
+            tokio::time::sleep(CHAIN_EVERY).await;
+        }
+    });
 }
 
 /// Erases what is older than its tenant keeps it, and bytes that nothing refers to.

@@ -5,18 +5,16 @@ use super::database::{Row, query};
 use super::{Store, StoreError};
 use crate::schema::canonical::sha256_hex;
 
-/// What somebody did.
+/// What somebody does.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Deed {
     pub tenant: String,
-    /// The id of a key, or `command`.
+    /// The id of a key, `command`, or `retention`.
     pub actor: String,
     /// Method and route, or the command.
     pub action: String,
-    /// The id of what it was done to, empty where there is none.
+    /// The id of what it is done to, empty where there is none.
     pub object: String,
-    /// HTTP status, or `done`.
-    pub outcome: String,
     /// The id of the request.
     pub request: String,
 }
@@ -25,9 +23,11 @@ pub struct Deed {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct AuditRow {
     pub number: i64,
-    /// ms since 1970 by the clock of the database.
+    /// When it began, ms since 1970 by the clock of the database.
     pub at: i64,
     pub deed: Deed,
+    /// HTTP status, `done`, `failed`, or `unknown` where nobody lived to tell.
+    pub outcome: String,
     pub hash: String,
 }
 
@@ -40,80 +40,59 @@ pub enum Chain {
     Broken { at: i64 },
 }
 
-const BEGIN: &str =
-    "INSERT INTO audit_end (one, number, hash) VALUES (1, 0, '') ON CONFLICT (one) DO NOTHING";
-const END: &str = "SELECT number, hash, (SELECT now_ms FROM clock) AS now FROM audit_end \
-     WHERE one = 1 FOR UPDATE";
 const LOOK: &str = "SELECT number, hash FROM audit_end WHERE one = 1";
-const APPEND: &str = "INSERT INTO audit \
-     (number, at, tenant, actor, action, object, outcome, request, hash) \
-     VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9)";
-const ADVANCE: &str = "UPDATE audit_end SET number = $1, hash = $2 WHERE one = 1";
 const AFTER: &str = "SELECT number, at, tenant, actor, action, object, outcome, request, hash \
      FROM audit WHERE number > $1 AND ($2 = '' OR tenant = $2) ORDER BY number LIMIT $3";
 
 /// Rows that are looked at together.
 const AT_ONCE: i64 = 1000;
 
-impl AuditRow {
-    /// Fields are told apart by a byte that none of them has.
-    fn hash_after(&self, previous: &str) -> String {
-        let Deed { tenant, actor, action, object, outcome, request } = &self.deed;
-        let (number, at) = (self.number.to_string(), self.at.to_string());
-        let fields: [&str; 9] =
-            [previous, &number, &at, tenant, actor, action, object, outcome, request];
-        sha256_hex(fields.join("\0").as_bytes())
-    }
-}
-
-fn audit_row(row: &Row) -> Result<AuditRow, sqlx::Error> {
-    Ok(AuditRow {
-        number: row.try_get("number")?,
-        at: row.try_get("at")?,
-        deed: Deed {
+impl Deed {
+    pub(super) fn of_row(row: &Row) -> Result<Deed, sqlx::Error> {
+        Ok(Deed {
             tenant: row.try_get("tenant")?,
             actor: row.try_get("actor")?,
             action: row.try_get("action")?,
             object: row.try_get("object")?,
-            outcome: row.try_get("outcome")?,
             request: row.try_get("request")?,
-        },
-        hash: row.try_get("hash")?,
-    })
+        })
+    }
+}
+
+impl AuditRow {
+    /// Fields are told apart by a byte that none of them has.
+    pub(super) fn hash_after(&self, previous: &str) -> String {
+        let Deed { tenant, actor, action, object, request } = &self.deed;
+        let (number, at) = (self.number.to_string(), self.at.to_string());
+        let fields: [&str; 9] =
+            [previous, &number, &at, tenant, actor, action, object, &self.outcome, request];
+        sha256_hex(fields.join("\0").as_bytes())
+    }
+
+    fn of_row(row: &Row) -> Result<AuditRow, sqlx::Error> {
+        Ok(AuditRow {
+            number: row.try_get("number")?,
+            at: row.try_get("at")?,
+            deed: Deed::of_row(row)?,
+            outcome: row.try_get("outcome")?,
+            hash: row.try_get("hash")?,
+        })
+    }
 }
 
 impl Store {
-    /// Adds a row to the log. Whoever cannot note what he does must not do it.
-    pub async fn note(&self, deed: Deed) -> Result<(), StoreError> {
-        let mut transaction = self.database.begin().await?;
-        query(BEGIN).execute(&mut transaction).await?;
-        let end = query(END).fetch_one(&mut transaction).await?;
-        let mut row = AuditRow {
-            number: end.try_get::<i64, _>("number")? + 1,
-            at: end.try_get("now")?,
-            deed,
-            hash: String::new(),
-        };
-        row.hash = row.hash_after(&end.try_get::<String, _>("hash")?);
-        query(APPEND)
-            .bind(row.number)
-            .bind(row.at)
-            .bind(&row.deed.tenant)
-            .bind(&row.deed.actor)
-            .bind(&row.deed.action)
-            .bind(&row.deed.object)
-            .bind(&row.deed.outcome)
-            .bind(&row.deed.request)
-            .bind(&row.hash)
-            .execute(&mut transaction)
-            .await?;
-        query(ADVANCE).bind(row.number).bind(&row.hash).execute(&mut transaction).await?;
-        transaction.commit().await?;
-        Ok(())
+    /// Rows after a number, of a tenant or, where it is empty, of all: everything that has ended by now is there.
+    pub async fn audit(
+        &self,
+        after: i64,
+        tenant: &str,
+        limit: i64,
+    ) -> Result<Vec<AuditRow>, StoreError> {
+        self.chain_deeds().await?;
+        self.rows(after, tenant, limit).await
     }
 
-    /// Rows after a number, of a tenant or, where it is empty, of all.
-    pub async fn audit(
+    async fn rows(
         &self,
         after: i64,
         tenant: &str,
@@ -125,11 +104,12 @@ impl Store {
             .bind(limit)
             .fetch_all(self.database.reader())
             .await?;
-        Ok(rows.iter().map(audit_row).collect::<Result<_, _>>()?)
+        Ok(rows.iter().map(AuditRow::of_row).collect::<Result<_, _>>()?)
     }
 
     /// Looks at every row whether it follows from the one before.
     pub async fn check_audit(&self) -> Result<Chain, StoreError> {
+        self.chain_deeds().await?;
         let end = query(LOOK).fetch_optional(self.database.reader()).await?;
         let (number, hash): (i64, String) = match end {
             Some(end) => (end.try_get("number")?, end.try_get("hash")?),
@@ -137,7 +117,7 @@ impl Store {
         };
         let (mut last, mut before) = (0, String::new());
         while last < number {
-            let rows = self.audit(last, "", AT_ONCE.min(number - last)).await?;
+            let rows = self.rows(last, "", AT_ONCE.min(number - last)).await?;
             if rows.is_empty() {
                 return Ok(Chain::Broken { at: last + 1 });
             }

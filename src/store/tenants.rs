@@ -1,7 +1,7 @@
 //! Tenants: those who share a deployment without knowing of each other.
 
 use super::database::{Transaction, query};
-use super::{Store, StoreError};
+use super::{Deed, Store, StoreError};
 
 /// Whose everything is where nobody says otherwise.
 pub const DEFAULT_TENANT: &str = "default";
@@ -81,19 +81,40 @@ impl Store {
             let age = days.saturating_mul(DAY_MS);
             let store = self.of_tenant(&name);
             for case in store.old(OLD_CASES, age).await? {
-                store.delete_case(&case, None).await?;
+                let work = async { store.delete_case(&case, None).await.map(drop) };
+                store.erased_by_age("case", &case, work).await?;
                 erased += 1;
             }
             for job in store.old(OLD_JOBS, age).await? {
-                store.dismiss(&job).await?;
+                let work = async { store.dismiss(&job).await.map(drop) };
+                store.erased_by_age("job", &job, work).await?;
                 erased += 1;
             }
             for mesh in store.old(OLD_MESHES, age).await? {
-                store.delete_mesh(&mesh).await?;
+                let work = async { store.delete_mesh(&mesh).await.map(drop) };
+                store.erased_by_age("mesh", &mesh, work).await?;
                 erased += 1;
             }
         }
         Ok(erased)
+    }
+
+    async fn erased_by_age(
+        &self,
+        kind: &str,
+        id: &str,
+        work: impl Future<Output = Result<(), StoreError>>,
+    ) -> Result<(), StoreError> {
+        let deed = Deed {
+            tenant: self.tenant().to_owned(),
+            actor: "retention".to_owned(),
+            action: format!("erase {kind}"),
+            object: id.to_owned(),
+            request: String::new(),
+        };
+        let begun = self.begin_deed(&deed).await?;
+        work.await?;
+        self.end_deed(begun, id, "done").await
     }
 
     async fn old(&self, sql: &'static str, age: i64) -> Result<Vec<String>, StoreError> {

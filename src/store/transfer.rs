@@ -17,7 +17,7 @@ use super::references::{Content, hold};
 use super::{Store, StoreError};
 
 /// Every table with rows of a deployment, each behind those that it refers to.
-const TABLES: [&str; 17] = [
+const TABLES: [&str; 18] = [
     "tenants",
     "keys",
     "meshes",
@@ -33,6 +33,7 @@ const TABLES: [&str; 17] = [
     "job_events",
     "idempotency_keys",
     "tombstones",
+    "deeds",
     "audit",
     "audit_end",
 ];

@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on panics")]
 
 mod admission;
+mod audit;
 mod bad_documents;
 mod bad_meshes;
 mod bad_requests;

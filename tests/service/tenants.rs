@@ -1,7 +1,7 @@
 //! Tenants do not know of each other: whatever a key asks for, it finds its own.
 
 use facies::schema::key::{KeyDocument, Scope};
-use facies::store::{Chain, Deed, Dismissal, Enqueued, Store};
+use facies::store::{Dismissal, Enqueued, Store};
 use reqwest::{Method, RequestBuilder, StatusCode};
 use serde_json::{Value, json};
 
@@ -13,7 +13,6 @@ use crate::storage::mesh;
 on_both! {
     tenants_take_turns_and_studies_come_last
     what_is_older_than_its_tenant_keeps_it_is_erased
-    the_audit_log_shows_what_was_changed
     a_job_that_was_lost_is_accepted_again_when_somebody_says_so
     equal_things_of_two_tenants_are_two_things
     a_key_that_was_ended_is_not_let_in
@@ -351,46 +350,6 @@ async fn what_is_older_than_its_tenant_keeps_it_is_erased(on: Deployment) {
     assert_eq!(there(&tenants[1], &jobs[1]).await, [false, true, false]);
     assert!(tenants[1].erased(&jobs[1][0]).await.unwrap().is_some());
     assert!(tenants[0].erased(&jobs[1][0]).await.unwrap().is_none());
-}
-
-async fn the_audit_log_shows_what_was_changed(on: Deployment) {
-    let store = on.open().await;
-    assert!(matches!(store.check_audit().await.unwrap(), Chain::Whole { rows: 0, .. }));
-    let deed = |action: &str| Deed { action: action.into(), tenant: "a".into(), ..Deed::default() };
-    let (one, other) = (store.clone(), store.clone());
-    let both = [
-        tokio::spawn(async move {
-            for _ in 0..5 {
-                one.note(Deed { action: "one".into(), ..Deed::default() }).await.unwrap();
-            }
-        }),
-        tokio::spawn(async move {
-            for _ in 0..5 {
-                other.note(Deed { action: "other".into(), ..Deed::default() }).await.unwrap();
-            }
-        }),
-    ];
-    for task in both {
-        task.await.unwrap();
-    }
-    store.note(deed("last")).await.unwrap();
-    let Chain::Whole { rows: 11, hash } = store.check_audit().await.unwrap() else {
-        panic!("it is whole")
-    };
-    let own = store.audit(0, "a", 100).await.unwrap();
-    assert_eq!((own.len(), own[0].number, &own[0].hash), (1, 11, &hash));
-    let broken = async || match store.check_audit().await.unwrap() {
-        Chain::Whole { .. } => None,
-        Chain::Broken { at } => Some(at),
-    };
-    on.execute("UPDATE audit SET actor = 'nobody' WHERE number = 4").await;
-    assert_eq!(broken().await, Some(4));
-    on.execute("UPDATE audit SET actor = '' WHERE number = 4").await;
-    assert_eq!(broken().await, None);
-    on.execute("DELETE FROM audit WHERE number = 11").await;
-    assert_eq!(broken().await, Some(11));
-    on.execute("DELETE FROM audit WHERE number = 7").await;
-    assert_eq!(broken().await, Some(7));
 }
 
 async fn a_job_that_was_lost_is_accepted_again_when_somebody_says_so(on: Deployment) {

@@ -1,0 +1,113 @@
+//! What is done that changes something: noted before it begins, and taken into the chain of the audit log once it has
+//! ended.
+
+use super::audit::{AuditRow, Deed};
+use super::database::{Row, query};
+use super::{Store, StoreError};
+
+/// How a deed ended of which nobody said so: whoever did it died, or lost the database.
+const UNKNOWN: &str = "unknown";
+
+const BEGIN: &str = "INSERT INTO deeds (id, at, tenant, actor, action, object, request) \
+     VALUES ($1, (SELECT now_ms FROM clock), $2, $3, $4, $5, $6)";
+const END: &str = "UPDATE deeds SET object = $2, outcome = $3 WHERE id = $1";
+/// No request takes an hour.
+const ENDED: &str = "SELECT id, at, tenant, actor, action, object, request, outcome FROM deeds \
+     WHERE outcome IS NOT NULL OR at < (SELECT now_ms FROM clock) - 3600000 ORDER BY at, id LIMIT $1";
+const FORGET: &str = "DELETE FROM deeds WHERE id = $1";
+const FIRST_END: &str =
+    "INSERT INTO audit_end (one, number, hash) VALUES (1, 0, '') ON CONFLICT (one) DO NOTHING";
+/// One process at a time adds to the chain.
+const HOLD_END: &str = "SELECT number, hash FROM audit_end WHERE one = 1 FOR UPDATE";
+const APPEND: &str = "INSERT INTO audit \
+     (number, at, tenant, actor, action, object, outcome, request, hash) \
+     VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9)";
+const MOVE_END: &str = "UPDATE audit_end SET number = $1, hash = $2 WHERE one = 1";
+
+/// Deeds that are taken into the chain in one transaction.
+const AT_ONCE: i64 = 200;
+
+/// A deed that was begun, to be told how it ended.
+#[derive(Debug)]
+pub struct Begun(String);
+
+impl Store {
+    /// Notes what is about to be done. Whoever cannot note it must not do it.
+    pub async fn begin_deed(&self, deed: &Deed) -> Result<Begun, StoreError> {
+        let id = uuid::Uuid::now_v7().to_string();
+        query(BEGIN)
+            .bind(&id)
+            .bind(&deed.tenant)
+            .bind(&deed.actor)
+            .bind(&deed.action)
+            .bind(&deed.object)
+            .bind(&deed.request)
+            .execute(self.database.writer())
+            .await?;
+        Ok(Begun(id))
+    }
+
+    /// Notes how it ended, and the id of what it was done to, which may not have been there before.
+    pub async fn end_deed(
+        &self,
+        Begun(id): Begun,
+        object: &str,
+        outcome: &str,
+    ) -> Result<(), StoreError> {
+        query(END).bind(&id).bind(object).bind(outcome).execute(self.database.writer()).await?;
+        Ok(())
+    }
+
+    /// Takes the deeds that have ended into the chain; returns how many.
+    pub async fn chain_deeds(&self) -> Result<usize, StoreError> {
+        let mut chained = 0;
+        // Most often there is nothing, and nobody has to be kept from writing to see that.
+        while !query(ENDED).bind(1).fetch_all(self.database.reader()).await?.is_empty() {
+            chained += self.chain_some().await?;
+        }
+        Ok(chained)
+    }
+
+    async fn chain_some(&self) -> Result<usize, StoreError> {
+        let mut transaction = self.database.begin().await?;
+        query(FIRST_END).execute(&mut transaction).await?;
+        let end = query(HOLD_END).fetch_one(&mut transaction).await?;
+        let (mut number, mut hash): (i64, String) = (end.try_get("number")?, end.try_get("hash")?);
+        let ended = query(ENDED).bind(AT_ONCE).fetch_all(&mut transaction).await?;
+        for row in &ended {
+            number += 1;
+            let row_of_log = next_row(row, number, &hash)?;
+            query(APPEND)
+                .bind(row_of_log.number)
+                .bind(row_of_log.at)
+                .bind(&row_of_log.deed.tenant)
+                .bind(&row_of_log.deed.actor)
+                .bind(&row_of_log.deed.action)
+                .bind(&row_of_log.deed.object)
+                .bind(&row_of_log.outcome)
+                .bind(&row_of_log.deed.request)
+                .bind(&row_of_log.hash)
+                .execute(&mut transaction)
+                .await?;
+            query(FORGET).bind(row.try_get::<String, _>("id")?).execute(&mut transaction).await?;
+            hash = row_of_log.hash;
+        }
+        query(MOVE_END).bind(number).bind(&hash).execute(&mut transaction).await?;
+        transaction.commit().await?;
+        Ok(ended.len())
+    }
+}
+
+/// The row of the log for a deed that has ended.
+fn next_row(deed: &Row, number: i64, hash_before: &str) -> Result<AuditRow, sqlx::Error> {
+    let outcome: Option<String> = deed.try_get("outcome")?;
+    let mut row = AuditRow {
+        number,
+        at: deed.try_get("at")?,
+        deed: Deed::of_row(deed)?,
+        outcome: outcome.unwrap_or_else(|| UNKNOWN.to_owned()),
+        hash: String::new(),
+    };
+    row.hash = row.hash_after(hash_before);
+    Ok(row)
+}

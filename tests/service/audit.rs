@@ -1,0 +1,93 @@
+//! The audit log: what was done is in it, and what cannot be noted is not done.
+
+use facies::store::{Chain, Deed, Store};
+use reqwest::StatusCode;
+use serde_json::json;
+use sqlx::Connection;
+use sqlx::sqlite::{SqliteConnectOptions, SqliteConnection};
+
+use crate::deployments::{Deployment, on_both};
+use crate::helpers::{SMALL, Server, ask};
+
+on_both! {
+    the_audit_log_shows_what_was_changed
+    a_deed_whose_end_nobody_told_is_in_the_audit_log_as_unknown
+}
+
+#[tokio::test]
+async fn what_cannot_be_noted_is_not_done() {
+    let server = Server::start();
+    let database = |change: &'static str| {
+        let path = server.path().join("facies.db");
+        async move {
+            let options = SqliteConnectOptions::new().filename(path);
+            let mut connection = SqliteConnection::connect_with(&options).await.unwrap();
+            sqlx::raw_sql(change).execute(&mut connection).await.unwrap();
+        }
+    };
+    database("ALTER TABLE deeds RENAME TO lost").await;
+    let refused = ask(server.post("/v1/cases").json(&json!({}))).await;
+    refused.problem(500, "internal");
+    let made = ask(server.post("/v1/cases").json(&json!({"schema": 1, "units": "mm"}))).await;
+    made.problem(500, "internal");
+    let cases = ask(server.get("/v1/cases")).await.expect(StatusCode::OK);
+    assert_eq!(cases["items"], json!([]));
+    database("ALTER TABLE lost RENAME TO deeds").await;
+    server.case(&SMALL).await;
+}
+
+async fn the_audit_log_shows_what_was_changed(on: Deployment) {
+    let store = on.open().await;
+    assert!(matches!(store.check_audit().await.unwrap(), Chain::Whole { rows: 0, .. }));
+    let deed = |action: &str, tenant: &str| Deed {
+        action: action.into(),
+        tenant: tenant.into(),
+        ..Deed::default()
+    };
+    let ten = |store: Store, action: &'static str| async move {
+        for _ in 0..5 {
+            let begun = store.begin_deed(&deed(action, "")).await.unwrap();
+            store.end_deed(begun, "", "done").await.unwrap();
+            store.chain_deeds().await.unwrap();
+        }
+    };
+    let both = [tokio::spawn(ten(store.clone(), "one")), tokio::spawn(ten(store.clone(), "other"))];
+    for task in both {
+        task.await.unwrap();
+    }
+    let last = store.begin_deed(&deed("last", "a")).await.unwrap();
+    let Chain::Whole { rows: 10, .. } = store.check_audit().await.unwrap() else {
+        panic!("what goes on is not in the chain yet")
+    };
+    store.end_deed(last, "made", "201").await.unwrap();
+    let Chain::Whole { rows: 11, hash } = store.check_audit().await.unwrap() else {
+        panic!("it is whole")
+    };
+    let own = store.audit(0, "a", 100).await.unwrap();
+    assert_eq!((own.len(), own[0].number, &own[0].hash), (1, 11, &hash));
+    assert_eq!((own[0].deed.object.as_str(), own[0].outcome.as_str()), ("made", "201"));
+    let broken = async || match store.check_audit().await.unwrap() {
+        Chain::Whole { .. } => None,
+        Chain::Broken { at } => Some(at),
+    };
+    on.execute("UPDATE audit SET actor = 'nobody' WHERE number = 4").await;
+    assert_eq!(broken().await, Some(4));
+    on.execute("UPDATE audit SET actor = '' WHERE number = 4").await;
+    assert_eq!(broken().await, None);
+    on.execute("DELETE FROM audit WHERE number = 11").await;
+    assert_eq!(broken().await, Some(11));
+    on.execute("DELETE FROM audit WHERE number = 7").await;
+    assert_eq!(broken().await, Some(7));
+}
+
+async fn a_deed_whose_end_nobody_told_is_in_the_audit_log_as_unknown(on: Deployment) {
+    let store = on.open().await;
+    let deed = Deed { action: "begun".into(), ..Deed::default() };
+    let begun = store.begin_deed(&deed).await.unwrap();
+    assert_eq!(store.audit(0, "", 10).await.unwrap(), []);
+    on.execute("UPDATE deeds SET at = at - 3600001").await;
+    let rows = store.audit(0, "", 10).await.unwrap();
+    assert_eq!((rows.len(), &rows[0].deed, rows[0].outcome.as_str()), (1, &deed, "unknown"));
+    store.end_deed(begun, "", "201").await.unwrap();
+    assert_eq!(store.audit(0, "", 10).await.unwrap(), rows, "what is in the chain stays as it is");
+}
