@@ -151,6 +151,9 @@ fn malformed(error: &serde_json::Error, at: &Pointer) -> Problem {
     }
 }
 
+/// Up to here each integer is a number of its own in 64 bits.
+const EXACT: f64 = 9_007_199_254_740_992.0;
+
 enum Step {
     Key(String),
     Index(usize),
@@ -219,7 +222,11 @@ impl<'de> Visitor<'de> for ScanValue<'_> {
         Ok(Value::Number(value.into()))
     }
 
+    /// 3.0 is the integer 3, as in JSON Schema.
     fn visit_f64<E: Error>(self, value: f64) -> Result<Value, E> {
+        if value.fract() == 0.0 && value.abs() <= EXACT {
+            return Ok(Value::Number((value as i64).into()));
+        }
         let number = Number::from_f64(value).ok_or_else(|| E::custom("number out of range"))?;
         Ok(Value::Number(number))
     }
