@@ -46,7 +46,7 @@ def post(address, path, document, **headers):
 
 
 def hexahedra(counts, size, sets, title="block"):
-    """A block of hexahedra as legacy VTK: how many and how large (mm) along x, y, z; node sets by a test of (x, y, z)."""
+    """A block as legacy VTK: how many hexahedra and how many mm along x, y, z; node sets by a test of (x, y, z)."""
     nx, ny, nz = counts
     ticks = [[length * k / count for k in range(count + 1)] for length, count in zip(size, counts)]
     points = [(x, y, z) for z in ticks[2] for y in ticks[1] for x in ticks[0]]
@@ -75,7 +75,8 @@ def new_case(address, cells=4, name="a block", **headers):
     """A case with a block fixed at its top, whose bottom is the segment `bone`; its id."""
     named = {name.replace("_", "-"): value for name, value in headers.items()}
     mesh = call(
-        address, "POST", "/v1/meshes?allow_any_scale=true", block(cells, name), {"content-type": "application/vnd.vtk", **named}
+        address, "POST", "/v1/meshes?allow_any_scale=true", block(cells, name),
+        {"content-type": "application/vnd.vtk", **named},
     )
     document = {
         "schema": 1, "units": "mm", "name": name, "volume": mesh["id"],
