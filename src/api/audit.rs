@@ -6,7 +6,7 @@ use utoipa::{IntoParams, ToSchema};
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-use super::error::ApiResult;
+use super::error::{ApiError, ApiResult};
 use super::paging::checked_limit;
 use super::parameters::Parameters;
 use super::{Service, json, json_only, time};
@@ -49,7 +49,7 @@ pub struct AuditList {
 pub struct AuditParameters {
     /// Rows with a larger number; default: 0.
     #[param(minimum = 0)]
-    after: Option<u32>,
+    after: Option<u64>,
     /// Default: 50.
     #[param(minimum = 1, maximum = 200)]
     limit: Option<u32>,
@@ -75,7 +75,8 @@ impl AuditView {
 /// A page of rows, of a tenant or, where it is empty, of all.
 pub async fn page(store: &Store, tenant: &str, parameters: &AuditParameters) -> ApiResult {
     let limit = checked_limit(parameters.limit)?;
-    let after = i64::from(parameters.after.unwrap_or(0));
+    let after = i64::try_from(parameters.after.unwrap_or(0))
+        .map_err(|_| ApiError::invalid_parameter("after", "there is no row of such a number"))?;
     let rows = store.audit(after, tenant, i64::from(limit)).await?;
     let items = rows.into_iter().map(AuditView::of).collect();
     Ok(json(StatusCode::OK, &AuditList { items }))

@@ -101,7 +101,10 @@ struct MeshPart(Vec<u8>);
     post, path = "/v1/cases", operation_id = "create_case", tag = "cases",
     params(
         CreateParameters,
-        ("Idempotency-Key" = Option<String>, Header, description = "a word of the client's, so that the request may be sent again"),
+        (
+            "Idempotency-Key" = Option<String>, Header, min_length = 1, max_length = 255, pattern = r"^[!-~]([\t -~]*[!-~])?$",
+            description = "a word of the client's, so that the request may be sent again"
+        ),
     ),
     request_body(description = "the case", content((CaseDocument = "application/json"), (CaseForm = "multipart/form-data"))),
     responses((status = 201, description = "kept", body = CaseView, headers(("Location" = String, description = "the case"), ("ETag" = String, description = "its version"))))
@@ -205,7 +208,7 @@ async fn show(service: Service, Id(id): Id, headers: HeaderMap) -> ApiResult {
     delete, path = "/v1/cases/{id}", operation_id = "erase_case", tag = "cases",
     params(
         ("id" = uuid::Uuid, Path, description = "the case"),
-        ("If-Match" = Option<String>, Header, description = "the version that is meant, or *"),
+        ("If-Match" = String, Header, description = "the version that is meant, or *"),
     ),
     responses(
         (status = 204, description = "erased"),

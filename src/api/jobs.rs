@@ -12,7 +12,7 @@ use super::error::{ApiError, ApiResult};
 use super::idempotency::new_id;
 use super::job_view::status_info;
 use super::paging::Page;
-use super::parameters::{Id, Parameters, no_such_job};
+use super::parameters::{Id, Parameters, id, no_such_job};
 use super::prefer::{wait_for_end, wanted_wait};
 use super::results::RETRY_AFTER_S;
 use super::{Service, body, conditional, job_input, json, json_only, with_header};
@@ -62,7 +62,10 @@ struct ListParameters {
     post, path = "/v1/jobs", operation_id = "create_job", tag = "jobs",
     params(
         ("Prefer" = Option<String>, Header, description = "wait=n: wait at most n seconds for the end"),
-        ("Idempotency-Key" = Option<String>, Header, description = "a word of the client's, so that the request may be sent again"),
+        (
+            "Idempotency-Key" = Option<String>, Header, min_length = 1, max_length = 255, pattern = r"^[!-~]([\t -~]*[!-~])?$",
+            description = "a word of the client's, so that the request may be sent again"
+        ),
     ),
     request_body = JobDocument,
     responses(
@@ -168,11 +171,14 @@ async fn show(service: Service, Id(id): Id, headers: HeaderMap) -> ApiResult {
 )]
 async fn list(service: Service, Parameters(parameters): Parameters<ListParameters>) -> ApiResult {
     let page = Page::new(parameters.cursor.as_deref(), parameters.limit)?;
+    let case_id = parameters.case.map(|text| {
+        id(&text).ok_or_else(|| ApiError::invalid_parameter("case", "it is not the id of a case"))
+    });
     let filter = JobFilter {
         status: parameters.status.map_or("", JobStatus::name).to_owned(),
         kind: parameters.kind.map_or("", JobKind::name).to_owned(),
         tag: parameters.tag.unwrap_or_default(),
-        case_id: parameters.case.unwrap_or_default(),
+        case_id: case_id.transpose()?.unwrap_or_default(),
         cursor: page.after.clone(),
         limit: page.rows(),
     };

@@ -45,7 +45,19 @@ const WITH_BODY: [(&str, &str); 5] = [
 /// The description as it is served and as it stands in `openapi/openapi.json`.
 pub fn document() -> serde_json::Value {
     let described = serde_json::to_value(described()).unwrap_or_default();
-    openapi_types::typed(described)
+    let mut document = openapi_types::typed(described);
+    describe_check(&mut document["components"]["schemas"]);
+    document
+}
+
+/// What a check takes has the members of a prediction, none of which it asks for.
+fn describe_check(schemas: &mut serde_json::Value) {
+    let mut members = schemas["PredictDocument"].clone();
+    members["description"] = schemas["CheckRequest"]["description"].clone();
+    if let Some(members) = members.as_object_mut() {
+        members.remove("required");
+    }
+    schemas["CheckRequest"] = members;
 }
 
 /// The description as the handlers and documents say it.

@@ -85,7 +85,10 @@ async fn read(service: &Service, request: Request) -> ApiResult<String> {
     post, path = "/v1/cases/{id}/plans", operation_id = "create_plan", tag = "plans",
     params(
         ("id" = uuid::Uuid, Path, description = "the case"),
-        ("Idempotency-Key" = Option<String>, Header, description = "a word of the client's, so that the request may be sent again"),
+        (
+            "Idempotency-Key" = Option<String>, Header, min_length = 1, max_length = 255, pattern = r"^[!-~]([\t -~]*[!-~])?$",
+            description = "a word of the client's, so that the request may be sent again"
+        ),
     ),
     request_body = PlanDocument,
     responses((status = 201, description = "kept", body = PlanView, headers(("Location" = String, description = "the plan"), ("ETag" = String, description = "its version"))))
@@ -148,7 +151,7 @@ async fn show(service: Service, PlanPath { case, id }: PlanPath, headers: Header
     put, path = "/v1/cases/{id}/plans/{plan}", operation_id = "replace_plan", tag = "plans",
     params(
         ("id" = uuid::Uuid, Path, description = "the case"), ("plan" = uuid::Uuid, Path, description = "the plan"),
-        ("If-Match" = Option<String>, Header, description = "the version that is meant, or *"),
+        ("If-Match" = String, Header, description = "the version that is meant, or *"),
     ),
     request_body = PlanDocument,
     responses(
@@ -176,7 +179,7 @@ async fn replace(
     delete, path = "/v1/cases/{id}/plans/{plan}", operation_id = "remove_plan", tag = "plans",
     params(
         ("id" = uuid::Uuid, Path, description = "the case"), ("plan" = uuid::Uuid, Path, description = "the plan"),
-        ("If-Match" = Option<String>, Header, description = "the version that is meant, or *"),
+        ("If-Match" = String, Header, description = "the version that is meant, or *"),
     ),
     responses(
         (status = 204, description = "deleted"),

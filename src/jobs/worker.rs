@@ -140,7 +140,8 @@ impl Workers {
         self.wait(grace);
         for job in self.shared.heartbeat.held() {
             let released = self.shared.runtime.block_on(self.shared.store.release(&job.lease));
-            tracing::info!(job.id = %job.lease.job, released = released.is_ok(), "gave a job back");
+            let released = matches!(released, Ok(true));
+            tracing::info!(job.id = %job.lease.job, released, "gave a job back");
             job.stop();
         }
         self.wait(LAST_WORDS);

@@ -89,7 +89,8 @@ pub struct KeyDocument {
     /// What it is for: 1 to 100 characters, no name of a person.
     #[schema(min_length = 1, max_length = 100)]
     pub label: String,
-    #[schema(min_items = 1)]
+    /// One that is named twice counts once.
+    #[schema(min_items = 1, value_type = Vec<Scope>)]
     pub scopes: BTreeSet<Scope>,
     /// After so many days it ends; without a number it does not.
     #[serde(default, skip_serializing_if = "Option::is_none")]

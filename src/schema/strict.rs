@@ -5,6 +5,7 @@
 
 use std::cell::RefCell;
 use std::fmt;
+use std::ops::Range;
 
 use serde::Deserialize;
 use serde::de::{DeserializeOwned, DeserializeSeed, Error, MapAccess, SeqAccess, Visitor};
@@ -151,6 +152,9 @@ fn malformed(error: &serde_json::Error, at: &Pointer) -> Problem {
     }
 }
 
+/// Whole numbers in here are exact in 64 bits.
+const INTEGERS: Range<f64> = -9_223_372_036_854_775_808.0..9_223_372_036_854_775_808.0;
+
 enum Step {
     Key(String),
     Index(usize),
@@ -219,7 +223,11 @@ impl<'de> Visitor<'de> for ScanValue<'_> {
         Ok(Value::Number(value.into()))
     }
 
+    /// 3.0 is the integer 3, as in JSON Schema.
     fn visit_f64<E: Error>(self, value: f64) -> Result<Value, E> {
+        if value.fract() == 0.0 && INTEGERS.contains(&value) {
+            return Ok(Value::Number((value as i64).into()));
+        }
         let number = Number::from_f64(value).ok_or_else(|| E::custom("number out of range"))?;
         Ok(Value::Number(number))
     }

@@ -29,6 +29,14 @@ fn what_is_not_a_number_is_refused_with_its_place() {
 }
 
 #[test]
+fn an_integer_may_be_written_with_a_decimal_point() {
+    let limits = Limits::default();
+    let read = strict::parse::<[i64; 3]>(b"[3.0, -2e1, 4]", &limits);
+    assert_eq!(read.expect("accepted"), [3, -20, 4]);
+    assert!(strict::parse::<[i64; 1]>(b"[3.5]", &limits).is_err());
+}
+
+#[test]
 fn null_is_a_value_only_where_a_component_may_stay_free() {
     let text = r#"{"segments":[],"frame":null}"#;
     assert_eq!(refused(plan(text)), one("validation-failed", "null-value", "/frame"));

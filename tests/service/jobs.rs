@@ -143,9 +143,15 @@ async fn jobs_are_listed_in_pages_newest_first_and_by_what_they_are() {
         let page = ask(server.get(&format!("/v1/jobs?{query}"))).await.expect(StatusCode::OK);
         assert_eq!(page["items"].as_array().unwrap().len(), count, "{query}");
     }
-    for query in
-        ["cursor=forged", "limit=0", "limit=201", "limit=x", "status=zombie", "stauts=failed"]
-    {
+    for query in [
+        "cursor=forged",
+        "case=none",
+        "limit=0",
+        "limit=201",
+        "limit=x",
+        "status=zombie",
+        "stauts=failed",
+    ] {
         let answer = ask(server.get(&format!("/v1/jobs?{query}"))).await;
         answer.problem_of(query, 400, "invalid-parameter");
     }
