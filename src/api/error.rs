@@ -98,6 +98,11 @@ impl ApiError {
         self
     }
 
+    /// The same request may succeed later.
+    pub fn out_of_reach() -> Self {
+        ApiError::new("not-ready", "the database or the store of blobs is out of reach")
+    }
+
     /// An error of ours, told in the log only.
     pub fn internal(reason: impl std::fmt::Display) -> Self {
         tracing::error!(%reason, "internal error");
@@ -119,10 +124,7 @@ impl From<StoreError> for ApiError {
         }
         if error.is_unavailable() {
             tracing::warn!(%error, "storage is busy");
-            return ApiError::new(
-                "not-ready",
-                "the database or the store of blobs is out of reach",
-            );
+            return ApiError::out_of_reach();
         }
         if let StoreError::Integrity { .. } | StoreError::Missing { .. } = error {
             tracing::error!(%error, "a blob is damaged");

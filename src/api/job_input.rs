@@ -9,7 +9,7 @@ use super::error::{ApiError, ApiResult};
 use super::parameters::id;
 use crate::jobs::{
     CompareInput, JobError, JobInput, MeshSource, OptimiseInput, PredictInput, ResponseInput,
-    StudyInput,
+    SourceError, StudyInput,
 };
 use crate::schema::job::{JobKind, JobStatus};
 use crate::schema::prediction::EngineDocument;
@@ -344,8 +344,11 @@ fn in_spec(problem: Problem) -> Problem {
 pub fn refusal(error: JobError) -> ApiError {
     match error {
         JobError::Refused(problem) => problem.into(),
-        JobError::Source(source @ crate::jobs::SourceError::Unreadable { .. }) => {
+        JobError::Source(source @ SourceError::Unreadable { may_pass: false, .. }) => {
             ApiError::internal(source)
+        }
+        JobError::Source(SourceError::Unreadable { may_pass: true, .. }) => {
+            ApiError::out_of_reach()
         }
         other => {
             let document = other.to_document();

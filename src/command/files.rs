@@ -36,7 +36,11 @@ impl MeshSource for FileSource {
         }
         let bytes = std::fs::read(self.folder.join(id)).map_err(|error| match error.kind() {
             ErrorKind::NotFound => SourceError::Unknown { id: id.to_owned() },
-            _ => SourceError::Unreadable { id: id.to_owned(), detail: error.to_string() },
+            _ => SourceError::Unreadable {
+                id: id.to_owned(),
+                detail: error.to_string(),
+                may_pass: false,
+            },
         })?;
         let mesh = format::read(&bytes, &ReadLimits::default()).map_err(|error| {
             let (code, detail) = (error.code(), error.to_string());

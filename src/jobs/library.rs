@@ -173,6 +173,10 @@ fn found(
     match mesh {
         Ok(Some(mesh)) => Ok(mesh),
         Ok(None) => Err(SourceError::Unknown { id: id.to_owned() }),
-        Err(error) => Err(SourceError::Unreadable { id: id.to_owned(), detail: error.to_string() }),
+        Err(error) => Err(SourceError::Unreadable {
+            id: id.to_owned(),
+            detail: error.to_string(),
+            may_pass: error.is_unavailable(),
+        }),
     }
 }

@@ -45,7 +45,12 @@ pub enum SourceError {
     #[error("mesh {id:?} is refused: {detail}")]
     Refused { id: String, code: &'static str, detail: String },
     #[error("mesh {id:?} could not be read: {detail}")]
-    Unreadable { id: String, detail: String },
+    Unreadable {
+        id: String,
+        detail: String,
+        /// Whether it is out of reach only, so that the same may succeed later.
+        may_pass: bool,
+    },
 }
 
 impl StoredMesh {

@@ -184,14 +184,16 @@ async fn a_restart_of_postgresql_loses_nothing_and_is_told_as_503() {
 #[tokio::test]
 async fn a_store_of_blobs_that_does_not_answer_is_told_as_503() {
     let Some(on) = Deployment::shared().await else { return };
+    let case = api(&on).case(&SMALL).await;
     let mut command = serve_shared(&on);
     command.env("AWS_ENDPOINT_URL", "http://127.0.0.1:1");
     let server = Server::start_command(command, TempDir::new().unwrap());
-    let answer = server.upload(SMALL.vtu()).await;
+    let answer = server.upload(LARGE.vtu()).await;
     answer.problem(503, "not-ready");
     assert!(!answer.header("retry-after").is_empty());
     let meshes = on.texts("SELECT id FROM meshes").await;
-    assert!(meshes.is_empty(), "no half mesh");
+    assert_eq!(meshes.len(), 1, "no half mesh");
+    ask(server.post("/v1/jobs").json(&spec(&case, 1.0))).await.problem(503, "not-ready");
     ask(server.get("/readyz")).await.problem(503, "not-ready");
 }
 

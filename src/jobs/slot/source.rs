@@ -27,7 +27,7 @@ impl SlotSource<'_> {
     fn ask(&self, id: &str, question: Question) -> Result<FullAnswer, SourceError> {
         let answers = self.answers.lock().unwrap_or_else(PoisonError::into_inner);
         self.reports.tell(&Report::Ask(question));
-        let unreadable = |detail: String| SourceError::Unreadable { id: id.to_owned(), detail };
+        let unreadable = |detail: String| unreadable(id, detail);
         match answers.recv() {
             Ok((Answer::Unknown, _)) => Err(SourceError::Unknown { id: id.to_owned() }),
             Ok((Answer::Unreadable(detail), _)) => Err(unreadable(detail)),
@@ -41,7 +41,7 @@ impl SlotSource<'_> {
         parse_stored(&bytes).map_err(|error| match error {
             // Too little memory ends a slot in the same way wherever it is noticed.
             FormatError::Memory { values } => out_of_memory(values),
-            error => SourceError::Unreadable { id: id.to_owned(), detail: error.to_string() },
+            error => unreadable(id, error.to_string()),
         })
     }
 
@@ -86,6 +86,9 @@ impl MeshSource for SlotSource<'_> {
 }
 
 fn misunderstood(id: &str) -> SourceError {
-    let detail = "the worker answered another question".to_owned();
-    SourceError::Unreadable { id: id.to_owned(), detail }
+    unreadable(id, "the worker answered another question".to_owned())
+}
+
+fn unreadable(id: &str, detail: String) -> SourceError {
+    SourceError::Unreadable { id: id.to_owned(), detail, may_pass: false }
 }

@@ -23,7 +23,7 @@ const ACQUIRE_TIMEOUT: Duration = Duration::from_millis(2500);
 const ANSWER_TIMEOUT: Duration = Duration::from_secs(10);
 /// What the server keeps to by itself. A client that was cut off holds its locks no longer than this.
 const LIMITS: &str = "SET statement_timeout = '10s'; SET lock_timeout = '5s'; \
-     SET idle_in_transaction_session_timeout = '30s'; \
+     SET idle_in_transaction_session_timeout = '10s'; \
      SET tcp_keepalives_idle = 10; SET tcp_keepalives_interval = 5; SET tcp_keepalives_count = 3";
 
 /// Connections that give up in time. The first is made at once, so that a wrong address is found at the start.
