@@ -37,6 +37,8 @@ pub struct Config {
     pub response_cache_bytes: usize,
     pub free_space_floor_bytes: u64,
     pub log: LogConfig,
+    /// The address of the collector of traces.
+    pub traces: Option<String>,
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -138,6 +140,7 @@ impl Config {
             response_cache_bytes: read.whole("response-cache-mib", 0..=MIB)? * MIB,
             free_space_floor_bytes: (read.whole("free-space-floor-mib", 0..=MIB)? * MIB) as u64,
             log: LogConfig { json: read.json_log()?, filter: (read.text)("log-level") },
+            traces: places::collector((read.text)("traces"))?,
         };
         config.checked()
     }
@@ -319,6 +322,9 @@ mod tests {
             ("database", "mysql://x"),
             ("database-connections", "1"),
             ("blobs", "ftp://x"),
+            ("traces", "127.0.0.1:4318"),
+            ("traces", "http://"),
+            ("traces", "http://h?key=x"),
         ] {
             let error = config(&[(name, value)]).unwrap_err().to_string();
             assert!(error.contains(name), "{error}");
@@ -334,6 +340,8 @@ mod tests {
         assert!(shared(&[server]).unwrap_err().to_string().starts_with("blobs is not set"));
         assert!(shared(&[server, ("blobs", "s3://b")]).is_ok());
         assert!(!format!("{:?}", config(&[server]).unwrap()).contains("secret"));
+        let collector = ("traces", "https://a:secret@collector:4318");
+        assert!(!config(&[collector]).unwrap_err().to_string().contains("secret"));
     }
 
     #[test]

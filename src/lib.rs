@@ -26,4 +26,5 @@ pub mod solver;
 pub mod store;
 pub mod study;
 pub mod telemetry;
+pub mod traces;
 pub mod validation;

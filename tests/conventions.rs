@@ -7,7 +7,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Module, and the modules of ours that it may use.
-const TABLE: [(&str, &[&str]); 25] = [
+const TABLE: [(&str, &[&str]); 26] = [
     ("mesh", &[]),
     ("material", &[]),
     ("element", &[]),
@@ -16,6 +16,7 @@ const TABLE: [(&str, &[&str]); 25] = [
     ("chart", &[]),
     ("telemetry", &["config"]),
     ("metrics", &[]),
+    ("traces", &["metrics"]),
     ("registration", &["mesh", "solver"]),
     ("image", &["mesh"]),
     ("format", &["mesh", "image"]),
@@ -79,11 +80,15 @@ const TABLE: [(&str, &[&str]); 25] = [
             "store",
             "config",
             "metrics",
+            "traces",
         ],
     ),
     (
         "api",
-        &["mesh", "format", "plan", "response", "schema", "store", "jobs", "config", "metrics"],
+        &[
+            "mesh", "format", "plan", "response", "schema", "store", "jobs", "config", "metrics",
+            "traces",
+        ],
     ),
     ("command", &["*"]),
     ("main", &["command"]),

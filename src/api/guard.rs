@@ -15,6 +15,7 @@ use super::rate::Left;
 use super::{Service, body};
 use crate::metrics::http;
 use crate::schema::problem::Problem;
+use crate::traces::{self, TraceParent};
 
 const REQUEST_ID: &str = "x-request-id";
 const TRACE_PARENT: &str = "traceparent";
@@ -27,18 +28,16 @@ pub async fn surround(State(service): State<Service>, request: Request, next: Ne
     let id = request_id(request.headers());
     let method = request.method().clone();
     // The pattern of the route, not the path: ids lead to patients.
-    let route = request
-        .extensions()
-        .get::<MatchedPath>()
-        .map_or_else(|| "unmatched".to_owned(), |path| path.as_str().to_owned());
-    let counted = http::Request::begin(method.as_str(), &route);
-    let span = tracing::info_span!("request", request.id = %id, trace.id = tracing::field::Empty);
-    if let Some(trace) = trace_id(request.headers()) {
-        span.record("trace.id", trace);
-    }
+    let route = request.extensions().get::<MatchedPath>().cloned();
+    let route = route.as_ref().map(MatchedPath::as_str);
+    let trace = traces::Request::begin(method.as_str(), route, trace_parent(request.headers()));
+    let route = route.unwrap_or("unmatched");
+    let counted = http::Request::begin(method.as_str(), route);
+    let span = tracing::info_span!("request", request.id = %id, trace.id = trace.trace_id());
     let (head, body) = request.into_parts();
     let (body, unread) = body::held(body);
     let mut request = Request::from_parts(head, body);
+    request.extensions_mut().insert(trace.place());
     let answered = async {
         let response = match admit(&service, &mut request).await {
             Ok(Admitted { left, caller }) => {
@@ -70,10 +69,11 @@ pub async fn surround(State(service): State<Service>, request: Request, next: Ne
     let response = answered.instrument(span.clone()).await;
     let response = named(response, &id);
     counted.answered(response.status().as_u16());
+    trace.answered(response.status().as_u16());
     span.in_scope(|| {
         tracing::info!(
             http.method = %method,
-            http.route = %route,
+            http.route = route,
             http.status = response.status().as_u16(),
             duration_ms = started.elapsed().as_secs_f64() * 1e3,
             "request"
@@ -101,17 +101,9 @@ fn request_id(headers: &HeaderMap) -> String {
     }
 }
 
-/// The trace that a request belongs to (W3C Trace Context, level 1, section 3.2.2), for the log.
-fn trace_id(headers: &HeaderMap) -> Option<&str> {
-    let mut parts = headers.get(TRACE_PARENT)?.to_str().ok()?.split('-');
-    let (version, trace) = (parts.next()?, parts.next()?);
-    let is_hex = |text: &str, length: usize| {
-        let digit = |byte: u8| matches!(byte, b'0'..=b'9' | b'a'..=b'f');
-        text.len() == length && text.bytes().all(digit)
-    };
-    let known = is_hex(version, 2) && version != "ff" && is_hex(trace, 32);
-    let named = trace.bytes().any(|byte| byte != b'0');
-    (known && named && is_hex(parts.next()?, 16)).then_some(trace)
+/// Where in a trace its client made a request.
+fn trace_parent(headers: &HeaderMap) -> Option<TraceParent> {
+    TraceParent::parse(headers.get(TRACE_PARENT)?.to_str().ok()?)
 }
 
 /// What is known of a request that is let in.
@@ -258,26 +250,6 @@ mod tests {
         assert_eq!(chosen("*/*, application/json;q=0"), Some(1));
         assert_eq!(chosen("application/octet-stream;q=0.4, model/gltf-binary;q=0.6"), Some(2));
         assert_eq!(chosen("text/html"), None);
-    }
-
-    #[test]
-    fn a_trace_is_taken_over_when_it_is_one() {
-        let trace_of = |given: &str| {
-            let mut headers = HeaderMap::new();
-            headers.insert(TRACE_PARENT, given.parse().unwrap());
-            trace_id(&headers).map(str::to_owned)
-        };
-        let trace = "0af7651916cd43dd8448eb211c80319c";
-        assert_eq!(trace_of(&format!("00-{trace}-b7ad6b7169203331-01")).as_deref(), Some(trace));
-        for wrong in [
-            format!("ff-{trace}-b7ad6b7169203331-01"),
-            format!("00-{}-b7ad6b7169203331-01", "0".repeat(32)),
-            format!("00-{}-b7ad6b7169203331-01", trace.to_uppercase()),
-            format!("00-{trace}"),
-            "00-a\"b-c-01".to_owned(),
-        ] {
-            assert_eq!(trace_of(&wrong), None, "{wrong}");
-        }
     }
 
     #[test]

@@ -238,6 +238,7 @@ impl Accepted {
             engine,
             tags: self.tags,
             mesh_ids: self.mesh_ids,
+            traceparent: None,
         })
     }
 }

@@ -19,6 +19,7 @@ use super::{Service, body, conditional, job_input, json, json_only, with_header}
 use crate::schema::job::{JobKind, JobStatus, StatusInfo};
 use crate::schema::spec::JobDocument;
 use crate::store::{Dismissal, Enqueued, JobFilter, JobRow};
+use crate::traces::TraceParent;
 
 /// Jobs that may wait at the same time.
 const LONGEST_QUEUE: i64 = 10_000;
@@ -80,6 +81,7 @@ struct ListParameters {
 async fn create(service: Service, request: Request) -> ApiResult {
     let wait = wanted_wait(request.headers(), service.limits.wait_s);
     let headers = request.headers().clone();
+    let place = request.extensions().get::<Option<TraceParent>>().cloned().flatten();
     let bytes = body::json(&service, request).await?;
     let document = JobDocument::parse(&bytes, &service.limits)?;
     let new = new_id(&service, &headers, "/v1/jobs", &[&bytes]).await?;
@@ -94,6 +96,7 @@ async fn create(service: Service, request: Request) -> ApiResult {
         JobDocument::Study(spec) => job_input::of_study(&service, spec).await?,
     };
     accepted.id = new.id;
+    accepted.traceparent = place.map(|place| place.to_string());
     let (id, deduplicated) = match service.store.enqueue(&accepted, LONGEST_QUEUE).await? {
         Enqueued::Accepted => (accepted.id, false),
         Enqueued::Known(id) => {

@@ -21,6 +21,7 @@ use crate::metrics;
 use crate::schema::Limits;
 use crate::store::{Store, StoreError};
 use crate::telemetry::{self, TelemetryError};
+use crate::traces::{self, TracesError};
 
 /// How long what was done may be out of the chain of the audit log.
 const CHAIN_EVERY: Duration = Duration::from_secs(2);
@@ -39,6 +40,8 @@ pub enum ServeError {
     Metrics(#[from] metrics_exporter_prometheus::BuildError),
     #[error("{address} cannot be listened on: {source}")]
     Listen { address: SocketAddr, source: std::io::Error },
+    #[error("{0}")]
+    Traces(#[from] TracesError),
     #[error("{0}")]
     FailPoint(#[from] FailPointError),
     #[error("{0}")]
@@ -70,6 +73,7 @@ pub fn run(arguments: &Arguments) -> Result<(), ServeError> {
     tell_admin(server.admin);
     let workers = runtime.block_on(server.run_until(stop_signal()))?;
     workers.stop(grace);
+    traces::stop();
     // What still computes for a request that nobody waits for ends with the process.
     runtime.shutdown_background();
     Ok(())
@@ -134,9 +138,10 @@ impl Server {
     }
 }
 
-/// Begins to count, opens the store and keeps it swept.
+/// Begins to count and to trace, opens the store and keeps it swept.
 pub async fn open(config: &Config) -> Result<Store, ServeError> {
     metrics::start()?;
+    traces::start(config.traces.as_deref())?;
     let store = Store::connect(&config.places).await?;
     keep_swept(&store).await?;
     keep_chained(&store);

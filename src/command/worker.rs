@@ -10,6 +10,7 @@ use crate::jobs::fail_point;
 use crate::jobs::library::Library;
 use crate::jobs::worker::Workers;
 use crate::telemetry;
+use crate::traces;
 
 /// Works until the process is told to stop (SIGTERM or SIGINT).
 pub fn run(arguments: &Arguments) -> Result<(), ServeError> {
@@ -26,6 +27,7 @@ pub fn run(arguments: &Arguments) -> Result<(), ServeError> {
     runtime.block_on(stop_signal());
     tracing::info!("stopping");
     workers.stop(config.grace);
+    traces::stop();
     runtime.shutdown_background();
     Ok(())
 }

@@ -86,6 +86,26 @@ pub(super) fn blobs(place: &str) -> Result<BlobsPlace, ConfigError> {
     })
 }
 
+/// The address of a collector of OpenTelemetry without a slash at its end, or nothing. Credentials belong into headers.
+pub(super) fn collector(address: String) -> Result<Option<String>, ConfigError> {
+    if address.is_empty() {
+        return Ok(None);
+    }
+    let is_plain = |url: &reqwest::Url| {
+        let has_key = !url.username().is_empty() || url.password().is_some();
+        let is_web = matches!(url.scheme(), "http" | "https");
+        is_web && !has_key && url.query().is_none() && url.fragment().is_none()
+    };
+    match reqwest::Url::parse(&address).ok().filter(is_plain) {
+        Some(url) => Ok(Some(url.as_str().trim_end_matches('/').to_owned())),
+        None => Err(ConfigError::Value {
+            name: "traces",
+            value: without_password(&address),
+            wanted: "http:// or https:// with a host and perhaps a port and a path",
+        }),
+    }
+}
+
 /// Endpoint, region and credentials, where every program looks for them.
 fn aws_variables() -> Vec<(String, Secret)> {
     let variables = std::env::vars_os().filter_map(|(name, value)| {

@@ -137,4 +137,9 @@ pub const SETTINGS: &[Setting] = &[
         "info",
         "error, warn, info, debug, trace, or a filter such as facies=debug,sqlx=warn",
     ),
+    setting(
+        "traces",
+        "",
+        "address of an OpenTelemetry collector that takes OTLP over HTTP, such as http://127.0.0.1:4318; without it there are no traces",
+    ),
 ];

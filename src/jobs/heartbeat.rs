@@ -12,6 +12,7 @@ use crate::config::Config;
 use crate::metrics;
 use crate::prediction::{Phase, Progress};
 use crate::store::{Lease, Point, Store, StoreError};
+use crate::traces;
 
 /// How long a job that was dismissed may run on before its solver is told.
 const LOOK: Duration = Duration::from_millis(500);
@@ -19,15 +20,17 @@ const LOOK: Duration = Duration::from_millis(500);
 /// A job that this process works on: what its solver tells, and what it is told.
 pub struct RunningJob {
     pub lease: Lease,
+    pub trace: traces::Attempt,
     stopped: AtomicBool,
     point: Mutex<Point>,
     renewed: Mutex<(Instant, Point)>,
 }
 
 impl RunningJob {
-    fn new(lease: Lease) -> Self {
+    fn new(lease: Lease, trace: traces::Attempt) -> Self {
         RunningJob {
             lease,
+            trace,
             stopped: AtomicBool::new(false),
             point: Mutex::default(),
             renewed: Mutex::new((Instant::now(), Point::default())),
@@ -70,6 +73,7 @@ const SOLVE_ENDS: i64 = 90;
 
 impl Progress for RunningJob {
     fn phase(&self, phase: Phase) {
+        self.trace.phase(phase.name());
         self.advance(|point| {
             point.phase = Some(phase.name());
             point.progress = percent(phase);
@@ -145,8 +149,8 @@ impl Heartbeat {
     }
 
     /// Keeps a lease alive until `let_go`.
-    pub fn hold(&self, lease: Lease) -> Arc<RunningJob> {
-        let job = Arc::new(RunningJob::new(lease.clone()));
+    pub fn hold(&self, lease: Lease, trace: traces::Attempt) -> Arc<RunningJob> {
+        let job = Arc::new(RunningJob::new(lease.clone(), trace));
         lock(&self.held).insert(lease, job.clone());
         job
     }

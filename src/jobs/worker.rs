@@ -20,6 +20,7 @@ use crate::metrics;
 use crate::prediction::Progress;
 use crate::schema::canonical::sha256_hex;
 use crate::store::{Claim, Lease, PublishedFile, Store, StoreError};
+use crate::traces;
 
 /// How long an idle worker waits before it looks for jobs that another process has accepted.
 const IDLE: Duration = Duration::from_secs(1);
@@ -182,8 +183,11 @@ impl Shared {
     fn attempt(&self, claim: &Claim, work: &mut dyn Work) {
         let lease = &claim.lease;
         let started = Instant::now();
-        let job = self.heartbeat.hold(lease.clone());
-        let span = tracing::info_span!("job", job.id = %lease.job, attempt = lease.attempt);
+        let parent = claim.traceparent.as_deref();
+        let trace = traces::Attempt::begin(&lease.job, &claim.kind, lease.attempt, parent);
+        let job = self.heartbeat.hold(lease.clone(), trace);
+        let trace_id = job.trace.trace_id();
+        let span = tracing::info_span!("job", job.id = %lease.job, attempt = lease.attempt, trace.id = trace_id);
         let _inside = span.enter();
         tracing::info!(kind = %claim.kind, "job started");
         let fail_points = FailPoints::of(lease.attempt, &claim.document);
@@ -193,6 +197,7 @@ impl Shared {
         let made = make(claim, &folder, &job, work);
         let worked = started.elapsed();
         let made = made.and_then(|finished| {
+            job.trace.phase("publish");
             let files = read_files(finished.files)?;
             effort = finished.effort;
             Ok((finished.result, files))
@@ -208,6 +213,7 @@ impl Shared {
         });
         let status = self.conclude(lease, &job, ended);
         self.heartbeat.let_go(lease);
+        job.trace.ended(status);
         let took = started.elapsed();
         metrics::attempt_ended(&claim.kind, status, took);
         if status == "successful" {

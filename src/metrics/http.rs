@@ -21,6 +21,12 @@ pub(super) fn describe() {
     describe_gauge!(STREAMS, "open streams of events");
 }
 
+/// A method that routes may have; another one is a word of the client's.
+pub fn known_method(method: &str) -> Option<&'static str> {
+    let known = ["GET", "HEAD", "POST", "PUT", "DELETE", "OPTIONS"];
+    known.into_iter().find(|known| *known == method)
+}
+
 /// A request from its beginning to the head of its answer.
 pub struct Request {
     begun: Instant,
@@ -33,8 +39,7 @@ impl Request {
     /// A request whose client leaves before the answer counts as `gone`.
     pub fn begin(method: &str, route: &str) -> Request {
         gauge!(IN_FLIGHT).increment(1.0);
-        let known = ["GET", "HEAD", "POST", "PUT", "DELETE", "OPTIONS"];
-        let method = known.into_iter().find(|known| *known == method).unwrap_or("other");
+        let method = known_method(method).unwrap_or("other");
         Request { begun: Instant::now(), route: route.to_owned(), method, status: "gone" }
     }
 

@@ -23,6 +23,8 @@ pub struct NewJob {
     pub tags: Vec<String>,
     /// The meshes that have to stay while the job is there.
     pub mesh_ids: Vec<String>,
+    /// Where in a trace it is accepted, where there is one.
+    pub traceparent: Option<String>,
 }
 
 /// What became of a job that was to be accepted.
@@ -102,8 +104,8 @@ const LIST: &str = concat!(
 );
 const KNOWN: &str = "SELECT id FROM jobs WHERE spec_hash = $1 AND tenant = $2";
 const INSERT: &str = "INSERT INTO jobs (id, kind, case_id, document, spec_hash, engine, tenant, priority, \
-     status, progress, attempt, losses, claimable_from, created, updated) \
-     VALUES ($1, $2, $3, $4, $5, $6, $7, $8, 'accepted', 0, 0, 0, 0, \
+     traceparent, status, progress, attempt, losses, claimable_from, created, updated) \
+     VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, 'accepted', 0, 0, 0, 0, \
        (SELECT now_ms FROM clock), (SELECT now_ms FROM clock)) \
      ON CONFLICT (spec_hash) DO NOTHING";
 const DISMISS: &str = "UPDATE jobs SET status = 'dismissed', lease_token = NULL, lease_expires = NULL, \
@@ -268,6 +270,7 @@ impl Store {
             .bind(&job.engine)
             .bind(self.tenant())
             .bind(job.priority)
+            .bind(&job.traceparent)
             .execute(&mut *transaction)
             .await?;
         if inserted == 0 {

@@ -27,6 +27,8 @@ pub struct Claim {
     pub document: String,
     pub created: i64,
     pub started: i64,
+    /// Where in a trace it was accepted.
+    pub traceparent: Option<String>,
 }
 
 /// Where a running job stands.
@@ -88,7 +90,7 @@ const CLAIM: &str = "UPDATE jobs SET status = 'running', attempt = attempt + 1, 
            ORDER BY served, name LIMIT 1) \
        AND claimable_from <= (SELECT now_ms FROM clock) ORDER BY priority, id LIMIT 1 \
        FOR UPDATE SKIP LOCKED) \
-     AND status = 'accepted' RETURNING id, attempt, tenant, kind, document, created, started";
+     AND status = 'accepted' RETURNING id, attempt, tenant, kind, document, created, started, traceparent";
 const SERVED: &str =
     "UPDATE tenants SET served = (SELECT MAX(served) FROM tenants) + 1 WHERE name = $1";
 const RENEW: &str = "UPDATE jobs SET lease_expires = (SELECT now_ms FROM clock) + $3, \
@@ -161,6 +163,7 @@ impl Store {
             document: row.try_get("document")?,
             created: row.try_get("created")?,
             started: row.try_get("started")?,
+            traceparent: row.try_get("traceparent")?,
         }))
     }
 

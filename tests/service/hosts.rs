@@ -18,7 +18,7 @@ use crate::partition::Way;
 const LARGE: Block = Block { cells: [44, 44, 30] };
 
 /// A worker in a process of its own. It is killed when the test ends.
-struct Worker(Child);
+pub struct Worker(Child);
 
 impl Worker {
     fn start(on: &Deployment) -> Worker {
@@ -26,7 +26,7 @@ impl Worker {
     }
 
     /// The worker, and what it says.
-    fn start_with(on: &Deployment, arguments: &[&str]) -> (Worker, BufReader<ChildStdout>) {
+    pub fn start_with(on: &Deployment, arguments: &[&str]) -> (Worker, BufReader<ChildStdout>) {
         let mut command = Command::new(env!("CARGO_BIN_EXE_facies"));
         command.args(["worker", "--workers", "1", "--lease-s", "1", "--heartbeat-s", "0.2"]);
         on.bring(&mut command);

@@ -39,6 +39,7 @@ mod shared;
 mod storage;
 mod study;
 mod tenants;
+mod traces;
 mod transfer;
 mod watching;
 mod worker;

@@ -33,6 +33,7 @@ pub fn new_job(document: &str, hash: &str) -> NewJob {
         engine: "test".into(),
         tags: vec!["a".into()],
         mesh_ids: vec![],
+        traceparent: None,
     }
 }
 

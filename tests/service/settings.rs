@@ -30,6 +30,7 @@ fn a_wrong_setting_stops_the_start_with_one_line_and_78() {
         (["--log-format", "xml"], "log-format"),
         (["--log-level", "=="], "log-level"),
         (["--api-key", "short"], "api-key"),
+        (["--traces", "collector:4318"], "traces"),
     ] {
         let (code, line) = refused(&arguments);
         assert_eq!(code, Some(78), "{line}");
