@@ -2,7 +2,7 @@
 
 pub mod http;
 
-use std::sync::OnceLock;
+use std::sync::{Mutex, OnceLock, PoisonError};
 use std::time::Duration;
 
 use ::metrics::{
@@ -30,6 +30,9 @@ static EXPORTER: OnceLock<PrometheusHandle> = OnceLock::new();
 
 /// Begins to count in this process; a second call changes nothing.
 pub fn start() -> Result<(), BuildError> {
+    // One thread installs; another that comes meanwhile finds it installed.
+    static ALONE: Mutex<()> = Mutex::new(());
+    let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
     if EXPORTER.get().is_some() {
         return Ok(());
     }
@@ -39,8 +42,7 @@ pub fn start() -> Result<(), BuildError> {
         .set_buckets_for_metric(Matcher::Full(ITERATIONS.into()), &COUNTS)?
         .set_buckets_for_metric(Matcher::Suffix("_bytes".into()), &BYTES)?;
     let handle = builder.install_recorder()?;
-    // Another thread that was faster has installed the same.
-    let _ = EXPORTER.set(handle);
+    EXPORTER.get_or_init(|| handle);
     describe();
     Ok(())
 }

@@ -52,8 +52,8 @@ pub fn start(collector: Option<&str>) -> Result<(), TracesError> {
         .with_span_processor(Queue::new(exporter))
         .build();
     let tracer = provider.tracer("facies");
-    // Another thread that was faster has started the same.
-    let _ = TRACES.set((provider, tracer));
+    // What another thread has started meanwhile stays.
+    TRACES.get_or_init(|| (provider, tracer));
     Ok(())
 }
 
