@@ -19,6 +19,7 @@ const JOB_TIME: &str = "facies_job_seconds";
 const ITERATIONS: &str = "facies_solver_iterations";
 const SLOTS_ENDED: &str = "facies_slot_processes_ended_total";
 const JOB_MEMORY: &str = "facies_job_peak_bytes";
+const LINES_DROPPED: &str = "facies_log_lines_dropped_total";
 
 const SECONDS: [f64; 12] =
     [0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1000.0, 3600.0];
@@ -59,6 +60,7 @@ fn describe() {
     describe_histogram!(ITERATIONS, "iterations of the solver in a successful job, by method");
     describe_counter!(SLOTS_ENDED, "processes of slots that were ended or died, by cause");
     describe_histogram!(JOB_MEMORY, Unit::Bytes, "most memory of the process of a job");
+    describe_counter!(LINES_DROPPED, "lines of the log that nobody read in time");
 }
 
 /// Everything that was counted, as text for Prometheus; empty before `start`.
@@ -120,6 +122,11 @@ pub fn slot_ended(cause: &str) {
 /// The most memory that the process of a job took.
 pub fn job_memory(peak_bytes: u64) {
     histogram!(JOB_MEMORY).record(peak_bytes as f64);
+}
+
+/// A line of the log found no room.
+pub fn log_line_dropped() {
+    counter!(LINES_DROPPED).increment(1);
 }
 
 #[cfg(test)]

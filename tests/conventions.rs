@@ -14,7 +14,7 @@ const TABLE: [(&str, &[&str]); 25] = [
     ("solver", &[]),
     ("config", &[]),
     ("chart", &[]),
-    ("telemetry", &["config"]),
+    ("telemetry", &["config", "metrics"]),
     ("metrics", &[]),
     ("registration", &["mesh", "solver"]),
     ("image", &["mesh"]),
