@@ -20,6 +20,7 @@ const ITERATIONS: &str = "facies_solver_iterations";
 const SLOTS_ENDED: &str = "facies_slot_processes_ended_total";
 const JOB_MEMORY: &str = "facies_job_peak_bytes";
 const SPANS_LOST: &str = "facies_spans_lost_total";
+const LINES_DROPPED: &str = "facies_log_lines_dropped_total";
 
 const SECONDS: [f64; 12] =
     [0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1000.0, 3600.0];
@@ -63,6 +64,7 @@ fn describe() {
     describe_counter!(SLOTS_ENDED, "processes of slots that were ended or died, by cause");
     describe_histogram!(JOB_MEMORY, Unit::Bytes, "most memory of the process of a job");
     describe_counter!(SPANS_LOST, "spans of traces that did not reach their collector, by cause");
+    describe_counter!(LINES_DROPPED, "lines of the log that nobody read in time");
 }
 
 /// Everything that was counted, as text for Prometheus; empty before `start`.
@@ -129,6 +131,11 @@ pub fn job_memory(peak_bytes: u64) {
 /// Spans found the queue full, or did not reach the collector.
 pub fn spans_lost(cause: &'static str, spans: u64) {
     counter!(SPANS_LOST, "cause" => cause).increment(spans);
+}
+
+/// A line of the log found no room.
+pub fn log_line_dropped() {
+    counter!(LINES_DROPPED).increment(1);
 }
 
 #[cfg(test)]

@@ -1,8 +1,11 @@
 //! Structured logs on standard error.
 
+mod standard_error;
+
 use tracing_subscriber::EnvFilter;
 
 use crate::config::LogConfig;
+use standard_error::Lines;
 
 #[derive(Debug, thiserror::Error)]
 pub enum TelemetryError {
@@ -16,7 +19,7 @@ pub enum TelemetryError {
 pub fn start(log: &LogConfig) -> Result<(), TelemetryError> {
     let filter =
         EnvFilter::try_new(&log.filter).map_err(|_| TelemetryError::Filter(log.filter.clone()))?;
-    let lines = tracing_subscriber::fmt().with_env_filter(filter).with_writer(std::io::stderr);
+    let lines = tracing_subscriber::fmt().with_env_filter(filter).with_writer(|| Lines);
     let set = if log.json {
         lines.json().flatten_event(true).with_current_span(true).with_span_list(false).try_init()
     } else {

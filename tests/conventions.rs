@@ -14,7 +14,7 @@ const TABLE: [(&str, &[&str]); 26] = [
     ("solver", &[]),
     ("config", &[]),
     ("chart", &[]),
-    ("telemetry", &["config"]),
+    ("telemetry", &["config", "metrics"]),
     ("metrics", &[]),
     ("traces", &["metrics"]),
     ("registration", &["mesh", "solver"]),

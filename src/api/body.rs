@@ -16,9 +16,8 @@ use super::Service;
 use super::error::{ApiError, ApiResult};
 use crate::schema::problem::Problem;
 
-/// Bytes a second below which a body is too slow, once `SLOW_AFTER` has passed.
+/// Bytes a second below which a body is too slow, once it has taken longer than it may stand still.
 const LEAST_RATE: f64 = 16.0 * 1024.0;
-const SLOW_AFTER: Duration = Duration::from_secs(30);
 
 /// How much may come and how slowly.
 #[derive(Clone, Copy)]
@@ -230,7 +229,7 @@ fn bounded(body: Body, bounds: Bounds) -> impl Stream<Item = ApiResult<Bytes>> {
             let elapsed = started.elapsed();
             if count > bounds.bytes {
                 Err(too_large(bounds.bytes))
-            } else if elapsed > SLOW_AFTER && (count as f64) < LEAST_RATE * elapsed.as_secs_f64() {
+            } else if elapsed > bounds.idle && (count as f64) < LEAST_RATE * elapsed.as_secs_f64() {
                 Err(too_slow(count))
             } else {
                 Ok(frame)

@@ -1,5 +1,7 @@
 //! Whether the process lives, and whether it can work.
 
+use std::time::Duration;
+
 use axum::http::StatusCode;
 use axum::response::Response;
 use serde::{Deserialize, Serialize};
@@ -10,6 +12,10 @@ use utoipa_axum::routes;
 use super::error::{ApiError, ApiResult};
 use super::{Service, json, json_only};
 use crate::schema::problem::Problem;
+use crate::store::StoreError;
+
+/// What takes longer than this is no help to a request.
+const READY_WITHIN: Duration = Duration::from_secs(2);
 
 #[derive(Serialize, Deserialize, ToSchema)]
 pub struct Health {
@@ -31,11 +37,13 @@ async fn healthz() -> Response {
 #[utoipa::path(get, path = "/readyz", tag = "health", responses((status = 200, description = "ready", body = Health)))]
 async fn readyz(service: Service) -> ApiResult {
     let mut failing: Vec<String> = Vec::new();
-    if let Err(error) = service.store.ping().await {
+    let (database, storage) =
+        tokio::join!(in_time(service.store.ping()), in_time(service.store.try_write()));
+    if let Err(error) = database {
         tracing::warn!(%error, "the database does not answer");
         failing.push("database".into());
     }
-    if let Err(error) = service.store.try_write().await {
+    if let Err(error) = storage {
         tracing::warn!(%error, "the data folder cannot be written");
         failing.push("storage".into());
     }
@@ -48,4 +56,9 @@ async fn readyz(service: Service) -> ApiResult {
     }
     let detail = format!("failing: {}", failing.join(", "));
     Err(ApiError::from(Problem::new("not-ready", detail).with("checks", failing)))
+}
+
+async fn in_time(check: impl Future<Output = Result<(), StoreError>>) -> Result<(), StoreError> {
+    let late = |_| Err(StoreError::Files(std::io::ErrorKind::TimedOut.into()));
+    tokio::time::timeout(READY_WITHIN, check).await.unwrap_or_else(late)
 }

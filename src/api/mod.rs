@@ -9,6 +9,7 @@ mod case_draft;
 mod cases;
 mod client;
 mod conditional;
+pub mod connections;
 mod deeds;
 mod error;
 mod events;

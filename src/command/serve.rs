@@ -5,7 +5,6 @@ use std::net::SocketAddr;
 use std::sync::Arc;
 use std::time::Duration;
 
-use axum::serve::ListenerExt as _;
 use tokio::net::TcpListener;
 use tokio::runtime::Handle;
 
@@ -113,21 +112,16 @@ impl Server {
     ) -> Result<Workers, ServeError> {
         let deadline = self.service.config.grace;
         let (stopping, mut stopped) = tokio::sync::watch::channel(());
-        // The last piece of an answer is not held back until the client has confirmed the ones before it.
-        let listener = self.listener.tap_io(|stream| {
-            if let Err(error) = stream.set_nodelay(true) {
-                tracing::debug!(%error, "TCP_NODELAY");
-            }
-        });
+        let patience = self.service.config.body_idle;
         let streams = self.service.streams.clone();
-        let answers = api::router(self.service).into_make_service_with_connect_info::<SocketAddr>();
-        let served = axum::serve(listener, answers).with_graceful_shutdown(async move {
+        let answers = api::router(self.service);
+        let served = api::connections::serve(self.listener, answers, patience, async move {
             stop.await;
             streams.stop();
             tracing::info!("stopping");
             drop(stopping);
         });
-        let served = tokio::spawn(served.into_future());
+        let served = tokio::spawn(served);
         // The sender goes when it is time to stop.
         let _ = stopped.changed().await;
         // A client that never ends its request does not keep the process from ending.

@@ -122,7 +122,7 @@ pub const SETTINGS: &[Setting] = &[
     setting(
         "body-idle-s",
         "30",
-        "seconds a client may stay silent in the middle of a body; 0.1 to 600",
+        "seconds a client may stay silent in the middle of a request, between two, or take nothing of an answer; 0.1 to 600",
     ),
     setting("mesh-cache-mib", "1024", "memory for parsed meshes in MiB; 0 to 1048576"),
     setting("response-cache-mib", "256", "memory for plan responses in MiB; 0 to 1048576"),

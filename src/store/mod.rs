@@ -110,7 +110,8 @@ impl StoreError {
     pub fn is_unavailable(&self) -> bool {
         match self {
             StoreError::Database(error) => database::is_unavailable(error),
-            StoreError::Blobs(object_store::Error::Generic { store, .. }) => *store == "S3",
+            // A server that does not answer, a disk that errs, no descriptor left.
+            StoreError::Blobs(object_store::Error::Generic { .. }) => !self.is_full(),
             StoreError::Contended => true,
             _ => false,
         }

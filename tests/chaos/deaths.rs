@@ -9,7 +9,7 @@ use crate::helpers::{SMALL, Server, ask, serve, spec};
 use crate::invariants::{
     MEDIUM, accepted, fails, files, shows_no_result, state, succeeds, tagged, undisturbed, works_on,
 };
-use crate::processes::{faulty, faulty_with_log, is_gone, slots, until};
+use crate::processes::{descriptors, faulty, faulty_with_log, is_gone, slots, until};
 
 #[tokio::test]
 async fn a_slot_that_is_killed_in_the_middle_of_a_solution_costs_one_attempt() {
@@ -176,9 +176,7 @@ async fn a_slot_knows_neither_the_database_nor_a_key() {
             let text = String::from_utf8_lossy(&bytes);
             assert!(!text.contains(KEY), "{text}");
         }
-        let files = std::fs::read_dir(format!("/proc/{slot}/fd")).unwrap();
-        for file in files.filter_map(|file| std::fs::read_link(file.ok()?.path()).ok()) {
-            let file = file.to_str().unwrap();
+        for file in descriptors(slot) {
             assert!(!file.contains(&data) && !file.starts_with("socket:"), "{file}");
         }
     }

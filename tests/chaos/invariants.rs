@@ -3,6 +3,7 @@
 //! no job has more attempts than it may have.
 
 use std::collections::BTreeMap;
+use std::sync::atomic::{AtomicU32, Ordering};
 
 use facies::schema::canonical::sha256_hex;
 use reqwest::StatusCode;
@@ -99,6 +100,9 @@ pub fn files(job: &Value) -> BTreeMap<String, String> {
 pub async fn works_on(server: &Server) {
     assert_eq!(ask(server.get("/readyz")).await.expect(StatusCode::OK)["status"], "ok");
     let case = server.case(&SMALL).await;
-    let id = accepted(server, &spec(&case, 0.123)).await;
+    // What was asked for before would be known.
+    static TIMES: AtomicU32 = AtomicU32::new(0);
+    let x = 0.123 + f64::from(TIMES.fetch_add(1, Ordering::Relaxed)) / 1e4;
+    let id = accepted(server, &spec(&case, x)).await;
     succeeds(server, &id, 1).await;
 }

@@ -49,13 +49,25 @@ fn status(process: u32, field: &str) -> Option<String> {
 
 /// The processes of the slots of a server.
 pub fn slots(server: &Server) -> Vec<u32> {
-    let parent = server.process().to_string();
+    slots_of(server.process())
+}
+
+/// The same of any process with workers.
+pub fn slots_of(process: u32) -> Vec<u32> {
+    let parent = process.to_string();
     let processes = std::fs::read_dir("/proc").unwrap().filter_map(|entry| {
         let process: u32 = entry.ok()?.file_name().to_str()?.parse().ok()?;
         let is_child = status(process, "PPid").as_deref() == Some(parent.as_str());
         (is_child && !is_gone(process)).then_some(process)
     });
     processes.collect()
+}
+
+/// What the descriptors of a process lead to.
+pub fn descriptors(process: u32) -> Vec<String> {
+    let files = std::fs::read_dir(format!("/proc/{process}/fd")).unwrap();
+    let files = files.filter_map(|file| std::fs::read_link(file.ok()?.path()).ok());
+    files.map(|file| file.to_string_lossy().into_owned()).collect()
 }
 
 pub fn is_gone(process: u32) -> bool {

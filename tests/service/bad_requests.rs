@@ -1,10 +1,12 @@
 //! Requests that are wrong as HTTP. The first word of a name is the row of the list of bad inputs.
 
 use reqwest::{Method, StatusCode};
+use serde_json::{Value, json};
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::TcpStream;
 
-use crate::helpers::{SMALL, Server, ask};
+use crate::helpers::{SMALL, Server, ask, serve, spec};
+use crate::tenants::Hospital;
 
 #[tokio::test]
 async fn what_is_not_there_is_not_found_and_what_is_not_allowed_is_told() {
@@ -18,6 +20,7 @@ async fn what_is_not_there_is_not_found_and_what_is_not_allowed_is_told() {
         format!("/v1/cases/{nobody}"),
         format!("/v1/cases/{nobody}/plans/{nobody}"),
         "/v1/cases/..%2f..%2fetc".to_owned(),
+        "/v1/cases/%2e%2e%2f".to_owned(),
         "/v1/cases/%00".to_owned(),
         format!("/v1/cases/{}", nobody.simple()),
     ] {
@@ -139,6 +142,104 @@ async fn a_body_that_stops_coming_is_given_up() {
     let blobs = std::fs::read_dir(server.path().join("blobs")).unwrap().count();
     assert_eq!(blobs, 0);
     server.upload(SMALL.vtu()).await.expect(StatusCode::CREATED);
+}
+
+#[tokio::test]
+async fn what_has_no_certain_length_is_refused_and_its_connection_closed() {
+    let server = Server::start_with(&["--workers", "0"]);
+    let chunked = "Transfer-Encoding: chunked\r\n\r\n";
+    for (name, rest) in [
+        ("72 two lengths", "Content-Length: 2\r\nContent-Length: 3\r\n\r\n{}".to_owned()),
+        ("72 a length that is none", "Content-Length: +2\r\n\r\n{}".to_owned()),
+        ("72 no size of a chunk", format!("{chunked}FFFFFFFFFFFFFFFFF\r\n{{}}\r\n0\r\n\r\n")),
+        ("72 a chunk with a bare LF", format!("{chunked}2\n{{}}\n0\n\n")),
+        (
+            "72 less than the length",
+            "Content-Length: 2\r\n\r\n{} /v1/jobs HTTP/1.1\r\n\r\n".to_owned(),
+        ),
+    ] {
+        let head = "POST /v1/jobs HTTP/1.1\r\nHost: x\r\nContent-Type: application/json\r\n";
+        let answer = raw(&server, &format!("{head}{rest}")).await;
+        for line in answer.lines().filter(|line| line.starts_with("HTTP/1.1")) {
+            assert!(line.starts_with("HTTP/1.1 4"), "{name}: {answer}");
+        }
+        assert!(answer.contains("HTTP/1.1 400"), "{name}: {answer}");
+    }
+    let mut broken_off = TcpStream::connect(server.host()).await.unwrap();
+    let head = "POST /v1/jobs HTTP/1.1\r\nHost: x\r\nContent-Type: application/json\r\nContent-Length: 99\r\n\r\n{";
+    broken_off.write_all(head.as_bytes()).await.unwrap();
+    broken_off.shutdown().await.unwrap();
+    let mut answer = String::new();
+    broken_off.read_to_string(&mut answer).await.unwrap();
+    assert!(answer.is_empty() || answer.starts_with("HTTP/1.1 400"), "72 {answer}");
+    ask(server.get("/v1/jobs")).await.expect(StatusCode::OK);
+}
+
+#[tokio::test]
+async fn a_cursor_of_another_tenant_shows_nothing_of_theirs() {
+    let hospital = Hospital::open();
+    let (ours, theirs) =
+        (hospital.key("a", &["read", "write"]).await, hospital.key("b", &["read"]).await);
+    for name in ["one", "two"] {
+        let mut case = SMALL.case();
+        case["name"] = name.into();
+        let form =
+            hospital.server.post("/v1/cases").bearer_auth(&ours).multipart(SMALL.form(&case));
+        ask(form).await.expect(StatusCode::CREATED);
+    }
+    let page = hospital.get(&ours, "/v1/cases?limit=1").await.expect(StatusCode::OK);
+    let next = format!("/v1/cases?cursor={}", page["next"].as_str().unwrap());
+    let rest = |page: Value| page["items"].as_array().unwrap().len();
+    assert_eq!(rest(hospital.get(&ours, &next).await.expect(StatusCode::OK)), 1);
+    assert_eq!(rest(hospital.get(&theirs, &next).await.expect(StatusCode::OK)), 0, "81");
+}
+
+#[tokio::test]
+async fn names_that_could_do_harm_come_back_as_they_are_and_never_reach_the_log() {
+    let folder = tempfile::TempDir::new().unwrap();
+    let log = folder.path().join("log");
+    let mut command = serve(folder.path());
+    command.args(["--workers", "0", "--log-level", "debug"]);
+    command.stderr(std::fs::File::create(&log).unwrap());
+    let server = Server::start_command(command, folder);
+    for name in ["=cmd|' /C calc'!A0", "<script>alert(1)</script>", "\u{202e}gnp.exe", "\u{1f9b7}"]
+    {
+        let mut case = SMALL.case();
+        case["name"] = name.into();
+        case["tags"] = json!([name]);
+        let made = ask(server.post("/v1/cases").multipart(SMALL.form(&case))).await;
+        let path = made.header("location").to_owned();
+        made.expect(StatusCode::CREATED);
+        let kept = ask(server.get(&path)).await;
+        assert_eq!(kept.header("content-type"), "application/json", "84 {name}");
+        assert_eq!(kept.json()["case"]["name"], name, "84");
+        assert_eq!(kept.json()["case"]["tags"], json!([name]), "84");
+        let logged = std::fs::read_to_string(&log).unwrap();
+        assert!(!logged.contains(name), "84 {name}");
+    }
+    for name in ["two\nlines", "a\u{0}b", "\u{1b}[31m"] {
+        let mut case = SMALL.case();
+        case["name"] = name.into();
+        let refused = ask(server.post("/v1/cases").multipart(SMALL.form(&case))).await;
+        refused.problem_of(&format!("84 {name:?}"), 422, "validation-failed");
+    }
+}
+
+#[tokio::test]
+async fn a_table_has_no_name_that_a_spreadsheet_would_compute() {
+    let server = Server::start();
+    let case = server.case(&SMALL).await;
+    let truth = server.job(&spec(&case, 1.0)).await.expect(StatusCode::OK);
+    let formula = "=cmd|' /C calc'!A0";
+    let study = json!({
+        "kind": "study", "scenes": [{"case": case, "name": formula}], "repeats": 1,
+        "plans": [{"segments": [{"name": "bone", "translation_mm": [1, 0, 0]}]}],
+        "methods": ["fem_linear"], "elements": ["auto"], "truth": {"job": truth["id"]},
+    });
+    let job = server.job(&study).await.expect(StatusCode::OK);
+    let path = format!("/v1/jobs/{}/report?format=csv", job["id"].as_str().unwrap());
+    let table = String::from_utf8(ask(server.get(&path)).await.bytes).unwrap();
+    assert!(table.contains(&format!("\n'{formula},")), "84 {table}");
 }
 
 #[tokio::test]

@@ -2,7 +2,7 @@
 
 use std::io::{BufRead, BufReader};
 use std::path::Path;
-use std::process::{Child, ChildStdout, Command, Stdio};
+use std::process::{Child, ChildStderr, ChildStdout, Command, Stdio};
 use std::time::{Duration, Instant};
 
 use facies::format::{VolumeOutput, vtu};
@@ -80,6 +80,11 @@ impl Server {
         let mut line = String::new();
         self.stdout.read_line(&mut line).unwrap();
         line.trim().to_owned()
+    }
+
+    /// The other end of its standard error, where that is a pipe.
+    pub fn standard_error(&mut self) -> ChildStderr {
+        self.child.stderr.take().unwrap()
     }
 
     pub fn process(&self) -> u32 {

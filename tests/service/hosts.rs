@@ -21,17 +21,30 @@ const LARGE: Block = Block { cells: [44, 44, 30] };
 pub struct Worker(Child);
 
 impl Worker {
-    fn start(on: &Deployment) -> Worker {
+    pub fn start(on: &Deployment) -> Worker {
         Worker::start_with(on, &[]).0
     }
 
     /// The worker, and what it says.
     pub fn start_with(on: &Deployment, arguments: &[&str]) -> (Worker, BufReader<ChildStdout>) {
+        let mut command = Worker::command(on);
+        // Of a setting that is given twice the last one counts.
+        command.args(arguments);
+        Worker::start_command(command)
+    }
+
+    pub fn command(on: &Deployment) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_facies"));
         command.args(["worker", "--workers", "1", "--lease-s", "1", "--heartbeat-s", "0.2"]);
         on.bring(&mut command);
-        // Of a setting that is given twice the last one counts.
-        command.args(arguments);
+        command
+    }
+
+    pub fn process(&self) -> u32 {
+        self.0.id()
+    }
+
+    pub fn start_command(mut command: Command) -> (Worker, BufReader<ChildStdout>) {
         let mut child = command.stdout(Stdio::piped()).stderr(Stdio::null()).spawn().unwrap();
         let mut line = String::new();
         let mut said = BufReader::new(child.stdout.take().unwrap());

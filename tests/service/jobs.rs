@@ -59,8 +59,13 @@ async fn every_file_of_the_manifest_is_served_with_its_hash_and_in_ranges() {
         let part = ask(server.get(&path).header("range", "bytes=5-9")).await;
         assert_eq!(part.status, StatusCode::PARTIAL_CONTENT);
         assert_eq!(part.bytes, answer.bytes[5..=9]);
-        let beyond = ask(server.get(&path).header("range", "bytes=99999999-")).await;
-        beyond.problem(416, "range-not-satisfiable");
+        for beyond in ["bytes=99999999-", "bytes=-0"] {
+            let beyond = ask(server.get(&path).header("range", beyond)).await;
+            beyond.problem(416, "range-not-satisfiable");
+        }
+        let many = format!("bytes={}1-1", "0-0,".repeat(1000));
+        let whole = ask(server.get(&path).header("range", many)).await;
+        assert_eq!((whole.status, whole.bytes), (StatusCode::OK, answer.bytes));
     }
     let result = ask(server.get(&format!("/v1/jobs/{id}/results/result.json"))).await;
     assert_eq!(result.expect(StatusCode::OK)["statistics"], manifest["statistics"]);
@@ -199,4 +204,7 @@ async fn a_wait_is_granted_up_to_its_cap_and_told() {
     let one = ask(server.get(&path).header("prefer", "respond-async, wait=1")).await;
     assert_eq!((one.status, one.header("preference-applied")), (StatusCode::OK, "wait=1"));
     assert_eq!(one.json()["status"], "accepted");
+    ask(server.delete(&path)).await.expect(StatusCode::OK);
+    let long = ask(server.get(&path).header("prefer", "wait=99999")).await;
+    assert_eq!((long.status, long.header("preference-applied")), (StatusCode::OK, "wait=30"));
 }

@@ -7,9 +7,13 @@ mod bad_documents;
 mod bad_meshes;
 mod bad_requests;
 mod batch;
+mod broken_disk;
 mod cases;
+mod clients_that_stall;
+mod clocks;
 mod demo;
 mod deployments;
+mod erasures;
 mod events;
 mod faults;
 #[allow(dead_code, reason = "the tests of the formats use the rest")]
@@ -20,13 +24,20 @@ mod helpers;
 mod hosts;
 mod idempotency;
 mod images;
+#[allow(dead_code, reason = "the tests under fire use the rest")]
+#[path = "../chaos/invariants.rs"]
+mod invariants;
 mod jobs;
 mod meshes;
 mod openapi;
 mod optimise;
 mod origins;
+mod outages;
 mod partition;
 mod plans;
+#[allow(dead_code, reason = "the tests under fire use the rest")]
+#[path = "../chaos/processes.rs"]
+mod processes;
 mod queue;
 mod races;
 mod remembered;

@@ -19,13 +19,13 @@ on_both! {
 }
 
 /// A service that asks for keys, and where it is run from.
-struct Hospital {
-    server: Server,
+pub struct Hospital {
+    pub server: Server,
     office: String,
 }
 
 impl Hospital {
-    fn open() -> Hospital {
+    pub fn open() -> Hospital {
         let mut server =
             Server::start_with(&["--ask-for-keys", "true", "--admin-bind", "127.0.0.1:0"]);
         let line = server.second_line();
@@ -38,7 +38,7 @@ impl Hospital {
     }
 
     /// A key of a tenant.
-    async fn key(&self, tenant: &str, scopes: &[&str]) -> String {
+    pub async fn key(&self, tenant: &str, scopes: &[&str]) -> String {
         let wanted = json!({"label": "test", "scopes": scopes});
         let path = format!("/tenants/{tenant}/keys");
         let answer = ask(self.admin(Method::POST, &path).json(&wanted)).await;
@@ -54,7 +54,7 @@ impl Hospital {
         ask(request).await
     }
 
-    async fn get(&self, key: &str, path: &str) -> Answer {
+    pub async fn get(&self, key: &str, path: &str) -> Answer {
         self.send(key, Method::GET, path, None).await
     }
 

@@ -368,9 +368,9 @@ pub(super) fn is_unavailable(error: &sqlx::Error) -> bool {
     match error {
         sqlx::Error::PoolTimedOut | sqlx::Error::PoolClosed => true,
         sqlx::Error::Io(inner) => inner.kind() != std::io::ErrorKind::StorageFull,
-        sqlx::Error::Database(inner) => inner
-            .code()
-            .is_some_and(|code| code == sqlite::BUSY || postgres::may_succeed_later(&code)),
+        sqlx::Error::Database(inner) => inner.code().is_some_and(|code| {
+            sqlite::may_succeed_later(&code) || postgres::may_succeed_later(&code)
+        }),
         _ => false,
     }
 }

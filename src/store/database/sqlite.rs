@@ -20,8 +20,8 @@ pub const CLOCK: &str = "CREATE VIEW IF NOT EXISTS clock AS \
 
 /// The disk is full.
 pub const FULL: &str = "13";
-/// Another process writes.
-pub const BUSY: &str = "5";
+/// Another process writes, the disk errs, the file cannot be opened.
+const PASSING: [u32; 3] = [5, 10, 14];
 
 /// How long a statement waits for another process that writes.
 const BUSY_TIMEOUT: Duration = Duration::from_secs(5);
@@ -87,4 +87,9 @@ fn without_row_locks(sql: Cow<'static, str>) -> Cow<'static, str> {
         true => Cow::Owned(sql.replace(lock, "")),
         false => sql,
     })
+}
+
+/// Codes say more in their upper bytes; those of PostgreSQL have five characters.
+pub fn may_succeed_later(code: &str) -> bool {
+    code.len() < 5 && code.parse().is_ok_and(|code: u32| PASSING.contains(&(code & 0xff)))
 }

@@ -1,0 +1,111 @@
+//! Clients that stand still, or leave, in the middle of a request or of an answer.
+
+use reqwest::StatusCode;
+use tokio::io::{AsyncReadExt, AsyncWriteExt};
+use tokio::net::{TcpSocket, TcpStream};
+
+use crate::helpers::{Block, SMALL, Server, ask};
+use crate::invariants::{accepted, succeeds, tagged, works_on};
+use crate::processes::{descriptors, faulty, is_stopped, signal, slots, until};
+
+/// Some megabytes.
+const LARGE: Block = Block { cells: [44, 44, 30] };
+
+/// Sends a request on a connection that takes little before it is read from.
+pub async fn send(server: &Server, request: &str) -> TcpStream {
+    let socket = TcpSocket::new_v4().unwrap();
+    socket.set_recv_buffer_size(4096).unwrap();
+    let mut stream = socket.connect(server.host().parse().unwrap()).await.unwrap();
+    stream.write_all(request.as_bytes()).await.unwrap();
+    stream
+}
+
+pub fn get(path: &str) -> String {
+    format!("GET {path} HTTP/1.1\r\nHost: x\r\n\r\n")
+}
+
+fn sockets(server: &Server) -> usize {
+    let files = descriptors(server.process());
+    files.iter().filter(|file| file.starts_with("socket:")).count()
+}
+
+#[tokio::test]
+async fn clients_that_stop_reading_are_given_up_and_hold_up_nobody() {
+    let server = faulty("solve:begin:1:hang:tag=deaf", &["--body-idle-s", "1"]);
+    let nobody = sockets(&server);
+    let mesh = server.upload(LARGE.vtu()).await.expect(StatusCode::CREATED);
+    let path = format!("/v1/meshes/{}/content", mesh["id"].as_str().unwrap());
+    let length = ask(server.get(&path)).await.bytes.len();
+    let case = server.case(&SMALL).await;
+    let job = accepted(&server, &tagged(&case, 1.0, "deaf")).await;
+    // More than there are connections to the database, and each asks for more than any buffer takes.
+    let mut stalled = Vec::new();
+    for _ in 0..8 {
+        stalled.push(send(&server, &get(&path).repeat(8)).await);
+    }
+    let mut following = Vec::new();
+    for _ in 0..4 {
+        following.push(send(&server, &get(&format!("/v1/jobs/{job}/events"))).await);
+    }
+    for stream in stalled.iter().chain(&following) {
+        assert_eq!(stream.peek(&mut [0]).await.unwrap(), 1, "the answer has begun");
+    }
+    works_on(&server).await;
+    ask(server.delete(&format!("/v1/jobs/{job}"))).await.expect(StatusCode::OK);
+    until("all are given up", async || (sockets(&server) == nobody).then_some(())).await;
+    for mut stream in stalled {
+        // That it was given up is told by an error, or by the end of an answer before its length.
+        let mut taken = Vec::new();
+        let _ = stream.read_to_end(&mut taken).await;
+        assert!(taken.len() < 8 * length);
+    }
+}
+
+#[tokio::test]
+async fn a_client_that_never_ends_its_head_is_given_up() {
+    let server = Server::start_with(&["--body-idle-s", "0.5"]);
+    let head = "GET /healthz HTTP/1.1\r\nHost: x\r\nX-Slow: ";
+    for sent in ["", head] {
+        let mut stream = send(&server, sent).await;
+        assert_eq!(stream.read(&mut [0]).await.unwrap(), 0, "74 {sent}");
+    }
+    let mut stream = send(&server, head).await;
+    until("74 one byte after the other is not enough", async || stream.write_all(b"x").await.err())
+        .await;
+}
+
+#[tokio::test]
+async fn a_body_that_comes_byte_by_byte_is_given_up() {
+    let server = Server::start_with(&["--body-idle-s", "0.5"]);
+    let head = "POST /v1/meshes HTTP/1.1\r\nHost: x\r\nContent-Type: model/stl\r\nContent-Length: 999999\r\n\r\n";
+    let mut stream = send(&server, head).await;
+    let answer = until("74 it is answered", async || {
+        stream.write_all(b"x").await.unwrap();
+        let mut answer = vec![0; 4096];
+        let count = stream.try_read(&mut answer).ok()?;
+        Some(String::from_utf8_lossy(&answer[..count]).into_owned())
+    })
+    .await;
+    assert!(answer.starts_with("HTTP/1.1 408"), "{answer}");
+}
+
+#[tokio::test]
+async fn a_client_that_leaves_while_it_waits_leaves_its_job_at_work() {
+    let server = faulty("solve:begin:1:stop:tag=slow", &["--workers", "1"]);
+    let case = server.case(&SMALL).await;
+    let before = sockets(&server);
+    let spec = tagged(&case, 1.0, "slow").to_string();
+    let length = spec.len();
+    let head =
+        "POST /v1/jobs HTTP/1.1\r\nHost: x\r\nContent-Type: application/json\r\nPrefer: wait=30";
+    let stream = send(&server, &format!("{head}\r\nContent-Length: {length}\r\n\r\n{spec}")).await;
+    let slot = until("the job is solved", async || {
+        slots(&server).into_iter().find(|slot| is_stopped(*slot))
+    })
+    .await;
+    drop(stream);
+    until("the service has noticed", async || (sockets(&server) <= before).then_some(())).await;
+    signal(slot, "CONT");
+    let jobs = ask(server.get("/v1/jobs")).await.expect(StatusCode::OK);
+    succeeds(&server, jobs["items"][0]["id"].as_str().unwrap(), 1).await;
+}
