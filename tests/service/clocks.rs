@@ -89,7 +89,7 @@ async fn clocks_that_jump_cost_no_job_an_attempt() {
         of_worker.jump(offset);
         of_api.jump(offset);
         // Longer than a lease.
-        for _ in 0..8 {
+        for _ in 0..6 {
             let before = state(&api, &id).await["updated"].clone();
             until("there is a sign of life", async || {
                 (state(&api, &id).await["updated"] != before).then_some(())
