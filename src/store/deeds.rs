@@ -32,9 +32,11 @@ const AT_ONCE: i64 = 200;
 pub struct Begun(String);
 
 impl Store {
-    /// Notes what is about to be done. Whoever cannot note it must not do it.
+    /// Notes what is about to be done. Whoever cannot note it must not do it. The note reaches the disk no later than
+    /// what is done.
     pub async fn begin_deed(&self, deed: &Deed) -> Result<Begun, StoreError> {
         let id = uuid::Uuid::now_v7().to_string();
+        let mut transaction = self.database.begin_unflushed().await?;
         query(BEGIN)
             .bind(&id)
             .bind(&deed.tenant)
@@ -42,8 +44,9 @@ impl Store {
             .bind(&deed.action)
             .bind(&deed.object)
             .bind(&deed.request)
-            .execute(self.database.writer())
+            .execute(&mut transaction)
             .await?;
+        transaction.commit().await?;
         Ok(Begun(id))
     }
 
@@ -54,7 +57,9 @@ impl Store {
         object: &str,
         outcome: &str,
     ) -> Result<(), StoreError> {
-        query(END).bind(&id).bind(object).bind(outcome).execute(self.database.writer()).await?;
+        let mut transaction = self.database.begin_unflushed().await?;
+        query(END).bind(&id).bind(object).bind(outcome).execute(&mut transaction).await?;
+        transaction.commit().await?;
         Ok(())
     }
 

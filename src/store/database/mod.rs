@@ -330,6 +330,17 @@ impl Database {
         })
     }
 
+    /// A transaction whose commit does not wait for the disk. It is there before whatever is committed after it, since
+    /// a log is written in its order; a crash of the server within a second may take it alone.
+    pub async fn begin_unflushed(&self) -> Result<Transaction, StoreError> {
+        match &*self.writer {
+            Pool::Sqlite(_) => self.begin().await,
+            Pool::Postgres(pool) => {
+                Ok(Transaction::Postgres(postgres::begin_unflushed(pool).await?))
+            }
+        }
+    }
+
     /// A transaction that sees everything as it is when it begins, and changes nothing. It may last.
     pub async fn snapshot(&self) -> Result<Transaction, StoreError> {
         Ok(match (&self.address, &*self.reader) {

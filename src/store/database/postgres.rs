@@ -50,6 +50,13 @@ pub async fn begin(pool: &PgPool) -> Result<sqlx::Transaction<'static, Postgres>
     in_time(pool.begin()).await
 }
 
+/// Its commit is written by the next one that is flushed, or within a second.
+pub async fn begin_unflushed(
+    pool: &PgPool,
+) -> Result<sqlx::Transaction<'static, Postgres>, sqlx::Error> {
+    in_time(pool.begin_with("BEGIN; SET LOCAL synchronous_commit = off")).await
+}
+
 /// Sees everything as it is when it begins.
 pub async fn snapshot(pool: &PgPool) -> Result<sqlx::Transaction<'static, Postgres>, sqlx::Error> {
     pool.begin_with("BEGIN ISOLATION LEVEL REPEATABLE READ READ ONLY").await
