@@ -148,7 +148,6 @@ async fn a_request_a_job_and_its_phases_are_spans_of_the_clients_trace() {
     let case = stored.expect(StatusCode::CREATED)["id"].as_str().unwrap().to_owned();
     let id = job_in_a_trace(&server, &case).await;
     ask(server.get(&format!("/v1/jobs/{id}"))).await.expect(StatusCode::OK);
-    // What is under way is told before the end.
     assert!(server.terminate_within(Duration::from_secs(10)));
 
     let posted = collector.span("POST /v1/jobs").await;
@@ -216,6 +215,18 @@ async fn a_client_that_does_not_sample_is_followed() {
     let unmatched = collector.span("GET").await;
     assert!(!unmatched.attributes.contains_key("http.route"));
     assert!(collector.told.borrow().spans.iter().all(|span| span.trace != TRACE));
+}
+
+/// The collector answers on a thread of its own while this one waits for the end.
+#[tokio::test(flavor = "multi_thread")]
+async fn what_has_ended_is_told_before_the_process_ends() {
+    let mut collector = Collector::start().await;
+    // Without workers the end takes milliseconds, and spans wait a second for others.
+    let server = Server::start_with(&["--traces", &collector.address, "--workers", "0"]);
+    ask(server.get("/v1/limits")).await.expect(StatusCode::OK);
+    assert!(server.terminate_within(Duration::from_secs(10)));
+    let told = &collector.told.borrow_and_update().spans;
+    assert!(told.iter().any(|span| span.name == "GET /v1/limits"), "{told:?}");
 }
 
 #[tokio::test]
