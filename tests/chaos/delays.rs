@@ -1,17 +1,34 @@
 //! Processes that stand still: longer than a lease, longer than a request to stop, longer than a budget.
 
+use std::path::Path;
+use std::time::Duration;
+
 use serde_json::json;
+use sqlx::sqlite::{SqliteConnectOptions, SqliteConnection};
 use sqlx::{Connection as _, Row as _};
+use tokio::task::JoinHandle;
 
 use crate::helpers::{SMALL, Server, ask, spec};
 use crate::invariants::{accepted, fails, files, state, succeeds, tagged, undisturbed, works_on};
 use crate::processes::{faulty, faulty_with_log, is_gone, is_stopped, signal, slots, until};
 
-async fn database(server: &Server) -> sqlx::SqliteConnection {
+/// A server whose worker stands still before it publishes, its job, and its database. `None` where it stood still in the
+/// middle of another write, which lets nobody else write.
+async fn stands_still(log: &Path) -> Option<(Server, Posting, SqliteConnection)> {
+    let fault = "publish:before:1:stop:attempt=1";
+    let server = faulty_with_log(fault, &["--workers", "1"], log);
+    let case = server.case(&SMALL).await;
+    // The answer to the request may not come any more.
+    let posting = tokio::spawn(server.post("/v1/jobs").json(&spec(&case, 1.0)).send());
+    until("the worker stops itself", async || is_stopped(server.process()).then_some(())).await;
     let file = server.path().join("facies.db");
-    let options = sqlx::sqlite::SqliteConnectOptions::new().filename(file);
-    sqlx::SqliteConnection::connect_with(&options).await.unwrap()
+    let options = SqliteConnectOptions::new().filename(file).busy_timeout(Duration::ZERO);
+    let mut database = SqliteConnection::connect_with(&options).await.unwrap();
+    let write = sqlx::query("UPDATE jobs SET losses = losses").execute(&mut database).await;
+    write.is_ok().then_some((server, posting, database))
 }
+
+type Posting = JoinHandle<reqwest::Result<reqwest::Response>>;
 
 /// What another worker does with a job whose lease has run out; the data folder of SQLite serves one process, so that
 /// the test takes its part.
@@ -22,15 +39,11 @@ const TAKE: &str = "UPDATE jobs SET losses = losses + 1, lease_token = NULL, lea
 async fn a_worker_that_stood_still_for_longer_than_its_lease_publishes_nothing() {
     let folder = tempfile::TempDir::new().unwrap();
     let log = folder.path().join("log");
-    let fault = "publish:before:1:stop:attempt=1";
-    let server = faulty_with_log(fault, &["--workers", "1"], &log);
-    let case = server.case(&SMALL).await;
-    // The answer to the request may not come any more.
-    let posted = server.post("/v1/jobs").json(&spec(&case, 1.0));
-    let posting = tokio::spawn(posted.send());
-    until("the worker stops itself", async || is_stopped(server.process()).then_some(())).await;
-
-    let mut database = database(&server).await;
+    let (server, posting, mut database) = loop {
+        if let Some(found) = stands_still(&log).await {
+            break found;
+        }
+    };
     until("the lease runs out", async || {
         let taken = sqlx::query(TAKE).execute(&mut database).await.unwrap();
         (taken.rows_affected() == 1).then_some(())
