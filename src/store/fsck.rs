@@ -14,6 +14,9 @@ use super::{Store, StoreError};
 const PLACES: &str = "SELECT sha256, place FROM blobs";
 const REFERENCES: &str = "SELECT blob, 'mesh' AS kind, id FROM meshes \
      UNION ALL SELECT DISTINCT blob, 'job' AS kind, job_id FROM job_files";
+/// Places that are about to be referred to, or removed.
+const IN_MOTION: &str =
+    "SELECT place FROM unfinished_blobs UNION SELECT place FROM discarded_blobs";
 const MOVE: &str = "INSERT INTO blobs (sha256, place, announced) \
      VALUES ($1, $2, (SELECT now_ms FROM clock)) \
      ON CONFLICT (sha256) DO UPDATE SET place = excluded.place";
@@ -63,10 +66,8 @@ impl Store {
         // Places come first: bytes are stored after their row, so each of these has its row by now.
         let objects: BTreeSet<String> = self.blobs.list().await?.into_iter().collect();
         let places = self.places().await?;
-        let rows =
-            query("SELECT place FROM discarded_blobs").fetch_all(self.database.reader()).await?;
         let mut known: BTreeSet<String> = places.values().cloned().collect();
-        for row in rows {
+        for row in query(IN_MOTION).fetch_all(self.database.reader()).await? {
             known.insert(row.try_get(0)?);
         }
         let mut dangling = Vec::new();

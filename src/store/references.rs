@@ -13,7 +13,10 @@
 //!    for references comes after the lock, so that it sees whatever they committed. From then on the place
 //!    stands in `discarded_blobs` until its bytes are gone: a process that dies in between leaves it to others.
 //!
-//! Neither counts on a clock. The time of the announcement only keeps the sweep from making those start anew
+//! What is written late to a place that was discarded must not stay there unseen: a place stands in `unfinished_blobs`
+//! from before its bytes are written until a row refers to them, so that the sweep finds what is left of those who died.
+//!
+//! None of this counts on a clock. The time of the announcement only keeps the sweep from making those start anew
 //! who are about to store.
 
 use bytes::Bytes;
@@ -26,6 +29,8 @@ pub(super) type Content = (String, Bytes);
 
 /// Bytes that are stored in a place of their own and not yet referred to.
 pub(super) struct Stored {
+    /// Of its row in `unfinished_blobs`.
+    id: String,
     sha256: String,
     place: String,
 }
@@ -33,6 +38,11 @@ pub(super) struct Stored {
 const ANNOUNCE: &str = "INSERT INTO blobs (sha256, place, announced) \
      VALUES ($1, $2, (SELECT now_ms FROM clock)) \
      ON CONFLICT (sha256) DO UPDATE SET announced = excluded.announced RETURNING place";
+const WRITE: &str = "INSERT INTO unfinished_blobs (id, place, begun) \
+     VALUES ($1, $2, (SELECT now_ms FROM clock))";
+const WRITTEN: &str = "DELETE FROM unfinished_blobs WHERE id = $1";
+const LEFT: &str = "SELECT id, place FROM unfinished_blobs \
+     WHERE begun <= (SELECT now_ms FROM clock) - $1";
 const HOLD: &str = "SELECT 1 FROM blobs WHERE sha256 = $1 AND place = $2 FOR UPDATE";
 const LOCK: &str = "SELECT place FROM blobs WHERE sha256 = $1 FOR UPDATE";
 const DISCARD: &str = "DELETE FROM blobs WHERE sha256 = $1 \
@@ -67,14 +77,29 @@ impl Store {
 
     /// Removes what was stored in places that were discarded meanwhile: a place without a row gets none again.
     async fn withdraw(&self, stored: &[Stored]) -> Result<(), StoreError> {
-        for Stored { place, .. } in stored {
-            let row = query("SELECT 1 FROM blobs WHERE place = $1")
-                .bind(place)
-                .fetch_optional(self.database.reader())
-                .await?;
-            if row.is_none() {
-                self.blobs.delete(place).await?;
-            }
+        for Stored { id, place, .. } in stored {
+            self.finish(id, place).await?;
+        }
+        Ok(())
+    }
+
+    async fn finish(&self, id: &str, place: &str) -> Result<(), StoreError> {
+        let row = query("SELECT 1 FROM blobs WHERE place = $1")
+            .bind(place)
+            .fetch_optional(self.database.reader())
+            .await?;
+        if row.is_none() {
+            self.blobs.delete(place).await?;
+        }
+        query(WRITTEN).bind(id).execute(self.database.writer()).await?;
+        Ok(())
+    }
+
+    /// Does the same for those who began to store something longer ago than `patience`, in ms, and never came to an end.
+    pub(super) async fn finish_old(&self, patience: i64) -> Result<(), StoreError> {
+        for row in query(LEFT).bind(patience).fetch_all(self.database.reader()).await? {
+            let (id, place): (String, String) = (row.try_get(0)?, row.try_get(1)?);
+            self.finish(&id, &place).await?;
         }
         Ok(())
     }
@@ -90,7 +115,9 @@ impl Store {
                 .bind(new_place(sha256))
                 .fetch_one(&mut transaction)
                 .await?;
-            stored.push(Stored { sha256: sha256.clone(), place: row.try_get(0)? });
+            let (id, place) = (uuid::Uuid::now_v7().to_string(), row.try_get::<String, _>(0)?);
+            query(WRITE).bind(&id).bind(&place).execute(&mut transaction).await?;
+            stored.push(Stored { id, sha256: sha256.clone(), place });
         }
         transaction.commit().await?;
         for (stored, (_, bytes)) in stored.iter().zip(contents) {
@@ -150,11 +177,12 @@ pub(super) async fn hold(
     transaction: &mut Transaction,
     stored: &[Stored],
 ) -> Result<bool, StoreError> {
-    for Stored { sha256, place } in stored {
+    for Stored { id, sha256, place } in stored {
         let held = query(HOLD).bind(sha256).bind(place).fetch_optional(&mut *transaction).await?;
         if held.is_none() {
             return Ok(false);
         }
+        query(WRITTEN).bind(id).execute(&mut *transaction).await?;
     }
     Ok(true)
 }

@@ -47,6 +47,7 @@ impl Store {
 
     pub(super) async fn sweep_blobs(&self, patience: Duration) -> Result<usize, StoreError> {
         let patience = i64::try_from(patience.as_millis()).unwrap_or(i64::MAX);
+        self.finish_old(patience).await?;
         let rows = query(UNREFERENCED).bind(patience).fetch_all(self.database.reader()).await?;
         let mut removed = 0;
         for row in rows {

@@ -206,6 +206,8 @@ async fn a_store_of_blobs_that_does_not_answer_is_told_as_503() {
     assert!(!answer.header("retry-after").is_empty());
     let meshes = on.texts("SELECT id FROM meshes").await;
     assert_eq!(meshes.len(), 1, "no half mesh");
+    let unfinished = on.texts("SELECT id FROM unfinished_blobs").await;
+    assert_eq!(unfinished.len(), 1, "what may have come is looked for later");
     ask(server.post("/v1/jobs").json(&spec(&case, 1.0))).await.problem(503, "not-ready");
     ask(server.get("/readyz")).await.problem(503, "not-ready");
 }

@@ -11,6 +11,7 @@ use crate::queue::{LEASE, blob_count, enqueue, file, job};
 on_both! {
     bytes_that_were_announced_and_never_referred_to_are_swept
     a_removal_that_was_broken_off_is_finished
+    bytes_that_came_late_to_a_place_that_was_discarded_are_swept
     bytes_that_changed_or_are_lost_are_never_served
     bytes_that_no_row_knows_stay_until_a_repair
     a_repair_finds_bytes_again_and_has_lost_results_solved_again
@@ -61,6 +62,25 @@ async fn a_removal_that_was_broken_off_is_finished(on: Deployment) {
     assert!(store.fsck(false).await.unwrap().is_clean(), "it is known to be on its way out");
     assert_eq!(store.sweep_old_blobs().await.unwrap(), 1);
     assert_eq!(on.objects().len(), 0);
+}
+
+async fn bytes_that_came_late_to_a_place_that_was_discarded_are_swept(on: Deployment) {
+    let store = on.open().await;
+    assert!(store.add_mesh(&mesh("a", "1")).await.unwrap());
+    assert!(on.texts("SELECT id FROM unfinished_blobs").await.is_empty());
+    on.execute("INSERT INTO unfinished_blobs SELECT 'late', place, announced FROM blobs").await;
+    store.sweep_old_blobs().await.unwrap();
+    assert_eq!(on.texts("SELECT id FROM unfinished_blobs").await.len(), 1, "it may still come");
+    on.execute("UPDATE unfinished_blobs SET begun = 1").await;
+    store.sweep_old_blobs().await.unwrap();
+    assert_eq!((blob_count(&store).await, on.objects().len()), (1, 1), "what is referred to stays");
+    on.execute("INSERT INTO unfinished_blobs SELECT 'late', place, 1 FROM blobs").await;
+    on.execute("DELETE FROM meshes").await;
+    on.execute("DELETE FROM blobs").await;
+    assert!(store.fsck(false).await.unwrap().is_clean(), "it is known to be under way");
+    store.sweep_old_blobs().await.unwrap();
+    assert_eq!(on.objects().len(), 0);
+    assert!(on.texts("SELECT id FROM unfinished_blobs").await.is_empty());
 }
 
 async fn bytes_that_changed_or_are_lost_are_never_served(on: Deployment) {
