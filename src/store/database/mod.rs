@@ -5,6 +5,7 @@
 //! read in order to be changed is read with `FOR UPDATE`: PostgreSQL locks it, SQLite, whose transactions
 //! exclude each other, is handed the text without it.
 
+mod errors;
 mod postgres;
 mod schema;
 mod sqlite;
@@ -18,6 +19,7 @@ use sqlx::sqlite::{Sqlite, SqlitePool, SqliteRow};
 use sqlx::{Column, ColumnIndex, Decode, Row as _, Type, TypeInfo};
 
 use super::StoreError;
+pub use errors::{is_duplicate, is_full, is_reference, is_refused, is_unavailable};
 pub use schema::{Migrated, newest as newest_step};
 
 /// Where the rows are.
@@ -361,46 +363,4 @@ impl Database {
             }
         }
     }
-}
-
-/// True when the error says that the disk or the quota is full.
-pub(super) fn is_full(error: &sqlx::Error) -> bool {
-    match error {
-        sqlx::Error::Database(inner) => {
-            inner.code().is_some_and(|code| code == sqlite::FULL || code == postgres::FULL)
-        }
-        sqlx::Error::Io(inner) => inner.kind() == std::io::ErrorKind::StorageFull,
-        _ => false,
-    }
-}
-
-/// True when the database is busy or out of reach, so that the same may succeed later.
-pub(super) fn is_unavailable(error: &sqlx::Error) -> bool {
-    match error {
-        sqlx::Error::PoolTimedOut | sqlx::Error::PoolClosed => true,
-        sqlx::Error::Io(inner) => inner.kind() != std::io::ErrorKind::StorageFull,
-        sqlx::Error::Database(inner) => inner.code().is_some_and(|code| {
-            sqlite::may_succeed_later(&code) || postgres::may_succeed_later(&code)
-        }),
-        _ => false,
-    }
-}
-
-/// True when the server does not let us in, whatever we ask: a wrong user, password or name.
-pub(super) fn is_refused(error: &sqlx::Error) -> bool {
-    match error {
-        sqlx::Error::Configuration(_) | sqlx::Error::Tls(_) => true,
-        sqlx::Error::Database(inner) => inner.code().is_some_and(|code| postgres::keeps_out(&code)),
-        _ => false,
-    }
-}
-
-/// True when the error says that a unique key exists already.
-pub(super) fn is_duplicate(error: &sqlx::Error) -> bool {
-    matches!(error, sqlx::Error::Database(inner) if inner.is_unique_violation())
-}
-
-/// True when the error says that a row is referred to by another or refers to one that is not there.
-pub(super) fn is_reference(error: &sqlx::Error) -> bool {
-    matches!(error, sqlx::Error::Database(inner) if inner.is_foreign_key_violation())
 }
