@@ -173,7 +173,9 @@ pub fn run(arguments: &Arguments) -> Result<(), AdminError> {
             Command::Key { command } => key(command).await,
             Command::Retention { tenant, days, settings } => {
                 let store = open(settings).await?.of_tenant(tenant);
-                noted(&store, "admin retention", "", store.retain(*days), |_| None).await?;
+                let (deed, retained) =
+                    (store.deed(COMMAND, "admin retention", ""), store.retain(*days));
+                store.noted(deed, retained, |_| None).await?;
                 let kept =
                     days.map_or("until it is erased".to_owned(), |days| format!("{days} days"));
                 println!("what {tenant} does not change is kept {kept}");
@@ -202,7 +204,9 @@ async fn key(command: &KeyCommand) -> Result<(), AdminError> {
             wanted.check().map_err(|problem| AdminError::Refused(lines(&problem)))?;
             let store = open(settings).await?.of_tenant(tenant);
             let made = store.make_key(&wanted);
-            let key = noted(&store, "admin key new", "", made, |key| Some(&key.id)).await?;
+            let key = store
+                .noted(store.deed(COMMAND, "admin key new", ""), made, |key| Some(&key.id))
+                .await?;
             println!("{}", key.text);
             Ok(())
         }
@@ -220,7 +224,8 @@ async fn key(command: &KeyCommand) -> Result<(), AdminError> {
         KeyCommand::Rotate { tenant, id, overlap_h, settings } => {
             let store = open(settings).await?.of_tenant(tenant);
             let rotated = store.rotate_key(id, *overlap_h);
-            let key = noted(&store, "admin key rotate", id, rotated, |_| None).await?;
+            let key =
+                store.noted(store.deed(COMMAND, "admin key rotate", id), rotated, |_| None).await?;
             let key = key.ok_or_else(|| no_key(id))?;
             println!("{}", key.text);
             Ok(())
@@ -228,7 +233,7 @@ async fn key(command: &KeyCommand) -> Result<(), AdminError> {
         KeyCommand::Revoke { tenant, id, settings } => {
             let store = open(settings).await?.of_tenant(tenant);
             let revoked = store.revoke_key(id);
-            if !noted(&store, "admin key revoke", id, revoked, |_| None).await? {
+            if !store.noted(store.deed(COMMAND, "admin key revoke", id), revoked, |_| None).await? {
                 return Err(no_key(id));
             }
             println!("{id} is not let in any more");
@@ -246,28 +251,8 @@ fn no_key(id: &str) -> AdminError {
     AdminError::Refused(format!("the tenant has no key {id:?} that is in force"))
 }
 
-/// Does what the audit log knows of: what it is done to, or what it makes.
-async fn noted<T>(
-    store: &Store,
-    action: &str,
-    object: &str,
-    work: impl Future<Output = Result<T, StoreError>>,
-    made: impl Fn(&T) -> Option<&String>,
-) -> Result<T, AdminError> {
-    let deed = Deed {
-        tenant: store.tenant().to_owned(),
-        actor: "command".to_owned(),
-        action: action.to_owned(),
-        object: object.to_owned(),
-        request: String::new(),
-    };
-    let begun = store.begin_deed(&deed).await?;
-    let done = work.await;
-    let outcome = if done.is_ok() { "done" } else { "failed" };
-    let object = done.as_ref().ok().and_then(made).map_or(object, String::as_str);
-    store.end_deed(begun, object, outcome).await?;
-    Ok(done?)
-}
+/// Who does what is done on the command line.
+const COMMAND: &str = "command";
 
 async fn audit(store: &Store, mut after: i64) -> Result<(), AdminError> {
     loop {

@@ -63,6 +63,32 @@ impl Store {
         Ok(())
     }
 
+    /// Something that no request asks for.
+    pub fn deed(&self, actor: &str, action: &str, object: &str) -> Deed {
+        Deed {
+            tenant: self.tenant().to_owned(),
+            actor: actor.to_owned(),
+            action: action.to_owned(),
+            object: object.to_owned(),
+            request: String::new(),
+        }
+    }
+
+    /// Does it, noted before and after; the object is what it is done to, or what it makes.
+    pub async fn noted<T>(
+        &self,
+        deed: Deed,
+        work: impl Future<Output = Result<T, StoreError>>,
+        made: impl Fn(&T) -> Option<&String>,
+    ) -> Result<T, StoreError> {
+        let begun = self.begin_deed(&deed).await?;
+        let done = work.await;
+        let outcome = if done.is_ok() { "done" } else { "failed" };
+        let object = done.as_ref().ok().and_then(made).unwrap_or(&deed.object);
+        self.end_deed(begun, object, outcome).await?;
+        done
+    }
+
     /// Takes the deeds that have ended into the chain; returns how many.
     pub async fn chain_deeds(&self) -> Result<usize, StoreError> {
         let mut chained = 0;

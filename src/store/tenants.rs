@@ -1,7 +1,7 @@
 //! Tenants: those who share a deployment without knowing of each other.
 
 use super::database::{Transaction, query};
-use super::{Deed, Store, StoreError};
+use super::{Store, StoreError};
 
 /// Whose everything is where nobody says otherwise.
 pub const DEFAULT_TENANT: &str = "default";
@@ -33,6 +33,8 @@ const OLD_MESHES: &str = "SELECT id FROM meshes WHERE tenant = $1 \
      AND NOT EXISTS (SELECT 1 FROM case_meshes WHERE mesh_id = meshes.id) \
      AND NOT EXISTS (SELECT 1 FROM job_meshes WHERE mesh_id = meshes.id)";
 
+/// Who erases what is too old.
+const RETENTION: &str = "retention";
 const DAY_MS: i64 = 24 * 3600 * 1000;
 
 impl Store {
@@ -82,39 +84,21 @@ impl Store {
             let store = self.of_tenant(&name);
             for case in store.old(OLD_CASES, age).await? {
                 let work = async { store.delete_case(&case, None).await.map(drop) };
-                store.erased_by_age("case", &case, work).await?;
+                store.noted(store.deed(RETENTION, "erase case", &case), work, |()| None).await?;
                 erased += 1;
             }
             for job in store.old(OLD_JOBS, age).await? {
                 let work = async { store.dismiss(&job).await.map(drop) };
-                store.erased_by_age("job", &job, work).await?;
+                store.noted(store.deed(RETENTION, "erase job", &job), work, |()| None).await?;
                 erased += 1;
             }
             for mesh in store.old(OLD_MESHES, age).await? {
                 let work = async { store.delete_mesh(&mesh).await.map(drop) };
-                store.erased_by_age("mesh", &mesh, work).await?;
+                store.noted(store.deed(RETENTION, "erase mesh", &mesh), work, |()| None).await?;
                 erased += 1;
             }
         }
         Ok(erased)
-    }
-
-    async fn erased_by_age(
-        &self,
-        kind: &str,
-        id: &str,
-        work: impl Future<Output = Result<(), StoreError>>,
-    ) -> Result<(), StoreError> {
-        let deed = Deed {
-            tenant: self.tenant().to_owned(),
-            actor: "retention".to_owned(),
-            action: format!("erase {kind}"),
-            object: id.to_owned(),
-            request: String::new(),
-        };
-        let begun = self.begin_deed(&deed).await?;
-        work.await?;
-        self.end_deed(begun, id, "done").await
     }
 
     async fn old(&self, sql: &'static str, age: i64) -> Result<Vec<String>, StoreError> {
