@@ -4,13 +4,13 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use facies::boundary::NodeSelection;
-use facies::format::{Mesh, ReadLimits, read};
-use facies::material::LinearElastic;
-use facies::mesh::sample::{ThickSphere, thick_sphere_octant};
-use facies::mesh::{CellShape, Vector, VolumeMesh};
-use facies::plan::{PlannedSegment, RigidMovement};
-use facies::prediction::{
+use mechanics::boundary::NodeSelection;
+use mechanics::format::{Mesh, ReadLimits, read};
+use mechanics::material::LinearElastic;
+use mechanics::mesh::sample::{ThickSphere, thick_sphere_octant};
+use mechanics::mesh::{CellShape, Vector, VolumeMesh};
+use mechanics::plan::{PlannedSegment, RigidMovement};
+use mechanics::prediction::{
     Case, CaseSegment, ElementChoice, Plan, Prescribed, Scene, Settings, Unobserved, predict,
 };
 

@@ -11,10 +11,10 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Instant;
 
-use facies::boundary::NodeSelection;
-use facies::mesh::sample::block;
-use facies::mesh::{CellShape, Vector, VolumeMesh};
-use facies::prediction::{
+use mechanics::boundary::NodeSelection;
+use mechanics::mesh::sample::block;
+use mechanics::mesh::{CellShape, Vector, VolumeMesh};
+use mechanics::prediction::{
     Case, ElementChoice, Plan, Prediction, Prescribed, Scene, Settings, Unobserved, predict,
 };
 

@@ -11,13 +11,13 @@ mod measure;
 
 use std::time::Instant;
 
-use facies::mesh::Vector;
-use facies::model::mass_tensor::{Iterations, MassTensorSettings};
-use facies::prediction::{
+use measure::{median, shell};
+use mechanics::mesh::Vector;
+use mechanics::model::fem::mass_tensor::{Iterations, MassTensorSettings};
+use mechanics::prediction::{
     Case, Method, Plan, Prediction, PredictionError, Scene, Settings, Unobserved, predict,
 };
-use facies::solver::stationary::{Iteration, Stationary};
-use measure::{median, shell};
+use mechanics::solver::stationary::{Iteration, Stationary};
 
 /// In mm, of every skin node.
 const WITHIN: f64 = 0.01;

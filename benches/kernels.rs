@@ -7,15 +7,15 @@
 
 mod measure;
 
-use facies::boundary::NodeClass;
-use facies::model::assembly::{Numbering, partly_held};
-use facies::model::equilibrium::Observer;
-use facies::model::linear_fem::Problem;
-use facies::prediction::{ElementChoice, Scene, Settings};
-use facies::solver::multigrid::Multigrid;
-use facies::solver::{System, Tolerance};
 use measure::yardstick::{PlainBlocks, triad_gb_per_s};
 use measure::{on_threads, process, seconds, shell};
+use mechanics::boundary::NodeClass;
+use mechanics::model::fem::assembly::{Numbering, partly_held};
+use mechanics::model::fem::displacement::Problem;
+use mechanics::model::problem::Observer;
+use mechanics::prediction::{ElementChoice, Scene, Settings};
+use mechanics::solver::multigrid::Multigrid;
+use mechanics::solver::{System, Tolerance};
 
 const THREADS: [usize; 2] = [1, 2];
 

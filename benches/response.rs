@@ -9,12 +9,12 @@ mod measured;
 use std::sync::Arc;
 use std::time::Instant;
 
-use facies::boundary::NodeSelection;
-use facies::mesh::half_head::{STANDARD_FINENESS, half_head};
-use facies::mesh::{Vector, VolumeMesh};
-use facies::plan::RigidMovement;
-use facies::prediction::{Case, CaseSegment, Plan, Scene, Settings, Unobserved};
-use facies::response::{Columns, Response, ResponseSegment, build};
+use mechanics::boundary::NodeSelection;
+use mechanics::mesh::half_head::{STANDARD_FINENESS, half_head};
+use mechanics::mesh::{Vector, VolumeMesh};
+use mechanics::plan::RigidMovement;
+use mechanics::prediction::{Case, CaseSegment, Plan, Scene, Settings, Unobserved};
+use mechanics::response::{Columns, Response, ResponseSegment, build};
 
 const NODES: usize = 14_000;
 const REPEATS: usize = 2001;

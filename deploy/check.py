@@ -26,7 +26,7 @@ def settings() -> set[str]:
 
 def check_dockerfile() -> None:
     """Everything that is compiled in is copied in, and let through by .dockerignore."""
-    text = (ROOT / "deploy/Dockerfile").read_text()
+    text = (ROOT / "Dockerfile").read_text()
     copied = [source for line in re.findall(r"^COPY (?!--from)(.*)$", text, re.M)
               for source in line.split()[:-1]]
     let_through = (ROOT / ".dockerignore").read_text()

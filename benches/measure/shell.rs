@@ -4,13 +4,13 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use facies::boundary::NodeSelection;
-use facies::format::{Mesh, ReadLimits, read};
-use facies::material::LinearElastic;
-use facies::mesh::refinement::refine;
-use facies::mesh::{Vector, VolumeMesh};
-use facies::plan::{PlannedSegment, RigidMovement};
-use facies::prediction::{Case, CaseSegment, Plan, RegionNames};
+use mechanics::boundary::NodeSelection;
+use mechanics::format::{Mesh, ReadLimits, read};
+use mechanics::material::LinearElastic;
+use mechanics::mesh::refinement::refine;
+use mechanics::mesh::{Vector, VolumeMesh};
+use mechanics::plan::{PlannedSegment, RigidMovement};
+use mechanics::prediction::{Case, CaseSegment, Plan, RegionNames};
 
 pub const SEGMENTS: [&str; 2] = ["maxilla", "mandible"];
 

@@ -4,7 +4,7 @@
 //! the free nodes stored, 76 bytes a block. The product keeps this form whatever the solver stores, so that
 //! "products" mean the same from one version to the next.
 
-use facies::mesh::VolumeMesh;
+use mechanics::mesh::VolumeMesh;
 use rayon::prelude::*;
 
 use super::{on_threads, seconds};

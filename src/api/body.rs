@@ -14,7 +14,7 @@ use sha2::{Digest, Sha256};
 
 use super::Service;
 use super::error::{ApiError, ApiResult};
-use crate::schema::problem::Problem;
+use crate::schema::wire::problem::Problem;
 
 /// Bytes a second below which a body is too slow, once it has taken longer than it may stand still.
 const LEAST_RATE: f64 = 16.0 * 1024.0;

@@ -12,9 +12,9 @@ use axum::http::{Extensions, HeaderMap, HeaderValue, Method, header};
 use super::Service;
 use super::client::Client;
 use super::error::{ApiError, ApiResult};
-use crate::schema::canonical::sha256_hex;
 use crate::schema::key::{Key, Scope, scopes_of};
-use crate::schema::problem::Problem;
+use crate::schema::wire::canonical::sha256_hex;
+use crate::schema::wire::problem::Problem;
 use crate::store::DEFAULT_TENANT;
 
 /// Who calls.

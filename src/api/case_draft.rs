@@ -9,9 +9,9 @@ use super::error::{ApiError, ApiResult};
 use super::idempotency::NewId;
 use super::meshes::{TakenIn, take_in};
 use super::{Service, job_input};
-use crate::jobs::upload::{Statement, Upload};
 use crate::jobs::{CheckReport, PredictInput, StoredMesh};
-use crate::schema::check::CheckDocument;
+use crate::library::upload::{Statement, Upload};
+use crate::schema::predict::check::CheckDocument;
 use crate::schema::{CaseDocument, Limits, PredictDocument, Problem};
 use crate::store::NewCase;
 
@@ -159,6 +159,7 @@ pub(super) async fn checked(
 ) -> ApiResult<CheckReport> {
     let sources = service.library.source(Handle::current(), extra);
     let limits: Limits = (*service.limits).clone();
-    let report = service.compute(move || crate::jobs::check(&input, &sources, &limits)).await?;
+    let report =
+        service.compute(move || crate::jobs::predict::check(&input, &sources, &limits)).await?;
     report.map_err(job_input::refusal)
 }

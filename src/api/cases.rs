@@ -18,9 +18,10 @@ use super::meshes::document_of;
 use super::paging::Page;
 use super::parameters::{Id, Parameters};
 use super::{Service, body, conditional, job_input, json, json_only, time, with_header};
-use crate::schema::check::CheckDocument;
 use crate::schema::mesh::MeshDocument;
-use crate::schema::{CaseDocument, Faults, PredictDocument, strict};
+use crate::schema::predict::check::CheckDocument;
+use crate::schema::wire::strict;
+use crate::schema::{CaseDocument, Faults, PredictDocument};
 use crate::store::{CaseRow, Change};
 
 const JSON: &str = "application/json";

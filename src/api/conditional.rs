@@ -5,7 +5,7 @@ use axum::response::{IntoResponse, Response};
 use bytes::Bytes;
 
 use super::error::{ApiError, ApiResult};
-use crate::schema::problem::Problem;
+use crate::schema::wire::problem::Problem;
 
 /// The strong entity tag of a version or a hash.
 pub fn entity_tag(content: &str) -> HeaderValue {
@@ -66,7 +66,7 @@ pub fn not_modified(current: &str) -> Response {
 pub async fn document(headers: &HeaderMap, response: Response) -> ApiResult {
     let (mut head, body) = response.into_parts();
     let bytes = axum::body::to_bytes(body, usize::MAX).await.map_err(ApiError::internal)?;
-    let tag = crate::schema::canonical::sha256_hex(&bytes);
+    let tag = crate::schema::wire::canonical::sha256_hex(&bytes);
     if is_known(headers, &tag) {
         return Ok(not_modified(&tag));
     }

@@ -4,7 +4,7 @@
 use axum::http::{HeaderName, HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 
-use crate::schema::problem::{Problem, ProblemKind};
+use crate::schema::wire::problem::{Problem, ProblemKind};
 use crate::store::StoreError;
 
 /// What stands before the code in the `type` of a problem.

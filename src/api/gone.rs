@@ -8,7 +8,7 @@ use axum::response::{IntoResponse, Response};
 use super::error::ApiError;
 use super::parameters::id;
 use super::{Service, time};
-use crate::schema::problem::Problem;
+use crate::schema::wire::problem::Problem;
 
 /// Looks for the tombstone of what an address names, where a handler found nothing.
 pub async fn tell(

@@ -14,7 +14,7 @@ use super::error::{ApiError, ApiResult, with_problem_body};
 use super::rate::Left;
 use super::{Service, body};
 use crate::metrics::http;
-use crate::schema::problem::Problem;
+use crate::schema::wire::problem::Problem;
 use crate::traces::{self, TraceParent};
 
 const REQUEST_ID: &str = "x-request-id";

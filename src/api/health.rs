@@ -11,7 +11,7 @@ use utoipa_axum::routes;
 
 use super::error::{ApiError, ApiResult};
 use super::{Service, json, json_only};
-use crate::schema::problem::Problem;
+use crate::schema::wire::problem::Problem;
 use crate::store::StoreError;
 
 /// What takes longer than this is no help to a request.

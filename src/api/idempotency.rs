@@ -6,8 +6,8 @@ use axum::http::HeaderMap;
 
 use super::error::{ApiError, ApiResult};
 use super::{Service, gone};
-use crate::schema::canonical::sha256_hex;
-use crate::schema::problem::Problem;
+use crate::schema::wire::canonical::sha256_hex;
+use crate::schema::wire::problem::Problem;
 use crate::store::Reserved;
 
 const HEADER: &str = "idempotency-key";

@@ -12,8 +12,8 @@ use crate::jobs::{
     SourceError, StudyInput,
 };
 use crate::schema::job::{JobKind, JobStatus};
-use crate::schema::prediction::EngineDocument;
-use crate::schema::study::{SceneReference, StudyKind};
+use crate::schema::predict::result::EngineDocument;
+use crate::schema::study::document::{SceneReference, StudyKind};
 use crate::schema::{
     CaseDocument, CompareDocument, Faults, Limits, OptimiseDocument, PlanDocument, Pointer,
     PredictDocument, Problem, ReportDocument, ResponseDocument, StudyDocument,
@@ -68,7 +68,7 @@ pub async fn of_comparison(service: &Service, spec: CompareDocument) -> ApiResul
         case_id = case;
     }
     let content_of = |id: &str| contents.get(id).cloned();
-    let spec_hash = crate::schema::canonical::compare_hash(&spec, &content_of);
+    let spec_hash = crate::schema::wire::canonical::compare_hash(&spec, &content_of);
     let tags = spec.tags.clone();
     let new = Accepted {
         kind: JobKind::Compare,

@@ -3,7 +3,7 @@
 use super::error::{ApiError, ApiResult};
 use super::time;
 use crate::schema::job::{JobKind, JobStatus, Link, StatusInfo};
-use crate::schema::prediction::ResultDocument;
+use crate::schema::predict::result::ResultDocument;
 use crate::store::JobRow;
 
 pub fn status_info(row: &JobRow, deduplicated: bool) -> ApiResult<StatusInfo> {

@@ -17,7 +17,7 @@ use super::prefer::{wait_for_end, wanted_wait};
 use super::results::RETRY_AFTER_S;
 use super::{Service, body, conditional, job_input, json, json_only, with_header};
 use crate::schema::job::{JobKind, JobStatus, StatusInfo};
-use crate::schema::spec::JobDocument;
+use crate::schema::predict::document::JobDocument;
 use crate::store::{Dismissal, Enqueued, JobFilter, JobRow};
 use crate::traces::TraceParent;
 

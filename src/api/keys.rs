@@ -12,7 +12,7 @@ use super::error::{ApiError, ApiResult};
 use super::parameters::KeyId;
 use super::{Service, body, json, json_only, time, with_header};
 use crate::schema::key::{Key, KeyDocument, RotationDocument, Scope, scopes_of};
-use crate::schema::strict;
+use crate::schema::wire::strict;
 use crate::store::{KeyRow, Store};
 
 pub fn router() -> OpenApiRouter<Service> {

@@ -12,10 +12,10 @@ use utoipa_axum::routes;
 use super::error::{ApiError, ApiResult};
 use super::parameters::{Id, Parameters};
 use super::{Service, body, conditional, json, json_only, time, with_header};
-use crate::jobs::upload::{ExportFormat, Statement, Upload, export, read_upload};
-use crate::schema::canonical::sha256_hex;
-use crate::schema::case::{FrameName, LengthUnit};
+use crate::library::upload::{ExportFormat, Statement, Upload, export, read_upload};
+use crate::schema::case::document::{FrameName, LengthUnit};
 use crate::schema::mesh::{MeshDocument, MeshKind};
+use crate::schema::wire::canonical::sha256_hex;
 use crate::store::{MeshDeletion, MeshRow};
 
 const READ_HERE: &str = "model/stl, model/obj, application/vnd.ply, application/vnd.vtk, \

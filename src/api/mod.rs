@@ -49,12 +49,12 @@ use tower_http::catch_panic::CatchPanicLayer;
 use utoipa_axum::router::OpenApiRouter;
 
 use crate::config::Config;
-use crate::jobs::library::Library;
-use crate::jobs::niceness::give_way;
-use crate::jobs::responses::Responses;
-use crate::jobs::slot::slot_bytes;
+use crate::library::meshes::Library;
+use crate::library::responses::Responses;
 use crate::schema::Limits;
 use crate::store::Store;
+use crate::worker::niceness::give_way;
+use crate::worker::process::slot_bytes;
 
 pub use openapi::document;
 

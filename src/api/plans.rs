@@ -13,7 +13,8 @@ use super::idempotency::{NewId, new_id};
 use super::paging::Page;
 use super::parameters::{Id, Parameters, PlanPath};
 use super::{Service, body, conditional, json, json_only, time, with_header};
-use crate::schema::{PlanDocument, strict};
+use crate::schema::PlanDocument;
+use crate::schema::wire::strict;
 use crate::store::{Change, PlanRow};
 
 pub fn router() -> OpenApiRouter<Service> {

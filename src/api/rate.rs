@@ -13,7 +13,7 @@ use axum::response::Response;
 
 use super::client::Client;
 use super::error::ApiError;
-use crate::schema::problem::Problem;
+use crate::schema::wire::problem::Problem;
 
 const WINDOW: Duration = Duration::from_secs(60);
 /// Clients that are remembered at once; above it those with a full bucket are forgotten.

@@ -12,12 +12,12 @@ use super::guard::preferred;
 use super::parameters::{Id, Parameters, id as spelled};
 use super::results::successful;
 use super::{Service, conditional, with_header};
-use crate::jobs::judgement::{Baseline, judge};
-use crate::jobs::study_files::{
+use crate::jobs::study::files::{
     CHART_SVG, CSV_MEDIA_TYPE, JSON_MEDIA_TYPE, JUNIT_MEDIA_TYPE, REPORT_CSV, REPORT_JSON,
     REPORT_JUNIT, SVG_MEDIA_TYPE, csv, junit,
 };
-use crate::jobs::study_report::encode_report;
+use crate::jobs::study::report::encode_report;
+use crate::jobs::study::verdict::{Baseline, judge};
 use crate::schema::ReportDocument;
 use crate::schema::job::{JobKind, JobStatus};
 use crate::store::FileRow;

@@ -15,15 +15,15 @@ use super::error::{ApiError, ApiResult};
 use super::guard::preferred;
 use super::parameters::{Id, Parameters, id as spelled};
 use super::{Service, body, conditional, with_header};
-use crate::format::WriteError;
 use crate::jobs::response::{
     COLUMNS_FILE, COLUMNS_MEDIA_TYPE, DESCRIPTION_FILE, DESCRIPTION_MEDIA_TYPE,
 };
-use crate::jobs::responses::{Applied, FoundResponse, LoadedResponse, MissingResponse};
+use crate::library::responses::{Applied, FoundResponse, LoadedResponse, MissingResponse};
 use crate::schema::response::{
     AppliedDocument, AppliedSummary, ApplyDocument, ResponseDescription,
 };
-use crate::schema::strict;
+use crate::schema::wire::strict;
+use mechanics::format::WriteError;
 
 const GLB_MEDIA_TYPE: &str = "model/gltf-binary";
 

@@ -9,8 +9,8 @@ use super::parameters::{FileName, Id, no_such_job};
 use super::prefer::{wait_for_end, wanted_wait};
 use super::{Service, conditional, guard, json};
 use crate::schema::job::JobStatus;
-use crate::schema::prediction::ResultDocument;
-use crate::schema::problem::Problem;
+use crate::schema::predict::result::ResultDocument;
+use crate::schema::wire::problem::Problem;
 use crate::store::JobRow;
 
 /// How long a client had better wait before it asks again.

@@ -8,7 +8,7 @@ use tokio::sync::watch;
 use super::client::Client;
 use super::error::{ApiError, ApiResult};
 use crate::metrics::http;
-use crate::schema::problem::Problem;
+use crate::schema::wire::problem::Problem;
 use axum::http::{HeaderValue, header};
 
 /// How long a client had better wait for one of its streams to end.

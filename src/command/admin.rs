@@ -7,7 +7,7 @@ use clap::{Args, Subcommand};
 use super::settings::Arguments as Settings;
 use crate::config::Config;
 use crate::schema::key::{KeyDocument, RETENTION_DAYS, TENANT_NAMES, is_tenant, scopes_of};
-use crate::schema::problem::Problem;
+use crate::schema::wire::problem::Problem;
 use crate::store::{AuditRow, Chain, DEFAULT_TENANT, Deed, Findings, Store, StoreError};
 
 /// Rows of the audit log that are read together.

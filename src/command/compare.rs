@@ -10,11 +10,11 @@ use super::scene::UnitArgument;
 use super::screen::{TerminalProgress, print_warnings};
 use crate::jobs::work::Workplace;
 use crate::jobs::{CompareInput, JobInput, work};
-use crate::schema::compare::{
+use crate::schema::compare::document::{
     AlignDocument, AlignMethod, CompareDocument, CompareKind, MeshReference, NodeWise,
     PlaceDocument, SurfaceReference,
 };
-use crate::schema::prediction::ResultDocument;
+use crate::schema::predict::result::ResultDocument;
 use crate::schema::{CornerPair, Limits, Sphere};
 
 #[derive(Debug, Args)]

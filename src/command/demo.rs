@@ -13,13 +13,13 @@ use serde_json::Value;
 
 use super::serve::{ServeError, Server, stop_signal};
 use crate::config::Config;
-use crate::format::{self, FormatError, Mesh, ReadLimits, WriteError};
-use crate::jobs::worker::Workers;
-use crate::mesh::half_head::{HalfHead, STANDARD_FINENESS, half_head};
-use crate::mesh::refinement::refine;
-use crate::mesh::{TriangleSurface, VolumeMesh};
 use crate::telemetry;
+use crate::worker::slots::Workers;
 use client::{Client, ClientError};
+use mechanics::format::{self, FormatError, Mesh, ReadLimits, WriteError};
+use mechanics::mesh::half_head::{HalfHead, STANDARD_FINENESS, half_head};
+use mechanics::mesh::refinement::refine;
+use mechanics::mesh::{TriangleSurface, VolumeMesh};
 use report::Report;
 
 /// How often the state of a job is asked for.

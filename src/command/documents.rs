@@ -8,7 +8,8 @@ use serde::{Deserialize, Serialize};
 use super::failure::CommandError;
 use super::files::relative;
 use crate::jobs::PredictInput;
-use crate::schema::{CaseDocument, Limits, PlanDocument, PredictDocument, canonical, strict};
+use crate::schema::wire::{canonical, strict};
+use crate::schema::{CaseDocument, Limits, PlanDocument, PredictDocument};
 
 /// `case.json`: mesh ids are paths relative to the file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

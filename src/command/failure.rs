@@ -9,10 +9,10 @@ use super::health::HealthError;
 use super::serve::ServeError;
 use crate::config::ConfigError;
 use crate::jobs::JobError;
-use crate::jobs::slot::SlotError;
 use crate::schema::Problem;
 use crate::schema::job::ErrorClass;
-use crate::schema::report::OutcomeName;
+use crate::schema::study::report::OutcomeName;
+use crate::worker::process::SlotError;
 
 /// The job ran and failed.
 const FAILED: u8 = 1;

@@ -5,10 +5,10 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
-use crate::format::{self, ReadLimits};
 use crate::jobs::{MeshSource, SourceError, StoredMesh};
-use crate::schema::canonical;
-use crate::schema::case::LengthUnit;
+use crate::schema::case::document::LengthUnit;
+use crate::schema::wire::canonical;
+use mechanics::format::{self, ReadLimits};
 
 /// Reads each file once.
 pub struct FileSource {

@@ -7,12 +7,13 @@ use clap::Args;
 use super::failure::CommandError;
 use super::scene::SceneArguments;
 use super::screen::{TerminalProgress, print_check, print_warnings};
+use crate::jobs::predict::check;
 use crate::jobs::work::Workplace;
-use crate::jobs::{JobInput, check, work};
+use crate::jobs::{JobInput, work};
 use crate::schema::Limits;
-use crate::schema::check::CheckDocument;
-use crate::schema::prediction::ResultDocument;
-use crate::schema::spec::OutputName;
+use crate::schema::predict::check::CheckDocument;
+use crate::schema::predict::document::OutputName;
+use crate::schema::predict::result::ResultDocument;
 
 #[derive(Debug, Args)]
 pub struct Arguments {

@@ -7,9 +7,9 @@ use clap::{Args, ValueEnum};
 use super::documents::{CaseFile, read};
 use super::failure::CommandError;
 use super::files::FileSource;
-use crate::schema::case::{FrameName, LengthUnit};
+use crate::schema::case::document::{FrameName, LengthUnit};
+use crate::schema::case::selection::SelectionDocument;
 use crate::schema::methods::ElementName;
-use crate::schema::selection::SelectionDocument;
 use crate::schema::{CaseDocument, MaterialDocument, PlanDocument, PredictDocument};
 
 /// What is to be predicted.

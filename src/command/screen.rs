@@ -2,9 +2,9 @@
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-use crate::prediction::{Phase, Progress};
 use crate::schema::WarningDocument;
-use crate::schema::check::CheckDocument;
+use crate::schema::predict::check::CheckDocument;
+use mechanics::prediction::{Phase, Progress};
 
 /// The phase and the residual on one line of a terminal; nothing where there is no terminal.
 pub struct TerminalProgress(ProgressBar);

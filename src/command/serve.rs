@@ -11,16 +11,16 @@ use tokio::runtime::Handle;
 use super::settings::Arguments;
 use crate::api::{self, Service};
 use crate::config::{Config, ConfigError};
-use crate::jobs::fail_point::{self, FailPointError};
-use crate::jobs::library::Library;
-use crate::jobs::slot::protocol::Settings;
-use crate::jobs::slot::{Program, SlotSettings, SlotWork, slot_bytes};
-use crate::jobs::worker::{Work, Workers};
+use crate::library::meshes::Library;
 use crate::metrics;
 use crate::schema::Limits;
 use crate::store::{Store, StoreError};
 use crate::telemetry::{self, TelemetryError};
 use crate::traces::{self, TracesError};
+use crate::worker::fail_point::{self, FailPointError};
+use crate::worker::process::protocol::Settings;
+use crate::worker::process::{Program, SlotSettings, SlotWork, slot_bytes};
+use crate::worker::slots::{Work, Workers};
 
 /// How long what was done may be out of the chain of the audit log.
 const CHAIN_EVERY: Duration = Duration::from_secs(2);

@@ -3,8 +3,8 @@
 use clap::Args;
 
 use crate::config::LogConfig;
-use crate::jobs::slot::{SlotError, serve};
 use crate::telemetry;
+use crate::worker::process::{SlotError, serve};
 
 #[derive(Debug, Args)]
 pub struct Arguments {

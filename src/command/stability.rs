@@ -7,9 +7,9 @@ use serde_json::{Value, json};
 
 use super::documents::write;
 use super::failure::CommandError;
-use crate::chart::{Mark, StabilityAxis, StabilityMap};
-use crate::study::stability::{Answer, AxisMap, Bounds, Finding, Map, Verdict, axes, map};
-use crate::study::{Stopwatch, Variant};
+use mechanics::chart::{Mark, StabilityAxis, StabilityMap};
+use mechanics::study::stability::{Answer, AxisMap, Bounds, Finding, Map, Verdict, axes, map};
+use mechanics::study::{Stopwatch, Variant};
 
 /// What one probe may take, in s.
 const PROBE_S: f64 = 30.0;

@@ -10,15 +10,15 @@ use super::failure::CommandError;
 use super::files::FileSource;
 use super::screen::{TerminalProgress, print_warnings};
 use super::stability;
-use crate::jobs::study_files::REPORT_JSON;
+use crate::jobs::study::files::REPORT_JSON;
 use crate::jobs::work::Workplace;
 use crate::jobs::{JobInput, StudyInput, work};
-use crate::schema::report::{OutcomeName, ReportDocument, RowDocument};
-use crate::schema::study::{
+use crate::schema::study::document::{
     CaseReference, PlanReference, SceneReference, StudyKind, ThresholdsDocument,
 };
+use crate::schema::study::report::{OutcomeName, ReportDocument, RowDocument};
 use crate::schema::{CaseDocument, Limits, MaterialDocument, StudyDocument};
-use crate::study::methods;
+use mechanics::study::methods;
 
 /// The scenes and levels of a study that names none.
 const USUAL_SCENES: [&str; 3] = ["sphere", "slab", "half_head"];

@@ -6,11 +6,11 @@ use super::serve::{ServeError, listen_for_admin, open, start_workers, stop_signa
 use super::settings::Arguments;
 use crate::api;
 use crate::config::Config;
-use crate::jobs::fail_point;
-use crate::jobs::library::Library;
-use crate::jobs::worker::Workers;
+use crate::library::meshes::Library;
 use crate::telemetry;
 use crate::traces;
+use crate::worker::fail_point;
+use crate::worker::slots::Workers;
 
 /// Works until the process is told to stop (SIGTERM or SIGINT).
 pub fn run(arguments: &Arguments) -> Result<(), ServeError> {

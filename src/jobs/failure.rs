@@ -3,14 +3,14 @@
 use serde_json::{Map, Value, json};
 
 use super::source::SourceError;
-use crate::chart::PngError;
-use crate::format::WriteError;
-use crate::optimisation::OptimisationError;
-use crate::prediction::PredictionError;
 use crate::schema::Problem;
 use crate::schema::job::{ErrorClass, JobErrorDocument};
-use crate::study::StudyError;
-use crate::validation::StatisticsError;
+use mechanics::chart::PngError;
+use mechanics::format::WriteError;
+use mechanics::optimisation::OptimisationError;
+use mechanics::prediction::PredictionError;
+use mechanics::study::StudyError;
+use mechanics::validation::StatisticsError;
 
 /// Residuals of a diverged solver that are told; a history has one for each iteration.
 const TOLD_RESIDUALS: usize = 200;

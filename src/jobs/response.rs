@@ -4,22 +4,24 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::check::warning_documents;
+use super::clock::Observed;
 use super::failure::JobError;
-use super::input::{PredictInput, Prepared};
-use super::observed::Observed;
-use super::output::ResultFolder;
-use super::provenance::{Origin, add_method, encode_result, solver_document};
 use super::source::MeshSource;
 use super::work::{JobOutput, Workplace};
-use crate::format::{SurfaceOutput, vtp};
-use crate::prediction::{Phase, Progress};
-use crate::response::{Columns, ResponseError, build, chosen};
-use crate::schema::case_conversion::centre;
-use crate::schema::prediction::ResultDocument;
+use crate::jobs::predict::check::warning_documents;
+use crate::jobs::predict::input::{PredictInput, Prepared};
+use crate::jobs::result::folder::ResultFolder;
+use crate::jobs::result::provenance::{Origin, add_method, encode_result, solver_document};
+use crate::schema::case::conversion::centre;
+use crate::schema::predict::document::OutputName;
+use crate::schema::predict::result::ResultDocument;
 use crate::schema::response::{ColumnsDocument, ResponseDescription, ResponseOrigin};
-use crate::schema::spec::OutputName;
-use crate::schema::{CaseDocument, Faults, Limits, PlanDocument, ResponseDocument, canonical};
+use crate::schema::wire::canonical;
+use crate::schema::{CaseDocument, Faults, Limits, PlanDocument, ResponseDocument};
+use mechanics::format::SurfaceOutput;
+use mechanics::format::vtk::vtp;
+use mechanics::prediction::{Phase, Progress};
+use mechanics::response::{Columns, ResponseError, build, chosen};
 
 /// f32 little-endian, [column][node][xyz].
 pub const COLUMNS_FILE: &str = "response.f32";

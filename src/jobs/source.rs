@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
-use crate::format::{Mesh, ReadMesh};
-use crate::image::ImageVolume;
-use crate::mesh::{Frame, TriangleSurface, VolumeMesh, Warning};
-use crate::schema::case::LengthUnit;
+use crate::schema::case::document::LengthUnit;
+use mechanics::format::{Mesh, ReadMesh};
+use mechanics::image::ImageVolume;
+use mechanics::mesh::{Frame, TriangleSurface, VolumeMesh, Warning};
 
 /// Meshes by the ids that documents use.
 pub trait MeshSource {

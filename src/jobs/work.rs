@@ -3,31 +3,31 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use super::check::warning_documents;
-use super::comparison::{compare_job, compare_skin};
+use super::clock::Observed;
+use super::compare::{compare_job, compare_skin};
 use super::failure::JobError;
-use super::input::{JobInput, PredictInput, Prepared};
-use super::observed::Observed;
-use super::optimisation::optimise_job;
-use super::output::ResultFolder;
-use super::overlap::overlaps;
-use super::pictures::displacement_picture;
-use super::provenance::{Origin, add_method, encode_result, solver_document};
+use super::optimise::optimise_job;
 use super::response::response_job;
-use super::skin_files::PredictedSkin;
 use super::source::MeshSource;
 use super::study::study_job;
-use super::tissue_files::{encode_bones, encode_volume};
-use crate::mesh::{Vector, Warning};
-use crate::prediction::{Phase, Prediction, Progress, Skin, predict};
-use crate::schema::optimisation::OptimisationDocument;
-use crate::schema::prediction::{
+use crate::jobs::predict::check::warning_documents;
+use crate::jobs::predict::input::{JobInput, PredictInput, Prepared};
+use crate::jobs::predict::overlap::overlaps;
+use crate::jobs::result::folder::ResultFolder;
+use crate::jobs::result::pictures::displacement_picture;
+use crate::jobs::result::provenance::{Origin, add_method, encode_result, solver_document};
+use crate::jobs::result::skin::PredictedSkin;
+use crate::jobs::result::tissue::{encode_bones, encode_volume};
+use crate::schema::compare::result::{ComparisonDocument, StatDocument};
+use crate::schema::optimise::result::OptimisationDocument;
+use crate::schema::predict::document::OutputName;
+use crate::schema::predict::result::{
     DisplacementDocument, FileDocument, ResultDocument, StatisticsDocument,
 };
-use crate::schema::spec::OutputName;
-use crate::schema::validation::{ComparisonDocument, StatDocument};
 use crate::schema::{Limits, Triple};
-use crate::validation::{Statistics, StatisticsError};
+use mechanics::mesh::{Vector, Warning};
+use mechanics::prediction::{Phase, Prediction, Progress, Skin, predict};
+use mechanics::validation::{Statistics, StatisticsError};
 
 /// What a job made.
 #[derive(Clone, Debug)]

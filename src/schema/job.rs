@@ -4,8 +4,8 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 use utoipa::ToSchema;
 
-use super::prediction::{EngineDocument, ResultDocument};
-use super::warning::WarningDocument;
+use crate::schema::predict::result::{EngineDocument, ResultDocument};
+use crate::schema::wire::warning::WarningDocument;
 
 /// Where a job is in its life.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, ToSchema)]

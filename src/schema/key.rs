@@ -5,8 +5,8 @@ use std::collections::BTreeSet;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-use super::fault::{Faults, Pointer};
-use super::problem::Problem;
+use crate::schema::wire::fault::{Faults, Pointer};
+use crate::schema::wire::problem::Problem;
 
 /// What a key allows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, ToSchema)]

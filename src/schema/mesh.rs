@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-use super::case::{FrameName, LengthUnit};
-use super::warning::WarningDocument;
 use super::{CornerPair, Triple};
+use crate::schema::case::document::{FrameName, LengthUnit};
+use crate::schema::wire::warning::WarningDocument;
 
 /// The answer of `POST /v1/meshes` and `GET /v1/meshes/{id}`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]

@@ -5,22 +5,22 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-use super::canonical;
-use super::case::FrameName;
-use super::fault::{Faults, Pointer};
-use super::limits::Limits;
-use super::material::{MaterialDocument, MaterialDocuments};
-use super::membrane::MembraneDocument;
 use super::methods::{self, ElementName, MethodName};
-use super::plan::{PlanContext, PlanDocument};
-use super::prediction::EngineDocument;
-use super::problem::Problem;
-use super::spec::{BudgetDocument, PredictDocument, ToleranceDocument};
 use super::{CornerPair, Triple, WarningDocument};
-use crate::mesh::{Frame, Vector};
-use crate::plan::RigidMovement;
-use crate::response::linearity::LINEAR_RANGE_MM;
-use crate::response::{Columns, Linearity, Nonlinearity, ResponseError, ResponseSegment};
+use crate::schema::case::document::FrameName;
+use crate::schema::case::material::{MaterialDocument, MaterialDocuments};
+use crate::schema::case::membrane::MembraneDocument;
+use crate::schema::plan::document::{PlanContext, PlanDocument};
+use crate::schema::predict::document::{BudgetDocument, PredictDocument, ToleranceDocument};
+use crate::schema::predict::result::EngineDocument;
+use crate::schema::wire::canonical;
+use crate::schema::wire::fault::{Faults, Pointer};
+use crate::schema::wire::limits::Limits;
+use crate::schema::wire::problem::Problem;
+use mechanics::mesh::{Frame, Vector};
+use mechanics::plan::RigidMovement;
+use mechanics::response::linearity::LINEAR_RANGE_MM;
+use mechanics::response::{Columns, Linearity, Nonlinearity, ResponseError, ResponseSegment};
 
 /// `response`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]

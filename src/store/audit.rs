@@ -3,7 +3,7 @@
 
 use super::database::{Row, query};
 use super::{Store, StoreError};
-use crate::schema::canonical::sha256_hex;
+use crate::schema::wire::canonical::sha256_hex;
 
 /// What somebody does.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

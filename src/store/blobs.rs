@@ -13,7 +13,7 @@ use object_store::{ClientOptions, ObjectStore, ObjectStoreExt, PutPayload, Retry
 
 use super::StoreError;
 use crate::config::{BlobsPlace, Places, Secret};
-use crate::schema::canonical::sha256_hex;
+use crate::schema::wire::canonical::sha256_hex;
 
 /// How long a store may take to accept a connection, and one request for a whole blob.
 const CONNECT_TIMEOUT: Duration = Duration::from_secs(3);

@@ -2,8 +2,8 @@
 
 use super::database::{Row, query};
 use super::{Store, StoreError};
-use crate::schema::canonical::sha256_hex;
 use crate::schema::key::{Key, KeyDocument, scope_words};
+use crate::schema::wire::canonical::sha256_hex;
 
 const HOUR_MS: i64 = 3600 * 1000;
 const DAY_MS: i64 = 24 * HOUR_MS;

@@ -5,14 +5,16 @@
 mod deaths;
 mod delays;
 #[allow(dead_code, unused_imports, unused_macros, reason = "the tests of the service use the rest")]
-#[path = "../service/deployments.rs"]
+#[path = "../support/deployments.rs"]
 mod deployments;
 #[allow(dead_code, reason = "the tests of the service use the rest")]
-#[path = "../service/helpers.rs"]
+#[path = "../support/helpers.rs"]
 mod helpers;
+#[path = "../support/invariants.rs"]
 mod invariants;
+#[path = "../support/processes.rs"]
 mod processes;
 mod races;
 #[allow(dead_code, reason = "other tests use the rest")]
-#[path = "../shared/mod.rs"]
+#[path = "../../mechanics/tests/support/data.rs"]
 mod shared;

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used)]
 
-#[path = "../shared/mod.rs"]
+#[path = "../../mechanics/tests/support/data.rs"]
 mod shared;
 mod study;
 
@@ -11,11 +11,12 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-use facies::format::{VolumeOutput, vtu};
-use facies::mesh::{CellShape, Frame, Vector, sample};
-use facies::schema::canonical::sha256_hex;
-use facies::schema::check::CheckDocument;
-use facies::schema::prediction::ResultDocument;
+use facies::schema::predict::check::CheckDocument;
+use facies::schema::predict::result::ResultDocument;
+use facies::schema::wire::canonical::sha256_hex;
+use mechanics::format::VolumeOutput;
+use mechanics::format::vtk::vtu;
+use mechanics::mesh::{CellShape, Frame, Vector, sample};
 use shared::shared_data;
 
 fn facies(arguments: &[&str]) -> Output {

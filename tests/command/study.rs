@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use facies::schema::report::{OutcomeName, ReportDocument, RowStatus};
+use facies::schema::study::report::{OutcomeName, ReportDocument, RowStatus};
 use serde_json::{Value, json};
 
 use crate::{block, facies, path, text};

@@ -1,56 +1,28 @@
 //! The service from outside: the real server, its store, its queue.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on panics")]
 
-mod admission;
-mod audit;
-mod bad_documents;
-mod bad_meshes;
-mod bad_requests;
-mod batch;
-mod broken_disk;
-mod cases;
-mod clients_that_stall;
-mod clocks;
-mod demo;
+mod api;
+mod command;
+#[path = "../support/deployments.rs"]
 mod deployments;
-mod erasures;
-mod events;
 mod faults;
-#[allow(dead_code, reason = "the tests of the formats use the rest")]
-#[path = "../mechanics/formats_samples.rs"]
-mod formats_samples;
 #[allow(dead_code, reason = "the tests under fire use the rest")]
+#[path = "../support/helpers.rs"]
 mod helpers;
-mod hosts;
-mod idempotency;
-mod images;
 #[allow(dead_code, reason = "the tests under fire use the rest")]
-#[path = "../chaos/invariants.rs"]
+#[path = "../support/invariants.rs"]
 mod invariants;
-mod jobs;
-mod meshes;
-mod openapi;
-mod optimise;
-mod origins;
-mod outages;
+#[path = "../support/partition.rs"]
 mod partition;
-mod plans;
 #[allow(dead_code, reason = "the tests under fire use the rest")]
-#[path = "../chaos/processes.rs"]
+#[path = "../support/processes.rs"]
 mod processes;
-mod queue;
-mod races;
-mod remembered;
-mod response;
-mod schema_steps;
-mod settings;
-#[path = "../shared/mod.rs"]
+#[allow(dead_code, reason = "the tests of the formats use the rest")]
+#[path = "../../mechanics/tests/support/samples.rs"]
+mod samples;
+#[path = "../../mechanics/tests/support/data.rs"]
 #[allow(dead_code, reason = "other tests use the rest")]
 mod shared;
-mod storage;
-mod study;
-mod tenants;
+mod store;
 mod traces;
-mod transfer;
-mod watching;
 mod worker;

@@ -18,7 +18,7 @@ use tokio::sync::watch;
 
 use crate::deployments::Deployment;
 use crate::helpers::{SMALL, Server, ask, serve, serve_shared, spec};
-use crate::hosts::Worker;
+use crate::worker::hosts::Worker;
 
 const TRACE: &str = "0af7651916cd43dd8448eb211c80319c";
 const CLIENT: &str = "b7ad6b7169203331";

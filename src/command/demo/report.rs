@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use crate::validation::statistics::Statistics;
+use mechanics::validation::statistics::Statistics;
 
 /// Columns of a terminal.
 const WIDTH: usize = 80;

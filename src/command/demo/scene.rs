@@ -3,9 +3,10 @@
 use serde_json::{Value, json};
 
 use super::client::Part;
-use crate::format::{SurfaceOutput, VolumeOutput, WriteError, vtp, vtu};
-use crate::mesh::half_head::{HalfHead, LAYERS};
-use crate::mesh::{Frame, VolumeMesh};
+use mechanics::format::vtk::{vtp, vtu};
+use mechanics::format::{SurfaceOutput, VolumeOutput, WriteError};
+use mechanics::mesh::half_head::{HalfHead, LAYERS};
+use mechanics::mesh::{Frame, VolumeMesh};
 
 /// What is asked for besides `result.json`, and fetched.
 pub const FILES: [&str; 7] = [

@@ -6,7 +6,7 @@ use std::sync::OnceLock;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-use crate::schema::check::TimeBandDocument;
+use crate::schema::predict::check::TimeBandDocument;
 
 /// What `facies study` wrote.
 const TABLE: &str = include_str!("../../../docs/speed-and-accuracy.csv");

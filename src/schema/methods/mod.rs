@@ -11,12 +11,12 @@ mod thickness_warp;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-use super::fault::{Faults, Pointer};
-use crate::optimisation::UNDETERMINED;
-use crate::prediction::ElementChoice;
-use crate::response::COLUMNS_PER_SEGMENT;
-use crate::response::linearity::LINEAR_RANGE_MM;
+use crate::schema::wire::fault::{Faults, Pointer};
 pub use measured::{MeasuredDocument, time_band};
+use mechanics::optimisation::UNDETERMINED;
+use mechanics::prediction::ElementChoice;
+use mechanics::response::COLUMNS_PER_SEGMENT;
+use mechanics::response::linearity::LINEAR_RANGE_MM;
 
 /// Why `auto` is what it is.
 pub const WHY_LINEAR: &str = "auto: fem_linear, until something chooses between models";

@@ -3,7 +3,7 @@
 use serde_json::json;
 
 use super::{ElementName, MethodDocument, MethodName, ParameterDocument, words};
-use crate::schema::mass_spring::{DIRECT_ITERATIONS, NEWTON_ITERATIONS};
+use crate::schema::predict::mass_spring::{DIRECT_ITERATIONS, NEWTON_ITERATIONS};
 
 pub(super) fn document() -> MethodDocument {
     MethodDocument {

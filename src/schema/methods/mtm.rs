@@ -3,7 +3,7 @@
 use serde_json::json;
 
 use super::{ElementName, MethodDocument, MethodName, ParameterDocument, words};
-use crate::schema::mass_tensor::USUAL_ITERATIONS;
+use crate::schema::predict::mass_tensor::USUAL_ITERATIONS;
 
 pub(super) fn document() -> MethodDocument {
     MethodDocument {

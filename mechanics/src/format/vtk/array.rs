@@ -1,0 +1,298 @@
+//! The values of VTK XML arrays: text, base64 or raw bytes, with or without zlib.
+//!
+//! A compressed array starts with the header
+//! `[blocks][bytes of a block][bytes of the last block, 0 if full][compressed bytes of each block]`,
+//! a plain one with `[bytes]`; each number is a UInt32 or a UInt64. In base64 the header may be
+//! encoded apart from the data; both ways are read.
+//!
+//! Source: VTK File Formats, docs.vtk.org, and vtkXMLDataParser.cxx.
+
+use std::borrow::Cow;
+use std::io::Read;
+
+use flate2::read::ZlibDecoder;
+
+use super::document::{Appended, Content, DataArray, Document};
+use super::source::Source;
+use crate::format::error::{FormatError, Place};
+use crate::format::limits::{DecodeBudget, MOST_BYTES_OF_ONE, ReadLimits, room_for};
+use crate::format::scalar::Scalar;
+
+pub(super) struct Decoder<'d, 'a> {
+    document: &'d Document<'a>,
+    budget: DecodeBudget,
+}
+
+impl<'d, 'a> Decoder<'d, 'a> {
+    pub fn document(&self) -> &'d Document<'a> {
+        self.document
+    }
+
+    pub fn new(document: &'d Document<'a>, file_bytes: usize, limits: &ReadLimits) -> Self {
+        Decoder { document, budget: limits.decode_budget(file_bytes) }
+    }
+
+    fn bad(&self, array: &DataArray<'_>, detail: impl std::fmt::Display) -> FormatError {
+        FormatError::Parse {
+            format: self.document.format,
+            place: Place::Offset(array.offset),
+            detail: format!("array {:?} of {:?}: {detail}", array.name, array.section),
+        }
+    }
+
+    /// The values as real numbers, `count` of them.
+    pub fn reals(&mut self, array: &DataArray<'a>, count: u64) -> Result<Vec<f64>, FormatError> {
+        let scalar = self.scalar(array)?;
+        let values = match array.content {
+            Content::Ascii(text) => self.words(array, text, count, |word| word.parse().ok())?,
+            _ => {
+                let bytes = self.exactly(array, count, scalar)?;
+                scalar.reals(&bytes, self.document.order)?
+            }
+        };
+        self.check_count(array, values.len(), count)?;
+        Ok(values)
+    }
+
+    /// The values as integers, `count` of them.
+    pub fn integers<T>(
+        &mut self,
+        array: &DataArray<'a>,
+        count: u64,
+        convert: impl Fn(i64) -> T,
+    ) -> Result<Vec<T>, FormatError> {
+        let values = self.all_integers(array, Some(count), convert)?;
+        self.check_count(array, values.len(), count)?;
+        Ok(values)
+    }
+
+    /// The values as integers, however many there are.
+    pub fn all_integers<T>(
+        &mut self,
+        array: &DataArray<'a>,
+        count: Option<u64>,
+        convert: impl Fn(i64) -> T,
+    ) -> Result<Vec<T>, FormatError> {
+        let scalar = self.scalar(array)?;
+        if !scalar.is_integer() {
+            return Err(self.bad(array, "integers are expected"));
+        }
+        match (&array.content, count) {
+            (Content::Ascii(text), _) => {
+                let convert = |word: &str| word.parse().ok().map(&convert);
+                self.words(array, text, count.unwrap_or(u64::MAX), convert)
+            }
+            (_, Some(count)) => {
+                let bytes = self.exactly(array, count, scalar)?;
+                scalar.integers(&bytes, self.document.order, convert)
+            }
+            (_, None) => {
+                let bytes = self.bytes(array)?;
+                scalar.integers(&bytes, self.document.order, convert)
+            }
+        }
+    }
+
+    /// The first text of a string array.
+    pub fn text(&mut self, array: &DataArray<'a>) -> Result<String, FormatError> {
+        let bytes = match array.content {
+            Content::Ascii(text) => {
+                Cow::Owned(self.words(array, text, u64::MAX, |word| word.parse().ok())?)
+            }
+            _ => self.bytes(array)?,
+        };
+        let length = bytes.iter().position(|&byte| byte == 0);
+        let first = &bytes[..length.unwrap_or(bytes.len())];
+        Ok(String::from_utf8_lossy(first).into_owned())
+    }
+
+    /// Counts an array that nobody asks for: the limit is one of the whole file.
+    pub fn pass_over(&mut self, array: &DataArray<'a>) -> Result<(), FormatError> {
+        if self.document.compressed && !matches!(array.content, Content::Ascii(_)) {
+            let mut source = self.source(array)?;
+            self.blocks(array, &mut source)?;
+        }
+        Ok(())
+    }
+
+    fn scalar(&self, array: &DataArray<'_>) -> Result<Scalar, FormatError> {
+        array.scalar.ok_or_else(|| self.bad(array, "it does not hold numbers"))
+    }
+
+    fn check_count(
+        &self,
+        array: &DataArray<'_>,
+        have: usize,
+        declared: u64,
+    ) -> Result<(), FormatError> {
+        if have as u64 == declared {
+            return Ok(());
+        }
+        Err(self.bad(array, format!("{declared} values declared, {have} found")))
+    }
+
+    fn words<T>(
+        &self,
+        array: &DataArray<'_>,
+        text: &str,
+        at_most: u64,
+        parse: impl Fn(&str) -> Option<T>,
+    ) -> Result<Vec<T>, FormatError> {
+        let possible = (text.len() as u64).div_ceil(2).min(at_most);
+        let mut values = room_for(possible as usize)?;
+        for word in text.split_ascii_whitespace() {
+            if values.len() as u64 == at_most {
+                return Err(self.bad(array, format!("more than {at_most} values")));
+            }
+            let value = parse(word).ok_or_else(|| {
+                let shown: String = word.chars().take(40).collect();
+                self.bad(array, format!("not a number: {shown:?}"))
+            })?;
+            values.push(value);
+        }
+        Ok(values)
+    }
+
+    /// The bytes of `count` values.
+    fn exactly(
+        &mut self,
+        array: &DataArray<'a>,
+        count: u64,
+        scalar: Scalar,
+    ) -> Result<Cow<'a, [u8]>, FormatError> {
+        let bytes = self.bytes(array)?;
+        let have = bytes.len() as u64;
+        if Some(have) != count.checked_mul(scalar.size()) {
+            let have = have / scalar.size();
+            return Err(self.bad(array, format!("{count} values declared, {have} found")));
+        }
+        Ok(bytes)
+    }
+
+    fn bytes(&mut self, array: &DataArray<'a>) -> Result<Cow<'a, [u8]>, FormatError> {
+        let mut source = self.source(array)?;
+        if source.is_empty() {
+            return Ok(Cow::Borrowed(&[]));
+        }
+        if self.document.compressed {
+            return self.inflate(array, &mut source).map(Cow::Owned);
+        }
+        let [length] = self.header_numbers(array, &mut source)?;
+        self.take(array, &mut source, length)
+    }
+
+    fn source(&self, array: &DataArray<'a>) -> Result<Source<'a>, FormatError> {
+        let offset = match array.content {
+            Content::Inline(text) => return Ok(Source::base64(text.trim_ascii().as_bytes())),
+            Content::Ascii(_) => return Err(self.bad(array, "it holds text")),
+            Content::Appended(offset) => offset,
+        };
+        let after = |data: &'a [u8]| usize::try_from(offset).ok().and_then(|at| data.get(at..));
+        let found = match &self.document.appended {
+            Some(Appended::Raw(data)) => after(data).map(Source::Raw),
+            Some(Appended::Base64(data)) => after(data).map(Source::base64),
+            None => None,
+        };
+        found.ok_or_else(|| self.bad(array, format!("offset {offset} lies beyond the data")))
+    }
+
+    fn take(
+        &self,
+        array: &DataArray<'_>,
+        source: &mut Source<'a>,
+        length: u64,
+    ) -> Result<Cow<'a, [u8]>, FormatError> {
+        let have = source.at_most();
+        if length > have {
+            return Err(self.bad(array, format!("{length} bytes declared, at most {have} left")));
+        }
+        source
+            .take(length as usize)?
+            .ok_or_else(|| self.bad(array, "the data ends early or is not base64"))
+    }
+
+    fn header_numbers<const N: usize>(
+        &self,
+        array: &DataArray<'_>,
+        source: &mut Source<'a>,
+    ) -> Result<[u64; N], FormatError> {
+        let Document { header, order, .. } = self.document;
+        let bytes = self.take(array, source, header.size() * N as u64)?;
+        let mut numbers = [0; N];
+        for (number, raw) in numbers.iter_mut().zip(bytes.chunks_exact(header.size() as usize)) {
+            *number = header.integer(raw, *order) as u64;
+        }
+        Ok(numbers)
+    }
+
+    /// Reads the header of a compressed array and takes its decoded size from the budget.
+    fn blocks(
+        &mut self,
+        array: &DataArray<'_>,
+        source: &mut Source<'a>,
+    ) -> Result<Blocks, FormatError> {
+        if source.is_empty() {
+            return Ok(Blocks::default());
+        }
+        // A header of no blocks may stop after its first number.
+        let count = match self.header_numbers(array, source)? {
+            [0] => return Ok(Blocks::default()),
+            [count] => count,
+        };
+        let [full, last] = self.header_numbers(array, source)?;
+        if count.saturating_mul(self.document.header.size()) > source.at_most() {
+            return Err(self.bad(array, format!("{count} blocks declared in too few bytes")));
+        }
+        let mut compressed = room_for(count as usize)?;
+        for _ in 0..count {
+            let [bytes] = self.header_numbers(array, source)?;
+            compressed.push(bytes);
+        }
+        let last = if last == 0 { full } else { last };
+        let decoded = full
+            .checked_mul(count - 1)
+            .and_then(|before| before.checked_add(last))
+            .unwrap_or(u64::MAX);
+        self.budget.charge(decoded)?;
+        let stored = compressed.iter().fold(0_u64, |sum, &bytes| sum.saturating_add(bytes));
+        if stored > source.at_most() || decoded / MOST_BYTES_OF_ONE > stored {
+            let detail = format!("{decoded} bytes declared in blocks of {stored} bytes");
+            return Err(self.bad(array, detail));
+        }
+        Ok(Blocks { compressed, full, last, decoded })
+    }
+
+    fn inflate(
+        &mut self,
+        array: &DataArray<'_>,
+        source: &mut Source<'a>,
+    ) -> Result<Vec<u8>, FormatError> {
+        let blocks = self.blocks(array, source)?;
+        let mut decoded = room_for(blocks.decoded as usize)?;
+        for (block, &stored) in blocks.compressed.iter().enumerate() {
+            let is_last = block + 1 == blocks.compressed.len();
+            let size = if is_last { blocks.last } else { blocks.full };
+            let before = decoded.len() as u64;
+            let bytes = self.take(array, source, stored)?;
+            // One byte more than promised is enough to see that the promise was wrong.
+            let mut inflater = ZlibDecoder::new(&bytes[..]).take(size.saturating_add(1));
+            inflater
+                .read_to_end(&mut decoded)
+                .map_err(|error| self.bad(array, format!("block {block}: {error}")))?;
+            let have = decoded.len() as u64 - before;
+            if have != size {
+                let detail = format!("block {block} holds {have} bytes instead of {size}");
+                return Err(self.bad(array, detail));
+            }
+        }
+        Ok(decoded)
+    }
+}
+
+#[derive(Default)]
+struct Blocks {
+    compressed: Vec<u64>,
+    full: u64,
+    last: u64,
+    decoded: u64,
+}

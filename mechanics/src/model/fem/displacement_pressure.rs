@@ -1,0 +1,235 @@
+//! Tetrahedra that do not lock: linear displacement and linear pressure, stabilised by projection.
+//!
+//! With p = lambda div u: find u, p with
+//!   int 2 mu eps(u) : eps(v) + int p div v = f(v)                             K u + B^T p = f
+//!   int q div u - int p q / lambda - int (p - Pi p)(q - Pi q) / mu = 0        B u - C p = 0
+//! where Pi is the mean over a cell. On a tetrahedron of volume V: B_ab = V/4 grad N_b,
+//! C = M / lambda + (M - Mbar) / mu, M_ab = V/20 (1 + delta_ab), Mbar_ab = V/16.
+//! With fibres lambda and mu are those of `ElasticTensor::pressure_part`, and instead of 2 mu eps(u) stands what
+//! the pressure leaves of the stress, (stiffness - lambda (1 x 1)) eps(u), which is positive definite.
+//!
+//! Source: Dohrmann, Bochev, A stabilized finite element method for the Stokes problem based on polynomial
+//! pressure projections, International Journal for Numerical Methods in Fluids 46, 2004; the compressible
+//! term M / lambda is that of linear elasticity.
+//! A node has one pressure for each material around it, because pressure jumps where stiffness does; mixtures
+//! take part in the pressure of their largest part.
+//! Hexahedra and wedges keep their mean dilatation and have no pressure; nor have tetrahedra with nu = 0,
+//! whose pressure is zero.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use nalgebra::Matrix3;
+use rayon::prelude::*;
+
+use super::assembly::{InvertedCell, Numbering, Tissue, nodes_of_cells};
+use super::cell_stiffness::tetrahedron;
+use super::displacement::{Problem, check_finite};
+use crate::material::ElasticTensor;
+use crate::material::elastic_tensor::PressurePart;
+use crate::mesh::{CellShape, Vector};
+use crate::model::dofs::{Constrained, Known, free_unknowns, number, product_at_holds};
+use crate::model::problem::{Convergence, Equilibrium, LoadCase, ModelError, Observer};
+use crate::solver::mixed::{self, Coupling, MixedRightHandSide, MixedSolution, MixedSystem};
+use crate::solver::sparse_rows::{Couplings, SparseRows};
+use crate::solver::{HalfMatrix, SolverError, System};
+
+/// Vectors of all unknowns that the iteration keeps at most.
+const VECTORS: usize = 2 * mixed::MOST_DIRECTIONS + 6;
+
+/// Solves for each load case; matrices and hierarchy are made once.
+pub fn solve_cases(
+    problem: &Problem,
+    cases: &[LoadCase],
+    observer: &dyn Observer,
+) -> Result<Vec<Equilibrium>, ModelError> {
+    // 1. The matrices, with sliding nodes along their own axes.
+    observer.assembling();
+    let mesh = problem.tissue.mesh;
+    let numbering = number(&nodes_of_cells(mesh), &mesh.nodes, problem.holds);
+    let constrained = Constrained { holds: problem.holds, numbering: &numbering };
+    let assembled = shear_stiffness(&problem.tissue, &numbering, observer)?;
+    let matrix = assembled.ok_or(SolverError::Stopped)?;
+    let stiffness = constrained.system(matrix, &mesh.nodes);
+    let coupling = couple(&problem.tissue, &constrained)?;
+    check_memory(&stiffness, &coupling, problem.tolerance.memory_mb)?;
+
+    // 2. What is known, and what it leaves to the free unknowns.
+    observer.solving();
+    let known: Vec<Known> = cases.par_iter().map(|case| constrained.known(case)).collect();
+    let right_hand_sides: Vec<MixedRightHandSide> = known
+        .par_iter()
+        .map(|known| {
+            let mut volumes = vec![[0.0]; coupling.mass.len()];
+            coupling.divergence.contract(&known.displacement, &mut volumes);
+            volumes.iter_mut().for_each(|[volume]| *volume = -*volume);
+            MixedRightHandSide { forces: known.right_hand_side(&stiffness), volumes }
+        })
+        .collect();
+
+    // 3. The free displacements and the pressures.
+    let system = MixedSystem { stiffness: &stiffness, coupling: &coupling };
+    let watch = |iteration, residual| observer.iterated(iteration, residual);
+    let solutions = mixed::solve(&system, &right_hand_sides, &problem.tolerance, &watch)?;
+
+    // 4. Displacement and reactions, back along the axes of the coordinates.
+    let equilibrium = |(known, mixed): (Known, MixedSolution)| {
+        let total = known.total(&mixed.solution.unknowns);
+        let mut internal = product_at_holds(&stiffness, &total);
+        coupling.gradient.add_expanded(&mixed.pressures, &mut internal);
+        Equilibrium {
+            displacement: constrained.displacement(&total),
+            reactions: constrained.reactions(&internal, &known.force),
+            convergence: Convergence::of(&mixed.solution),
+            warnings: Vec::new(),
+            unknowns: free_unknowns(&stiffness) + coupling.mass.len(),
+        }
+    };
+    let equilibria: Vec<Equilibrium> =
+        known.into_par_iter().zip(solutions).map(equilibrium).collect();
+    check_finite(&equilibria)?;
+    Ok(equilibria)
+}
+
+fn check_memory(
+    stiffness: &System,
+    coupling: &Coupling,
+    allowed_mb: f64,
+) -> Result<(), SolverError> {
+    let unknowns = 3 * stiffness.layout.free + coupling.mass.len();
+    let vectors_mb = 8e-6 * (VECTORS * unknowns) as f64;
+    let needed_mb = stiffness.megabytes() + coupling.megabytes() + vectors_mb;
+    match needed_mb <= allowed_mb {
+        true => Ok(()),
+        false => Err(SolverError::OverBudget { needed_mb, allowed_mb }),
+    }
+}
+
+/// K: tetrahedra with what no pressure carries, 2 mu eps : eps where they are isotropic.
+fn shear_stiffness(
+    tissue: &Tissue,
+    numbering: &Numbering,
+    observer: &dyn Observer,
+) -> Result<Option<HalfMatrix<f64, 3>>, InvertedCell> {
+    let tensor = |cell: usize| {
+        let tensor = tissue.tensor(cell);
+        match tissue.mesh.cells.shape(cell) {
+            CellShape::Tet4 => {
+                let lambda = tensor.lambda - tensor.pressure_part().lambda;
+                ElasticTensor { lambda, ..tensor }
+            }
+            CellShape::Hex8 | CellShape::Wedge6 => tensor,
+        }
+    };
+    tissue.assemble_with(numbering, &|| !observer.is_stopped(), &tensor)
+}
+
+/// Tetrahedra that have pressures, one for each corner.
+struct PressureCells {
+    cells: Vec<u32>,
+    nodes: Vec<[u32; 4]>,
+    pressures: Vec<[u32; 4]>,
+    pressure_count: usize,
+}
+
+impl PressureCells {
+    /// Numbers the pressures: corners share one where they share node and material.
+    fn new(tissue: &Tissue, numbering: &Numbering) -> Self {
+        let materials = tissue.materials;
+        let used: BTreeSet<u16> = tissue.pressure_of_cell.iter().copied().collect();
+        let same = |own: u16| {
+            let is_same = |other: &&u16| materials[**other as usize] == materials[own as usize];
+            used.iter().find(is_same).copied().unwrap_or(own)
+        };
+        let kinds: BTreeMap<u16, u16> = used.iter().map(|&own| (own, same(own))).collect();
+        let mut cells_of_kind: BTreeMap<u16, Vec<u32>> = BTreeMap::new();
+        for &cell in &numbering.layout.clique_order {
+            let (cell, shape) = (cell as usize, tissue.mesh.cells.shape(cell as usize));
+            let kind = kinds[&tissue.pressure_of_cell[cell]];
+            if shape == CellShape::Tet4 && tissue.tensor(cell).pressure_part().lambda > 0.0 {
+                cells_of_kind.entry(kind).or_default().push(cell as u32);
+            }
+        }
+        let (cells, nodes, pressures) = (Vec::new(), Vec::new(), Vec::new());
+        let mut all = PressureCells { cells, nodes, pressures, pressure_count: 0 };
+        // Numbers below the first of a kind are those of other kinds.
+        let mut number_of_node = vec![0; tissue.mesh.nodes.len()];
+        for cells in cells_of_kind.values() {
+            let first = all.pressure_count as u32 + 1;
+            for &cell in cells {
+                let corners = tissue.mesh.cells.nodes(cell as usize);
+                let corners: [u32; 4] = std::array::from_fn(|corner| corners[corner]);
+                let numbers = corners.map(|node| {
+                    let number = &mut number_of_node[node as usize];
+                    if *number < first {
+                        all.pressure_count += 1;
+                        *number = all.pressure_count as u32;
+                    }
+                    *number - 1
+                });
+                all.nodes.push(corners.map(|node| numbering.layout.place[node as usize]));
+                all.pressures.push(numbers);
+            }
+            all.cells.extend_from_slice(cells);
+        }
+        all
+    }
+}
+
+/// One tetrahedron: its volume in mm³, grad N in 1/mm along the axes of its nodes, its moduli in kPa.
+struct CellTerms {
+    volume: f64,
+    gradients: [Vector; 4],
+    mu: f64,
+    lambda: f64,
+}
+
+/// B, B^T, C and D.
+fn couple(tissue: &Tissue, constrained: &Constrained) -> Result<Coupling, InvertedCell> {
+    let turned = constrained.holds.iter().filter(|hold| !hold.is_aligned());
+    let axes: BTreeMap<u32, Matrix3<f64>> = turned.map(|hold| (hold.node, *hold.axes())).collect();
+    let all = PressureCells::new(tissue, constrained.numbering);
+    let terms: Result<Vec<CellTerms>, InvertedCell> =
+        all.cells.par_iter().map(|&cell| cell_terms(tissue, cell as usize, &axes)).collect();
+    let terms = terms?;
+    let volume_of = |cell: usize, node: usize| -> [f64; 3] {
+        let CellTerms { volume, gradients, .. } = &terms[cell];
+        (gradients[node] * (volume / 4.0)).into()
+    };
+    let by_pressure = Couplings { rows: &all.pressures, columns: &all.nodes };
+    let by_node = Couplings { rows: &all.nodes, columns: &all.pressures };
+    let among_pressures = Couplings { rows: &all.pressures, columns: &all.pressures };
+    let compliance = |cell: usize, a: usize, b: usize| {
+        let CellTerms { volume, mu, lambda, .. } = terms[cell];
+        let mass = volume / 20.0 * if a == b { 2.0 } else { 1.0 };
+        mass / lambda + (mass - volume / 16.0) / mu
+    };
+    let count = all.pressure_count;
+    let mut mass = vec![0.0; count];
+    for (numbers, cell) in all.pressures.iter().zip(&terms) {
+        for &number in numbers {
+            mass[number as usize] += cell.volume / 4.0 * (1.0 / cell.mu + 1.0 / cell.lambda);
+        }
+    }
+    let node_count = tissue.mesh.nodes.len();
+    Ok(Coupling {
+        divergence: SparseRows::assemble(count, &by_pressure, |cell, _, b| volume_of(cell, b)),
+        gradient: SparseRows::assemble(node_count, &by_node, |cell, a, _| volume_of(cell, a)),
+        compliance: SparseRows::assemble(count, &among_pressures, compliance),
+        mass,
+    })
+}
+
+fn cell_terms(
+    tissue: &Tissue,
+    cell: usize,
+    axes: &BTreeMap<u32, Matrix3<f64>>,
+) -> Result<CellTerms, InvertedCell> {
+    let (volume, gradients) = tetrahedron(tissue.mesh, cell)?;
+    let PressurePart { lambda, mu } = tissue.tensor(cell).pressure_part();
+    let nodes = tissue.mesh.cells.nodes(cell);
+    let gradients = std::array::from_fn(|corner| match axes.get(&nodes[corner]) {
+        Some(axes) => axes.transpose() * gradients[corner],
+        None => gradients[corner],
+    });
+    Ok(CellTerms { volume, gradients, mu, lambda })
+}

@@ -1,0 +1,79 @@
+//! Nodal forces in mN that do the same work as tractions, pressures and gravity.
+
+use super::assembly::{InvertedCell, Tissue};
+use crate::mesh::volume::BoundaryFace;
+use crate::mesh::{Vector, VolumeMesh};
+use crate::model::reference_cell;
+
+/// What acts on a face.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum FaceLoad {
+    /// Force for each area in kPa.
+    Traction(Vector),
+    /// Along the inward normal, in kPa.
+    Pressure(f64),
+}
+
+/// Adds f_i = int N_i t dA over the faces: exact for flat triangles, 2 x 2 Gauss points otherwise.
+pub fn add_face_load(
+    mesh: &VolumeMesh,
+    faces: &[BoundaryFace],
+    load: FaceLoad,
+    forces: &mut [Vector],
+) {
+    for face in faces {
+        let nodes = face.nodes();
+        let corners: Vec<Vector> = nodes.iter().map(|&node| mesh.nodes[node as usize]).collect();
+        for (values, area_vector) in face_points(&corners) {
+            let force = match load {
+                FaceLoad::Traction(traction) => traction * area_vector.norm(),
+                FaceLoad::Pressure(pressure) => -area_vector * pressure,
+            };
+            for (&node, value) in nodes.iter().zip(values) {
+                forces[node as usize] += force * value;
+            }
+        }
+    }
+}
+
+/// Shape functions and area vectors at the quadrature points of a face.
+fn face_points(corners: &[Vector]) -> Vec<([f64; 4], Vector)> {
+    if let [a, b, c] = corners {
+        let third = 1.0 / 3.0;
+        return vec![([third, third, third, 0.0], (b - a).cross(&(c - a)) * 0.5)];
+    }
+    const SIGNS: [[f64; 2]; 4] = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+    let gauss = 1.0 / 3.0_f64.sqrt();
+    SIGNS
+        .iter()
+        .map(|[p, q]| {
+            let (x, y) = (p * gauss, q * gauss);
+            let values = SIGNS.map(|[a, b]| (1.0 + a * x) * (1.0 + b * y) / 4.0);
+            let (mut along_x, mut along_y) = (Vector::zeros(), Vector::zeros());
+            for ([a, b], corner) in SIGNS.iter().zip(corners) {
+                along_x += corner * (a * (1.0 + b * y) / 4.0);
+                along_y += corner * ((1.0 + a * x) * b / 4.0);
+            }
+            (values, along_x.cross(&along_y))
+        })
+        .collect()
+}
+
+/// Adds f_i = int N_i rho g dV; acceleration in mm/ms², density in mg/mm³.
+pub fn add_gravity(
+    tissue: &Tissue,
+    acceleration: Vector,
+    forces: &mut [Vector],
+) -> Result<(), InvertedCell> {
+    for (cell, (shape, nodes)) in tissue.mesh.cells.iter().enumerate() {
+        let corners: Vec<Vector> = tissue.mesh.corners(cell).collect();
+        let density = tissue.materials[tissue.material_of_cell[cell] as usize].density();
+        for point in &reference_cell(shape).points {
+            let volume = point.at(&corners).ok_or(InvertedCell { cell })?.volume;
+            for (&node, value) in nodes.iter().zip(&point.values) {
+                forces[node as usize] += acceleration * (density * value * volume);
+            }
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,11 @@
+//! Finite elements: assembly, degrees of freedom with pressure, and the models that solve one matrix.
+
+pub mod assembly;
+pub mod cell_stiffness;
+pub mod displacement;
+pub mod displacement_pressure;
+pub mod loads;
+pub mod mass_tensor;
+pub mod membrane;
+pub mod quadratic;
+pub mod strain;

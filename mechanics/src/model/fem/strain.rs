@@ -1,0 +1,109 @@
+//! Measures of deformation of each cell, from nodal displacement.
+//!
+//! F = I + grad u, strain (grad u + grad u^T) / 2; the rotation theta of F = R U from
+//! tan theta = |w| / (tr F - 1), w_i = -e_ijk F_jk: exact where U does not shear out of the plane in which R turns
+//! and keeps lengths across it, and otherwise exact to first order in U - I.
+
+use nalgebra::Matrix3;
+use rayon::prelude::*;
+
+use crate::element::PhysicalPoint;
+use crate::mesh::{Vector, VolumeMesh};
+use crate::model::reference_cell;
+
+/// How one cell is deformed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CellDeformation {
+    /// The smallest determinant of F = I + grad u over the quadrature points.
+    pub det_f: f64,
+    /// Eigenvalues of the small strain at the centre, largest first.
+    pub principal_strain: [f64; 3],
+    /// By how much F turns at the centre, in radians, in [0, pi].
+    pub rotation: f64,
+}
+
+/// The deformation of every cell, in cell order.
+pub fn deformations(mesh: &VolumeMesh, displacement: &[Vector]) -> Vec<CellDeformation> {
+    (0..mesh.cells.len())
+        .into_par_iter()
+        .map(|cell| deformation(mesh, displacement, cell))
+        .collect()
+}
+
+fn deformation(mesh: &VolumeMesh, displacement: &[Vector], cell: usize) -> CellDeformation {
+    let corners: Vec<Vector> = mesh.corners(cell).collect();
+    let moved: Vec<Vector> =
+        mesh.cells.nodes(cell).iter().map(|&node| displacement[node as usize]).collect();
+    let reference = reference_cell(mesh.cells.shape(cell));
+    let gradient = |point: &PhysicalPoint| {
+        moved
+            .iter()
+            .zip(&point.gradients)
+            .fold(Matrix3::zeros(), |sum: Matrix3<f64>, (u, g)| sum + u * g.transpose())
+    };
+    let det_f = reference
+        .points
+        .iter()
+        .filter_map(|point| point.at(&corners))
+        .map(|point| (Matrix3::identity() + gradient(&point)).determinant())
+        .fold(f64::INFINITY, f64::min);
+    let at_centre =
+        reference.centre.at(&corners).map_or(Matrix3::zeros(), |point| gradient(&point));
+    let strain = (at_centre + at_centre.transpose()) * 0.5;
+    let mut principal_strain: [f64; 3] = strain.symmetric_eigenvalues().into();
+    principal_strain.sort_by(|a, b| b.total_cmp(a));
+    CellDeformation { det_f, principal_strain, rotation: rotation(&at_centre) }
+}
+
+/// The angle of I + grad u in radians.
+fn rotation(gradient: &Matrix3<f64>) -> f64 {
+    let h = gradient;
+    let twice_sine =
+        Vector::new(h[(2, 1)] - h[(1, 2)], h[(0, 2)] - h[(2, 0)], h[(1, 0)] - h[(0, 1)]);
+    twice_sine.norm().atan2(2.0 + h.trace())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::CellShape;
+    use crate::mesh::sample::block;
+
+    #[test]
+    fn a_hexahedron_folded_at_one_corner_only_has_a_negative_determinant() {
+        let mesh = block(Vector::new(1.0, 1.0, 1.0), [1, 1, 1], CellShape::Hex8);
+        let mut displacement = vec![Vector::zeros(); 8];
+        let corner = mesh.nodes.iter().position(|x| *x == Vector::new(1.0, 1.0, 1.0));
+        displacement[corner.expect("a unit cube has this corner")] = Vector::new(-0.9, -0.9, -0.9);
+        let folded = deformations(&mesh, &displacement)[0];
+        assert!(folded.det_f < 0.0, "{}", folded.det_f);
+    }
+
+    #[test]
+    fn a_stretch_along_z_is_the_largest_principal_strain() {
+        let mesh = block(Vector::new(2.0, 2.0, 2.0), [1, 1, 1], CellShape::Wedge6);
+        let stretched: Vec<Vector> =
+            mesh.nodes.iter().map(|x| Vector::new(-0.01 * x.x, 0.0, 0.02 * x.z)).collect();
+        for cell in deformations(&mesh, &stretched) {
+            for (found, expected) in cell.principal_strain.iter().zip([0.02, 0.0, -0.01]) {
+                assert!((found - expected).abs() < 1e-15);
+            }
+            assert!((cell.det_f - 0.99 * 1.02).abs() < 1e-15);
+        }
+    }
+
+    #[test]
+    fn tissue_that_turns_and_stretches_turns_by_the_angle_it_was_turned_by() {
+        let mesh = block(Vector::new(2.0, 2.0, 2.0), [1, 1, 1], CellShape::Hex8);
+        let stretch = Matrix3::from_diagonal(&Vector::new(1.2, 1.0, 0.7));
+        for degrees in [0.0_f64, 7.0, 45.0, 120.0, 180.0] {
+            let turn =
+                nalgebra::Rotation3::from_axis_angle(&Vector::y_axis(), degrees.to_radians());
+            let moved = |x: &Vector| turn * stretch * x - x;
+            let displacement: Vec<Vector> = mesh.nodes.iter().map(moved).collect();
+            let found = deformations(&mesh, &displacement)[0].rotation.to_degrees();
+            // At 180 degrees the sine is zero to rounding only.
+            assert!((found - degrees).abs() < 1e-7, "{degrees}: {found}");
+        }
+    }
+}

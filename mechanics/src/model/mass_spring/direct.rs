@@ -1,0 +1,91 @@
+//! Rest found node by node (Teschner, Girod, Girod, Direct computation of nonlinear soft-tissue deformation,
+//! Vision, Modeling and Visualization, 2000, named by paper 002 for this model).
+//!
+//! p_i <- sum_j k_ij (p_j - L_ij n_ij) / sum_j k_ij,  n_ij = (p_j - p_i) / |p_j - p_i|, plus f_i / sum_j k_ij:
+//! where the springs of the node would have it if they kept their directions. Each node sees the newest
+//! places of the others. As |d| >= d . n, the springs cost no more than this step takes them to cost,
+//! so that no step raises the energy: it cannot diverge, and it is slow.
+
+use super::{Found, MassSpringSettings, Network, Spring, length};
+use crate::mesh::Vector;
+use crate::model::problem::{Convergence, ModelError, Observer};
+use crate::solver::SolverError;
+
+pub(super) fn solve(
+    network: &Network,
+    wanted: f64,
+    settings: &MassSpringSettings,
+    observer: &dyn Observer,
+) -> Result<Found, ModelError> {
+    let around = Around::new(network);
+    let mut positions = network.start.clone();
+    let mut history = Vec::new();
+    let mut residual = 1.0;
+    for iteration in 1..=settings.most_iterations {
+        residual = around.sweep(network, &mut positions) / network.scale;
+        if residual <= wanted {
+            let resistance = network.springs.forces(&positions);
+            residual = length(&network.unbalanced(&resistance)) / network.scale;
+        }
+        history.push(residual);
+        if !observer.iterated(iteration, residual) {
+            return Err(SolverError::Stopped.into());
+        }
+        if residual <= wanted {
+            let convergence = Convergence {
+                method: "direct_iteration",
+                preconditioner: "node_stiffness",
+                why: "residuals are those that a sweep meets on its way, the last one that of the answer"
+                    .to_owned(),
+                iterations: iteration,
+                relative_residual: residual,
+                history,
+                steps: 1,
+            };
+            return Ok(Found { positions, convergence });
+        }
+    }
+    let iterations = settings.most_iterations;
+    Err(SolverError::NotConverged { iterations, residual, wanted, history }.into())
+}
+
+/// The springs of each node, side by side, each seen from that node: a sweep reads them in one stream.
+struct Around {
+    starts: Vec<usize>,
+    springs: Vec<Spring>,
+}
+
+impl Around {
+    fn new(network: &Network) -> Self {
+        let mut of_node = vec![Vec::new(); network.rest.len()];
+        for spring in &network.springs.springs {
+            let [i, j] = spring.nodes;
+            of_node[i as usize].push(*spring);
+            of_node[j as usize].push(Spring { nodes: [j, i], ..*spring });
+        }
+        let mut starts = vec![0];
+        starts.extend(of_node.iter().scan(0, |end, springs| {
+            *end += springs.len();
+            Some(*end)
+        }));
+        Around { starts, springs: of_node.concat() }
+    }
+
+    /// Moves every node once; returns the norm of the forces that it met.
+    fn sweep(&self, network: &Network, positions: &mut [Vector]) -> f64 {
+        let mut squared = 0.0;
+        for node in 0..positions.len() {
+            let mut force = network.acting[node];
+            for spring in &self.springs[self.starts[node]..self.starts[node + 1]] {
+                let (l, n) = spring.span(positions);
+                force += n * (spring.stiffness * (l - spring.length));
+            }
+            let force = network.free_part(node, force);
+            squared += force.norm_squared();
+            if force != Vector::zeros() {
+                positions[node] += force / network.springs.total_stiffness[node];
+            }
+        }
+        squared.sqrt()
+    }
+}

@@ -1,0 +1,306 @@
+//! Dynamic volume spline: soft tissue as a volume of B-splines whose control points have mass, damping and
+//! stiffness (paper 000; METHODS A7).
+//!
+//! M d'' + D d' + K d = f over the displacements d of control points, either in time to rest or at rest at
+//! once: K d = f. `lattice` says where control points are, `stiffness` what holds them together,
+//! `held_points` what bone does to them, `stepping` how time passes.
+
+pub mod basis;
+pub mod held_points;
+pub mod lattice;
+pub mod stepping;
+pub mod stiffness;
+pub mod tissue_points;
+
+use super::problem::{Convergence, Equilibrium, ModelError, Observer};
+use crate::mesh::{Vector, Warning};
+use crate::model::fem::assembly::Numbering;
+use crate::model::fem::displacement::{Problem, check_finite};
+use crate::solver::half_matrix::HalfMatrix;
+use crate::solver::lanes::Lanes;
+use crate::solver::{self, Solution, SolverError, System, Unknowns, cholesky, ordering};
+use held_points::{HeldPoints, add_at};
+use lattice::Lattice;
+use stepping::{Clock, Damping, Motion, State};
+use stiffness::Assembly;
+use tissue_points::tissue_points;
+
+/// What the user of a volume spline decides.
+#[derive(Clone, Debug, PartialEq)]
+pub struct VolumeSpline {
+    /// 2 or 3.
+    pub degree: usize,
+    /// Between control points in mm; none: chosen from the mesh, see [`Lattice::fit`].
+    pub control_spacing: Option<f64>,
+    /// How hard held nodes are held, see [`held_points`]; in [1, 1e6].
+    pub hold_weight: f64,
+    pub stiffness: Stiffness,
+    pub damping: Damping,
+    /// None: at rest at once.
+    pub clock: Option<Clock>,
+}
+
+/// What holds control points together.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Stiffness {
+    /// The elasticity of the tissue.
+    Galerkin,
+    /// Links of that many mN/mm between neighbours.
+    Lattice(f64),
+}
+
+/// Relaxes with 1/80 s, which is the damping over the stiffness of paper 000, in ms.
+pub const RELAXATION: f64 = 12.5;
+
+/// Multiplications of a factorisation that takes up to about half a minute.
+const FACTORISED: f64 = 1e11;
+
+impl Default for VolumeSpline {
+    fn default() -> Self {
+        VolumeSpline {
+            degree: 3,
+            control_spacing: None,
+            hold_weight: 5.0,
+            stiffness: Stiffness::Galerkin,
+            damping: Damping { mass: 0.0, stiffness: RELAXATION },
+            clock: None,
+        }
+    }
+}
+
+impl VolumeSpline {
+    /// In the words of results, e.g. `B-spline degree 3 galerkin`.
+    pub fn element(&self) -> String {
+        let stiffness = match self.stiffness {
+            Stiffness::Galerkin => "galerkin",
+            Stiffness::Lattice(_) => "lattice",
+        };
+        format!("B-spline degree {} {stiffness}", self.degree)
+    }
+}
+
+/// The spline of a problem, ready to be solved.
+struct Assembled<'a> {
+    assembly: Assembly<'a>,
+    held: HeldPoints,
+    /// Of tissue and holds.
+    system: System,
+    force: Unknowns,
+}
+
+/// Solves for rest.
+pub fn solve(
+    problem: &Problem,
+    spline: &VolumeSpline,
+    observer: &dyn Observer,
+) -> Result<Equilibrium, ModelError> {
+    // 1. Control points.
+    observer.assembling();
+    let mesh = problem.tissue.mesh;
+    let points = tissue_points(mesh)?;
+    let lattice = Lattice::fit(mesh, &points, spline.degree, spline.control_spacing);
+    check_memory(&lattice, problem)?;
+    let nothing_held = vec![false; lattice.points.len()];
+    let numbering = Numbering::of(&lattice.cliques, &lattice.points, &nothing_held);
+    let assembly = Assembly::new(&lattice, &numbering, &problem.tissue, &points);
+
+    // 2. What holds them together, and what holds the tissue.
+    let stopped = || ModelError::from(SolverError::Stopped);
+    let keep_going = || !observer.is_stopped();
+    let stiffness = match spline.stiffness {
+        Stiffness::Galerkin => assembly.galerkin(&keep_going).ok_or_else(stopped)?,
+        Stiffness::Lattice(links) => assembly.links(links),
+    };
+    let resisted = rotation_resisted(spline, &assembly);
+    let assembled =
+        assemble(assembly, stiffness, problem, spline.hold_weight).ok_or_else(stopped)?;
+
+    // 3. Rest.
+    observer.solving();
+    let (control, convergence) = assembled.rest(problem, spline, observer)?;
+    let mut equilibrium = assembled.equilibrium(problem, &control, convergence);
+    equilibrium.warnings.extend(resisted);
+    equilibrium.warnings.extend(materials_ignored(spline));
+    check_finite(std::slice::from_ref(&equilibrium))?;
+    Ok(equilibrium)
+}
+
+/// Matrix and factor of that many control points, each of which couples with 7^3 - 1 others at most.
+fn check_memory(lattice: &Lattice, problem: &Problem) -> Result<(), SolverError> {
+    let reach = (2 * lattice.order() - 1).pow(3).min(lattice.points.len());
+    let needed_mb = lattice.points.len() as f64 * reach as f64 / 2.0 * 76.0 / 1e6;
+    let allowed_mb = problem.tolerance.memory_mb;
+    match needed_mb > allowed_mb {
+        true => Err(SolverError::OverBudget { needed_mb, allowed_mb }),
+        false => Ok(()),
+    }
+}
+
+/// Stiffness with the springs of holds, and forces; `None` where told to stop.
+fn assemble<'a>(
+    assembly: Assembly<'a>,
+    stiffness: HalfMatrix<f64, 3>,
+    problem: &Problem,
+    hold_weight: f64,
+) -> Option<Assembled<'a>> {
+    let (lattice, mesh) = (assembly.lattice, problem.tissue.mesh);
+    let held = HeldPoints::new(&assembly, problem.holds, &stiffness, hold_weight);
+    let mut matrix = held.stiffness(&assembly)?;
+    let blocks = matrix.diagonal.iter_mut().chain(&mut matrix.lower);
+    for (sum, block) in blocks.zip(stiffness.diagonal.iter().chain(&stiffness.lower)) {
+        for (sum, value) in sum.as_flattened_mut().iter_mut().zip(block.as_flattened()) {
+            *sum += value;
+        }
+    }
+    let mut force: Unknowns = vec![[0.0; 3]; lattice.points.len()];
+    held.add_forces(&assembly, &mut force);
+    for (node, nodal) in problem.forces.iter().enumerate().filter(|(_, f)| **f != Vector::zeros()) {
+        if let Some(place) = lattice.place(&lattice.frame.local(&mesh.nodes[node])) {
+            add_at(&assembly, &place, &(lattice.frame.axes.transpose() * nodal), &mut force);
+        }
+    }
+    let layout = assembly.numbering.layout.clone();
+    let positions = assembly.numbering.by_row(&lattice.points);
+    let system = System { layout, matrix, partly_held: Vec::new(), positions };
+    Some(Assembled { assembly, held, system, force })
+}
+
+impl Assembled<'_> {
+    /// Displacements of control points at rest, and how they were found.
+    fn rest(
+        &self,
+        problem: &Problem,
+        spline: &VolumeSpline,
+        observer: &dyn Observer,
+    ) -> Result<(Vec<Vector>, Convergence), ModelError> {
+        let Some(clock) = &spline.clock else {
+            let solution = self.static_solution(problem, observer)?;
+            let by_row = solution.unknowns.iter().map(|d| Vector::from(*d)).collect();
+            return Ok((self.by_control(by_row), Convergence::of(&solution)));
+        };
+        let mass = match spline.stiffness {
+            Stiffness::Galerkin => {
+                let mass = self.assembly.mass(&|| !observer.is_stopped());
+                mass.ok_or(SolverError::Stopped)?
+            }
+            Stiffness::Lattice(_) => self.assembly.equal_masses(),
+        };
+        let motion = Motion {
+            stiffness: &self.system,
+            mass: &mass,
+            damping: spline.damping,
+            force: &self.force,
+        };
+        let wanted = problem.tolerance.relative_residual;
+        let state = motion.run(clock, wanted, problem.tolerance.memory_mb, observer)?;
+        let convergence = self.convergence(clock, &state, wanted)?;
+        Ok((self.by_control(state.displacement()), convergence))
+    }
+
+    /// K d = f, by a factorisation where that takes seconds: functions that overlap this much make rows of
+    /// some hundred blocks, which iterations pass over again and again.
+    fn static_solution(
+        &self,
+        problem: &Problem,
+        observer: &dyn Observer,
+    ) -> Result<Solution, SolverError> {
+        let watch = |iteration, residual| observer.iterated(iteration, residual);
+        let (forces, tolerance) = (std::slice::from_ref(&self.force), &problem.tolerance);
+        let ordering = ordering::minimum_degree(&self.system);
+        let fits = ordering.factor_mb + self.system.megabytes() <= tolerance.memory_mb;
+        let nothing_acts = self.force.iter().flatten().all(|value| *value == 0.0);
+        if nothing_acts || !fits || ordering.multiplications > FACTORISED {
+            return Ok(solver::solve(&self.system, forces, tolerance, &watch)?.remove(0));
+        }
+        let solved = cholesky::solve(&self.system, &ordering, forces, tolerance, &watch)?.remove(0);
+        let why = format!("{:.1e} multiplications make the factor", ordering.multiplications);
+        Ok(Solution { why, ..solved })
+    }
+
+    fn by_control(&self, by_row: Vec<Vector>) -> Vec<Vector> {
+        let places = self.assembly.numbering.layout.place.iter();
+        places.map(|&row| by_row[row as usize]).collect()
+    }
+
+    /// What is not at rest when its time is up has not converged.
+    fn convergence(
+        &self,
+        clock: &Clock,
+        state: &State,
+        wanted: f64,
+    ) -> Result<Convergence, SolverError> {
+        let steps = state.history.len();
+        let mut product: Vec<Lanes<f64, 3, 1>> = vec![[[0.0]; 3]; self.force.len()];
+        self.system.multiply(&state.displacement, &mut product);
+        let (mut left, mut whole) = (0.0, 0.0);
+        for (f, k) in self.force.iter().zip(&product) {
+            for c in 0..3 {
+                left += (f[c] - k[c][0]).powi(2);
+                whole += f[c] * f[c];
+            }
+        }
+        let relative_residual = if whole > 0.0 { (left / whole).sqrt() } else { 0.0 };
+        if !state.at_rest {
+            let (residual, history) = (state.history[steps - 1], state.history.clone());
+            return Err(SolverError::NotConverged { iterations: steps, residual, wanted, history });
+        }
+        Ok(Convergence {
+            method: clock.scheme.name(),
+            preconditioner: "none",
+            why: format!("steps of {} s until at rest", clock.step / 1e3),
+            iterations: steps,
+            relative_residual,
+            history: state.history.clone(),
+            steps: steps as u32,
+        })
+    }
+
+    fn equilibrium(
+        &self,
+        problem: &Problem,
+        control: &[Vector],
+        convergence: Convergence,
+    ) -> Equilibrium {
+        let (lattice, mesh) = (self.assembly.lattice, problem.tissue.mesh);
+        let moved = |x: &Vector| {
+            let place = lattice.place(&lattice.frame.local(x));
+            let along = place.map(|place| lattice.displacement(&place, control));
+            along.map_or(Vector::zeros(), |along| lattice.frame.axes * along)
+        };
+        let missed = self.held.missed(lattice, control);
+        Equilibrium {
+            displacement: mesh.nodes.iter().map(moved).collect(),
+            reactions: self.held.reactions(lattice, &missed),
+            convergence,
+            unknowns: 3 * lattice.points.len(),
+            warnings: held_points::warning(&missed).into_iter().collect(),
+        }
+    }
+}
+
+/// What a lattice of links holds against the most resisted rotation by one degree.
+fn rotation_resisted(spline: &VolumeSpline, assembly: &Assembly) -> Option<Warning> {
+    let Stiffness::Lattice(links) = spline.stiffness else { return None };
+    let angle = 1.0_f64.to_radians();
+    let (linked, points) = (assembly.linked(), &assembly.lattice.points);
+    let stretched = |axis: usize| {
+        let link = |[a, b]: &[u32; 2]| {
+            let along = points[*b as usize] - points[*a as usize];
+            along.norm_squared() - along[axis] * along[axis]
+        };
+        0.5 * links * angle * angle * linked.iter().map(link).sum::<f64>()
+    };
+    let energy = (0..3).map(stretched).fold(0.0, f64::max);
+    let detail = format!(
+        "links resist rotation: turning the whole tissue by 1 degree takes {energy:.3e} mN mm, and should take \
+         none"
+    );
+    Some(Warning::new("rotation-resisted", detail).with("energy_mn_mm", energy))
+}
+
+fn materials_ignored(spline: &VolumeSpline) -> Option<Warning> {
+    let Stiffness::Lattice(links) = spline.stiffness else { return None };
+    let detail = "links know no materials: only the density of the tissue is used";
+    let warning = Warning::new("materials-ignored", detail).with("stiffness_n_per_m", links);
+    Some(warning)
+}

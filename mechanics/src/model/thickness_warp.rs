@@ -1,0 +1,236 @@
+//! Thickness-preserving warp: tissue rides on the nearest bone. Paper 000 calls it the conventional method
+//! (its section on conventional planning; METHODS row 12, V.36).
+//!
+//! b = the point of the bone under the tissue that is nearest to x, T = the movement of the bone there
+//! u(x) = T(x) - x, so that |T(x) - T(b)| = |x - b|: every point keeps its distance to its bone.
+//!
+//! Bone is where faces of the tissue are held altogether: joined to a segment, fixed, or prescribed. A
+//! prescribed face has no rotation of its own: x takes the displacement of b, and keeps the vector to it. A
+//! triangle between two bones goes with that of most of its corners, and held nodes move as they are held.
+//!
+//! Between bones that move apart the warp jumps. With a blend radius r, each bone at a distance d up to
+//! r above that of the nearest one, d_0, takes part with the weight (1 - (d - d_0) / r)^2; thickness is
+//! then kept only where one bone is in reach.
+
+use std::collections::BTreeMap;
+
+use rayon::prelude::*;
+
+use super::problem::{Convergence, Equilibrium, ModelError};
+use crate::boundary::{Conditions, Hold, NodeClass};
+use crate::mesh::{SurfaceSearch, TriangleSurface, Vector, VolumeMesh, Warning};
+
+/// What the user of a warp decides.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ThicknessWarp {
+    /// In mm; 0 follows the nearest bone alone.
+    pub blend_radius: f64,
+}
+
+/// A jump across an edge above this many mm is told.
+const TOLD: f64 = 1e-6;
+
+/// Tissue and the bones that it lies on.
+pub struct Warped<'a> {
+    pub mesh: &'a VolumeMesh,
+    pub conditions: &'a Conditions,
+    /// The displacement in mm that the movement of a segment gives a point.
+    pub movement: &'a (dyn Fn(u32, &Vector) -> Vector + Sync),
+}
+
+/// What moves as one.
+struct Bone {
+    mover: Mover,
+    /// Its points are the nodes of the mesh.
+    surface: TriangleSurface,
+    search: SurfaceSearch,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Mover {
+    Segment(u32),
+    /// Each node as it is held.
+    Nodes,
+    Nothing,
+}
+
+/// Where a node goes, and the bone that is nearest to it.
+struct Followed {
+    displacement: Vector,
+    bone: usize,
+}
+
+impl Warped<'_> {
+    /// The displacement of every node.
+    pub fn solve(&self, warp: &ThicknessWarp) -> Result<Equilibrium, ModelError> {
+        let held = self.wholly_held();
+        let bones = self.bones(&held);
+        if bones.is_empty() {
+            return Err(ModelError::NoBone);
+        }
+        let follow = |node: usize| self.follow(&bones, &held, node, warp.blend_radius);
+        let followed: Vec<Followed> =
+            (0..self.mesh.nodes.len()).into_par_iter().map(follow).collect();
+        let warnings = [self.ignored(), self.off_bone(&bones, &held), self.jumps(&followed)];
+        Ok(Equilibrium {
+            displacement: followed.into_iter().map(|followed| followed.displacement).collect(),
+            reactions: vec![Vector::zeros(); self.conditions.holds.len()],
+            convergence: Convergence {
+                method: "none",
+                preconditioner: "none",
+                why: "a warp solves no equations".to_owned(),
+                iterations: 0,
+                relative_residual: 0.0,
+                history: Vec::new(),
+                steps: 1,
+            },
+            unknowns: 0,
+            warnings: warnings.into_iter().flatten().collect(),
+        })
+    }
+
+    /// For each node the displacement that holds it in all directions.
+    fn wholly_held(&self) -> Vec<Option<Vector>> {
+        let mut held = vec![None; self.mesh.nodes.len()];
+        for hold in self.conditions.holds.iter().filter(|hold| hold.count() == 3) {
+            held[hold.node as usize] = Some(hold.axes() * hold.values());
+        }
+        held
+    }
+
+    fn mover(&self, node: u32) -> Mover {
+        match self.conditions.classes[node as usize] {
+            NodeClass::Joined(segment) => Mover::Segment(segment),
+            NodeClass::Fixed => Mover::Nothing,
+            NodeClass::Prescribed | NodeClass::Sliding | NodeClass::Free => Mover::Nodes,
+        }
+    }
+
+    /// The boundary triangles all of whose corners are held, by what moves them.
+    fn bones(&self, held: &[Option<Vector>]) -> Vec<Bone> {
+        let mut triangles: BTreeMap<Mover, Vec<[u32; 3]>> = BTreeMap::new();
+        for face in self.mesh.boundary_faces() {
+            if face.nodes().iter().any(|&node| held[node as usize].is_none()) {
+                continue;
+            }
+            for triangle in face.triangles() {
+                let [a, b, c] = triangle.map(|node| self.mover(node));
+                triangles.entry(if b == c { b } else { a }).or_default().push(triangle);
+            }
+        }
+        let bone = |(mover, triangles)| {
+            let points = self.mesh.nodes.clone();
+            let surface = TriangleSurface { points, triangles, node_ids: None };
+            let search = SurfaceSearch::new(&surface).ok()?;
+            Some(Bone { mover, surface, search })
+        };
+        triangles.into_iter().filter_map(bone).collect()
+    }
+
+    fn follow(
+        &self,
+        bones: &[Bone],
+        held: &[Option<Vector>],
+        node: usize,
+        radius: f64,
+    ) -> Followed {
+        let x = self.mesh.nodes[node];
+        let mut in_reach = Vec::with_capacity(bones.len());
+        let (mut nearest, mut bone) = (f64::INFINITY, 0);
+        for (number, candidate) in bones.iter().enumerate() {
+            let Some(closest) = candidate.search.nearer_than(&x, nearest + radius) else {
+                continue;
+            };
+            if closest.distance < nearest {
+                (nearest, bone) = (closest.distance, number);
+            }
+            in_reach.push((number, closest));
+        }
+        if let Some(displacement) = held[node] {
+            return Followed { displacement, bone };
+        }
+        let (mut sum, mut weights) = (Vector::zeros(), 0.0);
+        for (number, closest) in in_reach {
+            let farther = closest.distance - nearest;
+            let weight = match number == bone {
+                true => 1.0,
+                false if farther < radius => (1.0 - farther / radius).powi(2),
+                false => continue,
+            };
+            let displacement = match bones[number].mover {
+                Mover::Segment(segment) => (self.movement)(segment, &x),
+                Mover::Nothing => Vector::zeros(),
+                Mover::Nodes => {
+                    let corners = bones[number].surface.triangles[closest.triangle];
+                    let of = |node: u32| held[node as usize].unwrap_or_default();
+                    corners
+                        .iter()
+                        .zip(closest.barycentric)
+                        .fold(Vector::zeros(), |sum, (&corner, part)| sum + of(corner) * part)
+                }
+            };
+            sum += displacement * weight;
+            weights += weight;
+        }
+        Followed { displacement: sum / weights, bone }
+    }
+
+    /// What a case may state and a warp has no use for.
+    fn ignored(&self) -> Option<Warning> {
+        let partly = |class: NodeClass| {
+            let of_class = |hold: &&Hold| self.conditions.classes[hold.node as usize] == class;
+            let holds = self.conditions.holds.iter().filter(|hold| hold.count() < 3);
+            holds.filter(of_class).count() as f64
+        };
+        let (sliding, prescribed) = (partly(NodeClass::Sliding), partly(NodeClass::Prescribed));
+        let detail = "a warp knows bone that moves and nothing else: materials, sliding nodes and nodes \
+             prescribed in some directions only are ignored";
+        let warning = Warning::new("conditions-ignored", detail).with("sliding_nodes", sliding);
+        Some(warning.with("partly_prescribed_nodes", prescribed))
+    }
+
+    /// Held nodes that bound no bone face: they move alone.
+    fn off_bone(&self, bones: &[Bone], held: &[Option<Vector>]) -> Option<Warning> {
+        let mut alone: Vec<bool> = held.iter().map(Option::is_some).collect();
+        let corners = bones.iter().flat_map(|bone| bone.surface.triangles.iter().flatten());
+        corners.for_each(|&corner| alone[corner as usize] = false);
+        let count = alone.into_iter().filter(|alone| *alone).count();
+        let detail = format!(
+            "{count} held nodes bound no face whose nodes are all held: nothing around follows them"
+        );
+        (count > 0).then(|| Warning::new("held-off-bone", detail).with("nodes", count as f64))
+    }
+
+    /// Edges whose ends follow different bones.
+    fn jumps(&self, followed: &[Followed]) -> Option<Warning> {
+        let (mut largest, mut worst, mut torn) = (0.0, (0, 0), Vec::new());
+        for (shape, nodes) in self.mesh.cells.iter() {
+            for edge in shape.edges() {
+                let [a, b] = edge.map(|local| nodes[local]);
+                let [u, v] = [a, b].map(|node| &followed[node as usize]);
+                if u.bone == v.bone {
+                    continue;
+                }
+                let jump = (u.displacement - v.displacement).norm();
+                let length = (self.mesh.nodes[a as usize] - self.mesh.nodes[b as usize]).norm();
+                if jump > largest {
+                    (largest, worst) = (jump, (a.min(b), a.max(b)));
+                }
+                if jump > length {
+                    torn.push((a.min(b), a.max(b)));
+                }
+            }
+        }
+        torn.sort_unstable();
+        torn.dedup();
+        let detail = format!(
+            "neighbours that follow different bones part by up to {largest:.3} mm, between nodes {} and {}; \
+             {} edges by more than their length",
+            worst.0,
+            worst.1,
+            torn.len()
+        );
+        let warning = Warning::new("warp-jumps", detail).with("largest_mm", largest);
+        (largest > TOLD).then(|| warning.with("torn_edges", torn.len() as f64))
+    }
+}

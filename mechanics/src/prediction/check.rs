@@ -1,0 +1,290 @@
+//! The checks that turn a stated case and plan into a scene: tissue, skin, loads, support.
+
+use std::collections::BTreeMap;
+
+use super::case::{Case, ElementChoice, Load, Method, Plan, RegionNames, Settings};
+use super::problem::Problems;
+use super::scene::Scene;
+use super::skin::{self, Skin};
+use crate::boundary::conditions::combine;
+use crate::boundary::support::loose_parts;
+use crate::boundary::{Conditions, HeldNodes, NodeClass, NodeSelection, Selector};
+use crate::material::LinearElastic;
+use crate::mesh::connectivity::Faces;
+use crate::mesh::volume::BoundaryFace;
+use crate::mesh::{CellShape, Vector, Warning};
+use crate::model::fem::loads::{FaceLoad, add_face_load, add_gravity};
+use crate::model::fem::quadratic::EdgeNodes;
+
+/// The state of one check: what is asked, and what was found wrong so far.
+pub(super) struct Check<'a> {
+    pub(super) case: &'a Case,
+    pub(super) boundary: &'a [BoundaryFace],
+    pub(super) boundary_nodes: Vec<u32>,
+    pub(super) problems: Problems,
+    pub(super) warnings: Vec<Warning>,
+}
+
+impl<'a> Check<'a> {
+    pub(super) fn new(case: &'a Case, boundary: &'a [BoundaryFace]) -> Self {
+        let mut boundary_nodes: Vec<u32> =
+            boundary.iter().flat_map(|face| face.nodes()).copied().collect();
+        boundary_nodes.sort_unstable();
+        boundary_nodes.dedup();
+        let problems = Problems::default();
+        Check { case, boundary, boundary_nodes, problems, warnings: Vec::new() }
+    }
+
+    pub(super) fn select(&mut self, selection: &NodeSelection, pointer: &str) -> Vec<u32> {
+        let selector = Selector {
+            mesh: &self.case.volume,
+            surfaces: &self.case.surfaces,
+            boundary_nodes: &self.boundary_nodes,
+        };
+        let selected = selector.select(selection);
+        selected.unwrap_or_else(|error| {
+            self.problems.selection(pointer, &error);
+            Vec::new()
+        })
+    }
+
+    pub(super) fn regions(&mut self) -> (Vec<String>, Vec<u16>) {
+        let cells = self.case.volume.cells.len();
+        let Some(stated) = &self.case.regions else {
+            return (vec!["tissue".to_owned()], vec![0; cells]);
+        };
+        let Some(labels) = self.case.volume.cell_labels.get(&stated.array) else {
+            let known = self.case.volume.cell_labels.keys().cloned().collect::<Vec<_>>().join(", ");
+            let detail =
+                format!("the mesh has no integer cell array {:?}; it has: {known}", stated.array);
+            self.problems.add("/case/regions/array", "unknown-array", detail);
+            return (vec!["tissue".to_owned()], vec![0; cells]);
+        };
+        let mut values = labels.clone();
+        values.sort_unstable();
+        values.dedup();
+        for value in stated.names.keys().filter(|value| values.binary_search(value).is_err()) {
+            let detail = format!("no cell has the value {value} in array {:?}", stated.array);
+            self.problems.add(format!("/case/regions/names/{value}"), "unknown-region", detail);
+        }
+        let (names, region_of_value) = name_regions(stated, &values);
+        let place = |label: &i64| {
+            values.binary_search(label).expect("values are the labels without repeats")
+        };
+        (names, labels.iter().map(|label| region_of_value[place(label)]).collect())
+    }
+
+    pub(super) fn materials(&mut self, regions: &[String]) -> Vec<LinearElastic> {
+        let stated = &self.case.materials;
+        for name in stated.keys().filter(|name| *name != "*" && !regions.contains(name)) {
+            let detail = format!("no region is called {name:?}; there are: {}", regions.join(", "));
+            self.problems.add(format!("/case/materials/{name}"), "unknown-region", detail);
+        }
+        let mut materials = Vec::new();
+        for region in regions {
+            match stated.get(region).or_else(|| stated.get("*")) {
+                Some(material) => materials.push(*material),
+                None => {
+                    let detail =
+                        format!("region {region:?} has no material, and there is none for \"*\"");
+                    self.problems.add("/case/materials", "missing-material", detail);
+                }
+            }
+        }
+        materials
+    }
+
+    pub(super) fn conditions(&mut self, held: &HeldNodes) -> Conditions {
+        combine(&self.case.volume.nodes, held).unwrap_or_else(|error| {
+            self.problems.add("/plan", "plan-conflict", error.to_string());
+            let classes = vec![NodeClass::Free; self.case.volume.nodes.len()];
+            Conditions { classes, holds: Vec::new(), shared: Vec::new(), warnings: Vec::new() }
+        })
+    }
+
+    pub(super) fn skin(&mut self, conditions: &Conditions) -> Skin {
+        let faces = match &self.case.skin {
+            Some(selection) => {
+                let nodes = self.select(selection, "/case/skin");
+                self.faces_within(&nodes)
+            }
+            None => skin::default_faces(self.boundary, &conditions.classes, &mut self.warnings),
+        };
+        if faces.is_empty() && self.case.skin.is_some() {
+            let detail = "no boundary face has all of its nodes in the selection".to_owned();
+            self.problems.add("/case/skin", "empty-selection", detail);
+        }
+        let surface = self.case.volume.surface_of(&faces);
+        let skin_nodes = surface.node_ids.clone().unwrap_or_default();
+        let mut regions = BTreeMap::new();
+        for (name, selection) in &self.case.skin_regions {
+            let pointer = format!("/case/skin_regions/{name}");
+            let nodes = self.select(selection, &pointer);
+            let point_of =
+                |node: &u32| skin_nodes.binary_search(node).ok().map(|point| point as u32);
+            let points: Vec<u32> = nodes.iter().filter_map(point_of).collect();
+            if points.is_empty() && !nodes.is_empty() {
+                let detail = "no node of the selection is on the skin".to_owned();
+                self.problems.add(pointer, "empty-selection", detail);
+            }
+            regions.insert(name.clone(), points);
+        }
+        Skin { surface, regions }
+    }
+
+    /// The boundary faces all of whose nodes are listed.
+    fn faces_within(&self, nodes: &[u32]) -> Vec<BoundaryFace> {
+        let listed = |node: &u32| nodes.binary_search(node).is_ok();
+        self.boundary.iter().filter(|face| face.nodes().iter().all(listed)).copied().collect()
+    }
+
+    /// The element that the method uses. Refuses one that it does not have or that some cell of the mesh
+    /// cannot be.
+    pub(super) fn element(&mut self, settings: &Settings) -> ElementChoice {
+        let asked = settings.element;
+        let own = &[ElementChoice::Auto];
+        let (who, choices, used): (_, &[ElementChoice], _) = match &settings.method {
+            Method::FemLinear => {
+                if asked == ElementChoice::Quadratic {
+                    self.tetrahedra_only("/spec/element", "quadratic elements are");
+                }
+                return asked;
+            }
+            Method::VolumeSpline(_) => ("the volume spline", own, asked),
+            Method::ThicknessWarp(_) => ("the thickness-preserving warp", own, asked),
+            Method::MassSpring(_) => ("the mass-spring model", own, asked),
+            Method::MassTensor(_) | Method::MassTensorTransverse => {
+                let plain = ElementChoice::Plain;
+                ("the mass-tensor model", &[ElementChoice::Auto, ElementChoice::Plain], plain)
+            }
+        };
+        if !matches!(settings.method, Method::VolumeSpline(_) | Method::ThicknessWarp(_)) {
+            self.tetrahedra_only("/case/volume", &format!("{who} is"));
+        }
+        if !choices.contains(&asked) {
+            let detail = format!("{who} has no choice of elements: `auto` is what it is made of");
+            self.problems.add("/spec/element", "method-not-available", detail);
+        }
+        used
+    }
+
+    /// Refuses a mesh with cells of other shapes.
+    fn tetrahedra_only(&mut self, pointer: &str, who: &str) {
+        let mut cells = self.case.volume.cells.iter();
+        if let Some((shape, _)) = cells.find(|(shape, _)| *shape != CellShape::Tet4) {
+            let detail = format!(
+                "{who} made of tet4 only, and the mesh has {} cells: `fem_linear` with the element \
+                 `auto` serves every shape",
+                shape.name()
+            );
+            self.problems.add(pointer, "method-not-available", detail);
+        }
+    }
+
+    /// Refuses what a method would have to ignore in silence.
+    pub(super) fn method(&mut self, method: &Method, plan: &Plan) {
+        if matches!(method, Method::ThicknessWarp(_)) && !plan.loads.is_empty() {
+            let detail = "thickness_warp follows bone and knows no forces".to_owned();
+            self.problems.add("/plan/loads", "method-not-available", detail);
+        }
+    }
+
+    pub(super) fn add_loads(&mut self, plan: &Plan, scene: &mut Scene) {
+        if plan.loads.is_empty() {
+            return;
+        }
+        let mut forces = std::mem::take(&mut scene.forces);
+        let edges = scene.edge_nodes();
+        if let Some(edges) = &edges {
+            forces.resize(edges.node_count(), Vector::zeros());
+        }
+        let edges = edges.as_ref();
+        for (index, load) in plan.loads.iter().enumerate() {
+            let pointer = format!("/plan/loads/{index}");
+            match load {
+                Load::Force { nodes, force } => {
+                    for node in self.select(nodes, &format!("{pointer}/nodes")) {
+                        forces[node as usize] += force;
+                    }
+                }
+                Load::Traction { faces, traction } => {
+                    let faces = self.loaded_faces(faces, &pointer);
+                    self.face_load(&faces, FaceLoad::Traction(*traction), edges, &mut forces);
+                }
+                Load::Pressure { faces, pressure } => {
+                    let faces = self.loaded_faces(faces, &pointer);
+                    self.face_load(&faces, FaceLoad::Pressure(*pressure), edges, &mut forces);
+                }
+                Load::Gravity { acceleration } => {
+                    let tissue = scene.tissue();
+                    let added = match edges {
+                        Some(edges) => edges.add_gravity(&tissue, *acceleration, &mut forces),
+                        None => add_gravity(&tissue, *acceleration, &mut forces),
+                    };
+                    if let Err(error) = added {
+                        self.problems.add(
+                            "/case/volume",
+                            "mesh-inverted-elements",
+                            error.to_string(),
+                        );
+                    }
+                }
+            }
+        }
+        scene.forces = forces;
+    }
+
+    fn face_load(
+        &self,
+        faces: &[BoundaryFace],
+        load: FaceLoad,
+        edges: Option<&EdgeNodes>,
+        forces: &mut [Vector],
+    ) {
+        match edges {
+            Some(edges) => edges.add_face_load(&self.case.volume, faces, load, forces),
+            None => add_face_load(&self.case.volume, faces, load, forces),
+        }
+    }
+
+    fn loaded_faces(&mut self, selection: &NodeSelection, pointer: &str) -> Vec<BoundaryFace> {
+        let nodes = self.select(selection, &format!("{pointer}/faces"));
+        let faces = self.faces_within(&nodes);
+        if faces.is_empty() && !nodes.is_empty() {
+            let detail = "no boundary face has all of its nodes in the selection".to_owned();
+            self.problems.add(format!("{pointer}/faces"), "empty-selection", detail);
+        }
+        faces
+    }
+
+    pub(super) fn support(&mut self, scene: &Scene, faces: &Faces) {
+        let loose = loose_parts(&scene.mesh, faces, &scene.conditions.holds);
+        for part in &loose {
+            let detail = format!(
+                "the part of {} nodes that contains node {} can move freely in {} of the 6 rigid ways: \
+                 nothing holds it there ({} such parts)",
+                part.nodes,
+                part.first_node,
+                part.free_movements,
+                loose.len()
+            );
+            self.problems.add("/case", "underconstrained", detail);
+        }
+    }
+}
+
+/// Region names in the order of the values, and the region of each value: values that share a name
+/// share a region, and a value without a name is called by its number.
+fn name_regions(stated: &RegionNames, values: &[i64]) -> (Vec<String>, Vec<u16>) {
+    let mut names: Vec<String> = Vec::new();
+    let mut region_of_value = Vec::new();
+    for value in values {
+        let name = stated.names.get(value).cloned().unwrap_or_else(|| value.to_string());
+        let known = names.iter().position(|other| *other == name);
+        region_of_value.push(known.unwrap_or(names.len()) as u16);
+        if known.is_none() {
+            names.push(name);
+        }
+    }
+    (names, region_of_value)
+}

@@ -1,0 +1,176 @@
+//! The checks of what is stiffer one way than another: fibres of the tissue, the skin as a membrane.
+
+use super::case::{Case, FibreDirection, Method, Settings};
+use super::check::Check;
+use super::skin::Skin;
+use crate::material::LinearElastic;
+use crate::mesh::{Vector, Warning};
+use crate::model::fem::membrane::Membrane;
+
+/// A direction shorter than this, and a line of the skin of which less than this lies in a face, has no angle.
+const SHORTEST: f64 = 1e-6;
+
+/// Regions by number, and what each is made of.
+pub(super) struct Tissues<'a> {
+    pub regions: &'a [String],
+    pub region_of_cell: &'a [u16],
+    pub materials: &'a mut [LinearElastic],
+}
+
+impl Check<'_> {
+    /// For each cell the direction of its fibres, of length 1, or zero where it has none; empty where no
+    /// region has fibres. Methods that know no fibres get materials without.
+    pub(super) fn fibres(&mut self, tissues: Tissues, method: &Method) -> Vec<Vector> {
+        let Tissues { regions, region_of_cell, materials } = tissues;
+        let fibred = materials.iter().filter(|material| material.has_fibre()).count();
+        if fibred > 0 && !method.knows_fibres() {
+            let detail = format!(
+                "{fibred} regions have fibres, which this method does not know: they are as stiff along as across"
+            );
+            let warning = Warning::new("fibres-ignored", detail).with("regions", fibred as f64);
+            self.warnings.push(warning);
+            materials.iter_mut().for_each(|material| *material = material.without_fibre());
+            return Vec::new();
+        }
+        if fibred == 0 {
+            if *method == Method::MassTensorTransverse {
+                let detail = "no region has fibres: this is the isotropic mass-tensor model";
+                self.warnings.push(Warning::new("fibres-missing", detail));
+            }
+            return Vec::new();
+        }
+        let mut of_cell = vec![Vector::zeros(); region_of_cell.len()];
+        for (number, name) in regions.iter().enumerate() {
+            // Regions without a material are refused elsewhere.
+            if materials.get(number).is_some_and(LinearElastic::has_fibre) {
+                let inside = |(_, region): &(usize, &u16)| usize::from(**region) == number;
+                let cells: Vec<usize> = region_of_cell
+                    .iter()
+                    .enumerate()
+                    .filter(inside)
+                    .map(|(cell, _)| cell)
+                    .collect();
+                self.fibres_of_region(name, &cells, &mut of_cell);
+            }
+        }
+        of_cell
+    }
+
+    fn fibres_of_region(&mut self, region: &str, cells: &[usize], of_cell: &mut [Vector]) {
+        let case: &Case = self.case;
+        let name = if case.materials.contains_key(region) { region } else { "*" };
+        let pointer = format!("/case/materials/{name}/fibre");
+        let stated = case.fibres.get(region).or_else(|| case.fibres.get("*"));
+        let (place, wrong) = match stated {
+            None => {
+                let detail = format!("region {region:?} has fibres and no direction for them");
+                return self.problems.add(pointer, "missing-field", detail);
+            }
+            Some(FibreDirection::Uniform(direction)) => {
+                ("direction", directions(cells, of_cell, |_| *direction))
+            }
+            Some(FibreDirection::Array(array)) => match case.volume.cell_vectors.get(array) {
+                Some(vectors) => ("array", directions(cells, of_cell, |cell| vectors[cell])),
+                None => {
+                    let known = case.volume.cell_vectors.keys().cloned().collect::<Vec<_>>();
+                    let detail = format!(
+                        "the mesh has no cell array {array:?} with 3 components; it has: {}",
+                        known.join(", ")
+                    );
+                    let at = format!("{pointer}/array");
+                    return self.problems.add(at, "unknown-array", detail);
+                }
+            },
+        };
+        if let Some((first, count)) = wrong {
+            let detail = format!(
+                "cell {first} of region {region:?} has a fibre direction without length ({count} such cells)"
+            );
+            self.problems.add(format!("{pointer}/{place}"), "fibre-direction-zero", detail);
+        }
+    }
+
+    /// The skin as a membrane, where the settings ask for one.
+    pub(super) fn membrane(&mut self, skin: &Skin, settings: &Settings) -> Option<Membrane> {
+        let stated = settings.membrane.as_ref()?;
+        if !settings.method.knows_membrane() {
+            let detail = "this method has no skin of its own: leave the membrane out";
+            self.problems.add("/spec/membrane", "method-not-available", detail.to_owned());
+            return None;
+        }
+        let nodes = skin.nodes();
+        let corners = |points: &[u32; 3]| points.map(|point| nodes[point as usize]);
+        let triangles: Vec<[u32; 3]> = skin.surface.triangles.iter().map(corners).collect();
+        let sheet = stated.sheet;
+        let lines = match &stated.lines {
+            Some(lines) => self.lines(lines, &triangles),
+            None => Vec::new(),
+        };
+        Some(Membrane { sheet, triangles, lines })
+    }
+
+    /// The lines of the skin in the plane of each triangle.
+    fn lines(&mut self, stated: &FibreDirection, triangles: &[[u32; 3]]) -> Vec<Vector> {
+        let mesh = &self.case.volume;
+        let (pointer, vectors) = match stated {
+            FibreDirection::Uniform(_) => ("/spec/membrane/fibre/direction", None),
+            FibreDirection::Array(array) => match mesh.node_vectors.get(array) {
+                Some(vectors) => ("/spec/membrane/fibre/array", Some(vectors)),
+                None => {
+                    let detail = format!("the mesh has no point array {array:?} with 3 components");
+                    self.problems.add("/spec/membrane/fibre/array", "unknown-array", detail);
+                    return Vec::new();
+                }
+            },
+        };
+        let along = |corners: &[u32; 3]| match (stated, vectors) {
+            (_, Some(vectors)) => mean_axis(corners.map(|node| vectors[node as usize])),
+            (FibreDirection::Uniform(direction), _) => *direction,
+            (FibreDirection::Array(_), None) => Vector::zeros(),
+        };
+        let in_plane = |corners: &[u32; 3]| {
+            let [a, b, c] = corners.map(|node| mesh.nodes[node as usize]);
+            let normal = unit(&(b - a).cross(&(c - a)))?;
+            let along = unit(&along(corners))?;
+            unit(&(along - normal * normal.dot(&along)))
+        };
+        let lines: Vec<Option<Vector>> = triangles.iter().map(in_plane).collect();
+        let wrong = lines.iter().filter(|line| line.is_none()).count();
+        if let Some(first) = lines.iter().position(Option::is_none) {
+            let detail = format!(
+                "the lines have no direction in the face of the nodes {:?} ({wrong} such faces)",
+                triangles[first]
+            );
+            self.problems.add(pointer, "fibre-direction-zero", detail);
+        }
+        lines.into_iter().flatten().collect()
+    }
+}
+
+/// Gives cells their directions; the first that has none, and how many there are.
+fn directions(
+    cells: &[usize],
+    of_cell: &mut [Vector],
+    stated: impl Fn(usize) -> Vector,
+) -> Option<(usize, usize)> {
+    let mut wrong = None;
+    for &cell in cells {
+        match unit(&stated(cell)) {
+            Some(direction) => of_cell[cell] = direction,
+            None => wrong = wrong.or(Some((cell, 0))).map(|(first, count)| (first, count + 1)),
+        }
+    }
+    wrong
+}
+
+/// Length 1, or nothing where there is no direction.
+fn unit(vector: &Vector) -> Option<Vector> {
+    let length = vector.norm();
+    (length.is_finite() && length > SHORTEST).then(|| vector / length)
+}
+
+/// The mean of axes, which have no sign.
+fn mean_axis([a, b, c]: [Vector; 3]) -> Vector {
+    let towards_a = |vector: Vector| if vector.dot(&a) < 0.0 { -vector } else { vector };
+    a + towards_a(b) + towards_a(c)
+}

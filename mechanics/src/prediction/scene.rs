@@ -1,0 +1,317 @@
+//! A checked scene: nothing optional, nothing left to refuse.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use super::case::{Case, ElementChoice, Method, Plan, Settings};
+use super::check::Check;
+use super::cut;
+use super::fibres::Tissues;
+use super::hounsfield::ImagedTissue;
+use super::problem::SceneErrors;
+use super::skin::Skin;
+use super::stiff_layer;
+use crate::boundary::{Conditions, NodeClass, tearing};
+use crate::material::LinearElastic;
+use crate::mesh::connectivity::Faces;
+use crate::mesh::{CellShape, Vector, VolumeMesh, Warning};
+use crate::model::fem::assembly::Tissue;
+use crate::model::fem::cell_stiffness::Dilatation;
+use crate::model::fem::displacement::Problem;
+use crate::model::fem::membrane::Membrane;
+use crate::model::fem::quadratic::EdgeNodes;
+use crate::model::fem::{displacement_pressure, mass_tensor, quadratic};
+use crate::model::mass_spring::POISSON_RATIO;
+use crate::model::problem::{Equilibrium, LoadCase, ModelError, Observer};
+use crate::model::thickness_warp::Warped;
+use crate::model::{mass_spring, spline};
+use crate::plan::PlannedSegment;
+use crate::solver::Tolerance;
+
+/// Poisson's ratio above which elements without mean dilatation are known to lock (VERIFICATION V.4, V.29).
+const LOCKING: f64 = 0.45;
+
+/// What a tetrahedron is taken as.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Tetrahedron {
+    Plain,
+    Stabilised,
+    Quadratic,
+}
+
+/// Mesh, materials and conditions, ready to be solved.
+pub struct Scene {
+    pub mesh: Arc<VolumeMesh>,
+    pub skin: Skin,
+    /// Region names, and for each cell its entry.
+    pub regions: Vec<String>,
+    pub region_of_cell: Vec<u16>,
+    /// For each region, then what an image adds.
+    pub materials: Vec<LinearElastic>,
+    /// For each cell its entry in `materials`, and the one whose pressure it takes part in.
+    pub material_of_cell: Vec<u16>,
+    pub pressure_of_cell: Vec<u16>,
+    /// What an image shows of each cell, where materials are taken from one.
+    pub imaged: Option<ImagedTissue>,
+    /// For each cell the direction of its fibres, of length 1 or zero where it has none; empty where no
+    /// region has fibres.
+    pub fibres: Vec<Vector>,
+    pub membrane: Option<Membrane>,
+    /// What cells are taken as; that of the settings where the method leaves a choice.
+    pub element: ElementChoice,
+    pub conditions: Conditions,
+    /// Segments by the number in `NodeClass::Joined`, with the movement each makes.
+    pub segments: Vec<PlannedSegment>,
+    /// For each node, in mN; quadratic elements have those of edge nodes after them.
+    pub forces: Vec<Vector>,
+    pub landmarks: BTreeMap<String, Vector>,
+    pub settings: Settings,
+    /// What a reader must know before anything is solved: overlaps, tearing, locking.
+    pub warnings: Vec<Warning>,
+}
+
+impl Scene {
+    /// Checks a case and a plan together; says everything that is wrong, not the first thing only.
+    pub fn new(case: &Case, plan: &Plan, settings: &Settings) -> Result<Scene, SceneErrors> {
+        let faces = Faces::new(&case.volume);
+        let boundary = case.volume.boundary_of(&faces);
+        let mut check = Check::new(case, &boundary);
+
+        // 1. Tissue.
+        let (regions, region_of_cell) = check.regions();
+        let mut materials = check.materials(&regions);
+        let (of_cell, of_region) = (&region_of_cell, &mut materials);
+        let tissues = Tissues { regions: &regions, region_of_cell: of_cell, materials: of_region };
+        let fibres = check.fibres(tissues, &settings.method);
+        let element = check.element(settings);
+        let tissue = check.tissue_of_cells(&region_of_cell, materials);
+
+        // 2. What every node is held to.
+        let (segments, held) = check.held_nodes(plan, settings.sliding);
+        let conditions = check.conditions(&held);
+
+        // 3. The skin and what acts on the tissue.
+        let skin = check.skin(&conditions);
+        let membrane = check.membrane(&skin, settings);
+        let mut scene = Scene {
+            mesh: case.volume.clone(),
+            skin,
+            regions,
+            region_of_cell,
+            materials: tissue.materials,
+            material_of_cell: tissue.material_of_cell,
+            pressure_of_cell: tissue.pressure_of_cell,
+            imaged: tissue.imaged,
+            fibres,
+            membrane,
+            element,
+            conditions,
+            segments,
+            forces: vec![Vector::zeros(); case.volume.nodes.len()],
+            landmarks: case.landmarks.clone(),
+            settings: settings.clone(),
+            warnings: Vec::new(),
+        };
+        check.method(&settings.method, plan);
+        check.problems.give_up_if_any()?;
+        check.add_loads(plan, &mut scene);
+
+        // 4. What cannot be solved, and what a reader must know.
+        check.support(&scene, &faces);
+        check.problems.give_up_if_any()?;
+        scene.warnings = scene.conditions.warnings.clone();
+        scene.warnings.extend(check.warnings);
+        scene.warnings.extend(cut::duplicate_nodes(&scene.mesh, &check.boundary_nodes));
+        scene.warnings.extend(tearing::tearing(&scene.mesh, &scene.conditions.holds));
+        scene.warnings.extend(scene.locking());
+        scene.warnings.extend(stiff_layer::thin_stiff_layers(&scene));
+        scene.warnings.extend(scene.built_in_poisson_ratio());
+        Ok(scene)
+    }
+
+    /// The tissue as the finite elements see it.
+    pub fn tissue(&self) -> Tissue<'_> {
+        Tissue {
+            mesh: &self.mesh,
+            materials: &self.materials,
+            material_of_cell: &self.material_of_cell,
+            pressure_of_cell: &self.pressure_of_cell,
+            fibres: &self.fibres,
+            membrane: self.membrane.as_ref(),
+            dilatation: match self.element {
+                ElementChoice::Plain | ElementChoice::Quadratic => |_| Dilatation::Pointwise,
+                ElementChoice::Auto | ElementChoice::MeanDilatation | ElementChoice::Stabilised => {
+                    |shape| match shape {
+                        CellShape::Tet4 => Dilatation::Pointwise,
+                        CellShape::Hex8 | CellShape::Wedge6 => Dilatation::Mean,
+                    }
+                }
+            },
+        }
+    }
+
+    /// What tetrahedra are taken as.
+    fn tetrahedron(&self) -> Tetrahedron {
+        match self.element {
+            ElementChoice::Plain | ElementChoice::MeanDilatation => Tetrahedron::Plain,
+            ElementChoice::Auto | ElementChoice::Stabilised => Tetrahedron::Stabilised,
+            ElementChoice::Quadratic => Tetrahedron::Quadratic,
+        }
+    }
+
+    fn has_tetrahedra(&self) -> bool {
+        self.mesh.cells.iter().any(|(shape, _)| shape == CellShape::Tet4)
+    }
+
+    /// Whether displacement is linear along every edge.
+    pub(super) fn is_first_order(&self) -> bool {
+        self.tetrahedron() != Tetrahedron::Quadratic
+    }
+
+    /// The middles of edges, where the element has nodes there.
+    pub fn edge_nodes(&self) -> Option<EdgeNodes> {
+        (self.tetrahedron() == Tetrahedron::Quadratic).then(|| EdgeNodes::new(&self.mesh))
+    }
+
+    /// What the plan of this scene does to its tissue.
+    pub fn load_case(&self) -> LoadCase {
+        let held = self.conditions.holds.iter().map(|hold| *hold.values()).collect();
+        LoadCase { held, forces: self.forces.clone() }
+    }
+
+    /// Solves the scene by the method of its settings.
+    pub fn solve(&self, observer: &dyn Observer) -> Result<Equilibrium, ModelError> {
+        match &self.settings.method {
+            // A mass-tensor is the block of two nodes of a plain tetrahedron.
+            Method::FemLinear | Method::MassTensorTransverse => {
+                let mut solved = self.solve_cases(&[self.load_case()], observer)?;
+                Ok(solved.remove(0))
+            }
+            Method::MassSpring(settings) => {
+                mass_spring::solve(&self.problem(), settings, &self.load_case(), observer)
+            }
+            Method::MassTensor(settings) => {
+                mass_tensor::solve(&self.problem(), settings, &self.load_case(), observer)
+            }
+            Method::VolumeSpline(spline) => spline::solve(&self.problem(), spline, observer),
+            Method::ThicknessWarp(warp) => {
+                let movement = |segment: u32, x: &Vector| {
+                    self.segments[segment as usize].movement.displacement(x)
+                };
+                let (mesh, conditions) = (&*self.mesh, &self.conditions);
+                Warped { mesh, conditions, movement: &movement }.solve(warp)
+            }
+        }
+    }
+
+    /// Tissue, holds and loads as models see them.
+    fn problem(&self) -> Problem<'_> {
+        let Settings { relative_residual, memory_mb, .. } = self.settings;
+        Problem {
+            tissue: self.tissue(),
+            holds: &self.conditions.holds,
+            forces: &self.forces,
+            tolerance: Tolerance { relative_residual, memory_mb },
+        }
+    }
+
+    /// Solves for each of several load cases with linear finite elements, those of this scene; the tissue is
+    /// assembled once.
+    pub fn solve_cases(
+        &self,
+        cases: &[LoadCase],
+        observer: &dyn Observer,
+    ) -> Result<Vec<Equilibrium>, ModelError> {
+        let problem = self.problem();
+        match self.tetrahedron() {
+            Tetrahedron::Quadratic => quadratic::solve_cases(&problem, cases, observer),
+            Tetrahedron::Stabilised if self.has_tetrahedra() => {
+                displacement_pressure::solve_cases(&problem, cases, observer)
+            }
+            Tetrahedron::Stabilised | Tetrahedron::Plain => problem.solve_cases(cases, observer),
+        }
+    }
+
+    /// The elements in use, e.g. `hex8 mean dilatation`; none where there are none.
+    pub fn elements(&self) -> Vec<String> {
+        match &self.settings.method {
+            Method::MassSpring(_) | Method::ThicknessWarp(_) => return Vec::new(),
+            Method::VolumeSpline(spline) => return vec![spline.element()],
+            Method::FemLinear | Method::MassTensor(_) | Method::MassTensorTransverse => {}
+        }
+        let dilatation = self.tissue().dilatation;
+        [CellShape::Tet4, CellShape::Hex8, CellShape::Wedge6]
+            .into_iter()
+            .filter(|shape| self.mesh.cells.iter().any(|(other, _)| other == *shape))
+            .map(|shape| match (shape, self.tetrahedron(), dilatation(shape)) {
+                (CellShape::Tet4, Tetrahedron::Stabilised, _) => "tet4 stabilised".to_owned(),
+                (CellShape::Tet4, Tetrahedron::Quadratic, _) => "tet10 quadratic".to_owned(),
+                (_, _, Dilatation::Pointwise) => format!("{} plain", shape.name()),
+                (_, _, Dilatation::Mean) => format!("{} mean dilatation", shape.name()),
+            })
+            .chain(self.membrane.as_ref().map(|_| match self.tetrahedron() {
+                Tetrahedron::Quadratic => "tri6 membrane".to_owned(),
+                Tetrahedron::Plain | Tetrahedron::Stabilised => "tri3 membrane".to_owned(),
+            }))
+            .collect()
+    }
+
+    /// The number of the segment of that name.
+    pub fn segment(&self, name: &str) -> Option<usize> {
+        self.segments.iter().position(|segment| segment.name == name)
+    }
+
+    /// How many nodes each class has, by the name of the segment or of the class.
+    pub fn class_counts(&self) -> BTreeMap<String, usize> {
+        let mut counts: BTreeMap<String, usize> = BTreeMap::new();
+        for class in &self.conditions.classes {
+            *counts.entry(self.class_name(*class)).or_default() += 1;
+        }
+        counts
+    }
+
+    /// `joined:SEGMENT`, or the plain name of the class.
+    pub fn class_name(&self, class: NodeClass) -> String {
+        match class {
+            NodeClass::Joined(segment) => {
+                format!("joined:{}", self.segments[segment as usize].name)
+            }
+            other => other.name().to_owned(),
+        }
+    }
+
+    /// Springs have the Poisson ratio that they have.
+    fn built_in_poisson_ratio(&self) -> Option<Warning> {
+        let Method::MassSpring(_) = self.settings.method else { return None };
+        let stated = self.regions.iter().zip(&self.materials);
+        let others: Vec<String> = stated
+            .filter(|(_, material)| material.poisson_ratio() != POISSON_RATIO)
+            .map(|(region, material)| format!("{region} {}", material.poisson_ratio()))
+            .collect();
+        let instead = match others.is_empty() {
+            true => String::new(),
+            false => format!(", and not that of the materials: {}", others.join(", ")),
+        };
+        let detail = format!("springs have a Poisson ratio of 1/4 on average{instead}");
+        let warning = Warning::new("built-in-poisson-ratio", detail);
+        Some(warning.with("poisson_ratio", POISSON_RATIO))
+    }
+
+    fn locking(&self) -> Option<Warning> {
+        let dilatation = self.tissue().dilatation;
+        let cells = self.mesh.cells.iter().zip(&self.material_of_cell);
+        let locks = |shape: CellShape, material: u16| {
+            let nu = self.materials[material as usize].poisson_ratio();
+            let is_plain = shape != CellShape::Tet4 || self.tetrahedron() == Tetrahedron::Plain;
+            nu > LOCKING && is_plain && dilatation(shape) == Dilatation::Pointwise
+        };
+        let has_elements = self.settings.method.is_of_elements();
+        let locking = cells.filter(|((shape, _), material)| locks(*shape, **material)).count();
+        let largest = self.materials.iter().map(LinearElastic::poisson_ratio).fold(0.0, f64::max);
+        let detail = format!(
+            "{locking} plain cells have a Poisson ratio above {LOCKING}: they lock, and the skin moves too little"
+        );
+        let warning = Warning::new("locking", detail).with("cells", locking as f64);
+        (locking > 0 && has_elements).then(|| warning.with("largest_poisson_ratio", largest))
+    }
+}

@@ -1,0 +1,200 @@
+//! The columns of a response: twelve load cases a segment, solved on one tissue.
+//!
+//! Column 4 i + j of segment s is the skin's u for u(x) = E_ij (x - centre) at the joined nodes of s, j < 3,
+//! or u = e_i, j = 3, and zero wherever else a node is held. Sliding nodes stay held across and free
+//! along, which is linear.
+
+use super::linearity::{self, Linearity};
+use super::{COLUMNS_PER_SEGMENT, Response, ResponseSegment, superposition};
+use crate::boundary::NodeClass;
+use crate::mesh::Vector;
+use crate::model::problem::{Equilibrium, LoadCase};
+use crate::plan::RigidMovement;
+use crate::prediction::{
+    Followed, Method, Phase, PredictionError, Progress, Scene, SolverReport, report,
+};
+
+/// Bytes of one node in one load case: its force, its displacement, its unknowns.
+const BYTES_OF_NODE: f64 = 72.0;
+
+/// A response in f64, as it was solved, with what tells how far it can be trusted.
+#[derive(Clone, Debug)]
+pub struct Columns {
+    pub segments: Vec<ResponseSegment>,
+    /// The skin nodes, ascending.
+    pub nodes: Vec<u32>,
+    /// As in [`Response`], in f64.
+    pub values: Vec<f64>,
+    pub linearity: Linearity,
+    /// Of the column that took most iterations; the residual is the largest of all.
+    pub solver: SolverReport,
+}
+
+/// Why there is no response.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ResponseError {
+    #[error("there is no segment that could be moved")]
+    NoSegments,
+    #[error("the case has no segment {name:?}; its segments: {known}")]
+    UnknownSegment { name: String, known: String },
+    #[error(
+        "{count} nodes belong to two segments, the first is node {first}: they cannot follow both"
+    )]
+    SharedNodes { count: usize, first: u32 },
+    #[error("segment {name:?} holds no node")]
+    EmptySegment { name: String },
+    #[error("the scene has prescribed displacements or loads, which a response does not know")]
+    Loaded,
+    #[error(
+        "responses are built with linear finite elements, and the spec asks for another method"
+    )]
+    OtherMethod,
+    #[error(transparent)]
+    Prediction(#[from] PredictionError),
+}
+
+/// The numbers of the named segments in the scene, in the order of the scene; all where none is named.
+/// Refuses a scene whose answer is not linear in the movements of its segments.
+pub fn chosen(scene: &Scene, names: &[String]) -> Result<Vec<usize>, ResponseError> {
+    let known = || scene.segments.iter().map(|segment| segment.name.as_str());
+    if let Some(name) = names.iter().find(|name| scene.segment(name).is_none()) {
+        let known = known().collect::<Vec<_>>().join(", ");
+        return Err(ResponseError::UnknownSegment { name: name.clone(), known });
+    }
+    if let Some(&first) = scene.conditions.shared.first() {
+        return Err(ResponseError::SharedNodes { count: scene.conditions.shared.len(), first });
+    }
+    let is_prescribed = |class: &NodeClass| *class == NodeClass::Prescribed;
+    if scene.settings.method != Method::FemLinear {
+        return Err(ResponseError::OtherMethod);
+    }
+    if scene.conditions.classes.iter().any(is_prescribed)
+        || scene.forces.iter().any(|force| *force != Vector::zeros())
+    {
+        return Err(ResponseError::Loaded);
+    }
+    let wanted = |name: &str| names.is_empty() || names.iter().any(|other| other == name);
+    let segments: Vec<usize> =
+        (0..).zip(known()).filter(|(_, name)| wanted(name)).map(|(number, _)| number).collect();
+    match segments.is_empty() {
+        true => Err(ResponseError::NoSegments),
+        false => Ok(segments),
+    }
+}
+
+/// Solves the columns of the named segments, of all where none is named.
+pub fn build(
+    scene: &Scene,
+    names: &[String],
+    progress: &dyn Progress,
+) -> Result<Columns, ResponseError> {
+    // 1. What is asked.
+    let chosen = chosen(scene, names)?;
+    let mut segments = Vec::with_capacity(chosen.len());
+    for &number in &chosen {
+        segments.push(segment_of(scene, number)?);
+    }
+    let columns = COLUMNS_PER_SEGMENT * segments.len();
+    check_memory(scene, columns)?;
+    let zeros = vec![Vector::zeros(); scene.mesh.nodes.len()];
+    let cases: Vec<LoadCase> = (0..columns)
+        .map(|column| {
+            let (place, unit) = (column / COLUMNS_PER_SEGMENT, column % COLUMNS_PER_SEGMENT);
+            let held = held_values(scene, chosen[place], &segments[place].centre, unit);
+            LoadCase { held, forces: zeros.clone() }
+        })
+        .collect();
+
+    // 2. The tissue for each of them.
+    let wanted = scene.settings.relative_residual;
+    let solved =
+        scene.solve_cases(&cases, &Followed { progress, wanted }).map_err(PredictionError::from)?;
+
+    // 3. Its skin.
+    progress.phase(Phase::Surface);
+    let nodes = scene.skin.nodes().to_vec();
+    let mut values = Vec::with_capacity(3 * columns * nodes.len());
+    for equilibrium in &solved {
+        for &node in &nodes {
+            values.extend_from_slice(equilibrium.displacement[node as usize].as_slice());
+        }
+    }
+    let linearity = linearity::of_scene(scene, &chosen);
+    Ok(Columns { segments, nodes, values, linearity, solver: hardest(scene, &solved)? })
+}
+
+impl Columns {
+    /// The displacement of each skin node in mm, for one movement of each segment.
+    pub fn apply(&self, movements: &[RigidMovement]) -> Vec<Vector> {
+        superposition::apply(&self.segments, movements, &self.values, self.nodes.len())
+    }
+
+    /// The columns as they are stored and served.
+    pub fn to_response(&self) -> Response {
+        Response {
+            segments: self.segments.clone(),
+            nodes: self.nodes.clone(),
+            columns: self.values.iter().map(|&value| value as f32).collect(),
+        }
+    }
+}
+
+/// The places of the nodes that a segment holds.
+pub(super) fn joined_nodes(scene: &Scene, segment: usize) -> impl Iterator<Item = &Vector> {
+    let classes = scene.conditions.classes.iter();
+    let is_joined = move |class: &NodeClass| *class == NodeClass::Joined(segment as u32);
+    classes.zip(&scene.mesh.nodes).filter(move |(class, _)| is_joined(class)).map(|(_, x)| x)
+}
+
+/// A segment with the mean of its nodes as centre.
+fn segment_of(scene: &Scene, number: usize) -> Result<ResponseSegment, ResponseError> {
+    let name = scene.segments[number].name.clone();
+    let (mut sum, mut count) = (Vector::zeros(), 0);
+    for place in joined_nodes(scene, number) {
+        sum += place;
+        count += 1;
+    }
+    match count {
+        0 => Err(ResponseError::EmptySegment { name }),
+        _ => Ok(ResponseSegment { name, centre: sum / f64::from(count) }),
+    }
+}
+
+/// For each hold its displacement along its axes for one unit of one number of a segment's movement.
+fn held_values(scene: &Scene, segment: usize, centre: &Vector, unit: usize) -> Vec<Vector> {
+    let (row, column) = (unit / 4, unit % 4);
+    let value = |node: u32| {
+        let mut displacement = Vector::zeros();
+        let place = scene.mesh.nodes[node as usize] - centre;
+        displacement[row] = if column == 3 { 1.0 } else { place[column] };
+        displacement
+    };
+    let classes = &scene.conditions.classes;
+    let holds = scene.conditions.holds.iter();
+    holds
+        .map(|hold| match classes[hold.node as usize] == NodeClass::Joined(segment as u32) {
+            true => hold.axes().transpose() * value(hold.node),
+            false => Vector::zeros(),
+        })
+        .collect()
+}
+
+/// All load cases stand in memory together.
+fn check_memory(scene: &Scene, columns: usize) -> Result<(), PredictionError> {
+    let needed_mb = columns as f64 * scene.mesh.nodes.len() as f64 * BYTES_OF_NODE / 1e6;
+    let allowed_mb = scene.settings.memory_mb;
+    match needed_mb > allowed_mb {
+        true => Err(PredictionError::OverBudget { needed_mb, allowed_mb }),
+        false => Ok(()),
+    }
+}
+
+/// The report of the column that took most iterations, with the largest residual of all.
+fn hardest(scene: &Scene, solved: &[Equilibrium]) -> Result<SolverReport, ResponseError> {
+    let reports = solved.iter().map(|equilibrium| report(scene, equilibrium));
+    let residuals = solved.iter().map(|equilibrium| equilibrium.convergence.relative_residual);
+    let largest = residuals.fold(0.0, f64::max);
+    let hardest = reports.max_by_key(|report| report.iterations);
+    let hardest = hardest.ok_or(ResponseError::NoSegments)?;
+    Ok(SolverReport { relative_residual: largest, ..hardest })
+}

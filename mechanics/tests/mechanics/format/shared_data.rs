@@ -1,0 +1,101 @@
+//! Real files: a face, shells and a head, read as they came.
+
+use mechanics::format::vtk::vtu;
+use mechanics::format::{Mesh, ReadLimits, VolumeOutput, read};
+use mechanics::mesh::Frame;
+use mechanics::mesh::check::MeshReport;
+
+use crate::samples::{read_default, surface, volume, warning_codes};
+use crate::shared::shared_data;
+
+#[test]
+fn the_face_has_its_cells_sets_and_nodes() {
+    for (file, set, size) in [
+        ("face/subject_face.vtu", "jaw_attached", 329),
+        ("face/template_face.vtu", "mandible_fixed", 322),
+    ] {
+        let Some(path) = shared_data(file) else {
+            return;
+        };
+        let read = read_default(&std::fs::read(path).unwrap());
+        assert_eq!(warning_codes(&read), Vec::<&str>::new(), "{file}");
+        assert!(read.ignored_arrays.contains(&"node_id".to_string()));
+        let mesh = volume(read);
+        let report = MeshReport::of_volume(&mesh);
+        assert_eq!(report.nodes, 8720);
+        assert_eq!(report.cells, [("hex8", 6024), ("wedge6", 318)].into());
+        assert_eq!(report.node_sets["outer_skin"], 2180);
+        assert_eq!(report.node_sets[set], size);
+        let bytes = vtu::write(&VolumeOutput::plain(&mesh, Frame::Lps)).unwrap();
+        assert_eq!(read_default(&bytes).mesh, Mesh::Volume(mesh));
+    }
+}
+
+#[test]
+fn surfaces_of_the_face_and_the_head_are_read() {
+    for (file, triangles) in [
+        ("face/subject_face_skin.vtp", 4122),
+        ("face/template_face_skin.vtp", 4122),
+        ("face/subject_face_skin.stl", 4122),
+        ("face/subject_face_jaw.stl", 4184),
+        ("face/subject_face_maxilla.stl", 5808),
+        ("face/subject_face_cranium.stl", 1156),
+        ("face/template_face_jaw.stl", 376),
+        ("face/template_face_maxilla.stl", 572),
+        ("head_ct/headsq_quarter_skin.stl", 40_000),
+        ("head_ct/headsq_quarter_bone.stl", 59_998),
+    ] {
+        let Some(path) = shared_data(file) else {
+            return;
+        };
+        let read = read_default(&std::fs::read(path).unwrap());
+        let dropped: f64 = read
+            .warnings
+            .iter()
+            .filter(|warning| {
+                warning.code.ends_with("triangles") && warning.code != "polygons-triangulated"
+            })
+            .flat_map(|warning| warning.numbers.iter().map(|(_, count)| *count))
+            .sum();
+        println!("{file}: {:?}", read.warnings);
+        let skin = surface(read);
+        println!("{:?}", MeshReport::of_surface(&skin));
+        assert_eq!(skin.triangles.len(), triangles - dropped as usize, "{file}");
+    }
+}
+
+#[test]
+fn the_skin_of_the_face_knows_its_nodes() {
+    let Some(path) = shared_data("face/subject_face_skin.vtp") else {
+        return;
+    };
+    let skin = surface(read_default(&std::fs::read(path).unwrap()));
+    let ids = skin.node_ids.unwrap();
+    assert_eq!((ids.len(), ids.iter().min(), ids.iter().max()), (2180, Some(&34), Some(&7693)));
+}
+
+#[test]
+fn a_file_of_muscle_fibres_is_no_mesh_and_says_what_it_holds() {
+    let Some(path) = shared_data("face/subject_face_muscle_fibres.vtp") else {
+        return;
+    };
+    let error = read(&std::fs::read(path).unwrap(), &ReadLimits::default()).unwrap_err();
+    assert_eq!(error.code(), "mesh-empty");
+    assert!(error.to_string().contains("36 lines were skipped"), "{error}");
+}
+
+#[test]
+fn shells_of_up_to_a_million_tetrahedra_are_read() {
+    for (file, cells) in
+        [("shell/30k.vtu", 29_834), ("shell/300k.vtu", 302_265), ("shell/1M.vtu", 1_018_865)]
+    {
+        let Some(path) = shared_data(file) else {
+            return;
+        };
+        let read = read_default(&std::fs::read(path).unwrap());
+        assert_eq!(warning_codes(&read), Vec::<&str>::new(), "{file}");
+        let mesh = volume(read);
+        assert_eq!(mesh.cells.len(), cells);
+        assert!(mesh.node_labels.contains_key("tag") && mesh.cell_labels.contains_key("band"));
+    }
+}

@@ -1,0 +1,3 @@
+//! Laws of one material point.
+
+pub mod anisotropy;

@@ -1,0 +1,4 @@
+//! Inverse planning.
+
+pub mod plans;
+pub mod scenes;

@@ -1,0 +1,79 @@
+//! Cases and plans that several tests build on.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use mechanics::boundary::NodeSelection;
+use mechanics::material::LinearElastic;
+use mechanics::mesh::{CellShape, Vector, VolumeMesh};
+use mechanics::model::problem::Observer;
+use mechanics::prediction::{
+    Case, Plan, Prediction, Prescribed, Scene, Settings, Unobserved, predict,
+};
+
+pub const SHAPES: [CellShape; 3] = [CellShape::Tet4, CellShape::Hex8, CellShape::Wedge6];
+
+pub fn set(name: &str) -> NodeSelection {
+    NodeSelection::NodeSet(name.to_owned())
+}
+
+pub fn material(young_modulus: f64, poisson_ratio: f64) -> LinearElastic {
+    LinearElastic::new(young_modulus, poisson_ratio, 1.0).unwrap()
+}
+
+/// A case of one material and nothing else.
+pub fn case_of(mesh: VolumeMesh, material: LinearElastic) -> Case {
+    let materials = BTreeMap::from([("*".to_owned(), material)]);
+    Case { volume: Arc::new(mesh), materials, ..Case::default() }
+}
+
+/// Settings tight enough for facts that hold to rounding.
+pub fn exact() -> Settings {
+    Settings { relative_residual: 1e-13, ..Settings::default() }
+}
+
+pub fn solve(case: &Case, plan: &Plan, settings: &Settings) -> Prediction {
+    let scene = Scene::new(case, plan, settings).unwrap();
+    predict(&scene, &Unobserved).unwrap()
+}
+
+/// Prescribes a displacement field at all boundary nodes, through an array of the mesh.
+pub fn on_the_boundary(mesh: &mut VolumeMesh, field: impl Fn(&Vector) -> Vector) -> Plan {
+    let mut boundary: Vec<u32> =
+        mesh.boundary_faces().iter().flat_map(|face| face.nodes().to_vec()).collect();
+    boundary.sort_unstable();
+    boundary.dedup();
+    mesh.node_sets.insert("boundary".to_owned(), boundary);
+    mesh.node_vectors.insert("field".to_owned(), mesh.nodes.iter().map(field).collect());
+    let prescribed = Prescribed::FromArray { nodes: set("boundary"), array: "field".to_owned() };
+    Plan { prescribed: vec![prescribed], ..Plan::default() }
+}
+
+/// Prescribes some components of a node set.
+pub fn hold(name: &str, displacement: [Option<f64>; 3]) -> Prescribed {
+    Prescribed::Uniform { nodes: set(name), displacement }
+}
+
+/// The largest distance between a nodal field and a given one.
+pub fn largest_error(
+    mesh: &VolumeMesh,
+    displacement: &[Vector],
+    field: impl Fn(&Vector) -> Vector,
+) -> f64 {
+    let errors = mesh.nodes.iter().zip(displacement).map(|(x, u)| (u - field(x)).norm());
+    errors.fold(0.0, f64::max)
+}
+
+/// Follows no solution and stops none.
+pub struct Silent;
+
+impl Observer for Silent {
+    fn assembling(&self) {}
+    fn solving(&self) {}
+    fn iterated(&self, _iteration: usize, _relative_residual: f64) -> bool {
+        true
+    }
+    fn is_stopped(&self) -> bool {
+        false
+    }
+}

@@ -1,0 +1,191 @@
+//! The clock of a job: the wall time of each phase, and the budget of all of them.
+
+use std::sync::Mutex;
+use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
+
+use super::failure::JobError;
+use crate::schema::predict::result::TimingDocument;
+use mechanics::prediction::{Phase, PredictionError, Progress};
+
+/// Passes progress on, takes the time of the phases, and asks the work to stop once its time is used up.
+pub struct Observed<'a> {
+    inner: &'a dyn Progress,
+    started: Instant,
+    budget: Duration,
+    phases: Mutex<Phases>,
+}
+
+struct Phases {
+    current: Phase,
+    since: Instant,
+    spent: Vec<(Phase, Duration)>,
+}
+
+impl<'a> Observed<'a> {
+    /// Starts the clock; `wall_s` is the budget in seconds.
+    pub fn start(inner: &'a dyn Progress, wall_s: f64) -> Self {
+        let now = Instant::now();
+        let phases = Phases { current: Phase::Validate, since: now, spent: Vec::new() };
+        inner.allowed(wall_s);
+        inner.phase(Phase::Validate);
+        Observed {
+            inner,
+            started: now,
+            budget: Duration::try_from_secs_f64(wall_s).unwrap_or(Duration::MAX),
+            phases: Mutex::new(phases),
+        }
+    }
+
+    /// The reason to stop, if there is one.
+    pub fn check(&self) -> Result<(), JobError> {
+        if self.inner.is_cancelled() {
+            return Err(JobError::Cancelled);
+        }
+        if self.is_over_budget() {
+            return Err(self.over_budget());
+        }
+        Ok(())
+    }
+
+    /// What a prediction that failed means for the job: one that stopped may have run out of time.
+    pub fn judge(&self, error: PredictionError) -> JobError {
+        match error {
+            PredictionError::Cancelled => self.stopped(),
+            other => other.into(),
+        }
+    }
+
+    /// Why work that was told to stop was told so.
+    pub fn stopped(&self) -> JobError {
+        if self.inner.is_cancelled() { JobError::Cancelled } else { self.over_budget() }
+    }
+
+    /// The time of each phase so far.
+    pub fn timing(&self, queue_s: Option<f64>) -> TimingDocument {
+        let phases = self.lock();
+        let of = |phase: Phase| {
+            let ended = phases.spent.iter().filter(|(other, _)| *other == phase);
+            let ended: Duration = ended.map(|(_, spent)| *spent).sum();
+            let running =
+                if phases.current == phase { phases.since.elapsed() } else { Duration::ZERO };
+            (ended + running).as_secs_f64()
+        };
+        TimingDocument {
+            queue_s,
+            validate_s: of(Phase::Validate),
+            mesh_s: of(Phase::Mesh),
+            assemble_s: of(Phase::Assemble),
+            solve_s: of(Phase::Solve),
+            contact_s: of(Phase::Contact),
+            surface_s: of(Phase::Surface),
+            compare_s: of(Phase::Compare),
+            write_s: of(Phase::Write),
+            total_s: self.started.elapsed().as_secs_f64(),
+        }
+    }
+
+    fn is_over_budget(&self) -> bool {
+        self.started.elapsed() > self.budget
+    }
+
+    fn over_budget(&self) -> JobError {
+        JobError::Budget { which: "wall", allowed: self.budget.as_secs_f64(), unit: "s" }
+    }
+
+    fn lock(&self) -> std::sync::MutexGuard<'_, Phases> {
+        // Times are whole after a panic elsewhere: each entry is pushed in one step.
+        self.phases.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
+    }
+}
+
+impl Progress for Observed<'_> {
+    fn phase(&self, phase: Phase) {
+        let mut phases = self.lock();
+        let now = Instant::now();
+        let ended = (phases.current, now - phases.since);
+        phases.spent.push(ended);
+        phases.current = phase;
+        phases.since = now;
+        drop(phases);
+        self.inner.phase(phase);
+    }
+
+    fn iteration(&self, iteration: usize, relative_residual: f64, wanted: f64) {
+        self.inner.iteration(iteration, relative_residual, wanted);
+    }
+
+    fn step(&self, done: usize, of: usize) {
+        self.inner.step(done, of);
+    }
+
+    fn is_cancelled(&self) -> bool {
+        self.inner.is_cancelled() || self.is_over_budget()
+    }
+}
+
+/// The time of day in RFC 3339, UTC, to the second.
+pub fn now_rfc3339() -> String {
+    let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
+    rfc3339(since.as_secs())
+}
+
+/// Seconds since 1970 in RFC 3339. Days to dates after Howard Hinnant, "chrono-compatible low-level
+/// date algorithms", civil_from_days.
+fn rfc3339(seconds: u64) -> String {
+    let (days, second) = (seconds / 86_400, seconds % 86_400);
+    let shifted = days + 719_468;
+    let (era, day_of_era) = (shifted / 146_097, shifted % 146_097);
+    let year_of_era =
+        (day_of_era - day_of_era / 1460 + day_of_era / 36_524 - day_of_era / 146_096) / 365;
+    let day_of_year = day_of_era - (365 * year_of_era + year_of_era / 4 - year_of_era / 100);
+    let month_from_march = (5 * day_of_year + 2) / 153;
+    let day = day_of_year - (153 * month_from_march + 2) / 5 + 1;
+    let month = if month_from_march < 10 { month_from_march + 3 } else { month_from_march - 9 };
+    let year = era * 400 + year_of_era + u64::from(month <= 2);
+    let (hour, minute, second) = (second / 3600, second / 60 % 60, second % 60);
+    format!("{year:04}-{month:02}-{day:02}T{hour:02}:{minute:02}:{second:02}Z")
+}
+
+/// The peak memory of this process in MB, where the system tells.
+pub fn peak_rss_mb() -> Option<f64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+    let kilobytes: f64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
+    Some(kilobytes * 1024.0 / 1e6)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use mechanics::prediction::Unobserved;
+
+    #[test]
+    fn seconds_become_dates() {
+        assert_eq!(rfc3339(0), "1970-01-01T00:00:00Z");
+        assert_eq!(rfc3339(951_782_399), "2000-02-28T23:59:59Z");
+        assert_eq!(rfc3339(951_782_400), "2000-02-29T00:00:00Z");
+        assert_eq!(rfc3339(4_107_542_400), "2100-03-01T00:00:00Z");
+    }
+
+    #[test]
+    fn a_prediction_that_stops_without_a_request_ran_out_of_time() {
+        let clock = Observed::start(&Unobserved, 0.0);
+        assert!(clock.is_cancelled());
+        let error = clock.judge(PredictionError::Cancelled);
+        assert_eq!(
+            (error.kind(), &error.to_document().members["which"]),
+            ("budget-exceeded", &"wall".into())
+        );
+    }
+
+    #[test]
+    fn the_phases_add_up_to_the_whole() {
+        let clock = Observed::start(&Unobserved, 60.0);
+        clock.phase(Phase::Mesh);
+        clock.phase(Phase::Solve);
+        let timing = clock.timing(None);
+        let sum = timing.validate_s + timing.mesh_s + timing.solve_s;
+        // The clock is read twice, some microseconds apart.
+        assert!((timing.total_s - sum).abs() < 1e-3);
+    }
+}

@@ -1,0 +1,163 @@
+//! Inverse planning: the documents of a job, checked, and its targets as points of the skin.
+
+use super::OptimiseInput;
+use crate::jobs::failure::JobError;
+use crate::jobs::predict::input::{PredictInput, Prepared};
+use crate::jobs::source::MeshSource;
+use crate::schema::optimise::document::TargetDocument;
+use crate::schema::wire::canonical;
+use crate::schema::{Faults, Limits, Pointer, Problem};
+use mechanics::mesh::{SurfaceSearch, Warning};
+use mechanics::optimisation::{Goal, SkinPoint, Target};
+use mechanics::prediction::{LANDMARK_FAR, Skin};
+use mechanics::response::{ResponseError, chosen};
+
+/// Inverse planning whose documents are sound.
+pub struct PreparedOptimisation {
+    /// The scene in which nothing moves.
+    pub rest: Prepared,
+    pub targets: Vec<Target>,
+    /// How many segments move.
+    pub moving: usize,
+    /// Those that only inverse planning has.
+    pub warnings: Vec<Warning>,
+    pub spec_hash: String,
+}
+
+/// The name of the part of the skin that a target selects. A part of the case with the same name would be
+/// hidden while the targets are read, and is back in the prediction.
+fn part_of(target: usize) -> String {
+    format!("target {target}")
+}
+
+impl OptimiseInput {
+    /// Fetches the meshes and checks the documents as those of a prediction in which nothing moves.
+    /// Everything wrong is told; pointers start at `/case` and `/spec`.
+    pub fn prepare(
+        &self,
+        sources: &dyn MeshSource,
+        limits: &Limits,
+    ) -> Result<PreparedOptimisation, JobError> {
+        let mut faults = Faults::default();
+        self.spec.check(&self.case, limits, &mut faults);
+        faults.into_result()?;
+        let rest = self.at_rest().prepare(sources, limits).map_err(|error| self.in_spec(error))?;
+        let moving = chosen(&rest.scene, &self.spec.moving());
+        let moving = moving.map_err(|error| self.judge(error))?.len();
+        let mut warnings = Vec::new();
+        let targets = self.targets(&rest, limits, &mut warnings)?;
+        let content = |id: &str| rest.contents.get(id).cloned();
+        let spec_hash = canonical::optimise_hash(&self.case, &self.spec, &content);
+        Ok(PreparedOptimisation { rest, targets, moving, warnings, spec_hash })
+    }
+
+    /// The ids of all meshes that the job reads.
+    pub fn mesh_ids(&self) -> Vec<String> {
+        self.at_rest().case.mesh_ids()
+    }
+
+    /// A prediction in which the segments stay, with a part of the skin for each target.
+    fn at_rest(&self) -> PredictInput {
+        let mut case = self.case.clone();
+        for (index, target) in self.spec.targets.iter().enumerate() {
+            if let Some(nodes) = &target.nodes {
+                case.skin_regions.insert(part_of(index), nodes.clone());
+            }
+        }
+        let (plan, spec) = (self.spec.rest(), self.spec.to_prediction());
+        PredictInput { job: None, queue_s: None, case, plan, spec }
+    }
+
+    /// The places of the rest documents are places of the spec.
+    fn in_spec(&self, error: JobError) -> JobError {
+        let JobError::Refused(mut problem) = error else { return error };
+        for index in 0..self.spec.targets.len() {
+            let part = format!("/case/skin_regions/{}", part_of(index));
+            problem = problem.moved(&part, &format!("/spec/targets/{index}/nodes"));
+        }
+        let bounds = Pointer::root().key("spec").key("bounds");
+        for (index, name) in self.spec.bounds.keys().enumerate() {
+            let planned = format!("/plan/segments/{index}");
+            for end in ["/name", ""] {
+                problem = problem.moved(&format!("{planned}{end}"), bounds.key(name).as_str());
+            }
+        }
+        JobError::Refused(problem)
+    }
+
+    /// What a response that cannot be built means for the job.
+    pub(super) fn judge(&self, error: ResponseError) -> JobError {
+        match error {
+            ResponseError::Prediction(error) => error.into(),
+            refused => JobError::Refused(self.spec.to_response().refusal(&refused)),
+        }
+    }
+
+    fn targets(
+        &self,
+        rest: &Prepared,
+        limits: &Limits,
+        warnings: &mut Vec<Warning>,
+    ) -> Result<Vec<Target>, JobError> {
+        let skin = &rest.scene.skin;
+        let degenerate = |error| {
+            Problem::at(&Pointer::from_text("/case/skin"), "mesh-degenerate", format!("{error}"))
+        };
+        let mut search = None;
+        let mut targets = Vec::new();
+        let mut faults = Faults::default();
+        for (index, document) in self.spec.targets.iter().enumerate() {
+            let goals = match &document.landmark {
+                None => node_goals(document, &part_of(index), skin),
+                Some(name) => {
+                    let search = match &search {
+                        Some(search) => search,
+                        None => {
+                            search.insert(SurfaceSearch::new(&skin.surface).map_err(degenerate)?)
+                        }
+                    };
+                    let landmark = rest.scene.landmarks.get(name).copied().unwrap_or_default();
+                    let closest = search.closest(&landmark);
+                    if closest.distance > LANDMARK_FAR {
+                        let detail = format!(
+                            "landmark {name:?} takes the displacement of the closest point of the skin"
+                        );
+                        let warning = Warning::new("landmark-far", detail);
+                        warnings.push(warning.with("distance_mm", closest.distance));
+                    }
+                    let corners = skin.surface.triangles[closest.triangle];
+                    let point = SkinPoint::within(corners, closest.barycentric);
+                    vec![Goal { point, displacement: document.displacement(&landmark) }]
+                }
+            };
+            let (at, _) = document.wanted(&Pointer::root().key("spec").key("targets").index(index));
+            check_reach(&goals, &at, limits, &mut faults);
+            targets.push(Target { goals, sigma: document.sigma_mm });
+        }
+        faults.into_result()?;
+        Ok(targets)
+    }
+}
+
+/// A goal for each point of a part of the skin.
+fn node_goals(document: &TargetDocument, part: &str, skin: &Skin) -> Vec<Goal> {
+    let points = skin.regions.get(part).map(Vec::as_slice).unwrap_or_default();
+    let goal = |&point: &u32| Goal {
+        point: SkinPoint::node(point),
+        displacement: document.displacement(&skin.surface.points[point as usize]),
+    };
+    points.iter().map(goal).collect()
+}
+
+/// Refuses positions that no movement within the limits comes near to.
+fn check_reach(goals: &[Goal], at: &Pointer, limits: &Limits, faults: &mut Faults) {
+    let wanted = goals.iter().flat_map(|goal| goal.displacement).flatten();
+    let farthest = wanted.map(f64::abs).fold(0.0, f64::max);
+    let limit = limits.translation_mm;
+    if farthest > limit {
+        let detail = format!(
+            "a component is {farthest:.3} mm from where it is at rest, at most {limit} mm are allowed"
+        );
+        faults.add(at, "out-of-range", detail);
+    }
+}

@@ -1,0 +1,106 @@
+//! What a case and a plan mean, before anything is solved.
+
+use super::cost;
+use super::input::{PredictInput, Prepared};
+use crate::jobs::failure::JobError;
+use crate::jobs::result::pictures::classes_picture;
+use crate::jobs::source::MeshSource;
+use crate::schema::predict::check::{CheckDocument, ClassCounts, SkinSummary};
+use crate::schema::{Limits, WarningDocument};
+use mechanics::mesh::Warning;
+use mechanics::prediction::{NodeClass, Scene};
+
+/// The counts of a check, and the picture on demand: drawing takes longer than counting.
+pub struct CheckReport {
+    pub document: CheckDocument,
+    prepared: Prepared,
+}
+
+impl CheckReport {
+    /// `classes.svg`: the boundary coloured by what holds it.
+    pub fn picture(&self) -> Result<String, JobError> {
+        self.prepared.classes_picture()
+    }
+}
+
+/// Checks a case and a plan without solving; an empty plan checks the case alone.
+pub fn check(
+    input: &PredictInput,
+    sources: &dyn MeshSource,
+    limits: &Limits,
+) -> Result<CheckReport, JobError> {
+    let prepared = input.prepare(sources, limits)?;
+    Ok(CheckReport { document: prepared.summary(input), prepared })
+}
+
+impl Prepared {
+    /// The counts of everything that is held, and what solving is expected to take.
+    pub fn summary(&self, input: &PredictInput) -> CheckDocument {
+        let scene = &self.scene;
+        let skin = &scene.skin;
+        let nodes = scene.mesh.nodes.len();
+        let held: usize = scene.conditions.holds.iter().map(|hold| hold.count()).sum();
+        let warnings = self.warnings.iter().chain(&scene.warnings);
+        CheckDocument {
+            nodes: nodes as u64,
+            cells: scene.mesh.cells.len() as u64,
+            classes: class_counts(scene),
+            skin: SkinSummary {
+                nodes: skin.surface.points.len() as u64,
+                triangles: skin.surface.triangles.len() as u64,
+                area_mm2: skin.surface.area(),
+                regions: skin
+                    .regions
+                    .iter()
+                    .map(|(name, points)| (name.clone(), points.len() as u64))
+                    .collect(),
+            },
+            imaged: scene.imaged.as_ref().map(Into::into),
+            unknowns: (3 * nodes - held) as u64,
+            memory_mb: cost::memory_mb(scene, 0),
+            time_s: cost::time_s(scene, input.spec.method),
+            method: input.spec.method.chosen().name().to_owned(),
+            why: input.spec.method.why().to_owned(),
+            warnings: warnings.map(WarningDocument::from).collect(),
+        }
+    }
+
+    /// The boundary coloured by what holds it.
+    pub fn classes_picture(&self) -> Result<String, JobError> {
+        let counts = class_counts(&self.scene);
+        let joined: u64 = counts.joined.values().sum();
+        let title = format!("What holds the tissue: {joined} joined, {} fixed nodes", counts.fixed);
+        Ok(classes_picture(&self.scene, self.case.frame, &title)?)
+    }
+}
+
+fn class_counts(scene: &Scene) -> ClassCounts {
+    let mut counts = ClassCounts::default();
+    for segment in &scene.segments {
+        counts.joined.insert(segment.name.clone(), 0);
+    }
+    for class in &scene.conditions.classes {
+        match class {
+            NodeClass::Prescribed => counts.prescribed += 1,
+            NodeClass::Joined(segment) => {
+                let name = &scene.segments[*segment as usize].name;
+                *counts.joined.entry(name.clone()).or_default() += 1;
+            }
+            NodeClass::Fixed => counts.fixed += 1,
+            NodeClass::Sliding => counts.sliding += 1,
+            NodeClass::Free => counts.free += 1,
+        }
+    }
+    counts
+}
+
+/// Warnings as documents, without repeats.
+pub fn warning_documents<'a>(warnings: impl Iterator<Item = &'a Warning>) -> Vec<WarningDocument> {
+    let mut documents: Vec<WarningDocument> = Vec::new();
+    for warning in warnings.map(WarningDocument::from) {
+        if !documents.contains(&warning) {
+            documents.push(warning);
+        }
+    }
+    documents
+}

@@ -1,0 +1,77 @@
+//! What a prediction is expected to take, before it is solved.
+
+use super::input::Prepared;
+use crate::jobs::failure::JobError;
+use crate::schema::Limits;
+use crate::schema::methods::{MethodName, time_band};
+use crate::schema::predict::check::TimeBandDocument;
+use mechanics::mesh::CellShape;
+use mechanics::prediction::{ElementChoice, Method, PredictionError, Scene};
+use mechanics::response::COLUMNS_PER_SEGMENT;
+
+/// The peak of a whole process in MB was measured for blocks of up to 384 000 cells (12, 24 and 40 bricks along each
+/// edge, six tetrahedra a brick), files of the skin and the volume included: some 20 MB for the program, up to 30 more
+/// for the factorisation of a small system, and so many bytes for each cell. The estimate was within a third of each.
+const PROGRAM_MB: f64 = 30.0;
+const HEXAHEDRON: f64 = 4700.0;
+/// Two share a node with twenty neighbours, where one hexahedron has a node with 26.
+const WEDGE: f64 = 2300.0;
+const TETRAHEDRON: f64 = 520.0;
+const OF_SPRINGS: f64 = 680.0;
+const WITH_PRESSURE: f64 = 780.0;
+const QUADRATIC: f64 = 6700.0;
+/// A cell that is read, drawn and written, and not assembled.
+const READ_ONLY: f64 = 200.0;
+/// Of one column of a response at one node: its right-hand side, its unknowns and its vectors of the iteration. 24
+/// columns at the 50 700 nodes of `docs/performance.md` took 254 MB more than one.
+const COLUMN_AT_NODE: f64 = 210.0;
+
+/// The memory of a process that solves a scene, in MB, and of the columns of so many segments. Volume splines check
+/// the size of their lattice themselves, and are told as their mesh here.
+pub fn memory_mb(scene: &Scene, segments: usize) -> f64 {
+    let cells: f64 = scene.mesh.cells.iter().map(|(shape, _)| bytes_of_cell(scene, shape)).sum();
+    let columns = (COLUMNS_PER_SEGMENT * segments * scene.mesh.nodes.len()) as f64;
+    PROGRAM_MB + (cells + columns * COLUMN_AT_NODE) / 1e6
+}
+
+fn bytes_of_cell(scene: &Scene, shape: CellShape) -> f64 {
+    match &scene.settings.method {
+        Method::ThicknessWarp(_) | Method::VolumeSpline(_) => return READ_ONLY,
+        Method::MassSpring(_) => return OF_SPRINGS,
+        Method::MassTensor(_) | Method::MassTensorTransverse => return TETRAHEDRON,
+        Method::FemLinear => {}
+    }
+    match (shape, scene.element) {
+        (CellShape::Hex8, _) => HEXAHEDRON,
+        (CellShape::Wedge6, _) => WEDGE,
+        (CellShape::Tet4, ElementChoice::Plain | ElementChoice::MeanDilatation) => TETRAHEDRON,
+        (CellShape::Tet4, ElementChoice::Auto | ElementChoice::Stabilised) => WITH_PRESSURE,
+        (CellShape::Tet4, ElementChoice::Quadratic) => QUADRATIC,
+    }
+}
+
+/// Between which times a scene is expected to be solved, in s; none for methods whose unknowns are not those of the
+/// mesh.
+pub fn time_s(scene: &Scene, method: MethodName) -> Option<TimeBandDocument> {
+    let nodes = scene.mesh.nodes.len();
+    let held: usize = scene.conditions.holds.iter().map(|hold| hold.count()).sum();
+    let unknowns = (3 * nodes - held) as f64;
+    let unknowns = match (&scene.settings.method, scene.element) {
+        (Method::ThicknessWarp(_) | Method::VolumeSpline(_), _) => return None,
+        // An edge for seven in eight nodes of the finer mesh.
+        (Method::FemLinear, ElementChoice::Quadratic) => 8.0 * unknowns,
+        _ => unknowns,
+    };
+    time_band(method.chosen().name(), unknowns as u64)
+}
+
+impl Prepared {
+    /// Refuses what is expected to need more memory than a slot has.
+    pub fn admit(&self, segments: usize, limits: &Limits) -> Result<(), JobError> {
+        let (needed_mb, allowed_mb) = (memory_mb(&self.scene, segments), limits.slot_memory_mb);
+        match needed_mb > allowed_mb {
+            true => Err(PredictionError::OverBudget { needed_mb, allowed_mb }.into()),
+            false => Ok(()),
+        }
+    }
+}

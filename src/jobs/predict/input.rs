@@ -1,0 +1,270 @@
+//! The documents of a job with their meshes, checked and converted.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+use crate::jobs::compare::fetch;
+use crate::jobs::failure::JobError;
+use crate::jobs::optimise::OptimiseInput;
+use crate::jobs::response::ResponseInput;
+use crate::jobs::source::{MeshSource, SourceError, StoredMesh, StoredShape};
+use crate::jobs::study::StudyInput;
+use crate::schema::case::conversion::centre;
+use crate::schema::case::document::{CaseMeshes, NamedMesh};
+use crate::schema::plan::document::PlanContext;
+use crate::schema::predict::result::InputDocument;
+use crate::schema::wire::canonical;
+use crate::schema::{
+    CaseDocument, CompareDocument, Faults, Limits, PlanDocument, Pointer, PredictDocument,
+};
+use mechanics::mesh::Warning;
+use mechanics::mesh::quality::{QualityReport, quality};
+use mechanics::prediction::{Case, Plan, Scene, Settings};
+
+/// A job as it is queued: everything that decides its result, but for the meshes.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+#[expect(clippy::large_enum_variant, reason = "there is one for each job, not thousands in a row")]
+pub enum JobInput {
+    Predict(PredictInput),
+    Compare(CompareInput),
+    Response(ResponseInput),
+    Optimise(OptimiseInput),
+    Study(StudyInput),
+}
+
+/// A prediction: the case and the plan in full beside the spec.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PredictInput {
+    /// The id of the job; absent on the command line.
+    pub job: Option<String>,
+    /// From acceptance to start.
+    pub queue_s: Option<f64>,
+    pub case: CaseDocument,
+    pub plan: PlanDocument,
+    pub spec: PredictDocument,
+}
+
+/// A comparison of two surfaces.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CompareInput {
+    /// The id of the job; absent on the command line.
+    pub job: Option<String>,
+    /// From acceptance to start.
+    pub queue_s: Option<f64>,
+    pub spec: CompareDocument,
+}
+
+/// A prediction whose documents are sound: what the path takes, and where it came from.
+pub struct Prepared {
+    pub case: Case,
+    pub plan: Plan,
+    pub scene: Scene,
+    pub quality: QualityReport,
+    pub spec_hash: String,
+    pub inputs: Vec<InputDocument>,
+    /// The SHA-256 of each mesh of the case by its id.
+    pub contents: BTreeMap<String, String>,
+    /// The surface that the skin is to be compared with.
+    pub actual: Option<StoredMesh>,
+    /// Of the meshes and of the conversion; those of the scene are in the scene.
+    pub warnings: Vec<Warning>,
+}
+
+/// Documents in the types of the path.
+struct Converted {
+    case: Case,
+    plan: Plan,
+    settings: Settings,
+    warnings: Vec<Warning>,
+}
+
+impl PredictInput {
+    /// Fetches the meshes, converts the documents and checks them together. Everything wrong is told;
+    /// pointers start at `/case`, `/plan` and `/spec`.
+    pub fn prepare(&self, sources: &dyn MeshSource, limits: &Limits) -> Result<Prepared, JobError> {
+        let stored = self.fetch(sources)?;
+        let actual = self.fetch_actual(sources)?;
+        let meshes = self.case_meshes(&stored)?;
+        let converted = self.convert(&meshes, limits)?;
+        let scene = Scene::new(&converted.case, &converted.plan, &converted.settings)
+            .map_err(|errors| JobError::Refused(errors.into()))?;
+        let quality = quality(&converted.case.volume);
+        let meshes_read = stored.values().chain(&actual);
+        let mut warnings: Vec<Warning> =
+            meshes_read.flat_map(|mesh| mesh.warnings.iter().cloned()).collect();
+        warnings.extend(converted.warnings);
+        warnings.extend(quality.warnings());
+        Ok(Prepared {
+            case: converted.case,
+            plan: converted.plan,
+            scene,
+            quality,
+            spec_hash: self.spec_hash(&stored, actual.as_ref()),
+            inputs: self.inputs(&stored, actual.as_ref()),
+            contents: stored.iter().map(|(id, mesh)| (id.clone(), mesh.sha256.clone())).collect(),
+            actual,
+            warnings,
+        })
+    }
+
+    fn convert(&self, meshes: &CaseMeshes, limits: &Limits) -> Result<Converted, JobError> {
+        let mut faults = Faults::default();
+        let spec_materials = self.spec.materials.as_ref();
+        let (case, warnings) = self.case.to_case(meshes, spec_materials, limits, &mut faults);
+        let context = PlanContext { frame: case.frame, centre: centre(&case.volume), limits };
+        let plan = self.plan.to_plan(&Pointer::root().key("plan"), &context, &mut faults);
+        let settings = self.spec.to_settings(limits, &mut faults);
+        faults.into_result()?;
+        Ok(Converted { case, plan, settings, warnings })
+    }
+
+    /// The meshes that the case and the plan ask for.
+    fn fetch(&self, sources: &dyn MeshSource) -> Result<BTreeMap<String, StoredMesh>, JobError> {
+        let mut wanted: Vec<(Pointer, String)> = Vec::new();
+        let (mut case, mut plan) = (self.case.clone(), self.plan.clone());
+        let is_bone = |id: &str| self.case.bones.iter().any(|bone| bone.name == id);
+        let under = |root: &str, at: Pointer| Pointer::from_text(&format!("/{root}{at}"));
+        for (at, id) in case.mesh_references_mut() {
+            wanted.push((under("case", at), id.clone()));
+        }
+        for (at, id) in plan.surface_references_mut() {
+            if !is_bone(id) {
+                wanted.push((under("plan", at), id.clone()));
+            }
+        }
+        let mut stored = BTreeMap::new();
+        let mut faults = Faults::default();
+        for (at, id) in wanted {
+            if let Some(mesh) = stored.get(&id) {
+                check_kind(&at, mesh, &mut faults);
+                continue;
+            }
+            match sources.mesh(&id) {
+                Ok(mesh) => {
+                    check_kind(&at, &mesh, &mut faults);
+                    self.check_units(&at, &mesh, &mut faults);
+                    stored.insert(id, mesh);
+                }
+                Err(SourceError::Unknown { .. }) => {
+                    faults.add(&at, "unknown-mesh", format!("there is no mesh {id:?}"));
+                }
+                Err(SourceError::Refused { code, detail, .. }) => faults.add(&at, code, detail),
+                Err(other) => return Err(JobError::Source(other)),
+            }
+        }
+        faults.into_result()?;
+        Ok(stored)
+    }
+
+    fn check_units(&self, at: &Pointer, mesh: &StoredMesh, faults: &mut Faults) {
+        if let Some(units) = mesh.units.filter(|units| *units != self.case.units) {
+            let (own, of_case) = (units.name(), self.case.units.name());
+            let detail = format!("the mesh was uploaded in {own}, and the case is in {of_case}");
+            faults.add(at, "units-conflict", detail);
+        }
+    }
+
+    fn case_meshes(&self, stored: &BTreeMap<String, StoredMesh>) -> Result<CaseMeshes, JobError> {
+        let mut surfaces = BTreeMap::new();
+        let (mut volume, mut image) = (None, None);
+        for (id, mesh) in stored {
+            let frame = mesh.frame;
+            match &mesh.shape {
+                StoredShape::Volume(shared) if *id == self.case.volume => {
+                    volume = Some(NamedMesh { mesh: shared.clone(), frame });
+                }
+                StoredShape::Image(shared) => {
+                    image = Some(NamedMesh { mesh: shared.clone(), frame })
+                }
+                StoredShape::Volume(_) | StoredShape::Surface(_) => {
+                    let named = mesh.surface().map(|mesh| NamedMesh { mesh, frame });
+                    surfaces.extend(named.map(|named| (id.clone(), named)));
+                }
+            }
+        }
+        let missing = || JobError::Source(SourceError::Unknown { id: self.case.volume.clone() });
+        Ok(CaseMeshes { volume: volume.ok_or_else(missing)?, surfaces, image })
+    }
+
+    fn fetch_actual(&self, sources: &dyn MeshSource) -> Result<Option<StoredMesh>, JobError> {
+        let Some(compare_to) = &self.spec.compare_to else {
+            return Ok(None);
+        };
+        let at = Pointer::from_text("/spec/compare_to/actual/mesh");
+        fetch(sources, &compare_to.actual.mesh, &at).map(Some)
+    }
+
+    /// The hash of everything that decides the numbers.
+    fn spec_hash(
+        &self,
+        stored: &BTreeMap<String, StoredMesh>,
+        actual: Option<&StoredMesh>,
+    ) -> String {
+        let actual_id = self.spec.compare_to.as_ref().map(|spec| spec.actual.mesh.as_str());
+        let content = |id: &str| {
+            let compared = actual.filter(|_| actual_id == Some(id));
+            stored.get(id).or(compared).map(|mesh| mesh.sha256.clone())
+        };
+        canonical::predict_hash(&self.case, &self.plan, &self.spec, &content)
+    }
+
+    fn inputs(
+        &self,
+        stored: &BTreeMap<String, StoredMesh>,
+        actual: Option<&StoredMesh>,
+    ) -> Vec<InputDocument> {
+        let role = |id: &str| {
+            if *id == self.case.volume {
+                return "volume".to_owned();
+            }
+            if self.case.hounsfield.as_ref().is_some_and(|hounsfield| hounsfield.image == id) {
+                return "image".to_owned();
+            }
+            let bone = self.case.bones.iter().find(|bone| bone.mesh == id);
+            bone.map_or_else(|| "surface".to_owned(), |bone| format!("bone {}", bone.name))
+        };
+        let mut inputs: Vec<InputDocument> =
+            stored.iter().map(|(id, mesh)| mesh.to_input(&role(id))).collect();
+        inputs.sort_by(|a, b| b.role.cmp(&a.role));
+        inputs.extend(actual.map(|mesh| mesh.to_input("actual")));
+        inputs
+    }
+}
+
+/// Refuses a surface or an image where a volume is needed, a mesh where an image is, and an image elsewhere.
+fn check_kind(at: &Pointer, mesh: &StoredMesh, faults: &mut Faults) {
+    let (is, needed) = match (at.as_str(), &mesh.shape) {
+        ("/case/volume", StoredShape::Volume(_)) => return,
+        ("/case/volume", StoredShape::Surface(_)) => ("this mesh is a surface", "a volume"),
+        ("/case/volume", StoredShape::Image(_)) => ("this is an image", "a volume"),
+        ("/case/hounsfield/image", StoredShape::Image(_)) => return,
+        ("/case/hounsfield/image", _) => ("this is a mesh", "an image"),
+        (_, StoredShape::Image(_)) => ("this is an image", "a mesh"),
+        _ => return,
+    };
+    faults.add(at, "wrong-mesh", format!("{is}, and {needed} is needed"));
+}
+
+impl StoredMesh {
+    /// How provenance names this mesh.
+    pub fn to_input(&self, role: &str) -> InputDocument {
+        let count = |count: usize| Some(count as u64);
+        let (nodes, cells, triangles, voxels) = match &self.shape {
+            StoredShape::Volume(mesh) => (mesh.nodes.len(), count(mesh.cells.len()), None, None),
+            StoredShape::Surface(mesh) => {
+                (mesh.points.len(), None, count(mesh.triangles.len()), None)
+            }
+            StoredShape::Image(image) => (0, None, None, count(image.voxels().len())),
+        };
+        InputDocument {
+            role: role.to_owned(),
+            sha256: self.sha256.clone(),
+            nodes: nodes as u64,
+            cells,
+            triangles,
+            voxels,
+        }
+    }
+}

@@ -1,0 +1,7 @@
+//! The files of a result.
+
+pub mod folder;
+pub mod pictures;
+pub mod provenance;
+pub mod skin;
+pub mod tissue;

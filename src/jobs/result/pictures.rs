@@ -1,0 +1,100 @@
+//! The pictures of a job: what holds the boundary, and how the skin moves.
+
+use super::skin::PredictedSkin;
+use crate::schema::compare::result::StatDocument;
+use mechanics::chart::{
+    ClassKind, ClassesPicture, DisplacementPicture, NodeClasses, Outlook, PngError, front_of,
+};
+use mechanics::mesh::{Frame, TriangleSurface, Vector};
+use mechanics::prediction::{NodeClass, Scene};
+
+/// Every class of a scene with its number of nodes, segments first; classes without a node are left out,
+/// but not segments, because an empty one is a mistake worth seeing.
+fn classes_of(scene: &Scene) -> Vec<(NodeClass, NodeClasses)> {
+    let segments = (0..scene.segments.len() as u32).map(NodeClass::Joined);
+    let others = [NodeClass::Prescribed, NodeClass::Fixed, NodeClass::Sliding, NodeClass::Free];
+    segments
+        .chain(others)
+        .map(|class| {
+            let kind = match class {
+                NodeClass::Joined(segment) => {
+                    ClassKind::Joined(scene.segments[segment as usize].name.clone())
+                }
+                NodeClass::Prescribed => ClassKind::Prescribed,
+                NodeClass::Fixed => ClassKind::Fixed,
+                NodeClass::Sliding => ClassKind::Sliding,
+                NodeClass::Free => ClassKind::Free,
+            };
+            let count = scene.conditions.classes.iter().filter(|&&other| other == class).count();
+            (class, NodeClasses { kind, count })
+        })
+        .filter(|(class, nodes)| nodes.count > 0 || matches!(class, NodeClass::Joined(_)))
+        .collect()
+}
+
+/// `classes.svg`: the boundary of the volume mesh coloured by what holds its nodes.
+pub fn classes_picture(scene: &Scene, frame: Frame, title: &str) -> Result<String, PngError> {
+    let boundary = scene.mesh.surface_of(&scene.mesh.boundary_faces());
+    let (order, classes): (Vec<NodeClass>, Vec<NodeClasses>) =
+        classes_of(scene).into_iter().unzip();
+    let nodes = boundary.node_ids.iter().flatten();
+    let class_of: Vec<usize> = nodes
+        .map(|&node| {
+            let class = scene.conditions.classes[node as usize];
+            order.iter().position(|other| *other == class).unwrap_or(order.len())
+        })
+        .collect();
+    ClassesPicture {
+        title,
+        points: &boundary.points,
+        triangles: &boundary.triangles,
+        class_of: &class_of,
+        classes: &classes,
+        outlook: outlook(frame, &scene.skin.surface),
+        frame: frame.name(),
+    }
+    .to_svg()
+}
+
+/// `displacement.svg`: the skin before, after, and coloured by how far it moves.
+pub fn displacement_picture(
+    scene: &Scene,
+    skin: &PredictedSkin,
+    frame: Frame,
+    statistics: &StatDocument,
+) -> Result<String, PngError> {
+    let before = &scene.skin.surface;
+    let moving = scene.segments.iter().filter(|segment| segment.movement != Default::default());
+    let names: Vec<&str> = moving.map(|segment| segment.name.as_str()).collect();
+    let subtitle = match names.as_slice() {
+        [] => "no segment moves".to_owned(),
+        names => format!("moved: {}", names.join(", ")),
+    };
+    let numbers = format!(
+        "|u| over {} skin nodes: mean {:.3} mm, median {:.3} mm, p95 {:.3} mm, largest {:.3} mm",
+        statistics.count, statistics.mean, statistics.median, statistics.p95, statistics.max
+    );
+    DisplacementPicture {
+        title: "Predicted skin",
+        subtitle: &subtitle,
+        triangles: &before.triangles,
+        before: &before.points,
+        after: &skin.surface.points,
+        outlook: outlook(frame, before),
+        frame: frame.name(),
+        statistics: &numbers,
+    }
+    .to_svg()
+}
+
+/// From where the face is seen; without a known frame its front is found from its skin.
+fn outlook(frame: Frame, skin: &TriangleSurface) -> Outlook {
+    match frame {
+        Frame::Lps => Outlook::lps(),
+        Frame::Ras => Outlook::ras(),
+        Frame::Unspecified => {
+            let up = Vector::z();
+            Outlook { front: front_of(&skin.points, &skin.triangles, up), up }
+        }
+    }
+}

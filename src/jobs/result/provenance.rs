@@ -1,0 +1,125 @@
+//! Where the numbers of a result come from.
+
+use serde_json::{Value, json};
+
+use crate::jobs::clock::{Observed, now_rfc3339, peak_rss_mb};
+use crate::jobs::failure::{JobError, thinned};
+use crate::schema::case::document::LengthUnit;
+use crate::schema::methods::MethodName;
+use crate::schema::predict::result::{
+    EngineDocument, InputDocument, MeshSummaryDocument, NOT_A_DEVICE, ProvenanceDocument,
+    ResultDocument, SolverDocument,
+};
+use mechanics::mesh::quality::QualityReport;
+use mechanics::mesh::{Frame, VolumeMesh};
+use mechanics::prediction::SolverReport;
+
+/// What a job knows of its origin before it starts.
+pub struct Origin {
+    pub spec_hash: String,
+    pub inputs: Vec<InputDocument>,
+    pub frame: Frame,
+    pub queue_s: Option<f64>,
+}
+
+impl Origin {
+    /// Provenance without method, solver and mesh.
+    pub fn provenance(&self, clock: &Observed) -> ProvenanceDocument {
+        ProvenanceDocument {
+            engine: EngineDocument::this(),
+            spec_hash: self.spec_hash.clone(),
+            inputs: self.inputs.clone(),
+            method: None,
+            why: None,
+            solver: None,
+            mesh: None,
+            threads: rayon::current_num_threads() as u32,
+            determinism: "bitwise".to_owned(),
+            timing: clock.timing(self.queue_s),
+            peak_rss_mb: peak_rss_mb(),
+            frame: self.frame.into(),
+            units: LengthUnit::Mm,
+            created: now_rfc3339(),
+            statement: NOT_A_DEVICE.to_owned(),
+        }
+    }
+
+    /// Texts for result files. No times: the same job writes the same bytes.
+    pub fn field_data(&self, method: MethodName, solver: &SolverDocument) -> Vec<(String, String)> {
+        let provenance = json!({
+            "engine": EngineDocument::this(),
+            "spec_hash": self.spec_hash,
+            "inputs": self.inputs,
+            "method": method.chosen().name(),
+            "solver": solver,
+            "frame": self.frame.name(),
+            "units": "mm",
+            "statement": NOT_A_DEVICE,
+        });
+        vec![("provenance".to_owned(), provenance.to_string())]
+    }
+}
+
+/// Adds what only a prediction knows.
+pub fn add_method(
+    provenance: &mut ProvenanceDocument,
+    method: MethodName,
+    mesh: (&VolumeMesh, &QualityReport),
+    solver: SolverDocument,
+) {
+    let (mesh, quality) = mesh;
+    provenance.method = Some(method.chosen().name().to_owned());
+    provenance.why = Some(method.why().to_owned());
+    provenance.solver = Some(solver);
+    provenance.mesh = Some(MeshSummaryDocument {
+        nodes: mesh.nodes.len() as u64,
+        cells: mesh.cells.len() as u64,
+        min_quality: quality.smallest_scaled_jacobian,
+        inverted: quality.inverted as u64,
+    });
+}
+
+/// How a solver reports itself.
+pub fn solver_document(solver: &SolverReport) -> SolverDocument {
+    SolverDocument {
+        name: solver.name.to_owned(),
+        preconditioner: solver.preconditioner.to_owned(),
+        why: solver.why.clone(),
+        unknowns: solver.unknowns as u64,
+        iterations: solver.iterations as u64,
+        relative_residual: solver.relative_residual,
+        wanted_residual: solver.wanted_residual,
+        elements: solver.elements.clone(),
+        history: thinned(&solver.history),
+        steps: solver.steps,
+    }
+}
+
+/// The bytes of `result.json`. JSON has no word for a number that is not finite and would write null:
+/// such a result is refused.
+pub fn encode_result(result: &ResultDocument) -> Result<Vec<u8>, JobError> {
+    let value = serde_json::to_value(result)
+        .map_err(|error| JobError::NotFinite { what: error.to_string() })?;
+    if let Some(what) = first_null(&value, String::new()) {
+        return Err(JobError::NotFinite { what });
+    }
+    let mut text = format!("{value:#}");
+    text.push('\n');
+    Ok(text.into_bytes())
+}
+
+/// The place of the first null that does not belong into a result.
+pub(in crate::jobs) fn first_null(value: &Value, at: String) -> Option<String> {
+    match value {
+        Value::Null if at != "/numerical_error_mm" => Some(at),
+        Value::Array(entries) => {
+            let mut entries = entries.iter().enumerate();
+            entries.find_map(|(index, entry)| first_null(entry, format!("{at}/{index}")))
+        }
+        Value::Object(members) => {
+            let mut members = members.iter();
+            members.find_map(|(name, member)| first_null(member, format!("{at}/{name}")))
+        }
+        _ => None,
+    }
+}

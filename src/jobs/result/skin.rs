@@ -1,0 +1,84 @@
+//! The predicted skin as files: the arrays of the API beside the moved points.
+
+use crate::schema::predict::document::OutputName;
+use mechanics::chart::colour::{Rgb, sequential};
+use mechanics::format::vtk::vtp;
+use mechanics::format::{ArrayValues, NamedValues, SurfaceOutput, WriteError, csv, glb, ply, stl};
+use mechanics::mesh::{Frame, TriangleSurface, Vector};
+use mechanics::prediction::{Prediction, Skin};
+
+/// The skin after the movement, one entry for each of its points.
+pub struct PredictedSkin {
+    /// Moved points, in mm.
+    pub surface: TriangleSurface,
+    pub displacement: Vec<Vector>,
+    /// In mm.
+    pub magnitude: Vec<f64>,
+    /// To the surface it was compared with, in mm, positive outside.
+    pub signed_distance: Option<Vec<f64>>,
+}
+
+impl PredictedSkin {
+    pub fn new(skin: &Skin, prediction: &Prediction) -> Self {
+        let nodes = skin.nodes().iter();
+        let displacement = nodes.map(|&node| prediction.displacement[node as usize]).collect();
+        Self::of_displacement(skin, displacement)
+    }
+
+    /// The skin with one displacement in mm for each of its points.
+    pub fn of_displacement(skin: &Skin, displacement: Vec<Vector>) -> Self {
+        let mut surface = skin.surface.clone();
+        for (point, moved) in surface.points.iter_mut().zip(&displacement) {
+            *point += moved;
+        }
+        PredictedSkin {
+            surface,
+            magnitude: displacement.iter().map(Vector::norm).collect(),
+            displacement,
+            signed_distance: None,
+        }
+    }
+
+    /// The bytes of one of the skin files; `None` for names of other files.
+    pub fn encode(
+        &self,
+        name: OutputName,
+        frame: Frame,
+        field_data: &[(String, String)],
+    ) -> Result<Option<Vec<u8>>, WriteError> {
+        let colours = self.colours();
+        let mut output = SurfaceOutput::plain(&self.surface, frame);
+        output.field_data = field_data.to_vec();
+        output.point_arrays = vec![
+            NamedValues {
+                name: "displacement_mm",
+                values: ArrayValues::Vectors(&self.displacement),
+            },
+            NamedValues {
+                name: "displacement_magnitude_mm",
+                values: ArrayValues::Reals(&self.magnitude),
+            },
+        ];
+        if let Some(distance) = &self.signed_distance {
+            let values = ArrayValues::Reals(distance);
+            output.point_arrays.push(NamedValues { name: "signed_distance_mm", values });
+        }
+        if matches!(name, OutputName::SkinGlb | OutputName::SkinPly) {
+            output.colours = Some(&colours);
+        }
+        match name {
+            OutputName::SkinVtp => vtp::write(&output).map(Some),
+            OutputName::SkinStl => stl::write(&output).map(Some),
+            OutputName::SkinPly => ply::write(&output).map(Some),
+            OutputName::SkinGlb => glb::write(&output).map(Some),
+            OutputName::SkinCsv => csv::write(&output).map(Some),
+            _ => Ok(None),
+        }
+    }
+
+    /// Colours by the length of the displacement, from none to the largest.
+    fn colours(&self) -> Vec<Rgb> {
+        let largest = self.magnitude.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
+        self.magnitude.iter().map(|length| sequential(length / largest)).collect()
+    }
+}

@@ -1,0 +1,197 @@
+//! What a study found as the document that clients read.
+
+use crate::jobs::failure::JobError;
+use crate::jobs::result::provenance::first_null;
+use crate::schema::predict::result::{EngineDocument, NOT_A_DEVICE};
+use crate::schema::study::document::StudyDocument;
+use crate::schema::study::report::{
+    ConvergenceDocument, ErrorsDocument, NumbersDocument, ReportDocument, RowDocument,
+    RowErrorDocument, RowStatus, RowVerdict, RulesDocument, SignedRankDocument, StudySceneDocument,
+    TruthErrorDocument, VariantComparisonDocument, VerdictDocument,
+};
+use mechanics::study::convergence::{Series, series};
+use mechanics::study::pairwise::{Pairwise, compare_variants, many_comparisons};
+use mechanics::study::{
+    Errors, NOT_RUN, Outcome, Report, Row, SceneReport, Solved, methods, pareto,
+};
+
+/// What a report tells of its origin.
+pub struct ReportOrigin {
+    pub job: Option<String>,
+    pub spec_hash: String,
+    /// RFC 3339, UTC.
+    pub created: String,
+}
+
+/// The report, not judged yet.
+pub fn report_document(
+    report: &Report,
+    spec: &StudyDocument,
+    origin: ReportOrigin,
+) -> ReportDocument {
+    let comparisons = compare_variants(&report.rows);
+    let mut rows: Vec<RowDocument> = report.rows.iter().map(row_document).collect();
+    for scene in &report.scenes {
+        mark_front(&mut rows, &scene.name);
+    }
+    ReportDocument {
+        schema: 1,
+        job: origin.job,
+        spec_hash: origin.spec_hash,
+        engine: EngineDocument::this(),
+        created: origin.created,
+        verdict: VerdictDocument::default(),
+        rules: RulesDocument {
+            thresholds: spec.thresholds.clone(),
+            tolerances: spec.tolerances,
+            expected_failures: expected_failures(spec),
+        },
+        scenes: report.scenes.iter().map(scene_document).collect(),
+        rows,
+        comparisons: comparisons.iter().map(comparison_document).collect(),
+        comparisons_note: many_comparisons(&comparisons),
+        convergence: series(report).iter().map(convergence_document).collect(),
+        statement: NOT_A_DEVICE.to_owned(),
+    }
+}
+
+/// The bytes of `report.json`; a number that is not finite is refused, since JSON would say null.
+pub fn encode_report(report: &ReportDocument) -> Result<Vec<u8>, JobError> {
+    let value = serde_json::to_value(report)
+        .map_err(|error| JobError::NotFinite { what: error.to_string() })?;
+    if let Some(what) = first_null(&value, String::new()) {
+        return Err(JobError::NotFinite { what });
+    }
+    Ok(format!("{value:#}\n").into_bytes())
+}
+
+/// Marks the rows that nothing beats among those of the same plan and material of a scene.
+fn mark_front(rows: &mut [RowDocument], scene: &str) {
+    let mut groups: Vec<(String, String)> = Vec::new();
+    for row in rows.iter().filter(|row| row.scene == scene) {
+        let group = (row.plan.clone(), row.material.clone());
+        if !groups.contains(&group) {
+            groups.push(group);
+        }
+    }
+    for (plan, material) in groups {
+        let is_own =
+            |row: &RowDocument| row.scene == scene && row.plan == plan && row.material == material;
+        let own = rows.iter().enumerate().filter(|(_, row)| is_own(row));
+        let (places, points): (Vec<usize>, Vec<[f64; 2]>) = own
+            .filter_map(|(place, row)| {
+                row.numbers.as_ref().map(|numbers| (place, [numbers.wall_s, numbers.p95_mm]))
+            })
+            .unzip();
+        for point in pareto::front(&points) {
+            rows[places[point]].on_front = true;
+        }
+    }
+}
+
+fn scene_document(scene: &SceneReport) -> StudySceneDocument {
+    StudySceneDocument {
+        name: scene.name.clone(),
+        nodes: scene.nodes as u64,
+        cells: scene.cells as u64,
+        skin_nodes: scene.skin_nodes as u64,
+        truth: scene.truth.clone(),
+        truth_error_mm: scene.truth_error_mm.map(|[mean, p95]| TruthErrorDocument { mean, p95 }),
+        truth_s: scene.truth_s,
+    }
+}
+
+fn row_document(row: &Row) -> RowDocument {
+    let (status, numbers, error, warnings) = match &row.outcome {
+        Outcome::Solved(solved) => {
+            (RowStatus::Solved, Some(numbers(solved)), None, solved.warnings.clone())
+        }
+        Outcome::Failed { code, detail } => {
+            let error = RowErrorDocument { kind: code.clone(), detail: detail.clone() };
+            let status = if code == NOT_RUN { RowStatus::NotRun } else { RowStatus::Failed };
+            (status, None, Some(error), Vec::new())
+        }
+    };
+    RowDocument {
+        scene: row.scene.clone(),
+        plan: row.plan.clone(),
+        method: row.method.clone(),
+        label: row.label.clone(),
+        element: row.element.clone(),
+        material: row.material.clone(),
+        level: row.level,
+        status,
+        numbers,
+        error,
+        warnings,
+        on_front: false,
+        verdict: RowVerdict::NotRun,
+        reasons: Vec::new(),
+    }
+}
+
+fn numbers(solved: &Solved) -> NumbersDocument {
+    NumbersDocument {
+        unknowns: solved.unknowns as u64,
+        iterations: solved.iterations as u64,
+        wall_s: solved.wall_s,
+        repeats: solved.repeats as u64,
+        peak_mb: solved.peak_mb,
+        mean_mm: solved.node_wise.mean,
+        p95_mm: solved.node_wise.p95,
+        max_mm: solved.node_wise.max,
+        closest_point_mm: errors(&solved.closest_point),
+        regions_mm: solved.regions.iter().map(|(name, of)| (name.clone(), errors(of))).collect(),
+        skin_mean_mm: solved.skin_mean_mm,
+        smallest_det_f: solved.smallest_det_f.is_finite().then_some(solved.smallest_det_f),
+    }
+}
+
+fn errors(errors: &Errors) -> ErrorsDocument {
+    ErrorsDocument { mean: errors.mean, p95: errors.p95, max: errors.max }
+}
+
+fn comparison_document(pair: &Pairwise) -> VariantComparisonDocument {
+    let test = pair.test.as_ref().ok().map(|(test, pratt)| SignedRankDocument {
+        differing: test.differing as u64,
+        w_positive: test.positive,
+        w_negative: test.negative,
+        p_two_sided: test.two_sided_p,
+        p_two_sided_pratt: *pratt,
+        exact: test.exact,
+        smallest_p: test.smallest_p,
+        rank_biserial: test.effect,
+    });
+    VariantComparisonDocument {
+        first: pair.first.clone(),
+        second: pair.second.clone(),
+        measure: pair.measure.name().to_owned(),
+        scenes: pair.scenes as u64,
+        rows: pair.rows as u64,
+        unsolved: pair.unsolved as u64,
+        median_difference_mm: pair.median_difference_mm,
+        test,
+        sentence: pair.sentence(),
+    }
+}
+
+fn convergence_document(of: &Series) -> ConvergenceDocument {
+    ConvergenceDocument {
+        scene: of.scene.clone(),
+        plan: of.plan.clone(),
+        material: of.material.clone(),
+        label: of.label.clone(),
+        levels: of.levels.clone(),
+        skin_mean_mm: of.skin_mean_mm.clone(),
+        last_change: of.last_change,
+        order: of.order,
+        limit_mm: of.limit_mm,
+    }
+}
+
+/// Those of the spec, and the variants that may fail.
+fn expected_failures(spec: &StudyDocument) -> Vec<String> {
+    let mut labels = methods::MAY_FAIL.map(str::to_owned).to_vec();
+    labels.extend(spec.expected_failures.iter().cloned());
+    labels
+}

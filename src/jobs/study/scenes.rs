@@ -1,0 +1,368 @@
+//! The documents of a study as scenes, variants and truths; everything that is wrong is told with its place.
+
+use std::collections::BTreeMap;
+
+use serde_json::Value;
+
+use super::truth::known_displacement;
+use crate::jobs::failure::JobError;
+use crate::jobs::predict::input::{PredictInput, Prepared};
+use crate::jobs::source::MeshSource;
+use crate::schema::case::material::{PlacedMaterials, in_words, merge_materials};
+use crate::schema::methods::{ElementName, MethodName};
+use crate::schema::predict::result::InputDocument;
+use crate::schema::study::document::{CaseReference, SceneReference, StudyDocument};
+use crate::schema::wire::strict;
+use crate::schema::{
+    CaseDocument, Faults, Limits, MaterialDocuments, PlanDocument, Pointer, PredictDocument,
+    Problem,
+};
+use mechanics::mesh::Warning;
+use mechanics::study::scenes::{scene_of, usual_truth};
+use mechanics::study::sweep::{self, SweepError};
+use mechanics::study::{Materials, StudyScene, Truth, Variant, methods};
+
+/// Fields of a `predict` spec that have their own place in a study.
+const OF_THE_STUDY: [&str; 9] =
+    ["kind", "case", "plan", "plan_id", "materials", "budget", "outputs", "compare_to", "tags"];
+
+/// Where the documents of a study stand.
+pub(super) struct Documents<'a> {
+    pub spec: &'a StudyDocument,
+    /// The cases of the spec by their ids.
+    pub cases: &'a BTreeMap<String, CaseDocument>,
+    pub sources: &'a dyn MeshSource,
+    pub limits: &'a Limits,
+}
+
+/// Scenes, and where they came from.
+#[derive(Default)]
+pub(super) struct Scenes {
+    pub scenes: Vec<StudyScene>,
+    pub inputs: Vec<InputDocument>,
+    /// The SHA-256 of each mesh and of the skin of the truth's job, by its id.
+    pub contents: BTreeMap<String, String>,
+    pub warnings: Vec<Warning>,
+}
+
+pub(super) fn spec_at() -> Pointer {
+    Pointer::root().key("spec")
+}
+
+impl Documents<'_> {
+    /// The variants of all methods, each with a label of its own.
+    pub fn variants(&self, faults: &mut Faults) -> Vec<Variant> {
+        let at = spec_at().key("methods");
+        let mut variants: Vec<Variant> = match &self.spec.methods {
+            None => {
+                let mut names: Vec<String> =
+                    methods::available().into_iter().map(|variant| variant.method).collect();
+                names.dedup();
+                names.iter().flat_map(|name| self.named(name)).collect()
+            }
+            Some(entries) => {
+                let entries = entries.iter().enumerate();
+                entries
+                    .flat_map(|(index, entry)| self.entry(entry, &at.index(index), faults))
+                    .collect()
+            }
+        };
+        for (index, variant) in variants.iter().enumerate() {
+            if variants[..index].iter().any(|other| other.label == variant.label) {
+                let detail =
+                    format!("two variants are called {:?}; give one a `label`", variant.label);
+                faults.add(&at, "duplicate-name", detail);
+            }
+        }
+        self.bound(&mut variants, faults);
+        variants
+    }
+
+    /// Gives the variants the memory of the study, and checks the labels that the rules of the outcome name.
+    pub(super) fn bound(&self, variants: &mut [Variant], faults: &mut Faults) {
+        let memory_mb = self.spec.budget.memory_mb.min(self.limits.slot_memory_mb);
+        for variant in variants.iter_mut() {
+            variant.settings.memory_mb = memory_mb;
+        }
+        self.check_labels(variants, faults);
+    }
+
+    /// Labels that the rules of the outcome name.
+    fn check_labels(&self, variants: &[Variant], faults: &mut Faults) {
+        let labels = |label: &str| variants.iter().any(|variant| variant.label == label);
+        let known: Vec<&str> = variants.iter().map(|variant| variant.label.as_str()).collect();
+        let thresholds = self.spec.thresholds.iter().flat_map(|bounds| &bounds.labels);
+        let named = [
+            (spec_at().key("thresholds").key("labels"), thresholds.collect::<Vec<_>>()),
+            (spec_at().key("expected_failures"), self.spec.expected_failures.iter().collect()),
+        ];
+        for (place, names) in named {
+            for (index, name) in names.into_iter().enumerate().filter(|(_, name)| !labels(name)) {
+                let detail =
+                    format!("no variant is called {name:?}; there are: {}", known.join(", "));
+                faults.add(&place.index(index), "unknown-label", detail);
+            }
+        }
+    }
+
+    fn entry(&self, entry: &Value, at: &Pointer, faults: &mut Faults) -> Vec<Variant> {
+        let parsed = match entry {
+            Value::String(_) => strict::from_value::<MethodName>(entry.clone()).map(|method| {
+                crate::schema::methods::check_method(method, at, faults);
+                self.named(method.chosen().name())
+            }),
+            entry => self.stated(entry.clone(), at, faults).map(|variant| vec![variant]),
+        };
+        parsed.unwrap_or_else(|problem| {
+            faults.join(problem.moved("", at.as_str()));
+            Vec::new()
+        })
+    }
+
+    /// The variants of a method by its name: the usual ones, or one for each element of the study.
+    fn named(&self, method: &str) -> Vec<Variant> {
+        let usual = methods::of_method(method);
+        let has_elements = crate::schema::methods::available_methods()
+            .methods
+            .iter()
+            .any(|known| known.method.name.name() == method && !known.method.elements.is_empty());
+        match (usual.first(), self.spec.elements.as_slice()) {
+            (Some(first), elements @ [_, ..]) if has_elements => elements
+                .iter()
+                .map(|element| {
+                    let mut settings = first.settings.clone();
+                    settings.element = element.choice();
+                    let label = format!("{method} {}", element.name());
+                    Variant { method: method.to_owned(), label, settings }
+                })
+                .collect(),
+            _ => usual,
+        }
+    }
+
+    /// A variant that says itself what it is: a `predict` spec without what belongs to the study.
+    pub(super) fn stated(
+        &self,
+        mut entry: Value,
+        at: &Pointer,
+        faults: &mut Faults,
+    ) -> Result<Variant, Problem> {
+        let label = entry.as_object_mut().and_then(|members| members.remove("label"));
+        for name in OF_THE_STUDY {
+            if entry.as_object_mut().is_some_and(|members| members.remove(name).is_some()) {
+                let detail = format!(
+                    "unknown field `{name}`: it belongs to the study and not to one of its methods"
+                );
+                faults.add(&at.key(name), "unknown-field", detail);
+            }
+        }
+        let label = match label {
+            None => None,
+            Some(Value::String(label)) => {
+                faults.check_name(&at.key("label"), &label, self.limits.name_characters as usize);
+                Some(label)
+            }
+            Some(_) => {
+                faults.add(&at.key("label"), "wrong-type", "a label is a text");
+                None
+            }
+        };
+        let spec: PredictDocument = strict::from_value(entry)?;
+        let mut own = Faults::default();
+        let settings = spec.to_settings(self.limits, &mut own);
+        if let Err(problem) = own.into_result() {
+            faults.join(problem.moved("/spec", at.as_str()));
+        }
+        let method = spec.method.chosen().name();
+        let label = label.unwrap_or_else(|| match spec.element {
+            ElementName::Auto => method.to_owned(),
+            element => format!("{method} {}", element.name()),
+        });
+        Ok(Variant { method: method.to_owned(), label, settings })
+    }
+
+    /// Every scene of the spec.
+    pub fn scenes(&self, faults: &mut Faults) -> Result<Scenes, JobError> {
+        let mut found = Scenes::default();
+        let at = spec_at().key("scenes");
+        for (index, reference) in self.spec.scenes.iter().enumerate() {
+            match reference {
+                SceneReference::Name(name) => found.scenes.extend(self.own_scene(name, faults)),
+                SceneReference::Case(reference) => {
+                    self.case_scene((index, reference), &mut found)?;
+                }
+            }
+            let names = found.scenes.iter().map(|scene| &scene.name);
+            let last = found.scenes.last().map(|scene| scene.name.clone()).unwrap_or_default();
+            if names.filter(|name| **name == last).count() > 1 {
+                let detail = format!("two scenes are called {last:?}; give one a `name`");
+                faults.add(&at.index(index), "duplicate-name", detail);
+            }
+        }
+        self.check_plan_names(&found.scenes, faults);
+        Ok(found)
+    }
+
+    fn own_scene(&self, name: &str, faults: &mut Faults) -> Option<StudyScene> {
+        let mut scene = scene_of(name)?;
+        let wanted = self.spec.plan_names();
+        if !wanted.is_empty() {
+            let all: Vec<String> = scene.plans.iter().map(|(plan, _)| plan.clone()).collect();
+            scene.plans.retain(|(plan, _)| wanted.iter().any(|(_, wanted)| wanted == plan));
+            if scene.plans.is_empty() {
+                let detail =
+                    format!("scene {name} has none of these plans; it has: {}", all.join(", "));
+                faults.add(&spec_at().key("plans"), "unknown-plan", detail);
+            }
+        }
+        if !self.spec.materials.is_empty() {
+            scene.materials.clear();
+            for (index, document) in self.spec.materials.iter().enumerate() {
+                let at = spec_at().key("materials").index(index);
+                let given = PlacedMaterials { at, materials: Some(document) };
+                let none = PlacedMaterials { at: spec_at(), materials: None };
+                let merged = merge_materials(&given, &none, self.limits, faults);
+                scene.materials.push(Materials {
+                    name: in_words(document),
+                    by_region: merged.materials,
+                    fibres: merged.fibres,
+                });
+            }
+        }
+        self.sweep(&mut scene, faults);
+        self.truth(&mut scene, faults);
+        Some(scene)
+    }
+
+    fn check_plan_names(&self, scenes: &[StudyScene], faults: &mut Faults) {
+        let named = |wanted: &str| {
+            scenes.iter().any(|scene| scene.plans.iter().any(|(plan, _)| plan == wanted))
+        };
+        for (index, name) in self.spec.plan_names().into_iter().filter(|(_, name)| !named(name)) {
+            let detail = format!("no scene by name has a plan called {name:?}");
+            faults.add(&spec_at().key("plans").index(index), "unknown-plan", detail);
+        }
+    }
+
+    /// A case with each plan, and with each of the materials.
+    fn case_scene(
+        &self,
+        (index, reference): (usize, &CaseReference),
+        found: &mut Scenes,
+    ) -> Result<(), JobError> {
+        let documents = self.spec.plans_of(index, reference);
+        let at = spec_at().key("materials");
+        let given = self.spec.materials.iter().enumerate();
+        let given: Vec<_> = given.map(|(index, given)| (at.index(index), given)).collect();
+        self.placed_scene(reference, &documents, &given, found)
+    }
+
+    /// The same with plans and materials that have a place each.
+    pub(super) fn placed_scene(
+        &self,
+        reference: &CaseReference,
+        documents: &[(Pointer, &PlanDocument)],
+        given: &[(Pointer, &MaterialDocuments)],
+        found: &mut Scenes,
+    ) -> Result<(), JobError> {
+        let missing = || Problem::at(&spec_at(), "unknown-case", "there is no such case");
+        let case = self.cases.get(&reference.case).ok_or_else(missing)?;
+        let of_the_first = given.first().map(|(_, materials)| (*materials).clone());
+        let place = |index: usize| given.get(index).map_or_else(spec_at, |(at, _)| at.clone());
+        let mut plans = Vec::new();
+        let mut first: Option<Prepared> = None;
+        for (number, (at, document)) in (1..).zip(documents) {
+            let input = input(case, (*document).clone(), of_the_first.clone());
+            let prepared = input.prepare(self.sources, self.limits);
+            let prepared = prepared.map_err(|error| moved(error, at, &place(0)))?;
+            plans.push((format!("plan {number}"), prepared.plan.clone()));
+            first = first.or(Some(prepared));
+        }
+        let Some(first) = first else { return Ok(()) };
+        let mut materials = vec![Materials {
+            name: of_the_first.as_ref().map_or_else(|| "case".to_owned(), in_words),
+            by_region: first.case.materials.clone(),
+            fibres: first.case.fibres.clone(),
+        }];
+        for (place, document) in given.iter().skip(1) {
+            let Some((at, plan)) = documents.first() else { break };
+            let input = input(case, (*plan).clone(), Some((*document).clone()));
+            let prepared = input.prepare(self.sources, self.limits);
+            let case = prepared.map_err(|error| moved(error, at, place))?.case;
+            materials.push(Materials {
+                name: in_words(document),
+                by_region: case.materials,
+                fibres: case.fibres,
+            });
+        }
+        let name = reference.name.clone().or_else(|| case.name.clone());
+        let truth = usual_truth(&first.case);
+        let mut scene = StudyScene {
+            name: name.unwrap_or_else(|| format!("case {}", found.scenes.len() + 1)),
+            case: first.case.clone(),
+            plans,
+            materials,
+            truth,
+        };
+        let mut faults = Faults::default();
+        self.sweep(&mut scene, &mut faults);
+        self.truth(&mut scene, &mut faults);
+        faults.into_result()?;
+        if let Some(job) = self.spec.truth.as_ref().and_then(|truth| truth.job.as_ref()) {
+            let at = spec_at().key("truth").key("job");
+            let skin = crate::jobs::compare::found(self.sources.predicted_skin(job), job, &at)?;
+            found.contents.insert(job.clone(), skin.sha256.clone());
+            found.inputs.push(skin.to_input("truth"));
+            scene.truth = Truth::Known(known_displacement(&skin, &first, &at)?);
+        }
+        found.contents.extend(first.contents.clone());
+        found.inputs.extend(first.inputs.iter().cloned());
+        found.warnings.extend(first.warnings.iter().cloned());
+        found.scenes.push(scene);
+        Ok(())
+    }
+
+    /// Every combination of the swept values in place of the materials of the scene.
+    fn sweep(&self, scene: &mut StudyScene, faults: &mut Faults) {
+        if self.spec.sweep.is_empty() {
+            return;
+        }
+        let swept = self.spec.sweep.iter().map(|(region, of)| (region.clone(), of.to_values()));
+        let swept: BTreeMap<String, sweep::Values> = swept.collect();
+        let at = spec_at().key("sweep");
+        for region in swept.keys().filter(|region| !sweep::has_region(&scene.case, region)) {
+            let detail = format!("scene {} has no region called {region:?}", scene.name);
+            faults.add(&at.key(region), "unknown-region", detail);
+        }
+        match sweep::combinations(&scene.case.materials, &swept) {
+            Ok(materials) => scene.materials = materials,
+            Err(error) => {
+                let (place, code) = match &error {
+                    SweepError::TooMany { .. } => (at, "too-many"),
+                    SweepError::UnknownRegion { region } => (at.key(region), "unknown-region"),
+                    SweepError::Fibres { region } => (at.key(region), "method-not-available"),
+                    SweepError::Material { region, .. } => (at.key(region), "out-of-range"),
+                };
+                faults.add(&place, code, error.to_string());
+            }
+        }
+    }
+}
+
+/// One plan and one set of materials on a case.
+fn input(
+    case: &CaseDocument,
+    plan: crate::schema::PlanDocument,
+    materials: Option<MaterialDocuments>,
+) -> PredictInput {
+    let spec = PredictDocument { materials, ..PredictDocument::default() };
+    PredictInput { job: None, queue_s: None, case: case.clone(), plan, spec }
+}
+
+/// Places of a prediction as places of the study.
+fn moved(error: JobError, plan: &Pointer, materials: &Pointer) -> JobError {
+    let JobError::Refused(problem) = error else { return error };
+    let problem =
+        problem.moved("/plan", plan.as_str()).moved("/spec/materials", materials.as_str());
+    JobError::Refused(problem)
+}

@@ -1,0 +1,176 @@
+//! Whether a study may pass: its rows against thresholds, and against the same rows of an earlier study.
+
+use std::collections::BTreeMap;
+
+use crate::schema::study::document::{ThresholdsDocument, TolerancesDocument};
+use crate::schema::study::report::{
+    NumbersDocument, OutcomeName, ReportDocument, RowDocument, RowStatus, RowVerdict,
+    RulesDocument, VerdictDocument,
+};
+
+/// Differences that are none, whatever the ratios say: errors in mm to which solutions agree, and the jitter
+/// of clocks in s.
+const NO_ERROR_MM: f64 = 1e-4;
+const NO_TIME_S: f64 = 0.02;
+
+/// An earlier study to hold rows against.
+pub enum Baseline<'a> {
+    /// None was asked for.
+    NotAsked,
+    /// One was asked for, and it is not there: why, in words.
+    Missing(String),
+    Report(&'a ReportDocument),
+}
+
+/// The same row in another study.
+type Place<'a> = (&'a str, &'a str, &'a str, u32, &'a str);
+
+fn place(row: &RowDocument) -> Place<'_> {
+    (&row.scene, &row.plan, &row.material, row.level, &row.label)
+}
+
+/// Judges every row and the whole by the rules of the report.
+pub fn judge(report: &mut ReportDocument, baseline: &Baseline) {
+    let before: BTreeMap<Place, &RowDocument> = match baseline {
+        Baseline::Report(earlier) => earlier.rows.iter().map(|row| (place(row), row)).collect(),
+        Baseline::NotAsked | Baseline::Missing(_) => BTreeMap::new(),
+    };
+    let rules = report.rules.clone();
+    for row in &mut report.rows {
+        let earlier = before.get(&place(row)).copied();
+        (row.verdict, row.reasons) = judge_row(row, earlier, &rules);
+    }
+    let now: Vec<Place> = report.rows.iter().map(place).collect();
+    let lost = before.keys().filter(|earlier| !now.contains(earlier)).count();
+    let common = before.len() - lost;
+    report.verdict = whole(report, baseline, (common, lost));
+}
+
+fn judge_row(
+    row: &RowDocument,
+    before: Option<&RowDocument>,
+    rules: &RulesDocument,
+) -> (RowVerdict, Vec<String>) {
+    let numbers = match (row.status, &row.numbers) {
+        (RowStatus::NotRun, _) => return (RowVerdict::NotRun, vec![not_run(row)]),
+        (RowStatus::Solved, Some(numbers)) => numbers,
+        _ => return failed(row, before, rules),
+    };
+    let mut reasons = Vec::new();
+    if let Some(thresholds) = &rules.thresholds {
+        reasons.extend(above(row, numbers, thresholds));
+    }
+    if let Some(earlier) = before.and_then(|row| row.numbers.as_ref()) {
+        reasons.extend(grown(numbers, earlier, &rules.tolerances));
+    }
+    let verdict = if reasons.is_empty() { RowVerdict::Pass } else { RowVerdict::Worse };
+    (verdict, reasons)
+}
+
+fn not_run(row: &RowDocument) -> String {
+    row.error.as_ref().map_or_else(|| "did not run".to_owned(), |error| error.detail.clone())
+}
+
+fn failed(
+    row: &RowDocument,
+    before: Option<&RowDocument>,
+    rules: &RulesDocument,
+) -> (RowVerdict, Vec<String>) {
+    let kind = row.error.as_ref().map_or("unknown", |error| error.kind.as_str());
+    let detail = row.error.as_ref().map_or("", |error| error.detail.as_str());
+    if rules.expected_failures.contains(&row.label) {
+        return (RowVerdict::KnownFailure, vec![format!("may fail: {kind}: {detail}")]);
+    }
+    let earlier = before.and_then(|row| row.error.as_ref());
+    if earlier.is_some_and(|earlier| earlier.kind == kind) {
+        return (RowVerdict::KnownFailure, vec![format!("as in the baseline: {kind}: {detail}")]);
+    }
+    let solved_before = before.is_some_and(|row| row.status == RowStatus::Solved);
+    let words = if solved_before { "solved in the baseline, now " } else { "" };
+    (RowVerdict::Failed, vec![format!("{words}{kind}: {detail}")])
+}
+
+/// The thresholds that a row exceeds.
+fn above(row: &RowDocument, numbers: &NumbersDocument, bounds: &ThresholdsDocument) -> Vec<String> {
+    if !bounds.labels.is_empty() && !bounds.labels.contains(&row.label) {
+        return Vec::new();
+    }
+    let measured = [
+        ("mean error", numbers.mean_mm, bounds.mean_mm, "mm"),
+        ("p95 error", numbers.p95_mm, bounds.p95_mm, "mm"),
+        ("wall time", numbers.wall_s, bounds.wall_s, "s"),
+    ];
+    let exceeds = measured.into_iter().filter_map(|(name, value, bound, unit)| {
+        let bound = bound.filter(|&bound| value > bound)?;
+        Some(format!("{name} {value:.4} {unit} is above the threshold {bound} {unit}"))
+    });
+    exceeds.collect()
+}
+
+/// What is worse than in the same row before.
+fn grown(
+    now: &NumbersDocument,
+    before: &NumbersDocument,
+    tolerances: &TolerancesDocument,
+) -> Vec<String> {
+    let measured = [
+        ("p95 error", now.p95_mm, before.p95_mm, (tolerances.p95_ratio, NO_ERROR_MM), "mm"),
+        ("wall time", now.wall_s, before.wall_s, (tolerances.wall_ratio, NO_TIME_S), "s"),
+    ];
+    let grown = |&(_, now, before, (ratio, slack), _): &(&str, f64, f64, (f64, f64), &str)| {
+        now > before * ratio && now > before + slack
+    };
+    let worse = measured.into_iter().filter(grown).map(|(name, now, before, (ratio, _), unit)| {
+        let times = now / before;
+        format!("{name} {now:.4} {unit} is {times:.2} times the {before:.4} {unit} of the baseline, {ratio} are allowed")
+    });
+    worse.collect()
+}
+
+fn whole(
+    report: &ReportDocument,
+    baseline: &Baseline,
+    (common, lost): (usize, usize),
+) -> VerdictDocument {
+    let count = |verdict| report.rows.iter().filter(|row| row.verdict == verdict).count();
+    let of_status = |status| report.rows.iter().filter(|row| row.status == status).count();
+    let (worse, failed) = (count(RowVerdict::Worse), count(RowVerdict::Failed));
+    let (solved, not_run) = (of_status(RowStatus::Solved), count(RowVerdict::NotRun));
+    let rows = report.rows.len();
+    let mut found = Vec::new();
+    let mut tell = |outcome, holds: bool, words: String| {
+        if holds {
+            found.push((outcome, words));
+        }
+    };
+    tell(OutcomeName::Worse, worse > 0, format!("{worse} of {rows} rows are worse than allowed"));
+    tell(OutcomeName::Worse, failed > 0, format!("{failed} of {rows} rows failed"));
+    tell(OutcomeName::Incomplete, solved == 0, "no row was solved".to_owned());
+    tell(OutcomeName::Incomplete, not_run > 0, format!("{not_run} of {rows} rows did not run"));
+    let words = format!("{lost} rows of the baseline are not in this study");
+    tell(OutcomeName::Incomplete, lost > 0 && common > 0, words);
+    match baseline {
+        Baseline::Missing(why) => tell(OutcomeName::NoBaseline, true, why.clone()),
+        Baseline::Report(_) => {
+            let words = "the baseline has no row in common with this study".to_owned();
+            tell(OutcomeName::NoBaseline, common == 0, words);
+        }
+        Baseline::NotAsked => {}
+    }
+    // The first is the gravest: what is worse is worse, however much did not run.
+    let outcome = found.first().map_or(OutcomeName::Pass, |(outcome, _)| *outcome);
+    let baseline = match baseline {
+        Baseline::Report(earlier) => earlier.job.clone(),
+        Baseline::NotAsked | Baseline::Missing(_) => None,
+    };
+    VerdictDocument {
+        outcome,
+        reasons: found.into_iter().map(|(_, words)| words).collect(),
+        rows: rows as u64,
+        solved: solved as u64,
+        failed: of_status(RowStatus::Failed) as u64,
+        worse: worse as u64,
+        not_run: not_run as u64,
+        baseline,
+    }
+}

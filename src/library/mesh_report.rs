@@ -1,0 +1,101 @@
+//! The report of an uploaded mesh or image.
+
+use std::collections::BTreeMap;
+
+use crate::schema::mesh::{ImageReport, MeshKind, MeshReport};
+use crate::schema::{CornerPair, Triple, WarningDocument};
+use mechanics::format::{Mesh, ReadMesh};
+use mechanics::image::{ImageVolume, Voxels};
+use mechanics::mesh::quality::quality;
+use mechanics::mesh::{Vector, VolumeMesh};
+
+/// What a mesh file holds, in the units of the file.
+pub fn mesh_report(read: &ReadMesh) -> MeshReport {
+    let (kind, (low, high), nodes, triangles) = match &read.mesh {
+        Mesh::Volume(volume) => {
+            let boundary = volume.boundary_faces();
+            let triangles = boundary.iter().map(|face| face.triangles().count()).sum();
+            (MeshKind::Volume, bounding_box(&volume.nodes), volume.nodes.len(), triangles)
+        }
+        Mesh::Surface(surface) => {
+            let points = &surface.points;
+            (MeshKind::Surface, bounding_box(points), points.len(), surface.triangles.len())
+        }
+        Mesh::Image(image) => (MeshKind::Image, image.bounds(), 0, 0),
+    };
+    let mut report = MeshReport {
+        kind,
+        nodes: nodes as u64,
+        cells: BTreeMap::new(),
+        triangles: triangles as u64,
+        bounding_box: CornerPair([low.x, low.y, low.z, high.x, high.y, high.z]),
+        diagonal: (high - low).norm(),
+        space: read.frame.map(Into::into),
+        node_sets: BTreeMap::new(),
+        cell_sets: BTreeMap::new(),
+        node_labels: BTreeMap::new(),
+        cell_labels: BTreeMap::new(),
+        node_vectors: Vec::new(),
+        cell_vectors: Vec::new(),
+        ignored_arrays: read.ignored_arrays.clone(),
+        min_quality: None,
+        image: None,
+        warnings: read.warnings.iter().map(WarningDocument::from).collect(),
+    };
+    match &read.mesh {
+        Mesh::Volume(volume) => describe(volume, &mut report),
+        Mesh::Image(image) => report.image = Some(image_report(image)),
+        Mesh::Surface(_) => {}
+    }
+    report
+}
+
+fn image_report(image: &ImageVolume) -> ImageReport {
+    let (lowest_hu, highest_hu) = image.range();
+    let kept_as = match image.voxels() {
+        Voxels::I16(_) => "int16",
+        Voxels::F32(_) => "float32",
+    };
+    ImageReport {
+        size: image.size().iter().map(|&size| size as u64).collect(),
+        spacing_mm: Triple(image.spacing()),
+        origin_mm: image.placement().origin.into(),
+        directions: image.directions().map(Triple::from).to_vec(),
+        lowest_hu,
+        highest_hu,
+        kept_as: kept_as.to_owned(),
+    }
+}
+
+fn describe(volume: &VolumeMesh, report: &mut MeshReport) {
+    for (shape, _) in volume.cells.iter() {
+        *report.cells.entry(shape.name().to_owned()).or_default() += 1;
+    }
+    report.node_sets = sizes(&volume.node_sets);
+    report.cell_sets = sizes(&volume.cell_sets);
+    report.node_labels = values(&volume.node_labels);
+    report.cell_labels = values(&volume.cell_labels);
+    report.min_quality = Some(quality(volume).smallest_scaled_jacobian);
+    report.node_vectors = volume.node_vectors.keys().cloned().collect();
+    report.cell_vectors = volume.cell_vectors.keys().cloned().collect();
+}
+
+fn sizes(sets: &BTreeMap<String, Vec<u32>>) -> BTreeMap<String, u64> {
+    sets.iter().map(|(name, members)| (name.clone(), members.len() as u64)).collect()
+}
+
+/// The distinct values of each array, ascending; readers keep arrays of at most 64 of them.
+fn values(arrays: &BTreeMap<String, Vec<i64>>) -> BTreeMap<String, Vec<i64>> {
+    let distinct = |labels: &Vec<i64>| {
+        let mut values = labels.clone();
+        values.sort_unstable();
+        values.dedup();
+        values
+    };
+    arrays.iter().map(|(name, labels)| (name.clone(), distinct(labels))).collect()
+}
+
+fn bounding_box(points: &[Vector]) -> (Vector, Vector) {
+    let first = points.first().copied().unwrap_or_else(Vector::zeros);
+    points.iter().fold((first, first), |(low, high), point| (low.inf(point), high.sup(point)))
+}

@@ -1,0 +1,7 @@
+//! Stored meshes and responses, kept parsed in memory while there is room.
+
+pub mod cache;
+pub mod mesh_report;
+pub mod meshes;
+pub mod responses;
+pub mod upload;

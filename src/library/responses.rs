@@ -1,0 +1,373 @@
+//! The plan responses of the service: which one answers for a case as it is now, and its columns, kept in
+//! memory while there is room.
+
+use std::collections::{BTreeMap, HashMap};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use crate::jobs::predict::input::JobInput;
+use crate::jobs::response::{COLUMNS_FILE, DESCRIPTION_FILE, REST_FILE};
+use crate::jobs::result::skin::PredictedSkin;
+use crate::schema::CaseDocument;
+use crate::schema::predict::document::OutputName;
+use crate::schema::predict::result::NOT_A_DEVICE;
+use crate::schema::response::{AppliedSummary, ResponseDescription};
+use crate::schema::wire::canonical;
+use crate::store::{Store, StoreError};
+use mechanics::format::{self, Mesh, ReadLimits, WriteError};
+use mechanics::mesh::{TriangleSurface, Vector};
+use mechanics::plan::RigidMovement;
+use mechanics::response::{Linearity, Response};
+
+/// Jobs whose verdict is remembered; beyond that all are judged anew.
+const MOST_VERDICTS: usize = 10_000;
+
+/// Why no response answers.
+#[derive(Debug, thiserror::Error)]
+pub enum MissingResponse {
+    #[error("there is no such case")]
+    NoCase,
+    #[error("no response was built; post a job of kind `response` first")]
+    NotBuilt,
+    #[error("no successful response of this case is job {job}")]
+    NotOfCase { job: String },
+    #[error(
+        "the case or the program changed since job {job} built its response; post the job again"
+    )]
+    Stale { job: String },
+    #[error(transparent)]
+    Store(#[from] StoreError),
+}
+
+/// A response that answers for its case: its job, and the blob of its description.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct FoundResponse {
+    pub job: String,
+    description: String,
+}
+
+/// A response in memory.
+pub struct LoadedResponse {
+    pub description: ResponseDescription,
+    response: Response,
+    linearity: Linearity,
+    rest: TriangleSurface,
+}
+
+/// The skin for one plan.
+pub struct Applied {
+    /// In mm, at each node of the description.
+    pub displacement: Vec<Vector>,
+    pub summary: AppliedSummary,
+}
+
+impl LoadedResponse {
+    /// One pass over the columns.
+    pub fn apply(&self, movements: &[RigidMovement]) -> Applied {
+        let displacement = self.response.apply(movements);
+        let summary = AppliedSummary::new(&displacement, &self.linearity.of(movements));
+        Applied { displacement, summary }
+    }
+
+    /// The moved skin as binary glTF, coloured by the length of its displacement.
+    pub fn glb(&self, applied: &Applied) -> Result<Vec<u8>, WriteError> {
+        let mut surface = self.rest.clone();
+        for (point, moved) in surface.points.iter_mut().zip(&applied.displacement) {
+            *point += moved;
+        }
+        let skin = PredictedSkin {
+            surface,
+            displacement: applied.displacement.clone(),
+            magnitude: applied.displacement.iter().map(Vector::norm).collect(),
+            signed_distance: None,
+        };
+        let texts = [
+            ("job", self.description.job.clone().unwrap_or_default()),
+            ("response_key", self.description.key.clone()),
+            ("statement", NOT_A_DEVICE.to_owned()),
+        ];
+        let texts = texts.map(|(name, text)| (name.to_owned(), text));
+        let bytes = skin.encode(OutputName::SkinGlb, self.description.frame.into(), &texts)?;
+        bytes.ok_or(WriteError::Empty)
+    }
+
+    /// About what it takes in memory, in bytes.
+    fn size(&self) -> usize {
+        let skin = 28 * self.rest.points.len() + 12 * self.rest.triangles.len();
+        4 * (self.response.columns.len() + 2 * self.response.nodes.len()) + skin
+    }
+}
+
+impl Applied {
+    /// f32 little-endian, three a node.
+    pub fn to_bytes(&self) -> Vec<u8> {
+        let values = self.displacement.iter().flat_map(|moved| [moved.x, moved.y, moved.z]);
+        values.flat_map(|value| (value as f32).to_le_bytes()).collect()
+    }
+
+    /// Three numbers a node with the digits that f32 columns carry.
+    pub fn to_triples(&self) -> Vec<[f32; 3]> {
+        let moved = self.displacement.iter();
+        moved.map(|moved| [moved.x as f32, moved.y as f32, moved.z as f32]).collect()
+    }
+}
+
+/// Stored responses by case.
+#[derive(Clone)]
+pub struct Responses {
+    store: Store,
+    memory: Arc<Mutex<Memory>>,
+}
+
+/// Verdicts by job, and responses by the blob of their description, which names that of the columns; the
+/// least recently used is given up first.
+struct Memory {
+    room: usize,
+    used: usize,
+    clock: u64,
+    loaded: HashMap<String, Kept>,
+    verdicts: HashMap<String, Verdict>,
+}
+
+struct Kept {
+    response: Arc<LoadedResponse>,
+    last_used: u64,
+}
+
+/// Whether a response answers for its case at a version of it.
+#[derive(Clone)]
+struct Verdict {
+    version: i64,
+    /// The blob of the description; `None` where the response is stale.
+    description: Option<String>,
+}
+
+impl Memory {
+    fn new(room: usize) -> Self {
+        let (loaded, verdicts) = (HashMap::new(), HashMap::new());
+        Memory { room, used: 0, clock: 0, loaded, verdicts }
+    }
+
+    fn get(&mut self, blob: &str) -> Option<Arc<LoadedResponse>> {
+        self.clock += 1;
+        let kept = self.loaded.get_mut(blob)?;
+        kept.last_used = self.clock;
+        Some(kept.response.clone())
+    }
+
+    fn keep(&mut self, blob: &str, response: Arc<LoadedResponse>) {
+        let size = response.size();
+        if size > self.room || self.loaded.contains_key(blob) {
+            return;
+        }
+        self.clock += 1;
+        self.used += size;
+        self.loaded.insert(blob.to_owned(), Kept { response, last_used: self.clock });
+        while self.used > self.room {
+            let oldest = self.loaded.iter().min_by_key(|(_, kept)| kept.last_used);
+            let Some(oldest) = oldest.map(|(blob, _)| blob.clone()) else { break };
+            self.forget(&oldest);
+        }
+    }
+
+    fn forget(&mut self, blob: &str) {
+        if let Some(kept) = self.loaded.remove(blob) {
+            self.used -= kept.response.size();
+        }
+    }
+}
+
+impl Responses {
+    /// Keeps responses of at most `room` bytes in memory.
+    pub fn new(store: Store, room: usize) -> Self {
+        Responses { store, memory: Arc::new(Mutex::new(Memory::new(room))) }
+    }
+
+    /// The same responses in the hand of a tenant.
+    pub fn of_tenant(&self, tenant: &str) -> Self {
+        Responses { store: self.store.of_tenant(tenant), memory: self.memory.clone() }
+    }
+
+    fn memory(&self) -> MutexGuard<'_, Memory> {
+        self.memory.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The response of a job, or else the newest one, that was built for the case as it is now.
+    pub async fn find(
+        &self,
+        case: &str,
+        job: Option<&str>,
+    ) -> Result<FoundResponse, MissingResponse> {
+        let built = self.store.responses(case).await?.ok_or(MissingResponse::NoCase)?;
+        if let Some(job) = job
+            && !built.jobs.iter().any(|built| built == job)
+        {
+            return Err(MissingResponse::NotOfCase { job: job.to_owned() });
+        }
+        let Some(newest) = built.jobs.first() else { return Err(MissingResponse::NotBuilt) };
+        for job in built.jobs.iter().filter(|built| job.is_none_or(|job| job == *built)) {
+            if let Some(description) = self.verdict(case, built.version, job).await? {
+                return Ok(FoundResponse { job: job.clone(), description });
+            }
+        }
+        Err(MissingResponse::Stale { job: job.unwrap_or(newest).to_owned() })
+    }
+
+    /// The description of a response, where its key is that of the case as it is now. The verdict holds for
+    /// a version of the case, since meshes never change; the key is taken from documents and hashes of
+    /// meshes, and no mesh is read.
+    async fn verdict(
+        &self,
+        case: &str,
+        version: i64,
+        job: &str,
+    ) -> Result<Option<String>, StoreError> {
+        let known = self.memory().verdicts.get(job).cloned();
+        if let Some(verdict) = known.filter(|verdict| verdict.version == version) {
+            return Ok(verdict.description);
+        }
+        let Some(row) = self.store.case(case).await? else { return Ok(None) };
+        let is_current = self.key_now(&row.document, job).await?;
+        let file = match is_current {
+            true => self.store.job_file(job, DESCRIPTION_FILE).await?,
+            false => None,
+        };
+        let description = file.map(|file| file.blob);
+        let verdict = Verdict { version: row.version, description: description.clone() };
+        let mut memory = self.memory();
+        if memory.verdicts.len() >= MOST_VERDICTS {
+            memory.verdicts.clear();
+        }
+        memory.verdicts.insert(job.to_owned(), verdict);
+        Ok(description)
+    }
+
+    /// Whether a job would have the same key if it were posted now. A document of an earlier program that
+    /// this one cannot read is stale as well.
+    async fn key_now(&self, case: &str, job: &str) -> Result<bool, StoreError> {
+        let Some(row) = self.store.response(job).await? else { return Ok(false) };
+        let case: Result<CaseDocument, _> = serde_json::from_str(case);
+        let (Ok(case), Ok(JobInput::Response(input))) = (case, serde_json::from_str(&row.document))
+        else {
+            return Ok(false);
+        };
+        let mut contents = BTreeMap::new();
+        for id in case.mesh_ids() {
+            if let Some(mesh) = self.store.mesh(&id).await? {
+                contents.insert(id, mesh.sha256);
+            }
+        }
+        let content = |id: &str| contents.get(id).cloned();
+        Ok(canonical::response_key(&case, &input.spec, &content) == row.key)
+    }
+
+    /// A response with its columns, from memory where it is there.
+    pub async fn load(&self, found: &FoundResponse) -> Result<Arc<LoadedResponse>, StoreError> {
+        let kept = self.memory().get(&found.description);
+        if let Some(kept) = kept {
+            return Ok(kept);
+        }
+        let description = self.store.read_blob(&found.description).await?;
+        let columns = self.file(&found.job, COLUMNS_FILE).await?;
+        let rest = self.file(&found.job, REST_FILE).await?;
+        let parse = move || parsed(&description, &columns, &rest);
+        let parsed = tokio::task::spawn_blocking(parse).await;
+        let response = Arc::new(parsed.map_err(|_| StoreError::Interrupted)??);
+        self.memory().keep(&found.description, response.clone());
+        Ok(response)
+    }
+
+    async fn file(&self, job: &str, name: &str) -> Result<bytes::Bytes, StoreError> {
+        let file = self.store.job_file(job, name).await?;
+        self.store.read_blob(&file.ok_or(StoreError::Interrupted)?.blob).await
+    }
+}
+
+/// A response out of its three files.
+fn parsed(description: &[u8], columns: &[u8], rest: &[u8]) -> Result<LoadedResponse, StoreError> {
+    let broken = |what: &str| StoreError::Schema(format!("stored response: {what}"));
+    let description: ResponseDescription =
+        serde_json::from_slice(description).map_err(|error| broken(&error.to_string()))?;
+    // Our own writer may compress better than a stranger's file is allowed to.
+    let limits = ReadLimits { decoded_ratio: f64::INFINITY, ..ReadLimits::default() };
+    let rest = format::read(rest, &limits).map_err(|error| broken(&error.to_string()))?;
+    let Mesh::Surface(rest) = rest.mesh else { return Err(broken("the skin is no surface")) };
+    let (values, _) = columns.as_chunks::<4>();
+    let columns: Vec<f32> = values.iter().map(|&value| f32::from_le_bytes(value)).collect();
+    let count = usize::try_from(description.columns.count).unwrap_or(usize::MAX);
+    let nodes = description.node_ids.len();
+    if nodes.checked_mul(3).and_then(|length| length.checked_mul(count)) != Some(columns.len())
+        || rest.points.len() != nodes
+    {
+        return Err(broken("its files do not fit each other"));
+    }
+    Ok(LoadedResponse {
+        response: Response {
+            segments: description.response_segments(),
+            nodes: description.node_ids.clone(),
+            columns,
+        },
+        linearity: description.to_linearity(),
+        rest,
+        description,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::schema::response::{ColumnsDocument, ResponseOrigin};
+    use mechanics::response::{Columns, ResponseSegment};
+
+    /// A response of one segment that takes 4 * (36 + 2) + 28 bytes for each node.
+    fn loaded(nodes: u32) -> Arc<LoadedResponse> {
+        let segments = vec![ResponseSegment { name: "jaw".into(), centre: Vector::zeros() }];
+        let corner = Vector::zeros();
+        let linearity =
+            Linearity { thickness: 1.0, something_stays: true, boxes: vec![[corner, corner]] };
+        let solver = mechanics::prediction::SolverReport {
+            name: "none",
+            preconditioner: "none",
+            why: String::new(),
+            unknowns: 0,
+            iterations: 0,
+            relative_residual: 0.0,
+            history: Vec::new(),
+            steps: 1,
+            wanted_residual: 0.0,
+            elements: Vec::new(),
+        };
+        let values = vec![0.0; 36 * nodes as usize];
+        let nodes: Vec<u32> = (0..nodes).collect();
+        let rest = TriangleSurface {
+            points: vec![Vector::zeros(); nodes.len()],
+            ..TriangleSurface::default()
+        };
+        let columns = Columns { segments, nodes, values, linearity: linearity.clone(), solver };
+        let (file, layout, sha256) = (String::new(), String::new(), String::new());
+        let origin = ResponseOrigin {
+            job: None,
+            key: String::new(),
+            frame: mechanics::mesh::Frame::Lps,
+            mesh_centre: Vector::zeros(),
+            staying: Vec::new(),
+            columns: ColumnsDocument { file, layout, count: 12, bytes: 0, sha256 },
+        };
+        let description = ResponseDescription::new(&columns, origin);
+        let response = columns.to_response();
+        Arc::new(LoadedResponse { description, response, linearity, rest })
+    }
+
+    #[test]
+    fn the_response_that_was_not_used_for_longest_makes_room() {
+        let mut memory = Memory::new(180 * 10);
+        memory.keep("a", loaded(4));
+        memory.keep("b", loaded(4));
+        assert!(memory.get("a").is_some());
+        memory.keep("c", loaded(4));
+        assert!(memory.get("b").is_none());
+        assert!(memory.get("a").is_some() && memory.get("c").is_some());
+        memory.keep("too large", loaded(11));
+        assert!(memory.get("too large").is_none() && memory.get("a").is_some());
+        assert_eq!(memory.used, 180 * 8);
+    }
+}

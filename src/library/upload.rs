@@ -1,0 +1,229 @@
+//! From uploaded bytes to a mesh that can be stored: read, checked, reported, and written anew by our own
+//! writer, so that headers and comments, which often name the patient, stay behind.
+
+use bytes::Bytes;
+use serde_json::Value;
+
+use super::mesh_report::mesh_report;
+use crate::jobs::source::{StoredMesh, StoredShape};
+use crate::schema::Problem;
+use crate::schema::case::document::{FrameName, LengthUnit};
+use crate::schema::mesh::MeshDocument;
+use crate::schema::wire::canonical::sha256_hex;
+use crate::schema::wire::warning::WarningDocument;
+use crate::store::NewMesh;
+use mechanics::format::{
+    self, FormatError, Member, Mesh, ReadLimits, ReadMesh, SurfaceOutput, VolumeOutput, vtk,
+};
+use mechanics::mesh::{Frame, Warning};
+
+/// Diagonals of the bounding boxes of heads and their parts, in mm.
+const USUAL_DIAGONAL_MM: std::ops::RangeInclusive<f64> = 50.0..=600.0;
+/// Beyond these a unit is wrong, unless the upload says that any scale is meant.
+const POSSIBLE_DIAGONAL_MM: std::ops::RangeInclusive<f64> = 5.0..=5000.0;
+
+/// What an upload says about its bytes.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Statement {
+    pub units: Option<LengthUnit>,
+    pub frame: Option<FrameName>,
+    pub role: Option<String>,
+    pub allow_any_scale: bool,
+}
+
+impl Statement {
+    /// What makes a mesh another although its bytes are the same.
+    pub fn identity(&self) -> String {
+        let units = self.units.map_or("", LengthUnit::name);
+        let frame = self.frame.map_or("", |frame| Frame::from(frame).name());
+        format!("units={units};frame={frame}")
+    }
+}
+
+/// An upload that was read.
+pub struct Upload {
+    pub row: NewMesh,
+    pub document: MeshDocument,
+    pub mesh: StoredMesh,
+}
+
+/// Reads and checks an upload. Takes its time: not for an async thread.
+pub fn read_upload(
+    bytes: &Bytes,
+    sha256_of_bytes: String,
+    statement: &Statement,
+    standalone: bool,
+) -> Result<Upload, Problem> {
+    let read = format::read(bytes, &ReadLimits::default()).map_err(|error| problem_of(&error))?;
+    let is_image = matches!(read.mesh, Mesh::Image(_));
+    let units = statement.units.filter(|_| !is_image);
+    let mut report = mesh_report(&read);
+    // The frame stated for a form of several parts is that of the case, to which an image is turned.
+    if !is_image {
+        check_frame(&read, statement)?;
+    }
+    let scale = check_scale(report.diagonal, units.unwrap_or_default(), statement.allow_any_scale)?;
+    report.warnings.extend(scale.as_ref().map(WarningDocument::from));
+    let id = uuid::Uuid::now_v7().to_string();
+    let document = MeshDocument {
+        id: id.clone(),
+        sha256: sha256_of_bytes.clone(),
+        bytes: bytes.len() as u64,
+        format: read.format.name().to_ascii_lowercase().replace(' ', "-"),
+        // Filled in from the clock of the database when it is read.
+        created: String::new(),
+        role: statement.role.clone(),
+        units,
+        frame: statement.frame,
+        report,
+    };
+    let frame = read.frame.or(statement.frame.map(Frame::from)).unwrap_or_default();
+    let mesh =
+        StoredMesh { frame: Some(frame), ..StoredMesh::new(read, units, sha256_of_bytes.clone()) };
+    let stored = Bytes::from(encode(&mesh.shape, frame)?);
+    let row = NewMesh {
+        id,
+        sha256: sha256_of_bytes,
+        options: statement.identity(),
+        blob: sha256_hex(&stored),
+        bytes: stored,
+        standalone,
+        report: serde_json::to_string(&document).map_err(not_written)?,
+    };
+    Ok(Upload { row, document, mesh })
+}
+
+/// The form in which a mesh is stored: reading it gives the same mesh.
+fn encode(shape: &StoredShape, frame: Frame) -> Result<Vec<u8>, Problem> {
+    let written = match shape {
+        StoredShape::Volume(volume) => vtk::vtu::write(&VolumeOutput::plain(volume, frame)),
+        StoredShape::Surface(surface) => vtk::vtp::write(&SurfaceOutput::plain(surface, frame)),
+        StoredShape::Image(image) => Ok(format::nrrd::write(image, frame)),
+    };
+    written.map_err(not_written)
+}
+
+fn not_written(error: impl std::fmt::Display) -> Problem {
+    Problem::new("mesh-parse", format!("the mesh cannot be written: {error}"))
+}
+
+/// A refusal of the bytes, with its numbers.
+pub fn problem_of(error: &FormatError) -> Problem {
+    let code = match error {
+        FormatError::UnsupportedFormat { .. } => "unsupported-media-type",
+        other => other.code(),
+    };
+    let mut problem = Problem::new(code, error.to_string());
+    for (name, member) in error.members().into_iter().filter(|(name, _)| *name != "detail") {
+        let value: Value = match member {
+            Member::Text(text) => text.into(),
+            Member::Count(count) => count.into(),
+            Member::Counts(counts) => counts.into(),
+            Member::Texts(texts) => texts.into(),
+        };
+        problem.members.insert(name.to_owned(), value);
+    }
+    problem
+}
+
+fn check_frame(read: &ReadMesh, statement: &Statement) -> Result<(), Problem> {
+    let stated = statement.frame.map(Frame::from).filter(|frame| *frame != Frame::Unspecified);
+    let marked = read.frame.filter(|frame| *frame != Frame::Unspecified);
+    match (stated, marked) {
+        (Some(stated), Some(marked)) if stated != marked => {
+            let detail = format!("the upload says {stated} and the file says SPACE={marked}");
+            Err(Problem::new("frame-conflict", detail))
+        }
+        _ => Ok(()),
+    }
+}
+
+fn check_scale(
+    diagonal: f64,
+    units: LengthUnit,
+    allow_any_scale: bool,
+) -> Result<Option<Warning>, Problem> {
+    let diagonal_mm = diagonal * units.in_mm();
+    if USUAL_DIAGONAL_MM.contains(&diagonal_mm) {
+        return Ok(None);
+    }
+    let others = [LengthUnit::Mm, LengthUnit::M, LengthUnit::Um];
+    let fitting = others
+        .into_iter()
+        .find(|unit| *unit != units && USUAL_DIAGONAL_MM.contains(&(diagonal * unit.in_mm())));
+    let hint = fitting.map_or(String::new(), |unit| format!("; in {} it would fit", unit.name()));
+    let detail = format!(
+        "the diagonal of the bounding box is {diagonal_mm:.4} mm, that of a head or its parts 50 to 600 mm{hint}"
+    );
+    if POSSIBLE_DIAGONAL_MM.contains(&diagonal_mm) || allow_any_scale {
+        return Ok(Some(Warning::new("units-suspect", detail).with("diagonal_mm", diagonal_mm)));
+    }
+    let problem = Problem::new("units-suspect", detail).with("diagonal_mm", diagonal_mm);
+    Err(match fitting {
+        Some(unit) => problem.with("suggested_units", unit.name()),
+        None => problem,
+    })
+}
+
+/// A mesh in another format, as `GET /v1/meshes/{id}/content` hands it out.
+pub fn export(mesh: &StoredMesh, format: ExportFormat) -> Result<Vec<u8>, Problem> {
+    let frame = mesh.frame.unwrap_or_default();
+    let surface = mesh.surface();
+    let surface = surface.as_deref().map(|surface| SurfaceOutput::plain(surface, frame));
+    let written = match (format, &mesh.shape, &surface) {
+        (ExportFormat::Vtu, StoredShape::Volume(_), _)
+        | (ExportFormat::Nrrd, StoredShape::Image(_), _) => return encode(&mesh.shape, frame),
+        (ExportFormat::Vtp, _, Some(surface)) => vtk::vtp::write(surface),
+        (ExportFormat::Stl, _, Some(surface)) => format::stl::write(surface),
+        (ExportFormat::Ply, _, Some(surface)) => format::ply::write(surface),
+        (_, StoredShape::Image(_), _) => {
+            return Err(Problem::new("format-not-available", "an image has the form nrrd only"));
+        }
+        _ => {
+            let detail = "a surface has no VTU form, and no mesh has an NRRD form; \
+                 vtp, stl and ply are there";
+            return Err(Problem::new("format-not-available", detail));
+        }
+    };
+    written.map_err(not_written)
+}
+
+/// What a stored mesh can be fetched as.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ExportFormat {
+    Vtu,
+    Vtp,
+    Stl,
+    Ply,
+    Nrrd,
+}
+
+impl ExportFormat {
+    pub const ALL: [ExportFormat; 5] = [
+        ExportFormat::Vtu,
+        ExportFormat::Vtp,
+        ExportFormat::Stl,
+        ExportFormat::Ply,
+        ExportFormat::Nrrd,
+    ];
+
+    /// The word in the request and the extension of the file.
+    pub fn name(self) -> &'static str {
+        match self {
+            ExportFormat::Vtu => "vtu",
+            ExportFormat::Vtp => "vtp",
+            ExportFormat::Stl => "stl",
+            ExportFormat::Ply => "ply",
+            ExportFormat::Nrrd => "nrrd",
+        }
+    }
+
+    pub fn media_type(self) -> &'static str {
+        match self {
+            ExportFormat::Vtu | ExportFormat::Vtp => "application/vnd.vtk.xml",
+            ExportFormat::Stl => "model/stl",
+            ExportFormat::Ply => "application/vnd.ply",
+            ExportFormat::Nrrd => "application/x-nrrd",
+        }
+    }
+}

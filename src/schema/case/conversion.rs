@@ -1,0 +1,369 @@
+//! A case document and its meshes to the case that the path takes: one unit, one frame, checked values.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+
+use super::document::{CaseDocument, FrameName, LengthUnit, NormalDocument};
+use super::material::{MaterialDocuments, Merged, PlacedMaterials, merge_materials};
+use crate::schema::wire::fault::{Faults, Pointer};
+use crate::schema::wire::limits::Limits;
+use mechanics::boundary::NodeSelection;
+use mechanics::image::ImageVolume;
+use mechanics::mesh::{Frame, TriangleSurface, Vector, VolumeMesh, Warning};
+use mechanics::prediction::{Bone, Case, CaseSegment, RegionNames, Sliding, SlidingNormal};
+
+/// Farthest coordinate of a landmark in mm.
+const FARTHEST_LANDMARK_MM: f64 = 1e8;
+/// Diagonals of the bounding boxes of heads and their parts, in mm.
+const USUAL_DIAGONAL_MM: (f64, f64) = (50.0, 600.0);
+
+/// A mesh as its file has it, and the frame the file names.
+#[derive(Clone, Debug)]
+pub struct NamedMesh<T> {
+    pub mesh: Arc<T>,
+    pub frame: Option<Frame>,
+}
+
+/// The meshes of a case, in the units of its document.
+#[derive(Clone, Debug)]
+pub struct CaseMeshes {
+    pub volume: NamedMesh<VolumeMesh>,
+    /// By the id under which bones and selections ask for them.
+    pub surfaces: BTreeMap<String, NamedMesh<TriangleSurface>>,
+    /// In mm, whatever the unit of the case.
+    pub image: Option<NamedMesh<ImageVolume>>,
+}
+
+impl CaseDocument {
+    /// The case in mm with the materials of a spec over its own. Pointers start at `/case` and `/spec`.
+    pub fn to_case(
+        &self,
+        meshes: &CaseMeshes,
+        spec_materials: Option<&MaterialDocuments>,
+        limits: &Limits,
+        faults: &mut Faults,
+    ) -> (Case, Vec<Warning>) {
+        let at = Pointer::root().key("case");
+        self.check_texts(&at, limits, faults);
+        let frame_warning = self.check_frames(&at, meshes, faults);
+        let volume = in_mm(&meshes.volume.mesh, self.units);
+        let own = PlacedMaterials { at: at.key("materials"), materials: self.materials.as_ref() };
+        let spec = PlacedMaterials {
+            at: Pointer::root().key("spec").key("materials"),
+            materials: spec_materials,
+        };
+        let Merged { materials, fibres, mut warnings } =
+            merge_materials(&own, &spec, limits, faults);
+        warnings.extend(frame_warning);
+        warnings.extend(unusual_size(&volume, self.units));
+        let regions = self.to_regions(&at.key("regions"), faults);
+        check_regions(&[own, spec], &regions, &volume, faults);
+        let (skin, skin_regions) = self.to_skin(&at, limits, faults);
+        let case = Case {
+            frame: self.frame.into(),
+            surfaces: self.to_surfaces(meshes),
+            bones: self.to_bones(&at.key("bones"), meshes, faults),
+            landmarks: self.to_landmarks(&at.key("landmarks"), limits, faults),
+            regions,
+            skin,
+            skin_regions,
+            segments: self.to_segments(&at.key("segments"), limits, faults),
+            fixed: self.to_fixed(&at.key("fixed"), limits, faults),
+            sliding: self.to_sliding(&at.key("sliding"), limits, faults),
+            hounsfield: self.to_hounsfield(&at.key("hounsfield"), meshes, limits, faults),
+            materials,
+            fibres,
+            volume,
+        };
+        (case, warnings)
+    }
+
+    fn check_texts(&self, at: &Pointer, limits: &Limits, faults: &mut Faults) {
+        if self.schema != 1 {
+            let detail = format!("schema {} is not known, only 1 is", self.schema);
+            faults.add(&at.key("schema"), "out-of-range", detail);
+        }
+        if let Some(name) = &self.name {
+            faults.check_name(&at.key("name"), name, limits.name_characters as usize);
+        }
+        check_tags(&self.tags, &at.key("tags"), limits, faults);
+    }
+
+    /// Marks in files must agree with the case and with each other.
+    fn check_frames(
+        &self,
+        at: &Pointer,
+        meshes: &CaseMeshes,
+        faults: &mut Faults,
+    ) -> Option<Warning> {
+        let volume = [("volume", meshes.volume.frame)];
+        let surfaces = meshes.surfaces.iter();
+        let marks: Vec<(&str, Frame)> = volume
+            .into_iter()
+            .chain(surfaces.map(|(id, surface)| (id.as_str(), surface.frame)))
+            .filter_map(|(id, mark)| Some((id, mark?)))
+            .filter(|(_, mark)| *mark != Frame::Unspecified)
+            .collect();
+        let stated = self.frame != FrameName::Unspecified;
+        let image = meshes.image.as_ref().and_then(|image| image.frame);
+        let image = image.filter(|mark| *mark != Frame::Unspecified).map(|mark| ("image", mark));
+        // An image is turned to the frame of the others, so that its own mark only counts where it is alone.
+        let (first_id, first) = marks.first().copied().or(image)?;
+        let frame = if stated { self.frame.into() } else { first };
+        for (id, mark) in marks.into_iter().filter(|(_, mark)| *mark != frame) {
+            let other = if stated { "the case".to_owned() } else { format!("mesh {first_id}") };
+            let detail = format!("mesh {id} is marked {mark}, {other} {frame}");
+            faults.add(&at.key("frame"), "frame-conflict", detail);
+        }
+        (!stated).then(|| {
+            Warning::new(
+                "frame-unstated",
+                format!("a mesh is marked {first}, the case states no frame; coordinates are taken as they stand"),
+            )
+        })
+    }
+
+    /// The frame of the case, or else the first that a mesh is marked with.
+    pub(super) fn frame_of_meshes(&self, meshes: &CaseMeshes) -> Frame {
+        let surfaces = meshes.surfaces.values().map(|surface| surface.frame);
+        let frames = [Some(self.frame.into()), meshes.volume.frame].into_iter().chain(surfaces);
+        frames.flatten().find(|frame| *frame != Frame::Unspecified).unwrap_or_default()
+    }
+
+    /// Each surface under its id and under the name of the bone that has it.
+    fn to_surfaces(&self, meshes: &CaseMeshes) -> BTreeMap<String, Arc<TriangleSurface>> {
+        let mut surfaces: BTreeMap<String, Arc<TriangleSurface>> = meshes
+            .surfaces
+            .iter()
+            .map(|(id, surface)| (id.clone(), surface_in_mm(&surface.mesh, self.units)))
+            .collect();
+        for bone in &self.bones {
+            if let Some(surface) = surfaces.get(&bone.mesh).cloned() {
+                surfaces.insert(bone.name.trim().to_owned(), surface);
+            }
+        }
+        surfaces
+    }
+
+    fn to_bones(&self, at: &Pointer, meshes: &CaseMeshes, faults: &mut Faults) -> Vec<Bone> {
+        let names = self.bones.iter().map(|bone| bone.name.as_str());
+        check_distinct(names, at, faults);
+        let mut bones = Vec::new();
+        for (index, bone) in self.bones.iter().enumerate() {
+            if !meshes.surfaces.contains_key(&bone.mesh) {
+                let detail = format!("mesh `{}` is not a surface that is there", bone.mesh);
+                faults.add(&at.index(index).key("mesh"), "unknown-mesh", detail);
+            }
+            bones.push(Bone { name: bone.name.trim().to_owned(), surface: bone.mesh.clone() });
+        }
+        bones
+    }
+
+    fn to_landmarks(
+        &self,
+        at: &Pointer,
+        limits: &Limits,
+        faults: &mut Faults,
+    ) -> BTreeMap<String, Vector> {
+        faults.check_length(at, self.landmarks.len(), limits.map_entries as usize);
+        for (name, position) in &self.landmarks {
+            faults.check_name(&at.key(name), name, limits.name_characters as usize);
+            for (axis, &coordinate) in position.0.iter().enumerate() {
+                let place = at.key(name).index(axis);
+                let range = -FARTHEST_LANDMARK_MM..=FARTHEST_LANDMARK_MM;
+                faults.check_range(&place, coordinate, range, "mm");
+            }
+        }
+        let landmarks = self.landmarks.iter();
+        landmarks.map(|(name, &position)| (name.clone(), Vector::from(position))).collect()
+    }
+
+    fn to_regions(&self, at: &Pointer, faults: &mut Faults) -> Option<RegionNames> {
+        let regions = self.regions.as_ref()?;
+        let mut names = BTreeMap::new();
+        for (value, name) in &regions.names {
+            let place = at.key("names").key(value);
+            faults.check_name(&place, name, 128);
+            match value.parse::<i64>() {
+                Ok(label) => {
+                    names.insert(label, name.trim().to_owned());
+                }
+                Err(_) => {
+                    let detail = format!("`{value}` is not a value of an integer array");
+                    faults.add(&place, "wrong-type", detail);
+                }
+            }
+        }
+        let array = regions.array.clone();
+        Some(RegionNames { array, names })
+    }
+
+    fn to_skin(
+        &self,
+        at: &Pointer,
+        limits: &Limits,
+        faults: &mut Faults,
+    ) -> (Option<NodeSelection>, BTreeMap<String, NodeSelection>) {
+        let skin = self.skin.as_ref();
+        let skin = skin.and_then(|skin| skin.to_selection(&at.key("skin"), limits, faults));
+        let at = at.key("skin_regions");
+        faults.check_length(&at, self.skin_regions.len(), limits.map_entries as usize);
+        let mut parts = BTreeMap::new();
+        for (name, part) in &self.skin_regions {
+            let place = at.key(name);
+            faults.check_name(&place, name, limits.name_characters as usize);
+            if let Some(selection) = part.to_selection(&place, limits, faults) {
+                parts.insert(name.clone(), selection);
+            }
+        }
+        (skin, parts)
+    }
+
+    fn to_segments(&self, at: &Pointer, limits: &Limits, faults: &mut Faults) -> Vec<CaseSegment> {
+        faults.check_length(at, self.segments.len(), limits.list_entries as usize);
+        let names = self.segments.iter().map(|segment| segment.name.as_str());
+        check_distinct(names, at, faults);
+        let mut segments = Vec::new();
+        for (index, segment) in self.segments.iter().enumerate() {
+            let at = at.index(index);
+            faults.check_name(&at.key("name"), &segment.name, limits.name_characters as usize);
+            let nodes = segment.nodes.to_selection(&at.key("nodes"), limits, faults);
+            let name = segment.name.trim().to_owned();
+            segments.extend(nodes.map(|nodes| CaseSegment { name, nodes }));
+        }
+        segments
+    }
+
+    fn to_fixed(&self, at: &Pointer, limits: &Limits, faults: &mut Faults) -> Vec<NodeSelection> {
+        faults.check_length(at, self.fixed.len(), limits.list_entries as usize);
+        let fixed = self.fixed.iter().enumerate();
+        fixed
+            .filter_map(|(index, nodes)| nodes.to_selection(&at.index(index), limits, faults))
+            .collect()
+    }
+
+    fn to_sliding(&self, at: &Pointer, limits: &Limits, faults: &mut Faults) -> Vec<Sliding> {
+        faults.check_length(at, self.sliding.len(), limits.list_entries as usize);
+        let mut sliding = Vec::new();
+        for (index, set) in self.sliding.iter().enumerate() {
+            let at = at.index(index);
+            let nodes = set.nodes.to_selection(&at.key("nodes"), limits, faults);
+            let normal = match set.normal {
+                NormalDocument::Word(_) => SlidingNormal::Surface,
+                NormalDocument::Direction(direction) => {
+                    match Vector::from(direction).try_normalize(1e-12) {
+                        Some(unit) => SlidingNormal::Direction(unit),
+                        None => {
+                            let detail = "a direction has a length above 0";
+                            faults.add(&at.key("normal"), "out-of-range", detail);
+                            continue;
+                        }
+                    }
+                }
+            };
+            sliding.extend(nodes.map(|nodes| Sliding { nodes, normal }));
+        }
+        sliding
+    }
+}
+
+/// Tags are names, at most 32 of them.
+pub fn check_tags(tags: &[String], at: &Pointer, limits: &Limits, faults: &mut Faults) {
+    faults.check_length(at, tags.len(), limits.tags as usize);
+    for (index, tag) in tags.iter().enumerate() {
+        faults.check_name(&at.index(index), tag, limits.name_characters as usize);
+    }
+}
+
+/// The centre of the bounding box of a mesh.
+pub fn centre(volume: &VolumeMesh) -> Vector {
+    bounding_box(volume).map_or_else(Vector::zeros, |(low, high)| (low + high) * 0.5)
+}
+
+fn bounding_box(volume: &VolumeMesh) -> Option<(Vector, Vector)> {
+    let first = *volume.nodes.first()?;
+    let nodes = volume.nodes.iter();
+    Some(nodes.fold((first, first), |(low, high), node| (low.inf(node), high.sup(node))))
+}
+
+pub(super) fn check_distinct<'a>(
+    names: impl Iterator<Item = &'a str>,
+    at: &Pointer,
+    faults: &mut Faults,
+) {
+    let mut seen = BTreeSet::new();
+    for (index, name) in names.enumerate() {
+        if !seen.insert(name.trim()) {
+            let detail = format!("the name `{}` is given more than once", name.trim());
+            faults.add(&at.index(index).key("name"), "duplicate-name", detail);
+        }
+    }
+}
+
+/// Refuses materials for regions that the mesh does not have.
+fn check_regions(
+    materials: &[PlacedMaterials],
+    regions: &Option<RegionNames>,
+    volume: &VolumeMesh,
+    faults: &mut Faults,
+) {
+    let known = match regions {
+        None => BTreeSet::from(["tissue".to_owned()]),
+        Some(regions) => {
+            // An array that is missing is refused, with the arrays there are, where the scene is built.
+            let Some(labels) = volume.cell_labels.get(&regions.array) else {
+                return;
+            };
+            let values: BTreeSet<i64> = labels.iter().copied().collect();
+            let name = |value: &i64| regions.names.get(value).cloned();
+            values.iter().map(|value| name(value).unwrap_or_else(|| value.to_string())).collect()
+        }
+    };
+    for placed in materials {
+        for region in placed.materials.into_iter().flat_map(BTreeMap::keys) {
+            if region != "*" && !known.contains(region) {
+                let names: Vec<&str> = known.iter().map(String::as_str).take(20).collect();
+                let detail =
+                    format!("the mesh has no region `{region}`; it has {}", names.join(", "));
+                faults.add(&placed.at.key(region), "unknown-region", detail);
+            }
+        }
+    }
+}
+
+fn unusual_size(volume: &VolumeMesh, units: LengthUnit) -> Option<Warning> {
+    let (low, high) = bounding_box(volume)?;
+    let diagonal = (high - low).norm();
+    let (shortest, longest) = USUAL_DIAGONAL_MM;
+    if (shortest..=longest).contains(&diagonal) {
+        return None;
+    }
+    let detail = format!(
+        "the mesh is {diagonal:.4} mm across if its unit is {}; heads are {shortest} to {longest} mm",
+        units.name()
+    );
+    Some(Warning::new("units-suspect", detail).with("diagonal_mm", diagonal))
+}
+
+fn in_mm(volume: &Arc<VolumeMesh>, units: LengthUnit) -> Arc<VolumeMesh> {
+    if units == LengthUnit::Mm {
+        return volume.clone();
+    }
+    // Vector arrays carry their unit in their name and are left alone.
+    let mut scaled = (**volume).clone();
+    for node in &mut scaled.nodes {
+        *node *= units.in_mm();
+    }
+    Arc::new(scaled)
+}
+
+fn surface_in_mm(surface: &Arc<TriangleSurface>, units: LengthUnit) -> Arc<TriangleSurface> {
+    if units == LengthUnit::Mm {
+        return surface.clone();
+    }
+    let mut scaled = (**surface).clone();
+    for point in &mut scaled.points {
+        *point *= units.in_mm();
+    }
+    Arc::new(scaled)
+}

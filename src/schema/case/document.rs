@@ -1,0 +1,259 @@
+//! A case: the meshes of a patient, what they mean, and what holds them.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+use super::hounsfield::HounsfieldDocument;
+use super::material::{MaterialDocument, MaterialDocuments};
+use super::selection::SelectionDocument;
+use crate::schema::Triple;
+use crate::schema::wire::fault::Pointer;
+use mechanics::mesh::Frame;
+
+pub use super::conversion::{CaseMeshes, NamedMesh};
+
+/// A patient's scene. Lengths in the document are mm; those of the meshes are in `units`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CaseDocument {
+    /// The version of this document: 1.
+    #[serde(default = "one")]
+    #[schema(default = 1, minimum = 1, maximum = 1)]
+    pub schema: u32,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub name: Option<String>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub tags: Vec<String>,
+    /// The unit of length of every mesh of the case.
+    pub units: LengthUnit,
+    #[serde(default)]
+    pub frame: FrameName,
+    /// The volume mesh: its id.
+    pub volume: String,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub bones: Vec<BoneDocument>,
+    /// Named points in mm; they move with the tissue around them.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub landmarks: BTreeMap<String, Triple>,
+    /// Absent: one region named `tissue`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub regions: Option<RegionsDocument>,
+    /// Absent: all boundary faces without a joined, fixed or sliding node.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub skin: Option<SelectionDocument>,
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub skin_regions: BTreeMap<String, SelectionDocument>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub segments: Vec<SegmentDocument>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub fixed: Vec<SelectionDocument>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub sliding: Vec<SlidingDocument>,
+    /// By region name; `*` serves every region without an entry of its own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false, value_type = Option<BTreeMap<String, MaterialDocument>>)]
+    pub materials: Option<MaterialDocuments>,
+    /// Materials by what an image shows, over those of the regions.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub hounsfield: Option<HounsfieldDocument>,
+}
+
+fn one() -> u32 {
+    1
+}
+
+/// The unit of length of mesh files.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum LengthUnit {
+    #[default]
+    Mm,
+    M,
+    Um,
+}
+
+impl LengthUnit {
+    /// How many mm one unit is.
+    pub fn in_mm(self) -> f64 {
+        match self {
+            LengthUnit::Mm => 1.0,
+            LengthUnit::M => 1000.0,
+            LengthUnit::Um => 0.001,
+        }
+    }
+
+    pub fn name(self) -> &'static str {
+        match self {
+            LengthUnit::Mm => "mm",
+            LengthUnit::M => "m",
+            LengthUnit::Um => "um",
+        }
+    }
+}
+
+/// Left, posterior, superior; or right, anterior, superior.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+pub enum FrameName {
+    #[serde(rename = "LPS")]
+    Lps,
+    #[serde(rename = "RAS")]
+    Ras,
+    #[default]
+    #[serde(rename = "unspecified")]
+    Unspecified,
+}
+
+impl From<FrameName> for Frame {
+    fn from(name: FrameName) -> Frame {
+        match name {
+            FrameName::Lps => Frame::Lps,
+            FrameName::Ras => Frame::Ras,
+            FrameName::Unspecified => Frame::Unspecified,
+        }
+    }
+}
+
+impl From<Frame> for FrameName {
+    fn from(frame: Frame) -> FrameName {
+        match frame {
+            Frame::Lps => FrameName::Lps,
+            Frame::Ras => FrameName::Ras,
+            Frame::Unspecified => FrameName::Unspecified,
+        }
+    }
+}
+
+/// A bone surface; it moves with the segment of its name.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct BoneDocument {
+    pub name: String,
+    /// The surface mesh: its id.
+    pub mesh: String,
+}
+
+/// The integer cell array that divides the mesh into regions, and names for its values.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RegionsDocument {
+    pub array: String,
+    /// A value without a name is called by its number.
+    #[serde(default)]
+    pub names: BTreeMap<String, String>,
+}
+
+/// The nodes that a bone segment carries with it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SegmentDocument {
+    pub name: String,
+    pub nodes: SelectionDocument,
+}
+
+/// Nodes held across a direction and free along it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SlidingDocument {
+    pub nodes: SelectionDocument,
+    #[serde(default)]
+    pub normal: NormalDocument,
+}
+
+/// The direction across which sliding nodes are held.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(untagged, expecting = "`surface` or a vector of three numbers is expected")]
+pub enum NormalDocument {
+    Word(NormalWord),
+    Direction(Triple),
+}
+
+impl Default for NormalDocument {
+    fn default() -> Self {
+        NormalDocument::Word(NormalWord::Surface)
+    }
+}
+
+/// The normals of the selected boundary faces.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum NormalWord {
+    Surface,
+}
+
+impl CaseDocument {
+    /// A case of a volume mesh and nothing else.
+    pub fn of_volume(volume: &str, units: LengthUnit) -> Self {
+        CaseDocument {
+            schema: one(),
+            name: None,
+            tags: Vec::new(),
+            units,
+            frame: FrameName::Unspecified,
+            volume: volume.to_owned(),
+            bones: Vec::new(),
+            landmarks: BTreeMap::new(),
+            regions: None,
+            skin: None,
+            skin_regions: BTreeMap::new(),
+            segments: Vec::new(),
+            fixed: Vec::new(),
+            sliding: Vec::new(),
+            materials: None,
+            hounsfield: None,
+        }
+    }
+
+    /// Every mesh and image the case asks for, with its place: the volume, the bones, the image, and the
+    /// surfaces of selections.
+    /// A selection may also name a bone; the names of bones are left out.
+    pub fn mesh_references_mut(&mut self) -> Vec<(Pointer, &mut String)> {
+        let root = Pointer::root();
+        let bone_names: Vec<String> = self.bones.iter().map(|bone| bone.name.clone()).collect();
+        let mut found = vec![(root.key("volume"), &mut self.volume)];
+        for (index, bone) in self.bones.iter_mut().enumerate() {
+            found.push((root.key("bones").index(index).key("mesh"), &mut bone.mesh));
+        }
+        if let Some(hounsfield) = &mut self.hounsfield {
+            found.push((root.key("hounsfield").key("image"), &mut hounsfield.image));
+        }
+        let mut surfaces = Vec::new();
+        if let Some(skin) = &mut self.skin {
+            skin.surfaces_mut(&root.key("skin"), &mut surfaces);
+        }
+        for (name, region) in &mut self.skin_regions {
+            region.surfaces_mut(&root.key("skin_regions").key(name), &mut surfaces);
+        }
+        for (index, segment) in self.segments.iter_mut().enumerate() {
+            let at = root.key("segments").index(index).key("nodes");
+            segment.nodes.surfaces_mut(&at, &mut surfaces);
+        }
+        for (index, fixed) in self.fixed.iter_mut().enumerate() {
+            fixed.surfaces_mut(&root.key("fixed").index(index), &mut surfaces);
+        }
+        for (index, sliding) in self.sliding.iter_mut().enumerate() {
+            let at = root.key("sliding").index(index).key("nodes");
+            sliding.nodes.surfaces_mut(&at, &mut surfaces);
+        }
+        surfaces.retain(|(_, surface)| !bone_names.contains(surface));
+        found.extend(surfaces);
+        found
+    }
+
+    /// The ids of all meshes and images the case asks for, each once, the volume first.
+    pub fn mesh_ids(&self) -> Vec<String> {
+        let mut copy = self.clone();
+        let mut ids: Vec<String> = Vec::new();
+        for (_, id) in copy.mesh_references_mut() {
+            if !ids.contains(id) {
+                ids.push(id.clone());
+            }
+        }
+        ids
+    }
+}

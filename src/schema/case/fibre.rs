@@ -1,0 +1,123 @@
+//! What runs in one direction: fibres of a material, lines of the skin.
+
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+use crate::schema::Triple;
+use crate::schema::wire::fault::{Faults, Pointer};
+use mechanics::material::{Fibre, FibreLaw, LinearElastic, MaterialError};
+use mechanics::mesh::Vector;
+use mechanics::prediction::FibreDirection;
+
+/// Fibres of a material, whose own Young's modulus and Poisson's ratio are then those across them. In a spec,
+/// what is not given stays what the case says.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FibreDocument {
+    /// Along the fibre; in (0, 1e9].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false, exclusive_minimum = 0.0, maximum = 1e9)]
+    pub young_modulus_kpa: Option<f64>,
+    /// Between the fibre and what lies across it; in (0, 1e9]. Default E / (2 (1 + nu)) of the material. The
+    /// law of paper 002 has none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false, exclusive_minimum = 0.0, maximum = 1e9)]
+    pub shear_modulus_kpa: Option<f64>,
+    /// The same in the whole region. Exactly one of `direction` and `array`; neither length nor sign matters.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub direction: Option<Triple>,
+    /// A cell array of the volume mesh with 3 components.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub array: Option<String>,
+    /// Default `engineering`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub law: Option<FibreLawName>,
+}
+
+/// How the moduli become a stiffness.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum FibreLawName {
+    /// Moduli along and across are what a strip pulled along and across shows.
+    #[default]
+    Engineering,
+    /// Lamé constants from each modulus with the same Poisson's ratio nu; only where the ratio of moduli along
+    /// and across is below (1 - nu) / (2 nu^2).
+    #[serde(rename = "paper_002")]
+    Paper002,
+}
+
+impl FibreDocument {
+    /// What is given here, and for the rest what `base` gives; a course given here replaces the other.
+    pub(super) fn over(&self, base: &FibreDocument) -> FibreDocument {
+        let course = match (self.direction, &self.array) {
+            (None, None) => base,
+            _ => self,
+        };
+        FibreDocument {
+            young_modulus_kpa: self.young_modulus_kpa.or(base.young_modulus_kpa),
+            shear_modulus_kpa: self.shear_modulus_kpa.or(base.shear_modulus_kpa),
+            direction: course.direction,
+            array: course.array.clone(),
+            law: self.law.or(base.law),
+        }
+    }
+
+    /// The material with these fibres, and where they run.
+    pub(super) fn to_fibred(
+        &self,
+        across: LinearElastic,
+        at: &Pointer,
+        faults: &mut Faults,
+    ) -> Option<(LinearElastic, FibreDirection)> {
+        if self.young_modulus_kpa.is_none() {
+            let place = at.key("young_modulus_kpa");
+            faults.add(&place, "missing-field", "missing field `young_modulus_kpa`");
+        }
+        let course = to_course(self.direction, self.array.as_deref(), at, faults);
+        let law = match self.law.unwrap_or_default() {
+            FibreLawName::Engineering => FibreLaw::Engineering,
+            FibreLawName::Paper002 => FibreLaw::Paper002,
+        };
+        let (young_modulus, shear_modulus) = (self.young_modulus_kpa?, self.shear_modulus_kpa);
+        match across.with_fibre(&Fibre { young_modulus, shear_modulus, law }) {
+            Ok(material) => Some((material, course?)),
+            Err(error) => {
+                let (field, code) = match error {
+                    MaterialError::FibreShear(_) => ("shear_modulus_kpa", "out-of-range"),
+                    MaterialError::ShearOfPaper002 => ("shear_modulus_kpa", "not-in-law"),
+                    MaterialError::FibreTooSoft { .. }
+                    | MaterialError::NotPositiveDefinite { .. } => {
+                        ("young_modulus_kpa", "not-positive-definite")
+                    }
+                    MaterialError::FibreModulus(_)
+                    | MaterialError::YoungModulus(_)
+                    | MaterialError::PoissonRatio(_)
+                    | MaterialError::Density(_) => ("young_modulus_kpa", "out-of-range"),
+                };
+                faults.add(&at.key(field), code, error.to_string());
+                None
+            }
+        }
+    }
+}
+
+/// The one course that is given.
+pub(super) fn to_course(
+    direction: Option<Triple>,
+    array: Option<&str>,
+    at: &Pointer,
+    faults: &mut Faults,
+) -> Option<FibreDirection> {
+    let given = usize::from(direction.is_some()) + usize::from(array.is_some());
+    if !faults.check_one_of(at, given, "`direction`, `array`") {
+        return None;
+    }
+    match (direction, array) {
+        (Some(direction), _) => Some(FibreDirection::Uniform(Vector::from(direction))),
+        (None, array) => array.map(|name| FibreDirection::Array(name.trim().to_owned())),
+    }
+}

@@ -1,0 +1,167 @@
+//! Materials by Hounsfield unit: the image, the windows of the tissues, and what was found in the cells.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+use super::conversion::{CaseMeshes, check_distinct};
+use super::document::CaseDocument;
+use super::material::MaterialDocument;
+use crate::schema::wire::fault::{Faults, Pointer};
+use crate::schema::wire::limits::Limits;
+use mechanics::image::{MOST_SAMPLES, Windows};
+use mechanics::prediction::{Hounsfield, ImagedTissue, Mixing, TissueShare, TissueWindow};
+
+/// Ends of windows lie within this.
+const FARTHEST_HU: f64 = 1e6;
+
+/// Materials by what an image shows of each cell. A cell that reaches beyond the image, or lies in no window,
+/// keeps the material of its region.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct HounsfieldDocument {
+    /// The image: the id of an uploaded NRRD file. It is in mm, and is turned to the frame of the case where
+    /// both are stated.
+    pub image: String,
+    /// Points in each cell, the same in every cell of a shape.
+    #[serde(default = "usual_samples")]
+    #[schema(default = 512, minimum = 1, maximum = 512)]
+    pub samples: u32,
+    /// Windows of values that do not overlap.
+    #[schema(min_items = 1)]
+    pub tissues: Vec<TissueDocument>,
+    #[serde(default)]
+    pub mixing: MixingName,
+}
+
+fn usual_samples() -> u32 {
+    MOST_SAMPLES as u32
+}
+
+/// A tissue: `from_hu` <= value < `to_hu`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TissueDocument {
+    pub name: String,
+    pub from_hu: f64,
+    pub to_hu: f64,
+    pub material: MaterialDocument,
+}
+
+/// What becomes of a cell with several tissues in it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum MixingName {
+    /// It is the tissue of its mean value.
+    #[default]
+    Mean,
+    /// Its bulk and shear modulus are those of its tissues, each by the share of points in its window; points in
+    /// no window count as its region.
+    Fraction,
+}
+
+/// What an image showed of the mesh.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct ImagedTissueDocument {
+    pub tissues: BTreeMap<String, TissueShareDocument>,
+    /// What kept the material of its region.
+    pub region: TissueShareDocument,
+    /// Cells that reach beyond the image.
+    pub outside_cells: u64,
+}
+
+/// How much of the mesh a tissue is.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct TissueShareDocument {
+    /// Cells that are of it, with `fraction` be it in part.
+    pub cells: u64,
+    /// Of the volume of the mesh.
+    pub volume_share: f64,
+}
+
+impl From<&TissueShare> for TissueShareDocument {
+    fn from(share: &TissueShare) -> Self {
+        TissueShareDocument { cells: share.cells as u64, volume_share: share.volume_share }
+    }
+}
+
+impl From<&ImagedTissue> for ImagedTissueDocument {
+    fn from(imaged: &ImagedTissue) -> Self {
+        let tissues = imaged.tissues.iter();
+        ImagedTissueDocument {
+            tissues: tissues.map(|(name, share)| (name.clone(), share.into())).collect(),
+            region: (&imaged.region).into(),
+            outside_cells: imaged.outside as u64,
+        }
+    }
+}
+
+impl CaseDocument {
+    /// The image in the frame of the case, and its windows. An image that is not there was refused where it was
+    /// looked for.
+    pub(super) fn to_hounsfield(
+        &self,
+        at: &Pointer,
+        meshes: &CaseMeshes,
+        limits: &Limits,
+        faults: &mut Faults,
+    ) -> Option<Hounsfield> {
+        let document = self.hounsfield.as_ref()?;
+        let range = 1.0..=MOST_SAMPLES as f64;
+        faults.check_range(&at.key("samples"), f64::from(document.samples), range, "");
+        let tissues = document.to_tissues(&at.key("tissues"), limits, faults);
+        let image = meshes.image.as_ref()?;
+        let (from, to) = (image.frame.unwrap_or_default(), self.frame_of_meshes(meshes));
+        let image = Arc::new(image.mesh.turned(from, to));
+        let samples = document.samples as usize;
+        let mixing = match document.mixing {
+            MixingName::Mean => Mixing::Mean,
+            MixingName::Fraction => Mixing::Fraction,
+        };
+        Some(Hounsfield { image, samples, tissues, mixing })
+    }
+}
+
+impl HounsfieldDocument {
+    fn to_tissues(&self, at: &Pointer, limits: &Limits, faults: &mut Faults) -> Vec<TissueWindow> {
+        faults.check_length(at, self.tissues.len(), limits.list_entries as usize);
+        if self.tissues.is_empty() {
+            faults.add(at, "out-of-range", "one tissue or more is expected");
+        }
+        check_distinct(self.tissues.iter().map(|tissue| tissue.name.as_str()), at, faults);
+        let mut tissues = Vec::new();
+        for (index, tissue) in self.tissues.iter().enumerate() {
+            let at = at.index(index);
+            faults.check_name(&at.key("name"), &tissue.name, limits.name_characters as usize);
+            let TissueDocument { from_hu, to_hu, .. } = *tissue;
+            for (end, value) in [("from_hu", from_hu), ("to_hu", to_hu)] {
+                faults.check_range(&at.key(end), value, -FARTHEST_HU..=FARTHEST_HU, "HU");
+            }
+            if from_hu >= to_hu {
+                let detail = format!("a window from {from_hu} to {to_hu} HU holds nothing");
+                faults.add(&at, "out-of-range", detail);
+            }
+            let name = tissue.name.trim().to_owned();
+            let place = at.key("material");
+            if tissue.material.fibre.is_some() {
+                let detail = "an image does not show where fibres run: give them to a region";
+                faults.add(&place.key("fibre"), "method-not-available", detail);
+            }
+            let material = tissue.material.to_isotropic(&place, faults);
+            tissues.extend(material.map(|material| TissueWindow {
+                name,
+                from_hu,
+                to_hu,
+                material,
+            }));
+        }
+        let ends: Vec<(f64, f64)> =
+            self.tissues.iter().map(|tissue| (tissue.from_hu, tissue.to_hu)).collect();
+        if ends.iter().all(|(from, to)| from < to) && Windows::new(&ends).is_none() {
+            faults.add(at, "windows-overlap", "two windows overlap: a value belongs to one tissue");
+        }
+        tissues
+    }
+}

@@ -1,0 +1,98 @@
+//! The skin as a membrane of its own.
+
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+use super::fibre::to_course;
+use crate::schema::Triple;
+use crate::schema::wire::fault::{Faults, Pointer};
+use mechanics::material::{PlaneStress, Sheet, SheetError};
+use mechanics::prediction::SkinMembrane;
+
+/// A sheet on the skin faces of the case that resists stretching and no bending, beside the tissue under it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MembraneDocument {
+    /// In (0, 20].
+    #[serde(default = "usual_thickness")]
+    #[schema(default = 1.5, exclusive_minimum = 0.0, maximum = 20.0)]
+    pub thickness_mm: f64,
+    /// In (0, 1e9]; with lines, across them.
+    #[serde(default = "usual_modulus")]
+    #[schema(default = 200.0, exclusive_minimum = 0.0, maximum = 1e9)]
+    pub young_modulus_kpa: f64,
+    /// In [0, 0.5]; with lines, how much the sheet narrows when it is stretched along them.
+    #[serde(default = "usual_ratio")]
+    #[schema(default = 0.45, minimum = 0.0, maximum = 0.5)]
+    pub poisson_ratio: f64,
+    /// Lines along which the skin is stiffer, such as Langer's.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub fibre: Option<LinesDocument>,
+}
+
+/// Lines of the skin.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct LinesDocument {
+    /// Along the lines; in (0, 1e9] and above nu^2 times the one across them.
+    #[schema(exclusive_minimum = 0.0, maximum = 1e9)]
+    pub young_modulus_kpa: f64,
+    /// The same on the whole skin, of which each face takes what lies in its plane. Exactly one of `direction`
+    /// and `array`; neither length nor sign matters.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub direction: Option<Triple>,
+    /// A point array of the volume mesh with 3 components.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub array: Option<String>,
+}
+
+fn usual_thickness() -> f64 {
+    1.5
+}
+
+fn usual_modulus() -> f64 {
+    200.0
+}
+
+fn usual_ratio() -> f64 {
+    0.45
+}
+
+impl MembraneDocument {
+    pub(in crate::schema) fn to_membrane(
+        &self,
+        at: &Pointer,
+        faults: &mut Faults,
+    ) -> Option<SkinMembrane> {
+        let fibre = at.key("fibre");
+        let lines = self
+            .fibre
+            .as_ref()
+            .map(|lines| to_course(lines.direction, lines.array.as_deref(), &fibre, faults));
+        let sheet = PlaneStress::new(&Sheet {
+            thickness: self.thickness_mm,
+            young_modulus: self.young_modulus_kpa,
+            poisson_ratio: self.poisson_ratio,
+            along_lines: self.fibre.as_ref().map(|lines| lines.young_modulus_kpa),
+        });
+        match (sheet, lines) {
+            (Ok(_), Some(None)) => None,
+            (Ok(sheet), lines) => Some(SkinMembrane { sheet, lines: lines.flatten() }),
+            (Err(error), _) => {
+                let along = fibre.key("young_modulus_kpa");
+                let (place, code) = match error {
+                    SheetError::Thickness(_) => (at.key("thickness_mm"), "out-of-range"),
+                    SheetError::YoungModulus(_) => (at.key("young_modulus_kpa"), "out-of-range"),
+                    SheetError::PoissonRatio(_) => (at.key("poisson_ratio"), "out-of-range"),
+                    SheetError::AlongLines(_) => (along, "out-of-range"),
+                    SheetError::TooSoftAlongLines { .. } => (along, "not-positive-definite"),
+                };
+                faults.add(&place, code, error.to_string());
+                None
+            }
+        }
+    }
+}

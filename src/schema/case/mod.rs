@@ -1,0 +1,9 @@
+//! The case document, its parts, and its conversion to the case that is computed.
+
+pub mod conversion;
+pub mod document;
+pub mod fibre;
+pub mod hounsfield;
+pub mod material;
+pub mod membrane;
+pub mod selection;

@@ -1,0 +1,209 @@
+//! The answer of a comparison: distances both ways, aligned and as they were, per region.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+use crate::schema::{Matrix4x4, Triple};
+use mechanics::validation::comparison::BothDirections;
+use mechanics::validation::{AlignmentReport, Comparison, DistanceStatistics, Statistics};
+
+/// Statistics of lengths in mm. A percentile is the smallest value whose cumulative weight reaches it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct StatDocument {
+    pub count: u64,
+    pub mean: f64,
+    pub sd: f64,
+    pub rms: f64,
+    pub median: f64,
+    pub p90: f64,
+    pub p95: f64,
+    pub p99: f64,
+    pub max: f64,
+}
+
+/// Statistics of unsigned distances in mm, weighted by area, and of the signed ones.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct DistanceDocument {
+    pub count: u64,
+    pub mean: f64,
+    pub sd: f64,
+    pub rms: f64,
+    pub median: f64,
+    pub p90: f64,
+    pub p95: f64,
+    pub p99: f64,
+    pub max: f64,
+    /// The largest distance at any point of the surface, in mm.
+    pub hausdorff: f64,
+    /// Share of the area, 0 to 1.
+    pub share_below_1_mm: f64,
+    pub share_below_2_mm: f64,
+    pub share_below_3_mm: f64,
+    /// Positive where the prediction is outside.
+    pub signed: StatDocument,
+}
+
+/// Distances from the prediction to the actual surface, back, and of both pooled.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct DirectionsDocument {
+    pub to_actual: DistanceDocument,
+    pub to_prediction: DistanceDocument,
+    pub both: DistanceDocument,
+}
+
+/// A comparison of two surfaces. The prediction stays where it is; an alignment moves the actual surface.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct ComparisonDocument {
+    pub to_actual: DistanceDocument,
+    pub to_prediction: DistanceDocument,
+    pub both: DistanceDocument,
+    /// By the names of `regions`; a region that the actual surface does not reach is left out, with a warning.
+    pub regions: BTreeMap<String, DirectionsDocument>,
+    pub alignment: AlignmentDocument,
+    /// The measures before the alignment.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub unaligned: Option<DirectionsDocument>,
+    pub coverage: CoverageDocument,
+    /// Distances between points of the same number; absent where the surfaces do not correspond.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub node_wise: Option<NodeWiseDocument>,
+    pub samples_per_mm2: f64,
+}
+
+/// The rigid movement that took the actual surface onto the prediction.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct AlignmentDocument {
+    /// `none`, `landmarks` or `icp`.
+    pub method: String,
+    /// Row-major; x' = R x + t in mm.
+    pub matrix4x4: Matrix4x4,
+    pub rotation_deg: f64,
+    /// Of the middle of the actual surface.
+    pub displacement_mm: Triple,
+    pub iterations: u64,
+    /// Pairs of points that decided.
+    pub pairs: u64,
+    /// Root of the mean squared distance of these pairs.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub rms_mm: Option<f64>,
+}
+
+/// How much of each surface has the other opposite, 0 to 1, and distances of that part alone.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct CoverageDocument {
+    pub of_prediction: f64,
+    pub of_actual: f64,
+    /// Absent where all or nothing is covered.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub to_actual: Option<DistanceDocument>,
+    /// Absent where all or nothing is covered.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub to_prediction: Option<DistanceDocument>,
+}
+
+/// Distances in mm between points of the same number.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct NodeWiseDocument {
+    /// Every point counts the same.
+    pub nodes: StatDocument,
+    /// Every point counts by its area on the prediction.
+    pub area: StatDocument,
+}
+
+impl From<&Statistics> for StatDocument {
+    fn from(statistics: &Statistics) -> Self {
+        let Statistics { count, mean, sd, rms, median, p90, p95, p99, max } = *statistics;
+        StatDocument { count: count as u64, mean, sd, rms, median, p90, p95, p99, max }
+    }
+}
+
+impl From<&DistanceStatistics> for DistanceDocument {
+    fn from(statistics: &DistanceStatistics) -> Self {
+        let StatDocument { count, mean, sd, rms, median, p90, p95, p99, max } =
+            StatDocument::from(&statistics.unsigned);
+        DistanceDocument {
+            count,
+            mean,
+            sd,
+            rms,
+            median,
+            p90,
+            p95,
+            p99,
+            max,
+            hausdorff: statistics.hausdorff,
+            share_below_1_mm: statistics.share_below_1_mm,
+            share_below_2_mm: statistics.share_below_2_mm,
+            share_below_3_mm: statistics.share_below_3_mm,
+            signed: StatDocument::from(&statistics.signed),
+        }
+    }
+}
+
+impl From<&BothDirections> for DirectionsDocument {
+    fn from(directions: &BothDirections) -> Self {
+        DirectionsDocument {
+            to_actual: DistanceDocument::from(&directions.to_actual),
+            to_prediction: DistanceDocument::from(&directions.to_prediction),
+            both: DistanceDocument::from(&directions.both),
+        }
+    }
+}
+
+impl From<&AlignmentReport> for AlignmentDocument {
+    fn from(report: &AlignmentReport) -> Self {
+        let (rotation, translation) = (&report.transform.rotation, &report.transform.translation);
+        let mut matrix = [0.0; 16];
+        for row in 0..3 {
+            for column in 0..3 {
+                matrix[4 * row + column] = rotation[(row, column)];
+            }
+            matrix[4 * row + 3] = translation[row];
+        }
+        matrix[15] = 1.0;
+        AlignmentDocument {
+            method: report.method.to_owned(),
+            matrix4x4: Matrix4x4(matrix),
+            rotation_deg: report.angle.to_degrees(),
+            displacement_mm: report.middle_displacement.into(),
+            iterations: report.iterations as u64,
+            pairs: report.pairs as u64,
+            rms_mm: report.rms,
+        }
+    }
+}
+
+impl ComparisonDocument {
+    /// What a comparison says, and how densely it was sampled.
+    pub fn new(comparison: &Comparison, samples_per_mm2: f64) -> Self {
+        let all = DirectionsDocument::from(&comparison.distances);
+        let regions = comparison.regions.iter();
+        let coverage = &comparison.coverage;
+        ComparisonDocument {
+            to_actual: all.to_actual,
+            to_prediction: all.to_prediction,
+            both: all.both,
+            regions: regions.map(|(name, region)| (name.clone(), region.into())).collect(),
+            alignment: AlignmentDocument::from(&comparison.alignment),
+            unaligned: comparison.unaligned.as_ref().map(DirectionsDocument::from),
+            coverage: CoverageDocument {
+                of_prediction: coverage.of_prediction,
+                of_actual: coverage.of_actual,
+                to_actual: coverage.to_actual.as_ref().map(DistanceDocument::from),
+                to_prediction: coverage.to_prediction.as_ref().map(DistanceDocument::from),
+            },
+            node_wise: comparison.node_wise.as_ref().map(|node_wise| NodeWiseDocument {
+                nodes: StatDocument::from(&node_wise.nodes),
+                area: StatDocument::from(&node_wise.area),
+            }),
+            samples_per_mm2,
+        }
+    }
+}

@@ -1,0 +1,342 @@
+//! The spec of inverse planning: where skin is wanted, and how far each segment may move.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use utoipa::ToSchema;
+
+use crate::schema::case::document::CaseDocument;
+use crate::schema::case::material::{MaterialDocument, MaterialDocuments};
+use crate::schema::case::membrane::MembraneDocument;
+use crate::schema::case::selection::SelectionDocument;
+use crate::schema::methods::{self, ElementName, MethodName};
+use crate::schema::plan::document::{PlanDocument, PlanSegmentDocument};
+use crate::schema::plan::movement::FARTHEST_PIVOT_MM;
+use crate::schema::predict::document::{
+    BudgetDocument, OutputName, PredictDocument, ToleranceDocument,
+};
+use crate::schema::response::ResponseDocument;
+use crate::schema::wire::canonical;
+use crate::schema::wire::fault::{Faults, Pointer};
+use crate::schema::wire::limits::Limits;
+use crate::schema::wire::vector::Intervals;
+use crate::schema::{PartialTriple, Triple};
+use mechanics::mesh::Vector;
+use mechanics::optimisation::{PARAMETERS_PER_SEGMENT, SegmentBounds};
+
+/// Standard deviations in mm: a ratio beyond that of these would drown the looser target in rounding.
+const SIGMA_MM: (f64, f64) = (1e-3, 1e3);
+
+/// `optimise`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum OptimiseKind {
+    #[default]
+    Optimise,
+}
+
+/// Inverse planning: the plan within `bounds` with the least sum of squares of residual over `sigma_mm`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct OptimiseDocument {
+    #[serde(default)]
+    #[schema(required)]
+    pub kind: OptimiseKind,
+    /// The id of the case.
+    pub case: String,
+    /// Where skin is wanted; coordinates in the frame of the case.
+    #[schema(min_items = 1)]
+    pub targets: Vec<TargetDocument>,
+    /// How far each segment may move, by its name; the others stay where they are.
+    pub bounds: BTreeMap<String, BoundsDocument>,
+    /// Solves the plan that was found as `predict` would, and tells how far the skin is from the answer of the response.
+    #[serde(default = "yes")]
+    #[schema(default = true)]
+    pub verify: bool,
+    /// Linear methods only.
+    #[serde(default)]
+    pub method: MethodName,
+    #[serde(default)]
+    pub element: ElementName,
+    /// Over the materials of the case, field by field.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false, value_type = Option<BTreeMap<String, MaterialDocument>>)]
+    pub materials: Option<MaterialDocuments>,
+    /// Absent: the skin is tissue like the rest.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub membrane: Option<MembraneDocument>,
+    #[serde(default)]
+    pub tolerance: ToleranceDocument,
+    #[serde(default)]
+    pub budget: BudgetDocument,
+    /// As for `predict`; `volume.vtu` needs `verify`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub outputs: Option<Vec<OutputName>>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub tags: Vec<String>,
+}
+
+fn yes() -> bool {
+    true
+}
+
+/// Where a part of the skin is to be: exactly one of `nodes` and `landmark`, and exactly one of
+/// `position_mm` and `displacement_mm`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TargetDocument {
+    /// Holds for every selected node of the skin.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub nodes: Option<SelectionDocument>,
+    /// A landmark of the case; it moves as the point of the skin closest to it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub landmark: Option<String>,
+    /// Where it is to be; a component that is null is free.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub position_mm: Option<PartialTriple>,
+    /// How far it is to move; a component that is null is free.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub displacement_mm: Option<PartialTriple>,
+    /// The standard deviation of each component at each node; in [1e-3, 1e3].
+    #[serde(default = "usual_sigma")]
+    #[schema(default = 1.0, minimum = 1e-3, maximum = 1e3)]
+    pub sigma_mm: f64,
+}
+
+fn usual_sigma() -> f64 {
+    1.0
+}
+
+/// Between which values a segment may move; equal ends hold a value. What is left out is held at 0.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct BoundsDocument {
+    #[serde(default)]
+    pub translation_mm: Intervals,
+    /// About x, y and z, in the order `xyz-extrinsic`.
+    #[serde(default)]
+    pub rotation_deg: Intervals,
+    /// Required where a rotation may be other than 0.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub pivot_mm: Option<Triple>,
+}
+
+impl OptimiseDocument {
+    /// Adds what is wrong with it, but for what only the meshes can tell; pointers start at `/spec`.
+    pub fn check(&self, case: &CaseDocument, limits: &Limits, faults: &mut Faults) {
+        let root = Pointer::root().key("spec");
+        methods::check_linear(self.method, &root.key("method"), faults);
+        let at = root.key("targets");
+        if self.targets.is_empty() {
+            faults.add(&at, "missing-field", "at least one target is needed");
+        }
+        faults.check_length(&at, self.targets.len(), limits.list_entries as usize);
+        for (index, target) in self.targets.iter().enumerate() {
+            target.check(&at.index(index), case, limits, faults);
+        }
+        let at = root.key("bounds");
+        faults.check_length(&at, self.bounds.len(), limits.list_entries as usize);
+        for (name, bounds) in &self.bounds {
+            faults.check_name(&at.key(name), name, limits.name_characters as usize);
+            bounds.check(&at.key(name), limits, faults);
+        }
+        if !self.bounds.values().any(BoundsDocument::is_free) {
+            let detail = "no segment may move: at least one lowest value is below its highest";
+            faults.add(&at, "nothing-free", detail);
+        }
+        for (index, name) in self.outputs.iter().flatten().enumerate() {
+            if !self.verify && *name == OutputName::VolumeVtu {
+                let detail = "the inside of the tissue is known only after `verify`";
+                faults.add(&root.key("outputs").index(index), "needs-verify", detail);
+            }
+        }
+    }
+
+    /// The names of the segments that may move or are held away from rest.
+    pub fn moving(&self) -> Vec<String> {
+        let moving = self.bounds.iter().filter(|(_, bounds)| **bounds != bounds.at_rest());
+        moving.map(|(name, _)| name.trim().to_owned()).collect()
+    }
+
+    /// The bounds of a segment.
+    pub fn bounds_of(&self, segment: &str) -> BoundsDocument {
+        let mut bounds = self.bounds.iter();
+        let own = bounds.find(|(name, _)| name.trim() == segment.trim());
+        own.map(|(_, bounds)| *bounds).unwrap_or_default()
+    }
+
+    /// A plan in which every segment of the bounds stays.
+    pub fn rest(&self) -> PlanDocument {
+        let rest = |name: &String| PlanSegmentDocument {
+            name: name.clone(),
+            translation_mm: Some(Triple::default()),
+            ..PlanSegmentDocument::default()
+        };
+        PlanDocument { segments: self.bounds.keys().map(rest).collect(), ..PlanDocument::default() }
+    }
+
+    /// The prediction of the plan that is found, with which it shares its checks.
+    pub fn to_prediction(&self) -> PredictDocument {
+        PredictDocument { outputs: self.outputs.clone(), ..self.to_response().to_prediction() }
+    }
+
+    /// The response that the plan is found with.
+    pub fn to_response(&self) -> ResponseDocument {
+        ResponseDocument {
+            case: self.case.clone(),
+            method: self.method,
+            element: self.element,
+            materials: self.materials.clone(),
+            membrane: self.membrane.clone(),
+            segments: self.moving(),
+            tolerance: self.tolerance,
+            budget: self.budget,
+            tags: self.tags.clone(),
+            ..ResponseDocument::default()
+        }
+    }
+
+    /// Every surface its selections ask for; some may be names of bones of the case.
+    pub fn surfaces_mut(&mut self) -> Vec<&mut String> {
+        let mut found = Vec::new();
+        for nodes in self.targets.iter_mut().filter_map(|target| target.nodes.as_mut()) {
+            nodes.surfaces_mut(&Pointer::root(), &mut found);
+        }
+        found.into_iter().map(|(_, id)| id).collect()
+    }
+
+    /// What decides the numbers, for the hash of the job: no tags, no ids.
+    pub fn content(&self) -> Value {
+        let mut plain = self.clone();
+        plain.tags.clear();
+        plain.case.clear();
+        plain.outputs = Some(self.to_prediction().files());
+        canonical::to_value(&plain)
+    }
+}
+
+impl TargetDocument {
+    fn check(&self, at: &Pointer, case: &CaseDocument, limits: &Limits, faults: &mut Faults) {
+        let given = usize::from(self.nodes.is_some()) + usize::from(self.landmark.is_some());
+        faults.check_one_of(at, given, "`nodes`, `landmark`");
+        if let Some(name) = &self.landmark
+            && !case.landmarks.contains_key(name)
+        {
+            let known: Vec<&str> = case.landmarks.keys().map(String::as_str).take(20).collect();
+            let detail = format!("the case has no landmark {name:?}; it has: {}", known.join(", "));
+            faults.add(&at.key("landmark"), "unknown-landmark", detail);
+        }
+        let places = [self.position_mm, self.displacement_mm];
+        let given = places.into_iter().flatten().count();
+        if faults.check_one_of(at, given, "`position_mm`, `displacement_mm`") {
+            let (place, components) = self.wanted(at);
+            if components == [None; 3] {
+                faults.add(&place, "missing-field", "at least one component has a value");
+            }
+            let farthest = match self.displacement_mm {
+                Some(_) => limits.translation_mm,
+                None => FARTHEST_PIVOT_MM,
+            };
+            for (axis, value) in components.into_iter().enumerate() {
+                let value = value.unwrap_or_default();
+                faults.check_range(&place.index(axis), value, -farthest..=farthest, "mm");
+            }
+        }
+        let (least, most) = SIGMA_MM;
+        faults.check_range(&at.key("sigma_mm"), self.sigma_mm, least..=most, "mm");
+    }
+
+    /// The components that are stated, and where they stand.
+    pub fn wanted(&self, at: &Pointer) -> (Pointer, [Option<f64>; 3]) {
+        match (self.position_mm, self.displacement_mm) {
+            (Some(position), _) => (at.key("position_mm"), position.0),
+            (None, displacement) => (at.key("displacement_mm"), displacement.unwrap_or_default().0),
+        }
+    }
+
+    /// The displacement that is wanted of a point with this place at rest.
+    pub fn displacement(&self, rest: &Vector) -> [Option<f64>; 3] {
+        match self.position_mm {
+            Some(PartialTriple(position)) => {
+                std::array::from_fn(|axis| position[axis].map(|wanted| wanted - rest[axis]))
+            }
+            None => self.displacement_mm.unwrap_or_default().0,
+        }
+    }
+}
+
+impl BoundsDocument {
+    /// The six intervals in mm and degrees.
+    pub fn intervals(&self) -> [[f64; 2]; PARAMETERS_PER_SEGMENT] {
+        let (Intervals([x, y, z]), Intervals([a, b, c])) = (self.translation_mm, self.rotation_deg);
+        [x, y, z, a, b, c]
+    }
+
+    fn is_free(&self) -> bool {
+        self.intervals().iter().any(|[low, high]| low < high)
+    }
+
+    /// The same with everything held at 0.
+    fn at_rest(&self) -> Self {
+        BoundsDocument { pivot_mm: self.pivot_mm, ..BoundsDocument::default() }
+    }
+
+    pub fn to_bounds(self) -> SegmentBounds {
+        let intervals = self.intervals();
+        SegmentBounds {
+            intervals: std::array::from_fn(|number| {
+                let [low, high] = intervals[number];
+                if number < 3 { (low, high) } else { (low.to_radians(), high.to_radians()) }
+            }),
+            pivot: self.pivot_mm.unwrap_or_default().into(),
+        }
+    }
+
+    fn check(&self, at: &Pointer, limits: &Limits, faults: &mut Faults) {
+        let whole = [
+            ("translation_mm", self.translation_mm, limits.translation_mm, "mm"),
+            ("rotation_deg", self.rotation_deg, limits.rotation_deg, "deg"),
+        ];
+        for (name, Intervals(intervals), most, unit) in whole {
+            for (axis, [low, high]) in intervals.into_iter().enumerate() {
+                let place = at.key(name).index(axis);
+                let inside = faults.check_range(&place.index(0), low, -most..=most, unit)
+                    && faults.check_range(&place.index(1), high, -most..=most, unit);
+                if inside && low > high {
+                    let detail = format!("the lowest value {low} is above the highest {high}");
+                    faults.add(&place, "out-of-range", detail);
+                }
+            }
+        }
+        let farthest = self.translation_mm.0.map(|[low, high]| low.abs().max(high.abs()));
+        let (length, longest) = (Vector::from(farthest).norm(), limits.translation_mm);
+        if length > longest {
+            let detail = format!(
+                "the farthest corner is {length:.3} mm away, at most {longest} mm are allowed"
+            );
+            faults.add(&at.key("translation_mm"), "plan-out-of-range", detail);
+        }
+        let place = at.key("pivot_mm");
+        match self.pivot_mm {
+            None if self.rotation_deg != Intervals::default() => {
+                let detail = "`pivot_mm` is required where a rotation may be other than 0";
+                faults.add(&place, "missing-field", detail);
+            }
+            None => {}
+            Some(Triple(pivot)) => {
+                for (axis, coordinate) in pivot.into_iter().enumerate() {
+                    let range = -FARTHEST_PIVOT_MM..=FARTHEST_PIVOT_MM;
+                    faults.check_range(&place.index(axis), coordinate, range, "mm");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,4 @@
+//! The spec of inverse planning and its result.
+
+pub mod document;
+pub mod result;

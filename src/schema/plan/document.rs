@@ -1,0 +1,248 @@
+//! A plan: how the segments of a case move, and for mechanical cases what else acts.
+
+use std::collections::BTreeSet;
+
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+use super::load;
+use super::movement::{MovementContext, MovementDocument, RotationOrder};
+use crate::schema::case::document::FrameName;
+use crate::schema::case::selection::SelectionDocument;
+use crate::schema::wire::fault::{Faults, Pointer};
+use crate::schema::wire::limits::Limits;
+use crate::schema::{Matrix4x4, PartialTriple, Triple};
+use mechanics::mesh::{Frame, Vector};
+use mechanics::plan::{PlannedSegment, RigidMovement};
+use mechanics::prediction::{Plan, Prescribed};
+
+pub use super::load::LoadDocument;
+
+/// What moves and what acts; coordinates in `frame`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PlanDocument {
+    /// Segments that are not named stay where they are.
+    #[serde(default)]
+    pub segments: Vec<PlanSegmentDocument>,
+    /// Default: the frame of the case.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub frame: Option<FrameName>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub prescribed: Vec<PrescribedDocument>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub loads: Vec<LoadDocument>,
+}
+
+/// A segment of the case, or a node set of its volume mesh, and its movement in exactly one of three forms:
+/// `translation_mm` with `rotation_deg`, `matrix4x4`, or `sequence`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PlanSegmentDocument {
+    pub name: String,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub translation_mm: Option<Triple>,
+    /// About x, y and z.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub rotation_deg: Option<Triple>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub rotation_order: Option<RotationOrder>,
+    /// Required where a rotation is not 0.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub pivot_mm: Option<Triple>,
+    /// Row-major, last row 0 0 0 1, orthonormal to 1e-6 with determinant +1.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub matrix4x4: Option<Matrix4x4>,
+    /// Applied one after the other, the first entry first, all in the fixed frame.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub sequence: Option<Vec<MovementDocument>>,
+}
+
+/// Displacements prescribed at nodes: exactly one of `displacement_mm` and `array`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PrescribedDocument {
+    pub nodes: SelectionDocument,
+    /// Null leaves a component free.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub displacement_mm: Option<PartialTriple>,
+    /// A point array of the volume mesh with three components, in mm in the frame of the case.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub array: Option<String>,
+}
+
+/// What a plan is checked against.
+pub struct PlanContext<'a> {
+    pub frame: Frame,
+    /// The centre of the mesh's bounding box in mm.
+    pub centre: Vector,
+    pub limits: &'a Limits,
+}
+
+impl PlanDocument {
+    /// The plan in the frame of the case. What is wrong is added to `faults`, and left out of the plan.
+    pub fn to_plan(&self, at: &Pointer, context: &PlanContext, faults: &mut Faults) -> Plan {
+        let context = MovementContext {
+            mirrored_axes: self.mirrored_axes(at, context.frame, faults),
+            centre: context.centre,
+            limits: context.limits,
+        };
+        Plan {
+            segments: self.to_segments(&at.key("segments"), &context, faults),
+            prescribed: self.to_prescribed(&at.key("prescribed"), &context, faults),
+            loads: load::to_loads(&self.loads, &at.key("loads"), &context, faults),
+        }
+    }
+
+    /// Every surface its selections ask for, with its place; some may be names of bones of the case.
+    pub fn surface_references_mut(&mut self) -> Vec<(Pointer, &mut String)> {
+        let root = Pointer::root();
+        let mut found = Vec::new();
+        for (index, entry) in self.prescribed.iter_mut().enumerate() {
+            let at = root.key("prescribed").index(index).key("nodes");
+            entry.nodes.surfaces_mut(&at, &mut found);
+        }
+        for (index, load) in self.loads.iter_mut().enumerate() {
+            let at = root.key("loads").index(index);
+            if let Some(nodes) = &mut load.nodes {
+                nodes.surfaces_mut(&at.key("nodes"), &mut found);
+            }
+            if let Some(faces) = &mut load.faces {
+                faces.surfaces_mut(&at.key("faces"), &mut found);
+            }
+        }
+        found
+    }
+
+    /// Whether x and y change sign between the plan and the case.
+    fn mirrored_axes(&self, at: &Pointer, case_frame: Frame, faults: &mut Faults) -> bool {
+        let plan_frame = self.frame.map_or(case_frame, Frame::from);
+        if plan_frame == case_frame {
+            return false;
+        }
+        if plan_frame == Frame::Unspecified || case_frame == Frame::Unspecified {
+            let detail = format!("the plan is in frame {plan_frame} and the case in {case_frame}");
+            faults.add(&at.key("frame"), "frame-conflict", detail);
+        }
+        true
+    }
+
+    fn to_segments(
+        &self,
+        at: &Pointer,
+        context: &MovementContext,
+        faults: &mut Faults,
+    ) -> Vec<PlannedSegment> {
+        faults.check_length(at, self.segments.len(), context.limits.list_entries as usize);
+        let mut names = BTreeSet::new();
+        let mut planned = Vec::new();
+        for (index, segment) in self.segments.iter().enumerate() {
+            let at = at.index(index);
+            let name = segment.name.trim();
+            faults.check_name(&at.key("name"), name, context.limits.name_characters as usize);
+            if !names.insert(name) {
+                let detail = format!("segment `{name}` is named more than once");
+                faults.add(&at.key("name"), "duplicate-name", detail);
+            }
+            if let Some(movement) = segment.to_movement(&at, context, faults) {
+                context.check_whole(&at, &movement, faults);
+                let name = name.to_owned();
+                planned.push(PlannedSegment { name, movement });
+            }
+        }
+        planned
+    }
+
+    fn to_prescribed(
+        &self,
+        at: &Pointer,
+        context: &MovementContext,
+        faults: &mut Faults,
+    ) -> Vec<Prescribed> {
+        faults.check_length(at, self.prescribed.len(), context.limits.list_entries as usize);
+        let entries = self.prescribed.iter().enumerate();
+        entries
+            .filter_map(|(index, entry)| entry.to_prescribed(&at.index(index), context, faults))
+            .collect()
+    }
+}
+
+impl PlanSegmentDocument {
+    fn to_movement(
+        &self,
+        at: &Pointer,
+        context: &MovementContext,
+        faults: &mut Faults,
+    ) -> Option<RigidMovement> {
+        let single = MovementDocument {
+            translation_mm: self.translation_mm,
+            rotation_deg: self.rotation_deg,
+            rotation_order: self.rotation_order,
+            pivot_mm: self.pivot_mm,
+            matrix4x4: self.matrix4x4,
+        };
+        let forms = [single.has_pivot_form(), self.matrix4x4.is_some(), self.sequence.is_some()];
+        let given = forms.into_iter().filter(|&form| form).count();
+        let names = "`translation_mm` with `rotation_deg`, `matrix4x4`, `sequence`";
+        if !faults.check_one_of(at, given, names) {
+            return None;
+        }
+        let Some(sequence) = &self.sequence else {
+            return single.to_movement(at, context, faults);
+        };
+        let at = at.key("sequence");
+        if sequence.is_empty() {
+            faults.add(&at, "missing-field", "a sequence has at least one movement");
+        }
+        faults.check_length(&at, sequence.len(), context.limits.list_entries as usize);
+        let mut whole = Some(RigidMovement::default());
+        for (index, entry) in sequence.iter().enumerate() {
+            let next = entry.to_movement(&at.index(index), context, faults);
+            whole = whole.zip(next).map(|(before, next)| before.then(&next));
+        }
+        whole
+    }
+}
+
+impl PrescribedDocument {
+    fn to_prescribed(
+        &self,
+        at: &Pointer,
+        context: &MovementContext,
+        faults: &mut Faults,
+    ) -> Option<Prescribed> {
+        let nodes = self.nodes.to_selection(&at.key("nodes"), context.limits, faults);
+        let given = usize::from(self.displacement_mm.is_some()) + usize::from(self.array.is_some());
+        if !faults.check_one_of(at, given, "`displacement_mm`, `array`") {
+            return None;
+        }
+        if let Some(array) = self.array.clone() {
+            return Some(Prescribed::FromArray { nodes: nodes?, array });
+        }
+        let components = self.displacement_mm.unwrap_or_default().0;
+        let longest = context.limits.translation_mm;
+        let place = at.key("displacement_mm");
+        if components == [None; 3] {
+            faults.add(&place, "missing-field", "at least one component has a value");
+        }
+        for (axis, value) in components.into_iter().enumerate() {
+            let length = value.unwrap_or_default().abs();
+            if length > longest {
+                let detail = format!("moves by {length} mm, at most {longest} mm are allowed");
+                faults.add(&place.index(axis), "plan-out-of-range", detail);
+            }
+        }
+        let signs = context.vector(Triple([1.0; 3]));
+        let displacement = std::array::from_fn(|axis| components[axis].map(|u| signs[axis] * u));
+        Some(Prescribed::Uniform { nodes: nodes?, displacement })
+    }
+}

@@ -1,0 +1,175 @@
+//! How a segment moves: a rotation and a translation, a matrix, or a sequence of these.
+
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+use crate::schema::wire::fault::{Faults, Pointer};
+use crate::schema::wire::limits::Limits;
+use crate::schema::{Matrix4x4, Triple};
+use mechanics::mesh::Vector;
+use mechanics::plan::RigidMovement;
+
+/// Farthest coordinate of a pivot: beyond any scanner's origin in use.
+pub const FARTHEST_PIVOT_MM: f64 = 1e8;
+
+/// The order in which the three rotations act.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+pub enum RotationOrder {
+    /// R = Rz Ry Rx about fixed axes.
+    #[serde(rename = "xyz-extrinsic")]
+    XyzExtrinsic,
+}
+
+/// x' = R (x - p) + p + t, right-handed and active: either `translation_mm` and `rotation_deg`, or `matrix4x4`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MovementDocument {
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub translation_mm: Option<Triple>,
+    /// About x, y and z.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub rotation_deg: Option<Triple>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub rotation_order: Option<RotationOrder>,
+    /// Required where a rotation is not 0.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub pivot_mm: Option<Triple>,
+    /// Row-major, last row 0 0 0 1, orthonormal to 1e-6 with determinant +1.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub matrix4x4: Option<Matrix4x4>,
+}
+
+/// What a plan's coordinates are measured against.
+pub struct MovementContext<'a> {
+    /// True where the plan is written in the other of LPS and RAS than the case.
+    pub mirrored_axes: bool,
+    /// The centre of the mesh's bounding box in mm, in the frame of the case.
+    pub centre: Vector,
+    pub limits: &'a Limits,
+}
+
+impl MovementContext<'_> {
+    /// A vector of the plan in the frame of the case.
+    pub fn vector(&self, Triple([x, y, z]): Triple) -> Vector {
+        let sign = if self.mirrored_axes { -1.0 } else { 1.0 };
+        Vector::new(sign * x, sign * y, z)
+    }
+
+    fn movement(&self, movement: RigidMovement) -> RigidMovement {
+        match self.mirrored_axes {
+            true => movement.between_lps_and_ras(),
+            false => movement,
+        }
+    }
+
+    /// Refuses a whole movement that turns too far or displaces the centre of the mesh too far.
+    pub fn check_whole(&self, at: &Pointer, movement: &RigidMovement, faults: &mut Faults) {
+        let degrees = movement.angle().to_degrees();
+        let turn_limit = self.limits.rotation_deg;
+        // An angle out of a rotation carries rounding in its last digits.
+        if degrees.is_nan() || degrees > turn_limit * (1.0 + 1e-9) {
+            let detail = format!("turns by {degrees:.3} deg, at most {turn_limit} deg are allowed");
+            faults.add(at, "plan-out-of-range", detail);
+        }
+        let distance = movement.displacement(&self.centre).norm();
+        let limit = self.limits.centre_displacement_mm;
+        if distance.is_nan() || distance > limit {
+            let detail = format!(
+                "displaces the centre of the mesh by {distance:.3} mm, at most {limit} mm are allowed"
+            );
+            faults.add(at, "plan-out-of-range", detail);
+        }
+    }
+}
+
+impl MovementDocument {
+    /// True where fields of the form with `translation_mm` and `rotation_deg` are given.
+    pub fn has_pivot_form(&self) -> bool {
+        self.translation_mm.is_some()
+            || self.rotation_deg.is_some()
+            || self.rotation_order.is_some()
+            || self.pivot_mm.is_some()
+    }
+
+    /// The movement in the frame of the case; `None` where faults were added.
+    pub fn to_movement(
+        &self,
+        at: &Pointer,
+        context: &MovementContext,
+        faults: &mut Faults,
+    ) -> Option<RigidMovement> {
+        let given = usize::from(self.has_pivot_form()) + usize::from(self.matrix4x4.is_some());
+        let forms = "`translation_mm` with `rotation_deg`, `matrix4x4`";
+        if !faults.check_one_of(at, given, forms) {
+            return None;
+        }
+        let movement = match &self.matrix4x4 {
+            Some(matrix) => from_matrix(&matrix.0, &at.key("matrix4x4"), faults)?,
+            None => self.about_pivot(at, context.limits, faults)?,
+        };
+        Some(context.movement(movement))
+    }
+
+    fn about_pivot(
+        &self,
+        at: &Pointer,
+        limits: &Limits,
+        faults: &mut Faults,
+    ) -> Option<RigidMovement> {
+        if self.translation_mm.is_none() && self.rotation_deg.is_none() {
+            faults.add(at, "missing-field", "give `translation_mm`, `rotation_deg`, or both");
+            return None;
+        }
+        let translation = Vector::from(self.translation_mm.unwrap_or_default());
+        let degrees = Vector::from(self.rotation_deg.unwrap_or_default());
+        let turns = degrees != Vector::zeros();
+        if turns && self.pivot_mm.is_none() {
+            faults.add(
+                &at.key("pivot_mm"),
+                "missing-field",
+                "`pivot_mm` is required where a rotation is not 0",
+            );
+        }
+        let pivot = Vector::from(self.pivot_mm.unwrap_or_default());
+        if pivot.amax() > FARTHEST_PIVOT_MM {
+            let detail =
+                format!("a coordinate is {:e} mm, at most 1e8 mm are allowed", pivot.amax());
+            faults.add(&at.key("pivot_mm"), "plan-out-of-range", detail);
+        }
+        let inside = within_limits(at, translation, degrees, limits, faults);
+        let known = !turns || self.pivot_mm.is_some();
+        let angles = degrees.map(f64::to_radians);
+        (inside && known).then(|| RigidMovement::about_pivot(angles, pivot, translation))
+    }
+}
+
+fn within_limits(
+    at: &Pointer,
+    translation: Vector,
+    degrees: Vector,
+    limits: &Limits,
+    faults: &mut Faults,
+) -> bool {
+    let (length, longest) = (translation.norm(), limits.translation_mm);
+    if length > longest {
+        let detail = format!("moves by {length} mm, at most {longest} mm are allowed");
+        faults.add(&at.key("translation_mm"), "plan-out-of-range", detail);
+    }
+    let (angle, largest) = (degrees.amax(), limits.rotation_deg);
+    if angle > largest {
+        let detail = format!("turns by {angle} deg, at most {largest} deg are allowed");
+        faults.add(&at.key("rotation_deg"), "plan-out-of-range", detail);
+    }
+    length <= longest && angle <= largest
+}
+
+fn from_matrix(matrix: &[f64; 16], at: &Pointer, faults: &mut Faults) -> Option<RigidMovement> {
+    RigidMovement::from_matrix4(matrix)
+        .map_err(|error| faults.add(at, "plan-not-rigid", error.to_string()))
+        .ok()
+}

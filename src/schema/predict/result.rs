@@ -1,0 +1,217 @@
+//! `result.json`, the manifest of a job: files, statistics, reactions, provenance.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+use crate::schema::Triple;
+use crate::schema::case::document::{FrameName, LengthUnit};
+use crate::schema::case::hounsfield::ImagedTissueDocument;
+use crate::schema::compare::result::{ComparisonDocument, StatDocument};
+use crate::schema::optimise::result::OptimisationDocument;
+use crate::schema::study::report::StudySummaryDocument;
+use crate::schema::wire::warning::WarningDocument;
+
+/// What every result says about its use.
+pub const NOT_A_DEVICE: &str =
+    "not a medical device: a research computation, not to be used for treatment decisions";
+
+/// The result of a prediction or a comparison. Lengths are mm in the frame that `provenance` names.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct ResultDocument {
+    /// The id of the job; absent from results of the command line.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub job: Option<String>,
+    /// The files beside this one.
+    pub files: Vec<FileDocument>,
+    /// Absent from comparisons.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub statistics: Option<StatisticsDocument>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub comparison: Option<ComparisonDocument>,
+    /// Of inverse planning.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub optimisation: Option<OptimisationDocument>,
+    /// Of a study.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub study: Option<StudySummaryDocument>,
+    /// Null where it was not estimated.
+    pub numerical_error_mm: Option<NumericalErrorDocument>,
+    /// What each segment, and `fixed`, `sliding` and `prescribed` nodes, exert on the tissue.
+    #[serde(default)]
+    pub reaction_mn: BTreeMap<String, Triple>,
+    pub provenance: ProvenanceDocument,
+    pub warnings: Vec<WarningDocument>,
+}
+
+/// A file of a result.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct FileDocument {
+    pub name: String,
+    pub media_type: String,
+    pub bytes: u64,
+    /// In hexadecimal.
+    pub sha256: String,
+}
+
+/// How far the skin moves, in mm.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct StatisticsDocument {
+    pub skin: DisplacementDocument,
+    /// By the names of `skin_regions`.
+    pub regions: BTreeMap<String, DisplacementDocument>,
+    /// The displacement of each landmark.
+    pub landmarks: BTreeMap<String, Triple>,
+    /// What an image showed of the mesh, where materials come from one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub imaged: Option<ImagedTissueDocument>,
+}
+
+/// The length of the displacement over skin nodes, in mm.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct DisplacementDocument {
+    /// Every node counts the same.
+    pub nodes: StatDocument,
+    /// Every node counts by the area around it.
+    pub area: StatDocument,
+}
+
+/// The estimated error of the discretisation over the skin, in mm.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct NumericalErrorDocument {
+    pub mean: f64,
+    pub p95: f64,
+}
+
+/// Where numbers come from.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct ProvenanceDocument {
+    pub engine: EngineDocument,
+    /// SHA-256 over everything that decides the numbers.
+    pub spec_hash: String,
+    pub inputs: Vec<InputDocument>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub method: Option<String>,
+    /// Why this method.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub why: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub solver: Option<SolverDocument>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub mesh: Option<MeshSummaryDocument>,
+    pub threads: u32,
+    /// `bitwise`: the same input gives the same bits on any number of threads.
+    pub determinism: String,
+    pub timing: TimingDocument,
+    /// Of the whole process so far; absent where the system does not tell.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub peak_rss_mb: Option<f64>,
+    pub frame: FrameName,
+    pub units: LengthUnit,
+    /// RFC 3339, UTC.
+    pub created: String,
+    pub statement: String,
+}
+
+/// The program that computed.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+pub struct EngineDocument {
+    pub name: String,
+    pub version: String,
+    /// Processor and operating system.
+    pub target: String,
+    /// `release` or `debug`.
+    pub profile: String,
+}
+
+impl EngineDocument {
+    /// The program that is running.
+    pub fn this() -> Self {
+        let profile = if cfg!(debug_assertions) { "debug" } else { "release" };
+        EngineDocument {
+            name: env!("CARGO_PKG_NAME").to_owned(),
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            target: format!("{}-{}", std::env::consts::ARCH, std::env::consts::OS),
+            profile: profile.to_owned(),
+        }
+    }
+}
+
+/// A mesh or an image that went in.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+pub struct InputDocument {
+    /// `volume`, `bone NAME`, `surface`, `image`, `prediction` or `actual`.
+    pub role: String,
+    pub sha256: String,
+    /// 0 of an image.
+    pub nodes: u64,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub cells: Option<u64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub triangles: Option<u64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub voxels: Option<u64>,
+}
+
+/// How the equations were solved.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct SolverDocument {
+    pub name: String,
+    pub preconditioner: String,
+    pub why: String,
+    pub unknowns: u64,
+    pub iterations: u64,
+    /// |f - K u| / |f_D| of the free rows, computed anew at the end; with pressures, of both equations.
+    pub relative_residual: f64,
+    pub wanted_residual: f64,
+    pub elements: Vec<String>,
+    /// The relative residual after each iteration, at most 200 of them, of methods that have their own
+    /// iterations to show.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub history: Vec<f64>,
+    /// Steps of load or time.
+    pub steps: u32,
+}
+
+/// The mesh that was computed on.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct MeshSummaryDocument {
+    pub nodes: u64,
+    pub cells: u64,
+    /// The smallest scaled Jacobian of a cell; 1 is perfect, below 0 is inverted.
+    pub min_quality: f64,
+    pub inverted: u64,
+}
+
+/// Wall time of each phase.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct TimingDocument {
+    /// From acceptance to the start; absent from results of the command line.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub queue_s: Option<f64>,
+    pub validate_s: f64,
+    pub mesh_s: f64,
+    pub assemble_s: f64,
+    pub solve_s: f64,
+    pub contact_s: f64,
+    pub surface_s: f64,
+    pub compare_s: f64,
+    pub write_s: f64,
+    pub total_s: f64,
+}

@@ -1,0 +1,69 @@
+//! The items of a batch: a study over an explicit list of predictions in place of all combinations.
+
+use serde::de::{DeserializeOwned, Error};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use serde_json::{Map, Value};
+
+use crate::schema::case::material::MaterialDocuments;
+use crate::schema::plan::document::PlanDocument;
+
+/// A `predict` spec, taken apart: what it is about, and how it is to be modelled.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ItemDocument {
+    pub case: String,
+    pub plan: Option<PlanDocument>,
+    pub plan_id: Option<String>,
+    /// Over the materials of the case, field by field.
+    pub materials: Option<MaterialDocuments>,
+    /// Everything else: the method and what it has to be told; `label`, as rows call it.
+    pub variant: Value,
+}
+
+const CASE: &str = "case";
+const PLAN: &str = "plan";
+const PLAN_ID: &str = "plan_id";
+const MATERIALS: &str = "materials";
+
+impl<'de> Deserialize<'de> for ItemDocument {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let mut members = Map::deserialize(deserializer)?;
+        if let Some(kind) = members.remove("kind").filter(|kind| kind != "predict") {
+            return Err(D::Error::custom(format!("an item is of kind `predict`, not {kind}")));
+        }
+        let case = taken(&mut members, CASE)?;
+        Ok(ItemDocument {
+            case: case.ok_or_else(|| D::Error::missing_field(CASE))?,
+            plan: taken(&mut members, PLAN)?,
+            plan_id: taken(&mut members, PLAN_ID)?,
+            materials: taken(&mut members, MATERIALS)?,
+            variant: Value::Object(members),
+        })
+    }
+}
+
+fn taken<T: DeserializeOwned, E: Error>(
+    members: &mut Map<String, Value>,
+    name: &str,
+) -> Result<Option<T>, E> {
+    let value = members.remove(name).map(serde_json::from_value).transpose();
+    value.map_err(|error| E::custom(format!("`{name}`: {error}")))
+}
+
+impl Serialize for ItemDocument {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        use serde::ser::Error;
+        let mut members = self.variant.as_object().cloned().unwrap_or_default();
+        members.insert(CASE.to_owned(), self.case.clone().into());
+        let mut put = |name: &str, value: Result<Value, serde_json::Error>| {
+            let value = value.map_err(S::Error::custom)?;
+            if !value.is_null() {
+                members.insert(name.to_owned(), value);
+            }
+            Ok(())
+        };
+        put(PLAN, serde_json::to_value(&self.plan))?;
+        put(PLAN_ID, serde_json::to_value(&self.plan_id))?;
+        put(MATERIALS, serde_json::to_value(&self.materials))?;
+        members.serialize(serializer)
+    }
+}

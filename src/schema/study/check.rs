@@ -1,0 +1,202 @@
+//! What can be wrong with the spec of a study before any scene is made.
+
+use std::collections::BTreeSet;
+
+use super::document::{CaseReference, SceneReference, StudyDocument, StudyKind};
+use crate::schema::case::conversion::check_tags;
+use crate::schema::wire::fault::{Faults, Pointer};
+use crate::schema::wire::limits::Limits;
+use mechanics::study::scenes::SCENES;
+
+/// Halving every edge once more makes eight cells of one.
+const MOST_LEVEL: u32 = 4;
+const MOST_REPEATS: u32 = 20;
+const MOST_SWEPT_VALUES: usize = 100;
+
+impl StudyDocument {
+    /// Adds what is wrong with it, but for what scenes, methods and meshes tell; pointers start at `/spec`.
+    pub fn check(&self, limits: &Limits, faults: &mut Faults) {
+        let at = Pointer::root().key("spec");
+        match self.kind {
+            StudyKind::Study => self.check_scenes(&at, limits, faults),
+            StudyKind::Batch => self.check_items(&at, faults),
+        }
+        let entries = limits.list_entries as usize;
+        let lists = [
+            ("items", self.items.len()),
+            ("plans", self.plans.len()),
+            ("methods", self.methods.as_ref().map_or(0, Vec::len)),
+            ("elements", self.elements.len()),
+            ("materials", self.materials.len()),
+            ("sweep", self.sweep.len()),
+            ("expected_failures", self.expected_failures.len()),
+        ];
+        for (name, length) in lists {
+            faults.check_length(&at.key(name), length, entries);
+        }
+        if self.methods.as_ref().is_some_and(Vec::is_empty) {
+            faults.add(&at.key("methods"), "missing-field", "at least one method is needed");
+        }
+        if !self.materials.is_empty() && !self.sweep.is_empty() {
+            faults.check_one_of(&at, 2, "`materials`, `sweep`");
+        }
+        self.check_levels(&at, faults);
+        self.check_truth(&at.key("truth"), faults);
+        let repeats = f64::from(self.repeats);
+        faults.check_range(&at.key("repeats"), repeats, 1.0..=f64::from(MOST_REPEATS), "");
+        self.check_sweep(&at.key("sweep"), faults);
+        self.check_gate(&at, limits, faults);
+        check_tags(&self.tags, &at.key("tags"), limits, faults);
+    }
+
+    /// A batch says everything item by item.
+    fn check_items(&self, at: &Pointer, faults: &mut Faults) {
+        if self.items.is_empty() {
+            faults.add(&at.key("items"), "missing-field", "at least one item is needed");
+        }
+        let elsewhere = [
+            ("scenes", self.scenes.is_empty()),
+            ("plans", self.plans.is_empty()),
+            ("methods", self.methods.is_none()),
+            ("elements", self.elements.is_empty()),
+            ("materials", self.materials.is_empty()),
+            ("sweep", self.sweep.is_empty()),
+        ];
+        for (name, _) in elsewhere.into_iter().filter(|(_, is_absent)| !is_absent) {
+            let detail = format!("a batch has `items`, and `{name}` belongs to a study");
+            faults.add(&at.key(name), "unknown-field", detail);
+        }
+    }
+
+    fn check_scenes(&self, at: &Pointer, limits: &Limits, faults: &mut Faults) {
+        let scenes = at.key("scenes");
+        if !self.items.is_empty() {
+            let detail = "a study has `scenes`, and `items` belong to a batch";
+            faults.add(&at.key("items"), "unknown-field", detail);
+        }
+        if self.scenes.is_empty() {
+            faults.add(&scenes, "missing-field", "at least one scene is needed");
+        }
+        faults.check_length(&scenes, self.scenes.len(), limits.list_entries as usize);
+        for (index, scene) in self.scenes.iter().enumerate() {
+            let place = scenes.index(index);
+            if self.scenes[..index].contains(scene) {
+                faults.add(&place, "duplicate-name", "the scene is named more than once");
+            }
+            match scene {
+                SceneReference::Name(name) if !SCENES.contains(&name.as_str()) => {
+                    let detail = format!("no scene is called {name:?}; {}", SCENES.join(", "));
+                    faults.add(&place, "unknown-scene", detail);
+                }
+                SceneReference::Case(reference) => reference.check(&place, limits, faults),
+                SceneReference::Name(_) => {}
+            }
+        }
+        let lacks_plans = |scene: &SceneReference| matches!(scene, SceneReference::Case(reference) if reference.plans.is_empty());
+        let (is_wanted, shared) = (self.scenes.iter().any(lacks_plans), self.plan_documents());
+        if is_wanted && shared.is_empty() {
+            let detail = "cases need at least one plan in full";
+            faults.add(&at.key("plans"), "missing-field", detail);
+        }
+        if let (false, Some((index, _))) = (is_wanted, shared.first()) {
+            let detail = "no case is left for this plan: scenes by name have plans of their own, which are asked \
+                          for by name";
+            faults.add(&at.key("plans").index(*index), "wrong-type", detail);
+        }
+    }
+
+    fn check_levels(&self, at: &Pointer, faults: &mut Faults) {
+        let levels = at.key("levels");
+        if self.levels.is_empty() {
+            faults.add(&levels, "missing-field", "at least one level is needed");
+        }
+        let mut seen = BTreeSet::new();
+        for (index, &level) in self.levels.iter().enumerate() {
+            let place = levels.index(index);
+            faults.check_range(&place, f64::from(level), 0.0..=f64::from(MOST_LEVEL), "");
+            if !seen.insert(level) {
+                faults.add(&place, "duplicate-name", format!("level {level} is named twice"));
+            }
+        }
+    }
+
+    fn check_truth(&self, at: &Pointer, faults: &mut Faults) {
+        let Some(truth) = &self.truth else { return };
+        let forms = [truth.refine.is_some(), truth.closed_form, truth.job.is_some()];
+        let given = forms.into_iter().filter(|&form| form).count();
+        faults.check_one_of(at, given, "`refine`, `closed_form`, `job`");
+        if truth.element.is_some() && truth.refine.is_none() {
+            faults.add(&at.key("element"), "wrong-type", "`element` belongs to `refine`");
+        }
+        let refine = f64::from(truth.refine.unwrap_or_default());
+        faults.check_range(&at.key("refine"), refine, 0.0..=f64::from(MOST_LEVEL), "");
+        let one_plan = match self.scenes.as_slice() {
+            [SceneReference::Case(reference)] => self.plans_of(0, reference).len() == 1,
+            _ => self.items.len() == 1,
+        };
+        let one_row = one_plan && self.materials.len() <= 1 && self.sweep.is_empty();
+        if truth.job.is_some() && !one_row {
+            let detail =
+                "the skin of a job is the truth of one case with one plan and one material";
+            faults.add(&at.key("job"), "wrong-type", detail);
+        }
+    }
+
+    fn check_sweep(&self, at: &Pointer, faults: &mut Faults) {
+        for (region, values) in &self.sweep {
+            let lists = [
+                ("young_modulus_kpa", &values.young_modulus_kpa),
+                ("poisson_ratio", &values.poisson_ratio),
+            ];
+            for (name, list) in lists {
+                faults.check_length(&at.key(region).key(name), list.len(), MOST_SWEPT_VALUES);
+            }
+        }
+    }
+
+    /// What decides the outcome and the budget.
+    fn check_gate(&self, at: &Pointer, limits: &Limits, faults: &mut Faults) {
+        if let Some(thresholds) = &self.thresholds {
+            let place = at.key("thresholds");
+            let bounds = [
+                ("mean_mm", thresholds.mean_mm),
+                ("p95_mm", thresholds.p95_mm),
+                ("wall_s", thresholds.wall_s),
+            ];
+            for (name, bound) in bounds {
+                if let Some(bound) = bound {
+                    faults.check_range(&place.key(name), bound, 1e-9..=1e9, "");
+                }
+            }
+            if bounds.iter().all(|(_, bound)| bound.is_none()) {
+                let detail = "at least one of `mean_mm`, `p95_mm` and `wall_s` is given";
+                faults.add(&place, "missing-field", detail);
+            }
+            faults.check_length(
+                &place.key("labels"),
+                thresholds.labels.len(),
+                limits.list_entries as usize,
+            );
+        }
+        let tolerances = at.key("tolerances");
+        for (name, ratio) in
+            [("p95_ratio", self.tolerances.p95_ratio), ("wall_ratio", self.tolerances.wall_ratio)]
+        {
+            faults.check_range(&tolerances.key(name), ratio, 1.0..=1000.0, "");
+        }
+        let budget = at.key("budget");
+        faults.check_range(&budget.key("wall_s"), self.budget.wall_s, 1e-3..=limits.wall_s, "s");
+        faults.check_range(&budget.key("row_s"), self.budget.row_s, 1e-3..=limits.wall_s, "s");
+        let memory = self.budget.memory_mb;
+        faults.check_range(&budget.key("memory_mb"), memory, 1.0..=limits.memory_mb, "MB");
+    }
+}
+
+impl CaseReference {
+    fn check(&self, at: &Pointer, limits: &Limits, faults: &mut Faults) {
+        if let Some(name) = &self.name {
+            faults.check_name(&at.key("name"), name, limits.name_characters as usize);
+        }
+        faults.check_length(&at.key("plans"), self.plans.len(), limits.list_entries as usize);
+    }
+}

@@ -1,0 +1,361 @@
+//! The spec of a study: scenes, plans, ways of modelling, materials and mesh levels, each with each, against a
+//! truth; and what makes its outcome good or bad.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use utoipa::ToSchema;
+
+use super::batch::ItemDocument;
+pub use super::reference::{CaseReference, PlanReference, SceneReference};
+use crate::schema::case::material::{MaterialDocument, MaterialDocuments};
+use crate::schema::methods::{ElementName, MethodName};
+use crate::schema::plan::document::PlanDocument;
+use crate::schema::predict::document::{ContactName, PredictDocument, ToleranceDocument};
+use crate::schema::wire::canonical;
+use crate::schema::wire::fault::Pointer;
+use mechanics::study::sweep::Values;
+
+/// `study`, or `batch`: the same report over an explicit list.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum StudyKind {
+    #[default]
+    Study,
+    Batch,
+}
+
+/// Methods side by side: every scene with each of its plans, method, material and mesh level. Rows are solved one
+/// after the other on one thread, so that their times can be compared.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct StudyDocument {
+    #[serde(default)]
+    #[schema(required)]
+    pub kind: StudyKind,
+    /// At least one, but for a batch.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub scenes: Vec<SceneReference>,
+    /// Of a batch, in place of `scenes`, `plans`, `methods`, `elements`, `materials` and `sweep`: `predict` specs without
+    /// `budget`, `outputs`, `compare_to` and `tags`, of which each is a row at each level; `label` is what rows call its way of
+    /// modelling. Items of the same case, plan and materials are one scene.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schema(value_type = Vec<PredictDocument>)]
+    pub items: Vec<ItemDocument>,
+    /// For cases without plans of their own, which need at least one, plans in full; for scenes by name those of their plans that are
+    /// wanted, by name (default: all).
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub plans: Vec<PlanReference>,
+    /// Default: every method that is built, each in its usual variants.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false, value_type = Option<Vec<MethodReference>>, min_items = 1)]
+    pub methods: Option<Vec<Value>>,
+    /// For methods given by a name that know elements, in place of their usual variants.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub elements: Vec<ElementName>,
+    /// Each entry over the materials of a case, field by field; in scenes by name it stands for all regions. At most
+    /// one of `materials` and `sweep`; default: those of the scene.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schema(value_type = Vec<BTreeMap<String, MaterialDocument>>)]
+    pub materials: Vec<MaterialDocuments>,
+    /// Every combination of these values, by region; `*` for regions without an entry.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub sweep: BTreeMap<String, SweepDocument>,
+    /// Level n halves every edge n times; from 0 to 4.
+    #[serde(default = "usual_levels")]
+    #[schema(default = json!([0]), min_items = 1)]
+    pub levels: Vec<u32>,
+    /// Default: that of the scene; of a case, linear finite elements on halved edges.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub truth: Option<TruthDocument>,
+    /// Solves of each row, whose median time is told; fewer once they take 2 s together.
+    #[serde(default = "usual_repeats")]
+    #[schema(default = 3, minimum = 1, maximum = 20)]
+    pub repeats: u32,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub thresholds: Option<ThresholdsDocument>,
+    /// An earlier study, by its job: where a row is worse than there, the outcome is `worse`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub baseline: Option<String>,
+    #[serde(default)]
+    pub tolerances: TolerancesDocument,
+    /// Labels of variants that may fail without making the outcome `worse`, beside `mtm jacobi`, which is there to show
+    /// that it diverges, and `msm direct`, which is slow.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub expected_failures: Vec<String>,
+    #[serde(default)]
+    pub budget: StudyBudgetDocument,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub tags: Vec<String>,
+}
+
+fn usual_levels() -> Vec<u32> {
+    vec![0]
+}
+
+fn usual_repeats() -> u32 {
+    3
+}
+
+/// A method by its name, or with what it has to be told. Only described here: read as a `predict` spec.
+#[derive(Clone, Debug, Serialize, ToSchema)]
+#[serde(untagged)]
+pub enum MethodReference {
+    Name(MethodName),
+    Variant(VariantDocument),
+}
+
+/// A way of modelling as in a `predict` spec, with the field of its own parameters.
+#[derive(Clone, Debug, Serialize, ToSchema)]
+pub struct VariantDocument {
+    pub method: MethodName,
+    /// As rows and charts call it. Default: the method, and the element where one is given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub label: Option<String>,
+    pub element: ElementName,
+    pub contact: ContactName,
+    pub tolerance: ToleranceDocument,
+}
+
+/// Values that the constants of a region take; without a list a constant stays what it is.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SweepDocument {
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub young_modulus_kpa: Vec<f64>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub poisson_ratio: Vec<f64>,
+}
+
+impl SweepDocument {
+    pub fn to_values(&self) -> Values {
+        let young_modulus = self.young_modulus_kpa.clone();
+        Values { young_modulus, poisson_ratio: self.poisson_ratio.clone() }
+    }
+}
+
+/// What is held for true: exactly one of `refine` with `element`, `closed_form` and `job`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TruthDocument {
+    /// Linear finite elements with every edge of level 0 halved so often.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false, minimum = 0, maximum = 4)]
+    pub refine: Option<u32>,
+    /// Of `refine`. Default: `quadratic`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub element: Option<ElementName>,
+    /// The formula of the scene; `true` or absent.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub closed_form: bool,
+    /// The skin that this job predicted, for a study of one case with one plan and one material.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub job: Option<String>,
+}
+
+fn is_false(value: &bool) -> bool {
+    !value
+}
+
+/// Bounds on rows; a row above one makes the outcome `worse`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ThresholdsDocument {
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false, exclusive_minimum = 0.0)]
+    pub mean_mm: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false, exclusive_minimum = 0.0)]
+    pub p95_mm: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false, exclusive_minimum = 0.0)]
+    pub wall_s: Option<f64>,
+    /// Labels of the variants that they hold for. Default: all.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub labels: Vec<String>,
+}
+
+/// How much a row may grow over the same row of the baseline. Above rounding and the jitter of clocks: a p95 error is
+/// worse from 1e-4 mm more, a time from 20 ms more.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TolerancesDocument {
+    #[serde(default = "usual_p95_ratio")]
+    #[schema(default = 1.05, minimum = 1.0, maximum = 1000.0)]
+    pub p95_ratio: f64,
+    #[serde(default = "usual_wall_ratio")]
+    #[schema(default = 1.5, minimum = 1.0, maximum = 1000.0)]
+    pub wall_ratio: f64,
+}
+
+fn usual_p95_ratio() -> f64 {
+    1.05
+}
+
+fn usual_wall_ratio() -> f64 {
+    1.5
+}
+
+impl Default for TolerancesDocument {
+    fn default() -> Self {
+        TolerancesDocument { p95_ratio: usual_p95_ratio(), wall_ratio: usual_wall_ratio() }
+    }
+}
+
+/// What a study may take.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct StudyBudgetDocument {
+    /// After this time no further row is begun, and the study ends as incomplete with the rows it has; the truth of
+    /// those is still found, for at most as long again and a minute.
+    #[serde(default = "usual_wall")]
+    #[schema(default = 3600.0, exclusive_minimum = 0.0)]
+    pub wall_s: f64,
+    /// A solve that takes longer is given up, and its row fails with `budget-exceeded`, as do those of the scene's later
+    /// plans with that variant and level, which are not tried.
+    #[serde(default = "usual_row")]
+    #[schema(default = 60.0, exclusive_minimum = 0.0)]
+    pub row_s: f64,
+    /// Of each row.
+    #[serde(default = "usual_memory")]
+    #[schema(default = 4000.0, minimum = 1.0)]
+    pub memory_mb: f64,
+}
+
+fn usual_wall() -> f64 {
+    3600.0
+}
+
+fn usual_row() -> f64 {
+    60.0
+}
+
+fn usual_memory() -> f64 {
+    4000.0
+}
+
+impl Default for StudyBudgetDocument {
+    fn default() -> Self {
+        StudyBudgetDocument { wall_s: usual_wall(), row_s: usual_row(), memory_mb: usual_memory() }
+    }
+}
+
+impl Default for StudyDocument {
+    fn default() -> Self {
+        StudyDocument {
+            kind: StudyKind::Study,
+            scenes: Vec::new(),
+            plans: Vec::new(),
+            methods: None,
+            elements: Vec::new(),
+            materials: Vec::new(),
+            sweep: BTreeMap::new(),
+            levels: usual_levels(),
+            items: Vec::new(),
+            truth: None,
+            repeats: usual_repeats(),
+            thresholds: None,
+            baseline: None,
+            tolerances: TolerancesDocument::default(),
+            expected_failures: Vec::new(),
+            budget: StudyBudgetDocument::default(),
+            tags: Vec::new(),
+        }
+    }
+}
+
+impl StudyDocument {
+    /// The ids of its cases, each once.
+    pub fn case_ids(&self) -> Vec<&str> {
+        let mut ids = Vec::new();
+        for scene in &self.scenes {
+            if let SceneReference::Case(reference) = scene
+                && !ids.contains(&reference.case.as_str())
+            {
+                ids.push(reference.case.as_str());
+            }
+        }
+        for item in &self.items {
+            if !ids.contains(&item.case.as_str()) {
+                ids.push(&item.case);
+            }
+        }
+        ids
+    }
+
+    /// The plans in full, with their places in `plans`.
+    pub fn plan_documents(&self) -> Vec<(usize, &PlanDocument)> {
+        let plans = self.plans.iter().enumerate();
+        plans
+            .filter_map(|(index, plan)| match plan {
+                PlanReference::Plan(document) => Some((index, document)),
+                PlanReference::Name(_) => None,
+            })
+            .collect()
+    }
+
+    /// The plans of the case at a place in `scenes`, each with its own place.
+    pub fn plans_of<'a>(
+        &'a self,
+        scene: usize,
+        reference: &'a CaseReference,
+    ) -> Vec<(Pointer, &'a PlanDocument)> {
+        let at = Pointer::root().key("spec");
+        let own = at.key("scenes").index(scene).key("plans");
+        if !reference.plans.is_empty() {
+            return reference
+                .plans
+                .iter()
+                .enumerate()
+                .map(|(k, plan)| (own.index(k), plan))
+                .collect();
+        }
+        let shared = self.plan_documents().into_iter();
+        shared.map(|(index, plan)| (at.key("plans").index(index), plan)).collect()
+    }
+
+    /// All plans in full: those of the study, of its cases and of its items.
+    pub fn plan_documents_mut(&mut self) -> Vec<&mut PlanDocument> {
+        let shared = self.plans.iter_mut().filter_map(|plan| match plan {
+            PlanReference::Plan(document) => Some(document),
+            PlanReference::Name(_) => None,
+        });
+        let own = self.scenes.iter_mut().filter_map(|scene| match scene {
+            SceneReference::Case(reference) => Some(&mut reference.plans),
+            SceneReference::Name(_) => None,
+        });
+        let of_items = self.items.iter_mut().filter_map(|item| item.plan.as_mut());
+        shared.chain(own.flatten()).chain(of_items).collect()
+    }
+
+    /// The names of wanted plans of scenes by name, with their places in `plans`.
+    pub fn plan_names(&self) -> Vec<(usize, &str)> {
+        let plans = self.plans.iter().enumerate();
+        plans
+            .filter_map(|(index, plan)| match plan {
+                PlanReference::Name(name) => Some((index, name.as_str())),
+                PlanReference::Plan(_) => None,
+            })
+            .collect()
+    }
+
+    /// What decides the report, for the hash of the job: no tags, no ids of cases.
+    pub fn content(&self) -> Value {
+        let mut plain = self.clone();
+        plain.tags.clear();
+        for scene in &mut plain.scenes {
+            if let SceneReference::Case(reference) = scene {
+                reference.case.clear();
+            }
+        }
+        plain.items.iter_mut().for_each(|item| item.case.clear());
+        canonical::to_value(&plain)
+    }
+}

@@ -1,0 +1,205 @@
+//! What is wrong with a document, all of it, each with the place.
+
+use std::fmt;
+use std::ops::RangeInclusive;
+
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+use super::problem::Problem;
+use mechanics::prediction::SceneErrors;
+
+/// How many faults of one document are reported.
+const REPORTED_FAULTS: usize = 50;
+
+/// Codes that name a whole problem when nothing else is wrong with a document.
+const CATALOGUE: &[&str] = &[
+    "alignment-failed",
+    "empty-selection",
+    "frame-conflict",
+    "method-mismatch",
+    "method-not-available",
+    "missing-material",
+    "not-in-response",
+    "not-linear",
+    "plan-conflict",
+    "plan-not-rigid",
+    "plan-out-of-range",
+    "underconstrained",
+    "unknown-segment",
+];
+
+/// A JSON pointer (RFC 6901).
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Pointer(String);
+
+impl Pointer {
+    /// The document itself.
+    pub fn root() -> Self {
+        Pointer::default()
+    }
+
+    /// A pointer that is already written out.
+    pub fn from_text(text: &str) -> Self {
+        Pointer(text.to_owned())
+    }
+
+    /// A member of an object here.
+    pub fn key(&self, name: &str) -> Pointer {
+        let escaped = name.replace('~', "~0").replace('/', "~1");
+        Pointer(format!("{}/{escaped}", self.0))
+    }
+
+    /// An entry of an array here.
+    pub fn index(&self, index: usize) -> Pointer {
+        Pointer(format!("{}/{index}", self.0))
+    }
+
+    pub fn as_str(&self) -> &str {
+        &self.0
+    }
+}
+
+impl fmt::Display for Pointer {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(&self.0)
+    }
+}
+
+/// One thing wrong with a document.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+pub struct FieldError {
+    /// JSON pointer (RFC 6901) to the place.
+    pub pointer: String,
+    /// A stable word for the kind of mistake.
+    pub code: String,
+    /// One sentence with the numbers.
+    pub detail: String,
+}
+
+/// Collects what is wrong, so that a client hears all of it at once.
+#[derive(Debug, Default)]
+pub struct Faults {
+    errors: Vec<FieldError>,
+    unreported: usize,
+}
+
+impl Faults {
+    pub fn add(&mut self, at: &Pointer, code: &str, detail: impl Into<String>) {
+        if self.errors.len() == REPORTED_FAULTS {
+            self.unreported += 1;
+            return;
+        }
+        self.errors.push(FieldError {
+            pointer: at.to_string(),
+            code: code.to_owned(),
+            detail: detail.into(),
+        });
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.errors.is_empty()
+    }
+
+    /// `Ok` where nothing is wrong. A problem is called by the code of its faults if all share one
+    /// of the catalogue, else `validation-failed`.
+    pub fn into_result(self) -> Result<(), Problem> {
+        match self.errors.is_empty() {
+            true => Ok(()),
+            false => Err(self.into_problem()),
+        }
+    }
+
+    pub(super) fn into_problem(self) -> Problem {
+        let shared =
+            CATALOGUE.iter().find(|code| self.errors.iter().all(|error| error.code == **code));
+        let count = self.errors.len() + self.unreported;
+        let first = self
+            .errors
+            .first()
+            .map(|first| format!("{}: {}", place(&first.pointer), first.detail))
+            .unwrap_or_default();
+        let detail = match count {
+            1 => first,
+            _ => format!("{count} mistakes, the first at {first}"),
+        };
+        let mut problem = Problem::new(shared.copied().unwrap_or("validation-failed"), detail);
+        problem.errors = self.errors;
+        problem
+    }
+
+    /// Takes over what a problem holds; one without places is a mistake of the whole document.
+    pub fn join(&mut self, problem: Problem) {
+        if problem.errors.is_empty() {
+            self.add(&Pointer::root(), problem.code, problem.detail);
+        } else {
+            for error in problem.errors {
+                self.add(&Pointer::from_text(&error.pointer), &error.code, error.detail);
+            }
+        }
+    }
+
+    /// Refuses a number outside a closed range, and whatever is not a number.
+    pub fn check_range(
+        &mut self,
+        at: &Pointer,
+        value: f64,
+        range: RangeInclusive<f64>,
+        unit: &str,
+    ) -> bool {
+        let inside = range.contains(&value);
+        if !inside {
+            let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
+            let (low, high) = (range.start(), range.end());
+            self.add(at, "out-of-range", format!("{value}{unit} is outside {low} to {high}{unit}"));
+        }
+        inside
+    }
+
+    /// Refuses names that are empty, longer than 128 characters, or hold control characters.
+    pub fn check_name(&mut self, at: &Pointer, name: &str, longest: usize) {
+        let characters = name.trim().chars().count();
+        if characters == 0 || characters > longest {
+            self.add(
+                at,
+                "bad-name",
+                format!("a name has 1 to {longest} characters, this one {characters}"),
+            );
+        } else if name.chars().any(char::is_control) {
+            self.add(at, "bad-name", "a name holds no control characters");
+        }
+    }
+
+    pub fn check_length(&mut self, at: &Pointer, length: usize, most: usize) {
+        if length > most {
+            self.add(at, "too-many", format!("{length} entries, at most {most} are allowed"));
+        }
+    }
+
+    /// Refuses a choice of which not exactly one form is given.
+    pub fn check_one_of(&mut self, at: &Pointer, given: usize, forms: &str) -> bool {
+        if given != 1 {
+            self.add(
+                at,
+                "one-of",
+                format!("exactly one of {forms} has to be given, here are {given}"),
+            );
+        }
+        given == 1
+    }
+}
+
+/// What a scene refuses; its pointers start at `/case` or `/plan`.
+impl From<SceneErrors> for Problem {
+    fn from(errors: SceneErrors) -> Problem {
+        let mut faults = Faults::default();
+        for error in &errors.0 {
+            faults.add(&Pointer::from_text(&error.pointer), error.code, &error.detail);
+        }
+        faults.into_problem()
+    }
+}
+
+fn place(pointer: &str) -> &str {
+    if pointer.is_empty() { "the document" } else { pointer }
+}

@@ -1,0 +1,10 @@
+//! What all documents share: strict reading, faults with their place, limits, canonical JSON.
+
+pub mod canonical;
+pub mod fault;
+pub mod limits;
+pub mod problem;
+pub mod strict;
+pub mod text_or_object;
+pub mod vector;
+pub mod warning;

@@ -1,0 +1,7 @@
+//! Workers: slots that claim jobs, the processes that compute them, and the heartbeat that renews leases.
+
+pub mod fail_point;
+pub mod heartbeat;
+pub mod niceness;
+pub mod process;
+pub mod slots;

@@ -1,0 +1,86 @@
+//! One attempt at a job of the service: its document, the meshes of its worker, the numerics.
+
+use serde_json::{Value, json};
+
+use super::protocol::{Assignment, Effort, Made, MadeFile, Outcome};
+use crate::jobs::failure::JobError;
+use crate::jobs::predict::input::JobInput;
+use crate::jobs::source::MeshSource;
+use crate::jobs::work::{JobOutput, Workplace, work};
+use crate::schema::Limits;
+use crate::schema::job::ErrorClass;
+use mechanics::prediction::Progress;
+
+/// Does the work of an assignment. Files are in its folder afterwards.
+pub fn attempt(
+    assignment: &Assignment,
+    sources: &dyn MeshSource,
+    limits: &Limits,
+    progress: &dyn Progress,
+) -> Outcome {
+    let input = match read_input(assignment) {
+        Ok(input) => input,
+        Err(reason) => return broken(&format!("the document of the job: {reason}")),
+    };
+    let place = Workplace { sources, limits, out: &assignment.folder };
+    match work(&input, &place, progress) {
+        Ok(output) => made(output),
+        Err(error) => failed(&error),
+    }
+}
+
+/// The document of a job, which now knows its job and how long it waited.
+fn read_input(assignment: &Assignment) -> Result<JobInput, serde_json::Error> {
+    let mut input: JobInput = serde_json::from_str(&assignment.document)?;
+    let (job, queue_s) = (Some(assignment.job.clone()), Some(assignment.queue_s));
+    match &mut input {
+        JobInput::Predict(input) => (input.job, input.queue_s) = (job, queue_s),
+        JobInput::Compare(input) => (input.job, input.queue_s) = (job, queue_s),
+        JobInput::Response(input) => (input.job, input.queue_s) = (job, queue_s),
+        JobInput::Optimise(input) => (input.job, input.queue_s) = (job, queue_s),
+        JobInput::Study(input) => (input.job, input.queue_s) = (job, queue_s),
+    }
+    Ok(input)
+}
+
+fn made(output: JobOutput) -> Outcome {
+    let result = match serde_json::to_string(&output.result) {
+        Ok(result) => result,
+        Err(error) => return broken(&format!("the manifest: {error}")),
+    };
+    let provenance = output.result.provenance;
+    let solver = provenance.solver.as_ref();
+    let files = output.files.into_iter();
+    Outcome::Done(Made {
+        result,
+        files: files
+            .map(|file| MadeFile { name: file.name, media_type: file.media_type })
+            .collect(),
+        effort: Effort {
+            unknowns: solver.map_or(0, |solver| solver.unknowns),
+            iterations: solver.map_or(0, |solver| solver.iterations),
+            method: provenance.method,
+        },
+    })
+}
+
+fn broken(reason: &str) -> Outcome {
+    tracing::error!(%reason, "a job could not be worked on");
+    Outcome::Failed(broke_off())
+}
+
+/// The error of a job that met a bug; what it was stands in the log only.
+pub(in crate::worker) fn broke_off() -> Value {
+    let detail = "the work broke off; the log has the details under the job's id";
+    json!({"type": "internal", "class": "infrastructure", "detail": detail})
+}
+
+fn failed(error: &JobError) -> Outcome {
+    match error.class() {
+        ErrorClass::Cancelled => Outcome::Cancelled,
+        ErrorClass::Infrastructure => Outcome::Storage(error.to_string()),
+        ErrorClass::Numerical | ErrorClass::Input | ErrorClass::Budget => {
+            Outcome::Failed(json!(error.to_document()))
+        }
+    }
+}

@@ -1,0 +1,16 @@
+//! A slot computes one job after the other in a process of its own: an allocation that fails, a full stack or a
+//! signal ends one attempt and nothing else. The worker keeps claim, lease and publication; the process gets documents
+//! and meshes from it, and has neither database nor credentials.
+
+pub mod attempt;
+pub mod child;
+pub mod memory;
+pub mod protocol;
+pub mod serve;
+mod source;
+pub mod supervisor;
+
+pub use child::Program;
+pub use memory::slot_bytes;
+pub use serve::{SlotError, serve};
+pub use supervisor::{SlotSettings, SlotWork};

@@ -1,0 +1,219 @@
+//! The process of a slot: takes jobs from its worker, one after the other, and keeps what it parsed.
+
+use std::io::{self, BufReader, Stdout, Write};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+use super::memory;
+use super::protocol::{
+    Answer, Assignment, Ended, Order, Outcome, Report, Settings, encode, read_frame, read_message,
+};
+use super::source::{FullAnswer, SlotSource};
+use crate::library::cache::MeshCache;
+use crate::worker::fail_point::FailPoints;
+use crate::worker::niceness::give_way;
+use crate::worker::process::attempt::attempt;
+use mechanics::prediction::{Phase, Progress};
+
+/// Between two reports of iterations: a worker looks at them no more often.
+const BETWEEN_REPORTS: Duration = Duration::from_millis(50);
+
+#[derive(Debug, thiserror::Error)]
+pub enum SlotError {
+    #[error("a slot is started by `facies serve` and takes its orders from it")]
+    NoOrders,
+    #[error("the slot could not be set up: {0}")]
+    Setup(#[from] io::Error),
+    #[error("the slot has no threads: {0}")]
+    Threads(#[from] rayon::ThreadPoolBuildError),
+}
+
+/// What a process has to say, one message at a time.
+pub struct Reports(Mutex<Stdout>);
+
+impl Reports {
+    pub fn tell(&self, report: &Report) {
+        let told = encode(report).and_then(|frame| {
+            let mut to = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+            to.write_all(&frame)?;
+            to.flush()
+        });
+        if told.is_err() {
+            // Nobody listens: what this process computes is of no use to anybody.
+            std::process::exit(0);
+        }
+    }
+}
+
+/// Serves until standard input is closed.
+pub fn serve() -> Result<(), SlotError> {
+    die_with_parent();
+    give_way();
+    FailPoints::of(0, "").pass_by("slot:start", &|| false);
+    let mut orders = BufReader::new(io::stdin());
+    let first = read_message(&mut orders).map_err(|_| SlotError::NoOrders)?;
+    let Some(Order::Start(settings)) = first else { return Err(SlotError::NoOrders) };
+    memory::bound(settings.memory_bytes)?;
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(settings.threads)
+        .thread_name(|thread| format!("solver-{thread}"))
+        .build()?;
+    let (ears, heard) = listen(orders)?;
+    let reports = Reports(Mutex::new(io::stdout()));
+    let source = SlotSource {
+        reports: &reports,
+        answers: Mutex::new(heard.answers),
+        cache: Mutex::new(MeshCache::new(settings.cache_bytes)),
+    };
+    reports.tell(&Report::Ready);
+    for assignment in heard.assignments {
+        let progress = Told::new(&reports, &ears, &assignment);
+        let outcome = pool.install(|| outcome(&assignment, &source, &settings, &progress));
+        let memory = memory::usage("self");
+        reports.tell(&Report::Ended(Box::new(Ended { outcome, memory })));
+    }
+    Ok(())
+}
+
+/// The system ends this process with its worker, even one that does not read any more.
+fn die_with_parent() {
+    #[cfg(target_os = "linux")]
+    {
+        use rustix::process::{Signal, set_parent_process_death_signal};
+        if let Err(error) = set_parent_process_death_signal(Some(Signal::KILL)) {
+            tracing::warn!(%error, "only a closed pipe will tell that the worker is gone");
+        }
+    }
+}
+
+fn outcome(
+    assignment: &Assignment,
+    source: &SlotSource,
+    settings: &Settings,
+    progress: &Told,
+) -> Outcome {
+    let work = || attempt(assignment, source, &settings.limits, progress);
+    catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|panic| {
+        let words = panic
+            .downcast_ref::<String>()
+            .map(String::as_str)
+            .or_else(|| panic.downcast_ref::<&str>().copied());
+        Outcome::Panicked(words.unwrap_or("unknown").to_owned())
+    })
+}
+
+/// What arrives, sorted.
+struct Heard {
+    assignments: Receiver<Assignment>,
+    answers: Receiver<FullAnswer>,
+}
+
+/// The flag that tells the work to stop.
+type Ears = Arc<AtomicBool>;
+
+/// Reads orders on a thread of its own, so that a solver can be told to stop, and a closed pipe ends the process.
+fn listen(mut orders: BufReader<io::Stdin>) -> Result<(Ears, Heard), SlotError> {
+    let (assign, assignments) = channel();
+    let (answer, answers) = channel();
+    let stop = Ears::default();
+    let ears = stop.clone();
+    std::thread::Builder::new().name("orders".into()).spawn(move || {
+        while let Ok(Some(order)) = read_message(&mut orders) {
+            if take(order, &mut orders, &stop, (&assign, &answer)).is_none() {
+                break;
+            }
+        }
+        // The worker is gone or talks nonsense: nobody will take a result.
+        std::process::exit(0);
+    })?;
+    Ok((ears, Heard { assignments, answers }))
+}
+
+fn take(
+    order: Order,
+    orders: &mut BufReader<io::Stdin>,
+    stop: &AtomicBool,
+    (assign, answer): (&Sender<Assignment>, &Sender<FullAnswer>),
+) -> Option<()> {
+    match order {
+        Order::Start(_) => None,
+        Order::Stop => {
+            stop.store(true, Ordering::Relaxed);
+            Some(())
+        }
+        Order::Work(assignment) => {
+            stop.store(false, Ordering::Relaxed);
+            assign.send(assignment).ok()
+        }
+        Order::Answer(Answer::Bytes) => {
+            let bytes = read_frame(orders).ok()??;
+            answer.send((Answer::Bytes, bytes)).ok()
+        }
+        Order::Answer(other) => answer.send((other, Vec::new())).ok(),
+    }
+}
+
+/// Progress of one attempt, told to the worker.
+struct Told<'a> {
+    reports: &'a Reports,
+    stop: &'a AtomicBool,
+    fail_points: FailPoints,
+    last: Mutex<Option<Instant>>,
+}
+
+impl<'a> Told<'a> {
+    fn new(reports: &'a Reports, stop: &'a AtomicBool, assignment: &Assignment) -> Self {
+        Told {
+            reports,
+            stop,
+            fail_points: FailPoints::of(assignment.attempt, &assignment.document),
+            last: Mutex::new(None),
+        }
+    }
+
+    /// Whether it is time for another report of the same kind.
+    fn is_time(&self) -> bool {
+        let mut last = self.last.lock().unwrap_or_else(PoisonError::into_inner);
+        let is_time = last.is_none_or(|last| last.elapsed() >= BETWEEN_REPORTS);
+        if is_time {
+            *last = Some(Instant::now());
+        }
+        is_time
+    }
+
+    fn pass(&self, point: &str) {
+        self.fail_points.pass_by(point, &|| self.stop.load(Ordering::Relaxed));
+    }
+}
+
+impl Progress for Told<'_> {
+    fn phase(&self, phase: Phase) {
+        self.reports.tell(&Report::Phase(phase.name().to_owned()));
+        self.pass(&format!("{}:begin", phase.name()));
+    }
+
+    fn iteration(&self, iteration: usize, relative_residual: f64, wanted: f64) {
+        if self.is_time() {
+            let residual = relative_residual.is_finite().then_some(relative_residual);
+            self.reports.tell(&Report::Iteration { iteration, residual, wanted });
+        }
+        self.pass("solve:iteration");
+    }
+
+    fn step(&self, done: usize, of: usize) {
+        if self.is_time() {
+            self.reports.tell(&Report::Step { done, of });
+        }
+    }
+
+    fn allowed(&self, wall_s: f64) {
+        self.reports.tell(&Report::Budget { wall_s });
+    }
+
+    fn is_cancelled(&self) -> bool {
+        self.stop.load(Ordering::Relaxed)
+    }
+}

@@ -1,0 +1,393 @@
+//! The work of one slot: hands attempts to its process, follows them, and judges how they ended.
+
+use std::path::Path;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use bytes::Bytes;
+use serde_json::{Value, json};
+use tokio::runtime::Handle;
+
+use super::child::{Death, Heard, Process, Program};
+use super::memory::Usage;
+use super::protocol::{Answer, Assignment, Made, Order, Outcome, Question, Report, Settings};
+use crate::library::meshes::Library;
+use crate::metrics;
+use crate::schema::job::ErrorClass;
+use crate::store::{Claim, StoreError};
+use crate::worker::process::attempt::broke_off;
+use crate::worker::slots::{Failure, Finished, FinishedFile, Work};
+use mechanics::prediction::{Phase, Progress};
+
+/// How often the worker looks whether the job is still wanted, and what its process takes.
+const LOOK: Duration = Duration::from_millis(100);
+/// How long a process may go on that was told to stop, or whose budget of time is used up.
+const GRACE: Duration = Duration::from_secs(10);
+/// How long a process may take to begin.
+const START: Duration = Duration::from_secs(30);
+/// After so many jobs a process makes room for a fresh one.
+const JOBS_OF_A_PROCESS: usize = 1000;
+/// Waits after one death more than one in a row; each is twice the one before.
+const FIRST_WAIT: Duration = Duration::from_millis(100);
+const LONGEST_WAIT: Duration = Duration::from_secs(10);
+
+/// What all slots of a worker share.
+pub struct SlotSettings {
+    pub library: Library,
+    pub runtime: Handle,
+    pub program: Program,
+    pub settings: Settings,
+}
+
+/// The work of one slot. Its process begins before the first job and outlives jobs.
+pub struct SlotWork {
+    shared: Arc<SlotSettings>,
+    process: Option<Process>,
+    /// In a row, with no job that ended in between.
+    deaths: u32,
+    not_before: Option<Instant>,
+}
+
+/// An attempt under way.
+struct Attempt<'a> {
+    shared: &'a SlotSettings,
+    /// In the hand of the tenant of the job.
+    library: Library,
+    process: &'a Process,
+    progress: &'a dyn Progress,
+    /// When it was told to stop.
+    stopped: Option<Instant>,
+    /// When it should have stopped by itself, and after how many seconds that is.
+    budget: Option<(Instant, f64)>,
+    usage: Option<Usage>,
+}
+
+/// How an attempt came to its end.
+enum End {
+    Outcome(Outcome),
+    /// The process ended.
+    Died,
+    /// It did not stop when it was told to.
+    Deaf,
+    /// Its time was up, and it did not notice.
+    OverTime {
+        wall_s: f64,
+    },
+}
+
+impl SlotWork {
+    pub fn new(shared: Arc<SlotSettings>) -> Self {
+        SlotWork { shared, process: None, deaths: 0, not_before: None }
+    }
+
+    fn start(&self) -> Result<Process, String> {
+        let started = Process::start(&self.shared.program, &self.shared.settings);
+        let process = started.map_err(|error| error.to_string())?;
+        match process.hear(START) {
+            Heard::Report(Report::Ready) => Ok(process),
+            Heard::Report(_) | Heard::Nothing | Heard::Gone => Err(process.end().to_string()),
+        }
+    }
+
+    /// Lets the next start wait, longer after each death in a row.
+    fn died(&mut self, why: &str) {
+        metrics::slot_ended(why);
+        self.process = None;
+        self.deaths += 1;
+        let wait = match self.deaths {
+            0 | 1 => Duration::ZERO,
+            deaths => FIRST_WAIT.saturating_mul(1 << (deaths - 2).min(16)).min(LONGEST_WAIT),
+        };
+        self.not_before = Some(Instant::now() + wait);
+    }
+
+    /// What an attempt means for the job, and for the process.
+    fn judge(
+        &mut self,
+        end: End,
+        usage: Option<Usage>,
+        folder: &Path,
+    ) -> Result<Finished, Failure> {
+        match end {
+            End::Outcome(outcome) => {
+                self.deaths = 0;
+                self.keep_or_recycle(&outcome, usage);
+                finished(outcome, folder)
+            }
+            End::Died => {
+                let process = self.process.take();
+                let death = process.map_or(Death::Unknown, Process::end);
+                tracing::error!(%death, "the process of a slot died");
+                self.died(death.name());
+                Err(self.failure(&death, usage))
+            }
+            End::Deaf => {
+                tracing::warn!("a job did not stop in time; its process is killed");
+                self.died("deaf");
+                // It is nobody's mistake that a factorisation cannot be interrupted.
+                self.deaths = 0;
+                Err(Failure::Cancelled)
+            }
+            End::OverTime { wall_s } => {
+                tracing::warn!("a job did not notice the end of its time; its process is killed");
+                self.died("over-time");
+                Err(Failure::Permanent(json!({
+                    "type": "budget-exceeded",
+                    "class": ErrorClass::Budget,
+                    "detail": format!("wall ran out: {wall_s} s are allowed"),
+                    "which": "wall",
+                    "allowed_s": wall_s,
+                })))
+            }
+        }
+    }
+
+    /// Too little memory is the job's own fault; any other death is a loss, which may not come again.
+    fn failure(&self, death: &Death, usage: Option<Usage>) -> Failure {
+        match death {
+            Death::OutOfMemory { asked_bytes } => {
+                let limit = self.shared.settings.memory_bytes;
+                Failure::Permanent(out_of_memory(*asked_bytes, limit, usage))
+            }
+            other => {
+                let taken = usage.map(|usage| megabytes(usage.now_bytes));
+                let taken =
+                    taken.map(|mb| format!(", having taken {mb:.0} MB")).unwrap_or_default();
+                Failure::Lost(format!("the process of the job died: {other}{taken}"))
+            }
+        }
+    }
+
+    fn keep_or_recycle(&mut self, outcome: &Outcome, usage: Option<Usage>) {
+        let Some(process) = &mut self.process else { return };
+        process.jobs += 1;
+        let panicked = matches!(outcome, Outcome::Panicked(_));
+        let limit = self.shared.settings.memory_bytes;
+        let why = worn_out(panicked, process.jobs, usage.map(|usage| usage.now_bytes), limit);
+        if let Some(why) = why {
+            tracing::info!(why, jobs = process.jobs, "a slot gets a fresh process");
+            metrics::slot_ended(why);
+            self.process = None;
+        }
+    }
+}
+
+impl Work for SlotWork {
+    fn prepare(&mut self) -> Result<(), Duration> {
+        let now = Instant::now();
+        if let Some(wait) = self.not_before.and_then(|then| then.checked_duration_since(now))
+            && !wait.is_zero()
+        {
+            return Err(wait);
+        }
+        if self.process.is_none() {
+            match self.start() {
+                Ok(process) => self.process = Some(process),
+                Err(reason) => {
+                    tracing::error!(%reason, "the process of a slot did not start");
+                    self.died("start");
+                    return Err(LOOK);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn work(
+        &mut self,
+        claim: &Claim,
+        folder: &Path,
+        progress: &dyn Progress,
+    ) -> Result<Finished, Failure> {
+        let Some(process) = &self.process else {
+            return Err(Failure::Lost("there was no process for the job".to_owned()));
+        };
+        let lease = &claim.lease;
+        let assignment = Assignment {
+            job: lease.job.clone(),
+            attempt: lease.attempt,
+            queue_s: (claim.started - claim.created) as f64 / 1e3,
+            document: claim.document.clone(),
+            folder: std::path::absolute(folder)?,
+        };
+        process.is_for(Some((&lease.job, lease.attempt)));
+        process.tell(&Order::Work(assignment))?;
+        let mut attempt = Attempt {
+            shared: &self.shared,
+            library: self.shared.library.of_tenant(&claim.tenant),
+            process,
+            progress,
+            stopped: None,
+            budget: None,
+            usage: None,
+        };
+        let end = attempt.follow();
+        let usage = attempt.usage;
+        let ended = self.judge(end, usage, folder);
+        if let Some(process) = &self.process {
+            process.is_for(None);
+        }
+        if let Some(usage) = usage {
+            metrics::job_memory(usage.peak_bytes);
+        }
+        ended
+    }
+}
+
+impl Attempt<'_> {
+    /// Passes on what the process tells until it is done, or has to be done with.
+    fn follow(&mut self) -> End {
+        loop {
+            match self.process.hear(LOOK) {
+                Heard::Report(Report::Ended(ended)) => {
+                    self.usage = ended.memory.or(self.usage);
+                    return End::Outcome(ended.outcome);
+                }
+                Heard::Report(report) => self.pass_on(report),
+                Heard::Nothing => self.usage = self.process.usage().or(self.usage),
+                Heard::Gone => return End::Died,
+            }
+            if let Some(end) = self.impatience() {
+                return end;
+            }
+        }
+    }
+
+    fn pass_on(&mut self, report: Report) {
+        match report {
+            Report::Phase(name) => {
+                if let Some(phase) = Phase::from_name(&name) {
+                    self.progress.phase(phase);
+                }
+            }
+            Report::Iteration { iteration, residual, wanted } => {
+                self.progress.iteration(iteration, residual.unwrap_or(f64::NAN), wanted);
+            }
+            Report::Step { done, of } => self.progress.step(done, of),
+            Report::Budget { wall_s } => {
+                let wall = Duration::try_from_secs_f64(wall_s).ok();
+                let until = wall.and_then(|wall| Instant::now().checked_add(wall + GRACE));
+                self.budget = until.map(|until| (until, wall_s));
+            }
+            Report::Ask(question) => self.answer(question),
+            Report::Ready | Report::Ended(_) => {}
+        }
+    }
+
+    /// Tells the process to stop when the job is not wanted any more; says when to wait no longer.
+    fn impatience(&mut self) -> Option<End> {
+        let now = Instant::now();
+        if self.stopped.is_none() && self.progress.is_cancelled() {
+            self.stopped = Some(now);
+            // One that cannot be told is killed after the same wait.
+            let _ = self.process.tell(&Order::Stop);
+        }
+        if self.stopped.is_some_and(|stopped| now.duration_since(stopped) > GRACE) {
+            return Some(End::Deaf);
+        }
+        let (until, wall_s) = self.budget?;
+        (now > until).then_some(End::OverTime { wall_s })
+    }
+
+    fn answer(&self, question: Question) {
+        let (library, runtime) = (&self.library, &self.shared.runtime);
+        let answer = match question {
+            Question::Mesh(id) => runtime
+                .block_on(library.card(&id))
+                .map(|card| card.map_or(Answer::Unknown, Answer::Mesh)),
+            Question::Skin(job) => runtime
+                .block_on(library.skin_blob(&job))
+                .map(|blob| blob.map_or(Answer::Unknown, Answer::Skin)),
+            Question::Blob(blob) => return self.give_blob(runtime.block_on(library.bytes(&blob))),
+        };
+        self.tell(answer.unwrap_or_else(|error| Answer::Unreadable(error.to_string())));
+    }
+
+    fn give_blob(&self, bytes: Result<Bytes, StoreError>) {
+        match bytes {
+            Ok(bytes) => {
+                self.tell(Answer::Bytes);
+                self.process.give(Bytes::copy_from_slice(&(bytes.len() as u64).to_le_bytes()));
+                self.process.give(bytes);
+            }
+            Err(error) => self.tell(Answer::Unreadable(error.to_string())),
+        }
+    }
+
+    fn tell(&self, answer: Answer) {
+        if let Err(error) = self.process.tell(&Order::Answer(answer)) {
+            tracing::error!(%error, "an answer could not be written");
+        }
+    }
+}
+
+/// Why a process is not to be used again, if so: a bug may have left anything, many jobs leave memory in pieces, and a
+/// half of the memory that is not given back is missing in the next job.
+fn worn_out(panicked: bool, jobs: usize, bytes: Option<u64>, limit: u64) -> Option<&'static str> {
+    if panicked {
+        return Some("panic");
+    }
+    if jobs >= JOBS_OF_A_PROCESS {
+        return Some("jobs");
+    }
+    bytes.filter(|bytes| *bytes > limit / 2).map(|_| "memory")
+}
+
+fn finished(outcome: Outcome, folder: &Path) -> Result<Finished, Failure> {
+    match outcome {
+        Outcome::Done(Made { result, files, effort }) => Ok(Finished {
+            result,
+            files: files
+                .into_iter()
+                .map(|file| FinishedFile {
+                    path: folder.join(&file.name),
+                    name: file.name,
+                    media_type: file.media_type,
+                })
+                .collect(),
+            effort,
+        }),
+        Outcome::Failed(error) => Err(Failure::Permanent(error)),
+        Outcome::Cancelled => Err(Failure::Cancelled),
+        Outcome::Storage(reason) => Err(Failure::Storage(reason)),
+        Outcome::Panicked(reason) => {
+            tracing::error!(%reason, "a job panicked");
+            Err(Failure::Permanent(broke_off()))
+        }
+    }
+}
+
+fn megabytes(bytes: u64) -> f64 {
+    bytes as f64 / 1e6
+}
+
+/// The error of a job that needed more memory than its slot has.
+fn out_of_memory(asked_bytes: u64, limit_bytes: u64, usage: Option<Usage>) -> Value {
+    let (asked_mb, limit_mb) = (megabytes(asked_bytes), megabytes(limit_bytes));
+    let mut error = json!({
+        "type": "out-of-memory",
+        "class": ErrorClass::Budget,
+        "detail": format!("the job may take {limit_mb:.0} MB, and asked for {asked_mb:.3} MB more than was left"),
+        "which": "memory",
+        "limit_mb": limit_mb,
+        "asked_mb": asked_mb,
+    });
+    if let Some(usage) = usage {
+        error["peak_mb"] = json!(megabytes(usage.peak_bytes));
+    }
+    error
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_process_is_used_until_it_panics_is_old_or_keeps_half_of_its_memory() {
+        assert_eq!(worn_out(false, JOBS_OF_A_PROCESS - 1, Some(500), 1000), None);
+        assert_eq!(worn_out(true, 1, Some(1), 1000), Some("panic"));
+        assert_eq!(worn_out(false, JOBS_OF_A_PROCESS, Some(1), 1000), Some("jobs"));
+        assert_eq!(worn_out(false, 1, Some(501), 1000), Some("memory"));
+        assert_eq!(worn_out(false, 1, None, 1000), None);
+    }
+}

@@ -1,0 +1,341 @@
+//! Worker threads: claim a job, have it worked on, publish. Each slot is a thread; numerics run elsewhere.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+
+use bytes::Bytes;
+use serde_json::json;
+use tokio::runtime::Handle;
+
+use super::fail_point::{FailPoints, Injected};
+use super::heartbeat::{Heartbeat, RunningJob, worker_lost};
+use crate::config::Config;
+use crate::metrics;
+use crate::schema::wire::canonical::sha256_hex;
+use crate::store::{Claim, Lease, PublishedFile, Store, StoreError};
+use crate::traces;
+use crate::worker::process::attempt::broke_off;
+use crate::worker::process::protocol::Effort;
+use mechanics::prediction::Progress;
+
+/// How long an idle worker waits before it looks for jobs that another process has accepted.
+const IDLE: Duration = Duration::from_secs(1);
+/// How long a solver that was told to stop may take before the process ends without it.
+const LAST_WORDS: Duration = Duration::from_secs(2);
+/// How long a slot that is not ready sleeps at most before it looks whether to stop.
+const UNREADY: Duration = Duration::from_millis(100);
+/// Between two tries to publish while the database is busy.
+const PUBLISH_PAUSE: Duration = Duration::from_millis(200);
+
+/// What an attempt made: the manifest, and files in the folder it was given.
+pub struct Finished {
+    /// JSON.
+    pub result: String,
+    pub files: Vec<FinishedFile>,
+    pub effort: Effort,
+}
+
+/// A file by its name in the folder of the attempt.
+pub struct FinishedFile {
+    pub name: String,
+    pub media_type: String,
+    pub path: PathBuf,
+}
+
+/// Why an attempt made nothing.
+#[derive(Debug)]
+pub enum Failure {
+    /// It was told to stop.
+    Cancelled,
+    /// The job's own fault, never tried again: JSON with `type` and `detail`.
+    Permanent(serde_json::Value),
+    /// The storage's fault: tried again.
+    Storage(String),
+    /// What computed it died, and how: tried again.
+    Lost(String),
+}
+
+impl From<StoreError> for Failure {
+    fn from(error: StoreError) -> Self {
+        Failure::Storage(error.to_string())
+    }
+}
+
+impl From<Injected> for Failure {
+    fn from(_: Injected) -> Self {
+        Failure::Storage("a fail point erred".to_owned())
+    }
+}
+
+impl From<std::io::Error> for Failure {
+    fn from(error: std::io::Error) -> Self {
+        Failure::Storage(error.to_string())
+    }
+}
+
+/// From a claimed job to files in a folder: the work of one slot.
+pub trait Work: Send {
+    /// Makes ready for a job before one is claimed; an error says after which wait to ask again.
+    fn prepare(&mut self) -> Result<(), Duration> {
+        Ok(())
+    }
+
+    fn work(
+        &mut self,
+        claim: &Claim,
+        folder: &Path,
+        progress: &dyn Progress,
+    ) -> Result<Finished, Failure>;
+}
+
+/// The worker slots of this process.
+pub struct Workers {
+    shared: Arc<Shared>,
+    slots: Vec<JoinHandle<()>>,
+}
+
+struct Shared {
+    store: Store,
+    heartbeat: Heartbeat,
+    runtime: Handle,
+    lease: Duration,
+    attempts: u32,
+    stopping: AtomicBool,
+}
+
+impl Workers {
+    /// Starts the slots, each with work of its own. `runtime` answers their questions to the store.
+    pub fn start(
+        store: Store,
+        config: &Config,
+        work: &dyn Fn() -> Box<dyn Work>,
+        runtime: Handle,
+    ) -> Result<Workers, StoreError> {
+        let shared = Arc::new(Shared {
+            heartbeat: Heartbeat::start(store.clone(), config)?,
+            store,
+            runtime,
+            lease: config.lease,
+            attempts: config.attempts,
+            stopping: AtomicBool::new(false),
+        });
+        let mut slots = Vec::with_capacity(config.workers);
+        for slot in 0..config.workers {
+            let (shared, mut work) = (shared.clone(), work());
+            let thread = std::thread::Builder::new()
+                .name(format!("worker-{slot}"))
+                .spawn(move || shared.serve(work.as_mut()))?;
+            slots.push(thread);
+        }
+        Ok(Workers { shared, slots })
+    }
+
+    /// Claims no more, lets running jobs finish for `grace`, and gives back those that did not.
+    /// Blocks; not for an async thread.
+    pub fn stop(self, grace: Duration) {
+        self.shared.stopping.store(true, Ordering::Relaxed);
+        self.wait(grace);
+        for job in self.shared.heartbeat.held() {
+            let released = self.shared.runtime.block_on(self.shared.store.release(&job.lease));
+            let released = matches!(released, Ok(true));
+            tracing::info!(job.id = %job.lease.job, released, "gave a job back");
+            job.stop();
+        }
+        self.wait(LAST_WORDS);
+    }
+
+    fn wait(&self, most: Duration) {
+        let until = Instant::now() + most;
+        let busy = || self.slots.iter().any(|slot| !slot.is_finished());
+        while busy() && Instant::now() < until {
+            std::thread::sleep(Duration::from_millis(20));
+        }
+    }
+}
+
+impl Shared {
+    fn serve(&self, work: &mut dyn Work) {
+        let mut changes = self.store.job_changes();
+        while !self.stopping.load(Ordering::Relaxed) {
+            if let Err(wait) = work.prepare() {
+                std::thread::sleep(wait.min(UNREADY));
+                continue;
+            }
+            changes.mark_unchanged();
+            match self.runtime.block_on(self.store.claim(self.lease)) {
+                Ok(Some(claim)) => self.attempt(&claim, work),
+                Ok(None) => self.runtime.block_on(async {
+                    // Either a job of this process woke us, or it is time to look at the others'.
+                    let _ = tokio::time::timeout(IDLE, changes.changed()).await;
+                }),
+                Err(error) => {
+                    tracing::warn!(%error, "no job could be claimed");
+                    std::thread::sleep(IDLE);
+                }
+            }
+        }
+    }
+
+    fn attempt(&self, claim: &Claim, work: &mut dyn Work) {
+        let lease = &claim.lease;
+        let started = Instant::now();
+        let parent = claim.traceparent.as_deref();
+        let trace = traces::Attempt::begin(&lease.job, &claim.kind, lease.attempt, parent);
+        let job = self.heartbeat.hold(lease.clone(), trace);
+        let trace_id = job.trace.trace_id();
+        let span = tracing::info_span!("job", job.id = %lease.job, attempt = lease.attempt, trace.id = trace_id);
+        let _inside = span.enter();
+        tracing::info!(kind = %claim.kind, "job started");
+        let fail_points = FailPoints::of(lease.attempt, &claim.document);
+        fail_points.pass_by("claim:after", &|| job.is_cancelled());
+        let folder = self.store.attempt_folder(&lease.job, lease.attempt);
+        let mut effort = Effort::default();
+        let made = make(claim, &folder, &job, work);
+        let worked = started.elapsed();
+        let made = made.and_then(|finished| {
+            job.trace.phase("publish");
+            let files = read_files(finished.files)?;
+            effort = finished.effort;
+            Ok((finished.result, files))
+        });
+        if let Err(error) = remove_attempt(&folder) {
+            tracing::warn!(%error, "the files of an attempt were left to the next start");
+        }
+        let ended = made.and_then(|(result, files)| {
+            fail_points.pass("publish:before", &|| job.is_cancelled())?;
+            let published = self.publish(lease, &result, &files);
+            fail_points.pass("publish:after", &|| job.is_cancelled())?;
+            published
+        });
+        let status = self.conclude(lease, &job, ended);
+        self.heartbeat.let_go(lease);
+        job.trace.ended(status);
+        let took = started.elapsed();
+        metrics::attempt_ended(&claim.kind, status, took);
+        if status == "successful" {
+            let method = effort.method.as_deref().unwrap_or("none");
+            metrics::job_solved(method, effort.unknowns, effort.iterations, took);
+        }
+        let (work_ms, duration_ms) = (worked.as_secs_f64() * 1e3, took.as_secs_f64() * 1e3);
+        tracing::info!(status, work_ms, duration_ms, "job ended");
+    }
+
+    /// Stores the files and makes them and the manifest visible at once; false when the job is not ours.
+    fn publish(
+        &self,
+        lease: &Lease,
+        result: &str,
+        files: &[PublishedFile],
+    ) -> Result<bool, Failure> {
+        let until = Instant::now() + self.lease;
+        loop {
+            let published = self.store.publish(lease, result, files);
+            match self.runtime.block_on(published) {
+                Err(error) if error.is_unavailable() && Instant::now() < until => {
+                    tracing::warn!(%error, "the result waits for the database");
+                    std::thread::sleep(PUBLISH_PAUSE);
+                }
+                published => return Ok(published?),
+            }
+        }
+    }
+
+    /// Writes down how an attempt ended, and returns a word for it.
+    fn conclude(
+        &self,
+        lease: &Lease,
+        job: &RunningJob,
+        ended: Result<bool, Failure>,
+    ) -> &'static str {
+        let (status, written) = match ended {
+            Ok(true) => return "successful",
+            Ok(false) => return "fenced",
+            Err(_) if job.is_cancelled() => return "stopped",
+            Err(Failure::Cancelled) => {
+                let error = json!({
+                    "type": "cancelled",
+                    "class": "cancelled",
+                    "detail": "the work was stopped",
+                });
+                ("failed", self.runtime.block_on(self.store.fail(lease, &error.to_string())))
+            }
+            Err(Failure::Permanent(error)) => {
+                tracing::info!(%error, "job failed");
+                ("failed", self.runtime.block_on(self.store.fail(lease, &error.to_string())))
+            }
+            Err(Failure::Storage(reason)) => {
+                tracing::error!(%reason, "the storage failed an attempt");
+                let error = json!({
+                    "type": "storage",
+                    "class": "infrastructure",
+                    "detail": "the results could not be stored",
+                    "attempts": self.attempts,
+                });
+                ("lost", self.lose(lease, &error.to_string()))
+            }
+            Err(Failure::Lost(how)) => {
+                tracing::error!(%how, "an attempt was lost");
+                metrics::attempt_lost("process");
+                ("lost", self.lose(lease, &worker_lost(self.attempts, Some(&how))))
+            }
+        };
+        match written {
+            Ok(true) => status,
+            Ok(false) => "fenced",
+            Err(error) => {
+                // The lease runs out, and another attempt follows.
+                tracing::error!(%error, "how the job ended could not be written down");
+                "unwritten"
+            }
+        }
+    }
+
+    fn lose(&self, lease: &Lease, error: &str) -> Result<bool, StoreError> {
+        self.runtime.block_on(self.store.lose(lease, self.attempts, error))
+    }
+}
+
+/// The work. A panic on this side of it is a bug of ours and costs no slot.
+fn make(
+    claim: &Claim,
+    folder: &Path,
+    job: &RunningJob,
+    work: &mut dyn Work,
+) -> Result<Finished, Failure> {
+    std::fs::create_dir_all(folder)?;
+    let made = catch_unwind(AssertUnwindSafe(|| work.work(claim, folder, job)));
+    made.unwrap_or_else(|panic| {
+        let words = panic
+            .downcast_ref::<String>()
+            .map(String::as_str)
+            .or_else(|| panic.downcast_ref::<&str>().copied());
+        tracing::error!(reason = words.unwrap_or("unknown"), "a job panicked");
+        Err(Failure::Permanent(broke_off()))
+    })
+}
+
+fn read_files(files: Vec<FinishedFile>) -> std::io::Result<Vec<PublishedFile>> {
+    let read = |file: FinishedFile| {
+        let bytes = Bytes::from(std::fs::read(&file.path)?);
+        let sha256 = sha256_hex(&bytes);
+        Ok(PublishedFile { name: file.name, media_type: file.media_type, sha256, bytes })
+    };
+    files.into_iter().map(read).collect()
+}
+
+/// Removes the folder of an attempt, and that of its job when it was the only one.
+fn remove_attempt(folder: &Path) -> std::io::Result<()> {
+    match std::fs::remove_dir_all(folder) {
+        Err(error) if error.kind() != std::io::ErrorKind::NotFound => return Err(error),
+        _ => {}
+    }
+    if let Some(job) = folder.parent() {
+        // Another attempt of the same job may have files here.
+        let _ = std::fs::remove_dir(job);
+    }
+    Ok(())
+}

@@ -1,0 +1,6 @@
+//! Jobs without a server: from documents to result files.
+
+mod image;
+mod optimise;
+mod results;
+mod study_report;

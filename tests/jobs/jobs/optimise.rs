@@ -1,0 +1,110 @@
+//! Inverse planning from a job document to result files, without a server.
+
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use facies::jobs::work::Workplace;
+use facies::jobs::{
+    JobError, JobInput, JobOutput, MeshSource, OptimiseInput, SourceError, StoredMesh, StoredShape,
+    work,
+};
+use facies::schema::Limits;
+use facies::schema::case::document::LengthUnit;
+use facies::schema::job::ErrorClass;
+use mechanics::mesh::{CellShape, Vector, sample};
+use mechanics::prediction::{Phase, Progress, Unobserved};
+
+/// One block of 60 x 60 x 30 mm under every id.
+struct Block;
+
+impl MeshSource for Block {
+    fn mesh(&self, _id: &str) -> Result<StoredMesh, SourceError> {
+        let mesh = sample::block(Vector::new(60.0, 60.0, 30.0), [4, 4, 3], CellShape::Hex8);
+        Ok(StoredMesh {
+            shape: StoredShape::Volume(mesh.into()),
+            frame: None,
+            units: Some(LengthUnit::Mm),
+            warnings: Vec::new(),
+            sha256: "sha of block".to_owned(),
+        })
+    }
+
+    fn predicted_skin(&self, job: &str) -> Result<StoredMesh, SourceError> {
+        Err(SourceError::Unknown { id: job.to_owned() })
+    }
+}
+
+/// Two bones at opposite ends, of which the second carries a node set that the case does not call a segment.
+const CASE: &str = r#"{"units":"mm","volume":"block","segments":[{"name":"left","nodes":{"node_set":"x_min"}}],
+    "fixed":[{"node_set":"z_min"}],"landmarks":{"tip":[30,30,30]}}"#;
+const SPEC: &str = r#"{"kind":"optimise","case":"",
+    "targets":[{"nodes":{"node_set":"z_max"},"displacement_mm":[0.5,null,0.1],"sigma_mm":0.3},
+               {"landmark":"tip","displacement_mm":[null,0.2,null]}],
+    "bounds":{"x_max":{"translation_mm":[[-5,5],[-5,5],[1,1]]},
+              "left":{"translation_mm":[[-5,5],[-5,5],[-5,5]],"rotation_deg":[[0,0],[-9,9],[0,0]],"pivot_mm":[0,30,0]}}}"#;
+
+fn input() -> OptimiseInput {
+    let (case, spec) = (serde_json::from_str(CASE).unwrap(), serde_json::from_str(SPEC).unwrap());
+    OptimiseInput { job: None, queue_s: None, case, spec }
+}
+
+fn run(out: &Path, progress: &dyn Progress) -> Result<JobOutput, JobError> {
+    let limits = Limits::default();
+    let place = Workplace { sources: &Block, limits: &limits, out };
+    work(&JobInput::Optimise(input()), &place, progress)
+}
+
+#[test]
+fn segments_are_matched_by_name_in_whatever_order_they_come() {
+    let out = tempfile::tempdir().unwrap();
+    let done = run(out.path(), &Unobserved).unwrap();
+    let found = done.result.optimisation.unwrap();
+    let of = |name: &str| found.plan.segments.iter().find(|segment| segment.name == name).unwrap();
+    // Held at 1 mm by its bounds, and without rotation.
+    let right = of("x_max").translation_mm.unwrap().0;
+    assert_eq!((right[2], of("x_max").rotation_deg), (1.0, None));
+    let [x, y, z] = of("left").rotation_deg.unwrap().0;
+    assert!((x, z) == (0.0, 0.0) && y != 0.0 && y.abs() <= 9.0);
+    assert_eq!(found.parameters.len() + found.at_bound.len(), 6);
+    assert!(found.verified_difference_mm.unwrap() < 1e-5);
+    assert!(found.targets[0].points > 1 && found.targets[1].points == 1);
+}
+
+#[test]
+fn a_queued_job_survives_being_written_and_read() {
+    let input = JobInput::Optimise(input());
+    let text = serde_json::to_string(&input).unwrap();
+    assert_eq!(serde_json::from_str::<JobInput>(&text).unwrap(), input);
+}
+
+/// Somebody who asks the work to stop when it reaches a phase.
+struct StopAt(Phase, AtomicBool);
+
+impl Progress for StopAt {
+    fn phase(&self, phase: Phase) {
+        if phase == self.0 {
+            self.1.store(true, Ordering::SeqCst);
+        }
+    }
+
+    fn iteration(&self, _iteration: usize, _relative_residual: f64, _wanted: f64) {}
+
+    fn is_cancelled(&self) -> bool {
+        self.1.load(Ordering::SeqCst)
+    }
+}
+
+#[test]
+fn a_job_that_is_told_to_stop_stops_in_every_phase_and_writes_nothing() {
+    for phase in [Phase::Validate, Phase::Assemble, Phase::Solve, Phase::Surface, Phase::Compare] {
+        let folder = tempfile::tempdir().unwrap();
+        let out = folder.path().join("out");
+        let error = run(&out, &StopAt(phase, AtomicBool::default())).unwrap_err();
+        assert_eq!(
+            (error.kind(), error.class()),
+            ("cancelled", ErrorClass::Cancelled),
+            "{phase:?}"
+        );
+        assert!(!out.exists(), "{phase:?}");
+    }
+}

@@ -1,0 +1,215 @@
+//! The outcome of a study and its files, on reports made by hand.
+
+use facies::jobs::study::files::{COLUMNS, csv, junit};
+use facies::jobs::study::verdict::{Baseline, judge};
+use facies::schema::ReportDocument;
+use facies::schema::study::report::{OutcomeName, RowVerdict};
+use serde_json::{Value, json};
+
+/// A row with numbers.
+fn solved(label: &str, level: u32, [wall_s, p95]: [f64; 2]) -> Value {
+    let errors = json!({"mean": p95 / 2.0, "p95": p95, "max": 2.0 * p95});
+    json!({
+        "scene": "slab", "plan": "4 mm", "method": "fem_linear", "label": label, "element": "tet4",
+        "material": "case", "level": level, "status": "solved", "unknowns": 100, "iterations": 5,
+        "wall_s": wall_s, "repeats": 1, "mean_mm": p95 / 2.0, "p95_mm": p95, "max_mm": 2.0 * p95,
+        "closest_point_mm": errors, "regions_mm": {}, "skin_mean_mm": 1.0, "on_front": true,
+        "verdict": "not-run",
+    })
+}
+
+/// A row without.
+fn failed(label: &str, status: &str, kind: &str) -> Value {
+    json!({
+        "scene": "slab", "plan": "4 mm", "method": "msm", "label": label, "element": "",
+        "material": "case", "level": 0, "status": status, "on_front": false, "verdict": "not-run",
+        "error": {"type": kind, "detail": "it <did> & \"more\""},
+    })
+}
+
+fn report(rows: &[Value], rules: Value) -> ReportDocument {
+    serde_json::from_value(json!({
+        "schema": 1, "job": "first", "spec_hash": "", "created": "", "statement": "",
+        "engine": {"name": "", "version": "", "target": "", "profile": ""},
+        "verdict": {"outcome": "incomplete", "reasons": [], "rows": 0, "solved": 0, "failed": 0, "worse": 0, "not_run": 0},
+        "rules": rules, "scenes": [], "rows": rows, "comparisons": [], "convergence": [],
+    }))
+    .unwrap()
+}
+
+fn usual() -> Value {
+    json!({"tolerances": {}, "expected_failures": []})
+}
+
+fn judged(rows: &[Value], rules: Value, baseline: &Baseline) -> ReportDocument {
+    let mut report = report(rows, rules);
+    judge(&mut report, baseline);
+    report
+}
+
+fn outcome(rows: &[Value], rules: Value, baseline: &Baseline) -> OutcomeName {
+    judged(rows, rules, baseline).verdict.outcome
+}
+
+#[test]
+fn an_empty_study_and_one_without_numbers_are_never_green() {
+    let none = Baseline::NotAsked;
+    assert_eq!(outcome(&[], usual(), &none), OutcomeName::Incomplete);
+    let rules = json!({"tolerances": {}, "expected_failures": ["msm"]});
+    let only_failures = [failed("msm", "failed", "solver-diverged")];
+    assert_eq!(outcome(&only_failures, rules, &none), OutcomeName::Incomplete);
+    let rows = [solved("fem", 0, [1.0, 0.1]), failed("msm", "not-run", "not-run")];
+    assert_eq!(outcome(&rows, usual(), &none), OutcomeName::Incomplete);
+    assert_eq!(outcome(&rows[..1], usual(), &none), OutcomeName::Pass);
+}
+
+#[test]
+fn a_failure_is_worse_unless_it_may_be_or_was_there_before() {
+    let rows = [solved("fem", 0, [1.0, 0.1]), failed("msm", "failed", "solver-diverged")];
+    assert_eq!(outcome(&rows, usual(), &Baseline::NotAsked), OutcomeName::Worse);
+    let expected = json!({"tolerances": {}, "expected_failures": ["msm"]});
+    assert_eq!(outcome(&rows, expected, &Baseline::NotAsked), OutcomeName::Pass);
+    let before = report(&rows, usual());
+    let now = judged(&rows, usual(), &Baseline::Report(&before));
+    assert_eq!(
+        (now.verdict.outcome, now.rows[1].verdict),
+        (OutcomeName::Pass, RowVerdict::KnownFailure)
+    );
+    let otherwise = [rows[0].clone(), failed("msm", "failed", "matrix-singular")];
+    assert_eq!(outcome(&otherwise, usual(), &Baseline::Report(&before)), OutcomeName::Worse);
+    let solved_before = report(&[rows[0].clone(), solved("msm", 0, [1.0, 0.5])], usual());
+    let now = judged(&rows, usual(), &Baseline::Report(&solved_before));
+    assert_eq!(now.verdict.outcome, OutcomeName::Worse);
+    assert!(now.rows[1].reasons[0].starts_with("solved in the baseline, now solver-diverged"));
+}
+
+#[test]
+fn rows_may_grow_by_their_ratio_and_by_what_is_only_noise() {
+    let before = report(&[solved("fem", 0, [1.0, 0.1])], usual());
+    let against = |row: [f64; 2], rules: Value| {
+        outcome(&[solved("fem", 0, row)], rules, &Baseline::Report(&before))
+    };
+    assert_eq!(against([1.4, 0.104], usual()), OutcomeName::Pass);
+    assert_eq!(against([1.4, 0.106], usual()), OutcomeName::Worse);
+    assert_eq!(against([1.6, 0.104], usual()), OutcomeName::Worse);
+    let wide =
+        json!({"tolerances": {"p95_ratio": 1.2, "wall_ratio": 3.0}, "expected_failures": []});
+    assert_eq!(against([2.5, 0.115], wide), OutcomeName::Pass);
+    // Solutions agree to 1e-4 mm, and a clock in a busy machine to some ms.
+    let tiny = report(&[solved("fem", 0, [1e-3, 1e-6])], usual());
+    let noise = [solved("fem", 0, [0.015, 9e-5])];
+    assert_eq!(outcome(&noise, usual(), &Baseline::Report(&tiny)), OutcomeName::Pass);
+    let more = [solved("fem", 0, [0.03, 9e-5])];
+    assert_eq!(outcome(&more, usual(), &Baseline::Report(&tiny)), OutcomeName::Worse);
+}
+
+#[test]
+fn thresholds_hold_for_the_labels_they_name() {
+    let rows = [solved("fem", 0, [1.0, 0.1]), solved("msm", 0, [1.0, 2.0])];
+    let rules =
+        |bounds: Value| json!({"tolerances": {}, "expected_failures": [], "thresholds": bounds});
+    let none = Baseline::NotAsked;
+    assert_eq!(outcome(&rows, rules(json!({"p95_mm": 1.0})), &none), OutcomeName::Worse);
+    let of_fem = json!({"p95_mm": 1.0, "labels": ["fem"]});
+    assert_eq!(outcome(&rows, rules(of_fem), &none), OutcomeName::Pass);
+    assert_eq!(outcome(&rows, rules(json!({"wall_s": 0.5})), &none), OutcomeName::Worse);
+    assert_eq!(outcome(&rows, rules(json!({"mean_mm": 1.0})), &none), OutcomeName::Pass);
+}
+
+#[test]
+fn a_baseline_that_says_nothing_of_these_rows_is_none_and_lost_rows_are_told() {
+    let rows = [solved("fem", 0, [1.0, 0.1])];
+    let missing = Baseline::Missing("it is gone".to_owned());
+    assert_eq!(outcome(&rows, usual(), &missing), OutcomeName::NoBaseline);
+    let other = report(&[solved("fem", 1, [1.0, 0.1])], usual());
+    assert_eq!(outcome(&rows, usual(), &Baseline::Report(&other)), OutcomeName::NoBaseline);
+    let more = report(&[rows[0].clone(), solved("fem", 1, [1.0, 0.1])], usual());
+    let now = judged(&rows, usual(), &Baseline::Report(&more));
+    assert_eq!(now.verdict.outcome, OutcomeName::Incomplete);
+    assert_eq!(now.verdict.reasons, ["1 rows of the baseline are not in this study"]);
+    let codes =
+        [OutcomeName::Pass, OutcomeName::Worse, OutcomeName::Incomplete, OutcomeName::NoBaseline];
+    assert_eq!(codes.map(OutcomeName::exit_code), [0, 1, 4, 5]);
+}
+
+/// Elements of a JUnit file with their attributes and the number of children that mark a case as not passed.
+fn suites(text: &str) -> Vec<(String, Vec<(String, String)>)> {
+    use quick_xml::events::Event;
+    let mut reader = quick_xml::Reader::from_str(text);
+    let mut elements = Vec::new();
+    loop {
+        match reader.read_event().unwrap() {
+            Event::Start(start) | Event::Empty(start) => {
+                let attributes = start.attributes().map(|attribute| {
+                    let attribute = attribute.unwrap();
+                    (attribute.key.as_ref().to_owned(), attribute.value.to_string())
+                });
+                elements.push((start.name().as_ref().to_owned(), attributes.collect()));
+            }
+            Event::Eof => return elements,
+            _ => {}
+        }
+    }
+}
+
+#[test]
+fn test_results_have_the_shape_that_ci_systems_read_and_are_red_exactly_when_the_outcome_is() {
+    let mixed = [
+        solved("fem & <co>", 0, [1.0, 0.1]),
+        solved("slow", 0, [9.0, 0.1]),
+        failed("msm", "failed", "solver-diverged"),
+        failed("known", "failed", "solver-diverged"),
+        failed("late", "not-run", "not-run"),
+    ];
+    let rules =
+        json!({"tolerances": {}, "expected_failures": ["known"], "thresholds": {"wall_s": 5.0}});
+    let cases: [(&[Value], Value, [usize; 4]); 3] = [
+        (&mixed, rules, [6, 2, 2, 1]),
+        (&mixed[..1], usual(), [2, 0, 0, 0]),
+        (&[], usual(), [1, 0, 1, 0]),
+    ];
+    for (rows, rules, counts) in cases {
+        let report = judged(rows, rules, &Baseline::NotAsked);
+        let text = junit(&report);
+        let elements = suites(&text);
+        let count = |name: &str| elements.iter().filter(|(element, _)| element == name).count();
+        assert_eq!(["testcase", "failure", "error", "skipped"].map(count), counts, "{text}");
+        assert_eq!(elements[0].0, "testsuites");
+        for (element, attributes) in &elements {
+            let has =
+                |name: &str| attributes.iter().any(|(key, value)| key == name && !value.is_empty());
+            let needed: &[&str] = match element.as_str() {
+                "testsuites" | "testsuite" => {
+                    &["name", "tests", "failures", "errors", "skipped", "time"]
+                }
+                "testcase" => &["name", "classname", "time"],
+                "failure" | "error" => &["type", "message"],
+                "skipped" => &["message"],
+                "system-out" => &[],
+                other => panic!("{other}"),
+            };
+            assert!(needed.iter().all(|name| has(name)), "{element} {attributes:?}");
+        }
+        let told = |name: &str| {
+            elements[0].1.iter().find(|(key, _)| key == name).unwrap().1.parse::<usize>()
+        };
+        assert_eq!(
+            ["tests", "failures", "errors", "skipped"].map(|name| told(name).unwrap()),
+            counts
+        );
+        let is_red = counts[1] + counts[2] > 0;
+        assert_eq!(is_red, report.verdict.outcome != OutcomeName::Pass);
+    }
+}
+
+#[test]
+fn the_table_has_every_row_and_no_cell_is_a_formula() {
+    let mut odd = solved("=cmd|' /C calc'", 0, [1.0, 0.1]);
+    odd["plan"] = json!("a, \"b\"\nc");
+    let report = judged(&[odd, failed("msm", "failed", "x")], usual(), &Baseline::NotAsked);
+    let text = csv(&report);
+    assert!(text.starts_with(&(COLUMNS.join(",") + "\r\n")));
+    assert!(text.contains("slab,\"a, \"\"b\"\"\nc\",fem_linear,'=cmd|' /C calc',tet4,case,0,100,1,,0.05,0.1,0.2,solved,"));
+    assert!(text.ends_with("\r\n") && text.contains(",failed,\"x: it <did> & \"\"more\"\"\","));
+    assert!(text.contains("slab,4 mm,msm,msm,,case,0,,,,,,,failed,"));
+}

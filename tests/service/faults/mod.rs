@@ -1,0 +1,5 @@
+//! Disks, databases and descriptors that fail.
+
+pub mod broken_disk;
+pub mod outages;
+pub mod storage;

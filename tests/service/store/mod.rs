@@ -1,0 +1,8 @@
+//! Rows and bytes, on both engines.
+
+pub mod queue;
+pub mod races;
+pub mod remembered;
+pub mod schema_steps;
+pub mod storage;
+pub mod transfer;

@@ -1,0 +1,129 @@
+//! A deployment moves from one engine to the other and back, and comes out of its backup as it went in.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+
+use facies::config::DatabasePlace;
+use facies::schema::key::{KeyDocument, Scope};
+use facies::store::{Deed, NewCase, Store, StoreError};
+
+use crate::deployments::{Deployment, on_both};
+use crate::store::queue::{LEASE, blob_count, enqueue, file, new_job};
+use crate::store::storage::mesh;
+
+on_both! {
+    an_export_has_every_table
+    an_import_is_all_or_nothing
+}
+
+/// Something in every table, with every kind of value.
+async fn fill(store: &Store) {
+    let case_mesh = mesh("of the case", "units=mm");
+    let case = NewCase {
+        id: uuid::Uuid::now_v7().to_string(),
+        document: "{\"name\":\"Ünï\\u0000\"}".into(),
+        report: "{}".into(),
+        tags: vec!["~".into(), "a".into()],
+        mesh_ids: vec![case_mesh.id.clone()],
+        meshes: vec![case_mesh.clone()],
+    };
+    assert!(store.add_case(&case).await.unwrap());
+    assert!(store.add_plan(&case.id, &uuid::Uuid::now_v7().to_string(), "{}").await.unwrap());
+    let erased = uuid::Uuid::now_v7().to_string();
+    assert!(store.add_plan(&case.id, &erased, "{}").await.unwrap());
+    store.delete_plan((&case.id, &erased), None).await.unwrap();
+    let key = KeyDocument { label: "a".into(), scopes: [Scope::Read].into(), days: None };
+    store.make_key(&key).await.unwrap();
+    let deed = Deed { action: "a deed".into(), ..Deed::default() };
+    let begun = store.begin_deed(&deed).await.unwrap();
+    store.end_deed(begun, "", "done").await.unwrap();
+    store.chain_deeds().await.unwrap();
+    store.begin_deed(&deed).await.unwrap();
+    store.reserve("a key", "a request", &case.id).await.unwrap();
+    enqueue(store, "done").await;
+    let lease = store.claim(LEASE).await.unwrap().unwrap().lease;
+    let point = facies::store::Point { residual: Some(1.0 / 3.0), ..Default::default() };
+    assert!(store.renew(&lease, LEASE, &point).await.unwrap());
+    assert!(store.publish(&lease, "{}", &[file("a result")]).await.unwrap());
+    let mut waiting = new_job("{}", "waiting");
+    waiting.shared_cases = vec![case.id.clone()];
+    waiting.mesh_ids = vec![case_mesh.id];
+    store.enqueue(&waiting, 100).await.unwrap();
+}
+
+/// The content of an export, whatever the order of its rows.
+fn content(folder: &Path) -> BTreeMap<String, BTreeSet<Vec<u8>>> {
+    let lines = |path: &Path| {
+        let bytes = std::fs::read(path).unwrap();
+        bytes.split(|byte| *byte == b'\n').map(<[u8]>::to_vec).collect()
+    };
+    let names = |folder: &Path| -> Vec<_> {
+        std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect()
+    };
+    let files = names(folder).into_iter().chain(names(&folder.join("blobs")));
+    let files = files.filter(|path| path.is_file());
+    files.map(|path| (path.file_name().unwrap().to_str().unwrap().into(), lines(&path))).collect()
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_deployment_moves_to_postgresql_and_back() {
+    let Some(shared) = Deployment::shared().await else { return };
+    let (first, last) = (Deployment::embedded().await, Deployment::embedded().await);
+    let store = first.open().await;
+    fill(&store).await;
+    let folders = ["1", "2", "3"].map(|name| first.folder().join(name));
+    let moved = store.export(&folders[0]).await.unwrap();
+    assert_eq!((moved.rows, moved.blobs), (24, 2));
+    for (on, [from, to]) in [(&shared, [0, 1]), (&last, [1, 2])] {
+        let store = on.open().await;
+        assert_eq!(store.import(&folders[from]).await.unwrap(), moved);
+        assert_eq!(store.export(&folders[to]).await.unwrap(), moved);
+        assert_eq!(blob_count(&store).await, 2);
+        // The waiting job is taken up where it arrived.
+        assert!(store.claim(LEASE).await.unwrap().is_some());
+    }
+    assert_eq!(content(&folders[0]), content(&folders[1]));
+    assert_eq!(content(&folders[0]), content(&folders[2]));
+}
+
+async fn an_export_has_every_table(on: Deployment) {
+    let store = on.open().await;
+    let tables = match on.places.database {
+        DatabasePlace::Embedded => "SELECT name FROM sqlite_master WHERE type = 'table'",
+        DatabasePlace::Server { .. } => {
+            "SELECT tablename::text FROM pg_tables WHERE schemaname = 'public'"
+        }
+    };
+    let tables = on.texts(tables).await;
+    let folder = on.folder().join("export");
+    store.export(&folder).await.unwrap();
+    for table in tables {
+        let of_the_deployment =
+            ["blobs", "unfinished_blobs", "discarded_blobs", "_sqlx_migrations"];
+        let left_out = of_the_deployment.contains(&table.as_str()) || table.starts_with("sqlite_");
+        let exported = folder.join(format!("{table}.ndjson")).exists();
+        assert_eq!(exported, !left_out, "{table}");
+    }
+}
+
+async fn an_import_is_all_or_nothing(on: Deployment) {
+    let (source, folder) = (Deployment::embedded().await, on.folder().join("export"));
+    let exporting = source.open().await;
+    fill(&exporting).await;
+    exporting.export(&folder).await.unwrap();
+    let store = on.open().await;
+
+    // Nothing refers to a tag, so that only the manifest knows how many there were.
+    let tags = folder.join("job_tags.ndjson");
+    let whole = std::fs::read_to_string(&tags).unwrap();
+    let cut = whole.trim_end().rsplit_once('\n').unwrap().0;
+    std::fs::write(&tags, cut).unwrap();
+    let error = store.import(&folder).await.unwrap_err();
+    assert!(matches!(error, StoreError::Export(_)), "{error}");
+    assert!(store.cases("", None, 10).await.unwrap().is_empty());
+
+    std::fs::write(&tags, whole).unwrap();
+    store.import(&folder).await.unwrap();
+    let error = store.import(&folder).await.unwrap_err();
+    assert!(matches!(error, StoreError::NotEmpty { .. }), "{error}");
+}

@@ -1,0 +1,105 @@
+//! Clocks of hosts that jump. What counts is the clock of the database.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use serde_json::{Value, json};
+use tempfile::TempDir;
+
+use crate::deployments::Deployment;
+use crate::helpers::{SMALL, Server, ask, serve_shared, spec};
+use crate::invariants::{accepted, state, tagged};
+use crate::processes::{is_stopped, signal, slots_of, until};
+use crate::shared::say_skipped;
+use crate::worker::hosts::Worker;
+
+/// The clock of one process, by libfaketime. The clock that only ever goes on is left alone, as by a system whose time is set.
+struct Clock {
+    offset: PathBuf,
+}
+
+impl Clock {
+    fn of(command: &mut Command, library: &Path, offset: PathBuf) -> Clock {
+        let clock = Clock { offset };
+        clock.jump("+0");
+        command.env("LD_PRELOAD", library).env("FAKETIME_TIMESTAMP_FILE", &clock.offset);
+        command.env("FAKETIME_NO_CACHE", "1").env("FAKETIME_DONT_FAKE_MONOTONIC", "1");
+        clock
+    }
+
+    fn jump(&self, offset: &str) {
+        let written = self.offset.with_extension("new");
+        std::fs::write(&written, offset).unwrap();
+        std::fs::rename(written, &self.offset).unwrap();
+    }
+}
+
+/// `None`, and a word about it, where libfaketime is not installed.
+fn library() -> Option<PathBuf> {
+    let folders = std::fs::read_dir("/usr/lib").into_iter().flatten().flatten();
+    let mut places = folders.map(|folder| folder.path().join("faketime/libfaketimeMT.so.1"));
+    let found = places.find(|place| place.exists());
+    if found.is_none() {
+        say_skipped("there is no libfaketime here");
+        assert!(std::env::var_os("FACIES_REQUIRE_SERVERS").is_none(), "libfaketime is required");
+    }
+    found
+}
+
+/// The year that a server tells; it goes on telling the latest that it has seen.
+async fn year(server: &Server) -> u32 {
+    let answer = ask(server.get("/healthz")).await;
+    answer.header("date").split(' ').nth(3).unwrap().parse().unwrap()
+}
+
+fn ended_in_one_attempt(job: &Value) {
+    assert_eq!((&job["status"], &job["attempt"]), (&json!("successful"), &json!(1)), "{job}");
+    let times = ["created", "started", "finished"].map(|name| job[name].as_str().unwrap());
+    assert!(times.is_sorted(), "{times:?}");
+}
+
+#[tokio::test]
+async fn clocks_that_jump_cost_no_job_an_attempt() {
+    let Some(library) = library() else { return };
+    let Some(on) = Deployment::shared().await else { return };
+    // S3 refuses requests of other times.
+    let blobs = on.folder().join("blobs");
+    let mut command = serve_shared(&on);
+    command.args(["--workers", "0", "--blobs"]).arg(&blobs);
+    let of_api = Clock::of(&mut command, &library, on.folder().join("api"));
+    let api = Server::start_command(command, TempDir::new().unwrap());
+    let mut command = Worker::command(&on);
+    command.arg("--blobs").arg(&blobs);
+    let of_worker = Clock::of(&mut command, &library, on.folder().join("worker"));
+    command.env("FACIES_FAULT", "solve:begin:1:stop:tag=slow");
+    let (jumping, _) = Worker::start_command(command);
+
+    let case = api.case(&SMALL).await;
+    let id = accepted(&api, &tagged(&case, 1.0, "slow")).await;
+    let slot = until("the job is solved", async || {
+        slots_of(jumping.process()).into_iter().find(|slot| is_stopped(*slot))
+    })
+    .await;
+    // Another worker, whose clock is right, would take what it finds without a sign of life.
+    let mut command = Worker::command(&on);
+    command.arg("--blobs").arg(&blobs);
+    let _right = Worker::start_command(command);
+    let now = year(&api).await;
+    for (number, offset) in ["+3650d", "+0", "-1h"].into_iter().enumerate() {
+        of_worker.jump(offset);
+        of_api.jump(offset);
+        // Longer than a lease.
+        for _ in 0..6 {
+            let before = state(&api, &id).await["updated"].clone();
+            until("there is a sign of life", async || {
+                (state(&api, &id).await["updated"] != before).then_some(())
+            })
+            .await;
+        }
+        let other = accepted(&api, &spec(&case, 2.0 + number as f64)).await;
+        ended_in_one_attempt(&api.ended(&other).await);
+        assert!(offset != "+3650d" || year(&api).await > now, "the clock of the API has jumped");
+    }
+    signal(slot, "CONT");
+    ended_in_one_attempt(&api.ended(&id).await);
+}
