@@ -10,7 +10,7 @@ mod measure;
 use measure::yardstick::{PlainBlocks, triad_gb_per_s};
 use measure::{on_threads, process, seconds, shell};
 use mechanics::boundary::NodeClass;
-use mechanics::model::fem::assembly::{Numbering, partly_held};
+use mechanics::model::dofs::{Numbering, partly_held};
 use mechanics::model::fem::displacement::Problem;
 use mechanics::model::problem::Observer;
 use mechanics::prediction::{ElementChoice, Scene, Settings};

@@ -1,6 +1,7 @@
 //! Eight-node hexahedron: N_i = (1 + a_i x)(1 + b_i y)(1 + c_i z) / 8 on [-1, 1]^3.
 
-use super::{GAUSS, MAX_NODES, ReferenceCell, ReferencePoint, Vector};
+use super::reference_cell::{GAUSS, Vector};
+use super::{MAX_NODES, ReferenceCell, ReferencePoint};
 
 const CORNERS: [[f64; 3]; 8] = [
     [-1.0, -1.0, -1.0],

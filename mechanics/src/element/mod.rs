@@ -4,40 +4,13 @@
 //! Every rule integrates the stiffness of an undistorted cell exactly.
 
 mod hexahedron8;
+mod reference_cell;
 pub mod tetrahedron10;
 mod tetrahedron4;
 mod wedge6;
-
 use std::sync::LazyLock;
 
-use nalgebra::{Matrix3, Vector3};
-
-type Vector = Vector3<f64>;
-
-/// The most nodes a cell has.
-pub const MAX_NODES: usize = 8;
-
-/// Shape functions of one cell shape at the points of its quadrature rule and at its centre.
-pub struct ReferenceCell {
-    pub node_count: usize,
-    pub points: Vec<ReferencePoint>,
-    pub centre: ReferencePoint,
-}
-
-/// Values and reference gradients of all shape functions at one point; unused entries are zero.
-#[derive(Clone, Debug)]
-pub struct ReferencePoint {
-    pub weight: f64,
-    pub values: [f64; MAX_NODES],
-    pub gradients: [Vector; MAX_NODES],
-}
-
-/// Gradients with respect to position, in 1/mm, and the volume in mm³ that the point stands for.
-#[derive(Clone, Debug)]
-pub struct PhysicalPoint {
-    pub gradients: [Vector; MAX_NODES],
-    pub volume: f64,
-}
+pub use reference_cell::{MAX_NODES, PhysicalPoint, ReferenceCell, ReferencePoint};
 
 /// The four-node tetrahedron with one point.
 pub fn tetrahedron4() -> &'static ReferenceCell {
@@ -56,28 +29,6 @@ pub fn wedge6() -> &'static ReferenceCell {
     static CELL: LazyLock<ReferenceCell> = LazyLock::new(wedge6::reference_cell);
     &CELL
 }
-
-impl ReferencePoint {
-    /// The point in a cell with these corners; `None` where the cell is inverted or flat there.
-    pub fn at(&self, corners: &[Vector]) -> Option<PhysicalPoint> {
-        let jacobian = corners
-            .iter()
-            .zip(&self.gradients)
-            .fold(Matrix3::zeros(), |sum: Matrix3<f64>, (corner, gradient)| {
-                sum + corner * gradient.transpose()
-            });
-        let determinant = jacobian.determinant();
-        if determinant.is_nan() || determinant <= 0.0 {
-            return None;
-        }
-        let inverse_transpose = jacobian.try_inverse()?.transpose();
-        let gradients = self.gradients.map(|gradient| inverse_transpose * gradient);
-        Some(PhysicalPoint { gradients, volume: self.weight * determinant })
-    }
-}
-
-/// The Gauss points of two-point quadrature on [-1, 1] lie at plus and minus this.
-const GAUSS: f64 = 0.577_350_269_189_625_8;
 
 #[cfg(test)]
 mod tests {

@@ -5,7 +5,7 @@
 //! linear gradients that the stiffness is made of (Zienkiewicz, Taylor, The Finite Element Method,
 //! 5th ed., vol. 1, table 9.2).
 
-use super::Vector;
+use super::reference_cell::Vector;
 
 /// The corners of each edge.
 pub const EDGES: [[usize; 2]; 6] = [[0, 1], [1, 2], [2, 0], [0, 3], [1, 3], [2, 3]];

@@ -1,6 +1,7 @@
 //! Four-node tetrahedron: N = (1 - x - y - z, x, y, z) on the unit tetrahedron.
 
-use super::{MAX_NODES, ReferenceCell, ReferencePoint, Vector};
+use super::reference_cell::Vector;
+use super::{MAX_NODES, ReferenceCell, ReferencePoint};
 
 pub(super) fn reference_cell() -> ReferenceCell {
     let mut values = [0.0; MAX_NODES];

@@ -1,6 +1,7 @@
 //! Six-node wedge: linear on the unit triangle times linear on [-1, 1].
 
-use super::{GAUSS, MAX_NODES, ReferenceCell, ReferencePoint, Vector};
+use super::reference_cell::{GAUSS, Vector};
+use super::{MAX_NODES, ReferenceCell, ReferencePoint};
 
 pub(super) fn reference_cell() -> ReferenceCell {
     let (near, far) = (1.0 / 6.0, 2.0 / 3.0);

@@ -9,6 +9,7 @@ mod arrays;
 pub mod csv;
 mod cursor;
 pub mod error;
+mod file;
 pub mod glb;
 mod gmsh;
 pub mod limits;
@@ -22,83 +23,14 @@ mod sniff;
 pub mod stl;
 mod surface_cleaning;
 pub mod vtk;
-
 pub use error::{FormatError, Member, Place};
+pub use file::{Mesh, MeshFormat, ReadMesh};
 pub use limits::ReadLimits;
 pub use output::{ArrayValues, NamedValues, SurfaceOutput, VolumeOutput, WriteError};
 
-use crate::image::ImageVolume;
-use crate::mesh::{Frame, TriangleSurface, VolumeMesh, Warning};
-
-/// A format that is read.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum MeshFormat {
-    Vtu,
-    Vtp,
-    VtkLegacy,
-    Gmsh,
-    Stl,
-    Ply,
-    Obj,
-    Nrrd,
-}
-
-impl MeshFormat {
-    /// The format by its content; names and extensions of files are never asked.
-    pub fn sniff(bytes: &[u8]) -> Option<MeshFormat> {
-        sniff::sniff(without_byte_order_mark(bytes))
-    }
-
-    /// The name used in documents and errors.
-    pub fn name(self) -> &'static str {
-        match self {
-            MeshFormat::Vtu => "VTU",
-            MeshFormat::Vtp => "VTP",
-            MeshFormat::VtkLegacy => "VTK legacy",
-            MeshFormat::Gmsh => "Gmsh",
-            MeshFormat::Stl => "STL",
-            MeshFormat::Ply => "PLY",
-            MeshFormat::Obj => "OBJ",
-            MeshFormat::Nrrd => "NRRD",
-        }
-    }
-
-    /// The media type of a file of this format.
-    pub fn media_type(self) -> &'static str {
-        match self {
-            MeshFormat::Vtu | MeshFormat::Vtp => "application/vnd.vtk.xml",
-            MeshFormat::VtkLegacy => "application/vnd.vtk",
-            MeshFormat::Gmsh => "application/x-gmsh",
-            MeshFormat::Stl => "model/stl",
-            MeshFormat::Ply => "application/vnd.ply",
-            MeshFormat::Obj => "model/obj",
-            MeshFormat::Nrrd => "application/x-nrrd",
-        }
-    }
-}
-
-/// A mesh of either kind in the unit of its file, or an image in mm.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Mesh {
-    Volume(VolumeMesh),
-    Surface(TriangleSurface),
-    Image(ImageVolume),
-}
-
-/// A mesh or an image, and what its file said beside it.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ReadMesh {
-    pub format: MeshFormat,
-    pub mesh: Mesh,
-    /// The frame of a `SPACE=` mark, or of the `space` of an image.
-    pub frame: Option<Frame>,
-    pub ignored_arrays: Vec<String>,
-    pub warnings: Vec<Warning>,
-}
-
 /// Reads a mesh or an image of any known format.
 pub fn read(bytes: &[u8], limits: &ReadLimits) -> Result<ReadMesh, FormatError> {
-    let bytes = without_byte_order_mark(bytes);
+    let bytes = sniff::without_byte_order_mark(bytes);
     if bytes.iter().all(u8::is_ascii_whitespace) {
         return Err(FormatError::Empty { detail: "the file holds nothing".into() });
     }
@@ -115,8 +47,4 @@ pub fn read(bytes: &[u8], limits: &ReadLimits) -> Result<ReadMesh, FormatError> 
         MeshFormat::Nrrd => return nrrd::read(bytes, limits),
     }?;
     parsed.into_mesh(format, limits)
-}
-
-fn without_byte_order_mark(bytes: &[u8]) -> &[u8] {
-    bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)
 }

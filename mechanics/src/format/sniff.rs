@@ -1,7 +1,7 @@
 //! Which format the bytes are, by what stands in them.
 
-use super::MeshFormat;
 use super::cursor::find;
+use super::file::MeshFormat;
 
 /// Files that are often sent by mistake, by their first bytes.
 const FOREIGN: [(&[u8], &str); 12] = [
@@ -25,6 +25,13 @@ const OBJ_WORDS: [&[u8]; 13] =
 
 const STL_HEADER_BYTES: usize = 84;
 const STL_TRIANGLE_BYTES: u64 = 50;
+
+impl MeshFormat {
+    /// The format by its content; names and extensions of files are never asked.
+    pub fn sniff(bytes: &[u8]) -> Option<MeshFormat> {
+        sniff(without_byte_order_mark(bytes))
+    }
+}
 
 pub(super) fn sniff(bytes: &[u8]) -> Option<MeshFormat> {
     let text = bytes.trim_ascii_start();
@@ -145,4 +152,8 @@ fn starts_like_obj(text: &[u8]) -> bool {
         let words = OBJ_WORDS.iter();
         words.copied().any(|word| starts_with_word(line, word))
     })
+}
+
+pub(super) fn without_byte_order_mark(bytes: &[u8]) -> &[u8] {
+    bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)
 }

@@ -10,7 +10,7 @@
 //! (METHODS rows 37, 38).
 
 use super::elastic_tensor::{AlongFibre, ElasticTensor, FibreModuli};
-use super::in_range;
+use super::error::in_range;
 use nalgebra::Vector3;
 
 /// A sheet of skin: what it is made of, and how thick it is.

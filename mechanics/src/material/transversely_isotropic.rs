@@ -14,7 +14,8 @@
 //! are not E_f and E_t, and from E_f/E_t = (1 - nu) / (2 nu^2) on its energy has no lowest value.
 
 use super::elastic_tensor::{AlongFibre, ElasticTensor, FibreModuli};
-use super::{LinearElastic, MaterialError, in_range};
+use super::error::{MaterialError, in_range};
+use super::isotropic::Isotropic;
 use nalgebra::Vector3;
 
 /// How moduli along and across the fibre become a stiffness.
@@ -49,7 +50,7 @@ pub struct TransverselyIsotropic {
 
 impl TransverselyIsotropic {
     /// Fibres in a tissue with these constants across them.
-    pub fn new(across: &LinearElastic, fibre: &Fibre) -> Result<Self, MaterialError> {
+    pub fn new(across: &Isotropic, fibre: &Fibre) -> Result<Self, MaterialError> {
         let is_modulus = |modulus| in_range(modulus, 1e9);
         if !is_modulus(fibre.young_modulus) {
             return Err(MaterialError::FibreModulus(fibre.young_modulus));
@@ -62,13 +63,13 @@ impl TransverselyIsotropic {
             FibreLaw::Paper002 if fibre.shear_modulus.is_some() => {
                 return Err(MaterialError::ShearOfPaper002);
             }
-            FibreLaw::Paper002 => paper_002(across, fibre)?,
+            FibreLaw::Paper002 => paper_002(across, fibre),
         };
         let smallest = stiffness.along(&Vector3::x()).smallest_eigenvalue();
         if smallest.is_nan() || smallest <= 0.0 {
-            let nu = across.poisson_ratio();
+            let nu = across.poisson_ratio;
             return Err(MaterialError::NotPositiveDefinite {
-                ratio: fibre.young_modulus / across.young_modulus(),
+                ratio: fibre.young_modulus / across.young_modulus,
                 poisson_ratio: nu,
                 eigenvalue: smallest,
                 limit: limit(nu),
@@ -94,12 +95,9 @@ fn limit(nu: f64) -> f64 {
     (1.0 - nu) / (2.0 * nu * nu)
 }
 
-fn engineering(
-    across: &LinearElastic,
-    fibre: &Fibre,
-) -> Result<TransverselyIsotropic, MaterialError> {
+fn engineering(across: &Isotropic, fibre: &Fibre) -> Result<TransverselyIsotropic, MaterialError> {
     let (along, across_modulus, nu) =
-        (fibre.young_modulus, across.young_modulus(), across.poisson_ratio());
+        (fibre.young_modulus, across.young_modulus, across.poisson_ratio);
     if along <= across_modulus * (1.0 - nu) / 2.0 {
         return Err(MaterialError::FibreTooSoft {
             along,
@@ -120,19 +118,16 @@ fn engineering(
     })
 }
 
-fn paper_002(
-    across: &LinearElastic,
-    fibre: &Fibre,
-) -> Result<TransverselyIsotropic, MaterialError> {
-    let along = LinearElastic::new(fibre.young_modulus, across.poisson_ratio(), 0.0)?;
+fn paper_002(across: &Isotropic, fibre: &Fibre) -> TransverselyIsotropic {
+    let along = Isotropic { young_modulus: fibre.young_modulus, ..*across };
     let delta_lambda = along.lambda() - across.lambda();
     let delta_mu = along.shear_modulus() - across.shear_modulus();
     let beta = -(delta_lambda + 2.0 * delta_mu);
     let moduli = FibreModuli { delta_lambda, delta_mu, beta };
-    Ok(TransverselyIsotropic {
+    TransverselyIsotropic {
         young_modulus: fibre.young_modulus,
         lambda: across.lambda(),
         mu: across.shear_modulus(),
         moduli,
-    })
+    }
 }

@@ -10,6 +10,9 @@
 //! IEEE Transactions on Visualization and Computer Graphics 11 (2005), section 3. It holds for closed
 //! surfaces without self-intersection; beside an open border the sign is that of the extended border.
 
+pub use super::surface_topology::Feature;
+use super::surface_topology::SurfaceTopology;
+use super::{TriangleSurface, Vector};
 use parry3d_f64::{
     bounding_volume::Aabb,
     math::Vector as ParryVector,
@@ -17,9 +20,6 @@ use parry3d_f64::{
     query::{PointQuery, PointQueryWithLocation},
     shape::{Triangle, TrianglePointLocation},
 };
-
-use super::surface_topology::SurfaceTopology;
-use super::{TriangleSurface, Vector};
 
 /// Beyond this the square of a distance is no longer a number.
 const LARGEST_COORDINATE: f64 = 1e100;
@@ -36,14 +36,6 @@ pub enum SearchError {
     NotFinite { point: usize },
     #[error("triangle {triangle} names point {point} of {points}")]
     PointOutOfRange { triangle: usize, point: u32, points: usize },
-}
-
-/// Where on its triangle a closest point lies, by local numbers; edge i joins corners i and i + 1.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Feature {
-    Face,
-    Edge(usize),
-    Vertex(usize),
 }
 
 /// The point of a surface that is nearest to a given one.

@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use super::VolumeMesh;
+use super::volume::BoundaryFace;
 
 /// A face of a cell under the sorted nodes that it shares with its neighbour; a triangle's fourth node
 /// is `u32::MAX`.
@@ -77,6 +78,21 @@ impl Faces {
                 part_of_root[root]
             })
             .collect()
+    }
+}
+
+impl VolumeMesh {
+    /// The faces that belong to one cell only, in the order of cells and of the faces of each.
+    pub fn boundary_faces(&self) -> Vec<BoundaryFace> {
+        self.boundary_of(&Faces::new(self))
+    }
+
+    /// The same from faces that are known already.
+    pub fn boundary_of(&self, faces: &Faces) -> Vec<BoundaryFace> {
+        let alone = faces.shared().filter(|same| same.len() == 1);
+        let mut alone: Vec<(u32, u8)> = alone.map(|same| (same[0].cell, same[0].local)).collect();
+        alone.par_sort_unstable();
+        alone.into_iter().map(|(cell, local)| self.face(cell, local)).collect()
     }
 }
 

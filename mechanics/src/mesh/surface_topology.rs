@@ -2,10 +2,8 @@
 //!
 //! Points at exactly the same place count as one, so that a triangle soup (STL) has neighbours too.
 
-use std::collections::HashMap;
-
-use super::closest_point::Feature;
 use super::{TriangleSurface, Vector};
+use std::collections::HashMap;
 
 /// Normals of faces, edges and vertices, and which edges and vertices lie on an open border.
 pub(super) struct SurfaceTopology {
@@ -139,4 +137,12 @@ fn number_edges(vertices_of: &[[u32; 3]]) -> (Vec<[u32; 3]>, Vec<[u32; 2]>, Vec<
         }));
     }
     (edges_of, ends, uses)
+}
+
+/// Where on its triangle a closest point lies, by local numbers; edge i joins corners i and i + 1.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Feature {
+    Face,
+    Edge(usize),
+    Vertex(usize),
 }

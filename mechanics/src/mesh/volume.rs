@@ -2,9 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use rayon::prelude::*;
 
-use super::connectivity::Faces;
 use super::{TriangleSurface, Vector};
 
 /// The shape of a first-order cell. Local node order is that of VTK for tetrahedra and hexahedra;
@@ -180,20 +178,7 @@ impl VolumeMesh {
             .map(Vec::as_slice)
     }
 
-    /// The faces that belong to one cell only, in the order of cells and of the faces of each.
-    pub fn boundary_faces(&self) -> Vec<BoundaryFace> {
-        self.boundary_of(&Faces::new(self))
-    }
-
-    /// The same from faces that are known already.
-    pub fn boundary_of(&self, faces: &Faces) -> Vec<BoundaryFace> {
-        let alone = faces.shared().filter(|same| same.len() == 1);
-        let mut alone: Vec<(u32, u8)> = alone.map(|same| (same[0].cell, same[0].local)).collect();
-        alone.par_sort_unstable();
-        alone.into_iter().map(|(cell, local)| self.face(cell, local)).collect()
-    }
-
-    fn face(&self, cell: u32, local: u8) -> BoundaryFace {
+    pub(super) fn face(&self, cell: u32, local: u8) -> BoundaryFace {
         let cell_nodes = self.cells.nodes(cell as usize);
         let face = self.cells.shape(cell as usize).faces()[local as usize];
         let mut nodes = [u32::MAX; 4];

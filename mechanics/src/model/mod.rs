@@ -1,6 +1,6 @@
 //! Ways of modelling: conditions, materials and mesh in, nodal displacement out.
 
-mod dofs;
+pub mod dofs;
 pub mod fem;
 pub mod mass_spring;
 pub mod problem;

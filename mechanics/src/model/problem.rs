@@ -1,7 +1,6 @@
 //! What every way of modelling takes and gives: load cases in, equilibria out, and the words of the solver.
 
 use crate::mesh::{Vector, Warning};
-use crate::model::fem::assembly::InvertedCell;
 use crate::solver::{Solution, SolverError};
 
 /// What the solution tells and asks while it runs.
@@ -77,4 +76,11 @@ pub enum ModelError {
     StepAboveLimit { step_s: f64, limit_s: f64 },
     #[error("no face of the tissue lies on bone: a warp has nothing to follow")]
     NoBone,
+}
+
+/// A cell whose Jacobian is not positive at a quadrature point.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("cell {cell} is inverted or flat")]
+pub struct InvertedCell {
+    pub cell: usize,
 }

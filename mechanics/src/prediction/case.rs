@@ -1,9 +1,7 @@
 //! What goes into a prediction, as stated by a client: unchecked names, checked values.
 
-use std::collections::BTreeMap;
-
-use super::hounsfield::Hounsfield;
 use crate::boundary::NodeSelection;
+use crate::image::ImageVolume;
 use crate::material::{LinearElastic, PlaneStress};
 use crate::mesh::{Frame, TriangleSurface, Vector, VolumeMesh};
 use crate::model::fem::mass_tensor::MassTensorSettings;
@@ -11,6 +9,7 @@ use crate::model::mass_spring::MassSpringSettings;
 use crate::model::spline::VolumeSpline;
 use crate::model::thickness_warp::ThicknessWarp;
 use crate::plan::PlannedSegment;
+use std::collections::BTreeMap;
 
 /// A patient's scene. All lengths in mm, all coordinates in `frame`.
 #[derive(Clone, Debug, Default)]
@@ -213,4 +212,35 @@ impl Default for Settings {
             membrane: None,
         }
     }
+}
+
+/// An image and what its values mean.
+#[derive(Clone, Debug)]
+pub struct Hounsfield {
+    /// In mm, in the frame of the case.
+    pub image: std::sync::Arc<ImageVolume>,
+    /// Points in each cell.
+    pub samples: usize,
+    /// Their windows do not overlap.
+    pub tissues: Vec<TissueWindow>,
+    pub mixing: Mixing,
+}
+
+/// A tissue and its values, `from_hu` <= value < `to_hu`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TissueWindow {
+    pub name: String,
+    pub from_hu: f64,
+    pub to_hu: f64,
+    pub material: LinearElastic,
+}
+
+/// What becomes of a cell with several tissues in it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Mixing {
+    /// It is the tissue of its mean value.
+    #[default]
+    Mean,
+    /// It is a mixture of its tissues.
+    Fraction,
 }

@@ -13,8 +13,8 @@ use crate::material::LinearElastic;
 use crate::mesh::connectivity::Faces;
 use crate::mesh::volume::BoundaryFace;
 use crate::mesh::{CellShape, Vector, Warning};
+use crate::model::fem::edge_nodes::EdgeNodes;
 use crate::model::fem::loads::{FaceLoad, add_face_load, add_gravity};
-use crate::model::fem::quadratic::EdgeNodes;
 
 /// The state of one check: what is asked, and what was found wrong so far.
 pub(super) struct Check<'a> {

@@ -6,75 +6,21 @@
 //! A cell of which a sample point lies outside the image, or that is in no window, keeps the material of its
 //! region. Shares are rounded to steps that leave no more mixtures than numbers for them.
 
-use std::collections::BTreeMap;
-use std::sync::Arc;
-
+use super::case::{Hounsfield, Mixing};
 use super::check::Check;
-use crate::image::{ImageVolume, SampledCells, SamplingRule, Windows, sample_cells};
+use super::imaged_tissue::{ImagedTissue, TissueShare};
+use crate::image::{SampledCells, SamplingRule, Windows, sample_cells};
 use crate::material::LinearElastic;
 use crate::material::mixture::mixture;
 use crate::mesh::jacobian::signed_volume;
 use crate::mesh::{Vector, VolumeMesh, Warning};
+use std::collections::BTreeMap;
 
 /// Cells name their material in 16 bits.
 const MOST_MATERIALS: usize = u16::MAX as usize;
+
 /// Where windows and images are told to be wrong.
 const PLACE: &str = "/case/hounsfield";
-
-/// An image and what its values mean.
-#[derive(Clone, Debug)]
-pub struct Hounsfield {
-    /// In mm, in the frame of the case.
-    pub image: Arc<ImageVolume>,
-    /// Points in each cell.
-    pub samples: usize,
-    /// Their windows do not overlap.
-    pub tissues: Vec<TissueWindow>,
-    pub mixing: Mixing,
-}
-
-/// A tissue and its values, `from_hu` <= value < `to_hu`.
-#[derive(Clone, Debug, PartialEq)]
-pub struct TissueWindow {
-    pub name: String,
-    pub from_hu: f64,
-    pub to_hu: f64,
-    pub material: LinearElastic,
-}
-
-/// What becomes of a cell with several tissues in it.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Mixing {
-    /// It is the tissue of its mean value.
-    #[default]
-    Mean,
-    /// It is a mixture of its tissues.
-    Fraction,
-}
-
-/// What an image shows of a mesh.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ImagedTissue {
-    /// For each cell the mean of its sample points; `None` where one of them lies outside.
-    pub mean: Vec<Option<f64>>,
-    /// For each cell the tissue with the largest part in it, by its number; `None` where it is that of its region.
-    pub tissue_of_cell: Vec<Option<u16>>,
-    /// By name, in the order of the case.
-    pub tissues: Vec<(String, TissueShare)>,
-    /// What keeps the material of its region.
-    pub region: TissueShare,
-    /// Cells that reach beyond the image.
-    pub outside: usize,
-}
-
-/// How much of a mesh a tissue is.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct TissueShare {
-    /// Cells that are of it, be it in part.
-    pub cells: usize,
-    /// Of the volume of the mesh.
-    pub volume_share: f64,
-}
 
 /// The materials of a scene.
 pub(super) struct TissueOfCells {

@@ -1,11 +1,13 @@
 //! The path of one prediction: scene in, nodal displacement and its measures out.
 
+mod build;
 pub mod case;
 mod check;
 mod cut;
 mod fibres;
 mod held;
-pub mod hounsfield;
+mod hounsfield;
+mod imaged_tissue;
 mod off_wall;
 mod problem;
 pub mod progress;
@@ -17,10 +19,10 @@ mod stiff_layer;
 use std::collections::BTreeMap;
 
 pub use case::{
-    Bone, Case, CaseSegment, ElementChoice, FibreDirection, Load, Method, Plan, Prescribed,
-    RegionNames, Settings, SkinMembrane, Sliding, SlidingNormal,
+    Bone, Case, CaseSegment, ElementChoice, FibreDirection, Hounsfield, Load, Method, Mixing, Plan,
+    Prescribed, RegionNames, Settings, SkinMembrane, Sliding, SlidingNormal, TissueWindow,
 };
-pub use hounsfield::{Hounsfield, ImagedTissue, Mixing, TissueShare, TissueWindow};
+pub use imaged_tissue::{ImagedTissue, TissueShare};
 pub use problem::{SceneError, SceneErrors};
 pub use progress::{Phase, Progress, Unobserved};
 pub use scene::Scene;

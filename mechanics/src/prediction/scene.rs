@@ -3,23 +3,17 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use super::case::{Case, ElementChoice, Method, Plan, Settings};
-use super::check::Check;
-use super::cut;
-use super::fibres::Tissues;
-use super::hounsfield::ImagedTissue;
-use super::problem::SceneErrors;
+use super::case::{ElementChoice, Method, Settings};
+use super::imaged_tissue::ImagedTissue;
 use super::skin::Skin;
-use super::stiff_layer;
-use crate::boundary::{Conditions, NodeClass, tearing};
+use crate::boundary::{Conditions, NodeClass};
 use crate::material::LinearElastic;
-use crate::mesh::connectivity::Faces;
 use crate::mesh::{CellShape, Vector, VolumeMesh, Warning};
 use crate::model::fem::assembly::Tissue;
 use crate::model::fem::cell_stiffness::Dilatation;
 use crate::model::fem::displacement::Problem;
+use crate::model::fem::edge_nodes::EdgeNodes;
 use crate::model::fem::membrane::Membrane;
-use crate::model::fem::quadratic::EdgeNodes;
 use crate::model::fem::{displacement_pressure, mass_tensor, quadratic};
 use crate::model::mass_spring::POISSON_RATIO;
 use crate::model::problem::{Equilibrium, LoadCase, ModelError, Observer};
@@ -71,64 +65,6 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// Checks a case and a plan together; says everything that is wrong, not the first thing only.
-    pub fn new(case: &Case, plan: &Plan, settings: &Settings) -> Result<Scene, SceneErrors> {
-        let faces = Faces::new(&case.volume);
-        let boundary = case.volume.boundary_of(&faces);
-        let mut check = Check::new(case, &boundary);
-
-        // 1. Tissue.
-        let (regions, region_of_cell) = check.regions();
-        let mut materials = check.materials(&regions);
-        let (of_cell, of_region) = (&region_of_cell, &mut materials);
-        let tissues = Tissues { regions: &regions, region_of_cell: of_cell, materials: of_region };
-        let fibres = check.fibres(tissues, &settings.method);
-        let element = check.element(settings);
-        let tissue = check.tissue_of_cells(&region_of_cell, materials);
-
-        // 2. What every node is held to.
-        let (segments, held) = check.held_nodes(plan, settings.sliding);
-        let conditions = check.conditions(&held);
-
-        // 3. The skin and what acts on the tissue.
-        let skin = check.skin(&conditions);
-        let membrane = check.membrane(&skin, settings);
-        let mut scene = Scene {
-            mesh: case.volume.clone(),
-            skin,
-            regions,
-            region_of_cell,
-            materials: tissue.materials,
-            material_of_cell: tissue.material_of_cell,
-            pressure_of_cell: tissue.pressure_of_cell,
-            imaged: tissue.imaged,
-            fibres,
-            membrane,
-            element,
-            conditions,
-            segments,
-            forces: vec![Vector::zeros(); case.volume.nodes.len()],
-            landmarks: case.landmarks.clone(),
-            settings: settings.clone(),
-            warnings: Vec::new(),
-        };
-        check.method(&settings.method, plan);
-        check.problems.give_up_if_any()?;
-        check.add_loads(plan, &mut scene);
-
-        // 4. What cannot be solved, and what a reader must know.
-        check.support(&scene, &faces);
-        check.problems.give_up_if_any()?;
-        scene.warnings = scene.conditions.warnings.clone();
-        scene.warnings.extend(check.warnings);
-        scene.warnings.extend(cut::duplicate_nodes(&scene.mesh, &check.boundary_nodes));
-        scene.warnings.extend(tearing::tearing(&scene.mesh, &scene.conditions.holds));
-        scene.warnings.extend(scene.locking());
-        scene.warnings.extend(stiff_layer::thin_stiff_layers(&scene));
-        scene.warnings.extend(scene.built_in_poisson_ratio());
-        Ok(scene)
-    }
-
     /// The tissue as the finite elements see it.
     pub fn tissue(&self) -> Tissue<'_> {
         Tissue {
@@ -281,7 +217,7 @@ impl Scene {
     }
 
     /// Springs have the Poisson ratio that they have.
-    fn built_in_poisson_ratio(&self) -> Option<Warning> {
+    pub(super) fn built_in_poisson_ratio(&self) -> Option<Warning> {
         let Method::MassSpring(_) = self.settings.method else { return None };
         let stated = self.regions.iter().zip(&self.materials);
         let others: Vec<String> = stated
@@ -297,7 +233,7 @@ impl Scene {
         Some(warning.with("poisson_ratio", POISSON_RATIO))
     }
 
-    fn locking(&self) -> Option<Warning> {
+    pub(super) fn locking(&self) -> Option<Warning> {
         let dilatation = self.tissue().dilatation;
         let cells = self.mesh.cells.iter().zip(&self.material_of_cell);
         let locks = |shape: CellShape, material: u16| {

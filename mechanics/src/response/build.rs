@@ -4,7 +4,7 @@
 //! or u = e_i, j = 3, and zero wherever else a node is held. Sliding nodes stay held across and free
 //! along, which is linear.
 
-use super::linearity::{self, Linearity};
+use super::linearity::{self, Linearity, joined_nodes};
 use super::{COLUMNS_PER_SEGMENT, Response, ResponseSegment, superposition};
 use crate::boundary::NodeClass;
 use crate::mesh::Vector;
@@ -137,13 +137,6 @@ impl Columns {
             columns: self.values.iter().map(|&value| value as f32).collect(),
         }
     }
-}
-
-/// The places of the nodes that a segment holds.
-pub(super) fn joined_nodes(scene: &Scene, segment: usize) -> impl Iterator<Item = &Vector> {
-    let classes = scene.conditions.classes.iter();
-    let is_joined = move |class: &NodeClass| *class == NodeClass::Joined(segment as u32);
-    classes.zip(&scene.mesh.nodes).filter(move |(class, _)| is_joined(class)).map(|(_, x)| x)
 }
 
 /// A segment with the mean of its nodes as centre.

@@ -14,7 +14,6 @@
 //! cos theta - 1 in each direction across the axis, and its free side by nu / (1 - nu) times that along
 //! the thickness; 2.7 = 1 + 2 nu / (1 - nu) at nu 0.46. An order of magnitude, not a bound.
 
-use super::build::joined_nodes;
 use crate::boundary::NodeClass;
 use crate::mesh::Vector;
 use crate::plan::RigidMovement;
@@ -25,6 +24,7 @@ use crate::prediction::Scene;
 pub const LINEAR_RANGE_MM: f64 = 0.5;
 
 const STRETCHED: f64 = 0.15;
+
 const TURNED: f64 = 2.7;
 
 /// Skin nodes whose distance to what is held is measured: enough for a median.
@@ -138,4 +138,11 @@ fn diagonal(places: &[Vector]) -> f64 {
     let first = places.first().copied().unwrap_or_else(Vector::zeros);
     let (low, high) = places.iter().fold((first, first), |(l, h), x| (l.inf(x), h.sup(x)));
     (high - low).norm()
+}
+
+/// The places of the nodes that a segment holds.
+pub(super) fn joined_nodes(scene: &Scene, segment: usize) -> impl Iterator<Item = &Vector> {
+    let classes = scene.conditions.classes.iter();
+    let is_joined = move |class: &NodeClass| *class == NodeClass::Joined(segment as u32);
+    classes.zip(&scene.mesh.nodes).filter(move |(class, _)| is_joined(class)).map(|(_, x)| x)
 }

@@ -4,6 +4,7 @@ mod answer;
 pub mod convergence;
 mod deadline;
 mod error;
+mod failure;
 mod levels;
 pub mod methods;
 pub mod paired;
@@ -18,8 +19,9 @@ mod truth;
 pub mod variant;
 
 pub use answer::LONG_S;
+pub use failure::StudyError;
 pub use report::{Errors, Outcome, Report, Row, SceneReport, Solved};
-pub use run::{NOT_RUN, StudyError, run};
+pub use run::{NOT_RUN, run};
 pub use variant::{ClosedForm, Materials, Study, StudyScene, Truth, Variant};
 
 /// What the caller measures while the study computes: numerics know neither clock nor memory.

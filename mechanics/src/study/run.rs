@@ -1,31 +1,18 @@
 //! The study itself: rows first, each alone in memory, then the truth they are held against.
 
-use std::collections::{BTreeMap, BTreeSet};
-
 use super::Stopwatch;
 use super::answer::{Answer, Bench, NoAnswer, Refusal};
 use super::error::TrueSkin;
+use super::failure::StudyError;
 use super::levels::Levels;
 use super::report::{Outcome, Report, Row, SceneReport, Solved};
 use super::truth::{Asked, is_the_truth};
 use super::variant::{Materials, Study, StudyScene, Variant};
 use crate::prediction::{Plan, Progress, Scene, Settings, Skin};
+use std::collections::{BTreeMap, BTreeSet};
 
 /// The code of rows that were not begun, because the time of the study was used up.
 pub const NOT_RUN: &str = "not-run";
-
-/// Why there is no report at all; whatever goes wrong in a row is told there.
-#[derive(Debug, thiserror::Error)]
-pub enum StudyError {
-    #[error("stopped on request")]
-    Cancelled,
-    #[error("the study has no {what}")]
-    Empty { what: &'static str },
-    #[error("two {what}s are called {name:?}")]
-    Repeated { what: &'static str, name: String },
-    #[error("no thread to compute on: {0}")]
-    Threads(#[from] rayon::ThreadPoolBuildError),
-}
 
 /// Runs every scene with every plan, material, level and variant. The same study gives the same report but for times
 /// and memory. Combinations that are the truth themselves have no row.

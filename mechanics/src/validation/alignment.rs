@@ -1,6 +1,6 @@
 //! The actual surface onto the prediction: not at all, by landmarks, or by iterative closest point.
 
-use super::comparison::ComparisonError;
+use super::error::ComparisonError;
 use crate::mesh::{TriangleSurface, Vector, Warning};
 use crate::registration::mirror::{MirrorCheck, check_mirror};
 use crate::registration::{IterativeClosestPoint, Place, RigidTransform, align_points};

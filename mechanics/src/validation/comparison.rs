@@ -3,16 +3,16 @@
 //! The prediction stays where it is, in the frame of the case, and so do regions and masks; the actual
 //! surface is what an alignment moves.
 
-use std::collections::BTreeMap;
-
 use super::alignment::{Alignment, AlignmentReport, align, mirror_warning};
 use super::correspondence::corresponding_points;
 use super::distance::{
     Direction, DistanceError, DistanceStatistics, Distances, Measured, signed_distances,
 };
+use super::error::ComparisonError;
 use super::statistics::{Statistics, StatisticsError};
-use crate::mesh::{SearchError, SurfaceSearch, TriangleSurface, Warning};
-use crate::registration::{AlignmentError, Place};
+use crate::mesh::{SurfaceSearch, TriangleSurface, Warning};
+use crate::registration::Place;
+use std::collections::BTreeMap;
 
 /// Below this share a scan covers only a part of the prediction, and the reader is told.
 const WHOLE: f64 = 0.95;
@@ -96,74 +96,6 @@ pub struct Comparison {
     /// The actual surface where the alignment put it.
     pub aligned_actual: TriangleSurface,
     pub warnings: Vec<Warning>,
-}
-
-/// Why two surfaces cannot be compared.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum ComparisonError {
-    #[error("the {which} surface cannot be measured: {source}")]
-    Surface { which: &'static str, source: SearchError },
-    #[error("the actual surface cannot be aligned: {0}")]
-    Alignment(AlignmentError),
-    #[error(
-        "landmark pair {pair} lies {distance:.1} mm outside the box around the {which} surface"
-    )]
-    LandmarkOutside { which: &'static str, pair: usize, distance: f64 },
-    #[error("region `{name}` holds no part of the prediction")]
-    EmptyRegion { name: String },
-    #[error(
-        "the surfaces do not correspond: {prediction} and {actual} points, neither node numbers nor triangles agree"
-    )]
-    NotCorresponding { prediction: usize, actual: usize },
-    #[error("{samples:.3e} samples are wanted on one surface, at most {allowed:.0e} are allowed")]
-    TooManySamples { samples: f64, allowed: f64 },
-    #[error("no statistics: {0}")]
-    Statistics(#[from] StatisticsError),
-    #[error("cancelled")]
-    Cancelled,
-}
-
-impl ComparisonError {
-    /// A stable name for clients.
-    pub fn code(&self) -> &'static str {
-        match self {
-            ComparisonError::Surface { source: SearchError::NoArea { .. }, .. } => "mesh-empty",
-            ComparisonError::Surface { source: SearchError::NotFinite { .. }, .. } => {
-                "mesh-nonfinite"
-            }
-            ComparisonError::Surface { source: SearchError::PointOutOfRange { .. }, .. } => {
-                "mesh-index-out-of-range"
-            }
-            ComparisonError::Alignment(_) | ComparisonError::LandmarkOutside { .. } => {
-                "alignment-failed"
-            }
-            ComparisonError::EmptyRegion { .. } => "empty-region",
-            ComparisonError::NotCorresponding { .. } => "not-corresponding",
-            ComparisonError::TooManySamples { .. } => "too-many-samples",
-            ComparisonError::Statistics(_) => "mesh-degenerate",
-            ComparisonError::Cancelled => "cancelled",
-        }
-    }
-}
-
-impl From<DistanceError> for ComparisonError {
-    fn from(error: DistanceError) -> Self {
-        match error {
-            DistanceError::TooManySamples { samples, allowed } => {
-                ComparisonError::TooManySamples { samples, allowed }
-            }
-            DistanceError::Cancelled => ComparisonError::Cancelled,
-        }
-    }
-}
-
-impl From<AlignmentError> for ComparisonError {
-    fn from(error: AlignmentError) -> Self {
-        match error {
-            AlignmentError::Cancelled { .. } => ComparisonError::Cancelled,
-            other => ComparisonError::Alignment(other),
-        }
-    }
 }
 
 /// Aligns the actual surface to the prediction as asked, and measures.

@@ -1,23 +1,15 @@
 //! The stiffness matrix of a mesh.
 
-use std::sync::Arc;
-
-use rayon::prelude::*;
-
 use super::cell_stiffness::{Dilatation, cell_stiffness, tetrahedron};
 use super::membrane::Membrane;
-use crate::boundary::Hold;
 use crate::material::elastic_tensor::add_isotropic_pair;
 use crate::material::{ElasticTensor, LinearElastic};
 use crate::mesh::{CellShape, Vector, VolumeMesh};
-use crate::solver::cliques::{Cliques, CliquesOfRow};
-use crate::solver::half_matrix::{HalfMatrix, Pattern, RowChunk};
-use crate::solver::layout::Layout;
-use crate::solver::{Block, PartlyHeld};
-
-/// Cells whose matrices are computed side by side before they are added in cell order, which keeps the
-/// bits independent of the number of threads.
-const CHUNK: usize = 4096;
+use crate::model::dofs::Numbering;
+use crate::model::problem::InvertedCell;
+use crate::solver::Block;
+use crate::solver::half_matrix::{HalfMatrix, RowChunk};
+use rayon::prelude::*;
 
 /// Rows that one thread assembles at a time.
 const ROW_CHUNK: usize = 1024;
@@ -56,94 +48,6 @@ impl<'a> Tissue<'a> {
             dilatation,
         }
     }
-}
-
-/// A cell whose Jacobian is not positive at a quadrature point.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("cell {cell} is inverted or flat")]
-pub struct InvertedCell {
-    pub cell: usize,
-}
-
-/// Where nodes and cells go in the matrix. It depends on the cells and on which nodes are held, and
-/// serves any materials.
-pub struct Numbering {
-    pub layout: Arc<Layout>,
-    pub pattern: Arc<Pattern>,
-    /// Places of the nodes of each cell, cells in the order of the layout.
-    cliques: Cliques,
-    around: CliquesOfRow,
-}
-
-impl Numbering {
-    /// For the nodes of a mesh. `held` tells those without a free unknown.
-    pub fn new(mesh: &VolumeMesh, held: &[bool]) -> Self {
-        Numbering::of(&nodes_of_cells(mesh), &mesh.nodes, held)
-    }
-
-    /// For nodes at positions that stand in cells of any kind.
-    pub fn of(cliques: &Cliques, positions: &[Vector], held: &[bool]) -> Self {
-        let rows = positions.len();
-        let around = CliquesOfRow::new(cliques, rows);
-        let layout = Layout::new(cliques, &around, held, 3, far_end(positions));
-        let cliques = cliques.renumbered(&layout.clique_order, &layout.place);
-        let around = CliquesOfRow::new(&cliques, rows);
-        let pattern = Arc::new(Pattern::new(&cliques, &around, rows));
-        Numbering { layout: Arc::new(layout), pattern, cliques, around }
-    }
-
-    /// Values of nodes in the order of rows.
-    pub fn by_row<T: Copy>(&self, of_node: &[T]) -> Vec<T> {
-        let mut by_row = of_node.to_vec();
-        for (value, &row) in of_node.iter().zip(&self.layout.place) {
-            by_row[row as usize] = *value;
-        }
-        by_row
-    }
-
-    /// The row of a node.
-    pub fn row(&self, node: u32) -> usize {
-        self.layout.place[node as usize] as usize
-    }
-
-    /// Adds the matrices of whole cells, given by their places in the order of the layout; false where it
-    /// was told to stop.
-    pub fn add_cells<M: AsRef<[Block]> + Send>(
-        &self,
-        matrix: &mut HalfMatrix<f64, 3>,
-        cliques: &[usize],
-        keep_going: &dyn Fn() -> bool,
-        cell_matrix: impl Fn(usize) -> Result<M, InvertedCell> + Sync,
-    ) -> Result<bool, InvertedCell> {
-        for chunk in cliques.chunks(CHUNK) {
-            if !keep_going() {
-                return Ok(false);
-            }
-            let cell = |&clique: &usize| cell_matrix(self.layout.clique_order[clique] as usize);
-            let matrices: Vec<Result<M, InvertedCell>> = chunk.par_iter().map(cell).collect();
-            for (&clique, blocks) in chunk.iter().zip(matrices) {
-                add_cell(matrix, self.cliques.members(clique), blocks?.as_ref());
-            }
-        }
-        Ok(true)
-    }
-}
-
-/// The nodes of each cell of a mesh.
-pub(in crate::model) fn nodes_of_cells(mesh: &VolumeMesh) -> Cliques {
-    let mut cliques = Cliques::default();
-    mesh.cells.iter().for_each(|(_, nodes)| cliques.push(nodes.iter().copied()));
-    cliques
-}
-
-/// The node at one end of the longest extent.
-fn far_end(nodes: &[Vector]) -> usize {
-    let infinite = Vector::repeat(f64::INFINITY);
-    let (low, high) =
-        nodes.iter().fold((infinite, -infinite), |(low, high), x| (low.inf(x), high.sup(x)));
-    let axis = (high - low).imax();
-    let ends = (0..nodes.len()).min_by(|&a, &b| nodes[a][axis].total_cmp(&nodes[b][axis]));
-    ends.unwrap_or_default()
 }
 
 /// What rows need of an isotropic tetrahedron: gradients of the shape functions, and lambda V and mu V.
@@ -260,65 +164,6 @@ fn add_rows(
                 if (column as usize) < row {
                     simplex.add_block(j, k, &mut chunk.lower[at[column as usize] as usize]);
                 }
-            }
-        }
-    }
-}
-
-/// Adds the blocks of a cell, row by row, to the rows of its nodes.
-pub(super) fn add_cell(matrix: &mut HalfMatrix<f64, 3>, rows: &[u32], blocks: &[Block]) {
-    for (j, &row) in rows.iter().enumerate() {
-        for (k, &column) in rows.iter().enumerate().filter(|(_, column)| **column <= row) {
-            let sum = matrix.block_mut(row as usize, column as usize);
-            let block = &blocks[j * rows.len() + k];
-            for (sum, value) in sum.as_flattened_mut().iter_mut().zip(block.as_flattened()) {
-                *sum += value;
-            }
-        }
-    }
-}
-
-/// The rows of held nodes that keep free unknowns.
-pub fn partly_held(holds: &[Hold], numbering: &Numbering) -> Vec<PartlyHeld> {
-    holds
-        .iter()
-        .map(|hold| (hold, numbering.row(hold.node)))
-        .filter(|(hold, row)| *row < numbering.layout.free && hold.count() > 0)
-        .map(|(hold, row)| PartlyHeld {
-            row,
-            held: std::array::from_fn(|k| k < hold.count()),
-            axes: *hold.axes(),
-        })
-        .collect()
-}
-
-/// Writes the rows and columns of nodes with axes of their own in those axes: Q^T K Q.
-pub fn turn_into_axes(matrix: &mut HalfMatrix<f64, 3>, partly_held: &[PartlyHeld]) {
-    if partly_held.is_empty() {
-        return;
-    }
-    let mut axes = vec![None; matrix.rows()];
-    for partly in partly_held {
-        axes[partly.row] = Some(partly.axes);
-    }
-    let pattern = matrix.pattern.clone();
-    for row in 0..matrix.rows() {
-        let turned = |block: &Block, column: usize| -> Block {
-            let mut result = nalgebra::Matrix3::from_fn(|i, j| block[i][j]);
-            if let Some(q) = &axes[row] {
-                result = q.transpose() * result;
-            }
-            if let Some(q) = &axes[column] {
-                result *= q;
-            }
-            std::array::from_fn(|i| std::array::from_fn(|j| result[(i, j)]))
-        };
-        if axes[row].is_some() {
-            matrix.diagonal[row] = turned(&matrix.diagonal[row], row);
-        }
-        for (at, &column) in pattern.range(row).zip(pattern.columns(row)) {
-            if axes[row].is_some() || axes[column as usize].is_some() {
-                matrix.lower[at] = turned(&matrix.lower[at], column as usize);
             }
         }
     }

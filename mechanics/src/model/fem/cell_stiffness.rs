@@ -11,10 +11,10 @@
 //! Isotropic, C_dev has lambda = -2/3 mu, and C_vol is the bulk modulus K alone. One volume change a cell does
 //! not lock as nu goes to 1/2.
 
-use super::assembly::InvertedCell;
 use crate::element::MAX_NODES;
 use crate::material::ElasticTensor;
 use crate::mesh::{CellShape, Vector, VolumeMesh};
+use crate::model::problem::InvertedCell;
 use crate::model::reference_cell;
 use crate::solver::Block;
 

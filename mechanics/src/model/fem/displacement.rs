@@ -5,9 +5,10 @@
 
 use rayon::prelude::*;
 
-use super::assembly::{Tissue, nodes_of_cells};
+use super::assembly::Tissue;
 use crate::boundary::Hold;
 use crate::mesh::Vector;
+use crate::model::dofs::nodes_of_cells;
 use crate::model::dofs::{Constrained, Known, free_unknowns, number, product_at_holds};
 use crate::model::problem::{Convergence, Equilibrium, LoadCase, ModelError, Observer};
 use crate::solver::half_matrix::HalfMatrix;

@@ -21,13 +21,15 @@ use std::collections::{BTreeMap, BTreeSet};
 use nalgebra::Matrix3;
 use rayon::prelude::*;
 
-use super::assembly::{InvertedCell, Numbering, Tissue, nodes_of_cells};
+use super::assembly::Tissue;
 use super::cell_stiffness::tetrahedron;
 use super::displacement::{Problem, check_finite};
 use crate::material::ElasticTensor;
 use crate::material::elastic_tensor::PressurePart;
 use crate::mesh::{CellShape, Vector};
 use crate::model::dofs::{Constrained, Known, free_unknowns, number, product_at_holds};
+use crate::model::dofs::{Numbering, nodes_of_cells};
+use crate::model::problem::InvertedCell;
 use crate::model::problem::{Convergence, Equilibrium, LoadCase, ModelError, Observer};
 use crate::solver::mixed::{self, Coupling, MixedRightHandSide, MixedSolution, MixedSystem};
 use crate::solver::sparse_rows::{Couplings, SparseRows};

@@ -1,8 +1,11 @@
 //! Nodal forces in mN that do the same work as tractions, pressures and gravity.
 
-use super::assembly::{InvertedCell, Tissue};
+use super::assembly::Tissue;
+use super::cell_stiffness::tetrahedron;
+use super::edge_nodes::EdgeNodes;
 use crate::mesh::volume::BoundaryFace;
 use crate::mesh::{Vector, VolumeMesh};
+use crate::model::problem::InvertedCell;
 use crate::model::reference_cell;
 
 /// What acts on a face.
@@ -76,4 +79,45 @@ pub fn add_gravity(
         }
     }
     Ok(())
+}
+
+impl EdgeNodes {
+    /// Adds f_i = int N_i t dA over flat triangles: a third at the middle of each edge, nothing at corners.
+    pub fn add_face_load(
+        &self,
+        mesh: &VolumeMesh,
+        faces: &[BoundaryFace],
+        load: FaceLoad,
+        forces: &mut [Vector],
+    ) {
+        for [a, b, c] in faces.iter().flat_map(BoundaryFace::triangles) {
+            let [pa, pb, pc] = [a, b, c].map(|node| mesh.nodes[node as usize]);
+            let area = (pb - pa).cross(&(pc - pa)) * 0.5;
+            let force = match load {
+                FaceLoad::Traction(traction) => traction * area.norm(),
+                FaceLoad::Pressure(pressure) => -area * pressure,
+            };
+            for (from, to) in [(a, b), (b, c), (c, a)] {
+                forces[self.between(from, to) as usize] += force / 3.0;
+            }
+        }
+    }
+
+    /// Adds f_i = int N_i rho g dV: -1/20 of the weight at each corner, 1/5 at each edge.
+    pub fn add_gravity(
+        &self,
+        tissue: &Tissue,
+        acceleration: Vector,
+        forces: &mut [Vector],
+    ) -> Result<(), InvertedCell> {
+        for cell in 0..tissue.mesh.cells.len() {
+            let (volume, _) = tetrahedron(tissue.mesh, cell)?;
+            let density = tissue.materials[tissue.material_of_cell[cell] as usize].density();
+            let weight = acceleration * (density * volume);
+            for (k, node) in self.of_cell(tissue.mesh, cell).into_iter().enumerate() {
+                forces[node as usize] += weight * if k < 4 { -0.05 } else { 0.2 };
+            }
+        }
+        Ok(())
+    }
 }

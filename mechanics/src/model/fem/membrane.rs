@@ -11,10 +11,10 @@
 //! Source: Zienkiewicz, Taylor, The Finite Element Method, 5th ed., vol. 1, chapter 4; skin as a membrane: paper
 //! 001 (METHODS rows 37, 38). The sheet weighs nothing.
 
-use super::assembly::{Numbering, add_cell};
-use super::quadratic::EdgeNodes;
+use super::edge_nodes::EdgeNodes;
 use crate::material::{ElasticTensor, PlaneStress};
 use crate::mesh::{Vector, VolumeMesh};
+use crate::model::dofs::{Numbering, add_cell};
 use crate::solver::{Block, HalfMatrix};
 
 /// A sheet on faces of the tissue.

@@ -4,6 +4,7 @@ pub mod assembly;
 pub mod cell_stiffness;
 pub mod displacement;
 pub mod displacement_pressure;
+pub mod edge_nodes;
 pub mod loads;
 pub mod mass_tensor;
 pub mod membrane;

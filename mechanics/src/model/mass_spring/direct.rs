@@ -6,7 +6,8 @@
 //! places of the others. As |d| >= d . n, the springs cost no more than this step takes them to cost,
 //! so that no step raises the energy: it cannot diverge, and it is slow.
 
-use super::{Found, MassSpringSettings, Network, Spring, length};
+use super::network::{Found, MassSpringSettings, Network, length};
+use super::springs::Spring;
 use crate::mesh::Vector;
 use crate::model::problem::{Convergence, ModelError, Observer};
 use crate::solver::SolverError;

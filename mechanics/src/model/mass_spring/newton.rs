@@ -5,11 +5,11 @@
 //! is raised until it is positive definite. a = 1, halved until the energy falls by a part of what the slope
 //! promises (Nocedal, Wright, Numerical Optimization, 2nd ed., 2006, section 3.1).
 
+use super::network::{Found, MassSpringSettings, Network, length};
 use super::springs::Sideways;
-use super::{Found, MassSpringSettings, Network, length};
 use crate::mesh::Vector;
+use crate::model::dofs::nodes_of_cells;
 use crate::model::dofs::{Constrained, number};
-use crate::model::fem::assembly::nodes_of_cells;
 use crate::model::fem::displacement::Problem;
 use crate::model::problem::{Convergence, LoadCase, ModelError, Observer};
 use crate::solver::{self, SolverError, Tolerance};

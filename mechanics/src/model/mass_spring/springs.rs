@@ -7,8 +7,10 @@
 //! d2W/dp_j dp_j = k [ n n^T + g (I - n n^T) ],  g = 1 - L / l, negative in a spring that is pressed
 
 use crate::mesh::Vector;
-use crate::model::fem::assembly::{InvertedCell, Numbering, Tissue};
+use crate::model::dofs::Numbering;
+use crate::model::fem::assembly::Tissue;
 use crate::model::fem::cell_stiffness::tetrahedron;
+use crate::model::problem::InvertedCell;
 use crate::solver::{Block, HalfMatrix};
 
 /// Corners of the six edges of a tetrahedron.

@@ -12,9 +12,9 @@ pub mod stepping;
 pub mod stiffness;
 pub mod tissue_points;
 
+use super::dofs::Numbering;
 use super::problem::{Convergence, Equilibrium, ModelError, Observer};
 use crate::mesh::{Vector, Warning};
-use crate::model::fem::assembly::Numbering;
 use crate::model::fem::displacement::{Problem, check_finite};
 use crate::solver::half_matrix::HalfMatrix;
 use crate::solver::lanes::Lanes;

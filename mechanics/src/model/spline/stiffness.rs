@@ -21,7 +21,9 @@ use super::basis::MOST_DEGREE;
 use super::lattice::{Lattice, Place};
 use super::tissue_points::TissuePoint;
 use crate::mesh::Vector;
-use crate::model::fem::assembly::{InvertedCell, Numbering, Tissue};
+use crate::model::dofs::Numbering;
+use crate::model::fem::assembly::Tissue;
+use crate::model::problem::InvertedCell;
 use crate::solver::Block;
 use crate::solver::half_matrix::HalfMatrix;
 

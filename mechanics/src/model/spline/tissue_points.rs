@@ -3,8 +3,8 @@
 
 use crate::element::tetrahedron10;
 use crate::mesh::{CellShape, Vector, VolumeMesh};
-use crate::model::fem::assembly::InvertedCell;
 use crate::model::fem::cell_stiffness::tetrahedron;
+use crate::model::problem::InvertedCell;
 use crate::model::reference_cell;
 
 /// A point, and the tissue that it stands for.

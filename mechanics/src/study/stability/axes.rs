@@ -1,16 +1,24 @@
 //! What is turned up for every method; what only some have is in `own_axes`.
 
-use std::sync::Arc;
-
+use super::axis::FINER;
+use super::axis::RING;
+use super::axis::TENTH_OF_MOVEMENT;
+use super::axis::finer;
+use super::axis::found;
+use super::axis::material;
+use super::axis::moved;
+use super::axis::numbers;
+use super::axis::usual_case;
+use super::axis::values;
 use super::scenes::{
-    CELL, LEVELS, POISSON_RATIO, YOUNG_MODULUS, around_ball, halved, jaw, layer, on_bone, set,
-    shape_for, shift, swelling, tissue, with_region,
+    CELL, LEVELS, POISSON_RATIO, YOUNG_MODULUS, around_ball, jaw, layer, on_bone, set, shape_for,
+    shift, swelling, tissue, with_region,
 };
-use super::{Axis, Probe, Refusal, Truth, Variant, own_axes};
-use crate::material::{LinearElastic, MaterialError};
+use super::{Axis, Refusal, Truth, own_axes};
 use crate::mesh::{CellShape, Vector};
 use crate::plan::{PlannedSegment, RigidMovement};
-use crate::prediction::{Case, CaseSegment, ElementChoice, Plan, Settings};
+use crate::prediction::{Case, CaseSegment};
+use std::sync::Arc;
 
 pub fn every() -> Vec<Axis> {
     let mut axes = vec![
@@ -28,52 +36,8 @@ pub fn every() -> Vec<Axis> {
     axes
 }
 
-/// A tenth of the movement of 2.24 mm that linear axes make.
-pub(super) const TENTH_OF_MOVEMENT: f64 = 0.22;
 /// Half of the least mean error that published systems report against patients.
 const HALF_A_MILLIMETRE: f64 = 0.5;
-/// The free ring around the patch, in mm.
-pub(super) const RING: f64 = 8.0;
-pub(super) const FINER: &str = "linear finite elements, quadratic, every edge halved";
-
-pub(super) type Found = Result<Option<Probe>, Refusal>;
-
-pub(super) fn values(list: &[(f64, &str)]) -> Vec<(f64, String)> {
-    list.iter().map(|(value, words)| (*value, (*words).to_owned())).collect()
-}
-
-pub(super) fn numbers(list: &[f64]) -> Vec<(f64, String)> {
-    list.iter().map(|value| (*value, value.to_string())).collect()
-}
-
-pub(super) fn moved() -> Vector {
-    Vector::new(1.0, 0.0, 2.0)
-}
-
-/// A material of a region, or what the documents' check says of it.
-fn material(young_modulus: f64, nu: f64, region: &str) -> Result<LinearElastic, Refusal> {
-    LinearElastic::new(young_modulus, nu, 1.0).map_err(|error| {
-        let field = match error {
-            MaterialError::PoissonRatio(_) => "poisson_ratio",
-            MaterialError::Density(_) => "density_g_per_cm3",
-            _ => "young_modulus_kpa",
-        };
-        let pointer = format!("/case/materials/{region}/{field}");
-        Refusal::new(&pointer, "out-of-range", &error.to_string())
-    })
-}
-
-pub(super) fn found(case: Case, plan: Plan, variant: &Variant) -> Found {
-    Ok(Some(Probe { case, plan, settings: variant.settings.clone() }))
-}
-
-/// The truth of a case of tetrahedra on a mesh of half the size; impossible where there is no such case.
-pub(super) fn finer(case: Result<Case, Refusal>, plan: Plan) -> Truth {
-    let settings = Settings { element: ElementChoice::Quadratic, ..Settings::default() };
-    case.map_or(Truth::Impossible, |case| {
-        Truth::Solved(Box::new(Probe { case: halved(case), plan, settings }))
-    })
-}
 
 // Poisson's ratio.
 
@@ -150,11 +114,6 @@ fn rotation() -> Axis {
 fn turn(degrees: f64) -> RigidMovement {
     let angles = Vector::new(0.0, degrees.to_radians(), 0.0);
     RigidMovement::about_pivot(angles, Vector::new(0.0, 0.0, -40.0), Vector::zeros())
-}
-
-pub(super) fn usual_case(levels: &[f64], ring: f64, shape: CellShape) -> Result<Case, Refusal> {
-    let material = material(YOUNG_MODULUS, POISSON_RATIO, "*")?;
-    Ok(on_bone(layer(levels, ring, shape), tissue(material)))
 }
 
 // Sliding on a curved wall.

@@ -5,6 +5,7 @@
 //! axis. The one verdict that must never appear is `Wrong`: an answer beyond the bound without a word.
 
 pub mod axes;
+mod axis;
 mod judge;
 mod own_axes;
 mod scenes;

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::axes::{
+use super::axis::{
     FINER, Found, RING, TENTH_OF_MOVEMENT, finer, found, moved, numbers, usual_case, values,
 };
 use super::scenes::{LEVELS, POISSON_RATIO, YOUNG_MODULUS, jaw, shape_for, shift, with_region};

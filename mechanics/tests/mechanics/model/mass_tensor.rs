@@ -2,7 +2,8 @@
 
 use mechanics::mesh::sample::block;
 use mechanics::mesh::{CellShape, Vector, VolumeMesh};
-use mechanics::model::fem::assembly::{Numbering, Tissue};
+use mechanics::model::dofs::Numbering;
+use mechanics::model::fem::assembly::Tissue;
 use mechanics::model::fem::cell_stiffness::Dilatation;
 use mechanics::model::fem::mass_tensor::{Iterations, MassTensorSettings};
 use mechanics::plan::RigidMovement;

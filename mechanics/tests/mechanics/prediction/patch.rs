@@ -3,7 +3,7 @@
 use mechanics::boundary::Hold;
 use mechanics::mesh::sample::block;
 use mechanics::mesh::{CellShape, Vector, VolumeMesh};
-use mechanics::model::fem::assembly::Numbering;
+use mechanics::model::dofs::Numbering;
 use mechanics::model::fem::assembly::Tissue;
 use mechanics::model::fem::cell_stiffness::{Dilatation, cell_stiffness};
 use mechanics::prediction::{ElementChoice, Settings};

@@ -3,7 +3,8 @@
 use mechanics::material::LinearElastic;
 use mechanics::mesh::sample::{ThickSphere, block, thick_sphere_octant};
 use mechanics::mesh::{CellShape, Vector, VolumeMesh};
-use mechanics::model::fem::assembly::{Numbering, Tissue};
+use mechanics::model::dofs::Numbering;
+use mechanics::model::fem::assembly::Tissue;
 use mechanics::model::fem::cell_stiffness::Dilatation;
 use mechanics::solver::{
     SolverError, System, Tolerance, Unknowns, cholesky, conjugate_gradient, ordering, solve,

@@ -1,0 +1,36 @@
+//! What is wrong with the constants of a material.
+
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum MaterialError {
+    #[error("Young's modulus is {0} kPa, and has to be above 0 and at most 1e9 kPa")]
+    YoungModulus(f64),
+    #[error("Poisson's ratio is {0}, and has to be at least 0 and below 0.5")]
+    PoissonRatio(f64),
+    #[error("density is {0} g/cm3, and has to be at least 0 and at most 100 g/cm3")]
+    Density(f64),
+    #[error(
+        "Young's modulus along the fibre is {0} kPa, and has to be above 0 and at most 1e9 kPa"
+    )]
+    FibreModulus(f64),
+    #[error(
+        "the shear modulus along the fibre is {0} kPa, and has to be above 0 and at most 1e9 kPa"
+    )]
+    FibreShear(f64),
+    #[error("the law of paper 002 takes its shear modulus from E and nu, and no other one")]
+    ShearOfPaper002,
+    #[error(
+        "Young's modulus is {along} kPa along the fibre and {across} kPa across, and along it has to be above \
+         (1 - nu)/2 of that across, {least} kPa"
+    )]
+    FibreTooSoft { along: f64, across: f64, least: f64 },
+    #[error(
+        "the law of paper 002 is not positive definite for E_f/E_t = {ratio:.4} and nu = {poisson_ratio}: its \
+         smallest eigenvalue is {eigenvalue:.4} kPa, and E_f/E_t has to be below (1-nu)/(2 nu^2) = {limit:.4}"
+    )]
+    NotPositiveDefinite { ratio: f64, poisson_ratio: f64, eigenvalue: f64, limit: f64 },
+}
+
+/// Above 0 and at most `most`.
+pub(super) fn in_range(value: f64, most: f64) -> bool {
+    value > 0.0 && value <= most
+}

@@ -1,0 +1,94 @@
+//! Linear elastic tissue at small strain, isotropic or with fibres.
+
+use super::elastic_tensor::ElasticTensor;
+use super::error::{MaterialError, in_range};
+use super::isotropic::Isotropic;
+use super::transversely_isotropic::{Fibre, TransverselyIsotropic};
+
+/// Linear elastic tissue at small strain: isotropic, or with fibres of one direction at each point.
+///
+/// sigma = lambda tr(eps) I + 2 mu eps, with lambda = E nu / ((1 + nu)(1 - 2 nu)) and
+/// mu = E / (2 (1 + nu)); METHODS A2. With fibres these constants are those across them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LinearElastic {
+    isotropic: Isotropic,
+    density: f64,
+    fibre: Option<TransverselyIsotropic>,
+}
+
+impl LinearElastic {
+    /// Young's modulus in kPa, in (0, 1e9]; Poisson's ratio in [0, 0.5); density in g/cm³ (mg/mm³).
+    pub fn new(
+        young_modulus: f64,
+        poisson_ratio: f64,
+        density: f64,
+    ) -> Result<Self, MaterialError> {
+        if !in_range(young_modulus, 1e9) {
+            return Err(MaterialError::YoungModulus(young_modulus));
+        }
+        if !(0.0..0.5).contains(&poisson_ratio) {
+            return Err(MaterialError::PoissonRatio(poisson_ratio));
+        }
+        if !(0.0..=100.0).contains(&density) {
+            return Err(MaterialError::Density(density));
+        }
+        let isotropic = Isotropic { young_modulus, poisson_ratio };
+        Ok(LinearElastic { isotropic, density, fibre: None })
+    }
+
+    /// The tissue with fibres; what it was before it is across them.
+    pub fn with_fibre(self, fibre: &Fibre) -> Result<Self, MaterialError> {
+        let fibre = TransverselyIsotropic::new(&self.isotropic, fibre)?;
+        Ok(LinearElastic { fibre: Some(fibre), ..self })
+    }
+
+    /// The tissue as it is across its fibres, in all directions.
+    pub fn without_fibre(self) -> Self {
+        LinearElastic { fibre: None, ..self }
+    }
+
+    /// Young's modulus along the fibres in kPa, where there are any.
+    pub fn fibre_modulus(&self) -> Option<f64> {
+        self.fibre.map(|fibre| fibre.young_modulus())
+    }
+
+    pub fn has_fibre(&self) -> bool {
+        self.fibre.is_some()
+    }
+
+    /// The stiffness where the fibres, if there are any, have this direction of length 1.
+    pub fn tensor(&self, fibre: &nalgebra::Vector3<f64>) -> ElasticTensor {
+        match &self.fibre {
+            None => ElasticTensor::isotropic(self.lambda(), self.shear_modulus()),
+            Some(law) => law.along(fibre),
+        }
+    }
+
+    pub fn young_modulus(&self) -> f64 {
+        self.isotropic.young_modulus
+    }
+
+    pub fn poisson_ratio(&self) -> f64 {
+        self.isotropic.poisson_ratio
+    }
+
+    /// In mg/mm³.
+    pub fn density(&self) -> f64 {
+        self.density
+    }
+
+    /// Lamé's first constant lambda in kPa.
+    pub fn lambda(&self) -> f64 {
+        self.isotropic.lambda()
+    }
+
+    /// The shear modulus mu in kPa.
+    pub fn shear_modulus(&self) -> f64 {
+        self.isotropic.shear_modulus()
+    }
+
+    /// The bulk modulus K = lambda + 2 mu / 3 in kPa.
+    pub fn bulk_modulus(&self) -> f64 {
+        self.isotropic.bulk_modulus()
+    }
+}

@@ -1,0 +1,136 @@
+//! Springs, what holds their nodes and what acts on them.
+
+use super::springs::Springs;
+use crate::boundary::Hold;
+use crate::mesh::Vector;
+use crate::model::fem::assembly::Tissue;
+use crate::model::problem::{Convergence, LoadCase, ModelError};
+use crate::solver::SolverError;
+use std::collections::BTreeMap;
+
+/// The Poisson ratio of a network of springs, on average over directions.
+pub const POISSON_RATIO: f64 = 0.25;
+
+/// What only this model has to be told.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MassSpringSettings {
+    pub search: Search,
+    pub most_iterations: usize,
+}
+
+/// How rest is found.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Search {
+    /// Newton's method with a line search on the energy; each step solves a sparse system.
+    #[default]
+    Newton,
+    /// Node by node, each to where its own springs would have it.
+    Direct,
+}
+
+/// Where the nodes came to rest, and how.
+pub(super) struct Found {
+    pub(super) positions: Vec<Vector>,
+    pub(super) convergence: Convergence,
+}
+
+impl Found {
+    pub(super) fn nothing(network: &Network) -> Self {
+        let convergence = Convergence {
+            method: "none",
+            preconditioner: "none",
+            why: "nothing moves and nothing acts".to_owned(),
+            iterations: 0,
+            relative_residual: 0.0,
+            history: Vec::new(),
+            steps: 1,
+        };
+        Found { positions: network.start.clone(), convergence }
+    }
+}
+
+/// Springs, what holds their nodes and what acts on them.
+pub(super) struct Network<'a> {
+    pub(super) springs: Springs,
+    pub(super) rest: &'a [Vector],
+    pub(super) holds: &'a [Hold],
+    /// For each node its entry in `holds`.
+    pub(super) hold_of: BTreeMap<u32, usize>,
+    /// For each node, in mN.
+    pub(super) acting: &'a [Vector],
+    /// Nodes at rest, held ones where they are held to.
+    pub(super) start: Vec<Vector>,
+    /// |f_D|: the forces on the free unknowns at the start, springs taken as linear. Residuals are told as
+    /// shares of it, as those of finite elements are.
+    pub(super) scale: f64,
+}
+
+impl<'a> Network<'a> {
+    pub(super) fn new(
+        tissue: &Tissue<'a>,
+        holds: &'a [Hold],
+        case: &'a LoadCase,
+    ) -> Result<Self, ModelError> {
+        let springs = Springs::new(tissue)?;
+        let rest = tissue.mesh.nodes.as_slice();
+        let mut moved = vec![Vector::zeros(); rest.len()];
+        for (hold, values) in holds.iter().zip(&case.held) {
+            let held = (0..hold.count()).map(|k| hold.axes().column(k) * values[k]);
+            moved[hold.node as usize] = held.sum();
+        }
+        let start = rest.iter().zip(&moved).map(|(x, u)| x + u).collect();
+        let hold_of = holds.iter().enumerate().map(|(entry, hold)| (hold.node, entry)).collect();
+        let acting = case.forces.as_slice();
+        let mut network = Network { springs, rest, holds, hold_of, acting, start, scale: 0.0 };
+        let resistance = network.springs.linear_forces(rest, &moved);
+        network.scale = length(&network.unbalanced(&resistance));
+        match network.scale.is_finite() {
+            true => Ok(network),
+            false => Err(SolverError::NotFinite.into()),
+        }
+    }
+
+    /// The part of a force that moves a node: nothing along its held axes, nor at nodes without a spring.
+    pub(super) fn free_part(&self, node: usize, force: Vector) -> Vector {
+        if self.springs.total_stiffness[node] == 0.0 {
+            return Vector::zeros();
+        }
+        match self.hold_of.get(&(node as u32)) {
+            None => force,
+            Some(&entry) => {
+                let hold = &self.holds[entry];
+                let held = (0..hold.count()).map(|k| hold.axes().column(k).into_owned());
+                held.fold(force, |rest, axis| rest - axis * axis.dot(&force))
+            }
+        }
+    }
+
+    /// What acts less what resists, where nodes are free to follow, in mN.
+    pub(super) fn unbalanced(&self, resistance: &[Vector]) -> Vec<Vector> {
+        let forces = self.acting.iter().zip(resistance).enumerate();
+        forces.map(|(node, (acting, resisting))| self.free_part(node, acting - resisting)).collect()
+    }
+
+    /// What each hold exerts, in mN.
+    pub(super) fn reactions(&self, resistance: &[Vector]) -> Vec<Vector> {
+        let reaction = |hold: &Hold| {
+            let node = hold.node as usize;
+            let force = resistance[node] - self.acting[node];
+            let along = |k: usize| hold.axes().column(k) * hold.axes().column(k).dot(&force);
+            (0..hold.count()).map(along).sum()
+        };
+        self.holds.iter().map(reaction).collect()
+    }
+
+    pub(super) fn unknowns(&self) -> usize {
+        let nodes = self.springs.total_stiffness.iter().filter(|k| **k > 0.0).count();
+        let is_sprung = |hold: &&Hold| self.springs.total_stiffness[hold.node as usize] > 0.0;
+        let held: usize = self.holds.iter().filter(is_sprung).map(Hold::count).sum();
+        3 * nodes - held
+    }
+}
+
+/// The Euclidean norm over all nodes.
+pub(super) fn length(vectors: &[Vector]) -> f64 {
+    vectors.iter().map(Vector::norm_squared).sum::<f64>().sqrt()
+}

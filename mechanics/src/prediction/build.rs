@@ -1,0 +1,72 @@
+//! From a stated case and plan to a checked scene.
+
+use super::case::{Case, Plan, Settings};
+use super::check::Check;
+use super::cut;
+use super::fibres::Tissues;
+use super::problem::SceneErrors;
+use super::scene::Scene;
+use super::stiff_layer;
+use crate::boundary::tearing;
+use crate::mesh::Vector;
+use crate::mesh::connectivity::Faces;
+
+impl Scene {
+    /// Checks a case and a plan together; says everything that is wrong, not the first thing only.
+    pub fn new(case: &Case, plan: &Plan, settings: &Settings) -> Result<Scene, SceneErrors> {
+        let faces = Faces::new(&case.volume);
+        let boundary = case.volume.boundary_of(&faces);
+        let mut check = Check::new(case, &boundary);
+
+        // 1. Tissue.
+        let (regions, region_of_cell) = check.regions();
+        let mut materials = check.materials(&regions);
+        let (of_cell, of_region) = (&region_of_cell, &mut materials);
+        let tissues = Tissues { regions: &regions, region_of_cell: of_cell, materials: of_region };
+        let fibres = check.fibres(tissues, &settings.method);
+        let element = check.element(settings);
+        let tissue = check.tissue_of_cells(&region_of_cell, materials);
+
+        // 2. What every node is held to.
+        let (segments, held) = check.held_nodes(plan, settings.sliding);
+        let conditions = check.conditions(&held);
+
+        // 3. The skin and what acts on the tissue.
+        let skin = check.skin(&conditions);
+        let membrane = check.membrane(&skin, settings);
+        let mut scene = Scene {
+            mesh: case.volume.clone(),
+            skin,
+            regions,
+            region_of_cell,
+            materials: tissue.materials,
+            material_of_cell: tissue.material_of_cell,
+            pressure_of_cell: tissue.pressure_of_cell,
+            imaged: tissue.imaged,
+            fibres,
+            membrane,
+            element,
+            conditions,
+            segments,
+            forces: vec![Vector::zeros(); case.volume.nodes.len()],
+            landmarks: case.landmarks.clone(),
+            settings: settings.clone(),
+            warnings: Vec::new(),
+        };
+        check.method(&settings.method, plan);
+        check.problems.give_up_if_any()?;
+        check.add_loads(plan, &mut scene);
+
+        // 4. What cannot be solved, and what a reader must know.
+        check.support(&scene, &faces);
+        check.problems.give_up_if_any()?;
+        scene.warnings = scene.conditions.warnings.clone();
+        scene.warnings.extend(check.warnings);
+        scene.warnings.extend(cut::duplicate_nodes(&scene.mesh, &check.boundary_nodes));
+        scene.warnings.extend(tearing::tearing(&scene.mesh, &scene.conditions.holds));
+        scene.warnings.extend(scene.locking());
+        scene.warnings.extend(stiff_layer::thin_stiff_layers(&scene));
+        scene.warnings.extend(scene.built_in_poisson_ratio());
+        Ok(scene)
+    }
+}

@@ -1,0 +1,63 @@
+//! What the axes of the map of failures share: scenes, truths and the values they go through.
+
+use super::scenes::{POISSON_RATIO, YOUNG_MODULUS, halved, layer, on_bone, tissue};
+use super::{Probe, Refusal, Truth, Variant};
+use crate::material::{LinearElastic, MaterialError};
+use crate::mesh::{CellShape, Vector};
+use crate::prediction::{Case, ElementChoice, Plan, Settings};
+
+/// A tenth of the movement of 2.24 mm that linear axes make.
+pub(super) const TENTH_OF_MOVEMENT: f64 = 0.22;
+
+/// The free ring around the patch, in mm.
+pub(super) const RING: f64 = 8.0;
+
+pub(super) const FINER: &str = "linear finite elements, quadratic, every edge halved";
+
+pub(super) type Found = Result<Option<Probe>, Refusal>;
+
+pub(super) fn values(list: &[(f64, &str)]) -> Vec<(f64, String)> {
+    list.iter().map(|(value, words)| (*value, (*words).to_owned())).collect()
+}
+
+pub(super) fn numbers(list: &[f64]) -> Vec<(f64, String)> {
+    list.iter().map(|value| (*value, value.to_string())).collect()
+}
+
+pub(super) fn moved() -> Vector {
+    Vector::new(1.0, 0.0, 2.0)
+}
+
+/// A material of a region, or what the documents' check says of it.
+pub(crate) fn material(
+    young_modulus: f64,
+    nu: f64,
+    region: &str,
+) -> Result<LinearElastic, Refusal> {
+    LinearElastic::new(young_modulus, nu, 1.0).map_err(|error| {
+        let field = match error {
+            MaterialError::PoissonRatio(_) => "poisson_ratio",
+            MaterialError::Density(_) => "density_g_per_cm3",
+            _ => "young_modulus_kpa",
+        };
+        let pointer = format!("/case/materials/{region}/{field}");
+        Refusal::new(&pointer, "out-of-range", &error.to_string())
+    })
+}
+
+pub(super) fn found(case: Case, plan: Plan, variant: &Variant) -> Found {
+    Ok(Some(Probe { case, plan, settings: variant.settings.clone() }))
+}
+
+/// The truth of a case of tetrahedra on a mesh of half the size; impossible where there is no such case.
+pub(super) fn finer(case: Result<Case, Refusal>, plan: Plan) -> Truth {
+    let settings = Settings { element: ElementChoice::Quadratic, ..Settings::default() };
+    case.map_or(Truth::Impossible, |case| {
+        Truth::Solved(Box::new(Probe { case: halved(case), plan, settings }))
+    })
+}
+
+pub(super) fn usual_case(levels: &[f64], ring: f64, shape: CellShape) -> Result<Case, Refusal> {
+    let material = material(YOUNG_MODULUS, POISSON_RATIO, "*")?;
+    Ok(on_bone(layer(levels, ring, shape), tissue(material)))
+}
