@@ -2,7 +2,8 @@
 
 mod standard_error;
 
-use tracing_subscriber::EnvFilter;
+use tracing_subscriber::filter::Targets;
+use tracing_subscriber::prelude::*;
 
 use crate::config::LogConfig;
 use standard_error::Lines;
@@ -17,13 +18,15 @@ pub enum TelemetryError {
 
 /// Starts the logs of this process: one line for each event, as JSON or as text.
 pub fn start(log: &LogConfig) -> Result<(), TelemetryError> {
-    let filter =
-        EnvFilter::try_new(&log.filter).map_err(|_| TelemetryError::Filter(log.filter.clone()))?;
-    let lines = tracing_subscriber::fmt().with_env_filter(filter).with_writer(|| Lines);
+    let filter: Targets =
+        log.filter.parse().map_err(|_| TelemetryError::Filter(log.filter.clone()))?;
+    let lines = tracing_subscriber::fmt::layer().with_writer(|| Lines);
     let set = if log.json {
-        lines.json().flatten_event(true).with_current_span(true).with_span_list(false).try_init()
+        let json = lines.json().flatten_event(true).with_current_span(true).with_span_list(false);
+        tracing_subscriber::registry().with(json.with_filter(filter)).try_init()
     } else {
-        lines.with_ansi(false).try_init()
+        let text = lines.with_ansi(false);
+        tracing_subscriber::registry().with(text.with_filter(filter)).try_init()
     };
     set.map_err(|_| TelemetryError::AlreadySet)
 }
