@@ -33,6 +33,7 @@ mod openapi;
 mod optimise;
 mod origins;
 mod outages;
+mod pages;
 mod partition;
 mod plans;
 #[allow(dead_code, reason = "the tests under fire use the rest")]
