@@ -28,6 +28,7 @@ mod images;
 #[path = "../chaos/invariants.rs"]
 mod invariants;
 mod jobs;
+mod lost_jobs;
 mod meshes;
 mod openapi;
 mod optimise;
