@@ -129,7 +129,7 @@ const REAP: &str = "UPDATE jobs SET losses = losses + 1, lease_token = NULL, lea
        AND lease_expires < (SELECT now_ms FROM clock) FOR UPDATE SKIP LOCKED) \
      RETURNING id, attempt, status";
 const LOST: &str = "SELECT id, tenant, kind, attempt, finished, error FROM jobs \
-     WHERE status = 'failed' AND error_class = 'infrastructure' ORDER BY id";
+     WHERE status = 'failed' AND error_class = 'infrastructure' AND id > $1 ORDER BY id LIMIT $2";
 const REQUEUE: &str = "UPDATE jobs SET status = 'accepted', error = NULL, error_class = NULL, losses = 0, \
      finished = NULL, claimable_from = 0, updated = (SELECT now_ms FROM clock) \
      WHERE id = $1 AND status = 'failed' AND error_class = 'infrastructure'";
@@ -313,9 +313,18 @@ impl Store {
         Ok(reaped)
     }
 
-    /// The jobs of all tenants that failed through no fault of their own.
-    pub async fn lost_jobs(&self) -> Result<Vec<LostRow>, StoreError> {
-        let rows = query(LOST).fetch_all(self.database.reader()).await?;
+    /// The jobs of all tenants that failed through no fault of their own, oldest first, those after `cursor` where
+    /// one is given.
+    pub async fn lost_jobs(
+        &self,
+        cursor: Option<&str>,
+        limit: i64,
+    ) -> Result<Vec<LostRow>, StoreError> {
+        let rows = query(LOST)
+            .bind(cursor.unwrap_or_default())
+            .bind(limit)
+            .fetch_all(self.database.reader())
+            .await?;
         let mut lost = Vec::with_capacity(rows.len());
         for row in &rows {
             lost.push(LostRow {

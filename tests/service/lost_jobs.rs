@@ -26,7 +26,7 @@ async fn failed(store: &Store, hash: &str, error: &str) -> String {
 }
 
 async fn lost(store: &Store) -> Vec<String> {
-    let rows = store.lost_jobs().await.unwrap();
+    let rows = store.lost_jobs(None, 9).await.unwrap();
     rows.into_iter().map(|row| row.id).collect()
 }
 
