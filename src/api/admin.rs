@@ -18,13 +18,15 @@ use super::caller::{bearer, unauthorized};
 use super::deeds::{carry_out, deed_of_admin};
 use super::error::{ApiError, ApiResult};
 use super::guard::named;
+use super::paging::PageParameters;
+use super::parameters::Parameters;
 use super::{json, keys, time};
 use crate::config::Secret;
 use crate::metrics;
 use crate::schema::key::{
     KeyDocument, RETENTION_DAYS, RotationDocument, TENANT_NAMES, is_key_id, is_tenant,
 };
-use crate::store::{Chain, LostRow, Store};
+use crate::store::{Chain, LostRow, Store, TenantRow};
 
 const PROMETHEUS: &str = "text/plain; version=0.0.4; charset=utf-8";
 
@@ -124,10 +126,17 @@ struct TenantDocument {
     retention_days: Option<i64>,
 }
 
-async fn tenants(State(office): State<Office>) -> ApiResult {
-    let rows = office.store.tenants().await?.into_iter();
-    let all = rows.map(|row| TenantDocument { name: row.name, retention_days: row.retention_days });
-    Ok(json(StatusCode::OK, &all.collect::<Vec<_>>()))
+async fn tenants(
+    State(office): State<Office>,
+    Parameters(parameters): Parameters<PageParameters>,
+) -> ApiResult {
+    let page = parameters.page_by(is_tenant)?;
+    let mut rows = office.store.tenants(page.after.as_deref(), page.rows()).await?;
+    let next = page.cut(&mut rows, |row| &row.name);
+    let view =
+        |row: TenantRow| TenantDocument { name: row.name, retention_days: row.retention_days };
+    let items: Vec<_> = rows.into_iter().map(view).collect();
+    Ok(page.linked(json(StatusCode::OK, &items), "/tenants", next))
 }
 
 async fn set_tenant(
@@ -143,8 +152,12 @@ async fn set_tenant(
     Ok(json(StatusCode::OK, &TenantDocument { name: tenant, ..wanted }))
 }
 
-async fn list_keys(State(office): State<Office>, Path(tenant): Path<String>) -> ApiResult {
-    keys::listed(&office.of(&tenant)?).await
+async fn list_keys(
+    State(office): State<Office>,
+    Path(tenant): Path<String>,
+    Parameters(parameters): Parameters<PageParameters>,
+) -> ApiResult {
+    keys::listed(&office.of(&tenant)?, &parameters).await
 }
 
 async fn create_key(
@@ -203,9 +216,14 @@ struct LostJob {
     error: serde_json::Value,
 }
 
-/// Jobs that failed through no fault of their own.
-async fn lost_jobs(State(office): State<Office>) -> ApiResult {
-    let rows = office.store.lost_jobs().await?;
+/// Jobs that failed through no fault of their own, oldest first.
+async fn lost_jobs(
+    State(office): State<Office>,
+    Parameters(parameters): Parameters<PageParameters>,
+) -> ApiResult {
+    let page = parameters.page()?;
+    let mut rows = office.store.lost_jobs(page.after.as_deref(), page.rows()).await?;
+    let next = page.cut(&mut rows, |row| &row.id);
     let view = |row: LostRow| -> ApiResult<LostJob> {
         Ok(LostJob {
             id: row.id,
@@ -216,8 +234,8 @@ async fn lost_jobs(State(office): State<Office>) -> ApiResult {
             error: serde_json::from_str(&row.error).map_err(ApiError::internal)?,
         })
     };
-    let all = rows.into_iter().map(view).collect::<ApiResult<Vec<_>>>()?;
-    Ok(json(StatusCode::OK, &all))
+    let items = rows.into_iter().map(view).collect::<ApiResult<Vec<_>>>()?;
+    Ok(page.linked(json(StatusCode::OK, &items), "/lost-jobs", next))
 }
 
 async fn requeue(State(office): State<Office>, Path(id): Path<String>) -> ApiResult {

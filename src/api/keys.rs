@@ -9,9 +9,10 @@ use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 use super::error::{ApiError, ApiResult};
-use super::parameters::KeyId;
+use super::paging::PageParameters;
+use super::parameters::{KeyId, Parameters};
 use super::{Service, body, json, json_only, time, with_header};
-use crate::schema::key::{Key, KeyDocument, RotationDocument, Scope, scopes_of};
+use crate::schema::key::{Key, KeyDocument, RotationDocument, Scope, is_key_id, scopes_of};
 use crate::schema::wire::strict;
 use crate::store::{KeyRow, Store};
 
@@ -41,6 +42,10 @@ pub struct KeyView {
 #[derive(Serialize, ToSchema)]
 pub struct KeyList {
     pub items: Vec<KeyView>,
+    /// The cursor of the next page; absent on the last.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    next: Option<String>,
 }
 
 /// A key, this once.
@@ -65,11 +70,13 @@ impl KeyView {
     }
 }
 
-/// The keys of a tenant.
-pub async fn listed(store: &Store) -> ApiResult {
-    let rows = store.keys().await?;
+/// A page of the keys of a tenant.
+pub async fn listed(store: &Store, parameters: &PageParameters) -> ApiResult {
+    let page = parameters.page_by(is_key_id)?;
+    let mut rows = store.keys(page.after.as_deref(), page.rows()).await?;
+    let next = page.cut(&mut rows, |row| &row.id);
     let items = rows.iter().map(KeyView::of).collect::<ApiResult<_>>()?;
-    Ok(json(StatusCode::OK, &KeyList { items }))
+    Ok(json(StatusCode::OK, &KeyList { items, next }))
 }
 
 /// The answer that shows a key.
@@ -99,9 +106,9 @@ fn no_such_key() -> ApiError {
 }
 
 /// The keys of the tenant, oldest first, also those that are over.
-#[utoipa::path(get, path = "/v1/keys", operation_id = "list_keys", tag = "keys", responses((status = 200, description = "the keys", body = KeyList)))]
-async fn list(service: Service) -> ApiResult {
-    listed(&service.store).await
+#[utoipa::path(get, path = "/v1/keys", operation_id = "list_keys", tag = "keys", params(PageParameters), responses((status = 200, description = "a page of them", body = KeyList)))]
+async fn list(service: Service, Parameters(parameters): Parameters<PageParameters>) -> ApiResult {
+    listed(&service.store, &parameters).await
 }
 
 /// Makes a key.

@@ -1,13 +1,45 @@
-//! Lists in pages: the newest first, each page with the cursor of the next.
+//! Lists in pages, each with the cursor of the next.
 
+use axum::http::header;
+use axum::response::Response;
 use base64::Engine;
 use base64::engine::general_purpose::URL_SAFE_NO_PAD;
 
+use serde::Deserialize;
+use utoipa::IntoParams;
+
 use super::error::{ApiError, ApiResult};
 use super::parameters::id;
+use super::with_header;
 
 const LONGEST_PAGE: u32 = 200;
 const USUAL_PAGE: u32 = 50;
+
+/// The parameters of a list that has no others.
+#[derive(Deserialize, IntoParams)]
+#[serde(deny_unknown_fields)]
+#[into_params(parameter_in = Query)]
+pub struct PageParameters {
+    cursor: Option<String>,
+    /// Default: 50.
+    #[param(minimum = 1, maximum = 200)]
+    limit: Option<u32>,
+}
+
+impl PageParameters {
+    /// The page of a list whose rows have ids.
+    pub fn page(&self) -> ApiResult<Page> {
+        Page::new(self.cursor.as_deref(), self.limit)
+    }
+
+    /// The page of a list whose rows have names of another kind.
+    pub fn page_by(&self, is_name: fn(&str) -> bool) -> ApiResult<Page> {
+        let limit = checked_limit(self.limit)?;
+        let name = |text: &str| is_name(text).then(|| text.to_owned());
+        let after = self.cursor.as_deref().map(|cursor| read_cursor(cursor, name)).transpose()?;
+        Ok(Page { after, limit: limit as usize })
+    }
+}
 
 /// Which page of a list.
 pub struct Page {
@@ -19,7 +51,7 @@ pub struct Page {
 impl Page {
     pub fn new(cursor: Option<&str>, limit: Option<u32>) -> ApiResult<Page> {
         let limit = checked_limit(limit)?;
-        let after = cursor.map(read_cursor).transpose()?;
+        let after = cursor.map(|cursor| read_cursor(cursor, id)).transpose()?;
         Ok(Page { after, limit: limit as usize })
     }
 
@@ -36,6 +68,13 @@ impl Page {
         rows.truncate(self.limit);
         rows.last().map(|row| URL_SAFE_NO_PAD.encode(id_of(row)))
     }
+
+    /// Tells the next page, where there is one, beside a body that has no room for it: `Link` of RFC 8288.
+    pub fn linked(&self, answer: Response, path: &str, next: Option<String>) -> Response {
+        let Some(next) = next else { return answer };
+        let link = format!("<{path}?cursor={next}&limit={}>; rel=\"next\"", self.limit);
+        with_header(answer, header::LINK, &link)
+    }
 }
 
 /// How many rows a page has.
@@ -48,10 +87,11 @@ pub fn checked_limit(limit: Option<u32>) -> ApiResult<u32> {
     Err(ApiError::invalid_parameter("limit", detail))
 }
 
-fn read_cursor(cursor: &str) -> ApiResult<String> {
+/// What a cursor names, where it is of the kind that the rows of the list are named by.
+fn read_cursor(cursor: &str, name: impl Fn(&str) -> Option<String>) -> ApiResult<String> {
     let text = URL_SAFE_NO_PAD.decode(cursor).ok();
     text.and_then(|text| String::from_utf8(text).ok())
-        .and_then(|text| id(&text))
+        .and_then(|text| name(&text))
         .ok_or_else(|| ApiError::invalid_parameter("cursor", "the cursor is none of ours"))
 }
 

@@ -3,14 +3,14 @@
 use axum::extract::Request;
 use axum::http::{HeaderMap, StatusCode, header};
 use axum::response::{IntoResponse, Response};
-use serde::{Deserialize, Serialize};
-use utoipa::{IntoParams, ToSchema};
+use serde::Serialize;
+use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 use super::error::{ApiError, ApiResult};
 use super::idempotency::{NewId, new_id};
-use super::paging::Page;
+use super::paging::PageParameters;
 use super::parameters::{Id, Parameters, PlanPath};
 use super::{Service, body, conditional, json, json_only, time, with_header};
 use crate::schema::PlanDocument;
@@ -41,16 +41,6 @@ struct PlanList {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     next: Option<String>,
-}
-
-#[derive(Deserialize, IntoParams)]
-#[serde(deny_unknown_fields)]
-#[into_params(parameter_in = Query)]
-struct ListParameters {
-    cursor: Option<String>,
-    /// Default: 50.
-    #[param(minimum = 1, maximum = 200)]
-    limit: Option<u32>,
 }
 
 fn view(row: &PlanRow) -> ApiResult<PlanView> {
@@ -111,15 +101,15 @@ async fn create(service: Service, Id(case): Id, request: Request) -> ApiResult {
 
 /// The plans of a case, newest first.
 #[utoipa::path(
-    get, path = "/v1/cases/{id}/plans", operation_id = "list_plans", tag = "plans", params(("id" = uuid::Uuid, Path, description = "the case"), ListParameters),
+    get, path = "/v1/cases/{id}/plans", operation_id = "list_plans", tag = "plans", params(("id" = uuid::Uuid, Path, description = "the case"), PageParameters),
     responses((status = 200, description = "a page of them", body = PlanList))
 )]
 async fn list(
     service: Service,
     Id(case): Id,
-    Parameters(parameters): Parameters<ListParameters>,
+    Parameters(parameters): Parameters<PageParameters>,
 ) -> ApiResult {
-    let page = Page::new(parameters.cursor.as_deref(), parameters.limit)?;
+    let page = parameters.page()?;
     if service.store.case(&case).await?.is_none() {
         return Err(ApiError::not_found("case"));
     }

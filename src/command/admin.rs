@@ -12,6 +12,8 @@ use crate::store::{AuditRow, Chain, DEFAULT_TENANT, Deed, Findings, Store, Store
 
 /// Rows of the audit log that are read together.
 const AUDIT_ROWS: i64 = 1000;
+/// Keys that are read together.
+const KEYS_AT_ONCE: i64 = 200;
 
 #[derive(Debug, Args)]
 pub struct Arguments {
@@ -211,15 +213,7 @@ async fn key(command: &KeyCommand) -> Result<(), AdminError> {
             Ok(())
         }
         KeyCommand::List { tenant, settings } => {
-            for row in open(settings).await?.of_tenant(tenant).keys().await? {
-                let state = match (row.revoked, row.expires) {
-                    (Some(_), _) => "revoked",
-                    (None, Some(_)) => "ends",
-                    (None, None) => "lasts",
-                };
-                println!("{}  {state:<7}  {}  {}", row.id, row.scopes, row.label);
-            }
-            Ok(())
+            list_keys(&open(settings).await?.of_tenant(tenant)).await
         }
         KeyCommand::Rotate { tenant, id, overlap_h, settings } => {
             let store = open(settings).await?.of_tenant(tenant);
@@ -239,6 +233,23 @@ async fn key(command: &KeyCommand) -> Result<(), AdminError> {
             println!("{id} is not let in any more");
             Ok(())
         }
+    }
+}
+
+async fn list_keys(store: &Store) -> Result<(), AdminError> {
+    let mut last: Option<String> = None;
+    loop {
+        let rows = store.keys(last.as_deref(), KEYS_AT_ONCE).await?;
+        for row in &rows {
+            let state = match (row.revoked, row.expires) {
+                (Some(_), _) => "revoked",
+                (None, Some(_)) => "ends",
+                (None, None) => "lasts",
+            };
+            println!("{}  {state:<7}  {}  {}", row.id, row.scopes, row.label);
+        }
+        let Some(row) = rows.last() else { return Ok(()) };
+        last = Some(row.id.clone());
     }
 }
 

@@ -84,13 +84,15 @@ pub enum Dismissal {
     NotFound,
 }
 
+/// Tags hold no control characters, so that lines keep them apart.
 macro_rules! columns {
     () => {
         "SELECT id, kind, case_id, spec_hash, engine, status, phase, progress, iteration, residual, \
          attempt, error, result, created, started, finished, updated, \
          CASE WHEN status = 'accepted' THEN (SELECT COUNT(*) FROM jobs AS before \
            WHERE before.status = 'accepted' AND before.tenant = jobs.tenant AND before.priority <= jobs.priority \
-           AND (before.priority < jobs.priority OR before.id < jobs.id)) END AS queue_position \
+           AND (before.priority < jobs.priority OR before.id < jobs.id)) END AS queue_position, \
+         (SELECT string_agg(tag, '\n' ORDER BY tag) FROM job_tags WHERE job_tags.job_id = jobs.id) AS tags \
          FROM jobs WHERE "
     };
 }
@@ -117,6 +119,7 @@ const REMOVE: &str = "DELETE FROM jobs WHERE id = $1 AND tenant = $2 AND status 
 
 fn job_row(row: &Row) -> Result<JobRow, sqlx::Error> {
     let status: String = row.try_get("status")?;
+    let tags: String = row.try_get::<Option<_>, _>("tags")?.unwrap_or_default();
     Ok(JobRow {
         id: row.try_get("id")?,
         kind: row.try_get("kind")?,
@@ -136,7 +139,7 @@ fn job_row(row: &Row) -> Result<JobRow, sqlx::Error> {
         started: row.try_get("started")?,
         finished: row.try_get("finished")?,
         updated: row.try_get("updated")?,
-        tags: Vec::new(),
+        tags: tags.lines().map(str::to_owned).collect(),
         queue_position: row.try_get("queue_position")?,
     })
 }
@@ -148,10 +151,7 @@ impl Store {
             .bind(self.tenant())
             .fetch_optional(self.database.reader())
             .await?;
-        match row {
-            Some(row) => Ok(Some(self.with_tags(job_row(&row)?).await?)),
-            None => Ok(None),
-        }
+        Ok(row.as_ref().map(job_row).transpose()?)
     }
 
     /// Jobs newest first.
@@ -166,20 +166,7 @@ impl Store {
             .bind(self.tenant())
             .fetch_all(self.database.reader())
             .await?;
-        let mut jobs = Vec::with_capacity(rows.len());
-        for row in &rows {
-            jobs.push(self.with_tags(job_row(row)?).await?);
-        }
-        Ok(jobs)
-    }
-
-    async fn with_tags(&self, mut job: JobRow) -> Result<JobRow, StoreError> {
-        let rows = query("SELECT tag FROM job_tags WHERE job_id = $1 ORDER BY tag")
-            .bind(&job.id)
-            .fetch_all(self.database.reader())
-            .await?;
-        job.tags = rows.iter().map(|row| row.try_get(0)).collect::<Result<_, _>>()?;
-        Ok(job)
+        Ok(rows.iter().map(job_row).collect::<Result<_, _>>()?)
     }
 
     /// Accepts a job, unless one with the same inputs is known.

@@ -35,7 +35,13 @@ const IN_FORCE: &str = concat!(
     columns!(),
     "WHERE id = $1 AND revoked IS NULL AND (expires IS NULL OR expires > (SELECT now_ms FROM clock))"
 );
-const OF_TENANT: &str = concat!(columns!(), "WHERE tenant = $1 ORDER BY created, id");
+/// A key is never taken out of the table, so that the one which a cursor names is there.
+const OF_TENANT: &str = concat!(
+    columns!(),
+    "WHERE tenant = $1 AND ($2 = '' OR (created, id) > \
+       (SELECT last.created, last.id FROM keys AS last WHERE last.id = $2 AND last.tenant = $1)) \
+     ORDER BY created, id LIMIT $3"
+);
 const REVOKE: &str = "UPDATE keys SET revoked = (SELECT now_ms FROM clock) \
      WHERE id = $1 AND tenant = $2 AND revoked IS NULL";
 const EXPIRE: &str = "UPDATE keys SET expires = (SELECT now_ms FROM clock) + $2 \
@@ -105,9 +111,15 @@ impl Store {
         Ok(row.as_ref().map(key_row).transpose()?)
     }
 
-    /// The keys of this tenant, oldest first, also those that are over.
-    pub async fn keys(&self) -> Result<Vec<KeyRow>, StoreError> {
-        let rows = query(OF_TENANT).bind(self.tenant()).fetch_all(self.database.reader()).await?;
+    /// The keys of this tenant, oldest first, also those that are over; those after `cursor`, the id of one of them, where
+    /// one is given.
+    pub async fn keys(&self, cursor: Option<&str>, limit: i64) -> Result<Vec<KeyRow>, StoreError> {
+        let rows = query(OF_TENANT)
+            .bind(self.tenant())
+            .bind(cursor.unwrap_or_default())
+            .bind(limit)
+            .fetch_all(self.database.reader())
+            .await?;
         Ok(rows.iter().map(key_row).collect::<Result<_, _>>()?)
     }
 

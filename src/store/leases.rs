@@ -4,6 +4,7 @@
 use std::time::Duration;
 
 use bytes::Bytes;
+use serde::Deserialize;
 
 use super::database::{Statement, query};
 use super::events::record;
@@ -102,7 +103,7 @@ const SUCCEED: &str = "UPDATE jobs SET status = 'successful', result = $3, progr
      lease_token = NULL, lease_expires = NULL, phase = NULL, \
      finished = (SELECT now_ms FROM clock), updated = (SELECT now_ms FROM clock) \
      WHERE id = $1 AND status = 'running' AND lease_token = $2";
-const FAIL: &str = "UPDATE jobs SET status = 'failed', error = $3, \
+const FAIL: &str = "UPDATE jobs SET status = 'failed', error = $3, error_class = $4, \
      lease_token = NULL, lease_expires = NULL, \
      finished = (SELECT now_ms FROM clock), updated = (SELECT now_ms FROM clock) \
      WHERE id = $1 AND status = 'running' AND lease_token = $2";
@@ -113,6 +114,7 @@ const RELEASE: &str = "UPDATE jobs SET status = 'accepted', lease_token = NULL, 
 const LOSE: &str = "UPDATE jobs SET losses = losses + 1, lease_token = NULL, lease_expires = NULL, \
      status = CASE WHEN losses + 1 >= $3 THEN 'failed' ELSE 'accepted' END, \
      error = CASE WHEN losses + 1 >= $3 THEN $4 END, \
+     error_class = CASE WHEN losses + 1 >= $3 THEN $6 END, \
      finished = CASE WHEN losses + 1 >= $3 THEN (SELECT now_ms FROM clock) END, \
      claimable_from = (SELECT now_ms FROM clock) + $5 * (losses + 1), \
      updated = (SELECT now_ms FROM clock) \
@@ -120,17 +122,17 @@ const LOSE: &str = "UPDATE jobs SET losses = losses + 1, lease_token = NULL, lea
 const REAP: &str = "UPDATE jobs SET losses = losses + 1, lease_token = NULL, lease_expires = NULL, \
      status = CASE WHEN losses + 1 >= $1 THEN 'failed' ELSE 'accepted' END, \
      error = CASE WHEN losses + 1 >= $1 THEN $2 END, \
+     error_class = CASE WHEN losses + 1 >= $1 THEN $3 END, \
      finished = CASE WHEN losses + 1 >= $1 THEN (SELECT now_ms FROM clock) END, \
      updated = (SELECT now_ms FROM clock) \
      WHERE id IN (SELECT id FROM jobs WHERE status = 'running' \
        AND lease_expires < (SELECT now_ms FROM clock) FOR UPDATE SKIP LOCKED) \
      RETURNING id, attempt, status";
-/// The words of an error that is not the job's own fault, as `serde_json` writes them.
 const LOST: &str = "SELECT id, tenant, kind, attempt, finished, error FROM jobs \
-     WHERE status = 'failed' AND error LIKE '%\"class\":\"infrastructure\"%' ORDER BY id";
-const REQUEUE: &str = "UPDATE jobs SET status = 'accepted', error = NULL, losses = 0, finished = NULL, \
-     claimable_from = 0, updated = (SELECT now_ms FROM clock) \
-     WHERE id = $1 AND status = 'failed' AND error LIKE '%\"class\":\"infrastructure\"%'";
+     WHERE status = 'failed' AND error_class = 'infrastructure' AND id > $1 ORDER BY id LIMIT $2";
+const REQUEUE: &str = "UPDATE jobs SET status = 'accepted', error = NULL, error_class = NULL, losses = 0, \
+     finished = NULL, claimable_from = 0, updated = (SELECT now_ms FROM clock) \
+     WHERE id = $1 AND status = 'failed' AND error_class = 'infrastructure'";
 const INSERT_FILE: &str =
     "INSERT INTO job_files (job_id, name, media_type, blob, bytes) VALUES ($1, $2, $3, $4, $5)";
 const FILE: &str = "SELECT name, media_type, blob, bytes FROM job_files WHERE job_id = $1 AND name = $2 \
@@ -246,7 +248,8 @@ impl Store {
 
     /// Ends a job whose own fault it is; false when it is not ours any more.
     pub async fn fail(&self, lease: &Lease, error: &str) -> Result<bool, StoreError> {
-        self.end(lease, query(FAIL).bind(&lease.job).bind(&lease.token).bind(error)).await
+        let query = query(FAIL).bind(&lease.job).bind(&lease.token).bind(error);
+        self.end(lease, query.bind(class_of(error))).await
     }
 
     /// Gives a job back untouched, for a worker that is about to stop.
@@ -266,7 +269,8 @@ impl Store {
             .bind(&lease.token)
             .bind(i64::from(attempts))
             .bind(error)
-            .bind(PAUSE_AFTER_LOSS_MS);
+            .bind(PAUSE_AFTER_LOSS_MS)
+            .bind(class_of(error));
         self.end(lease, query).await
     }
 
@@ -285,8 +289,12 @@ impl Store {
     /// happened to `attempts` times.
     pub async fn reap(&self, attempts: u32, error: &str) -> Result<Vec<Reaped>, StoreError> {
         let mut transaction = self.database.begin().await?;
-        let rows =
-            query(REAP).bind(i64::from(attempts)).bind(error).fetch_all(&mut transaction).await?;
+        let rows = query(REAP)
+            .bind(i64::from(attempts))
+            .bind(error)
+            .bind(class_of(error))
+            .fetch_all(&mut transaction)
+            .await?;
         for row in &rows {
             record(&mut transaction, row.try_get("id")?).await?;
         }
@@ -305,9 +313,18 @@ impl Store {
         Ok(reaped)
     }
 
-    /// The jobs of all tenants that failed through no fault of their own.
-    pub async fn lost_jobs(&self) -> Result<Vec<LostRow>, StoreError> {
-        let rows = query(LOST).fetch_all(self.database.reader()).await?;
+    /// The jobs of all tenants that failed through no fault of their own, oldest first, those after `cursor` where
+    /// one is given.
+    pub async fn lost_jobs(
+        &self,
+        cursor: Option<&str>,
+        limit: i64,
+    ) -> Result<Vec<LostRow>, StoreError> {
+        let rows = query(LOST)
+            .bind(cursor.unwrap_or_default())
+            .bind(limit)
+            .fetch_all(self.database.reader())
+            .await?;
         let mut lost = Vec::with_capacity(rows.len());
         for row in &rows {
             lost.push(LostRow {
@@ -350,6 +367,15 @@ impl Store {
             bytes: row.try_get("bytes")?,
         }))
     }
+}
+
+/// What kind of thing went wrong, as the document of an error says.
+fn class_of(error: &str) -> Option<String> {
+    #[derive(Deserialize)]
+    struct Classed {
+        class: String,
+    }
+    serde_json::from_str(error).ok().map(|Classed { class }| class)
 }
 
 fn milliseconds(duration: Duration) -> i64 {

@@ -1,6 +1,6 @@
 //! Tenants: those who share a deployment without knowing of each other.
 
-use super::database::{Transaction, query};
+use super::database::{Row, Transaction, query};
 use super::{Store, StoreError};
 
 /// Whose everything is where nobody says otherwise.
@@ -16,6 +16,10 @@ pub struct TenantRow {
 /// Who is new, as who has had no job for long, is next; after one turn it comes behind all others.
 const ENTER: &str =
     "INSERT INTO tenants (name, served) VALUES ($1, 0) ON CONFLICT (name) DO NOTHING";
+const LIST: &str =
+    "SELECT name, retention_days FROM tenants WHERE name > $1 ORDER BY name LIMIT $2";
+const FORGETFUL: &str =
+    "SELECT name, retention_days FROM tenants WHERE retention_days IS NOT NULL ORDER BY name";
 const RETAIN: &str = "UPDATE tenants SET retention_days = $2 WHERE name = $1";
 /// A case is as old as the youngest thing that belongs to it.
 const OLD_CASES: &str = "SELECT id FROM cases WHERE tenant = $1 \
@@ -37,6 +41,11 @@ const OLD_MESHES: &str = "SELECT id FROM meshes WHERE tenant = $1 \
 const RETENTION: &str = "retention";
 const DAY_MS: i64 = 24 * 3600 * 1000;
 
+fn tenant_row(row: &Row) -> Result<TenantRow, sqlx::Error> {
+    let retention_days = row.try_get("retention_days")?;
+    Ok(TenantRow { name: row.try_get("name")?, retention_days })
+}
+
 impl Store {
     /// A text that is unique in its table and has to be so within a tenant only.
     pub(super) fn own(&self, text: &str) -> String {
@@ -52,17 +61,18 @@ impl Store {
         Ok(())
     }
 
-    /// All tenants by name.
-    pub async fn tenants(&self) -> Result<Vec<TenantRow>, StoreError> {
-        let rows = query("SELECT name, retention_days FROM tenants ORDER BY name")
+    /// Tenants by name, those after `cursor` where one is given.
+    pub async fn tenants(
+        &self,
+        cursor: Option<&str>,
+        limit: i64,
+    ) -> Result<Vec<TenantRow>, StoreError> {
+        let rows = query(LIST)
+            .bind(cursor.unwrap_or_default())
+            .bind(limit)
             .fetch_all(self.database.reader())
             .await?;
-        let mut tenants = Vec::with_capacity(rows.len());
-        for row in &rows {
-            let retention_days = row.try_get("retention_days")?;
-            tenants.push(TenantRow { name: row.try_get("name")?, retention_days });
-        }
-        Ok(tenants)
+        Ok(rows.iter().map(tenant_row).collect::<Result<_, _>>()?)
     }
 
     /// How long what nobody changes is kept; for ever where no number is given.
@@ -78,7 +88,8 @@ impl Store {
     /// jobs that have ended, meshes that nothing refers to. Returns how many.
     pub async fn erase_old(&self) -> Result<usize, StoreError> {
         let mut erased = 0;
-        for TenantRow { name, retention_days } in self.tenants().await? {
+        for row in query(FORGETFUL).fetch_all(self.database.reader()).await? {
+            let TenantRow { name, retention_days } = tenant_row(&row)?;
             let Some(days) = retention_days else { continue };
             let age = days.saturating_mul(DAY_MS);
             let store = self.of_tenant(&name);

@@ -1,9 +1,9 @@
 //! One way to ask two engines. The SQL text of the other files is shared; what differs between SQLite and
 //! PostgreSQL stands in one file each, and only connections, the `clock` and error codes do.
 //!
-//! Text for both: `$1` placeholders, TEXT, BIGINT and DOUBLE PRECISION, RETURNING, ON CONFLICT. A row that is
-//! read in order to be changed is read with `FOR UPDATE`: PostgreSQL locks it, SQLite, whose transactions
-//! exclude each other, is handed the text without it.
+//! Text for both: `$1` placeholders, TEXT, BIGINT and DOUBLE PRECISION, RETURNING, ON CONFLICT, row values and
+//! `string_agg`, which SQLite has since 3.44. A row that is read in order to be changed is read with
+//! `FOR UPDATE`: PostgreSQL locks it, SQLite, whose transactions exclude each other, is handed the text without it.
 
 mod errors;
 mod postgres;

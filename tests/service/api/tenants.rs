@@ -4,6 +4,7 @@ use facies::schema::key::{KeyDocument, Scope};
 use facies::store::{Dismissal, Enqueued, Store};
 use reqwest::{Method, RequestBuilder, StatusCode};
 use serde_json::{Value, json};
+use tempfile::TempDir;
 
 use crate::deployments::{Deployment, on_both};
 use crate::helpers::{Answer, SMALL, Server, ask, spec};
@@ -26,14 +27,19 @@ pub struct Hospital {
 
 impl Hospital {
     pub fn open() -> Hospital {
-        let mut server =
-            Server::start_with(&["--ask-for-keys", "true", "--admin-bind", "127.0.0.1:0"]);
+        Hospital::open_in(TempDir::new().unwrap())
+    }
+
+    /// One that has been open before.
+    pub fn open_in(folder: TempDir) -> Hospital {
+        let settings = ["--ask-for-keys", "true", "--admin-bind", "127.0.0.1:0"];
+        let mut server = Server::start_in(folder, &settings);
         let line = server.second_line();
         let office = line.strip_prefix("metrics on ").unwrap().trim_end_matches("/metrics");
         Hospital { office: office.to_owned(), server }
     }
 
-    fn admin(&self, method: Method, path: &str) -> RequestBuilder {
+    pub fn admin(&self, method: Method, path: &str) -> RequestBuilder {
         self.server.client.request(method, format!("{}{path}", self.office))
     }
 
@@ -361,7 +367,7 @@ async fn a_job_that_was_lost_is_accepted_again_when_somebody_says_so(on: Deploym
     assert!(store.lose(&lease, 1, &error("infrastructure")).await.unwrap());
     let lease = store.claim(LEASE).await.unwrap().unwrap().lease;
     assert!(store.fail(&lease, &error("numerical")).await.unwrap());
-    let listed = store.lost_jobs().await.unwrap();
+    let listed = store.lost_jobs(None, 9).await.unwrap();
     assert_eq!(listed.iter().map(|row| &row.id).collect::<Vec<_>>(), [&lost]);
     assert_eq!(listed[0].tenant, "a");
     assert!(!store.requeue(&wrong).await.unwrap());
