@@ -2,16 +2,17 @@
 
 use axum::http::StatusCode;
 use axum::response::Response;
-use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-use super::{Service, json, json_only};
+use super::resources::Resources;
+use super::{Service, json};
 use crate::schema::Limits;
+use crate::schema::key::Scope;
 use crate::schema::methods::{MethodList, available_methods};
 
-pub fn router() -> OpenApiRouter<Service> {
-    let router = OpenApiRouter::new().routes(routes!(limits)).routes(routes!(methods));
-    json_only(router.routes(routes!(description)))
+pub fn router() -> Resources {
+    let router = Resources::new().looks(Scope::Read, routes!(limits));
+    router.looks(Scope::Read, routes!(methods)).open(routes!(description)).json_only()
 }
 
 /// Every bound that is enforced.

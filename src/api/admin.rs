@@ -4,15 +4,17 @@
 use std::net::SocketAddr;
 use std::sync::Arc;
 
-use axum::extract::{Path, Query, Request, State};
-use axum::http::{StatusCode, header};
+use axum::extract::{MatchedPath, Path, Query, Request, State};
+use axum::handler::Handler;
+use axum::http::{Method, StatusCode, header};
 use axum::middleware::{Next, from_fn_with_state};
 use axum::response::{IntoResponse, Response};
-use axum::routing::{delete, get, post, put};
+use axum::routing::{MethodFilter, on};
 use axum::{Json, Router};
 use serde::{Deserialize, Serialize};
 use tokio::net::TcpListener;
 
+use super::access::{Access, Audit, Declared, Found};
 use super::audit::{self, AuditParameters};
 use super::caller::{bearer, unauthorized};
 use super::deeds::{carry_out, deed_of_admin};
@@ -24,7 +26,7 @@ use super::{json, keys, time};
 use crate::config::Secret;
 use crate::metrics;
 use crate::schema::key::{
-    KeyDocument, RETENTION_DAYS, RotationDocument, TENANT_NAMES, is_key_id, is_tenant,
+    KeyDocument, RETENTION_DAYS, RotationDocument, Scope, TENANT_NAMES, is_key_id, is_tenant,
 };
 use crate::store::{Chain, LostRow, Store, TenantRow};
 
@@ -58,37 +60,94 @@ pub async fn listen(
 }
 
 fn router(office: Office) -> Router {
-    let administration = Router::new()
-        .route("/tenants", get(tenants))
-        .route("/tenants/{tenant}", put(set_tenant))
-        .route("/tenants/{tenant}/keys", get(list_keys).post(create_key))
-        .route("/tenants/{tenant}/keys/{id}", delete(revoke_key))
-        .route("/tenants/{tenant}/keys/{id}/rotation", post(rotate_key))
-        .route("/audit", get(list_audit))
-        .route("/audit/check", get(check_audit))
-        .route("/lost-jobs", get(lost_jobs))
-        .route("/lost-jobs/{id}/requeue", post(requeue))
-        .route_layer(from_fn_with_state(office.clone(), guard));
-    Router::new()
-        .route("/metrics", get(counted))
-        .route("/healthz", get(async || "ok\n"))
-        .merge(administration)
-        .with_state(office)
+    let Desks { router, declared } = desks();
+    let door = Door { office: office.clone(), declared: declared.into() };
+    router.route_layer(from_fn_with_state(door, guard)).with_state(office)
+}
+
+/// Everything that is answered here.
+pub(super) fn desks() -> Desks {
+    Desks::default()
+        .open("/metrics", counted)
+        .open("/healthz", async || "ok\n")
+        .looks("/tenants", tenants)
+        .changes(Method::PUT, "/tenants/{tenant}", set_tenant)
+        .looks("/tenants/{tenant}/keys", list_keys)
+        .changes(Method::POST, "/tenants/{tenant}/keys", create_key)
+        .changes(Method::DELETE, "/tenants/{tenant}/keys/{id}", revoke_key)
+        .changes(Method::POST, "/tenants/{tenant}/keys/{id}/rotation", rotate_key)
+        .looks("/audit", list_audit)
+        .looks("/audit/check", check_audit)
+        .looks("/lost-jobs", lost_jobs)
+        .changes(Method::POST, "/lost-jobs/{id}/requeue", requeue)
+}
+
+/// Routes of the listener and what each of them takes.
+#[derive(Default)]
+pub(super) struct Desks {
+    router: Router<Office>,
+    pub(super) declared: Declared,
+}
+
+impl Desks {
+    /// Answers GET to all.
+    fn open<T: 'static>(self, path: &str, handler: impl Handler<T, Office>) -> Desks {
+        self.with(Method::GET, path, Access::Open, handler)
+    }
+
+    /// Answers GET and changes nothing.
+    fn looks<T: 'static>(self, path: &str, handler: impl Handler<T, Office>) -> Desks {
+        self.with(Method::GET, path, Access::looks(Scope::Admin), handler)
+    }
+
+    fn changes<T: 'static>(
+        self,
+        method: Method,
+        path: &str,
+        handler: impl Handler<T, Office>,
+    ) -> Desks {
+        self.with(method, path, Access::changes(Scope::Admin), handler)
+    }
+
+    fn with<T: 'static>(
+        mut self,
+        method: Method,
+        path: &str,
+        access: Access,
+        handler: impl Handler<T, Office>,
+    ) -> Desks {
+        // A method that no router knows is answered by nobody.
+        if let Ok(filter) = MethodFilter::try_from(method.clone()) {
+            self.router = self.router.route(path, on(filter, handler));
+            self.declared.add(path, method, access);
+        }
+        self
+    }
+}
+
+/// What the layer around the routes needs to know.
+#[derive(Clone)]
+struct Door {
+    office: Office,
+    declared: Arc<Declared>,
 }
 
 /// Lets in who has the key, or who is on this machine where there is none; notes what was changed.
-async fn guard(State(office): State<Office>, request: Request, next: Next) -> Response {
+async fn guard(State(door): State<Door>, request: Request, next: Next) -> Response {
     let id = uuid::Uuid::now_v7().to_string();
-    let allowed = match &office.key {
-        Some(key) => bearer(request.headers()).is_some_and(|given| key.matches(given)),
-        None => office.is_loopback,
+    let route = request.extensions().get::<MatchedPath>().map(MatchedPath::as_str);
+    let audit = match door.declared.find(route, request.method()) {
+        Ok(Found { access: Access::Open, .. }) => return next.run(request).await,
+        Ok(Found { access: Access::Key { audit, .. }, .. }) => audit,
+        Err(error) => return named(error.into_response(), &id),
     };
-    if !allowed {
+    let office = door.office;
+    if !office.lets_in(&request) {
         let error =
             unauthorized("administration needs the admin-key, as `Authorization: Bearer KEY`");
         return named(error.into_response(), &id);
     }
-    let deed = deed_of_admin(&request, &id);
+    let deed = (audit == Audit::Noted).then(|| deed_of_admin(&request, &id)).flatten();
     let run = next.run(request);
     let response = match deed {
         Some(deed) => carry_out(&office.store, deed, run).await,
@@ -107,6 +166,13 @@ async fn counted(State(office): State<Office>) -> Response {
 }
 
 impl Office {
+    fn lets_in(&self, request: &Request) -> bool {
+        match &self.key {
+            Some(key) => bearer(request.headers()).is_some_and(|given| key.matches(given)),
+            None => self.is_loopback,
+        }
+    }
+
     /// The store in the hand of a tenant, which need not be there yet.
     fn of(&self, tenant: &str) -> ApiResult<Store> {
         match is_tenant(tenant) {

@@ -3,17 +3,18 @@
 use axum::http::StatusCode;
 use serde::{Deserialize, Serialize};
 use utoipa::{IntoParams, ToSchema};
-use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 use super::error::{ApiError, ApiResult};
 use super::paging::checked_limit;
 use super::parameters::Parameters;
-use super::{Service, json, json_only, time};
+use super::resources::Resources;
+use super::{Service, json, time};
+use crate::schema::key::Scope;
 use crate::store::{AuditRow, Store};
 
-pub fn router() -> OpenApiRouter<Service> {
-    json_only(OpenApiRouter::new().routes(routes!(list)))
+pub fn router() -> Resources {
+    Resources::new().looks(Scope::Admin, routes!(list)).json_only()
 }
 
 /// What somebody did.

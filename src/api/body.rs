@@ -14,6 +14,7 @@ use sha2::{Digest, Sha256};
 
 use super::Service;
 use super::error::{ApiError, ApiResult};
+use crate::schema::ErrorCode;
 use crate::schema::wire::problem::Problem;
 
 /// Bytes a second below which a body is too slow, once it has taken longer than it may stand still.
@@ -74,7 +75,7 @@ pub fn content_type(headers: &HeaderMap) -> String {
 pub fn unsupported(found: &str, accepted: &'static str) -> ApiError {
     let found = if found.is_empty() { "missing" } else { found };
     let detail = format!("the Content-Type is {found}, and has to be one of {accepted}");
-    ApiError::new("unsupported-media-type", detail)
+    ApiError::new(ErrorCode::UnsupportedMediaType, detail)
         .header(header::HeaderName::from_static("accept-post"), HeaderValue::from_static(accepted))
 }
 
@@ -107,7 +108,7 @@ pub async fn upload(service: &Service, request: Request) -> ApiResult<Bytes> {
     }
     let found = format!("sha-256=:{}:", STANDARD.encode(found));
     let detail = format!("{} bytes came, and their digest is {found}", bytes.len());
-    Err(Problem::new("digest-mismatch", detail).with("digest", found).into())
+    Err(Problem::new(ErrorCode::DigestMismatch, detail).with("digest", found).into())
 }
 
 async fn whole(service: &Service, request: Request, most: usize) -> ApiResult<Bytes> {
@@ -146,7 +147,7 @@ pub async fn parts(service: &Service, request: Request) -> ApiResult<Vec<(String
 }
 
 async fn read_parts(request: Request, most: usize) -> ApiResult<Vec<(String, Bytes)>> {
-    let malformed = |detail: String| ApiError::new("malformed-multipart", detail);
+    let malformed = |detail: String| ApiError::new(ErrorCode::MalformedMultipart, detail);
     let mut multipart = Multipart::from_request(request, &())
         .await
         .map_err(|error| malformed(error.body_text()))?;
@@ -173,7 +174,7 @@ async fn read_parts(request: Request, most: usize) -> ApiResult<Vec<(String, Byt
         return Ok(parts);
     }
     let detail = format!("the body has {} parts, at most {most} are read", most + unread);
-    Err(Problem::new("payload-too-large", detail).with("limit", most).into())
+    Err(Problem::new(ErrorCode::PayloadTooLarge, detail).with("limit", most).into())
 }
 
 fn check_encoding(headers: &HeaderMap) -> ApiResult<()> {
@@ -185,7 +186,7 @@ fn check_encoding(headers: &HeaderMap) -> ApiResult<()> {
             let detail = format!(
                 "the Content-Encoding is {encoding}: send the body as it is, or use the compression of its own format"
             );
-            let error = ApiError::new("unsupported-media-type", detail);
+            let error = ApiError::new(ErrorCode::UnsupportedMediaType, detail);
             Err(error.header(header::ACCEPT_ENCODING, HeaderValue::from_static("identity")))
         }
     }
@@ -204,7 +205,7 @@ fn check_length(headers: &HeaderMap, most: usize) -> ApiResult<()> {
 
 fn too_large(most: usize) -> ApiError {
     let detail = format!("the body has more than {most} bytes");
-    Problem::new("payload-too-large", detail).with("limit", most).into()
+    Problem::new(ErrorCode::PayloadTooLarge, detail).with("limit", most).into()
 }
 
 /// The frames of a body until it is too large or too slow.
@@ -219,7 +220,7 @@ fn bounded(body: Body, bounds: Bounds) -> impl Stream<Item = ApiResult<Bytes>> {
             Err(_) => Err(too_slow(before)),
             Ok(None) => return None,
             Ok(Some(Err(_))) => Err(ApiError::new(
-                "malformed-request",
+                ErrorCode::MalformedRequest,
                 format!("the body broke off after {before} bytes"),
             )),
             Ok(Some(Ok(frame))) => Ok(frame),
@@ -241,8 +242,11 @@ fn bounded(body: Body, bounds: Bounds) -> impl Stream<Item = ApiResult<Bytes>> {
 }
 
 fn too_slow(count: usize) -> ApiError {
-    ApiError::new("request-timeout", format!("the body came too slowly: {count} bytes so far"))
-        .header(header::CONNECTION, HeaderValue::from_static("close"))
+    ApiError::new(
+        ErrorCode::RequestTimeout,
+        format!("the body came too slowly: {count} bytes so far"),
+    )
+    .header(header::CONNECTION, HeaderValue::from_static("close"))
 }
 
 /// The SHA-256 of a Content-Digest (RFC 9530); other algorithms say nothing here.

@@ -5,13 +5,15 @@ use std::collections::BTreeSet;
 use std::net::SocketAddr;
 use std::sync::Arc;
 
-use axum::extract::{ConnectInfo, FromRequestParts, MatchedPath, Request};
+use axum::extract::{ConnectInfo, FromRequestParts};
 use axum::http::request::Parts;
-use axum::http::{Extensions, HeaderMap, HeaderValue, Method, header};
+use axum::http::{Extensions, HeaderMap, HeaderValue, header};
 
 use super::Service;
+use super::access::Access;
 use super::client::Client;
 use super::error::{ApiError, ApiResult};
+use crate::schema::ErrorCode;
 use crate::schema::key::{Key, Scope, scopes_of};
 use crate::schema::wire::canonical::sha256_hex;
 use crate::schema::wire::problem::Problem;
@@ -40,7 +42,9 @@ impl Caller {
             return Ok(());
         }
         let detail = format!("the key does not allow `{}`", scope.name());
-        Err(Problem::new("forbidden-scope", detail).with("required_scope", scope.name()).into())
+        Err(Problem::new(ErrorCode::ForbiddenScope, detail)
+            .with("required_scope", scope.name())
+            .into())
     }
 
     /// Whom bounds for each client are counted for: with a key the one who has it, without keys the address that the
@@ -54,17 +58,17 @@ impl Caller {
     }
 }
 
-/// The service in the hand of the caller's tenant: what handlers work with. A request that came around the guard is
-/// nobody's.
+/// The service in the hand of the caller's tenant: what handlers work with. A request that came around the guard, or to a
+/// route of which nothing was declared, is nobody's.
 impl FromRequestParts<Service> for Service {
     type Rejection = ApiError;
 
     async fn from_request_parts(parts: &mut Parts, service: &Service) -> ApiResult<Self> {
-        match parts.extensions.get::<Caller>() {
-            Some(caller) => Ok(service.of_tenant(&caller.tenant)),
-            None if is_open(parts.uri.path()) => Ok(service.clone()),
-            None => Err(ApiError::internal("a request without a caller")),
+        if let Some(Access::Open) = parts.extensions.get() {
+            return Ok(service.clone());
         }
+        let caller = Caller::from_request_parts(parts, service).await?;
+        Ok(service.of_tenant(&caller.tenant))
     }
 }
 
@@ -72,24 +76,22 @@ impl FromRequestParts<Service> for Caller {
     type Rejection = ApiError;
 
     async fn from_request_parts(parts: &mut Parts, _: &Service) -> ApiResult<Self> {
-        let caller = parts.extensions.get::<Caller>().cloned();
-        caller.ok_or_else(|| ApiError::internal("a request without a caller"))
+        let caller = parts.extensions.get::<Caller>();
+        match (parts.extensions.get::<Access>(), caller) {
+            (Some(Access::Key { .. }), Some(caller)) => Ok(caller.clone()),
+            (Some(Access::Key { .. }), None) | (Some(Access::Open) | None, _) => {
+                Err(ApiError::internal("a request that nobody let in"))
+            }
+        }
     }
 }
 
-/// The caller of a request; none for probes and pages, which are open to all.
-pub async fn identify(
-    service: &Service,
-    path: &str,
-    headers: &HeaderMap,
-) -> ApiResult<Option<Caller>> {
-    if is_open(path) {
-        return Ok(None);
-    }
+/// The caller of a request.
+pub async fn identify(service: &Service, headers: &HeaderMap) -> ApiResult<Caller> {
     match bearer(headers) {
-        None if !service.config.asks_for_keys => Ok(Some(Caller::of_default_tenant(NO_KEY))),
+        None if !service.config.asks_for_keys => Ok(Caller::of_default_tenant(NO_KEY)),
         None => Err(unauthorized("send a key as `Authorization: Bearer KEY`")),
-        Some(given) => known(service, given).await.map(Some),
+        Some(given) => known(service, given).await,
     }
 }
 
@@ -110,7 +112,7 @@ async fn known(service: &Service, given: &str) -> ApiResult<Caller> {
 
 /// The refusal of one who is not known.
 pub fn unauthorized(detail: &str) -> ApiError {
-    let error = ApiError::new("unauthorized", detail);
+    let error = ApiError::new(ErrorCode::Unauthorized, detail);
     error.header(header::WWW_AUTHENTICATE, HeaderValue::from_static("Bearer"))
 }
 
@@ -119,28 +121,4 @@ pub fn bearer(headers: &HeaderMap) -> Option<&str> {
     let value = headers.get(header::AUTHORIZATION)?.to_str().ok()?;
     let (scheme, given) = value.split_once(' ')?;
     scheme.eq_ignore_ascii_case("bearer").then(|| given.trim())
-}
-
-/// What a request takes: keys and the audit log `admin`; looking `read`; jobs, and what is computed at once, `run`;
-/// everything else that changes something `write`.
-pub fn scope_of(request: &Request) -> Scope {
-    let path = request.extensions().get::<MatchedPath>().map_or("", MatchedPath::as_str);
-    if path.starts_with("/v1/keys") || path.starts_with("/v1/audit") {
-        return Scope::Admin;
-    }
-    match *request.method() {
-        Method::GET | Method::HEAD | Method::OPTIONS => Scope::Read,
-        _ if path.starts_with("/v1/jobs") || is_computed_at_once(path) => Scope::Run,
-        _ => Scope::Write,
-    }
-}
-
-/// Routes that answer to POST and change nothing.
-pub fn is_computed_at_once(route: &str) -> bool {
-    route.ends_with("/apply") || route.ends_with("/check")
-}
-
-/// Probes carry no key, and a browser cannot send one for the documentation, which holds no data.
-pub fn is_open(path: &str) -> bool {
-    matches!(path, "/healthz" | "/readyz" | "/openapi.json" | "/docs") || path.starts_with("/docs/")
 }

@@ -12,7 +12,7 @@ use super::{Service, job_input};
 use crate::jobs::{CheckReport, PredictInput, StoredMesh};
 use crate::library::upload::{Statement, Upload};
 use crate::schema::predict::check::CheckDocument;
-use crate::schema::{CaseDocument, Limits, PredictDocument, Problem};
+use crate::schema::{CaseDocument, ErrorCode, Limits, PredictDocument, Problem};
 use crate::store::NewCase;
 
 /// The part of a form that holds the document; the other parts are meshes.
@@ -24,8 +24,9 @@ pub(super) type Parts = Vec<(String, Bytes)>;
 /// The document and the meshes of a form.
 pub(super) fn split(mut parts: Parts) -> ApiResult<(Bytes, Parts)> {
     let at = parts.iter().position(|(name, _)| name == CASE_PART);
-    let at =
-        at.ok_or_else(|| ApiError::new("malformed-multipart", "the form has no part `case`"))?;
+    let at = at.ok_or_else(|| {
+        ApiError::new(ErrorCode::MalformedMultipart, "the form has no part `case`")
+    })?;
     let (_, document) = parts.remove(at);
     Ok((document, parts))
 }
@@ -81,7 +82,7 @@ impl Draft {
             return Ok(Draft { document, uploads });
         }
         let detail = format!("the case refers to no part called {}", unused.join(", "));
-        Err(ApiError::new("unused-part", detail))
+        Err(ApiError::new(ErrorCode::UnusedPart, detail))
     }
 
     /// Whether the document and its meshes make sense; `None` where only a plan can tell.
@@ -127,7 +128,7 @@ impl Draft {
                 return Ok(());
             }
             let detail = "a mesh of the case came or went meanwhile; send the case again";
-            return Err(ApiError::new("conflict", detail));
+            return Err(ApiError::new(ErrorCode::Conflict, detail));
         }
         for (row, mesh) in new.meshes.iter().zip(meshes) {
             service.library.keep(&row.blob, mesh.shape);
@@ -148,7 +149,7 @@ fn in_part(error: ApiError, name: &str) -> ApiError {
 /// Loose parts may be held by the sets that a plan names.
 fn needs_a_plan(problem: &Problem) -> bool {
     !problem.errors.is_empty()
-        && problem.errors.iter().all(|error| error.code == "underconstrained")
+        && problem.errors.iter().all(|error| error.code == ErrorCode::Underconstrained)
 }
 
 /// Checks a prediction over stored meshes and those of a request.

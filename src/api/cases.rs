@@ -7,7 +7,6 @@ use axum::http::{HeaderMap, StatusCode, header};
 use axum::response::IntoResponse;
 use serde::{Deserialize, Serialize};
 use utoipa::{IntoParams, ToSchema};
-use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 use super::case_draft::{Draft, checked, split};
@@ -17,11 +16,13 @@ use super::idempotency::new_id;
 use super::meshes::document_of;
 use super::paging::Page;
 use super::parameters::{Id, Parameters};
-use super::{Service, body, conditional, job_input, json, json_only, time, with_header};
+use super::resources::Resources;
+use super::{Service, body, conditional, job_input, json, time, with_header};
+use crate::schema::key::Scope;
 use crate::schema::mesh::MeshDocument;
 use crate::schema::predict::check::CheckDocument;
 use crate::schema::wire::strict;
-use crate::schema::{CaseDocument, Faults, PredictDocument};
+use crate::schema::{CaseDocument, ErrorCode, Faults, PredictDocument};
 use crate::store::{CaseRow, Change};
 
 const JSON: &str = "application/json";
@@ -29,9 +30,14 @@ const SVG: &str = "image/svg+xml";
 const MULTIPART: &str = "multipart/form-data";
 const READ_HERE: &str = "application/json, multipart/form-data";
 
-pub fn router() -> OpenApiRouter<Service> {
-    let router = OpenApiRouter::new().routes(routes!(create, list));
-    json_only(router.routes(routes!(show, remove))).routes(routes!(check))
+pub fn router() -> Resources {
+    let json = Resources::new()
+        .looks(Scope::Read, routes!(list))
+        .changes(Scope::Write, routes!(create))
+        .looks(Scope::Read, routes!(show))
+        .changes(Scope::Write, routes!(remove))
+        .json_only();
+    json.looks(Scope::Run, routes!(check))
 }
 
 /// A case as it is kept.
@@ -249,7 +255,7 @@ async fn check(service: Service, Id(id): Id, request: Request) -> ApiResult {
     if spec.case.as_ref().is_some_and(|case| *case != id) {
         let mut faults = Faults::default();
         let at = crate::schema::Pointer::root().key("case");
-        faults.add(&at, "other-case", "the spec names another case than the address");
+        faults.add(&at, ErrorCode::OtherCase, "the spec names another case than the address");
         faults.into_result()?;
     }
     let input = job_input::predict_input(&service, &row, spec).await?;

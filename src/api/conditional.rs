@@ -5,6 +5,7 @@ use axum::response::{IntoResponse, Response};
 use bytes::Bytes;
 
 use super::error::{ApiError, ApiResult};
+use crate::schema::ErrorCode;
 use crate::schema::wire::problem::Problem;
 
 /// The strong entity tag of a version or a hash.
@@ -30,7 +31,7 @@ fn tags(headers: &HeaderMap, name: header::HeaderName) -> Option<Vec<String>> {
 pub fn require_match(headers: &HeaderMap, current: &str) -> ApiResult<()> {
     let Some(tags) = tags(headers, header::IF_MATCH) else {
         let detail = "send If-Match with the ETag of the version that is meant, or with *";
-        return Err(Problem::new("precondition-required", detail)
+        return Err(Problem::new(ErrorCode::PreconditionRequired, detail)
             .with("etag", format!("\"{current}\""))
             .into());
     };
@@ -45,7 +46,7 @@ pub fn require_match(headers: &HeaderMap, current: &str) -> ApiResult<()> {
 pub fn other_version(current: &str) -> ApiError {
     let quoted = format!("\"{current}\"");
     let detail = format!("the current version is {quoted}");
-    Problem::new("precondition-failed", detail).with("etag", quoted).into()
+    Problem::new(ErrorCode::PreconditionFailed, detail).with("etag", quoted).into()
 }
 
 /// True when the client has this version already.
@@ -151,7 +152,8 @@ fn single_range(text: &str, total: u64) -> ApiResult<Option<(u64, u64)>> {
 
 fn outside(total: u64) -> ApiError {
     let detail = format!("the file has {total} bytes");
-    let error: ApiError = Problem::new("range-not-satisfiable", detail).with("bytes", total).into();
+    let error: ApiError =
+        Problem::new(ErrorCode::RangeNotSatisfiable, detail).with("bytes", total).into();
     match HeaderValue::from_str(&format!("bytes */{total}")) {
         Ok(value) => error.header(header::CONTENT_RANGE, value),
         Err(_) => error,
@@ -178,7 +180,7 @@ mod tests {
         assert!(!passes("\"2\""));
         assert!(!passes("3"));
         let missing = require_match(&HeaderMap::new(), "3").unwrap_err();
-        assert_eq!(missing.problem.code, "precondition-required");
+        assert_eq!(missing.problem.code, ErrorCode::PreconditionRequired);
     }
 
     #[test]

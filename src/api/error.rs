@@ -1,69 +1,13 @@
-//! Every error to a status, a code and a sentence (RFC 9457). The only place that knows which status
-//! belongs to which code.
+//! Errors as answers: a status, a code and a sentence (RFC 9457).
 
 use axum::http::{HeaderName, HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 
-use crate::schema::wire::problem::{Problem, ProblemKind};
+use crate::schema::ErrorCode;
+use crate::schema::wire::problem::Problem;
 use crate::store::StoreError;
 
-/// What stands before the code in the `type` of a problem.
-const PROBLEM_BASE: &str = "https://facies.invalid/problems/";
 const RETRY_AFTER_S: u32 = 5;
-
-/// Status and title of a code.
-fn kind_of(code: &str) -> (StatusCode, &'static str) {
-    match code {
-        "malformed-json" => (StatusCode::BAD_REQUEST, "The body is not valid JSON"),
-        "malformed-multipart" => (StatusCode::BAD_REQUEST, "The body is not valid multipart"),
-        "malformed-request" => (StatusCode::BAD_REQUEST, "The request could not be read"),
-        "digest-mismatch" => (StatusCode::BAD_REQUEST, "The body differs from its Content-Digest"),
-        "invalid-parameter" => (StatusCode::BAD_REQUEST, "A parameter is not valid"),
-        "unauthorized" => (StatusCode::UNAUTHORIZED, "A key is needed"),
-        "forbidden-scope" => (StatusCode::FORBIDDEN, "The key does not allow this"),
-        "not-found" => (StatusCode::NOT_FOUND, "There is nothing here"),
-        "no-such-job" => (StatusCode::NOT_FOUND, "There is no such job"),
-        "no-such-output" => (StatusCode::NOT_FOUND, "The job has no such file"),
-        "response-not-built" => (StatusCode::NOT_FOUND, "The case has no response"),
-        "result-not-ready" => (StatusCode::NOT_FOUND, "The job has not ended"),
-        "method-not-allowed" => {
-            (StatusCode::METHOD_NOT_ALLOWED, "The resource does not answer to this method")
-        }
-        "not-acceptable" => (StatusCode::NOT_ACCEPTABLE, "The resource has no such representation"),
-        "request-timeout" => (StatusCode::REQUEST_TIMEOUT, "The body came too slowly"),
-        "conflict-in-use" => (StatusCode::CONFLICT, "Something refers to it"),
-        "response-stale" => (StatusCode::CONFLICT, "The response is older than its case"),
-        "conflict" => (StatusCode::CONFLICT, "It changed meanwhile"),
-        "precondition-failed" => (StatusCode::PRECONDITION_FAILED, "It has another version"),
-        "precondition-required" => (
-            StatusCode::PRECONDITION_REQUIRED,
-            "The version that is meant has to be named in If-Match",
-        ),
-        "gone" => (StatusCode::GONE, "It was erased"),
-        "rate-limited" | "too-many-streams" => {
-            (StatusCode::TOO_MANY_REQUESTS, "The client asks for more than one may have")
-        }
-        "payload-too-large" => (StatusCode::PAYLOAD_TOO_LARGE, "The body is too large"),
-        "uri-too-long" => (StatusCode::URI_TOO_LONG, "The address is too long"),
-        "unsupported-media-type" => {
-            (StatusCode::UNSUPPORTED_MEDIA_TYPE, "The body is of a kind that is not read here")
-        }
-        "range-not-satisfiable" => {
-            (StatusCode::RANGE_NOT_SATISFIABLE, "The range is outside the file")
-        }
-        "header-too-large" => {
-            (StatusCode::REQUEST_HEADER_FIELDS_TOO_LARGE, "The headers are too large")
-        }
-        "internal" => (StatusCode::INTERNAL_SERVER_ERROR, "Something broke here"),
-        "integrity" => (StatusCode::INTERNAL_SERVER_ERROR, "A stored file is damaged"),
-        "not-ready" | "queue-full" | "shutting-down" => {
-            (StatusCode::SERVICE_UNAVAILABLE, "Come back later")
-        }
-        "storage-full" => (StatusCode::INSUFFICIENT_STORAGE, "The disk is full"),
-        // Everything else is something wrong with what was sent, and the code says what.
-        _ => (StatusCode::UNPROCESSABLE_ENTITY, "The request was understood and is refused"),
-    }
-}
 
 /// A refusal on its way out. The outermost layer writes its body, because it knows the request's id.
 #[derive(Clone, Debug)]
@@ -75,16 +19,16 @@ pub struct ApiError {
 pub type ApiResult<T = Response> = Result<T, ApiError>;
 
 impl ApiError {
-    pub fn new(code: &'static str, detail: impl Into<String>) -> Self {
+    pub fn new(code: ErrorCode, detail: impl Into<String>) -> Self {
         Problem::new(code, detail).into()
     }
 
     pub fn not_found(what: &str) -> Self {
-        ApiError::new("not-found", format!("there is no such {what}"))
+        ApiError::new(ErrorCode::NotFound, format!("there is no such {what}"))
     }
 
     pub fn invalid_parameter(name: &str, detail: impl Into<String>) -> Self {
-        Problem::new("invalid-parameter", detail).with("parameter", name).into()
+        Problem::new(ErrorCode::InvalidParameter, detail).with("parameter", name).into()
     }
 
     pub fn header(mut self, name: HeaderName, value: HeaderValue) -> Self {
@@ -100,13 +44,13 @@ impl ApiError {
 
     /// The same request may succeed later.
     pub fn out_of_reach() -> Self {
-        ApiError::new("not-ready", "the database or the store of blobs is out of reach")
+        ApiError::new(ErrorCode::NotReady, "the database or the store of blobs is out of reach")
     }
 
     /// An error of ours, told in the log only.
     pub fn internal(reason: impl std::fmt::Display) -> Self {
         tracing::error!(%reason, "internal error");
-        ApiError::new("internal", "the log has the details under the request's id")
+        ApiError::new(ErrorCode::Internal, "the log has the details under the request's id")
     }
 }
 
@@ -120,7 +64,7 @@ impl From<StoreError> for ApiError {
     fn from(error: StoreError) -> Self {
         if error.is_full() {
             tracing::error!(%error, "storage is full");
-            return ApiError::new("storage-full", "the disk of the service is full");
+            return ApiError::new(ErrorCode::StorageFull, "the disk of the service is full");
         }
         if error.is_unavailable() {
             tracing::warn!(%error, "storage is busy");
@@ -129,7 +73,7 @@ impl From<StoreError> for ApiError {
         if let StoreError::Integrity { .. } | StoreError::Missing { .. } = error {
             tracing::error!(%error, "a blob is damaged");
             return ApiError::new(
-                "integrity",
+                ErrorCode::Integrity,
                 "the stored bytes are lost or differ from their hash",
             );
         }
@@ -139,7 +83,8 @@ impl From<StoreError> for ApiError {
 
 impl IntoResponse for ApiError {
     fn into_response(self) -> Response {
-        let (status, _) = kind_of(self.problem.code);
+        let status = StatusCode::from_u16(self.problem.code.status())
+            .unwrap_or(StatusCode::INTERNAL_SERVER_ERROR);
         let mut response = status.into_response();
         if status == StatusCode::SERVICE_UNAVAILABLE {
             response.headers_mut().insert(header::RETRY_AFTER, HeaderValue::from(RETRY_AFTER_S));
@@ -159,13 +104,7 @@ pub fn with_problem_body(mut response: Response, request_id: &str) -> Response {
         return response;
     }
     let problem = told.unwrap_or_else(|| problem_for(status));
-    let (_, title) = kind_of(problem.code);
-    let kind = ProblemKind {
-        base: PROBLEM_BASE.to_owned(),
-        title: title.to_owned(),
-        status: status.as_u16(),
-    };
-    let document = problem.into_document(kind, Some(request_id.to_owned()));
+    let document = problem.into_document(status.as_u16(), Some(request_id.to_owned()));
     let body = serde_json::to_vec(&document).unwrap_or_default();
     let (mut parts, _) = response.into_parts();
     parts.headers.remove(header::CONTENT_LENGTH);
@@ -179,18 +118,20 @@ pub fn with_problem_body(mut response: Response, request_id: &str) -> Response {
 /// For an error that came without a problem of ours.
 fn problem_for(status: StatusCode) -> Problem {
     match status {
-        StatusCode::NOT_FOUND => Problem::new("not-found", "there is no such resource"),
+        StatusCode::NOT_FOUND => Problem::new(ErrorCode::NotFound, "there is no such resource"),
         StatusCode::METHOD_NOT_ALLOWED => Problem::new(
-            "method-not-allowed",
+            ErrorCode::MethodNotAllowed,
             "the header Allow names the methods that are answered",
         ),
-        StatusCode::PAYLOAD_TOO_LARGE => Problem::new("payload-too-large", "the body is too large"),
+        StatusCode::PAYLOAD_TOO_LARGE => {
+            Problem::new(ErrorCode::PayloadTooLarge, "the body is too large")
+        }
         StatusCode::UNSUPPORTED_MEDIA_TYPE => {
-            Problem::new("unsupported-media-type", "the Content-Type is not read here")
+            Problem::new(ErrorCode::UnsupportedMediaType, "the Content-Type is not read here")
         }
         status if status.is_client_error() => {
-            Problem::new("malformed-request", "the request could not be read")
+            Problem::new(ErrorCode::MalformedRequest, "the request could not be read")
         }
-        _ => Problem::new("internal", "the log has the details under the request's id"),
+        _ => Problem::new(ErrorCode::Internal, "the log has the details under the request's id"),
     }
 }

@@ -11,16 +11,17 @@ use axum::response::{IntoResponse, Response};
 use futures::Stream;
 use tokio::sync::watch;
 use tokio::time::Instant;
-use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 use super::client::Client;
 use super::error::{ApiError, ApiResult};
 use super::guard::check_accept;
 use super::parameters::{Id, no_such_job};
+use super::resources::Resources;
 use super::streams::StreamPlace;
 use super::{Service, time};
 use crate::schema::job::{JobEvent, JobStatus};
+use crate::schema::key::Scope;
 use crate::store::{EventRow, Store, StoreError};
 
 const MEDIA_TYPE: &str = "text/event-stream";
@@ -34,8 +35,8 @@ const LOOK: Duration = Duration::from_secs(1);
 /// And not more often than this, however much is announced.
 const PAUSE: Duration = Duration::from_millis(100);
 
-pub fn router() -> OpenApiRouter<Service> {
-    OpenApiRouter::new().routes(routes!(follow))
+pub fn router() -> Resources {
+    Resources::new().looks(Scope::Read, routes!(follow))
 }
 
 /// The events of a job, from the first or from the one after `Last-Event-ID`, until the job has ended. `event` is

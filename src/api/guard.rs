@@ -1,5 +1,6 @@
 //! What surrounds every request: its id, its log line, bounds on its head, the key, and problem bodies.
 
+use std::sync::Arc;
 use std::time::Instant;
 
 use axum::extract::{MatchedPath, Request, State};
@@ -8,12 +9,15 @@ use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
 use tracing::Instrument;
 
+use super::access::{Access, Audit, Declared, Found};
 use super::caller::{self, Caller};
 use super::deeds::{carry_out, deed_of};
 use super::error::{ApiError, ApiResult, with_problem_body};
 use super::rate::Left;
 use super::{Service, body};
 use crate::metrics::http;
+use crate::schema::ErrorCode;
+use crate::schema::key::Scope;
 use crate::schema::wire::problem::Problem;
 use crate::traces::{self, TraceParent};
 
@@ -22,8 +26,15 @@ const TRACE_PARENT: &str = "traceparent";
 const LONGEST_URI: usize = 8 << 10;
 const LARGEST_HEAD: usize = 16 << 10;
 
+/// What the outermost layer needs to know.
+#[derive(Clone)]
+pub struct Door {
+    pub service: Service,
+    pub declared: Arc<Declared>,
+}
+
 /// The outermost layer: names the request, logs it, and writes the bodies of errors.
-pub async fn surround(State(service): State<Service>, request: Request, next: Next) -> Response {
+pub async fn surround(State(door): State<Door>, request: Request, next: Next) -> Response {
     let started = Instant::now();
     let id = request_id(request.headers());
     let method = request.method().clone();
@@ -39,26 +50,9 @@ pub async fn surround(State(service): State<Service>, request: Request, next: Ne
     let mut request = Request::from_parts(head, body);
     request.extensions_mut().insert(trace.place());
     let answered = async {
-        let response = match admit(&service, &mut request).await {
-            Ok(Admitted { left, caller }) => {
-                let allowed =
-                    caller.as_ref().map_or(Ok(()), |c| c.require(caller::scope_of(&request)));
-                let deed = caller.and_then(|c| deed_of(&c, &request, &id, allowed.is_err()));
-                let run = async move {
-                    match allowed {
-                        Ok(()) => next.run(request).await,
-                        Err(error) => error.into_response(),
-                    }
-                };
-                let mut response = match deed {
-                    Some(deed) => carry_out(&service.store, deed, run).await,
-                    None => run.await,
-                };
-                if let Some(left) = left {
-                    left.tell(&mut response);
-                }
-                response
-            }
+        let response = match admit(&door, &mut request).await {
+            Ok(Admitted::ToAll) => next.run(request).await,
+            Ok(Admitted::Known(entry)) => entry.pass(&door.service, request, next, &id).await,
             Err(error) => error.into_response(),
         };
         if response.status().is_client_error() {
@@ -106,37 +100,75 @@ fn trace_parent(headers: &HeaderMap) -> Option<TraceParent> {
     TraceParent::parse(headers.get(TRACE_PARENT)?.to_str().ok()?)
 }
 
-/// What is known of a request that is let in.
-struct Admitted {
-    left: Option<Left>,
-    caller: Option<Caller>,
+/// A request that is let in.
+enum Admitted {
+    /// To what is open to all.
+    ToAll,
+    Known(Entry),
 }
 
-/// Lets a request in whose head is sound, whose caller is known and has requests left; whose it is stands beside it.
-async fn admit(service: &Service, request: &mut Request) -> ApiResult<Admitted> {
+/// What is known of a request with a caller.
+struct Entry {
+    caller: Caller,
+    left: Option<Left>,
+    scope: Scope,
+    audit: Audit,
+}
+
+/// Lets a request in whose head is sound, whose caller is known and has requests left; whose it is, and what was declared
+/// of its route, stands beside it.
+async fn admit(door: &Door, request: &mut Request) -> ApiResult<Admitted> {
     check_head(request)?;
-    let Some(caller) = caller::identify(service, request.uri().path(), request.headers()).await?
-    else {
-        return Ok(Admitted { left: None, caller: None });
-    };
+    let route = request.extensions().get::<MatchedPath>().map(MatchedPath::as_str);
+    let Found { access, is_answered } = door.declared.find(route, request.method())?;
+    if is_answered {
+        request.extensions_mut().insert(access);
+    }
+    let Access::Key { scope, audit } = access else { return Ok(Admitted::ToAll) };
+    let caller = caller::identify(&door.service, request.headers()).await?;
     let client = caller.client(request.extensions());
     request.extensions_mut().insert(client.clone());
     request.extensions_mut().insert(caller.clone());
-    let left = service.rates.take(client)?;
-    Ok(Admitted { left, caller: Some(caller) })
+    let left = door.service.rates.take(client)?;
+    Ok(Admitted::Known(Entry { caller, left, scope, audit }))
+}
+
+impl Entry {
+    /// Hands the request on where its key allows it. What changes something is noted, and what is not allowed.
+    async fn pass(self, service: &Service, request: Request, next: Next, id: &str) -> Response {
+        let allowed = self.caller.require(self.scope);
+        let is_noted = allowed.is_err() || self.audit == Audit::Noted;
+        let deed = is_noted.then(|| deed_of(&self.caller, &request, id)).flatten();
+        let run = async move {
+            match allowed {
+                Ok(()) => next.run(request).await,
+                Err(error) => error.into_response(),
+            }
+        };
+        let mut response = match deed {
+            Some(deed) => carry_out(&service.store, deed, run).await,
+            None => run.await,
+        };
+        if let Some(left) = self.left {
+            left.tell(&mut response);
+        }
+        response
+    }
 }
 
 fn check_head(request: &Request) -> ApiResult<()> {
     let uri_length = request.uri().path_and_query().map_or(0, |uri| uri.as_str().len());
     if uri_length > LONGEST_URI {
         let detail = format!("the address has {uri_length} bytes, {LONGEST_URI} are allowed");
-        return Err(Problem::new("uri-too-long", detail).with("limit", LONGEST_URI).into());
+        return Err(Problem::new(ErrorCode::UriTooLong, detail).with("limit", LONGEST_URI).into());
     }
     let head: usize =
         request.headers().iter().map(|(name, value)| name.as_str().len() + value.len()).sum();
     if head > LARGEST_HEAD {
         let detail = format!("the headers have {head} bytes, {LARGEST_HEAD} are allowed");
-        return Err(Problem::new("header-too-large", detail).with("limit", LARGEST_HEAD).into());
+        return Err(Problem::new(ErrorCode::HeaderTooLarge, detail)
+            .with("limit", LARGEST_HEAD)
+            .into());
     }
     Ok(())
 }
@@ -155,7 +187,7 @@ pub fn check_accept(headers: &HeaderMap, offered: &str) -> Result<(), ApiError> 
         return Ok(());
     }
     let detail = format!("the answer is {offered}, which the header Accept does not allow");
-    Err(ApiError::new("not-acceptable", detail))
+    Err(ApiError::new(ErrorCode::NotAcceptable, detail))
 }
 
 /// Which of several media types a client likes best; of equals the one it names most precisely, then the first.
@@ -169,7 +201,7 @@ pub fn preferred(headers: &HeaderMap, offered: &[&str]) -> Result<usize, ApiErro
         }
     }
     let detail = || format!("the header Accept allows none of {}", offered.join(", "));
-    best.map(|(number, ..)| number).ok_or_else(|| ApiError::new("not-acceptable", detail()))
+    best.map(|(number, ..)| number).ok_or_else(|| ApiError::new(ErrorCode::NotAcceptable, detail()))
 }
 
 /// How precisely a client names a media type, and how well it likes it, from 0 to 1.

@@ -6,11 +6,12 @@ use axum::http::StatusCode;
 use axum::response::Response;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
-use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 use super::error::{ApiError, ApiResult};
-use super::{Service, json, json_only};
+use super::resources::Resources;
+use super::{Service, json};
+use crate::schema::ErrorCode;
 use crate::schema::wire::problem::Problem;
 use crate::store::StoreError;
 
@@ -23,8 +24,8 @@ pub struct Health {
     pub status: String,
 }
 
-pub fn router() -> OpenApiRouter<Service> {
-    json_only(OpenApiRouter::new().routes(routes!(healthz)).routes(routes!(readyz)))
+pub fn router() -> Resources {
+    Resources::new().open(routes!(healthz)).open(routes!(readyz)).json_only()
 }
 
 /// Whether the process is alive; touches nothing else.
@@ -55,7 +56,7 @@ async fn readyz(service: Service) -> ApiResult {
         return Ok(json(StatusCode::OK, &Health { status: "ok".into() }));
     }
     let detail = format!("failing: {}", failing.join(", "));
-    Err(ApiError::from(Problem::new("not-ready", detail).with("checks", failing)))
+    Err(ApiError::from(Problem::new(ErrorCode::NotReady, detail).with("checks", failing)))
 }
 
 async fn in_time(check: impl Future<Output = Result<(), StoreError>>) -> Result<(), StoreError> {

@@ -6,6 +6,7 @@ use axum::http::HeaderMap;
 
 use super::error::{ApiError, ApiResult};
 use super::{Service, gone};
+use crate::schema::ErrorCode;
 use crate::schema::wire::canonical::sha256_hex;
 use crate::schema::wire::problem::Problem;
 use crate::store::Reserved;
@@ -41,7 +42,7 @@ pub async fn new_id(
         },
         Reserved::Other => {
             let detail = "another request was sent with this Idempotency-Key";
-            Err(ApiError::new("idempotency-mismatch", detail))
+            Err(ApiError::new(ErrorCode::IdempotencyMismatch, detail))
         }
     }
 }
@@ -50,6 +51,7 @@ fn key(headers: &HeaderMap) -> ApiResult<Option<&str>> {
     let Some(value) = headers.get(HEADER) else { return Ok(None) };
     let text = value.to_str().ok().filter(|text| (1..=LONGEST).contains(&text.len()));
     let detail = format!("an Idempotency-Key has 1 to {LONGEST} visible characters");
-    let wrong = || Problem::new("invalid-parameter", detail).with("parameter", "Idempotency-Key");
+    let wrong =
+        || Problem::new(ErrorCode::InvalidParameter, detail).with("parameter", "Idempotency-Key");
     text.map(Some).ok_or_else(|| wrong().into())
 }

@@ -11,6 +11,7 @@ use crate::jobs::{
     CompareInput, JobError, JobInput, MeshSource, OptimiseInput, PredictInput, ResponseInput,
     SourceError, StudyInput,
 };
+use crate::schema::ErrorCode;
 use crate::schema::job::{JobKind, JobStatus};
 use crate::schema::predict::result::EngineDocument;
 use crate::schema::study::document::{SceneReference, StudyKind};
@@ -188,12 +189,12 @@ pub async fn of_study(service: &Service, mut spec: StudyDocument) -> ApiResult<N
 /// The report of the study that another is to be held against.
 async fn baseline(service: &Service, job: &str) -> ApiResult<ReportDocument> {
     const AT: &str = "/baseline";
-    let id = id(job).ok_or_else(|| fault(AT, "unknown-job", "there is no such job"))?;
+    let id = id(job).ok_or_else(|| fault(AT, ErrorCode::UnknownJob, "there is no such job"))?;
     if service.store.job(&id).await?.is_none() {
-        return Err(fault(AT, "unknown-job", "there is no such job"));
+        return Err(fault(AT, ErrorCode::UnknownJob, "there is no such job"));
     }
     let found = super::report::stored_report(service, &id).await?;
-    let missing = || fault(AT, "no-such-output", "the job is no study that has ended well");
+    let missing = || fault(AT, ErrorCode::NoSuchOutput, "the job is no study that has ended well");
     Ok(found.ok_or_else(missing)?.1)
 }
 
@@ -269,7 +270,7 @@ async fn stored_plan(
         Some(id) => service.store.plan(case, &id).await?,
         None => None,
     };
-    let unknown = || fault("/plan_id", "unknown-plan", "the case has no such plan");
+    let unknown = || fault("/plan_id", ErrorCode::UnknownPlan, "the case has no such plan");
     let found = found.ok_or_else(unknown)?;
     serde_json::from_str(&found.document).map(Some).map_err(ApiError::internal)
 }
@@ -294,7 +295,7 @@ async fn require_case(service: &Service, case: &str) -> ApiResult<CaseRow> {
         Some(id) => service.store.case(&id).await?,
         None => None,
     };
-    row.ok_or_else(|| fault("/case", "unknown-case", "there is no such case"))
+    row.ok_or_else(|| fault("/case", ErrorCode::UnknownCase, "there is no such case"))
 }
 
 /// The hash of a mesh that has to be there.
@@ -303,7 +304,7 @@ async fn require_mesh(service: &Service, at: &str, mesh: &str) -> ApiResult<Stri
         Some(id) => service.store.mesh(&id).await?,
         None => None,
     };
-    let row = row.ok_or_else(|| fault(at, "unknown-mesh", "there is no such mesh"))?;
+    let row = row.ok_or_else(|| fault(at, ErrorCode::UnknownMesh, "there is no such mesh"))?;
     Ok(row.sha256)
 }
 
@@ -317,17 +318,18 @@ async fn predicted_skin(
         Some(id) => service.store.job(&id).await?,
         None => None,
     };
-    let row = row.ok_or_else(|| fault(at, "unknown-job", "there is no such job"))?;
+    let row = row.ok_or_else(|| fault(at, ErrorCode::UnknownJob, "there is no such job"))?;
     if row.status != JobStatus::Successful {
         let detail = format!("the job is {}, and has to be successful", row.status.name());
-        return Err(fault(at, "result-not-ready", &detail));
+        return Err(fault(at, ErrorCode::ResultNotReady, &detail));
     }
     let skin = service.store.job_file(&row.id, "skin.vtp").await?;
-    let skin = skin.ok_or_else(|| fault(at, "no-such-output", "the job wrote no skin.vtp"))?;
+    let skin =
+        skin.ok_or_else(|| fault(at, ErrorCode::NoSuchOutput, "the job wrote no skin.vtp"))?;
     Ok((skin.blob, row.case_id))
 }
 
-fn fault(at: &str, code: &str, detail: &str) -> ApiError {
+fn fault(at: &str, code: ErrorCode, detail: &str) -> ApiError {
     let mut faults = Faults::default();
     faults.add(&Pointer::from_text(at), code, detail);
     match faults.into_result() {

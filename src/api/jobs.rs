@@ -5,7 +5,6 @@ use axum::http::{HeaderMap, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use serde::{Deserialize, Serialize};
 use utoipa::{IntoParams, ToSchema};
-use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 use super::error::{ApiError, ApiResult};
@@ -14,9 +13,12 @@ use super::job_view::status_info;
 use super::paging::Page;
 use super::parameters::{Id, Parameters, id, no_such_job};
 use super::prefer::{wait_for_end, wanted_wait};
+use super::resources::Resources;
 use super::results::RETRY_AFTER_S;
-use super::{Service, body, conditional, job_input, json, json_only, with_header};
+use super::{Service, body, conditional, job_input, json, with_header};
+use crate::schema::ErrorCode;
 use crate::schema::job::{JobKind, JobStatus, StatusInfo};
+use crate::schema::key::Scope;
 use crate::schema::predict::document::JobDocument;
 use crate::store::{Dismissal, Enqueued, JobFilter, JobRow};
 use crate::traces::TraceParent;
@@ -24,9 +26,13 @@ use crate::traces::TraceParent;
 /// Jobs that may wait at the same time.
 const LONGEST_QUEUE: i64 = 10_000;
 
-pub fn router() -> OpenApiRouter<Service> {
-    let router = OpenApiRouter::new().routes(routes!(create, list));
-    json_only(router.routes(routes!(show, dismiss)))
+pub fn router() -> Resources {
+    Resources::new()
+        .looks(Scope::Read, routes!(list))
+        .changes(Scope::Run, routes!(create))
+        .looks(Scope::Read, routes!(show))
+        .changes(Scope::Run, routes!(dismiss))
+        .json_only()
 }
 
 #[derive(Serialize, ToSchema)]
@@ -105,11 +111,11 @@ async fn create(service: Service, request: Request) -> ApiResult {
         }
         Enqueued::QueueFull => {
             let detail = format!("{LONGEST_QUEUE} jobs are waiting");
-            return Err(ApiError::new("queue-full", detail));
+            return Err(ApiError::new(ErrorCode::QueueFull, detail));
         }
         Enqueued::InputGone => {
             let detail = "the case or a mesh of the job was deleted meanwhile";
-            return Err(ApiError::new("conflict", detail));
+            return Err(ApiError::new(ErrorCode::Conflict, detail));
         }
     };
     tracing::info!(job.id = %id, deduplicated, "job accepted");

@@ -5,20 +5,24 @@ use axum::http::{StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use serde::Serialize;
 use utoipa::ToSchema;
-use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 use super::error::{ApiError, ApiResult};
 use super::paging::PageParameters;
 use super::parameters::{KeyId, Parameters};
-use super::{Service, body, json, json_only, time, with_header};
+use super::resources::Resources;
+use super::{Service, body, json, time, with_header};
 use crate::schema::key::{Key, KeyDocument, RotationDocument, Scope, is_key_id, scopes_of};
 use crate::schema::wire::strict;
 use crate::store::{KeyRow, Store};
 
-pub fn router() -> OpenApiRouter<Service> {
-    let router = OpenApiRouter::new().routes(routes!(list, create)).routes(routes!(revoke));
-    json_only(router.routes(routes!(rotate)))
+pub fn router() -> Resources {
+    Resources::new()
+        .looks(Scope::Admin, routes!(list))
+        .changes(Scope::Admin, routes!(create))
+        .changes(Scope::Admin, routes!(revoke))
+        .changes(Scope::Admin, routes!(rotate))
+        .json_only()
 }
 
 /// A key without its secret.

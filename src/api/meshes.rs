@@ -6,14 +6,16 @@ use axum::response::IntoResponse;
 use bytes::Bytes;
 use serde::Deserialize;
 use utoipa::IntoParams;
-use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 use super::error::{ApiError, ApiResult};
 use super::parameters::{Id, Parameters};
-use super::{Service, body, conditional, json, json_only, time, with_header};
+use super::resources::Resources;
+use super::{Service, body, conditional, json, time, with_header};
 use crate::library::upload::{ExportFormat, Statement, Upload, export, read_upload};
+use crate::schema::ErrorCode;
 use crate::schema::case::document::{FrameName, LengthUnit};
+use crate::schema::key::Scope;
 use crate::schema::mesh::{MeshDocument, MeshKind};
 use crate::schema::wire::canonical::sha256_hex;
 use crate::store::{MeshDeletion, MeshRow};
@@ -22,9 +24,13 @@ const READ_HERE: &str = "model/stl, model/obj, application/vnd.ply, application/
      application/vnd.vtk.xml, application/x-gmsh, application/x-nrrd, application/octet-stream, multipart/form-data";
 const MULTIPART: &str = "multipart/form-data";
 
-pub fn router() -> OpenApiRouter<Service> {
-    let json = OpenApiRouter::new().routes(routes!(upload)).routes(routes!(show, remove));
-    json_only(json).routes(routes!(content))
+pub fn router() -> Resources {
+    let json = Resources::new()
+        .changes(Scope::Write, routes!(upload))
+        .looks(Scope::Read, routes!(show))
+        .changes(Scope::Write, routes!(remove))
+        .json_only();
+    json.looks(Scope::Read, routes!(content))
 }
 
 /// What an upload says about its bytes.
@@ -120,7 +126,7 @@ fn single_part(mut parts: Vec<(String, Bytes)>) -> ApiResult<Bytes> {
         (last, others) => {
             let count = others + usize::from(last.is_some());
             let detail = format!("the form has {count} parts and has to have one, the file");
-            Err(ApiError::new("malformed-multipart", detail))
+            Err(ApiError::new(ErrorCode::MalformedMultipart, detail))
         }
     }
 }
@@ -153,7 +159,8 @@ async fn store(service: &Service, upload: Upload) -> ApiResult<(MeshRow, bool)> 
     let is_new = service.store.add_mesh(&upload.row).await?;
     let (hash, options) = (&upload.row.sha256, &upload.row.options);
     let row = service.store.mesh_by_content(hash, options).await?;
-    let row = row.ok_or_else(|| ApiError::new("conflict", "the mesh was deleted meanwhile"))?;
+    let row =
+        row.ok_or_else(|| ApiError::new(ErrorCode::Conflict, "the mesh was deleted meanwhile"))?;
     service.library.keep(&row.blob, upload.mesh.shape);
     tracing::info!(mesh.id = %row.id, mesh.nodes = upload.document.report.nodes, is_new, "mesh stored");
     Ok((row, is_new))
@@ -280,7 +287,7 @@ async fn remove(service: Service, Id(id): Id) -> ApiResult {
             Ok(StatusCode::NO_CONTENT.into_response())
         }
         MeshDeletion::InUse => {
-            Err(ApiError::new("conflict-in-use", "a case or a job refers to this mesh"))
+            Err(ApiError::new(ErrorCode::ConflictInUse, "a case or a job refers to this mesh"))
         }
         MeshDeletion::NotFound => Err(ApiError::not_found("mesh")),
     }

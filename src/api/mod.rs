@@ -1,6 +1,7 @@
 //! HTTP: one file for each resource, each with its `router()`.
 
 mod about;
+mod access;
 pub mod admin;
 mod audit;
 mod body;
@@ -31,6 +32,7 @@ mod plans;
 mod prefer;
 mod rate;
 mod report;
+mod resources;
 mod responses;
 mod results;
 mod streams;
@@ -41,12 +43,11 @@ use std::sync::Arc;
 use axum::Router;
 use axum::extract::DefaultBodyLimit;
 use axum::http::{HeaderValue, StatusCode, header};
-use axum::middleware::{from_fn, from_fn_with_state};
+use axum::middleware::from_fn_with_state;
 use axum::response::{IntoResponse, Response};
 use serde::Serialize;
 use tokio::sync::Semaphore;
 use tower_http::catch_panic::CatchPanicLayer;
-use utoipa_axum::router::OpenApiRouter;
 
 use crate::config::Config;
 use crate::library::meshes::Library;
@@ -57,9 +58,13 @@ use crate::worker::niceness::give_way;
 use crate::worker::process::slot_bytes;
 
 pub use openapi::document;
+use resources::Resources;
 
 /// Meshes that are parsed at the same time: each may take several times its size in memory.
 const PARSED_AT_ONCE: usize = 2;
+
+/// Where the description is shown to people.
+const PAGES: &[&str] = &["/docs", "/docs/", "/docs/{*rest}"];
 
 /// What every request may use.
 #[derive(Clone)]
@@ -136,8 +141,8 @@ impl Service {
 }
 
 /// The resources with their descriptions, before anything is laid around them.
-fn resources() -> OpenApiRouter<Service> {
-    OpenApiRouter::new()
+fn resources() -> Resources {
+    Resources::new()
         .merge(health::router())
         .merge(about::router())
         .merge(meshes::router())
@@ -150,11 +155,14 @@ fn resources() -> OpenApiRouter<Service> {
         .merge(responses::router())
         .merge(keys::router())
         .merge(audit::router())
+        .pages(PAGES)
 }
 
 /// Everything that is served.
 pub fn router(service: Service) -> Router {
-    let (resources, _) = resources().split_for_parts();
+    let Resources { router, declared } = resources();
+    let resources: Router<Service> = router.into();
+    let door = guard::Door { service: service.clone(), declared: declared.into() };
     let pages = utoipa_swagger_ui::SwaggerUi::new("/docs")
         .config(utoipa_swagger_ui::Config::from("/openapi.json"));
     let origins = origins::allowed(&service.config.allowed_origins);
@@ -164,17 +172,12 @@ pub fn router(service: Service) -> Router {
         .fallback(|| async { error::ApiError::not_found("resource") })
         .layer(DefaultBodyLimit::disable())
         .layer(CatchPanicLayer::custom(guard::after_panic))
-        .layer(from_fn_with_state(service.clone(), guard::surround))
+        .layer(from_fn_with_state(door, guard::surround))
         .with_state(service);
     match origins {
         Some(origins) => router.layer(origins),
         None => router,
     }
-}
-
-/// For routers whose answers are JSON only.
-fn json_only(router: OpenApiRouter<Service>) -> OpenApiRouter<Service> {
-    router.route_layer(from_fn(guard::accepts_json))
 }
 
 /// An answer in JSON that no cache keeps.

@@ -1,5 +1,6 @@
 //! The description of the service (OpenAPI 3.1), made from the code.
 
+use axum::http::Method;
 use utoipa::ToSchema as _;
 use utoipa::openapi::path::Operation;
 use utoipa::openapi::security::{Http, HttpAuthScheme, SecurityRequirement, SecurityScheme};
@@ -7,7 +8,8 @@ use utoipa::openapi::{
     ContentBuilder, InfoBuilder, OpenApi, OpenApiBuilder, PathItem, Ref, RefOr, ResponseBuilder,
 };
 
-use super::caller::is_open;
+use super::access::Access;
+use super::resources::Resources;
 use super::{openapi_types, resources};
 use crate::schema::ProblemDocument;
 use crate::schema::job::JobEvent;
@@ -71,7 +73,8 @@ fn described() -> OpenApi {
              Every error is application/problem+json (RFC 9457) with a stable `code`.",
         ))
         .build();
-    let (_, mut api) = resources().split_for_parts();
+    let Resources { router, declared } = resources();
+    let mut api = router.into_openapi();
     let mut components = api.components.take().unwrap_or_default();
     add_schema::<ProblemDocument>(&mut components.schemas);
     add_schema::<JobEvent>(&mut components.schemas);
@@ -80,9 +83,9 @@ fn described() -> OpenApi {
     let mut document = OpenApiBuilder::new().info(info).components(Some(components)).build();
     document.paths = api.paths;
     for (path, item) in &mut document.paths.paths {
-        for operation in operations(item) {
+        for (method, operation) in operations(item) {
             add_problems(path, operation);
-            if !is_open(path) {
+            if declared.access(path, &method) != Some(Access::Open) {
                 operation.security = Some(vec![SecurityRequirement::new(KEY, NO_SCOPES)]);
             }
         }
@@ -99,10 +102,14 @@ fn add_schema<T: utoipa::ToSchema>(
     schemas.insert(T::name().into_owned(), T::schema());
 }
 
-fn operations(item: &mut PathItem) -> impl Iterator<Item = &mut Operation> {
-    [&mut item.get, &mut item.put, &mut item.post, &mut item.delete]
-        .into_iter()
-        .filter_map(Option::as_mut)
+fn operations(item: &mut PathItem) -> impl Iterator<Item = (Method, &mut Operation)> {
+    let operations = [
+        (Method::GET, &mut item.get),
+        (Method::PUT, &mut item.put),
+        (Method::POST, &mut item.post),
+        (Method::DELETE, &mut item.delete),
+    ];
+    operations.into_iter().filter_map(|(method, operation)| Some((method, operation.as_mut()?)))
 }
 
 /// Writes down the answers that the layers around the handlers give, and the body of all problems.

@@ -6,6 +6,7 @@ use serde::de::DeserializeOwned;
 use uuid::Uuid;
 
 use super::error::{ApiError, ApiResult};
+use crate::schema::ErrorCode;
 use crate::schema::key::is_key_id;
 
 /// The query, in which nothing unknown stands: a misspelt parameter would be a silent default.
@@ -91,13 +92,13 @@ impl<S: Send + Sync> FromRequestParts<S> for FileName {
 }
 
 pub fn no_such_job() -> ApiError {
-    ApiError::new("no-such-job", "there is no such job")
+    ApiError::new(ErrorCode::NoSuchJob, "there is no such job")
 }
 
 async fn path_texts<S: Send + Sync>(parts: &mut Parts, state: &S) -> ApiResult<Vec<String>> {
     let parameters = RawPathParams::from_request_parts(parts, state).await;
     let parameters = parameters.map_err(|error| {
-        ApiError::new("malformed-request", format!("the path is not readable: {error}"))
+        ApiError::new(ErrorCode::MalformedRequest, format!("the path is not readable: {error}"))
     })?;
     Ok(parameters.iter().map(|(_, text)| text.to_owned()).collect())
 }

@@ -5,21 +5,26 @@ use axum::http::{HeaderMap, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use serde::Serialize;
 use utoipa::ToSchema;
-use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 use super::error::{ApiError, ApiResult};
 use super::idempotency::{NewId, new_id};
 use super::paging::PageParameters;
 use super::parameters::{Id, Parameters, PlanPath};
-use super::{Service, body, conditional, json, json_only, time, with_header};
+use super::resources::Resources;
+use super::{Service, body, conditional, json, time, with_header};
 use crate::schema::PlanDocument;
+use crate::schema::key::Scope;
 use crate::schema::wire::strict;
 use crate::store::{Change, PlanRow};
 
-pub fn router() -> OpenApiRouter<Service> {
-    let router = OpenApiRouter::new().routes(routes!(create, list));
-    json_only(router.routes(routes!(show, replace, remove)))
+pub fn router() -> Resources {
+    Resources::new()
+        .looks(Scope::Read, routes!(list))
+        .changes(Scope::Write, routes!(create))
+        .looks(Scope::Read, routes!(show))
+        .changes(Scope::Write, routes!(replace, remove))
+        .json_only()
 }
 
 /// A plan as it is kept.

@@ -13,6 +13,7 @@ use axum::response::Response;
 
 use super::client::Client;
 use super::error::ApiError;
+use crate::schema::ErrorCode;
 use crate::schema::wire::problem::Problem;
 
 const WINDOW: Duration = Duration::from_secs(60);
@@ -73,7 +74,7 @@ impl Rates {
     fn refusal(&self, wait: Duration) -> ApiError {
         let seconds = wait.as_secs() + 1;
         let detail = format!("{} requests a minute are allowed", self.per_minute);
-        let problem = Problem::new("rate-limited", detail).with("limit", self.per_minute);
+        let problem = Problem::new(ErrorCode::RateLimited, detail).with("limit", self.per_minute);
         ApiError::from(problem).header(header::RETRY_AFTER, HeaderValue::from(seconds))
     }
 }

@@ -4,12 +4,12 @@ use axum::http::{HeaderMap, StatusCode, header};
 use axum::response::IntoResponse;
 use serde::Deserialize;
 use utoipa::{IntoParams, ToSchema};
-use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 use super::error::{ApiError, ApiResult};
 use super::guard::preferred;
 use super::parameters::{Id, Parameters, id as spelled};
+use super::resources::Resources;
 use super::results::successful;
 use super::{Service, conditional, with_header};
 use crate::jobs::study::files::{
@@ -18,12 +18,14 @@ use crate::jobs::study::files::{
 };
 use crate::jobs::study::report::encode_report;
 use crate::jobs::study::verdict::{Baseline, judge};
+use crate::schema::ErrorCode;
 use crate::schema::ReportDocument;
 use crate::schema::job::{JobKind, JobStatus};
+use crate::schema::key::Scope;
 use crate::store::FileRow;
 
-pub fn router() -> OpenApiRouter<Service> {
-    OpenApiRouter::new().routes(routes!(report))
+pub fn router() -> Resources {
+    Resources::new().looks(Scope::Read, routes!(report))
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, ToSchema)]
@@ -105,7 +107,7 @@ async fn report(
     let job = successful(&service, &id, &headers).await?;
     if !JobKind::from_name(&job.kind).is_some_and(JobKind::has_report) {
         let detail = format!("a job of kind {} has no report; a study and a batch have", job.kind);
-        return Err(ApiError::new("no-such-output", detail));
+        return Err(ApiError::new(ErrorCode::NoSuchOutput, detail));
     }
     let stored = stored_report(&service, &id).await?;
     let (row, mut report) = stored.ok_or_else(|| ApiError::internal("a study without report"))?;

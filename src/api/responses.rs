@@ -8,17 +8,19 @@ use axum::http::{HeaderMap, HeaderName, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use serde::Deserialize;
 use utoipa::IntoParams;
-use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 use super::error::{ApiError, ApiResult};
 use super::guard::preferred;
 use super::parameters::{Id, Parameters, id as spelled};
+use super::resources::Resources;
 use super::{Service, body, conditional, with_header};
 use crate::jobs::response::{
     COLUMNS_FILE, COLUMNS_MEDIA_TYPE, DESCRIPTION_FILE, DESCRIPTION_MEDIA_TYPE,
 };
 use crate::library::responses::{Applied, FoundResponse, LoadedResponse, MissingResponse};
+use crate::schema::ErrorCode;
+use crate::schema::key::Scope;
 use crate::schema::response::{
     AppliedDocument, AppliedSummary, ApplyDocument, ResponseDescription,
 };
@@ -27,8 +29,8 @@ use mechanics::format::WriteError;
 
 const GLB_MEDIA_TYPE: &str = "model/gltf-binary";
 
-pub fn router() -> OpenApiRouter<Service> {
-    OpenApiRouter::new().routes(routes!(show)).routes(routes!(apply))
+pub fn router() -> Resources {
+    Resources::new().looks(Scope::Read, routes!(show)).looks(Scope::Run, routes!(apply))
 }
 
 #[derive(Deserialize, IntoParams)]
@@ -62,11 +64,10 @@ fn refusal(missing: MissingResponse) -> ApiError {
     match missing {
         MissingResponse::NoCase => ApiError::not_found("case"),
         MissingResponse::NotBuilt | MissingResponse::NotOfCase { .. } => {
-            ApiError::new("response-not-built", detail)
+            ApiError::new(ErrorCode::ResponseNotBuilt, detail)
         }
-        MissingResponse::Stale { job } => {
-            ApiError::new("response-stale", detail).map_problem(|problem| problem.with("job", job))
-        }
+        MissingResponse::Stale { job } => ApiError::new(ErrorCode::ResponseStale, detail)
+            .map_problem(|problem| problem.with("job", job)),
         MissingResponse::Store(error) => error.into(),
     }
 }

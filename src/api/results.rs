@@ -1,14 +1,16 @@
 //! Results: the manifest of a job and its files.
 
 use axum::http::{HeaderMap, StatusCode};
-use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 use super::error::{ApiError, ApiResult};
 use super::parameters::{FileName, Id, no_such_job};
 use super::prefer::{wait_for_end, wanted_wait};
+use super::resources::Resources;
 use super::{Service, conditional, guard, json};
+use crate::schema::ErrorCode;
 use crate::schema::job::JobStatus;
+use crate::schema::key::Scope;
 use crate::schema::predict::result::ResultDocument;
 use crate::schema::wire::problem::Problem;
 use crate::store::JobRow;
@@ -16,9 +18,9 @@ use crate::store::JobRow;
 /// How long a client had better wait before it asks again.
 pub const RETRY_AFTER_S: u32 = 1;
 
-pub fn router() -> OpenApiRouter<Service> {
-    let manifest = super::json_only(OpenApiRouter::new().routes(routes!(manifest)));
-    manifest.routes(routes!(file))
+pub fn router() -> Resources {
+    let manifest = Resources::new().looks(Scope::Read, routes!(manifest)).json_only();
+    manifest.looks(Scope::Read, routes!(file))
 }
 
 /// The job, when it has results; a client that prefers to wait for them does so.
@@ -35,14 +37,14 @@ pub(super) async fn successful(
             let error = job.error.as_deref().unwrap_or("null");
             let error: serde_json::Value = serde_json::from_str(error).unwrap_or_default();
             let detail = format!("the job has {} and has no results", job.status.name());
-            Err(Problem::new("job-failed", detail)
+            Err(Problem::new(ErrorCode::JobFailed, detail)
                 .with("job_status", job.status.name())
                 .with("error", error)
                 .into())
         }
         JobStatus::Accepted | JobStatus::Running => {
             let detail = format!("the job is {} and has no results yet", job.status.name());
-            Err(Problem::new("result-not-ready", detail)
+            Err(Problem::new(ErrorCode::ResultNotReady, detail)
                 .with("job_status", job.status.name())
                 .with("progress", job.progress)
                 .with("retry_after_s", RETRY_AFTER_S)
@@ -91,8 +93,9 @@ async fn manifest(service: Service, Id(id): Id, headers: HeaderMap) -> ApiResult
 async fn file(service: Service, FileName { job, name }: FileName, headers: HeaderMap) -> ApiResult {
     successful(&service, &job, &headers).await?;
     let row = service.store.job_file(&job, &name).await?;
-    let row =
-        row.ok_or_else(|| ApiError::new("no-such-output", "the job has no file of this name"))?;
+    let row = row.ok_or_else(|| {
+        ApiError::new(ErrorCode::NoSuchOutput, "the job has no file of this name")
+    })?;
     guard::check_accept(&headers, row.media_type.split(';').next().unwrap_or_default())?;
     if conditional::is_known(&headers, &row.blob) {
         return Ok(conditional::not_modified(&row.blob));

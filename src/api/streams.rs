@@ -8,6 +8,7 @@ use tokio::sync::watch;
 use super::client::Client;
 use super::error::{ApiError, ApiResult};
 use crate::metrics::http;
+use crate::schema::ErrorCode;
 use crate::schema::wire::problem::Problem;
 use axum::http::{HeaderValue, header};
 
@@ -43,7 +44,7 @@ impl Streams {
         let count = open.entry(client.clone()).or_insert(0);
         if *count >= self.most {
             let detail = format!("{} streams are open, as many as one client may have", self.most);
-            let problem = Problem::new("too-many-streams", detail).with("limit", self.most);
+            let problem = Problem::new(ErrorCode::TooManyStreams, detail).with("limit", self.most);
             let seconds = HeaderValue::from(RETRY_AFTER_S);
             return Err(ApiError::from(problem).header(header::RETRY_AFTER, seconds));
         }

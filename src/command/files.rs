@@ -43,7 +43,7 @@ impl MeshSource for FileSource {
             },
         })?;
         let mesh = format::read(&bytes, &ReadLimits::default()).map_err(|error| {
-            let (code, detail) = (error.code(), error.to_string());
+            let (code, detail) = ((&error).into(), error.to_string());
             SourceError::Refused { id: id.to_owned(), code, detail }
         })?;
         let stored = StoredMesh::new(mesh, self.units, canonical::sha256_hex(&bytes));

@@ -173,7 +173,7 @@ mod tests {
         assert!(clock.is_cancelled());
         let error = clock.judge(PredictionError::Cancelled);
         assert_eq!(
-            (error.kind(), &error.to_document().members["which"]),
+            (error.kind().name(), &error.to_document().members["which"]),
             ("budget-exceeded", &"wall".into())
         );
     }

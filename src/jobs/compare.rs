@@ -18,7 +18,7 @@ use crate::schema::compare::result::ComparisonDocument;
 use crate::schema::predict::document::OutputName;
 use crate::schema::predict::result::ResultDocument;
 use crate::schema::wire::canonical;
-use crate::schema::{Faults, Pointer, Problem};
+use crate::schema::{ErrorCode, Faults, Pointer, Problem};
 use mechanics::format::vtk::vtp;
 use mechanics::format::{ArrayValues, NamedValues, SurfaceOutput};
 use mechanics::mesh::{Frame, TriangleSurface, Vector, Warning};
@@ -152,7 +152,7 @@ impl Pair<'_> {
                 let detail =
                     format!("the prediction is in frame {prediction}, the actual in {actual}");
                 let at = self.at.key("actual").key("mesh");
-                Err(Problem::at(&at, "frame-conflict", detail).into())
+                Err(Problem::at(&at, ErrorCode::FrameConflict, detail).into())
             }
             _ => Ok(()),
         }
@@ -169,7 +169,7 @@ impl Pair<'_> {
             ComparisonError::TooManySamples { .. } => self.at.key("samples_per_mm2"),
             ComparisonError::Surface { .. } | ComparisonError::Statistics(_) => self.at.clone(),
         };
-        JobError::Refused(Problem::at(&at, error.code(), error.to_string()))
+        JobError::Refused(Problem::at(&at, (&error).into(), error.to_string()))
     }
 }
 
@@ -200,7 +200,7 @@ pub(super) fn found(
 ) -> Result<StoredMesh, JobError> {
     let found = result.map_err(|error| match error {
         SourceError::Unknown { .. } => {
-            Problem::at(at, "unknown-mesh", format!("there is no mesh {id:?}")).into()
+            Problem::at(at, ErrorCode::UnknownMesh, format!("there is no mesh {id:?}")).into()
         }
         SourceError::Refused { code, detail, .. } => Problem::at(at, code, detail).into(),
         other => JobError::Source(other),
@@ -212,7 +212,7 @@ pub(super) fn found(
 }
 
 fn no_surface(at: &Pointer) -> JobError {
-    Problem::at(at, "wrong-mesh", "this is an image, and a mesh is needed").into()
+    Problem::at(at, ErrorCode::WrongMesh, "this is an image, and a mesh is needed").into()
 }
 
 /// `skin.vtp` of a comparison: the prediction with its distance at each point.

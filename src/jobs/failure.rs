@@ -3,6 +3,7 @@
 use serde_json::{Map, Value, json};
 
 use super::source::SourceError;
+use crate::schema::ErrorCode;
 use crate::schema::Problem;
 use crate::schema::job::{ErrorClass, JobErrorDocument};
 use mechanics::chart::PngError;
@@ -76,22 +77,24 @@ impl JobError {
     }
 
     /// The stable word of the error catalogue.
-    pub fn kind(&self) -> &'static str {
+    pub fn kind(&self) -> ErrorCode {
         match self {
             JobError::Refused(problem) => problem.code,
-            JobError::Prediction(error) => error.code(),
-            JobError::Budget { .. } => "budget-exceeded",
-            JobError::Cancelled => "cancelled",
-            JobError::Alignment(_) => "alignment-failed",
-            JobError::Source(SourceError::Unknown { .. }) => "not-found",
-            JobError::Source(SourceError::Refused { code, .. }) => code,
-            JobError::Source(SourceError::Unreadable { .. }) | JobError::Write { .. } => "storage",
-            JobError::Optimisation(_)
-            | JobError::NotFinite { .. }
-            | JobError::Statistics(_)
-            | JobError::Encode(_) => "solver-diverged",
-            JobError::Study(StudyError::Threads(_)) | JobError::Picture(_) => "internal",
-            JobError::Study(_) => "validation-failed",
+            JobError::Prediction(error) => error.into(),
+            JobError::Budget { .. } => ErrorCode::BudgetExceeded,
+            JobError::Cancelled => ErrorCode::Cancelled,
+            JobError::Alignment(_) => ErrorCode::AlignmentFailed,
+            JobError::Source(SourceError::Unknown { .. }) => ErrorCode::NotFound,
+            JobError::Source(SourceError::Refused { code, .. }) => *code,
+            JobError::Source(SourceError::Unreadable { .. }) | JobError::Write { .. } => {
+                ErrorCode::Storage
+            }
+            JobError::Optimisation(_) => ErrorCode::NoPlanFound,
+            JobError::NotFinite { .. } => ErrorCode::NotFinite,
+            JobError::Statistics(_) => ErrorCode::StatisticsFailed,
+            JobError::Encode(_) => ErrorCode::EncodingFailed,
+            JobError::Study(StudyError::Threads(_)) | JobError::Picture(_) => ErrorCode::Internal,
+            JobError::Study(_) => ErrorCode::ValidationFailed,
         }
     }
 
@@ -104,7 +107,7 @@ impl JobError {
             }
             other => other.to_string(),
         };
-        let kind = self.kind().to_owned();
+        let kind = self.kind().name().to_owned();
         JobErrorDocument { kind, class: self.class(), detail, members: self.members() }
     }
 
@@ -179,5 +182,20 @@ pub(super) fn thinned(history: &[f64]) -> Vec<f64> {
 impl From<Problem> for JobError {
     fn from(problem: Problem) -> Self {
         JobError::Refused(problem)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_a_solver_says_that_a_solver_diverged() {
+        let kind = |error: JobError| error.kind().name();
+        assert_eq!(kind(PredictionError::NotFinite.into()), "solver-diverged");
+        assert_eq!(kind(OptimisationError::NotFinite.into()), "no-plan-found");
+        assert_eq!(kind(JobError::NotFinite { what: "mean".to_owned() }), "not-finite");
+        assert_eq!(kind(StatisticsError::Empty.into()), "statistics-failed");
+        assert_eq!(kind(WriteError::Empty.into()), "encoding-failed");
     }
 }

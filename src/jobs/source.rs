@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use crate::schema::ErrorCode;
 use crate::schema::case::document::LengthUnit;
 use mechanics::format::{Mesh, ReadMesh};
 use mechanics::image::ImageVolume;
@@ -43,7 +44,7 @@ pub enum SourceError {
     #[error("there is no mesh {id:?}")]
     Unknown { id: String },
     #[error("mesh {id:?} is refused: {detail}")]
-    Refused { id: String, code: &'static str, detail: String },
+    Refused { id: String, code: ErrorCode, detail: String },
     #[error("mesh {id:?} could not be read: {detail}")]
     Unreadable {
         id: String,

@@ -6,6 +6,7 @@ use serde_json::Value;
 
 use super::mesh_report::mesh_report;
 use crate::jobs::source::{StoredMesh, StoredShape};
+use crate::schema::ErrorCode;
 use crate::schema::Problem;
 use crate::schema::case::document::{FrameName, LengthUnit};
 use crate::schema::mesh::MeshDocument;
@@ -104,14 +105,14 @@ fn encode(shape: &StoredShape, frame: Frame) -> Result<Vec<u8>, Problem> {
 }
 
 fn not_written(error: impl std::fmt::Display) -> Problem {
-    Problem::new("mesh-parse", format!("the mesh cannot be written: {error}"))
+    Problem::new(ErrorCode::MeshParse, format!("the mesh cannot be written: {error}"))
 }
 
 /// A refusal of the bytes, with its numbers.
 pub fn problem_of(error: &FormatError) -> Problem {
     let code = match error {
-        FormatError::UnsupportedFormat { .. } => "unsupported-media-type",
-        other => other.code(),
+        FormatError::UnsupportedFormat { .. } => ErrorCode::UnsupportedMediaType,
+        other => other.into(),
     };
     let mut problem = Problem::new(code, error.to_string());
     for (name, member) in error.members().into_iter().filter(|(name, _)| *name != "detail") {
@@ -132,7 +133,7 @@ fn check_frame(read: &ReadMesh, statement: &Statement) -> Result<(), Problem> {
     match (stated, marked) {
         (Some(stated), Some(marked)) if stated != marked => {
             let detail = format!("the upload says {stated} and the file says SPACE={marked}");
-            Err(Problem::new("frame-conflict", detail))
+            Err(Problem::new(ErrorCode::FrameConflict, detail))
         }
         _ => Ok(()),
     }
@@ -158,7 +159,7 @@ fn check_scale(
     if POSSIBLE_DIAGONAL_MM.contains(&diagonal_mm) || allow_any_scale {
         return Ok(Some(Warning::new("units-suspect", detail).with("diagonal_mm", diagonal_mm)));
     }
-    let problem = Problem::new("units-suspect", detail).with("diagonal_mm", diagonal_mm);
+    let problem = Problem::new(ErrorCode::UnitsSuspect, detail).with("diagonal_mm", diagonal_mm);
     Err(match fitting {
         Some(unit) => problem.with("suggested_units", unit.name()),
         None => problem,
@@ -177,12 +178,15 @@ pub fn export(mesh: &StoredMesh, format: ExportFormat) -> Result<Vec<u8>, Proble
         (ExportFormat::Stl, _, Some(surface)) => format::stl::write(surface),
         (ExportFormat::Ply, _, Some(surface)) => format::ply::write(surface),
         (_, StoredShape::Image(_), _) => {
-            return Err(Problem::new("format-not-available", "an image has the form nrrd only"));
+            return Err(Problem::new(
+                ErrorCode::FormatNotAvailable,
+                "an image has the form nrrd only",
+            ));
         }
         _ => {
             let detail = "a surface has no VTU form, and no mesh has an NRRD form; \
                  vtp, stl and ply are there";
-            return Err(Problem::new("format-not-available", detail));
+            return Err(Problem::new(ErrorCode::FormatNotAvailable, detail));
         }
     };
     written.map_err(not_written)

@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
+use super::code::ErrorCode;
 use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::problem::Problem;
 
@@ -121,7 +122,7 @@ impl KeyDocument {
     pub fn check(&self) -> Result<(), Problem> {
         let mut faults = Faults::default();
         let mut add = |at: &str, detail: &str| {
-            faults.add(&Pointer::from_text(at), "out-of-range", detail);
+            faults.add(&Pointer::from_text(at), ErrorCode::OutOfRange, detail);
         };
         if !(1..=LONGEST_LABEL).contains(&self.label.chars().count()) {
             add("/label", "a label has 1 to 100 characters");
@@ -142,7 +143,7 @@ impl RotationDocument {
         let mut faults = Faults::default();
         if !(0..=MOST_OVERLAP_H).contains(&self.overlap_h) {
             let at = Pointer::from_text("/overlap_h");
-            faults.add(&at, "out-of-range", "keys overlap for 0 to 8760 hours");
+            faults.add(&at, ErrorCode::OutOfRange, "keys overlap for 0 to 8760 hours");
         }
         faults.into_result()
     }

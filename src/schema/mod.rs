@@ -2,11 +2,13 @@
 //! converted once to and from the types of the path (mm, ms, mg, mN, kPa, radians).
 
 pub mod case;
+pub mod code;
 pub mod compare;
 pub mod job;
 pub mod key;
 pub mod mesh;
 pub mod methods;
+mod numerics_code;
 pub mod optimise;
 pub mod plan;
 pub mod predict;
@@ -16,6 +18,7 @@ pub mod wire;
 
 pub use case::document::CaseDocument;
 pub use case::material::{MaterialDocument, MaterialDocuments};
+pub use code::ErrorCode;
 pub use compare::document::CompareDocument;
 pub use optimise::document::OptimiseDocument;
 pub use plan::document::PlanDocument;

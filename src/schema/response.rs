@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
+use super::code::ErrorCode;
 use super::methods::{self, ElementName, MethodName};
 use super::{CornerPair, Triple, WarningDocument};
 use crate::schema::case::document::FrameName;
@@ -95,7 +96,7 @@ impl ResponseDocument {
         for (index, name) in self.segments.iter().enumerate() {
             if self.segments[..index].contains(name) {
                 let detail = format!("segment `{name}` is named more than once");
-                faults.add(&at.index(index), "duplicate-name", detail);
+                faults.add(&at.index(index), ErrorCode::DuplicateName, detail);
             }
         }
     }
@@ -107,16 +108,16 @@ impl ResponseDocument {
         let (at, code) = match error {
             ResponseError::UnknownSegment { name, .. } => {
                 let place = self.segments.iter().position(|other| other == name);
-                (segments.index(place.unwrap_or_default()), "unknown-segment")
+                (segments.index(place.unwrap_or_default()), ErrorCode::UnknownSegment)
             }
             ResponseError::SharedNodes { .. } => {
-                (root.key("case").key("segments"), "plan-conflict")
+                (root.key("case").key("segments"), ErrorCode::PlanConflict)
             }
             ResponseError::NoSegments | ResponseError::EmptySegment { .. } => {
-                (root.key("case").key("segments"), "empty-selection")
+                (root.key("case").key("segments"), ErrorCode::EmptySelection)
             }
-            ResponseError::OtherMethod => (root.key("spec").key("method"), "not-linear"),
-            ResponseError::Loaded | ResponseError::Prediction(_) => (root, "not-linear"),
+            ResponseError::OtherMethod => (root.key("spec").key("method"), ErrorCode::NotLinear),
+            ResponseError::Loaded | ResponseError::Prediction(_) => (root, ErrorCode::NotLinear),
         };
         let problem = Problem::at(&at, code, error.to_string());
         match error {
@@ -255,7 +256,7 @@ impl ResponseDescription {
         {
             if !is_empty {
                 let detail = format!("a response knows movements of segments and no `{name}`");
-                faults.add(&at.key(name), "not-in-response", detail);
+                faults.add(&at.key(name), ErrorCode::NotInResponse, detail);
             }
         }
         let segments_only = PlanDocument {
@@ -292,11 +293,11 @@ impl ResponseDescription {
                 "the case has no segment {name:?}; the response moves: {}",
                 names.join(", ")
             );
-            faults.add(at, "unknown-segment", detail);
+            faults.add(at, ErrorCode::UnknownSegment, detail);
         } else if moves {
             let detail =
                 format!("the response was built without segment {name:?}, which has to stay");
-            faults.add(at, "not-in-response", detail);
+            faults.add(at, ErrorCode::NotInResponse, detail);
         }
     }
 }

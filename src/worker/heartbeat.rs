@@ -10,6 +10,7 @@ use std::time::{Duration, Instant};
 
 use crate::config::Config;
 use crate::metrics;
+use crate::schema::ErrorCode;
 use crate::store::{Lease, Point, Store, StoreError};
 use crate::traces;
 use mechanics::prediction::{Phase, Progress};
@@ -178,7 +179,7 @@ impl Drop for Heartbeat {
 pub(super) fn worker_lost(attempts: u32, how: Option<&str>) -> String {
     let last = how.map(|how| format!("; at last, {how}")).unwrap_or_default();
     serde_json::json!({
-        "type": "worker-lost",
+        "type": ErrorCode::WorkerLost,
         "class": "infrastructure",
         "detail": format!("the job lost its worker {attempts} times{last}"),
         "attempts": attempts,

@@ -15,6 +15,7 @@ use super::fail_point::{FailPoints, Injected};
 use super::heartbeat::{Heartbeat, RunningJob, worker_lost};
 use crate::config::Config;
 use crate::metrics;
+use crate::schema::ErrorCode;
 use crate::schema::wire::canonical::sha256_hex;
 use crate::store::{Claim, Lease, PublishedFile, Store, StoreError};
 use crate::traces;
@@ -257,7 +258,7 @@ impl Shared {
             Err(_) if job.is_cancelled() => return "stopped",
             Err(Failure::Cancelled) => {
                 let error = json!({
-                    "type": "cancelled",
+                    "type": ErrorCode::Cancelled,
                     "class": "cancelled",
                     "detail": "the work was stopped",
                 });
@@ -270,7 +271,7 @@ impl Shared {
             Err(Failure::Storage(reason)) => {
                 tracing::error!(%reason, "the storage failed an attempt");
                 let error = json!({
-                    "type": "storage",
+                    "type": ErrorCode::Storage,
                     "class": "infrastructure",
                     "detail": "the results could not be stored",
                     "attempts": self.attempts,

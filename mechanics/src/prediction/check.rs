@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::case::{Case, ElementChoice, Load, Method, Plan, RegionNames, Settings};
+use super::error_code::SceneErrorCode;
 use super::problem::Problems;
 use super::scene::Scene;
 use super::skin::{self, Skin};
@@ -57,7 +58,7 @@ impl<'a> Check<'a> {
             let known = self.case.volume.cell_labels.keys().cloned().collect::<Vec<_>>().join(", ");
             let detail =
                 format!("the mesh has no integer cell array {:?}; it has: {known}", stated.array);
-            self.problems.add("/case/regions/array", "unknown-array", detail);
+            self.problems.add("/case/regions/array", SceneErrorCode::UnknownArray, detail);
             return (vec!["tissue".to_owned()], vec![0; cells]);
         };
         let mut values = labels.clone();
@@ -65,7 +66,11 @@ impl<'a> Check<'a> {
         values.dedup();
         for value in stated.names.keys().filter(|value| values.binary_search(value).is_err()) {
             let detail = format!("no cell has the value {value} in array {:?}", stated.array);
-            self.problems.add(format!("/case/regions/names/{value}"), "unknown-region", detail);
+            self.problems.add(
+                format!("/case/regions/names/{value}"),
+                SceneErrorCode::UnknownRegion,
+                detail,
+            );
         }
         let (names, region_of_value) = name_regions(stated, &values);
         let place = |label: &i64| {
@@ -78,7 +83,11 @@ impl<'a> Check<'a> {
         let stated = &self.case.materials;
         for name in stated.keys().filter(|name| *name != "*" && !regions.contains(name)) {
             let detail = format!("no region is called {name:?}; there are: {}", regions.join(", "));
-            self.problems.add(format!("/case/materials/{name}"), "unknown-region", detail);
+            self.problems.add(
+                format!("/case/materials/{name}"),
+                SceneErrorCode::UnknownRegion,
+                detail,
+            );
         }
         let mut materials = Vec::new();
         for region in regions {
@@ -87,7 +96,7 @@ impl<'a> Check<'a> {
                 None => {
                     let detail =
                         format!("region {region:?} has no material, and there is none for \"*\"");
-                    self.problems.add("/case/materials", "missing-material", detail);
+                    self.problems.add("/case/materials", SceneErrorCode::MissingMaterial, detail);
                 }
             }
         }
@@ -96,7 +105,7 @@ impl<'a> Check<'a> {
 
     pub(super) fn conditions(&mut self, held: &HeldNodes) -> Conditions {
         combine(&self.case.volume.nodes, held).unwrap_or_else(|error| {
-            self.problems.add("/plan", "plan-conflict", error.to_string());
+            self.problems.add("/plan", SceneErrorCode::PlanConflict, error.to_string());
             let classes = vec![NodeClass::Free; self.case.volume.nodes.len()];
             Conditions { classes, holds: Vec::new(), shared: Vec::new(), warnings: Vec::new() }
         })
@@ -112,7 +121,7 @@ impl<'a> Check<'a> {
         };
         if faces.is_empty() && self.case.skin.is_some() {
             let detail = "no boundary face has all of its nodes in the selection".to_owned();
-            self.problems.add("/case/skin", "empty-selection", detail);
+            self.problems.add("/case/skin", SceneErrorCode::EmptySelection, detail);
         }
         let surface = self.case.volume.surface_of(&faces);
         let skin_nodes = surface.node_ids.clone().unwrap_or_default();
@@ -125,7 +134,7 @@ impl<'a> Check<'a> {
             let points: Vec<u32> = nodes.iter().filter_map(point_of).collect();
             if points.is_empty() && !nodes.is_empty() {
                 let detail = "no node of the selection is on the skin".to_owned();
-                self.problems.add(pointer, "empty-selection", detail);
+                self.problems.add(pointer, SceneErrorCode::EmptySelection, detail);
             }
             regions.insert(name.clone(), points);
         }
@@ -163,7 +172,7 @@ impl<'a> Check<'a> {
         }
         if !choices.contains(&asked) {
             let detail = format!("{who} has no choice of elements: `auto` is what it is made of");
-            self.problems.add("/spec/element", "method-not-available", detail);
+            self.problems.add("/spec/element", SceneErrorCode::MethodNotAvailable, detail);
         }
         used
     }
@@ -177,7 +186,7 @@ impl<'a> Check<'a> {
                  `auto` serves every shape",
                 shape.name()
             );
-            self.problems.add(pointer, "method-not-available", detail);
+            self.problems.add(pointer, SceneErrorCode::MethodNotAvailable, detail);
         }
     }
 
@@ -185,7 +194,7 @@ impl<'a> Check<'a> {
     pub(super) fn method(&mut self, method: &Method, plan: &Plan) {
         if matches!(method, Method::ThicknessWarp(_)) && !plan.loads.is_empty() {
             let detail = "thickness_warp follows bone and knows no forces".to_owned();
-            self.problems.add("/plan/loads", "method-not-available", detail);
+            self.problems.add("/plan/loads", SceneErrorCode::MethodNotAvailable, detail);
         }
     }
 
@@ -224,7 +233,7 @@ impl<'a> Check<'a> {
                     if let Err(error) = added {
                         self.problems.add(
                             "/case/volume",
-                            "mesh-inverted-elements",
+                            SceneErrorCode::MeshInvertedElements,
                             error.to_string(),
                         );
                     }
@@ -252,7 +261,7 @@ impl<'a> Check<'a> {
         let faces = self.faces_within(&nodes);
         if faces.is_empty() && !nodes.is_empty() {
             let detail = "no boundary face has all of its nodes in the selection".to_owned();
-            self.problems.add(format!("{pointer}/faces"), "empty-selection", detail);
+            self.problems.add(format!("{pointer}/faces"), SceneErrorCode::EmptySelection, detail);
         }
         faces
     }
@@ -268,7 +277,7 @@ impl<'a> Check<'a> {
                 part.free_movements,
                 loose.len()
             );
-            self.problems.add("/case", "underconstrained", detail);
+            self.problems.add("/case", SceneErrorCode::Underconstrained, detail);
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use super::case::{Case, FibreDirection, Method, Settings};
 use super::check::Check;
+use super::error_code::SceneErrorCode;
 use super::skin::Skin;
 use crate::material::LinearElastic;
 use crate::mesh::{Vector, Warning};
@@ -64,7 +65,7 @@ impl Check<'_> {
         let (place, wrong) = match stated {
             None => {
                 let detail = format!("region {region:?} has fibres and no direction for them");
-                return self.problems.add(pointer, "missing-field", detail);
+                return self.problems.add(pointer, SceneErrorCode::MissingField, detail);
             }
             Some(FibreDirection::Uniform(direction)) => {
                 ("direction", directions(cells, of_cell, |_| *direction))
@@ -78,7 +79,7 @@ impl Check<'_> {
                         known.join(", ")
                     );
                     let at = format!("{pointer}/array");
-                    return self.problems.add(at, "unknown-array", detail);
+                    return self.problems.add(at, SceneErrorCode::UnknownArray, detail);
                 }
             },
         };
@@ -86,7 +87,11 @@ impl Check<'_> {
             let detail = format!(
                 "cell {first} of region {region:?} has a fibre direction without length ({count} such cells)"
             );
-            self.problems.add(format!("{pointer}/{place}"), "fibre-direction-zero", detail);
+            self.problems.add(
+                format!("{pointer}/{place}"),
+                SceneErrorCode::FibreDirectionZero,
+                detail,
+            );
         }
     }
 
@@ -95,7 +100,11 @@ impl Check<'_> {
         let stated = settings.membrane.as_ref()?;
         if !settings.method.knows_membrane() {
             let detail = "this method has no skin of its own: leave the membrane out";
-            self.problems.add("/spec/membrane", "method-not-available", detail.to_owned());
+            self.problems.add(
+                "/spec/membrane",
+                SceneErrorCode::MethodNotAvailable,
+                detail.to_owned(),
+            );
             return None;
         }
         let nodes = skin.nodes();
@@ -118,7 +127,11 @@ impl Check<'_> {
                 Some(vectors) => ("/spec/membrane/fibre/array", Some(vectors)),
                 None => {
                     let detail = format!("the mesh has no point array {array:?} with 3 components");
-                    self.problems.add("/spec/membrane/fibre/array", "unknown-array", detail);
+                    self.problems.add(
+                        "/spec/membrane/fibre/array",
+                        SceneErrorCode::UnknownArray,
+                        detail,
+                    );
                     return Vec::new();
                 }
             },
@@ -141,7 +154,7 @@ impl Check<'_> {
                 "the lines have no direction in the face of the nodes {:?} ({wrong} such faces)",
                 triangles[first]
             );
-            self.problems.add(pointer, "fibre-direction-zero", detail);
+            self.problems.add(pointer, SceneErrorCode::FibreDirectionZero, detail);
         }
         lines.into_iter().flatten().collect()
     }

@@ -2,6 +2,7 @@
 
 use super::case::{Plan, Prescribed, SlidingNormal};
 use super::check::Check;
+use super::error_code::SceneErrorCode;
 use crate::boundary::{HeldNodes, sliding};
 use crate::mesh::Vector;
 use crate::plan::{PlannedSegment, RigidMovement};
@@ -32,7 +33,7 @@ impl Check<'_> {
                 let detail = format!("segment {:?} is defined twice", segment.name);
                 self.problems.add(
                     format!("/case/segments/{index}/name"),
-                    "duplicate-segment",
+                    SceneErrorCode::DuplicateSegment,
                     detail,
                 );
             }
@@ -46,7 +47,7 @@ impl Check<'_> {
             let pointer = format!("/plan/segments/{index}/name");
             if plan.segments[..index].iter().any(|other| other.name == planned.name) {
                 let detail = format!("segment {:?} is named twice", planned.name);
-                self.problems.add(pointer, "duplicate-segment", detail);
+                self.problems.add(pointer, SceneErrorCode::DuplicateSegment, detail);
             } else if !segments.iter().any(|segment| segment.name == planned.name) {
                 match self.case.volume.node_set(&planned.name) {
                     Some(nodes) if !nodes.is_empty() => {
@@ -61,7 +62,7 @@ impl Check<'_> {
                             planned.name,
                             known.join(", ")
                         );
-                        self.problems.add(pointer, "unknown-segment", detail);
+                        self.problems.add(pointer, SceneErrorCode::UnknownSegment, detail);
                     }
                 }
             }
@@ -85,7 +86,7 @@ impl Check<'_> {
                 let detail = format!("node {node} has no normal to be held across");
                 self.problems.add(
                     format!("/case/sliding/{index}/normal"),
-                    "sliding-normal-zero",
+                    SceneErrorCode::SlidingNormalZero,
                     detail,
                 );
             }
@@ -106,7 +107,11 @@ impl Check<'_> {
                     let Some(values) = self.case.volume.node_vectors.get(array) else {
                         let detail =
                             format!("the mesh has no point array {array:?} with 3 components");
-                        self.problems.add(format!("{pointer}/array"), "unknown-array", detail);
+                        self.problems.add(
+                            format!("{pointer}/array"),
+                            SceneErrorCode::UnknownArray,
+                            detail,
+                        );
                         continue;
                     };
                     let value = |node: u32| values[node as usize];

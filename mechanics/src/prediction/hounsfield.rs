@@ -8,6 +8,7 @@
 
 use super::case::{Hounsfield, Mixing};
 use super::check::Check;
+use super::error_code::SceneErrorCode;
 use super::imaged_tissue::{ImagedTissue, TissueShare};
 use crate::image::{SampledCells, SamplingRule, Windows, sample_cells};
 use crate::material::LinearElastic;
@@ -68,7 +69,7 @@ impl Check<'_> {
         let detail = format!(
             "`fraction` mixes isotropic tissue, and {fibred} regions have fibres: `mean` leaves them as they are"
         );
-        self.problems.add(format!("{PLACE}/mixing"), "method-not-available", detail);
+        self.problems.add(format!("{PLACE}/mixing"), SceneErrorCode::MethodNotAvailable, detail);
         false
     }
 
@@ -77,7 +78,7 @@ impl Check<'_> {
             hounsfield.tissues.iter().map(|tissue| (tissue.from_hu, tissue.to_hu)).collect();
         let Some(windows) = Windows::new(&ends).filter(|windows| !windows.is_empty()) else {
             let detail = "the windows are none, empty or overlap".to_owned();
-            self.problems.add(format!("{PLACE}/tissues"), "windows-overlap", detail);
+            self.problems.add(format!("{PLACE}/tissues"), SceneErrorCode::WindowsOverlap, detail);
             return None;
         };
         let rule = SamplingRule::new(hounsfield.samples);
@@ -91,7 +92,7 @@ impl Check<'_> {
             shown(&low),
             shown(&high)
         );
-        self.problems.add(format!("{PLACE}/image"), "outside-image", detail);
+        self.problems.add(format!("{PLACE}/image"), SceneErrorCode::OutsideImage, detail);
         None
     }
 }

@@ -4,6 +4,7 @@ mod build;
 pub mod case;
 mod check;
 mod cut;
+mod error_code;
 mod fibres;
 mod held;
 mod hounsfield;
@@ -22,6 +23,7 @@ pub use case::{
     Bone, Case, CaseSegment, ElementChoice, FibreDirection, Hounsfield, Load, Method, Mixing, Plan,
     Prescribed, RegionNames, Settings, SkinMembrane, Sliding, SlidingNormal, TissueWindow,
 };
+pub use error_code::SceneErrorCode;
 pub use imaged_tissue::{ImagedTissue, TissueShare};
 pub use problem::{SceneError, SceneErrors};
 pub use progress::{Phase, Progress, Unobserved};

@@ -1,5 +1,6 @@
 //! Everything that is wrong with a case and a plan, with the place of each.
 
+use super::error_code::SceneErrorCode;
 use crate::boundary::SelectionError;
 
 /// More problems than this help nobody.
@@ -15,11 +16,7 @@ pub struct SceneErrors(pub Vec<SceneError>);
 #[error("{pointer}: {detail}")]
 pub struct SceneError {
     pub pointer: String,
-    /// A stable word: `empty-selection`, `unknown-set`, `unknown-array`, `unknown-surface`,
-    /// `unknown-region`, `unknown-segment`, `duplicate-segment`, `missing-material`, `plan-conflict`,
-    /// `sliding-normal-zero`, `underconstrained`, `method-not-available`, `fibre-direction-zero`,
-    /// `missing-field` or `mesh-inverted-elements`.
-    pub code: &'static str,
+    pub code: SceneErrorCode,
     pub detail: String,
 }
 
@@ -28,7 +25,7 @@ pub struct SceneError {
 pub(super) struct Problems(Vec<SceneError>);
 
 impl Problems {
-    pub(super) fn add(&mut self, pointer: impl Into<String>, code: &'static str, detail: String) {
+    pub(super) fn add(&mut self, pointer: impl Into<String>, code: SceneErrorCode, detail: String) {
         if self.0.len() < MOST_PROBLEMS {
             self.0.push(SceneError { pointer: pointer.into(), code, detail });
         }
@@ -36,11 +33,11 @@ impl Problems {
 
     pub(super) fn selection(&mut self, pointer: &str, error: &SelectionError) {
         let code = match error {
-            SelectionError::UnknownSet { .. } => "unknown-set",
-            SelectionError::UnknownArray { .. } => "unknown-array",
-            SelectionError::UnknownSurface(_) => "unknown-surface",
-            SelectionError::FlatSurface(_) => "mesh-degenerate",
-            SelectionError::Empty => "empty-selection",
+            SelectionError::UnknownSet { .. } => SceneErrorCode::UnknownSet,
+            SelectionError::UnknownArray { .. } => SceneErrorCode::UnknownArray,
+            SelectionError::UnknownSurface(_) => SceneErrorCode::UnknownSurface,
+            SelectionError::FlatSurface(_) => SceneErrorCode::MeshDegenerate,
+            SelectionError::Empty => SceneErrorCode::EmptySelection,
         };
         self.add(pointer, code, error.to_string());
     }

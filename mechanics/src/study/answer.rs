@@ -67,7 +67,7 @@ impl Refusal {
 
 impl From<&SceneErrors> for Refusal {
     fn from(errors: &SceneErrors) -> Self {
-        let code = errors.0.first().map_or("refused", |error| error.code);
+        let code = errors.0.first().map_or("refused", |error| error.code.name());
         Refusal::new(code, errors.to_string())
     }
 }

@@ -237,7 +237,7 @@ fn cells_beyond_the_image_or_in_no_window_keep_their_region_and_are_counted() {
     far.nodes.iter_mut().for_each(|x| x.z += 200.0);
     elsewhere.volume = Arc::new(far);
     let errors = Scene::new(&elsewhere, &pulled(), &Settings::default()).err().unwrap();
-    let (pointer, code) = (errors.0[0].pointer.as_str(), errors.0[0].code);
+    let (pointer, code) = (errors.0[0].pointer.as_str(), errors.0[0].code.name());
     assert_eq!((pointer, code), ("/case/hounsfield/image", "outside-image"));
 }
 

@@ -6,7 +6,7 @@ use crate::jobs::predict::input::{PredictInput, Prepared};
 use crate::jobs::source::MeshSource;
 use crate::schema::optimise::document::TargetDocument;
 use crate::schema::wire::canonical;
-use crate::schema::{Faults, Limits, Pointer, Problem};
+use crate::schema::{ErrorCode, Faults, Limits, Pointer, Problem};
 use mechanics::mesh::{SurfaceSearch, Warning};
 use mechanics::optimisation::{Goal, SkinPoint, Target};
 use mechanics::prediction::{LANDMARK_FAR, Skin};
@@ -101,7 +101,11 @@ impl OptimiseInput {
     ) -> Result<Vec<Target>, JobError> {
         let skin = &rest.scene.skin;
         let degenerate = |error| {
-            Problem::at(&Pointer::from_text("/case/skin"), "mesh-degenerate", format!("{error}"))
+            Problem::at(
+                &Pointer::from_text("/case/skin"),
+                ErrorCode::MeshDegenerate,
+                format!("{error}"),
+            )
         };
         let mut search = None;
         let mut targets = Vec::new();
@@ -158,6 +162,6 @@ fn check_reach(goals: &[Goal], at: &Pointer, limits: &Limits, faults: &mut Fault
         let detail = format!(
             "a component is {farthest:.3} mm from where it is at rest, at most {limit} mm are allowed"
         );
-        faults.add(at, "out-of-range", detail);
+        faults.add(at, ErrorCode::OutOfRange, detail);
     }
 }

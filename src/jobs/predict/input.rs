@@ -10,6 +10,7 @@ use crate::jobs::optimise::OptimiseInput;
 use crate::jobs::response::ResponseInput;
 use crate::jobs::source::{MeshSource, SourceError, StoredMesh, StoredShape};
 use crate::jobs::study::StudyInput;
+use crate::schema::ErrorCode;
 use crate::schema::case::conversion::centre;
 use crate::schema::case::document::{CaseMeshes, NamedMesh};
 use crate::schema::plan::document::PlanContext;
@@ -148,7 +149,7 @@ impl PredictInput {
                     stored.insert(id, mesh);
                 }
                 Err(SourceError::Unknown { .. }) => {
-                    faults.add(&at, "unknown-mesh", format!("there is no mesh {id:?}"));
+                    faults.add(&at, ErrorCode::UnknownMesh, format!("there is no mesh {id:?}"));
                 }
                 Err(SourceError::Refused { code, detail, .. }) => faults.add(&at, code, detail),
                 Err(other) => return Err(JobError::Source(other)),
@@ -162,7 +163,7 @@ impl PredictInput {
         if let Some(units) = mesh.units.filter(|units| *units != self.case.units) {
             let (own, of_case) = (units.name(), self.case.units.name());
             let detail = format!("the mesh was uploaded in {own}, and the case is in {of_case}");
-            faults.add(at, "units-conflict", detail);
+            faults.add(at, ErrorCode::UnitsConflict, detail);
         }
     }
 
@@ -244,7 +245,7 @@ fn check_kind(at: &Pointer, mesh: &StoredMesh, faults: &mut Faults) {
         (_, StoredShape::Image(_)) => ("this is an image", "a mesh"),
         _ => return,
     };
-    faults.add(at, "wrong-mesh", format!("{is}, and {needed} is needed"));
+    faults.add(at, ErrorCode::WrongMesh, format!("{is}, and {needed} is needed"));
 }
 
 impl StoredMesh {

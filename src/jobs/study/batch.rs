@@ -6,10 +6,10 @@ use serde_json::Value;
 
 use super::scenes::{Documents, Scenes, spec_at};
 use crate::jobs::failure::JobError;
-use crate::schema::Faults;
 use crate::schema::study::batch::ItemDocument;
 use crate::schema::study::document::CaseReference;
 use crate::schema::wire::canonical;
+use crate::schema::{ErrorCode, Faults};
 use mechanics::study::Variant;
 
 /// What a study is made of.
@@ -40,7 +40,7 @@ impl Documents<'_> {
                             "another way of modelling is called {:?}; give one a `label`",
                             variant.label
                         );
-                        faults.add(&at.key("label"), "duplicate-name", detail);
+                        faults.add(&at.key("label"), ErrorCode::DuplicateName, detail);
                     }
                     ways.push(&item.variant);
                     parts.variants.push(variant);
@@ -62,7 +62,7 @@ impl Documents<'_> {
                 }
             };
             if !parts.pairs.insert((scene, way)) {
-                faults.add(&at, "duplicate-name", "the item is in the list already");
+                faults.add(&at, ErrorCode::DuplicateName, "the item is in the list already");
             }
         }
         self.bound(&mut parts.variants, faults);

@@ -26,7 +26,7 @@ use crate::schema::predict::result::{InputDocument, ResultDocument};
 use crate::schema::study::document::StudyKind;
 use crate::schema::study::report::ReportDocument;
 use crate::schema::wire::canonical;
-use crate::schema::{CaseDocument, Faults, Limits, Pointer, Problem, StudyDocument};
+use crate::schema::{CaseDocument, ErrorCode, Faults, Limits, Pointer, Problem, StudyDocument};
 use batch::Parts;
 use chart::chart;
 use files::{
@@ -101,7 +101,9 @@ impl StudyInput {
         let (rows, most) = (most_rows(&study), limits.study_rows as usize);
         if rows > most {
             let detail = format!("the study has {rows} rows, at most {most} are allowed");
-            return Err(Problem::at(&Pointer::root().key("spec"), "too-many", detail).into());
+            return Err(
+                Problem::at(&Pointer::root().key("spec"), ErrorCode::TooMany, detail).into()
+            );
         }
         let content = |id: &str| scenes.contents.get(id).cloned();
         let cases: Vec<&CaseDocument> =

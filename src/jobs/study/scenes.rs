@@ -8,6 +8,7 @@ use super::truth::known_displacement;
 use crate::jobs::failure::JobError;
 use crate::jobs::predict::input::{PredictInput, Prepared};
 use crate::jobs::source::MeshSource;
+use crate::schema::ErrorCode;
 use crate::schema::case::material::{PlacedMaterials, in_words, merge_materials};
 use crate::schema::methods::{ElementName, MethodName};
 use crate::schema::predict::result::InputDocument;
@@ -71,7 +72,7 @@ impl Documents<'_> {
             if variants[..index].iter().any(|other| other.label == variant.label) {
                 let detail =
                     format!("two variants are called {:?}; give one a `label`", variant.label);
-                faults.add(&at, "duplicate-name", detail);
+                faults.add(&at, ErrorCode::DuplicateName, detail);
             }
         }
         self.bound(&mut variants, faults);
@@ -100,7 +101,7 @@ impl Documents<'_> {
             for (index, name) in names.into_iter().enumerate().filter(|(_, name)| !labels(name)) {
                 let detail =
                     format!("no variant is called {name:?}; there are: {}", known.join(", "));
-                faults.add(&place.index(index), "unknown-label", detail);
+                faults.add(&place.index(index), ErrorCode::UnknownLabel, detail);
             }
         }
     }
@@ -153,7 +154,7 @@ impl Documents<'_> {
                 let detail = format!(
                     "unknown field `{name}`: it belongs to the study and not to one of its methods"
                 );
-                faults.add(&at.key(name), "unknown-field", detail);
+                faults.add(&at.key(name), ErrorCode::UnknownField, detail);
             }
         }
         let label = match label {
@@ -163,7 +164,7 @@ impl Documents<'_> {
                 Some(label)
             }
             Some(_) => {
-                faults.add(&at.key("label"), "wrong-type", "a label is a text");
+                faults.add(&at.key("label"), ErrorCode::WrongType, "a label is a text");
                 None
             }
         };
@@ -196,7 +197,7 @@ impl Documents<'_> {
             let last = found.scenes.last().map(|scene| scene.name.clone()).unwrap_or_default();
             if names.filter(|name| **name == last).count() > 1 {
                 let detail = format!("two scenes are called {last:?}; give one a `name`");
-                faults.add(&at.index(index), "duplicate-name", detail);
+                faults.add(&at.index(index), ErrorCode::DuplicateName, detail);
             }
         }
         self.check_plan_names(&found.scenes, faults);
@@ -212,7 +213,7 @@ impl Documents<'_> {
             if scene.plans.is_empty() {
                 let detail =
                     format!("scene {name} has none of these plans; it has: {}", all.join(", "));
-                faults.add(&spec_at().key("plans"), "unknown-plan", detail);
+                faults.add(&spec_at().key("plans"), ErrorCode::UnknownPlan, detail);
             }
         }
         if !self.spec.materials.is_empty() {
@@ -240,7 +241,7 @@ impl Documents<'_> {
         };
         for (index, name) in self.spec.plan_names().into_iter().filter(|(_, name)| !named(name)) {
             let detail = format!("no scene by name has a plan called {name:?}");
-            faults.add(&spec_at().key("plans").index(index), "unknown-plan", detail);
+            faults.add(&spec_at().key("plans").index(index), ErrorCode::UnknownPlan, detail);
         }
     }
 
@@ -265,7 +266,7 @@ impl Documents<'_> {
         given: &[(Pointer, &MaterialDocuments)],
         found: &mut Scenes,
     ) -> Result<(), JobError> {
-        let missing = || Problem::at(&spec_at(), "unknown-case", "there is no such case");
+        let missing = || Problem::at(&spec_at(), ErrorCode::UnknownCase, "there is no such case");
         let case = self.cases.get(&reference.case).ok_or_else(missing)?;
         let of_the_first = given.first().map(|(_, materials)| (*materials).clone());
         let place = |index: usize| given.get(index).map_or_else(spec_at, |(at, _)| at.clone());
@@ -332,16 +333,20 @@ impl Documents<'_> {
         let at = spec_at().key("sweep");
         for region in swept.keys().filter(|region| !sweep::has_region(&scene.case, region)) {
             let detail = format!("scene {} has no region called {region:?}", scene.name);
-            faults.add(&at.key(region), "unknown-region", detail);
+            faults.add(&at.key(region), ErrorCode::UnknownRegion, detail);
         }
         match sweep::combinations(&scene.case.materials, &swept) {
             Ok(materials) => scene.materials = materials,
             Err(error) => {
                 let (place, code) = match &error {
-                    SweepError::TooMany { .. } => (at, "too-many"),
-                    SweepError::UnknownRegion { region } => (at.key(region), "unknown-region"),
-                    SweepError::Fibres { region } => (at.key(region), "method-not-available"),
-                    SweepError::Material { region, .. } => (at.key(region), "out-of-range"),
+                    SweepError::TooMany { .. } => (at, ErrorCode::TooMany),
+                    SweepError::UnknownRegion { region } => {
+                        (at.key(region), ErrorCode::UnknownRegion)
+                    }
+                    SweepError::Fibres { region } => {
+                        (at.key(region), ErrorCode::MethodNotAvailable)
+                    }
+                    SweepError::Material { region, .. } => (at.key(region), ErrorCode::OutOfRange),
                 };
                 faults.add(&place, code, error.to_string());
             }

@@ -6,7 +6,7 @@ use crate::jobs::predict::input::Prepared;
 use crate::jobs::source::StoredMesh;
 use crate::schema::methods::ElementName;
 use crate::schema::study::document::TruthDocument;
-use crate::schema::{Faults, Pointer, Problem};
+use crate::schema::{ErrorCode, Faults, Pointer, Problem};
 use mechanics::mesh::Vector;
 use mechanics::study::{StudyScene, Truth};
 
@@ -23,7 +23,7 @@ impl Documents<'_> {
                 if !matches!(scene.truth, Truth::ClosedForm(_)) =>
             {
                 let detail = format!("scene {} has no closed form", scene.name);
-                faults.add(&at.key("closed_form"), "no-closed-form", detail);
+                faults.add(&at.key("closed_form"), ErrorCode::NoClosedForm, detail);
             }
             _ => {}
         }
@@ -37,7 +37,9 @@ pub(super) fn known_displacement(
     at: &Pointer,
 ) -> Result<Vec<Vector>, JobError> {
     let Some(predicted) = skin.surface_in_mm() else {
-        return Err(Problem::at(at, "wrong-mesh", "the result of that job is no surface").into());
+        return Err(
+            Problem::at(at, ErrorCode::WrongMesh, "the result of that job is no surface").into()
+        );
     };
     let rest = &prepared.scene.skin;
     let numbers = predicted.node_ids.as_deref().unwrap_or_default();
@@ -47,7 +49,7 @@ pub(super) fn known_displacement(
             predicted.points.len(),
             rest.nodes().len()
         );
-        return Err(Problem::at(at, "not-corresponding", detail).into());
+        return Err(Problem::at(at, ErrorCode::NotCorresponding, detail).into());
     }
     let pairs = predicted.points.iter().zip(&rest.surface.points);
     Ok(pairs.map(|(moved, rest)| moved - rest).collect())

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use super::document::{CaseDocument, FrameName, LengthUnit, NormalDocument};
 use super::material::{MaterialDocuments, Merged, PlacedMaterials, merge_materials};
+use crate::schema::code::ErrorCode;
 use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::limits::Limits;
 use mechanics::boundary::NodeSelection;
@@ -81,7 +82,7 @@ impl CaseDocument {
     fn check_texts(&self, at: &Pointer, limits: &Limits, faults: &mut Faults) {
         if self.schema != 1 {
             let detail = format!("schema {} is not known, only 1 is", self.schema);
-            faults.add(&at.key("schema"), "out-of-range", detail);
+            faults.add(&at.key("schema"), ErrorCode::OutOfRange, detail);
         }
         if let Some(name) = &self.name {
             faults.check_name(&at.key("name"), name, limits.name_characters as usize);
@@ -113,7 +114,7 @@ impl CaseDocument {
         for (id, mark) in marks.into_iter().filter(|(_, mark)| *mark != frame) {
             let other = if stated { "the case".to_owned() } else { format!("mesh {first_id}") };
             let detail = format!("mesh {id} is marked {mark}, {other} {frame}");
-            faults.add(&at.key("frame"), "frame-conflict", detail);
+            faults.add(&at.key("frame"), ErrorCode::FrameConflict, detail);
         }
         (!stated).then(|| {
             Warning::new(
@@ -152,7 +153,7 @@ impl CaseDocument {
         for (index, bone) in self.bones.iter().enumerate() {
             if !meshes.surfaces.contains_key(&bone.mesh) {
                 let detail = format!("mesh `{}` is not a surface that is there", bone.mesh);
-                faults.add(&at.index(index).key("mesh"), "unknown-mesh", detail);
+                faults.add(&at.index(index).key("mesh"), ErrorCode::UnknownMesh, detail);
             }
             bones.push(Bone { name: bone.name.trim().to_owned(), surface: bone.mesh.clone() });
         }
@@ -190,7 +191,7 @@ impl CaseDocument {
                 }
                 Err(_) => {
                     let detail = format!("`{value}` is not a value of an integer array");
-                    faults.add(&place, "wrong-type", detail);
+                    faults.add(&place, ErrorCode::WrongType, detail);
                 }
             }
         }
@@ -255,7 +256,7 @@ impl CaseDocument {
                         Some(unit) => SlidingNormal::Direction(unit),
                         None => {
                             let detail = "a direction has a length above 0";
-                            faults.add(&at.key("normal"), "out-of-range", detail);
+                            faults.add(&at.key("normal"), ErrorCode::OutOfRange, detail);
                             continue;
                         }
                     }
@@ -295,7 +296,7 @@ pub(super) fn check_distinct<'a>(
     for (index, name) in names.enumerate() {
         if !seen.insert(name.trim()) {
             let detail = format!("the name `{}` is given more than once", name.trim());
-            faults.add(&at.index(index).key("name"), "duplicate-name", detail);
+            faults.add(&at.index(index).key("name"), ErrorCode::DuplicateName, detail);
         }
     }
 }
@@ -325,7 +326,7 @@ fn check_regions(
                 let names: Vec<&str> = known.iter().map(String::as_str).take(20).collect();
                 let detail =
                     format!("the mesh has no region `{region}`; it has {}", names.join(", "));
-                faults.add(&placed.at.key(region), "unknown-region", detail);
+                faults.add(&placed.at.key(region), ErrorCode::UnknownRegion, detail);
             }
         }
     }

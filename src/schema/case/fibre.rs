@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use crate::schema::Triple;
+use crate::schema::code::ErrorCode;
 use crate::schema::wire::fault::{Faults, Pointer};
 use mechanics::material::{Fibre, FibreLaw, LinearElastic, MaterialError};
 use mechanics::mesh::Vector;
@@ -75,7 +76,7 @@ impl FibreDocument {
     ) -> Option<(LinearElastic, FibreDirection)> {
         if self.young_modulus_kpa.is_none() {
             let place = at.key("young_modulus_kpa");
-            faults.add(&place, "missing-field", "missing field `young_modulus_kpa`");
+            faults.add(&place, ErrorCode::MissingField, "missing field `young_modulus_kpa`");
         }
         let course = to_course(self.direction, self.array.as_deref(), at, faults);
         let law = match self.law.unwrap_or_default() {
@@ -87,16 +88,16 @@ impl FibreDocument {
             Ok(material) => Some((material, course?)),
             Err(error) => {
                 let (field, code) = match error {
-                    MaterialError::FibreShear(_) => ("shear_modulus_kpa", "out-of-range"),
-                    MaterialError::ShearOfPaper002 => ("shear_modulus_kpa", "not-in-law"),
+                    MaterialError::FibreShear(_) => ("shear_modulus_kpa", ErrorCode::OutOfRange),
+                    MaterialError::ShearOfPaper002 => ("shear_modulus_kpa", ErrorCode::NotInLaw),
                     MaterialError::FibreTooSoft { .. }
                     | MaterialError::NotPositiveDefinite { .. } => {
-                        ("young_modulus_kpa", "not-positive-definite")
+                        ("young_modulus_kpa", ErrorCode::NotPositiveDefinite)
                     }
                     MaterialError::FibreModulus(_)
                     | MaterialError::YoungModulus(_)
                     | MaterialError::PoissonRatio(_)
-                    | MaterialError::Density(_) => ("young_modulus_kpa", "out-of-range"),
+                    | MaterialError::Density(_) => ("young_modulus_kpa", ErrorCode::OutOfRange),
                 };
                 faults.add(&at.key(field), code, error.to_string());
                 None

@@ -9,6 +9,7 @@ use utoipa::ToSchema;
 use super::conversion::{CaseMeshes, check_distinct};
 use super::document::CaseDocument;
 use super::material::MaterialDocument;
+use crate::schema::code::ErrorCode;
 use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::limits::Limits;
 use mechanics::image::{MOST_SAMPLES, Windows};
@@ -128,7 +129,7 @@ impl HounsfieldDocument {
     fn to_tissues(&self, at: &Pointer, limits: &Limits, faults: &mut Faults) -> Vec<TissueWindow> {
         faults.check_length(at, self.tissues.len(), limits.list_entries as usize);
         if self.tissues.is_empty() {
-            faults.add(at, "out-of-range", "one tissue or more is expected");
+            faults.add(at, ErrorCode::OutOfRange, "one tissue or more is expected");
         }
         check_distinct(self.tissues.iter().map(|tissue| tissue.name.as_str()), at, faults);
         let mut tissues = Vec::new();
@@ -141,13 +142,13 @@ impl HounsfieldDocument {
             }
             if from_hu >= to_hu {
                 let detail = format!("a window from {from_hu} to {to_hu} HU holds nothing");
-                faults.add(&at, "out-of-range", detail);
+                faults.add(&at, ErrorCode::OutOfRange, detail);
             }
             let name = tissue.name.trim().to_owned();
             let place = at.key("material");
             if tissue.material.fibre.is_some() {
                 let detail = "an image does not show where fibres run: give them to a region";
-                faults.add(&place.key("fibre"), "method-not-available", detail);
+                faults.add(&place.key("fibre"), ErrorCode::MethodNotAvailable, detail);
             }
             let material = tissue.material.to_isotropic(&place, faults);
             tissues.extend(material.map(|material| TissueWindow {
@@ -160,7 +161,11 @@ impl HounsfieldDocument {
         let ends: Vec<(f64, f64)> =
             self.tissues.iter().map(|tissue| (tissue.from_hu, tissue.to_hu)).collect();
         if ends.iter().all(|(from, to)| from < to) && Windows::new(&ends).is_none() {
-            faults.add(at, "windows-overlap", "two windows overlap: a value belongs to one tissue");
+            faults.add(
+                at,
+                ErrorCode::WindowsOverlap,
+                "two windows overlap: a value belongs to one tissue",
+            );
         }
         tissues
     }

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use super::fibre::FibreDocument;
+use crate::schema::code::ErrorCode;
 use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::limits::Limits;
 use mechanics::material::{LinearElastic, MaterialError};
@@ -78,7 +79,7 @@ impl MaterialDocument {
             ("poisson_ratio", self.poisson_ratio.is_none()),
         ];
         for (name, _) in missing.iter().filter(|(_, missing)| *missing) {
-            faults.add(&at.key(name), "missing-field", format!("missing field `{name}`"));
+            faults.add(&at.key(name), ErrorCode::MissingField, format!("missing field `{name}`"));
         }
         let density = self.density_g_per_cm3.unwrap_or(DEFAULT_TISSUE.2);
         match LinearElastic::new(self.young_modulus_kpa?, self.poisson_ratio?, density) {
@@ -89,7 +90,7 @@ impl MaterialDocument {
                     MaterialError::Density(_) => "density_g_per_cm3",
                     _ => "young_modulus_kpa",
                 };
-                faults.add(&at.key(field), "out-of-range", error.to_string());
+                faults.add(&at.key(field), ErrorCode::OutOfRange, error.to_string());
                 None
             }
         }

@@ -5,6 +5,7 @@ use utoipa::ToSchema;
 
 use super::fibre::to_course;
 use crate::schema::Triple;
+use crate::schema::code::ErrorCode;
 use crate::schema::wire::fault::{Faults, Pointer};
 use mechanics::material::{PlaneStress, Sheet, SheetError};
 use mechanics::prediction::SkinMembrane;
@@ -84,11 +85,13 @@ impl MembraneDocument {
             (Err(error), _) => {
                 let along = fibre.key("young_modulus_kpa");
                 let (place, code) = match error {
-                    SheetError::Thickness(_) => (at.key("thickness_mm"), "out-of-range"),
-                    SheetError::YoungModulus(_) => (at.key("young_modulus_kpa"), "out-of-range"),
-                    SheetError::PoissonRatio(_) => (at.key("poisson_ratio"), "out-of-range"),
-                    SheetError::AlongLines(_) => (along, "out-of-range"),
-                    SheetError::TooSoftAlongLines { .. } => (along, "not-positive-definite"),
+                    SheetError::Thickness(_) => (at.key("thickness_mm"), ErrorCode::OutOfRange),
+                    SheetError::YoungModulus(_) => {
+                        (at.key("young_modulus_kpa"), ErrorCode::OutOfRange)
+                    }
+                    SheetError::PoissonRatio(_) => (at.key("poisson_ratio"), ErrorCode::OutOfRange),
+                    SheetError::AlongLines(_) => (along, ErrorCode::OutOfRange),
+                    SheetError::TooSoftAlongLines { .. } => (along, ErrorCode::NotPositiveDefinite),
                 };
                 faults.add(&place, code, error.to_string());
                 None

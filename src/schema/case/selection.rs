@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
+use crate::schema::code::ErrorCode;
 use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::limits::Limits;
 use mechanics::boundary::NodeSelection;
@@ -73,7 +74,7 @@ impl SelectionDocument {
 
     fn label(&self, at: &Pointer, faults: &mut Faults) -> Option<NodeSelection> {
         let (Some(array), Some(value)) = (&self.array, self.value) else {
-            faults.add(at, "missing-field", "`array` and `value` go together");
+            faults.add(at, ErrorCode::MissingField, "`array` and `value` go together");
             return None;
         };
         let array = array.clone();
@@ -82,7 +83,7 @@ impl SelectionDocument {
 
     fn near_surface(&self, at: &Pointer, faults: &mut Faults) -> Option<NodeSelection> {
         let (Some(surface), Some(distance)) = (&self.surface, self.within_mm) else {
-            faults.add(at, "missing-field", "`surface` and `within_mm` go together");
+            faults.add(at, ErrorCode::MissingField, "`surface` and `within_mm` go together");
             return None;
         };
         faults.check_range(&at.key("within_mm"), distance, 0.0..=LARGEST_DISTANCE_MM, "mm");
@@ -112,7 +113,7 @@ fn union(
     faults: &mut Faults,
 ) -> Option<NodeSelection> {
     if parts.is_empty() {
-        faults.add(at, "empty-selection", "the union of no sets is empty");
+        faults.add(at, ErrorCode::EmptySelection, "the union of no sets is empty");
     }
     faults.check_length(at, parts.len(), limits.list_entries as usize);
     let selections: Vec<_> = parts

@@ -7,6 +7,7 @@ use serde_json::Value;
 use utoipa::ToSchema;
 
 use crate::schema::case::conversion::check_tags;
+use crate::schema::code::ErrorCode;
 use crate::schema::wire::canonical;
 use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::limits::Limits;
@@ -219,17 +220,17 @@ impl AlignDocument {
         if wanted && count < 3 {
             let detail =
                 format!("alignment by landmarks needs at least 3 of them, here are {count}");
-            faults.add(&place, "alignment-failed", detail);
+            faults.add(&place, ErrorCode::AlignmentFailed, detail);
         }
         if !wanted && count > 0 {
             let detail = "landmarks are read where `method` is `landmarks`";
-            faults.add(&place, "unknown-field", detail);
+            faults.add(&place, ErrorCode::UnknownField, detail);
         }
         if let Some(mask) = &self.mask {
             mask.check(&at.key("mask"), faults);
             if self.method != AlignMethod::Icp {
                 let detail = "a mask is read where `method` is `icp`";
-                faults.add(&at.key("mask"), "unknown-field", detail);
+                faults.add(&at.key("mask"), ErrorCode::UnknownField, detail);
             }
         }
     }
@@ -248,7 +249,7 @@ impl PlaceDocument {
             && !(x0 < x1 && y0 < y1 && z0 < z1)
         {
             let detail = "each coordinate of the lowest corner is below that of the highest";
-            faults.add(&at.key("box_mm"), "out-of-range", detail);
+            faults.add(&at.key("box_mm"), ErrorCode::OutOfRange, detail);
         }
     }
 }

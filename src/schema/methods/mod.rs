@@ -11,6 +11,7 @@ mod thickness_warp;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
+use super::code::ErrorCode;
 use crate::schema::wire::fault::{Faults, Pointer};
 pub use measured::{MeasuredDocument, time_band};
 use mechanics::optimisation::UNDETERMINED;
@@ -105,7 +106,7 @@ pub fn check_method(method: MethodName, at: &Pointer, faults: &mut Faults) {
     if !method.is_available() {
         let names: Vec<String> = documents().map(|row| format!("`{}`", row.name.name())).collect();
         let detail = format!("this method is not available; `auto` and {} are", names.join(", "));
-        faults.add(at, "method-not-available", detail);
+        faults.add(at, ErrorCode::MethodNotAvailable, detail);
     }
 }
 
@@ -114,7 +115,7 @@ pub fn check_linear(method: MethodName, at: &Pointer, faults: &mut Faults) {
     let is_linear = matches!(method.chosen(), MethodName::FemLinear | MethodName::MtmTi);
     if method.is_available() && !is_linear {
         let detail = "responses are built by `fem_linear` and `mtm_ti`";
-        faults.add(at, "method-not-available", detail);
+        faults.add(at, ErrorCode::MethodNotAvailable, detail);
     }
 }
 
@@ -130,7 +131,7 @@ pub fn check_own(
         let name = own.name();
         let detail =
             format!("these are settings of `{name}`, and the method is `{}`", method.name());
-        faults.add(&at.key(name), "method-mismatch", detail);
+        faults.add(&at.key(name), ErrorCode::MethodMismatch, detail);
     }
 }
 

@@ -10,6 +10,7 @@ use crate::schema::case::document::CaseDocument;
 use crate::schema::case::material::{MaterialDocument, MaterialDocuments};
 use crate::schema::case::membrane::MembraneDocument;
 use crate::schema::case::selection::SelectionDocument;
+use crate::schema::code::ErrorCode;
 use crate::schema::methods::{self, ElementName, MethodName};
 use crate::schema::plan::document::{PlanDocument, PlanSegmentDocument};
 use crate::schema::plan::movement::FARTHEST_PIVOT_MM;
@@ -136,7 +137,7 @@ impl OptimiseDocument {
         methods::check_linear(self.method, &root.key("method"), faults);
         let at = root.key("targets");
         if self.targets.is_empty() {
-            faults.add(&at, "missing-field", "at least one target is needed");
+            faults.add(&at, ErrorCode::MissingField, "at least one target is needed");
         }
         faults.check_length(&at, self.targets.len(), limits.list_entries as usize);
         for (index, target) in self.targets.iter().enumerate() {
@@ -150,12 +151,12 @@ impl OptimiseDocument {
         }
         if !self.bounds.values().any(BoundsDocument::is_free) {
             let detail = "no segment may move: at least one lowest value is below its highest";
-            faults.add(&at, "nothing-free", detail);
+            faults.add(&at, ErrorCode::NothingFree, detail);
         }
         for (index, name) in self.outputs.iter().flatten().enumerate() {
             if !self.verify && *name == OutputName::VolumeVtu {
                 let detail = "the inside of the tissue is known only after `verify`";
-                faults.add(&root.key("outputs").index(index), "needs-verify", detail);
+                faults.add(&root.key("outputs").index(index), ErrorCode::NeedsVerify, detail);
             }
         }
     }
@@ -232,14 +233,14 @@ impl TargetDocument {
         {
             let known: Vec<&str> = case.landmarks.keys().map(String::as_str).take(20).collect();
             let detail = format!("the case has no landmark {name:?}; it has: {}", known.join(", "));
-            faults.add(&at.key("landmark"), "unknown-landmark", detail);
+            faults.add(&at.key("landmark"), ErrorCode::UnknownLandmark, detail);
         }
         let places = [self.position_mm, self.displacement_mm];
         let given = places.into_iter().flatten().count();
         if faults.check_one_of(at, given, "`position_mm`, `displacement_mm`") {
             let (place, components) = self.wanted(at);
             if components == [None; 3] {
-                faults.add(&place, "missing-field", "at least one component has a value");
+                faults.add(&place, ErrorCode::MissingField, "at least one component has a value");
             }
             let farthest = match self.displacement_mm {
                 Some(_) => limits.translation_mm,
@@ -312,7 +313,7 @@ impl BoundsDocument {
                     && faults.check_range(&place.index(1), high, -most..=most, unit);
                 if inside && low > high {
                     let detail = format!("the lowest value {low} is above the highest {high}");
-                    faults.add(&place, "out-of-range", detail);
+                    faults.add(&place, ErrorCode::OutOfRange, detail);
                 }
             }
         }
@@ -322,13 +323,13 @@ impl BoundsDocument {
             let detail = format!(
                 "the farthest corner is {length:.3} mm away, at most {longest} mm are allowed"
             );
-            faults.add(&at.key("translation_mm"), "plan-out-of-range", detail);
+            faults.add(&at.key("translation_mm"), ErrorCode::PlanOutOfRange, detail);
         }
         let place = at.key("pivot_mm");
         match self.pivot_mm {
             None if self.rotation_deg != Intervals::default() => {
                 let detail = "`pivot_mm` is required where a rotation may be other than 0";
-                faults.add(&place, "missing-field", detail);
+                faults.add(&place, ErrorCode::MissingField, detail);
             }
             None => {}
             Some(Triple(pivot)) => {

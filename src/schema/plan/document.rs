@@ -9,6 +9,7 @@ use super::load;
 use super::movement::{MovementContext, MovementDocument, RotationOrder};
 use crate::schema::case::document::FrameName;
 use crate::schema::case::selection::SelectionDocument;
+use crate::schema::code::ErrorCode;
 use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::limits::Limits;
 use crate::schema::{Matrix4x4, PartialTriple, Triple};
@@ -131,7 +132,7 @@ impl PlanDocument {
         }
         if plan_frame == Frame::Unspecified || case_frame == Frame::Unspecified {
             let detail = format!("the plan is in frame {plan_frame} and the case in {case_frame}");
-            faults.add(&at.key("frame"), "frame-conflict", detail);
+            faults.add(&at.key("frame"), ErrorCode::FrameConflict, detail);
         }
         true
     }
@@ -151,7 +152,7 @@ impl PlanDocument {
             faults.check_name(&at.key("name"), name, context.limits.name_characters as usize);
             if !names.insert(name) {
                 let detail = format!("segment `{name}` is named more than once");
-                faults.add(&at.key("name"), "duplicate-name", detail);
+                faults.add(&at.key("name"), ErrorCode::DuplicateName, detail);
             }
             if let Some(movement) = segment.to_movement(&at, context, faults) {
                 context.check_whole(&at, &movement, faults);
@@ -201,7 +202,7 @@ impl PlanSegmentDocument {
         };
         let at = at.key("sequence");
         if sequence.is_empty() {
-            faults.add(&at, "missing-field", "a sequence has at least one movement");
+            faults.add(&at, ErrorCode::MissingField, "a sequence has at least one movement");
         }
         faults.check_length(&at, sequence.len(), context.limits.list_entries as usize);
         let mut whole = Some(RigidMovement::default());
@@ -232,13 +233,13 @@ impl PrescribedDocument {
         let longest = context.limits.translation_mm;
         let place = at.key("displacement_mm");
         if components == [None; 3] {
-            faults.add(&place, "missing-field", "at least one component has a value");
+            faults.add(&place, ErrorCode::MissingField, "at least one component has a value");
         }
         for (axis, value) in components.into_iter().enumerate() {
             let length = value.unwrap_or_default().abs();
             if length > longest {
                 let detail = format!("moves by {length} mm, at most {longest} mm are allowed");
-                faults.add(&place.index(axis), "plan-out-of-range", detail);
+                faults.add(&place.index(axis), ErrorCode::PlanOutOfRange, detail);
             }
         }
         let signs = context.vector(Triple([1.0; 3]));

@@ -6,6 +6,7 @@ use utoipa::ToSchema;
 use super::movement::MovementContext;
 use crate::schema::Triple;
 use crate::schema::case::selection::SelectionDocument;
+use crate::schema::code::ErrorCode;
 use crate::schema::wire::fault::{Faults, Pointer};
 use mechanics::prediction::Load;
 
@@ -85,11 +86,15 @@ impl LoadDocument {
                     selection = document.to_selection(&at.key(name), context.limits, faults);
                 }
                 (true, None) => {
-                    faults.add(&at.key(name), "missing-field", format!("missing field `{name}`"));
+                    faults.add(
+                        &at.key(name),
+                        ErrorCode::MissingField,
+                        format!("missing field `{name}`"),
+                    );
                 }
                 (false, Some(_)) => {
                     let detail = format!("`{name}` does not belong to this load");
-                    faults.add(&at.key(name), "unknown-field", detail);
+                    faults.add(&at.key(name), ErrorCode::UnknownField, detail);
                 }
                 (false, None) => {}
             }

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
+use crate::schema::code::ErrorCode;
 use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::limits::Limits;
 use crate::schema::{Matrix4x4, Triple};
@@ -74,7 +75,7 @@ impl MovementContext<'_> {
         // An angle out of a rotation carries rounding in its last digits.
         if degrees.is_nan() || degrees > turn_limit * (1.0 + 1e-9) {
             let detail = format!("turns by {degrees:.3} deg, at most {turn_limit} deg are allowed");
-            faults.add(at, "plan-out-of-range", detail);
+            faults.add(at, ErrorCode::PlanOutOfRange, detail);
         }
         let distance = movement.displacement(&self.centre).norm();
         let limit = self.limits.centre_displacement_mm;
@@ -82,7 +83,7 @@ impl MovementContext<'_> {
             let detail = format!(
                 "displaces the centre of the mesh by {distance:.3} mm, at most {limit} mm are allowed"
             );
-            faults.add(at, "plan-out-of-range", detail);
+            faults.add(at, ErrorCode::PlanOutOfRange, detail);
         }
     }
 }
@@ -122,7 +123,11 @@ impl MovementDocument {
         faults: &mut Faults,
     ) -> Option<RigidMovement> {
         if self.translation_mm.is_none() && self.rotation_deg.is_none() {
-            faults.add(at, "missing-field", "give `translation_mm`, `rotation_deg`, or both");
+            faults.add(
+                at,
+                ErrorCode::MissingField,
+                "give `translation_mm`, `rotation_deg`, or both",
+            );
             return None;
         }
         let translation = Vector::from(self.translation_mm.unwrap_or_default());
@@ -131,7 +136,7 @@ impl MovementDocument {
         if turns && self.pivot_mm.is_none() {
             faults.add(
                 &at.key("pivot_mm"),
-                "missing-field",
+                ErrorCode::MissingField,
                 "`pivot_mm` is required where a rotation is not 0",
             );
         }
@@ -139,7 +144,7 @@ impl MovementDocument {
         if pivot.amax() > FARTHEST_PIVOT_MM {
             let detail =
                 format!("a coordinate is {:e} mm, at most 1e8 mm are allowed", pivot.amax());
-            faults.add(&at.key("pivot_mm"), "plan-out-of-range", detail);
+            faults.add(&at.key("pivot_mm"), ErrorCode::PlanOutOfRange, detail);
         }
         let inside = within_limits(at, translation, degrees, limits, faults);
         let known = !turns || self.pivot_mm.is_some();
@@ -158,18 +163,18 @@ fn within_limits(
     let (length, longest) = (translation.norm(), limits.translation_mm);
     if length > longest {
         let detail = format!("moves by {length} mm, at most {longest} mm are allowed");
-        faults.add(&at.key("translation_mm"), "plan-out-of-range", detail);
+        faults.add(&at.key("translation_mm"), ErrorCode::PlanOutOfRange, detail);
     }
     let (angle, largest) = (degrees.amax(), limits.rotation_deg);
     if angle > largest {
         let detail = format!("turns by {angle} deg, at most {largest} deg are allowed");
-        faults.add(&at.key("rotation_deg"), "plan-out-of-range", detail);
+        faults.add(&at.key("rotation_deg"), ErrorCode::PlanOutOfRange, detail);
     }
     length <= longest && angle <= largest
 }
 
 fn from_matrix(matrix: &[f64; 16], at: &Pointer, faults: &mut Faults) -> Option<RigidMovement> {
     RigidMovement::from_matrix4(matrix)
-        .map_err(|error| faults.add(at, "plan-not-rigid", error.to_string()))
+        .map_err(|error| faults.add(at, ErrorCode::PlanNotRigid, error.to_string()))
         .ok()
 }

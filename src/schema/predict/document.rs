@@ -11,6 +11,7 @@ use super::thickness_warp::ThicknessWarpDocument;
 use crate::schema::case::conversion::check_tags;
 use crate::schema::case::material::{MaterialDocument, MaterialDocuments};
 use crate::schema::case::membrane::MembraneDocument;
+use crate::schema::code::ErrorCode;
 use crate::schema::compare::document::{CompareDocument, CompareToDocument};
 use crate::schema::methods::{self, ElementName, MethodName};
 use crate::schema::optimise::document::OptimiseDocument;
@@ -252,12 +253,14 @@ impl JobDocument {
                 let detail = format!(
                     "`{other}` is not a kind of job; `predict`, `compare`, `response`, `optimise`, `study` and `batch` are"
                 );
-                Err(Problem::at(&at, "unknown-word", detail))
+                Err(Problem::at(&at, ErrorCode::UnknownWord, detail))
             }
-            Some(None) => Err(Problem::at(&at, "wrong-type", "the kind of a job is a word")),
+            Some(None) => {
+                Err(Problem::at(&at, ErrorCode::WrongType, "the kind of a job is a word"))
+            }
             None => {
                 let detail = "missing field `kind`: `predict`, `compare`, `response`, `optimise`, `study` or `batch`";
-                Err(Problem::at(&at, "missing-field", detail))
+                Err(Problem::at(&at, ErrorCode::MissingField, detail))
             }
         }
     }
@@ -268,7 +271,7 @@ impl PredictDocument {
     fn check_for_service(&self, faults: &mut Faults) {
         let root = Pointer::root();
         if self.case.is_none() {
-            faults.add(&root.key("case"), "missing-field", "missing field `case`");
+            faults.add(&root.key("case"), ErrorCode::MissingField, "missing field `case`");
         }
         let given = usize::from(self.plan.is_some()) + usize::from(self.plan_id.is_some());
         faults.check_one_of(&root, given, "`plan`, `plan_id`");

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
+use crate::schema::code::ErrorCode;
 use crate::schema::wire::fault::{Faults, Pointer};
 use mechanics::model::spline::stepping::{Clock, Damping, Scheme};
 use mechanics::model::spline::{Stiffness, VolumeSpline};
@@ -165,7 +166,7 @@ impl DvsDocument {
         if steps > MOST_STEPS {
             let detail =
                 format!("{end} s in steps of {step} s are {steps:.0} steps, above {MOST_STEPS:.0}");
-            faults.add(&at.key("step_s"), "out-of-range", detail);
+            faults.add(&at.key("step_s"), ErrorCode::OutOfRange, detail);
         }
         Some(Clock { scheme, step: step * 1e3, end: end * 1e3 })
     }
@@ -204,7 +205,7 @@ impl DvsDocument {
             faults.check_range(&at.key(name), value, range, unit);
             if !has_use {
                 let detail = format!("`{name}` is for {user}, which this spec does not ask for");
-                faults.add(&at.key(name), "method-mismatch", detail);
+                faults.add(&at.key(name), ErrorCode::MethodMismatch, detail);
             }
         }
     }

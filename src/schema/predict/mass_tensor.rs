@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
+use crate::schema::code::ErrorCode;
 use crate::schema::wire::fault::{Faults, Pointer};
 use mechanics::model::fem::mass_tensor::{Iterations, MassTensorSettings};
 use mechanics::solver::stationary::{Iteration, Stationary};
@@ -80,7 +81,7 @@ impl MassTensorDocument {
         for (name, _) in given.into_iter().filter(|(_, is_given)| *is_given) {
             let detail =
                 "`fast` ends at `tolerance.relative_residual`; this is for the other iterations";
-            faults.add(&at.key(name), "method-mismatch", detail);
+            faults.add(&at.key(name), ErrorCode::MethodMismatch, detail);
         }
     }
 }

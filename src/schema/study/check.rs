@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 
 use super::document::{CaseReference, SceneReference, StudyDocument, StudyKind};
 use crate::schema::case::conversion::check_tags;
+use crate::schema::code::ErrorCode;
 use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::limits::Limits;
 use mechanics::study::scenes::SCENES;
@@ -35,7 +36,11 @@ impl StudyDocument {
             faults.check_length(&at.key(name), length, entries);
         }
         if self.methods.as_ref().is_some_and(Vec::is_empty) {
-            faults.add(&at.key("methods"), "missing-field", "at least one method is needed");
+            faults.add(
+                &at.key("methods"),
+                ErrorCode::MissingField,
+                "at least one method is needed",
+            );
         }
         if !self.materials.is_empty() && !self.sweep.is_empty() {
             faults.check_one_of(&at, 2, "`materials`, `sweep`");
@@ -52,7 +57,7 @@ impl StudyDocument {
     /// A batch says everything item by item.
     fn check_items(&self, at: &Pointer, faults: &mut Faults) {
         if self.items.is_empty() {
-            faults.add(&at.key("items"), "missing-field", "at least one item is needed");
+            faults.add(&at.key("items"), ErrorCode::MissingField, "at least one item is needed");
         }
         let elsewhere = [
             ("scenes", self.scenes.is_empty()),
@@ -64,7 +69,7 @@ impl StudyDocument {
         ];
         for (name, _) in elsewhere.into_iter().filter(|(_, is_absent)| !is_absent) {
             let detail = format!("a batch has `items`, and `{name}` belongs to a study");
-            faults.add(&at.key(name), "unknown-field", detail);
+            faults.add(&at.key(name), ErrorCode::UnknownField, detail);
         }
     }
 
@@ -72,21 +77,21 @@ impl StudyDocument {
         let scenes = at.key("scenes");
         if !self.items.is_empty() {
             let detail = "a study has `scenes`, and `items` belong to a batch";
-            faults.add(&at.key("items"), "unknown-field", detail);
+            faults.add(&at.key("items"), ErrorCode::UnknownField, detail);
         }
         if self.scenes.is_empty() {
-            faults.add(&scenes, "missing-field", "at least one scene is needed");
+            faults.add(&scenes, ErrorCode::MissingField, "at least one scene is needed");
         }
         faults.check_length(&scenes, self.scenes.len(), limits.list_entries as usize);
         for (index, scene) in self.scenes.iter().enumerate() {
             let place = scenes.index(index);
             if self.scenes[..index].contains(scene) {
-                faults.add(&place, "duplicate-name", "the scene is named more than once");
+                faults.add(&place, ErrorCode::DuplicateName, "the scene is named more than once");
             }
             match scene {
                 SceneReference::Name(name) if !SCENES.contains(&name.as_str()) => {
                     let detail = format!("no scene is called {name:?}; {}", SCENES.join(", "));
-                    faults.add(&place, "unknown-scene", detail);
+                    faults.add(&place, ErrorCode::UnknownScene, detail);
                 }
                 SceneReference::Case(reference) => reference.check(&place, limits, faults),
                 SceneReference::Name(_) => {}
@@ -96,26 +101,30 @@ impl StudyDocument {
         let (is_wanted, shared) = (self.scenes.iter().any(lacks_plans), self.plan_documents());
         if is_wanted && shared.is_empty() {
             let detail = "cases need at least one plan in full";
-            faults.add(&at.key("plans"), "missing-field", detail);
+            faults.add(&at.key("plans"), ErrorCode::MissingField, detail);
         }
         if let (false, Some((index, _))) = (is_wanted, shared.first()) {
             let detail = "no case is left for this plan: scenes by name have plans of their own, which are asked \
                           for by name";
-            faults.add(&at.key("plans").index(*index), "wrong-type", detail);
+            faults.add(&at.key("plans").index(*index), ErrorCode::WrongType, detail);
         }
     }
 
     fn check_levels(&self, at: &Pointer, faults: &mut Faults) {
         let levels = at.key("levels");
         if self.levels.is_empty() {
-            faults.add(&levels, "missing-field", "at least one level is needed");
+            faults.add(&levels, ErrorCode::MissingField, "at least one level is needed");
         }
         let mut seen = BTreeSet::new();
         for (index, &level) in self.levels.iter().enumerate() {
             let place = levels.index(index);
             faults.check_range(&place, f64::from(level), 0.0..=f64::from(MOST_LEVEL), "");
             if !seen.insert(level) {
-                faults.add(&place, "duplicate-name", format!("level {level} is named twice"));
+                faults.add(
+                    &place,
+                    ErrorCode::DuplicateName,
+                    format!("level {level} is named twice"),
+                );
             }
         }
     }
@@ -126,7 +135,7 @@ impl StudyDocument {
         let given = forms.into_iter().filter(|&form| form).count();
         faults.check_one_of(at, given, "`refine`, `closed_form`, `job`");
         if truth.element.is_some() && truth.refine.is_none() {
-            faults.add(&at.key("element"), "wrong-type", "`element` belongs to `refine`");
+            faults.add(&at.key("element"), ErrorCode::WrongType, "`element` belongs to `refine`");
         }
         let refine = f64::from(truth.refine.unwrap_or_default());
         faults.check_range(&at.key("refine"), refine, 0.0..=f64::from(MOST_LEVEL), "");
@@ -138,7 +147,7 @@ impl StudyDocument {
         if truth.job.is_some() && !one_row {
             let detail =
                 "the skin of a job is the truth of one case with one plan and one material";
-            faults.add(&at.key("job"), "wrong-type", detail);
+            faults.add(&at.key("job"), ErrorCode::WrongType, detail);
         }
     }
 
@@ -170,7 +179,7 @@ impl StudyDocument {
             }
             if bounds.iter().all(|(_, bound)| bound.is_none()) {
                 let detail = "at least one of `mean_mm`, `p95_mm` and `wall_s` is given";
-                faults.add(&place, "missing-field", detail);
+                faults.add(&place, ErrorCode::MissingField, detail);
             }
             faults.check_length(
                 &place.key("labels"),

@@ -3,30 +3,31 @@
 use std::fmt;
 use std::ops::RangeInclusive;
 
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 use utoipa::ToSchema;
 
 use super::problem::Problem;
+use crate::schema::code::ErrorCode;
 use mechanics::prediction::SceneErrors;
 
 /// How many faults of one document are reported.
 const REPORTED_FAULTS: usize = 50;
 
 /// Codes that name a whole problem when nothing else is wrong with a document.
-const CATALOGUE: &[&str] = &[
-    "alignment-failed",
-    "empty-selection",
-    "frame-conflict",
-    "method-mismatch",
-    "method-not-available",
-    "missing-material",
-    "not-in-response",
-    "not-linear",
-    "plan-conflict",
-    "plan-not-rigid",
-    "plan-out-of-range",
-    "underconstrained",
-    "unknown-segment",
+const CATALOGUE: &[ErrorCode] = &[
+    ErrorCode::AlignmentFailed,
+    ErrorCode::EmptySelection,
+    ErrorCode::FrameConflict,
+    ErrorCode::MethodMismatch,
+    ErrorCode::MethodNotAvailable,
+    ErrorCode::MissingMaterial,
+    ErrorCode::NotInResponse,
+    ErrorCode::NotLinear,
+    ErrorCode::PlanConflict,
+    ErrorCode::PlanNotRigid,
+    ErrorCode::PlanOutOfRange,
+    ErrorCode::Underconstrained,
+    ErrorCode::UnknownSegment,
 ];
 
 /// A JSON pointer (RFC 6901).
@@ -67,12 +68,13 @@ impl fmt::Display for Pointer {
 }
 
 /// One thing wrong with a document.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, ToSchema)]
 pub struct FieldError {
     /// JSON pointer (RFC 6901) to the place.
     pub pointer: String,
     /// A stable word for the kind of mistake.
-    pub code: String,
+    #[schema(value_type = String)]
+    pub code: ErrorCode,
     /// One sentence with the numbers.
     pub detail: String,
 }
@@ -85,16 +87,12 @@ pub struct Faults {
 }
 
 impl Faults {
-    pub fn add(&mut self, at: &Pointer, code: &str, detail: impl Into<String>) {
+    pub fn add(&mut self, at: &Pointer, code: ErrorCode, detail: impl Into<String>) {
         if self.errors.len() == REPORTED_FAULTS {
             self.unreported += 1;
             return;
         }
-        self.errors.push(FieldError {
-            pointer: at.to_string(),
-            code: code.to_owned(),
-            detail: detail.into(),
-        });
+        self.errors.push(FieldError { pointer: at.to_string(), code, detail: detail.into() });
     }
 
     pub fn is_empty(&self) -> bool {
@@ -123,7 +121,8 @@ impl Faults {
             1 => first,
             _ => format!("{count} mistakes, the first at {first}"),
         };
-        let mut problem = Problem::new(shared.copied().unwrap_or("validation-failed"), detail);
+        let mut problem =
+            Problem::new(shared.copied().unwrap_or(ErrorCode::ValidationFailed), detail);
         problem.errors = self.errors;
         problem
     }
@@ -134,7 +133,7 @@ impl Faults {
             self.add(&Pointer::root(), problem.code, problem.detail);
         } else {
             for error in problem.errors {
-                self.add(&Pointer::from_text(&error.pointer), &error.code, error.detail);
+                self.add(&Pointer::from_text(&error.pointer), error.code, error.detail);
             }
         }
     }
@@ -151,7 +150,11 @@ impl Faults {
         if !inside {
             let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
             let (low, high) = (range.start(), range.end());
-            self.add(at, "out-of-range", format!("{value}{unit} is outside {low} to {high}{unit}"));
+            self.add(
+                at,
+                ErrorCode::OutOfRange,
+                format!("{value}{unit} is outside {low} to {high}{unit}"),
+            );
         }
         inside
     }
@@ -162,17 +165,21 @@ impl Faults {
         if characters == 0 || characters > longest {
             self.add(
                 at,
-                "bad-name",
+                ErrorCode::BadName,
                 format!("a name has 1 to {longest} characters, this one {characters}"),
             );
         } else if name.chars().any(char::is_control) {
-            self.add(at, "bad-name", "a name holds no control characters");
+            self.add(at, ErrorCode::BadName, "a name holds no control characters");
         }
     }
 
     pub fn check_length(&mut self, at: &Pointer, length: usize, most: usize) {
         if length > most {
-            self.add(at, "too-many", format!("{length} entries, at most {most} are allowed"));
+            self.add(
+                at,
+                ErrorCode::TooMany,
+                format!("{length} entries, at most {most} are allowed"),
+            );
         }
     }
 
@@ -181,7 +188,7 @@ impl Faults {
         if given != 1 {
             self.add(
                 at,
-                "one-of",
+                ErrorCode::OneOf,
                 format!("exactly one of {forms} has to be given, here are {given}"),
             );
         }
@@ -194,7 +201,7 @@ impl From<SceneErrors> for Problem {
     fn from(errors: SceneErrors) -> Problem {
         let mut faults = Faults::default();
         for error in &errors.0 {
-            faults.add(&Pointer::from_text(&error.pointer), error.code, &error.detail);
+            faults.add(&Pointer::from_text(&error.pointer), error.code.into(), &error.detail);
         }
         faults.into_problem()
     }

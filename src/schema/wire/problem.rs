@@ -1,16 +1,20 @@
 //! A refusal: a stable code, a sentence, the places and the numbers (RFC 9457).
 
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 use serde_json::{Map, Value};
 use utoipa::ToSchema;
 
 use super::fault::{Faults, FieldError, Pointer};
+use crate::schema::code::ErrorCode;
 
-/// Why something was refused. Which HTTP status belongs to a code is the business of the API.
+/// What stands before the code in the `type` of a problem.
+const KIND_BASE: &str = "https://facies.invalid/problems/";
+
+/// Why something was refused.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Problem {
     /// The last word of the problem's `type`, e.g. `validation-failed`.
-    pub code: &'static str,
+    pub code: ErrorCode,
     pub detail: String,
     pub errors: Vec<FieldError>,
     /// Members beside the standard ones, e.g. `line` and `column`.
@@ -18,12 +22,12 @@ pub struct Problem {
 }
 
 impl Problem {
-    pub fn new(code: &'static str, detail: impl Into<String>) -> Self {
+    pub fn new(code: ErrorCode, detail: impl Into<String>) -> Self {
         Problem { code, detail: detail.into(), errors: Vec::new(), members: Map::new() }
     }
 
     /// One mistake at one place of a document.
-    pub fn at(pointer: &Pointer, code: &str, detail: impl Into<String>) -> Self {
+    pub fn at(pointer: &Pointer, code: ErrorCode, detail: impl Into<String>) -> Self {
         let mut faults = Faults::default();
         faults.add(pointer, code, detail);
         faults.into_problem()
@@ -48,13 +52,13 @@ impl Problem {
         self
     }
 
-    /// The body of an answer with this problem.
-    pub fn into_document(self, kind: ProblemKind, instance: Option<String>) -> ProblemDocument {
+    /// The body of an answer with this problem and this HTTP status.
+    pub fn into_document(self, status: u16, instance: Option<String>) -> ProblemDocument {
         ProblemDocument {
-            kind: format!("{}{}", kind.base, self.code),
-            title: kind.title,
-            status: kind.status,
-            code: self.code.to_owned(),
+            kind: format!("{KIND_BASE}{}", self.code),
+            title: self.code.title().to_owned(),
+            status,
+            code: self.code.name().to_owned(),
             detail: self.detail,
             instance,
             errors: self.errors,
@@ -63,16 +67,8 @@ impl Problem {
     }
 }
 
-/// What the API knows about the kind of a problem.
-pub struct ProblemKind {
-    /// What stands before the code in `type`.
-    pub base: String,
-    pub title: String,
-    pub status: u16,
-}
-
 /// `application/problem+json` (RFC 9457).
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 pub struct ProblemDocument {
     /// URI of the kind of problem; ends with `code`.
     #[serde(rename = "type")]

@@ -15,6 +15,7 @@ use serde_path_to_error::Segment;
 use super::fault::{Faults, Pointer};
 use super::limits::Limits;
 use super::problem::Problem;
+use crate::schema::code::ErrorCode;
 
 /// One document of a known shape.
 pub fn parse<T: DeserializeOwned>(bytes: &[u8], limits: &Limits) -> Result<T, Problem> {
@@ -29,7 +30,9 @@ pub fn parse_value(bytes: &[u8], limits: &Limits) -> Result<Value, Problem> {
             bytes.len(),
             limits.json_bytes
         );
-        return Err(Problem::new("payload-too-large", detail).with("limit", limits.json_bytes));
+        return Err(
+            Problem::new(ErrorCode::PayloadTooLarge, detail).with("limit", limits.json_bytes)
+        );
     }
     let text = std::str::from_utf8(bytes).map_err(|error| not_utf8(bytes, error.valid_up_to()))?;
     let scan = Scan {
@@ -61,7 +64,7 @@ pub fn from_value<T: DeserializeOwned>(mut value: Value) -> Result<T, Problem> {
         match quoted_after(&detail, "unknown field ") {
             Some(name) => {
                 let (parent, place) = member(&at, name);
-                faults.add(&place, "unknown-field", detail.clone());
+                faults.add(&place, ErrorCode::UnknownField, detail.clone());
                 let object = value.pointer_mut(parent.as_str()).and_then(Value::as_object_mut);
                 if object.and_then(|object| object.remove(name)).is_some() {
                     continue;
@@ -70,17 +73,17 @@ pub fn from_value<T: DeserializeOwned>(mut value: Value) -> Result<T, Problem> {
             None => add_shape_fault(&mut faults, &at, &detail),
         }
         faults.into_result()?;
-        return Err(Problem::new("validation-failed", detail));
+        return Err(Problem::new(ErrorCode::ValidationFailed, detail));
     }
 }
 
 fn add_shape_fault(faults: &mut Faults, at: &Pointer, detail: &str) {
     if let Some(name) = quoted_after(detail, "missing field ") {
-        faults.add(&at.key(name), "missing-field", detail);
+        faults.add(&at.key(name), ErrorCode::MissingField, detail);
     } else if detail.starts_with("unknown variant ") {
-        faults.add(at, "unknown-word", detail);
+        faults.add(at, ErrorCode::UnknownWord, detail);
     } else {
-        faults.add(at, "wrong-type", detail);
+        faults.add(at, ErrorCode::WrongType, detail);
     }
 }
 
@@ -116,7 +119,7 @@ fn remove_nulls(value: &mut Value, at: &Pointer, faults: &mut Faults) {
         Value::Object(members) => {
             members.retain(|name, member| {
                 if member.is_null() {
-                    faults.add(&at.key(name), "null-value", "null is not a value here");
+                    faults.add(&at.key(name), ErrorCode::NullValue, "null is not a value here");
                 } else {
                     remove_nulls(member, &at.key(name), faults);
                 }
@@ -139,11 +142,11 @@ fn not_utf8(bytes: &[u8], valid: usize) -> Problem {
         before.iter().rposition(|&byte| byte == b'\n').map_or(0, |newline| newline + 1);
     let column = valid - line_start + 1;
     let detail = format!("byte {valid} is not UTF-8 (line {line}, column {column})");
-    Problem::new("malformed-json", detail).with("line", line).with("column", column)
+    Problem::new(ErrorCode::MalformedJson, detail).with("line", line).with("column", column)
 }
 
 fn malformed(error: &serde_json::Error, at: &Pointer) -> Problem {
-    let problem = Problem::new("malformed-json", error.to_string())
+    let problem = Problem::new(ErrorCode::MalformedJson, error.to_string())
         .with("line", error.line())
         .with("column", error.column());
     match at.as_str() {
@@ -256,7 +259,7 @@ impl<'de> Visitor<'de> for ScanValue<'_> {
             if object.contains_key(&key) {
                 let detail = format!("the key `{key}` is given more than once");
                 let at = self.0.pointer();
-                self.0.faults.borrow_mut().add(&at, "duplicate-key", detail);
+                self.0.faults.borrow_mut().add(&at, ErrorCode::DuplicateKey, detail);
             }
             let member = members.next_value_seed(ScanValue(self.0))?;
             self.0.leave();

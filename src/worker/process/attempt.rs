@@ -7,6 +7,7 @@ use crate::jobs::failure::JobError;
 use crate::jobs::predict::input::JobInput;
 use crate::jobs::source::MeshSource;
 use crate::jobs::work::{JobOutput, Workplace, work};
+use crate::schema::ErrorCode;
 use crate::schema::Limits;
 use crate::schema::job::ErrorClass;
 use mechanics::prediction::Progress;
@@ -72,7 +73,7 @@ fn broken(reason: &str) -> Outcome {
 /// The error of a job that met a bug; what it was stands in the log only.
 pub(in crate::worker) fn broke_off() -> Value {
     let detail = "the work broke off; the log has the details under the job's id";
-    json!({"type": "internal", "class": "infrastructure", "detail": detail})
+    json!({"type": ErrorCode::Internal, "class": "infrastructure", "detail": detail})
 }
 
 fn failed(error: &JobError) -> Outcome {

@@ -13,6 +13,7 @@ use super::memory::Usage;
 use super::protocol::{Answer, Assignment, Made, Order, Outcome, Question, Report, Settings};
 use crate::library::meshes::Library;
 use crate::metrics;
+use crate::schema::ErrorCode;
 use crate::schema::job::ErrorClass;
 use crate::store::{Claim, StoreError};
 use crate::worker::process::attempt::broke_off;
@@ -132,7 +133,7 @@ impl SlotWork {
                 tracing::warn!("a job did not notice the end of its time; its process is killed");
                 self.died("over-time");
                 Err(Failure::Permanent(json!({
-                    "type": "budget-exceeded",
+                    "type": ErrorCode::BudgetExceeded,
                     "class": ErrorClass::Budget,
                     "detail": format!("wall ran out: {wall_s} s are allowed"),
                     "which": "wall",
@@ -365,7 +366,7 @@ fn megabytes(bytes: u64) -> f64 {
 fn out_of_memory(asked_bytes: u64, limit_bytes: u64, usage: Option<Usage>) -> Value {
     let (asked_mb, limit_mb) = (megabytes(asked_bytes), megabytes(limit_bytes));
     let mut error = json!({
-        "type": "out-of-memory",
+        "type": ErrorCode::OutOfMemory,
         "class": ErrorClass::Budget,
         "detail": format!("the job may take {limit_mb:.0} MB, and asked for {asked_mb:.3} MB more than was left"),
         "which": "memory",

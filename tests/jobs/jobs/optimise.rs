@@ -101,7 +101,7 @@ fn a_job_that_is_told_to_stop_stops_in_every_phase_and_writes_nothing() {
         let out = folder.path().join("out");
         let error = run(&out, &StopAt(phase, AtomicBool::default())).unwrap_err();
         assert_eq!(
-            (error.kind(), error.class()),
+            (error.kind().name(), error.class()),
             ("cancelled", ErrorClass::Cancelled),
             "{phase:?}"
         );

@@ -78,8 +78,9 @@ fn method_of(document: &PredictDocument) -> Method {
 /// The codes and places of a refusal.
 pub fn refused<T>(result: Result<T, Problem>) -> (String, Vec<(String, String)>) {
     let problem = result.err().expect("the document is refused");
-    let errors = problem.errors.into_iter().map(|error| (error.code, error.pointer));
-    (problem.code.to_owned(), errors.collect())
+    let errors =
+        problem.errors.into_iter().map(|error| (error.code.name().to_owned(), error.pointer));
+    (problem.code.name().to_owned(), errors.collect())
 }
 
 pub fn one(code: &str, error: &str, pointer: &str) -> (String, Vec<(String, String)>) {

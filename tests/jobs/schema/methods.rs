@@ -23,7 +23,7 @@ fn settings(spec: &str) -> Result<Settings, Problem> {
 fn mistake(spec: &str) -> (String, String) {
     let problem = settings(spec).expect_err("refused");
     assert_eq!(problem.errors.len(), 1, "{}", problem.detail);
-    (problem.errors[0].code.clone(), problem.errors[0].pointer.clone())
+    (problem.errors[0].code.name().to_owned(), problem.errors[0].pointer.clone())
 }
 
 #[test]

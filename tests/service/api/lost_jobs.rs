@@ -4,7 +4,7 @@ use facies::store::Store;
 use serde_json::json;
 
 use crate::deployments::{Deployment, on_both};
-use crate::queue::{LEASE, enqueue};
+use crate::store::queue::{LEASE, enqueue};
 
 on_both! {
     what_an_error_says_of_itself_tells_whether_its_job_was_lost

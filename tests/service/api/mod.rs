@@ -9,6 +9,7 @@ pub mod batch;
 pub mod cases;
 pub mod clients_that_stall;
 pub mod erasures;
+mod error_codes;
 pub mod events;
 pub mod idempotency;
 pub mod images;

@@ -96,7 +96,7 @@ fn judged(probe: &Probe, truth: &Known, bound_mm: f64, bounds: &Bounds) -> Findi
             let first = errors.0.into_iter().next();
             return refused(first.map_or_else(
                 || Refusal::new("", "refused", "no reason was given"),
-                |error| Refusal::new(&error.pointer, error.code, &error.detail),
+                |error| Refusal::new(&error.pointer, error.code.name(), &error.detail),
             ));
         }
     };

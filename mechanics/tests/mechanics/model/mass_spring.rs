@@ -393,7 +393,7 @@ fn cells_and_elements_that_springs_do_not_know_are_refused_where_they_stand() {
     let refused = |shape: CellShape, element: ElementChoice| {
         let settings = Settings { element, ..springs(Search::Newton) };
         let errors = Scene::new(&slab(shape, 0.25), &moved(Vector::z()), &settings).err().unwrap();
-        (errors.0[0].pointer.clone(), errors.0[0].code)
+        (errors.0[0].pointer.clone(), errors.0[0].code.name())
     };
     let code = "method-not-available";
     assert_eq!(refused(CellShape::Hex8, ElementChoice::Auto), ("/case/volume".to_owned(), code));

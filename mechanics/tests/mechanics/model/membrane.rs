@@ -192,7 +192,7 @@ fn lines_follow_an_array_of_nodes_whatever_its_signs() {
     assert!(by_array.lines.iter().all(|line| (line.x.abs() - 1.0).abs() < 1e-15));
     let refused = |lines| {
         let error = scene(lines).err().unwrap().0.remove(0);
-        (error.code, error.pointer)
+        (error.code.name(), error.pointer)
     };
     let across = refused(FibreDirection::Uniform(Vector::z()));
     assert_eq!(across, ("fibre-direction-zero", "/spec/membrane/fibre/direction".to_owned()));

@@ -327,7 +327,7 @@ fn quadratic_elements_are_refused_on_meshes_with_other_cells() {
     let (case, plan) = layers(CellShape::Wedge6);
     let errors = Scene::new(&case, &plan, &with(ElementChoice::Quadratic)).err().unwrap();
     assert_eq!(
-        (errors.0[0].code, errors.0[0].pointer.as_str()),
+        (errors.0[0].code.name(), errors.0[0].pointer.as_str()),
         ("method-not-available", "/spec/element")
     );
     assert!(errors.0[0].detail.contains("wedge6"));

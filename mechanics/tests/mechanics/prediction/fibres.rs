@@ -192,7 +192,7 @@ fn the_mass_tensor_with_fibres_is_the_plain_finite_element_and_balances_its_own_
 /// Code, pointer and sentence of the first refusal.
 fn refusal(case: &Case, plan: &Plan, settings: &Settings) -> (&'static str, String, String) {
     let errors = Scene::new(case, plan, settings).err().expect("the scene is refused").0;
-    (errors[0].code, errors[0].pointer.clone(), errors[0].detail.clone())
+    (errors[0].code.name(), errors[0].pointer.clone(), errors[0].detail.clone())
 }
 
 #[test]

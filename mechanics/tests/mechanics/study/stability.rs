@@ -354,7 +354,7 @@ fn what_nothing_holds_or_two_segments_hold_is_refused_for_every_variant() {
         let settings = &variant.settings;
         let refusal = |case: &Case, plan: &Plan| {
             let errors = Scene::new(case, plan, settings).err().unwrap();
-            (errors.0[0].pointer.clone(), errors.0[0].code, errors.0[0].detail.clone())
+            (errors.0[0].pointer.clone(), errors.0[0].code.name(), errors.0[0].detail.clone())
         };
         let mut free = jaw_and_skull(shape_for(&variant));
         (free.fixed, free.segments) = (Vec::new(), Vec::new());

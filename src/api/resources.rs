@@ -1,0 +1,81 @@
+//! Routes of the service, none without what it takes.
+
+use axum::http::Method;
+use axum::middleware::from_fn;
+use utoipa::openapi::PathItem;
+use utoipa_axum::router::{OpenApiRouter, UtoipaMethodRouter};
+
+use super::Service;
+use super::access::{Access, Declared};
+use super::guard;
+use crate::schema::key::Scope;
+
+/// Routes with their descriptions and what each of them takes.
+pub struct Resources {
+    pub router: OpenApiRouter<Service>,
+    pub declared: Declared,
+}
+
+impl Resources {
+    pub fn new() -> Resources {
+        Resources { router: OpenApiRouter::new(), declared: Declared::default() }
+    }
+
+    /// Routes that answer without a key.
+    pub fn open(self, routes: UtoipaMethodRouter<Service>) -> Resources {
+        self.with(Access::Open, routes)
+    }
+
+    /// Routes that change nothing.
+    pub fn looks(self, scope: Scope, routes: UtoipaMethodRouter<Service>) -> Resources {
+        self.with(Access::looks(scope), routes)
+    }
+
+    /// Routes that change something.
+    pub fn changes(self, scope: Scope, routes: UtoipaMethodRouter<Service>) -> Resources {
+        self.with(Access::changes(scope), routes)
+    }
+
+    /// Declares routes that a library answers to all.
+    pub fn pages(mut self, routes: &[&str]) -> Resources {
+        for route in routes {
+            self.declared.add(route, Method::GET, Access::Open);
+        }
+        self
+    }
+
+    fn with(mut self, access: Access, routes: UtoipaMethodRouter<Service>) -> Resources {
+        for (path, item) in &routes.1.paths {
+            for method in methods(item) {
+                self.declared.add(path, method, access);
+            }
+        }
+        Resources { router: self.router.routes(routes), declared: self.declared }
+    }
+
+    /// The same routes for clients that take JSON only.
+    pub fn json_only(self) -> Resources {
+        let router = self.router.route_layer(from_fn(guard::accepts_json));
+        Resources { router, ..self }
+    }
+
+    pub fn merge(mut self, other: Resources) -> Resources {
+        self.declared.join(other.declared);
+        Resources { router: self.router.merge(other.router), declared: self.declared }
+    }
+}
+
+/// The methods of the operations of a path.
+fn methods(item: &PathItem) -> impl Iterator<Item = Method> {
+    let operations = [
+        (Method::GET, &item.get),
+        (Method::PUT, &item.put),
+        (Method::POST, &item.post),
+        (Method::DELETE, &item.delete),
+        (Method::OPTIONS, &item.options),
+        (Method::HEAD, &item.head),
+        (Method::PATCH, &item.patch),
+        (Method::TRACE, &item.trace),
+    ];
+    operations.into_iter().filter(|(_, operation)| operation.is_some()).map(|(method, _)| method)
+}

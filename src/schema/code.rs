@@ -1,0 +1,216 @@
+//! The codes of all errors: the word on the wire, the HTTP status and the title of each, one line a code. What is not in
+//! this table cannot be said.
+
+use std::fmt;
+
+use serde::{Serialize, Serializer};
+
+const TOO_MUCH: &str = "The client asks for more than one may have";
+const LATER: &str = "Come back later";
+/// The code says what is wrong with what was sent.
+const REFUSED: &str = "The request was understood and is refused";
+
+macro_rules! error_codes {
+    ($($code:ident $status:literal $word:literal $title:expr,)+) => {
+        /// What went wrong: the last word of a problem's `type`, the code of a mistake in a document, or the type of a
+        /// job's error.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        pub enum ErrorCode {
+            $($code,)+
+        }
+
+        impl ErrorCode {
+            pub const ALL: &[ErrorCode] = &[$(ErrorCode::$code,)+];
+
+            /// The word on the wire. Clients rely on it.
+            pub const fn name(self) -> &'static str {
+                match self {
+                    $(ErrorCode::$code => $word,)+
+                }
+            }
+
+            /// The HTTP status of a problem with this code.
+            pub const fn status(self) -> u16 {
+                match self {
+                    $(ErrorCode::$code => $status,)+
+                }
+            }
+
+            /// The kind of problem in a few words.
+            pub const fn title(self) -> &'static str {
+                match self {
+                    $(ErrorCode::$code => $title,)+
+                }
+            }
+        }
+    };
+}
+
+error_codes! {
+    MalformedJson 400 "malformed-json" "The body is not valid JSON",
+    MalformedMultipart 400 "malformed-multipart" "The body is not valid multipart",
+    MalformedRequest 400 "malformed-request" "The request could not be read",
+    DigestMismatch 400 "digest-mismatch" "The body differs from its Content-Digest",
+    InvalidParameter 400 "invalid-parameter" "A parameter is not valid",
+    Unauthorized 401 "unauthorized" "A key is needed",
+    ForbiddenScope 403 "forbidden-scope" "The key does not allow this",
+    NotFound 404 "not-found" "There is nothing here",
+    NoSuchJob 404 "no-such-job" "There is no such job",
+    NoSuchOutput 404 "no-such-output" "The job has no such file",
+    ResponseNotBuilt 404 "response-not-built" "The case has no response",
+    ResultNotReady 404 "result-not-ready" "The job has not ended",
+    MethodNotAllowed 405 "method-not-allowed" "The resource does not answer to this method",
+    NotAcceptable 406 "not-acceptable" "The resource has no such representation",
+    RequestTimeout 408 "request-timeout" "The body came too slowly",
+    ConflictInUse 409 "conflict-in-use" "Something refers to it",
+    ResponseStale 409 "response-stale" "The response is older than its case",
+    Conflict 409 "conflict" "It changed meanwhile",
+    Gone 410 "gone" "It was erased",
+    PreconditionFailed 412 "precondition-failed" "It has another version",
+    PayloadTooLarge 413 "payload-too-large" "The body is too large",
+    UriTooLong 414 "uri-too-long" "The address is too long",
+    UnsupportedMediaType 415 "unsupported-media-type" "The body is of a kind that is not read here",
+    RangeNotSatisfiable 416 "range-not-satisfiable" "The range is outside the file",
+    PreconditionRequired 428 "precondition-required" "The version that is meant has to be named in If-Match",
+    RateLimited 429 "rate-limited" TOO_MUCH,
+    TooManyStreams 429 "too-many-streams" TOO_MUCH,
+    HeaderTooLarge 431 "header-too-large" "The headers are too large",
+    Internal 500 "internal" "Something broke here",
+    Integrity 500 "integrity" "A stored file is damaged",
+    NotReady 503 "not-ready" LATER,
+    QueueFull 503 "queue-full" LATER,
+    StorageFull 507 "storage-full" "The disk is full",
+
+    // About the shape of a document.
+    ValidationFailed 422 "validation-failed" REFUSED,
+    BadName 422 "bad-name" REFUSED,
+    DuplicateKey 422 "duplicate-key" REFUSED,
+    DuplicateName 422 "duplicate-name" REFUSED,
+    MissingField 422 "missing-field" REFUSED,
+    NullValue 422 "null-value" REFUSED,
+    OneOf 422 "one-of" REFUSED,
+    OutOfRange 422 "out-of-range" REFUSED,
+    TooMany 422 "too-many" REFUSED,
+    UnknownField 422 "unknown-field" REFUSED,
+    UnknownWord 422 "unknown-word" REFUSED,
+    WrongType 422 "wrong-type" REFUSED,
+
+    // About what a document names.
+    DuplicateSegment 422 "duplicate-segment" REFUSED,
+    FrameConflict 422 "frame-conflict" REFUSED,
+    NoClosedForm 422 "no-closed-form" REFUSED,
+    NotInResponse 422 "not-in-response" REFUSED,
+    OtherCase 422 "other-case" REFUSED,
+    UnknownArray 422 "unknown-array" REFUSED,
+    UnknownCase 422 "unknown-case" REFUSED,
+    UnknownJob 422 "unknown-job" REFUSED,
+    UnknownLabel 422 "unknown-label" REFUSED,
+    UnknownLandmark 422 "unknown-landmark" REFUSED,
+    UnknownMesh 422 "unknown-mesh" REFUSED,
+    UnknownPlan 422 "unknown-plan" REFUSED,
+    UnknownRegion 422 "unknown-region" REFUSED,
+    UnknownScene 422 "unknown-scene" REFUSED,
+    UnknownSegment 422 "unknown-segment" REFUSED,
+    UnknownSet 422 "unknown-set" REFUSED,
+    UnknownSurface 422 "unknown-surface" REFUSED,
+    UnusedPart 422 "unused-part" REFUSED,
+    UnitsConflict 422 "units-conflict" REFUSED,
+    UnitsSuspect 422 "units-suspect" REFUSED,
+    WrongMesh 422 "wrong-mesh" REFUSED,
+
+    // About what it says of the face.
+    EmptySelection 422 "empty-selection" REFUSED,
+    FibreDirectionZero 422 "fibre-direction-zero" REFUSED,
+    MissingMaterial 422 "missing-material" REFUSED,
+    NotInLaw 422 "not-in-law" REFUSED,
+    NotPositiveDefinite 422 "not-positive-definite" REFUSED,
+    OutsideImage 422 "outside-image" REFUSED,
+    PlanConflict 422 "plan-conflict" REFUSED,
+    PlanNotRigid 422 "plan-not-rigid" REFUSED,
+    PlanOutOfRange 422 "plan-out-of-range" REFUSED,
+    SlidingNormalZero 422 "sliding-normal-zero" REFUSED,
+    Underconstrained 422 "underconstrained" REFUSED,
+    WindowsOverlap 422 "windows-overlap" REFUSED,
+
+    // About what is asked for.
+    FormatNotAvailable 422 "format-not-available" REFUSED,
+    IdempotencyMismatch 422 "idempotency-mismatch" REFUSED,
+    JobFailed 422 "job-failed" REFUSED,
+    MethodMismatch 422 "method-mismatch" REFUSED,
+    MethodNotAvailable 422 "method-not-available" REFUSED,
+    NeedsVerify 422 "needs-verify" REFUSED,
+    NotLinear 422 "not-linear" REFUSED,
+    NothingFree 422 "nothing-free" REFUSED,
+
+    // About the bytes of a mesh.
+    DecompressionLimit 422 "decompression-limit" REFUSED,
+    MeshDegenerate 422 "mesh-degenerate" REFUSED,
+    MeshEmpty 422 "mesh-empty" REFUSED,
+    MeshIndexOutOfRange 422 "mesh-index-out-of-range" REFUSED,
+    MeshInvertedElements 422 "mesh-inverted-elements" REFUSED,
+    MeshLimits 422 "mesh-limits" REFUSED,
+    MeshNonfinite 422 "mesh-nonfinite" REFUSED,
+    MeshParse 422 "mesh-parse" REFUSED,
+    UnsupportedFormat 422 "unsupported-format" REFUSED,
+
+    // About two surfaces that are compared.
+    AlignmentFailed 422 "alignment-failed" REFUSED,
+    EmptyRegion 422 "empty-region" REFUSED,
+    NotCorresponding 422 "not-corresponding" REFUSED,
+    TooManySamples 422 "too-many-samples" REFUSED,
+
+    // How jobs fail; a check that fails in the same way is refused.
+    BudgetExceeded 422 "budget-exceeded" REFUSED,
+    Cancelled 422 "cancelled" REFUSED,
+    ElementInverted 422 "element-inverted" REFUSED,
+    EncodingFailed 422 "encoding-failed" REFUSED,
+    MatrixSingular 422 "matrix-singular" REFUSED,
+    NoBone 422 "no-bone" REFUSED,
+    NoPlanFound 422 "no-plan-found" REFUSED,
+    NotFinite 422 "not-finite" REFUSED,
+    OutOfMemory 422 "out-of-memory" REFUSED,
+    SolverDiverged 422 "solver-diverged" REFUSED,
+    StatisticsFailed 422 "statistics-failed" REFUSED,
+    StepAboveLimit 422 "step-above-limit" REFUSED,
+
+    // How jobs fail through no fault of their own.
+    Storage 500 "storage" "A file could not be read or written",
+    WorkerLost 500 "worker-lost" "The process of the job ended",
+}
+
+impl fmt::Display for ErrorCode {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(self.name())
+    }
+}
+
+impl Serialize for ErrorCode {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.name())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+
+    #[test]
+    fn every_code_has_a_name_of_its_own_a_status_of_an_error_and_a_title() {
+        let mut names = BTreeSet::new();
+        for code in ErrorCode::ALL {
+            let name = code.name();
+            let words = name.split('-');
+            let is_word =
+                |word: &str| !word.is_empty() && word.bytes().all(|b| b.is_ascii_lowercase());
+            assert!(words.clone().all(is_word), "{name}");
+            // The name of the variant is the same words.
+            let joined: String = words.collect();
+            assert_eq!(joined, format!("{code:?}").to_lowercase());
+            assert!(names.insert(name), "two codes are called {name}");
+            assert!((400..600).contains(&code.status()), "{name}");
+            assert!(!code.title().is_empty(), "{name}");
+        }
+    }
+}

@@ -1,0 +1,165 @@
+//! The codes of what the numerics say. They have words of their own, which are those of the codes.
+
+use super::code::ErrorCode;
+use mechanics::format::FormatError;
+use mechanics::mesh::SearchError;
+use mechanics::prediction::{PredictionError, SceneErrorCode};
+use mechanics::validation::ComparisonError;
+
+impl From<SceneErrorCode> for ErrorCode {
+    fn from(code: SceneErrorCode) -> Self {
+        match code {
+            SceneErrorCode::DuplicateSegment => ErrorCode::DuplicateSegment,
+            SceneErrorCode::EmptySelection => ErrorCode::EmptySelection,
+            SceneErrorCode::FibreDirectionZero => ErrorCode::FibreDirectionZero,
+            SceneErrorCode::MeshDegenerate => ErrorCode::MeshDegenerate,
+            SceneErrorCode::MeshInvertedElements => ErrorCode::MeshInvertedElements,
+            SceneErrorCode::MethodNotAvailable => ErrorCode::MethodNotAvailable,
+            SceneErrorCode::MissingField => ErrorCode::MissingField,
+            SceneErrorCode::MissingMaterial => ErrorCode::MissingMaterial,
+            SceneErrorCode::OutsideImage => ErrorCode::OutsideImage,
+            SceneErrorCode::PlanConflict => ErrorCode::PlanConflict,
+            SceneErrorCode::SlidingNormalZero => ErrorCode::SlidingNormalZero,
+            SceneErrorCode::Underconstrained => ErrorCode::Underconstrained,
+            SceneErrorCode::UnknownArray => ErrorCode::UnknownArray,
+            SceneErrorCode::UnknownRegion => ErrorCode::UnknownRegion,
+            SceneErrorCode::UnknownSegment => ErrorCode::UnknownSegment,
+            SceneErrorCode::UnknownSet => ErrorCode::UnknownSet,
+            SceneErrorCode::UnknownSurface => ErrorCode::UnknownSurface,
+            SceneErrorCode::WindowsOverlap => ErrorCode::WindowsOverlap,
+        }
+    }
+}
+
+impl From<&PredictionError> for ErrorCode {
+    fn from(error: &PredictionError) -> Self {
+        match error {
+            PredictionError::Cancelled => ErrorCode::Cancelled,
+            PredictionError::NotConverged { .. }
+            | PredictionError::Diverged { .. }
+            | PredictionError::NotFinite => ErrorCode::SolverDiverged,
+            PredictionError::Singular { .. } => ErrorCode::MatrixSingular,
+            PredictionError::Inverted { .. } => ErrorCode::ElementInverted,
+            PredictionError::StepAboveLimit { .. } => ErrorCode::StepAboveLimit,
+            PredictionError::NoBone => ErrorCode::NoBone,
+            PredictionError::OverBudget { .. } => ErrorCode::BudgetExceeded,
+        }
+    }
+}
+
+impl From<&FormatError> for ErrorCode {
+    fn from(error: &FormatError) -> Self {
+        match error {
+            FormatError::Parse { .. }
+            | FormatError::UnsupportedCells { .. }
+            | FormatError::Name { .. } => ErrorCode::MeshParse,
+            FormatError::Limits { .. } | FormatError::Memory { .. } => ErrorCode::MeshLimits,
+            FormatError::NonFinite { .. } => ErrorCode::MeshNonfinite,
+            FormatError::IndexOutOfRange { .. } => ErrorCode::MeshIndexOutOfRange,
+            FormatError::Empty { .. } => ErrorCode::MeshEmpty,
+            FormatError::Degenerate { .. } => ErrorCode::MeshDegenerate,
+            FormatError::InvertedElements { .. } => ErrorCode::MeshInvertedElements,
+            FormatError::DecompressionLimit { .. } => ErrorCode::DecompressionLimit,
+            FormatError::UnsupportedFormat { .. } => ErrorCode::UnsupportedFormat,
+        }
+    }
+}
+
+impl From<&ComparisonError> for ErrorCode {
+    fn from(error: &ComparisonError) -> Self {
+        match error {
+            ComparisonError::Surface { source, .. } => match source {
+                SearchError::NoArea { .. } => ErrorCode::MeshEmpty,
+                SearchError::NotFinite { .. } => ErrorCode::MeshNonfinite,
+                SearchError::PointOutOfRange { .. } => ErrorCode::MeshIndexOutOfRange,
+            },
+            ComparisonError::Alignment(_) | ComparisonError::LandmarkOutside { .. } => {
+                ErrorCode::AlignmentFailed
+            }
+            ComparisonError::EmptyRegion { .. } => ErrorCode::EmptyRegion,
+            ComparisonError::NotCorresponding { .. } => ErrorCode::NotCorresponding,
+            ComparisonError::TooManySamples { .. } => ErrorCode::TooManySamples,
+            ComparisonError::Statistics(_) => ErrorCode::MeshDegenerate,
+            ComparisonError::Cancelled => ErrorCode::Cancelled,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use mechanics::format::Place;
+    use mechanics::registration::AlignmentError;
+    use mechanics::validation::StatisticsError;
+
+    #[test]
+    fn every_word_of_a_scene_is_that_of_its_code() {
+        for code in SceneErrorCode::ALL {
+            assert_eq!(ErrorCode::from(code).name(), code.name());
+        }
+    }
+
+    #[test]
+    fn every_word_of_a_solver_is_that_of_its_code() {
+        let history = Vec::new();
+        for error in [
+            PredictionError::Cancelled,
+            PredictionError::NotConverged {
+                iterations: 1,
+                residual: 1.0,
+                wanted: 0.1,
+                history: history.clone(),
+            },
+            PredictionError::Diverged { iterations: 1, growth: 2.0, residual: 1.0, history },
+            PredictionError::Singular { node: 0 },
+            PredictionError::Inverted { cell: 0 },
+            PredictionError::OverBudget { needed_mb: 2.0, allowed_mb: 1.0 },
+            PredictionError::NotFinite,
+            PredictionError::StepAboveLimit { step_s: 2.0, limit_s: 1.0 },
+            PredictionError::NoBone,
+        ] {
+            assert_eq!(ErrorCode::from(&error).name(), error.code(), "{error}");
+        }
+    }
+
+    #[test]
+    fn every_word_of_a_reader_is_that_of_its_code() {
+        let (count, limit) = (2, 1);
+        for error in [
+            FormatError::Parse { format: "OBJ", place: Place::Line(1), detail: String::new() },
+            FormatError::UnsupportedCells { types: Vec::new() },
+            FormatError::Name { detail: String::new() },
+            FormatError::Limits { what: "nodes", declared: count, limit },
+            FormatError::Memory { values: count },
+            FormatError::NonFinite { count, first: Vec::new() },
+            FormatError::IndexOutOfRange { count, first: Vec::new(), nodes: 1 },
+            FormatError::Empty { detail: String::new() },
+            FormatError::Degenerate { what: "cells", count },
+            FormatError::InvertedElements { shape: "tet4", count, of: 2, first: Vec::new() },
+            FormatError::DecompressionLimit { declared: count, limit },
+            FormatError::UnsupportedFormat { detail: "text" },
+        ] {
+            assert_eq!(ErrorCode::from(&error).name(), error.code(), "{error}");
+        }
+    }
+
+    #[test]
+    fn every_word_of_a_comparison_is_that_of_its_code() {
+        let which = "actual";
+        let unmeasured = |source| ComparisonError::Surface { which, source };
+        for error in [
+            unmeasured(SearchError::NoArea { triangles: 0 }),
+            unmeasured(SearchError::NotFinite { point: 0 }),
+            unmeasured(SearchError::PointOutOfRange { triangle: 0, point: 3, points: 3 }),
+            ComparisonError::Alignment(AlignmentError::EmptyMask),
+            ComparisonError::LandmarkOutside { which, pair: 0, distance: 1.0 },
+            ComparisonError::EmptyRegion { name: String::new() },
+            ComparisonError::NotCorresponding { prediction: 1, actual: 2 },
+            ComparisonError::TooManySamples { samples: 2.0, allowed: 1.0 },
+            ComparisonError::Statistics(StatisticsError::Empty),
+            ComparisonError::Cancelled,
+        ] {
+            assert_eq!(ErrorCode::from(&error).name(), error.code(), "{error}");
+        }
+    }
+}
