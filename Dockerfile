@@ -10,7 +10,6 @@ COPY Cargo.toml Cargo.lock ./
 COPY src src
 COPY benches benches
 COPY migrations migrations
-COPY docs/speed-and-accuracy.csv docs/
 RUN --mount=type=cache,target=/usr/local/cargo/registry --mount=type=cache,target=/build/target \
     cargo build --release --locked && cp target/release/facies /usr/local/bin/facies
 

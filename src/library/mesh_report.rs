@@ -2,12 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use crate::schema::mesh::{ImageReport, MeshKind, MeshReport};
+use crate::schema::mesh::{IgnoredArrayDocument, ImageReport, MeshKind, MeshReport};
 use crate::schema::{CornerPair, Triple, WarningDocument};
 use mechanics::format::{Mesh, ReadMesh};
 use mechanics::image::{ImageVolume, Voxels};
 use mechanics::mesh::quality::quality;
-use mechanics::mesh::{Vector, VolumeMesh};
+use mechanics::mesh::{IgnoredArray, Vector, VolumeMesh};
 
 /// What a mesh file holds, in the units of the file.
 pub fn mesh_report(read: &ReadMesh) -> MeshReport {
@@ -37,7 +37,8 @@ pub fn mesh_report(read: &ReadMesh) -> MeshReport {
         cell_labels: BTreeMap::new(),
         node_vectors: Vec::new(),
         cell_vectors: Vec::new(),
-        ignored_arrays: read.ignored_arrays.clone(),
+        ignored_arrays: read.ignored.names(),
+        ignored_because: read.ignored.listed.iter().map(ignored).collect(),
         min_quality: None,
         image: None,
         warnings: read.warnings.iter().map(WarningDocument::from).collect(),
@@ -48,6 +49,14 @@ pub fn mesh_report(read: &ReadMesh) -> MeshReport {
         Mesh::Surface(_) => {}
     }
     report
+}
+
+fn ignored(array: &IgnoredArray) -> IgnoredArrayDocument {
+    IgnoredArrayDocument {
+        name: array.name.clone(),
+        of: array.of.name().to_owned(),
+        why: array.why.clone(),
+    }
 }
 
 fn image_report(image: &ImageVolume) -> ImageReport {
@@ -84,7 +93,7 @@ fn sizes(sets: &BTreeMap<String, Vec<u32>>) -> BTreeMap<String, u64> {
     sets.iter().map(|(name, members)| (name.clone(), members.len() as u64)).collect()
 }
 
-/// The distinct values of each array, ascending; readers keep arrays of at most 64 of them.
+/// The distinct values of each array, ascending.
 fn values(arrays: &BTreeMap<String, Vec<i64>>) -> BTreeMap<String, Vec<i64>> {
     let distinct = |labels: &Vec<i64>| {
         let mut values = labels.clone();

@@ -37,7 +37,9 @@ impl Statement {
     pub fn identity(&self) -> String {
         let units = self.units.map_or("", LengthUnit::name);
         let frame = self.frame.map_or("", |frame| Frame::from(frame).name());
-        format!("units={units};frame={frame}")
+        // A reader that keeps other arrays makes another mesh of the same bytes.
+        let labels = ReadLimits::default().label_values;
+        format!("units={units};frame={frame};labels={labels}")
     }
 }
 

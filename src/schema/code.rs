@@ -91,6 +91,7 @@ error_codes! {
     OneOf 422 "one-of" REFUSED,
     OutOfRange 422 "out-of-range" REFUSED,
     TooMany 422 "too-many" REFUSED,
+    TooManyRegions 422 "too-many-regions" REFUSED,
     UnknownField 422 "unknown-field" REFUSED,
     UnknownWord 422 "unknown-word" REFUSED,
     WrongType 422 "wrong-type" REFUSED,

@@ -54,7 +54,7 @@ pub struct MeshReport {
     pub node_sets: BTreeMap<String, u64>,
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub cell_sets: BTreeMap<String, u64>,
-    /// Integer arrays with their values.
+    /// Integer arrays with their distinct values; `label_values` of the limits says how many an array may have.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub node_labels: BTreeMap<String, Vec<i64>>,
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
@@ -68,6 +68,9 @@ pub struct MeshReport {
     /// Arrays of the file that nothing reads.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub ignored_arrays: Vec<String>,
+    /// Why nothing reads them, in the same order.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub ignored_because: Vec<IgnoredArrayDocument>,
     /// Of volumes: the smallest scaled Jacobian of a cell; 1 is perfect, below 0 is inverted.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
@@ -77,6 +80,16 @@ pub struct MeshReport {
     #[schema(nullable = false)]
     pub image: Option<ImageReport>,
     pub warnings: Vec<WarningDocument>,
+}
+
+/// An array of a file that nothing reads.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct IgnoredArrayDocument {
+    pub name: String,
+    /// `point` or `cell`.
+    pub of: String,
+    /// E.g. `holds 10432 distinct values, at most 4096 make regions`.
+    pub why: String,
 }
 
 /// What a mesh is made of.

@@ -20,6 +20,7 @@ impl From<SceneErrorCode> for ErrorCode {
             SceneErrorCode::OutsideImage => ErrorCode::OutsideImage,
             SceneErrorCode::PlanConflict => ErrorCode::PlanConflict,
             SceneErrorCode::SlidingNormalZero => ErrorCode::SlidingNormalZero,
+            SceneErrorCode::TooManyRegions => ErrorCode::TooManyRegions,
             SceneErrorCode::Underconstrained => ErrorCode::Underconstrained,
             SceneErrorCode::UnknownArray => ErrorCode::UnknownArray,
             SceneErrorCode::UnknownRegion => ErrorCode::UnknownRegion,

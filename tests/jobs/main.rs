@@ -9,6 +9,11 @@ mod shared;
 #[path = "../../mechanics/tests/support/samples.rs"]
 mod samples;
 
+#[allow(dead_code, reason = "the tests of the numerics use the rest")]
+#[path = "../../mechanics/tests/mechanics/scenes.rs"]
+mod scenes;
+
 mod fuzz;
+mod ignored_arrays;
 mod jobs;
 mod schema;

@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use crate::mesh::closest_point::SurfaceSearch;
-use crate::mesh::{TriangleSurface, VolumeMesh};
+use crate::mesh::ignored::listed;
+use crate::mesh::{ArrayUse, TriangleSurface, VolumeMesh};
 
 /// How a set of nodes is asked for (SELECT of the documents).
 #[derive(Clone, Debug, PartialEq)]
@@ -26,8 +27,8 @@ pub enum NodeSelection {
 pub enum SelectionError {
     #[error("the mesh has no node set {name:?}; it has {known}")]
     UnknownSet { name: String, known: String },
-    #[error("the mesh has no integer point array {name:?}; it has {known}")]
-    UnknownArray { name: String, known: String },
+    #[error("{0}")]
+    UnknownArray(String),
     #[error("the case has no surface {0:?}")]
     UnknownSurface(String),
     #[error("surface {0:?} has no triangle with an area")]
@@ -78,11 +79,9 @@ impl Selector<'_> {
     }
 
     fn labelled(&self, array: &str, value: i64) -> Result<Vec<u32>, SelectionError> {
-        let labels =
-            self.mesh.node_labels.get(array).ok_or_else(|| SelectionError::UnknownArray {
-                name: array.to_owned(),
-                known: listed(self.mesh.node_labels.keys()),
-            })?;
+        let labels = self.mesh.node_labels.get(array).ok_or_else(|| {
+            SelectionError::UnknownArray(self.mesh.missing_array(ArrayUse::PointLabels, array))
+        })?;
         Ok((0_u32..)
             .zip(labels)
             .filter(|(_, label)| **label == value)
@@ -101,16 +100,4 @@ impl Selector<'_> {
             |node: &&u32| search.closest(&self.mesh.nodes[**node as usize]).distance <= distance;
         Ok(self.boundary_nodes.iter().filter(is_near).copied().collect())
     }
-}
-
-/// Up to 20 names, so that a message stays one line.
-fn listed<'a>(names: impl Iterator<Item = &'a String>) -> String {
-    let mut names: Vec<&str> = names.map(String::as_str).collect();
-    if names.is_empty() {
-        return "none".to_owned();
-    }
-    let more = names.len().saturating_sub(20);
-    names.truncate(20);
-    let shown = names.join(", ");
-    if more > 0 { format!("{shown} and {more} more") } else { shown }
 }

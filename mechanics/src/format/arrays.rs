@@ -1,20 +1,21 @@
 //! What the arrays of a file mean: node sets, cell sets, labels and vectors.
 //!
 //! A point array `set_NAME` is the node set NAME and a cell array `elset_NAME` the cell set NAME,
-//! where non-zero means in. Every other integer array with at most [`MOST_LABELS`] values is a
-//! label array. Real arrays of three components are vectors. The rest is ignored by name.
-
-use std::collections::BTreeSet;
+//! where non-zero means in. Every other integer array with at most [`ReadLimits::label_values`]
+//! different values is a label array. Real arrays of three components are vectors. The rest is ignored,
+//! and the mesh says which and why.
 
 use super::error::FormatError;
 use super::limits::ReadLimits;
-use crate::mesh::{TriangleSurface, Vector, VolumeMesh, Warning};
+use super::scalar::Scalar;
+use crate::mesh::{IgnoredArrays, TriangleSurface, ValuesOf, Vector, VolumeMesh, Warning};
 
-/// An integer array with more different values is a numbering and not a label.
-pub const MOST_LABELS: usize = 64;
+/// The label arrays of a file have as many values altogether as so many arrays with as many as one may
+/// have: reports list them.
+const FULL_LABEL_ARRAYS: u64 = 16;
 
-/// As many ignored arrays are named in a report; the rest is counted.
-const MOST_IGNORED_NAMES: usize = 100;
+const OF_A_SURFACE: &str =
+    "belongs to a surface, of which only the integer point array `node_id` is read";
 
 /// The values of an array, one or three for each point or cell.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,35 +35,71 @@ pub(super) struct NamedArray {
 pub(super) struct Arrays {
     pub points: Vec<NamedArray>,
     pub cells: Vec<NamedArray>,
-    pub ignored: Vec<String>,
+    pub ignored: IgnoredArrays,
+    /// The distinct values of all label arrays that were placed.
+    label_values: u64,
+}
+
+/// What an announced array holds, and how many of them for each point or cell.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Kind {
+    Integers(u64),
+    Reals(u64),
+    /// Text, and types that VTK may add.
+    Other,
+}
+
+impl Kind {
+    pub fn of(scalar: Option<Scalar>, components: u64) -> Kind {
+        match scalar {
+            None => Kind::Other,
+            Some(scalar) if scalar.is_integer() => Kind::Integers(components),
+            Some(_) => Kind::Reals(components),
+        }
+    }
+
+    /// Why no mesh wants it.
+    fn why_not(self) -> Option<String> {
+        match self {
+            Kind::Integers(1) | Kind::Reals(3) => None,
+            Kind::Integers(components) => {
+                Some(format!("holds {components} integers each, and labels are one"))
+            }
+            Kind::Reals(1) => Some("holds floating-point numbers, not integers".to_owned()),
+            Kind::Reals(components) => Some(format!(
+                "holds {components} floating-point numbers each, and vectors are three"
+            )),
+            Kind::Other => Some("holds neither integers nor floating-point numbers".to_owned()),
+        }
+    }
 }
 
 impl Arrays {
     /// Whether an array of points or cells can mean something; one that cannot is noted and need not be
     /// decoded.
-    pub fn wants(&mut self, name: &str, components: u64, is_integer: bool) -> bool {
-        let wanted = match is_integer {
-            true => components == 1,
-            false => components == 3,
-        };
-        let wanted = wanted && !name.trim().is_empty();
-        if !wanted {
-            self.ignored.push(name.to_string());
+    pub fn wants(&mut self, of: ValuesOf, name: &str, kind: Kind) -> bool {
+        let nameless = name.trim().is_empty().then(|| "has no name".to_owned());
+        let why = nameless.or_else(|| kind.why_not());
+        let wanted = why.is_none();
+        if let Some(why) = why {
+            self.ignored.add(of, name, why);
         }
         wanted
     }
 
-    /// The names of ignored arrays, shortened to what a report can hold.
-    pub fn ignored_names(mut self, limits: &ReadLimits) -> Vec<String> {
-        let more = self.ignored.len().saturating_sub(MOST_IGNORED_NAMES);
-        self.ignored.truncate(MOST_IGNORED_NAMES);
-        for name in &mut self.ignored {
-            *name = name.chars().take(limits.name_length as usize).collect();
+    /// Notes an array of a surface, which has no place for it.
+    pub fn ignore_of_surface(&mut self, of: ValuesOf, name: &str) {
+        self.ignored.add(of, name, OF_A_SURFACE.to_owned());
+    }
+
+    /// The ignored arrays, their names shortened to what a report can hold.
+    pub fn take_ignored(&mut self, limits: &ReadLimits) -> IgnoredArrays {
+        let mut ignored = std::mem::take(&mut self.ignored);
+        for array in &mut ignored.listed {
+            let letters = array.name.chars().filter(|letter| !letter.is_control());
+            array.name = letters.take(limits.name_length as usize).collect();
         }
-        if more > 0 {
-            self.ignored.push(format!("and {more} more"));
-        }
-        self.ignored
+        ignored
     }
 
     /// Moves every array of a surface to its place: only `node_id` has one.
@@ -74,11 +111,12 @@ impl Arrays {
             };
             match node_ids {
                 Some(ids) if surface.node_ids.is_none() => surface.node_ids = Some(ids),
-                _ => self.ignored.push(array.name),
+                _ => self.ignored.add(ValuesOf::Points, &array.name, OF_A_SURFACE.to_owned()),
             }
         }
-        let cells = self.cells.drain(..);
-        self.ignored.extend(cells.map(|array| array.name));
+        for array in self.cells.drain(..) {
+            self.ignored.add(ValuesOf::Cells, &array.name, OF_A_SURFACE.to_owned());
+        }
     }
 
     /// Moves every array of a volume mesh to its place.
@@ -122,14 +160,32 @@ impl Arrays {
             Values::Integers(values) => {
                 if let Some(set) = set_name(&name, "elset_") {
                     insert(&mut mesh.cell_sets, set.to_string(), members(&values))
-                } else if has_few_values(&values) {
-                    insert(&mut mesh.cell_labels, name, values)
-                } else {
-                    self.ignored.push(name);
+                } else if let Some(why) = self.why_no_labels(&values, "regions", limits) {
+                    self.ignored.add(ValuesOf::Cells, &name, why);
                     Ok(())
+                } else {
+                    insert(&mut mesh.cell_labels, name, values)
                 }
             }
         }
+    }
+
+    /// Why integers make no `what`; nothing where they do, and then their values count.
+    fn why_no_labels(&mut self, values: &[i64], what: &str, limits: &ReadLimits) -> Option<String> {
+        let distinct = distinct_values(values);
+        if distinct > limits.label_values {
+            let most = limits.label_values;
+            return Some(format!("holds {distinct} distinct values, at most {most} make {what}"));
+        }
+        let most = FULL_LABEL_ARRAYS * limits.label_values;
+        let together = self.label_values + distinct;
+        if together > most {
+            return Some(format!(
+                "is one too many: with it the label arrays hold {together} distinct values, at most {most} are kept"
+            ));
+        }
+        self.label_values = together;
+        None
     }
 
     fn place_point_array(
@@ -147,17 +203,24 @@ impl Arrays {
             Values::Vectors(_) => {
                 let detail = format!("point array {name:?} holds values that are not finite");
                 warnings.push(Warning::new("array-nonfinite", detail));
-                self.ignored.push(name);
+                self.ignored.add(
+                    ValuesOf::Points,
+                    &name,
+                    "holds values that are not finite".to_owned(),
+                );
                 Ok(())
             }
             Values::Integers(values) => {
                 if let Some(set) = set_name(&name, "set_") {
                     insert(&mut mesh.node_sets, set.to_string(), members(&values))
-                } else if name != "node_id" && has_few_values(&values) {
-                    insert(&mut mesh.node_labels, name, values)
-                } else {
-                    self.ignored.push(name);
+                } else if name == "node_id" {
+                    self.ignored.add(ValuesOf::Points, &name, "numbers the nodes".to_owned());
                     Ok(())
+                } else if let Some(why) = self.why_no_labels(&values, "labels", limits) {
+                    self.ignored.add(ValuesOf::Points, &name, why);
+                    Ok(())
+                } else {
+                    insert(&mut mesh.node_labels, name, values)
                 }
             }
         }
@@ -184,20 +247,14 @@ fn members(values: &[i64]) -> Vec<u32> {
     inside.map(|(number, _)| number as u32).collect()
 }
 
-/// Whether an array has no more different values than a label array may have.
-pub(super) fn has_few_values(values: &[i64]) -> bool {
-    let mut found = BTreeSet::new();
-    let mut last = None;
-    for &value in values {
-        if last != Some(value) {
-            found.insert(value);
-            last = Some(value);
-        }
-        if found.len() > MOST_LABELS {
-            return false;
-        }
-    }
-    true
+/// How many different values there are.
+fn distinct_values(values: &[i64]) -> u64 {
+    let mut values = values.to_vec();
+    // Neighbours are often alike, which leaves little to sort.
+    values.dedup();
+    values.sort_unstable();
+    values.dedup();
+    values.len() as u64
 }
 
 /// A name without surrounding space; refuses one that is too long or cannot be written as XML.

@@ -1,7 +1,7 @@
 //! The formats that are read, and what a file becomes.
 
 use crate::image::ImageVolume;
-use crate::mesh::{Frame, TriangleSurface, VolumeMesh, Warning};
+use crate::mesh::{Frame, IgnoredArrays, TriangleSurface, VolumeMesh, Warning};
 
 /// A format that is read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -60,6 +60,7 @@ pub struct ReadMesh {
     pub mesh: Mesh,
     /// The frame of a `SPACE=` mark, or of the `space` of an image.
     pub frame: Option<Frame>,
-    pub ignored_arrays: Vec<String>,
+    /// Arrays that nothing reads; a volume mesh keeps them as well.
+    pub ignored: IgnoredArrays,
     pub warnings: Vec<Warning>,
 }

@@ -24,6 +24,9 @@ pub struct ReadLimits {
     pub polygon_corners: u64,
     /// Characters in the name of a set or an array.
     pub name_length: u64,
+    /// Distinct values of an integer array that makes regions or is selected by value; an array with
+    /// more is ignored.
+    pub label_values: u64,
 }
 
 impl Default for ReadLimits {
@@ -38,6 +41,7 @@ impl Default for ReadLimits {
             decoded_floor_bytes: 16 << 20,
             polygon_corners: 64,
             name_length: 128,
+            label_values: 4096,
         }
     }
 }

@@ -12,6 +12,7 @@ pub mod error;
 mod file;
 pub mod glb;
 mod gmsh;
+mod ignored_field;
 pub mod limits;
 pub mod nrrd;
 mod obj;

@@ -5,7 +5,9 @@ use super::error::{FormatError, Offenders};
 use super::limits::ReadLimits;
 use super::surface_cleaning::clean;
 use super::{Mesh, MeshFormat, ReadMesh};
-use crate::mesh::{CellShape, Cells, Frame, TriangleSurface, Vector, VolumeMesh, Warning};
+use crate::mesh::{
+    CellShape, Cells, Frame, TriangleSurface, ValuesOf, Vector, VolumeMesh, Warning,
+};
 
 /// Products of three coordinates must stay far from overflow; a micrometre file of a scanner with
 /// a far origin reaches 1e10.
@@ -85,13 +87,11 @@ impl Parsed {
         } else {
             Mesh::Volume(self.take_volume(limits)?)
         };
-        Ok(ReadMesh {
-            format,
-            mesh,
-            frame: self.frame,
-            ignored_arrays: self.arrays.ignored_names(limits),
-            warnings: self.warnings,
-        })
+        let ignored = match &mesh {
+            Mesh::Volume(volume) => volume.ignored.clone(),
+            Mesh::Surface(_) | Mesh::Image(_) => self.arrays.take_ignored(limits),
+        };
+        Ok(ReadMesh { format, mesh, frame: self.frame, ignored, warnings: self.warnings })
     }
 
     fn empty(&self) -> FormatError {
@@ -167,8 +167,12 @@ impl Parsed {
             node_ids: None,
         };
         self.arrays.move_to_surface(&mut surface);
-        let sets = self.node_sets.drain(..).chain(self.cell_sets.drain(..));
-        self.arrays.ignored.extend(sets.map(|(name, _)| name));
+        for (name, _) in self.node_sets.drain(..) {
+            self.arrays.ignore_of_surface(ValuesOf::Points, &name);
+        }
+        for (name, _) in self.cell_sets.drain(..) {
+            self.arrays.ignore_of_surface(ValuesOf::Cells, &name);
+        }
         clean(&mut surface, &mut self.warnings)?;
         self.warn_of_unreferenced(surface.points.len(), surface.triangles.iter().flatten());
         Ok(surface)
@@ -188,6 +192,7 @@ impl Parsed {
         }
         let Parsed { arrays, warnings, .. } = self;
         arrays.move_to_volume(&mut mesh, warnings, limits)?;
+        mesh.ignored = arrays.take_ignored(limits);
         for shape in [CellShape::Tet4, CellShape::Hex8, CellShape::Wedge6] {
             orient(&mut mesh, shape, warnings)?;
         }

@@ -7,6 +7,7 @@ pub mod connectivity;
 mod face_shape;
 pub mod frame;
 pub mod half_head;
+pub mod ignored;
 pub mod jacobian;
 pub mod orientation;
 pub mod quality;
@@ -20,6 +21,7 @@ pub mod warning;
 
 pub use closest_point::{ClosestPoint, SearchError, SurfaceSearch};
 pub use frame::Frame;
+pub use ignored::{ArrayUse, IgnoredArray, IgnoredArrays, ValuesOf};
 pub use surface::TriangleSurface;
 pub use volume::{CellShape, Cells, VolumeMesh};
 pub use warning::Warning;

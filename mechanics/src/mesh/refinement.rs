@@ -56,6 +56,7 @@ pub fn refine(mesh: &VolumeMesh) -> VolumeMesh {
         cell_vectors: each(&mesh.cell_vectors, |vectors| {
             vectors.iter().flat_map(|&vector| [vector; 8]).collect()
         }),
+        ignored: mesh.ignored.clone(),
         nodes: division.nodes,
         cells,
     }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::{TriangleSurface, Vector};
+use super::{IgnoredArrays, TriangleSurface, Vector};
 
 /// The shape of a first-order cell. Local node order is that of VTK for tetrahedra and hexahedra;
 /// a wedge has its triangle 0, 1, 2 below the triangle 3, 4, 5, counter-clockwise seen from above,
@@ -141,6 +141,8 @@ pub struct VolumeMesh {
     pub node_vectors: BTreeMap<String, Vec<Vector>>,
     /// Arrays with one vector for each cell, for fibre directions; they may be zero where there are none.
     pub cell_vectors: BTreeMap<String, Vec<Vector>>,
+    /// Arrays of the file that are none of these, and why.
+    pub ignored: IgnoredArrays,
 }
 
 /// A face that belongs to one cell only, oriented outwards; 3 or 4 nodes.

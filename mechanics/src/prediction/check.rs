@@ -1,6 +1,6 @@
 //! The checks that turn a stated case and plan into a scene: tissue, skin, loads, support.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap, HashSet};
 
 use super::case::{Case, ElementChoice, Load, Method, Plan, RegionNames, Settings};
 use super::error_code::SceneErrorCode;
@@ -12,10 +12,14 @@ use crate::boundary::support::loose_parts;
 use crate::boundary::{Conditions, HeldNodes, NodeClass, NodeSelection, Selector};
 use crate::material::LinearElastic;
 use crate::mesh::connectivity::Faces;
+use crate::mesh::ignored::listed;
 use crate::mesh::volume::BoundaryFace;
-use crate::mesh::{CellShape, Vector, Warning};
+use crate::mesh::{ArrayUse, CellShape, Vector, Warning};
 use crate::model::fem::edge_nodes::EdgeNodes;
 use crate::model::fem::loads::{FaceLoad, add_face_load, add_gravity};
+
+/// Regions and the tissues of an image are numbered together with 16 bits.
+const MOST_REGIONS: usize = 1 << 15;
 
 /// The state of one check: what is asked, and what was found wrong so far.
 pub(super) struct Check<'a> {
@@ -55,9 +59,7 @@ impl<'a> Check<'a> {
             return (vec!["tissue".to_owned()], vec![0; cells]);
         };
         let Some(labels) = self.case.volume.cell_labels.get(&stated.array) else {
-            let known = self.case.volume.cell_labels.keys().cloned().collect::<Vec<_>>().join(", ");
-            let detail =
-                format!("the mesh has no integer cell array {:?}; it has: {known}", stated.array);
+            let detail = self.case.volume.missing_array(ArrayUse::CellLabels, &stated.array);
             self.problems.add("/case/regions/array", SceneErrorCode::UnknownArray, detail);
             return (vec!["tissue".to_owned()], vec![0; cells]);
         };
@@ -73,6 +75,11 @@ impl<'a> Check<'a> {
             );
         }
         let (names, region_of_value) = name_regions(stated, &values);
+        if names.len() > MOST_REGIONS {
+            let detail = format!("{} regions, at most {MOST_REGIONS} are told apart", names.len());
+            self.problems.add("/case/regions/array", SceneErrorCode::TooManyRegions, detail);
+            return (vec!["tissue".to_owned()], vec![0; cells]);
+        }
         let place = |label: &i64| {
             values.binary_search(label).expect("values are the labels without repeats")
         };
@@ -81,8 +88,10 @@ impl<'a> Check<'a> {
 
     pub(super) fn materials(&mut self, regions: &[String]) -> Vec<LinearElastic> {
         let stated = &self.case.materials;
-        for name in stated.keys().filter(|name| *name != "*" && !regions.contains(name)) {
-            let detail = format!("no region is called {name:?}; there are: {}", regions.join(", "));
+        let known: HashSet<&String> = regions.iter().collect();
+        for name in stated.keys().filter(|name| *name != "*" && !known.contains(name)) {
+            let there = listed(regions.iter());
+            let detail = format!("no region is called {name:?}; there are: {there}");
             self.problems.add(
                 format!("/case/materials/{name}"),
                 SceneErrorCode::UnknownRegion,
@@ -283,17 +292,19 @@ impl<'a> Check<'a> {
 }
 
 /// Region names in the order of the values, and the region of each value: values that share a name
-/// share a region, and a value without a name is called by its number.
+/// share a region, and a value without a name is called by its number. More than [`MOST_REGIONS`] are
+/// counted and have no numbers.
 fn name_regions(stated: &RegionNames, values: &[i64]) -> (Vec<String>, Vec<u16>) {
     let mut names: Vec<String> = Vec::new();
+    let mut number_of: HashMap<String, usize> = HashMap::new();
     let mut region_of_value = Vec::new();
     for value in values {
         let name = stated.names.get(value).cloned().unwrap_or_else(|| value.to_string());
-        let known = names.iter().position(|other| *other == name);
-        region_of_value.push(known.unwrap_or(names.len()) as u16);
-        if known.is_none() {
-            names.push(name);
-        }
+        let number = *number_of.entry(name).or_insert_with_key(|name| {
+            names.push(name.clone());
+            names.len() - 1
+        });
+        region_of_value.extend(u16::try_from(number));
     }
     (names, region_of_value)
 }

@@ -14,6 +14,7 @@ pub enum SceneErrorCode {
     OutsideImage,
     PlanConflict,
     SlidingNormalZero,
+    TooManyRegions,
     Underconstrained,
     UnknownArray,
     UnknownRegion,
@@ -24,7 +25,7 @@ pub enum SceneErrorCode {
 }
 
 impl SceneErrorCode {
-    pub const ALL: [SceneErrorCode; 18] = [
+    pub const ALL: [SceneErrorCode; 19] = [
         SceneErrorCode::DuplicateSegment,
         SceneErrorCode::EmptySelection,
         SceneErrorCode::FibreDirectionZero,
@@ -36,6 +37,7 @@ impl SceneErrorCode {
         SceneErrorCode::OutsideImage,
         SceneErrorCode::PlanConflict,
         SceneErrorCode::SlidingNormalZero,
+        SceneErrorCode::TooManyRegions,
         SceneErrorCode::Underconstrained,
         SceneErrorCode::UnknownArray,
         SceneErrorCode::UnknownRegion,
@@ -58,6 +60,7 @@ impl SceneErrorCode {
             SceneErrorCode::OutsideImage => "outside-image",
             SceneErrorCode::PlanConflict => "plan-conflict",
             SceneErrorCode::SlidingNormalZero => "sliding-normal-zero",
+            SceneErrorCode::TooManyRegions => "too-many-regions",
             SceneErrorCode::Underconstrained => "underconstrained",
             SceneErrorCode::UnknownArray => "unknown-array",
             SceneErrorCode::UnknownRegion => "unknown-region",

@@ -5,7 +5,7 @@ use super::check::Check;
 use super::error_code::SceneErrorCode;
 use super::skin::Skin;
 use crate::material::LinearElastic;
-use crate::mesh::{Vector, Warning};
+use crate::mesh::{ArrayUse, Vector, Warning};
 use crate::model::fem::membrane::Membrane;
 
 /// A direction shorter than this, and a line of the skin of which less than this lies in a face, has no angle.
@@ -41,17 +41,14 @@ impl Check<'_> {
             return Vec::new();
         }
         let mut of_cell = vec![Vector::zeros(); region_of_cell.len()];
-        for (number, name) in regions.iter().enumerate() {
+        let mut cells_of = vec![Vec::new(); regions.len()];
+        for (cell, &region) in region_of_cell.iter().enumerate() {
+            cells_of[usize::from(region)].push(cell);
+        }
+        for (number, (name, cells)) in regions.iter().zip(&cells_of).enumerate() {
             // Regions without a material are refused elsewhere.
             if materials.get(number).is_some_and(LinearElastic::has_fibre) {
-                let inside = |(_, region): &(usize, &u16)| usize::from(**region) == number;
-                let cells: Vec<usize> = region_of_cell
-                    .iter()
-                    .enumerate()
-                    .filter(inside)
-                    .map(|(cell, _)| cell)
-                    .collect();
-                self.fibres_of_region(name, &cells, &mut of_cell);
+                self.fibres_of_region(name, cells, &mut of_cell);
             }
         }
         of_cell
@@ -73,11 +70,7 @@ impl Check<'_> {
             Some(FibreDirection::Array(array)) => match case.volume.cell_vectors.get(array) {
                 Some(vectors) => ("array", directions(cells, of_cell, |cell| vectors[cell])),
                 None => {
-                    let known = case.volume.cell_vectors.keys().cloned().collect::<Vec<_>>();
-                    let detail = format!(
-                        "the mesh has no cell array {array:?} with 3 components; it has: {}",
-                        known.join(", ")
-                    );
+                    let detail = case.volume.missing_array(ArrayUse::CellVectors, array);
                     let at = format!("{pointer}/array");
                     return self.problems.add(at, SceneErrorCode::UnknownArray, detail);
                 }
@@ -126,7 +119,7 @@ impl Check<'_> {
             FibreDirection::Array(array) => match mesh.node_vectors.get(array) {
                 Some(vectors) => ("/spec/membrane/fibre/array", Some(vectors)),
                 None => {
-                    let detail = format!("the mesh has no point array {array:?} with 3 components");
+                    let detail = mesh.missing_array(ArrayUse::PointVectors, array);
                     self.problems.add(
                         "/spec/membrane/fibre/array",
                         SceneErrorCode::UnknownArray,

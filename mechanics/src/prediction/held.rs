@@ -4,7 +4,7 @@ use super::case::{Plan, Prescribed, SlidingNormal};
 use super::check::Check;
 use super::error_code::SceneErrorCode;
 use crate::boundary::{HeldNodes, sliding};
-use crate::mesh::Vector;
+use crate::mesh::{ArrayUse, Vector};
 use crate::plan::{PlannedSegment, RigidMovement};
 
 impl Check<'_> {
@@ -105,8 +105,8 @@ impl Check<'_> {
                 Prescribed::FromArray { nodes, array } => {
                     let nodes = self.select(nodes, &format!("{pointer}/nodes"));
                     let Some(values) = self.case.volume.node_vectors.get(array) else {
-                        let detail =
-                            format!("the mesh has no point array {array:?} with 3 components");
+                        let volume = &self.case.volume;
+                        let detail = volume.missing_array(ArrayUse::PointVectors, array);
                         self.problems.add(
                             format!("{pointer}/array"),
                             SceneErrorCode::UnknownArray,

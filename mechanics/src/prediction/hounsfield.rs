@@ -201,7 +201,7 @@ fn shares(
             region_of_cell.iter().copied().zip(&rounded).collect();
         mixtures.sort_unstable();
         mixtures.dedup();
-        // With one step every cell is pure, and there are at most 64 regions and 100 tissues.
+        // With one step every cell is pure: regions and tissues are all there is.
         if pure + mixtures.len() <= MOST_MATERIALS || steps == 1 || hounsfield.tissues.is_empty() {
             return rounded;
         }

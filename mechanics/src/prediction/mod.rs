@@ -9,6 +9,7 @@ mod fibres;
 mod held;
 mod hounsfield;
 mod imaged_tissue;
+mod numerics_revision;
 mod off_wall;
 mod problem;
 pub mod progress;
@@ -25,6 +26,7 @@ pub use case::{
 };
 pub use error_code::SceneErrorCode;
 pub use imaged_tissue::{ImagedTissue, TissueShare};
+pub use numerics_revision::NUMERICS_REVISION;
 pub use problem::{SceneError, SceneErrors};
 pub use progress::{Phase, Progress, Unobserved};
 pub use scene::Scene;

@@ -34,7 +34,7 @@ impl Problems {
     pub(super) fn selection(&mut self, pointer: &str, error: &SelectionError) {
         let code = match error {
             SelectionError::UnknownSet { .. } => SceneErrorCode::UnknownSet,
-            SelectionError::UnknownArray { .. } => SceneErrorCode::UnknownArray,
+            SelectionError::UnknownArray(_) => SceneErrorCode::UnknownArray,
             SelectionError::UnknownSurface(_) => SceneErrorCode::UnknownSurface,
             SelectionError::FlatSurface(_) => SceneErrorCode::MeshDegenerate,
             SelectionError::Empty => SceneErrorCode::EmptySelection,

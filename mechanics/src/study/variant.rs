@@ -59,6 +59,9 @@ pub struct Variant {
     /// What tells this variant from others of the same method; the method where nothing does.
     pub label: String,
     pub settings: Settings,
+    /// Whether a failure says nothing against a study: only of the program's own variants, whatever a client's are
+    /// called.
+    pub may_fail: bool,
 }
 
 /// Where the displacement that errors are measured against comes from.

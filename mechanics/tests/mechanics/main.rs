@@ -14,6 +14,7 @@ mod solver;
 mod study;
 mod validation;
 
+mod golden;
 mod image;
 mod registration;
 mod response;

@@ -45,6 +45,7 @@ pub fn mixed_mesh() -> VolumeMesh {
             "fibre".into(),
             vec![Vector::new(1.0, 0.0, -0.25), Vector::zeros(), Vector::new(0.0, 1e-9, 3.0)],
         )]),
+        ..VolumeMesh::default()
     }
 }
 

@@ -207,7 +207,7 @@ pub fn study_job(
         spec_hash: prepared.spec_hash.clone(),
         created: now_rfc3339(),
     };
-    let mut report = report_document(&found, &input.spec, origin);
+    let mut report = report_document(&found, &input.spec, &prepared.study.variants, origin);
     judge(&mut report, &input.to_baseline());
 
     // 4. Files.

@@ -12,7 +12,7 @@ use crate::schema::study::report::{
 use mechanics::study::convergence::{Series, series};
 use mechanics::study::pairwise::{Pairwise, compare_variants, many_comparisons};
 use mechanics::study::{
-    Errors, NOT_RUN, Outcome, Report, Row, SceneReport, Solved, methods, pareto,
+    Errors, NOT_RUN, Outcome, Report, Row, SceneReport, Solved, Variant, pareto,
 };
 
 /// What a report tells of its origin.
@@ -27,6 +27,7 @@ pub struct ReportOrigin {
 pub fn report_document(
     report: &Report,
     spec: &StudyDocument,
+    variants: &[Variant],
     origin: ReportOrigin,
 ) -> ReportDocument {
     let comparisons = compare_variants(&report.rows);
@@ -44,7 +45,7 @@ pub fn report_document(
         rules: RulesDocument {
             thresholds: spec.thresholds.clone(),
             tolerances: spec.tolerances,
-            expected_failures: expected_failures(spec),
+            expected_failures: expected_failures(spec, variants),
         },
         scenes: report.scenes.iter().map(scene_document).collect(),
         rows,
@@ -189,9 +190,8 @@ fn convergence_document(of: &Series) -> ConvergenceDocument {
     }
 }
 
-/// Those of the spec, and the variants that may fail.
-fn expected_failures(spec: &StudyDocument) -> Vec<String> {
-    let mut labels = methods::MAY_FAIL.map(str::to_owned).to_vec();
-    labels.extend(spec.expected_failures.iter().cloned());
-    labels
+/// The labels of the variants that may fail, and those of the spec.
+fn expected_failures(spec: &StudyDocument, variants: &[Variant]) -> Vec<String> {
+    let own = variants.iter().filter(|variant| variant.may_fail).map(|variant| &variant.label);
+    own.chain(&spec.expected_failures).cloned().collect()
 }

@@ -134,7 +134,7 @@ impl Documents<'_> {
                     let mut settings = first.settings.clone();
                     settings.element = element.choice();
                     let label = format!("{method} {}", element.name());
-                    Variant { method: method.to_owned(), label, settings }
+                    Variant { method: method.to_owned(), label, settings, may_fail: first.may_fail }
                 })
                 .collect(),
             _ => usual,
@@ -179,7 +179,7 @@ impl Documents<'_> {
             ElementName::Auto => method.to_owned(),
             element => format!("{method} {}", element.name()),
         });
-        Ok(Variant { method: method.to_owned(), label, settings })
+        Ok(Variant { method: method.to_owned(), label, settings, may_fail: false })
     }
 
     /// Every scene of the spec.

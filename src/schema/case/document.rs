@@ -142,6 +142,7 @@ pub struct BoneDocument {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RegionsDocument {
+    /// `label_values` of the limits says how many distinct values it may have.
     pub array: String,
     /// A value without a name is called by its number.
     #[serde(default)]

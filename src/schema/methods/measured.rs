@@ -8,8 +8,8 @@ use utoipa::ToSchema;
 
 use crate::schema::predict::check::TimeBandDocument;
 
-/// What `facies study` wrote.
-const TABLE: &str = include_str!("../../../docs/speed-and-accuracy.csv");
+/// The `report.csv` of the study of docs/speed-and-accuracy.md.
+const TABLE: &str = include_str!("measured.csv");
 
 /// One variant of a method on one scene and mesh level: medians over the plans and materials of the study.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -153,18 +153,35 @@ fn cells(line: &str) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::schema::methods::available_methods;
+    use crate::schema::methods::{MeasuredMethod, MethodName, available_methods};
 
     #[test]
-    fn every_available_method_has_its_place_on_the_chart() {
+    fn every_measured_row_is_of_an_available_method_and_served_with_it() {
         let rows = parse(TABLE).unwrap();
         assert!(rows.iter().all(|row| row.wall_s > 0.0 && row.p95_mm >= 0.0));
-        for method in available_methods().methods {
-            let name = method.method.name.name();
-            let places = measured(name);
-            assert!(!places.is_empty(), "docs/speed-and-accuracy.csv has no row of {name}");
-            assert_eq!(method.measured, places);
+        let methods = available_methods().methods;
+        let known: Vec<&str> = methods.iter().map(|method| method.method.name.name()).collect();
+        for row in &rows {
+            assert!(known.contains(&row.method.as_str()), "{} is no method", row.method);
         }
+        let served = methods.iter().flat_map(|method| &method.measured);
+        assert_eq!(served.map(|place| place.rows).sum::<u64>(), rows.len() as u64);
+    }
+
+    #[test]
+    fn a_method_without_measurements_is_served_and_says_so() {
+        let mut methods = available_methods().methods;
+        assert!(
+            methods
+                .iter()
+                .all(|method| method.measured.is_empty() == method.not_measured.is_some())
+        );
+        let mut document = methods.remove(0).method;
+        document.name = MethodName::FemOgden;
+        let served = serde_json::to_value(MeasuredMethod::of(document)).unwrap();
+        assert_eq!(served["measured"], serde_json::json!([]));
+        assert!(served["not_measured"].as_str().unwrap().contains("no row"), "{served}");
+        assert_eq!(time_band(MethodName::FemOgden.name(), 1000), None);
     }
 
     /// The times of docs/performance.md, which the table knows nothing of: half a million unknowns in 1.9 to 4.3 s.

@@ -24,6 +24,9 @@ pub const WHY_LINEAR: &str = "auto: fem_linear, until something chooses between 
 /// Why a method that was asked for by name is used.
 pub const WHY_ASKED: &str = "asked for by the spec";
 
+/// Of a method that was built after the study that comes with the program.
+const NOT_MEASURED: &str = "the study that comes with the program has no row of this method";
+
 /// A way of modelling soft tissue.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
@@ -203,11 +206,17 @@ pub struct MeasuredMethod {
     /// What the study that comes with the program measured; its truths, machine and command are in
     /// docs/speed-and-accuracy.md.
     pub measured: Vec<MeasuredDocument>,
+    /// Why there is nothing in `measured`, where there is nothing.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub not_measured: Option<String>,
 }
 
 impl MeasuredMethod {
     fn of(method: MethodDocument) -> Self {
-        MeasuredMethod { measured: measured::measured(method.name.name()), method }
+        let measured = measured::measured(method.name.name());
+        let not_measured = measured.is_empty().then(|| NOT_MEASURED.to_owned());
+        MeasuredMethod { method, measured, not_measured }
     }
 }
 

@@ -12,6 +12,7 @@ use crate::schema::compare::result::{ComparisonDocument, StatDocument};
 use crate::schema::optimise::result::OptimisationDocument;
 use crate::schema::study::report::StudySummaryDocument;
 use crate::schema::wire::warning::WarningDocument;
+use mechanics::prediction::NUMERICS_REVISION;
 
 /// What every result says about its use.
 pub const NOT_A_DEVICE: &str =
@@ -130,6 +131,10 @@ pub struct ProvenanceDocument {
 pub struct EngineDocument {
     pub name: String,
     pub version: String,
+    /// Raised with every change of its numbers; jobs of another revision are other jobs. 0 of results from before
+    /// there were revisions.
+    #[serde(default)]
+    pub numerics: u32,
     /// Processor and operating system.
     pub target: String,
     /// `release` or `debug`.
@@ -143,6 +148,7 @@ impl EngineDocument {
         EngineDocument {
             name: env!("CARGO_PKG_NAME").to_owned(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
+            numerics: NUMERICS_REVISION,
             target: format!("{}-{}", std::env::consts::ARCH, std::env::consts::OS),
             profile: profile.to_owned(),
         }

@@ -83,8 +83,8 @@ pub struct StudyDocument {
     pub baseline: Option<String>,
     #[serde(default)]
     pub tolerances: TolerancesDocument,
-    /// Labels of variants that may fail without making the outcome `worse`, beside `mtm jacobi`, which is there to show
-    /// that it diverges, and `msm direct`, which is slow.
+    /// Labels of variants that may fail without making the outcome `worse`, beside two of the program's own: the
+    /// `mtm jacobi` of `mtm`, which is there to show that it diverges, and the `msm direct` of `msm`, which is slow.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub expected_failures: Vec<String>,
     #[serde(default)]

@@ -11,6 +11,7 @@ use crate::schema::plan::document::PlanDocument;
 use crate::schema::predict::document::PredictDocument;
 use crate::schema::response::ResponseDocument;
 use crate::schema::study::document::StudyDocument;
+use mechanics::prediction::NUMERICS_REVISION;
 
 /// A document as a value whose keys are sorted.
 pub fn to_value(document: &impl Serialize) -> Value {
@@ -51,8 +52,7 @@ pub fn predict_hash(
     if let Some(compare_to) = &mut spec.compare_to {
         replace(&mut compare_to.actual.mesh, content_of);
     }
-    hash(&json!({
-        "engine": env!("CARGO_PKG_VERSION"),
+    hash(json!({
         "case": to_value(&case),
         "plan": to_value(&plan),
         "spec": spec.content(),
@@ -75,8 +75,7 @@ pub fn optimise_hash(
     for id in spec.surfaces_mut() {
         replace(id, content_of);
     }
-    hash(&json!({
-        "engine": env!("CARGO_PKG_VERSION"),
+    hash(json!({
         "case": to_value(&case),
         "spec": spec.content(),
     }))
@@ -106,8 +105,7 @@ pub fn study_hash(
     if let Some(job) = spec.truth.as_mut().and_then(|truth| truth.job.as_mut()) {
         replace(job, content_of);
     }
-    hash(&json!({
-        "engine": env!("CARGO_PKG_VERSION"),
+    hash(json!({
         "cases": cases.iter().map(to_value).collect::<Vec<_>>(),
         "spec": spec.content(),
         "baseline": baseline,
@@ -124,7 +122,7 @@ pub fn compare_hash(spec: &CompareDocument, content_of: &dyn Fn(&str) -> Option<
         replace(id, content_of);
     }
     replace(&mut spec.actual.mesh, content_of);
-    hash(&json!({ "engine": env!("CARGO_PKG_VERSION"), "spec": to_value(&spec) }))
+    hash(json!({ "spec": to_value(&spec) }))
 }
 
 /// The key of a response: the case but for its name, tags, landmarks and skin regions, contents of meshes in
@@ -142,8 +140,7 @@ pub fn response_key(
     for (_, id) in case.mesh_references_mut() {
         replace(id, content_of);
     }
-    hash(&json!({
-        "engine": env!("CARGO_PKG_VERSION"),
+    hash(json!({
         "case": to_value(&case),
         "spec": spec.content(),
     }))
@@ -155,8 +152,31 @@ fn replace(id: &mut String, content_of: &dyn Fn(&str) -> Option<String>) {
     }
 }
 
-fn hash(value: &Value) -> String {
-    let mut sorted = value.clone();
-    sorted.sort_all_objects();
-    sha256_hex(sorted.to_string().as_bytes())
+/// The hash of what documents say, and of the program as far as its numbers go: another one finds other results.
+fn hash(mut content: Value) -> String {
+    content["engine"] =
+        json!({ "version": env!("CARGO_PKG_VERSION"), "numerics": NUMERICS_REVISION });
+    content.sort_all_objects();
+    sha256_hex(content.to_string().as_bytes())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_hash_is_one_of_the_documents_the_version_and_the_revision_of_the_numbers() {
+        let version = env!("CARGO_PKG_VERSION");
+        let text = format!(
+            r#"{{"engine":{{"numerics":{NUMERICS_REVISION},"version":"{version}"}},"spec":{{"a":1}}}}"#
+        );
+        assert_eq!(hash(json!({ "spec": { "a": 1 } })), sha256_hex(text.as_bytes()));
+    }
+
+    #[test]
+    fn every_hash_of_a_job_and_the_key_of_a_response_are_made_in_one_place() {
+        let code = include_str!("canonical.rs").split("#[cfg(test)]").next().unwrap_or_default();
+        let made = code.matches("hash(json!(").count();
+        assert_eq!((made, code.matches("sha256_hex(").count()), (5, 2));
+    }
 }

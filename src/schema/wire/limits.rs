@@ -3,6 +3,8 @@
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
+use mechanics::format::ReadLimits;
+
 /// Bounds on what is accepted. Defaults are those of the API's first version.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Limits {
@@ -21,6 +23,9 @@ pub struct Limits {
     pub image_voxels: u64,
     /// Corners of one polygon of a surface file.
     pub polygon_corners: u32,
+    /// Distinct values of an integer array that divides a mesh into regions, or whose values select nodes; an
+    /// array with more is ignored, and the report of the mesh says so.
+    pub label_values: u32,
     /// Decoded size of a file.
     pub decoded_bytes: u64,
     /// Decoded size of a file in multiples of the file.
@@ -67,6 +72,7 @@ impl Default for Limits {
             mesh_cells: 4_000_000,
             image_voxels: 1 << 27,
             polygon_corners: 64,
+            label_values: label_values(),
             decoded_bytes: 512 << 20,
             decoded_ratio: 10,
             wait_s: 30,
@@ -86,4 +92,8 @@ impl Default for Limits {
             event_streams: 8,
         }
     }
+}
+
+fn label_values() -> u32 {
+    ReadLimits::default().label_values as u32
 }

@@ -221,7 +221,7 @@ fn a_skin_is_compared_within_its_own_job() {
     assert!(comparison.both.max < 1e-9 && comparison.node_wise.unwrap().nodes.max < 1e-12);
     let written = fs::read(second.join("skin.vtp")).unwrap();
     let read = format::read(&written, &ReadLimits::default()).unwrap();
-    assert!(read.ignored_arrays.iter().any(|name| name.contains("signed_distance_mm")));
+    assert!(read.ignored.names().iter().any(|name| name.contains("signed_distance_mm")));
     assert_eq!(done.result.provenance.inputs.last().unwrap().role, "actual");
 }
 

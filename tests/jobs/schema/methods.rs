@@ -82,3 +82,17 @@ fn the_spec_tells_what_brings_the_tensors_to_rest() {
         assert_eq!(mistake(spec), (code.to_owned(), pointer.to_owned()));
     }
 }
+
+/// Every method that documents may ask for, so that a new one is not forgotten in the table of golden numbers.
+#[test]
+fn every_method_that_is_built_has_golden_numbers() {
+    let table = include_str!("../../../mechanics/tests/mechanics/golden/golden.txt");
+    let has = |begin: &str| table.lines().any(|line| line.starts_with(begin));
+    for method in facies::schema::methods::available_methods().methods {
+        let name = method.method.name.name();
+        assert!(has(&format!("{name} ")) || has(&format!("{name}:")), "{name} has no line");
+    }
+    for kind in ["response", "optimise", "comparison", "study"] {
+        assert!(has(kind), "{kind} has no line");
+    }
+}

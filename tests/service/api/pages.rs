@@ -16,10 +16,10 @@ use tracing::instrument::WithSubscriber;
 use tracing::subscriber::NoSubscriber;
 use tracing_subscriber::layer::{Context, Layer, SubscriberExt};
 
+use crate::api::tenants::Hospital;
 use crate::deployments::{Deployment, on_both};
 use crate::helpers::{Answer, ask};
 use crate::store::queue::{LEASE, enqueue, new_job};
-use crate::api::tenants::Hospital;
 
 on_both! {
     every_listed_job_has_its_own_tags_in_order

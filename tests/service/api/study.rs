@@ -423,3 +423,28 @@ async fn a_plan_that_does_not_fit_a_case_is_refused_at_its_place_in_the_study() 
         );
     }
 }
+
+/// Plain Jacobi diverges: that is what the program's own variant is there to show, and no excuse for a client's.
+#[tokio::test]
+async fn a_variant_of_a_client_that_is_called_like_one_that_may_fail_fails_its_gate() {
+    let server = Server::start();
+    let mut spec = slab();
+    spec.as_object_mut().unwrap().remove("elements");
+    let ended = async |methods: Value| {
+        let mut spec = spec.clone();
+        spec["methods"] = methods;
+        let job = done(&server, &spec).await;
+        let report = report(&server, &job, "").await.json();
+        let rows = report["rows"].as_array().unwrap().clone();
+        let jacobi = rows.into_iter().find(|row| row["label"] == "mtm jacobi").unwrap();
+        assert_eq!(jacobi["error"]["type"], "solver-diverged", "{jacobi}");
+        let outcome = report["verdict"]["outcome"].clone();
+        (outcome, jacobi["verdict"].clone(), report["rules"]["expected_failures"].clone())
+    };
+    let of_a_client =
+        json!({"method": "mtm", "mtm": {"iterations": "jacobi"}, "label": "mtm jacobi"});
+    let clients = ended(json!(["fem_linear", of_a_client])).await;
+    assert_eq!(clients, (json!("worse"), json!("failed"), json!([])));
+    let own = ended(json!(["mtm"])).await;
+    assert_eq!(own, (json!("pass"), json!("known-failure"), json!(["mtm jacobi"])));
+}

@@ -18,7 +18,7 @@ use super::limits::{MOST_BYTES_OF_ONE, ReadLimits, room_for};
 use super::scalar::{ByteOrder, Scalar};
 use super::{Mesh, MeshFormat, ReadMesh};
 use crate::image::{ImageVolume, Voxels};
-use crate::mesh::{Frame, Vector, Warning};
+use crate::mesh::{Frame, IgnoredArrays, Vector, Warning};
 use header::{Encoding, FORMAT, Header};
 
 /// gzip level: beyond 4 a CT shrinks by a few per cent and takes twice as long.
@@ -46,7 +46,7 @@ pub(super) fn read(bytes: &[u8], limits: &ReadLimits) -> Result<ReadMesh, Format
         format: MeshFormat::Nrrd,
         mesh: Mesh::Image(image),
         frame: header.frame,
-        ignored_arrays: Vec::new(),
+        ignored: IgnoredArrays::default(),
         warnings,
     })
 }

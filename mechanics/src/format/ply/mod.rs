@@ -9,7 +9,7 @@ use super::limits::{ReadLimits, room_for};
 use super::output::{ArrayValues, NamedValues, SurfaceOutput, WriteError};
 use super::parsed::Parsed;
 use super::scalar::{ByteOrder, Scalar, node_number};
-use crate::mesh::Vector;
+use crate::mesh::{ValuesOf, Vector};
 use header::{Element, Header, PropertyKind};
 
 struct PlyReader<'a, 'l> {
@@ -133,8 +133,9 @@ impl PlyReader<'_, '_> {
         let others = element.properties.iter().enumerate();
         let others =
             others.filter(|(number, _)| !axes.contains(number) && node_id != Some(*number));
-        let names = others.map(|(_, property)| property.name.clone());
-        self.parsed.arrays.ignored.extend(names);
+        for (_, property) in others {
+            self.parsed.arrays.ignore_of_surface(ValuesOf::Points, &property.name);
+        }
         if node_id.is_some() {
             self.parsed
                 .arrays

@@ -4,12 +4,12 @@
 
 use super::array::Decoder;
 use super::document::Section;
-use crate::format::arrays::{Arrays, NamedArray, Values};
+use crate::format::arrays::{self, Arrays, NamedArray, Values};
 use crate::format::error::FormatError;
 use crate::format::limits::ReadLimits;
 use crate::format::parsed::Parsed;
 use crate::format::scalar::Scalar;
-use crate::mesh::{CellShape, Vector};
+use crate::mesh::{CellShape, ValuesOf, Vector};
 
 /// What a VTK cell type is to us.
 enum Kind {
@@ -181,11 +181,13 @@ pub(super) fn decode_named(
     arrays: &mut Arrays,
 ) -> Result<(), FormatError> {
     let document = decoder.document();
+    let of = match section {
+        Section::PointData => ValuesOf::Points,
+        _ => ValuesOf::Cells,
+    };
     for array in document.arrays_in(section) {
         let is_integer = array.scalar.is_some_and(Scalar::is_integer);
-        // Text has no components that could be wanted.
-        let components = array.scalar.map_or(0, |_| array.components);
-        if !arrays.wants(&array.name, components, is_integer) {
+        if !arrays.wants(of, &array.name, arrays::Kind::of(array.scalar, array.components)) {
             decoder.pass_over(array)?;
             continue;
         }
@@ -194,9 +196,9 @@ pub(super) fn decode_named(
             false => Values::Vectors(as_vectors(&decoder.reals(array, count * 3)?)),
         };
         let named = NamedArray { name: array.name.clone(), values };
-        match section {
-            Section::PointData => arrays.points.push(named),
-            _ => arrays.cells.push(named),
+        match of {
+            ValuesOf::Points => arrays.points.push(named),
+            ValuesOf::Cells => arrays.cells.push(named),
         }
     }
     Ok(())

@@ -2,9 +2,10 @@
 
 use super::cells::as_vectors;
 use super::legacy::{LegacyReader, Owner};
-use crate::format::arrays::{NamedArray, Values};
+use crate::format::arrays::{Kind, NamedArray, Values};
 use crate::format::error::FormatError;
 use crate::format::scalar::Scalar;
+use crate::mesh::ValuesOf;
 
 /// An array that is announced and not yet read.
 struct Announced {
@@ -147,8 +148,15 @@ impl LegacyReader<'_, '_> {
                 self.parsed.note_space_mark(&text);
             }
         }
-        if self.owner != Owner::Dataset {
-            self.parsed.arrays.ignored.push(name.to_string());
+        let arrays = &mut self.parsed.arrays;
+        match self.owner {
+            Owner::Dataset => {}
+            Owner::Points => {
+                arrays.wants(ValuesOf::Points, name, Kind::Other);
+            }
+            Owner::Cells => {
+                arrays.wants(ValuesOf::Cells, name, Kind::Other);
+            }
         }
         Ok(())
     }
@@ -167,12 +175,16 @@ impl LegacyReader<'_, '_> {
         let Announced { name, scalar, components, tuples } = announced;
         let count = components.saturating_mul(tuples);
         let has_cells = self.keeps_cell_arrays();
+        let kind = Kind::of(Some(scalar), components);
         let arrays = &mut self.parsed.arrays;
         let is_wanted = match self.owner {
             Owner::Dataset => false,
-            // Attributes of poly data have no components that could be wanted.
-            Owner::Cells if !has_cells => arrays.wants(&name, 0, true),
-            _ => arrays.wants(&name, components, scalar.is_integer()),
+            Owner::Cells if !has_cells => {
+                arrays.ignore_of_surface(ValuesOf::Cells, &name);
+                false
+            }
+            Owner::Points => arrays.wants(ValuesOf::Points, &name, kind),
+            Owner::Cells => arrays.wants(ValuesOf::Cells, &name, kind),
         };
         if !is_wanted {
             return self.skip(scalar, count);

@@ -9,6 +9,7 @@ use crate::format::error::FormatError;
 use crate::format::limits::ReadLimits;
 use crate::format::output::{SurfaceOutput, WriteError};
 use crate::format::parsed::Parsed;
+use crate::mesh::ValuesOf;
 
 pub(in crate::format) fn read(bytes: &[u8], limits: &ReadLimits) -> Result<Parsed, FormatError> {
     let document = Document::parse("VTP", bytes)?;
@@ -21,7 +22,7 @@ pub(in crate::format) fn read(bytes: &[u8], limits: &ReadLimits) -> Result<Parse
     decode_named(&mut decoder, Section::PointData, points, &mut parsed.arrays)?;
     for array in document.arrays_in(Section::CellData) {
         decoder.pass_over(array)?;
-        parsed.arrays.ignored.push(array.name.clone());
+        parsed.arrays.ignore_of_surface(ValuesOf::Cells, &array.name);
     }
     note_other_cells(&document, &mut decoder, &mut parsed)?;
     if document.cells > 0 {

@@ -5,10 +5,11 @@ use super::cells::{CellTable, as_vectors, decode_named};
 use super::document::{DataArray, Document, Section};
 use super::writer::{Numbers, VtkFile};
 use crate::format::error::FormatError;
+use crate::format::ignored_field;
 use crate::format::limits::ReadLimits;
 use crate::format::output::{VolumeOutput, WriteError};
 use crate::format::parsed::Parsed;
-use crate::format::scalar::node_number;
+use crate::format::scalar::{Scalar, node_number};
 use crate::mesh::CellShape;
 
 pub(in crate::format) fn read(bytes: &[u8], limits: &ReadLimits) -> Result<Parsed, FormatError> {
@@ -50,6 +51,8 @@ pub(super) fn read_points_and_marks<'a>(
             let text = decoder.text(array)?;
             parsed.note_space_mark(&format!("SPACE={text}"));
             parsed.note_space_mark(&text);
+        } else if array.name == ignored_field::FIELD && array.scalar == Some(Scalar::U8) {
+            ignored_field::decode(&decoder.text(array)?, &mut parsed.arrays.ignored);
         } else {
             parsed.note_space_mark(&array.name);
             decoder.pass_over(array)?;
@@ -97,7 +100,7 @@ pub fn write(output: &VolumeOutput) -> Result<Vec<u8>, WriteError> {
     output.check()?;
     let mesh = output.mesh;
     let mut file = VtkFile::new("UnstructuredGrid");
-    file.field_bytes(output.frame, &output.field_data);
+    file.field_bytes(output.frame, &field_data(output));
     file.open(&format!(
         "Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\"",
         mesh.nodes.len(),
@@ -111,6 +114,13 @@ pub fn write(output: &VolumeOutput) -> Result<Vec<u8>, WriteError> {
     file.section("CellData", |file| write_cell_data(file, output));
     file.close("Piece");
     Ok(file.finish())
+}
+
+/// The texts of the caller, and what the file of the mesh had that the mesh has not.
+fn field_data(output: &VolumeOutput) -> Vec<(String, String)> {
+    let ignored = ignored_field::encode(&output.mesh.ignored);
+    let ignored = (!ignored.is_empty()).then(|| (ignored_field::FIELD.to_owned(), ignored));
+    output.field_data.iter().cloned().chain(ignored).collect()
 }
 
 fn write_cells(file: &mut VtkFile, output: &VolumeOutput) {

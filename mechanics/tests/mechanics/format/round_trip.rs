@@ -16,7 +16,7 @@ fn a_volume_mesh_written_as_vtu_reads_as_itself() {
         let bytes = vtu::write(&VolumeOutput::plain(&mesh, frame)).unwrap();
         let back = read_default(&bytes);
         assert_eq!(back.frame, Some(frame));
-        assert_eq!(back.ignored_arrays, Vec::<String>::new());
+        assert_eq!(back.ignored.names(), Vec::<String>::new());
         assert_eq!(back.warnings, []);
         assert_eq!(back.mesh, Mesh::Volume(mesh.clone()));
     }
@@ -90,7 +90,7 @@ fn displaced_positions_and_results_stand_beside_what_the_mesh_had() {
         field_data: vec![("note".into(), "pas <un> dispositif médical".into())],
     };
     let back = read_default(&vtu::write(&output).unwrap());
-    assert_eq!(back.ignored_arrays, ["det_f"]);
+    assert_eq!(back.ignored.names(), ["det_f"]);
     let back = volume(back);
     assert_eq!(back.nodes, moved);
     assert_eq!(back.node_vectors["displacement_mm"], displacement);

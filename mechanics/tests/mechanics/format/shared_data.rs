@@ -19,7 +19,7 @@ fn the_face_has_its_cells_sets_and_nodes() {
         };
         let read = read_default(&std::fs::read(path).unwrap());
         assert_eq!(warning_codes(&read), Vec::<&str>::new(), "{file}");
-        assert!(read.ignored_arrays.contains(&"node_id".to_string()));
+        assert!(read.ignored.names().contains(&"node_id".to_string()));
         let mesh = volume(read);
         let report = MeshReport::of_volume(&mesh);
         assert_eq!(report.nodes, 8720);

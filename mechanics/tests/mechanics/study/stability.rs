@@ -25,6 +25,7 @@ fn variants() -> Vec<Variant> {
         method: "fem_linear".to_owned(),
         label: format!("fem_linear {name}"),
         settings: Settings { element, ..Settings::default() },
+        may_fail: false,
     };
     vec![
         element("plain", ElementChoice::Plain),

@@ -37,7 +37,7 @@ impl Stopwatch for Still {
 
 fn variant(label: &str, element: ElementChoice) -> Variant {
     let settings = Settings { method: Method::FemLinear, element, ..Settings::default() };
-    Variant { method: "fem_linear".to_owned(), label: label.to_owned(), settings }
+    Variant { method: "fem_linear".to_owned(), label: label.to_owned(), settings, may_fail: false }
 }
 
 fn study(scene: StudyScene, variants: Vec<Variant>, levels: &[u32]) -> Study {
