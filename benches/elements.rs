@@ -15,8 +15,9 @@ use mechanics::boundary::NodeSelection;
 use mechanics::mesh::sample::block;
 use mechanics::mesh::{CellShape, Vector, VolumeMesh};
 use mechanics::prediction::{
-    Case, ElementChoice, Plan, Prediction, Prescribed, Scene, Settings, Unobserved, predict,
+    Case, ElementChoice, Plan, Prediction, Prescribed, Scene, Settings, predict,
 };
+use mechanics::progress::Unobserved;
 
 fn main() {
     slabs();

@@ -15,8 +15,9 @@ use measure::{median, shell};
 use mechanics::mesh::Vector;
 use mechanics::model::fem::mass_tensor::{Iterations, MassTensorSettings};
 use mechanics::prediction::{
-    Case, Method, Plan, Prediction, PredictionError, Scene, Settings, Unobserved, predict,
+    Case, Method, Plan, Prediction, PredictionError, Scene, Settings, predict,
 };
+use mechanics::progress::Unobserved;
 use mechanics::solver::stationary::{Iteration, Stationary};
 
 /// In mm, of every skin node.

@@ -21,8 +21,9 @@ use measure::{median, process, shell};
 use mechanics::boundary::NodeClass;
 use mechanics::mesh::Vector;
 use mechanics::model::fem::displacement::Problem;
-use mechanics::model::problem::{Convergence, LoadCase, Observer};
-use mechanics::prediction::{Case, ElementChoice, Phase, Plan, Progress, Scene, Settings, predict};
+use mechanics::model::problem::{Convergence, LoadCase};
+use mechanics::prediction::{Case, ElementChoice, Plan, Scene, Settings, predict};
+use mechanics::progress::{Phase, Progress};
 use mechanics::solver::Tolerance;
 use serde_json::{Value, json};
 
@@ -326,24 +327,6 @@ impl Progress for Clock {
     fn iteration(&self, _iteration: usize, _relative_residual: f64, _wanted: f64) {}
 
     fn is_cancelled(&self) -> bool {
-        false
-    }
-}
-
-impl Observer for Clock {
-    fn assembling(&self) {
-        self.phase(Phase::Assemble);
-    }
-
-    fn solving(&self) {
-        self.phase(Phase::Solve);
-    }
-
-    fn iterated(&self, _iteration: usize, _relative_residual: f64) -> bool {
-        true
-    }
-
-    fn is_stopped(&self) -> bool {
         false
     }
 }

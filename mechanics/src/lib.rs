@@ -11,6 +11,7 @@ pub mod model;
 pub mod optimisation;
 pub mod plan;
 pub mod prediction;
+pub mod progress;
 pub mod registration;
 pub mod response;
 pub mod solver;

@@ -5,7 +5,8 @@ use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 use super::failure::JobError;
 use crate::schema::predict::result::TimingDocument;
-use mechanics::prediction::{Phase, PredictionError, Progress};
+use mechanics::prediction::PredictionError;
+use mechanics::progress::{Phase, Progress};
 
 /// Passes progress on, takes the time of the phases, and asks the work to stop once its time is used up.
 pub struct Observed<'a> {
@@ -157,7 +158,7 @@ pub fn peak_rss_mb() -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use mechanics::prediction::Unobserved;
+    use mechanics::progress::Unobserved;
 
     #[test]
     fn seconds_become_dates() {

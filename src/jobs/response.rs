@@ -20,7 +20,7 @@ use crate::schema::wire::canonical;
 use crate::schema::{CaseDocument, Faults, Limits, PlanDocument, ResponseDocument};
 use mechanics::format::SurfaceOutput;
 use mechanics::format::vtk::vtp;
-use mechanics::prediction::{Phase, Progress};
+use mechanics::progress::{Phase, Progress};
 use mechanics::response::{Columns, ResponseError, build, chosen};
 
 /// f32 little-endian, [column][node][xyz].

@@ -26,7 +26,8 @@ use crate::schema::predict::result::{
 };
 use crate::schema::{Limits, Triple};
 use mechanics::mesh::{Vector, Warning};
-use mechanics::prediction::{Phase, Prediction, Progress, Skin, predict};
+use mechanics::prediction::{Prediction, Skin, predict};
+use mechanics::progress::{Phase, Progress};
 use mechanics::validation::{Statistics, StatisticsError};
 
 /// What a job made.

@@ -32,6 +32,7 @@ pub fn wedge6() -> &'static ReferenceCell {
 
 #[cfg(test)]
 mod tests {
+    use super::reference_cell::Vector;
     use super::*;
 
     fn every_cell() -> [(&'static str, &'static ReferenceCell, f64); 3] {

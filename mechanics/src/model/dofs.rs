@@ -7,6 +7,7 @@ use rayon::prelude::*;
 use super::problem::{InvertedCell, LoadCase};
 use crate::boundary::Hold;
 use crate::mesh::{Vector, VolumeMesh};
+use crate::progress::Progress;
 use crate::solver::cliques::{Cliques, CliquesOfRow};
 use crate::solver::half_matrix::{HalfMatrix, Pattern};
 use crate::solver::lanes::Lanes;
@@ -197,11 +198,11 @@ impl Numbering {
         &self,
         matrix: &mut HalfMatrix<f64, 3>,
         cliques: &[usize],
-        keep_going: &dyn Fn() -> bool,
+        progress: &dyn Progress,
         cell_matrix: impl Fn(usize) -> Result<M, InvertedCell> + Sync,
     ) -> Result<bool, InvertedCell> {
         for chunk in cliques.chunks(CHUNK) {
-            if !keep_going() {
+            if progress.is_cancelled() {
                 return Ok(false);
             }
             let cell = |&clique: &usize| cell_matrix(self.layout.clique_order[clique] as usize);

@@ -3,15 +3,6 @@
 use crate::mesh::{Vector, Warning};
 use crate::solver::{Solution, SolverError};
 
-/// What the solution tells and asks while it runs.
-pub trait Observer {
-    fn assembling(&self);
-    fn solving(&self);
-    /// Whether to go on after an iteration with this relative residual.
-    fn iterated(&self, iteration: usize, relative_residual: f64) -> bool;
-    fn is_stopped(&self) -> bool;
-}
-
 /// One of several things that happen to the same tissue.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LoadCase {

@@ -10,7 +10,6 @@ mod hounsfield;
 mod imaged_tissue;
 mod off_wall;
 mod problem;
-pub mod progress;
 pub mod scene;
 mod skin;
 mod small_strain;
@@ -24,14 +23,14 @@ pub use case::{
 };
 pub use imaged_tissue::{ImagedTissue, TissueShare};
 pub use problem::{SceneError, SceneErrors};
-pub use progress::{Phase, Progress, Unobserved};
 pub use scene::Scene;
 pub use skin::Skin;
 
 pub use crate::boundary::NodeClass;
 use crate::mesh::{Vector, Warning};
 use crate::model::fem::strain::{CellDeformation, deformations};
-use crate::model::problem::{Equilibrium, ModelError, Observer};
+use crate::model::problem::{Equilibrium, ModelError};
+use crate::progress::{Phase, Progress};
 use crate::solver::SolverError;
 
 /// A landmark farther than this from the tissue, in mm, is told to move as something it is not part of.
@@ -122,8 +121,7 @@ impl PredictionError {
 /// Solves a scene by the method it asks for. The same scene gives the same bits on any number of threads.
 pub fn predict(scene: &Scene, progress: &dyn Progress) -> Result<Prediction, PredictionError> {
     // 1. Equilibrium.
-    let wanted = scene.settings.relative_residual;
-    let equilibrium = scene.solve(&Followed { progress, wanted })?;
+    let equilibrium = scene.solve(progress)?;
 
     // 2. What it does to the tissue and to the landmarks.
     progress.phase(Phase::Surface);
@@ -146,31 +144,6 @@ pub fn predict(scene: &Scene, progress: &dyn Progress) -> Result<Prediction, Pre
         deformation,
         warnings,
     })
-}
-
-/// Passes the solver's words on to the progress of the work.
-pub(crate) struct Followed<'a> {
-    pub(crate) progress: &'a dyn Progress,
-    pub(crate) wanted: f64,
-}
-
-impl Observer for Followed<'_> {
-    fn assembling(&self) {
-        self.progress.phase(Phase::Assemble);
-    }
-
-    fn solving(&self) {
-        self.progress.phase(Phase::Solve);
-    }
-
-    fn iterated(&self, iteration: usize, relative_residual: f64) -> bool {
-        self.progress.iteration(iteration, relative_residual, self.wanted);
-        !self.progress.is_cancelled()
-    }
-
-    fn is_stopped(&self) -> bool {
-        self.progress.is_cancelled()
-    }
 }
 
 /// Sums the reactions of the nodes of each segment and of each other class.

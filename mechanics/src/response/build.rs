@@ -10,9 +10,8 @@ use crate::boundary::NodeClass;
 use crate::mesh::Vector;
 use crate::model::problem::{Equilibrium, LoadCase};
 use crate::plan::RigidMovement;
-use crate::prediction::{
-    Followed, Method, Phase, PredictionError, Progress, Scene, SolverReport, report,
-};
+use crate::prediction::{Method, PredictionError, Scene, SolverReport, report};
+use crate::progress::{Phase, Progress};
 
 /// Bytes of one node in one load case: its force, its displacement, its unknowns.
 const BYTES_OF_NODE: f64 = 72.0;
@@ -106,9 +105,7 @@ pub fn build(
         .collect();
 
     // 2. The tissue for each of them.
-    let wanted = scene.settings.relative_residual;
-    let solved =
-        scene.solve_cases(&cases, &Followed { progress, wanted }).map_err(PredictionError::from)?;
+    let solved = scene.solve_cases(&cases, progress).map_err(PredictionError::from)?;
 
     // 3. Its skin.
     progress.phase(Phase::Surface);

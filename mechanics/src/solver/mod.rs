@@ -16,7 +16,9 @@ mod system;
 mod vector;
 mod vectorised;
 pub use half_matrix::HalfMatrix;
-pub use system::{Block, PartlyHeld, Solution, SolverError, System, Tolerance, Unknowns, Watch};
+pub use system::{Block, PartlyHeld, Solution, SolverError, System, Tolerance, Unknowns, tell};
+
+use crate::progress::Progress;
 
 /// Up to this many rows a factorisation takes about as long as iterations do, or less.
 const CHOLESKY_ROWS: usize = 2_500;
@@ -34,7 +36,7 @@ pub fn solve(
     system: &System,
     right_hand_sides: &[Unknowns],
     tolerance: &Tolerance,
-    watch: Watch,
+    progress: &dyn Progress,
 ) -> Result<Vec<Solution>, SolverError> {
     if right_hand_sides.iter().flatten().flatten().any(|value| !value.is_finite()) {
         return Err(SolverError::NotFinite);
@@ -52,12 +54,12 @@ pub fn solve(
         let ordering = ordering::minimum_degree(system);
         if ordering.factor_mb + iterations_mb <= tolerance.memory_mb {
             let why = format!("{rows} rows are few enough to factorise");
-            let solved = cholesky::solve(system, &ordering, right_hand_sides, tolerance, watch);
+            let solved = cholesky::solve(system, &ordering, right_hand_sides, tolerance, progress);
             return solved.map(|solutions| because(solutions, &why));
         }
     }
     let why = format!("{rows} rows are cheaper to iterate than to factorise");
-    match conjugate_gradient::solve(system, right_hand_sides, tolerance, watch) {
+    match conjugate_gradient::solve(system, right_hand_sides, tolerance, progress) {
         Err(stalled @ SolverError::NotConverged { .. }) if rows <= ORDERING_ROWS => {
             let ordering = ordering::minimum_degree(system);
             let fits = ordering.factor_mb + iterations_mb <= tolerance.memory_mb;
@@ -65,7 +67,7 @@ pub fn solve(
                 return Err(stalled);
             }
             let why = format!("conjugate gradients stalled: {stalled}");
-            cholesky::solve(system, &ordering, right_hand_sides, tolerance, watch)
+            cholesky::solve(system, &ordering, right_hand_sides, tolerance, progress)
                 .map(|solutions| because(solutions, &why))
         }
         other => other.map(|solutions| because(solutions, &why)),

@@ -19,7 +19,8 @@ use rayon::prelude::*;
 use super::lanes::{Lanes, add_product, add_transposed, negated};
 use super::vector::{column, dot, interleave, norm, ratio};
 use super::vectorised::vectorised;
-use super::{Block, Solution, SolverError, System, Tolerance, Unknowns, Watch, nothing_to_solve};
+use super::{Block, Solution, SolverError, System, Tolerance, Unknowns, nothing_to_solve, tell};
+use crate::progress::{Progress, Unobserved};
 
 /// The share of its limit that omega is set to: the power iteration sees lambda_max from below.
 const DAMPING: f64 = 0.95;
@@ -65,7 +66,7 @@ pub fn solve(
     right_hand_side: &Unknowns,
     stationary: &Stationary,
     tolerance: &Tolerance,
-    watch: Watch,
+    progress: &dyn Progress,
 ) -> Result<Solution, SolverError> {
     if right_hand_side.as_flattened().iter().any(|value| !value.is_finite()) {
         return Err(SolverError::NotFinite);
@@ -80,21 +81,20 @@ pub fn solve(
     match stationary.iteration {
         Iteration::GaussSeidel => {
             let mut sweep = GaussSeidel::new(system, &inverse, &right_hand_side);
-            run.iterate(stationary, tolerance, watch, |run| {
+            run.iterate(stationary, tolerance, progress, |run| {
                 sweep.sweep(&mut run.x, &mut run.residual)
             })?;
             Ok(run.solution("gauss_seidel", String::new()))
         }
         Iteration::Jacobi => {
-            run.iterate(stationary, tolerance, watch, |run| run.jacobi(1.0))?;
+            run.iterate(stationary, tolerance, progress, |run| run.jacobi(1.0))?;
             Ok(run.solution("jacobi", String::new()))
         }
         Iteration::DampedJacobi => {
-            let keep_going = || watch(0, 1.0);
-            let lambda = power_iteration(system, &inverse, EIGENVALUE_GROWTH, &keep_going)
-                .ok_or(SolverError::Stopped)?;
+            tell(progress, 0, 1.0, tolerance.relative_residual)?;
+            let lambda = power_iteration(system, &inverse, EIGENVALUE_GROWTH, progress)?;
             let omega = DAMPING * 2.0 / lambda;
-            run.iterate(stationary, tolerance, watch, |run| run.jacobi(omega))?;
+            run.iterate(stationary, tolerance, progress, |run| run.jacobi(omega))?;
             let why = format!(
                 "omega {omega:.3} is {DAMPING} of the limit 2 / lambda_max(D^-1 K), lambda_max {lambda:.3}; "
             );
@@ -107,7 +107,7 @@ pub fn solve(
 /// share in an iteration: the limit of omega is 2 / lambda_max, and 1 - lambda_max the factor of plain Jacobi.
 pub fn largest_eigenvalue(system: &System, growth: f64) -> Result<f64, SolverError> {
     let inverse = inverse_diagonal(system)?;
-    power_iteration(system, &inverse, growth, &|| true).ok_or(SolverError::Stopped)
+    power_iteration(system, &inverse, growth, &Unobserved)
 }
 
 fn check_memory(system: &System, allowed_mb: f64) -> Result<(), SolverError> {
@@ -152,8 +152,8 @@ fn power_iteration(
     system: &System,
     inverse: &[Block],
     growth: f64,
-    keep_going: &dyn Fn() -> bool,
-) -> Option<f64> {
+    progress: &dyn Progress,
+) -> Result<f64, SolverError> {
     let value = |k: usize| [((k * 7919 + 13) % 1009) as f64 / 1009.0 - 0.5];
     let mut x: Rows =
         (0..system.layout.free).map(|row| std::array::from_fn(|c| value(3 * row + c))).collect();
@@ -161,8 +161,8 @@ fn power_iteration(
     let mut product = x.clone();
     let mut lambda = 0.0;
     for _ in 0..MOST_POWER_ITERATIONS {
-        if !keep_going() {
-            return None;
+        if progress.is_cancelled() {
+            return Err(SolverError::Stopped);
         }
         system.multiply(&x, &mut product);
         apply(inverse, &product, &mut x);
@@ -174,7 +174,7 @@ fn power_iteration(
             break;
         }
     }
-    Some(lambda)
+    Ok(lambda)
 }
 
 /// Iterates, residuals and what is told of them.
@@ -216,7 +216,7 @@ impl<'a> Run<'a> {
         &mut self,
         stationary: &Stationary,
         tolerance: &Tolerance,
-        watch: Watch,
+        progress: &dyn Progress,
         mut step: impl FnMut(&mut Self) -> f64,
     ) -> Result<(), SolverError> {
         let wanted = tolerance.relative_residual;
@@ -232,9 +232,7 @@ impl<'a> Run<'a> {
             }
             self.relative_residual = residual;
             self.history.push(residual);
-            if !watch(iteration, residual) {
-                return Err(SolverError::Stopped);
-            }
+            tell(progress, iteration, residual, wanted)?;
             if !residual.is_finite() || residual > DIVERGED {
                 return Err(self.diverged());
             }

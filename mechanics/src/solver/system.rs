@@ -3,6 +3,7 @@
 use super::half_matrix::HalfMatrix;
 use super::lanes::{Lanes, Real};
 use super::layout::Layout;
+use crate::progress::Progress;
 use nalgebra::{Matrix3, Vector3};
 use std::sync::Arc;
 
@@ -41,9 +42,6 @@ pub struct Tolerance {
     pub memory_mb: f64,
 }
 
-/// Told each iteration and its relative residual; answers whether to go on.
-pub type Watch<'a> = &'a dyn Fn(usize, f64) -> bool;
-
 /// A solution that meets its tolerance, and how it was found.
 #[derive(Clone, Debug)]
 pub struct Solution {
@@ -76,6 +74,20 @@ pub enum SolverError {
     NotFinite,
     #[error("the solver needs about {needed_mb:.0} MB and may take {allowed_mb:.0} MB")]
     OverBudget { needed_mb: f64, allowed_mb: f64 },
+}
+
+/// Tells an iteration with its relative residual and the one asked for, and whether to go on.
+pub fn tell(
+    progress: &dyn Progress,
+    iteration: usize,
+    relative_residual: f64,
+    wanted: f64,
+) -> Result<(), SolverError> {
+    progress.iteration(iteration, relative_residual, wanted);
+    match progress.is_cancelled() {
+        true => Err(SolverError::Stopped),
+        false => Ok(()),
+    }
 }
 
 impl System {

@@ -11,8 +11,9 @@ use crate::mesh::Vector;
 use crate::model::fem::strain::deformations;
 use crate::model::problem::Equilibrium;
 use crate::prediction::{
-    Case, Followed, Plan, PredictionError, Progress, Scene, SceneErrors, Settings, inverted_cells,
+    Case, Plan, PredictionError, Scene, SceneErrors, Settings, inverted_cells,
 };
+use crate::progress::Progress;
 
 /// A row is not solved again once its solves took this long together, in s.
 pub const LONG_S: f64 = 2.0;
@@ -101,8 +102,7 @@ pub(super) fn solve(
     progress: &dyn Progress,
 ) -> Result<(Scene, Equilibrium), NoAnswer> {
     let scene = Scene::new(case, plan, settings)?;
-    let wanted = settings.relative_residual;
-    let equilibrium = scene.solve(&Followed { progress, wanted }).map_err(PredictionError::from)?;
+    let equilibrium = scene.solve(progress).map_err(PredictionError::from)?;
     Ok((scene, equilibrium))
 }
 

@@ -17,8 +17,9 @@ use super::variant::{ClosedForm, Materials, StudyScene, Truth};
 use crate::mesh::{CellShape, Vector, VolumeMesh};
 use crate::plan::RigidMovement;
 use crate::prediction::{
-    Case, ElementChoice, Method, Plan, PredictionError, Progress, Scene, Settings, Skin,
+    Case, ElementChoice, Method, Plan, PredictionError, Scene, Settings, Skin,
 };
+use crate::progress::Progress;
 use crate::response::{self, Columns, ResponseError};
 
 /// Refined truths are solved to this relative residual, and may take this much memory.

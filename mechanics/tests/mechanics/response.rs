@@ -7,8 +7,9 @@ use mechanics::mesh::{CellShape, Vector, VolumeMesh, sample};
 use mechanics::plan::{PlannedSegment, RigidMovement};
 use mechanics::prediction::{
     Case, CaseSegment, Load, Plan, Prediction, PredictionError, Prescribed, Scene, Settings,
-    Sliding, SlidingNormal, Unobserved, predict,
+    Sliding, SlidingNormal, predict,
 };
+use mechanics::progress::Unobserved;
 use mechanics::response::linearity::LINEAR_RANGE_MM;
 use mechanics::response::{Columns, Linearity, ResponseError, build, coefficients};
 

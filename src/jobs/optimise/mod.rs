@@ -22,7 +22,8 @@ use crate::schema::predict::result::{ResultDocument, SolverDocument};
 use crate::schema::{CaseDocument, OptimiseDocument};
 use mechanics::mesh::{Vector, Warning};
 use mechanics::optimisation::{Optimum, Question, optimise};
-use mechanics::prediction::{Phase, Prediction, Progress, predict};
+use mechanics::prediction::{Prediction, predict};
+use mechanics::progress::{Phase, Progress};
 use mechanics::response::{Columns, Response, ResponseError, build};
 use targets::PreparedOptimisation;
 

@@ -9,14 +9,15 @@
 use super::network::{Found, MassSpringSettings, Network, length};
 use super::springs::Spring;
 use crate::mesh::Vector;
-use crate::model::problem::{Convergence, ModelError, Observer};
-use crate::solver::SolverError;
+use crate::model::problem::{Convergence, ModelError};
+use crate::progress::Progress;
+use crate::solver::{SolverError, tell};
 
 pub(super) fn solve(
     network: &Network,
     wanted: f64,
     settings: &MassSpringSettings,
-    observer: &dyn Observer,
+    progress: &dyn Progress,
 ) -> Result<Found, ModelError> {
     let around = Around::new(network);
     let mut positions = network.start.clone();
@@ -29,9 +30,7 @@ pub(super) fn solve(
             residual = length(&network.unbalanced(&resistance)) / network.scale;
         }
         history.push(residual);
-        if !observer.iterated(iteration, residual) {
-            return Err(SolverError::Stopped.into());
-        }
+        tell(progress, iteration, residual, wanted)?;
         if residual <= wanted {
             let convergence = Convergence {
                 method: "direct_iteration",

@@ -15,6 +15,7 @@ use super::lattice::{Lattice, Place};
 use super::stiffness::Assembly;
 use crate::boundary::Hold;
 use crate::mesh::{Vector, Warning};
+use crate::progress::Unobserved;
 use crate::solver::Unknowns;
 use crate::solver::half_matrix::HalfMatrix;
 
@@ -72,7 +73,7 @@ impl HeldPoints {
         self.0.iter().for_each(|point| by_span[point.place.span].push(point));
         let order = assembly.lattice.order();
         let members = order.pow(3);
-        assembly.sum_over_spans(&|| true, |span| {
+        assembly.sum_over_spans(&Unobserved, |span| {
             let mut blocks = vec![[[0.0; 3]; 3]; members * members];
             for point in &by_span[span] {
                 let across = point

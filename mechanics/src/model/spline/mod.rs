@@ -13,9 +13,10 @@ pub mod stiffness;
 pub mod tissue_points;
 
 use super::dofs::Numbering;
-use super::problem::{Convergence, Equilibrium, ModelError, Observer};
+use super::problem::{Convergence, Equilibrium, ModelError};
 use crate::mesh::{Vector, Warning};
 use crate::model::fem::displacement::{Problem, check_finite};
+use crate::progress::{Phase, Progress};
 use crate::solver::half_matrix::HalfMatrix;
 use crate::solver::lanes::Lanes;
 use crate::solver::{self, Solution, SolverError, System, Unknowns, cholesky, ordering};
@@ -92,10 +93,10 @@ struct Assembled<'a> {
 pub fn solve(
     problem: &Problem,
     spline: &VolumeSpline,
-    observer: &dyn Observer,
+    progress: &dyn Progress,
 ) -> Result<Equilibrium, ModelError> {
     // 1. Control points.
-    observer.assembling();
+    progress.phase(Phase::Assemble);
     let mesh = problem.tissue.mesh;
     let points = tissue_points(mesh)?;
     let lattice = Lattice::fit(mesh, &points, spline.degree, spline.control_spacing);
@@ -106,9 +107,8 @@ pub fn solve(
 
     // 2. What holds them together, and what holds the tissue.
     let stopped = || ModelError::from(SolverError::Stopped);
-    let keep_going = || !observer.is_stopped();
     let stiffness = match spline.stiffness {
-        Stiffness::Galerkin => assembly.galerkin(&keep_going).ok_or_else(stopped)?,
+        Stiffness::Galerkin => assembly.galerkin(progress).ok_or_else(stopped)?,
         Stiffness::Lattice(links) => assembly.links(links),
     };
     let resisted = rotation_resisted(spline, &assembly);
@@ -116,8 +116,8 @@ pub fn solve(
         assemble(assembly, stiffness, problem, spline.hold_weight).ok_or_else(stopped)?;
 
     // 3. Rest.
-    observer.solving();
-    let (control, convergence) = assembled.rest(problem, spline, observer)?;
+    progress.phase(Phase::Solve);
+    let (control, convergence) = assembled.rest(problem, spline, progress)?;
     let mut equilibrium = assembled.equilibrium(problem, &control, convergence);
     equilibrium.warnings.extend(resisted);
     equilibrium.warnings.extend(materials_ignored(spline));
@@ -171,16 +171,16 @@ impl Assembled<'_> {
         &self,
         problem: &Problem,
         spline: &VolumeSpline,
-        observer: &dyn Observer,
+        progress: &dyn Progress,
     ) -> Result<(Vec<Vector>, Convergence), ModelError> {
         let Some(clock) = &spline.clock else {
-            let solution = self.static_solution(problem, observer)?;
+            let solution = self.static_solution(problem, progress)?;
             let by_row = solution.unknowns.iter().map(|d| Vector::from(*d)).collect();
             return Ok((self.by_control(by_row), Convergence::of(&solution)));
         };
         let mass = match spline.stiffness {
             Stiffness::Galerkin => {
-                let mass = self.assembly.mass(&|| !observer.is_stopped());
+                let mass = self.assembly.mass(progress);
                 mass.ok_or(SolverError::Stopped)?
             }
             Stiffness::Lattice(_) => self.assembly.equal_masses(),
@@ -192,7 +192,7 @@ impl Assembled<'_> {
             force: &self.force,
         };
         let wanted = problem.tolerance.relative_residual;
-        let state = motion.run(clock, wanted, problem.tolerance.memory_mb, observer)?;
+        let state = motion.run(clock, wanted, problem.tolerance.memory_mb, progress)?;
         let convergence = self.convergence(clock, &state, wanted)?;
         Ok((self.by_control(state.displacement()), convergence))
     }
@@ -202,17 +202,17 @@ impl Assembled<'_> {
     fn static_solution(
         &self,
         problem: &Problem,
-        observer: &dyn Observer,
+        progress: &dyn Progress,
     ) -> Result<Solution, SolverError> {
-        let watch = |iteration, residual| observer.iterated(iteration, residual);
         let (forces, tolerance) = (std::slice::from_ref(&self.force), &problem.tolerance);
         let ordering = ordering::minimum_degree(&self.system);
         let fits = ordering.factor_mb + self.system.megabytes() <= tolerance.memory_mb;
         let nothing_acts = self.force.iter().flatten().all(|value| *value == 0.0);
         if nothing_acts || !fits || ordering.multiplications > FACTORISED {
-            return Ok(solver::solve(&self.system, forces, tolerance, &watch)?.remove(0));
+            return Ok(solver::solve(&self.system, forces, tolerance, progress)?.remove(0));
         }
-        let solved = cholesky::solve(&self.system, &ordering, forces, tolerance, &watch)?.remove(0);
+        let solved =
+            cholesky::solve(&self.system, &ordering, forces, tolerance, progress)?.remove(0);
         let why = format!("{:.1e} multiplications make the factor", ordering.multiplications);
         Ok(Solution { why, ..solved })
     }

@@ -24,6 +24,7 @@ use crate::mesh::Vector;
 use crate::model::dofs::Numbering;
 use crate::model::fem::assembly::Tissue;
 use crate::model::problem::InvertedCell;
+use crate::progress::Progress;
 use crate::solver::Block;
 use crate::solver::half_matrix::HalfMatrix;
 
@@ -93,14 +94,14 @@ impl<'a> Assembly<'a> {
     }
 
     /// K of the tissue in mN/mm; `None` where told to stop.
-    pub fn galerkin(&self, keep_going: &dyn Fn() -> bool) -> Option<HalfMatrix<f64, 3>> {
+    pub fn galerkin(&self, progress: &dyn Progress) -> Option<HalfMatrix<f64, 3>> {
         let mean = self.mean_shear_modulus();
-        self.sum_over_spans(keep_going, |span| self.span_stiffness(span, mean))
+        self.sum_over_spans(progress, |span| self.span_stiffness(span, mean))
     }
 
     /// int rho N N dV in mg.
-    pub fn mass(&self, keep_going: &dyn Fn() -> bool) -> Option<HalfMatrix<f64, 3>> {
-        self.sum_over_spans(keep_going, |span| {
+    pub fn mass(&self, progress: &dyn Progress) -> Option<HalfMatrix<f64, 3>> {
+        self.sum_over_spans(progress, |span| {
             let order = self.lattice.order();
             let members = order.pow(3);
             let mut blocks = vec![[[0.0; 3]; 3]; members * members];
@@ -156,14 +157,14 @@ impl<'a> Assembly<'a> {
     /// Sums span matrices in a fixed order.
     pub fn sum_over_spans(
         &self,
-        keep_going: &dyn Fn() -> bool,
+        progress: &dyn Progress,
         span_matrix: impl Fn(usize) -> Vec<Block> + Sync,
     ) -> Option<HalfMatrix<f64, 3>> {
         let mut matrix = HalfMatrix::zeros(self.numbering.pattern.clone());
         let spans: Vec<usize> = (0..self.lattice.cliques.len()).collect();
         for spans in spans.chunks(SPANS_AT_ONCE) {
             let matrix_of = |span| Ok::<_, InvertedCell>(span_matrix(span));
-            let added = self.numbering.add_cells(&mut matrix, spans, keep_going, matrix_of);
+            let added = self.numbering.add_cells(&mut matrix, spans, progress, matrix_of);
             if !added.unwrap_or(false) {
                 return None;
             }

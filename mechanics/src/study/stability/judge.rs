@@ -5,7 +5,8 @@ use std::rc::Rc;
 
 use super::{Answer, Axis, AxisMap, Bounds, Finding, Map, Probe, Refusal, Truth, Variant, Verdict};
 use crate::mesh::Vector;
-use crate::prediction::{Prediction, PredictionError, Scene, Unobserved, predict};
+use crate::prediction::{Prediction, PredictionError, Scene, predict};
+use crate::progress::Unobserved;
 use crate::study::deadline::Deadline;
 use crate::validation::Statistics;
 

@@ -1,7 +1,5 @@
 //! V.12, V.13: what springs on the edges of tetrahedra are on average, and how they come to rest.
 
-use std::sync::atomic::{AtomicUsize, Ordering};
-
 use mechanics::mesh::sample::block;
 use mechanics::mesh::{CellShape, Cells, Vector, VolumeMesh};
 use mechanics::model::fem::assembly::Tissue;
@@ -9,12 +7,13 @@ use mechanics::model::fem::cell_stiffness::Dilatation;
 use mechanics::model::mass_spring::{MassSpringSettings, Search, Springs};
 use mechanics::plan::{PlannedSegment, RigidMovement};
 use mechanics::prediction::{
-    Case, CaseSegment, ElementChoice, Load, Method, Phase, Plan, Prediction, PredictionError,
-    Progress, Scene, Settings, Sliding, SlidingNormal, Unobserved, predict,
+    Case, CaseSegment, ElementChoice, Load, Method, Plan, Prediction, PredictionError, Scene,
+    Settings, Sliding, SlidingNormal, predict,
 };
+use mechanics::progress::Unobserved;
 use nalgebra::Matrix3;
 
-use crate::scenes::{case_of, hold, material, on_the_boundary, set, solve};
+use crate::scenes::{StopsAfter, case_of, hold, material, on_the_boundary, set, solve};
 
 const YOUNG: f64 = 15.0;
 
@@ -351,22 +350,6 @@ fn rest_that_is_not_found_is_an_error_with_its_history() {
     }
 }
 
-/// Stops after three iterations.
-#[derive(Default)]
-pub struct Impatient(AtomicUsize);
-
-impl Progress for Impatient {
-    fn phase(&self, _phase: Phase) {}
-
-    fn iteration(&self, iteration: usize, _residual: f64, _wanted: f64) {
-        self.0.store(iteration, Ordering::Relaxed);
-    }
-
-    fn is_cancelled(&self) -> bool {
-        self.0.load(Ordering::Relaxed) >= 3
-    }
-}
-
 #[test]
 fn both_searches_stop_when_they_are_told_to() {
     let case = slab(CellShape::Tet4, 0.25);
@@ -374,7 +357,7 @@ fn both_searches_stop_when_they_are_told_to() {
         let settings = Settings { relative_residual: 1e-13, ..springs(search) };
         let scene = Scene::new(&case, &moved(Vector::z() * 3.0), &settings).unwrap();
         assert_eq!(
-            predict(&scene, &Impatient::default()).unwrap_err(),
+            predict(&scene, &StopsAfter::iterations(3)).unwrap_err(),
             PredictionError::Cancelled,
             "{search:?}"
         );

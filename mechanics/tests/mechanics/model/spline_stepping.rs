@@ -3,10 +3,11 @@
 use std::sync::Arc;
 
 use mechanics::mesh::Vector;
-use mechanics::model::problem::{ModelError, Observer};
+use mechanics::model::problem::ModelError;
 use mechanics::model::spline::stepping::{Clock, Damping, Motion, Scheme};
 use mechanics::model::spline::{Stiffness, VolumeSpline};
-use mechanics::prediction::{PredictionError, Scene, Settings, Unobserved, predict};
+use mechanics::prediction::{PredictionError, Scene, Settings, predict};
+use mechanics::progress::Unobserved;
 use mechanics::solver::cliques::{Cliques, CliquesOfRow};
 use mechanics::solver::half_matrix::{HalfMatrix, Pattern};
 use mechanics::solver::layout::Layout;
@@ -63,21 +64,8 @@ fn one_mass(scheme: Scheme, step: f64, end: f64) -> Result<f64, ModelError> {
     let damping = Damping { mass: 0.0, stiffness: 1000.0 / 80.0 };
     let motion = Motion { stiffness: &stiffness, mass: &mass, damping, force: &force };
     let clock = Clock { scheme, step, end };
-    let state = motion.run(&clock, 0.0, 100.0, &NoObserver)?;
+    let state = motion.run(&clock, 0.0, 100.0, &Unobserved)?;
     Ok(state.displacement[0][0][0])
-}
-
-struct NoObserver;
-
-impl Observer for NoObserver {
-    fn assembling(&self) {}
-    fn solving(&self) {}
-    fn iterated(&self, _: usize, _: f64) -> bool {
-        true
-    }
-    fn is_stopped(&self) -> bool {
-        false
-    }
 }
 
 /// The roots of m x² + d x + k in 1/ms, and the answer to a step.

@@ -15,8 +15,9 @@ use mechanics::model::spline::{Stiffness, VolumeSpline};
 use mechanics::plan::{PlannedSegment, RigidMovement};
 use mechanics::prediction::{
     Case, CaseSegment, Method, Plan, Prediction, PredictionError, Scene, Settings, Sliding,
-    SlidingNormal, Unobserved, predict,
+    SlidingNormal, predict,
 };
+use mechanics::progress::Unobserved;
 use mechanics::solver::half_matrix::HalfMatrix;
 use nalgebra::{Matrix3, Rotation3};
 
@@ -57,7 +58,7 @@ fn galerkin(
     let free = vec![false; lattice.points.len()];
     let numbering = Numbering::of(&lattice.cliques, &lattice.points, &free);
     let assembly = Assembly::new(&lattice, &numbering, &tissue, &points);
-    let stiffness = assembly.galerkin(&|| true).unwrap();
+    let stiffness = assembly.galerkin(&Unobserved).unwrap();
     check(&lattice, &numbering, &stiffness);
 }
 

@@ -6,8 +6,9 @@ use mechanics::model::thickness_warp::ThicknessWarp;
 use mechanics::plan::{PlannedSegment, RigidMovement};
 use mechanics::prediction::{
     Case, CaseSegment, ElementChoice, Load, Method, Plan, Prediction, PredictionError, Scene,
-    Settings, Sliding, SlidingNormal, Unobserved, predict,
+    Settings, Sliding, SlidingNormal, predict,
 };
+use mechanics::progress::Unobserved;
 
 use crate::prediction::elements::slab;
 use crate::scenes::{SHAPES, case_of, hold, material, set, solve};

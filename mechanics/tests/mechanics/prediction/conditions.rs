@@ -5,8 +5,9 @@ use mechanics::mesh::{CellShape, Vector};
 use mechanics::plan::{PlannedSegment, RigidMovement};
 use mechanics::prediction::{
     Case, CaseSegment, ElementChoice, NodeClass, Plan, Scene, Settings, Sliding, SlidingNormal,
-    Unobserved, predict,
+    predict,
 };
+use mechanics::progress::Unobserved;
 
 use crate::scenes::{case_of, exact, hold, largest_error, material, set, solve};
 

@@ -339,7 +339,7 @@ fn a_stabilised_system_larger_than_the_memory_is_refused() {
     let scene =
         Scene::new(&case, &plan, &Settings { memory_mb: 1.0, ..Settings::default() }).unwrap();
     let refused =
-        mechanics::prediction::predict(&scene, &mechanics::prediction::Unobserved).unwrap_err();
+        mechanics::prediction::predict(&scene, &mechanics::progress::Unobserved).unwrap_err();
     assert!(
         matches!(refused, mechanics::prediction::PredictionError::OverBudget { needed_mb, .. } if needed_mb > 1.0)
     );
@@ -351,7 +351,7 @@ fn a_residual_nobody_can_reach_ends_with_the_history() {
     let settings = Settings { relative_residual: 1e-30, ..Settings::default() };
     let scene = Scene::new(&case, &plan, &settings).unwrap();
     let failed =
-        mechanics::prediction::predict(&scene, &mechanics::prediction::Unobserved).unwrap_err();
+        mechanics::prediction::predict(&scene, &mechanics::progress::Unobserved).unwrap_err();
     assert!(
         matches!(failed, mechanics::prediction::PredictionError::NotConverged { history, .. } if !history.is_empty())
     );

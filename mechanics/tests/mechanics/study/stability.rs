@@ -10,8 +10,9 @@ use mechanics::mesh::{CellShape, Vector};
 use mechanics::plan::{PlannedSegment, RigidMovement};
 use mechanics::prediction::{
     Case, CaseSegment, ElementChoice, FibreDirection, Plan, Prediction, PredictionError, Scene,
-    Settings, Sliding, SlidingNormal, Unobserved, predict,
+    Settings, Sliding, SlidingNormal, predict,
 };
+use mechanics::progress::Unobserved;
 use mechanics::registration::AlignmentError;
 use mechanics::study::stability::{Axis, Bounds, Finding, Map, Verdict, axes, map};
 use mechanics::study::{Stopwatch, Variant};
