@@ -159,7 +159,7 @@ impl<'a> Table<'a> {
                 seconds(5, || {
                     let equilibrium =
                         problem.solve(&Unobserved).expect("the standard load converges");
-                    iterations = equilibrium.convergence.iterations;
+                    iterations = equilibrium.solver.iterations;
                 })
             });
             let name = format!("whole solution, {iterations} iterations");

@@ -120,7 +120,7 @@ pub fn response_job(
         frame: prepared.case.frame,
         queue_s: input.queue_s,
     };
-    let solver = solver_document(&columns.solver);
+    let solver = solver_document(&columns.solver, &columns.elements);
     let mut folder = ResultFolder::open(place.out)?;
     write_columns(&origin, (input, &prepared), &columns, &mut folder)?;
     let mut rest = SurfaceOutput::plain(&prepared.scene.skin.surface, origin.frame);

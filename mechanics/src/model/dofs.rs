@@ -96,10 +96,10 @@ impl Constrained<'_> {
     /// A row of the solver is a node of the mesh.
     pub fn in_nodes(&self, error: SolverError) -> SolverError {
         match error {
-            SolverError::NotPositiveDefinite { row } => {
+            SolverError::Singular { node: row } => {
                 let place = |place: &u32| *place as usize == row;
                 let node = self.numbering.layout.place.iter().position(place);
-                SolverError::NotPositiveDefinite { row: node.unwrap_or(row) }
+                SolverError::Singular { node: node.unwrap_or(row) }
             }
             other => other,
         }
@@ -139,12 +139,6 @@ pub fn product_at_holds(system: &System, x: &[Lanes<f64, 3, 1>]) -> Vec<Lanes<f6
     let first = if system.partly_held.is_empty() { system.layout.free } else { 0 };
     system.matrix.add_rows(first..x.len(), x, &mut product);
     product
-}
-
-/// Unknowns of the displacement that are not held.
-pub fn free_unknowns(system: &System) -> usize {
-    let held = system.partly_held.iter().flat_map(|row| row.held).filter(|held| *held).count();
-    3 * system.layout.free - held
 }
 
 /// Cells whose matrices are computed side by side before they are added in cell order, which keeps the

@@ -136,7 +136,8 @@ impl Scene {
                     self.segments[segment as usize].movement.displacement(x)
                 };
                 let (mesh, conditions) = (&*self.mesh, &self.conditions);
-                Warped { mesh, conditions, movement: &movement }.solve(warp)
+                let wanted_residual = self.settings.relative_residual;
+                Warped { mesh, conditions, movement: &movement, wanted_residual }.solve(warp)
             }
         }
     }

@@ -13,7 +13,7 @@ use faer::{Conj, MatMut, Par, Side};
 use super::lanes::Lanes;
 use super::ordering::Ordering;
 use super::vector::{column, interleave, norm};
-use super::{Solution, SolverError, System, Tolerance, Unknowns, tell};
+use super::{Solution, SolveReport, SolverError, System, Tolerance, Unknowns, tell};
 use crate::progress::{Progress, Unobserved};
 
 /// Corrections after which a residual that is still too large will stay so.
@@ -96,12 +96,17 @@ impl Refined<'_> {
         }
         Ok(Solution {
             unknowns: column(&x, 0),
-            method: "cholesky",
-            preconditioner: "none",
-            why: String::new(),
-            history: Vec::new(),
-            iterations: history.len() - 1,
-            relative_residual: history[history.len() - 1],
+            report: SolveReport {
+                method: "cholesky",
+                preconditioner: "none",
+                why: String::new(),
+                unknowns: self.free.unknown.len(),
+                iterations: history.len() - 1,
+                relative_residual: history[history.len() - 1],
+                wanted_residual: wanted,
+                history: Vec::new(),
+                steps: 1,
+            },
         })
     }
 }
@@ -228,8 +233,8 @@ impl Columns {
                 Default::default(),
             )
             .map_err(|LltError::NonPositivePivot { index }| {
-                let (row, _) = free.unknown.get(index).copied().unwrap_or_default();
-                SolverError::NotPositiveDefinite { row }
+                let (node, _) = free.unknown.get(index).copied().unwrap_or_default();
+                SolverError::Singular { node }
             })
     }
 

@@ -9,7 +9,7 @@
 use super::lanes::{Lanes, MOST_LANES};
 use super::multigrid::{Multigrid, Workspace};
 use super::vector::{advance, column, dot, interleave, largest, norm, ratio, turn};
-use super::{Solution, SolverError, System, Tolerance, Unknowns, tell};
+use super::{Solution, SolveReport, SolverError, System, Tolerance, Unknowns, tell};
 use crate::progress::Progress;
 
 /// Iterations without a new smallest residual after which no more progress is expected.
@@ -93,7 +93,7 @@ impl<'a, const N: usize> Run<'a, N> {
             }
             let residuals = self.relative_residuals();
             if largest(&residuals) <= wanted {
-                return Ok(self.solutions(&residuals));
+                return Ok(self.solutions(&residuals, wanted));
             }
             self.iterate(wanted, progress)?;
         }
@@ -177,16 +177,21 @@ impl<'a, const N: usize> Run<'a, N> {
         }
     }
 
-    fn solutions(self, residuals: &[f64; N]) -> Vec<Solution> {
+    fn solutions(self, residuals: &[f64; N], wanted: f64) -> Vec<Solution> {
         (0..self.columns)
             .map(|n| Solution {
-                relative_residual: residuals[n],
                 unknowns: column(&self.x, n),
-                method: "conjugate_gradient",
-                preconditioner: "multigrid",
-                why: String::new(),
-                history: Vec::new(),
-                iterations: self.own_iterations[n],
+                report: SolveReport {
+                    method: "conjugate_gradient",
+                    preconditioner: "multigrid",
+                    why: String::new(),
+                    unknowns: self.system.free_unknowns(),
+                    iterations: self.own_iterations[n],
+                    relative_residual: residuals[n],
+                    wanted_residual: wanted,
+                    history: Vec::new(),
+                    steps: 1,
+                },
             })
             .collect()
     }

@@ -20,7 +20,9 @@ use super::lanes::{Lanes, MOST_LANES};
 use super::multigrid::{Multigrid, Workspace};
 use super::sparse_rows::SparseRows;
 use super::vector::{advance, column, dot, interleave, largest, norm, ratio, scale, subtract_all};
-use super::{Solution, SolverError, System, Tolerance, Unknowns, nothing_to_solve, tell};
+use super::{
+    Solution, SolveReport, SolverError, System, Tolerance, Unknowns, nothing_to_solve, tell,
+};
 use crate::progress::Progress;
 
 /// Directions to which a new one is made conjugate: of 2, 4, 8 and all, four take within one iteration of
@@ -52,6 +54,12 @@ pub struct MixedSystem<'a> {
     /// K.
     pub stiffness: &'a System,
     pub coupling: &'a Coupling,
+}
+
+impl MixedSystem<'_> {
+    fn free_unknowns(&self) -> usize {
+        self.stiffness.free_unknowns() + self.coupling.mass.len()
+    }
 }
 
 /// f and h.
@@ -102,8 +110,9 @@ pub fn solve(
     };
     if right_hand_sides.iter().all(is_zero) {
         let pressures = vec![[0.0]; system.coupling.mass.len()];
+        let at_rest = SolveReport::at_rest(system.free_unknowns(), tolerance.relative_residual);
         let rest = |right: &MixedRightHandSide| MixedSolution {
-            solution: nothing_to_solve(right.forces.len()),
+            solution: nothing_to_solve(&right.forces, &at_rest),
             pressures: pressures.clone(),
         };
         return Ok(right_hand_sides.iter().map(rest).collect());
@@ -214,7 +223,7 @@ impl<'a, const N: usize> Run<'a, N> {
                 self.restart();
             }
             if largest(&self.relative_residuals()) <= wanted {
-                return Ok(self.solutions());
+                return Ok(self.solutions(wanted));
             }
             self.iterate(wanted, progress)?;
         }
@@ -376,18 +385,23 @@ impl<'a, const N: usize> Run<'a, N> {
         }
     }
 
-    fn solutions(self) -> Vec<MixedSolution> {
+    fn solutions(self, wanted: f64) -> Vec<MixedSolution> {
         let residuals = self.relative_residuals();
         let (u, p) = self.x.split_at(self.displacements());
         let (u, p): (&[Lanes<f64, 3, N>], &[[[f64; N]; 1]]) = (u.as_chunks().0, p.as_chunks().0);
         let solution = |n: usize| Solution {
-            relative_residual: residuals[n],
             unknowns: column(u, n),
-            method: if self.scale[n] == 0.0 { "none" } else { "conjugate_residual" },
-            preconditioner: "multigrid and pressure mass",
-            why: format!("{} pressures make the system indefinite", p.len()),
-            iterations: self.own_iterations[n],
-            history: Vec::new(),
+            report: SolveReport {
+                method: if self.scale[n] == 0.0 { "none" } else { "conjugate_residual" },
+                preconditioner: "multigrid and pressure mass",
+                why: format!("{} pressures make the system indefinite", p.len()),
+                unknowns: self.system.free_unknowns(),
+                iterations: self.own_iterations[n],
+                relative_residual: residuals[n],
+                wanted_residual: wanted,
+                history: Vec::new(),
+                steps: 1,
+            },
         };
         (0..self.columns)
             .map(|n| MixedSolution { solution: solution(n), pressures: column(p, n) })

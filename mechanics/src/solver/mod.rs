@@ -10,12 +10,14 @@ pub mod layout;
 pub mod mixed;
 pub mod multigrid;
 pub mod ordering;
+mod report;
 pub mod sparse_rows;
 pub mod stationary;
 mod system;
 mod vector;
 mod vectorised;
 pub use half_matrix::HalfMatrix;
+pub use report::SolveReport;
 pub use system::{Block, PartlyHeld, Solution, SolverError, System, Tolerance, Unknowns, tell};
 
 use crate::progress::Progress;
@@ -42,7 +44,8 @@ pub fn solve(
         return Err(SolverError::NotFinite);
     }
     if right_hand_sides.iter().flatten().flatten().all(|value| *value == 0.0) {
-        return Ok(right_hand_sides.iter().map(|f| nothing_to_solve(f.len())).collect());
+        let at_rest = SolveReport::at_rest(system.free_unknowns(), tolerance.relative_residual);
+        return Ok(right_hand_sides.iter().map(|f| nothing_to_solve(f, &at_rest)).collect());
     }
     let iterations_mb = system.megabytes();
     if iterations_mb > tolerance.memory_mb {
@@ -75,18 +78,10 @@ pub fn solve(
 }
 
 fn because(mut solutions: Vec<Solution>, why: &str) -> Vec<Solution> {
-    solutions.iter_mut().for_each(|solution| why.clone_into(&mut solution.why));
+    solutions.iter_mut().for_each(|solution| why.clone_into(&mut solution.report.why));
     solutions
 }
 
-fn nothing_to_solve(rows: usize) -> Solution {
-    Solution {
-        unknowns: vec![[0.0; 3]; rows],
-        method: "none",
-        preconditioner: "none",
-        why: "nothing moves and nothing acts".to_owned(),
-        iterations: 0,
-        relative_residual: 0.0,
-        history: Vec::new(),
-    }
+fn nothing_to_solve(right_hand_side: &Unknowns, at_rest: &SolveReport) -> Solution {
+    Solution { unknowns: vec![[0.0; 3]; right_hand_side.len()], report: at_rest.clone() }
 }

@@ -19,7 +19,9 @@ use rayon::prelude::*;
 use super::lanes::{Lanes, add_product, add_transposed, negated};
 use super::vector::{column, dot, interleave, norm, ratio};
 use super::vectorised::vectorised;
-use super::{Block, Solution, SolverError, System, Tolerance, Unknowns, nothing_to_solve, tell};
+use super::{
+    Block, Solution, SolveReport, SolverError, System, Tolerance, Unknowns, nothing_to_solve, tell,
+};
 use crate::progress::{Progress, Unobserved};
 
 /// The share of its limit that omega is set to: the power iteration sees lambda_max from below.
@@ -71,8 +73,10 @@ pub fn solve(
     if right_hand_side.as_flattened().iter().any(|value| !value.is_finite()) {
         return Err(SolverError::NotFinite);
     }
+    let wanted = tolerance.relative_residual;
     if right_hand_side.as_flattened().iter().all(|value| *value == 0.0) {
-        return Ok(nothing_to_solve(right_hand_side.len()));
+        let at_rest = SolveReport::at_rest(system.free_unknowns(), wanted);
+        return Ok(nothing_to_solve(right_hand_side, &at_rest));
     }
     check_memory(system, tolerance.memory_mb)?;
     let inverse = inverse_diagonal(system)?;
@@ -84,21 +88,21 @@ pub fn solve(
             run.iterate(stationary, tolerance, progress, |run| {
                 sweep.sweep(&mut run.x, &mut run.residual)
             })?;
-            Ok(run.solution("gauss_seidel", String::new()))
+            Ok(run.solution("gauss_seidel", String::new(), wanted))
         }
         Iteration::Jacobi => {
             run.iterate(stationary, tolerance, progress, |run| run.jacobi(1.0))?;
-            Ok(run.solution("jacobi", String::new()))
+            Ok(run.solution("jacobi", String::new(), wanted))
         }
         Iteration::DampedJacobi => {
-            tell(progress, 0, 1.0, tolerance.relative_residual)?;
+            tell(progress, 0, 1.0, wanted)?;
             let lambda = power_iteration(system, &inverse, EIGENVALUE_GROWTH, progress)?;
             let omega = DAMPING * 2.0 / lambda;
             run.iterate(stationary, tolerance, progress, |run| run.jacobi(omega))?;
             let why = format!(
                 "omega {omega:.3} is {DAMPING} of the limit 2 / lambda_max(D^-1 K), lambda_max {lambda:.3}; "
             );
-            Ok(run.solution("damped_jacobi", why))
+            Ok(run.solution("damped_jacobi", why, wanted))
         }
     }
 }
@@ -130,7 +134,7 @@ fn inverse_diagonal(system: &System) -> Result<Vec<Block>, SolverError> {
             true => f64::from(u8::from(i == j)),
             false => block[i][j],
         });
-        let factor = open.cholesky().ok_or(SolverError::NotPositiveDefinite { row })?;
+        let factor = open.cholesky().ok_or(SolverError::Singular { node: row })?;
         let inverse = factor.inverse();
         Ok(std::array::from_fn(|i| {
             std::array::from_fn(|j| if held[i] || held[j] { 0.0 } else { inverse[(i, j)] })
@@ -267,16 +271,21 @@ impl<'a> Run<'a> {
         SolverError::Diverged { iterations, growth, residual: self.relative_residual, history }
     }
 
-    fn solution(self, method: &'static str, why: String) -> Solution {
+    fn solution(self, method: &'static str, why: String, wanted: f64) -> Solution {
         let change = self.change;
         Solution {
             unknowns: column(&self.x, 0),
-            method,
-            preconditioner: "block_diagonal",
-            why: format!("{why}the last iteration changed u by {change:.1e} of its length"),
-            iterations: self.history.len(),
-            relative_residual: self.relative_residual,
-            history: self.history,
+            report: SolveReport {
+                method,
+                preconditioner: "block_diagonal",
+                why: format!("{why}the last iteration changed u by {change:.1e} of its length"),
+                unknowns: self.system.free_unknowns(),
+                iterations: self.history.len(),
+                relative_residual: self.relative_residual,
+                wanted_residual: wanted,
+                history: self.history,
+                steps: 1,
+            },
         }
     }
 }

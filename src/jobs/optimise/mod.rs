@@ -128,7 +128,7 @@ impl Found {
         Found {
             document: OptimisationDocument::new(spec, &response.segments, optimum),
             displacement: response.apply(&optimum.movements),
-            solver: solver_document(&columns.solver),
+            solver: solver_document(&columns.solver, &columns.elements),
         }
     }
 

@@ -9,8 +9,8 @@ use super::assembly::Tissue;
 use crate::boundary::Hold;
 use crate::mesh::Vector;
 use crate::model::dofs::nodes_of_cells;
-use crate::model::dofs::{Constrained, Known, free_unknowns, number, product_at_holds};
-use crate::model::problem::{Convergence, Equilibrium, LoadCase, ModelError};
+use crate::model::dofs::{Constrained, Known, number, product_at_holds};
+use crate::model::problem::{Equilibrium, LoadCase, ModelError};
 use crate::progress::{Phase, Progress};
 use crate::solver::half_matrix::HalfMatrix;
 use crate::solver::{self, Solution, SolverError, System, Tolerance, Unknowns};
@@ -100,8 +100,7 @@ pub(super) fn solve_displacement(
         Equilibrium {
             displacement: constrained.displacement(&total),
             reactions: constrained.reactions(&internal, &known.force),
-            convergence: Convergence::of(&solution),
-            unknowns: free_unknowns(&system),
+            solver: solution.report,
             warnings: Vec::new(),
         }
     };

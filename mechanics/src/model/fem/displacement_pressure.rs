@@ -27,10 +27,10 @@ use super::displacement::{Problem, check_finite};
 use crate::material::ElasticTensor;
 use crate::material::elastic_tensor::PressurePart;
 use crate::mesh::{CellShape, Vector};
-use crate::model::dofs::{Constrained, Known, free_unknowns, number, product_at_holds};
+use crate::model::dofs::{Constrained, Known, number, product_at_holds};
 use crate::model::dofs::{Numbering, nodes_of_cells};
 use crate::model::problem::InvertedCell;
-use crate::model::problem::{Convergence, Equilibrium, LoadCase, ModelError};
+use crate::model::problem::{Equilibrium, LoadCase, ModelError};
 use crate::progress::{Phase, Progress};
 use crate::solver::mixed::{self, Coupling, MixedRightHandSide, MixedSolution, MixedSystem};
 use crate::solver::sparse_rows::{Couplings, SparseRows};
@@ -81,9 +81,8 @@ pub fn solve_cases(
         Equilibrium {
             displacement: constrained.displacement(&total),
             reactions: constrained.reactions(&internal, &known.force),
-            convergence: Convergence::of(&mixed.solution),
+            solver: mixed.solution.report,
             warnings: Vec::new(),
-            unknowns: free_unknowns(&stiffness) + coupling.mass.len(),
         }
     };
     let equilibria: Vec<Equilibrium> =

@@ -9,9 +9,9 @@
 use super::network::{Found, MassSpringSettings, Network, length};
 use super::springs::Spring;
 use crate::mesh::Vector;
-use crate::model::problem::{Convergence, ModelError};
+use crate::model::problem::ModelError;
 use crate::progress::Progress;
-use crate::solver::{SolverError, tell};
+use crate::solver::{SolveReport, SolverError, tell};
 
 pub(super) fn solve(
     network: &Network,
@@ -32,17 +32,19 @@ pub(super) fn solve(
         history.push(residual);
         tell(progress, iteration, residual, wanted)?;
         if residual <= wanted {
-            let convergence = Convergence {
+            let solver = SolveReport {
                 method: "direct_iteration",
                 preconditioner: "node_stiffness",
                 why: "residuals are those that a sweep meets on its way, the last one that of the answer"
                     .to_owned(),
+                unknowns: network.unknowns(),
                 iterations: iteration,
                 relative_residual: residual,
+                wanted_residual: wanted,
                 history,
                 steps: 1,
             };
-            return Ok(Found { positions, convergence });
+            return Ok(Found { positions, solver });
         }
     }
     let iterations = settings.most_iterations;

@@ -31,7 +31,7 @@ pub fn solve(
     progress.phase(Phase::Solve);
     let wanted = problem.tolerance.relative_residual;
     let found = match (network.scale > 0.0, settings.search) {
-        (false, _) => Found::nothing(&network),
+        (false, _) => Found::nothing(&network, wanted),
         (true, Search::Newton) => newton::solve(&network, problem, settings, progress)?,
         (true, Search::Direct) => direct::solve(&network, wanted, settings, progress)?,
     };
@@ -40,8 +40,7 @@ pub fn solve(
     let equilibrium = Equilibrium {
         displacement,
         reactions: network.reactions(&forces),
-        convergence: found.convergence,
-        unknowns: network.unknowns(),
+        solver: found.solver,
         warnings: Vec::new(),
     };
     check_finite(std::slice::from_ref(&equilibrium))?;

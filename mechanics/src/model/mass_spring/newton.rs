@@ -11,9 +11,9 @@ use crate::mesh::Vector;
 use crate::model::dofs::nodes_of_cells;
 use crate::model::dofs::{Constrained, number};
 use crate::model::fem::displacement::Problem;
-use crate::model::problem::{Convergence, LoadCase, ModelError};
+use crate::model::problem::{LoadCase, ModelError};
 use crate::progress::{Inner, Progress};
-use crate::solver::{self, SolverError, Tolerance, tell};
+use crate::solver::{self, SolveReport, SolverError, Tolerance, tell};
 
 /// The share of the slope by which the energy has to fall.
 const ENOUGH: f64 = 1e-4;
@@ -174,7 +174,7 @@ impl Newton<'_> {
         let right_hand_side = known.right_hand_side(&system);
         let solved = solver::solve(&system, &[right_hand_side], &tolerance, &Inner(self.progress));
         let solution = solved.map_err(|error| self.constrained.in_nodes(error))?.remove(0);
-        self.tally.inner += solution.iterations;
+        self.tally.inner += solution.report.iterations;
         Ok(self.constrained.displacement(&known.total(&solution.unknowns)))
     }
 
@@ -189,18 +189,20 @@ impl Newton<'_> {
 
     fn found(self) -> Found {
         let Tally { inner, raised, halved } = self.tally;
-        let convergence = Convergence {
+        let solver = SolveReport {
             method: "newton",
             preconditioner: "none",
             why: format!(
                 "{inner} inner iterations; {raised} tangents were raised to be positive definite, \
                  {halved} times a step was halved"
             ),
+            unknowns: self.network.unknowns(),
             iterations: self.history.len(),
             relative_residual: self.residual,
+            wanted_residual: self.problem.tolerance.relative_residual,
             history: self.history,
             steps: 1,
         };
-        Found { positions: self.positions, convergence }
+        Found { positions: self.positions, solver }
     }
 }

@@ -13,13 +13,15 @@ pub mod stiffness;
 pub mod tissue_points;
 
 use super::dofs::Numbering;
-use super::problem::{Convergence, Equilibrium, ModelError};
+use super::problem::{Equilibrium, ModelError};
 use crate::mesh::{Vector, Warning};
 use crate::model::fem::displacement::{Problem, check_finite};
 use crate::progress::{Phase, Progress};
 use crate::solver::half_matrix::HalfMatrix;
 use crate::solver::lanes::Lanes;
-use crate::solver::{self, Solution, SolverError, System, Unknowns, cholesky, ordering};
+use crate::solver::{
+    self, Solution, SolveReport, SolverError, System, Unknowns, cholesky, ordering,
+};
 use held_points::{HeldPoints, add_at};
 use lattice::Lattice;
 use stepping::{Clock, Damping, Motion, State};
@@ -117,8 +119,8 @@ pub fn solve(
 
     // 3. Rest.
     progress.phase(Phase::Solve);
-    let (control, convergence) = assembled.rest(problem, spline, progress)?;
-    let mut equilibrium = assembled.equilibrium(problem, &control, convergence);
+    let (control, solver) = assembled.rest(problem, spline, progress)?;
+    let mut equilibrium = assembled.equilibrium(problem, &control, solver);
     equilibrium.warnings.extend(resisted);
     equilibrium.warnings.extend(materials_ignored(spline));
     check_finite(std::slice::from_ref(&equilibrium))?;
@@ -172,11 +174,11 @@ impl Assembled<'_> {
         problem: &Problem,
         spline: &VolumeSpline,
         progress: &dyn Progress,
-    ) -> Result<(Vec<Vector>, Convergence), ModelError> {
+    ) -> Result<(Vec<Vector>, SolveReport), ModelError> {
         let Some(clock) = &spline.clock else {
             let solution = self.static_solution(problem, progress)?;
             let by_row = solution.unknowns.iter().map(|d| Vector::from(*d)).collect();
-            return Ok((self.by_control(by_row), Convergence::of(&solution)));
+            return Ok((self.by_control(by_row), solution.report));
         };
         let mass = match spline.stiffness {
             Stiffness::Galerkin => {
@@ -193,8 +195,8 @@ impl Assembled<'_> {
         };
         let wanted = problem.tolerance.relative_residual;
         let state = motion.run(clock, wanted, problem.tolerance.memory_mb, progress)?;
-        let convergence = self.convergence(clock, &state, wanted)?;
-        Ok((self.by_control(state.displacement()), convergence))
+        let solver = self.report(clock, &state, wanted)?;
+        Ok((self.by_control(state.displacement()), solver))
     }
 
     /// K d = f, by a factorisation where that takes seconds: functions that overlap this much make rows of
@@ -211,10 +213,11 @@ impl Assembled<'_> {
         if nothing_acts || !fits || ordering.multiplications > FACTORISED {
             return Ok(solver::solve(&self.system, forces, tolerance, progress)?.remove(0));
         }
-        let solved =
+        let mut solved =
             cholesky::solve(&self.system, &ordering, forces, tolerance, progress)?.remove(0);
-        let why = format!("{:.1e} multiplications make the factor", ordering.multiplications);
-        Ok(Solution { why, ..solved })
+        solved.report.why =
+            format!("{:.1e} multiplications make the factor", ordering.multiplications);
+        Ok(solved)
     }
 
     fn by_control(&self, by_row: Vec<Vector>) -> Vec<Vector> {
@@ -223,12 +226,12 @@ impl Assembled<'_> {
     }
 
     /// What is not at rest when its time is up has not converged.
-    fn convergence(
+    fn report(
         &self,
         clock: &Clock,
         state: &State,
         wanted: f64,
-    ) -> Result<Convergence, SolverError> {
+    ) -> Result<SolveReport, SolverError> {
         let steps = state.history.len();
         let mut product: Vec<Lanes<f64, 3, 1>> = vec![[[0.0]; 3]; self.force.len()];
         self.system.multiply(&state.displacement, &mut product);
@@ -244,12 +247,14 @@ impl Assembled<'_> {
             let (residual, history) = (state.history[steps - 1], state.history.clone());
             return Err(SolverError::NotConverged { iterations: steps, residual, wanted, history });
         }
-        Ok(Convergence {
+        Ok(SolveReport {
             method: clock.scheme.name(),
             preconditioner: "none",
             why: format!("steps of {} s until at rest", clock.step / 1e3),
+            unknowns: self.system.free_unknowns(),
             iterations: steps,
             relative_residual,
+            wanted_residual: wanted,
             history: state.history.clone(),
             steps: steps as u32,
         })
@@ -259,7 +264,7 @@ impl Assembled<'_> {
         &self,
         problem: &Problem,
         control: &[Vector],
-        convergence: Convergence,
+        solver: SolveReport,
     ) -> Equilibrium {
         let (lattice, mesh) = (self.assembly.lattice, problem.tissue.mesh);
         let moved = |x: &Vector| {
@@ -271,8 +276,7 @@ impl Assembled<'_> {
         Equilibrium {
             displacement: mesh.nodes.iter().map(moved).collect(),
             reactions: self.held.reactions(lattice, &missed),
-            convergence,
-            unknowns: 3 * lattice.points.len(),
+            solver,
             warnings: held_points::warning(&missed).into_iter().collect(),
         }
     }

@@ -7,8 +7,8 @@ use mechanics::model::fem::cell_stiffness::Dilatation;
 use mechanics::model::mass_spring::{MassSpringSettings, Search, Springs};
 use mechanics::plan::{PlannedSegment, RigidMovement};
 use mechanics::prediction::{
-    Case, CaseSegment, ElementChoice, Load, Method, Plan, Prediction, PredictionError, Scene,
-    Settings, Sliding, SlidingNormal, predict,
+    Case, CaseSegment, ElementChoice, Load, Method, ModelError, Plan, Prediction, Scene, Settings,
+    Sliding, SlidingNormal, SolverError, predict,
 };
 use mechanics::progress::Unobserved;
 use nalgebra::Matrix3;
@@ -227,7 +227,7 @@ fn direct_iteration_and_newton_come_to_the_same_rest() {
     assert!(newton.solver.iterations < 10, "{}", newton.solver.why);
     assert!(direct.solver.iterations > 100);
     for (found, name) in [(&newton, "newton"), (&direct, "direct_iteration")] {
-        assert_eq!(found.solver.name, name);
+        assert_eq!(found.solver.method, name);
         assert_eq!(found.solver.history.len(), found.solver.iterations);
         assert!(found.solver.relative_residual <= 1e-11);
         for (axis, sum) in found.reactions.values().sum::<Vector>().iter().enumerate() {
@@ -339,8 +339,12 @@ fn rest_that_is_not_found_is_an_error_with_its_history() {
         let method = Method::MassSpring(MassSpringSettings { search, most_iterations: 2 });
         let settings = Settings { method, ..Settings::default() };
         let scene = Scene::new(&case, &moved(Vector::z() * 4.0), &settings).unwrap();
-        let Err(PredictionError::NotConverged { iterations, residual, wanted, history }) =
-            predict(&scene, &Unobserved)
+        let Err(ModelError::Solver(SolverError::NotConverged {
+            iterations,
+            residual,
+            wanted,
+            history,
+        })) = predict(&scene, &Unobserved)
         else {
             panic!("two iterations are not enough");
         };
@@ -358,7 +362,7 @@ fn both_searches_stop_when_they_are_told_to() {
         let scene = Scene::new(&case, &moved(Vector::z() * 3.0), &settings).unwrap();
         assert_eq!(
             predict(&scene, &StopsAfter::iterations(3)).unwrap_err(),
-            PredictionError::Cancelled,
+            ModelError::Solver(SolverError::Stopped),
             "{search:?}"
         );
     }
@@ -368,7 +372,7 @@ fn both_searches_stop_when_they_are_told_to() {
 fn an_identity_plan_leaves_the_springs_at_rest_exactly() {
     let found = solve(&slab(CellShape::Tet4, 0.25), &Plan::default(), &springs(Search::Newton));
     assert!(found.displacement.iter().all(|u| *u == Vector::zeros()));
-    assert_eq!(found.solver.name, "none");
+    assert_eq!(found.solver.method, "none");
 }
 
 #[test]

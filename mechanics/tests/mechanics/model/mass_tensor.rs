@@ -8,8 +8,8 @@ use mechanics::model::fem::cell_stiffness::Dilatation;
 use mechanics::model::fem::mass_tensor::{Iterations, MassTensorSettings};
 use mechanics::plan::RigidMovement;
 use mechanics::prediction::{
-    Case, ElementChoice, Load, Method, Plan, PredictionError, RegionNames, Scene, Settings,
-    Sliding, SlidingNormal, predict,
+    Case, ElementChoice, Load, Method, ModelError, Plan, RegionNames, Scene, Settings, Sliding,
+    SlidingNormal, predict,
 };
 use mechanics::progress::Unobserved;
 use mechanics::solver::stationary::{self, Iteration, Stationary, largest_eigenvalue};
@@ -104,9 +104,12 @@ fn gauss_seidel_and_damped_jacobi_equal_the_factorisation() {
             stationary::solve(&system, &right, &plain(iteration), &TIGHT, &Unobserved).unwrap();
         let difference = largest_difference(&found.unknowns, &exact) / largest(&exact);
         assert!(difference < 1e-8, "{iteration:?}: {difference:.1e}");
-        assert_eq!(found.history.len(), found.iterations);
-        assert!(found.relative_residual <= 1e-12);
-        assert!(found.history.windows(2).skip(20).all(|pair| pair[1] < pair[0]), "{iteration:?}");
+        assert_eq!(found.report.history.len(), found.report.iterations);
+        assert!(found.report.relative_residual <= 1e-12);
+        assert!(
+            found.report.history.windows(2).skip(20).all(|pair| pair[1] < pair[0]),
+            "{iteration:?}"
+        );
     }
 }
 
@@ -120,7 +123,7 @@ fn a_wanted_change_goes_on_where_the_residual_alone_would_end() {
         let stationary = Stationary { relative_change, ..plain(Iteration::GaussSeidel) };
         let found = stationary::solve(&system, &right, &stationary, &loose, &Unobserved).unwrap();
         let difference = largest_difference(&found.unknowns, &exact) / largest(&exact);
-        (found.iterations, difference)
+        (found.report.iterations, difference)
     };
     let (early, far) = solved(None);
     let (late, near) = solved(Some(1e-10));
@@ -147,7 +150,7 @@ fn gauss_seidel_gives_the_same_bits_on_one_two_and_three_threads() {
         for threads in [2, 3] {
             let other = with_threads(threads);
             assert_eq!(one.unknowns, other.unknowns, "{iteration:?} on {threads} threads");
-            assert_eq!(one.history, other.history);
+            assert_eq!(one.report.history, other.report.history);
         }
     }
 }
@@ -193,7 +196,7 @@ fn a_matrix_that_is_not_positive_or_does_not_fit_is_refused() {
     system.matrix.diagonal[5][1][1] = -1.0;
     let bad =
         stationary::solve(&system, &right, &plain(Iteration::GaussSeidel), &TIGHT, &Unobserved);
-    assert_eq!(bad.unwrap_err(), SolverError::NotPositiveDefinite { row: 5 });
+    assert_eq!(bad.unwrap_err(), SolverError::Singular { node: 5 });
 }
 
 /// Random moduli in each of twenty regions, on a bone that moves.
@@ -281,8 +284,8 @@ fn the_mass_tensor_model_answers_as_plain_linear_tetrahedra_do() {
         assert!((u - tensors.displacement[number]).norm() < 1e-10);
         assert!((u - own.displacement[number]).norm() < 1e-10);
     }
-    assert_eq!(tensors.solver.elements, ["tet4 plain"]);
-    assert_eq!(own.solver.name, "gauss_seidel");
+    assert_eq!(tensors.elements, ["tet4 plain"]);
+    assert_eq!(own.solver.method, "gauss_seidel");
     assert_eq!(own.solver.history.len(), own.solver.iterations);
     assert!(tensors.warnings.iter().any(|warning| warning.code == "locking"), "nu up to 0.456");
 }
@@ -336,11 +339,11 @@ fn a_prediction_that_diverges_says_so_and_one_that_is_stopped_stops() {
     };
     let diverged = predict(&scene(Iteration::Jacobi), &Unobserved).unwrap_err();
     assert!(
-        matches!(&diverged, PredictionError::Diverged { growth, history, .. } if *growth > 1.5 && !history.is_empty()),
+        matches!(&diverged, ModelError::Solver(SolverError::Diverged { growth, history, .. }) if *growth > 1.5 && !history.is_empty()),
         "{diverged}"
     );
     let stopped = predict(&scene(Iteration::GaussSeidel), &StopsAfter::iterations(3)).unwrap_err();
-    assert_eq!(stopped, PredictionError::Cancelled);
+    assert_eq!(stopped, ModelError::Solver(SolverError::Stopped));
 }
 
 #[test]

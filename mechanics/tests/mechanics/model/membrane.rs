@@ -224,7 +224,7 @@ fn a_response_of_tissue_with_fibres_and_membrane_is_the_direct_solution() {
         let planned = PlannedSegment { name: "z_min".to_owned(), movement };
         let plan = Plan { segments: vec![planned], ..Plan::default() };
         let direct = solve(&case, &plan, &settings);
-        assert!(direct.solver.elements.last().unwrap().ends_with("membrane"));
+        assert!(direct.elements.last().unwrap().ends_with("membrane"));
         let rest = Scene::new(&case, &Plan::default(), &settings).unwrap();
         let columns = build(&rest, &[], &Unobserved).unwrap();
         for (&node, found) in columns.nodes.iter().zip(columns.apply(&[movement])) {

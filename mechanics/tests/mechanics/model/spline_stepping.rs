@@ -3,10 +3,9 @@
 use std::sync::Arc;
 
 use mechanics::mesh::Vector;
-use mechanics::model::problem::ModelError;
 use mechanics::model::spline::stepping::{Clock, Damping, Motion, Scheme};
 use mechanics::model::spline::{Stiffness, VolumeSpline};
-use mechanics::prediction::{PredictionError, Scene, Settings, predict};
+use mechanics::prediction::{ModelError, Scene, Settings, SolverError, predict};
 use mechanics::progress::Unobserved;
 use mechanics::solver::cliques::{Cliques, CliquesOfRow};
 use mechanics::solver::half_matrix::{HalfMatrix, Pattern};
@@ -126,7 +125,7 @@ fn explicit_steps_above_their_limit_are_refused_with_it_and_below_they_run() {
         let settings = Settings { relative_residual: 1e-6, ..with(spline) };
         predict(&Scene::new(&case, &plan, &settings).unwrap(), &Unobserved)
     };
-    let Err(PredictionError::StepAboveLimit { limit_s, .. }) = run(1000.0) else {
+    let Err(ModelError::StepAboveLimit { limit_s, .. }) = run(1000.0) else {
         panic!("a step of a second");
     };
     let moved = run(limit_s * 1e3 * 0.9).unwrap();
@@ -142,7 +141,8 @@ fn a_motion_that_is_not_at_rest_in_time_has_not_converged() {
     let clock = Some(Clock { scheme: Scheme::BackwardEuler, step: 1.0, end: 20.0 });
     let settings = with(VolumeSpline { clock, ..spaced(20.0) });
     let ended = predict(&Scene::new(&case, &plan, &settings).unwrap(), &Unobserved);
-    let Err(PredictionError::NotConverged { iterations, history, .. }) = ended else {
+    let Err(ModelError::Solver(SolverError::NotConverged { iterations, history, .. })) = ended
+    else {
         panic!("{ended:?}");
     };
     assert_eq!((iterations, history.len()), (20, 20));

@@ -51,7 +51,7 @@ fn an_identity_plan_moves_nothing_at_all() {
     for plan in [Plan::default(), moved("jaw", RigidMovement::default())] {
         let prediction = solve(&case, &plan, &Settings::default());
         assert!(prediction.displacement.iter().all(|u| *u == Vector::zeros()));
-        assert_eq!(prediction.solver.name, "none");
+        assert_eq!(prediction.solver.method, "none");
     }
 }
 

@@ -43,7 +43,7 @@ fn checked(system: &System, what: &str) -> Option<usize> {
     let relative = difference / largest(&factorised[0].unknowns);
     // A residual of 1e-10 leaves an error of that times the condition number at most.
     assert!(relative < 1e-4, "{what}: {relative:.1e} from the factorisation");
-    Some(iterated.iterations)
+    Some(iterated.report.iterations)
 }
 
 #[test]
