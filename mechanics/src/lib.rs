@@ -50,6 +50,7 @@ pub mod prediction;
 pub mod progress;
 pub mod registration;
 pub mod response;
+pub mod rows;
 pub mod solver;
 pub mod study;
 pub mod validation;

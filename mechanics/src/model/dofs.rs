@@ -8,7 +8,7 @@ use super::problem::{InvertedCell, LoadCase};
 use crate::boundary::Hold;
 use crate::mesh::{Vector, VolumeMesh};
 use crate::progress::Progress;
-use crate::solver::cliques::{Cliques, CliquesOfRow};
+use crate::solver::cliques::{Cliques, CliquesOfRow, renumbered};
 use crate::solver::half_matrix::{HalfMatrix, Pattern};
 use crate::solver::lanes::Lanes;
 use crate::solver::layout::Layout;
@@ -32,7 +32,7 @@ pub struct Known {
 pub fn number(cells: &Cliques, positions: &[Vector], holds: &[Hold]) -> Numbering {
     let mut held = vec![true; positions.len()];
     for cell in 0..cells.len() {
-        cells.members(cell).iter().for_each(|&node| held[node as usize] = false);
+        cells.row(cell).iter().for_each(|&node| held[node as usize] = false);
     }
     let whole = holds.iter().filter(|hold| hold.count() == 3);
     whole.for_each(|hold| held[hold.node as usize] = true);
@@ -164,10 +164,10 @@ impl Numbering {
     /// For nodes at positions that stand in cells of any kind.
     pub fn of(cliques: &Cliques, positions: &[Vector], held: &[bool]) -> Self {
         let rows = positions.len();
-        let around = CliquesOfRow::new(cliques, rows);
+        let around = cliques.inverted(rows);
         let layout = Layout::new(cliques, &around, held, 3, far_end(positions));
-        let cliques = cliques.renumbered(&layout.clique_order, &layout.place);
-        let around = CliquesOfRow::new(&cliques, rows);
+        let cliques = renumbered(cliques, &layout.clique_order, &layout.place);
+        let around = cliques.inverted(rows);
         let pattern = Arc::new(Pattern::new(&cliques, &around, rows));
         Numbering { layout: Arc::new(layout), pattern, cliques, around }
     }
@@ -202,7 +202,7 @@ impl Numbering {
             let cell = |&clique: &usize| cell_matrix(self.layout.clique_order[clique] as usize);
             let matrices: Vec<Result<M, InvertedCell>> = chunk.par_iter().map(cell).collect();
             for (&clique, blocks) in chunk.iter().zip(matrices) {
-                add_cell(matrix, self.cliques.members(clique), blocks?.as_ref());
+                add_cell(matrix, self.cliques.row(clique), blocks?.as_ref());
             }
         }
         Ok(true)

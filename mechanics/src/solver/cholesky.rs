@@ -189,7 +189,7 @@ impl FreeUnknowns {
     }
 }
 
-/// Compressed columns of a lower triangle.
+/// Compressed columns of a lower triangle, with the `usize` of faer, which reads them as they are.
 struct Columns {
     starts: Vec<usize>,
     rows: Vec<usize>,

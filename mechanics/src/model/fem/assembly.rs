@@ -154,9 +154,9 @@ fn add_rows(
         for (k, &column) in numbering.pattern.columns(row).iter().enumerate() {
             at[column as usize] = (offset + k) as u32;
         }
-        for &clique in numbering.around.of(row) {
+        for &clique in numbering.around.row(row) {
             let Some(simplex) = &simplices[clique as usize] else { continue };
-            let members = numbering.cliques.members(clique as usize);
+            let members = numbering.cliques.row(clique as usize);
             let Some(j) = members.iter().position(|&member| member as usize == row) else {
                 continue;
             };

@@ -51,7 +51,7 @@ impl HeldPoints {
                 (lattice.frame.axes.transpose() * axis, hold.values()[k])
             };
             let directions = (0..hold.count()).map(direction).collect();
-            let members = lattice.cliques.members(place.span).iter();
+            let members = lattice.cliques.row(place.span).iter();
             let diagonals = members.map(|&control| {
                 let block = stiffness.diagonal[assembly.numbering.row(control)];
                 block[0][0].max(block[1][1]).max(block[2][2])
@@ -125,7 +125,7 @@ impl HeldPoints {
 
 /// Shares a force at a place out to the control points around it.
 pub fn add_at(assembly: &Assembly, place: &Place, force: &Vector, forces: &mut Unknowns) {
-    let members = assembly.lattice.cliques.members(place.span).iter();
+    let members = assembly.lattice.cliques.row(place.span).iter();
     for (&control, value) in members.zip(place.products(assembly.lattice.order())) {
         let sum = &mut forces[assembly.numbering.row(control)];
         (0..3).for_each(|k| sum[k] += force[k] * value);

@@ -25,6 +25,7 @@ use crate::model::dofs::Numbering;
 use crate::model::fem::assembly::Tissue;
 use crate::model::problem::InvertedCell;
 use crate::progress::Progress;
+use crate::rows::Rows;
 use crate::solver::Block;
 use crate::solver::half_matrix::HalfMatrix;
 
@@ -47,10 +48,8 @@ pub struct Assembly<'a> {
     pub lattice: &'a Lattice,
     pub numbering: &'a Numbering,
     pub tissue: &'a Tissue<'a>,
-    /// By span, then by material.
-    points: Vec<Located>,
-    /// Where the points of each span begin.
-    starts: Vec<usize>,
+    /// Of each span, by material.
+    points: Rows<Located>,
 }
 
 /// A tissue point in the frame of the lattice.
@@ -79,14 +78,13 @@ impl<'a> Assembly<'a> {
         };
         let mut points: Vec<Located> = points.par_iter().filter_map(locate).collect();
         points.sort_by_key(|point| (point.span, point.material));
-        let spans = lattice.cliques.len();
-        let starts =
-            (0..=spans).map(|span| points.partition_point(|p| (p.span as usize) < span)).collect();
-        Assembly { lattice, numbering, tissue, points, starts }
+        let mut lengths = vec![0; lattice.cliques.len()];
+        points.iter().for_each(|point| lengths[point.span as usize] += 1);
+        Assembly { lattice, numbering, tissue, points: Rows::of_lengths(&lengths, points) }
     }
 
     fn points(&self, span: usize) -> &[Located] {
-        &self.points[self.starts[span]..self.starts[span + 1]]
+        self.points.row(span)
     }
 
     fn place(&self, point: &Located) -> Place {
@@ -148,7 +146,8 @@ impl<'a> Assembly<'a> {
     pub fn equal_masses(&self) -> HalfMatrix<f64, 3> {
         let mut matrix = HalfMatrix::zeros(self.numbering.pattern.clone());
         let density = |point: &Located| self.tissue.materials[point.material as usize].density();
-        let mass: f64 = self.points.iter().map(|point| density(point) * point.volume).sum();
+        let mass: f64 =
+            self.points.entries().iter().map(|point| density(point) * point.volume).sum();
         let share = mass / matrix.rows() as f64;
         matrix.diagonal.iter_mut().for_each(|block| add_to_diagonal(block, share));
         matrix
@@ -224,10 +223,10 @@ impl<'a> Assembly<'a> {
     }
 
     fn mean_shear_modulus(&self) -> f64 {
-        let volume: f64 = self.points.iter().map(|point| point.volume).sum();
+        let volume: f64 = self.points.entries().iter().map(|point| point.volume).sum();
         let shear =
             |point: &Located| self.tissue.materials[point.material as usize].shear_modulus();
-        self.points.iter().map(|point| shear(point) * point.volume).sum::<f64>() / volume
+        self.points.entries().iter().map(|point| shear(point) * point.volume).sum::<f64>() / volume
     }
 }
 

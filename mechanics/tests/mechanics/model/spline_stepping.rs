@@ -7,7 +7,7 @@ use mechanics::model::spline::stepping::{Clock, Damping, Motion, Scheme};
 use mechanics::model::spline::{Stiffness, VolumeSpline};
 use mechanics::prediction::{ModelError, Scene, Settings, SolverError, predict};
 use mechanics::progress::Unobserved;
-use mechanics::solver::cliques::{Cliques, CliquesOfRow};
+use mechanics::solver::cliques::Cliques;
 use mechanics::solver::half_matrix::{HalfMatrix, Pattern};
 use mechanics::solver::layout::Layout;
 use mechanics::solver::{System, Unknowns};
@@ -45,7 +45,7 @@ fn time_arrives_at_the_static_limit_whatever_mass_and_damping_are() {
 fn single(value: f64) -> System {
     let mut cliques = Cliques::default();
     cliques.push([0]);
-    let around = CliquesOfRow::new(&cliques, 1);
+    let around = cliques.inverted(1);
     let mut matrix = HalfMatrix::zeros(Arc::new(Pattern::new(&cliques, &around, 1)));
     (0..3).for_each(|k| matrix.diagonal[0][k][k] = value);
     System {
