@@ -11,8 +11,9 @@ use mechanics::mesh::sample::{ThickSphere, thick_sphere_octant};
 use mechanics::mesh::{CellShape, Vector, VolumeMesh};
 use mechanics::plan::{PlannedSegment, RigidMovement};
 use mechanics::prediction::{
-    Case, CaseSegment, ElementChoice, Plan, Prescribed, Scene, Settings, Unobserved, predict,
+    Case, CaseSegment, ElementChoice, Plan, Prescribed, Scene, Settings, predict,
 };
+use mechanics::progress::Unobserved;
 
 fn main() {
     thick_sphere();

@@ -15,8 +15,9 @@ use mechanics::boundary::NodeSelection;
 use mechanics::mesh::sample::block;
 use mechanics::mesh::{CellShape, Vector, VolumeMesh};
 use mechanics::prediction::{
-    Case, ElementChoice, Plan, Prediction, Prescribed, Scene, Settings, Unobserved, predict,
+    Case, ElementChoice, Plan, Prediction, Prescribed, Scene, Settings, predict,
 };
+use mechanics::progress::Unobserved;
 
 fn main() {
     slabs();
@@ -101,7 +102,7 @@ fn slabs() {
                 / found.len() as f64;
             println!(
                 "| {nu} | {} | {h} | {} | {error:.4} | {} | {seconds:.3} |",
-                answer.solver.elements[0], answer.solver.unknowns, answer.solver.iterations
+                answer.elements[0], answer.solver.unknowns, answer.solver.iterations
             );
         }
     }
@@ -123,11 +124,11 @@ fn times(size: &str, mesh: &Arc<VolumeMesh>) {
         let (case, plan) = measured::standard_load(mesh, measured::homogeneous(nu));
         let runs = [(); 3].map(|()| run(&case, &plan, element));
         let seconds = runs.iter().map(|(_, seconds)| *seconds).fold(f64::INFINITY, f64::min);
-        let solver = &runs[0].0.solver;
+        let answer = &runs[0].0;
         let ratio = seconds / *plain.get_or_insert(seconds);
         println!(
             "| nu {nu} | {} | {} | {} | {seconds:.3} | {ratio:.2} |",
-            solver.elements[0], solver.unknowns, solver.iterations
+            answer.elements[0], answer.solver.unknowns, answer.solver.iterations
         );
     }
     println!();
@@ -155,7 +156,7 @@ fn shell(mesh: &Arc<VolumeMesh>) {
             let largest = differences.iter().copied().fold(0.0, f64::max);
             println!(
                 "| {name} | {} | {} | {mean:.3} | {largest:.2} | {} | {seconds:.3} |",
-                answer.solver.elements[0], answer.solver.unknowns, answer.solver.iterations
+                answer.elements[0], answer.solver.unknowns, answer.solver.iterations
             );
         };
         for element in [ElementChoice::Plain, ElementChoice::Stabilised] {

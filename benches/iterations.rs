@@ -14,9 +14,8 @@ use std::time::Instant;
 use measure::{median, shell};
 use mechanics::mesh::Vector;
 use mechanics::model::fem::mass_tensor::{Iterations, MassTensorSettings};
-use mechanics::prediction::{
-    Case, Method, Plan, Prediction, PredictionError, Scene, Settings, Unobserved, predict,
-};
+use mechanics::prediction::{Case, Method, ModelError, Plan, Prediction, Scene, Settings, predict};
+use mechanics::progress::Unobserved;
 use mechanics::solver::stationary::{Iteration, Stationary};
 
 /// In mm, of every skin node.
@@ -97,7 +96,7 @@ fn close_enough(
     plan: &Plan,
     iterations: Iterations,
     (skin, exact): (&[u32], &[Vector]),
-) -> Result<Close, PredictionError> {
+) -> Result<Close, ModelError> {
     let mut digits = 1.0;
     loop {
         let residual = 10.0_f64.powf(-digits);
@@ -121,7 +120,7 @@ fn timed(
     plan: &Plan,
     iterations: Iterations,
     relative_residual: f64,
-) -> (f64, Result<Prediction, PredictionError>) {
+) -> (f64, Result<Prediction, ModelError>) {
     let method = Method::MassTensor(MassTensorSettings { iterations });
     let settings = Settings { method, relative_residual, ..Settings::default() };
     let begin = Instant::now();

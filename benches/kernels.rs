@@ -12,8 +12,8 @@ use measure::{on_threads, process, seconds, shell};
 use mechanics::boundary::NodeClass;
 use mechanics::model::dofs::{Numbering, partly_held};
 use mechanics::model::fem::displacement::Problem;
-use mechanics::model::problem::Observer;
 use mechanics::prediction::{ElementChoice, Scene, Settings};
+use mechanics::progress::Unobserved;
 use mechanics::solver::multigrid::Multigrid;
 use mechanics::solver::{System, Tolerance};
 
@@ -46,7 +46,7 @@ fn system(scene: &Scene) -> System {
     let held: Vec<bool> =
         scene.conditions.classes.iter().map(|class| *class != NodeClass::Free).collect();
     let numbering = Numbering::new(&scene.mesh, &held);
-    let matrix = scene.tissue().assemble(&numbering, &|| true);
+    let matrix = scene.tissue().assemble(&numbering, &Unobserved);
     let matrix = matrix.expect("no cell is inverted").expect("nobody stops it");
     let mut positions = scene.mesh.nodes.clone();
     for (node, &row) in numbering.layout.place.iter().enumerate() {
@@ -99,7 +99,7 @@ impl<'a> Table<'a> {
         let tissue = scene.tissue();
         for threads in THREADS {
             let number = || drop(Numbering::new(&scene.mesh, &held));
-            let fill = || drop(tissue.assemble(&numbering, &|| true));
+            let fill = || drop(tissue.assemble(&numbering, &Unobserved));
             self.row(
                 "numbering and pattern",
                 threads,
@@ -157,28 +157,13 @@ impl<'a> Table<'a> {
             let mut iterations = 0;
             let taken = on_threads(threads, || {
                 seconds(5, || {
-                    let equilibrium = problem.solve(&Silent).expect("the standard load converges");
-                    iterations = equilibrium.convergence.iterations;
+                    let equilibrium =
+                        problem.solve(&Unobserved).expect("the standard load converges");
+                    iterations = equilibrium.solver.iterations;
                 })
             });
             let name = format!("whole solution, {iterations} iterations");
             self.row(&name, threads, taken, iterations as f64 * bytes_of_iteration);
         }
-    }
-}
-
-struct Silent;
-
-impl Observer for Silent {
-    fn assembling(&self) {}
-
-    fn solving(&self) {}
-
-    fn iterated(&self, _iteration: usize, _relative_residual: f64) -> bool {
-        true
-    }
-
-    fn is_stopped(&self) -> bool {
-        false
     }
 }

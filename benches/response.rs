@@ -13,7 +13,8 @@ use mechanics::boundary::NodeSelection;
 use mechanics::mesh::half_head::{STANDARD_FINENESS, half_head};
 use mechanics::mesh::{Vector, VolumeMesh};
 use mechanics::plan::RigidMovement;
-use mechanics::prediction::{Case, CaseSegment, Plan, Scene, Settings, Unobserved};
+use mechanics::prediction::{Case, CaseSegment, Plan, Scene, Settings};
+use mechanics::progress::Unobserved;
 use mechanics::response::{Columns, Response, ResponseSegment, build};
 
 const NODES: usize = 14_000;

@@ -21,8 +21,10 @@ use measure::{median, process, shell};
 use mechanics::boundary::NodeClass;
 use mechanics::mesh::Vector;
 use mechanics::model::fem::displacement::Problem;
-use mechanics::model::problem::{Convergence, LoadCase, Observer};
-use mechanics::prediction::{Case, ElementChoice, Phase, Plan, Progress, Scene, Settings, predict};
+use mechanics::model::problem::LoadCase;
+use mechanics::prediction::{Case, ElementChoice, Plan, Scene, Settings, predict};
+use mechanics::progress::{Phase, Progress};
+use mechanics::solver::SolveReport;
 use mechanics::solver::Tolerance;
 use serde_json::{Value, json};
 
@@ -176,7 +178,7 @@ fn standard(case: &Case, plan: &Plan, settings: &Settings) -> Run {
         cpu: laps.cpu,
         unknowns: answer.solver.unknowns,
         iterations: answer.solver.iterations,
-        method: answer.solver.name,
+        method: answer.solver.method,
         residual: answer.solver.relative_residual,
         displacements: vec![answer.displacement],
     }
@@ -199,17 +201,17 @@ fn columns(case: &Case, plan: &Plan, settings: &Settings) -> Run {
     let equilibria = problem.solve_cases(&cases, &clock).expect("the columns converge");
     clock.phase(Phase::Surface);
     let laps = clock.finished();
-    let worst = |value: fn(&Convergence) -> f64| {
-        equilibria.iter().map(|one| value(&one.convergence)).fold(0.0, f64::max)
+    let worst = |value: fn(&SolveReport) -> f64| {
+        equilibria.iter().map(|one| value(&one.solver)).fold(0.0, f64::max)
     };
     Run {
         check: laps.seconds("check"),
         assemble: laps.seconds("assemble"),
         solve: laps.seconds("solve"),
         cpu: laps.cpu,
-        unknowns: equilibria[0].unknowns,
+        unknowns: equilibria[0].solver.unknowns,
         iterations: worst(|solution| solution.iterations as f64) as usize,
-        method: equilibria[0].convergence.method,
+        method: equilibria[0].solver.method,
         residual: worst(|solution| solution.relative_residual),
         displacements: equilibria.into_iter().map(|one| one.displacement).collect(),
     }
@@ -326,24 +328,6 @@ impl Progress for Clock {
     fn iteration(&self, _iteration: usize, _relative_residual: f64, _wanted: f64) {}
 
     fn is_cancelled(&self) -> bool {
-        false
-    }
-}
-
-impl Observer for Clock {
-    fn assembling(&self) {
-        self.phase(Phase::Assemble);
-    }
-
-    fn solving(&self) {
-        self.phase(Phase::Solve);
-    }
-
-    fn iterated(&self, _iteration: usize, _relative_residual: f64) -> bool {
-        true
-    }
-
-    fn is_stopped(&self) -> bool {
         false
     }
 }

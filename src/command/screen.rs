@@ -4,7 +4,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::schema::WarningDocument;
 use crate::schema::predict::check::CheckDocument;
-use mechanics::prediction::{Phase, Progress};
+use mechanics::progress::{Phase, Progress};
 
 /// The phase and the residual on one line of a terminal; nothing where there is no terminal.
 pub struct TerminalProgress(ProgressBar);

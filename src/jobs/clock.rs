@@ -5,7 +5,8 @@ use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 use super::failure::JobError;
 use crate::schema::predict::result::TimingDocument;
-use mechanics::prediction::{Phase, PredictionError, Progress};
+use mechanics::prediction::{ModelError, SolverError};
+use mechanics::progress::{Phase, Progress};
 
 /// Passes progress on, takes the time of the phases, and asks the work to stop once its time is used up.
 pub struct Observed<'a> {
@@ -48,9 +49,9 @@ impl<'a> Observed<'a> {
     }
 
     /// What a prediction that failed means for the job: one that stopped may have run out of time.
-    pub fn judge(&self, error: PredictionError) -> JobError {
+    pub fn judge(&self, error: ModelError) -> JobError {
         match error {
-            PredictionError::Cancelled => self.stopped(),
+            ModelError::Solver(SolverError::Stopped) => self.stopped(),
             other => other.into(),
         }
     }
@@ -157,7 +158,7 @@ pub fn peak_rss_mb() -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use mechanics::prediction::Unobserved;
+    use mechanics::progress::Unobserved;
 
     #[test]
     fn seconds_become_dates() {
@@ -171,7 +172,7 @@ mod tests {
     fn a_prediction_that_stops_without_a_request_ran_out_of_time() {
         let clock = Observed::start(&Unobserved, 0.0);
         assert!(clock.is_cancelled());
-        let error = clock.judge(PredictionError::Cancelled);
+        let error = clock.judge(ModelError::Solver(SolverError::Stopped));
         assert_eq!(
             (error.kind().name(), &error.to_document().members["which"]),
             ("budget-exceeded", &"wall".into())

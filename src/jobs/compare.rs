@@ -22,7 +22,7 @@ use crate::schema::{ErrorCode, Faults, Pointer, Problem};
 use mechanics::format::vtk::vtp;
 use mechanics::format::{ArrayValues, NamedValues, SurfaceOutput};
 use mechanics::mesh::{Frame, TriangleSurface, Vector, Warning};
-use mechanics::prediction::{Phase, Progress};
+use mechanics::progress::{Phase, Progress};
 use mechanics::registration::Place;
 use mechanics::validation::{
     Alignment, Comparison, ComparisonError, ComparisonSettings, LandmarkPair, NodeWise, compare,
@@ -134,8 +134,7 @@ impl Pair<'_> {
         let settings = settings(spec);
         let wrong = || no_surface(&self.at.key("actual").key("mesh"));
         let actual = self.actual.surface_in_mm().ok_or_else(wrong)?;
-        let stop = || clock.is_cancelled();
-        let comparison = compare(self.prediction, &actual, &settings, &stop)
+        let comparison = compare(self.prediction, &actual, &settings, clock)
             .map_err(|error| self.judge(error, clock))?;
         let Comparison { signed_distance, warnings, .. } = &comparison;
         Ok(Compared {

@@ -9,7 +9,7 @@ use crate::schema::job::{ErrorClass, JobErrorDocument};
 use mechanics::chart::PngError;
 use mechanics::format::WriteError;
 use mechanics::optimisation::OptimisationError;
-use mechanics::prediction::PredictionError;
+use mechanics::prediction::{InvertedCell, ModelError, SolverError};
 use mechanics::study::StudyError;
 use mechanics::validation::StatisticsError;
 
@@ -22,7 +22,7 @@ pub enum JobError {
     #[error("{}", .0.detail)]
     Refused(Problem),
     #[error(transparent)]
-    Prediction(#[from] PredictionError),
+    Prediction(#[from] ModelError),
     #[error("no plan was found: {0}")]
     Optimisation(#[from] OptimisationError),
     #[error("the study could not be run: {0}")]
@@ -51,16 +51,12 @@ impl JobError {
     pub fn class(&self) -> ErrorClass {
         match self {
             JobError::Refused(_) | JobError::Alignment(_) => ErrorClass::Input,
-            JobError::Prediction(PredictionError::Cancelled) | JobError::Cancelled => {
-                ErrorClass::Cancelled
-            }
-            JobError::Prediction(PredictionError::OverBudget { .. }) | JobError::Budget { .. } => {
-                ErrorClass::Budget
-            }
+            JobError::Prediction(ModelError::Solver(SolverError::Stopped))
+            | JobError::Cancelled => ErrorClass::Cancelled,
+            JobError::Prediction(ModelError::Solver(SolverError::OverBudget { .. }))
+            | JobError::Budget { .. } => ErrorClass::Budget,
             JobError::Prediction(
-                PredictionError::Inverted { .. }
-                | PredictionError::StepAboveLimit { .. }
-                | PredictionError::NoBone,
+                ModelError::Inverted(_) | ModelError::StepAboveLimit { .. } | ModelError::NoBone,
             ) => ErrorClass::Input,
             JobError::Study(StudyError::Threads(_)) => ErrorClass::Infrastructure,
             JobError::Study(_) => ErrorClass::Input,
@@ -120,36 +116,7 @@ impl JobError {
                 }
                 return members;
             }
-            JobError::Prediction(PredictionError::NotConverged {
-                iterations,
-                residual,
-                wanted,
-                history,
-            }) => json!({
-                "iterations": iterations,
-                "residual": residual,
-                "wanted": wanted,
-                "residual_history": thinned(history),
-            }),
-            JobError::Prediction(PredictionError::Diverged {
-                iterations,
-                growth,
-                residual,
-                history,
-            }) => json!({
-                "iterations": iterations,
-                "growth": growth,
-                "residual": residual,
-                "residual_history": thinned(history),
-            }),
-            JobError::Prediction(PredictionError::Singular { node }) => json!({ "node": node }),
-            JobError::Prediction(PredictionError::Inverted { cell }) => json!({ "element": cell }),
-            JobError::Prediction(PredictionError::OverBudget { needed_mb, allowed_mb }) => {
-                json!({ "which": "memory", "needed_mb": needed_mb, "allowed_mb": allowed_mb })
-            }
-            JobError::Prediction(PredictionError::StepAboveLimit { step_s, limit_s }) => {
-                json!({ "step_s": step_s, "limit_s": limit_s })
-            }
+            JobError::Prediction(error) => no_equilibrium(error),
             JobError::Optimisation(OptimisationError::NotConverged {
                 iterations,
                 step,
@@ -164,6 +131,40 @@ impl JobError {
             Value::Object(members) => members,
             _ => Map::new(),
         }
+    }
+}
+
+/// What is told of an equilibrium that was not found.
+fn no_equilibrium(error: &ModelError) -> Value {
+    match error {
+        ModelError::Inverted(InvertedCell { cell }) => json!({ "element": cell }),
+        ModelError::StepAboveLimit { step_s, limit_s } => {
+            json!({ "step_s": step_s, "limit_s": limit_s })
+        }
+        ModelError::NoBone => json!({}),
+        ModelError::Solver(error) => no_solution(error),
+    }
+}
+
+fn no_solution(error: &SolverError) -> Value {
+    match error {
+        SolverError::NotConverged { iterations, residual, wanted, history } => json!({
+            "iterations": iterations,
+            "residual": residual,
+            "wanted": wanted,
+            "residual_history": thinned(history),
+        }),
+        SolverError::Diverged { iterations, growth, residual, history } => json!({
+            "iterations": iterations,
+            "growth": growth,
+            "residual": residual,
+            "residual_history": thinned(history),
+        }),
+        SolverError::Singular { node } => json!({ "node": node }),
+        SolverError::OverBudget { needed_mb, allowed_mb } => {
+            json!({ "which": "memory", "needed_mb": needed_mb, "allowed_mb": allowed_mb })
+        }
+        SolverError::Stopped | SolverError::NotFinite => json!({}),
     }
 }
 

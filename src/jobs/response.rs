@@ -20,7 +20,7 @@ use crate::schema::wire::canonical;
 use crate::schema::{CaseDocument, Faults, Limits, PlanDocument, ResponseDocument};
 use mechanics::format::SurfaceOutput;
 use mechanics::format::vtk::vtp;
-use mechanics::prediction::{Phase, Progress};
+use mechanics::progress::{Phase, Progress};
 use mechanics::response::{Columns, ResponseError, build, chosen};
 
 /// f32 little-endian, [column][node][xyz].
@@ -120,7 +120,7 @@ pub fn response_job(
         frame: prepared.case.frame,
         queue_s: input.queue_s,
     };
-    let solver = solver_document(&columns.solver);
+    let solver = solver_document(&columns.solver, &columns.elements);
     let mut folder = ResultFolder::open(place.out)?;
     write_columns(&origin, (input, &prepared), &columns, &mut folder)?;
     let mut rest = SurfaceOutput::plain(&prepared.scene.skin.surface, origin.frame);

@@ -26,7 +26,8 @@ use crate::schema::predict::result::{
 };
 use crate::schema::{Limits, Triple};
 use mechanics::mesh::{Vector, Warning};
-use mechanics::prediction::{Phase, Prediction, Progress, Skin, predict};
+use mechanics::prediction::{Prediction, Skin, predict};
+use mechanics::progress::{Phase, Progress};
 use mechanics::validation::{Statistics, StatisticsError};
 
 /// What a job made.
@@ -173,7 +174,7 @@ struct Finished<'a> {
 
 impl Finished<'_> {
     fn write_files(&self, input: &PredictInput, folder: &mut ResultFolder) -> Result<(), JobError> {
-        let solver = solver_document(&self.prediction.solver);
+        let solver = solver_document(&self.prediction.solver, &self.prediction.elements);
         let field_data = self.origin.field_data(input.spec.method, &solver);
         let scene = &self.prepared.scene;
         let frame = self.origin.frame;
@@ -203,7 +204,7 @@ impl Finished<'_> {
         files: Vec<FileDocument>,
     ) -> ResultDocument {
         let mut provenance = self.origin.provenance(clock);
-        let solver = solver_document(&self.prediction.solver);
+        let solver = solver_document(&self.prediction.solver, &self.prediction.elements);
         let mesh = (&*self.prepared.scene.mesh, &self.prepared.quality);
         add_method(&mut provenance, input.spec.method, mesh, solver);
         ResultDocument {

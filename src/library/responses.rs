@@ -324,25 +324,21 @@ mod tests {
         let corner = Vector::zeros();
         let linearity =
             Linearity { thickness: 1.0, something_stays: true, boxes: vec![[corner, corner]] };
-        let solver = mechanics::prediction::SolverReport {
-            name: "none",
-            preconditioner: "none",
-            why: String::new(),
-            unknowns: 0,
-            iterations: 0,
-            relative_residual: 0.0,
-            history: Vec::new(),
-            steps: 1,
-            wanted_residual: 0.0,
-            elements: Vec::new(),
-        };
+        let solver = mechanics::prediction::SolveReport::at_rest(0, 0.0);
         let values = vec![0.0; 36 * nodes as usize];
         let nodes: Vec<u32> = (0..nodes).collect();
         let rest = TriangleSurface {
             points: vec![Vector::zeros(); nodes.len()],
             ..TriangleSurface::default()
         };
-        let columns = Columns { segments, nodes, values, linearity: linearity.clone(), solver };
+        let columns = Columns {
+            segments,
+            nodes,
+            values,
+            linearity: linearity.clone(),
+            solver,
+            elements: Vec::new(),
+        };
         let (file, layout, sha256) = (String::new(), String::new(), String::new());
         let origin = ResponseOrigin {
             job: None,

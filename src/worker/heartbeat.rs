@@ -13,7 +13,7 @@ use crate::metrics;
 use crate::schema::ErrorCode;
 use crate::store::{Lease, Point, Store, StoreError};
 use crate::traces;
-use mechanics::prediction::{Phase, Progress};
+use mechanics::progress::{Phase, Progress};
 
 /// How long a job that was dismissed may run on before its solver is told.
 const LOOK: Duration = Duration::from_millis(500);

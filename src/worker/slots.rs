@@ -21,7 +21,7 @@ use crate::store::{Claim, Lease, PublishedFile, Store, StoreError};
 use crate::traces;
 use crate::worker::process::attempt::broke_off;
 use crate::worker::process::protocol::Effort;
-use mechanics::prediction::Progress;
+use mechanics::progress::Progress;
 
 /// How long an idle worker waits before it looks for jobs that another process has accepted.
 const IDLE: Duration = Duration::from_secs(1);

@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use super::VolumeMesh;
 use super::volume::BoundaryFace;
+use crate::rows::Sorting;
 
 /// A face of a cell under the sorted nodes that it shares with its neighbour; a triangle's fourth node
 /// is `u32::MAX`.
@@ -23,18 +24,15 @@ pub struct Faces {
 impl Faces {
     pub fn new(mesh: &VolumeMesh) -> Self {
         // A counting sort by the lowest node leaves some twenty faces to sort at each.
-        let mut next = vec![0_u32; mesh.nodes.len() + 1];
+        let mut lengths = vec![0_u32; mesh.nodes.len()];
         for (shape, nodes) in mesh.cells.iter() {
             for face in shape.faces() {
                 let lowest = face.iter().map(|&local| nodes[local]).min();
-                next[lowest.map_or(0, |lowest| lowest as usize + 1)] += 1;
+                lowest.into_iter().for_each(|lowest| lengths[lowest as usize] += 1);
             }
         }
-        for node in 0..mesh.nodes.len() {
-            next[node + 1] += next[node];
-        }
         let none = SharedFace { nodes: [u32::MAX; 4], cell: u32::MAX, local: u8::MAX };
-        let mut sorted = vec![none; next[mesh.nodes.len()] as usize];
+        let mut sorting = Sorting::new(&lengths, none);
         for (cell, (shape, cell_nodes)) in mesh.cells.iter().enumerate() {
             for (local, face) in shape.faces().iter().enumerate() {
                 let mut nodes = [u32::MAX; 4];
@@ -42,12 +40,11 @@ impl Faces {
                     *slot = cell_nodes[node];
                 }
                 nodes.sort_unstable();
-                let place = &mut next[nodes[0] as usize];
-                sorted[*place as usize] =
-                    SharedFace { nodes, cell: cell as u32, local: local as u8 };
-                *place += 1;
+                let face = SharedFace { nodes, cell: cell as u32, local: local as u8 };
+                sorting.put(nodes[0] as usize, face);
             }
         }
+        let mut sorted = sorting.finish().into_entries();
         let by_lowest = sorted.par_chunk_by_mut(|a, b| a.nodes[0] == b.nodes[0]);
         by_lowest.for_each(<[_]>::sort_unstable);
         Faces { sorted, cells: mesh.cells.len() }

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::{IgnoredArrays, TriangleSurface, Vector};
+use crate::rows::Rows;
 
 /// The shape of a first-order cell. Local node order is that of VTK for tetrahedra and hexahedra;
 /// a wedge has its triangle 0, 1, 2 below the triangle 3, 4, 5, counter-clockwise seen from above,
@@ -76,17 +77,10 @@ impl CellShape {
 }
 
 /// Cells of mixed shape in the order of the file they came from.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Cells {
     shapes: Vec<CellShape>,
-    offsets: Vec<u32>,
-    nodes: Vec<u32>,
-}
-
-impl Default for Cells {
-    fn default() -> Self {
-        Cells { shapes: Vec::new(), offsets: vec![0], nodes: Vec::new() }
-    }
+    nodes: Rows<u32>,
 }
 
 impl Cells {
@@ -94,8 +88,7 @@ impl Cells {
     pub fn push(&mut self, shape: CellShape, nodes: &[u32]) {
         assert_eq!(nodes.len(), shape.node_count(), "{} has other nodes", shape.name());
         self.shapes.push(shape);
-        self.nodes.extend_from_slice(nodes);
-        self.offsets.push(self.nodes.len() as u32);
+        self.nodes.push(nodes.iter().copied());
     }
 
     pub fn len(&self) -> usize {
@@ -111,11 +104,11 @@ impl Cells {
     }
 
     pub fn nodes(&self, cell: usize) -> &[u32] {
-        &self.nodes[self.offsets[cell] as usize..self.offsets[cell + 1] as usize]
+        self.nodes.row(cell)
     }
 
     pub fn nodes_mut(&mut self, cell: usize) -> &mut [u32] {
-        &mut self.nodes[self.offsets[cell] as usize..self.offsets[cell + 1] as usize]
+        self.nodes.row_mut(cell)
     }
 
     /// All cells in order: shape and nodes.

@@ -7,7 +7,8 @@ use rayon::prelude::*;
 use super::problem::{InvertedCell, LoadCase};
 use crate::boundary::Hold;
 use crate::mesh::{Vector, VolumeMesh};
-use crate::solver::cliques::{Cliques, CliquesOfRow};
+use crate::progress::Progress;
+use crate::solver::cliques::{Cliques, CliquesOfRow, renumbered};
 use crate::solver::half_matrix::{HalfMatrix, Pattern};
 use crate::solver::lanes::Lanes;
 use crate::solver::layout::Layout;
@@ -31,7 +32,7 @@ pub struct Known {
 pub fn number(cells: &Cliques, positions: &[Vector], holds: &[Hold]) -> Numbering {
     let mut held = vec![true; positions.len()];
     for cell in 0..cells.len() {
-        cells.members(cell).iter().for_each(|&node| held[node as usize] = false);
+        cells.row(cell).iter().for_each(|&node| held[node as usize] = false);
     }
     let whole = holds.iter().filter(|hold| hold.count() == 3);
     whole.for_each(|hold| held[hold.node as usize] = true);
@@ -95,10 +96,10 @@ impl Constrained<'_> {
     /// A row of the solver is a node of the mesh.
     pub fn in_nodes(&self, error: SolverError) -> SolverError {
         match error {
-            SolverError::NotPositiveDefinite { row } => {
+            SolverError::Singular { node: row } => {
                 let place = |place: &u32| *place as usize == row;
                 let node = self.numbering.layout.place.iter().position(place);
-                SolverError::NotPositiveDefinite { row: node.unwrap_or(row) }
+                SolverError::Singular { node: node.unwrap_or(row) }
             }
             other => other,
         }
@@ -140,12 +141,6 @@ pub fn product_at_holds(system: &System, x: &[Lanes<f64, 3, 1>]) -> Vec<Lanes<f6
     product
 }
 
-/// Unknowns of the displacement that are not held.
-pub fn free_unknowns(system: &System) -> usize {
-    let held = system.partly_held.iter().flat_map(|row| row.held).filter(|held| *held).count();
-    3 * system.layout.free - held
-}
-
 /// Cells whose matrices are computed side by side before they are added in cell order, which keeps the
 /// bits independent of the number of threads.
 const CHUNK: usize = 4096;
@@ -169,10 +164,10 @@ impl Numbering {
     /// For nodes at positions that stand in cells of any kind.
     pub fn of(cliques: &Cliques, positions: &[Vector], held: &[bool]) -> Self {
         let rows = positions.len();
-        let around = CliquesOfRow::new(cliques, rows);
+        let around = cliques.inverted(rows);
         let layout = Layout::new(cliques, &around, held, 3, far_end(positions));
-        let cliques = cliques.renumbered(&layout.clique_order, &layout.place);
-        let around = CliquesOfRow::new(&cliques, rows);
+        let cliques = renumbered(cliques, &layout.clique_order, &layout.place);
+        let around = cliques.inverted(rows);
         let pattern = Arc::new(Pattern::new(&cliques, &around, rows));
         Numbering { layout: Arc::new(layout), pattern, cliques, around }
     }
@@ -197,17 +192,17 @@ impl Numbering {
         &self,
         matrix: &mut HalfMatrix<f64, 3>,
         cliques: &[usize],
-        keep_going: &dyn Fn() -> bool,
+        progress: &dyn Progress,
         cell_matrix: impl Fn(usize) -> Result<M, InvertedCell> + Sync,
     ) -> Result<bool, InvertedCell> {
         for chunk in cliques.chunks(CHUNK) {
-            if !keep_going() {
+            if progress.is_cancelled() {
                 return Ok(false);
             }
             let cell = |&clique: &usize| cell_matrix(self.layout.clique_order[clique] as usize);
             let matrices: Vec<Result<M, InvertedCell>> = chunk.par_iter().map(cell).collect();
             for (&clique, blocks) in chunk.iter().zip(matrices) {
-                add_cell(matrix, self.cliques.members(clique), blocks?.as_ref());
+                add_cell(matrix, self.cliques.row(clique), blocks?.as_ref());
             }
         }
         Ok(true)

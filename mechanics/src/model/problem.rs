@@ -1,16 +1,7 @@
-//! What every way of modelling takes and gives: load cases in, equilibria out, and the words of the solver.
+//! What every way of modelling takes and gives: load cases in, equilibria out.
 
 use crate::mesh::{Vector, Warning};
-use crate::solver::{Solution, SolverError};
-
-/// What the solution tells and asks while it runs.
-pub trait Observer {
-    fn assembling(&self);
-    fn solving(&self);
-    /// Whether to go on after an iteration with this relative residual.
-    fn iterated(&self, iteration: usize, relative_residual: f64) -> bool;
-    fn is_stopped(&self) -> bool;
-}
+use crate::solver::{SolveReport, SolverError};
 
 /// One of several things that happen to the same tissue.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,42 +16,9 @@ pub struct LoadCase {
 pub struct Equilibrium {
     pub displacement: Vec<Vector>,
     pub reactions: Vec<Vector>,
-    pub convergence: Convergence,
-    /// Unknowns that are not held.
-    pub unknowns: usize,
+    pub solver: SolveReport,
     /// What a reader must know of this way of modelling and of this answer.
     pub warnings: Vec<Warning>,
-}
-
-/// How an equilibrium was found.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Convergence {
-    pub method: &'static str,
-    pub preconditioner: &'static str,
-    /// Why this method was chosen, with the numbers; empty where nothing chose.
-    pub why: String,
-    pub iterations: usize,
-    /// Recomputed from the solution at the end.
-    pub relative_residual: f64,
-    /// The relative residual after each iteration, where the method has its own iterations to show.
-    pub history: Vec<f64>,
-    /// Steps of load or time.
-    pub steps: u32,
-}
-
-impl Convergence {
-    /// That of a linear system solved at once.
-    pub(super) fn of(solution: &Solution) -> Self {
-        Convergence {
-            method: solution.method,
-            preconditioner: solution.preconditioner,
-            why: solution.why.clone(),
-            iterations: solution.iterations,
-            relative_residual: solution.relative_residual,
-            history: solution.history.clone(),
-            steps: 1,
-        }
-    }
 }
 
 /// Why there is no equilibrium.
@@ -76,6 +34,18 @@ pub enum ModelError {
     StepAboveLimit { step_s: f64, limit_s: f64 },
     #[error("no face of the tissue lies on bone: a warp has nothing to follow")]
     NoBone,
+}
+
+impl ModelError {
+    /// The stable word of the error catalogue.
+    pub fn code(&self) -> &'static str {
+        match self {
+            ModelError::Inverted(_) => "element-inverted",
+            ModelError::Solver(error) => error.code(),
+            ModelError::StepAboveLimit { .. } => "step-above-limit",
+            ModelError::NoBone => "no-bone",
+        }
+    }
 }
 
 /// A cell whose Jacobian is not positive at a quadrature point.

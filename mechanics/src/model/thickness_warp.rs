@@ -16,9 +16,10 @@ use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 
-use super::problem::{Convergence, Equilibrium, ModelError};
+use super::problem::{Equilibrium, ModelError};
 use crate::boundary::{Conditions, Hold, NodeClass};
 use crate::mesh::{SurfaceSearch, TriangleSurface, Vector, VolumeMesh, Warning};
+use crate::solver::SolveReport;
 
 /// What the user of a warp decides.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -36,6 +37,8 @@ pub struct Warped<'a> {
     pub conditions: &'a Conditions,
     /// The displacement in mm that the movement of a segment gives a point.
     pub movement: &'a (dyn Fn(u32, &Vector) -> Vector + Sync),
+    /// Asked for, and met by what has no residual.
+    pub wanted_residual: f64,
 }
 
 /// What moves as one.
@@ -75,16 +78,11 @@ impl Warped<'_> {
         Ok(Equilibrium {
             displacement: followed.into_iter().map(|followed| followed.displacement).collect(),
             reactions: vec![Vector::zeros(); self.conditions.holds.len()],
-            convergence: Convergence {
-                method: "none",
-                preconditioner: "none",
-                why: "a warp solves no equations".to_owned(),
-                iterations: 0,
-                relative_residual: 0.0,
-                history: Vec::new(),
-                steps: 1,
-            },
-            unknowns: 0,
+            solver: SolveReport::without_equations(
+                "a warp solves no equations",
+                0,
+                self.wanted_residual,
+            ),
             warnings: warnings.into_iter().flatten().collect(),
         })
     }

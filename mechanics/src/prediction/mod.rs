@@ -12,7 +12,6 @@ mod imaged_tissue;
 mod numerics_revision;
 mod off_wall;
 mod problem;
-pub mod progress;
 pub mod scene;
 mod skin;
 mod small_strain;
@@ -28,15 +27,16 @@ pub use error_code::SceneErrorCode;
 pub use imaged_tissue::{ImagedTissue, TissueShare};
 pub use numerics_revision::NUMERICS_REVISION;
 pub use problem::{SceneError, SceneErrors};
-pub use progress::{Phase, Progress, Unobserved};
 pub use scene::Scene;
 pub use skin::Skin;
 
 pub use crate::boundary::NodeClass;
 use crate::mesh::{Vector, Warning};
 use crate::model::fem::strain::{CellDeformation, deformations};
-use crate::model::problem::{Equilibrium, ModelError, Observer};
-use crate::solver::SolverError;
+use crate::model::problem::Equilibrium;
+pub use crate::model::problem::{InvertedCell, ModelError};
+use crate::progress::{Phase, Progress};
+pub use crate::solver::{SolveReport, SolverError};
 
 /// A landmark farther than this from the tissue, in mm, is told to move as something it is not part of.
 pub const LANDMARK_FAR: f64 = 2.0;
@@ -52,82 +52,17 @@ pub struct Prediction {
     pub reactions: BTreeMap<String, Vector>,
     /// The displacement of each landmark in mm.
     pub landmarks: BTreeMap<String, Vector>,
-    pub solver: SolverReport,
+    pub solver: SolveReport,
+    /// The elements used, e.g. `hex8 mean dilatation`.
+    pub elements: Vec<String>,
     /// Those of the scene and those of the solution.
     pub warnings: Vec<Warning>,
 }
 
-/// How the equations were solved.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SolverReport {
-    /// `cholesky`, `conjugate_gradient`, `conjugate_residual` with pressures, what the method's own iterations are
-    /// called, or `none` where nothing moves.
-    pub name: &'static str,
-    pub preconditioner: &'static str,
-    /// Why this solver was chosen.
-    pub why: String,
-    /// Free displacements and, with stabilised tetrahedra, pressures.
-    pub unknowns: usize,
-    pub iterations: usize,
-    /// |f - K u| / |f_D| of the free rows, recomputed at the end; with pressures as `solver::mixed` says.
-    pub relative_residual: f64,
-    /// The relative residual after each iteration, of methods that have their own iterations to show.
-    pub history: Vec<f64>,
-    /// Steps of load or time.
-    pub steps: u32,
-    pub wanted_residual: f64,
-    /// The elements used, e.g. `hex8 mean dilatation`.
-    pub elements: Vec<String>,
-}
-
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum PredictionError {
-    #[error("stopped on request")]
-    Cancelled,
-    #[error("residual {residual:.2e} after {iterations} iterations, wanted {wanted:.2e}")]
-    NotConverged { iterations: usize, residual: f64, wanted: f64, history: Vec<f64> },
-    #[error(
-        "diverged: the residual grew {growth:.3} times an iteration, to {residual:.1e} after {iterations}"
-    )]
-    Diverged { iterations: usize, growth: f64, residual: f64, history: Vec<f64> },
-    #[error("the matrix is singular at node {node}")]
-    Singular { node: usize },
-    #[error("cell {cell} is inverted or flat")]
-    Inverted { cell: usize },
-    #[error("the problem needs about {needed_mb:.0} MB and may take {allowed_mb:.0} MB")]
-    OverBudget { needed_mb: f64, allowed_mb: f64 },
-    #[error("the solution has values that are not finite")]
-    NotFinite,
-    #[error(
-        "a step of {step_s:.3e} s grows without bound: explicit steps may take up to {limit_s:.3e} s"
-    )]
-    StepAboveLimit { step_s: f64, limit_s: f64 },
-    #[error("no face of the tissue lies on bone: a warp has nothing to follow")]
-    NoBone,
-}
-
-impl PredictionError {
-    /// The stable word of the error catalogue.
-    pub fn code(&self) -> &'static str {
-        match self {
-            PredictionError::Cancelled => "cancelled",
-            PredictionError::NotConverged { .. }
-            | PredictionError::Diverged { .. }
-            | PredictionError::NotFinite => "solver-diverged",
-            PredictionError::Singular { .. } => "matrix-singular",
-            PredictionError::Inverted { .. } => "element-inverted",
-            PredictionError::StepAboveLimit { .. } => "step-above-limit",
-            PredictionError::NoBone => "no-bone",
-            PredictionError::OverBudget { .. } => "budget-exceeded",
-        }
-    }
-}
-
 /// Solves a scene by the method it asks for. The same scene gives the same bits on any number of threads.
-pub fn predict(scene: &Scene, progress: &dyn Progress) -> Result<Prediction, PredictionError> {
+pub fn predict(scene: &Scene, progress: &dyn Progress) -> Result<Prediction, ModelError> {
     // 1. Equilibrium.
-    let wanted = scene.settings.relative_residual;
-    let equilibrium = scene.solve(&Followed { progress, wanted })?;
+    let equilibrium = scene.solve(progress)?;
 
     // 2. What it does to the tissue and to the landmarks.
     progress.phase(Phase::Surface);
@@ -145,36 +80,12 @@ pub fn predict(scene: &Scene, progress: &dyn Progress) -> Result<Prediction, Pre
     Ok(Prediction {
         reactions: reactions(scene, &equilibrium),
         landmarks: landmarks.into_iter().map(|(name, (moved, _))| (name, moved)).collect(),
-        solver: report(scene, &equilibrium),
+        solver: equilibrium.solver,
+        elements: scene.elements(),
         displacement: equilibrium.displacement,
         deformation,
         warnings,
     })
-}
-
-/// Passes the solver's words on to the progress of the work.
-pub(crate) struct Followed<'a> {
-    pub(crate) progress: &'a dyn Progress,
-    pub(crate) wanted: f64,
-}
-
-impl Observer for Followed<'_> {
-    fn assembling(&self) {
-        self.progress.phase(Phase::Assemble);
-    }
-
-    fn solving(&self) {
-        self.progress.phase(Phase::Solve);
-    }
-
-    fn iterated(&self, iteration: usize, relative_residual: f64) -> bool {
-        self.progress.iteration(iteration, relative_residual, self.wanted);
-        !self.progress.is_cancelled()
-    }
-
-    fn is_stopped(&self) -> bool {
-        self.progress.is_cancelled()
-    }
 }
 
 /// Sums the reactions of the nodes of each segment and of each other class.
@@ -189,22 +100,6 @@ fn reactions(scene: &Scene, equilibrium: &Equilibrium) -> BTreeMap<String, Vecto
         *sums.entry(holder).or_insert_with(Vector::zeros) += reaction;
     }
     sums
-}
-
-pub(crate) fn report(scene: &Scene, equilibrium: &Equilibrium) -> SolverReport {
-    let found = &equilibrium.convergence;
-    SolverReport {
-        name: found.method,
-        preconditioner: found.preconditioner,
-        why: found.why.clone(),
-        unknowns: equilibrium.unknowns,
-        iterations: found.iterations,
-        relative_residual: found.relative_residual,
-        history: found.history.clone(),
-        steps: found.steps,
-        wanted_residual: scene.settings.relative_residual,
-        elements: scene.elements(),
-    }
 }
 
 /// An answer that turns cells inside out says so.
@@ -227,33 +122,4 @@ fn far_landmarks(landmarks: &BTreeMap<String, (Vector, f64)>) -> Vec<Warning> {
         Warning::new("landmark-far", detail).with("distance_mm", *distance)
     })
     .collect()
-}
-
-impl From<ModelError> for PredictionError {
-    fn from(error: ModelError) -> Self {
-        match error {
-            ModelError::StepAboveLimit { step_s, limit_s } => {
-                PredictionError::StepAboveLimit { step_s, limit_s }
-            }
-            ModelError::NoBone => PredictionError::NoBone,
-            ModelError::Inverted(inverted) => PredictionError::Inverted { cell: inverted.cell },
-            ModelError::Solver(SolverError::Stopped) => PredictionError::Cancelled,
-            ModelError::Solver(SolverError::NotFinite) => PredictionError::NotFinite,
-            ModelError::Solver(SolverError::NotPositiveDefinite { row }) => {
-                PredictionError::Singular { node: row }
-            }
-            ModelError::Solver(SolverError::OverBudget { needed_mb, allowed_mb }) => {
-                PredictionError::OverBudget { needed_mb, allowed_mb }
-            }
-            ModelError::Solver(SolverError::NotConverged {
-                iterations,
-                residual,
-                wanted,
-                history,
-            }) => PredictionError::NotConverged { iterations, residual, wanted, history },
-            ModelError::Solver(SolverError::Diverged { iterations, growth, residual, history }) => {
-                PredictionError::Diverged { iterations, growth, residual, history }
-            }
-        }
-    }
 }

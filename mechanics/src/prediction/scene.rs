@@ -16,10 +16,11 @@ use crate::model::fem::edge_nodes::EdgeNodes;
 use crate::model::fem::membrane::Membrane;
 use crate::model::fem::{displacement_pressure, mass_tensor, quadratic};
 use crate::model::mass_spring::POISSON_RATIO;
-use crate::model::problem::{Equilibrium, LoadCase, ModelError, Observer};
+use crate::model::problem::{Equilibrium, LoadCase, ModelError};
 use crate::model::thickness_warp::Warped;
 use crate::model::{mass_spring, spline};
 use crate::plan::PlannedSegment;
+use crate::progress::Progress;
 use crate::solver::Tolerance;
 
 /// Poisson's ratio above which elements without mean dilatation are known to lock (VERIFICATION V.4, V.29).
@@ -116,26 +117,27 @@ impl Scene {
     }
 
     /// Solves the scene by the method of its settings.
-    pub fn solve(&self, observer: &dyn Observer) -> Result<Equilibrium, ModelError> {
+    pub fn solve(&self, progress: &dyn Progress) -> Result<Equilibrium, ModelError> {
         match &self.settings.method {
             // A mass-tensor is the block of two nodes of a plain tetrahedron.
             Method::FemLinear | Method::MassTensorTransverse => {
-                let mut solved = self.solve_cases(&[self.load_case()], observer)?;
+                let mut solved = self.solve_cases(&[self.load_case()], progress)?;
                 Ok(solved.remove(0))
             }
             Method::MassSpring(settings) => {
-                mass_spring::solve(&self.problem(), settings, &self.load_case(), observer)
+                mass_spring::solve(&self.problem(), settings, &self.load_case(), progress)
             }
             Method::MassTensor(settings) => {
-                mass_tensor::solve(&self.problem(), settings, &self.load_case(), observer)
+                mass_tensor::solve(&self.problem(), settings, &self.load_case(), progress)
             }
-            Method::VolumeSpline(spline) => spline::solve(&self.problem(), spline, observer),
+            Method::VolumeSpline(spline) => spline::solve(&self.problem(), spline, progress),
             Method::ThicknessWarp(warp) => {
                 let movement = |segment: u32, x: &Vector| {
                     self.segments[segment as usize].movement.displacement(x)
                 };
                 let (mesh, conditions) = (&*self.mesh, &self.conditions);
-                Warped { mesh, conditions, movement: &movement }.solve(warp)
+                let wanted_residual = self.settings.relative_residual;
+                Warped { mesh, conditions, movement: &movement, wanted_residual }.solve(warp)
             }
         }
     }
@@ -156,15 +158,15 @@ impl Scene {
     pub fn solve_cases(
         &self,
         cases: &[LoadCase],
-        observer: &dyn Observer,
+        progress: &dyn Progress,
     ) -> Result<Vec<Equilibrium>, ModelError> {
         let problem = self.problem();
         match self.tetrahedron() {
-            Tetrahedron::Quadratic => quadratic::solve_cases(&problem, cases, observer),
+            Tetrahedron::Quadratic => quadratic::solve_cases(&problem, cases, progress),
             Tetrahedron::Stabilised if self.has_tetrahedra() => {
-                displacement_pressure::solve_cases(&problem, cases, observer)
+                displacement_pressure::solve_cases(&problem, cases, progress)
             }
-            Tetrahedron::Stabilised | Tetrahedron::Plain => problem.solve_cases(cases, observer),
+            Tetrahedron::Stabilised | Tetrahedron::Plain => problem.solve_cases(cases, progress),
         }
     }
 

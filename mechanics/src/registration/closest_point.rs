@@ -22,6 +22,7 @@ use rayon::prelude::*;
 use super::{AlignmentError, Place, RigidTransform};
 use crate::mesh::closest_point::Feature;
 use crate::mesh::{SurfaceSearch, TriangleSurface, Vector, area_sampling};
+use crate::progress::Progress;
 
 /// Points of the fixed surface: few to come near, many to end.
 const COARSE_POINTS: usize = 1000;
@@ -112,7 +113,7 @@ impl IterativeClosestPoint {
         &self,
         fixed: &TriangleSurface,
         moving: &TriangleSurface,
-        cancelled: &dyn Fn() -> bool,
+        progress: &dyn Progress,
     ) -> Result<SurfaceAlignment, AlignmentError> {
         let search = SurfaceSearch::new(moving)?;
         let start = starting_transform(fixed, moving);
@@ -121,11 +122,11 @@ impl IterativeClosestPoint {
             max_iterations: COARSE_ITERATIONS.min(self.max_iterations),
         };
         let points = points_in_mask(fixed, self.mask.as_ref(), COARSE_POINTS)?;
-        let near = iterate(&points, &search, start, &coarse, cancelled)?.alignment;
+        let near = iterate(&points, &search, start, &coarse, progress)?.alignment;
         let fine =
             StopRule { relative_change: self.relative_change, max_iterations: self.max_iterations };
         let points = points_in_mask(fixed, self.mask.as_ref(), FINE_POINTS)?;
-        let ended = iterate(&points, &search, near.transform, &fine, cancelled)?;
+        let ended = iterate(&points, &search, near.transform, &fine, progress)?;
         let iterations = near.iterations + ended.alignment.iterations;
         if !ended.has_converged {
             return Err(AlignmentError::NotConverged {
@@ -210,7 +211,7 @@ pub(super) fn iterate(
     search: &SurfaceSearch,
     start: RigidTransform,
     stop: &StopRule,
-    cancelled: &dyn Fn() -> bool,
+    progress: &dyn Progress,
 ) -> Result<Ended, AlignmentError> {
     let rounding = ROUNDING * (largest(points) + largest(&[start.inverse().apply(&points[0])]));
     let mut state = State::new(points, search, start);
@@ -225,7 +226,7 @@ pub(super) fn iterate(
             let alignment = SurfaceAlignment { transform, iterations, rms, points, pairs };
             return Ok(Ended { alignment, change, has_converged });
         }
-        if cancelled() {
+        if progress.is_cancelled() {
             return Err(AlignmentError::Cancelled { iterations });
         }
         iterations += 1;

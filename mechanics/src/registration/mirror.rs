@@ -9,6 +9,7 @@ use nalgebra::Matrix3;
 use super::closest_point::{StopRule, iterate, points_in_mask};
 use super::{AlignmentError, Place, RigidTransform};
 use crate::mesh::{SurfaceSearch, TriangleSurface, Vector, area_sampling};
+use crate::progress::Unobserved;
 
 const POINTS: usize = 1000;
 const STOP: StopRule = StopRule { relative_change: 1e-3, max_iterations: 40 };
@@ -41,12 +42,12 @@ pub fn check_mirror(
 ) -> Result<MirrorCheck, AlignmentError> {
     let points = points_in_mask(fixed, mask, POINTS)?;
     let search = SurfaceSearch::new(moving)?;
-    let plain = iterate(&points, &search, *start, &STOP, &|| false)?.alignment;
+    let plain = iterate(&points, &search, *start, &STOP, &Unobserved)?.alignment;
     let mut mirrored_rms = f64::INFINITY;
     for mirror in mirrors(moving) {
         let start = mirror.then(start);
         // A mirror image that lies nowhere near is no better, and no error.
-        let Ok(ended) = iterate(&points, &search, start, &STOP, &|| false) else { continue };
+        let Ok(ended) = iterate(&points, &search, start, &STOP, &Unobserved) else { continue };
         // Few close pairs at a border would fit any shape.
         if 10 * ended.alignment.pairs >= 8 * plain.pairs {
             mirrored_rms = mirrored_rms.min(ended.alignment.rms);

@@ -8,11 +8,11 @@ use super::linearity::{self, Linearity, joined_nodes};
 use super::{COLUMNS_PER_SEGMENT, Response, ResponseSegment, superposition};
 use crate::boundary::NodeClass;
 use crate::mesh::Vector;
-use crate::model::problem::{Equilibrium, LoadCase};
+use crate::model::problem::{Equilibrium, LoadCase, ModelError};
 use crate::plan::RigidMovement;
-use crate::prediction::{
-    Followed, Method, Phase, PredictionError, Progress, Scene, SolverReport, report,
-};
+use crate::prediction::{Method, Scene};
+use crate::progress::{Phase, Progress};
+use crate::solver::{SolveReport, SolverError};
 
 /// Bytes of one node in one load case: its force, its displacement, its unknowns.
 const BYTES_OF_NODE: f64 = 72.0;
@@ -27,7 +27,9 @@ pub struct Columns {
     pub values: Vec<f64>,
     pub linearity: Linearity,
     /// Of the column that took most iterations; the residual is the largest of all.
-    pub solver: SolverReport,
+    pub solver: SolveReport,
+    /// The elements used.
+    pub elements: Vec<String>,
 }
 
 /// Why there is no response.
@@ -50,7 +52,7 @@ pub enum ResponseError {
     )]
     OtherMethod,
     #[error(transparent)]
-    Prediction(#[from] PredictionError),
+    Prediction(#[from] ModelError),
 }
 
 /// The numbers of the named segments in the scene, in the order of the scene; all where none is named.
@@ -106,9 +108,7 @@ pub fn build(
         .collect();
 
     // 2. The tissue for each of them.
-    let wanted = scene.settings.relative_residual;
-    let solved =
-        scene.solve_cases(&cases, &Followed { progress, wanted }).map_err(PredictionError::from)?;
+    let solved = scene.solve_cases(&cases, progress)?;
 
     // 3. Its skin.
     progress.phase(Phase::Surface);
@@ -120,7 +120,8 @@ pub fn build(
         }
     }
     let linearity = linearity::of_scene(scene, &chosen);
-    Ok(Columns { segments, nodes, values, linearity, solver: hardest(scene, &solved)? })
+    let (solver, elements) = (hardest(&solved)?, scene.elements());
+    Ok(Columns { segments, nodes, values, linearity, solver, elements })
 }
 
 impl Columns {
@@ -173,21 +174,20 @@ fn held_values(scene: &Scene, segment: usize, centre: &Vector, unit: usize) -> V
 }
 
 /// All load cases stand in memory together.
-fn check_memory(scene: &Scene, columns: usize) -> Result<(), PredictionError> {
+fn check_memory(scene: &Scene, columns: usize) -> Result<(), ModelError> {
     let needed_mb = columns as f64 * scene.mesh.nodes.len() as f64 * BYTES_OF_NODE / 1e6;
     let allowed_mb = scene.settings.memory_mb;
     match needed_mb > allowed_mb {
-        true => Err(PredictionError::OverBudget { needed_mb, allowed_mb }),
+        true => Err(SolverError::OverBudget { needed_mb, allowed_mb }.into()),
         false => Ok(()),
     }
 }
 
 /// The report of the column that took most iterations, with the largest residual of all.
-fn hardest(scene: &Scene, solved: &[Equilibrium]) -> Result<SolverReport, ResponseError> {
-    let reports = solved.iter().map(|equilibrium| report(scene, equilibrium));
-    let residuals = solved.iter().map(|equilibrium| equilibrium.convergence.relative_residual);
-    let largest = residuals.fold(0.0, f64::max);
-    let hardest = reports.max_by_key(|report| report.iterations);
-    let hardest = hardest.ok_or(ResponseError::NoSegments)?;
-    Ok(SolverReport { relative_residual: largest, ..hardest })
+fn hardest(solved: &[Equilibrium]) -> Result<SolveReport, ResponseError> {
+    let reports = || solved.iter().map(|equilibrium| &equilibrium.solver);
+    let largest = reports().map(|report| report.relative_residual).fold(0.0, f64::max);
+    let hardest = reports().max_by_key(|report| report.iterations);
+    let hardest = hardest.ok_or(ResponseError::NoSegments)?.clone();
+    Ok(SolveReport { relative_residual: largest, ..hardest })
 }

@@ -13,7 +13,8 @@ use faer::{Conj, MatMut, Par, Side};
 use super::lanes::Lanes;
 use super::ordering::Ordering;
 use super::vector::{column, interleave, norm};
-use super::{Solution, SolverError, System, Tolerance, Unknowns, Watch};
+use super::{Solution, SolveReport, SolverError, System, Tolerance, Unknowns, tell};
+use crate::progress::{Progress, Unobserved};
 
 /// Corrections after which a residual that is still too large will stay so.
 const MOST_REFINEMENTS: usize = 6;
@@ -27,10 +28,10 @@ pub fn solve(
     ordering: &Ordering,
     right_hand_sides: &[Unknowns],
     tolerance: &Tolerance,
-    watch: Watch,
+    progress: &dyn Progress,
 ) -> Result<Vec<Solution>, SolverError> {
-    let tolerance = (tolerance, watch);
-    factorised(system, ordering, tolerance, |solve| right_hand_sides.iter().map(solve).collect())
+    let each = |solve: Solve| right_hand_sides.iter().map(solve).collect();
+    factorised(system, ordering, tolerance, progress, each)
 }
 
 /// Factorises once for right-hand sides of which each follows from the solution before.
@@ -40,13 +41,14 @@ pub fn with_factor<T>(
     tolerance: &Tolerance,
     work: impl FnOnce(Solve) -> Result<T, SolverError>,
 ) -> Result<T, SolverError> {
-    factorised(system, ordering, (tolerance, &|_, _| true), work)
+    factorised(system, ordering, tolerance, &Unobserved, work)
 }
 
 fn factorised<T>(
     system: &System,
     ordering: &Ordering,
-    (tolerance, watch): (&Tolerance, Watch),
+    tolerance: &Tolerance,
+    progress: &dyn Progress,
     work: impl FnOnce(Solve) -> Result<T, SolverError>,
 ) -> Result<T, SolverError> {
     let free = FreeUnknowns::new(system, ordering);
@@ -55,7 +57,7 @@ fn factorised<T>(
     let mut values = vec![0.0; symbolic.len_val()];
     let factor = columns.factorise(&symbolic, &mut values, &free)?;
     let refined = Refined { system, free: &free, factor: &factor };
-    work(&|right_hand_side| refined.solve(right_hand_side, tolerance.relative_residual, watch))
+    work(&|right_hand_side| refined.solve(right_hand_side, tolerance.relative_residual, progress))
 }
 
 /// A factor and the system whose residual refines what it solves.
@@ -70,7 +72,7 @@ impl Refined<'_> {
         &self,
         right_hand_side: &Unknowns,
         wanted: f64,
-        watch: Watch,
+        progress: &dyn Progress,
     ) -> Result<Solution, SolverError> {
         let right_hand_side = interleave::<1, 3>(std::slice::from_ref(right_hand_side));
         let [scale] = norm(right_hand_side.as_flattened());
@@ -90,18 +92,21 @@ impl Refined<'_> {
                 return Err(SolverError::NotFinite);
             }
             history.push(relative);
-            if !watch(history.len() - 1, relative) {
-                return Err(SolverError::Stopped);
-            }
+            tell(progress, history.len() - 1, relative, wanted)?;
         }
         Ok(Solution {
             unknowns: column(&x, 0),
-            method: "cholesky",
-            preconditioner: "none",
-            why: String::new(),
-            history: Vec::new(),
-            iterations: history.len() - 1,
-            relative_residual: history[history.len() - 1],
+            report: SolveReport {
+                method: "cholesky",
+                preconditioner: "none",
+                why: String::new(),
+                unknowns: self.free.unknown.len(),
+                iterations: history.len() - 1,
+                relative_residual: history[history.len() - 1],
+                wanted_residual: wanted,
+                history: Vec::new(),
+                steps: 1,
+            },
         })
     }
 }
@@ -184,7 +189,7 @@ impl FreeUnknowns {
     }
 }
 
-/// Compressed columns of a lower triangle.
+/// Compressed columns of a lower triangle, with the `usize` of faer, which reads them as they are.
 struct Columns {
     starts: Vec<usize>,
     rows: Vec<usize>,
@@ -228,8 +233,8 @@ impl Columns {
                 Default::default(),
             )
             .map_err(|LltError::NonPositivePivot { index }| {
-                let (row, _) = free.unknown.get(index).copied().unwrap_or_default();
-                SolverError::NotPositiveDefinite { row }
+                let (node, _) = free.unknown.get(index).copied().unwrap_or_default();
+                SolverError::Singular { node }
             })
     }
 

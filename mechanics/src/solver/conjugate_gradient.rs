@@ -9,7 +9,8 @@
 use super::lanes::{Lanes, MOST_LANES};
 use super::multigrid::{Multigrid, Workspace};
 use super::vector::{advance, column, dot, interleave, largest, norm, ratio, turn};
-use super::{Solution, SolverError, System, Tolerance, Unknowns, Watch};
+use super::{Solution, SolveReport, SolverError, System, Tolerance, Unknowns, tell};
+use crate::progress::Progress;
 
 /// Iterations without a new smallest residual after which no more progress is expected.
 const PATIENCE: usize = 2000;
@@ -25,15 +26,15 @@ pub fn solve(
     system: &System,
     right_hand_sides: &[Unknowns],
     tolerance: &Tolerance,
-    watch: Watch,
+    progress: &dyn Progress,
 ) -> Result<Vec<Solution>, SolverError> {
     let multigrid = Multigrid::new(system);
     let mut solutions = Vec::with_capacity(right_hand_sides.len());
     for columns in right_hand_sides.chunks(MOST_LANES) {
         solutions.extend(match columns.len() {
-            1 => Run::<1>::new(system, &multigrid, columns).solve(tolerance, watch)?,
-            2..=4 => Run::<4>::new(system, &multigrid, columns).solve(tolerance, watch)?,
-            _ => Run::<MOST_LANES>::new(system, &multigrid, columns).solve(tolerance, watch)?,
+            1 => Run::<1>::new(system, &multigrid, columns).solve(tolerance, progress)?,
+            2..=4 => Run::<4>::new(system, &multigrid, columns).solve(tolerance, progress)?,
+            _ => Run::<MOST_LANES>::new(system, &multigrid, columns).solve(tolerance, progress)?,
         });
     }
     Ok(solutions)
@@ -79,7 +80,11 @@ impl<'a, const N: usize> Run<'a, N> {
         }
     }
 
-    fn solve(mut self, tolerance: &Tolerance, watch: Watch) -> Result<Vec<Solution>, SolverError> {
+    fn solve(
+        mut self,
+        tolerance: &Tolerance,
+        progress: &dyn Progress,
+    ) -> Result<Vec<Solution>, SolverError> {
         let wanted = tolerance.relative_residual;
         for restart in 0..=MOST_RESTARTS {
             match restart {
@@ -88,9 +93,9 @@ impl<'a, const N: usize> Run<'a, N> {
             }
             let residuals = self.relative_residuals();
             if largest(&residuals) <= wanted {
-                return Ok(self.solutions(&residuals));
+                return Ok(self.solutions(&residuals, wanted));
             }
-            self.iterate(wanted, watch)?;
+            self.iterate(wanted, progress)?;
         }
         Err(self.not_converged(wanted))
     }
@@ -103,7 +108,7 @@ impl<'a, const N: usize> Run<'a, N> {
         std::array::from_fn(|n| ratio(norms[n], self.scale[n]))
     }
 
-    fn iterate(&mut self, wanted: f64, watch: Watch) -> Result<(), SolverError> {
+    fn iterate(&mut self, wanted: f64, progress: &dyn Progress) -> Result<(), SolverError> {
         let correction = self.multigrid.apply(&self.r, &mut self.workspace);
         let z = correction.values.as_flattened();
         turn(self.p.as_flattened_mut(), &[0.0; N], z, &correction.scale);
@@ -125,9 +130,7 @@ impl<'a, const N: usize> Run<'a, N> {
             residuals = self.relative(&norms);
             let residual = largest(&residuals);
             self.remember(residual);
-            if !watch(self.iterations, residual) {
-                return Err(SolverError::Stopped);
-            }
+            tell(progress, self.iterations, residual, wanted)?;
             if residual <= wanted {
                 return Ok(());
             }
@@ -174,16 +177,21 @@ impl<'a, const N: usize> Run<'a, N> {
         }
     }
 
-    fn solutions(self, residuals: &[f64; N]) -> Vec<Solution> {
+    fn solutions(self, residuals: &[f64; N], wanted: f64) -> Vec<Solution> {
         (0..self.columns)
             .map(|n| Solution {
-                relative_residual: residuals[n],
                 unknowns: column(&self.x, n),
-                method: "conjugate_gradient",
-                preconditioner: "multigrid",
-                why: String::new(),
-                history: Vec::new(),
-                iterations: self.own_iterations[n],
+                report: SolveReport {
+                    method: "conjugate_gradient",
+                    preconditioner: "multigrid",
+                    why: String::new(),
+                    unknowns: self.system.free_unknowns(),
+                    iterations: self.own_iterations[n],
+                    relative_residual: residuals[n],
+                    wanted_residual: wanted,
+                    history: Vec::new(),
+                    steps: 1,
+                },
             })
             .collect()
     }

@@ -12,6 +12,7 @@ use super::cliques::{Cliques, CliquesOfRow};
 use super::lanes::{Lanes, Real, add_product, add_transposed};
 use super::layout::Layout;
 use super::vectorised::vectorised;
+use crate::rows::Rows;
 
 /// Rows of a pattern that one thread makes at a time.
 const ROW_CHUNK: usize = 2048;
@@ -19,14 +20,13 @@ const ROW_CHUNK: usize = 2048;
 /// The columns below the diagonal of each row, ascending.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pattern {
-    starts: Vec<u32>,
-    columns: Vec<u32>,
+    columns: Rows<u32>,
 }
 
 impl Pattern {
     /// Couples all members of each clique.
     pub fn new(cliques: &Cliques, around: &CliquesOfRow, rows: usize) -> Self {
-        let chunks: Vec<(Vec<u32>, Vec<u32>)> = (0..rows.div_ceil(ROW_CHUNK))
+        let chunks: Vec<Rows<u32>> = (0..rows.div_ceil(ROW_CHUNK))
             .into_par_iter()
             .map_init(
                 || vec![u32::MAX; rows],
@@ -36,20 +36,11 @@ impl Pattern {
                 },
             )
             .collect();
-        let mut starts = Vec::with_capacity(rows + 1);
-        starts.push(0);
-        let mut columns = Vec::with_capacity(chunks.iter().map(|(_, c)| c.len()).sum());
-        for (counts, chunk) in chunks {
-            for count in counts {
-                starts.push(starts[starts.len() - 1] + count);
-            }
-            columns.extend(chunk);
-        }
-        Pattern { starts, columns }
+        Pattern { columns: Rows::joined(chunks) }
     }
 
     pub fn rows(&self) -> usize {
-        self.starts.len() - 1
+        self.columns.len()
     }
 
     /// Whether there is a block for a row and a column below it.
@@ -59,50 +50,46 @@ impl Pattern {
 
     /// Where the blocks of a row lie.
     pub fn range(&self, row: usize) -> Range<usize> {
-        self.starts[row] as usize..self.starts[row + 1] as usize
+        self.columns.range(row)
     }
 
     pub fn columns(&self, row: usize) -> &[u32] {
-        &self.columns[self.range(row)]
+        self.columns.row(row)
     }
 
+    /// The number of blocks below the diagonal.
     pub fn len(&self) -> usize {
-        self.columns.len()
+        self.columns.entries().len()
     }
 
     pub fn is_empty(&self) -> bool {
-        self.columns.is_empty()
-    }
-
-    fn megabytes(&self) -> f64 {
-        4.0 * (self.starts.len() + self.columns.len()) as f64 / 1e6
+        self.len() == 0
     }
 }
 
-/// The number of lower columns of each row in a range, and the columns. `seen` is scratch that holds
-/// no row of the range.
+/// The lower columns of each row in a range. `seen` is scratch that holds no row of the range.
 fn lower_columns(
     cliques: &Cliques,
     around: &CliquesOfRow,
     range: Range<usize>,
     seen: &mut [u32],
-) -> (Vec<u32>, Vec<u32>) {
-    let mut counts = Vec::with_capacity(range.len());
-    let mut columns = Vec::with_capacity(8 * range.len());
+) -> Rows<u32> {
+    let mut rows = Rows::with_room(range.len(), 8 * range.len());
+    let mut columns = Vec::new();
     for row in range {
-        let begin = columns.len();
-        for &clique in around.of(row) {
-            for &column in cliques.members(clique as usize) {
+        columns.clear();
+        for &clique in around.row(row) {
+            for &column in cliques.row(clique as usize) {
                 if (column as usize) < row && seen[column as usize] != row as u32 {
                     seen[column as usize] = row as u32;
                     columns.push(column);
                 }
             }
         }
-        columns[begin..].sort_unstable();
-        counts.push((columns.len() - begin) as u32);
+        columns.sort_unstable();
+        rows.push(columns.iter().copied());
     }
-    (counts, columns)
+    rows
 }
 
 /// Diagonal and strictly lower blocks, row-major.
@@ -140,9 +127,9 @@ impl<T: Real, const B: usize> HalfMatrix<T, B> {
         let mut chunks = Vec::new();
         for (chunk, diagonal) in self.diagonal.chunks_mut(rows).enumerate() {
             let first = chunk * rows;
-            let end = self.pattern.starts[first + diagonal.len()];
-            let count = end - self.pattern.starts[first];
-            let (own, rest) = lower.split_at_mut(count as usize);
+            let end = self.pattern.range(first + diagonal.len() - 1).end;
+            let count = end - self.pattern.range(first).start;
+            let (own, rest) = lower.split_at_mut(count);
             lower = rest;
             chunks.push(RowChunk { first, diagonal, lower: own });
         }
@@ -151,7 +138,7 @@ impl<T: Real, const B: usize> HalfMatrix<T, B> {
 
     pub fn megabytes(&self) -> f64 {
         let blocks = (self.diagonal.len() + self.lower.len()) * B * B * size_of::<T>();
-        blocks as f64 / 1e6 + self.pattern.megabytes()
+        blocks as f64 / 1e6 + self.pattern.columns.bytes() as f64 / 1e6
     }
 
     /// The columns below the diagonal of a row and their blocks.
@@ -222,9 +209,7 @@ impl<T: Real, const B: usize> HalfMatrix<T, B> {
             let mut sum = [[T::default(); N]; B];
             add_product(&mut sum, &self.diagonal[row], &own);
             let range = self.pattern.range(row);
-            for (&column, block) in
-                self.pattern.columns[range.clone()].iter().zip(&self.lower[range])
-            {
+            for (&column, block) in self.pattern.columns(row).iter().zip(&self.lower[range]) {
                 add_product(&mut sum, block, &x[column as usize]);
                 add_transposed(&mut product[column as usize - first], block, &own);
             }

@@ -99,7 +99,7 @@ fn breadth_first(
     let mut is_met = vec![false; cliques.len()];
     let mut order: Vec<u32> = Vec::with_capacity(rows);
     let mut clique_order = Vec::with_capacity(cliques.len());
-    let has_clique = |row: &usize| !around.of(*row).is_empty();
+    let has_clique = |row: &usize| !around.row(*row).is_empty();
     for first in [start].into_iter().chain(0..rows).filter(has_clique) {
         if std::mem::replace(&mut seen[first], true) {
             continue;
@@ -107,13 +107,13 @@ fn breadth_first(
         let mut next = order.len();
         order.push(first as u32);
         while next < order.len() {
-            for &clique in around.of(order[next] as usize) {
+            for &clique in around.row(order[next] as usize) {
                 // Each clique is opened once: the first of its rows reaches all others.
                 if std::mem::replace(&mut is_met[clique as usize], true) {
                     continue;
                 }
                 clique_order.push(clique);
-                for &row in cliques.members(clique as usize) {
+                for &row in cliques.row(clique as usize) {
                     if !std::mem::replace(&mut seen[row as usize], true) {
                         order.push(row);
                     }
@@ -137,7 +137,7 @@ fn parts_of_rows(cliques: &Cliques, free_order: &[u32], rows: usize, count: usiz
     }
     let cut = part_of.clone();
     for clique in 0..cliques.len() {
-        let members = cliques.members(clique);
+        let members = cliques.row(clique);
         let first = members.iter().map(|&row| cut[row as usize]).min().unwrap_or_default();
         for &row in members {
             if cut[row as usize] != u8::MAX && cut[row as usize] > first {

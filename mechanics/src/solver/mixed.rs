@@ -20,7 +20,10 @@ use super::lanes::{Lanes, MOST_LANES};
 use super::multigrid::{Multigrid, Workspace};
 use super::sparse_rows::SparseRows;
 use super::vector::{advance, column, dot, interleave, largest, norm, ratio, scale, subtract_all};
-use super::{Solution, SolverError, System, Tolerance, Unknowns, Watch, nothing_to_solve};
+use super::{
+    Solution, SolveReport, SolverError, System, Tolerance, Unknowns, nothing_to_solve, tell,
+};
+use crate::progress::Progress;
 
 /// Directions to which a new one is made conjugate: of 2, 4, 8 and all, four take within one iteration of
 /// all on shells, and each costs as much as a quarter of a product.
@@ -51,6 +54,12 @@ pub struct MixedSystem<'a> {
     /// K.
     pub stiffness: &'a System,
     pub coupling: &'a Coupling,
+}
+
+impl MixedSystem<'_> {
+    fn free_unknowns(&self) -> usize {
+        self.stiffness.free_unknowns() + self.coupling.mass.len()
+    }
 }
 
 /// f and h.
@@ -93,7 +102,7 @@ pub fn solve(
     system: &MixedSystem,
     right_hand_sides: &[MixedRightHandSide],
     tolerance: &Tolerance,
-    watch: Watch,
+    progress: &dyn Progress,
 ) -> Result<Vec<MixedSolution>, SolverError> {
     let is_zero = |right: &MixedRightHandSide| {
         let mut values = right.forces.as_flattened().iter().chain(right.volumes.as_flattened());
@@ -101,8 +110,9 @@ pub fn solve(
     };
     if right_hand_sides.iter().all(is_zero) {
         let pressures = vec![[0.0]; system.coupling.mass.len()];
+        let at_rest = SolveReport::at_rest(system.free_unknowns(), tolerance.relative_residual);
         let rest = |right: &MixedRightHandSide| MixedSolution {
-            solution: nothing_to_solve(right.forces.len()),
+            solution: nothing_to_solve(&right.forces, &at_rest),
             pressures: pressures.clone(),
         };
         return Ok(right_hand_sides.iter().map(rest).collect());
@@ -110,14 +120,14 @@ pub fn solve(
     let multigrid = Multigrid::new(system.stiffness);
     let wanted = tolerance.relative_residual;
     let alone = |right: &MixedRightHandSide| {
-        Run::<1>::new(system, &multigrid, std::slice::from_ref(right)).solve(wanted, watch)
+        Run::<1>::new(system, &multigrid, std::slice::from_ref(right)).solve(wanted, progress)
     };
     let mut solutions = Vec::with_capacity(right_hand_sides.len());
     for chunk in right_hand_sides.chunks(MOST_LANES) {
         let together = match chunk.len() {
             1 => alone(&chunk[0]),
-            2..=4 => Run::<4>::new(system, &multigrid, chunk).solve(wanted, watch),
-            _ => Run::<MOST_LANES>::new(system, &multigrid, chunk).solve(wanted, watch),
+            2..=4 => Run::<4>::new(system, &multigrid, chunk).solve(wanted, progress),
+            _ => Run::<MOST_LANES>::new(system, &multigrid, chunk).solve(wanted, progress),
         };
         match together {
             // Alone each may keep more directions.
@@ -200,7 +210,11 @@ impl<'a, const N: usize> Run<'a, N> {
         }
     }
 
-    fn solve(mut self, wanted: f64, watch: Watch) -> Result<Vec<MixedSolution>, SolverError> {
+    fn solve(
+        mut self,
+        wanted: f64,
+        progress: &dyn Progress,
+    ) -> Result<Vec<MixedSolution>, SolverError> {
         if self.scale.iter().any(|scale| !scale.is_finite()) {
             return Err(SolverError::NotFinite);
         }
@@ -209,9 +223,9 @@ impl<'a, const N: usize> Run<'a, N> {
                 self.restart();
             }
             if largest(&self.relative_residuals()) <= wanted {
-                return Ok(self.solutions());
+                return Ok(self.solutions(wanted));
             }
-            self.iterate(wanted, watch)?;
+            self.iterate(wanted, progress)?;
         }
         Err(self.not_converged(wanted))
     }
@@ -288,7 +302,7 @@ impl<'a, const N: usize> Run<'a, N> {
     }
 
     /// One step after the other until the recursive residual is met.
-    fn iterate(&mut self, wanted: f64, watch: Watch) -> Result<(), SolverError> {
+    fn iterate(&mut self, wanted: f64, progress: &dyn Progress) -> Result<(), SolverError> {
         let mut residuals = self.relative_residuals();
         let (mut mark, mut marked_at) = (largest(&residuals), self.iterations);
         let mut stands_still = [false; N];
@@ -314,9 +328,7 @@ impl<'a, const N: usize> Run<'a, N> {
             if self.iterations <= 100 || self.iterations.is_multiple_of(10) {
                 self.history.push(residual);
             }
-            if !watch(self.iterations, residual) {
-                return Err(SolverError::Stopped);
-            }
+            tell(progress, self.iterations, residual, wanted)?;
             if residual <= wanted {
                 return Ok(());
             }
@@ -373,18 +385,23 @@ impl<'a, const N: usize> Run<'a, N> {
         }
     }
 
-    fn solutions(self) -> Vec<MixedSolution> {
+    fn solutions(self, wanted: f64) -> Vec<MixedSolution> {
         let residuals = self.relative_residuals();
         let (u, p) = self.x.split_at(self.displacements());
         let (u, p): (&[Lanes<f64, 3, N>], &[[[f64; N]; 1]]) = (u.as_chunks().0, p.as_chunks().0);
         let solution = |n: usize| Solution {
-            relative_residual: residuals[n],
             unknowns: column(u, n),
-            method: if self.scale[n] == 0.0 { "none" } else { "conjugate_residual" },
-            preconditioner: "multigrid and pressure mass",
-            why: format!("{} pressures make the system indefinite", p.len()),
-            iterations: self.own_iterations[n],
-            history: Vec::new(),
+            report: SolveReport {
+                method: if self.scale[n] == 0.0 { "none" } else { "conjugate_residual" },
+                preconditioner: "multigrid and pressure mass",
+                why: format!("{} pressures make the system indefinite", p.len()),
+                unknowns: self.system.free_unknowns(),
+                iterations: self.own_iterations[n],
+                relative_residual: residuals[n],
+                wanted_residual: wanted,
+                history: Vec::new(),
+                steps: 1,
+            },
         };
         (0..self.columns)
             .map(|n| MixedSolution { solution: solution(n), pressures: column(p, n) })

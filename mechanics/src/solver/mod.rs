@@ -10,13 +10,17 @@ pub mod layout;
 pub mod mixed;
 pub mod multigrid;
 pub mod ordering;
+mod report;
 pub mod sparse_rows;
 pub mod stationary;
 mod system;
 mod vector;
 mod vectorised;
 pub use half_matrix::HalfMatrix;
-pub use system::{Block, PartlyHeld, Solution, SolverError, System, Tolerance, Unknowns, Watch};
+pub use report::SolveReport;
+pub use system::{Block, PartlyHeld, Solution, SolverError, System, Tolerance, Unknowns, tell};
+
+use crate::progress::Progress;
 
 /// Up to this many rows a factorisation takes about as long as iterations do, or less.
 const CHOLESKY_ROWS: usize = 2_500;
@@ -34,13 +38,14 @@ pub fn solve(
     system: &System,
     right_hand_sides: &[Unknowns],
     tolerance: &Tolerance,
-    watch: Watch,
+    progress: &dyn Progress,
 ) -> Result<Vec<Solution>, SolverError> {
     if right_hand_sides.iter().flatten().flatten().any(|value| !value.is_finite()) {
         return Err(SolverError::NotFinite);
     }
     if right_hand_sides.iter().flatten().flatten().all(|value| *value == 0.0) {
-        return Ok(right_hand_sides.iter().map(|f| nothing_to_solve(f.len())).collect());
+        let at_rest = SolveReport::at_rest(system.free_unknowns(), tolerance.relative_residual);
+        return Ok(right_hand_sides.iter().map(|f| nothing_to_solve(f, &at_rest)).collect());
     }
     let iterations_mb = system.megabytes();
     if iterations_mb > tolerance.memory_mb {
@@ -52,12 +57,12 @@ pub fn solve(
         let ordering = ordering::minimum_degree(system);
         if ordering.factor_mb + iterations_mb <= tolerance.memory_mb {
             let why = format!("{rows} rows are few enough to factorise");
-            let solved = cholesky::solve(system, &ordering, right_hand_sides, tolerance, watch);
+            let solved = cholesky::solve(system, &ordering, right_hand_sides, tolerance, progress);
             return solved.map(|solutions| because(solutions, &why));
         }
     }
     let why = format!("{rows} rows are cheaper to iterate than to factorise");
-    match conjugate_gradient::solve(system, right_hand_sides, tolerance, watch) {
+    match conjugate_gradient::solve(system, right_hand_sides, tolerance, progress) {
         Err(stalled @ SolverError::NotConverged { .. }) if rows <= ORDERING_ROWS => {
             let ordering = ordering::minimum_degree(system);
             let fits = ordering.factor_mb + iterations_mb <= tolerance.memory_mb;
@@ -65,7 +70,7 @@ pub fn solve(
                 return Err(stalled);
             }
             let why = format!("conjugate gradients stalled: {stalled}");
-            cholesky::solve(system, &ordering, right_hand_sides, tolerance, watch)
+            cholesky::solve(system, &ordering, right_hand_sides, tolerance, progress)
                 .map(|solutions| because(solutions, &why))
         }
         other => other.map(|solutions| because(solutions, &why)),
@@ -73,18 +78,10 @@ pub fn solve(
 }
 
 fn because(mut solutions: Vec<Solution>, why: &str) -> Vec<Solution> {
-    solutions.iter_mut().for_each(|solution| why.clone_into(&mut solution.why));
+    solutions.iter_mut().for_each(|solution| why.clone_into(&mut solution.report.why));
     solutions
 }
 
-fn nothing_to_solve(rows: usize) -> Solution {
-    Solution {
-        unknowns: vec![[0.0; 3]; rows],
-        method: "none",
-        preconditioner: "none",
-        why: "nothing moves and nothing acts".to_owned(),
-        iterations: 0,
-        relative_residual: 0.0,
-        history: Vec::new(),
-    }
+fn nothing_to_solve(right_hand_side: &Unknowns, at_rest: &SolveReport) -> Solution {
+    Solution { unknowns: vec![[0.0; 3]; right_hand_side.len()], report: at_rest.clone() }
 }

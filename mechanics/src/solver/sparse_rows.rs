@@ -2,18 +2,20 @@
 
 use rayon::prelude::*;
 
-use super::cliques::{Cliques, CliquesOfRow};
+use super::cliques::Cliques;
 use super::lanes::Lanes;
 use super::vectorised::vectorised;
+use crate::rows::Rows;
 
 /// Rows handled by one thread at a time.
 const ROW_CHUNK: usize = 1024;
 
-/// A sparse matrix, columns ascending in each row.
+/// A sparse matrix, columns ascending in each row. Values stand in an array of their own: beside its column a vector
+/// would be padded, and a product reads them in one stream.
 #[derive(Clone, Debug)]
 pub struct SparseRows<T> {
-    start: Vec<u32>,
-    columns: Vec<u32>,
+    columns: Rows<u32>,
+    /// In the order of the columns.
     values: Vec<T>,
 }
 
@@ -50,14 +52,14 @@ impl<T: Entry> SparseRows<T> {
     ) -> Self {
         let mut cliques = Cliques::default();
         couplings.rows.iter().for_each(|rows| cliques.push(*rows));
-        let around = CliquesOfRow::new(&cliques, row_count);
+        let around = cliques.inverted(row_count);
         let chunks: Vec<Vec<Vec<(u32, T)>>> = (0..row_count.div_ceil(ROW_CHUNK))
             .into_par_iter()
             .map(|chunk| {
                 let rows = chunk * ROW_CHUNK..((chunk + 1) * ROW_CHUNK).min(row_count);
                 rows.map(|row| {
                     let mut entries: Vec<(u32, T)> = Vec::with_capacity(24);
-                    for &cell in around.of(row) {
+                    for &cell in around.row(row) {
                         let cell = cell as usize;
                         let mut named = couplings.rows[cell].iter();
                         let Some(local) = named.position(|&named| named as usize == row) else {
@@ -77,28 +79,27 @@ impl<T: Entry> SparseRows<T> {
                 .collect()
             })
             .collect();
-        let mut matrix = SparseRows { start: vec![0], columns: Vec::new(), values: Vec::new() };
+        let mut matrix = SparseRows { columns: Rows::default(), values: Vec::new() };
         for entries in chunks.into_iter().flatten() {
-            matrix.columns.extend(entries.iter().map(|(column, _)| column));
+            matrix.columns.push(entries.iter().map(|(column, _)| *column));
             matrix.values.extend(entries.iter().map(|(_, value)| value));
-            matrix.start.push(matrix.columns.len() as u32);
         }
         matrix
     }
 
     pub fn rows(&self) -> usize {
-        self.start.len() - 1
+        self.columns.len()
     }
 
     /// The columns of a row and their values.
     pub fn row(&self, row: usize) -> impl Iterator<Item = (usize, &T)> {
-        let range = self.start[row] as usize..self.start[row + 1] as usize;
-        self.columns[range.clone()].iter().map(|&c| c as usize).zip(&self.values[range])
+        let values = &self.values[self.columns.range(row)];
+        self.columns.row(row).iter().map(|&c| c as usize).zip(values)
     }
 
     /// Memory in MB.
     pub fn megabytes(&self) -> f64 {
-        (self.columns.len() * (4 + size_of::<T>()) + self.start.len() * 4) as f64 / 1e6
+        (self.columns.bytes() + self.values.len() * size_of::<T>()) as f64 / 1e6
     }
 }
 

@@ -19,7 +19,10 @@ use rayon::prelude::*;
 use super::lanes::{Lanes, add_product, add_transposed, negated};
 use super::vector::{column, dot, interleave, norm, ratio};
 use super::vectorised::vectorised;
-use super::{Block, Solution, SolverError, System, Tolerance, Unknowns, Watch, nothing_to_solve};
+use super::{
+    Block, Solution, SolveReport, SolverError, System, Tolerance, Unknowns, nothing_to_solve, tell,
+};
+use crate::progress::{Progress, Unobserved};
 
 /// The share of its limit that omega is set to: the power iteration sees lambda_max from below.
 const DAMPING: f64 = 0.95;
@@ -65,13 +68,15 @@ pub fn solve(
     right_hand_side: &Unknowns,
     stationary: &Stationary,
     tolerance: &Tolerance,
-    watch: Watch,
+    progress: &dyn Progress,
 ) -> Result<Solution, SolverError> {
     if right_hand_side.as_flattened().iter().any(|value| !value.is_finite()) {
         return Err(SolverError::NotFinite);
     }
+    let wanted = tolerance.relative_residual;
     if right_hand_side.as_flattened().iter().all(|value| *value == 0.0) {
-        return Ok(nothing_to_solve(right_hand_side.len()));
+        let at_rest = SolveReport::at_rest(system.free_unknowns(), wanted);
+        return Ok(nothing_to_solve(right_hand_side, &at_rest));
     }
     check_memory(system, tolerance.memory_mb)?;
     let inverse = inverse_diagonal(system)?;
@@ -80,25 +85,24 @@ pub fn solve(
     match stationary.iteration {
         Iteration::GaussSeidel => {
             let mut sweep = GaussSeidel::new(system, &inverse, &right_hand_side);
-            run.iterate(stationary, tolerance, watch, |run| {
+            run.iterate(stationary, tolerance, progress, |run| {
                 sweep.sweep(&mut run.x, &mut run.residual)
             })?;
-            Ok(run.solution("gauss_seidel", String::new()))
+            Ok(run.solution("gauss_seidel", String::new(), wanted))
         }
         Iteration::Jacobi => {
-            run.iterate(stationary, tolerance, watch, |run| run.jacobi(1.0))?;
-            Ok(run.solution("jacobi", String::new()))
+            run.iterate(stationary, tolerance, progress, |run| run.jacobi(1.0))?;
+            Ok(run.solution("jacobi", String::new(), wanted))
         }
         Iteration::DampedJacobi => {
-            let keep_going = || watch(0, 1.0);
-            let lambda = power_iteration(system, &inverse, EIGENVALUE_GROWTH, &keep_going)
-                .ok_or(SolverError::Stopped)?;
+            tell(progress, 0, 1.0, wanted)?;
+            let lambda = power_iteration(system, &inverse, EIGENVALUE_GROWTH, progress)?;
             let omega = DAMPING * 2.0 / lambda;
-            run.iterate(stationary, tolerance, watch, |run| run.jacobi(omega))?;
+            run.iterate(stationary, tolerance, progress, |run| run.jacobi(omega))?;
             let why = format!(
                 "omega {omega:.3} is {DAMPING} of the limit 2 / lambda_max(D^-1 K), lambda_max {lambda:.3}; "
             );
-            Ok(run.solution("damped_jacobi", why))
+            Ok(run.solution("damped_jacobi", why, wanted))
         }
     }
 }
@@ -107,7 +111,7 @@ pub fn solve(
 /// share in an iteration: the limit of omega is 2 / lambda_max, and 1 - lambda_max the factor of plain Jacobi.
 pub fn largest_eigenvalue(system: &System, growth: f64) -> Result<f64, SolverError> {
     let inverse = inverse_diagonal(system)?;
-    power_iteration(system, &inverse, growth, &|| true).ok_or(SolverError::Stopped)
+    power_iteration(system, &inverse, growth, &Unobserved)
 }
 
 fn check_memory(system: &System, allowed_mb: f64) -> Result<(), SolverError> {
@@ -130,7 +134,7 @@ fn inverse_diagonal(system: &System) -> Result<Vec<Block>, SolverError> {
             true => f64::from(u8::from(i == j)),
             false => block[i][j],
         });
-        let factor = open.cholesky().ok_or(SolverError::NotPositiveDefinite { row })?;
+        let factor = open.cholesky().ok_or(SolverError::Singular { node: row })?;
         let inverse = factor.inverse();
         Ok(std::array::from_fn(|i| {
             std::array::from_fn(|j| if held[i] || held[j] { 0.0 } else { inverse[(i, j)] })
@@ -152,8 +156,8 @@ fn power_iteration(
     system: &System,
     inverse: &[Block],
     growth: f64,
-    keep_going: &dyn Fn() -> bool,
-) -> Option<f64> {
+    progress: &dyn Progress,
+) -> Result<f64, SolverError> {
     let value = |k: usize| [((k * 7919 + 13) % 1009) as f64 / 1009.0 - 0.5];
     let mut x: Rows =
         (0..system.layout.free).map(|row| std::array::from_fn(|c| value(3 * row + c))).collect();
@@ -161,8 +165,8 @@ fn power_iteration(
     let mut product = x.clone();
     let mut lambda = 0.0;
     for _ in 0..MOST_POWER_ITERATIONS {
-        if !keep_going() {
-            return None;
+        if progress.is_cancelled() {
+            return Err(SolverError::Stopped);
         }
         system.multiply(&x, &mut product);
         apply(inverse, &product, &mut x);
@@ -174,7 +178,7 @@ fn power_iteration(
             break;
         }
     }
-    Some(lambda)
+    Ok(lambda)
 }
 
 /// Iterates, residuals and what is told of them.
@@ -216,7 +220,7 @@ impl<'a> Run<'a> {
         &mut self,
         stationary: &Stationary,
         tolerance: &Tolerance,
-        watch: Watch,
+        progress: &dyn Progress,
         mut step: impl FnMut(&mut Self) -> f64,
     ) -> Result<(), SolverError> {
         let wanted = tolerance.relative_residual;
@@ -232,9 +236,7 @@ impl<'a> Run<'a> {
             }
             self.relative_residual = residual;
             self.history.push(residual);
-            if !watch(iteration, residual) {
-                return Err(SolverError::Stopped);
-            }
+            tell(progress, iteration, residual, wanted)?;
             if !residual.is_finite() || residual > DIVERGED {
                 return Err(self.diverged());
             }
@@ -269,16 +271,21 @@ impl<'a> Run<'a> {
         SolverError::Diverged { iterations, growth, residual: self.relative_residual, history }
     }
 
-    fn solution(self, method: &'static str, why: String) -> Solution {
+    fn solution(self, method: &'static str, why: String, wanted: f64) -> Solution {
         let change = self.change;
         Solution {
             unknowns: column(&self.x, 0),
-            method,
-            preconditioner: "block_diagonal",
-            why: format!("{why}the last iteration changed u by {change:.1e} of its length"),
-            iterations: self.history.len(),
-            relative_residual: self.relative_residual,
-            history: self.history,
+            report: SolveReport {
+                method,
+                preconditioner: "block_diagonal",
+                why: format!("{why}the last iteration changed u by {change:.1e} of its length"),
+                unknowns: self.system.free_unknowns(),
+                iterations: self.history.len(),
+                relative_residual: self.relative_residual,
+                wanted_residual: wanted,
+                history: self.history,
+                steps: 1,
+            },
         }
     }
 }

@@ -3,6 +3,8 @@
 use super::half_matrix::HalfMatrix;
 use super::lanes::{Lanes, Real};
 use super::layout::Layout;
+use super::report::SolveReport;
+use crate::progress::Progress;
 use nalgebra::{Matrix3, Vector3};
 use std::sync::Arc;
 
@@ -41,25 +43,15 @@ pub struct Tolerance {
     pub memory_mb: f64,
 }
 
-/// Told each iteration and its relative residual; answers whether to go on.
-pub type Watch<'a> = &'a dyn Fn(usize, f64) -> bool;
-
 /// A solution that meets its tolerance, and how it was found.
 #[derive(Clone, Debug)]
 pub struct Solution {
     /// For each free row.
     pub unknowns: Unknowns,
-    pub method: &'static str,
-    pub preconditioner: &'static str,
-    /// Why this method was chosen, with the numbers; empty where nothing chose.
-    pub why: String,
-    pub iterations: usize,
-    /// Recomputed from the solution at the end.
-    pub relative_residual: f64,
-    /// The relative residual after each iteration, where iterations were asked for and not chosen.
-    pub history: Vec<f64>,
+    pub report: SolveReport,
 }
 
+/// Why there is no solution.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SolverError {
     #[error("stopped on request")]
@@ -70,12 +62,41 @@ pub enum SolverError {
         "diverged: the residual grew {growth:.3} times an iteration, to {residual:.1e} after {iterations}"
     )]
     Diverged { iterations: usize, growth: f64, residual: f64, history: Vec<f64> },
-    #[error("the matrix is not positive definite at row {row}")]
-    NotPositiveDefinite { row: usize },
-    #[error("the matrix or the right-hand side has values that are not finite")]
+    /// The place of a node in the system, until `Constrained::in_nodes` of the model gives its number.
+    #[error("the matrix is singular at node {node}")]
+    Singular { node: usize },
+    #[error("the solution has values that are not finite")]
     NotFinite,
-    #[error("the solver needs about {needed_mb:.0} MB and may take {allowed_mb:.0} MB")]
+    #[error("the problem needs about {needed_mb:.0} MB and may take {allowed_mb:.0} MB")]
     OverBudget { needed_mb: f64, allowed_mb: f64 },
+}
+
+impl SolverError {
+    /// The stable word of the error catalogue.
+    pub fn code(&self) -> &'static str {
+        match self {
+            SolverError::Stopped => "cancelled",
+            SolverError::NotConverged { .. }
+            | SolverError::Diverged { .. }
+            | SolverError::NotFinite => "solver-diverged",
+            SolverError::Singular { .. } => "matrix-singular",
+            SolverError::OverBudget { .. } => "budget-exceeded",
+        }
+    }
+}
+
+/// Tells an iteration with its relative residual and the one asked for, and whether to go on.
+pub fn tell(
+    progress: &dyn Progress,
+    iteration: usize,
+    relative_residual: f64,
+    wanted: f64,
+) -> Result<(), SolverError> {
+    progress.iteration(iteration, relative_residual, wanted);
+    match progress.is_cancelled() {
+        true => Err(SolverError::Stopped),
+        false => Ok(()),
+    }
 }
 
 impl System {
@@ -85,6 +106,12 @@ impl System {
         let hierarchy = 0.7 * self.matrix.megabytes();
         let vectors = self.layout.free as f64 * (4.0 * 24.0 + 3.0 * 12.0 + 64.0) / 1e6;
         self.matrix.megabytes() + hierarchy + vectors
+    }
+
+    /// The number of unknowns that are not held.
+    pub fn free_unknowns(&self) -> usize {
+        let held = self.partly_held.iter().flat_map(|row| row.held).filter(|held| *held).count();
+        3 * self.layout.free - held
     }
 
     /// K x over the free unknowns; zero where held.

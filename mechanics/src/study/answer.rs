@@ -9,10 +9,10 @@ use super::Stopwatch;
 use super::deadline::Deadline;
 use crate::mesh::Vector;
 use crate::model::fem::strain::deformations;
-use crate::model::problem::Equilibrium;
-use crate::prediction::{
-    Case, Followed, Plan, PredictionError, Progress, Scene, SceneErrors, Settings, inverted_cells,
-};
+use crate::model::problem::{Equilibrium, ModelError};
+use crate::prediction::{Case, Plan, Scene, SceneErrors, Settings, inverted_cells};
+use crate::progress::Progress;
+use crate::solver::SolverError;
 
 /// A row is not solved again once its solves took this long together, in s.
 pub const LONG_S: f64 = 2.0;
@@ -84,10 +84,10 @@ impl From<SceneErrors> for NoAnswer {
     }
 }
 
-impl From<PredictionError> for NoAnswer {
-    fn from(error: PredictionError) -> Self {
+impl From<ModelError> for NoAnswer {
+    fn from(error: ModelError) -> Self {
         match error {
-            PredictionError::Cancelled => NoAnswer::Cancelled,
+            ModelError::Solver(SolverError::Stopped) => NoAnswer::Cancelled,
             other => NoAnswer::Refused(Refusal::new(other.code(), other.to_string())),
         }
     }
@@ -101,8 +101,7 @@ pub(super) fn solve(
     progress: &dyn Progress,
 ) -> Result<(Scene, Equilibrium), NoAnswer> {
     let scene = Scene::new(case, plan, settings)?;
-    let wanted = settings.relative_residual;
-    let equilibrium = scene.solve(&Followed { progress, wanted }).map_err(PredictionError::from)?;
+    let equilibrium = scene.solve(progress)?;
     Ok((scene, equilibrium))
 }
 
@@ -145,8 +144,8 @@ impl Bench<'_> {
         Ok(Answer {
             displacement: nodes.iter().map(|&n| equilibrium.displacement[n as usize]).collect(),
             elements: scene.elements().join(", "),
-            unknowns: equilibrium.unknowns,
-            iterations: equilibrium.convergence.iterations,
+            unknowns: equilibrium.solver.unknowns,
+            iterations: equilibrium.solver.iterations,
             repeats: times.len(),
             wall_s: median(times),
             peak_mb,
@@ -178,7 +177,7 @@ fn check_sane(scene: &Scene, displacement: &[Vector]) -> Result<(), NoAnswer> {
         .map(|u| u.norm())
         .fold(0.0, |a: f64, b| if b.is_nan() { b } else { a.max(b) });
     if !displacement.iter().flatten().all(|value| value.is_finite()) {
-        return Err(PredictionError::NotFinite.into());
+        return Err(ModelError::from(SolverError::NotFinite).into());
     }
     if largest > diagonal {
         let detail = format!(

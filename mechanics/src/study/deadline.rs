@@ -1,7 +1,7 @@
 //! Work that is stopped at a time, or when its caller wants no more.
 
 use super::Stopwatch;
-use crate::prediction::{Phase, Progress};
+use crate::progress::{Phase, Progress};
 
 pub(super) struct Deadline<'a> {
     stopwatch: &'a dyn Stopwatch,

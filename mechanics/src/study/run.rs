@@ -8,7 +8,8 @@ use super::levels::Levels;
 use super::report::{Outcome, Report, Row, SceneReport, Solved};
 use super::truth::{Asked, is_the_truth};
 use super::variant::{Materials, Study, StudyScene, Variant};
-use crate::prediction::{Plan, Progress, Scene, Settings, Skin};
+use crate::prediction::{Plan, Scene, Settings, Skin};
+use crate::progress::Progress;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The code of rows that were not begun, because the time of the study was used up.

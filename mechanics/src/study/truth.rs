@@ -16,10 +16,10 @@ use super::levels::Levels;
 use super::variant::{ClosedForm, Materials, StudyScene, Truth};
 use crate::mesh::{CellShape, Vector, VolumeMesh};
 use crate::plan::RigidMovement;
-use crate::prediction::{
-    Case, ElementChoice, Method, Plan, PredictionError, Progress, Scene, Settings, Skin,
-};
+use crate::prediction::{Case, ElementChoice, Method, ModelError, Plan, Scene, Settings, Skin};
+use crate::progress::Progress;
 use crate::response::{self, Columns, ResponseError};
+use crate::solver::SolverError;
 
 /// Refined truths are solved to this relative residual, and may take this much memory.
 const RESIDUAL: f64 = 1e-10;
@@ -181,7 +181,7 @@ impl Asked<'_> {
         let finer = Finer { case, settings, progress: self.progress };
         let columns = finer.columns(&self.scene.plans)?;
         let mut words = columns.as_ref().map_or_else(String::new, |columns| {
-            let elements = columns.solver.elements.join(", ");
+            let elements = columns.elements.join(", ");
             described(&elements, columns.solver.unknowns, ", plans summed from unit movements")
         });
         let mut skins = Vec::new();
@@ -291,7 +291,7 @@ impl Finer<'_> {
         };
         match response::build(&scene, &moved, self.progress) {
             Ok(columns) => Ok(Some(columns)),
-            Err(ResponseError::Prediction(PredictionError::Cancelled)) => {
+            Err(ResponseError::Prediction(ModelError::Solver(SolverError::Stopped))) => {
                 Err(StudyError::Cancelled)
             }
             // What is in the way is told plan by plan.
@@ -303,7 +303,7 @@ impl Finer<'_> {
     fn direct(&self, plan: &Plan, nodes: &[u32]) -> Result<(Vec<Vector>, String), NoAnswer> {
         let (scene, equilibrium) = solve(&self.case, plan, &self.settings, self.progress)?;
         let found = nodes.iter().map(|&node| equilibrium.displacement[node as usize]).collect();
-        Ok((found, described(&scene.elements().join(", "), equilibrium.unknowns, "")))
+        Ok((found, described(&scene.elements().join(", "), equilibrium.solver.unknowns, "")))
     }
 }
 

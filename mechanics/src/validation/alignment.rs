@@ -2,6 +2,7 @@
 
 use super::error::ComparisonError;
 use crate::mesh::{TriangleSurface, Vector, Warning};
+use crate::progress::Progress;
 use crate::registration::mirror::{MirrorCheck, check_mirror};
 use crate::registration::{IterativeClosestPoint, Place, RigidTransform, align_points};
 
@@ -60,7 +61,7 @@ pub(super) fn align(
     prediction: &TriangleSurface,
     actual: &TriangleSurface,
     alignment: &Alignment,
-    cancelled: &dyn Fn() -> bool,
+    progress: &dyn Progress,
 ) -> Result<AlignmentReport, ComparisonError> {
     let mut report = AlignmentReport {
         method: alignment.name(),
@@ -85,7 +86,7 @@ pub(super) fn align(
         }
         Alignment::ClosestPoint { mask } => {
             let method = IterativeClosestPoint { mask: *mask, ..IterativeClosestPoint::default() };
-            let found = method.align(prediction, actual, cancelled)?;
+            let found = method.align(prediction, actual, progress)?;
             (report.transform, report.rms) = (found.transform, Some(found.rms));
             (report.iterations, report.pairs) = (found.iterations, found.pairs);
         }

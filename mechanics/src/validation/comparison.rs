@@ -11,6 +11,7 @@ use super::distance::{
 use super::error::ComparisonError;
 use super::statistics::{Statistics, StatisticsError};
 use crate::mesh::{SurfaceSearch, TriangleSurface, Warning};
+use crate::progress::Progress;
 use crate::registration::Place;
 use std::collections::BTreeMap;
 
@@ -103,14 +104,14 @@ pub fn compare(
     prediction: &TriangleSurface,
     actual: &TriangleSurface,
     settings: &ComparisonSettings,
-    cancelled: &dyn Fn() -> bool,
+    progress: &dyn Progress,
 ) -> Result<Comparison, ComparisonError> {
     // 1. Both surfaces can be searched.
     let pair = Pair::new(prediction, actual)?;
     let mut warnings = Vec::new();
 
     // 2. The actual surface goes onto the prediction.
-    let alignment = align(prediction, actual, &settings.alignment, cancelled)?;
+    let alignment = align(prediction, actual, &settings.alignment, progress)?;
     warnings.extend(mirror_warning(prediction, actual, &settings.alignment, &alignment));
     let is_moved = settings.alignment != Alignment::None;
     let aligned_actual = if is_moved { moved(actual, &alignment) } else { actual.clone() };
@@ -118,12 +119,12 @@ pub fn compare(
     // 3. Distances as they were, and as they are.
     let density = settings.samples_per_mm2;
     let unaligned = if is_moved && settings.report_unaligned {
-        Some(pair.measure(density, cancelled)?.statistics()?)
+        Some(pair.measure(density, progress)?.statistics()?)
     } else {
         None
     };
     let pair = if is_moved { Pair::new(prediction, &aligned_actual)? } else { pair };
-    let measured = pair.measure(density, cancelled)?;
+    let measured = pair.measure(density, progress)?;
 
     // 4. By region, where both are there, and point by point.
     let regions = region_statistics(&measured, &settings.regions, &mut warnings)?;
@@ -177,13 +178,13 @@ impl<'a> Pair<'a> {
     fn measure(
         &self,
         density: f64,
-        cancelled: &dyn Fn() -> bool,
+        progress: &dyn Progress,
     ) -> Result<MeasuredPair, DistanceError> {
         let to_actual = Direction::ToActual(&self.actual_search);
         let to_prediction = Direction::ToPrediction(&self.prediction_search);
         Ok(MeasuredPair {
-            to_actual: Distances::measure(self.prediction, to_actual, density, cancelled)?,
-            to_prediction: Distances::measure(self.actual, to_prediction, density, cancelled)?,
+            to_actual: Distances::measure(self.prediction, to_actual, density, progress)?,
+            to_prediction: Distances::measure(self.actual, to_prediction, density, progress)?,
         })
     }
 }

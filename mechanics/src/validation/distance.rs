@@ -11,6 +11,7 @@ use rayon::prelude::*;
 
 use super::statistics::{Statistics, StatisticsError};
 use crate::mesh::{SurfaceSearch, TriangleSurface, Vector, area_sampling};
+use crate::progress::Progress;
 
 /// More samples of one surface are refused.
 pub const MAX_SAMPLES: f64 = 2e7;
@@ -77,7 +78,7 @@ impl Distances {
         from: &TriangleSurface,
         to: Direction,
         samples_per_mm2: f64,
-        cancelled: &dyn Fn() -> bool,
+        progress: &dyn Progress,
     ) -> Result<Self, DistanceError> {
         let samples = area_sampling::count_of_every_triangle(from, samples_per_mm2);
         if samples.is_nan() || samples > MAX_SAMPLES {
@@ -89,7 +90,7 @@ impl Distances {
         places.extend(used_points(from).map(|point| (point, 0.0)));
         let mut measured = Vec::with_capacity(places.len());
         for places in places.chunks(POINTS_AT_A_TIME) {
-            if cancelled() {
+            if progress.is_cancelled() {
                 return Err(DistanceError::Cancelled);
             }
             // In the order of the places, whatever the number of threads.

@@ -1,12 +1,14 @@
 //! Rigid movements from pairs of points and from surfaces (VERIFICATION V.30, V.31).
 
 use mechanics::mesh::{TriangleSurface, Vector};
+use mechanics::progress::Unobserved;
 use mechanics::registration::mirror::check_mirror;
 use mechanics::registration::{
     AlignmentError, IterativeClosestPoint, Place, RigidTransform, align_points,
     align_weighted_points,
 };
 
+use crate::scenes::StopsAfter;
 use crate::surfaces::{Noise, head, map, movement, shared_surface, sphere, square};
 
 fn four_points() -> Vec<Vector> {
@@ -125,14 +127,14 @@ fn a_masked_head_is_brought_back_although_a_third_of_it_has_changed() {
     let (fixed, moving) = operated_head(&wanted, 0.0);
     let method =
         IterativeClosestPoint { mask: Some(upper_part()), ..IterativeClosestPoint::default() };
-    let found = method.align(&fixed, &moving, &|| false).unwrap();
+    let found = method.align(&fixed, &moving, &Unobserved).unwrap();
     let (degrees, shift) = difference(&found.transform, &wanted, &Vector::zeros());
     assert!(degrees < 0.01 && shift < 0.01, "{degrees} degrees, {shift} mm, {found:?}");
     // The changed part alone leads elsewhere.
     let changed =
         Place::Box { lower: Vector::repeat(-200.0), upper: Vector::new(200.0, 200.0, -44.0) };
     let method = IterativeClosestPoint { mask: Some(changed), ..IterativeClosestPoint::default() };
-    let pulled = method.align(&fixed, &moving, &|| false).unwrap();
+    let pulled = method.align(&fixed, &moving, &Unobserved).unwrap();
     let (_, shift) = difference(&pulled.transform, &wanted, &Vector::zeros());
     assert!(shift > 1.0, "{shift}");
 }
@@ -143,7 +145,7 @@ fn noise_of_a_third_of_a_millimetre_costs_less_than_a_tenth() {
     let (fixed, moving) = operated_head(&wanted, 0.3);
     let method =
         IterativeClosestPoint { mask: Some(upper_part()), ..IterativeClosestPoint::default() };
-    let found = method.align(&fixed, &moving, &|| false).unwrap();
+    let found = method.align(&fixed, &moving, &Unobserved).unwrap();
     let (_, shift) = difference(&found.transform, &wanted, &Vector::zeros());
     assert!(shift < 0.1, "{shift} mm, {found:?}");
 }
@@ -152,7 +154,7 @@ fn noise_of_a_third_of_a_millimetre_costs_less_than_a_tenth() {
 fn another_triangulation_of_the_same_head_lands_in_the_same_place() {
     let wanted = movement([7.0, -5.0, 11.0], [1.5, -0.7, 5.0]);
     let coarse = map(&head(5), |point| wanted.inverse().apply(point));
-    let found = IterativeClosestPoint::default().align(&head(6), &coarse, &|| false).unwrap();
+    let found = IterativeClosestPoint::default().align(&head(6), &coarse, &Unobserved).unwrap();
     let (degrees, shift) = difference(&found.transform, &wanted, &Vector::zeros());
     // The coarse triangles lie up to 0.02 mm inside the fine ones.
     assert!(degrees < 0.01 && shift < 0.02, "{degrees} degrees, {shift} mm, {found:?}");
@@ -166,7 +168,7 @@ fn a_far_origin_costs_no_accuracy() {
     let turn = movement([2.0, -1.0, 3.0], [0.0; 3]).rotation;
     let wanted = RigidTransform::about(&far, turn, Vector::new(6.0, 0.0, 8.0));
     let moving = map(&fixed, |point| wanted.inverse().apply(point));
-    let found = IterativeClosestPoint::default().align(&fixed, &moving, &|| false).unwrap();
+    let found = IterativeClosestPoint::default().align(&fixed, &moving, &Unobserved).unwrap();
     for (point, original) in moving.points.iter().zip(&fixed.points) {
         assert!((found.transform.apply(point) - original).norm() < 1e-3);
     }
@@ -181,7 +183,7 @@ fn surfaces_in_different_places_start_with_their_middles_together() {
     let fixed = head(4);
     let wanted = movement([3.0, 2.0, -4.0], [500.0, -800.0, 1e7]);
     let moving = map(&fixed, |point| wanted.inverse().apply(point));
-    let found = IterativeClosestPoint::default().align(&fixed, &moving, &|| false).unwrap();
+    let found = IterativeClosestPoint::default().align(&fixed, &moving, &Unobserved).unwrap();
     for (point, original) in moving.points.iter().zip(&fixed.points) {
         assert!((found.transform.apply(point) - original).norm() < 1e-3);
     }
@@ -193,7 +195,7 @@ fn half_a_head_is_aligned_to_the_whole() {
     let wanted = movement([3.0, -2.0, 4.0], [1.5, -0.7, 3.0]);
     let mut half = map(&whole, |point| wanted.inverse().apply(point));
     half.triangles.retain(|corners| whole.points[corners[0] as usize].x > 0.0);
-    let found = IterativeClosestPoint::default().align(&whole, &half, &|| false).unwrap();
+    let found = IterativeClosestPoint::default().align(&whole, &half, &Unobserved).unwrap();
     let (degrees, shift) = difference(&found.transform, &wanted, &Vector::zeros());
     assert!(degrees < 0.01 && shift < 0.01, "{degrees} degrees, {shift} mm, {found:?}");
 }
@@ -202,12 +204,12 @@ fn half_a_head_is_aligned_to_the_whole() {
 fn a_sphere_or_a_plane_is_not_turned_about_nothing() {
     let fixed = sphere(70.0, Vector::zeros(), 4);
     let moving = sphere(70.0, Vector::new(1.0, 2.0, -1.0), 4);
-    let found = IterativeClosestPoint::default().align(&fixed, &moving, &|| false).unwrap();
+    let found = IterativeClosestPoint::default().align(&fixed, &moving, &Unobserved).unwrap();
     let middle = found.transform.apply(&Vector::new(1.0, 2.0, -1.0));
     assert!(middle.norm() < 1e-3, "{middle}");
     // The larger plane has no border opposite the smaller one.
     let (fixed, moving) = (square(50.0, 0.0, 5), square(100.0, 3.0, 10));
-    let found = IterativeClosestPoint::default().align(&fixed, &moving, &|| false).unwrap();
+    let found = IterativeClosestPoint::default().align(&fixed, &moving, &Unobserved).unwrap();
     let moved = found.transform.apply(&Vector::new(1.0, 2.0, 3.0));
     assert!((moved - Vector::new(1.0, 2.0, 0.0)).norm() < 1e-9, "{moved}");
 }
@@ -218,13 +220,15 @@ fn an_empty_mask_a_hasty_limit_and_a_cancelled_alignment_are_named() {
     let moving = map(&fixed, |point| movement([7.0, -5.0, 11.0], [1.5, -0.7, 5.0]).apply(point));
     let nowhere = Place::Sphere { centre: Vector::repeat(1e4), radius: 1.0 };
     let method = IterativeClosestPoint { mask: Some(nowhere), ..Default::default() };
-    assert_eq!(method.align(&fixed, &moving, &|| false).unwrap_err(), AlignmentError::EmptyMask);
+    assert_eq!(method.align(&fixed, &moving, &Unobserved).unwrap_err(), AlignmentError::EmptyMask);
 
     let method = IterativeClosestPoint { max_iterations: 1, ..Default::default() };
-    let error = method.align(&fixed, &moving, &|| false).unwrap_err();
+    let error = method.align(&fixed, &moving, &Unobserved).unwrap_err();
     assert!(matches!(error, AlignmentError::NotConverged { wanted: 1e-6, .. }), "{error}");
 
-    let error = IterativeClosestPoint::default().align(&fixed, &moving, &|| true).unwrap_err();
+    let error = IterativeClosestPoint::default()
+        .align(&fixed, &moving, &StopsAfter::iterations(0))
+        .unwrap_err();
     assert_eq!(error, AlignmentError::Cancelled { iterations: 0 });
 }
 
@@ -250,7 +254,7 @@ fn a_real_skin_that_moved_is_brought_back() {
     let turn = movement([5.0, -4.0, 6.0], [0.0; 3]).rotation;
     let wanted = RigidTransform::about(&middle, turn, Vector::new(3.0, -2.0, 4.0));
     let moving = map(&skin, |point| wanted.inverse().apply(point));
-    let found = IterativeClosestPoint::default().align(&skin, &moving, &|| false).unwrap();
+    let found = IterativeClosestPoint::default().align(&skin, &moving, &Unobserved).unwrap();
     let (degrees, shift) = difference(&found.transform, &wanted, &wanted.inverse().apply(&middle));
     assert!(degrees < 0.01 && shift < 0.01, "{degrees} degrees, {shift} mm, {found:?}");
 }

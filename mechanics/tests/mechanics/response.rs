@@ -6,9 +6,10 @@ use mechanics::mesh::half_head::half_head;
 use mechanics::mesh::{CellShape, Vector, VolumeMesh, sample};
 use mechanics::plan::{PlannedSegment, RigidMovement};
 use mechanics::prediction::{
-    Case, CaseSegment, Load, Plan, Prediction, PredictionError, Prescribed, Scene, Settings,
-    Sliding, SlidingNormal, Unobserved, predict,
+    Case, CaseSegment, Load, ModelError, Plan, Prediction, Prescribed, Scene, Settings, Sliding,
+    SlidingNormal, SolverError, predict,
 };
+use mechanics::progress::Unobserved;
 use mechanics::response::linearity::LINEAR_RANGE_MM;
 use mechanics::response::{Columns, Linearity, ResponseError, build, coefficients};
 
@@ -208,7 +209,10 @@ fn what_no_response_can_follow_is_refused_with_its_numbers() {
 
     let small = Settings { memory_mb: 0.5, ..Settings::default() };
     let error = build(&at_rest(&head(), &small), &[], &Unobserved).unwrap_err();
-    let ResponseError::Prediction(PredictionError::OverBudget { needed_mb, allowed_mb }) = error
+    let ResponseError::Prediction(ModelError::Solver(SolverError::OverBudget {
+        needed_mb,
+        allowed_mb,
+    })) = error
     else {
         panic!("{error}")
     };

@@ -2,14 +2,13 @@
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use mechanics::boundary::NodeSelection;
 use mechanics::material::LinearElastic;
 use mechanics::mesh::{CellShape, Vector, VolumeMesh};
-use mechanics::model::problem::Observer;
-use mechanics::prediction::{
-    Case, Plan, Prediction, Prescribed, Scene, Settings, Unobserved, predict,
-};
+use mechanics::prediction::{Case, Plan, Prediction, Prescribed, Scene, Settings, predict};
+use mechanics::progress::{Phase, Progress, Unobserved};
 
 pub const SHAPES: [CellShape; 3] = [CellShape::Tet4, CellShape::Hex8, CellShape::Wedge6];
 
@@ -64,16 +63,26 @@ pub fn largest_error(
     errors.fold(0.0, f64::max)
 }
 
-/// Follows no solution and stops none.
-pub struct Silent;
+/// Stops work once it has told so many iterations; with none, at once.
+pub struct StopsAfter {
+    most: usize,
+    told: AtomicUsize,
+}
 
-impl Observer for Silent {
-    fn assembling(&self) {}
-    fn solving(&self) {}
-    fn iterated(&self, _iteration: usize, _relative_residual: f64) -> bool {
-        true
+impl StopsAfter {
+    pub fn iterations(most: usize) -> Self {
+        StopsAfter { most, told: AtomicUsize::new(0) }
     }
-    fn is_stopped(&self) -> bool {
-        false
+}
+
+impl Progress for StopsAfter {
+    fn phase(&self, _phase: Phase) {}
+
+    fn iteration(&self, iteration: usize, _relative_residual: f64, _wanted: f64) {
+        self.told.store(iteration, Ordering::Relaxed);
+    }
+
+    fn is_cancelled(&self) -> bool {
+        self.told.load(Ordering::Relaxed) >= self.most
     }
 }

@@ -22,7 +22,8 @@ use crate::schema::predict::result::{ResultDocument, SolverDocument};
 use crate::schema::{CaseDocument, OptimiseDocument};
 use mechanics::mesh::{Vector, Warning};
 use mechanics::optimisation::{Optimum, Question, optimise};
-use mechanics::prediction::{Phase, Prediction, Progress, predict};
+use mechanics::prediction::{Prediction, predict};
+use mechanics::progress::{Phase, Progress};
 use mechanics::response::{Columns, Response, ResponseError, build};
 use targets::PreparedOptimisation;
 
@@ -127,7 +128,7 @@ impl Found {
         Found {
             document: OptimisationDocument::new(spec, &response.segments, optimum),
             displacement: response.apply(&optimum.movements),
-            solver: solver_document(&columns.solver),
+            solver: solver_document(&columns.solver, &columns.elements),
         }
     }
 

@@ -6,7 +6,7 @@ use crate::schema::Limits;
 use crate::schema::methods::{MethodName, time_band};
 use crate::schema::predict::check::TimeBandDocument;
 use mechanics::mesh::CellShape;
-use mechanics::prediction::{ElementChoice, Method, PredictionError, Scene};
+use mechanics::prediction::{ElementChoice, Method, ModelError, Scene, SolverError};
 use mechanics::response::COLUMNS_PER_SEGMENT;
 
 /// The peak of a whole process in MB was measured for blocks of up to 384 000 cells (12, 24 and 40 bricks along each
@@ -70,7 +70,7 @@ impl Prepared {
     pub fn admit(&self, segments: usize, limits: &Limits) -> Result<(), JobError> {
         let (needed_mb, allowed_mb) = (memory_mb(&self.scene, segments), limits.slot_memory_mb);
         match needed_mb > allowed_mb {
-            true => Err(PredictionError::OverBudget { needed_mb, allowed_mb }.into()),
+            true => Err(ModelError::from(SolverError::OverBudget { needed_mb, allowed_mb }).into()),
             false => Ok(()),
         }
     }

@@ -12,7 +12,7 @@ use crate::schema::predict::result::{
 };
 use mechanics::mesh::quality::QualityReport;
 use mechanics::mesh::{Frame, VolumeMesh};
-use mechanics::prediction::SolverReport;
+use mechanics::prediction::SolveReport;
 
 /// What a job knows of its origin before it starts.
 pub struct Origin {
@@ -80,16 +80,16 @@ pub fn add_method(
 }
 
 /// How a solver reports itself.
-pub fn solver_document(solver: &SolverReport) -> SolverDocument {
+pub fn solver_document(solver: &SolveReport, elements: &[String]) -> SolverDocument {
     SolverDocument {
-        name: solver.name.to_owned(),
+        name: solver.method.to_owned(),
         preconditioner: solver.preconditioner.to_owned(),
         why: solver.why.clone(),
         unknowns: solver.unknowns as u64,
         iterations: solver.iterations as u64,
         relative_residual: solver.relative_residual,
         wanted_residual: solver.wanted_residual,
-        elements: solver.elements.clone(),
+        elements: elements.to_vec(),
         history: thinned(&solver.history),
         steps: solver.steps,
     }

@@ -34,7 +34,7 @@ use files::{
     REPORT_JUNIT, SVG_MEDIA_TYPE, csv, junit,
 };
 use mechanics::mesh::{Frame, Warning};
-use mechanics::prediction::{Phase, Progress};
+use mechanics::progress::{Phase, Progress};
 use mechanics::study::{Stopwatch, Study, StudyError, StudyScene, run};
 use report::{ReportOrigin, encode_report, report_document};
 use scenes::Documents;

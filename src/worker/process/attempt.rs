@@ -10,7 +10,7 @@ use crate::jobs::work::{JobOutput, Workplace, work};
 use crate::schema::ErrorCode;
 use crate::schema::Limits;
 use crate::schema::job::ErrorClass;
-use mechanics::prediction::Progress;
+use mechanics::progress::Progress;
 
 /// Does the work of an assignment. Files are in its folder afterwards.
 pub fn attempt(

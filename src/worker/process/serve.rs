@@ -16,7 +16,7 @@ use crate::library::cache::MeshCache;
 use crate::worker::fail_point::FailPoints;
 use crate::worker::niceness::give_way;
 use crate::worker::process::attempt::attempt;
-use mechanics::prediction::{Phase, Progress};
+use mechanics::progress::{Phase, Progress};
 
 /// Between two reports of iterations: a worker looks at them no more often.
 const BETWEEN_REPORTS: Duration = Duration::from_millis(50);

@@ -18,7 +18,7 @@ use crate::schema::job::ErrorClass;
 use crate::store::{Claim, StoreError};
 use crate::worker::process::attempt::broke_off;
 use crate::worker::slots::{Failure, Finished, FinishedFile, Work};
-use mechanics::prediction::{Phase, Progress};
+use mechanics::progress::{Phase, Progress};
 
 /// How often the worker looks whether the job is still wanted, and what its process takes.
 const LOOK: Duration = Duration::from_millis(100);

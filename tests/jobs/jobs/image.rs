@@ -17,7 +17,7 @@ use mechanics::image::{ImageVolume, Placement, Voxels};
 use mechanics::mesh::half_head::half_head;
 use mechanics::mesh::sample::block;
 use mechanics::mesh::{CellShape, Frame, TriangleSurface, Vector, VolumeMesh};
-use mechanics::prediction::Unobserved;
+use mechanics::progress::Unobserved;
 use serde_json::{Value, json};
 
 use crate::shared::shared_data;

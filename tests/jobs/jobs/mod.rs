@@ -1,5 +1,6 @@
 //! Jobs without a server: from documents to result files.
 
+mod failures;
 mod image;
 mod optimise;
 mod results;

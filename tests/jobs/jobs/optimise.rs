@@ -12,7 +12,7 @@ use facies::schema::Limits;
 use facies::schema::case::document::LengthUnit;
 use facies::schema::job::ErrorClass;
 use mechanics::mesh::{CellShape, Vector, sample};
-use mechanics::prediction::{Phase, Progress, Unobserved};
+use mechanics::progress::{Phase, Progress, Unobserved};
 
 /// One block of 60 x 60 x 30 mm under every id.
 struct Block;

@@ -15,7 +15,7 @@ use facies::schema::predict::result::ResultDocument;
 use facies::schema::{CaseDocument, CompareDocument, Limits, PlanDocument, PredictDocument};
 use mechanics::format::{self, Mesh, ReadLimits};
 use mechanics::mesh::{CellShape, Frame, TriangleSurface, Vector, VolumeMesh, sample};
-use mechanics::prediction::{Phase, Progress, Unobserved};
+use mechanics::progress::{Phase, Progress, Unobserved};
 
 /// Meshes held in memory.
 struct Meshes(BTreeMap<&'static str, StoredMesh>);

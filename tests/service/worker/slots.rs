@@ -8,7 +8,7 @@ use facies::schema::job::JobStatus;
 use facies::store::{Claim, JobRow, Store};
 use facies::worker::process::protocol::Effort;
 use facies::worker::slots::{Failure, Finished, FinishedFile, Work, Workers};
-use mechanics::prediction::Progress;
+use mechanics::progress::Progress;
 use tempfile::TempDir;
 
 use crate::store::queue::{job, new_job, store};

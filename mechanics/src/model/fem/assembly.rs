@@ -7,6 +7,7 @@ use crate::material::{ElasticTensor, LinearElastic};
 use crate::mesh::{CellShape, Vector, VolumeMesh};
 use crate::model::dofs::Numbering;
 use crate::model::problem::InvertedCell;
+use crate::progress::Progress;
 use crate::solver::Block;
 use crate::solver::half_matrix::{HalfMatrix, RowChunk};
 use rayon::prelude::*;
@@ -63,9 +64,9 @@ impl Tissue<'_> {
     pub fn assemble(
         &self,
         numbering: &Numbering,
-        keep_going: &dyn Fn() -> bool,
+        progress: &dyn Progress,
     ) -> Result<Option<HalfMatrix<f64, 3>>, InvertedCell> {
-        self.assemble_with(numbering, keep_going, &|cell| self.tensor(cell))
+        self.assemble_with(numbering, progress, &|cell| self.tensor(cell))
     }
 
     /// The stiffness of the tissue of a cell.
@@ -78,7 +79,7 @@ impl Tissue<'_> {
     pub(super) fn assemble_with(
         &self,
         numbering: &Numbering,
-        keep_going: &dyn Fn() -> bool,
+        progress: &dyn Progress,
         tensor: &(dyn Fn(usize) -> ElasticTensor + Sync),
     ) -> Result<Option<HalfMatrix<f64, 3>>, InvertedCell> {
         let mut matrix = HalfMatrix::zeros(numbering.pattern.clone());
@@ -86,7 +87,7 @@ impl Tissue<'_> {
         let simplex = |&cell: &u32| self.simplex(cell as usize, &tensor(cell as usize));
         let simplices: Vec<Option<Simplex>> =
             order.par_iter().map(simplex).collect::<Result<_, _>>()?;
-        if !keep_going() {
+        if progress.is_cancelled() {
             return Ok(None);
         }
         matrix.row_chunks(ROW_CHUNK).into_par_iter().for_each_init(
@@ -95,7 +96,7 @@ impl Tissue<'_> {
         );
         let others: Vec<usize> =
             (0..order.len()).filter(|&clique| simplices[clique].is_none()).collect();
-        let finished = numbering.add_cells(&mut matrix, &others, keep_going, |cell| {
+        let finished = numbering.add_cells(&mut matrix, &others, progress, |cell| {
             self.cell_matrix(cell, &tensor(cell))
         })?;
         if let Some(membrane) = self.membrane {
@@ -153,9 +154,9 @@ fn add_rows(
         for (k, &column) in numbering.pattern.columns(row).iter().enumerate() {
             at[column as usize] = (offset + k) as u32;
         }
-        for &clique in numbering.around.of(row) {
+        for &clique in numbering.around.row(row) {
             let Some(simplex) = &simplices[clique as usize] else { continue };
-            let members = numbering.cliques.members(clique as usize);
+            let members = numbering.cliques.row(clique as usize);
             let Some(j) = members.iter().position(|&member| member as usize == row) else {
                 continue;
             };

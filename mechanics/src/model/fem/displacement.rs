@@ -9,10 +9,11 @@ use super::assembly::Tissue;
 use crate::boundary::Hold;
 use crate::mesh::Vector;
 use crate::model::dofs::nodes_of_cells;
-use crate::model::dofs::{Constrained, Known, free_unknowns, number, product_at_holds};
-use crate::model::problem::{Convergence, Equilibrium, LoadCase, ModelError, Observer};
+use crate::model::dofs::{Constrained, Known, number, product_at_holds};
+use crate::model::problem::{Equilibrium, LoadCase, ModelError};
+use crate::progress::{Phase, Progress};
 use crate::solver::half_matrix::HalfMatrix;
-use crate::solver::{self, Solution, SolverError, System, Tolerance, Unknowns, Watch};
+use crate::solver::{self, Solution, SolverError, System, Tolerance, Unknowns};
 
 /// A mechanical problem: tissue, what holds it and what acts on it.
 pub struct Problem<'a> {
@@ -25,10 +26,10 @@ pub struct Problem<'a> {
 
 impl Problem<'_> {
     /// Solves for equilibrium.
-    pub fn solve(&self, observer: &dyn Observer) -> Result<Equilibrium, ModelError> {
+    pub fn solve(&self, progress: &dyn Progress) -> Result<Equilibrium, ModelError> {
         let held = self.holds.iter().map(|hold| *hold.values()).collect();
         let case = LoadCase { held, forces: self.forces.to_vec() };
-        let mut equilibria = self.solve_cases(&[case], observer)?;
+        let mut equilibria = self.solve_cases(&[case], progress)?;
         Ok(equilibria.remove(0))
     }
 
@@ -36,10 +37,10 @@ impl Problem<'_> {
     pub fn solve_cases(
         &self,
         cases: &[LoadCase],
-        observer: &dyn Observer,
+        progress: &dyn Progress,
     ) -> Result<Vec<Equilibrium>, ModelError> {
-        self.solve_cases_by(cases, observer, &|system, right_hand_sides, watch| {
-            solver::solve(system, right_hand_sides, &self.tolerance, watch)
+        self.solve_cases_by(cases, progress, &|system, right_hand_sides| {
+            solver::solve(system, right_hand_sides, &self.tolerance, progress)
         })
     }
 
@@ -47,24 +48,24 @@ impl Problem<'_> {
     pub(super) fn solve_cases_by(
         &self,
         cases: &[LoadCase],
-        observer: &dyn Observer,
+        progress: &dyn Progress,
         solve: SolveBy,
     ) -> Result<Vec<Equilibrium>, ModelError> {
-        observer.assembling();
+        progress.phase(Phase::Assemble);
         let mesh = self.tissue.mesh;
         let numbering = number(&nodes_of_cells(mesh), &mesh.nodes, self.holds);
-        let assembled = self.tissue.assemble(&numbering, &|| !observer.is_stopped())?;
+        let assembled = self.tissue.assemble(&numbering, progress)?;
         let matrix = assembled.ok_or(SolverError::Stopped)?;
         let constrained = Constrained { holds: self.holds, numbering: &numbering };
         let positions = &mesh.nodes;
         let assembled = Assembled { constrained, matrix, positions };
-        solve_displacement(assembled, cases, observer, solve)
+        solve_displacement(assembled, cases, progress, solve)
     }
 }
 
 /// How a system is solved for several right-hand sides.
 pub(super) type SolveBy<'a> =
-    &'a dyn Fn(&System, &[Unknowns], Watch) -> Result<Vec<Solution>, SolverError>;
+    &'a dyn Fn(&System, &[Unknowns]) -> Result<Vec<Solution>, SolverError>;
 
 /// A stiffness matrix over numbered nodes at positions.
 pub(super) struct Assembled<'a> {
@@ -77,11 +78,11 @@ pub(super) struct Assembled<'a> {
 pub(super) fn solve_displacement(
     assembled: Assembled,
     cases: &[LoadCase],
-    observer: &dyn Observer,
+    progress: &dyn Progress,
     solve: SolveBy,
 ) -> Result<Vec<Equilibrium>, ModelError> {
     // 1. What is known, and the forces it leaves on the free unknowns.
-    observer.solving();
+    progress.phase(Phase::Solve);
     let Assembled { constrained, matrix, positions } = assembled;
     let system = constrained.system(matrix, positions);
     let known: Vec<Known> = cases.par_iter().map(|case| constrained.known(case)).collect();
@@ -89,9 +90,8 @@ pub(super) fn solve_displacement(
         known.par_iter().map(|known| known.right_hand_side(&system)).collect();
 
     // 2. The free unknowns.
-    let watch = |iteration, residual| observer.iterated(iteration, residual);
     let solutions =
-        solve(&system, &right_hand_sides, &watch).map_err(|error| constrained.in_nodes(error))?;
+        solve(&system, &right_hand_sides).map_err(|error| constrained.in_nodes(error))?;
 
     // 3. Displacement and reactions, back along the axes of the coordinates.
     let equilibrium = |(known, solution): (Known, Solution)| {
@@ -100,8 +100,7 @@ pub(super) fn solve_displacement(
         Equilibrium {
             displacement: constrained.displacement(&total),
             reactions: constrained.reactions(&internal, &known.force),
-            convergence: Convergence::of(&solution),
-            unknowns: free_unknowns(&system),
+            solver: solution.report,
             warnings: Vec::new(),
         }
     };

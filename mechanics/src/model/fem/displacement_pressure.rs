@@ -27,10 +27,11 @@ use super::displacement::{Problem, check_finite};
 use crate::material::ElasticTensor;
 use crate::material::elastic_tensor::PressurePart;
 use crate::mesh::{CellShape, Vector};
-use crate::model::dofs::{Constrained, Known, free_unknowns, number, product_at_holds};
+use crate::model::dofs::{Constrained, Known, number, product_at_holds};
 use crate::model::dofs::{Numbering, nodes_of_cells};
 use crate::model::problem::InvertedCell;
-use crate::model::problem::{Convergence, Equilibrium, LoadCase, ModelError, Observer};
+use crate::model::problem::{Equilibrium, LoadCase, ModelError};
+use crate::progress::{Phase, Progress};
 use crate::solver::mixed::{self, Coupling, MixedRightHandSide, MixedSolution, MixedSystem};
 use crate::solver::sparse_rows::{Couplings, SparseRows};
 use crate::solver::{HalfMatrix, SolverError, System};
@@ -42,21 +43,21 @@ const VECTORS: usize = 2 * mixed::MOST_DIRECTIONS + 6;
 pub fn solve_cases(
     problem: &Problem,
     cases: &[LoadCase],
-    observer: &dyn Observer,
+    progress: &dyn Progress,
 ) -> Result<Vec<Equilibrium>, ModelError> {
     // 1. The matrices, with sliding nodes along their own axes.
-    observer.assembling();
+    progress.phase(Phase::Assemble);
     let mesh = problem.tissue.mesh;
     let numbering = number(&nodes_of_cells(mesh), &mesh.nodes, problem.holds);
     let constrained = Constrained { holds: problem.holds, numbering: &numbering };
-    let assembled = shear_stiffness(&problem.tissue, &numbering, observer)?;
+    let assembled = shear_stiffness(&problem.tissue, &numbering, progress)?;
     let matrix = assembled.ok_or(SolverError::Stopped)?;
     let stiffness = constrained.system(matrix, &mesh.nodes);
     let coupling = couple(&problem.tissue, &constrained)?;
     check_memory(&stiffness, &coupling, problem.tolerance.memory_mb)?;
 
     // 2. What is known, and what it leaves to the free unknowns.
-    observer.solving();
+    progress.phase(Phase::Solve);
     let known: Vec<Known> = cases.par_iter().map(|case| constrained.known(case)).collect();
     let right_hand_sides: Vec<MixedRightHandSide> = known
         .par_iter()
@@ -70,8 +71,7 @@ pub fn solve_cases(
 
     // 3. The free displacements and the pressures.
     let system = MixedSystem { stiffness: &stiffness, coupling: &coupling };
-    let watch = |iteration, residual| observer.iterated(iteration, residual);
-    let solutions = mixed::solve(&system, &right_hand_sides, &problem.tolerance, &watch)?;
+    let solutions = mixed::solve(&system, &right_hand_sides, &problem.tolerance, progress)?;
 
     // 4. Displacement and reactions, back along the axes of the coordinates.
     let equilibrium = |(known, mixed): (Known, MixedSolution)| {
@@ -81,9 +81,8 @@ pub fn solve_cases(
         Equilibrium {
             displacement: constrained.displacement(&total),
             reactions: constrained.reactions(&internal, &known.force),
-            convergence: Convergence::of(&mixed.solution),
+            solver: mixed.solution.report,
             warnings: Vec::new(),
-            unknowns: free_unknowns(&stiffness) + coupling.mass.len(),
         }
     };
     let equilibria: Vec<Equilibrium> =
@@ -110,7 +109,7 @@ fn check_memory(
 fn shear_stiffness(
     tissue: &Tissue,
     numbering: &Numbering,
-    observer: &dyn Observer,
+    progress: &dyn Progress,
 ) -> Result<Option<HalfMatrix<f64, 3>>, InvertedCell> {
     let tensor = |cell: usize| {
         let tensor = tissue.tensor(cell);
@@ -122,7 +121,7 @@ fn shear_stiffness(
             CellShape::Hex8 | CellShape::Wedge6 => tensor,
         }
     };
-    tissue.assemble_with(numbering, &|| !observer.is_stopped(), &tensor)
+    tissue.assemble_with(numbering, progress, &tensor)
 }
 
 /// Tetrahedra that have pressures, one for each corner.

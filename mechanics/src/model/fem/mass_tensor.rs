@@ -6,9 +6,10 @@
 //! node by node (`solver::stationary`); `Iterations::Fast` solves the same matrix as finite elements do.
 
 use super::displacement::Problem;
-use crate::model::problem::{Equilibrium, LoadCase, ModelError, Observer};
+use crate::model::problem::{Equilibrium, LoadCase, ModelError};
+use crate::progress::Progress;
 use crate::solver::stationary::{self, Stationary};
-use crate::solver::{self, System, Unknowns, Watch};
+use crate::solver::{self, System, Unknowns};
 
 /// What only this model has to be told.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -31,19 +32,18 @@ pub fn solve(
     problem: &Problem,
     settings: &MassTensorSettings,
     case: &LoadCase,
-    observer: &dyn Observer,
+    progress: &dyn Progress,
 ) -> Result<Equilibrium, ModelError> {
     let tolerance = &problem.tolerance;
-    let solve =
-        |system: &System, right_hand_sides: &[Unknowns], watch: Watch| match &settings.iterations {
-            Iterations::Fast => solver::solve(system, right_hand_sides, tolerance, watch),
-            Iterations::Stationary(own) => right_hand_sides
-                .iter()
-                .map(|right_hand_side| {
-                    stationary::solve(system, right_hand_side, own, tolerance, watch)
-                })
-                .collect(),
-        };
-    let mut equilibria = problem.solve_cases_by(std::slice::from_ref(case), observer, &solve)?;
+    let solve = |system: &System, right_hand_sides: &[Unknowns]| match &settings.iterations {
+        Iterations::Fast => solver::solve(system, right_hand_sides, tolerance, progress),
+        Iterations::Stationary(own) => right_hand_sides
+            .iter()
+            .map(|right_hand_side| {
+                stationary::solve(system, right_hand_side, own, tolerance, progress)
+            })
+            .collect(),
+    };
+    let mut equilibria = problem.solve_cases_by(std::slice::from_ref(case), progress, &solve)?;
     Ok(equilibria.remove(0))
 }

@@ -17,9 +17,10 @@ use crate::mesh::Vector;
 use crate::model::dofs::Numbering;
 use crate::model::dofs::{Constrained, number};
 use crate::model::problem::InvertedCell;
-use crate::model::problem::{Equilibrium, LoadCase, ModelError, Observer};
+use crate::model::problem::{Equilibrium, LoadCase, ModelError};
+use crate::progress::{Phase, Progress};
 use crate::solver::cliques::Cliques;
-use crate::solver::{self, Block, HalfMatrix, SolverError, System, Unknowns, Watch};
+use crate::solver::{self, Block, HalfMatrix, SolverError, System, Unknowns};
 
 /// Solves for each load case; the matrix is made once. Holds may name edge nodes themselves; forces may
 /// leave them out. Displacement and reactions are those of the nodes of the mesh and of the given holds: what
@@ -27,10 +28,10 @@ use crate::solver::{self, Block, HalfMatrix, SolverError, System, Unknowns, Watc
 pub fn solve_cases(
     problem: &Problem,
     cases: &[LoadCase],
-    observer: &dyn Observer,
+    progress: &dyn Progress,
 ) -> Result<Vec<Equilibrium>, ModelError> {
     // 1. The matrix over corners and edge nodes.
-    observer.assembling();
+    progress.phase(Phase::Assemble);
     let mesh = problem.tissue.mesh;
     let edges = EdgeNodes::new(mesh);
     let (holds, parents) = edges.holds(mesh, problem.holds);
@@ -38,7 +39,7 @@ pub fn solve_cases(
     (0..mesh.cells.len()).for_each(|cell| cells.push(edges.of_cell(mesh, cell)));
     let positions = edges.positions(mesh);
     let numbering = number(&cells, &positions, &holds);
-    let assembled = assemble(&problem.tissue, &numbering, &edges, observer)?;
+    let assembled = assemble(&problem.tissue, &numbering, &edges, progress)?;
     let matrix = assembled.ok_or(SolverError::Stopped)?;
 
     // 2. Each load case with values for edge nodes too.
@@ -56,10 +57,10 @@ pub fn solve_cases(
         .collect();
     let constrained = Constrained { holds: &holds, numbering: &numbering };
     let assembled = Assembled { constrained, matrix, positions: &positions };
-    let solve = |system: &System, right_hand_sides: &[Unknowns], watch: Watch| {
-        solver::solve(system, right_hand_sides, &problem.tolerance, watch)
+    let solve = |system: &System, right_hand_sides: &[Unknowns]| {
+        solver::solve(system, right_hand_sides, &problem.tolerance, progress)
     };
-    let mut equilibria = solve_displacement(assembled, &cases, observer, &solve)?;
+    let mut equilibria = solve_displacement(assembled, &cases, progress, &solve)?;
 
     // 3. Back to the nodes of the mesh.
     for equilibrium in &mut equilibria {
@@ -90,12 +91,11 @@ fn assemble(
     tissue: &Tissue,
     numbering: &Numbering,
     edges: &EdgeNodes,
-    observer: &dyn Observer,
+    progress: &dyn Progress,
 ) -> Result<Option<HalfMatrix<f64, 3>>, InvertedCell> {
     let mut matrix = HalfMatrix::zeros(numbering.pattern.clone());
     let all: Vec<usize> = (0..tissue.mesh.cells.len()).collect();
-    let keep_going = || !observer.is_stopped();
-    let finished = numbering.add_cells(&mut matrix, &all, &keep_going, |cell| {
+    let finished = numbering.add_cells(&mut matrix, &all, progress, |cell| {
         let (volume, gradients) = tetrahedron(tissue.mesh, cell)?;
         Ok(cell_stiffness(volume, &gradients, &tissue.tensor(cell)))
     })?;

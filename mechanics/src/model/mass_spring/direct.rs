@@ -9,14 +9,16 @@
 use super::network::{Found, MassSpringSettings, Network, length};
 use super::springs::Spring;
 use crate::mesh::Vector;
-use crate::model::problem::{Convergence, ModelError, Observer};
-use crate::solver::SolverError;
+use crate::model::problem::ModelError;
+use crate::progress::Progress;
+use crate::rows::{Rows, Sorting};
+use crate::solver::{SolveReport, SolverError, tell};
 
 pub(super) fn solve(
     network: &Network,
     wanted: f64,
     settings: &MassSpringSettings,
-    observer: &dyn Observer,
+    progress: &dyn Progress,
 ) -> Result<Found, ModelError> {
     let around = Around::new(network);
     let mut positions = network.start.clone();
@@ -29,21 +31,21 @@ pub(super) fn solve(
             residual = length(&network.unbalanced(&resistance)) / network.scale;
         }
         history.push(residual);
-        if !observer.iterated(iteration, residual) {
-            return Err(SolverError::Stopped.into());
-        }
+        tell(progress, iteration, residual, wanted)?;
         if residual <= wanted {
-            let convergence = Convergence {
+            let solver = SolveReport {
                 method: "direct_iteration",
                 preconditioner: "node_stiffness",
                 why: "residuals are those that a sweep meets on its way, the last one that of the answer"
                     .to_owned(),
+                unknowns: network.unknowns(),
                 iterations: iteration,
                 relative_residual: residual,
+                wanted_residual: wanted,
                 history,
                 steps: 1,
             };
-            return Ok(Found { positions, convergence });
+            return Ok(Found { positions, solver });
         }
     }
     let iterations = settings.most_iterations;
@@ -51,25 +53,23 @@ pub(super) fn solve(
 }
 
 /// The springs of each node, side by side, each seen from that node: a sweep reads them in one stream.
-struct Around {
-    starts: Vec<usize>,
-    springs: Vec<Spring>,
-}
+struct Around(Rows<Spring>);
 
 impl Around {
     fn new(network: &Network) -> Self {
-        let mut of_node = vec![Vec::new(); network.rest.len()];
-        for spring in &network.springs.springs {
+        let springs = &network.springs.springs;
+        let mut lengths = vec![0; network.rest.len()];
+        springs.iter().flat_map(|spring| spring.nodes).for_each(|node| lengths[node as usize] += 1);
+        let Some(&any) = springs.first() else {
+            return Around(Rows::of_lengths(&lengths, Vec::new()));
+        };
+        let mut sorting = Sorting::new(&lengths, any);
+        for spring in springs {
             let [i, j] = spring.nodes;
-            of_node[i as usize].push(*spring);
-            of_node[j as usize].push(Spring { nodes: [j, i], ..*spring });
+            sorting.put(i as usize, *spring);
+            sorting.put(j as usize, Spring { nodes: [j, i], ..*spring });
         }
-        let mut starts = vec![0];
-        starts.extend(of_node.iter().scan(0, |end, springs| {
-            *end += springs.len();
-            Some(*end)
-        }));
-        Around { starts, springs: of_node.concat() }
+        Around(sorting.finish())
     }
 
     /// Moves every node once; returns the norm of the forces that it met.
@@ -77,7 +77,7 @@ impl Around {
         let mut squared = 0.0;
         for node in 0..positions.len() {
             let mut force = network.acting[node];
-            for spring in &self.springs[self.starts[node]..self.starts[node + 1]] {
+            for spring in self.0.row(node) {
                 let (l, n) = spring.span(positions);
                 force += n * (spring.stiffness * (l - spring.length));
             }

@@ -14,8 +14,9 @@ mod springs;
 pub use network::{MassSpringSettings, POISSON_RATIO, Search};
 pub use springs::{Spring, Springs};
 
-use super::problem::{Equilibrium, LoadCase, ModelError, Observer};
+use super::problem::{Equilibrium, LoadCase, ModelError};
 use crate::model::fem::displacement::{Problem, check_finite};
+use crate::progress::{Phase, Progress};
 use network::{Found, Network};
 
 /// Solves a load case for rest.
@@ -23,24 +24,23 @@ pub fn solve(
     problem: &Problem,
     settings: &MassSpringSettings,
     case: &LoadCase,
-    observer: &dyn Observer,
+    progress: &dyn Progress,
 ) -> Result<Equilibrium, ModelError> {
-    observer.assembling();
+    progress.phase(Phase::Assemble);
     let network = Network::new(&problem.tissue, problem.holds, case)?;
-    observer.solving();
+    progress.phase(Phase::Solve);
     let wanted = problem.tolerance.relative_residual;
     let found = match (network.scale > 0.0, settings.search) {
-        (false, _) => Found::nothing(&network),
-        (true, Search::Newton) => newton::solve(&network, problem, settings, observer)?,
-        (true, Search::Direct) => direct::solve(&network, wanted, settings, observer)?,
+        (false, _) => Found::nothing(&network, wanted),
+        (true, Search::Newton) => newton::solve(&network, problem, settings, progress)?,
+        (true, Search::Direct) => direct::solve(&network, wanted, settings, progress)?,
     };
     let forces = network.springs.forces(&found.positions);
     let displacement = found.positions.iter().zip(network.rest).map(|(p, x)| p - x).collect();
     let equilibrium = Equilibrium {
         displacement,
         reactions: network.reactions(&forces),
-        convergence: found.convergence,
-        unknowns: network.unknowns(),
+        solver: found.solver,
         warnings: Vec::new(),
     };
     check_finite(std::slice::from_ref(&equilibrium))?;

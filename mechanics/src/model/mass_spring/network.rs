@@ -4,8 +4,8 @@ use super::springs::Springs;
 use crate::boundary::Hold;
 use crate::mesh::Vector;
 use crate::model::fem::assembly::Tissue;
-use crate::model::problem::{Convergence, LoadCase, ModelError};
-use crate::solver::SolverError;
+use crate::model::problem::{LoadCase, ModelError};
+use crate::solver::{SolveReport, SolverError};
 use std::collections::BTreeMap;
 
 /// The Poisson ratio of a network of springs, on average over directions.
@@ -31,21 +31,13 @@ pub enum Search {
 /// Where the nodes came to rest, and how.
 pub(super) struct Found {
     pub(super) positions: Vec<Vector>,
-    pub(super) convergence: Convergence,
+    pub(super) solver: SolveReport,
 }
 
 impl Found {
-    pub(super) fn nothing(network: &Network) -> Self {
-        let convergence = Convergence {
-            method: "none",
-            preconditioner: "none",
-            why: "nothing moves and nothing acts".to_owned(),
-            iterations: 0,
-            relative_residual: 0.0,
-            history: Vec::new(),
-            steps: 1,
-        };
-        Found { positions: network.start.clone(), convergence }
+    pub(super) fn nothing(network: &Network, wanted: f64) -> Self {
+        let solver = SolveReport::at_rest(network.unknowns(), wanted);
+        Found { positions: network.start.clone(), solver }
     }
 }
 

@@ -11,8 +11,9 @@ use crate::mesh::Vector;
 use crate::model::dofs::nodes_of_cells;
 use crate::model::dofs::{Constrained, number};
 use crate::model::fem::displacement::Problem;
-use crate::model::problem::{Convergence, LoadCase, ModelError, Observer};
-use crate::solver::{self, SolverError, Tolerance};
+use crate::model::problem::{LoadCase, ModelError};
+use crate::progress::{Inner, Progress};
+use crate::solver::{self, SolveReport, SolverError, Tolerance, tell};
 
 /// The share of the slope by which the energy has to fall.
 const ENOUGH: f64 = 1e-4;
@@ -33,7 +34,7 @@ pub(super) fn solve(
     network: &Network,
     problem: &Problem,
     settings: &MassSpringSettings,
-    observer: &dyn Observer,
+    progress: &dyn Progress,
 ) -> Result<Found, ModelError> {
     let mesh = problem.tissue.mesh;
     let numbering = number(&nodes_of_cells(mesh), &mesh.nodes, problem.holds);
@@ -44,7 +45,7 @@ pub(super) fn solve(
         network,
         constrained: &constrained,
         problem,
-        observer,
+        progress,
         positions,
         residual: 1.0,
         raised_ahead: 0,
@@ -74,7 +75,7 @@ struct Newton<'a> {
     network: &'a Network<'a>,
     constrained: &'a Constrained<'a>,
     problem: &'a Problem<'a>,
-    observer: &'a dyn Observer,
+    progress: &'a dyn Progress,
     positions: Vec<Vector>,
     /// Relative, at the positions.
     residual: f64,
@@ -120,10 +121,8 @@ impl Newton<'_> {
         let resistance = self.network.springs.forces(&self.positions);
         self.residual = length(&self.network.unbalanced(&resistance)) / self.network.scale;
         self.history.push(self.residual);
-        match self.observer.iterated(self.history.len(), self.residual) {
-            true => Ok(()),
-            false => Err(SolverError::Stopped),
-        }
+        let wanted = self.problem.tolerance.relative_residual;
+        tell(self.progress, self.history.len(), self.residual, wanted)
     }
 
     /// A direction in which the energy falls, and how steeply.
@@ -172,11 +171,10 @@ impl Newton<'_> {
         let relative_residual =
             (0.1 * tolerance.relative_residual / self.residual).clamp(least, most);
         let tolerance = Tolerance { relative_residual, ..*tolerance };
-        let watch = |_, _| !self.observer.is_stopped();
         let right_hand_side = known.right_hand_side(&system);
-        let solved = solver::solve(&system, &[right_hand_side], &tolerance, &watch);
+        let solved = solver::solve(&system, &[right_hand_side], &tolerance, &Inner(self.progress));
         let solution = solved.map_err(|error| self.constrained.in_nodes(error))?.remove(0);
-        self.tally.inner += solution.iterations;
+        self.tally.inner += solution.report.iterations;
         Ok(self.constrained.displacement(&known.total(&solution.unknowns)))
     }
 
@@ -191,18 +189,20 @@ impl Newton<'_> {
 
     fn found(self) -> Found {
         let Tally { inner, raised, halved } = self.tally;
-        let convergence = Convergence {
+        let solver = SolveReport {
             method: "newton",
             preconditioner: "none",
             why: format!(
                 "{inner} inner iterations; {raised} tangents were raised to be positive definite, \
                  {halved} times a step was halved"
             ),
+            unknowns: self.network.unknowns(),
             iterations: self.history.len(),
             relative_residual: self.residual,
+            wanted_residual: self.problem.tolerance.relative_residual,
             history: self.history,
             steps: 1,
         };
-        Found { positions: self.positions, convergence }
+        Found { positions: self.positions, solver }
     }
 }

@@ -15,6 +15,7 @@ use super::lattice::{Lattice, Place};
 use super::stiffness::Assembly;
 use crate::boundary::Hold;
 use crate::mesh::{Vector, Warning};
+use crate::progress::Unobserved;
 use crate::solver::Unknowns;
 use crate::solver::half_matrix::HalfMatrix;
 
@@ -50,7 +51,7 @@ impl HeldPoints {
                 (lattice.frame.axes.transpose() * axis, hold.values()[k])
             };
             let directions = (0..hold.count()).map(direction).collect();
-            let members = lattice.cliques.members(place.span).iter();
+            let members = lattice.cliques.row(place.span).iter();
             let diagonals = members.map(|&control| {
                 let block = stiffness.diagonal[assembly.numbering.row(control)];
                 block[0][0].max(block[1][1]).max(block[2][2])
@@ -72,7 +73,7 @@ impl HeldPoints {
         self.0.iter().for_each(|point| by_span[point.place.span].push(point));
         let order = assembly.lattice.order();
         let members = order.pow(3);
-        assembly.sum_over_spans(&|| true, |span| {
+        assembly.sum_over_spans(&Unobserved, |span| {
             let mut blocks = vec![[[0.0; 3]; 3]; members * members];
             for point in &by_span[span] {
                 let across = point
@@ -124,7 +125,7 @@ impl HeldPoints {
 
 /// Shares a force at a place out to the control points around it.
 pub fn add_at(assembly: &Assembly, place: &Place, force: &Vector, forces: &mut Unknowns) {
-    let members = assembly.lattice.cliques.members(place.span).iter();
+    let members = assembly.lattice.cliques.row(place.span).iter();
     for (&control, value) in members.zip(place.products(assembly.lattice.order())) {
         let sum = &mut forces[assembly.numbering.row(control)];
         (0..3).for_each(|k| sum[k] += force[k] * value);

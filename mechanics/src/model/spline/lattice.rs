@@ -183,7 +183,7 @@ impl Lattice {
 
     /// Displacement at a place from those of control points, along the axes of the frame.
     pub fn displacement(&self, place: &Place, of_control: &[Vector]) -> Vector {
-        let members = self.cliques.members(place.span).iter();
+        let members = self.cliques.row(place.span).iter();
         let values = place.products(self.order());
         members.zip(values).fold(Vector::zeros(), |sum, (&control, value)| {
             sum + of_control[control as usize] * value

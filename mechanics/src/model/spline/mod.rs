@@ -13,12 +13,15 @@ pub mod stiffness;
 pub mod tissue_points;
 
 use super::dofs::Numbering;
-use super::problem::{Convergence, Equilibrium, ModelError, Observer};
+use super::problem::{Equilibrium, ModelError};
 use crate::mesh::{Vector, Warning};
 use crate::model::fem::displacement::{Problem, check_finite};
+use crate::progress::{Phase, Progress};
 use crate::solver::half_matrix::HalfMatrix;
 use crate::solver::lanes::Lanes;
-use crate::solver::{self, Solution, SolverError, System, Unknowns, cholesky, ordering};
+use crate::solver::{
+    self, Solution, SolveReport, SolverError, System, Unknowns, cholesky, ordering,
+};
 use held_points::{HeldPoints, add_at};
 use lattice::Lattice;
 use stepping::{Clock, Damping, Motion, State};
@@ -92,10 +95,10 @@ struct Assembled<'a> {
 pub fn solve(
     problem: &Problem,
     spline: &VolumeSpline,
-    observer: &dyn Observer,
+    progress: &dyn Progress,
 ) -> Result<Equilibrium, ModelError> {
     // 1. Control points.
-    observer.assembling();
+    progress.phase(Phase::Assemble);
     let mesh = problem.tissue.mesh;
     let points = tissue_points(mesh)?;
     let lattice = Lattice::fit(mesh, &points, spline.degree, spline.control_spacing);
@@ -106,9 +109,8 @@ pub fn solve(
 
     // 2. What holds them together, and what holds the tissue.
     let stopped = || ModelError::from(SolverError::Stopped);
-    let keep_going = || !observer.is_stopped();
     let stiffness = match spline.stiffness {
-        Stiffness::Galerkin => assembly.galerkin(&keep_going).ok_or_else(stopped)?,
+        Stiffness::Galerkin => assembly.galerkin(progress).ok_or_else(stopped)?,
         Stiffness::Lattice(links) => assembly.links(links),
     };
     let resisted = rotation_resisted(spline, &assembly);
@@ -116,9 +118,9 @@ pub fn solve(
         assemble(assembly, stiffness, problem, spline.hold_weight).ok_or_else(stopped)?;
 
     // 3. Rest.
-    observer.solving();
-    let (control, convergence) = assembled.rest(problem, spline, observer)?;
-    let mut equilibrium = assembled.equilibrium(problem, &control, convergence);
+    progress.phase(Phase::Solve);
+    let (control, solver) = assembled.rest(problem, spline, progress)?;
+    let mut equilibrium = assembled.equilibrium(problem, &control, solver);
     equilibrium.warnings.extend(resisted);
     equilibrium.warnings.extend(materials_ignored(spline));
     check_finite(std::slice::from_ref(&equilibrium))?;
@@ -171,16 +173,16 @@ impl Assembled<'_> {
         &self,
         problem: &Problem,
         spline: &VolumeSpline,
-        observer: &dyn Observer,
-    ) -> Result<(Vec<Vector>, Convergence), ModelError> {
+        progress: &dyn Progress,
+    ) -> Result<(Vec<Vector>, SolveReport), ModelError> {
         let Some(clock) = &spline.clock else {
-            let solution = self.static_solution(problem, observer)?;
+            let solution = self.static_solution(problem, progress)?;
             let by_row = solution.unknowns.iter().map(|d| Vector::from(*d)).collect();
-            return Ok((self.by_control(by_row), Convergence::of(&solution)));
+            return Ok((self.by_control(by_row), solution.report));
         };
         let mass = match spline.stiffness {
             Stiffness::Galerkin => {
-                let mass = self.assembly.mass(&|| !observer.is_stopped());
+                let mass = self.assembly.mass(progress);
                 mass.ok_or(SolverError::Stopped)?
             }
             Stiffness::Lattice(_) => self.assembly.equal_masses(),
@@ -192,9 +194,9 @@ impl Assembled<'_> {
             force: &self.force,
         };
         let wanted = problem.tolerance.relative_residual;
-        let state = motion.run(clock, wanted, problem.tolerance.memory_mb, observer)?;
-        let convergence = self.convergence(clock, &state, wanted)?;
-        Ok((self.by_control(state.displacement()), convergence))
+        let state = motion.run(clock, wanted, problem.tolerance.memory_mb, progress)?;
+        let solver = self.report(clock, &state, wanted)?;
+        Ok((self.by_control(state.displacement()), solver))
     }
 
     /// K d = f, by a factorisation where that takes seconds: functions that overlap this much make rows of
@@ -202,19 +204,20 @@ impl Assembled<'_> {
     fn static_solution(
         &self,
         problem: &Problem,
-        observer: &dyn Observer,
+        progress: &dyn Progress,
     ) -> Result<Solution, SolverError> {
-        let watch = |iteration, residual| observer.iterated(iteration, residual);
         let (forces, tolerance) = (std::slice::from_ref(&self.force), &problem.tolerance);
         let ordering = ordering::minimum_degree(&self.system);
         let fits = ordering.factor_mb + self.system.megabytes() <= tolerance.memory_mb;
         let nothing_acts = self.force.iter().flatten().all(|value| *value == 0.0);
         if nothing_acts || !fits || ordering.multiplications > FACTORISED {
-            return Ok(solver::solve(&self.system, forces, tolerance, &watch)?.remove(0));
+            return Ok(solver::solve(&self.system, forces, tolerance, progress)?.remove(0));
         }
-        let solved = cholesky::solve(&self.system, &ordering, forces, tolerance, &watch)?.remove(0);
-        let why = format!("{:.1e} multiplications make the factor", ordering.multiplications);
-        Ok(Solution { why, ..solved })
+        let mut solved =
+            cholesky::solve(&self.system, &ordering, forces, tolerance, progress)?.remove(0);
+        solved.report.why =
+            format!("{:.1e} multiplications make the factor", ordering.multiplications);
+        Ok(solved)
     }
 
     fn by_control(&self, by_row: Vec<Vector>) -> Vec<Vector> {
@@ -223,12 +226,12 @@ impl Assembled<'_> {
     }
 
     /// What is not at rest when its time is up has not converged.
-    fn convergence(
+    fn report(
         &self,
         clock: &Clock,
         state: &State,
         wanted: f64,
-    ) -> Result<Convergence, SolverError> {
+    ) -> Result<SolveReport, SolverError> {
         let steps = state.history.len();
         let mut product: Vec<Lanes<f64, 3, 1>> = vec![[[0.0]; 3]; self.force.len()];
         self.system.multiply(&state.displacement, &mut product);
@@ -244,12 +247,14 @@ impl Assembled<'_> {
             let (residual, history) = (state.history[steps - 1], state.history.clone());
             return Err(SolverError::NotConverged { iterations: steps, residual, wanted, history });
         }
-        Ok(Convergence {
+        Ok(SolveReport {
             method: clock.scheme.name(),
             preconditioner: "none",
             why: format!("steps of {} s until at rest", clock.step / 1e3),
+            unknowns: self.system.free_unknowns(),
             iterations: steps,
             relative_residual,
+            wanted_residual: wanted,
             history: state.history.clone(),
             steps: steps as u32,
         })
@@ -259,7 +264,7 @@ impl Assembled<'_> {
         &self,
         problem: &Problem,
         control: &[Vector],
-        convergence: Convergence,
+        solver: SolveReport,
     ) -> Equilibrium {
         let (lattice, mesh) = (self.assembly.lattice, problem.tissue.mesh);
         let moved = |x: &Vector| {
@@ -271,8 +276,7 @@ impl Assembled<'_> {
         Equilibrium {
             displacement: mesh.nodes.iter().map(moved).collect(),
             reactions: self.held.reactions(lattice, &missed),
-            convergence,
-            unknowns: 3 * lattice.points.len(),
+            solver,
             warnings: held_points::warning(&missed).into_iter().collect(),
         }
     }

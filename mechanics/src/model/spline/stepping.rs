@@ -15,10 +15,11 @@
 
 use super::stiffness::add_to_diagonal;
 use crate::mesh::Vector;
-use crate::model::problem::{ModelError, Observer};
+use crate::model::problem::ModelError;
+use crate::progress::Progress;
 use crate::solver::half_matrix::HalfMatrix;
 use crate::solver::lanes::Lanes;
-use crate::solver::{SolverError, System, Tolerance, Unknowns, cholesky, ordering};
+use crate::solver::{SolverError, System, Tolerance, Unknowns, cholesky, ordering, tell};
 
 /// How time passes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -92,12 +93,12 @@ impl Motion<'_> {
         clock: &Clock,
         relative_rest: f64,
         memory_mb: f64,
-        observer: &dyn Observer,
+        progress: &dyn Progress,
     ) -> Result<State, ModelError> {
         match clock.scheme {
-            Scheme::Explicit => self.explicit(clock, relative_rest, observer),
+            Scheme::Explicit => self.explicit(clock, relative_rest, progress),
             Scheme::BackwardEuler | Scheme::Newmark => {
-                self.implicit(clock, relative_rest, memory_mb, observer)
+                self.implicit(clock, relative_rest, memory_mb, progress)
             }
         }
     }
@@ -166,7 +167,7 @@ impl Motion<'_> {
         &self,
         clock: &Clock,
         relative_rest: f64,
-        observer: &dyn Observer,
+        progress: &dyn Progress,
     ) -> Result<State, ModelError> {
         let limit = self.explicit_limit();
         if clock.step > limit {
@@ -176,7 +177,7 @@ impl Motion<'_> {
         let (masses, h) = (self.lumped(), clock.step);
         let mut state = self.rest();
         let mut product = state.velocity.clone();
-        while state.goes_on(clock, relative_rest, observer)? {
+        while state.goes_on(clock, relative_rest, progress)? {
             let forces = self.unbalanced(&state.displacement);
             self.stiffness.multiply(&state.velocity, &mut product);
             let Damping { mass, stiffness } = self.damping;
@@ -197,7 +198,7 @@ impl Motion<'_> {
         clock: &Clock,
         relative_rest: f64,
         memory_mb: f64,
-        observer: &dyn Observer,
+        progress: &dyn Progress,
     ) -> Result<State, ModelError> {
         let order = if clock.scheme == Scheme::Newmark { 2.0 } else { 1.0 };
         // Steps of both kinds share this length in the matrix: h for one, h / 2 for the other.
@@ -212,7 +213,7 @@ impl Motion<'_> {
         let march = |solve: cholesky::Solve| {
             let mut state = self.rest();
             let mut product = state.velocity.clone();
-            while state.goes_on(clock, relative_rest, observer)? {
+            while state.goes_on(clock, relative_rest, progress)? {
                 let backward = order == 1.0 || state.history.len() < 4;
                 let order = if backward { 1.0 } else { order };
                 let mut right = self.unbalanced(&state.displacement);
@@ -271,7 +272,7 @@ impl State {
         &mut self,
         clock: &Clock,
         relative_rest: f64,
-        observer: &dyn Observer,
+        progress: &dyn Progress,
     ) -> Result<bool, SolverError> {
         let steps = self.history.len();
         if steps == 0 {
@@ -281,10 +282,8 @@ impl State {
         if self.at_rest || self.time(clock) >= clock.end * (1.0 - 1e-9) {
             return Ok(false);
         }
-        match observer.iterated(steps, self.history[steps - 1]) {
-            true => Ok(true),
-            false => Err(SolverError::Stopped),
-        }
+        tell(progress, steps, self.history[steps - 1], relative_rest)?;
+        Ok(true)
     }
 
     /// In ms: the first four steps of Newmark's scheme are half as long.

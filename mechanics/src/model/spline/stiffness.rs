@@ -24,6 +24,8 @@ use crate::mesh::Vector;
 use crate::model::dofs::Numbering;
 use crate::model::fem::assembly::Tissue;
 use crate::model::problem::InvertedCell;
+use crate::progress::Progress;
+use crate::rows::Rows;
 use crate::solver::Block;
 use crate::solver::half_matrix::HalfMatrix;
 
@@ -46,10 +48,8 @@ pub struct Assembly<'a> {
     pub lattice: &'a Lattice,
     pub numbering: &'a Numbering,
     pub tissue: &'a Tissue<'a>,
-    /// By span, then by material.
-    points: Vec<Located>,
-    /// Where the points of each span begin.
-    starts: Vec<usize>,
+    /// Of each span, by material.
+    points: Rows<Located>,
 }
 
 /// A tissue point in the frame of the lattice.
@@ -78,14 +78,13 @@ impl<'a> Assembly<'a> {
         };
         let mut points: Vec<Located> = points.par_iter().filter_map(locate).collect();
         points.sort_by_key(|point| (point.span, point.material));
-        let spans = lattice.cliques.len();
-        let starts =
-            (0..=spans).map(|span| points.partition_point(|p| (p.span as usize) < span)).collect();
-        Assembly { lattice, numbering, tissue, points, starts }
+        let mut lengths = vec![0; lattice.cliques.len()];
+        points.iter().for_each(|point| lengths[point.span as usize] += 1);
+        Assembly { lattice, numbering, tissue, points: Rows::of_lengths(&lengths, points) }
     }
 
     fn points(&self, span: usize) -> &[Located] {
-        &self.points[self.starts[span]..self.starts[span + 1]]
+        self.points.row(span)
     }
 
     fn place(&self, point: &Located) -> Place {
@@ -93,14 +92,14 @@ impl<'a> Assembly<'a> {
     }
 
     /// K of the tissue in mN/mm; `None` where told to stop.
-    pub fn galerkin(&self, keep_going: &dyn Fn() -> bool) -> Option<HalfMatrix<f64, 3>> {
+    pub fn galerkin(&self, progress: &dyn Progress) -> Option<HalfMatrix<f64, 3>> {
         let mean = self.mean_shear_modulus();
-        self.sum_over_spans(keep_going, |span| self.span_stiffness(span, mean))
+        self.sum_over_spans(progress, |span| self.span_stiffness(span, mean))
     }
 
     /// int rho N N dV in mg.
-    pub fn mass(&self, keep_going: &dyn Fn() -> bool) -> Option<HalfMatrix<f64, 3>> {
-        self.sum_over_spans(keep_going, |span| {
+    pub fn mass(&self, progress: &dyn Progress) -> Option<HalfMatrix<f64, 3>> {
+        self.sum_over_spans(progress, |span| {
             let order = self.lattice.order();
             let members = order.pow(3);
             let mut blocks = vec![[[0.0; 3]; 3]; members * members];
@@ -147,7 +146,8 @@ impl<'a> Assembly<'a> {
     pub fn equal_masses(&self) -> HalfMatrix<f64, 3> {
         let mut matrix = HalfMatrix::zeros(self.numbering.pattern.clone());
         let density = |point: &Located| self.tissue.materials[point.material as usize].density();
-        let mass: f64 = self.points.iter().map(|point| density(point) * point.volume).sum();
+        let mass: f64 =
+            self.points.entries().iter().map(|point| density(point) * point.volume).sum();
         let share = mass / matrix.rows() as f64;
         matrix.diagonal.iter_mut().for_each(|block| add_to_diagonal(block, share));
         matrix
@@ -156,14 +156,14 @@ impl<'a> Assembly<'a> {
     /// Sums span matrices in a fixed order.
     pub fn sum_over_spans(
         &self,
-        keep_going: &dyn Fn() -> bool,
+        progress: &dyn Progress,
         span_matrix: impl Fn(usize) -> Vec<Block> + Sync,
     ) -> Option<HalfMatrix<f64, 3>> {
         let mut matrix = HalfMatrix::zeros(self.numbering.pattern.clone());
         let spans: Vec<usize> = (0..self.lattice.cliques.len()).collect();
         for spans in spans.chunks(SPANS_AT_ONCE) {
             let matrix_of = |span| Ok::<_, InvertedCell>(span_matrix(span));
-            let added = self.numbering.add_cells(&mut matrix, spans, keep_going, matrix_of);
+            let added = self.numbering.add_cells(&mut matrix, spans, progress, matrix_of);
             if !added.unwrap_or(false) {
                 return None;
             }
@@ -223,10 +223,10 @@ impl<'a> Assembly<'a> {
     }
 
     fn mean_shear_modulus(&self) -> f64 {
-        let volume: f64 = self.points.iter().map(|point| point.volume).sum();
+        let volume: f64 = self.points.entries().iter().map(|point| point.volume).sum();
         let shear =
             |point: &Located| self.tissue.materials[point.material as usize].shear_modulus();
-        self.points.iter().map(|point| shear(point) * point.volume).sum::<f64>() / volume
+        self.points.entries().iter().map(|point| shear(point) * point.volume).sum::<f64>() / volume
     }
 }
 

@@ -12,7 +12,7 @@ use nalgebra::{Matrix6, Vector3};
 use rayon::prelude::*;
 
 use super::prolongator::{Weight, Weights};
-use crate::solver::cliques::{Cliques, CliquesOfRow};
+use crate::solver::cliques::{Cliques, renumbered};
 use crate::solver::half_matrix::{HalfMatrix, Pattern};
 use crate::solver::layout::Layout;
 use crate::solver::vectorised::vectorised;
@@ -92,10 +92,10 @@ where
         pairs.push([aggregate as u32, partner]);
     }
     let aggregates = weights.aggregates;
-    let around = CliquesOfRow::new(&pairs, aggregates);
+    let around = pairs.inverted(aggregates);
     let layout = Layout::new(&pairs, &around, &vec![false; aggregates], 6, 0);
-    let renumbered = pairs.renumbered(&layout.clique_order, &layout.place);
-    let around = CliquesOfRow::new(&renumbered, aggregates);
+    let renumbered = renumbered(&pairs, &layout.clique_order, &layout.place);
+    let around = renumbered.inverted(aggregates);
     let pattern = Arc::new(Pattern::new(&renumbered, &around, aggregates));
     let mut coarse = HalfMatrix::zeros(pattern);
     let shift: Vec<Matrix6<f64>> =

@@ -12,6 +12,7 @@ use rayon::prelude::*;
 use super::aggregation::aggregate;
 use super::smoother::Vector;
 use super::ties::Ties;
+use crate::rows::Rows;
 use crate::solver::lanes::Lanes;
 use crate::solver::layout::Layout;
 use crate::solver::vectorised::vectorised;
@@ -34,29 +35,16 @@ pub(super) struct Weight {
 
 pub(super) struct Prolongator {
     /// For each row its aggregates.
-    weights: Table,
+    weights: Rows<Weight>,
     layout: Arc<Layout>,
     /// Positions and centres are told from a point in their midst, so that f32 loses little.
     positions: Vec<[f32; 3]>,
     centres: Vec<[f32; 3]>,
 }
 
-/// Lists of weights.
-struct Table {
-    starts: Vec<u32>,
-    weights: Vec<Weight>,
-}
-
-impl Table {
-    #[inline(always)]
-    fn of(&self, index: usize) -> &[Weight] {
-        &self.weights[self.starts[index] as usize..self.starts[index + 1] as usize]
-    }
-}
-
 /// Smoothed weights before aggregates have their final numbers.
 pub(super) struct Weights {
-    table: Table,
+    of_row: Rows<Weight>,
     pub aggregates: usize,
     pub centres: Vec<Vector3<f64>>,
 }
@@ -66,31 +54,24 @@ impl Weights {
     /// D, which draw weights to zero there.
     pub fn new(ties: &Ties, positions: &[Vector3<f64>], size: usize) -> Self {
         let (group, aggregates) = aggregate(ties, size);
-        let chunks: Vec<(Vec<u32>, Vec<Weight>)> = (0..ties.rows().div_ceil(CHUNK))
+        let chunks: Vec<Rows<Weight>> = (0..ties.rows().div_ceil(CHUNK))
             .into_par_iter()
             .map(|chunk| {
-                let (mut counts, mut weights) = (Vec::new(), Vec::with_capacity(3 * CHUNK));
+                let mut weights = Rows::with_room(CHUNK, 3 * CHUNK);
                 let mut of_row: Vec<Weight> = Vec::new();
                 for row in chunk * CHUNK..((chunk + 1) * CHUNK).min(ties.rows()) {
                     smooth(row, &group, ties, &mut of_row);
-                    counts.push(of_row.len() as u32);
-                    weights.extend_from_slice(&of_row);
+                    weights.push(of_row.iter().copied());
                 }
-                (counts, weights)
+                weights
             })
             .collect();
-        let mut table = Table { starts: vec![0], weights: Vec::with_capacity(3 * ties.rows()) };
-        for (counts, weights) in chunks {
-            for count in counts {
-                table.starts.push(table.starts[table.starts.len() - 1] + count);
-            }
-            table.weights.extend(weights);
-        }
-        Weights { table, aggregates, centres: centres(&group, aggregates, positions) }
+        let centres = centres(&group, aggregates, positions);
+        Weights { of_row: Rows::joined(chunks), aggregates, centres }
     }
 
     pub fn of(&self, row: usize) -> &[Weight] {
-        self.table.of(row)
+        self.of_row.row(row)
     }
 
     /// `place` renumbers the aggregates. Positions are those of the rows of `layout`.
@@ -101,7 +82,7 @@ impl Weights {
         layout: Arc<Layout>,
         origin: &Vector3<f64>,
     ) -> Prolongator {
-        for weight in &mut self.table.weights {
+        for weight in self.of_row.entries_mut() {
             weight.partner = place[weight.partner as usize];
         }
         let single = |p: &Vector3<f64>| <[f64; 3]>::from(p - origin).map(|value| value as f32);
@@ -110,7 +91,7 @@ impl Weights {
             centres[place as usize] = single(centre);
         }
         let positions = positions.iter().map(single).collect();
-        Prolongator { weights: self.table, layout, positions, centres }
+        Prolongator { weights: self.of_row, layout, positions, centres }
     }
 }
 
@@ -148,7 +129,7 @@ fn smooth(row: usize, group: &[u32], ties: &Ties, weights: &mut Vec<Weight>) {
 
 impl Prolongator {
     pub fn megabytes(&self) -> f64 {
-        let (weights, rows) = (self.weights.weights.len(), self.positions.len());
+        let (weights, rows) = (self.weights.entries().len(), self.positions.len());
         (8 * weights + 16 * rows + 12 * self.centres.len()) as f64 / 1e6
     }
 
@@ -212,7 +193,7 @@ impl Prolongator {
                     }
                 }
             }
-            for &Weight { partner, weight } in self.weights.of(row) {
+            for &Weight { partner, weight } in self.weights.row(row) {
                 for (sum, own) in sums[partner as usize].iter_mut().zip(&own) {
                     for n in 0..N {
                         sum[n] += weight * own[n];
@@ -258,7 +239,7 @@ impl Prolongator {
         values: &mut Lanes<f32, B, N>,
     ) {
         let mut own = [[0.0; N]; 6];
-        for &Weight { partner, weight } in self.weights.of(row) {
+        for &Weight { partner, weight } in self.weights.row(row) {
             for (own, movement) in own.iter_mut().zip(&coarse[partner as usize]) {
                 for n in 0..N {
                     own[n] += weight * movement[n];

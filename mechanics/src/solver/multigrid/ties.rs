@@ -2,14 +2,14 @@
 
 use nalgebra::Matrix3;
 
+use crate::rows::{Rows, Sorting};
 use crate::solver::half_matrix::HalfMatrix;
 use crate::solver::layout::Layout;
 
 /// Minus the trace of the displacement part of each block, clipped at 0, both ways round.
 pub(super) struct Ties {
-    starts: Vec<u32>,
-    columns: Vec<u32>,
-    values: Vec<f32>,
+    /// The columns of each row, and how strongly each is tied to it.
+    rows: Rows<(u32, f32)>,
     /// The sum of the ties to rows that are held altogether.
     pub held: Vec<f32>,
 }
@@ -22,42 +22,27 @@ impl Ties {
         axes: impl Fn(usize) -> Option<&'a Matrix3<f64>>,
     ) -> Self {
         let free = layout.free;
-        let mut starts = vec![0_u32; free + 1];
+        let mut lengths = vec![0_u32; free];
         for row in 0..free {
-            starts[row + 1] += matrix.pattern.columns(row).len() as u32;
+            lengths[row] += matrix.pattern.columns(row).len() as u32;
             for &column in matrix.pattern.columns(row) {
-                starts[column as usize + 1] += 1;
+                lengths[column as usize] += 1;
             }
         }
-        for row in 0..free {
-            starts[row + 1] += starts[row];
-        }
-        let mut next = starts.clone();
-        let mut ties = Ties {
-            columns: vec![0; starts[free] as usize],
-            values: vec![0.0; starts[free] as usize],
-            held: vec![0.0; free],
-            starts,
-        };
+        let mut sorting = Sorting::new(&lengths, (0, 0.0));
+        let mut held = vec![0.0; free];
         for row in 0..matrix.rows() {
             for (column, block) in matrix.lower_row(row) {
                 let tie = (-trace(block, axes(row), axes(column))).max(0.0) as f32;
                 if row < free {
-                    ties.put(&mut next, row, column, tie);
-                    ties.put(&mut next, column, row, tie);
+                    sorting.put(row, (column as u32, tie));
+                    sorting.put(column, (row as u32, tie));
                 } else if column < free {
-                    ties.held[column] += tie;
+                    held[column] += tie;
                 }
             }
         }
-        ties
-    }
-
-    fn put(&mut self, next: &mut [u32], row: usize, column: usize, tie: f32) {
-        let at = next[row] as usize;
-        next[row] += 1;
-        self.columns[at] = column as u32;
-        self.values[at] = tie;
+        Ties { rows: sorting.finish(), held }
     }
 
     pub fn rows(&self) -> usize {
@@ -65,11 +50,7 @@ impl Ties {
     }
 
     pub fn of(&self, row: usize) -> impl Iterator<Item = (usize, f32)> {
-        let range = self.starts[row] as usize..self.starts[row + 1] as usize;
-        self.columns[range.clone()]
-            .iter()
-            .map(|&c| c as usize)
-            .zip(self.values[range].iter().copied())
+        self.rows.row(row).iter().map(|&(column, tie)| (column as usize, tie))
     }
 }
 

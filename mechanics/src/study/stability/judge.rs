@@ -5,7 +5,9 @@ use std::rc::Rc;
 
 use super::{Answer, Axis, AxisMap, Bounds, Finding, Map, Probe, Refusal, Truth, Variant, Verdict};
 use crate::mesh::Vector;
-use crate::prediction::{Prediction, PredictionError, Scene, Unobserved, predict};
+use crate::prediction::{ModelError, Prediction, Scene, predict};
+use crate::progress::Unobserved;
+use crate::solver::SolverError;
 use crate::study::deadline::Deadline;
 use crate::validation::Statistics;
 
@@ -102,7 +104,7 @@ fn judged(probe: &Probe, truth: &Known, bound_mm: f64, bounds: &Bounds) -> Findi
     };
     let deadline = Deadline::after(bounds.seconds, bounds.stopwatch, &Unobserved);
     match predict(&scene, &deadline) {
-        Err(PredictionError::Cancelled) => {
+        Err(ModelError::Solver(SolverError::Stopped)) => {
             let detail = format!("not done after {} s", bounds.seconds);
             failed(Refusal::new("", "budget-exceeded", &detail))
         }

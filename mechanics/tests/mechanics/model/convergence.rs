@@ -15,9 +15,10 @@ use mechanics::model::fem::edge_nodes::EdgeNodes;
 use mechanics::model::fem::quadratic;
 use mechanics::model::problem::LoadCase;
 use mechanics::model::reference_cell;
+use mechanics::progress::Unobserved;
 use mechanics::solver::Tolerance;
 
-use crate::scenes::{Silent, material};
+use crate::scenes::material;
 
 /// u = 0.01 (sin(pi x) cos(pi y) z, x² y z, cos(pi z) x y) on the unit cube.
 fn manufactured(p: &Vector) -> Vector {
@@ -59,7 +60,7 @@ fn on_boundary(x: &Vector) -> bool {
 
 /// The L2 norm of u_h - u on an n x n x n cube, with u given on the whole boundary.
 fn l2_error(n: usize, shape: CellShape, nu: f64, dilatation: fn(CellShape) -> Dilatation) -> f64 {
-    let solve = |problem: &Problem| problem.solve(&Silent).unwrap().displacement;
+    let solve = |problem: &Problem| problem.solve(&Unobserved).unwrap().displacement;
     l2_error_of(n, shape, nu, (dilatation, &solve))
 }
 
@@ -156,7 +157,8 @@ fn plain_tetrahedra_lose_their_order_at_nu_0_49() {
 fn halving_stabilised_tetrahedra_quarters_the_displacement_error_up_to_nu_0_4999() {
     let solve = |problem: &Problem| {
         let solved =
-            displacement_pressure::solve_cases(problem, &[load_case(problem)], &Silent).unwrap();
+            displacement_pressure::solve_cases(problem, &[load_case(problem)], &Unobserved)
+                .unwrap();
         solved.into_iter().next().unwrap().displacement
     };
     for nu in [0.49, 0.4999] {
@@ -203,7 +205,7 @@ fn quadratic_error(n: usize, nu: f64) -> f64 {
         forces: &forces,
         tolerance: Tolerance { relative_residual: 1e-10, memory_mb: 4000.0 },
     };
-    let solved = quadratic::solve_cases(&problem, &[load_case(&problem)], &Silent).unwrap();
+    let solved = quadratic::solve_cases(&problem, &[load_case(&problem)], &Unobserved).unwrap();
     let errors = mesh.nodes.iter().zip(&solved[0].displacement);
     let squared: f64 = errors.map(|(x, u)| (u - manufactured(x)).norm_squared()).sum();
     (squared / mesh.nodes.len() as f64).sqrt()

@@ -1,7 +1,5 @@
 //! V.12, V.13: what springs on the edges of tetrahedra are on average, and how they come to rest.
 
-use std::sync::atomic::{AtomicUsize, Ordering};
-
 use mechanics::mesh::sample::block;
 use mechanics::mesh::{CellShape, Cells, Vector, VolumeMesh};
 use mechanics::model::fem::assembly::Tissue;
@@ -9,12 +7,13 @@ use mechanics::model::fem::cell_stiffness::Dilatation;
 use mechanics::model::mass_spring::{MassSpringSettings, Search, Springs};
 use mechanics::plan::{PlannedSegment, RigidMovement};
 use mechanics::prediction::{
-    Case, CaseSegment, ElementChoice, Load, Method, Phase, Plan, Prediction, PredictionError,
-    Progress, Scene, Settings, Sliding, SlidingNormal, Unobserved, predict,
+    Case, CaseSegment, ElementChoice, Load, Method, ModelError, Plan, Prediction, Scene, Settings,
+    Sliding, SlidingNormal, SolverError, predict,
 };
+use mechanics::progress::Unobserved;
 use nalgebra::Matrix3;
 
-use crate::scenes::{case_of, hold, material, on_the_boundary, set, solve};
+use crate::scenes::{StopsAfter, case_of, hold, material, on_the_boundary, set, solve};
 
 const YOUNG: f64 = 15.0;
 
@@ -228,7 +227,7 @@ fn direct_iteration_and_newton_come_to_the_same_rest() {
     assert!(newton.solver.iterations < 10, "{}", newton.solver.why);
     assert!(direct.solver.iterations > 100);
     for (found, name) in [(&newton, "newton"), (&direct, "direct_iteration")] {
-        assert_eq!(found.solver.name, name);
+        assert_eq!(found.solver.method, name);
         assert_eq!(found.solver.history.len(), found.solver.iterations);
         assert!(found.solver.relative_residual <= 1e-11);
         for (axis, sum) in found.reactions.values().sum::<Vector>().iter().enumerate() {
@@ -340,30 +339,18 @@ fn rest_that_is_not_found_is_an_error_with_its_history() {
         let method = Method::MassSpring(MassSpringSettings { search, most_iterations: 2 });
         let settings = Settings { method, ..Settings::default() };
         let scene = Scene::new(&case, &moved(Vector::z() * 4.0), &settings).unwrap();
-        let Err(PredictionError::NotConverged { iterations, residual, wanted, history }) =
-            predict(&scene, &Unobserved)
+        let Err(ModelError::Solver(SolverError::NotConverged {
+            iterations,
+            residual,
+            wanted,
+            history,
+        })) = predict(&scene, &Unobserved)
         else {
             panic!("two iterations are not enough");
         };
         assert_eq!((iterations, history.len(), wanted), (2, 2, 1e-8));
         assert_eq!(history[1], residual);
         assert!(residual > 1e-8);
-    }
-}
-
-/// Stops after three iterations.
-#[derive(Default)]
-pub struct Impatient(AtomicUsize);
-
-impl Progress for Impatient {
-    fn phase(&self, _phase: Phase) {}
-
-    fn iteration(&self, iteration: usize, _residual: f64, _wanted: f64) {
-        self.0.store(iteration, Ordering::Relaxed);
-    }
-
-    fn is_cancelled(&self) -> bool {
-        self.0.load(Ordering::Relaxed) >= 3
     }
 }
 
@@ -374,8 +361,8 @@ fn both_searches_stop_when_they_are_told_to() {
         let settings = Settings { relative_residual: 1e-13, ..springs(search) };
         let scene = Scene::new(&case, &moved(Vector::z() * 3.0), &settings).unwrap();
         assert_eq!(
-            predict(&scene, &Impatient::default()).unwrap_err(),
-            PredictionError::Cancelled,
+            predict(&scene, &StopsAfter::iterations(3)).unwrap_err(),
+            ModelError::Solver(SolverError::Stopped),
             "{search:?}"
         );
     }
@@ -385,7 +372,7 @@ fn both_searches_stop_when_they_are_told_to() {
 fn an_identity_plan_leaves_the_springs_at_rest_exactly() {
     let found = solve(&slab(CellShape::Tet4, 0.25), &Plan::default(), &springs(Search::Newton));
     assert!(found.displacement.iter().all(|u| *u == Vector::zeros()));
-    assert_eq!(found.solver.name, "none");
+    assert_eq!(found.solver.method, "none");
 }
 
 #[test]

@@ -8,16 +8,16 @@ use mechanics::model::fem::cell_stiffness::Dilatation;
 use mechanics::model::fem::mass_tensor::{Iterations, MassTensorSettings};
 use mechanics::plan::RigidMovement;
 use mechanics::prediction::{
-    Case, ElementChoice, Load, Method, Plan, PredictionError, RegionNames, Scene, Settings,
-    Sliding, SlidingNormal, Unobserved, predict,
+    Case, ElementChoice, Load, Method, ModelError, Plan, RegionNames, Scene, Settings, Sliding,
+    SlidingNormal, predict,
 };
+use mechanics::progress::Unobserved;
 use mechanics::solver::stationary::{self, Iteration, Stationary, largest_eigenvalue};
 use mechanics::solver::{SolverError, System, Tolerance, Unknowns, cholesky, ordering};
 use nalgebra::Matrix3;
 
-use crate::model::mass_spring::Impatient;
-use crate::scenes::{case_of, hold, material, set, solve};
-use crate::solver::solvers::{forces, go_on, largest, largest_difference, system_of};
+use crate::scenes::{StopsAfter, case_of, hold, material, set, solve};
+use crate::solver::solvers::{forces, largest, largest_difference, system_of};
 
 const TIGHT: Tolerance = Tolerance { relative_residual: 1e-12, memory_mb: 1000.0 };
 
@@ -34,7 +34,7 @@ fn plain(iteration: Iteration) -> Stationary {
 fn factorised(system: &System, right: &Unknowns, tolerance: &Tolerance) -> Unknowns {
     let order = ordering::minimum_degree(system);
     let right = std::slice::from_ref(right);
-    cholesky::solve(system, &order, right, tolerance, &go_on).unwrap().remove(0).unknowns
+    cholesky::solve(system, &order, right, tolerance, &Unobserved).unwrap().remove(0).unknowns
 }
 
 /// The smallest eigenvalue of D^-1 K: power iteration on K^-1 D.
@@ -84,7 +84,7 @@ fn the_condition_number_grows_as_tissue_becomes_incompressible() {
 fn jacobi_diverges_with_its_history_and_its_growth_and_is_never_an_answer() {
     let system = paper_block(0.46);
     let right = forces(&system, 0);
-    let failed = stationary::solve(&system, &right, &plain(Iteration::Jacobi), &TIGHT, &go_on);
+    let failed = stationary::solve(&system, &right, &plain(Iteration::Jacobi), &TIGHT, &Unobserved);
     let Err(SolverError::Diverged { iterations, growth, residual, history }) = failed else {
         panic!("{failed:?}");
     };
@@ -100,12 +100,16 @@ fn gauss_seidel_and_damped_jacobi_equal_the_factorisation() {
     let right = forces(&system, 0);
     let exact = factorised(&system, &right, &TIGHT);
     for iteration in [Iteration::GaussSeidel, Iteration::DampedJacobi] {
-        let found = stationary::solve(&system, &right, &plain(iteration), &TIGHT, &go_on).unwrap();
+        let found =
+            stationary::solve(&system, &right, &plain(iteration), &TIGHT, &Unobserved).unwrap();
         let difference = largest_difference(&found.unknowns, &exact) / largest(&exact);
         assert!(difference < 1e-8, "{iteration:?}: {difference:.1e}");
-        assert_eq!(found.history.len(), found.iterations);
-        assert!(found.relative_residual <= 1e-12);
-        assert!(found.history.windows(2).skip(20).all(|pair| pair[1] < pair[0]), "{iteration:?}");
+        assert_eq!(found.report.history.len(), found.report.iterations);
+        assert!(found.report.relative_residual <= 1e-12);
+        assert!(
+            found.report.history.windows(2).skip(20).all(|pair| pair[1] < pair[0]),
+            "{iteration:?}"
+        );
     }
 }
 
@@ -117,9 +121,9 @@ fn a_wanted_change_goes_on_where_the_residual_alone_would_end() {
     let loose = Tolerance { relative_residual: 1e-2, ..TIGHT };
     let solved = |relative_change| {
         let stationary = Stationary { relative_change, ..plain(Iteration::GaussSeidel) };
-        let found = stationary::solve(&system, &right, &stationary, &loose, &go_on).unwrap();
+        let found = stationary::solve(&system, &right, &stationary, &loose, &Unobserved).unwrap();
         let difference = largest_difference(&found.unknowns, &exact) / largest(&exact);
-        (found.iterations, difference)
+        (found.report.iterations, difference)
     };
     let (early, far) = solved(None);
     let (late, near) = solved(Some(1e-10));
@@ -139,14 +143,14 @@ fn gauss_seidel_gives_the_same_bits_on_one_two_and_three_threads() {
         let with_threads = |count| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(count).build().unwrap();
             let solve =
-                || stationary::solve(&system, &right, &plain(iteration), &tolerance, &go_on);
+                || stationary::solve(&system, &right, &plain(iteration), &tolerance, &Unobserved);
             pool.install(solve).unwrap()
         };
         let one = with_threads(1);
         for threads in [2, 3] {
             let other = with_threads(threads);
             assert_eq!(one.unknowns, other.unknowns, "{iteration:?} on {threads} threads");
-            assert_eq!(one.history, other.history);
+            assert_eq!(one.report.history, other.report.history);
         }
     }
 }
@@ -156,19 +160,28 @@ fn iterations_stop_when_they_are_told_to_and_end_where_they_are_too_many() {
     let system = paper_block(0.46);
     let right = forces(&system, 0);
     for iteration in [Iteration::GaussSeidel, Iteration::DampedJacobi, Iteration::Jacobi] {
-        let watch = |iteration, _| iteration < 3;
-        let stopped = stationary::solve(&system, &right, &plain(iteration), &TIGHT, &watch);
+        let stopped = stationary::solve(
+            &system,
+            &right,
+            &plain(iteration),
+            &TIGHT,
+            &StopsAfter::iterations(3),
+        );
         assert_eq!(stopped.unwrap_err(), SolverError::Stopped);
         let few = Stationary { most_iterations: 7, ..plain(iteration) };
-        let ended = stationary::solve(&system, &right, &few, &TIGHT, &go_on).unwrap_err();
+        let ended = stationary::solve(&system, &right, &few, &TIGHT, &Unobserved).unwrap_err();
         assert!(
             matches!(&ended, SolverError::NotConverged { iterations: 7, history, .. } if history.len() == 7),
             "{ended:?}"
         );
     }
-    let cancelled = |_: usize, _: f64| false;
-    let power =
-        stationary::solve(&system, &right, &plain(Iteration::DampedJacobi), &TIGHT, &cancelled);
+    let power = stationary::solve(
+        &system,
+        &right,
+        &plain(Iteration::DampedJacobi),
+        &TIGHT,
+        &StopsAfter::iterations(0),
+    );
     assert_eq!(power.unwrap_err(), SolverError::Stopped, "while lambda_max is looked for");
 }
 
@@ -177,11 +190,13 @@ fn a_matrix_that_is_not_positive_or_does_not_fit_is_refused() {
     let mut system = paper_block(0.3);
     let right = forces(&system, 0);
     let small = Tolerance { memory_mb: 0.1, ..TIGHT };
-    let over = stationary::solve(&system, &right, &plain(Iteration::GaussSeidel), &small, &go_on);
+    let over =
+        stationary::solve(&system, &right, &plain(Iteration::GaussSeidel), &small, &Unobserved);
     assert!(matches!(over, Err(SolverError::OverBudget { allowed_mb: 0.1, .. })), "{over:?}");
     system.matrix.diagonal[5][1][1] = -1.0;
-    let bad = stationary::solve(&system, &right, &plain(Iteration::GaussSeidel), &TIGHT, &go_on);
-    assert_eq!(bad.unwrap_err(), SolverError::NotPositiveDefinite { row: 5 });
+    let bad =
+        stationary::solve(&system, &right, &plain(Iteration::GaussSeidel), &TIGHT, &Unobserved);
+    assert_eq!(bad.unwrap_err(), SolverError::Singular { node: 5 });
 }
 
 /// Random moduli in each of twenty regions, on a bone that moves.
@@ -231,7 +246,7 @@ fn the_tensors_are_the_blocks_of_the_stiffness_matrix() {
     let of_cell: Vec<u16> = mesh.cell_labels["patch"].iter().map(|&label| label as u16).collect();
     let tissue = Tissue::isotropic(mesh, &materials, &of_cell, |_| Dilatation::Pointwise);
     let numbering = Numbering::new(mesh, &vec![false; mesh.nodes.len()]);
-    let mut assembled = tissue.assemble(&numbering, &|| true).unwrap().unwrap();
+    let mut assembled = tissue.assemble(&numbering, &Unobserved).unwrap().unwrap();
     let mut sums = std::collections::BTreeMap::new();
     for cell in 0..mesh.cells.len() {
         let law = &materials[of_cell[cell] as usize];
@@ -269,8 +284,8 @@ fn the_mass_tensor_model_answers_as_plain_linear_tetrahedra_do() {
         assert!((u - tensors.displacement[number]).norm() < 1e-10);
         assert!((u - own.displacement[number]).norm() < 1e-10);
     }
-    assert_eq!(tensors.solver.elements, ["tet4 plain"]);
-    assert_eq!(own.solver.name, "gauss_seidel");
+    assert_eq!(tensors.elements, ["tet4 plain"]);
+    assert_eq!(own.solver.method, "gauss_seidel");
     assert_eq!(own.solver.history.len(), own.solver.iterations);
     assert!(tensors.warnings.iter().any(|warning| warning.code == "locking"), "nu up to 0.456");
 }
@@ -324,11 +339,11 @@ fn a_prediction_that_diverges_says_so_and_one_that_is_stopped_stops() {
     };
     let diverged = predict(&scene(Iteration::Jacobi), &Unobserved).unwrap_err();
     assert!(
-        matches!(&diverged, PredictionError::Diverged { growth, history, .. } if *growth > 1.5 && !history.is_empty()),
+        matches!(&diverged, ModelError::Solver(SolverError::Diverged { growth, history, .. }) if *growth > 1.5 && !history.is_empty()),
         "{diverged}"
     );
-    let stopped = predict(&scene(Iteration::GaussSeidel), &Impatient::default()).unwrap_err();
-    assert_eq!(stopped, PredictionError::Cancelled);
+    let stopped = predict(&scene(Iteration::GaussSeidel), &StopsAfter::iterations(3)).unwrap_err();
+    assert_eq!(stopped, ModelError::Solver(SolverError::Stopped));
 }
 
 #[test]

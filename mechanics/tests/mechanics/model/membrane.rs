@@ -7,12 +7,12 @@ use mechanics::model::fem::membrane::Membrane;
 use mechanics::plan::{PlannedSegment, RigidMovement};
 use mechanics::prediction::{
     Case, CaseSegment, ElementChoice, FibreDirection, Method, Plan, Scene, Settings, SkinMembrane,
-    Unobserved,
 };
+use mechanics::progress::Unobserved;
 use mechanics::response::build;
 use nalgebra::Rotation3;
 
-use crate::scenes::{Silent, case_of, exact, hold, material, set, solve};
+use crate::scenes::{case_of, exact, hold, material, set, solve};
 
 /// The skin of V.11.
 const SKIN: Sheet =
@@ -157,7 +157,7 @@ fn tissue_and_skin_of_one_poisson_ratio_share_a_stretch_by_their_stiffness() {
         let pull = |membrane: Option<SkinMembrane>| {
             let settings = Settings { element, method: method.clone(), membrane, ..exact() };
             let scene = Scene::new(&case, &plan, &settings).unwrap();
-            let answer = scene.solve(&Silent).unwrap();
+            let answer = scene.solve(&Unobserved).unwrap();
             for (x, u) in case.volume.nodes.iter().zip(&answer.displacement) {
                 let exact = Vector::new(0.01 * x.x, -0.003 * x.y, -0.003 * x.z);
                 assert!((u - exact).norm() < 1e-10, "{shape:?} {element:?}: {u} at {x}");
@@ -224,7 +224,7 @@ fn a_response_of_tissue_with_fibres_and_membrane_is_the_direct_solution() {
         let planned = PlannedSegment { name: "z_min".to_owned(), movement };
         let plan = Plan { segments: vec![planned], ..Plan::default() };
         let direct = solve(&case, &plan, &settings);
-        assert!(direct.solver.elements.last().unwrap().ends_with("membrane"));
+        assert!(direct.elements.last().unwrap().ends_with("membrane"));
         let rest = Scene::new(&case, &Plan::default(), &settings).unwrap();
         let columns = build(&rest, &[], &Unobserved).unwrap();
         for (&node, found) in columns.nodes.iter().zip(columns.apply(&[movement])) {

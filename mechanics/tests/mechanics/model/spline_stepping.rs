@@ -3,11 +3,11 @@
 use std::sync::Arc;
 
 use mechanics::mesh::Vector;
-use mechanics::model::problem::{ModelError, Observer};
 use mechanics::model::spline::stepping::{Clock, Damping, Motion, Scheme};
 use mechanics::model::spline::{Stiffness, VolumeSpline};
-use mechanics::prediction::{PredictionError, Scene, Settings, Unobserved, predict};
-use mechanics::solver::cliques::{Cliques, CliquesOfRow};
+use mechanics::prediction::{ModelError, Scene, Settings, SolverError, predict};
+use mechanics::progress::Unobserved;
+use mechanics::solver::cliques::Cliques;
 use mechanics::solver::half_matrix::{HalfMatrix, Pattern};
 use mechanics::solver::layout::Layout;
 use mechanics::solver::{System, Unknowns};
@@ -45,7 +45,7 @@ fn time_arrives_at_the_static_limit_whatever_mass_and_damping_are() {
 fn single(value: f64) -> System {
     let mut cliques = Cliques::default();
     cliques.push([0]);
-    let around = CliquesOfRow::new(&cliques, 1);
+    let around = cliques.inverted(1);
     let mut matrix = HalfMatrix::zeros(Arc::new(Pattern::new(&cliques, &around, 1)));
     (0..3).for_each(|k| matrix.diagonal[0][k][k] = value);
     System {
@@ -63,21 +63,8 @@ fn one_mass(scheme: Scheme, step: f64, end: f64) -> Result<f64, ModelError> {
     let damping = Damping { mass: 0.0, stiffness: 1000.0 / 80.0 };
     let motion = Motion { stiffness: &stiffness, mass: &mass, damping, force: &force };
     let clock = Clock { scheme, step, end };
-    let state = motion.run(&clock, 0.0, 100.0, &NoObserver)?;
+    let state = motion.run(&clock, 0.0, 100.0, &Unobserved)?;
     Ok(state.displacement[0][0][0])
-}
-
-struct NoObserver;
-
-impl Observer for NoObserver {
-    fn assembling(&self) {}
-    fn solving(&self) {}
-    fn iterated(&self, _: usize, _: f64) -> bool {
-        true
-    }
-    fn is_stopped(&self) -> bool {
-        false
-    }
 }
 
 /// The roots of m x² + d x + k in 1/ms, and the answer to a step.
@@ -138,7 +125,7 @@ fn explicit_steps_above_their_limit_are_refused_with_it_and_below_they_run() {
         let settings = Settings { relative_residual: 1e-6, ..with(spline) };
         predict(&Scene::new(&case, &plan, &settings).unwrap(), &Unobserved)
     };
-    let Err(PredictionError::StepAboveLimit { limit_s, .. }) = run(1000.0) else {
+    let Err(ModelError::StepAboveLimit { limit_s, .. }) = run(1000.0) else {
         panic!("a step of a second");
     };
     let moved = run(limit_s * 1e3 * 0.9).unwrap();
@@ -154,7 +141,8 @@ fn a_motion_that_is_not_at_rest_in_time_has_not_converged() {
     let clock = Some(Clock { scheme: Scheme::BackwardEuler, step: 1.0, end: 20.0 });
     let settings = with(VolumeSpline { clock, ..spaced(20.0) });
     let ended = predict(&Scene::new(&case, &plan, &settings).unwrap(), &Unobserved);
-    let Err(PredictionError::NotConverged { iterations, history, .. }) = ended else {
+    let Err(ModelError::Solver(SolverError::NotConverged { iterations, history, .. })) = ended
+    else {
         panic!("{ended:?}");
     };
     assert_eq!((iterations, history.len()), (20, 20));

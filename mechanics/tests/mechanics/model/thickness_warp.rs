@@ -5,9 +5,10 @@ use mechanics::model::spline::VolumeSpline;
 use mechanics::model::thickness_warp::ThicknessWarp;
 use mechanics::plan::{PlannedSegment, RigidMovement};
 use mechanics::prediction::{
-    Case, CaseSegment, ElementChoice, Load, Method, Plan, Prediction, PredictionError, Scene,
-    Settings, Sliding, SlidingNormal, Unobserved, predict,
+    Case, CaseSegment, ElementChoice, Load, Method, ModelError, Plan, Prediction, Scene, Settings,
+    Sliding, SlidingNormal, predict,
 };
+use mechanics::progress::Unobserved;
 
 use crate::prediction::elements::slab;
 use crate::scenes::{SHAPES, case_of, hold, material, set, solve};
@@ -74,8 +75,8 @@ fn a_bone_plane_that_moves_3_mm_along_its_normal_moves_the_skin_by_3_mm() {
         }
         // No jump, as there is one bone.
         assert_eq!(warning(&answer, "warp-jumps"), None);
-        assert_eq!((answer.solver.name, answer.solver.unknowns), ("none", 0));
-        assert!(answer.solver.elements.is_empty());
+        assert_eq!((answer.solver.method, answer.solver.unknowns), ("none", 0));
+        assert!(answer.elements.is_empty());
     }
 }
 
@@ -177,7 +178,7 @@ fn tissue_without_a_face_on_bone_is_refused() {
     let case = case_of(mesh, material(15.0, 0.46));
     let prescribed = vec![hold("pins", [Some(1.0); 3])];
     let scene = Scene::new(&case, &Plan { prescribed, ..Plan::default() }, &with(0.0)).unwrap();
-    assert!(matches!(predict(&scene, &Unobserved), Err(PredictionError::NoBone)));
+    assert!(matches!(predict(&scene, &Unobserved), Err(ModelError::NoBone)));
 }
 
 #[test]

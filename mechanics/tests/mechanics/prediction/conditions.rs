@@ -5,8 +5,9 @@ use mechanics::mesh::{CellShape, Vector};
 use mechanics::plan::{PlannedSegment, RigidMovement};
 use mechanics::prediction::{
     Case, CaseSegment, ElementChoice, NodeClass, Plan, Scene, Settings, Sliding, SlidingNormal,
-    Unobserved, predict,
+    predict,
 };
+use mechanics::progress::Unobserved;
 
 use crate::scenes::{case_of, exact, hold, largest_error, material, set, solve};
 
@@ -50,7 +51,7 @@ fn an_identity_plan_moves_nothing_at_all() {
     for plan in [Plan::default(), moved("jaw", RigidMovement::default())] {
         let prediction = solve(&case, &plan, &Settings::default());
         assert!(prediction.displacement.iter().all(|u| *u == Vector::zeros()));
-        assert_eq!(prediction.solver.name, "none");
+        assert_eq!(prediction.solver.method, "none");
     }
 }
 

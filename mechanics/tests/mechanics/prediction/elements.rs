@@ -211,12 +211,12 @@ fn the_skin_of_the_slab_moves_as_published_for_every_poisson_ratio() {
 fn iterations_hardly_depend_on_how_incompressible_the_tissue_is() {
     let iterations = |nu: f64| {
         let (case, plan) = slab(3.0, nu);
-        let report = solve(&case, &plan, &with(ElementChoice::Stabilised)).solver;
+        let found = solve(&case, &plan, &with(ElementChoice::Stabilised));
         assert_eq!(
-            (report.name, report.elements[0].as_str()),
+            (found.solver.method, found.elements[0].as_str()),
             ("conjugate_residual", "tet4 stabilised")
         );
-        report.iterations as f64
+        found.solver.iterations as f64
     };
     let moderate = iterations(0.46);
     for nu in [0.3, 0.499, 0.4999] {
@@ -339,9 +339,9 @@ fn a_stabilised_system_larger_than_the_memory_is_refused() {
     let scene =
         Scene::new(&case, &plan, &Settings { memory_mb: 1.0, ..Settings::default() }).unwrap();
     let refused =
-        mechanics::prediction::predict(&scene, &mechanics::prediction::Unobserved).unwrap_err();
+        mechanics::prediction::predict(&scene, &mechanics::progress::Unobserved).unwrap_err();
     assert!(
-        matches!(refused, mechanics::prediction::PredictionError::OverBudget { needed_mb, .. } if needed_mb > 1.0)
+        matches!(refused, mechanics::prediction::ModelError::Solver(mechanics::prediction::SolverError::OverBudget { needed_mb, .. }) if needed_mb > 1.0)
     );
 }
 
@@ -351,8 +351,8 @@ fn a_residual_nobody_can_reach_ends_with_the_history() {
     let settings = Settings { relative_residual: 1e-30, ..Settings::default() };
     let scene = Scene::new(&case, &plan, &settings).unwrap();
     let failed =
-        mechanics::prediction::predict(&scene, &mechanics::prediction::Unobserved).unwrap_err();
+        mechanics::prediction::predict(&scene, &mechanics::progress::Unobserved).unwrap_err();
     assert!(
-        matches!(failed, mechanics::prediction::PredictionError::NotConverged { history, .. } if !history.is_empty())
+        matches!(failed, mechanics::prediction::ModelError::Solver(mechanics::prediction::SolverError::NotConverged { history, .. }) if !history.is_empty())
     );
 }

@@ -8,10 +8,11 @@ use mechanics::prediction::{
     Case, ElementChoice, FibreDirection, Method, Plan, Prescribed, RegionNames, Scene, Settings,
     Sliding, SlidingNormal,
 };
+use mechanics::progress::Unobserved;
 use nalgebra::{Matrix3, Rotation3};
 
 use crate::material::anisotropy::{ELEMENTS, MUSCLE, Stated, fibred, gradients, tight};
-use crate::scenes::{Silent, case_of, exact, material, set, solve};
+use crate::scenes::{case_of, exact, material, set, solve};
 
 /// A block of two layers of which the upper one has fibres, bent and sliding; everything turned.
 fn bent(
@@ -172,7 +173,7 @@ fn the_mass_tensor_with_fibres_is_the_plain_finite_element_and_balances_its_own_
     case.fibres = [("*".to_owned(), FibreDirection::Array("course".to_owned()))].into();
     let of = |method, element| {
         let scene = Scene::new(&case, &plan, &Settings { method, element, ..exact() }).unwrap();
-        let answer = scene.solve(&Silent).unwrap();
+        let answer = scene.solve(&Unobserved).unwrap();
         (scene, answer)
     };
     let (scene, tensor) = of(Method::MassTensorTransverse, ElementChoice::Auto);

@@ -9,33 +9,18 @@
 use mechanics::mesh::sample::block;
 use mechanics::mesh::{CellShape, Vector, VolumeMesh};
 use mechanics::model::fem::strain::deformations;
-use mechanics::model::problem::{LoadCase, Observer};
+use mechanics::model::problem::LoadCase;
 use mechanics::plan::{PlannedSegment, RigidMovement};
 use mechanics::prediction::{
-    CaseSegment, ElementChoice, NodeClass, Plan, Scene, Settings, Unobserved, predict,
+    CaseSegment, ElementChoice, NodeClass, Plan, Scene, Settings, predict,
 };
+use mechanics::progress::Unobserved;
 
 use crate::scenes::{case_of, material, set};
 
 const ANGLE: f64 = 15.0 * std::f64::consts::PI / 180.0;
 const SHIFT: Vector = Vector::new(25.0, 0.0, 10.0);
 const PIVOT: Vector = Vector::new(50.0, 50.0, 0.0);
-
-struct Unwatched;
-
-impl Observer for Unwatched {
-    fn assembling(&self) {}
-
-    fn solving(&self) {}
-
-    fn iterated(&self, _iteration: usize, _relative_residual: f64) -> bool {
-        true
-    }
-
-    fn is_stopped(&self) -> bool {
-        false
-    }
-}
 
 /// Displacement fields for a unit of each of the three numbers.
 struct Field {
@@ -91,7 +76,7 @@ impl Field {
             load(&|x| Vector::new(x.z, 0.0, -x.x)),
             load(&|x| Vector::new(-x.x, 0.0, -x.z)),
         ];
-        let solved = scene.solve_cases(&loads, &Unwatched).unwrap();
+        let solved = scene.solve_cases(&loads, &Unobserved).unwrap();
         let [of_shift, of_sine, of_cosine] =
             <[_; 3]>::try_from(solved).ok().unwrap().map(|solution| solution.displacement);
         Field { mesh: (*scene.mesh).clone(), of_shift, of_sine, of_cosine }

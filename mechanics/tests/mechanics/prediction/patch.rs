@@ -7,6 +7,7 @@ use mechanics::model::dofs::Numbering;
 use mechanics::model::fem::assembly::Tissue;
 use mechanics::model::fem::cell_stiffness::{Dilatation, cell_stiffness};
 use mechanics::prediction::{ElementChoice, Settings};
+use mechanics::progress::Unobserved;
 use mechanics::solver::HalfMatrix;
 use nalgebra::DMatrix;
 
@@ -81,7 +82,7 @@ impl Assembled {
         let material_of_cell = vec![0; mesh.cells.len()];
         let tissue = Tissue::isotropic(mesh, &materials, &material_of_cell, dilatation);
         let numbering = Numbering::new(mesh, &vec![false; mesh.nodes.len()]);
-        let matrix = tissue.assemble(&numbering, &|| true).unwrap().unwrap();
+        let matrix = tissue.assemble(&numbering, &Unobserved).unwrap().unwrap();
         Assembled { matrix, numbering }
     }
 

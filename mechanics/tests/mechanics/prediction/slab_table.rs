@@ -13,9 +13,10 @@ use mechanics::model::fem::cell_stiffness::Dilatation;
 use mechanics::model::fem::displacement::Problem;
 use mechanics::model::fem::edge_nodes::EdgeNodes;
 use mechanics::model::fem::quadratic;
-use mechanics::model::problem::{LoadCase, Observer};
+use mechanics::model::problem::LoadCase;
 use mechanics::plan::RigidMovement;
 use mechanics::prediction::{ElementChoice, Settings};
+use mechanics::progress::Unobserved;
 use mechanics::solver::Tolerance;
 use mechanics::study::StudyScene;
 use mechanics::study::scenes::{slab, slab_hex};
@@ -29,19 +30,6 @@ const MEANS: [f64; 5] = [4.51239, 4.28518, 4.22975, 4.17612, 4.16587];
 
 /// Displacements at the 45 skin points, by their place on the grid of 6 mm.
 type SkinPoints = BTreeMap<[i32; 2], Vector>;
-
-struct Unobserved;
-
-impl Observer for Unobserved {
-    fn assembling(&self) {}
-    fn solving(&self) {}
-    fn iterated(&self, _: usize, _: f64) -> bool {
-        true
-    }
-    fn is_stopped(&self) -> bool {
-        false
-    }
-}
 
 fn skin_points(mesh: &VolumeMesh, displacement: &[Vector]) -> SkinPoints {
     let mut points = SkinPoints::new();

@@ -7,9 +7,10 @@ use mechanics::model::problem::Equilibrium;
 use mechanics::prediction::{
     ElementChoice, Method, NodeClass, Plan, Prescribed, Scene, Settings, Sliding, SlidingNormal,
 };
+use mechanics::progress::Unobserved;
 use nalgebra::Rotation3;
 
-use crate::scenes::{Silent, case_of, exact, largest_error, material, set};
+use crate::scenes::{case_of, exact, largest_error, material, set};
 
 /// Every way of modelling that slides, with the cells it takes.
 const MODELS: [(CellShape, ElementChoice, Method); 8] = [
@@ -52,7 +53,7 @@ impl Pressed {
         let plan = Plan { prescribed: vec![lid], ..Plan::default() };
         let settings = Settings { method, element, ..exact() };
         let scene = Scene::new(&case, &plan, &settings).unwrap();
-        let answer = scene.solve(&Silent).unwrap();
+        let answer = scene.solve(&Unobserved).unwrap();
         let error = largest_error(&case.volume, &answer.displacement, field);
         Pressed { scene, answer, turn, error }
     }
@@ -151,7 +152,7 @@ fn without_contact_sliding_nodes_go_free() {
     let plan = Plan { prescribed: vec![lid], ..Plan::default() };
     let bulge = |sliding: bool| {
         let scene = Scene::new(&case, &plan, &Settings { sliding, ..exact() }).unwrap();
-        let u = scene.solve(&Silent).unwrap().displacement;
+        let u = scene.solve(&Unobserved).unwrap().displacement;
         let wall = case.volume.node_sets["x_max"].iter();
         wall.map(|&node| u[node as usize].x.abs()).fold(0.0, f64::max)
     };

@@ -4,10 +4,11 @@
 
 use mechanics::mesh::sample::block;
 use mechanics::mesh::{CellShape, Vector, VolumeMesh};
+use mechanics::progress::Unobserved;
 use mechanics::solver::{SolverError, System, Tolerance, cholesky, conjugate_gradient, ordering};
 
 use crate::scenes::{SHAPES, material};
-use crate::solver::solvers::{forces, go_on, largest, largest_difference, system_of};
+use crate::solver::solvers::{forces, largest, largest_difference, system_of};
 
 const TOLERANCE: Tolerance = Tolerance { relative_residual: 1e-10, memory_mb: 1000.0 };
 
@@ -28,7 +29,7 @@ fn cube(shape: CellShape) -> VolumeMesh {
 /// Iterations, after a check against a factorisation; `None` where the iterations said that they failed.
 fn checked(system: &System, what: &str) -> Option<usize> {
     let right = [forces(system, 3)];
-    let iterated = match conjugate_gradient::solve(system, &right, &TOLERANCE, &go_on) {
+    let iterated = match conjugate_gradient::solve(system, &right, &TOLERANCE, &Unobserved) {
         Ok(mut solutions) => solutions.remove(0),
         Err(SolverError::NotConverged { history, residual, .. }) => {
             assert!(!history.is_empty() && residual > 1e-10, "{what}: {residual:.1e}");
@@ -37,12 +38,12 @@ fn checked(system: &System, what: &str) -> Option<usize> {
         Err(other) => panic!("{what}: {other}"),
     };
     let order = ordering::minimum_degree(system);
-    let factorised = cholesky::solve(system, &order, &right, &TOLERANCE, &go_on).unwrap();
+    let factorised = cholesky::solve(system, &order, &right, &TOLERANCE, &Unobserved).unwrap();
     let difference = largest_difference(&iterated.unknowns, &factorised[0].unknowns);
     let relative = difference / largest(&factorised[0].unknowns);
     // A residual of 1e-10 leaves an error of that times the condition number at most.
     assert!(relative < 1e-4, "{what}: {relative:.1e} from the factorisation");
-    Some(iterated.iterations)
+    Some(iterated.report.iterations)
 }
 
 #[test]

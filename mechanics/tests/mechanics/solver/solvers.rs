@@ -6,11 +6,12 @@ use mechanics::mesh::{CellShape, Vector, VolumeMesh};
 use mechanics::model::dofs::Numbering;
 use mechanics::model::fem::assembly::Tissue;
 use mechanics::model::fem::cell_stiffness::Dilatation;
+use mechanics::progress::Unobserved;
 use mechanics::solver::{
     SolverError, System, Tolerance, Unknowns, cholesky, conjugate_gradient, ordering, solve,
 };
 
-use crate::scenes::material;
+use crate::scenes::{StopsAfter, material};
 
 const EXACT: Tolerance = Tolerance { relative_residual: 1e-12, memory_mb: 1000.0 };
 
@@ -31,7 +32,7 @@ pub fn system_of(
     let mut held = vec![false; mesh.nodes.len()];
     mesh.node_set(set).unwrap().iter().for_each(|&node| held[node as usize] = true);
     let numbering = Numbering::new(mesh, &held);
-    let matrix = tissue.assemble(&numbering, &|| true).unwrap().unwrap();
+    let matrix = tissue.assemble(&numbering, &Unobserved).unwrap().unwrap();
     let positions = numbering.by_row(&mesh.nodes);
     System { layout: numbering.layout, matrix, partly_held: Vec::new(), positions }
 }
@@ -52,10 +53,6 @@ pub fn forces(system: &System, seed: usize) -> Unknowns {
     (0..system.layout.free).map(|row| std::array::from_fn(|c| force(3 * row + c))).collect()
 }
 
-pub fn go_on(_: usize, _: f64) -> bool {
-    true
-}
-
 pub fn largest_difference(a: &Unknowns, b: &Unknowns) -> f64 {
     let pairs = a.as_flattened().iter().zip(b.as_flattened());
     pairs.fold(0.0, |largest, (a, b)| largest.max((a - b).abs()))
@@ -70,12 +67,14 @@ fn cholesky_and_conjugate_gradients_agree() {
     let system = clamped_block();
     let right = [forces(&system, 0), forces(&system, 1)];
     let order = ordering::minimum_degree(&system);
-    let direct = cholesky::solve(&system, &order, &right, &EXACT, &go_on).unwrap();
-    let iterative = conjugate_gradient::solve(&system, &right, &EXACT, &go_on).unwrap();
+    let direct = cholesky::solve(&system, &order, &right, &EXACT, &Unobserved).unwrap();
+    let iterative = conjugate_gradient::solve(&system, &right, &EXACT, &Unobserved).unwrap();
     for (direct, iterative) in direct.iter().zip(&iterative) {
         let difference = largest_difference(&direct.unknowns, &iterative.unknowns);
         assert!(difference < 1e-9 * largest(&direct.unknowns));
-        assert!(direct.relative_residual <= 1e-12 && iterative.relative_residual <= 1e-12);
+        assert!(
+            direct.report.relative_residual <= 1e-12 && iterative.report.relative_residual <= 1e-12
+        );
     }
 }
 
@@ -86,14 +85,14 @@ fn right_hand_sides_solved_together_are_those_solved_alone() {
     for count in [2, 5, 11] {
         let mut right: Vec<Unknowns> = (0..count).map(|seed| forces(&system, seed)).collect();
         right[1] = vec![[0.0; 3]; system.layout.free];
-        let together = conjugate_gradient::solve(&system, &right, &tolerance, &go_on).unwrap();
+        let together = conjugate_gradient::solve(&system, &right, &tolerance, &Unobserved).unwrap();
         assert_eq!(together.len(), count);
         for (right, solution) in right.into_iter().zip(&together) {
-            let alone = conjugate_gradient::solve(&system, &[right], &tolerance, &go_on);
+            let alone = conjugate_gradient::solve(&system, &[right], &tolerance, &Unobserved);
             let alone = &alone.unwrap()[0];
             let difference = largest_difference(&alone.unknowns, &solution.unknowns);
             assert!(difference <= 1e-8 * largest(&alone.unknowns), "{difference:.1e}");
-            assert!(solution.relative_residual <= 1e-10);
+            assert!(solution.report.relative_residual <= 1e-10);
         }
         assert!(together[1].unknowns.iter().all(|u| *u == [0.0; 3]), "nothing acts on the second");
     }
@@ -107,12 +106,12 @@ fn one_thread_and_three_give_the_same_bits() {
     let right = [forces(&system, 0)];
     let with_threads = |count| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(count).build().unwrap();
-        pool.install(|| conjugate_gradient::solve(&system, &right, &tolerance, &go_on))
+        pool.install(|| conjugate_gradient::solve(&system, &right, &tolerance, &Unobserved))
             .unwrap()
             .remove(0)
     };
     let (one, three) = (with_threads(1), with_threads(3));
-    assert_eq!(one.iterations, three.iterations);
+    assert_eq!(one.report.iterations, three.report.iterations);
     assert_eq!(one.unknowns, three.unknowns);
 }
 
@@ -122,8 +121,8 @@ fn a_residual_nobody_can_reach_ends_with_the_history_and_not_with_an_answer() {
     let right = [forces(&system, 0)];
     let tolerance = Tolerance { relative_residual: 1e-30, ..EXACT };
     for result in [
-        solve(&system, &right, &tolerance, &go_on),
-        conjugate_gradient::solve(&system, &right, &tolerance, &go_on),
+        solve(&system, &right, &tolerance, &Unobserved),
+        conjugate_gradient::solve(&system, &right, &tolerance, &Unobserved),
     ] {
         let Err(SolverError::NotConverged { history, residual, .. }) = result else {
             panic!("{result:?}");
@@ -136,8 +135,7 @@ fn a_residual_nobody_can_reach_ends_with_the_history_and_not_with_an_answer() {
 fn a_solver_stops_when_it_is_asked_to() {
     let system = clamped_block();
     let right = [forces(&system, 0)];
-    let watch = |iteration, _| iteration < 3;
-    let stopped = conjugate_gradient::solve(&system, &right, &EXACT, &watch);
+    let stopped = conjugate_gradient::solve(&system, &right, &EXACT, &StopsAfter::iterations(3));
     assert_eq!(stopped.unwrap_err(), SolverError::Stopped);
 }
 
@@ -146,7 +144,7 @@ fn a_singular_matrix_is_refused_by_the_factorisation() {
     let mut mesh = block(Vector::new(10.0, 8.0, 6.0), [6, 5, 4], CellShape::Hex8);
     mesh.node_sets.insert("nothing".to_owned(), Vec::new());
     let system = held_mesh(&mesh, "nothing", 0.4);
-    let result = solve(&system, &[forces(&system, 0)], &EXACT, &go_on);
+    let result = solve(&system, &[forces(&system, 0)], &EXACT, &Unobserved);
     assert!(result.is_err(), "{result:?}");
 }
 
@@ -154,7 +152,7 @@ fn a_singular_matrix_is_refused_by_the_factorisation() {
 fn a_matrix_larger_than_the_memory_is_refused_with_both_numbers() {
     let system = clamped_block();
     let tolerance = Tolerance { memory_mb: 0.1, ..EXACT };
-    let result = solve(&system, &[forces(&system, 0)], &tolerance, &go_on).unwrap_err();
+    let result = solve(&system, &[forces(&system, 0)], &tolerance, &Unobserved).unwrap_err();
     assert!(
         matches!(result, SolverError::OverBudget { allowed_mb: 0.1, needed_mb } if needed_mb > 0.1)
     );
@@ -165,7 +163,7 @@ fn values_that_are_not_finite_are_refused() {
     let system = clamped_block();
     let mut right = forces(&system, 0);
     right[30][1] = f64::NAN;
-    assert_eq!(solve(&system, &[right], &EXACT, &go_on).unwrap_err(), SolverError::NotFinite);
+    assert_eq!(solve(&system, &[right], &EXACT, &Unobserved).unwrap_err(), SolverError::NotFinite);
 }
 
 #[test]
@@ -174,7 +172,9 @@ fn iterations_hardly_grow_with_the_mesh() {
         let system = sphere(cells_along, cells_radial);
         let tolerance = Tolerance { relative_residual: 1e-8, ..EXACT };
         let right = [forces(&system, 0)];
-        conjugate_gradient::solve(&system, &right, &tolerance, &go_on).unwrap()[0].iterations
+        conjugate_gradient::solve(&system, &right, &tolerance, &Unobserved).unwrap()[0]
+            .report
+            .iterations
     };
     let (coarse, fine) = (iterations(10, 3), iterations(20, 6));
     assert!(fine < 50, "{fine} iterations for eight times the cells of {coarse}");

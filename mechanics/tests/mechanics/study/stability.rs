@@ -9,9 +9,10 @@ use mechanics::mesh::sample::block;
 use mechanics::mesh::{CellShape, Vector};
 use mechanics::plan::{PlannedSegment, RigidMovement};
 use mechanics::prediction::{
-    Case, CaseSegment, ElementChoice, FibreDirection, Plan, Prediction, PredictionError, Scene,
-    Settings, Sliding, SlidingNormal, Unobserved, predict,
+    Case, CaseSegment, ElementChoice, FibreDirection, InvertedCell, ModelError, Plan, Prediction,
+    Scene, Settings, Sliding, SlidingNormal, predict,
 };
+use mechanics::progress::Unobserved;
 use mechanics::registration::AlignmentError;
 use mechanics::study::stability::{Axis, Bounds, Finding, Map, Verdict, axes, map};
 use mechanics::study::{Stopwatch, Variant};
@@ -258,7 +259,7 @@ fn moved(by: Vector) -> Plan {
     Plan { segments: vec![PlannedSegment { name: "jaw".to_owned(), movement }], ..Plan::default() }
 }
 
-fn answer(case: &Case, plan: &Plan, settings: &Settings) -> Result<Prediction, PredictionError> {
+fn answer(case: &Case, plan: &Plan, settings: &Settings) -> Result<Prediction, ModelError> {
     let scene = Scene::new(case, plan, settings).unwrap_or_else(|errors| panic!("{errors}"));
     predict(&scene, &Unobserved)
 }
@@ -273,7 +274,12 @@ fn an_inverted_and_a_flat_cell_are_named_and_not_solved() {
             _ => Arc::make_mut(&mut inverted.volume).reverse_cell(7),
         }
         let found = answer(&inverted, &moved(Vector::z()), &variant.settings);
-        assert_eq!(found.err(), Some(PredictionError::Inverted { cell: 7 }), "{}", variant.label);
+        assert_eq!(
+            found.err(),
+            Some(ModelError::Inverted(InvertedCell { cell: 7 })),
+            "{}",
+            variant.label
+        );
 
         // All nodes of one cell in a plane: two nodes at one place among them.
         let mut flat = case.clone();
@@ -283,7 +289,7 @@ fn an_inverted_and_a_flat_cell_are_named_and_not_solved() {
             mesh.nodes[node as usize].z = height;
         }
         let found = answer(&flat, &moved(Vector::z()), &variant.settings);
-        assert!(matches!(found, Err(PredictionError::Inverted { .. })), "{}", variant.label);
+        assert!(matches!(found, Err(ModelError::Inverted(_))), "{}", variant.label);
     }
 }
 

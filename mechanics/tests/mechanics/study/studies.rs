@@ -9,9 +9,9 @@ use mechanics::mesh::sample::block;
 use mechanics::mesh::{CellShape, Vector};
 use mechanics::plan::{PlannedSegment, RigidMovement};
 use mechanics::prediction::{
-    Case, CaseSegment, ElementChoice, Method, Phase, Plan, Progress, RegionNames, Scene, Settings,
-    Unobserved,
+    Case, CaseSegment, ElementChoice, Method, Plan, RegionNames, Scene, Settings,
 };
+use mechanics::progress::Unobserved;
 use mechanics::study::report::Solved;
 use mechanics::study::scenes::{SCENES, scene_of, slab, slab_hex, sphere_of, usual_truth};
 use mechanics::study::sweep::{Judged, SweepError, Values, best, combinations};
@@ -20,7 +20,7 @@ use mechanics::study::{
     Truth, Variant, convergence, methods, pareto, run,
 };
 
-use crate::scenes::{case_of, material, set, solve};
+use crate::scenes::{StopsAfter, case_of, material, set, solve};
 
 /// Time stands still, so that reports can be compared whole.
 struct Still;
@@ -317,20 +317,10 @@ fn a_solve_that_takes_too_long_is_not_tried_with_the_next_plan() {
     assert!(details.len() > 2 && details[1..].iter().all(|detail| *detail == later), "{details:?}");
 }
 
-struct Impatient;
-
-impl Progress for Impatient {
-    fn phase(&self, _: Phase) {}
-    fn iteration(&self, _: usize, _: f64, _: f64) {}
-    fn is_cancelled(&self) -> bool {
-        true
-    }
-}
-
 #[test]
 fn cancelling_ends_a_study() {
     let study = study(slab_with(|_| true), vec![variant("plain", ElementChoice::Plain)], &[0]);
-    assert!(matches!(run(&study, &Still, &Impatient), Err(StudyError::Cancelled)));
+    assert!(matches!(run(&study, &Still, &StopsAfter::iterations(0)), Err(StudyError::Cancelled)));
 }
 
 #[test]

@@ -3,15 +3,17 @@
 use std::collections::BTreeMap;
 
 use mechanics::mesh::{TriangleSurface, Vector};
+use mechanics::progress::Unobserved;
 use mechanics::registration::{Place, RigidTransform};
 use mechanics::validation::{
     Alignment, Comparison, ComparisonError, ComparisonSettings, LandmarkPair, NodeWise, compare,
 };
 
+use crate::scenes::StopsAfter;
 use crate::surfaces::{head, map, movement, shared_surface, sphere, square};
 
 fn compared(prediction: &TriangleSurface, actual: &TriangleSurface) -> Comparison {
-    compare(prediction, actual, &ComparisonSettings::default(), &|| false).unwrap()
+    compare(prediction, actual, &ComparisonSettings::default(), &Unobserved).unwrap()
 }
 
 fn assert_near(found: f64, wanted: f64, tolerance: f64) {
@@ -111,7 +113,7 @@ fn alignment_takes_the_actual_surface_back_and_says_how() {
         [Alignment::Landmarks(landmarks.to_vec()), Alignment::ClosestPoint { mask: None }]
     {
         let settings = ComparisonSettings { alignment, ..ComparisonSettings::default() };
-        let found = compare(&prediction, &actual, &settings, &|| false).unwrap();
+        let found = compare(&prediction, &actual, &settings, &Unobserved).unwrap();
         let report = &found.alignment;
         assert_eq!(report.method, settings.alignment.name());
         assert_near(report.angle, wanted.angle(), 1e-9);
@@ -144,7 +146,7 @@ fn without_alignment_nothing_moves_and_nothing_is_reported_twice() {
     assert_near(node_wise.area.p95, 2.0, 1e-12);
     assert!(found.distances.to_actual.hausdorff <= 2.0 + 1e-12);
     let off = ComparisonSettings { report_unaligned: false, ..icp(None) };
-    assert_eq!(compare(&prediction, &actual, &off, &|| false).unwrap().unaligned, None);
+    assert_eq!(compare(&prediction, &actual, &off, &Unobserved).unwrap().unaligned, None);
 }
 
 #[test]
@@ -173,14 +175,14 @@ fn regions_measure_their_part_and_an_empty_one_is_refused() {
         regions: BTreeMap::from([("top".to_owned(), top), ("bottom".to_owned(), bottom)]),
         ..ComparisonSettings::default()
     };
-    let found = compare(&prediction, &actual, &settings, &|| false).unwrap();
+    let found = compare(&prediction, &actual, &settings, &Unobserved).unwrap();
     assert_near(found.regions["top"].both.signed.mean, -3.0, 0.03);
     assert!(found.regions["bottom"].both.hausdorff < 1e-9);
     assert!(found.regions["top"].to_actual.area < found.distances.to_actual.area);
 
     let nowhere = Place::Sphere { centre: Vector::repeat(500.0), radius: 1.0 };
     settings.regions.insert("nose".to_owned(), nowhere);
-    let error = compare(&prediction, &actual, &settings, &|| false).unwrap_err();
+    let error = compare(&prediction, &actual, &settings, &Unobserved).unwrap_err();
     assert_eq!(error, ComparisonError::EmptyRegion { name: "nose".to_owned() });
     assert_eq!(error.code(), "empty-region");
 }
@@ -196,7 +198,7 @@ fn a_region_that_the_scan_does_not_reach_is_left_out_with_a_warning() {
         regions: BTreeMap::from([("edge".to_owned(), edge)]),
         ..ComparisonSettings::default()
     };
-    let found = compare(&prediction, &actual, &settings, &|| false).unwrap();
+    let found = compare(&prediction, &actual, &settings, &Unobserved).unwrap();
     assert!(found.regions.is_empty());
     assert!(found.warnings.iter().any(|warning| warning.code == "empty-region"));
 }
@@ -218,10 +220,10 @@ fn points_correspond_by_their_node_numbers_whatever_their_order() {
     actual.node_ids = None;
     assert_eq!(compared(&prediction, &actual).node_wise, None);
     let on = ComparisonSettings { node_wise: NodeWise::On, ..ComparisonSettings::default() };
-    let error = compare(&prediction, &actual, &on, &|| false).unwrap_err();
+    let error = compare(&prediction, &actual, &on, &Unobserved).unwrap_err();
     assert_eq!(error.code(), "not-corresponding");
     let off = ComparisonSettings { node_wise: NodeWise::Off, ..ComparisonSettings::default() };
-    assert_eq!(compare(&prediction, &prediction, &off, &|| false).unwrap().node_wise, None);
+    assert_eq!(compare(&prediction, &prediction, &off, &Unobserved).unwrap().node_wise, None);
 }
 
 #[test]
@@ -239,7 +241,7 @@ fn alignments_that_cannot_be_are_refused_by_one_code() {
         Alignment::ClosestPoint { mask: Some(nowhere) },
     ] {
         let settings = ComparisonSettings { alignment, ..ComparisonSettings::default() };
-        let error = compare(&surface, &surface, &settings, &|| false).unwrap_err();
+        let error = compare(&surface, &surface, &settings, &Unobserved).unwrap_err();
         assert_eq!(error.code(), "alignment-failed", "{error}");
     }
 }
@@ -249,7 +251,7 @@ fn what_cannot_be_measured_is_refused_by_name() {
     let surface = head(2);
     let settings = ComparisonSettings::default();
     let code = |prediction: &TriangleSurface, actual: &TriangleSurface| {
-        compare(prediction, actual, &settings, &|| false).unwrap_err().code()
+        compare(prediction, actual, &settings, &Unobserved).unwrap_err().code()
     };
     assert_eq!(code(&surface, &TriangleSurface::default()), "mesh-empty");
     assert_eq!(code(&TriangleSurface::default(), &surface), "mesh-empty");
@@ -257,7 +259,8 @@ fn what_cannot_be_measured_is_refused_by_name() {
     assert_eq!(code(&surface, &map(&surface, |p| p * f64::NAN)), "mesh-nonfinite");
     // Micrometres taken for millimetres.
     assert_eq!(code(&surface, &map(&surface, |p| p * 1000.0)), "too-many-samples");
-    let cancelled = compare(&surface, &surface, &icp(None), &|| true).unwrap_err();
+    let cancelled =
+        compare(&surface, &surface, &icp(None), &StopsAfter::iterations(0)).unwrap_err();
     assert_eq!(cancelled, ComparisonError::Cancelled);
 }
 
@@ -266,14 +269,14 @@ fn a_mirrored_scan_is_suspected() {
     let prediction = head(4);
     let actual = map(&prediction, |point| Vector::new(-point.x, point.y, point.z));
     for settings in [icp(None), ComparisonSettings::default()] {
-        let found = compare(&prediction, &actual, &settings, &|| false).unwrap();
+        let found = compare(&prediction, &actual, &settings, &Unobserved).unwrap();
         assert!(found.warnings.iter().any(|w| w.code == "mirrored?"), "{:?}", found.warnings);
     }
     let landmarks = [3, 40, 99, 120]
         .map(|i| LandmarkPair { prediction: prediction.points[i], actual: actual.points[i] });
     let alignment = Alignment::Landmarks(landmarks.to_vec());
     let settings = ComparisonSettings { alignment, ..ComparisonSettings::default() };
-    let found = compare(&prediction, &actual, &settings, &|| false).unwrap();
+    let found = compare(&prediction, &actual, &settings, &Unobserved).unwrap();
     assert!(found.warnings.iter().any(|w| w.code == "mirrored?"), "{:?}", found.warnings);
 }
 
@@ -284,7 +287,7 @@ fn the_number_of_threads_does_not_change_a_bit() {
         map(&prediction, |p| movement([2.0, 1.0, -1.0], [0.5, 1.0, 2.0]).apply(&(p * 1.01)));
     let with = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| compare(&prediction, &actual, &icp(None), &|| false).unwrap())
+        pool.install(|| compare(&prediction, &actual, &icp(None), &Unobserved).unwrap())
     };
     let (one, three) = (with(1), with(3));
     assert_eq!(one, three);
@@ -296,9 +299,9 @@ fn a_far_origin_costs_a_comparison_no_accuracy() {
     let far = Vector::new(1e7, 1e7, -1e7);
     let prediction = head(4);
     let actual = map(&prediction, |point| point * 1.01 + Vector::new(0.0, 10.0, 0.0));
-    let near = compare(&prediction, &actual, &icp(None), &|| false).unwrap();
+    let near = compare(&prediction, &actual, &icp(None), &Unobserved).unwrap();
     let there = |surface: &TriangleSurface| map(surface, |point| point + far);
-    let found = compare(&there(&prediction), &there(&actual), &icp(None), &|| false).unwrap();
+    let found = compare(&there(&prediction), &there(&actual), &icp(None), &Unobserved).unwrap();
     assert_near(found.distances.both.unsigned.mean, near.distances.both.unsigned.mean, 1e-3);
     assert_near(found.distances.both.hausdorff, near.distances.both.hausdorff, 1e-3);
 }
@@ -308,7 +311,7 @@ fn a_real_skin_against_itself_moved_is_nothing_apart() {
     let Some(skin) = shared_surface("head_ct/headsq_quarter_skin.stl") else { return };
     let actual = map(&skin, |point| movement([3.0, -2.0, 4.0], [1.0, -2.0, 3.0]).apply(point));
     let settings = ComparisonSettings { samples_per_mm2: 0.1, ..icp(None) };
-    let found = compare(&skin, &actual, &settings, &|| false).unwrap();
+    let found = compare(&skin, &actual, &settings, &Unobserved).unwrap();
     assert!(found.distances.both.hausdorff < 0.01, "{:?}", found.distances.both);
     assert!(found.unaligned.unwrap().both.unsigned.mean > 1.0);
 }
@@ -318,7 +321,7 @@ fn a_dirty_bone_is_compared_like_any_other() {
     let Some(bone) = shared_surface("head_ct/headsq_quarter_bone.stl") else { return };
     let actual = map(&bone, |point| point + Vector::new(0.3, 0.0, 0.0));
     let settings = ComparisonSettings { samples_per_mm2: 0.1, ..icp(None) };
-    let found = compare(&bone, &actual, &settings, &|| false).unwrap();
+    let found = compare(&bone, &actual, &settings, &Unobserved).unwrap();
     assert!(found.distances.both.hausdorff < 0.01, "{:?}", found.distances.both);
     let unaligned = found.unaligned.unwrap().both;
     assert!(unaligned.unsigned.max <= 0.3 + 1e-6 && unaligned.unsigned.mean > 0.1);

@@ -64,6 +64,9 @@ pub trait Progress: Sync {
 /// Progress nobody follows, of work that nobody stops.
 pub struct Unobserved;
 
+/// Work inside an iteration of other work: it ends with that, and tells nothing of its own.
+pub struct Inner<'a>(pub &'a dyn Progress);
+
 impl Progress for Unobserved {
     fn phase(&self, _phase: Phase) {}
 
@@ -71,5 +74,15 @@ impl Progress for Unobserved {
 
     fn is_cancelled(&self) -> bool {
         false
+    }
+}
+
+impl Progress for Inner<'_> {
+    fn phase(&self, _phase: Phase) {}
+
+    fn iteration(&self, _iteration: usize, _relative_residual: f64, _wanted: f64) {}
+
+    fn is_cancelled(&self) -> bool {
+        self.0.is_cancelled()
     }
 }

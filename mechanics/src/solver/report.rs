@@ -1,0 +1,45 @@
+//! Report of a solution: the method, why it was chosen, and what it took. Made where equations are solved, and
+//! carried as it is to whoever tells of it.
+
+/// How equations were solved.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SolveReport {
+    /// `cholesky`, `conjugate_gradient`, `conjugate_residual` with pressures, what the method's own iterations are
+    /// called, or `none` where nothing moves.
+    pub method: &'static str,
+    pub preconditioner: &'static str,
+    /// Why this method was chosen, with the numbers; empty where nothing chose.
+    pub why: String,
+    /// Those that are not held: displacements and, with stabilised tetrahedra, pressures.
+    pub unknowns: usize,
+    pub iterations: usize,
+    /// |f - K u| / |f_D| of the free rows, recomputed at the end; with pressures as `solver::mixed` says.
+    pub relative_residual: f64,
+    pub wanted_residual: f64,
+    /// The relative residual after each iteration, of methods that have their own iterations to show.
+    pub history: Vec<f64>,
+    /// Steps of load or time; one where a system is solved at once.
+    pub steps: u32,
+}
+
+impl SolveReport {
+    /// That of an answer for which no equation had to be solved.
+    pub fn without_equations(why: &str, unknowns: usize, wanted_residual: f64) -> Self {
+        SolveReport {
+            method: "none",
+            preconditioner: "none",
+            why: why.to_owned(),
+            unknowns,
+            iterations: 0,
+            relative_residual: 0.0,
+            wanted_residual,
+            history: Vec::new(),
+            steps: 1,
+        }
+    }
+
+    /// That of a system in which nothing is held away from its place and nothing acts.
+    pub fn at_rest(unknowns: usize, wanted_residual: f64) -> Self {
+        Self::without_equations("nothing moves and nothing acts", unknowns, wanted_residual)
+    }
+}
