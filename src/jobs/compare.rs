@@ -15,9 +15,9 @@ use crate::schema::compare::document::{
     AlignDocument, AlignMethod, CompareToDocument, NodeWise as NodeWiseName, PlaceDocument,
 };
 use crate::schema::compare::result::ComparisonDocument;
+use crate::schema::hashes;
 use crate::schema::predict::document::OutputName;
 use crate::schema::predict::result::ResultDocument;
-use crate::schema::wire::canonical;
 use crate::schema::{Faults, Pointer, Problem};
 use mechanics::format::vtk::vtp;
 use mechanics::format::{ArrayValues, NamedValues, SurfaceOutput};
@@ -124,7 +124,7 @@ impl CompareInput {
             true => Some(actual.to_owned()),
             false => Some(prediction.to_owned()),
         };
-        canonical::compare_hash(&self.spec, &content)
+        hashes::compare_hash(&self.spec, &content)
     }
 }
 

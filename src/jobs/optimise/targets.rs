@@ -4,8 +4,8 @@ use super::OptimiseInput;
 use crate::jobs::failure::JobError;
 use crate::jobs::predict::input::{PredictInput, Prepared};
 use crate::jobs::source::MeshSource;
+use crate::schema::hashes;
 use crate::schema::optimise::document::TargetDocument;
-use crate::schema::wire::canonical;
 use crate::schema::{Faults, Limits, Pointer, Problem};
 use mechanics::mesh::{SurfaceSearch, Warning};
 use mechanics::optimisation::{Goal, SkinPoint, Target};
@@ -47,7 +47,7 @@ impl OptimiseInput {
         let mut warnings = Vec::new();
         let targets = self.targets(&rest, limits, &mut warnings)?;
         let content = |id: &str| rest.contents.get(id).cloned();
-        let spec_hash = canonical::optimise_hash(&self.case, &self.spec, &content);
+        let spec_hash = hashes::optimise_hash(&self.case, &self.spec, &content);
         Ok(PreparedOptimisation { rest, targets, moving, warnings, spec_hash })
     }
 

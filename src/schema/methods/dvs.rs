@@ -2,7 +2,8 @@
 
 use serde_json::json;
 
-use super::{MethodDocument, MethodName, ParameterDocument, parameter, words};
+use super::document::{MethodDocument, ParameterDocument, parameter, words};
+use super::name::MethodName;
 
 pub(super) fn document() -> MethodDocument {
     MethodDocument {

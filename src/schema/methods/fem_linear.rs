@@ -1,6 +1,7 @@
 //! What `GET /v1/methods` tells of `fem_linear`.
 
-use super::{ElementName, MethodDocument, MethodName, words};
+use super::document::{MethodDocument, words};
+use super::name::{ElementName, MethodName};
 
 pub(super) fn document() -> MethodDocument {
     MethodDocument {

@@ -2,7 +2,8 @@
 
 use serde_json::json;
 
-use super::{ElementName, MethodDocument, MethodName, ParameterDocument, words};
+use super::document::{MethodDocument, ParameterDocument, words};
+use super::name::{ElementName, MethodName};
 use crate::schema::predict::mass_tensor::USUAL_ITERATIONS;
 
 pub(super) fn document() -> MethodDocument {

@@ -2,7 +2,8 @@
 
 use serde_json::json;
 
-use super::{MethodDocument, MethodName, parameter, words};
+use super::document::{MethodDocument, parameter, words};
+use super::name::MethodName;
 
 pub(super) fn document() -> MethodDocument {
     MethodDocument {

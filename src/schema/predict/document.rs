@@ -8,7 +8,6 @@ use super::dvs::DvsDocument;
 use super::mass_spring::MassSpringDocument;
 use super::mass_tensor::MassTensorDocument;
 use super::thickness_warp::ThicknessWarpDocument;
-use crate::schema::case::conversion::check_tags;
 use crate::schema::case::material::{MaterialDocument, MaterialDocuments};
 use crate::schema::case::membrane::MembraneDocument;
 use crate::schema::compare::document::{CompareDocument, CompareToDocument};
@@ -20,9 +19,15 @@ use crate::schema::study::document::StudyDocument;
 use crate::schema::wire::canonical;
 use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::limits::Limits;
+use crate::schema::wire::names::check_tags;
 use crate::schema::wire::problem::Problem;
 use crate::schema::wire::strict;
 use mechanics::prediction::{Method, Settings};
+
+pub use super::budget::BudgetDocument;
+pub use super::contact::ContactName;
+pub use super::output::OutputName;
+pub use super::tolerance::ToleranceDocument;
 
 /// The body of `POST /v1/jobs`, told apart by `kind`.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
@@ -114,122 +119,6 @@ pub struct PredictDocument {
     pub compare_to: Option<CompareToDocument>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub tags: Vec<String>,
-}
-
-/// What happens at the sliding sets of the case.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
-#[serde(rename_all = "lowercase")]
-pub enum ContactName {
-    /// Held across, free along.
-    #[default]
-    Sliding,
-    /// Free.
-    None,
-}
-
-/// How exactly the equations are solved.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
-pub struct ToleranceDocument {
-    /// |f - K u| / |f_D| of the free rows; in [1e-14, 1e-2]. With pressures, those of both equations,
-    /// a volume that is left over counted as the forces that its pressure would put on the nodes.
-    #[serde(default = "usual_residual")]
-    #[schema(default = 1e-8, minimum = 1e-14, maximum = 1e-2)]
-    pub relative_residual: f64,
-}
-
-fn usual_residual() -> f64 {
-    1e-8
-}
-
-impl Default for ToleranceDocument {
-    fn default() -> Self {
-        ToleranceDocument { relative_residual: usual_residual() }
-    }
-}
-
-/// What a job may take.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
-pub struct BudgetDocument {
-    #[serde(default = "usual_wall")]
-    #[schema(default = 600.0, exclusive_minimum = 0.0)]
-    pub wall_s: f64,
-    #[serde(default = "usual_memory")]
-    #[schema(default = 4000.0, minimum = 1.0)]
-    pub memory_mb: f64,
-}
-
-fn usual_wall() -> f64 {
-    600.0
-}
-
-fn usual_memory() -> f64 {
-    4000.0
-}
-
-impl Default for BudgetDocument {
-    fn default() -> Self {
-        BudgetDocument { wall_s: usual_wall(), memory_mb: usual_memory() }
-    }
-}
-
-/// A file of a result.
-#[derive(
-    Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, ToSchema,
-)]
-pub enum OutputName {
-    #[serde(rename = "skin.vtp")]
-    SkinVtp,
-    #[serde(rename = "skin.stl")]
-    SkinStl,
-    #[serde(rename = "skin.ply")]
-    SkinPly,
-    #[serde(rename = "skin.glb")]
-    SkinGlb,
-    #[serde(rename = "skin.csv")]
-    SkinCsv,
-    #[serde(rename = "volume.vtu")]
-    VolumeVtu,
-    #[serde(rename = "bones.vtp")]
-    BonesVtp,
-    #[serde(rename = "classes.svg")]
-    ClassesSvg,
-    #[serde(rename = "displacement.svg")]
-    DisplacementSvg,
-    #[serde(rename = "result.json")]
-    ResultJson,
-}
-
-impl OutputName {
-    pub fn file_name(self) -> &'static str {
-        match self {
-            OutputName::SkinVtp => "skin.vtp",
-            OutputName::SkinStl => "skin.stl",
-            OutputName::SkinPly => "skin.ply",
-            OutputName::SkinGlb => "skin.glb",
-            OutputName::SkinCsv => "skin.csv",
-            OutputName::VolumeVtu => "volume.vtu",
-            OutputName::BonesVtp => "bones.vtp",
-            OutputName::ClassesSvg => "classes.svg",
-            OutputName::DisplacementSvg => "displacement.svg",
-            OutputName::ResultJson => "result.json",
-        }
-    }
-
-    pub fn media_type(self) -> &'static str {
-        match self {
-            OutputName::SkinVtp | OutputName::VolumeVtu | OutputName::BonesVtp => {
-                "application/vnd.vtk.xml"
-            }
-            OutputName::SkinStl => "model/stl",
-            OutputName::SkinPly => "application/vnd.ply",
-            OutputName::SkinGlb => "model/gltf-binary",
-            OutputName::SkinCsv => "text/csv; charset=utf-8",
-            OutputName::ClassesSvg | OutputName::DisplacementSvg => "image/svg+xml",
-            OutputName::ResultJson => "application/json",
-        }
-    }
 }
 
 impl JobDocument {

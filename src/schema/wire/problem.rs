@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 use utoipa::ToSchema;
 
-use super::fault::{Faults, FieldError, Pointer};
+use super::pointer::FieldError;
 
 /// Why something was refused. Which HTTP status belongs to a code is the business of the API.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,13 +20,6 @@ pub struct Problem {
 impl Problem {
     pub fn new(code: &'static str, detail: impl Into<String>) -> Self {
         Problem { code, detail: detail.into(), errors: Vec::new(), members: Map::new() }
-    }
-
-    /// One mistake at one place of a document.
-    pub fn at(pointer: &Pointer, code: &str, detail: impl Into<String>) -> Self {
-        let mut faults = Faults::default();
-        faults.add(pointer, code, detail);
-        faults.into_problem()
     }
 
     /// The same problem with one more member.
