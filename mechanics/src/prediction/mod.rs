@@ -4,10 +4,13 @@ mod build;
 pub mod case;
 mod check;
 mod cut;
+mod element_choice;
 mod fibres;
 mod held;
 mod hounsfield;
 mod imaged_tissue;
+mod listed;
+mod method;
 mod off_wall;
 mod problem;
 pub mod progress;
@@ -19,10 +22,12 @@ mod stiff_layer;
 use std::collections::BTreeMap;
 
 pub use case::{
-    Bone, Case, CaseSegment, ElementChoice, FibreDirection, Hounsfield, Load, Method, Mixing, Plan,
-    Prescribed, RegionNames, Settings, SkinMembrane, Sliding, SlidingNormal, TissueWindow,
+    Bone, Case, CaseSegment, FibreDirection, Hounsfield, Load, Mixing, Plan, Prescribed,
+    RegionNames, Settings, SkinMembrane, Sliding, SlidingNormal, TissueWindow,
 };
+pub use element_choice::ElementChoice;
 pub use imaged_tissue::{ImagedTissue, TissueShare};
+pub use method::{Method, MethodKind, MethodProperties, Unknowns};
 pub use problem::{SceneError, SceneErrors};
 pub use progress::{Phase, Progress, Unobserved};
 pub use scene::Scene;

@@ -10,9 +10,7 @@ use crate::boundary::NodeClass;
 use crate::mesh::Vector;
 use crate::model::problem::{Equilibrium, LoadCase};
 use crate::plan::RigidMovement;
-use crate::prediction::{
-    Followed, Method, Phase, PredictionError, Progress, Scene, SolverReport, report,
-};
+use crate::prediction::{Followed, Phase, PredictionError, Progress, Scene, SolverReport, report};
 
 /// Bytes of one node in one load case: its force, its displacement, its unknowns.
 const BYTES_OF_NODE: f64 = 72.0;
@@ -65,7 +63,7 @@ pub fn chosen(scene: &Scene, names: &[String]) -> Result<Vec<usize>, ResponseErr
         return Err(ResponseError::SharedNodes { count: scene.conditions.shared.len(), first });
     }
     let is_prescribed = |class: &NodeClass| *class == NodeClass::Prescribed;
-    if scene.settings.method != Method::FemLinear {
+    if !scene.settings.method.properties().is_linear {
         return Err(ResponseError::OtherMethod);
     }
     if scene.conditions.classes.iter().any(is_prescribed)

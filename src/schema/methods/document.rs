@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use super::name::{ElementName, MethodName};
+use mechanics::prediction::MethodKind;
 
 /// A way of modelling that a spec may ask for.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -20,6 +21,30 @@ pub struct MethodDocument {
     pub reads: Vec<String>,
     /// What only it has to be told, in the field of the spec that has its name.
     pub parameters: Vec<ParameterDocument>,
+}
+
+/// What is told of a method in words; its name, its elements and its cells are those of the table of methods.
+pub(super) struct Description {
+    pub title: &'static str,
+    pub assumptions: &'static [&'static str],
+    pub reads: &'static [&'static str],
+    pub parameters: Vec<ParameterDocument>,
+}
+
+impl MethodDocument {
+    pub(super) fn new(method: MethodKind, description: Description) -> Self {
+        let properties = method.properties();
+        let words = |list: &[&str]| list.iter().map(|word| (*word).to_owned()).collect();
+        MethodDocument {
+            name: MethodName::Named(method),
+            title: description.title.to_owned(),
+            assumptions: words(description.assumptions),
+            elements: properties.elements.iter().copied().map(ElementName::from).collect(),
+            cells: properties.cells.iter().map(|shape| shape.name().to_owned()).collect(),
+            reads: words(description.reads),
+            parameters: description.parameters,
+        }
+    }
 }
 
 /// A parameter of a method.
@@ -46,8 +71,4 @@ pub(super) fn parameter(
         default,
         range: range.to_owned(),
     }
-}
-
-pub(super) fn words(list: &[&str]) -> Vec<String> {
-    list.iter().map(|word| (*word).to_owned()).collect()
 }

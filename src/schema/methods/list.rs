@@ -3,47 +3,30 @@
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
+use super::describe;
 use super::document::MethodDocument;
 use super::measured::{self, MeasuredDocument};
 use super::name::{MethodName, WHY_LINEAR};
-use super::{dvs, fem_linear, msm, mtm, mtm_ti, thickness_warp};
 use crate::schema::wire::fault::{Faults, Pointer};
 use mechanics::optimisation::UNDETERMINED;
+use mechanics::prediction::MethodKind;
 use mechanics::response::COLUMNS_PER_SEGMENT;
 use mechanics::response::linearity::LINEAR_RANGE_MM;
 
-/// Refuses a method that is not built, naming those that are.
-pub fn check_method(method: MethodName, at: &Pointer, faults: &mut Faults) {
-    if !method.is_available() {
-        let names: Vec<String> = documents().map(|row| format!("`{}`", row.name.name())).collect();
-        let detail = format!("this method is not available; `auto` and {} are", names.join(", "));
-        faults.add(at, "method-not-available", detail);
-    }
-}
-
 /// Refuses, for plan responses, a method whose skin is not linear in the movements, or that has none of its own.
 pub fn check_linear(method: MethodName, at: &Pointer, faults: &mut Faults) {
-    let is_linear = matches!(method.chosen(), MethodName::FemLinear | MethodName::MtmTi);
-    if method.is_available() && !is_linear {
-        let detail = "responses are built by `fem_linear` and `mtm_ti`";
+    if !method.chosen().properties().is_linear {
+        let names: Vec<String> =
+            linear().iter().map(|method| format!("`{}`", method.name())).collect();
+        let detail = format!("responses are built by {}", names.join(" and "));
         faults.add(at, "method-not-available", detail);
     }
 }
 
-/// Refuses settings of a method in the spec of another one.
-pub fn check_own(
-    own: MethodName,
-    is_given: bool,
-    method: MethodName,
-    at: &Pointer,
-    faults: &mut Faults,
-) {
-    if is_given && method.chosen() != own {
-        let name = own.name();
-        let detail =
-            format!("these are settings of `{name}`, and the method is `{}`", method.name());
-        faults.add(&at.key(name), "method-mismatch", detail);
-    }
+/// Those whose skin is linear in the movements.
+fn linear() -> Vec<MethodName> {
+    let linear = MethodKind::ALL.iter().filter(|method| method.properties().is_linear);
+    linear.map(|method| MethodName::Named(*method)).collect()
 }
 
 /// The answer of `GET /v1/methods`.
@@ -98,26 +81,13 @@ impl MeasuredMethod {
     }
 }
 
-/// What is told of each method that is built.
-fn documents() -> impl Iterator<Item = MethodDocument> {
-    [
-        fem_linear::document(),
-        mtm::document(),
-        mtm_ti::document(),
-        msm::document(),
-        dvs::document(),
-        thickness_warp::document(),
-    ]
-    .into_iter()
-}
-
 /// The methods that are built.
 pub fn available_methods() -> MethodList {
     MethodList {
-        methods: documents().map(MeasuredMethod::of).collect(),
+        methods: MethodKind::ALL.iter().map(|method| MeasuredMethod::of(describe(*method))).collect(),
         auto: WHY_LINEAR.to_owned(),
         response: ResponseMethod {
-            methods: vec![MethodName::FemLinear, MethodName::MtmTi],
+            methods: linear(),
             columns_per_segment: COLUMNS_PER_SEGMENT as u32,
             nonlinearity_estimate: "0.15 d^2 / h + 2.7 h (1 - cos theta): d the largest movement in mm of a \
                 segment against another or against what stays, h the median distance in mm from the skin to \
@@ -126,7 +96,7 @@ pub fn available_methods() -> MethodList {
             linear_range_mm: LINEAR_RANGE_MM,
         },
         optimise: OptimiseMethod {
-            methods: vec![MethodName::FemLinear, MethodName::MtmTi],
+            methods: linear(),
             minimises: "sum of (residual / sigma_mm)^2 over translations and angles within their bounds, by \
                 Levenberg and Marquardt's method from rest, on a response of the segments"
                 .to_owned(),

@@ -1,20 +1,111 @@
-//! `GET /v1/methods`: the ways of modelling, by the names a spec may give.
+//! Methods in documents: for each a row with its description, its own settings and the method they become.
 
 mod document;
-mod dvs;
+pub mod dvs;
 mod fem_linear;
 mod list;
 mod measured;
-mod msm;
-mod mtm;
+pub mod msm;
+pub mod mtm;
 mod mtm_ti;
 mod name;
-mod thickness_warp;
+pub mod thickness_warp;
 
+use document::Description;
 pub use document::{MethodDocument, ParameterDocument};
+use dvs::DvsDocument;
 pub use list::{
     MeasuredMethod, MethodList, OptimiseMethod, ResponseMethod, available_methods, check_linear,
-    check_method, check_own,
 };
 pub use measured::{MeasuredDocument, time_band};
+use msm::MassSpringDocument;
+use mtm::MassTensorDocument;
 pub use name::{ElementName, MethodName, WHY_ASKED, WHY_LINEAR};
+use thickness_warp::ThicknessWarpDocument;
+
+use crate::schema::wire::fault::{Faults, Pointer};
+use mechanics::prediction::{Method, MethodKind};
+
+/// What a spec tells single methods, each in the field that has the name of the method.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct OwnSettings {
+    pub msm: Option<MassSpringDocument>,
+    pub mtm: Option<MassTensorDocument>,
+    pub dvs: Option<DvsDocument>,
+    pub thickness_warp: Option<ThicknessWarpDocument>,
+}
+
+/// A row of the table.
+struct MethodRow {
+    description: fn() -> Description,
+    /// Whether the spec tells it something.
+    is_told: fn(&OwnSettings) -> bool,
+    /// The method with what it is told at a place, or with what is usual.
+    to_method: fn(&OwnSettings, &Pointer, &mut Faults) -> Method,
+}
+
+fn row(method: MethodKind) -> MethodRow {
+    match method {
+        MethodKind::FemLinear => MethodRow {
+            description: fem_linear::description,
+            is_told: |_| false,
+            to_method: |_, _, _| Method::FemLinear,
+        },
+        MethodKind::MassTensor => MethodRow {
+            description: mtm::description,
+            is_told: |own| own.mtm.is_some(),
+            to_method: |own, at, faults| {
+                Method::MassTensor(own.mtm.unwrap_or_default().to_settings(at, faults))
+            },
+        },
+        MethodKind::MassTensorTransverse => MethodRow {
+            description: mtm_ti::description,
+            is_told: |_| false,
+            to_method: |_, _, _| Method::MassTensorTransverse,
+        },
+        MethodKind::MassSpring => MethodRow {
+            description: msm::description,
+            is_told: |own| own.msm.is_some(),
+            to_method: |own, at, faults| {
+                Method::MassSpring(own.msm.unwrap_or_default().to_settings(at, faults))
+            },
+        },
+        MethodKind::VolumeSpline => MethodRow {
+            description: dvs::description,
+            is_told: |own| own.dvs.is_some(),
+            to_method: |own, at, faults| {
+                Method::VolumeSpline(own.dvs.unwrap_or_default().to_method(at, faults))
+            },
+        },
+        MethodKind::ThicknessWarp => MethodRow {
+            description: thickness_warp::description,
+            is_told: |own| own.thickness_warp.is_some(),
+            to_method: |own, at, faults| {
+                Method::ThicknessWarp(own.thickness_warp.unwrap_or_default().to_method(at, faults))
+            },
+        },
+    }
+}
+
+/// What is told of a method.
+fn describe(method: MethodKind) -> MethodDocument {
+    MethodDocument::new(method, (row(method).description)())
+}
+
+/// The method that a spec asks for, with its own settings; those of another one are refused.
+pub fn to_method(
+    asked: MethodName,
+    own: &OwnSettings,
+    at: &Pointer,
+    faults: &mut Faults,
+) -> Method {
+    let chosen = asked.chosen();
+    let told = MethodKind::ALL.iter().copied().filter(|method| (row(*method).is_told)(own));
+    for other in told.filter(|method| *method != chosen) {
+        let name = other.name();
+        let detail =
+            format!("these are settings of `{name}`, and the method is `{}`", asked.name());
+        faults.add(&at.key(name), "method-mismatch", detail);
+    }
+    (row(chosen).to_method)(own, &at.key(chosen.name()), faults)
+}

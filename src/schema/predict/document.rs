@@ -4,14 +4,14 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use utoipa::ToSchema;
 
-use super::dvs::DvsDocument;
-use super::mass_spring::MassSpringDocument;
-use super::mass_tensor::MassTensorDocument;
-use super::thickness_warp::ThicknessWarpDocument;
 use crate::schema::case::material::{MaterialDocument, MaterialDocuments};
 use crate::schema::case::membrane::MembraneDocument;
 use crate::schema::compare::document::{CompareDocument, CompareToDocument};
-use crate::schema::methods::{self, ElementName, MethodName};
+use crate::schema::methods::dvs::DvsDocument;
+use crate::schema::methods::msm::MassSpringDocument;
+use crate::schema::methods::mtm::MassTensorDocument;
+use crate::schema::methods::thickness_warp::ThicknessWarpDocument;
+use crate::schema::methods::{self, ElementName, MethodName, OwnSettings};
 use crate::schema::optimise::document::OptimiseDocument;
 use crate::schema::plan::document::PlanDocument;
 use crate::schema::response::ResponseDocument;
@@ -22,7 +22,7 @@ use crate::schema::wire::limits::Limits;
 use crate::schema::wire::names::check_tags;
 use crate::schema::wire::problem::Problem;
 use crate::schema::wire::strict;
-use mechanics::prediction::{Method, Settings};
+use mechanics::prediction::Settings;
 
 pub use super::budget::BudgetDocument;
 pub use super::contact::ContactName;
@@ -166,7 +166,6 @@ impl PredictDocument {
     /// The settings of the path; pointers start at `/spec`.
     pub fn to_settings(&self, limits: &Limits, faults: &mut Faults) -> Settings {
         let at = Pointer::root().key("spec");
-        methods::check_method(self.method, &at.key("method"), faults);
         let residual = self.tolerance.relative_residual;
         let place = at.key("tolerance").key("relative_residual");
         faults.check_range(&place, residual, 1e-14..=1e-2, "");
@@ -181,7 +180,7 @@ impl PredictDocument {
         let membrane = self.membrane.as_ref();
         let membrane = membrane.and_then(|sheet| sheet.to_membrane(&at.key("membrane"), faults));
         Settings {
-            method: self.to_method(&at, faults),
+            method: methods::to_method(self.method, &self.own_settings(), &at, faults),
             element: self.element.choice(),
             sliding: self.contact == ContactName::Sliding,
             relative_residual: residual,
@@ -190,36 +189,12 @@ impl PredictDocument {
         }
     }
 
-    /// The method with its own settings; those of another one are refused.
-    fn to_method(&self, at: &Pointer, faults: &mut Faults) -> Method {
-        let own = [
-            (MethodName::Msm, self.msm.is_some()),
-            (MethodName::Mtm, self.mtm.is_some()),
-            (MethodName::Dvs, self.dvs.is_some()),
-            (MethodName::ThicknessWarp, self.thickness_warp.is_some()),
-        ];
-        for (name, is_given) in own {
-            methods::check_own(name, is_given, self.method, at, faults);
-        }
-        match self.method.chosen() {
-            MethodName::Msm => {
-                let own = self.msm.unwrap_or_default();
-                Method::MassSpring(own.to_settings(&at.key("msm"), faults))
-            }
-            MethodName::Mtm => {
-                let own = self.mtm.unwrap_or_default();
-                Method::MassTensor(own.to_settings(&at.key("mtm"), faults))
-            }
-            MethodName::MtmTi => Method::MassTensorTransverse,
-            MethodName::Dvs => {
-                let own = self.dvs.unwrap_or_default();
-                Method::VolumeSpline(own.to_method(&at.key("dvs"), faults))
-            }
-            MethodName::ThicknessWarp => {
-                let own = self.thickness_warp.unwrap_or_default();
-                Method::ThicknessWarp(own.to_method(&at.key("thickness_warp"), faults))
-            }
-            _ => Method::FemLinear,
+    fn own_settings(&self) -> OwnSettings {
+        OwnSettings {
+            msm: self.msm,
+            mtm: self.mtm,
+            dvs: self.dvs,
+            thickness_warp: self.thickness_warp,
         }
     }
 

@@ -16,6 +16,9 @@ use super::fault::{Faults, Pointer};
 use super::limits::Limits;
 use super::problem::Problem;
 
+/// What the detail begins with where a word is known and what it stands for is not built.
+pub const NOT_AVAILABLE: &str = "not available: ";
+
 /// One document of a known shape.
 pub fn parse<T: DeserializeOwned>(bytes: &[u8], limits: &Limits) -> Result<T, Problem> {
     from_value(parse_value(bytes, limits)?)
@@ -79,6 +82,8 @@ fn add_shape_fault(faults: &mut Faults, at: &Pointer, detail: &str) {
         faults.add(&at.key(name), "missing-field", detail);
     } else if detail.starts_with("unknown variant ") {
         faults.add(at, "unknown-word", detail);
+    } else if detail.starts_with(NOT_AVAILABLE) {
+        faults.add(at, "method-not-available", detail);
     } else {
         faults.add(at, "wrong-type", detail);
     }

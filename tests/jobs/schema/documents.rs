@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use facies::schema::case::document::{CaseMeshes, NamedMesh};
+use facies::schema::hashes;
 use facies::schema::plan::document::PlanContext;
 use facies::schema::predict::document::JobDocument;
-use facies::schema::hashes;
 use facies::schema::wire::{canonical, strict};
 use facies::schema::{
     CaseDocument, Faults, Limits, PlanDocument, Pointer, PredictDocument, Problem,
@@ -237,7 +237,7 @@ fn methods_that_are_not_built_are_refused_by_name() {
     let code = "method-not-available";
     for name in ["fem_corotational", "fem_neo_hookean", "fem_ogden", "fem_rubin_bodner"] {
         let text = format!(r#"{{"method":"{name}"}}"#);
-        assert_eq!(refused(settings(&text)), one(code, code, "/spec/method"), "{name}");
+        assert_eq!(refused(settings(&text)), one(code, code, "/method"), "{name}");
     }
     let misspelt = settings(r#"{"method":"fem"}"#);
     assert_eq!(refused(misspelt), one("validation-failed", "unknown-word", "/method"));
