@@ -69,7 +69,7 @@ pub async fn of_comparison(service: &Service, spec: CompareDocument) -> ApiResul
         case_id = case;
     }
     let content_of = |id: &str| contents.get(id).cloned();
-    let spec_hash = crate::schema::wire::canonical::compare_hash(&spec, &content_of);
+    let spec_hash = crate::schema::hashes::compare_hash(&spec, &content_of);
     let tags = spec.tags.clone();
     let new = Accepted {
         kind: JobKind::Compare,

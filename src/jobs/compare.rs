@@ -11,14 +11,15 @@ use crate::jobs::predict::input::{CompareInput, PredictInput, Prepared};
 use crate::jobs::result::folder::ResultFolder;
 use crate::jobs::result::provenance::{Origin, encode_result};
 use crate::jobs::result::skin::PredictedSkin;
+use crate::schema::ErrorCode;
 use crate::schema::compare::document::{
     AlignDocument, AlignMethod, CompareToDocument, NodeWise as NodeWiseName, PlaceDocument,
 };
 use crate::schema::compare::result::ComparisonDocument;
+use crate::schema::hashes;
 use crate::schema::predict::document::OutputName;
 use crate::schema::predict::result::ResultDocument;
-use crate::schema::wire::canonical;
-use crate::schema::{ErrorCode, Faults, Pointer, Problem};
+use crate::schema::{Faults, Pointer, Problem};
 use mechanics::format::vtk::vtp;
 use mechanics::format::{ArrayValues, NamedValues, SurfaceOutput};
 use mechanics::mesh::{Frame, TriangleSurface, Vector, Warning};
@@ -124,7 +125,7 @@ impl CompareInput {
             true => Some(actual.to_owned()),
             false => Some(prediction.to_owned()),
         };
-        canonical::compare_hash(&self.spec, &content)
+        hashes::compare_hash(&self.spec, &content)
     }
 }
 

@@ -193,7 +193,7 @@ mod tests {
     #[test]
     fn only_a_solver_says_that_a_solver_diverged() {
         let kind = |error: JobError| error.kind().name();
-        assert_eq!(kind(PredictionError::NotFinite.into()), "solver-diverged");
+        assert_eq!(kind(ModelError::Solver(SolverError::NotFinite).into()), "solver-diverged");
         assert_eq!(kind(OptimisationError::NotFinite.into()), "no-plan-found");
         assert_eq!(kind(JobError::NotFinite { what: "mean".to_owned() }), "not-finite");
         assert_eq!(kind(StatisticsError::Empty.into()), "statistics-failed");

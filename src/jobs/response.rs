@@ -13,6 +13,7 @@ use crate::jobs::predict::input::{PredictInput, Prepared};
 use crate::jobs::result::folder::ResultFolder;
 use crate::jobs::result::provenance::{Origin, add_method, encode_result, solver_document};
 use crate::schema::case::conversion::centre;
+use crate::schema::hashes;
 use crate::schema::predict::document::OutputName;
 use crate::schema::predict::result::ResultDocument;
 use crate::schema::response::{ColumnsDocument, ResponseDescription, ResponseOrigin};
@@ -78,7 +79,7 @@ impl ResponseInput {
         let chosen = chosen(&prepared.scene, &self.spec.segments);
         let segments = chosen.map_err(|error| self.judge(error))?.len();
         let content = |id: &str| prepared.contents.get(id).cloned();
-        let key = canonical::response_key(&self.case, &self.spec, &content);
+        let key = hashes::response_key(&self.case, &self.spec, &content);
         Ok(PreparedResponse { key, prepared, segments })
     }
 

@@ -8,10 +8,10 @@ use crate::jobs::predict::input::JobInput;
 use crate::jobs::response::{COLUMNS_FILE, DESCRIPTION_FILE, REST_FILE};
 use crate::jobs::result::skin::PredictedSkin;
 use crate::schema::CaseDocument;
+use crate::schema::hashes;
 use crate::schema::predict::document::OutputName;
 use crate::schema::predict::result::NOT_A_DEVICE;
 use crate::schema::response::{AppliedSummary, ResponseDescription};
-use crate::schema::wire::canonical;
 use crate::store::{Store, StoreError};
 use mechanics::format::{self, Mesh, ReadLimits, WriteError};
 use mechanics::mesh::{TriangleSurface, Vector};
@@ -257,7 +257,7 @@ impl Responses {
             }
         }
         let content = |id: &str| contents.get(id).cloned();
-        Ok(canonical::response_key(&case, &input.spec, &content) == row.key)
+        Ok(hashes::response_key(&case, &input.spec, &content) == row.key)
     }
 
     /// A response with its columns, from memory where it is there.

@@ -4,6 +4,8 @@
 pub mod case;
 pub mod code;
 pub mod compare;
+pub mod engine;
+pub mod hashes;
 pub mod job;
 pub mod key;
 pub mod mesh;

@@ -3,7 +3,7 @@
 use super::code::ErrorCode;
 use mechanics::format::FormatError;
 use mechanics::mesh::SearchError;
-use mechanics::prediction::{PredictionError, SceneErrorCode};
+use mechanics::prediction::{ModelError, SceneErrorCode, SolverError};
 use mechanics::validation::ComparisonError;
 
 impl From<SceneErrorCode> for ErrorCode {
@@ -32,18 +32,26 @@ impl From<SceneErrorCode> for ErrorCode {
     }
 }
 
-impl From<&PredictionError> for ErrorCode {
-    fn from(error: &PredictionError) -> Self {
+impl From<&ModelError> for ErrorCode {
+    fn from(error: &ModelError) -> Self {
         match error {
-            PredictionError::Cancelled => ErrorCode::Cancelled,
-            PredictionError::NotConverged { .. }
-            | PredictionError::Diverged { .. }
-            | PredictionError::NotFinite => ErrorCode::SolverDiverged,
-            PredictionError::Singular { .. } => ErrorCode::MatrixSingular,
-            PredictionError::Inverted { .. } => ErrorCode::ElementInverted,
-            PredictionError::StepAboveLimit { .. } => ErrorCode::StepAboveLimit,
-            PredictionError::NoBone => ErrorCode::NoBone,
-            PredictionError::OverBudget { .. } => ErrorCode::BudgetExceeded,
+            ModelError::Inverted(_) => ErrorCode::ElementInverted,
+            ModelError::Solver(error) => error.into(),
+            ModelError::StepAboveLimit { .. } => ErrorCode::StepAboveLimit,
+            ModelError::NoBone => ErrorCode::NoBone,
+        }
+    }
+}
+
+impl From<&SolverError> for ErrorCode {
+    fn from(error: &SolverError) -> Self {
+        match error {
+            SolverError::Stopped => ErrorCode::Cancelled,
+            SolverError::NotConverged { .. }
+            | SolverError::Diverged { .. }
+            | SolverError::NotFinite => ErrorCode::SolverDiverged,
+            SolverError::Singular { .. } => ErrorCode::MatrixSingular,
+            SolverError::OverBudget { .. } => ErrorCode::BudgetExceeded,
         }
     }
 }
@@ -90,6 +98,7 @@ impl From<&ComparisonError> for ErrorCode {
 mod tests {
     use super::*;
     use mechanics::format::Place;
+    use mechanics::prediction::InvertedCell;
     use mechanics::registration::AlignmentError;
     use mechanics::validation::StatisticsError;
 
@@ -104,20 +113,25 @@ mod tests {
     fn every_word_of_a_solver_is_that_of_its_code() {
         let history = Vec::new();
         for error in [
-            PredictionError::Cancelled,
-            PredictionError::NotConverged {
+            ModelError::Solver(SolverError::Stopped),
+            ModelError::Solver(SolverError::NotConverged {
                 iterations: 1,
                 residual: 1.0,
                 wanted: 0.1,
                 history: history.clone(),
-            },
-            PredictionError::Diverged { iterations: 1, growth: 2.0, residual: 1.0, history },
-            PredictionError::Singular { node: 0 },
-            PredictionError::Inverted { cell: 0 },
-            PredictionError::OverBudget { needed_mb: 2.0, allowed_mb: 1.0 },
-            PredictionError::NotFinite,
-            PredictionError::StepAboveLimit { step_s: 2.0, limit_s: 1.0 },
-            PredictionError::NoBone,
+            }),
+            ModelError::Solver(SolverError::Diverged {
+                iterations: 1,
+                growth: 2.0,
+                residual: 1.0,
+                history,
+            }),
+            ModelError::Solver(SolverError::Singular { node: 0 }),
+            ModelError::Inverted(InvertedCell { cell: 0 }),
+            ModelError::Solver(SolverError::OverBudget { needed_mb: 2.0, allowed_mb: 1.0 }),
+            ModelError::Solver(SolverError::NotFinite),
+            ModelError::StepAboveLimit { step_s: 2.0, limit_s: 1.0 },
+            ModelError::NoBone,
         ] {
             assert_eq!(ErrorCode::from(&error).name(), error.code(), "{error}");
         }

@@ -2,7 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use super::{IgnoredArrays, TriangleSurface, Vector};
+use super::IgnoredArrays;
+use super::{TriangleSurface, Vector};
 use crate::rows::Rows;
 
 /// The shape of a first-order cell. Local node order is that of VTK for tetrahedra and hexahedra;

@@ -1,13 +1,11 @@
 //! What goes into a prediction, as stated by a client: unchecked names, checked values.
 
+use super::element_choice::ElementChoice;
+use super::method::Method;
 use crate::boundary::NodeSelection;
 use crate::image::ImageVolume;
 use crate::material::{LinearElastic, PlaneStress};
 use crate::mesh::{Frame, TriangleSurface, Vector, VolumeMesh};
-use crate::model::fem::mass_tensor::MassTensorSettings;
-use crate::model::mass_spring::MassSpringSettings;
-use crate::model::spline::VolumeSpline;
-use crate::model::thickness_warp::ThicknessWarp;
 use crate::plan::PlannedSegment;
 use std::collections::BTreeMap;
 
@@ -127,63 +125,6 @@ pub enum Load {
     Gravity {
         acceleration: Vector,
     },
-}
-
-/// The element for tetrahedra and the treatment of volume change in the other cells.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum ElementChoice {
-    /// The same as `Stabilised`.
-    #[default]
-    Auto,
-    /// Full integration for every shape.
-    Plain,
-    /// Mean dilatation for hex8 and wedge6, the plain element for tet4.
-    MeanDilatation,
-    /// Mean dilatation for hex8 and wedge6, displacement and stabilised pressure for tet4.
-    Stabilised,
-    /// Tetrahedra with a node in the middle of each edge; no other shapes.
-    Quadratic,
-}
-
-/// The way of modelling, with what only it has to be told.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub enum Method {
-    /// Linear finite elements at small strain.
-    #[default]
-    FemLinear,
-    /// Springs along the edges of tetrahedra.
-    MassSpring(MassSpringSettings),
-    /// The energy of plain linear tetrahedra, brought to rest as its settings say.
-    MassTensor(MassTensorSettings),
-    /// The mass-tensor of tetrahedra with fibres: force = V g_j.C.g_k u, the plain finite element.
-    MassTensorTransverse,
-    /// A lattice of control points over the tissue.
-    VolumeSpline(VolumeSpline),
-    /// Tissue that rides on the nearest bone.
-    ThicknessWarp(ThicknessWarp),
-}
-
-impl Method {
-    /// Whether it solves for the nodes of elements.
-    pub fn is_of_elements(&self) -> bool {
-        matches!(self, Method::FemLinear | Method::MassTensor(_) | Method::MassTensorTransverse)
-    }
-
-    /// Whether its tissue may be stiffer along fibres than across them.
-    pub fn knows_fibres(&self) -> bool {
-        matches!(self, Method::FemLinear | Method::MassTensorTransverse)
-    }
-
-    /// Whether the skin may be a membrane of its own.
-    pub fn knows_membrane(&self) -> bool {
-        self.is_of_elements()
-    }
-
-    /// True where strain is the symmetric part of the displacement gradient, so that turning is taken for
-    /// stretching.
-    pub fn is_small_strain(&self) -> bool {
-        self.is_of_elements() || matches!(self, Method::VolumeSpline(_))
-    }
 }
 
 /// How the numbers are to be found.

@@ -2,8 +2,10 @@
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 
-use super::case::{Case, ElementChoice, Load, Method, Plan, RegionNames, Settings};
+use super::case::{Case, Load, Plan, RegionNames, Settings};
+use super::element_choice::ElementChoice;
 use super::error_code::SceneErrorCode;
+use super::method::Method;
 use super::problem::Problems;
 use super::scene::Scene;
 use super::skin::{self, Skin};
@@ -159,40 +161,30 @@ impl<'a> Check<'a> {
     /// The element that the method uses. Refuses one that it does not have or that some cell of the mesh
     /// cannot be.
     pub(super) fn element(&mut self, settings: &Settings) -> ElementChoice {
-        let asked = settings.element;
-        let own = &[ElementChoice::Auto];
-        let (who, choices, used): (_, &[ElementChoice], _) = match &settings.method {
-            Method::FemLinear => {
-                if asked == ElementChoice::Quadratic {
-                    self.tetrahedra_only("/spec/element", "quadratic elements are");
-                }
-                return asked;
-            }
-            Method::VolumeSpline(_) => ("the volume spline", own, asked),
-            Method::ThicknessWarp(_) => ("the thickness-preserving warp", own, asked),
-            Method::MassSpring(_) => ("the mass-spring model", own, asked),
-            Method::MassTensor(_) | Method::MassTensorTransverse => {
-                let plain = ElementChoice::Plain;
-                ("the mass-tensor model", &[ElementChoice::Auto, ElementChoice::Plain], plain)
-            }
-        };
-        if !matches!(settings.method, Method::VolumeSpline(_) | Method::ThicknessWarp(_)) {
-            self.tetrahedra_only("/case/volume", &format!("{who} is"));
+        let (asked, method) = (settings.element, settings.method.properties());
+        self.shapes(method.cells, "/case/volume", &format!("{} is", method.title));
+        if asked == ElementChoice::Auto {
+            return method.usual_element;
         }
-        if !choices.contains(&asked) {
-            let detail = format!("{who} has no choice of elements: `auto` is what it is made of");
+        if !method.elements.contains(&asked) {
+            let detail =
+                format!("{} has no choice of elements: `auto` is what it is made of", method.title);
             self.problems.add("/spec/element", SceneErrorCode::MethodNotAvailable, detail);
+            return method.usual_element;
         }
-        used
+        self.shapes(asked.shapes(), "/spec/element", &format!("{} elements are", asked.name()));
+        asked
     }
 
     /// Refuses a mesh with cells of other shapes.
-    fn tetrahedra_only(&mut self, pointer: &str, who: &str) {
+    fn shapes(&mut self, shapes: &[CellShape], pointer: &str, who: &str) {
         let mut cells = self.case.volume.cells.iter();
-        if let Some((shape, _)) = cells.find(|(shape, _)| *shape != CellShape::Tet4) {
+        if let Some((shape, _)) = cells.find(|(shape, _)| !shapes.contains(shape)) {
+            let known: Vec<&str> = shapes.iter().map(|shape| shape.name()).collect();
             let detail = format!(
-                "{who} made of tet4 only, and the mesh has {} cells: `fem_linear` with the element \
+                "{who} made of {} only, and the mesh has {} cells: `fem_linear` with the element \
                  `auto` serves every shape",
+                known.join(", "),
                 shape.name()
             );
             self.problems.add(pointer, SceneErrorCode::MethodNotAvailable, detail);
@@ -201,8 +193,9 @@ impl<'a> Check<'a> {
 
     /// Refuses what a method would have to ignore in silence.
     pub(super) fn method(&mut self, method: &Method, plan: &Plan) {
-        if matches!(method, Method::ThicknessWarp(_)) && !plan.loads.is_empty() {
-            let detail = "thickness_warp follows bone and knows no forces".to_owned();
+        let method = method.properties();
+        if !method.knows_loads && !plan.loads.is_empty() {
+            let detail = format!("{} follows bone and knows no forces", method.name);
             self.problems.add("/plan/loads", SceneErrorCode::MethodNotAvailable, detail);
         }
     }

@@ -1,8 +1,9 @@
 //! The checks of what is stiffer one way than another: fibres of the tissue, the skin as a membrane.
 
-use super::case::{Case, FibreDirection, Method, Settings};
+use super::case::{Case, FibreDirection, Settings};
 use super::check::Check;
 use super::error_code::SceneErrorCode;
+use super::method::Method;
 use super::skin::Skin;
 use crate::material::LinearElastic;
 use crate::mesh::{ArrayUse, Vector, Warning};
@@ -24,7 +25,7 @@ impl Check<'_> {
     pub(super) fn fibres(&mut self, tissues: Tissues, method: &Method) -> Vec<Vector> {
         let Tissues { regions, region_of_cell, materials } = tissues;
         let fibred = materials.iter().filter(|material| material.has_fibre()).count();
-        if fibred > 0 && !method.knows_fibres() {
+        if fibred > 0 && !method.properties().knows_fibres {
             let detail = format!(
                 "{fibred} regions have fibres, which this method does not know: they are as stiff along as across"
             );
@@ -34,7 +35,7 @@ impl Check<'_> {
             return Vec::new();
         }
         if fibred == 0 {
-            if *method == Method::MassTensorTransverse {
+            if method.properties().expects_fibres {
                 let detail = "no region has fibres: this is the isotropic mass-tensor model";
                 self.warnings.push(Warning::new("fibres-missing", detail));
             }
@@ -91,7 +92,7 @@ impl Check<'_> {
     /// The skin as a membrane, where the settings ask for one.
     pub(super) fn membrane(&mut self, skin: &Skin, settings: &Settings) -> Option<Membrane> {
         let stated = settings.membrane.as_ref()?;
-        if !settings.method.knows_membrane() {
+        if !settings.method.properties().knows_membrane {
             let detail = "this method has no skin of its own: leave the membrane out";
             self.problems.add(
                 "/spec/membrane",

@@ -4,11 +4,14 @@ mod build;
 pub mod case;
 mod check;
 mod cut;
+mod element_choice;
 mod error_code;
 mod fibres;
 mod held;
 mod hounsfield;
 mod imaged_tissue;
+mod listed;
+mod method;
 mod numerics_revision;
 mod off_wall;
 mod problem;
@@ -20,11 +23,13 @@ mod stiff_layer;
 use std::collections::BTreeMap;
 
 pub use case::{
-    Bone, Case, CaseSegment, ElementChoice, FibreDirection, Hounsfield, Load, Method, Mixing, Plan,
-    Prescribed, RegionNames, Settings, SkinMembrane, Sliding, SlidingNormal, TissueWindow,
+    Bone, Case, CaseSegment, FibreDirection, Hounsfield, Load, Mixing, Plan, Prescribed,
+    RegionNames, Settings, SkinMembrane, Sliding, SlidingNormal, TissueWindow,
 };
+pub use element_choice::ElementChoice;
 pub use error_code::SceneErrorCode;
 pub use imaged_tissue::{ImagedTissue, TissueShare};
+pub use method::{Method, MethodKind, MethodProperties, Unknowns};
 pub use numerics_revision::NUMERICS_REVISION;
 pub use problem::{SceneError, SceneErrors};
 pub use scene::Scene;

@@ -3,8 +3,10 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use super::case::{ElementChoice, Method, Settings};
+use super::case::Settings;
+use super::element_choice::ElementChoice;
 use super::imaged_tissue::ImagedTissue;
+use super::method::{Method, Unknowns};
 use super::skin::Skin;
 use crate::boundary::{Conditions, NodeClass};
 use crate::material::LinearElastic;
@@ -243,7 +245,7 @@ impl Scene {
             let is_plain = shape != CellShape::Tet4 || self.tetrahedron() == Tetrahedron::Plain;
             nu > LOCKING && is_plain && dilatation(shape) == Dilatation::Pointwise
         };
-        let has_elements = self.settings.method.is_of_elements();
+        let has_elements = self.settings.method.properties().unknowns == Unknowns::Elements;
         let locking = cells.filter(|((shape, _), material)| locks(*shape, **material)).count();
         let largest = self.materials.iter().map(LinearElastic::poisson_ratio).fold(0.0, f64::max);
         let detail = format!(

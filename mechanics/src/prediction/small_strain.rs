@@ -43,7 +43,7 @@ struct AtNode {
 
 /// A warning where e is above half a millimetre: `large-rotation` or `large-strain`, whichever has the larger part.
 pub(super) fn left(scene: &Scene, deformation: &[CellDeformation]) -> Option<Warning> {
-    if !scene.settings.method.is_small_strain() {
+    if !scene.settings.method.properties().is_small_strain {
         return None;
     }
     let points: Vec<u32> = (0..scene.skin.nodes().len() as u32).collect();

@@ -10,7 +10,8 @@ use crate::boundary::NodeClass;
 use crate::mesh::Vector;
 use crate::model::problem::{Equilibrium, LoadCase, ModelError};
 use crate::plan::RigidMovement;
-use crate::prediction::{Method, Scene};
+
+use crate::prediction::Scene;
 use crate::progress::{Phase, Progress};
 use crate::solver::{SolveReport, SolverError};
 
@@ -67,7 +68,7 @@ pub fn chosen(scene: &Scene, names: &[String]) -> Result<Vec<usize>, ResponseErr
         return Err(ResponseError::SharedNodes { count: scene.conditions.shared.len(), first });
     }
     let is_prescribed = |class: &NodeClass| *class == NodeClass::Prescribed;
-    if scene.settings.method != Method::FemLinear {
+    if !scene.settings.method.properties().is_linear {
         return Err(ResponseError::OtherMethod);
     }
     if scene.conditions.classes.iter().any(is_prescribed)

@@ -1,11 +1,11 @@
-//! Every way of modelling that is built, as the variants of a study; a further one adds its lines here.
+//! The variants of a study: every way of modelling that is built, with its usual settings.
 
 use super::variant::Variant;
 use crate::model::fem::mass_tensor::{Iterations, MassTensorSettings};
 use crate::model::mass_spring::{MassSpringSettings, Search};
 use crate::model::spline::{Stiffness, VolumeSpline};
 use crate::model::thickness_warp::ThicknessWarp;
-use crate::prediction::{ElementChoice, Method, Settings};
+use crate::prediction::{ElementChoice, Method, MethodKind, Settings};
 use crate::solver::stationary::{Iteration, Stationary};
 
 /// The residual at which the papers' own iterations end: their answer is then within 0.01 mm of rest on the skin
@@ -20,53 +20,43 @@ const PAPER_STIFFNESS: f64 = 80.0;
 
 /// All of them, each with its usual settings.
 pub fn available() -> Vec<Variant> {
-    let linear = [
-        ("plain", ElementChoice::Plain),
-        ("stabilised", ElementChoice::Stabilised),
-        ("quadratic", ElementChoice::Quadratic),
-    ];
-    let mut all: Vec<Variant> =
-        linear.into_iter().map(|(element, choice)| fem_linear(element, choice)).collect();
-    all.push(variant("mtm", "mtm", Method::MassTensor(MassTensorSettings::default())));
-    all.extend(
-        [
-            ("mtm gauss_seidel", Iteration::GaussSeidel),
-            ("mtm damped_jacobi", Iteration::DampedJacobi),
-            ("mtm jacobi", Iteration::Jacobi),
-        ]
-        .map(|(label, iteration)| mass_tensor(label, iteration)),
-    );
-    all.push(variant("mtm_ti", "mtm_ti", Method::MassTensorTransverse));
-    all.extend([("msm newton", Search::Newton), ("msm direct", Search::Direct)].map(
-        |(label, search)| {
-            let settings = MassSpringSettings { search, most_iterations: OWN_ITERATIONS };
-            let mut springs = variant("msm", label, Method::MassSpring(settings));
-            springs.settings.relative_residual = OWN_ITERATIONS_RESIDUAL;
-            // Node by node it needs more sweeps than `OWN_ITERATIONS`, or the time of a row, on fine meshes.
-            springs.may_fail = matches!(search, Search::Direct);
-            springs
-        },
-    ));
-    let lattice = Stiffness::Lattice(PAPER_STIFFNESS);
-    all.extend([("dvs galerkin", Stiffness::Galerkin), ("dvs lattice", lattice)].map(
-        |(label, stiffness)| {
-            let spline = VolumeSpline { stiffness, ..VolumeSpline::default() };
-            variant("dvs", label, Method::VolumeSpline(spline))
-        },
-    ));
-    let warp = Method::ThicknessWarp(ThicknessWarp::default());
-    all.push(variant("thickness_warp", "thickness_warp", warp));
-    all
+    MethodKind::ALL.iter().flat_map(|method| of_method(*method)).collect()
 }
 
-/// Those of one method by its name in documents; none where it is not built.
-pub fn of_method(method: &str) -> Vec<Variant> {
-    available().into_iter().filter(|variant| variant.method == method).collect()
+/// Those of one method.
+pub fn of_method(method: MethodKind) -> Vec<Variant> {
+    match method {
+        MethodKind::FemLinear => vec![
+            fem_linear("plain", ElementChoice::Plain),
+            fem_linear("stabilised", ElementChoice::Stabilised),
+            fem_linear("quadratic", ElementChoice::Quadratic),
+        ],
+        MethodKind::MassTensor => vec![
+            variant("mtm", Method::MassTensor(MassTensorSettings::default())),
+            mass_tensor("mtm gauss_seidel", Iteration::GaussSeidel),
+            mass_tensor("mtm damped_jacobi", Iteration::DampedJacobi),
+            mass_tensor("mtm jacobi", Iteration::Jacobi),
+        ],
+        MethodKind::MassTensorTransverse => {
+            vec![variant("mtm_ti", Method::MassTensorTransverse)]
+        }
+        MethodKind::MassSpring => vec![
+            mass_spring("msm newton", Search::Newton),
+            mass_spring("msm direct", Search::Direct),
+        ],
+        MethodKind::VolumeSpline => vec![
+            volume_spline("dvs galerkin", Stiffness::Galerkin),
+            volume_spline("dvs lattice", Stiffness::Lattice(PAPER_STIFFNESS)),
+        ],
+        MethodKind::ThicknessWarp => {
+            vec![variant("thickness_warp", Method::ThicknessWarp(ThicknessWarp::default()))]
+        }
+    }
 }
 
-fn variant(name: &str, label: &str, method: Method) -> Variant {
+fn variant(label: &str, method: Method) -> Variant {
     Variant {
-        method: name.to_owned(),
+        method: method.kind().name().to_owned(),
         label: label.to_owned(),
         settings: Settings { method, ..Settings::default() },
         may_fail: false,
@@ -74,7 +64,7 @@ fn variant(name: &str, label: &str, method: Method) -> Variant {
 }
 
 fn fem_linear(element: &str, choice: ElementChoice) -> Variant {
-    let mut linear = variant("fem_linear", &format!("fem_linear {element}"), Method::FemLinear);
+    let mut linear = variant(&format!("fem_linear {element}"), Method::FemLinear);
     linear.settings.element = choice;
     linear
 }
@@ -82,9 +72,22 @@ fn fem_linear(element: &str, choice: ElementChoice) -> Variant {
 fn mass_tensor(label: &str, iteration: Iteration) -> Variant {
     let own = Stationary { iteration, relative_change: None, most_iterations: OWN_ITERATIONS };
     let settings = MassTensorSettings { iterations: Iterations::Stationary(own) };
-    let mut tensors = variant("mtm", label, Method::MassTensor(settings));
+    let mut tensors = variant(label, Method::MassTensor(settings));
     tensors.settings.relative_residual = OWN_ITERATIONS_RESIDUAL;
     // Plain Jacobi is on the ladder to show that it diverges.
     tensors.may_fail = matches!(iteration, Iteration::Jacobi);
     tensors
+}
+
+fn mass_spring(label: &str, search: Search) -> Variant {
+    let settings = MassSpringSettings { search, most_iterations: OWN_ITERATIONS };
+    let mut springs = variant(label, Method::MassSpring(settings));
+    springs.settings.relative_residual = OWN_ITERATIONS_RESIDUAL;
+    // Node by node it needs more sweeps than `OWN_ITERATIONS`, or the time of a row, on fine meshes.
+    springs.may_fail = matches!(search, Search::Direct);
+    springs
+}
+
+fn volume_spline(label: &str, stiffness: Stiffness) -> Variant {
+    variant(label, Method::VolumeSpline(VolumeSpline { stiffness, ..VolumeSpline::default() }))
 }

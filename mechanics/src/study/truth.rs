@@ -69,9 +69,9 @@ pub(super) fn is_the_truth(scene: &StudyScene, settings: &Settings, level: u32) 
 fn in_effect(element: ElementChoice, mesh: &VolumeMesh) -> ElementChoice {
     let has_tetrahedra = mesh.cells.iter().any(|(shape, _)| shape == CellShape::Tet4);
     match element {
-        ElementChoice::Auto => ElementChoice::Stabilised,
+        ElementChoice::Auto | ElementChoice::Stabilised => ElementChoice::Stabilised,
         ElementChoice::MeanDilatation if !has_tetrahedra => ElementChoice::Stabilised,
-        other => other,
+        ElementChoice::MeanDilatation | ElementChoice::Plain | ElementChoice::Quadratic => element,
     }
 }
 

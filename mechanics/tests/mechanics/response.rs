@@ -6,12 +6,13 @@ use mechanics::mesh::half_head::half_head;
 use mechanics::mesh::{CellShape, Vector, VolumeMesh, sample};
 use mechanics::plan::{PlannedSegment, RigidMovement};
 use mechanics::prediction::{
-    Case, CaseSegment, Load, ModelError, Plan, Prediction, Prescribed, Scene, Settings, Sliding,
-    SlidingNormal, SolverError, predict,
+    Case, CaseSegment, ElementChoice, Load, Method, MethodKind, ModelError, Plan, Prediction,
+    Prescribed, Scene, Settings, Sliding, SlidingNormal, SolverError, predict,
 };
 use mechanics::progress::Unobserved;
 use mechanics::response::linearity::LINEAR_RANGE_MM;
 use mechanics::response::{Columns, Linearity, ResponseError, build, coefficients};
+use mechanics::study::methods;
 
 use crate::scenes::{case_of, material, set};
 use crate::shared::shared_data;
@@ -275,13 +276,27 @@ fn a_bone_that_carries_all_tissue_around_is_a_rotation_and_the_estimate_knows_th
 }
 
 #[test]
-fn a_response_of_another_method_is_refused() {
-    use mechanics::model::thickness_warp::ThicknessWarp;
-    let method = mechanics::prediction::Method::ThicknessWarp(ThicknessWarp::default());
-    let settings = Settings { method, ..Settings::default() };
-    let scene = Scene::new(&block(CellShape::Hex8), &Plan::default(), &settings).unwrap();
-    let refused = build(&scene, &[], &Unobserved);
-    assert!(matches!(refused, Err(ResponseError::OtherMethod)));
+fn a_response_of_a_method_that_is_not_linear_is_refused_and_that_of_every_other_is_built() {
+    let case = block(CellShape::Tet4);
+    for method in MethodKind::ALL {
+        let settings = methods::of_method(*method).remove(0).settings;
+        let scene = Scene::new(&case, &Plan::default(), &settings).unwrap();
+        match build(&scene, &[], &Unobserved) {
+            Ok(_) => assert!(method.properties().is_linear, "{method:?}"),
+            Err(ResponseError::OtherMethod) => assert!(!method.properties().is_linear),
+            Err(other) => panic!("{method:?}: {other}"),
+        }
+    }
+}
+
+#[test]
+fn a_response_of_tensors_for_tissue_with_fibres_is_that_of_plain_tetrahedra() {
+    let of = |method, element| {
+        let settings = Settings { method, element, ..tight() };
+        columns(&block(CellShape::Tet4), &settings).values
+    };
+    let tensors = of(Method::MassTensorTransverse, ElementChoice::Auto);
+    assert_eq!(tensors, of(Method::FemLinear, ElementChoice::Plain));
 }
 
 #[test]

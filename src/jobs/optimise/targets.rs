@@ -4,9 +4,10 @@ use super::OptimiseInput;
 use crate::jobs::failure::JobError;
 use crate::jobs::predict::input::{PredictInput, Prepared};
 use crate::jobs::source::MeshSource;
+use crate::schema::ErrorCode;
+use crate::schema::hashes;
 use crate::schema::optimise::document::TargetDocument;
-use crate::schema::wire::canonical;
-use crate::schema::{ErrorCode, Faults, Limits, Pointer, Problem};
+use crate::schema::{Faults, Limits, Pointer, Problem};
 use mechanics::mesh::{SurfaceSearch, Warning};
 use mechanics::optimisation::{Goal, SkinPoint, Target};
 use mechanics::prediction::{LANDMARK_FAR, Skin};
@@ -47,7 +48,7 @@ impl OptimiseInput {
         let mut warnings = Vec::new();
         let targets = self.targets(&rest, limits, &mut warnings)?;
         let content = |id: &str| rest.contents.get(id).cloned();
-        let spec_hash = canonical::optimise_hash(&self.case, &self.spec, &content);
+        let spec_hash = hashes::optimise_hash(&self.case, &self.spec, &content);
         Ok(PreparedOptimisation { rest, targets, moving, warnings, spec_hash })
     }
 

@@ -6,7 +6,8 @@ use crate::schema::Limits;
 use crate::schema::methods::{MethodName, time_band};
 use crate::schema::predict::check::TimeBandDocument;
 use mechanics::mesh::CellShape;
-use mechanics::prediction::{ElementChoice, Method, ModelError, Scene, SolverError};
+use mechanics::prediction::{ElementChoice, Scene, Unknowns};
+use mechanics::prediction::{ModelError, SolverError};
 use mechanics::response::COLUMNS_PER_SEGMENT;
 
 /// The peak of a whole process in MB was measured for blocks of up to 384 000 cells (12, 24 and 40 bricks along each
@@ -35,13 +36,15 @@ pub fn memory_mb(scene: &Scene, segments: usize) -> f64 {
 }
 
 fn bytes_of_cell(scene: &Scene, shape: CellShape) -> f64 {
-    match &scene.settings.method {
-        Method::ThicknessWarp(_) | Method::VolumeSpline(_) => return READ_ONLY,
-        Method::MassSpring(_) => return OF_SPRINGS,
-        Method::MassTensor(_) | Method::MassTensorTransverse => return TETRAHEDRON,
-        Method::FemLinear => {}
+    match scene.settings.method.properties().unknowns {
+        Unknowns::None | Unknowns::ControlPoints => READ_ONLY,
+        Unknowns::Springs => OF_SPRINGS,
+        Unknowns::Elements => bytes_of_element(shape, scene.element),
     }
-    match (shape, scene.element) {
+}
+
+fn bytes_of_element(shape: CellShape, element: ElementChoice) -> f64 {
+    match (shape, element) {
         (CellShape::Hex8, _) => HEXAHEDRON,
         (CellShape::Wedge6, _) => WEDGE,
         (CellShape::Tet4, ElementChoice::Plain | ElementChoice::MeanDilatation) => TETRAHEDRON,
@@ -56,11 +59,17 @@ pub fn time_s(scene: &Scene, method: MethodName) -> Option<TimeBandDocument> {
     let nodes = scene.mesh.nodes.len();
     let held: usize = scene.conditions.holds.iter().map(|hold| hold.count()).sum();
     let unknowns = (3 * nodes - held) as f64;
-    let unknowns = match (&scene.settings.method, scene.element) {
-        (Method::ThicknessWarp(_) | Method::VolumeSpline(_), _) => return None,
+    match scene.settings.method.properties().unknowns {
+        Unknowns::None | Unknowns::ControlPoints => return None,
+        Unknowns::Springs | Unknowns::Elements => {}
+    }
+    let unknowns = match scene.element {
         // An edge for seven in eight nodes of the finer mesh.
-        (Method::FemLinear, ElementChoice::Quadratic) => 8.0 * unknowns,
-        _ => unknowns,
+        ElementChoice::Quadratic => 8.0 * unknowns,
+        ElementChoice::Auto
+        | ElementChoice::Plain
+        | ElementChoice::MeanDilatation
+        | ElementChoice::Stabilised => unknowns,
     };
     time_band(method.chosen().name(), unknowns as u64)
 }

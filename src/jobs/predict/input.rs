@@ -13,9 +13,9 @@ use crate::jobs::study::StudyInput;
 use crate::schema::ErrorCode;
 use crate::schema::case::conversion::centre;
 use crate::schema::case::document::{CaseMeshes, NamedMesh};
+use crate::schema::hashes;
 use crate::schema::plan::document::PlanContext;
 use crate::schema::predict::result::InputDocument;
-use crate::schema::wire::canonical;
 use crate::schema::{
     CaseDocument, CompareDocument, Faults, Limits, PlanDocument, Pointer, PredictDocument,
 };
@@ -208,7 +208,7 @@ impl PredictInput {
             let compared = actual.filter(|_| actual_id == Some(id));
             stored.get(id).or(compared).map(|mesh| mesh.sha256.clone())
         };
-        canonical::predict_hash(&self.case, &self.plan, &self.spec, &content)
+        hashes::predict_hash(&self.case, &self.plan, &self.spec, &content)
     }
 
     fn inputs(

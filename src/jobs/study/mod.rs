@@ -21,6 +21,7 @@ use super::work::{JobOutput, Workplace};
 use crate::jobs::predict::check::warning_documents;
 use crate::jobs::result::folder::ResultFolder;
 use crate::jobs::result::provenance::{Origin, encode_result};
+use crate::schema::hashes;
 use crate::schema::predict::document::OutputName;
 use crate::schema::predict::result::{InputDocument, ResultDocument};
 use crate::schema::study::document::StudyKind;
@@ -109,7 +110,7 @@ impl StudyInput {
         let cases: Vec<&CaseDocument> =
             self.spec.case_ids().into_iter().filter_map(|id| self.cases.get(id)).collect();
         let baseline = self.baseline.as_ref().map(canonical::to_value);
-        let spec_hash = canonical::study_hash(&cases, &self.spec, baseline.as_ref(), &content);
+        let spec_hash = hashes::study_hash(&cases, &self.spec, baseline.as_ref(), &content);
         Ok(PreparedStudy { study, spec_hash, inputs: scenes.inputs, warnings: scenes.warnings })
     }
 

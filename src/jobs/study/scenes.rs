@@ -19,6 +19,7 @@ use crate::schema::{
     Problem,
 };
 use mechanics::mesh::Warning;
+use mechanics::prediction::MethodKind;
 use mechanics::study::scenes::{scene_of, usual_truth};
 use mechanics::study::sweep::{self, SweepError};
 use mechanics::study::{Materials, StudyScene, Truth, Variant, methods};
@@ -55,12 +56,7 @@ impl Documents<'_> {
     pub fn variants(&self, faults: &mut Faults) -> Vec<Variant> {
         let at = spec_at().key("methods");
         let mut variants: Vec<Variant> = match &self.spec.methods {
-            None => {
-                let mut names: Vec<String> =
-                    methods::available().into_iter().map(|variant| variant.method).collect();
-                names.dedup();
-                names.iter().flat_map(|name| self.named(name)).collect()
-            }
+            None => MethodKind::ALL.iter().flat_map(|method| self.named(*method)).collect(),
             Some(entries) => {
                 let entries = entries.iter().enumerate();
                 entries
@@ -108,10 +104,8 @@ impl Documents<'_> {
 
     fn entry(&self, entry: &Value, at: &Pointer, faults: &mut Faults) -> Vec<Variant> {
         let parsed = match entry {
-            Value::String(_) => strict::from_value::<MethodName>(entry.clone()).map(|method| {
-                crate::schema::methods::check_method(method, at, faults);
-                self.named(method.chosen().name())
-            }),
+            Value::String(_) => strict::from_value::<MethodName>(entry.clone())
+                .map(|method| self.named(method.chosen())),
             entry => self.stated(entry.clone(), at, faults).map(|variant| vec![variant]),
         };
         parsed.unwrap_or_else(|problem| {
@@ -121,20 +115,17 @@ impl Documents<'_> {
     }
 
     /// The variants of a method by its name: the usual ones, or one for each element of the study.
-    fn named(&self, method: &str) -> Vec<Variant> {
+    fn named(&self, method: MethodKind) -> Vec<Variant> {
         let usual = methods::of_method(method);
-        let has_elements = crate::schema::methods::available_methods()
-            .methods
-            .iter()
-            .any(|known| known.method.name.name() == method && !known.method.elements.is_empty());
+        let (name, has_elements) = (method.name(), !method.properties().elements.is_empty());
         match (usual.first(), self.spec.elements.as_slice()) {
             (Some(first), elements @ [_, ..]) if has_elements => elements
                 .iter()
                 .map(|element| {
                     let mut settings = first.settings.clone();
                     settings.element = element.choice();
-                    let label = format!("{method} {}", element.name());
-                    Variant { method: method.to_owned(), label, settings, may_fail: first.may_fail }
+                    let label = format!("{name} {}", element.name());
+                    Variant { method: name.to_owned(), label, settings, may_fail: first.may_fail }
                 })
                 .collect(),
             _ => usual,
@@ -175,9 +166,9 @@ impl Documents<'_> {
             faults.join(problem.moved("/spec", at.as_str()));
         }
         let method = spec.method.chosen().name();
-        let label = label.unwrap_or_else(|| match spec.element {
-            ElementName::Auto => method.to_owned(),
-            element => format!("{method} {}", element.name()),
+        let label = label.unwrap_or_else(|| match spec.element == ElementName::Auto {
+            true => method.to_owned(),
+            false => format!("{method} {}", spec.element.name()),
         });
         Ok(Variant { method: method.to_owned(), label, settings, may_fail: false })
     }

@@ -5,35 +5,21 @@ use std::sync::Arc;
 
 use super::document::{CaseDocument, FrameName, LengthUnit, NormalDocument};
 use super::material::{MaterialDocuments, Merged, PlacedMaterials, merge_materials};
+use super::meshes::CaseMeshes;
 use crate::schema::code::ErrorCode;
 use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::limits::Limits;
+use crate::schema::wire::names::{check_distinct, check_tags};
 use mechanics::boundary::NodeSelection;
-use mechanics::image::ImageVolume;
 use mechanics::mesh::{Frame, TriangleSurface, Vector, VolumeMesh, Warning};
-use mechanics::prediction::{Bone, Case, CaseSegment, RegionNames, Sliding, SlidingNormal};
+use mechanics::prediction::{
+    Bone, Case, CaseSegment, Hounsfield, RegionNames, Sliding, SlidingNormal,
+};
 
 /// Farthest coordinate of a landmark in mm.
 const FARTHEST_LANDMARK_MM: f64 = 1e8;
 /// Diagonals of the bounding boxes of heads and their parts, in mm.
 const USUAL_DIAGONAL_MM: (f64, f64) = (50.0, 600.0);
-
-/// A mesh as its file has it, and the frame the file names.
-#[derive(Clone, Debug)]
-pub struct NamedMesh<T> {
-    pub mesh: Arc<T>,
-    pub frame: Option<Frame>,
-}
-
-/// The meshes of a case, in the units of its document.
-#[derive(Clone, Debug)]
-pub struct CaseMeshes {
-    pub volume: NamedMesh<VolumeMesh>,
-    /// By the id under which bones and selections ask for them.
-    pub surfaces: BTreeMap<String, NamedMesh<TriangleSurface>>,
-    /// In mm, whatever the unit of the case.
-    pub image: Option<NamedMesh<ImageVolume>>,
-}
 
 impl CaseDocument {
     /// The case in mm with the materials of a spec over its own. Pointers start at `/case` and `/spec`.
@@ -124,8 +110,23 @@ impl CaseDocument {
         })
     }
 
+    /// The image in the frame of the case, and its windows.
+    fn to_hounsfield(
+        &self,
+        at: &Pointer,
+        meshes: &CaseMeshes,
+        limits: &Limits,
+        faults: &mut Faults,
+    ) -> Option<Hounsfield> {
+        let document = self.hounsfield.as_ref()?;
+        let tissues = document.to_tissues(at, limits, faults);
+        let image = meshes.image.as_ref()?;
+        let (from, to) = (image.frame.unwrap_or_default(), self.frame_of_meshes(meshes));
+        Some(document.to_hounsfield(Arc::new(image.mesh.turned(from, to)), tissues))
+    }
+
     /// The frame of the case, or else the first that a mesh is marked with.
-    pub(super) fn frame_of_meshes(&self, meshes: &CaseMeshes) -> Frame {
+    fn frame_of_meshes(&self, meshes: &CaseMeshes) -> Frame {
         let surfaces = meshes.surfaces.values().map(|surface| surface.frame);
         let frames = [Some(self.frame.into()), meshes.volume.frame].into_iter().chain(surfaces);
         frames.flatten().find(|frame| *frame != Frame::Unspecified).unwrap_or_default()
@@ -268,14 +269,6 @@ impl CaseDocument {
     }
 }
 
-/// Tags are names, at most 32 of them.
-pub fn check_tags(tags: &[String], at: &Pointer, limits: &Limits, faults: &mut Faults) {
-    faults.check_length(at, tags.len(), limits.tags as usize);
-    for (index, tag) in tags.iter().enumerate() {
-        faults.check_name(&at.index(index), tag, limits.name_characters as usize);
-    }
-}
-
 /// The centre of the bounding box of a mesh.
 pub fn centre(volume: &VolumeMesh) -> Vector {
     bounding_box(volume).map_or_else(Vector::zeros, |(low, high)| (low + high) * 0.5)
@@ -285,20 +278,6 @@ fn bounding_box(volume: &VolumeMesh) -> Option<(Vector, Vector)> {
     let first = *volume.nodes.first()?;
     let nodes = volume.nodes.iter();
     Some(nodes.fold((first, first), |(low, high), node| (low.inf(node), high.sup(node))))
-}
-
-pub(super) fn check_distinct<'a>(
-    names: impl Iterator<Item = &'a str>,
-    at: &Pointer,
-    faults: &mut Faults,
-) {
-    let mut seen = BTreeSet::new();
-    for (index, name) in names.enumerate() {
-        if !seen.insert(name.trim()) {
-            let detail = format!("the name `{}` is given more than once", name.trim());
-            faults.add(&at.index(index).key("name"), ErrorCode::DuplicateName, detail);
-        }
-    }
 }
 
 /// Refuses materials for regions that the mesh does not have.

@@ -12,7 +12,7 @@ use crate::schema::Triple;
 use crate::schema::wire::fault::Pointer;
 use mechanics::mesh::Frame;
 
-pub use super::conversion::{CaseMeshes, NamedMesh};
+pub use super::meshes::{CaseMeshes, NamedMesh};
 
 /// A patient's scene. Lengths in the document are mm; those of the meshes are in `units`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]

@@ -6,13 +6,12 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-use super::conversion::{CaseMeshes, check_distinct};
-use super::document::CaseDocument;
 use super::material::MaterialDocument;
 use crate::schema::code::ErrorCode;
 use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::limits::Limits;
-use mechanics::image::{MOST_SAMPLES, Windows};
+use crate::schema::wire::names::check_distinct;
+use mechanics::image::{ImageVolume, MOST_SAMPLES, Windows};
 use mechanics::prediction::{Hounsfield, ImagedTissue, Mixing, TissueShare, TissueWindow};
 
 /// Ends of windows lie within this.
@@ -99,34 +98,30 @@ impl From<&ImagedTissue> for ImagedTissueDocument {
     }
 }
 
-impl CaseDocument {
-    /// The image in the frame of the case, and its windows. An image that is not there was refused where it was
-    /// looked for.
+impl HounsfieldDocument {
+    /// The image with these windows; an image that is not there was refused where it was looked for.
     pub(super) fn to_hounsfield(
         &self,
-        at: &Pointer,
-        meshes: &CaseMeshes,
-        limits: &Limits,
-        faults: &mut Faults,
-    ) -> Option<Hounsfield> {
-        let document = self.hounsfield.as_ref()?;
-        let range = 1.0..=MOST_SAMPLES as f64;
-        faults.check_range(&at.key("samples"), f64::from(document.samples), range, "");
-        let tissues = document.to_tissues(&at.key("tissues"), limits, faults);
-        let image = meshes.image.as_ref()?;
-        let (from, to) = (image.frame.unwrap_or_default(), self.frame_of_meshes(meshes));
-        let image = Arc::new(image.mesh.turned(from, to));
-        let samples = document.samples as usize;
-        let mixing = match document.mixing {
+        image: Arc<ImageVolume>,
+        tissues: Vec<TissueWindow>,
+    ) -> Hounsfield {
+        let mixing = match self.mixing {
             MixingName::Mean => Mixing::Mean,
             MixingName::Fraction => Mixing::Fraction,
         };
-        Some(Hounsfield { image, samples, tissues, mixing })
+        Hounsfield { image, samples: self.samples as usize, tissues, mixing }
     }
-}
 
-impl HounsfieldDocument {
-    fn to_tissues(&self, at: &Pointer, limits: &Limits, faults: &mut Faults) -> Vec<TissueWindow> {
+    /// The windows of its tissues; adds what is wrong with them and with the samples.
+    pub(super) fn to_tissues(
+        &self,
+        at: &Pointer,
+        limits: &Limits,
+        faults: &mut Faults,
+    ) -> Vec<TissueWindow> {
+        let range = 1.0..=MOST_SAMPLES as f64;
+        faults.check_range(&at.key("samples"), f64::from(self.samples), range, "");
+        let at = &at.key("tissues");
         faults.check_length(at, self.tissues.len(), limits.list_entries as usize);
         if self.tissues.is_empty() {
             faults.add(at, ErrorCode::OutOfRange, "one tissue or more is expected");

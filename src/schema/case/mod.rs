@@ -6,4 +6,5 @@ pub mod fibre;
 pub mod hounsfield;
 pub mod material;
 pub mod membrane;
+pub mod meshes;
 pub mod selection;

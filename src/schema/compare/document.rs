@@ -6,11 +6,11 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use utoipa::ToSchema;
 
-use crate::schema::case::conversion::check_tags;
 use crate::schema::code::ErrorCode;
 use crate::schema::wire::canonical;
 use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::limits::Limits;
+use crate::schema::wire::names::check_tags;
 use crate::schema::{CornerPair, Sphere, Triple};
 
 /// `compare`.

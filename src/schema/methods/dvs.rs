@@ -1,14 +1,226 @@
-//! What `GET /v1/methods` tells of `dvs`.
+//! The dynamic volume spline: what a spec tells it, and what is told of it. Times in s, stiffness in N/m.
 
+use crate::schema::code::ErrorCode;
+use serde::{Deserialize, Serialize};
 use serde_json::json;
+use utoipa::ToSchema;
 
-use super::{MethodDocument, MethodName, ParameterDocument, parameter, words};
+use super::document::{Description, ParameterDocument, parameter};
+use crate::schema::wire::fault::{Faults, Pointer};
+use mechanics::model::spline::stepping::{Clock, Damping, Scheme};
+use mechanics::model::spline::{Stiffness, VolumeSpline};
 
-pub(super) fn document() -> MethodDocument {
-    MethodDocument {
-        name: MethodName::Dvs,
-        title: "dynamic volume spline: B-splines over a lattice of control points".to_owned(),
-        assumptions: words(&[
+/// The most steps between rest and `duration_s`.
+const MOST_STEPS: f64 = 1e6;
+
+/// Defaults of the lattice in N/m and N s/m, from paper 000.
+const LINK_STIFFNESS: f64 = 80.0;
+const LINK_DAMPING: f64 = 1.0;
+
+/// What holds control points together.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum DvsStiffness {
+    /// The elasticity of the tissue, from the materials of its regions.
+    #[default]
+    Galerkin,
+    /// Equal links between neighbouring control points; materials are ignored but for density, and rotation
+    /// is resisted.
+    Lattice,
+}
+
+/// How rest is found.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum DvsStepping {
+    /// At once, without time.
+    #[default]
+    Static,
+    /// First order, damps every mode.
+    BackwardEuler,
+    /// Second order, beta 1/4, gamma 1/2.
+    Newmark,
+    /// Symplectic Euler with lumped masses; refused above its limit.
+    Explicit,
+}
+
+/// What only the dynamic volume spline has to be told.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct DvsDocument {
+    #[serde(default)]
+    pub stiffness: DvsStiffness,
+    /// Of the B-splines: 2 or 3.
+    #[serde(default = "cubic")]
+    #[schema(default = 3, minimum = 2, maximum = 3)]
+    pub degree: u32,
+    /// Distance of control points along the principal axes of the tissue. Default: the finest of at least 1.5
+    /// mean edges of the mesh that leaves at most 4000 control points.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false, minimum = 0.1, maximum = 1000.0)]
+    pub control_spacing_mm: Option<f64>,
+    /// Stiffness of what holds held nodes, over that of the tissue around a control point. A large one brings
+    /// held nodes nearer to where they have to be, and leaves less freedom beside them.
+    #[serde(default = "usual_hold")]
+    #[schema(default = 5.0, minimum = 1.0, maximum = 1e6)]
+    pub hold_weight: f64,
+    #[serde(default)]
+    pub stepping: DvsStepping,
+    /// Of time. Default 0.01; only where `stepping` is not `static`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false, minimum = 1e-9, maximum = 10.0)]
+    pub step_s: Option<f64>,
+    /// When the tissue has to be at rest. Default 10; only where `stepping` is not `static`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false, minimum = 1e-6, maximum = 1000.0)]
+    pub duration_s: Option<f64>,
+    /// Of a link between control points. Default 80; `lattice` only.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false, minimum = 1e-3, maximum = 1e6)]
+    pub stiffness_n_per_m: Option<f64>,
+    /// Of a link between control points. Default 1; `lattice` only.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false, minimum = 0.0, maximum = 1e6)]
+    pub damping_n_s_per_m: Option<f64>,
+    /// d_M of D = d_M M + d_K K. Default 0; `galerkin` only.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false, minimum = 0.0, maximum = 1e6)]
+    pub mass_damping_per_s: Option<f64>,
+    /// d_K of D = d_M M + d_K K. Default 0.0125; `galerkin` only.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false, minimum = 0.0, maximum = 1000.0)]
+    pub stiffness_damping_s: Option<f64>,
+}
+
+fn cubic() -> u32 {
+    3
+}
+
+fn usual_hold() -> f64 {
+    VolumeSpline::default().hold_weight
+}
+
+impl Default for DvsDocument {
+    fn default() -> Self {
+        DvsDocument {
+            stiffness: DvsStiffness::Galerkin,
+            degree: cubic(),
+            control_spacing_mm: None,
+            hold_weight: usual_hold(),
+            stepping: DvsStepping::Static,
+            step_s: None,
+            duration_s: None,
+            stiffness_n_per_m: None,
+            damping_n_s_per_m: None,
+            mass_damping_per_s: None,
+            stiffness_damping_s: None,
+        }
+    }
+}
+
+impl DvsDocument {
+    /// The method of the path.
+    pub fn to_method(self, at: &Pointer, faults: &mut Faults) -> VolumeSpline {
+        self.check(at, faults);
+        let stiffness = match self.stiffness {
+            DvsStiffness::Galerkin => Stiffness::Galerkin,
+            DvsStiffness::Lattice => {
+                Stiffness::Lattice(self.stiffness_n_per_m.unwrap_or(LINK_STIFFNESS))
+            }
+        };
+        VolumeSpline {
+            degree: self.degree as usize,
+            control_spacing: self.control_spacing_mm,
+            hold_weight: self.hold_weight,
+            damping: self.damping(&stiffness),
+            stiffness,
+            clock: self.clock(at, faults),
+        }
+    }
+
+    /// In ms; links of stiffness k and damping d have D = d/k K.
+    fn damping(&self, stiffness: &Stiffness) -> Damping {
+        match stiffness {
+            Stiffness::Galerkin => {
+                let usual = VolumeSpline::default().damping;
+                let of_stiffness = self.stiffness_damping_s.map(|damping| damping * 1e3);
+                Damping {
+                    mass: self.mass_damping_per_s.map_or(usual.mass, |damping| damping / 1e3),
+                    stiffness: of_stiffness.unwrap_or(usual.stiffness),
+                }
+            }
+            Stiffness::Lattice(links) => {
+                let damping = self.damping_n_s_per_m.unwrap_or(LINK_DAMPING);
+                Damping { mass: 0.0, stiffness: 1e3 * damping / links }
+            }
+        }
+    }
+
+    fn clock(&self, at: &Pointer, faults: &mut Faults) -> Option<Clock> {
+        let scheme = match self.stepping {
+            DvsStepping::Static => return None,
+            DvsStepping::BackwardEuler => Scheme::BackwardEuler,
+            DvsStepping::Newmark => Scheme::Newmark,
+            DvsStepping::Explicit => Scheme::Explicit,
+        };
+        let (step, end) = (self.step_s.unwrap_or(0.01), self.duration_s.unwrap_or(10.0));
+        let steps = end / step;
+        if steps > MOST_STEPS {
+            let detail =
+                format!("{end} s in steps of {step} s are {steps:.0} steps, above {MOST_STEPS:.0}");
+            faults.add(&at.key("step_s"), ErrorCode::OutOfRange, detail);
+        }
+        Some(Clock { scheme, step: step * 1e3, end: end * 1e3 })
+    }
+
+    fn check(&self, at: &Pointer, faults: &mut Faults) {
+        faults.check_range(&at.key("degree"), f64::from(self.degree), 2.0..=3.0, "");
+        faults.check_range(&at.key("hold_weight"), self.hold_weight, 1.0..=1e6, "");
+        let is_lattice = self.stiffness == DvsStiffness::Lattice;
+        let moves = self.stepping != DvsStepping::Static;
+        let spacing = self.control_spacing_mm;
+        let optional = [
+            ("control_spacing_mm", spacing, 0.1..=1000.0, "mm", true, ""),
+            ("step_s", self.step_s, 1e-9..=10.0, "s", moves, "a `stepping` in time"),
+            ("duration_s", self.duration_s, 1e-6..=1000.0, "s", moves, "a `stepping` in time"),
+            ("stiffness_n_per_m", self.stiffness_n_per_m, 1e-3..=1e6, "N/m", is_lattice, LATTICE),
+            ("damping_n_s_per_m", self.damping_n_s_per_m, 0.0..=1e6, "N s/m", is_lattice, LATTICE),
+            (
+                "mass_damping_per_s",
+                self.mass_damping_per_s,
+                0.0..=1e6,
+                "1/s",
+                !is_lattice,
+                GALERKIN,
+            ),
+            (
+                "stiffness_damping_s",
+                self.stiffness_damping_s,
+                0.0..=1e3,
+                "s",
+                !is_lattice,
+                GALERKIN,
+            ),
+        ];
+        for (name, value, range, unit, has_use, user) in optional {
+            let Some(value) = value else { continue };
+            faults.check_range(&at.key(name), value, range, unit);
+            if !has_use {
+                let detail = format!("`{name}` is for {user}, which this spec does not ask for");
+                faults.add(&at.key(name), ErrorCode::MethodMismatch, detail);
+            }
+        }
+    }
+}
+
+const LATTICE: &str = "`stiffness` `lattice`";
+const GALERKIN: &str = "`stiffness` `galerkin`";
+
+/// Its words in `GET /v1/methods`.
+pub(super) fn description() -> Description {
+    Description {
+        title: "dynamic volume spline: B-splines over a lattice of control points",
+        assumptions: &[
             "displacement is smooth, with continuous second derivatives for degree 3: steep changes beside the \
                 edge of a bone are smeared over about two control spacings",
             "bone lies between control points: held nodes are pulled to where they have to be, and what is \
@@ -18,10 +230,8 @@ pub(super) fn document() -> MethodDocument {
             "lattice: control points are tied by equal links, component by component: tissue has no Poisson \
                 ratio and no regions, and resists rotation, told as `rotation-resisted`",
             "rest does not depend on mass and damping: stepping in time arrives where `static` is at once",
-        ]),
-        elements: Vec::new(),
-        cells: words(&["tet4", "hex8", "wedge6"]),
-        reads: words(&[
+        ],
+        reads: &[
             "case.segments",
             "case.fixed",
             "case.sliding",
@@ -36,7 +246,7 @@ pub(super) fn document() -> MethodDocument {
             "spec.materials",
             "spec.tolerance.relative_residual",
             "spec.budget",
-        ]),
+        ],
         parameters: parameters(),
     }
 }

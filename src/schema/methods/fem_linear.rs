@@ -1,26 +1,18 @@
-//! What `GET /v1/methods` tells of `fem_linear`.
+//! Linear finite elements: what is told of them.
 
-use super::{ElementName, MethodDocument, MethodName, words};
+use super::document::Description;
 
-pub(super) fn document() -> MethodDocument {
-    MethodDocument {
-        name: MethodName::FemLinear,
-        title: "linear elasticity at small strain, finite elements".to_owned(),
-        assumptions: words(&[
+/// Its words in `GET /v1/methods`.
+pub(super) fn description() -> Description {
+    Description {
+        title: "linear elasticity at small strain, finite elements",
+        assumptions: &[
             "strain is the symmetric part of the displacement gradient: a segment that turns by theta \
                 stretches the tissue beside it by 1 - cos theta, and cells may turn inside out, which is told",
             "stress is linear in strain",
             "displacement is prescribed on bone, so that only ratios of moduli matter",
-        ]),
-        elements: vec![
-            ElementName::Auto,
-            ElementName::Plain,
-            ElementName::MeanDilatation,
-            ElementName::Stabilised,
-            ElementName::Quadratic,
         ],
-        cells: words(&["tet4", "hex8", "wedge6"]),
-        reads: words(&[
+        reads: &[
             "case.segments",
             "case.fixed",
             "case.sliding",
@@ -38,7 +30,7 @@ pub(super) fn document() -> MethodDocument {
             "spec.membrane",
             "spec.tolerance.relative_residual",
             "spec.budget",
-        ]),
+        ],
         parameters: Vec::new(),
     }
 }

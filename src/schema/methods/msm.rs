@@ -1,15 +1,61 @@
-//! What `GET /v1/methods` tells of `msm`.
+//! The mass-spring model: what a spec tells it, and what is told of it.
 
+use serde::{Deserialize, Serialize};
 use serde_json::json;
+use utoipa::ToSchema;
 
-use super::{ElementName, MethodDocument, MethodName, ParameterDocument, words};
-use crate::schema::predict::mass_spring::{DIRECT_ITERATIONS, NEWTON_ITERATIONS};
+use super::document::{Description, ParameterDocument};
+use crate::schema::wire::fault::{Faults, Pointer};
+use mechanics::model::mass_spring::{MassSpringSettings, Search};
 
-pub(super) fn document() -> MethodDocument {
-    MethodDocument {
-        name: MethodName::Msm,
-        title: "springs along the edges of tetrahedra, at rest".to_owned(),
-        assumptions: words(&[
+/// Iterations allowed at most, of either search.
+const MOST_ITERATIONS: u32 = 1_000_000;
+/// Newton's steps, where the spec does not say.
+pub const NEWTON_ITERATIONS: u32 = 500;
+/// Sweeps over all nodes, where the spec does not say.
+pub const DIRECT_ITERATIONS: u32 = 50_000;
+
+/// How the springs are brought to rest; only with the method `msm`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MassSpringDocument {
+    #[serde(default)]
+    pub equilibrium: EquilibriumName,
+    /// Default: 500 steps of `newton`, 50 000 sweeps of `direct`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false, minimum = 1, maximum = 1000000)]
+    pub max_iterations: Option<u32>,
+}
+
+/// How rest is looked for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum EquilibriumName {
+    /// Newton's method with a line search on the energy.
+    #[default]
+    Newton,
+    /// Node by node, each to where its springs would have it: the papers' way.
+    Direct,
+}
+
+impl MassSpringDocument {
+    pub fn to_settings(&self, at: &Pointer, faults: &mut Faults) -> MassSpringSettings {
+        let (search, usual) = match self.equilibrium {
+            EquilibriumName::Newton => (Search::Newton, NEWTON_ITERATIONS),
+            EquilibriumName::Direct => (Search::Direct, DIRECT_ITERATIONS),
+        };
+        let most = self.max_iterations.unwrap_or(usual);
+        let range = 1.0..=f64::from(MOST_ITERATIONS);
+        faults.check_range(&at.key("max_iterations"), f64::from(most), range, "");
+        MassSpringSettings { search, most_iterations: most as usize }
+    }
+}
+
+/// Its words in `GET /v1/methods`.
+pub(super) fn description() -> Description {
+    Description {
+        title: "springs along the edges of tetrahedra, at rest",
+        assumptions: &[
             "a spring has the stiffness E V / L^2, V the volume of the tetrahedra around it and L its length \
                 (Van Gelder): only Young's modulus is read, and only its ratios matter where bone is moved",
             "a Poisson ratio of 1/4 on average, whatever the materials say: the bulk modulus is 2 E / 3 and \
@@ -20,10 +66,8 @@ pub(super) fn document() -> MethodDocument {
             "springs know lengths and not volumes: rotations cost nothing, and under large pressure the network \
                 gives way sideways and cells turn inside out, which is told by `cells-inverted`. There are then \
                 several states of rest, and `newton` and `direct` may end in different ones",
-        ]),
-        elements: vec![ElementName::Auto],
-        cells: words(&["tet4"]),
-        reads: words(&[
+        ],
+        reads: &[
             "case.segments",
             "case.fixed",
             "case.sliding",
@@ -37,7 +81,7 @@ pub(super) fn document() -> MethodDocument {
             "spec.msm",
             "spec.tolerance.relative_residual",
             "spec.budget",
-        ]),
+        ],
         parameters: vec![
             ParameterDocument {
                 name: "equilibrium".to_owned(),

@@ -1,12 +1,12 @@
-//! What `GET /v1/methods` tells of `mtm_ti`.
+//! The mass-tensor model of tissue with fibres: what is told of it.
 
-use super::{ElementName, MethodDocument, MethodName, words};
+use super::document::Description;
 
-pub(super) fn document() -> MethodDocument {
-    MethodDocument {
-        name: MethodName::MtmTi,
-        title: "mass-tensor of tetrahedra with fibres".to_owned(),
-        assumptions: words(&[
+/// Its words in `GET /v1/methods`.
+pub(super) fn description() -> Description {
+    Description {
+        title: "mass-tensor of tetrahedra with fibres",
+        assumptions: &[
             "the force of a node is a sum over its neighbours of a tensor times their displacement, V g_j.C.g_k: \
                 the plain finite element, node by node; both give the same numbers",
             "tissue is stiffer along the fibre of a cell than across it, by the law that its material names; \
@@ -14,10 +14,8 @@ pub(super) fn document() -> MethodDocument {
                 what is solved",
             "strain is small, as with fem_linear; plain tetrahedra lock above a Poisson ratio of 0.45, with a \
                 warning",
-        ]),
-        elements: vec![ElementName::Auto, ElementName::Plain],
-        cells: words(&["tet4"]),
-        reads: words(&[
+        ],
+        reads: &[
             "case.segments",
             "case.fixed",
             "case.sliding",
@@ -33,7 +31,7 @@ pub(super) fn document() -> MethodDocument {
             "spec.membrane",
             "spec.tolerance.relative_residual",
             "spec.budget",
-        ]),
+        ],
         parameters: Vec::new(),
     }
 }

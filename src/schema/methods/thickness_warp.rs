@@ -1,30 +1,51 @@
-//! What `GET /v1/methods` tells of `thickness_warp`.
+//! The thickness-preserving warp: what a spec tells it, and what is told of it.
 
+use serde::{Deserialize, Serialize};
 use serde_json::json;
+use utoipa::ToSchema;
 
-use super::{MethodDocument, MethodName, parameter, words};
+use super::document::{Description, parameter};
+use crate::schema::wire::fault::{Faults, Pointer};
+use mechanics::model::thickness_warp::ThicknessWarp;
 
-pub(super) fn document() -> MethodDocument {
-    MethodDocument {
-        name: MethodName::ThicknessWarp,
-        title: "thickness-preserving warp: tissue rides on the nearest bone".to_owned(),
-        assumptions: words(&[
+/// What only the thickness-preserving warp has to be told.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ThicknessWarpDocument {
+    /// Bones up to this much farther than the nearest one take part, the less the farther; 0 follows the
+    /// nearest bone alone, and jumps where another one becomes the nearest.
+    #[serde(default)]
+    #[schema(default = 0.0, minimum = 0.0, maximum = 200.0)]
+    pub blend_radius_mm: f64,
+}
+
+impl ThicknessWarpDocument {
+    /// The method of the path.
+    pub fn to_method(self, at: &Pointer, faults: &mut Faults) -> ThicknessWarp {
+        faults.check_range(&at.key("blend_radius_mm"), self.blend_radius_mm, 0.0..=200.0, "mm");
+        ThicknessWarp { blend_radius: self.blend_radius_mm }
+    }
+}
+
+/// Its words in `GET /v1/methods`.
+pub(super) fn description() -> Description {
+    Description {
+        title: "thickness-preserving warp: tissue rides on the nearest bone",
+        assumptions: &[
             "every point keeps its distance to the nearest bone, and moves as that bone does",
             "no mechanics: volume is not preserved, materials and sliding are ignored, reactions are 0, and \
                 loads are refused",
             "bone is where all nodes of a boundary face are held in all directions",
             "where another bone becomes the nearest, tissue jumps: told as `warp-jumps`; a blend radius \
                 softens that and gives up thickness there",
-        ]),
-        elements: Vec::new(),
-        cells: words(&["tet4", "hex8", "wedge6"]),
-        reads: words(&[
+        ],
+        reads: &[
             "case.segments",
             "case.fixed",
             "plan.segments",
             "plan.prescribed",
             "spec.thickness_warp",
-        ]),
+        ],
         parameters: vec![parameter(
             "blend_radius_mm",
             "bones up to this much farther than the nearest take part",

@@ -14,9 +14,10 @@ use crate::schema::code::ErrorCode;
 use crate::schema::methods::{self, ElementName, MethodName};
 use crate::schema::plan::document::{PlanDocument, PlanSegmentDocument};
 use crate::schema::plan::movement::FARTHEST_PIVOT_MM;
-use crate::schema::predict::document::{
-    BudgetDocument, OutputName, PredictDocument, ToleranceDocument,
-};
+use crate::schema::predict::budget::BudgetDocument;
+use crate::schema::predict::document::PredictDocument;
+use crate::schema::predict::output::OutputName;
+use crate::schema::predict::tolerance::ToleranceDocument;
 use crate::schema::response::ResponseDocument;
 use crate::schema::wire::canonical;
 use crate::schema::wire::fault::{Faults, Pointer};

@@ -4,16 +4,15 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use utoipa::ToSchema;
 
-use super::dvs::DvsDocument;
-use super::mass_spring::MassSpringDocument;
-use super::mass_tensor::MassTensorDocument;
-use super::thickness_warp::ThicknessWarpDocument;
-use crate::schema::case::conversion::check_tags;
 use crate::schema::case::material::{MaterialDocument, MaterialDocuments};
 use crate::schema::case::membrane::MembraneDocument;
 use crate::schema::code::ErrorCode;
 use crate::schema::compare::document::{CompareDocument, CompareToDocument};
-use crate::schema::methods::{self, ElementName, MethodName};
+use crate::schema::methods::dvs::DvsDocument;
+use crate::schema::methods::msm::MassSpringDocument;
+use crate::schema::methods::mtm::MassTensorDocument;
+use crate::schema::methods::thickness_warp::ThicknessWarpDocument;
+use crate::schema::methods::{self, ElementName, MethodName, OwnSettings};
 use crate::schema::optimise::document::OptimiseDocument;
 use crate::schema::plan::document::PlanDocument;
 use crate::schema::response::ResponseDocument;
@@ -21,9 +20,15 @@ use crate::schema::study::document::StudyDocument;
 use crate::schema::wire::canonical;
 use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::limits::Limits;
+use crate::schema::wire::names::check_tags;
 use crate::schema::wire::problem::Problem;
 use crate::schema::wire::strict;
-use mechanics::prediction::{Method, Settings};
+use mechanics::prediction::Settings;
+
+pub use super::budget::BudgetDocument;
+pub use super::contact::ContactName;
+pub use super::output::OutputName;
+pub use super::tolerance::ToleranceDocument;
 
 /// The body of `POST /v1/jobs`, told apart by `kind`.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
@@ -117,122 +122,6 @@ pub struct PredictDocument {
     pub tags: Vec<String>,
 }
 
-/// What happens at the sliding sets of the case.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
-#[serde(rename_all = "lowercase")]
-pub enum ContactName {
-    /// Held across, free along.
-    #[default]
-    Sliding,
-    /// Free.
-    None,
-}
-
-/// How exactly the equations are solved.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
-pub struct ToleranceDocument {
-    /// |f - K u| / |f_D| of the free rows; in [1e-14, 1e-2]. With pressures, those of both equations,
-    /// a volume that is left over counted as the forces that its pressure would put on the nodes.
-    #[serde(default = "usual_residual")]
-    #[schema(default = 1e-8, minimum = 1e-14, maximum = 1e-2)]
-    pub relative_residual: f64,
-}
-
-fn usual_residual() -> f64 {
-    1e-8
-}
-
-impl Default for ToleranceDocument {
-    fn default() -> Self {
-        ToleranceDocument { relative_residual: usual_residual() }
-    }
-}
-
-/// What a job may take.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
-pub struct BudgetDocument {
-    #[serde(default = "usual_wall")]
-    #[schema(default = 600.0, exclusive_minimum = 0.0)]
-    pub wall_s: f64,
-    #[serde(default = "usual_memory")]
-    #[schema(default = 4000.0, minimum = 1.0)]
-    pub memory_mb: f64,
-}
-
-fn usual_wall() -> f64 {
-    600.0
-}
-
-fn usual_memory() -> f64 {
-    4000.0
-}
-
-impl Default for BudgetDocument {
-    fn default() -> Self {
-        BudgetDocument { wall_s: usual_wall(), memory_mb: usual_memory() }
-    }
-}
-
-/// A file of a result.
-#[derive(
-    Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, ToSchema,
-)]
-pub enum OutputName {
-    #[serde(rename = "skin.vtp")]
-    SkinVtp,
-    #[serde(rename = "skin.stl")]
-    SkinStl,
-    #[serde(rename = "skin.ply")]
-    SkinPly,
-    #[serde(rename = "skin.glb")]
-    SkinGlb,
-    #[serde(rename = "skin.csv")]
-    SkinCsv,
-    #[serde(rename = "volume.vtu")]
-    VolumeVtu,
-    #[serde(rename = "bones.vtp")]
-    BonesVtp,
-    #[serde(rename = "classes.svg")]
-    ClassesSvg,
-    #[serde(rename = "displacement.svg")]
-    DisplacementSvg,
-    #[serde(rename = "result.json")]
-    ResultJson,
-}
-
-impl OutputName {
-    pub fn file_name(self) -> &'static str {
-        match self {
-            OutputName::SkinVtp => "skin.vtp",
-            OutputName::SkinStl => "skin.stl",
-            OutputName::SkinPly => "skin.ply",
-            OutputName::SkinGlb => "skin.glb",
-            OutputName::SkinCsv => "skin.csv",
-            OutputName::VolumeVtu => "volume.vtu",
-            OutputName::BonesVtp => "bones.vtp",
-            OutputName::ClassesSvg => "classes.svg",
-            OutputName::DisplacementSvg => "displacement.svg",
-            OutputName::ResultJson => "result.json",
-        }
-    }
-
-    pub fn media_type(self) -> &'static str {
-        match self {
-            OutputName::SkinVtp | OutputName::VolumeVtu | OutputName::BonesVtp => {
-                "application/vnd.vtk.xml"
-            }
-            OutputName::SkinStl => "model/stl",
-            OutputName::SkinPly => "application/vnd.ply",
-            OutputName::SkinGlb => "model/gltf-binary",
-            OutputName::SkinCsv => "text/csv; charset=utf-8",
-            OutputName::ClassesSvg | OutputName::DisplacementSvg => "image/svg+xml",
-            OutputName::ResultJson => "application/json",
-        }
-    }
-}
-
 impl JobDocument {
     /// The body of `POST /v1/jobs`.
     pub fn parse(bytes: &[u8], limits: &Limits) -> Result<JobDocument, Problem> {
@@ -280,7 +169,6 @@ impl PredictDocument {
     /// The settings of the path; pointers start at `/spec`.
     pub fn to_settings(&self, limits: &Limits, faults: &mut Faults) -> Settings {
         let at = Pointer::root().key("spec");
-        methods::check_method(self.method, &at.key("method"), faults);
         let residual = self.tolerance.relative_residual;
         let place = at.key("tolerance").key("relative_residual");
         faults.check_range(&place, residual, 1e-14..=1e-2, "");
@@ -295,7 +183,7 @@ impl PredictDocument {
         let membrane = self.membrane.as_ref();
         let membrane = membrane.and_then(|sheet| sheet.to_membrane(&at.key("membrane"), faults));
         Settings {
-            method: self.to_method(&at, faults),
+            method: methods::to_method(self.method, &self.own_settings(), &at, faults),
             element: self.element.choice(),
             sliding: self.contact == ContactName::Sliding,
             relative_residual: residual,
@@ -304,36 +192,12 @@ impl PredictDocument {
         }
     }
 
-    /// The method with its own settings; those of another one are refused.
-    fn to_method(&self, at: &Pointer, faults: &mut Faults) -> Method {
-        let own = [
-            (MethodName::Msm, self.msm.is_some()),
-            (MethodName::Mtm, self.mtm.is_some()),
-            (MethodName::Dvs, self.dvs.is_some()),
-            (MethodName::ThicknessWarp, self.thickness_warp.is_some()),
-        ];
-        for (name, is_given) in own {
-            methods::check_own(name, is_given, self.method, at, faults);
-        }
-        match self.method.chosen() {
-            MethodName::Msm => {
-                let own = self.msm.unwrap_or_default();
-                Method::MassSpring(own.to_settings(&at.key("msm"), faults))
-            }
-            MethodName::Mtm => {
-                let own = self.mtm.unwrap_or_default();
-                Method::MassTensor(own.to_settings(&at.key("mtm"), faults))
-            }
-            MethodName::MtmTi => Method::MassTensorTransverse,
-            MethodName::Dvs => {
-                let own = self.dvs.unwrap_or_default();
-                Method::VolumeSpline(own.to_method(&at.key("dvs"), faults))
-            }
-            MethodName::ThicknessWarp => {
-                let own = self.thickness_warp.unwrap_or_default();
-                Method::ThicknessWarp(own.to_method(&at.key("thickness_warp"), faults))
-            }
-            _ => Method::FemLinear,
+    fn own_settings(&self) -> OwnSettings {
+        OwnSettings {
+            msm: self.msm,
+            mtm: self.mtm,
+            dvs: self.dvs,
+            thickness_warp: self.thickness_warp,
         }
     }
 

@@ -12,7 +12,8 @@ use crate::schema::compare::result::{ComparisonDocument, StatDocument};
 use crate::schema::optimise::result::OptimisationDocument;
 use crate::schema::study::report::StudySummaryDocument;
 use crate::schema::wire::warning::WarningDocument;
-use mechanics::prediction::NUMERICS_REVISION;
+
+pub use crate::schema::engine::EngineDocument;
 
 /// What every result says about its use.
 pub const NOT_A_DEVICE: &str =
@@ -124,35 +125,6 @@ pub struct ProvenanceDocument {
     /// RFC 3339, UTC.
     pub created: String,
     pub statement: String,
-}
-
-/// The program that computed.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
-pub struct EngineDocument {
-    pub name: String,
-    pub version: String,
-    /// Raised with every change of its numbers; jobs of another revision are other jobs. 0 of results from before
-    /// there were revisions.
-    #[serde(default)]
-    pub numerics: u32,
-    /// Processor and operating system.
-    pub target: String,
-    /// `release` or `debug`.
-    pub profile: String,
-}
-
-impl EngineDocument {
-    /// The program that is running.
-    pub fn this() -> Self {
-        let profile = if cfg!(debug_assertions) { "debug" } else { "release" };
-        EngineDocument {
-            name: env!("CARGO_PKG_NAME").to_owned(),
-            version: env!("CARGO_PKG_VERSION").to_owned(),
-            numerics: NUMERICS_REVISION,
-            target: format!("{}-{}", std::env::consts::ARCH, std::env::consts::OS),
-            profile: profile.to_owned(),
-        }
-    }
 }
 
 /// A mesh or an image that went in.

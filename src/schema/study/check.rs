@@ -3,10 +3,11 @@
 use std::collections::BTreeSet;
 
 use super::document::{CaseReference, SceneReference, StudyDocument, StudyKind};
-use crate::schema::case::conversion::check_tags;
+
 use crate::schema::code::ErrorCode;
 use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::limits::Limits;
+use crate::schema::wire::names::check_tags;
 use mechanics::study::scenes::SCENES;
 
 /// Halving every edge once more makes eight cells of one.

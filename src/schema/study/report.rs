@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use super::document::{ThresholdsDocument, TolerancesDocument};
-use crate::schema::predict::result::EngineDocument;
+use crate::schema::engine::EngineDocument;
 
 /// The report of a study. Errors are distances at the skin nodes of level 0 from where the truth has them, by area.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]

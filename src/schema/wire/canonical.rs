@@ -1,16 +1,9 @@
-//! Canonical JSON and the hash of a job: the same work has the same hash, however it was written down.
+//! Canonical JSON and its hash: the same content has the same hash, however it was written down.
 
 use serde::Serialize;
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
 
-use crate::schema::case::document::CaseDocument;
-use crate::schema::compare::document::CompareDocument;
-use crate::schema::optimise::document::OptimiseDocument;
-use crate::schema::plan::document::PlanDocument;
-use crate::schema::predict::document::PredictDocument;
-use crate::schema::response::ResponseDocument;
-use crate::schema::study::document::StudyDocument;
 use mechanics::prediction::NUMERICS_REVISION;
 
 /// A document as a value whose keys are sorted.
@@ -31,129 +24,8 @@ pub fn hex(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// The hash of a prediction: contents of meshes in place of their ids, the plan in full, names and tags left out.
-/// `content_of` gives the SHA-256 of a mesh by its id; an id it does not know stands for itself.
-pub fn predict_hash(
-    case: &CaseDocument,
-    plan: &PlanDocument,
-    spec: &PredictDocument,
-    content_of: &dyn Fn(&str) -> Option<String>,
-) -> String {
-    let mut case = case.clone();
-    case.name = None;
-    case.tags.clear();
-    let mut plan = plan.clone();
-    let mut spec = spec.clone();
-    let case_meshes = case.mesh_references_mut().into_iter();
-    let plan_meshes = plan.surface_references_mut().into_iter();
-    for (_, id) in case_meshes.chain(plan_meshes) {
-        replace(id, content_of);
-    }
-    if let Some(compare_to) = &mut spec.compare_to {
-        replace(&mut compare_to.actual.mesh, content_of);
-    }
-    hash(json!({
-        "case": to_value(&case),
-        "plan": to_value(&plan),
-        "spec": spec.content(),
-    }))
-}
-
-/// The hash of inverse planning: contents of meshes in place of their ids, names and tags left out.
-pub fn optimise_hash(
-    case: &CaseDocument,
-    spec: &OptimiseDocument,
-    content_of: &dyn Fn(&str) -> Option<String>,
-) -> String {
-    let mut case = case.clone();
-    case.name = None;
-    case.tags.clear();
-    let mut spec = spec.clone();
-    for (_, id) in case.mesh_references_mut() {
-        replace(id, content_of);
-    }
-    for id in spec.surfaces_mut() {
-        replace(id, content_of);
-    }
-    hash(json!({
-        "case": to_value(&case),
-        "spec": spec.content(),
-    }))
-}
-
-/// The hash of a study: its cases with contents of meshes in place of their ids, in the order of its scenes, and the
-/// report that it is held against; names of cases stay, since rows carry them.
-pub fn study_hash(
-    cases: &[&CaseDocument],
-    spec: &StudyDocument,
-    baseline: Option<&Value>,
-    content_of: &dyn Fn(&str) -> Option<String>,
-) -> String {
-    let mut cases: Vec<CaseDocument> = cases.iter().map(|case| (*case).clone()).collect();
-    for case in &mut cases {
-        case.tags.clear();
-        for (_, id) in case.mesh_references_mut() {
-            replace(id, content_of);
-        }
-    }
-    let mut spec = spec.clone();
-    for plan in spec.plan_documents_mut() {
-        for (_, id) in plan.surface_references_mut() {
-            replace(id, content_of);
-        }
-    }
-    if let Some(job) = spec.truth.as_mut().and_then(|truth| truth.job.as_mut()) {
-        replace(job, content_of);
-    }
-    hash(json!({
-        "cases": cases.iter().map(to_value).collect::<Vec<_>>(),
-        "spec": spec.content(),
-        "baseline": baseline,
-    }))
-}
-
-/// The hash of a comparison; `content_of` also answers for the predicted skin of a job.
-pub fn compare_hash(spec: &CompareDocument, content_of: &dyn Fn(&str) -> Option<String>) -> String {
-    let mut spec = spec.clone();
-    spec.tags.clear();
-    let reference = &mut spec.prediction;
-    let prediction = [reference.job.as_mut(), reference.mesh.as_mut()];
-    for id in prediction.into_iter().flatten() {
-        replace(id, content_of);
-    }
-    replace(&mut spec.actual.mesh, content_of);
-    hash(json!({ "spec": to_value(&spec) }))
-}
-
-/// The key of a response: the case but for its name, tags, landmarks and skin regions, contents of meshes in
-/// place of their ids. The case's own id is part of it, so that a response goes when its case is erased.
-pub fn response_key(
-    case: &CaseDocument,
-    spec: &ResponseDocument,
-    content_of: &dyn Fn(&str) -> Option<String>,
-) -> String {
-    let mut case = case.clone();
-    case.name = None;
-    case.tags.clear();
-    case.landmarks.clear();
-    case.skin_regions.clear();
-    for (_, id) in case.mesh_references_mut() {
-        replace(id, content_of);
-    }
-    hash(json!({
-        "case": to_value(&case),
-        "spec": spec.content(),
-    }))
-}
-
-fn replace(id: &mut String, content_of: &dyn Fn(&str) -> Option<String>) {
-    if let Some(content) = content_of(id) {
-        *id = content;
-    }
-}
-
 /// The hash of what documents say, and of the program as far as its numbers go: another one finds other results.
-fn hash(mut content: Value) -> String {
+pub fn hash(mut content: Value) -> String {
     content["engine"] =
         json!({ "version": env!("CARGO_PKG_VERSION"), "numerics": NUMERICS_REVISION });
     content.sort_all_objects();
@@ -171,12 +43,5 @@ mod tests {
             r#"{{"engine":{{"numerics":{NUMERICS_REVISION},"version":"{version}"}},"spec":{{"a":1}}}}"#
         );
         assert_eq!(hash(json!({ "spec": { "a": 1 } })), sha256_hex(text.as_bytes()));
-    }
-
-    #[test]
-    fn every_hash_of_a_job_and_the_key_of_a_response_are_made_in_one_place() {
-        let code = include_str!("canonical.rs").split("#[cfg(test)]").next().unwrap_or_default();
-        let made = code.matches("hash(json!(").count();
-        assert_eq!((made, code.matches("sha256_hex(").count()), (5, 2));
     }
 }

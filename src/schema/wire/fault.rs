@@ -1,11 +1,8 @@
 //! What is wrong with a document, all of it, each with the place.
 
-use std::fmt;
 use std::ops::RangeInclusive;
 
-use serde::Serialize;
-use utoipa::ToSchema;
-
+pub use super::pointer::{FieldError, Pointer};
 use super::problem::Problem;
 use crate::schema::code::ErrorCode;
 use mechanics::prediction::SceneErrors;
@@ -29,55 +26,6 @@ const CATALOGUE: &[ErrorCode] = &[
     ErrorCode::Underconstrained,
     ErrorCode::UnknownSegment,
 ];
-
-/// A JSON pointer (RFC 6901).
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Pointer(String);
-
-impl Pointer {
-    /// The document itself.
-    pub fn root() -> Self {
-        Pointer::default()
-    }
-
-    /// A pointer that is already written out.
-    pub fn from_text(text: &str) -> Self {
-        Pointer(text.to_owned())
-    }
-
-    /// A member of an object here.
-    pub fn key(&self, name: &str) -> Pointer {
-        let escaped = name.replace('~', "~0").replace('/', "~1");
-        Pointer(format!("{}/{escaped}", self.0))
-    }
-
-    /// An entry of an array here.
-    pub fn index(&self, index: usize) -> Pointer {
-        Pointer(format!("{}/{index}", self.0))
-    }
-
-    pub fn as_str(&self) -> &str {
-        &self.0
-    }
-}
-
-impl fmt::Display for Pointer {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.write_str(&self.0)
-    }
-}
-
-/// One thing wrong with a document.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, ToSchema)]
-pub struct FieldError {
-    /// JSON pointer (RFC 6901) to the place.
-    pub pointer: String,
-    /// A stable word for the kind of mistake.
-    #[schema(value_type = String)]
-    pub code: ErrorCode,
-    /// One sentence with the numbers.
-    pub detail: String,
-}
 
 /// Collects what is wrong, so that a client hears all of it at once.
 #[derive(Debug, Default)]
@@ -108,7 +56,7 @@ impl Faults {
         }
     }
 
-    pub(super) fn into_problem(self) -> Problem {
+    fn into_problem(self) -> Problem {
         let shared =
             CATALOGUE.iter().find(|code| self.errors.iter().all(|error| error.code == **code));
         let count = self.errors.len() + self.unreported;
@@ -193,6 +141,15 @@ impl Faults {
             );
         }
         given == 1
+    }
+}
+
+impl Problem {
+    /// One mistake at one place of a document.
+    pub fn at(pointer: &Pointer, code: ErrorCode, detail: impl Into<String>) -> Self {
+        let mut faults = Faults::default();
+        faults.add(pointer, code, detail);
+        faults.into_problem()
     }
 }
 

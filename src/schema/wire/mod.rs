@@ -3,6 +3,8 @@
 pub mod canonical;
 pub mod fault;
 pub mod limits;
+pub mod names;
+pub mod pointer;
 pub mod problem;
 pub mod strict;
 pub mod text_or_object;

@@ -4,7 +4,7 @@ use serde::Serialize;
 use serde_json::{Map, Value};
 use utoipa::ToSchema;
 
-use super::fault::{Faults, FieldError, Pointer};
+use super::pointer::FieldError;
 use crate::schema::code::ErrorCode;
 
 /// What stands before the code in the `type` of a problem.
@@ -24,13 +24,6 @@ pub struct Problem {
 impl Problem {
     pub fn new(code: ErrorCode, detail: impl Into<String>) -> Self {
         Problem { code, detail: detail.into(), errors: Vec::new(), members: Map::new() }
-    }
-
-    /// One mistake at one place of a document.
-    pub fn at(pointer: &Pointer, code: ErrorCode, detail: impl Into<String>) -> Self {
-        let mut faults = Faults::default();
-        faults.add(pointer, code, detail);
-        faults.into_problem()
     }
 
     /// The same problem with one more member.

@@ -17,6 +17,9 @@ use super::limits::Limits;
 use super::problem::Problem;
 use crate::schema::code::ErrorCode;
 
+/// What the detail begins with where a word is known and what it stands for is not built.
+pub const NOT_AVAILABLE: &str = "not available: ";
+
 /// One document of a known shape.
 pub fn parse<T: DeserializeOwned>(bytes: &[u8], limits: &Limits) -> Result<T, Problem> {
     from_value(parse_value(bytes, limits)?)
@@ -82,6 +85,8 @@ fn add_shape_fault(faults: &mut Faults, at: &Pointer, detail: &str) {
         faults.add(&at.key(name), ErrorCode::MissingField, detail);
     } else if detail.starts_with("unknown variant ") {
         faults.add(at, ErrorCode::UnknownWord, detail);
+    } else if detail.starts_with(NOT_AVAILABLE) {
+        faults.add(at, ErrorCode::MethodNotAvailable, detail);
     } else {
         faults.add(at, ErrorCode::WrongType, detail);
     }

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use facies::schema::case::document::{CaseMeshes, NamedMesh};
+use facies::schema::hashes;
 use facies::schema::plan::document::PlanContext;
 use facies::schema::predict::document::JobDocument;
 use facies::schema::wire::{canonical, strict};
@@ -237,7 +238,7 @@ fn methods_that_are_not_built_are_refused_by_name() {
     let code = "method-not-available";
     for name in ["fem_corotational", "fem_neo_hookean", "fem_ogden", "fem_rubin_bodner"] {
         let text = format!(r#"{{"method":"{name}"}}"#);
-        assert_eq!(refused(settings(&text)), one(code, code, "/spec/method"), "{name}");
+        assert_eq!(refused(settings(&text)), one(code, code, "/method"), "{name}");
     }
     let misspelt = settings(r#"{"method":"fem"}"#);
     assert_eq!(refused(misspelt), one("validation-failed", "unknown-word", "/method"));
@@ -319,7 +320,7 @@ fn hash(case: &str, plan: &str, spec: &str) -> String {
     let (case, plan): (CaseDocument, PlanDocument) =
         (parse(case).expect("a case"), parse(plan).expect("a plan"));
     let spec = parse(spec).expect("a spec");
-    canonical::predict_hash(&case, &plan, &spec, &|id| (id != "x").then(|| format!("sha of {id}")))
+    hashes::predict_hash(&case, &plan, &spec, &|id| (id != "x").then(|| format!("sha of {id}")))
 }
 
 #[test]

@@ -4,7 +4,7 @@ use facies::schema::wire::strict;
 use facies::schema::{Faults, Limits, PredictDocument, Problem};
 use mechanics::model::fem::mass_tensor::{Iterations, MassTensorSettings};
 use mechanics::model::mass_spring::{MassSpringSettings, Search};
-use mechanics::prediction::{Method, Settings};
+use mechanics::prediction::{Method, MethodKind, Settings};
 use mechanics::solver::stationary::{Iteration, Stationary};
 
 fn plain(iteration: Iteration) -> Stationary {
@@ -94,5 +94,44 @@ fn every_method_that_is_built_has_golden_numbers() {
     }
     for kind in ["response", "optimise", "comparison", "study"] {
         assert!(has(kind), "{kind} has no line");
+    }
+}
+
+#[test]
+fn every_method_becomes_the_one_of_its_name_and_auto_linear_finite_elements() {
+    let kind = |spec: &str| settings(spec).unwrap().method.kind();
+    for method in MethodKind::ALL {
+        assert_eq!(kind(&format!(r#"{{"method":"{}"}}"#, method.name())), *method);
+    }
+    for spec in ["{}", r#"{"method":"auto"}"#] {
+        assert_eq!(kind(spec), MethodKind::FemLinear);
+    }
+}
+
+#[test]
+fn a_method_that_there_is_not_is_refused_with_those_that_there_are() {
+    for (name, code) in [("fem_ogden", "method-not-available"), ("fem", "unknown-word")] {
+        let spec = format!(r#"{{"method":"{name}"}}"#);
+        assert_eq!(mistake(&spec), (code.to_owned(), "/method".to_owned()));
+        let detail = settings(&spec).unwrap_err().errors[0].detail.clone();
+        for known in MethodKind::ALL.iter().map(|method| method.name()).chain(["auto", name]) {
+            assert!(detail.contains(&format!("`{known}`")), "{known}: {detail}");
+        }
+    }
+}
+
+#[test]
+fn settings_of_a_method_in_the_spec_of_any_other_are_refused() {
+    for own in ["msm", "mtm", "dvs", "thickness_warp"] {
+        for method in MethodKind::ALL.iter().map(|method| method.name()) {
+            let spec = format!(r#"{{"method":"{method}","{own}":{{}}}}"#);
+            match method == own {
+                true => assert!(settings(&spec).is_ok(), "{spec}"),
+                false => {
+                    let place = format!("/spec/{own}");
+                    assert_eq!(mistake(&spec), ("method-mismatch".to_owned(), place), "{spec}");
+                }
+            }
+        }
     }
 }

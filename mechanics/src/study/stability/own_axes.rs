@@ -52,7 +52,7 @@ fn fibre_ratio_of_paper() -> Axis {
 }
 
 fn fibred_probe(ratio: f64, law: FibreLaw, variant: &Variant) -> Found {
-    if !variant.settings.method.knows_fibres() {
+    if !variant.settings.method.properties().knows_fibres {
         return Ok(None);
     }
     found(fibred(ratio, law, shape_for(&variant.settings))?, jaw(shift(moved())), variant)

@@ -31,7 +31,10 @@ const PATCH: f64 = 8.0;
 pub fn shape_for(settings: &Settings) -> CellShape {
     match settings.element {
         ElementChoice::MeanDilatation => CellShape::Hex8,
-        _ => CellShape::Tet4,
+        ElementChoice::Auto
+        | ElementChoice::Plain
+        | ElementChoice::Stabilised
+        | ElementChoice::Quadratic => CellShape::Tet4,
     }
 }
 

@@ -15,8 +15,8 @@ use mechanics::model::thickness_warp::ThicknessWarp;
 use mechanics::optimisation::{Question, optimise};
 use mechanics::plan::{PlannedSegment, RigidMovement};
 use mechanics::prediction::{
-    Case, CaseSegment, ElementChoice, FibreDirection, Hounsfield, Load, Method, Mixing, Plan,
-    PredictionError, RegionNames, Scene, Settings, SkinMembrane, Sliding, SlidingNormal,
+    Case, CaseSegment, ElementChoice, FibreDirection, Hounsfield, Load, Method, Mixing, ModelError,
+    Plan, RegionNames, Scene, Settings, SkinMembrane, Sliding, SlidingNormal, SolverError,
     TissueWindow, Unobserved, predict,
 };
 use mechanics::response::build;
@@ -223,7 +223,7 @@ fn diverged(case: &Case, iterations: Iterations) -> Found {
     let settings = with_method(Method::MassTensor(MassTensorSettings { iterations }));
     let scene = Scene::new(case, &plan(&settings.method), &settings).unwrap();
     let values = match predict(&scene, &Unobserved) {
-        Err(PredictionError::Diverged { history, .. }) => history,
+        Err(ModelError::Solver(SolverError::Diverged { history, .. })) => history,
         other => panic!("{other:?}"),
     };
     Found { name: "mtm jacobi".to_owned(), solver: "diverged", holds: Holds::Bits, values }

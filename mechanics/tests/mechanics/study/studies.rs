@@ -9,7 +9,7 @@ use mechanics::mesh::sample::block;
 use mechanics::mesh::{CellShape, Vector};
 use mechanics::plan::{PlannedSegment, RigidMovement};
 use mechanics::prediction::{
-    Case, CaseSegment, ElementChoice, Method, Plan, RegionNames, Scene, Settings,
+    Case, CaseSegment, ElementChoice, Method, MethodKind, Plan, RegionNames, Scene, Settings,
 };
 use mechanics::progress::Unobserved;
 use mechanics::study::report::Solved;
@@ -479,11 +479,25 @@ fn a_series_of_three_levels_has_an_order_and_a_limit() {
 }
 
 #[test]
+fn every_method_has_variants_of_its_own_name_and_no_label_comes_twice() {
+    let all = methods::available();
+    for method in MethodKind::ALL {
+        let own: Vec<&Variant> =
+            all.iter().filter(|variant| variant.settings.method.kind() == *method).collect();
+        assert!(!own.is_empty(), "{method:?}");
+        assert!(own.iter().all(|variant| variant.method == method.name()), "{method:?}");
+    }
+    for (place, variant) in all.iter().enumerate() {
+        assert!(all[..place].iter().all(|other| other.label != variant.label), "{}", variant.label);
+    }
+}
+
+#[test]
 fn on_the_slab_elements_come_in_the_order_of_the_table_and_the_truth_knows_its_own_error() {
     let mut scene = slab();
     scene.plans.truncate(1);
     scene.materials.truncate(1);
-    let study = study(scene, methods::of_method("fem_linear"), &[0, 1]);
+    let study = study(scene, methods::of_method(MethodKind::FemLinear), &[0, 1]);
     let report = of(&study);
     let scene = &report.scenes[0];
     println!("{} {:?}", scene.truth, scene.truth_error_mm);

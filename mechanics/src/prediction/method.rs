@@ -1,0 +1,209 @@
+//! The methods: their names, their settings, and the one table of what each of them is and knows.
+
+use super::element_choice::{EVERY_SHAPE, ElementChoice, TETRAHEDRA};
+use super::listed::listed;
+use crate::mesh::CellShape;
+use crate::model::fem::mass_tensor::MassTensorSettings;
+use crate::model::mass_spring::MassSpringSettings;
+use crate::model::spline::VolumeSpline;
+use crate::model::thickness_warp::ThicknessWarp;
+
+listed! {
+    /// A way of modelling, without what it has to be told; in the order of lists.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub enum MethodKind {
+        FemLinear,
+        MassTensor,
+        MassTensorTransverse,
+        MassSpring,
+        VolumeSpline,
+        ThicknessWarp,
+    }
+}
+
+/// The way of modelling, with what only it has to be told.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum Method {
+    /// Linear finite elements at small strain.
+    #[default]
+    FemLinear,
+    /// Springs along the edges of tetrahedra.
+    MassSpring(MassSpringSettings),
+    /// The energy of plain linear tetrahedra, brought to rest as its settings say.
+    MassTensor(MassTensorSettings),
+    /// The mass-tensor of tetrahedra with fibres: force = V g_j.C.g_k u, the plain finite element.
+    MassTensorTransverse,
+    /// A lattice of control points over the tissue.
+    VolumeSpline(VolumeSpline),
+    /// Tissue that rides on the nearest bone.
+    ThicknessWarp(ThicknessWarp),
+}
+
+/// What the unknowns of a method are displacements of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unknowns {
+    /// Nodes of finite elements.
+    Elements,
+    /// Nodes tied by springs.
+    Springs,
+    /// Control points beside the mesh.
+    ControlPoints,
+    /// There are none: displacement follows from that of the bones.
+    None,
+}
+
+/// What is known of a method: a row of the table.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MethodProperties {
+    /// As documents call it.
+    pub name: &'static str,
+    /// As sentences call it.
+    pub title: &'static str,
+    pub unknowns: Unknowns,
+    /// What a client may choose; empty where there are no elements.
+    pub elements: &'static [ElementChoice],
+    /// What is used where a client chooses nothing.
+    pub usual_element: ElementChoice,
+    /// The shapes of cells it takes.
+    pub cells: &'static [CellShape],
+    /// Whether the displacement of several rigid movements is a sum of twelve columns for each.
+    pub is_linear: bool,
+    /// Whether strain is the symmetric part of the displacement gradient, so that turning is taken for stretching.
+    pub is_small_strain: bool,
+    /// Whether its tissue may be stiffer along fibres than across them.
+    pub knows_fibres: bool,
+    /// Whether it is made for tissue with fibres.
+    pub expects_fibres: bool,
+    /// Whether the skin may be a membrane of its own.
+    pub knows_membrane: bool,
+    /// Whether forces may act.
+    pub knows_loads: bool,
+}
+
+const FEM_LINEAR: MethodProperties = MethodProperties {
+    name: "fem_linear",
+    title: "the linear finite element method",
+    unknowns: Unknowns::Elements,
+    elements: ElementChoice::ALL,
+    usual_element: ElementChoice::Auto,
+    cells: EVERY_SHAPE,
+    is_linear: true,
+    is_small_strain: true,
+    knows_fibres: true,
+    expects_fibres: false,
+    knows_membrane: true,
+    knows_loads: true,
+};
+
+const MASS_TENSOR: MethodProperties = MethodProperties {
+    name: "mtm",
+    title: "the mass-tensor model",
+    unknowns: Unknowns::Elements,
+    elements: &[ElementChoice::Auto, ElementChoice::Plain],
+    usual_element: ElementChoice::Plain,
+    cells: TETRAHEDRA,
+    // With its own iterations each solve stands for itself.
+    is_linear: false,
+    is_small_strain: true,
+    knows_fibres: false,
+    expects_fibres: false,
+    knows_membrane: true,
+    knows_loads: true,
+};
+
+const MASS_TENSOR_TRANSVERSE: MethodProperties = MethodProperties {
+    name: "mtm_ti",
+    title: "the mass-tensor model",
+    unknowns: Unknowns::Elements,
+    elements: &[ElementChoice::Auto, ElementChoice::Plain],
+    usual_element: ElementChoice::Plain,
+    cells: TETRAHEDRA,
+    is_linear: true,
+    is_small_strain: true,
+    knows_fibres: true,
+    expects_fibres: true,
+    knows_membrane: true,
+    knows_loads: true,
+};
+
+const MASS_SPRING: MethodProperties = MethodProperties {
+    name: "msm",
+    title: "the mass-spring model",
+    unknowns: Unknowns::Springs,
+    elements: &[ElementChoice::Auto],
+    usual_element: ElementChoice::Auto,
+    cells: TETRAHEDRA,
+    is_linear: false,
+    is_small_strain: false,
+    knows_fibres: false,
+    expects_fibres: false,
+    knows_membrane: false,
+    knows_loads: true,
+};
+
+const VOLUME_SPLINE: MethodProperties = MethodProperties {
+    name: "dvs",
+    title: "the volume spline",
+    unknowns: Unknowns::ControlPoints,
+    elements: &[],
+    usual_element: ElementChoice::Auto,
+    cells: EVERY_SHAPE,
+    is_linear: false,
+    is_small_strain: true,
+    knows_fibres: false,
+    expects_fibres: false,
+    knows_membrane: false,
+    knows_loads: true,
+};
+
+const THICKNESS_WARP: MethodProperties = MethodProperties {
+    name: "thickness_warp",
+    title: "the thickness-preserving warp",
+    unknowns: Unknowns::None,
+    elements: &[],
+    usual_element: ElementChoice::Auto,
+    cells: EVERY_SHAPE,
+    is_linear: false,
+    is_small_strain: false,
+    knows_fibres: false,
+    expects_fibres: false,
+    knows_membrane: false,
+    knows_loads: false,
+};
+
+impl MethodKind {
+    /// Its row of the table.
+    pub fn properties(self) -> &'static MethodProperties {
+        match self {
+            MethodKind::FemLinear => &FEM_LINEAR,
+            MethodKind::MassTensor => &MASS_TENSOR,
+            MethodKind::MassTensorTransverse => &MASS_TENSOR_TRANSVERSE,
+            MethodKind::MassSpring => &MASS_SPRING,
+            MethodKind::VolumeSpline => &VOLUME_SPLINE,
+            MethodKind::ThicknessWarp => &THICKNESS_WARP,
+        }
+    }
+
+    /// As documents call it.
+    pub fn name(self) -> &'static str {
+        self.properties().name
+    }
+}
+
+impl Method {
+    pub fn kind(&self) -> MethodKind {
+        match self {
+            Method::FemLinear => MethodKind::FemLinear,
+            Method::MassSpring(_) => MethodKind::MassSpring,
+            Method::MassTensor(_) => MethodKind::MassTensor,
+            Method::MassTensorTransverse => MethodKind::MassTensorTransverse,
+            Method::VolumeSpline(_) => MethodKind::VolumeSpline,
+            Method::ThicknessWarp(_) => MethodKind::ThicknessWarp,
+        }
+    }
+
+    /// Its row of the table.
+    pub fn properties(&self) -> &'static MethodProperties {
+        self.kind().properties()
+    }
+}

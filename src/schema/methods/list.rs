@@ -1,0 +1,119 @@
+//! The list of methods that are built, and of what they serve.
+
+use crate::schema::code::ErrorCode;
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+use super::describe;
+use super::document::MethodDocument;
+use super::measured::{self, MeasuredDocument};
+use super::name::{MethodName, WHY_LINEAR};
+use crate::schema::wire::fault::{Faults, Pointer};
+use mechanics::optimisation::UNDETERMINED;
+use mechanics::prediction::MethodKind;
+use mechanics::response::COLUMNS_PER_SEGMENT;
+use mechanics::response::linearity::LINEAR_RANGE_MM;
+
+/// Of a method that was built after the study that comes with the program.
+const NOT_MEASURED: &str = "the study that comes with the program has no row of this method";
+
+/// Refuses, for plan responses, a method whose skin is not linear in the movements, or that has none of its own.
+pub fn check_linear(method: MethodName, at: &Pointer, faults: &mut Faults) {
+    if !method.chosen().properties().is_linear {
+        let names: Vec<String> =
+            linear().iter().map(|method| format!("`{}`", method.name())).collect();
+        let detail = format!("responses are built by {}", names.join(" and "));
+        faults.add(at, ErrorCode::MethodNotAvailable, detail);
+    }
+}
+
+/// Those whose skin is linear in the movements.
+fn linear() -> Vec<MethodName> {
+    let linear = MethodKind::ALL.iter().filter(|method| method.properties().is_linear);
+    linear.map(|method| MethodName::Named(*method)).collect()
+}
+
+/// The answer of `GET /v1/methods`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct MethodList {
+    pub methods: Vec<MeasuredMethod>,
+    /// What `auto` chooses, and why.
+    pub auto: String,
+    pub response: ResponseMethod,
+    pub optimise: OptimiseMethod,
+}
+
+/// How jobs of kind `optimise` find a plan.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct OptimiseMethod {
+    /// Those whose skin is linear in the movements.
+    pub methods: Vec<MethodName>,
+    /// What is minimised, and how.
+    pub minimises: String,
+    /// How `standard_error` and `covariance` come about.
+    pub certainty: String,
+    /// A combination of parameters is undetermined where it moves the targets by less than this share of
+    /// what the strongest one does.
+    pub undetermined_below: f64,
+}
+
+/// What jobs of kind `response` build.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct ResponseMethod {
+    /// The linear ones.
+    pub methods: Vec<MethodName>,
+    pub columns_per_segment: u32,
+    /// How `nonlinearity_estimate_mm` of an applied plan comes about.
+    pub nonlinearity_estimate: String,
+    /// The estimate above which an answer is outside the linear range.
+    pub linear_range_mm: f64,
+}
+
+/// A way of modelling, and where it stands on the chart of speed and accuracy.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct MeasuredMethod {
+    #[serde(flatten)]
+    pub method: MethodDocument,
+    /// What the study that comes with the program measured; its truths, machine and command are in
+    /// docs/speed-and-accuracy.md.
+    pub measured: Vec<MeasuredDocument>,
+    /// Why there is nothing in `measured`, where there is nothing.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub not_measured: Option<String>,
+}
+
+impl MeasuredMethod {
+    fn of(method: MethodDocument) -> Self {
+        let measured = measured::measured(method.name.name());
+        let not_measured = measured.is_empty().then(|| NOT_MEASURED.to_owned());
+        MeasuredMethod { method, measured, not_measured }
+    }
+}
+
+/// The methods that are built.
+pub fn available_methods() -> MethodList {
+    MethodList {
+        methods: MethodKind::ALL.iter().map(|method| MeasuredMethod::of(describe(*method))).collect(),
+        auto: WHY_LINEAR.to_owned(),
+        response: ResponseMethod {
+            methods: linear(),
+            columns_per_segment: COLUMNS_PER_SEGMENT as u32,
+            nonlinearity_estimate: "0.15 d^2 / h + 2.7 h (1 - cos theta): d the largest movement in mm of a \
+                segment against another or against what stays, h the median distance in mm from the skin to \
+                the nearest held node, theta the largest rotation; an order of magnitude"
+                .to_owned(),
+            linear_range_mm: LINEAR_RANGE_MM,
+        },
+        optimise: OptimiseMethod {
+            methods: linear(),
+            minimises: "sum of (residual / sigma_mm)^2 over translations and angles within their bounds, by \
+                Levenberg and Marquardt's method from rest, on a response of the segments"
+                .to_owned(),
+            certainty: "(J^T J)^-1 of the parameters that are not at a bound, J the derivative of residual / \
+                sigma_mm: right where errors are independent with standard deviation sigma_mm"
+                .to_owned(),
+            undetermined_below: UNDETERMINED,
+        },
+    }
+}

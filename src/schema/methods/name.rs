@@ -1,0 +1,141 @@
+//! The names of methods and of elements.
+
+use serde::de::Error;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use utoipa::openapi::schema::{ObjectBuilder, SchemaType};
+use utoipa::openapi::{RefOr, Schema, Type};
+use utoipa::{PartialSchema, ToSchema};
+
+use crate::schema::wire::strict::NOT_AVAILABLE;
+use mechanics::prediction::{ElementChoice, MethodKind};
+
+/// Why `auto` is what it is.
+pub const WHY_LINEAR: &str = "auto: fem_linear, until something chooses between models";
+/// Why a method that was asked for by name is used.
+pub const WHY_ASKED: &str = "asked for by the spec";
+
+/// Words for methods that the first version of the API knew and that were never built.
+const NOT_BUILT: [&str; 5] =
+    ["fem_corotational", "fem_neo_hookean", "fem_mooney_rivlin", "fem_ogden", "fem_rubin_bodner"];
+
+/// A way of modelling soft tissue.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum MethodName {
+    #[default]
+    Auto,
+    Named(MethodKind),
+}
+
+/// The treatment of cells.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ElementName {
+    /// `stabilised`: no element locks.
+    #[default]
+    Auto,
+    /// Full integration for every shape; locks above a Poisson ratio of 0.45, with a warning.
+    Plain,
+    /// Mean dilatation for hex8 and wedge6, the plain element for tet4.
+    MeanDilatation,
+    /// Mean dilatation for hex8 and wedge6, displacement and stabilised pressure for tet4.
+    Stabilised,
+    /// Tetrahedra with a node in the middle of each edge; refused for other shapes.
+    Quadratic,
+}
+
+impl MethodName {
+    /// The method that is used: what `auto` chooses, or the one asked for.
+    pub fn chosen(self) -> MethodKind {
+        match self {
+            MethodName::Auto => MethodKind::FemLinear,
+            MethodName::Named(method) => method,
+        }
+    }
+
+    /// As it stands in documents.
+    pub fn name(self) -> &'static str {
+        match self {
+            MethodName::Auto => "auto",
+            MethodName::Named(method) => method.name(),
+        }
+    }
+
+    pub fn why(self) -> &'static str {
+        match self {
+            MethodName::Auto => WHY_LINEAR,
+            MethodName::Named(_) => WHY_ASKED,
+        }
+    }
+
+    fn all() -> impl Iterator<Item = MethodName> {
+        let named = MethodKind::ALL.iter().copied().map(MethodName::Named);
+        std::iter::once(MethodName::Auto).chain(named)
+    }
+}
+
+impl Serialize for MethodName {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.name())
+    }
+}
+
+impl<'de> Deserialize<'de> for MethodName {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let word = String::deserialize(deserializer)?;
+        MethodName::all().find(|method| method.name() == word).ok_or_else(|| {
+            let known: Vec<String> =
+                MethodName::all().map(|method| format!("`{}`", method.name())).collect();
+            let known = known.join(", ");
+            match NOT_BUILT.contains(&word.as_str()) {
+                true => D::Error::custom(format_args!(
+                    "{NOT_AVAILABLE}`{word}` is not built; there are {known}"
+                )),
+                false => D::Error::custom(format_args!(
+                    "unknown variant `{word}`, expected one of {known}"
+                )),
+            }
+        })
+    }
+}
+
+impl PartialSchema for MethodName {
+    fn schema() -> RefOr<Schema> {
+        ObjectBuilder::new()
+            .schema_type(SchemaType::Type(Type::String))
+            .description(Some("A way of modelling soft tissue."))
+            .enum_values(Some(MethodName::all().map(MethodName::name)))
+            .into()
+    }
+}
+
+impl ToSchema for MethodName {}
+
+impl ElementName {
+    /// As it stands in documents.
+    pub fn name(self) -> &'static str {
+        self.choice().name()
+    }
+
+    /// The element of the path.
+    pub fn choice(self) -> ElementChoice {
+        match self {
+            ElementName::Auto => ElementChoice::Auto,
+            ElementName::Plain => ElementChoice::Plain,
+            ElementName::MeanDilatation => ElementChoice::MeanDilatation,
+            ElementName::Stabilised => ElementChoice::Stabilised,
+            ElementName::Quadratic => ElementChoice::Quadratic,
+        }
+    }
+}
+
+impl From<ElementChoice> for ElementName {
+    fn from(choice: ElementChoice) -> Self {
+        match choice {
+            ElementChoice::Auto => ElementName::Auto,
+            ElementChoice::Plain => ElementName::Plain,
+            ElementChoice::MeanDilatation => ElementName::MeanDilatation,
+            ElementChoice::Stabilised => ElementName::Stabilised,
+            ElementChoice::Quadratic => ElementName::Quadratic,
+        }
+    }
+}

@@ -1,0 +1,57 @@
+//! Places in a document as JSON pointers, and one thing wrong at a place.
+
+use std::fmt;
+
+use serde::Serialize;
+use utoipa::ToSchema;
+
+use crate::schema::code::ErrorCode;
+
+/// A JSON pointer (RFC 6901).
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Pointer(String);
+
+impl Pointer {
+    /// The document itself.
+    pub fn root() -> Self {
+        Pointer::default()
+    }
+
+    /// A pointer that is already written out.
+    pub fn from_text(text: &str) -> Self {
+        Pointer(text.to_owned())
+    }
+
+    /// A member of an object here.
+    pub fn key(&self, name: &str) -> Pointer {
+        let escaped = name.replace('~', "~0").replace('/', "~1");
+        Pointer(format!("{}/{escaped}", self.0))
+    }
+
+    /// An entry of an array here.
+    pub fn index(&self, index: usize) -> Pointer {
+        Pointer(format!("{}/{index}", self.0))
+    }
+
+    pub fn as_str(&self) -> &str {
+        &self.0
+    }
+}
+
+impl fmt::Display for Pointer {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(&self.0)
+    }
+}
+
+/// One thing wrong with a document.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, ToSchema)]
+pub struct FieldError {
+    /// JSON pointer (RFC 6901) to the place.
+    pub pointer: String,
+    /// A stable word for the kind of mistake.
+    #[schema(value_type = String)]
+    pub code: ErrorCode,
+    /// One sentence with the numbers.
+    pub detail: String,
+}
