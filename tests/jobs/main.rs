@@ -2,13 +2,11 @@
 
 #![allow(clippy::unwrap_used)]
 
-#[path = "../../mechanics/tests/support/data.rs"]
-mod shared;
-
+mod fuzz;
+mod jobs;
 #[allow(dead_code, reason = "the tests of the formats use the rest")]
 #[path = "../../mechanics/tests/support/samples.rs"]
 mod samples;
-
-mod fuzz;
-mod jobs;
 mod schema;
+#[path = "../support/sources.rs"]
+mod sources;

@@ -1,4 +1,4 @@
 //! Inverse planning.
 
-pub mod plans;
-pub mod scenes;
+mod plans;
+mod scenes;

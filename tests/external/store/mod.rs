@@ -5,4 +5,5 @@ pub mod races;
 pub mod remembered;
 pub mod schema_steps;
 pub mod storage;
+pub mod tenants;
 pub mod transfer;
