@@ -200,3 +200,34 @@ fn words(finding: &Finding) -> [String; 2] {
         None => [codes.join(" "), String::new()],
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// One probe of one method, with this verdict.
+    fn map_of(verdict: Verdict) -> Map {
+        let finding = Finding { verdict, answer: None, refusal: None };
+        let axis = AxisMap {
+            name: "rotation",
+            title: "Rotation",
+            unit: "deg",
+            scene: "a layer",
+            reference: "a closed form",
+            bound_mm: 0.5,
+            values: vec![(1.0, "1".to_owned())],
+            findings: vec![vec![Some(finding)]],
+        };
+        Map { variants: vec!["hex8".to_owned()], axes: vec![axis] }
+    }
+
+    #[test]
+    fn the_picture_names_the_place_of_an_answer_that_is_silently_wrong() {
+        assert!(picture(&map_of(Verdict::Wrong)).contains("SILENTLY WRONG at 1"));
+        for verdict in [Verdict::Good, Verdict::Cautious, Verdict::Warned, Verdict::Refused] {
+            let shown = picture(&map_of(verdict));
+            assert!(!shown.contains("SILENTLY WRONG at"), "{}", verdict.name());
+        }
+        assert!(!picture(&map_of(Verdict::Failed)).contains("SILENTLY WRONG at"));
+    }
+}

@@ -4,17 +4,8 @@
 
 mod deaths;
 mod delays;
-#[allow(dead_code, unused_imports, unused_macros, reason = "the tests of the service use the rest")]
-#[path = "../support/deployments.rs"]
-mod deployments;
-#[allow(dead_code, reason = "the tests of the service use the rest")]
-#[path = "../support/helpers.rs"]
-mod helpers;
-#[path = "../support/invariants.rs"]
-mod invariants;
-#[path = "../support/processes.rs"]
-mod processes;
 mod races;
-#[allow(dead_code, reason = "other tests use the rest")]
-#[path = "../../mechanics/tests/support/data.rs"]
-mod shared;
+#[path = "../support/mod.rs"]
+mod support;
+
+use support::{deployments, helpers, invariants, processes};

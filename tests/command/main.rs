@@ -2,49 +2,21 @@
 
 #![allow(clippy::unwrap_used)]
 
-#[path = "../../mechanics/tests/support/data.rs"]
-mod shared;
+#[path = "../support/program.rs"]
+mod program;
 mod study;
 
 use std::collections::BTreeSet;
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::path::Path;
+use std::process::Output;
 
 use facies::schema::predict::check::CheckDocument;
-use facies::schema::predict::result::ResultDocument;
 use facies::schema::wire::canonical::sha256_hex;
 use mechanics::format::VolumeOutput;
 use mechanics::format::vtk::vtu;
 use mechanics::mesh::{CellShape, Frame, Vector, sample};
-use shared::shared_data;
-
-fn facies(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_facies")).args(arguments).output().unwrap()
-}
-
-fn text(bytes: &[u8]) -> String {
-    String::from_utf8(bytes.to_vec()).unwrap()
-}
-
-fn block() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/block")
-}
-
-fn result(folder: &Path) -> ResultDocument {
-    serde_json::from_slice(&fs::read(folder.join("result.json")).unwrap()).unwrap()
-}
-
-fn path(path: &Path) -> &str {
-    path.to_str().unwrap()
-}
-
-/// A folder with a plan that moves node set `mandible` of the block.
-fn plan_folder(plan: &str) -> tempfile::TempDir {
-    let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("plan.json"), plan).unwrap();
-    folder
-}
+use program::{block, facies, path, plan_folder, result, text};
 
 const FORWARD: &str = r#"{"segments":[{"name":"mandible","translation_mm":[4,0,0]}]}"#;
 
@@ -244,60 +216,4 @@ fn alignment_takes_back_a_rigid_movement() {
     let aligned = compare("icp");
     assert!(aligned.both.max < 1e-6, "{}", aligned.both.max);
     assert!((aligned.unaligned.unwrap().both.mean - 2.0).abs() < 1e-12);
-}
-
-/// A face of the shared data, its sets, and the movement of its jaw.
-struct Face {
-    mesh: &'static str,
-    jaw: &'static str,
-    fixed: &'static str,
-    movement: &'static str,
-}
-
-const SUBJECT: Face = Face {
-    mesh: "face/subject_face.vtu",
-    jaw: "jaw_attached",
-    fixed: "skull_fixed_orig",
-    movement: "[-5,0,0]",
-};
-
-const TEMPLATE: Face = Face {
-    mesh: "face/template_face.vtu",
-    jaw: "mandible_fixed",
-    fixed: "skull_nose_fixed",
-    movement: "[0,5,0]",
-};
-
-/// Largest and mean displacement of the skin in mm.
-fn face_moves(face: &Face, element: &str) -> Option<(f64, f64)> {
-    let mesh = shared_data(face.mesh)?;
-    let movement = face.movement;
-    let jaw = face.jaw;
-    let plan = format!(r#"{{"segments":[{{"name":"{jaw}","translation_mm":{movement}}}]}}"#);
-    let folder = plan_folder(&plan);
-    let (plan, out) = (folder.path().join("plan.json"), folder.path().join("out"));
-    let files = ["predict", "--mesh", path(&mesh), "--plan", path(&plan), "--out", path(&out)];
-    let sets = ["--fixed", face.fixed, "--skin", "outer_skin", "--element", element];
-    let tissue = ["--young-modulus-kpa", "15", "--poisson-ratio", "0.45"];
-    let done = facies(&[&files[..], &sets[..], &tissue[..]].concat());
-    assert_eq!(done.status.code(), Some(0), "{}", text(&done.stderr));
-    let skin = result(&out).statistics.unwrap().skin.nodes;
-    Some((skin.max, skin.mean))
-}
-
-#[test]
-fn real_faces_move_as_an_independent_code_says() {
-    let cases = [
-        (SUBJECT, "mean_dilatation", 4.749, 1.743),
-        (SUBJECT, "plain", 4.773, 1.750),
-        (TEMPLATE, "mean_dilatation", 4.904, 1.843),
-        (TEMPLATE, "plain", 4.930, 1.828),
-    ];
-    for (face, element, largest, mean) in cases {
-        let Some((max, average)) = face_moves(&face, element) else { return };
-        let mesh = face.mesh;
-        // Half a per cent: both codes solve the same equations, and the given numbers have four digits.
-        assert!((max / largest - 1.0).abs() < 0.005, "{mesh}, {element}: largest {max}");
-        assert!((average / mean - 1.0).abs() < 0.005, "{mesh}, {element}: mean {average}");
-    }
 }

@@ -6,7 +6,7 @@ use std::path::Path;
 use facies::schema::study::report::{OutcomeName, ReportDocument, RowStatus};
 use serde_json::{Value, json};
 
-use crate::{block, facies, path, text};
+use crate::program::{block, facies, path, text};
 
 /// The slab at its coarsest with a truth that takes a moment.
 fn spec() -> Value {

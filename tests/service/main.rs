@@ -3,26 +3,10 @@
 
 mod api;
 mod command;
-#[path = "../support/deployments.rs"]
-mod deployments;
 mod faults;
-#[allow(dead_code, reason = "the tests under fire use the rest")]
-#[path = "../support/helpers.rs"]
-mod helpers;
-#[allow(dead_code, reason = "the tests under fire use the rest")]
-#[path = "../support/invariants.rs"]
-mod invariants;
-#[path = "../support/partition.rs"]
-mod partition;
-#[allow(dead_code, reason = "the tests under fire use the rest")]
-#[path = "../support/processes.rs"]
-mod processes;
-#[allow(dead_code, reason = "the tests of the formats use the rest")]
-#[path = "../../mechanics/tests/support/samples.rs"]
-mod samples;
-#[path = "../../mechanics/tests/support/data.rs"]
-#[allow(dead_code, reason = "other tests use the rest")]
-mod shared;
-mod store;
+#[path = "../support/mod.rs"]
+mod support;
 mod traces;
 mod worker;
+
+use support::{collector, connections, deployments, helpers, invariants, processes, rows, samples};

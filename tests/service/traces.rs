@@ -3,135 +3,18 @@
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
-use axum::body::Bytes;
-use axum::routing::post;
-use opentelemetry_proto::tonic::collector::trace::v1::ExportTraceServiceRequest;
-use opentelemetry_proto::tonic::common::v1::{KeyValue, any_value};
 use opentelemetry_proto::tonic::trace::v1::span::SpanKind;
-use prost::Message as _;
 use reqwest::StatusCode;
 use serde_json::Value;
 use tempfile::TempDir;
 use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
 use tokio::net::{TcpListener, TcpStream};
-use tokio::sync::watch;
 
-use crate::deployments::Deployment;
-use crate::helpers::{SMALL, Server, ask, serve, serve_shared, spec};
-use crate::worker::hosts::Worker;
-
-const TRACE: &str = "0af7651916cd43dd8448eb211c80319c";
-const CLIENT: &str = "b7ad6b7169203331";
-
-/// A span in words.
-#[derive(Clone, Debug)]
-struct Span {
-    name: String,
-    trace: String,
-    id: String,
-    parent: String,
-    kind: SpanKind,
-    begun: u64,
-    ended: u64,
-    attributes: BTreeMap<String, String>,
-    /// The process that it comes from.
-    service: BTreeMap<String, String>,
-}
-
-/// What was told: the spans, and every byte.
-#[derive(Default)]
-struct Told {
-    spans: Vec<Span>,
-    bytes: Vec<u8>,
-}
-
-struct Collector {
-    address: String,
-    told: watch::Receiver<Told>,
-}
-
-impl Collector {
-    async fn start() -> Collector {
-        let (teller, told) = watch::channel(Told::default());
-        let take = post(async move |body: Bytes| {
-            let request = ExportTraceServiceRequest::decode(&*body).unwrap();
-            teller.send_modify(|told| {
-                told.spans.extend(spans_of(request));
-                told.bytes.extend(&body);
-            });
-        });
-        let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
-        let address = format!("http://{}", listener.local_addr().unwrap());
-        let answers = axum::Router::new().route("/v1/traces", take);
-        tokio::spawn(async move { axum::serve(listener, answers).await.unwrap() });
-        Collector { address, told }
-    }
-
-    /// The span of this name, once it was told.
-    async fn span(&mut self, name: &str) -> Span {
-        let is_told = |told: &Told| told.spans.iter().any(|span| span.name == name);
-        let wait = tokio::time::timeout(Duration::from_secs(30), self.told.wait_for(is_told));
-        let told = wait.await.unwrap_or_else(|_| panic!("no span {name} was told")).unwrap();
-        told.spans.iter().find(|span| span.name == name).unwrap().clone()
-    }
-
-    /// The spans inside another one, in their order.
-    fn inside(&self, parent: &Span) -> Vec<Span> {
-        let told = self.told.borrow();
-        let inside = told.spans.iter().filter(|span| span.parent == parent.id);
-        let mut inside: Vec<Span> = inside.cloned().collect();
-        inside.sort_by_key(|span| span.begun);
-        inside
-    }
-}
-
-fn spans_of(request: ExportTraceServiceRequest) -> Vec<Span> {
-    let mut spans = Vec::new();
-    for group in request.resource_spans {
-        let service = words(group.resource.unwrap().attributes);
-        for span in group.scope_spans.into_iter().flat_map(|scope| scope.spans) {
-            spans.push(Span {
-                kind: span.kind(),
-                trace: hex(&span.trace_id),
-                id: hex(&span.span_id),
-                parent: hex(&span.parent_span_id),
-                name: span.name,
-                begun: span.start_time_unix_nano,
-                ended: span.end_time_unix_nano,
-                attributes: words(span.attributes),
-                service: service.clone(),
-            });
-        }
-    }
-    spans
-}
-
-fn hex(bytes: &[u8]) -> String {
-    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
-}
-
-fn words(attributes: Vec<KeyValue>) -> BTreeMap<String, String> {
-    let word = |attribute: KeyValue| {
-        let value = match attribute.value.unwrap().value.unwrap() {
-            any_value::Value::StringValue(text) => text,
-            any_value::Value::IntValue(number) => number.to_string(),
-            other => panic!("{other:?}"),
-        };
-        (attribute.key, value)
-    };
-    attributes.into_iter().map(word).collect()
-}
+use crate::collector::{CLIENT, Collector, TRACE, job_in_a_trace};
+use crate::helpers::{SMALL, Server, ask, serve};
 
 fn attributes(pairs: &[(&str, &str)]) -> BTreeMap<String, String> {
     pairs.iter().map(|(name, value)| ((*name).to_owned(), (*value).to_owned())).collect()
-}
-
-/// Posts a job in the trace of a client; its id, once it has ended.
-async fn job_in_a_trace(server: &Server, case: &str) -> String {
-    let request = server.post("/v1/jobs").header("prefer", "wait=30").json(&spec(case, 1.0));
-    let request = request.header("traceparent", format!("00-{TRACE}-{CLIENT}-01"));
-    let job = ask(request).await.expect(StatusCode::OK);
-    job["id"].as_str().unwrap().to_owned()
 }
 
 #[tokio::test]
@@ -227,24 +110,6 @@ async fn what_has_ended_is_told_before_the_process_ends() {
     assert!(server.terminate_within(Duration::from_secs(10)));
     let told = &collector.told.borrow_and_update().spans;
     assert!(told.iter().any(|span| span.name == "GET /v1/limits"), "{told:?}");
-}
-
-#[tokio::test]
-async fn a_worker_on_another_host_continues_the_trace() {
-    let Some(on) = Deployment::shared().await else { return };
-    let mut collector = Collector::start().await;
-    let traced = ["--traces", &collector.address];
-    let mut command = serve_shared(&on);
-    command.args(["--workers", "0"]).args(traced);
-    let api = Server::start_command(command, TempDir::new().unwrap());
-    let (_worker, _said) = Worker::start_with(&on, &traced);
-    let case = api.case(&SMALL).await;
-    job_in_a_trace(&api, &case).await;
-    let posted = collector.span("POST /v1/jobs").await;
-    let attempt = collector.span("job predict").await;
-    assert_eq!((attempt.trace.as_str(), &attempt.parent), (TRACE, &posted.id));
-    let instance = |span: &Span| span.service["service.instance.id"].clone();
-    assert_ne!(instance(&posted), instance(&attempt));
 }
 
 /// A collector that does something to everyone who connects, for as long as the test lives.

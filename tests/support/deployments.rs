@@ -17,7 +17,7 @@ use tempfile::TempDir;
 use tokio::net::TcpListener;
 use tokio::sync::Mutex;
 
-use crate::shared::say_skipped;
+use crate::support::external::{Missing, REQUIRE_SERVERS};
 
 const BUCKET: &str = "faces";
 const KEY: &str = "test-key";
@@ -47,13 +47,8 @@ rm -rf "$3"
 "#;
 
 impl Cluster {
-    /// `None`, and a word about it, where PostgreSQL is not installed.
-    pub fn start() -> Option<Cluster> {
-        let Some(binaries) = binaries() else {
-            say_skipped("there is no initdb of PostgreSQL here");
-            assert!(std::env::var_os("FACIES_REQUIRE_SERVERS").is_none(), "PostgreSQL is required");
-            return None;
-        };
+    pub fn start() -> Result<Cluster, Missing> {
+        let binaries = binaries().ok_or_else(no_postgresql)?;
         let folder = TempDir::new().unwrap().keep();
         let socket = folder.join("pg");
         let options = format!("-c listen_addresses= -k {} -c fsync=off -N 300", socket.display());
@@ -71,7 +66,7 @@ impl Cluster {
         BufReader::new(keeper.stdout.take().unwrap()).read_line(&mut line).unwrap();
         let log = || std::fs::read_to_string(folder.join("keeper.log")).unwrap();
         assert_eq!(line, "ready\n", "{}", log());
-        Some(Cluster { folder, binaries, keeper })
+        Ok(Cluster { folder, binaries, keeper })
     }
 
     pub fn address(&self, database: &str) -> String {
@@ -120,10 +115,15 @@ fn binaries() -> Option<PathBuf> {
     folders.find(|folder| folder.join("initdb").exists() && folder.join("pg_ctl").exists())
 }
 
+fn no_postgresql() -> Missing {
+    let why = "there is no initdb of PostgreSQL here".to_owned();
+    Missing { why, required_by: Some(REQUIRE_SERVERS) }
+}
+
 /// The one for all tests.
-fn cluster() -> Option<&'static Cluster> {
+fn cluster() -> Result<&'static Cluster, Missing> {
     static CLUSTER: OnceLock<Option<Cluster>> = OnceLock::new();
-    CLUSTER.get_or_init(Cluster::start).as_ref()
+    CLUSTER.get_or_init(|| Cluster::start().ok()).as_ref().ok_or_else(no_postgresql)
 }
 
 async fn execute_on(address: &str, sql: &str) {
@@ -187,16 +187,16 @@ impl Deployment {
         Deployment { places: Places::in_folder(&folder.path().join("data")), folder }
     }
 
-    /// PostgreSQL and S3, with the tables made; `None` where there is no PostgreSQL.
-    pub async fn shared() -> Option<Deployment> {
+    /// PostgreSQL and S3, with the tables made.
+    pub async fn shared() -> Result<Deployment, Missing> {
         let deployment = Deployment::empty().await?;
         Store::migrate(&deployment.places).await.unwrap();
-        Some(deployment)
+        Ok(deployment)
     }
 
     /// The same without tables.
-    pub async fn empty() -> Option<Deployment> {
-        Some(Deployment::on(&cluster()?.database().await))
+    pub async fn empty() -> Result<Deployment, Missing> {
+        Ok(Deployment::on(&cluster()?.database().await))
     }
 
     /// A database by its address, and a place of its own for bytes.
@@ -300,24 +300,3 @@ impl Deployment {
         }
     }
 }
-
-/// Writes the same tests for both: each is given a deployment of its own.
-macro_rules! on_both {
-    ($($test:ident)*) => {
-        mod embedded {
-            $(#[tokio::test(flavor = "multi_thread")]
-            async fn $test() {
-                super::$test($crate::deployments::Deployment::embedded().await).await;
-            })*
-        }
-        mod shared {
-            $(#[tokio::test(flavor = "multi_thread")]
-            async fn $test() {
-                if let Some(deployment) = $crate::deployments::Deployment::shared().await {
-                    super::$test(deployment).await;
-                }
-            })*
-        }
-    };
-}
-pub(crate) use on_both;

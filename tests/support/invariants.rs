@@ -106,3 +106,13 @@ pub async fn works_on(server: &Server) {
     let id = accepted(server, &spec(&case, x)).await;
     succeeds(server, &id, 1).await;
 }
+
+/// Told to come back; otherwise it is answered.
+pub fn is_shed(answer: &Answer) -> bool {
+    if answer.status == StatusCode::OK {
+        return false;
+    }
+    answer.problem(503, "not-ready");
+    assert!(!answer.header("retry-after").is_empty());
+    true
+}

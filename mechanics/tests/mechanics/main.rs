@@ -1,24 +1,21 @@
-//! Mechanics, formats and statistics: no server, no database.
+//! Mechanics, formats and statistics: no server, no database, nothing that is not part of the project.
 
 #![allow(clippy::unwrap_used)]
 
 mod format;
+mod golden;
+mod image;
 mod material;
 mod mesh;
 mod model;
 mod optimisation;
 mod prediction;
-#[path = "../support/data.rs"]
-mod shared;
-mod solver;
-mod study;
-mod validation;
-
-mod golden;
-mod image;
 mod registration;
 mod response;
-#[path = "../support/samples.rs"]
-mod samples;
-mod scenes;
-mod surfaces;
+mod solver;
+mod study;
+#[path = "../support/mod.rs"]
+mod support;
+mod validation;
+
+use support::{samples, scenes, surfaces};

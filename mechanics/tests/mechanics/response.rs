@@ -1,25 +1,19 @@
 //! Plan response: its sum of columns is the direct solution, for every movement.
 
-use mechanics::boundary::NodeSelection;
-use mechanics::format::{Mesh, ReadLimits, read};
 use mechanics::mesh::half_head::half_head;
 use mechanics::mesh::{CellShape, Vector, VolumeMesh, sample};
-use mechanics::plan::{PlannedSegment, RigidMovement};
+use mechanics::plan::RigidMovement;
 use mechanics::prediction::{
-    Case, CaseSegment, ElementChoice, Load, Method, MethodKind, ModelError, Plan, Prediction,
-    Prescribed, Scene, Settings, Sliding, SlidingNormal, SolverError, predict,
+    Case, CaseSegment, ElementChoice, Load, Method, MethodKind, ModelError, Plan, Prescribed,
+    Scene, Settings, Sliding, SlidingNormal, SolverError,
 };
 use mechanics::progress::Unobserved;
 use mechanics::response::linearity::LINEAR_RANGE_MM;
-use mechanics::response::{Columns, Linearity, ResponseError, build, coefficients};
+use mechanics::response::{Linearity, ResponseError, build, coefficients};
 use mechanics::study::methods;
 
 use crate::scenes::{case_of, material, set};
-use crate::shared::shared_data;
-
-fn tight() -> Settings {
-    Settings { relative_residual: 1e-12, ..Settings::default() }
-}
+use crate::support::responses::{at_rest, columns, differences, direct, movements, tight};
 
 fn segment(name: &str) -> CaseSegment {
     CaseSegment { name: name.to_owned(), nodes: set(name) }
@@ -58,51 +52,6 @@ fn head() -> Case {
     }
 }
 
-/// 25 mm and 30 degrees about an oblique axis, and something else.
-fn movements() -> Vec<RigidMovement> {
-    let axis = Vector::new(1.0, -2.0, 3.0).normalize();
-    let turn = nalgebra::Rotation3::new(axis * 30_f64.to_radians()).into_inner();
-    let pivot = Vector::new(10.0, -30.0, 5.0);
-    let along = Vector::new(-2.0, 1.0, 4.0).normalize() * 25.0;
-    let far = RigidMovement::new(turn, pivot - turn * pivot + along).unwrap();
-    let angles = Vector::new(7.0, -5.0, 11.0).map(f64::to_radians);
-    let near = RigidMovement::about_pivot(angles, pivot, Vector::new(1.5, -0.7, 5.0));
-    vec![far, near]
-}
-
-fn plan_of(case: &Case, movements: &[RigidMovement]) -> Plan {
-    let names = case.segments.iter().map(|segment| segment.name.clone());
-    let planned = names.zip(movements);
-    let segments = planned.map(|(name, &movement)| PlannedSegment { name, movement }).collect();
-    Plan { segments, ..Plan::default() }
-}
-
-fn direct(case: &Case, movements: &[RigidMovement], settings: &Settings) -> Prediction {
-    let scene = Scene::new(case, &plan_of(case, movements), settings).unwrap();
-    predict(&scene, &Unobserved).unwrap()
-}
-
-fn at_rest(case: &Case, settings: &Settings) -> Scene {
-    Scene::new(case, &Plan::default(), settings).unwrap()
-}
-
-fn columns(case: &Case, settings: &Settings) -> Columns {
-    build(&at_rest(case, settings), &[], &Unobserved).unwrap()
-}
-
-/// The largest distance in mm between a direct solution and sums of columns in f64 and in f32.
-fn differences(case: &Case) -> [f64; 2] {
-    let columns = columns(case, &tight());
-    let exact = direct(case, &movements(), &tight()).displacement;
-    let response = columns.to_response();
-    let largest = |moved: Vec<Vector>| {
-        assert_eq!(moved.len(), columns.nodes.len());
-        let nodes = columns.nodes.iter().map(|&node| exact[node as usize]);
-        nodes.zip(moved).map(|(u, v)| (u - v).norm()).fold(0.0, f64::max)
-    };
-    [largest(columns.apply(&movements())), largest(response.apply(&movements()))]
-}
-
 #[test]
 fn the_sum_of_columns_is_the_direct_solution_with_sliding_walls() {
     for shape in [CellShape::Tet4, CellShape::Hex8] {
@@ -116,23 +65,6 @@ fn the_sum_of_columns_is_the_direct_solution_with_sliding_walls() {
 #[test]
 fn the_sum_of_columns_is_the_direct_solution_on_a_half_head() {
     let [in_f64, in_f32] = differences(&head());
-    assert!(in_f64 < 1e-7 && in_f32 < 1e-4, "{in_f64:e} {in_f32:e}");
-}
-
-#[test]
-fn the_sum_of_columns_is_the_direct_solution_on_the_face_like_shell() {
-    let Some(path) = shared_data("shell/30k.vtu") else { return };
-    let read = read(&std::fs::read(path).unwrap(), &ReadLimits::default()).unwrap();
-    let Mesh::Volume(mesh) = read.mesh else { panic!("a shell is a volume mesh") };
-    let label = |value| NodeSelection::Label { array: "tag".to_owned(), value };
-    let bone = |name: &str, value| CaseSegment { name: name.to_owned(), nodes: label(value) };
-    let case = Case {
-        skin: Some(label(5)),
-        segments: vec![bone("maxilla", 2), bone("mandible", 3)],
-        fixed: vec![label(1), label(4)],
-        ..case_of(mesh, material(15.0, 0.46))
-    };
-    let [in_f64, in_f32] = differences(&case);
     assert!(in_f64 < 1e-7 && in_f32 < 1e-4, "{in_f64:e} {in_f32:e}");
 }
 

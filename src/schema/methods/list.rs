@@ -86,6 +86,11 @@ pub struct MeasuredMethod {
 impl MeasuredMethod {
     fn of(method: MethodDocument) -> Self {
         let measured = measured::measured(method.name.name());
+        MeasuredMethod::with(method, measured)
+    }
+
+    /// A method with these rows of the table, or why there is none.
+    pub(super) fn with(method: MethodDocument, measured: Vec<MeasuredDocument>) -> Self {
         let not_measured = measured.is_empty().then(|| NOT_MEASURED.to_owned());
         MeasuredMethod { method, measured, not_measured }
     }

@@ -1,43 +1,20 @@
-//! Materials from an image, from the documents to the result files; and a real CT.
+//! Materials from an image, from the documents to the result files.
 
-use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
 use facies::jobs::predict::check;
 use facies::jobs::work::Workplace;
-use facies::jobs::{
-    JobError, JobInput, JobOutput, MeshSource, PredictInput, SourceError, StoredMesh, StoredShape,
-    work,
-};
+use facies::jobs::{JobError, JobInput, JobOutput, PredictInput, StoredShape, work};
 use facies::schema::Limits;
-use facies::schema::case::document::LengthUnit;
-use mechanics::format::{Mesh, ReadLimits, ReadMesh, read};
 use mechanics::image::{ImageVolume, Placement, Voxels};
-use mechanics::mesh::half_head::half_head;
 use mechanics::mesh::sample::block;
-use mechanics::mesh::{CellShape, Frame, TriangleSurface, Vector, VolumeMesh};
+use mechanics::mesh::{CellShape, Frame, Vector};
 use mechanics::progress::Unobserved;
 use serde_json::{Value, json};
 
-use crate::shared::shared_data;
-
-struct Meshes(BTreeMap<String, StoredMesh>);
-
-impl MeshSource for Meshes {
-    fn mesh(&self, id: &str) -> Result<StoredMesh, SourceError> {
-        self.0.get(id).cloned().ok_or_else(|| SourceError::Unknown { id: id.to_owned() })
-    }
-
-    fn predicted_skin(&self, job: &str) -> Result<StoredMesh, SourceError> {
-        self.mesh(job)
-    }
-}
-
-fn stored(shape: StoredShape, frame: Option<Frame>) -> StoredMesh {
-    let units = (!matches!(shape, StoredShape::Image(_))).then_some(LengthUnit::Mm);
-    StoredMesh { shape, frame, units, warnings: Vec::new(), sha256: format!("sha {frame:?}") }
-}
+use crate::samples::{read_default, surface};
+use crate::sources::{Meshes, stored};
 
 /// 0 HU up to x = 30 and 100 HU beyond, in the frame LPS; the same place in RAS.
 fn image(frame: Frame) -> ImageVolume {
@@ -176,7 +153,7 @@ fn an_image_in_the_other_frame_shows_the_same_tissue() {
     assert_eq!(of(&here), of(&there));
     // The hash tells them apart, and with it the field data of their files.
     assert_ne!(here.result.provenance.spec_hash, there.result.provenance.spec_hash);
-    let points = |bytes: &[u8]| surface_of(read(bytes, &ReadLimits::default()).unwrap()).points;
+    let points = |bytes: &[u8]| surface(read_default(bytes)).points;
     assert_eq!(points(&skin), points(&fs::read(out.path().join("skin.vtp")).unwrap()));
     // Taken as it stands, it lies beside the mesh.
     other["frame"] = json!("unspecified");
@@ -184,13 +161,6 @@ fn an_image_in_the_other_frame_shows_the_same_tissue() {
     unmarked.0.get_mut("ct in RAS").unwrap().frame = None;
     let found = check(&input(&other, &json!({})), &unmarked, &Limits::default());
     assert!(found.err().unwrap().to_string().contains("no cell lies inside the image"));
-}
-
-fn surface_of(read: ReadMesh) -> TriangleSurface {
-    match read.mesh {
-        Mesh::Surface(surface) => surface,
-        _ => panic!("a surface was expected"),
-    }
 }
 
 #[test]
@@ -216,125 +186,4 @@ fn the_result_tells_how_much_of_each_tissue_there_is() {
     let without = run(&meshes(), &plain, out.path());
     assert!(without.result.statistics.unwrap().imaged.is_none());
     assert_ne!(without.result.provenance.spec_hash, done.result.provenance.spec_hash);
-}
-
-// The real CT.
-
-const CT: &str = "head_ct/headsq_quarter_hu.nrrd";
-
-fn ct() -> Option<(ImageVolume, Option<Frame>)> {
-    let read = read(&fs::read(shared_data(CT)?).unwrap(), &ReadLimits::default()).unwrap();
-    let frame = read.frame;
-    match read.mesh {
-        Mesh::Image(image) => Some((image, frame)),
-        _ => panic!("an image was expected"),
-    }
-}
-
-/// What a closed surface encloses, in cm³.
-fn enclosed(surface: &TriangleSurface) -> f64 {
-    let cone = |corners: [Vector; 3]| corners[0].dot(&corners[1].cross(&corners[2])) / 6.0;
-    (0..surface.triangles.len()).map(|t| cone(surface.corners(t))).sum::<f64>() / 1000.0
-}
-
-/// What lies above a threshold, in cm³: whole voxels.
-fn above(image: &ImageVolume, threshold: f64) -> f64 {
-    let count = match image.voxels() {
-        Voxels::I16(values) => values.iter().filter(|&&v| f64::from(v) >= threshold).count(),
-        Voxels::F32(values) => values.iter().filter(|&&v| f64::from(v) >= threshold).count(),
-    };
-    count as f64 * image.voxel_volume() / 1000.0
-}
-
-#[test]
-fn a_real_ct_has_one_value_everywhere_on_each_surface_that_was_taken_from_it() {
-    let Some((image, frame)) = ct() else { return };
-    assert_eq!((image.size(), frame), ([64, 64, 93], Some(Frame::Lps)));
-    assert_eq!((image.spacing(), image.range()), ([3.2, 3.2, 1.5], (-1024.0, 2902.0)));
-    // The thresholds of the surfaces; what a surface encloses in cm³, flat triangles and open edges included,
-    // lies this close to what whole voxels above the threshold fill.
-    for (file, threshold, closeness) in [("skin", -524.0, 0.05), ("bone", 226.0, 0.08)] {
-        let Some(path) = shared_data(&format!("head_ct/headsq_quarter_{file}.stl")) else { return };
-        let surface = surface_of(read(&fs::read(path).unwrap(), &ReadLimits::default()).unwrap());
-        let mut off: Vec<f64> = surface.points.iter().filter_map(|x| image.at(x)).collect();
-        off.iter_mut().for_each(|value| *value = (*value - threshold).abs());
-        off.sort_by(f64::total_cmp);
-        let (inside, all) = (off.len(), surface.points.len());
-        // The rest caps the cut at the ends of the scan, half a voxel beyond the last centres.
-        assert!(inside * 10 > all * 9, "{file}: {inside} of {all}");
-        let (surface, voxels) = (enclosed(&surface), above(&image, threshold));
-        println!(
-            "{file}: {inside} of {all} points, off {threshold} HU by {:.1e} (median) and {:.1e} (p95); \
-             {surface:.1} cm3 enclosed, {voxels:.1} cm3 of voxels",
-            off[inside / 2],
-            off[inside * 95 / 100],
-        );
-        // Single precision of positions in a gradient of hundreds of HU a mm.
-        assert!(off[inside * 95 / 100] < 0.01, "{file}: {}", off[inside * 95 / 100]);
-        assert!((surface / voxels - 1.0).abs() < closeness, "{file}: {surface} {voxels}");
-    }
-}
-
-/// The made half head, stretched over the front of the head that was scanned.
-fn head_in_the_ct() -> VolumeMesh {
-    let mut mesh = half_head(4).mesh;
-    let first = mesh.nodes[0];
-    let bounds = mesh.nodes.iter().fold((first, first), |(a, b), x| (a.inf(x), b.sup(x)));
-    let (low, high) = (Vector::new(24.0, 20.0, 1.0), Vector::new(184.0, 110.0, 137.0));
-    let scale = (high - low).component_div(&(bounds.1 - bounds.0));
-    mesh.nodes.iter_mut().for_each(|x| *x = low + (*x - bounds.0).component_mul(&scale));
-    mesh
-}
-
-#[test]
-fn a_real_ct_gives_a_prediction_its_materials() {
-    let Some((image, frame)) = ct() else { return };
-    let volume = stored(StoredShape::Volume(head_in_the_ct().into()), None);
-    let image = stored(StoredShape::Image(image.into()), frame);
-    let sources = Meshes([("head".to_owned(), volume), ("ct".to_owned(), image)].into());
-    // METHODS row 16: muscle in embedding tissue.
-    let mut case = json!({
-        "units": "mm", "frame": "LPS", "volume": "head", "skin": {"node_set": "skin"},
-        "segments": [{"name": "bone", "nodes": {"node_set": "mandible"}}],
-        "fixed": [{"node_set": "skull"}, {"node_set": "maxilla"}, {"node_set": "rim"}],
-        "materials": {"*": {"young_modulus_kpa": 50, "poisson_ratio": 0.455}},
-    });
-    let skin = |case: &Value| {
-        let out = tempfile::tempdir().unwrap();
-        let spec = json!({"outputs": ["skin.vtp"]});
-        let mut input = input(case, &spec);
-        input.plan = serde_json::from_value(
-            json!({"segments": [{"name": "bone", "translation_mm": [0, -6, 0]}]}),
-        )
-        .unwrap();
-        let place = Workplace { sources: &sources, limits: &Limits::default(), out: out.path() };
-        let done = work(&JobInput::Predict(input), &place, &Unobserved).unwrap();
-        let file = fs::read(out.path().join("skin.vtp")).unwrap();
-        (surface_of(read(&file, &ReadLimits::default()).unwrap()).points, done.result)
-    };
-    let (plain, _) = skin(&case);
-    for mixing in ["mean", "fraction"] {
-        case["hounsfield"] = json!({"image": "ct", "samples": 512, "mixing": mixing, "tissues": [
-            {"name": "muscle", "from_hu": -30, "to_hu": 100,
-             "material": {"young_modulus_kpa": 300, "poisson_ratio": 0.44}}]});
-        let (points, result) = skin(&case);
-        let imaged = result.statistics.unwrap().imaged.unwrap();
-        assert_eq!(imaged.outside_cells, 0);
-        let share = imaged.tissues["muscle"].volume_share;
-        assert!(share > 0.1 && share < 0.9, "{share}");
-        let mut apart: Vec<f64> =
-            points.iter().zip(&plain).map(|(x, other)| (x - other).norm()).collect();
-        apart.sort_by(f64::total_cmp);
-        let at = |percent: usize| apart[(apart.len() - 1) * percent / 100];
-        println!(
-            "{mixing}: {:.1} % muscle; skin apart from that of one material by {:.3} mm (median), \
-             {:.3} (p95), {:.3} (largest), jaw 6 mm forward",
-            100.0 * share,
-            at(50),
-            at(95),
-            at(100)
-        );
-        // Different, and by less than the jaw moves.
-        assert!(at(95) > 0.05 && at(100) < 6.0, "{} {}", at(95), at(100));
-    }
 }

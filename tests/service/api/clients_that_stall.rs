@@ -2,27 +2,14 @@
 
 use reqwest::StatusCode;
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
-use tokio::net::{TcpSocket, TcpStream};
 
+use crate::connections::{get, send};
 use crate::helpers::{Block, SMALL, Server, ask};
 use crate::invariants::{accepted, succeeds, tagged, works_on};
 use crate::processes::{descriptors, faulty, is_stopped, signal, slots, until};
 
 /// Some megabytes.
 const LARGE: Block = Block { cells: [44, 44, 30] };
-
-/// Sends a request on a connection that takes little before it is read from.
-pub async fn send(server: &Server, request: &str) -> TcpStream {
-    let socket = TcpSocket::new_v4().unwrap();
-    socket.set_recv_buffer_size(4096).unwrap();
-    let mut stream = socket.connect(server.host().parse().unwrap()).await.unwrap();
-    stream.write_all(request.as_bytes()).await.unwrap();
-    stream
-}
-
-pub fn get(path: &str) -> String {
-    format!("GET {path} HTTP/1.1\r\nHost: x\r\n\r\n")
-}
 
 fn sockets(server: &Server) -> usize {
     let files = descriptors(server.process());

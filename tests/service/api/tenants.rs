@@ -1,23 +1,10 @@
 //! Tenants do not know of each other: whatever a key asks for, it finds its own.
 
-use facies::schema::key::{KeyDocument, Scope};
-use facies::store::{Dismissal, Enqueued, Store};
 use reqwest::{Method, RequestBuilder, StatusCode};
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
-use crate::deployments::{Deployment, on_both};
 use crate::helpers::{Answer, SMALL, Server, ask, spec};
-use crate::store::queue::{LEASE, enqueue, file, new_job};
-use crate::store::storage::mesh;
-
-on_both! {
-    tenants_take_turns_and_studies_come_last
-    what_is_older_than_its_tenant_keeps_it_is_erased
-    a_job_that_was_lost_is_accepted_again_when_somebody_says_so
-    equal_things_of_two_tenants_are_two_things
-    a_key_that_was_ended_is_not_let_in
-}
 
 /// A service that asks for keys, and where it is run from.
 pub struct Hospital {
@@ -300,116 +287,4 @@ async fn administration_asks_for_its_key() {
     assert_eq!(told, json!([{"name": "a", "retention_days": 30}]));
     let set = server.client.put(format!("{tenants}/A%20b")).json(&json!({}));
     ask(set.bearer_auth(KEY)).await.problem(400, "invalid-parameter");
-}
-
-async fn claimed(store: &Store) -> String {
-    store.claim(LEASE).await.unwrap().unwrap().lease.job
-}
-
-async fn tenants_take_turns_and_studies_come_last(on: Deployment) {
-    let store = on.open().await;
-    let (greedy, modest) = (store.of_tenant("greedy"), store.of_tenant("modest"));
-    let mut study = new_job("{}", "study");
-    study.priority = 1;
-    assert_eq!(greedy.enqueue(&study, 100).await.unwrap(), Enqueued::Accepted);
-    let mut many = Vec::new();
-    for number in 0..4 {
-        many.push(enqueue(&greedy, &format!("job {number}")).await);
-    }
-    assert_eq!(claimed(&store).await, many[0], "a study waits for what somebody waits for");
-    let few = [enqueue(&modest, "job 0").await, enqueue(&modest, "job 1").await];
-    for wanted in [&few[0], &many[1], &few[1], &many[2], &many[3], &study.id] {
-        assert_eq!(claimed(&store).await, *wanted);
-    }
-    assert!(store.claim(LEASE).await.unwrap().is_none());
-    let full = modest.enqueue(&new_job("{}", "job 3"), 0).await.unwrap();
-    assert_eq!(full, Enqueued::QueueFull);
-}
-
-async fn what_is_older_than_its_tenant_keeps_it_is_erased(on: Deployment) {
-    let store = on.open().await;
-    let tenants = ["keeps", "erases"].map(|name| store.of_tenant(name));
-    let mut jobs = Vec::new();
-    for tenant in &tenants {
-        let old = enqueue(tenant, "old").await;
-        let lease = store.claim(LEASE).await.unwrap().unwrap().lease;
-        assert!(store.publish(&lease, "{}", &[file("a result")]).await.unwrap());
-        let waiting = enqueue(tenant, "waits").await;
-        let mesh = mesh("alone", "units=mm");
-        assert!(tenant.add_mesh(&mesh).await.unwrap());
-        jobs.push([old, waiting, mesh.id]);
-    }
-    tenants[1].retain(Some(30)).await.unwrap();
-    assert_eq!(store.erase_old().await.unwrap(), 0);
-    on.execute("UPDATE jobs SET created = 1, updated = 1, finished = 1 WHERE finished IS NOT NULL")
-        .await;
-    on.execute("UPDATE meshes SET created = 1").await;
-    assert_eq!(store.erase_old().await.unwrap(), 2);
-    let there = async |tenant: &Store, ids: &[String; 3]| {
-        [
-            tenant.job(&ids[0]).await.unwrap().is_some(),
-            tenant.job(&ids[1]).await.unwrap().is_some(),
-            tenant.mesh(&ids[2]).await.unwrap().is_some(),
-        ]
-    };
-    assert_eq!(there(&tenants[0], &jobs[0]).await, [true, true, true]);
-    assert_eq!(there(&tenants[1], &jobs[1]).await, [false, true, false]);
-    assert!(tenants[1].erased(&jobs[1][0]).await.unwrap().is_some());
-    assert!(tenants[0].erased(&jobs[1][0]).await.unwrap().is_none());
-}
-
-async fn a_job_that_was_lost_is_accepted_again_when_somebody_says_so(on: Deployment) {
-    let store = on.open().await;
-    let own = store.of_tenant("a");
-    let (lost, wrong) = (enqueue(&own, "lost").await, enqueue(&own, "wrong").await);
-    let error = |class: &str| json!({"type": "worker-lost", "class": class}).to_string();
-    let lease = store.claim(LEASE).await.unwrap().unwrap().lease;
-    assert!(store.lose(&lease, 1, &error("infrastructure")).await.unwrap());
-    let lease = store.claim(LEASE).await.unwrap().unwrap().lease;
-    assert!(store.fail(&lease, &error("numerical")).await.unwrap());
-    let listed = store.lost_jobs(None, 9).await.unwrap();
-    assert_eq!(listed.iter().map(|row| &row.id).collect::<Vec<_>>(), [&lost]);
-    assert_eq!(listed[0].tenant, "a");
-    assert!(!store.requeue(&wrong).await.unwrap());
-    assert!(store.requeue(&lost).await.unwrap());
-    assert!(!store.requeue(&lost).await.unwrap());
-    let claim = store.claim(LEASE).await.unwrap().unwrap();
-    assert_eq!((claim.lease.job, claim.lease.attempt), (lost, 2));
-}
-
-async fn equal_things_of_two_tenants_are_two_things(on: Deployment) {
-    let store = on.open().await;
-    let (a, b) = (store.of_tenant("a"), store.of_tenant("b"));
-    let (first, second) = (mesh("same", "units=mm"), mesh("same", "units=mm"));
-    assert!(a.add_mesh(&first).await.unwrap() && b.add_mesh(&second).await.unwrap());
-    let again = mesh("same", "units=mm");
-    assert!(!a.add_mesh(&again).await.unwrap(), "within a tenant they are one");
-    let found = b.mesh_by_content(&second.sha256, &second.options).await.unwrap().unwrap();
-    assert_eq!(found.id, second.id);
-    let (one, other) = (enqueue(&a, "same").await, enqueue(&b, "same").await);
-    assert_eq!(a.enqueue(&new_job("{}", "same"), 9).await.unwrap(), Enqueued::Known(one.clone()));
-    assert_eq!(b.job(&other).await.unwrap().unwrap().spec_hash, "same");
-    assert_eq!(b.dismiss(&one).await.unwrap(), Dismissal::NotFound);
-    assert!(b.job(&one).await.unwrap().is_none());
-    // The bytes are stored once, and stay while one of the two is there.
-    a.delete_mesh(&first.id).await.unwrap();
-    assert!(store.read_blob(&second.blob).await.is_ok());
-}
-
-async fn a_key_that_was_ended_is_not_let_in(on: Deployment) {
-    let store = on.open().await;
-    let (a, b) = (store.of_tenant("a"), store.of_tenant("b"));
-    let wanted = KeyDocument { label: "test".into(), scopes: [Scope::Read].into(), days: Some(1) };
-    let key = a.make_key(&wanted).await.unwrap();
-    let row = store.key_in_force(&key.id).await.unwrap().unwrap();
-    assert_eq!((row.tenant.as_str(), row.scopes.as_str()), ("a", "read"));
-    assert_eq!(row.expires, Some(row.created + 24 * 3600 * 1000));
-    assert!(!row.hash.contains(&key.text));
-    assert!(b.rotate_key(&key.id, 0).await.unwrap().is_none(), "it is none of theirs");
-    assert!(!b.revoke_key(&key.id).await.unwrap());
-    let next = a.rotate_key(&key.id, 0).await.unwrap().unwrap();
-    assert!(store.key_in_force(&key.id).await.unwrap().is_none(), "it has given way");
-    assert!(a.revoke_key(&next.id).await.unwrap());
-    assert!(store.key_in_force(&next.id).await.unwrap().is_none());
-    assert!(!a.revoke_key(&next.id).await.unwrap());
 }

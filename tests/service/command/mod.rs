@@ -1,4 +1,4 @@
 //! The program as a process: the demo, settings, start and end.
 
-pub mod demo;
-pub mod settings;
+mod demo;
+mod settings;

@@ -1,5 +1,4 @@
-//! Disks, databases and descriptors that fail.
+//! Databases, descriptors and logs that fail for a while, and processes that are killed.
 
-pub mod broken_disk;
-pub mod outages;
-pub mod storage;
+mod outages;
+mod storage;

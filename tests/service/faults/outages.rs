@@ -4,70 +4,16 @@
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
-use facies::config::DatabasePlace;
 use reqwest::StatusCode;
 use sqlx::{Connection as _, SqliteConnection};
 use tempfile::TempDir;
 use tokio::net::TcpStream;
 
-use crate::deployments::Deployment;
-use crate::helpers::{Answer, SMALL, Server, ask, read, serve, serve_shared, spec};
-use crate::invariants::{accepted, state, succeeds, tagged, works_on};
-use crate::partition::Way;
+use crate::helpers::{SMALL, Server, ask, read, serve, spec};
+use crate::invariants::{accepted, is_shed, state, succeeds, tagged, works_on};
 use crate::processes::{faulty, signal, slots, until};
-
-/// Answered, or told to come back.
-fn is_shed(answer: &Answer) -> bool {
-    if answer.status == StatusCode::OK {
-        return false;
-    }
-    answer.problem(503, "not-ready");
-    assert!(!answer.header("retry-after").is_empty());
-    true
-}
-
-async fn timed(request: reqwest::RequestBuilder) -> (Answer, Duration) {
-    let begun = Instant::now();
-    (ask(request).await, begun.elapsed())
-}
-
-#[tokio::test(flavor = "multi_thread")]
-async fn requests_to_a_slow_database_are_told_to_come_back_and_do_not_pile_up() {
-    let Some(on) = Deployment::shared().await else { return };
-    let DatabasePlace::Server { address, .. } = &on.places.database else { panic!("it is shared") };
-    let way = Way::to(address.reveal());
-    let mut command = serve_shared(&on);
-    command.args(["--workers", "1", "--database", &way.address]);
-    let server = Server::start_command(command, TempDir::new().unwrap());
-    works_on(&server).await;
-
-    // Two seconds for each question and its answer.
-    way.slow_down(Duration::from_secs(1));
-    let many = futures::future::join_all((0..40).map(|_| timed(server.get("/v1/jobs"))));
-    let ready = timed(server.get("/readyz"));
-    let alive = timed(server.get("/healthz"));
-    let (many, (ready, ready_after), (alive, alive_after)) = tokio::join!(many, ready, alive);
-    assert_eq!(alive.status, StatusCode::OK);
-    assert!(alive_after < Duration::from_secs(1), "{alive_after:?}");
-    ready.problem(503, "not-ready");
-    assert!(ready_after < Duration::from_secs(4), "{ready_after:?}");
-    let times: Vec<Duration> = many.iter().map(|(_, after)| *after).collect();
-    let at_once =
-        |(answer, after): &&(Answer, Duration)| is_shed(answer) && *after < Duration::from_secs(5);
-    let shed = many.iter().filter(at_once).count();
-    assert!(shed >= 20, "{shed} of 40 found no connection and were told: {times:?}");
-    // Who has a connection is given up by the limit of an answer.
-    assert!(times.iter().all(|after| *after < Duration::from_secs(15)), "{times:?}");
-
-    way.mend();
-    until("the service is ready", async || {
-        (ask(server.get("/readyz")).await.status == StatusCode::OK).then_some(())
-    })
-    .await;
-    works_on(&server).await;
-}
 
 /// Somebody else at the database of a server, such as a backup.
 async fn another(server: &Server) -> SqliteConnection {

@@ -1,14 +1,11 @@
 //! Things that break under the service: nothing accepted is lost, nothing half done is left.
 
-use std::process::Command;
-
 use reqwest::StatusCode;
 use serde_json::{Value, json};
-use tempfile::TempDir;
 use tokio::io::AsyncWriteExt;
 use tokio::net::TcpStream;
 
-use crate::helpers::{Block, SMALL, Server, ask, serve, spec};
+use crate::helpers::{Block, SMALL, Server, ask, spec};
 
 /// Solved in seconds, so that a test can meet its job at work.
 const LARGE: Block = Block { cells: [44, 44, 30] };
@@ -107,58 +104,4 @@ async fn an_upload_that_breaks_off_leaves_nothing() {
     let temporary = std::fs::read_dir(server.path().join("tmp")).unwrap().count();
     assert_eq!((blobs, temporary), (0, 0));
     server.upload(bytes).await.expect(StatusCode::CREATED);
-}
-
-/// A disk of a few MiB, where this user may mount one.
-struct SmallDisk(TempDir);
-
-impl SmallDisk {
-    fn mount() -> Option<SmallDisk> {
-        let folder = TempDir::new().unwrap();
-        let options = ["-t", "tmpfs", "-o", "size=6m", "tmpfs"];
-        let mounted = Command::new("mount").args(options).arg(folder.path()).output();
-        if mounted.is_ok_and(|output| output.status.success()) {
-            return Some(SmallDisk(folder));
-        }
-        crate::shared::say_skipped("a small disk can be mounted by root only");
-        None
-    }
-}
-
-impl Drop for SmallDisk {
-    fn drop(&mut self) {
-        // A failure leaves an empty mount behind, which no other test meets.
-        let _ = Command::new("umount").arg("--lazy").arg(self.0.path()).status();
-    }
-}
-
-#[tokio::test]
-async fn a_full_disk_refuses_uploads_fails_jobs_and_serves_what_is_there() {
-    let Some(disk) = SmallDisk::mount() else { return };
-    let data = disk.0.path().join("data");
-    let server = Server::start_command(serve(&data), TempDir::new().unwrap());
-    let case = server.case(&SMALL).await;
-    let kept = server.job(&spec(&case, 1.0)).await.expect(StatusCode::OK);
-    let kept = format!("/v1/jobs/{}", kept["id"].as_str().unwrap());
-
-    // Leaves room for a row and not for a mesh or a result.
-    let filler = disk.0.path().join("filler");
-    let free = || {
-        let disk = rustix::fs::statvfs(disk.0.path()).unwrap();
-        (disk.f_bavail * disk.f_frsize) as usize
-    };
-    std::fs::write(&filler, vec![0; free().saturating_sub(100 << 10)]).unwrap();
-    let large = Block { cells: [40, 40, 10] };
-    let answer = server.upload(large.vtu()).await;
-    answer.problem(507, "storage-full");
-    let blobs = |folder: &str| std::fs::read_dir(data.join(folder)).unwrap().count();
-    let before = blobs("blobs");
-    ask(server.get(&format!("{kept}/results/skin.vtp"))).await;
-    assert_eq!(ask(server.get(&kept)).await.expect(StatusCode::OK)["status"], "successful");
-    assert_eq!(ask(server.get("/healthz")).await.status, StatusCode::OK);
-
-    std::fs::remove_file(&filler).unwrap();
-    assert_eq!(blobs("blobs"), before);
-    let again = server.upload(Block { cells: [6, 6, 6] }.vtu()).await;
-    again.expect(StatusCode::CREATED);
 }

@@ -1,5 +1,3 @@
-//! Slots, hosts and clocks.
+//! Slots: what becomes of a job whose work panics, is dismissed or loses its storage.
 
-pub mod clocks;
-pub mod hosts;
-pub mod slots;
+mod slots;

@@ -11,7 +11,7 @@ use facies::worker::slots::{Failure, Finished, FinishedFile, Work, Workers};
 use mechanics::progress::Progress;
 use tempfile::TempDir;
 
-use crate::store::queue::{job, new_job, store};
+use crate::rows::{job, new_job, store};
 
 const LONG: Duration = Duration::from_secs(60);
 

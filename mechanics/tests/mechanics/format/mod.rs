@@ -1,10 +1,8 @@
 //! Mesh and image files: what is read, written, refused.
 
-pub mod damage;
-pub mod hostile;
-pub mod interop;
-pub mod nrrd;
-pub mod read;
-pub mod round_trip;
-pub mod shared_data;
-pub mod surface;
+mod damage;
+mod hostile;
+mod nrrd;
+mod read;
+mod round_trip;
+mod surface;

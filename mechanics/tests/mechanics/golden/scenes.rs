@@ -17,8 +17,9 @@ use mechanics::plan::{PlannedSegment, RigidMovement};
 use mechanics::prediction::{
     Case, CaseSegment, ElementChoice, FibreDirection, Hounsfield, Load, Method, Mixing, ModelError,
     Plan, RegionNames, Scene, Settings, SkinMembrane, Sliding, SlidingNormal, SolverError,
-    TissueWindow, Unobserved, predict,
+    TissueWindow, predict,
 };
+use mechanics::progress::Unobserved;
 use mechanics::response::build;
 use mechanics::solver::stationary::{Iteration, Stationary};
 use mechanics::study::paired::{Equality, ZeroRule, signed_rank};
@@ -152,7 +153,7 @@ fn predicted(name: &str, holds: Holds, case: &Case, settings: &Settings) -> Foun
         values.extend(prediction.deformation.iter().map(|cell| cell.det_f));
         values.extend(prediction.reactions.values().flatten());
     }
-    Found { name: name.to_owned(), solver: prediction.solver.name, holds, values }
+    Found { name: name.to_owned(), solver: prediction.solver.method, holds, values }
 }
 
 fn elements() -> Vec<Found> {
@@ -260,7 +261,7 @@ fn columns(holds: Holds, cells: [usize; 3]) -> Vec<Found> {
     let case = tissue(CellShape::Hex8, cells);
     let scene = Scene::new(&case, &Plan::default(), &settings).unwrap();
     let columns = build(&scene, &[], &Unobserved).unwrap();
-    let solver = columns.solver.name;
+    let solver = columns.solver.method;
     let how = if cells == ITERATED { "iterated" } else { "factorised" };
     let applied = match holds {
         Holds::Bits => columns.to_response().apply(&[moved()]),
@@ -308,7 +309,7 @@ fn compared(name: &str, holds: Holds, alignment: Alignment) -> Found {
     let squeezed = |point: &Vector| point.component_mul(&Vector::new(1.05, 0.9, 1.0)) + Vector::x();
     let actual = map(&prediction, squeezed);
     let settings = ComparisonSettings { alignment, ..ComparisonSettings::default() };
-    let comparison = compare(&prediction, &actual, &settings, &|| false).unwrap();
+    let comparison = compare(&prediction, &actual, &settings, &Unobserved).unwrap();
     let mut values = comparison.signed_distance.clone();
     let both = &comparison.distances;
     for found in [&both.to_actual, &both.to_prediction, &both.both] {
@@ -350,6 +351,6 @@ fn strain() -> Found {
     let prediction = predict(&scene.unwrap(), &Unobserved).unwrap();
     let cells = prediction.deformation.iter();
     let values = cells.flat_map(|cell| [&cell.principal_strain[..], &[cell.rotation]].concat());
-    let (name, solver) = ("strain".to_owned(), prediction.solver.name);
+    let (name, solver) = ("strain".to_owned(), prediction.solver.method);
     Found { name, solver, holds: Holds::Near, values: values.collect() }
 }

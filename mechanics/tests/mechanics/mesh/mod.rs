@@ -1,4 +1,4 @@
 //! Meshes: quality, and the report of a check.
 
-pub mod check;
-pub mod quality;
+mod check;
+mod quality;

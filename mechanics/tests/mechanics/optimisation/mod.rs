@@ -1,4 +1,4 @@
 //! Inverse planning.
 
-pub mod plans;
+mod plans;
 pub mod scenes;

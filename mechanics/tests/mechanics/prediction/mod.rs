@@ -1,10 +1,10 @@
 //! Predictions against closed forms, published numbers and each other.
 
-pub mod closed_form;
-pub mod conditions;
+mod closed_form;
+mod conditions;
 pub mod elements;
-pub mod fibres;
-pub mod jump;
-pub mod patch;
-pub mod slab_table;
-pub mod sliding;
+mod fibres;
+mod jump;
+mod patch;
+mod slab_table;
+mod sliding;

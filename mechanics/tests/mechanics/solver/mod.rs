@@ -1,4 +1,4 @@
 //! Linear solvers against each other, and how they fail.
 
-pub mod hard_systems;
+mod hard_systems;
 pub mod solvers;

@@ -1,5 +1,5 @@
 //! Studies, their statistics, and the map of failures.
 
-pub mod paired;
-pub mod stability;
-pub mod studies;
+mod paired;
+mod stability;
+mod studies;

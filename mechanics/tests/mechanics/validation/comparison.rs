@@ -10,7 +10,7 @@ use mechanics::validation::{
 };
 
 use crate::scenes::StopsAfter;
-use crate::surfaces::{head, map, movement, shared_surface, sphere, square};
+use crate::surfaces::{head, map, movement, sphere, square};
 
 fn compared(prediction: &TriangleSurface, actual: &TriangleSurface) -> Comparison {
     compare(prediction, actual, &ComparisonSettings::default(), &Unobserved).unwrap()
@@ -304,25 +304,4 @@ fn a_far_origin_costs_a_comparison_no_accuracy() {
     let found = compare(&there(&prediction), &there(&actual), &icp(None), &Unobserved).unwrap();
     assert_near(found.distances.both.unsigned.mean, near.distances.both.unsigned.mean, 1e-3);
     assert_near(found.distances.both.hausdorff, near.distances.both.hausdorff, 1e-3);
-}
-
-#[test]
-fn a_real_skin_against_itself_moved_is_nothing_apart() {
-    let Some(skin) = shared_surface("head_ct/headsq_quarter_skin.stl") else { return };
-    let actual = map(&skin, |point| movement([3.0, -2.0, 4.0], [1.0, -2.0, 3.0]).apply(point));
-    let settings = ComparisonSettings { samples_per_mm2: 0.1, ..icp(None) };
-    let found = compare(&skin, &actual, &settings, &Unobserved).unwrap();
-    assert!(found.distances.both.hausdorff < 0.01, "{:?}", found.distances.both);
-    assert!(found.unaligned.unwrap().both.unsigned.mean > 1.0);
-}
-
-#[test]
-fn a_dirty_bone_is_compared_like_any_other() {
-    let Some(bone) = shared_surface("head_ct/headsq_quarter_bone.stl") else { return };
-    let actual = map(&bone, |point| point + Vector::new(0.3, 0.0, 0.0));
-    let settings = ComparisonSettings { samples_per_mm2: 0.1, ..icp(None) };
-    let found = compare(&bone, &actual, &settings, &Unobserved).unwrap();
-    assert!(found.distances.both.hausdorff < 0.01, "{:?}", found.distances.both);
-    let unaligned = found.unaligned.unwrap().both;
-    assert!(unaligned.unsigned.max <= 0.3 + 1e-6 && unaligned.unsigned.mean > 0.1);
 }

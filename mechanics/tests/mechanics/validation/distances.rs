@@ -4,30 +4,7 @@ use mechanics::mesh::closest_point::Feature;
 use mechanics::mesh::{SearchError, SurfaceSearch, TriangleSurface, Vector, area_sampling};
 use mechanics::validation::{Statistics, StatisticsError};
 
-use crate::surfaces::{Noise, map, shared_surface, sphere, square};
-
-/// By trying all triangles with a projection written differently: the minimum over the plane, the edges
-/// and the corners.
-fn distance_by_trying(surface: &TriangleSurface, point: &Vector) -> f64 {
-    let segment = |a: &Vector, b: &Vector| {
-        let along = ((point - a).dot(&(b - a)) / (b - a).norm_squared()).clamp(0.0, 1.0);
-        (point - (a + (b - a) * along)).norm()
-    };
-    let mut smallest = f64::INFINITY;
-    for triangle in 0..surface.triangles.len() {
-        let [a, b, c] = surface.corners(triangle);
-        let normal = (b - a).cross(&(c - a)).normalize();
-        let foot = point - normal * normal.dot(&(point - a));
-        let inside = [(a, b), (b, c), (c, a)]
-            .iter()
-            .all(|(p, q)| (q - p).cross(&(foot - p)).dot(&normal) >= 0.0);
-        if inside {
-            smallest = smallest.min((point - foot).norm());
-        }
-        smallest = smallest.min(segment(&a, &b)).min(segment(&b, &c)).min(segment(&c, &a));
-    }
-    smallest
-}
+use crate::surfaces::{Noise, distance_by_trying, map, sphere, square};
 
 #[test]
 fn the_nearest_point_is_the_one_that_trying_all_triangles_finds() {
@@ -237,20 +214,4 @@ fn values_without_statistics_are_refused_by_name() {
     assert_eq!(error, StatisticsError::NoWeight { count: 1 });
     let error = Statistics::weighted(&[1.0], &[]).unwrap_err();
     assert_eq!(error, StatisticsError::NotPaired { values: 1, weights: 0 });
-}
-
-#[test]
-fn a_dirty_bone_has_a_nearest_point_for_everything() {
-    let Some(bone) = shared_surface("head_ct/headsq_quarter_bone.stl") else { return };
-    let search = SurfaceSearch::new(&bone).unwrap();
-    let (low, high) = bone.bounds();
-    let mut random = Noise::new(5);
-    for _ in 0..50 {
-        let share = Vector::new(random.uniform(), random.uniform(), random.uniform());
-        let point = low + (high - low).component_mul(&share);
-        let closest = search.closest(&point);
-        let tried = distance_by_trying(&bone, &point);
-        assert!((closest.distance - tried).abs() < 1e-9, "{closest:?} {tried}");
-        assert!(search.signed_distance(&point, &closest).is_finite());
-    }
 }

@@ -1,4 +1,4 @@
 //! Distances and comparisons of surfaces.
 
-pub mod comparison;
-pub mod distances;
+mod comparison;
+mod distances;

@@ -1,84 +1,29 @@
 //! Leases: every accepted job ends exactly once, whatever happens to those who work on it.
 
-use std::time::Duration;
-
-use bytes::Bytes;
 use facies::schema::job::JobStatus;
-use facies::schema::wire::canonical::sha256_hex;
-use facies::store::{
-    Claim, Dismissal, Enqueued, JobFilter, JobRow, NewJob, Point, PublishedFile, QueueRow, Store,
-};
-use tempfile::TempDir;
+use facies::store::{Claim, Dismissal, Enqueued, JobFilter, Point, QueueRow};
 
-use crate::deployments::{Deployment, on_both};
+use crate::deployments::Deployment;
+use crate::rows::{LEASE, blob_count, enqueue, file, job, new_job};
+use crate::support::trials::trials;
 
-pub const LEASE: Duration = Duration::from_secs(60);
-
-pub async fn store() -> (TempDir, Store) {
-    let folder = TempDir::new().unwrap();
-    let store = Store::open(folder.path()).await.unwrap();
-    (folder, store)
-}
-
-/// A job of no case; its document is read by nobody or by a test's own work.
-pub fn new_job(document: &str, hash: &str) -> NewJob {
-    NewJob {
-        id: uuid::Uuid::now_v7().to_string(),
-        kind: "predict",
-        priority: 0,
-        case_id: None,
-        shared_cases: Vec::new(),
-        document: document.into(),
-        spec_hash: hash.into(),
-        engine: "test".into(),
-        tags: vec!["a".into()],
-        mesh_ids: vec![],
-        traceparent: None,
+trials! {
+    on_both {
+        a_job_is_claimed_by_one_worker_only
+        a_job_that_loses_its_worker_three_times_fails_as_worker_lost
+        a_worker_that_was_thought_dead_publishes_nothing
+        a_job_given_back_by_a_stopping_worker_loses_no_attempt
+        a_result_that_comes_after_the_dismissal_is_dropped
+        the_same_inputs_are_the_same_job
+        the_queue_is_counted_with_the_age_of_its_oldest_job
+        progress_never_falls
+        lists_come_newest_first_page_by_page
     }
-}
-
-pub async fn enqueue(store: &Store, hash: &str) -> String {
-    let job = new_job("{}", hash);
-    assert_eq!(store.enqueue(&job, 100).await.unwrap(), Enqueued::Accepted);
-    job.id
-}
-
-pub async fn job(store: &Store, id: &str) -> JobRow {
-    store.job(id).await.unwrap().unwrap()
 }
 
 /// What happens to a lease whose worker sleeps too long.
 async fn let_leases_run_out(on: &Deployment) {
     on.execute("UPDATE jobs SET lease_expires = 1").await;
-}
-
-pub fn file(content: &'static str) -> PublishedFile {
-    let bytes = Bytes::from_static(content.as_bytes());
-    PublishedFile {
-        name: "result.json".into(),
-        media_type: "application/json".into(),
-        sha256: sha256_hex(&bytes),
-        bytes,
-    }
-}
-
-/// How many places hold bytes.
-pub async fn blob_count(store: &Store) -> usize {
-    let findings = store.fsck(false).await.unwrap();
-    assert!(findings.is_clean(), "{findings:?}");
-    findings.objects
-}
-
-on_both! {
-    a_job_is_claimed_by_one_worker_only
-    a_job_that_loses_its_worker_three_times_fails_as_worker_lost
-    a_worker_that_was_thought_dead_publishes_nothing
-    a_job_given_back_by_a_stopping_worker_loses_no_attempt
-    a_result_that_comes_after_the_dismissal_is_dropped
-    the_same_inputs_are_the_same_job
-    the_queue_is_counted_with_the_age_of_its_oldest_job
-    progress_never_falls
-    lists_come_newest_first_page_by_page
 }
 
 async fn lists_come_newest_first_page_by_page(on: Deployment) {

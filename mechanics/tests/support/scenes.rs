@@ -86,3 +86,12 @@ impl Progress for StopsAfter {
         self.told.load(Ordering::Relaxed) >= self.most
     }
 }
+
+/// How far apart two predictions of a scene are on its skin, in mm: in the mean and at the 95th percentile.
+pub fn apart(scene: &Scene, a: &Prediction, b: &Prediction) -> [f64; 2] {
+    let at = |&node: &u32| (a.displacement[node as usize] - b.displacement[node as usize]).norm();
+    let mut distances: Vec<f64> = scene.skin.nodes().iter().map(at).collect();
+    distances.sort_by(f64::total_cmp);
+    let mean = distances.iter().sum::<f64>() / distances.len() as f64;
+    [mean, distances[distances.len() * 95 / 100]]
+}

@@ -1,14 +1,10 @@
-//! Surfaces made in code and read from the shared data, for tests of distance and registration.
+//! Surfaces made in code, and measures of them written differently, for tests of distance and registration.
 
 use std::collections::HashMap;
-use std::fs;
 
 use mechanics::mesh::{TriangleSurface, Vector};
 use mechanics::registration::RigidTransform;
 use nalgebra::Rotation3;
-
-use crate::samples::{read_default, surface};
-use crate::shared::shared_data;
 
 /// The unit sphere from an icosahedron whose triangles are quartered so many times.
 pub fn unit_sphere(levels: usize) -> TriangleSurface {
@@ -149,8 +145,31 @@ impl Noise {
     }
 }
 
-/// A surface of the shared data.
-pub fn shared_surface(file: &str) -> Option<TriangleSurface> {
-    let bytes = fs::read(shared_data(file)?).unwrap();
-    Some(surface(read_default(&bytes)))
+/// How far `found` is from `wanted`: degrees, and mm at `place`.
+pub fn difference(found: &RigidTransform, wanted: &RigidTransform, place: &Vector) -> (f64, f64) {
+    let angle = found.then(&wanted.inverse()).angle().to_degrees();
+    (angle, (found.apply(place) - wanted.apply(place)).norm())
+}
+
+/// By trying all triangles with a projection written differently: the minimum over the plane, the edges
+/// and the corners.
+pub fn distance_by_trying(surface: &TriangleSurface, point: &Vector) -> f64 {
+    let segment = |a: &Vector, b: &Vector| {
+        let along = ((point - a).dot(&(b - a)) / (b - a).norm_squared()).clamp(0.0, 1.0);
+        (point - (a + (b - a) * along)).norm()
+    };
+    let mut smallest = f64::INFINITY;
+    for triangle in 0..surface.triangles.len() {
+        let [a, b, c] = surface.corners(triangle);
+        let normal = (b - a).cross(&(c - a)).normalize();
+        let foot = point - normal * normal.dot(&(point - a));
+        let inside = [(a, b), (b, c), (c, a)]
+            .iter()
+            .all(|(p, q)| (q - p).cross(&(foot - p)).dot(&normal) >= 0.0);
+        if inside {
+            smallest = smallest.min((point - foot).norm());
+        }
+        smallest = smallest.min(segment(&a, &b)).min(segment(&b, &c)).min(segment(&c, &a));
+    }
+    smallest
 }

@@ -1,8 +1,11 @@
 //! Rows and bytes, on both engines.
 
+pub mod lost_jobs;
+pub mod pages;
 pub mod queue;
 pub mod races;
 pub mod remembered;
 pub mod schema_steps;
 pub mod storage;
+pub mod tenants;
 pub mod transfer;

@@ -1,7 +1,7 @@
 //! Many processes on one PostgreSQL and one store of objects, and what happens when one of them goes.
 
-use std::io::{BufRead, BufReader};
-use std::process::{Child, ChildStdout, Command, Output, Stdio};
+use std::io::BufRead;
+use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
 use facies::config::DatabasePlace;
@@ -13,53 +13,30 @@ use tempfile::TempDir;
 use crate::deployments::{Cluster, Deployment};
 use crate::helpers::{Block, SMALL, Server, ask, serve_shared, spec};
 use crate::partition::Way;
+use crate::support::external::Missing;
+use crate::support::trials::trials;
+use crate::workers::Worker;
+
+trials! {
+    on_shared {
+        a_job_that_one_host_accepts_is_solved_by_another_and_served_by_a_third
+        a_worker_tells_what_it_counts_and_that_it_lives
+        a_job_whose_host_is_killed_is_solved_by_another
+        a_worker_cut_off_from_the_database_loses_its_job_to_another_and_changes_nothing
+        a_store_of_blobs_that_does_not_answer_is_told_as_503
+        a_deployment_is_checked_and_mended_by_command
+        a_service_moves_from_sqlite_to_postgresql_by_command
+        an_export_from_a_server_needs_no_stop_of_it
+    }
+    alone {
+        a_restart_of_postgresql_loses_nothing_and_is_told_as_503
+        a_database_that_was_not_prepared_is_refused_with_78_until_it_is
+        a_wrong_password_or_address_stops_the_start_with_78
+    }
+}
 
 /// Solved in seconds, so that a test can meet its job at work.
 const LARGE: Block = Block { cells: [44, 44, 30] };
-
-/// A worker in a process of its own. It is killed when the test ends.
-pub struct Worker(Child);
-
-impl Worker {
-    pub fn start(on: &Deployment) -> Worker {
-        Worker::start_with(on, &[]).0
-    }
-
-    /// The worker, and what it says.
-    pub fn start_with(on: &Deployment, arguments: &[&str]) -> (Worker, BufReader<ChildStdout>) {
-        let mut command = Worker::command(on);
-        // Of a setting that is given twice the last one counts.
-        command.args(arguments);
-        Worker::start_command(command)
-    }
-
-    pub fn command(on: &Deployment) -> Command {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_facies"));
-        command.args(["worker", "--workers", "1", "--lease-s", "1", "--heartbeat-s", "0.2"]);
-        on.bring(&mut command);
-        command
-    }
-
-    pub fn process(&self) -> u32 {
-        self.0.id()
-    }
-
-    pub fn start_command(mut command: Command) -> (Worker, BufReader<ChildStdout>) {
-        let mut child = command.stdout(Stdio::piped()).stderr(Stdio::null()).spawn().unwrap();
-        let mut line = String::new();
-        let mut said = BufReader::new(child.stdout.take().unwrap());
-        said.read_line(&mut line).unwrap();
-        assert_eq!(line, "working with 1 workers\n");
-        (Worker(child), said)
-    }
-}
-
-impl Drop for Worker {
-    fn drop(&mut self) {
-        let _ = self.0.kill();
-        let _ = self.0.wait();
-    }
-}
 
 fn api(on: &Deployment) -> Server {
     let mut command = serve_shared(on);
@@ -78,9 +55,7 @@ fn text(bytes: &[u8]) -> String {
     String::from_utf8(bytes.to_vec()).unwrap()
 }
 
-#[tokio::test]
-async fn a_job_that_one_host_accepts_is_solved_by_another_and_served_by_a_third() {
-    let Some(on) = Deployment::shared().await else { return };
+async fn a_job_that_one_host_accepts_is_solved_by_another_and_served_by_a_third(on: Deployment) {
     let (first, second) = (api(&on), api(&on));
     let case = first.case(&SMALL).await;
     let accepted = ask(first.post("/v1/jobs").json(&spec(&case, 1.0))).await;
@@ -103,9 +78,7 @@ async fn a_job_that_one_host_accepts_is_solved_by_another_and_served_by_a_third(
     assert_eq!(known.expect(StatusCode::OK)["deduplicated"], true);
 }
 
-#[tokio::test]
-async fn a_worker_tells_what_it_counts_and_that_it_lives() {
-    let Some(on) = Deployment::shared().await else { return };
+async fn a_worker_tells_what_it_counts_and_that_it_lives(on: Deployment) {
     let (_worker, mut said) = Worker::start_with(&on, &["--admin-bind", "127.0.0.1:0"]);
     let mut line = String::new();
     said.read_line(&mut line).unwrap();
@@ -124,9 +97,7 @@ async fn a_worker_tells_what_it_counts_and_that_it_lives() {
     assert_eq!(ask(api.client.get(&healthz)).await.status, StatusCode::OK);
 }
 
-#[tokio::test]
-async fn a_job_whose_host_is_killed_is_solved_by_another() {
-    let Some(on) = Deployment::shared().await else { return };
+async fn a_job_whose_host_is_killed_is_solved_by_another(on: Deployment) {
     let api = api(&on);
     let case = api.case(&LARGE).await;
     let accepted = ask(api.post("/v1/jobs").json(&spec(&case, 2.0))).await;
@@ -139,9 +110,9 @@ async fn a_job_whose_host_is_killed_is_solved_by_another() {
     assert_eq!((&job["status"], &job["attempt"]), (&json!("successful"), &json!(2)));
 }
 
-#[tokio::test(flavor = "multi_thread")]
-async fn a_worker_cut_off_from_the_database_loses_its_job_to_another_and_changes_nothing() {
-    let Some(on) = Deployment::shared().await else { return };
+async fn a_worker_cut_off_from_the_database_loses_its_job_to_another_and_changes_nothing(
+    on: Deployment,
+) {
     let DatabasePlace::Server { address, .. } = &on.places.database else { panic!("it is shared") };
     let way = Way::to(address.reveal());
     let api = api(&on);
@@ -165,9 +136,8 @@ async fn a_worker_cut_off_from_the_database_loses_its_job_to_another_and_changes
     assert_eq!(ask(api.get(&format!("/v1/jobs/{id}"))).await.json(), job);
 }
 
-#[tokio::test]
-async fn a_restart_of_postgresql_loses_nothing_and_is_told_as_503() {
-    let Some(cluster) = Cluster::start() else { return };
+async fn a_restart_of_postgresql_loses_nothing_and_is_told_as_503() -> Result<(), Missing> {
+    let cluster = Cluster::start()?;
     let on = Deployment::on(&cluster.database().await);
     Store::migrate(&on.places).await.unwrap();
     let mut command = serve_shared(&on);
@@ -192,11 +162,10 @@ async fn a_restart_of_postgresql_loses_nothing_and_is_told_as_503() {
     assert_eq!(jobs["items"].as_array().unwrap().len(), 1);
     let next = server.job(&spec(&case, 3.0)).await;
     assert!(next.status.is_success());
+    Ok(())
 }
 
-#[tokio::test]
-async fn a_store_of_blobs_that_does_not_answer_is_told_as_503() {
-    let Some(on) = Deployment::shared().await else { return };
+async fn a_store_of_blobs_that_does_not_answer_is_told_as_503(on: Deployment) {
     let case = api(&on).case(&SMALL).await;
     let mut command = serve_shared(&on);
     command.env("AWS_ENDPOINT_URL", "http://127.0.0.1:1");
@@ -212,9 +181,8 @@ async fn a_store_of_blobs_that_does_not_answer_is_told_as_503() {
     ask(server.get("/readyz")).await.problem(503, "not-ready");
 }
 
-#[tokio::test]
-async fn a_database_that_was_not_prepared_is_refused_with_78_until_it_is() {
-    let Some(on) = Deployment::empty().await else { return };
+async fn a_database_that_was_not_prepared_is_refused_with_78_until_it_is() -> Result<(), Missing> {
+    let on = Deployment::empty().await?;
     let refused = facies(&["serve", "--bind", "127.0.0.1:0"], &on);
     assert_eq!(refused.status.code(), Some(78));
     assert!(text(&refused.stderr).contains("facies migrate"), "{}", text(&refused.stderr));
@@ -224,11 +192,10 @@ async fn a_database_that_was_not_prepared_is_refused_with_78_until_it_is() {
     assert!(nothing.status.success() && !text(&nothing.stdout).contains("from"));
     let server = api(&on);
     assert_eq!(ask(server.get("/readyz")).await.status, StatusCode::OK);
+    Ok(())
 }
 
-#[tokio::test]
-async fn a_deployment_is_checked_and_mended_by_command() {
-    let Some(on) = Deployment::shared().await else { return };
+async fn a_deployment_is_checked_and_mended_by_command(on: Deployment) {
     let server = api(&on);
     server.case(&SMALL).await;
     let clean = facies(&["admin", "fsck", "--read-all"], &on);
@@ -247,9 +214,7 @@ async fn a_deployment_is_checked_and_mended_by_command() {
     assert!(text(&lost.stdout).starts_with("lost or damaged: blob "), "{lost:?}");
 }
 
-#[tokio::test]
-async fn a_service_moves_from_sqlite_to_postgresql_by_command() {
-    let Some(on) = Deployment::shared().await else { return };
+async fn a_service_moves_from_sqlite_to_postgresql_by_command(on: Deployment) {
     let server = Server::start();
     let case = server.case(&SMALL).await;
     let job = server.job(&spec(&case, 1.0)).await.expect(StatusCode::OK);
@@ -271,9 +236,7 @@ async fn a_service_moves_from_sqlite_to_postgresql_by_command() {
     assert_eq!(skin.status, StatusCode::OK);
 }
 
-#[tokio::test]
-async fn an_export_from_a_server_needs_no_stop_of_it() {
-    let Some(on) = Deployment::shared().await else { return };
+async fn an_export_from_a_server_needs_no_stop_of_it(on: Deployment) {
     let server = api(&on);
     server.case(&SMALL).await;
     let export = on.folder().join("export");
@@ -283,8 +246,7 @@ async fn an_export_from_a_server_needs_no_stop_of_it() {
     assert_eq!(again.status.code(), Some(3), "nothing is overwritten");
 }
 
-#[tokio::test]
-async fn a_wrong_password_or_address_stops_the_start_with_78() {
+async fn a_wrong_password_or_address_stops_the_start_with_78() -> Result<(), Missing> {
     let folder = TempDir::new().unwrap();
     let start = |arguments: &[&str]| {
         let mut command = Command::new(env!("CARGO_BIN_EXE_facies"));
@@ -294,7 +256,7 @@ async fn a_wrong_password_or_address_stops_the_start_with_78() {
     let refused = start(&["--database", "mysql://root:secret@h/x"]);
     assert_eq!(refused.status.code(), Some(78));
     assert!(!text(&refused.stderr).contains("secret"));
-    let Some(on) = Deployment::empty().await else { return };
+    let on = Deployment::empty().await?;
     let mut command = Command::new("unused");
     on.bring(&mut command);
     let address = command.get_args().find(|argument| argument.to_string_lossy().contains("://"));
@@ -306,4 +268,5 @@ async fn a_wrong_password_or_address_stops_the_start_with_78() {
     assert!(line.lines().count() == 1 && !line.contains("secret"), "{line}");
     let nowhere = "postgres://postgres@127.0.0.1:1/x";
     assert_eq!(start(&["--database", nowhere]).status.code(), Some(3));
+    Ok(())
 }

@@ -3,15 +3,18 @@
 use facies::schema::job::JobStatus;
 use facies::store::{Change, Dismissal, NewCase, Point, Reserved};
 
-use crate::deployments::{Deployment, on_both};
-use crate::store::queue::{LEASE, enqueue, new_job};
+use crate::deployments::Deployment;
+use crate::rows::{LEASE, enqueue, new_job};
+use crate::support::trials::trials;
 
-on_both! {
-    every_change_of_a_job_that_can_be_seen_is_one_event
-    events_of_many_writers_have_numbers_without_gaps
-    only_the_last_thousand_events_are_kept
-    a_key_belongs_to_the_request_that_used_it_first
-    what_was_erased_is_remembered_with_all_that_went_with_it
+trials! {
+    on_both {
+        every_change_of_a_job_that_can_be_seen_is_one_event
+        events_of_many_writers_have_numbers_without_gaps
+        only_the_last_thousand_events_are_kept
+        a_key_belongs_to_the_request_that_used_it_first
+        what_was_erased_is_remembered_with_all_that_went_with_it
+    }
 }
 
 async fn every_change_of_a_job_that_can_be_seen_is_one_event(on: Deployment) {

@@ -9,7 +9,15 @@ use tempfile::TempDir;
 use crate::helpers::{SMALL, Server, ask, serve, spec};
 use crate::invariants::{accepted, fails, state, succeeds};
 use crate::processes::until;
-use crate::shared::say_skipped;
+use crate::support::external::{Missing, REQUIRE_SERVERS};
+use crate::support::trials::trials;
+
+trials! {
+    alone {
+        a_mesh_that_the_disk_does_not_take_is_refused_and_no_part_of_it_is_kept
+        an_attempt_whose_results_the_disk_does_not_take_is_tried_again
+    }
+}
 
 /// What a server is started on so that its disk can be told to err.
 struct BrokenDisk {
@@ -18,18 +26,17 @@ struct BrokenDisk {
 }
 
 impl BrokenDisk {
-    /// `None`, and a word about it, where there is no C compiler.
-    fn new() -> Option<BrokenDisk> {
+    fn new() -> Result<BrokenDisk, Missing> {
         let folder = TempDir::new().unwrap();
         let library = folder.path().join("broken_disk.so");
-        let source = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/service/faults/broken_disk.c");
+        let source = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/external/faults/broken_disk.c");
         let made =
             Command::new("cc").args(["-shared", "-fPIC", source, "-o"]).arg(&library).status();
         if made.is_ok_and(|status| status.success()) {
-            return Some(BrokenDisk { folder, library });
+            return Ok(BrokenDisk { folder, library });
         }
-        say_skipped("there is no C compiler here");
-        None
+        let why = "there is no C compiler here".to_owned();
+        Err(Missing { why, required_by: Some(REQUIRE_SERVERS) })
     }
 
     fn serve(&self, arguments: &[&str]) -> Server {
@@ -58,9 +65,9 @@ fn blobs(server: &Server) -> usize {
     folders.map(|folder| std::fs::read_dir(folder.unwrap().path()).unwrap().count()).sum()
 }
 
-#[tokio::test]
-async fn a_mesh_that_the_disk_does_not_take_is_refused_and_no_part_of_it_is_kept() {
-    let Some(disk) = BrokenDisk::new() else { return };
+async fn a_mesh_that_the_disk_does_not_take_is_refused_and_no_part_of_it_is_kept()
+-> Result<(), Missing> {
+    let disk = BrokenDisk::new()?;
     let server = disk.serve(&["--workers", "0"]);
     for how in ["write", "short", "fsync"] {
         disk.errs(how);
@@ -72,11 +79,11 @@ async fn a_mesh_that_the_disk_does_not_take_is_refused_and_no_part_of_it_is_kept
     disk.is_mended();
     // Were there a row, it would be told as known.
     server.upload(SMALL.vtu()).await.expect(StatusCode::CREATED);
+    Ok(())
 }
 
-#[tokio::test]
-async fn an_attempt_whose_results_the_disk_does_not_take_is_tried_again() {
-    let Some(disk) = BrokenDisk::new() else { return };
+async fn an_attempt_whose_results_the_disk_does_not_take_is_tried_again() -> Result<(), Missing> {
+    let disk = BrokenDisk::new()?;
     let server = disk.serve(&["--workers", "1", "--attempts", "2"]);
     let case = server.case(&SMALL).await;
     let before = blobs(&server);
@@ -98,4 +105,5 @@ async fn an_attempt_whose_results_the_disk_does_not_take_is_tried_again() {
     assert_eq!((&error["type"], &error["class"]), (&"storage".into(), &"infrastructure".into()));
     assert_eq!(blobs(&server), kept);
     assert_eq!(ask(server.get("/healthz")).await.status, StatusCode::OK);
+    Ok(())
 }

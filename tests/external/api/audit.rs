@@ -6,15 +6,20 @@ use serde_json::json;
 use sqlx::Connection;
 use sqlx::sqlite::{SqliteConnectOptions, SqliteConnection};
 
-use crate::deployments::{Deployment, on_both};
+use crate::deployments::Deployment;
 use crate::helpers::{SMALL, Server, ask};
+use crate::support::trials::trials;
 
-on_both! {
-    the_audit_log_shows_what_was_changed
-    a_deed_whose_end_nobody_told_is_in_the_audit_log_as_unknown
+trials! {
+    on_both {
+        the_audit_log_shows_what_was_changed
+        a_deed_whose_end_nobody_told_is_in_the_audit_log_as_unknown
+    }
+    alone {
+        what_cannot_be_noted_is_not_done
+    }
 }
 
-#[tokio::test]
 async fn what_cannot_be_noted_is_not_done() {
     let server = Server::start();
     let database = |change: &'static str| {

@@ -2,11 +2,21 @@
 
 use facies::store::{Migrated, Store, StoreError};
 
-use crate::deployments::{Deployment, on_both};
+use crate::deployments::Deployment;
+use crate::support::external::Missing;
+use crate::support::trials::trials;
 
-on_both! {
-    a_program_older_than_its_database_refuses_to_start
-    a_step_that_breaks_off_leaves_the_step_before
+trials! {
+    on_both {
+        a_program_older_than_its_database_refuses_to_start
+        a_step_that_breaks_off_leaves_the_step_before
+    }
+    on_shared {
+        a_step_that_was_changed_after_it_was_taken_is_refused
+    }
+    alone {
+        a_shared_database_older_than_the_program_is_brought_up_to_date_by_command_only
+    }
 }
 
 async fn a_program_older_than_its_database_refuses_to_start(on: Deployment) {
@@ -39,9 +49,9 @@ async fn a_step_that_breaks_off_leaves_the_step_before(shared: Deployment) {
     on.open().await;
 }
 
-#[tokio::test]
-async fn a_shared_database_older_than_the_program_is_brought_up_to_date_by_command_only() {
-    let Some(on) = Deployment::empty().await else { return };
+async fn a_shared_database_older_than_the_program_is_brought_up_to_date_by_command_only()
+-> Result<(), Missing> {
+    let on = Deployment::empty().await?;
     let error = Store::connect(&on.places).await.err().unwrap();
     assert!(matches!(error, StoreError::SchemaTooOld { found: 0, .. }), "{error}");
     assert!(error.to_string().contains("facies migrate"), "{error}");
@@ -49,11 +59,10 @@ async fn a_shared_database_older_than_the_program_is_brought_up_to_date_by_comma
     assert!(from == 0 && to > 0);
     assert_eq!(Store::migrate(&on.places).await.unwrap(), Migrated { from: to, to });
     on.open().await;
+    Ok(())
 }
 
-#[tokio::test]
-async fn a_step_that_was_changed_after_it_was_taken_is_refused() {
-    let Some(on) = Deployment::shared().await else { return };
+async fn a_step_that_was_changed_after_it_was_taken_is_refused(on: Deployment) {
     on.execute("UPDATE _sqlx_migrations SET checksum = '' WHERE version = 1").await;
     let error = Store::connect(&on.places).await.err().unwrap();
     assert!(matches!(error, StoreError::Schema(_)), "{error}");

@@ -7,13 +7,19 @@ use facies::config::DatabasePlace;
 use facies::schema::key::{KeyDocument, Scope};
 use facies::store::{Deed, NewCase, Store, StoreError};
 
-use crate::deployments::{Deployment, on_both};
-use crate::store::queue::{LEASE, blob_count, enqueue, file, new_job};
-use crate::store::storage::mesh;
+use crate::deployments::Deployment;
+use crate::rows::mesh;
+use crate::rows::{LEASE, blob_count, enqueue, file, new_job};
+use crate::support::trials::trials;
 
-on_both! {
-    an_export_has_every_table
-    an_import_is_all_or_nothing
+trials! {
+    on_both {
+        an_export_has_every_table
+        an_import_is_all_or_nothing
+    }
+    on_shared {
+        a_deployment_moves_to_postgresql_and_back
+    }
 }
 
 /// Something in every table, with every kind of value.
@@ -65,9 +71,7 @@ fn content(folder: &Path) -> BTreeMap<String, BTreeSet<Vec<u8>>> {
     files.map(|path| (path.file_name().unwrap().to_str().unwrap().into(), lines(&path))).collect()
 }
 
-#[tokio::test(flavor = "multi_thread")]
-async fn a_deployment_moves_to_postgresql_and_back() {
-    let Some(shared) = Deployment::shared().await else { return };
+async fn a_deployment_moves_to_postgresql_and_back(shared: Deployment) {
     let (first, last) = (Deployment::embedded().await, Deployment::embedded().await);
     let store = first.open().await;
     fill(&store).await;

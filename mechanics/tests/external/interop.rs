@@ -1,6 +1,6 @@
 //! Files for other programs and files from them.
 //!
-//! `tests/interop/run` calls both tests with `FACIES_INTEROP` set to a folder: what is written to
+//! `tests/interop/run` calls these tests with `FACIES_INTEROP` set to a folder: what is written to
 //! `from_facies` is read there by vtk, meshio and trimesh, and what these write to `from_others` is
 //! read here. Every file has a plain JSON description beside it.
 
@@ -16,6 +16,13 @@ use mechanics::mesh::{Frame, TriangleSurface, Vector, VolumeMesh};
 use serde_json::{Value, json};
 
 use crate::samples::{mixed_mesh, read_default};
+use crate::support::external::{Missing, trials};
+
+trials! {
+    samples_of_every_written_format_lie_ready_for_other_programs
+    files_of_other_programs_hold_what_these_wrote
+    a_sample_file_reads_as_its_description
+}
 
 fn interop_folder() -> Option<PathBuf> {
     std::env::var_os("FACIES_INTEROP").map(PathBuf::from)
@@ -65,7 +72,6 @@ fn put_json(folder: &Path, name: &str, value: &Value) {
     put(folder, name, &serde_json::to_vec_pretty(value).unwrap());
 }
 
-#[test]
 fn samples_of_every_written_format_lie_ready_for_other_programs() {
     let temporary = || PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("interop");
     let folder = interop_folder().unwrap_or_else(temporary).join("from_facies");
@@ -151,12 +157,9 @@ fn put_surfaces(folder: &Path) {
     }
 }
 
-#[test]
-fn files_of_other_programs_hold_what_these_wrote() {
-    let Some(folder) = interop_folder().map(|folder| folder.join("from_others")) else {
-        crate::shared::say_skipped("FACIES_INTEROP is not set; tests/interop/run sets it");
-        return;
-    };
+fn files_of_other_programs_hold_what_these_wrote() -> Result<(), Missing> {
+    let why = "FACIES_INTEROP is not set; tests/interop/run sets it".to_owned();
+    let folder = interop_folder().ok_or(Missing { why, required_by: None })?.join("from_others");
     let list: Vec<Value> =
         serde_json::from_slice(&fs::read(folder.join("list.json")).unwrap()).unwrap();
     assert!(list.len() > 50, "{} files", list.len());
@@ -183,6 +186,7 @@ fn files_of_other_programs_hold_what_these_wrote() {
             );
         }
     }
+    Ok(())
 }
 
 /// Equal, numbers up to a part of themselves.
@@ -207,7 +211,6 @@ fn is_equal(wanted: &Value, found: &Value, tolerance: f64) -> bool {
     }
 }
 
-#[test]
 fn a_sample_file_reads_as_its_description() {
     let mesh = mixed_mesh();
     let bytes = vtu::write(&VolumeOutput::plain(&mesh, Frame::Lps)).unwrap();

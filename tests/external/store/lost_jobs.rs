@@ -3,13 +3,16 @@
 use facies::store::Store;
 use serde_json::json;
 
-use crate::deployments::{Deployment, on_both};
-use crate::store::queue::{LEASE, enqueue};
+use crate::deployments::Deployment;
+use crate::rows::{LEASE, enqueue};
+use crate::support::trials::trials;
 
-on_both! {
-    what_an_error_says_of_itself_tells_whether_its_job_was_lost
-    who_loses_its_worker_too_often_is_lost
-    what_was_lost_before_errors_had_classes_is_still_lost
+trials! {
+    on_both {
+        what_an_error_says_of_itself_tells_whether_its_job_was_lost
+        who_loses_its_worker_too_often_is_lost
+        what_was_lost_before_errors_had_classes_is_still_lost
+    }
 }
 
 /// The class of an error is a member of it, however it is written and whatever else it tells.

@@ -6,11 +6,21 @@ use tempfile::TempDir;
 use tokio::io::AsyncReadExt;
 use tokio::net::TcpStream;
 
-use crate::api::clients_that_stall::{get, send};
+use crate::connections::{get, send};
 use crate::deployments::Deployment;
 use crate::helpers::{Block, SMALL, Server, ask, serve_shared};
 use crate::invariants::{accepted, succeeds, tagged, works_on};
 use crate::processes::{faulty, is_stopped, signal, slots, until};
+use crate::support::trials::trials;
+
+trials! {
+    on_shared {
+        what_is_kept_too_long_is_erased_under_a_download_and_not_under_a_job
+    }
+    alone {
+        a_case_is_erased_under_a_job_and_under_a_download_that_ends_whole
+    }
+}
 
 /// More than the buffers of a connection take.
 const LARGE: Block = Block { cells: [44, 44, 30] };
@@ -50,7 +60,6 @@ async fn stopped_slot(server: &Server) -> u32 {
         .await
 }
 
-#[tokio::test]
 async fn a_case_is_erased_under_a_job_and_under_a_download_that_ends_whole() {
     let server = faulty(FAULT, &["--workers", "1"]);
     let solved = server.case(&SMALL).await;
@@ -75,9 +84,7 @@ async fn a_case_is_erased_under_a_job_and_under_a_download_that_ends_whole() {
     assert!(found.unwrap().status.success(), "nothing is left over");
 }
 
-#[tokio::test(flavor = "multi_thread")]
-async fn what_is_kept_too_long_is_erased_under_a_download_and_not_under_a_job() {
-    let Some(on) = Deployment::shared().await else { return };
+async fn what_is_kept_too_long_is_erased_under_a_download_and_not_under_a_job(on: Deployment) {
     let mut command = serve_shared(&on);
     command.args(["--workers", "1"]).env("FACIES_FAULT", FAULT);
     let server = Server::start_command(command, TempDir::new().unwrap());

@@ -6,17 +6,23 @@ use facies::schema::job::JobStatus;
 use facies::store::{Dismissal, Enqueued, MeshDeletion, Point, Store, StoreError};
 use tokio::task::JoinSet;
 
-use crate::deployments::{Deployment, on_both};
-use crate::store::queue::{LEASE, blob_count, enqueue, file, new_job};
-use crate::store::storage::mesh;
+use crate::deployments::Deployment;
+use crate::rows::mesh;
+use crate::rows::{LEASE, blob_count, enqueue, file, new_job};
+use crate::support::trials::trials;
 
-on_both! {
-    no_job_is_claimed_twice
-    fifty_requests_with_the_same_inputs_are_one_job
-    a_dismissal_and_a_publication_have_one_winner
-    bytes_that_are_stored_and_removed_at_the_same_time_are_never_missed
-    a_case_is_erased_while_jobs_come
-    events_of_a_job_are_numbered_without_gaps_and_go_with_it
+trials! {
+    on_both {
+        no_job_is_claimed_twice
+        fifty_requests_with_the_same_inputs_are_one_job
+        a_dismissal_and_a_publication_have_one_winner
+        bytes_that_are_stored_and_removed_at_the_same_time_are_never_missed
+        a_case_is_erased_while_jobs_come
+        events_of_a_job_are_numbered_without_gaps_and_go_with_it
+    }
+    on_shared {
+        a_process_that_waits_is_woken_by_the_change_of_another
+    }
 }
 
 /// A process is a store with connections of its own.
@@ -142,9 +148,7 @@ async fn a_case_is_erased_while_jobs_come(on: Deployment) {
     assert_eq!(blob_count(&stores[0]).await, 0);
 }
 
-#[tokio::test(flavor = "multi_thread")]
-async fn a_process_that_waits_is_woken_by_the_change_of_another() {
-    let Some(on) = Deployment::shared().await else { return };
+async fn a_process_that_waits_is_woken_by_the_change_of_another(on: Deployment) {
     let stores = processes(&on, 2).await;
     let mut changes = stores[1].job_changes();
     let woken = async {

@@ -10,8 +10,15 @@ use crate::deployments::Deployment;
 use crate::helpers::{SMALL, Server, ask, serve_shared, spec};
 use crate::invariants::{accepted, state, tagged};
 use crate::processes::{is_stopped, signal, slots_of, until};
-use crate::shared::say_skipped;
-use crate::worker::hosts::Worker;
+use crate::support::external::{Missing, REQUIRE_SERVERS};
+use crate::support::trials::trials;
+use crate::workers::Worker;
+
+trials! {
+    alone {
+        clocks_that_jump_cost_no_job_an_attempt
+    }
+}
 
 /// The clock of one process, by libfaketime. The clock that only ever goes on is left alone, as by a system whose time is set.
 struct Clock {
@@ -34,16 +41,12 @@ impl Clock {
     }
 }
 
-/// `None`, and a word about it, where libfaketime is not installed.
-fn library() -> Option<PathBuf> {
+fn library() -> Result<PathBuf, Missing> {
     let folders = std::fs::read_dir("/usr/lib").into_iter().flatten().flatten();
     let mut places = folders.map(|folder| folder.path().join("faketime/libfaketimeMT.so.1"));
-    let found = places.find(|place| place.exists());
-    if found.is_none() {
-        say_skipped("there is no libfaketime here");
-        assert!(std::env::var_os("FACIES_REQUIRE_SERVERS").is_none(), "libfaketime is required");
-    }
-    found
+    let why = "there is no libfaketime here".to_owned();
+    let missing = Missing { why, required_by: Some(REQUIRE_SERVERS) };
+    places.find(|place| place.exists()).ok_or(missing)
 }
 
 /// The year that a server tells; it goes on telling the latest that it has seen.
@@ -58,10 +61,9 @@ fn ended_in_one_attempt(job: &Value) {
     assert!(times.is_sorted(), "{times:?}");
 }
 
-#[tokio::test]
-async fn clocks_that_jump_cost_no_job_an_attempt() {
-    let Some(library) = library() else { return };
-    let Some(on) = Deployment::shared().await else { return };
+async fn clocks_that_jump_cost_no_job_an_attempt() -> Result<(), Missing> {
+    let library = library()?;
+    let on = Deployment::shared().await?;
     // S3 refuses requests of other times.
     let blobs = on.folder().join("blobs");
     let mut command = serve_shared(&on);
@@ -102,4 +104,5 @@ async fn clocks_that_jump_cost_no_job_an_attempt() {
     }
     signal(slot, "CONT");
     ended_in_one_attempt(&api.ended(&id).await);
+    Ok(())
 }

@@ -1,34 +1,26 @@
 //! Rows and bytes: what belongs together stays together, what nobody refers to goes.
 
-use bytes::Bytes;
 use facies::schema::job::JobStatus;
 use facies::schema::wire::canonical::sha256_hex;
-use facies::store::{MeshDeletion, NewMesh, Store, StoreError};
+use facies::store::{MeshDeletion, Store, StoreError};
 
-use crate::deployments::{Deployment, on_both};
-use crate::store::queue::{LEASE, blob_count, enqueue, file, job};
+use crate::deployments::Deployment;
+use crate::rows::{LEASE, blob_count, enqueue, file, job, mesh};
+use crate::support::trials::trials;
 
-on_both! {
-    bytes_that_were_announced_and_never_referred_to_are_swept
-    a_removal_that_was_broken_off_is_finished
-    bytes_that_came_late_to_a_place_that_was_discarded_are_swept
-    bytes_that_changed_or_are_lost_are_never_served
-    bytes_that_no_row_knows_stay_until_a_repair
-    a_repair_finds_bytes_again_and_has_lost_results_solved_again
-    the_same_bytes_stay_as_long_as_somebody_refers_to_them
-}
-
-/// A mesh of these bytes; other options make another mesh of the same bytes.
-pub fn mesh(content: &'static str, options: &str) -> NewMesh {
-    let bytes = Bytes::from_static(content.as_bytes());
-    NewMesh {
-        id: uuid::Uuid::now_v7().to_string(),
-        sha256: sha256_hex(&bytes),
-        options: options.into(),
-        blob: sha256_hex(&bytes),
-        bytes,
-        standalone: true,
-        report: "{}".into(),
+trials! {
+    on_both {
+        bytes_that_were_announced_and_never_referred_to_are_swept
+        a_removal_that_was_broken_off_is_finished
+        bytes_that_came_late_to_a_place_that_was_discarded_are_swept
+        bytes_that_changed_or_are_lost_are_never_served
+        bytes_that_no_row_knows_stay_until_a_repair
+        a_repair_finds_bytes_again_and_has_lost_results_solved_again
+        the_same_bytes_stay_as_long_as_somebody_refers_to_them
+    }
+    alone {
+        a_start_removes_what_a_dead_process_left
+        a_data_folder_serves_one_process
     }
 }
 
@@ -158,7 +150,6 @@ async fn the_same_bytes_stay_as_long_as_somebody_refers_to_them(on: Deployment) 
     assert_eq!(on.objects().len(), 0);
 }
 
-#[tokio::test]
 async fn a_start_removes_what_a_dead_process_left() {
     let on = Deployment::embedded().await;
     let store = on.open().await;
@@ -179,7 +170,6 @@ async fn a_start_removes_what_a_dead_process_left() {
     assert_eq!(store.read_blob(&row.blob).await.unwrap(), "kept");
 }
 
-#[tokio::test]
 async fn a_data_folder_serves_one_process() {
     let on = Deployment::embedded().await;
     let _store = on.open().await;

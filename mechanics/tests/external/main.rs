@@ -1,0 +1,24 @@
+//! Numerics on what is not part of the project: real meshes, surfaces and images, and files of other programs.
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on panics")]
+
+mod files;
+mod interop;
+mod needs;
+mod predictions;
+#[path = "../support/mod.rs"]
+mod support;
+mod surfaces;
+
+use std::process::ExitCode;
+
+use support::{samples, scenes};
+
+fn main() -> ExitCode {
+    support::external::run([
+        files::trials(),
+        interop::trials(),
+        needs::trials(),
+        predictions::trials(),
+        surfaces::trials(),
+    ])
+}

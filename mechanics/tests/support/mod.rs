@@ -1,0 +1,9 @@
+//! Meshes, scenes, surfaces and needs that the tests of several targets share.
+
+#![allow(dead_code, unused_macros, reason = "each target uses a part")]
+
+pub mod external;
+pub mod responses;
+pub mod samples;
+pub mod scenes;
+pub mod surfaces;

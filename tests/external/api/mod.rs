@@ -1,0 +1,4 @@
+//! Deeds and erasures over HTTP.
+
+pub mod audit;
+pub mod erasures;

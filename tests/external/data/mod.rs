@@ -1,0 +1,4 @@
+//! Real faces and a real CT, from the documents to the results.
+
+pub mod ct;
+pub mod faces;

@@ -1,0 +1,74 @@
+//! Rows and bytes that tests of the store put into it.
+
+use std::time::Duration;
+
+use bytes::Bytes;
+use facies::schema::wire::canonical::sha256_hex;
+use facies::store::{Enqueued, JobRow, NewJob, NewMesh, PublishedFile, Store};
+use tempfile::TempDir;
+
+pub const LEASE: Duration = Duration::from_secs(60);
+
+pub async fn store() -> (TempDir, Store) {
+    let folder = TempDir::new().unwrap();
+    let store = Store::open(folder.path()).await.unwrap();
+    (folder, store)
+}
+
+/// A job of no case; its document is read by nobody or by a test's own work.
+pub fn new_job(document: &str, hash: &str) -> NewJob {
+    NewJob {
+        id: uuid::Uuid::now_v7().to_string(),
+        kind: "predict",
+        priority: 0,
+        case_id: None,
+        shared_cases: Vec::new(),
+        document: document.into(),
+        spec_hash: hash.into(),
+        engine: "test".into(),
+        tags: vec!["a".into()],
+        mesh_ids: vec![],
+        traceparent: None,
+    }
+}
+
+pub async fn enqueue(store: &Store, hash: &str) -> String {
+    let job = new_job("{}", hash);
+    assert_eq!(store.enqueue(&job, 100).await.unwrap(), Enqueued::Accepted);
+    job.id
+}
+
+pub async fn job(store: &Store, id: &str) -> JobRow {
+    store.job(id).await.unwrap().unwrap()
+}
+
+pub fn file(content: &'static str) -> PublishedFile {
+    let bytes = Bytes::from_static(content.as_bytes());
+    PublishedFile {
+        name: "result.json".into(),
+        media_type: "application/json".into(),
+        sha256: sha256_hex(&bytes),
+        bytes,
+    }
+}
+
+/// How many places hold bytes.
+pub async fn blob_count(store: &Store) -> usize {
+    let findings = store.fsck(false).await.unwrap();
+    assert!(findings.is_clean(), "{findings:?}");
+    findings.objects
+}
+
+/// A mesh of these bytes; other options make another mesh of the same bytes.
+pub fn mesh(content: &'static str, options: &str) -> NewMesh {
+    let bytes = Bytes::from_static(content.as_bytes());
+    NewMesh {
+        id: uuid::Uuid::now_v7().to_string(),
+        sha256: sha256_hex(&bytes),
+        options: options.into(),
+        blob: sha256_hex(&bytes),
+        bytes,
+        standalone: true,
+        report: "{}".into(),
+    }
+}
