@@ -6,12 +6,12 @@ use serde::{Deserialize, Serialize};
 
 use super::clock::Observed;
 use super::failure::JobError;
+use super::output::{JobOutput, Workplace};
 use super::source::MeshSource;
-use super::work::{JobOutput, Workplace};
-use crate::jobs::predict::check::warning_documents;
-use crate::jobs::predict::input::{PredictInput, Prepared};
+use crate::jobs::predict::{PredictInput, Prepared};
 use crate::jobs::result::folder::ResultFolder;
 use crate::jobs::result::provenance::{Origin, add_method, encode_result, solver_document};
+use crate::jobs::result::warnings::warning_documents;
 use crate::schema::case::conversion::centre;
 use crate::schema::predict::document::OutputName;
 use crate::schema::predict::result::ResultDocument;

@@ -5,7 +5,7 @@ use bytes::Bytes;
 use serde_json::Value;
 
 use super::mesh_report::mesh_report;
-use crate::jobs::source::{StoredMesh, StoredShape};
+use crate::jobs::{StoredMesh, StoredShape};
 use crate::schema::Problem;
 use crate::schema::case::document::{FrameName, LengthUnit};
 use crate::schema::mesh::MeshDocument;

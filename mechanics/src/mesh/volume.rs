@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 
-
 use super::{TriangleSurface, Vector};
 
 /// The shape of a first-order cell. Local node order is that of VTK for tetrahedra and hexahedra;

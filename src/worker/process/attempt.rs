@@ -3,10 +3,7 @@
 use serde_json::{Value, json};
 
 use super::protocol::{Assignment, Effort, Made, MadeFile, Outcome};
-use crate::jobs::failure::JobError;
-use crate::jobs::predict::input::JobInput;
-use crate::jobs::source::MeshSource;
-use crate::jobs::work::{JobOutput, Workplace, work};
+use crate::jobs::{JobError, JobInput, JobOutput, MeshSource, Workplace, work};
 use crate::schema::Limits;
 use crate::schema::job::ErrorClass;
 use mechanics::prediction::Progress;
@@ -31,16 +28,8 @@ pub fn attempt(
 
 /// The document of a job, which now knows its job and how long it waited.
 fn read_input(assignment: &Assignment) -> Result<JobInput, serde_json::Error> {
-    let mut input: JobInput = serde_json::from_str(&assignment.document)?;
-    let (job, queue_s) = (Some(assignment.job.clone()), Some(assignment.queue_s));
-    match &mut input {
-        JobInput::Predict(input) => (input.job, input.queue_s) = (job, queue_s),
-        JobInput::Compare(input) => (input.job, input.queue_s) = (job, queue_s),
-        JobInput::Response(input) => (input.job, input.queue_s) = (job, queue_s),
-        JobInput::Optimise(input) => (input.job, input.queue_s) = (job, queue_s),
-        JobInput::Study(input) => (input.job, input.queue_s) = (job, queue_s),
-    }
-    Ok(input)
+    let input: JobInput = serde_json::from_str(&assignment.document)?;
+    Ok(input.of_job(&assignment.job, assignment.queue_s))
 }
 
 fn made(output: JobOutput) -> Outcome {

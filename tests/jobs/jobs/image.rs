@@ -4,11 +4,9 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-use facies::jobs::predict::check;
-use facies::jobs::work::Workplace;
 use facies::jobs::{
     JobError, JobInput, JobOutput, MeshSource, PredictInput, SourceError, StoredMesh, StoredShape,
-    work,
+    Workplace, check, work,
 };
 use facies::schema::Limits;
 use facies::schema::case::document::LengthUnit;
