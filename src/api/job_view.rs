@@ -2,7 +2,8 @@
 
 use super::error::{ApiError, ApiResult};
 use super::time;
-use crate::schema::job::{JobKind, JobStatus, Link, StatusInfo};
+use crate::schema::job::{JobStatus, Link, StatusInfo};
+use crate::schema::job_document::JobKind;
 use crate::schema::predict::result::ResultDocument;
 use crate::store::JobRow;
 

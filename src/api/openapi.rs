@@ -1,5 +1,8 @@
 //! The description of the service (OpenAPI 3.1), made from the code.
 
+use std::collections::BTreeMap;
+
+use serde_json::json;
 use utoipa::ToSchema as _;
 use utoipa::openapi::path::Operation;
 use utoipa::openapi::security::{Http, HttpAuthScheme, SecurityRequirement, SecurityScheme};
@@ -11,6 +14,7 @@ use super::caller::is_open;
 use super::{openapi_types, resources};
 use crate::schema::ProblemDocument;
 use crate::schema::job::JobEvent;
+use crate::schema::job_document::JobKind;
 
 /// Problems that every operation may answer with: what is wrong with the head of the request, and what is
 /// wrong with the service.
@@ -47,6 +51,7 @@ pub fn document() -> serde_json::Value {
     let described = serde_json::to_value(described()).unwrap_or_default();
     let mut document = openapi_types::typed(described);
     describe_check(&mut document["components"]["schemas"]);
+    describe_kinds(&mut document["components"]["schemas"]["JobDocument"]);
     document
 }
 
@@ -58,6 +63,14 @@ fn describe_check(schemas: &mut serde_json::Value) {
         members.remove("required");
     }
     schemas["CheckRequest"] = members;
+}
+
+/// Which document belongs to which kind of job.
+fn describe_kinds(document: &mut serde_json::Value) {
+    let reference = |kind: &JobKind| format!("#/components/schemas/{}", kind.document());
+    let mapping: BTreeMap<&str, String> =
+        JobKind::ALL.iter().map(|kind| (kind.name(), reference(kind))).collect();
+    document["discriminator"] = json!({ "propertyName": "kind", "mapping": mapping });
 }
 
 /// The description as the handlers and documents say it.
@@ -90,9 +103,7 @@ fn described() -> OpenApi {
     document
 }
 
-fn add_schema<T: utoipa::ToSchema>(
-    schemas: &mut std::collections::BTreeMap<String, RefOr<utoipa::openapi::Schema>>,
-) {
+fn add_schema<T: utoipa::ToSchema>(schemas: &mut BTreeMap<String, RefOr<utoipa::openapi::Schema>>) {
     let mut found = Vec::new();
     T::schemas(&mut found);
     schemas.extend(found);

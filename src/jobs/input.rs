@@ -7,6 +7,8 @@ use super::optimise::OptimiseInput;
 use super::predict::PredictInput;
 use super::response::ResponseInput;
 use super::study::StudyInput;
+use crate::schema::job_document::JobKind;
+use crate::schema::study::document::StudyKind;
 
 /// Everything that decides its result, but for the meshes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -21,6 +23,19 @@ pub enum JobInput {
 }
 
 impl JobInput {
+    pub fn kind(&self) -> JobKind {
+        match self {
+            JobInput::Predict(_) => JobKind::Predict,
+            JobInput::Compare(_) => JobKind::Compare,
+            JobInput::Response(_) => JobKind::Response,
+            JobInput::Optimise(_) => JobKind::Optimise,
+            JobInput::Study(input) => match input.spec.kind {
+                StudyKind::Study => JobKind::Study,
+                StudyKind::Batch => JobKind::Batch,
+            },
+        }
+    }
+
     /// The same with the id of its job and how long it waited from acceptance to start, in s.
     pub fn of_job(mut self, id: &str, waited_s: f64) -> JobInput {
         let (job, queue_s) = (Some(id.to_owned()), Some(waited_s));

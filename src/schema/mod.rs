@@ -4,6 +4,7 @@
 pub mod case;
 pub mod compare;
 pub mod job;
+pub mod job_document;
 pub mod key;
 pub mod mesh;
 pub mod methods;
