@@ -18,7 +18,7 @@ pub use compare::CompareInput;
 pub use failure::JobError;
 pub use input::JobInput;
 pub use optimise::OptimiseInput;
-pub use output::{JobOutput, Workplace};
+pub use output::{JobOutput, MadeMesh, Workplace};
 pub use predict::{CheckReport, PredictInput, check};
 pub use response::ResponseInput;
 pub use run::work;

@@ -2,9 +2,11 @@
 
 use std::path::Path;
 
-use super::source::MeshSource;
+use super::source::{MeshSource, StoredShape};
 use crate::schema::Limits;
+use crate::schema::predict::keep::KeptName;
 use crate::schema::predict::result::{FileDocument, ResultDocument};
+use mechanics::mesh::Frame;
 
 /// What a job made.
 #[derive(Clone, Debug)]
@@ -13,6 +15,16 @@ pub struct JobOutput {
     pub result: ResultDocument,
     /// Every file in the folder, with `result.json` itself.
     pub files: Vec<FileDocument>,
+    /// To be stored as meshes; the service does so when it publishes the result, and names them there.
+    pub meshes: Vec<MadeMesh>,
+}
+
+/// A mesh that a job leaves for others, in mm.
+#[derive(Clone, Debug)]
+pub struct MadeMesh {
+    pub what: KeptName,
+    pub shape: StoredShape,
+    pub frame: Frame,
 }
 
 /// Where a job finds its meshes, what it is allowed, and where its files go.

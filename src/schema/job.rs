@@ -5,6 +5,7 @@ use serde_json::{Map, Value};
 use utoipa::ToSchema;
 
 use crate::schema::job_document::JobKind;
+use crate::schema::link::Link;
 use crate::schema::predict::result::{EngineDocument, ResultDocument};
 use crate::schema::wire::warning::WarningDocument;
 
@@ -153,13 +154,4 @@ pub enum ErrorClass {
     Cancelled,
     /// Time or memory that the spec allows.
     Budget,
-}
-
-/// Where to go from here (RFC 8288).
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
-pub struct Link {
-    pub href: String,
-    pub rel: String,
-    #[serde(rename = "type")]
-    pub media_type: String,
 }

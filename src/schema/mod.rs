@@ -6,6 +6,7 @@ pub mod compare;
 pub mod job;
 pub mod job_document;
 pub mod key;
+pub mod link;
 pub mod mesh;
 pub mod methods;
 pub mod optimise;

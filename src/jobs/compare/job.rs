@@ -66,13 +66,14 @@ pub fn compare_job(
         comparison: Some(compared.document.clone()),
         optimisation: None,
         study: None,
+        kept: Vec::new(),
         numerical_error_mm: None,
         reaction_mn: BTreeMap::new(),
         provenance: origin.provenance(&clock),
         warnings: warning_documents(warnings),
     };
     folder.add(OutputName::ResultJson, &encode_result(&result)?)?;
-    Ok(JobOutput { result, files: folder.files })
+    Ok(JobOutput { result, files: folder.files, meshes: Vec::new() })
 }
 
 /// `skin.vtp` of a comparison: the prediction with its distance at each point.

@@ -10,7 +10,9 @@ use crate::jobs::output::{JobOutput, Workplace};
 use crate::jobs::predict::{PredictInput, Predicted, Prepared, statistics};
 use crate::jobs::result::folder::ResultFolder;
 use crate::jobs::result::pictures::displacement_picture;
-use crate::jobs::result::provenance::{Origin, add_method, encode_result, solver_document};
+use crate::jobs::result::provenance::{
+    Origin, add_method, encode_result, mesh_summary, solver_document,
+};
 use crate::jobs::result::skin::PredictedSkin;
 use crate::jobs::result::tissue::encode_bones;
 use crate::jobs::result::warnings::warning_documents;
@@ -175,7 +177,7 @@ impl Found {
             folder.add(name, &bytes)?;
         }
         let mut provenance = origin.provenance(clock);
-        let mesh = (&*scene.mesh, &planned.quality);
+        let mesh = mesh_summary(&scene.mesh, &planned.quality);
         add_method(&mut provenance, input.spec.method, mesh, self.solver);
         let result = ResultDocument {
             job: input.job.clone(),
@@ -184,12 +186,13 @@ impl Found {
             comparison: None,
             optimisation: Some(self.document),
             study: None,
+            kept: Vec::new(),
             numerical_error_mm: None,
             reaction_mn: BTreeMap::new(),
             provenance,
             warnings: warning_documents(planned.warnings.iter().chain(&scene.warnings)),
         };
         folder.add(OutputName::ResultJson, &encode_result(&result)?)?;
-        Ok(JobOutput { result, files: folder.files })
+        Ok(JobOutput { result, files: folder.files, meshes: Vec::new() })
     }
 }

@@ -2,27 +2,32 @@
 
 use std::collections::BTreeMap;
 use std::path::Path;
+use std::sync::Arc;
 
 use super::comparison::compare_skin;
 use super::input::{PredictInput, Prepared};
 use super::overlap::overlaps;
 use crate::jobs::clock::Observed;
 use crate::jobs::failure::JobError;
-use crate::jobs::output::JobOutput;
+use crate::jobs::output::{JobOutput, MadeMesh};
 use crate::jobs::result::folder::ResultFolder;
 use crate::jobs::result::pictures::displacement_picture;
-use crate::jobs::result::provenance::{Origin, add_method, encode_result, solver_document};
+use crate::jobs::result::provenance::{
+    Origin, add_method, encode_result, mesh_summary, solver_document,
+};
 use crate::jobs::result::skin::PredictedSkin;
 use crate::jobs::result::tissue::{encode_bones, encode_volume};
 use crate::jobs::result::warnings::warning_documents;
+use crate::jobs::source::StoredShape;
 use crate::schema::Triple;
 use crate::schema::compare::result::{ComparisonDocument, StatDocument};
 use crate::schema::optimise::result::OptimisationDocument;
 use crate::schema::predict::document::OutputName;
+use crate::schema::predict::keep::KeptName;
 use crate::schema::predict::result::{
     DisplacementDocument, FileDocument, ResultDocument, StatisticsDocument,
 };
-use mechanics::mesh::{Vector, Warning};
+use mechanics::mesh::{Vector, VolumeMesh, Warning};
 use mechanics::prediction::{Phase, Prediction, Progress, Skin};
 use mechanics::validation::{Statistics, StatisticsError};
 
@@ -85,7 +90,8 @@ impl Predicted {
         // 4. The manifest.
         let result = finished.result(input, clock, folder.files.clone());
         folder.add(OutputName::ResultJson, &encode_result(&result)?)?;
-        Ok(JobOutput { result, files: folder.files })
+        let meshes = finished.kept(&input.spec.kept());
+        Ok(JobOutput { result, files: folder.files, meshes })
     }
 }
 
@@ -102,6 +108,23 @@ struct Finished<'a> {
 }
 
 impl Finished<'_> {
+    fn kept(&self, wanted: &[KeptName]) -> Vec<MadeMesh> {
+        let frame = self.origin.frame;
+        let shape = |what: KeptName| match what {
+            KeptName::Skin => StoredShape::Surface(Arc::new(self.skin.surface.clone())),
+            KeptName::Volume => StoredShape::Volume(Arc::new(self.moved_volume())),
+        };
+        wanted.iter().map(|&what| MadeMesh { what, shape: shape(what), frame }).collect()
+    }
+
+    fn moved_volume(&self) -> VolumeMesh {
+        let mut moved = (*self.prepared.scene.mesh).clone();
+        for (node, displacement) in moved.nodes.iter_mut().zip(&self.prediction.displacement) {
+            *node += displacement;
+        }
+        moved
+    }
+
     fn write_files(&self, input: &PredictInput, folder: &mut ResultFolder) -> Result<(), JobError> {
         let solver = solver_document(&self.prediction.solver);
         let field_data = self.origin.field_data(input.spec.method, &solver);
@@ -134,7 +157,7 @@ impl Finished<'_> {
     ) -> ResultDocument {
         let mut provenance = self.origin.provenance(clock);
         let solver = solver_document(&self.prediction.solver);
-        let mesh = (&*self.prepared.scene.mesh, &self.prepared.quality);
+        let mesh = mesh_summary(&self.prepared.scene.mesh, &self.prepared.quality);
         add_method(&mut provenance, input.spec.method, mesh, solver);
         ResultDocument {
             job: input.job.clone(),
@@ -143,6 +166,7 @@ impl Finished<'_> {
             comparison: self.comparison.clone(),
             optimisation: self.optimisation.clone(),
             study: None,
+            kept: Vec::new(),
             numerical_error_mm: None,
             reaction_mn: triples(&self.prediction.reactions),
             provenance,

@@ -119,13 +119,14 @@ pub fn study_job(
         comparison: None,
         optimisation: None,
         study: Some(report.summary()),
+        kept: Vec::new(),
         numerical_error_mm: None,
         reaction_mn: BTreeMap::new(),
         provenance: origin.provenance(&clock),
         warnings: warning_documents(prepared.warnings.iter()),
     };
     folder.add(OutputName::ResultJson, &encode_result(&result)?)?;
-    Ok(JobOutput { result, files: folder.files })
+    Ok(JobOutput { result, files: folder.files, meshes: Vec::new() })
 }
 
 /// The report in every form, a chart over all scenes, and one for each where there are several.

@@ -21,8 +21,18 @@ use mechanics::study::sweep::{self, SweepError};
 use mechanics::study::{Materials, StudyScene, Truth, Variant, methods};
 
 /// Fields of a `predict` spec that have their own place in a study.
-const OF_THE_STUDY: [&str; 9] =
-    ["kind", "case", "plan", "plan_id", "materials", "budget", "outputs", "compare_to", "tags"];
+const OF_THE_STUDY: [&str; 10] = [
+    "kind",
+    "case",
+    "plan",
+    "plan_id",
+    "materials",
+    "budget",
+    "outputs",
+    "keep",
+    "compare_to",
+    "tags",
+];
 
 impl Documents<'_> {
     /// The variants of all methods, each with a label of its own.
@@ -164,7 +174,7 @@ impl Documents<'_> {
             match reference {
                 SceneReference::Name(name) => found.scenes.extend(self.own_scene(name, faults)),
                 SceneReference::Case(reference) => {
-                    self.case_scene((index, reference), &mut found)?;
+                    self.case_scene(index, reference, &mut found)?;
                 }
             }
             let names = found.scenes.iter().map(|scene| &scene.name);
@@ -222,7 +232,8 @@ impl Documents<'_> {
     /// A case with each plan, and with each of the materials.
     fn case_scene(
         &self,
-        (index, reference): (usize, &CaseReference),
+        index: usize,
+        reference: &CaseReference,
         found: &mut Scenes,
     ) -> Result<(), JobError> {
         let documents = self.spec.plans_of(index, reference);

@@ -5,6 +5,7 @@ use serde_json::Value;
 use utoipa::ToSchema;
 
 use super::dvs::DvsDocument;
+use super::keep::KeptName;
 use super::mass_spring::MassSpringDocument;
 use super::mass_tensor::MassTensorDocument;
 use super::thickness_warp::ThicknessWarpDocument;
@@ -83,6 +84,9 @@ pub struct PredictDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub outputs: Option<Vec<OutputName>>,
+    /// Meshes of the result that are stored as if they had been uploaded. Default: none. Not on the command line.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub keep: Vec<KeptName>,
     /// Compares the predicted skin with another surface in the same job.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
@@ -291,6 +295,14 @@ impl PredictDocument {
         files
     }
 
+    /// The meshes to keep, each once.
+    pub fn kept(&self) -> Vec<KeptName> {
+        let mut kept = self.keep.clone();
+        kept.sort_unstable();
+        kept.dedup();
+        kept
+    }
+
     /// What decides the numbers, for the hash of the job: no tags, no ids, the plan in full.
     pub fn content(&self) -> Value {
         let mut plain = self.clone();
@@ -299,6 +311,7 @@ impl PredictDocument {
         plain.plan = None;
         plain.plan_id = None;
         plain.outputs = Some(self.files());
+        plain.keep = self.kept();
         canonical::to_value(&plain)
     }
 }

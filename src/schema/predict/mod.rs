@@ -3,6 +3,7 @@
 pub mod check;
 pub mod document;
 pub mod dvs;
+pub mod keep;
 pub mod mass_spring;
 pub mod mass_tensor;
 pub mod result;

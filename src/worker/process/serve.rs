@@ -106,7 +106,7 @@ fn listen(mut orders: BufReader<io::Stdin>) -> Result<(Ears, Heard), SlotError> 
     let ears = stop.clone();
     std::thread::Builder::new().name("orders".into()).spawn(move || {
         while let Ok(Some(order)) = read_message(&mut orders) {
-            if take(order, &mut orders, &stop, (&assign, &answer)).is_none() {
+            if take(order, &mut orders, &stop, &assign, &answer).is_none() {
                 break;
             }
         }
@@ -120,7 +120,8 @@ fn take(
     order: Order,
     orders: &mut BufReader<io::Stdin>,
     stop: &AtomicBool,
-    (assign, answer): (&Sender<Assignment>, &Sender<FullAnswer>),
+    assign: &Sender<Assignment>,
+    answer: &Sender<FullAnswer>,
 ) -> Option<()> {
     match order {
         Order::Start(_) => None,

@@ -13,6 +13,7 @@ pub mod events;
 pub mod idempotency;
 pub mod images;
 pub mod jobs;
+pub mod keep;
 pub mod meshes;
 pub mod openapi;
 pub mod optimise;

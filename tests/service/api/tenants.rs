@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 use crate::deployments::{Deployment, on_both};
 use crate::helpers::{Answer, SMALL, Server, ask, spec};
-use crate::store::queue::{LEASE, enqueue, file, new_job};
+use crate::store::queue::{LEASE, enqueue, file, new_job, result};
 use crate::store::storage::mesh;
 
 on_both! {
@@ -327,7 +327,7 @@ async fn what_is_older_than_its_tenant_keeps_it_is_erased(on: Deployment) {
     for tenant in &tenants {
         let old = enqueue(tenant, "old").await;
         let lease = store.claim(LEASE).await.unwrap().unwrap().lease;
-        assert!(store.publish(&lease, "{}", &[file("a result")]).await.unwrap());
+        assert!(store.publish(&lease, result("{}", &[file("a result")])).await.unwrap());
         let waiting = enqueue(tenant, "waits").await;
         let mesh = mesh("alone", "units=mm");
         assert!(tenant.add_mesh(&mesh).await.unwrap());

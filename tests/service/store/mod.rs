@@ -1,5 +1,6 @@
 //! Rows and bytes, on both engines.
 
+pub mod made;
 pub mod queue;
 pub mod races;
 pub mod remembered;

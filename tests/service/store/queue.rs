@@ -6,7 +6,8 @@ use bytes::Bytes;
 use facies::schema::job::JobStatus;
 use facies::schema::wire::canonical::sha256_hex;
 use facies::store::{
-    Claim, Dismissal, Enqueued, JobFilter, JobRow, NewJob, Point, PublishedFile, QueueRow, Store,
+    Claim, Dismissal, Enqueued, JobFilter, JobRow, NewJob, Point, Published, PublishedFile,
+    QueueRow, Store,
 };
 use tempfile::TempDir;
 
@@ -50,6 +51,11 @@ pub async fn job(store: &Store, id: &str) -> JobRow {
 /// What happens to a lease whose worker sleeps too long.
 async fn let_leases_run_out(on: &Deployment) {
     on.execute("UPDATE jobs SET lease_expires = 1").await;
+}
+
+/// A result without meshes.
+pub fn result<'a>(result: &'a str, files: &'a [PublishedFile]) -> Published<'a> {
+    Published { result, files, meshes: &[] }
 }
 
 pub fn file(content: &'static str) -> PublishedFile {
@@ -123,7 +129,7 @@ async fn a_worker_that_was_thought_dead_publishes_nothing(on: Deployment) {
     assert_ne!(lease.token, zombie.token);
 
     let late = [file("zombie")];
-    assert!(!store.publish(&zombie, "\"zombie\"", &late).await.unwrap());
+    assert!(!store.publish(&zombie, result("\"zombie\"", &late)).await.unwrap());
     assert!(!store.fail(&zombie, "{}").await.unwrap());
     assert!(!store.release(&zombie).await.unwrap());
     assert!(!store.lose(&zombie, 3, "{}").await.unwrap());
@@ -133,7 +139,7 @@ async fn a_worker_that_was_thought_dead_publishes_nothing(on: Deployment) {
     assert_eq!(blob_count(&store).await, 0, "its files are gone");
 
     let second = [file("second")];
-    assert!(other.publish(&lease, "\"second\"", &second).await.unwrap());
+    assert!(other.publish(&lease, result("\"second\"", &second)).await.unwrap());
     let ended = job(&store, &id).await;
     assert_eq!(ended.status, JobStatus::Successful);
     assert_eq!(ended.result.as_deref(), Some("\"second\""));
@@ -178,7 +184,7 @@ async fn a_result_that_comes_after_the_dismissal_is_dropped(on: Deployment) {
     assert_eq!(store.dismiss(&id).await.unwrap(), Dismissal::Dismissed);
     assert!(!store.holds(&lease).await.unwrap());
     let late = [file("late")];
-    assert!(!store.publish(&lease, "{}", &late).await.unwrap());
+    assert!(!store.publish(&lease, result("{}", &late)).await.unwrap());
     assert_eq!(job(&store, &id).await.status, JobStatus::Dismissed);
     assert_eq!(blob_count(&store).await, 0);
     assert_eq!(store.dismiss(&id).await.unwrap(), Dismissal::Removed);

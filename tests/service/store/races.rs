@@ -7,7 +7,7 @@ use facies::store::{Dismissal, Enqueued, MeshDeletion, Point, Store, StoreError}
 use tokio::task::JoinSet;
 
 use crate::deployments::{Deployment, on_both};
-use crate::store::queue::{LEASE, blob_count, enqueue, file, new_job};
+use crate::store::queue::{LEASE, blob_count, enqueue, file, new_job, result};
 use crate::store::storage::mesh;
 
 on_both! {
@@ -74,7 +74,7 @@ async fn a_dismissal_and_a_publication_have_one_winner(on: Deployment) {
         let lease = stores[0].claim(LEASE).await.unwrap().unwrap().lease;
         let files = [file("result")];
         let (published, dismissal) =
-            tokio::join!(stores[0].publish(&lease, "{}", &files), stores[1].dismiss(&id));
+            tokio::join!(stores[0].publish(&lease, result("{}", &files)), stores[1].dismiss(&id));
         let left = stores[0].job(&id).await.unwrap();
         match (published.unwrap(), dismissal.unwrap()) {
             (false, Dismissal::Dismissed) => {
