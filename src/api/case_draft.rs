@@ -160,7 +160,6 @@ pub(super) async fn checked(
 ) -> ApiResult<CheckReport> {
     let sources = service.library.source(Handle::current(), extra);
     let limits: Limits = (*service.limits).clone();
-    let report =
-        service.compute(move || crate::jobs::predict::check(&input, &sources, &limits)).await?;
+    let report = service.compute(move || crate::jobs::check(&input, &sources, &limits)).await?;
     report.map_err(job_input::refusal)
 }

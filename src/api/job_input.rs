@@ -12,17 +12,30 @@ use crate::jobs::{
     SourceError, StudyInput,
 };
 use crate::schema::ErrorCode;
-use crate::schema::job::{JobKind, JobStatus};
+
+use crate::schema::job::JobStatus;
+use crate::schema::job_document::JobDocument;
 use crate::schema::predict::result::EngineDocument;
-use crate::schema::study::document::{SceneReference, StudyKind};
+use crate::schema::study::document::SceneReference;
 use crate::schema::{
     CaseDocument, CompareDocument, Faults, Limits, OptimiseDocument, PlanDocument, Pointer,
     PredictDocument, Problem, ReportDocument, ResponseDocument, StudyDocument,
 };
 use crate::store::{CaseRow, NewJob};
 
+/// The job that a document asks for.
+pub async fn of(service: &Service, document: JobDocument) -> ApiResult<NewJob> {
+    match document {
+        JobDocument::Predict(spec) => of_prediction(service, *spec).await,
+        JobDocument::Compare(spec) => of_comparison(service, spec).await,
+        JobDocument::Response(spec) => of_response(service, spec).await,
+        JobDocument::Optimise(spec) => of_optimisation(service, spec).await,
+        JobDocument::Study(spec) => of_study(service, spec).await,
+    }
+}
+
 /// A prediction: its case and plan as they are at this moment, checked together with the meshes.
-pub async fn of_prediction(service: &Service, spec: PredictDocument) -> ApiResult<NewJob> {
+async fn of_prediction(service: &Service, spec: PredictDocument) -> ApiResult<NewJob> {
     let row = require_case(service, spec.case.as_deref().unwrap_or_default()).await?;
     let input = predict_input(service, &row, spec).await?;
     let mesh_ids = mesh_ids(&input);
@@ -36,19 +49,13 @@ pub async fn of_prediction(service: &Service, spec: PredictDocument) -> ApiResul
         Ok(prepared.spec_hash)
     };
     let (input, spec_hash) = prepared(service, input, prepare).await?;
-    let new = Accepted {
-        kind: JobKind::Predict,
-        case_id: Some(row.id),
-        shared_cases: Vec::new(),
-        spec_hash,
-        tags,
-        mesh_ids,
-    };
+    let new =
+        Accepted { case_id: Some(row.id), shared_cases: Vec::new(), spec_hash, tags, mesh_ids };
     new.with(&JobInput::Predict(input))
 }
 
 /// A comparison of surfaces that are there.
-pub async fn of_comparison(service: &Service, spec: CompareDocument) -> ApiResult<NewJob> {
+async fn of_comparison(service: &Service, spec: CompareDocument) -> ApiResult<NewJob> {
     let mut faults = Faults::default();
     spec.check(&service.limits, &mut faults);
     faults.into_result().map_err(in_spec)?;
@@ -71,19 +78,12 @@ pub async fn of_comparison(service: &Service, spec: CompareDocument) -> ApiResul
     let content_of = |id: &str| contents.get(id).cloned();
     let spec_hash = crate::schema::hashes::compare_hash(&spec, &content_of);
     let tags = spec.tags.clone();
-    let new = Accepted {
-        kind: JobKind::Compare,
-        case_id,
-        shared_cases: Vec::new(),
-        spec_hash,
-        tags,
-        mesh_ids,
-    };
+    let new = Accepted { case_id, shared_cases: Vec::new(), spec_hash, tags, mesh_ids };
     new.with(&JobInput::Compare(CompareInput { job: None, queue_s: None, spec }))
 }
 
 /// A plan response: its case as it is at this moment, checked with its meshes.
-pub async fn of_response(service: &Service, mut spec: ResponseDocument) -> ApiResult<NewJob> {
+async fn of_response(service: &Service, mut spec: ResponseDocument) -> ApiResult<NewJob> {
     let row = require_case(service, &spec.case).await?;
     spec.case.clone_from(&row.id);
     let case: CaseDocument = serde_json::from_str(&row.document).map_err(ApiError::internal)?;
@@ -96,19 +96,12 @@ pub async fn of_response(service: &Service, mut spec: ResponseDocument) -> ApiRe
     };
     let (input, spec_hash) = prepared(service, input, prepare).await?;
     let case_id = Some(row.id);
-    let new = Accepted {
-        kind: JobKind::Response,
-        case_id,
-        shared_cases: Vec::new(),
-        spec_hash,
-        tags,
-        mesh_ids,
-    };
+    let new = Accepted { case_id, shared_cases: Vec::new(), spec_hash, tags, mesh_ids };
     new.with(&JobInput::Response(input))
 }
 
 /// Inverse planning: its case as it is at this moment, checked with its meshes.
-pub async fn of_optimisation(service: &Service, mut spec: OptimiseDocument) -> ApiResult<NewJob> {
+async fn of_optimisation(service: &Service, mut spec: OptimiseDocument) -> ApiResult<NewJob> {
     let row = require_case(service, &spec.case).await?;
     spec.case.clone_from(&row.id);
     let case: CaseDocument = serde_json::from_str(&row.document).map_err(ApiError::internal)?;
@@ -122,19 +115,12 @@ pub async fn of_optimisation(service: &Service, mut spec: OptimiseDocument) -> A
     };
     let (input, spec_hash) = prepared(service, input, prepare).await?;
     let case_id = Some(row.id);
-    let new = Accepted {
-        kind: JobKind::Optimise,
-        case_id,
-        shared_cases: Vec::new(),
-        spec_hash,
-        tags,
-        mesh_ids,
-    };
+    let new = Accepted { case_id, shared_cases: Vec::new(), spec_hash, tags, mesh_ids };
     new.with(&JobInput::Optimise(input))
 }
 
 /// A study: its cases and its baseline as they are at this moment, its scenes made and checked.
-pub async fn of_study(service: &Service, mut spec: StudyDocument) -> ApiResult<NewJob> {
+async fn of_study(service: &Service, mut spec: StudyDocument) -> ApiResult<NewJob> {
     let mut cases = BTreeMap::new();
     for (index, scene) in spec.scenes.iter_mut().enumerate() {
         let SceneReference::Case(reference) = scene else { continue };
@@ -178,11 +164,7 @@ pub async fn of_study(service: &Service, mut spec: StudyDocument) -> ApiResult<N
         [only] => (Some(only.clone()), Vec::new()),
         _ => (None, ids),
     };
-    let kind = match input.spec.kind {
-        StudyKind::Study => JobKind::Study,
-        StudyKind::Batch => JobKind::Batch,
-    };
-    let new = Accepted { kind, case_id, shared_cases, spec_hash, tags, mesh_ids };
+    let new = Accepted { case_id, shared_cases, spec_hash, tags, mesh_ids };
     new.with(&JobInput::Study(input))
 }
 
@@ -217,7 +199,6 @@ async fn prepared<I: Send + 'static>(
 
 /// What is known of a job when it is accepted, beside its document.
 struct Accepted {
-    kind: JobKind,
     case_id: Option<String>,
     shared_cases: Vec<String>,
     spec_hash: String,
@@ -230,8 +211,8 @@ impl Accepted {
         let engine = serde_json::to_string(&EngineDocument::this()).map_err(ApiError::internal)?;
         Ok(NewJob {
             id: uuid::Uuid::now_v7().to_string(),
-            kind: self.kind.name(),
-            priority: self.kind.priority(),
+            kind: input.kind().name(),
+            priority: input.kind().priority(),
             case_id: self.case_id,
             shared_cases: self.shared_cases,
             document: serde_json::to_string(input).map_err(ApiError::internal)?,

@@ -2,7 +2,9 @@
 
 use super::error::{ApiError, ApiResult};
 use super::time;
-use crate::schema::job::{JobKind, JobStatus, Link, StatusInfo};
+use crate::schema::job::{JobStatus, StatusInfo};
+use crate::schema::job_document::JobKind;
+use crate::schema::link::Link;
 use crate::schema::predict::result::ResultDocument;
 use crate::store::JobRow;
 
@@ -33,8 +35,8 @@ pub fn status_info(row: &JobRow, deduplicated: bool) -> ApiResult<StatusInfo> {
         deduplicated,
         error: parsed(row.error.as_deref())?,
         warnings: warnings.unwrap_or_default(),
+        links: links(row, results.as_ref()),
         results,
-        links: links(row),
     })
 }
 
@@ -56,7 +58,7 @@ fn message(row: &JobRow) -> String {
     }
 }
 
-fn links(row: &JobRow) -> Vec<Link> {
+fn links(row: &JobRow, found: Option<&ResultDocument>) -> Vec<Link> {
     let link = |href: String, rel: &str| Link {
         href,
         rel: rel.to_owned(),
@@ -73,5 +75,6 @@ fn links(row: &JobRow) -> Vec<Link> {
     if row.status == JobStatus::Successful {
         links.push(link(results, "http://www.opengis.net/def/rel/ogc/1.0/results"));
     }
+    links.extend(found.into_iter().flat_map(|found| &found.kept).map(|kept| kept.link.clone()));
     links
 }

@@ -15,11 +15,14 @@ use super::parameters::{Id, Parameters, id, no_such_job};
 use super::prefer::{wait_for_end, wanted_wait};
 use super::resources::Resources;
 use super::results::RETRY_AFTER_S;
-use super::{Service, body, conditional, job_input, json, with_header};
+
 use crate::schema::ErrorCode;
-use crate::schema::job::{JobKind, JobStatus, StatusInfo};
+
 use crate::schema::key::Scope;
-use crate::schema::predict::document::JobDocument;
+
+use super::{Service, body, conditional, job_input, json, with_header};
+use crate::schema::job::{JobStatus, StatusInfo};
+use crate::schema::job_document::{JobDocument, JobKind};
 use crate::store::{Dismissal, Enqueued, JobFilter, JobRow};
 use crate::traces::TraceParent;
 
@@ -94,13 +97,7 @@ async fn create(service: Service, request: Request) -> ApiResult {
     if new.is_known && service.store.job(&new.id).await?.is_some() {
         return created(&service, &new.id, false, wait).await;
     }
-    let mut accepted = match document {
-        JobDocument::Predict(spec) => job_input::of_prediction(&service, *spec).await?,
-        JobDocument::Compare(spec) => job_input::of_comparison(&service, spec).await?,
-        JobDocument::Response(spec) => job_input::of_response(&service, spec).await?,
-        JobDocument::Optimise(spec) => job_input::of_optimisation(&service, spec).await?,
-        JobDocument::Study(spec) => job_input::of_study(&service, spec).await?,
-    };
+    let mut accepted = job_input::of(&service, document).await?;
     accepted.id = new.id;
     accepted.traceparent = place.map(|place| place.to_string());
     let (id, deduplicated) = match service.store.enqueue(&accepted, LONGEST_QUEUE).await? {

@@ -1,6 +1,8 @@
 //! The description of the service (OpenAPI 3.1), made from the code.
 
 use axum::http::Method;
+use serde_json::json;
+use std::collections::BTreeMap;
 use utoipa::ToSchema as _;
 use utoipa::openapi::path::Operation;
 use utoipa::openapi::security::{Http, HttpAuthScheme, SecurityRequirement, SecurityScheme};
@@ -13,6 +15,7 @@ use super::resources::Resources;
 use super::{openapi_types, resources};
 use crate::schema::ProblemDocument;
 use crate::schema::job::JobEvent;
+use crate::schema::job_document::JobKind;
 
 /// Problems that every operation may answer with: what is wrong with the head of the request, and what is
 /// wrong with the service.
@@ -49,6 +52,7 @@ pub fn document() -> serde_json::Value {
     let described = serde_json::to_value(described()).unwrap_or_default();
     let mut document = openapi_types::typed(described);
     describe_check(&mut document["components"]["schemas"]);
+    describe_kinds(&mut document["components"]["schemas"]["JobDocument"]);
     document
 }
 
@@ -60,6 +64,14 @@ fn describe_check(schemas: &mut serde_json::Value) {
         members.remove("required");
     }
     schemas["CheckRequest"] = members;
+}
+
+/// Which document belongs to which kind of job.
+fn describe_kinds(document: &mut serde_json::Value) {
+    let reference = |kind: &JobKind| format!("#/components/schemas/{}", kind.document());
+    let mapping: BTreeMap<&str, String> =
+        JobKind::ALL.iter().map(|kind| (kind.name(), reference(kind))).collect();
+    document["discriminator"] = json!({ "propertyName": "kind", "mapping": mapping });
 }
 
 /// The description as the handlers and documents say it.
@@ -93,9 +105,7 @@ fn described() -> OpenApi {
     document
 }
 
-fn add_schema<T: utoipa::ToSchema>(
-    schemas: &mut std::collections::BTreeMap<String, RefOr<utoipa::openapi::Schema>>,
-) {
+fn add_schema<T: utoipa::ToSchema>(schemas: &mut BTreeMap<String, RefOr<utoipa::openapi::Schema>>) {
     let mut found = Vec::new();
     T::schemas(&mut found);
     schemas.extend(found);

@@ -20,7 +20,9 @@ use crate::jobs::study::report::encode_report;
 use crate::jobs::study::verdict::{Baseline, judge};
 use crate::schema::ErrorCode;
 use crate::schema::ReportDocument;
-use crate::schema::job::{JobKind, JobStatus};
+
+use crate::schema::job::JobStatus;
+use crate::schema::job_document::JobKind;
 use crate::schema::key::Scope;
 use crate::store::FileRow;
 
@@ -106,7 +108,10 @@ async fn report(
     let format = wanted(&parameters, &headers)?;
     let job = successful(&service, &id, &headers).await?;
     if !JobKind::from_name(&job.kind).is_some_and(JobKind::has_report) {
-        let detail = format!("a job of kind {} has no report; a study and a batch have", job.kind);
+        let reported = JobKind::ALL.iter().filter(|kind| kind.has_report());
+        let reported: Vec<String> = reported.map(|kind| format!("a {}", kind.name())).collect();
+        let reported = reported.join(" and ");
+        let detail = format!("a job of kind {} has no report; {reported} have", job.kind);
         return Err(ApiError::new(ErrorCode::NoSuchOutput, detail));
     }
     let stored = stored_report(&service, &id).await?;

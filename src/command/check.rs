@@ -8,7 +8,7 @@ use super::documents::write;
 use super::failure::CommandError;
 use super::scene::SceneArguments;
 use super::screen::print_check;
-use crate::jobs::predict::check;
+use crate::jobs::check;
 use crate::schema::Limits;
 use crate::schema::wire::canonical;
 

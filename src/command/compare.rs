@@ -8,8 +8,7 @@ use super::failure::CommandError;
 use super::files::FileSource;
 use super::scene::UnitArgument;
 use super::screen::{TerminalProgress, print_warnings};
-use crate::jobs::work::Workplace;
-use crate::jobs::{CompareInput, JobInput, work};
+use crate::jobs::{CompareInput, JobInput, Workplace, work};
 use crate::schema::compare::document::{
     AlignDocument, AlignMethod, CompareDocument, CompareKind, MeshReference, NodeWise,
     PlaceDocument, SurfaceReference,

@@ -7,13 +7,15 @@ use clap::Args;
 use super::failure::CommandError;
 use super::scene::SceneArguments;
 use super::screen::{TerminalProgress, print_check, print_warnings};
-use crate::jobs::predict::check;
-use crate::jobs::work::Workplace;
-use crate::jobs::{JobInput, work};
+use crate::jobs::{JobInput, Workplace, check, work};
 use crate::schema::Limits;
 use crate::schema::predict::check::CheckDocument;
 use crate::schema::predict::document::OutputName;
 use crate::schema::predict::result::ResultDocument;
+
+/// What is kept goes to the meshes of a tenant.
+const NO_STORE: &str =
+    "`keep` asks to store meshes, and a command has no store: ask for files by `outputs` instead";
 
 #[derive(Debug, Args)]
 pub struct Arguments {
@@ -28,6 +30,9 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let mut asked = arguments.scene.documents()?;
     asked.file.spec.outputs.get_or_insert_with(usual_outputs);
+    if !asked.file.spec.keep.is_empty() {
+        return Err(CommandError::Usage(NO_STORE.to_owned()));
+    }
     let limits = Limits::default();
     let input = asked.file.to_input();
 

@@ -20,7 +20,8 @@ use crate::traces::{self, TracesError};
 use crate::worker::fail_point::{self, FailPointError};
 use crate::worker::process::protocol::Settings;
 use crate::worker::process::{Program, SlotSettings, SlotWork, slot_bytes};
-use crate::worker::slots::{Work, Workers};
+use crate::worker::slots::Workers;
+use crate::worker::work::Work;
 
 /// How long what was done may be out of the chain of the audit log.
 const CHAIN_EVERY: Duration = Duration::from_secs(2);

@@ -11,8 +11,7 @@ use super::files::FileSource;
 use super::screen::{TerminalProgress, print_warnings};
 use super::stability;
 use crate::jobs::study::files::REPORT_JSON;
-use crate::jobs::work::Workplace;
-use crate::jobs::{JobInput, StudyInput, work};
+use crate::jobs::{JobInput, StudyInput, Workplace, work};
 use crate::schema::study::document::{
     CaseReference, PlanReference, SceneReference, StudyKind, ThresholdsDocument,
 };

@@ -1,22 +1,26 @@
 //! From a job document to result files: one path for the service and for the command line.
-//! Around it, for the service: the meshes in memory, the queue's workers and their signs of life.
 
-pub mod clock;
-pub mod compare;
-pub mod failure;
-pub mod optimise;
-pub mod predict;
+mod clock;
+mod compare;
+mod failure;
+mod fetch;
+mod input;
+mod optimise;
+mod output;
+mod predict;
 pub mod response;
 pub mod result;
-pub mod source;
+mod run;
+mod source;
 pub mod study;
-pub mod work;
 
+pub use compare::CompareInput;
 pub use failure::JobError;
+pub use input::JobInput;
 pub use optimise::OptimiseInput;
-pub use predict::check::{CheckReport, check};
-pub use predict::input::{CompareInput, JobInput, PredictInput};
+pub use output::{JobOutput, MadeMesh, Workplace};
+pub use predict::{CheckReport, PredictInput, check};
 pub use response::ResponseInput;
+pub use run::work;
 pub use source::{MeshSource, SourceError, StoredMesh, StoredShape};
 pub use study::StudyInput;
-pub use work::{JobOutput, work};

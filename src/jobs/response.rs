@@ -6,12 +6,14 @@ use serde::{Deserialize, Serialize};
 
 use super::clock::Observed;
 use super::failure::JobError;
+use super::output::{JobOutput, Workplace};
 use super::source::MeshSource;
-use super::work::{JobOutput, Workplace};
-use crate::jobs::predict::check::warning_documents;
-use crate::jobs::predict::input::{PredictInput, Prepared};
+use crate::jobs::predict::{PredictInput, Prepared};
 use crate::jobs::result::folder::ResultFolder;
-use crate::jobs::result::provenance::{Origin, add_method, encode_result, solver_document};
+use crate::jobs::result::provenance::{
+    Origin, add_method, encode_result, mesh_summary, solver_document,
+};
+use crate::jobs::result::warnings::warning_documents;
 use crate::schema::case::conversion::centre;
 use crate::schema::hashes;
 use crate::schema::predict::document::OutputName;
@@ -123,14 +125,14 @@ pub fn response_job(
     };
     let solver = solver_document(&columns.solver, &columns.elements);
     let mut folder = ResultFolder::open(place.out)?;
-    write_columns(&origin, (input, &prepared), &columns, &mut folder)?;
+    write_columns(&origin, input, &prepared, &columns, &mut folder)?;
     let mut rest = SurfaceOutput::plain(&prepared.scene.skin.surface, origin.frame);
     rest.field_data = origin.field_data(input.spec.method, &solver);
     folder.add_file(REST_FILE, OutputName::SkinVtp.media_type(), &vtp::write(&rest)?)?;
 
     // 4. The manifest.
     let mut provenance = origin.provenance(&clock);
-    let mesh = (&*prepared.scene.mesh, &prepared.quality);
+    let mesh = mesh_summary(&prepared.scene.mesh, &prepared.quality);
     add_method(&mut provenance, input.spec.method, mesh, solver);
     let result = ResultDocument {
         job: input.job.clone(),
@@ -139,19 +141,21 @@ pub fn response_job(
         comparison: None,
         optimisation: None,
         study: None,
+        kept: Vec::new(),
         numerical_error_mm: None,
         reaction_mn: BTreeMap::new(),
         provenance,
         warnings: warning_documents(prepared.warnings.iter().chain(&prepared.scene.warnings)),
     };
     folder.add(OutputName::ResultJson, &encode_result(&result)?)?;
-    Ok(JobOutput { result, files: folder.files })
+    Ok(JobOutput { result, files: folder.files, meshes: Vec::new() })
 }
 
 /// The columns and their description.
 fn write_columns(
     origin: &Origin,
-    (input, prepared): (&ResponseInput, &Prepared),
+    input: &ResponseInput,
+    prepared: &Prepared,
     columns: &Columns,
     folder: &mut ResultFolder,
 ) -> Result<(), JobError> {

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use crate::jobs::source::StoredShape;
+use crate::jobs::StoredShape;
 
 /// About what a mesh takes in memory, in bytes.
 fn size_of(shape: &StoredShape) -> usize {

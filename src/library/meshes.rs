@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use tokio::runtime::Handle;
 
 use super::cache::MeshCache;
-use crate::jobs::source::{MeshSource, SourceError, StoredMesh, StoredShape};
+use crate::jobs::{MeshSource, SourceError, StoredMesh, StoredShape};
 use crate::schema::case::document::{FrameName, LengthUnit};
 use crate::schema::mesh::MeshDocument;
 use crate::store::{MeshRow, Store, StoreError};

@@ -4,7 +4,7 @@
 use std::collections::{BTreeMap, HashMap};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use crate::jobs::predict::input::JobInput;
+use crate::jobs::JobInput;
 use crate::jobs::response::{COLUMNS_FILE, DESCRIPTION_FILE, REST_FILE};
 use crate::jobs::result::skin::PredictedSkin;
 use crate::schema::CaseDocument;

@@ -5,7 +5,9 @@ use bytes::Bytes;
 use serde_json::Value;
 
 use super::mesh_report::mesh_report;
-use crate::jobs::source::{StoredMesh, StoredShape};
+
+use super::meshes::parse_stored;
+use crate::jobs::{MadeMesh, StoredMesh, StoredShape};
 use crate::schema::ErrorCode;
 use crate::schema::Problem;
 use crate::schema::case::document::{FrameName, LengthUnit};
@@ -50,14 +52,47 @@ pub struct Upload {
     pub mesh: StoredMesh,
 }
 
+/// Bytes that were read.
+struct Received {
+    read: ReadMesh,
+    /// How many bytes, and their hash.
+    bytes: u64,
+    sha256: String,
+}
+
 /// Reads and checks an upload. Takes its time: not for an async thread.
 pub fn read_upload(
     bytes: &Bytes,
-    sha256_of_bytes: String,
+    sha256: String,
     statement: &Statement,
     standalone: bool,
 ) -> Result<Upload, Problem> {
     let read = format::read(bytes, &ReadLimits::default()).map_err(|error| problem_of(&error))?;
+    understand(Received { read, bytes: bytes.len() as u64, sha256 }, statement, standalone)
+}
+
+/// A mesh that a job made, as if somebody had uploaded the file that we write of it.
+pub fn upload_made(mesh: &MadeMesh) -> Result<Upload, Problem> {
+    let bytes = encode(&mesh.shape, mesh.frame)?;
+    let read = parse_stored(&bytes).map_err(|error| problem_of(&error))?;
+    let statement = Statement {
+        units: Some(LengthUnit::Mm),
+        frame: (mesh.frame != Frame::Unspecified).then(|| mesh.frame.into()),
+        role: Some(mesh.what.name().to_owned()),
+        // That of the case was taken as it is.
+        allow_any_scale: true,
+    };
+    let (bytes, sha256) = (bytes.len() as u64, sha256_hex(&bytes));
+    understand(Received { read, bytes, sha256 }, &statement, false)
+}
+
+/// What was read as a mesh that can be stored.
+fn understand(
+    received: Received,
+    statement: &Statement,
+    standalone: bool,
+) -> Result<Upload, Problem> {
+    let Received { read, bytes, sha256 } = received;
     let is_image = matches!(read.mesh, Mesh::Image(_));
     let units = statement.units.filter(|_| !is_image);
     let mut report = mesh_report(&read);
@@ -70,8 +105,8 @@ pub fn read_upload(
     let id = uuid::Uuid::now_v7().to_string();
     let document = MeshDocument {
         id: id.clone(),
-        sha256: sha256_of_bytes.clone(),
-        bytes: bytes.len() as u64,
+        sha256: sha256.clone(),
+        bytes,
         format: read.format.name().to_ascii_lowercase().replace(' ', "-"),
         // Filled in from the clock of the database when it is read.
         created: String::new(),
@@ -81,12 +116,11 @@ pub fn read_upload(
         report,
     };
     let frame = read.frame.or(statement.frame.map(Frame::from)).unwrap_or_default();
-    let mesh =
-        StoredMesh { frame: Some(frame), ..StoredMesh::new(read, units, sha256_of_bytes.clone()) };
+    let mesh = StoredMesh { frame: Some(frame), ..StoredMesh::new(read, units, sha256.clone()) };
     let stored = Bytes::from(encode(&mesh.shape, frame)?);
     let row = NewMesh {
         id,
-        sha256: sha256_of_bytes,
+        sha256,
         options: statement.identity(),
         blob: sha256_hex(&stored),
         bytes: stored,

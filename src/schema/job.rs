@@ -4,6 +4,8 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 use utoipa::ToSchema;
 
+use crate::schema::job_document::JobKind;
+use crate::schema::link::Link;
 use crate::schema::predict::result::{EngineDocument, ResultDocument};
 use crate::schema::wire::warning::WarningDocument;
 
@@ -40,52 +42,6 @@ impl JobStatus {
     /// Whether nothing will happen to it any more.
     pub fn is_terminal(self) -> bool {
         !matches!(self, JobStatus::Accepted | JobStatus::Running)
-    }
-}
-
-/// What a job does.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, ToSchema)]
-#[serde(rename_all = "lowercase")]
-pub enum JobKind {
-    Predict,
-    Compare,
-    Response,
-    Optimise,
-    Study,
-    Batch,
-}
-
-impl JobKind {
-    pub fn name(self) -> &'static str {
-        match self {
-            JobKind::Predict => "predict",
-            JobKind::Compare => "compare",
-            JobKind::Response => "response",
-            JobKind::Optimise => "optimise",
-            JobKind::Study => "study",
-            JobKind::Batch => "batch",
-        }
-    }
-
-    /// Whether its result is a report on rows.
-    pub fn has_report(self) -> bool {
-        matches!(self, JobKind::Study | JobKind::Batch)
-    }
-
-    /// Somebody waits for what one plan or one case needs; a study can wait. The smallest is first.
-    pub fn priority(self) -> i64 {
-        match self {
-            JobKind::Study | JobKind::Batch => 1,
-            JobKind::Predict | JobKind::Compare | JobKind::Response | JobKind::Optimise => 0,
-        }
-    }
-
-    /// The kind a stored word names.
-    pub fn from_name(name: &str) -> Option<JobKind> {
-        use JobKind::{Batch, Compare, Optimise, Predict, Response, Study};
-        [Predict, Compare, Response, Optimise, Study, Batch]
-            .into_iter()
-            .find(|kind| kind.name() == name)
     }
 }
 
@@ -198,13 +154,4 @@ pub enum ErrorClass {
     Cancelled,
     /// Time or memory that the spec allows.
     Budget,
-}
-
-/// Where to go from here (RFC 8288).
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
-pub struct Link {
-    pub href: String,
-    pub rel: String,
-    #[serde(rename = "type")]
-    pub media_type: String,
 }

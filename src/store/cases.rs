@@ -1,6 +1,7 @@
 //! Cases: a document that refers to meshes, with its tags.
 
 use super::database::{Row, Transaction, is_duplicate, is_reference, query};
+use super::made::column;
 use super::references::{Content, hashes};
 use super::{NewMesh, Store, StoreError};
 
@@ -50,12 +51,16 @@ const FILES_OF_CASE: &str = "SELECT job_files.blob FROM job_files \
 /// Jobs of several cases; those of one go with it.
 const DELETE_SHARED_JOBS: &str =
     "DELETE FROM jobs WHERE id IN (SELECT job_id FROM job_cases WHERE case_id = $1)";
-/// Locked, so that a request which is about to refer to one of them has either done so or finds it gone.
+/// Locked first, so that a job of the case is either published by now or finds itself gone.
+const JOBS_OF_CASE: &str = "SELECT id FROM jobs WHERE case_id = $1 \
+     OR id IN (SELECT job_id FROM job_cases WHERE case_id = $1) ORDER BY id FOR UPDATE";
+/// Those that it refers to, and those that its jobs made. Locked, so that a request which is about to refer to one of
+/// them has either done so or finds it gone.
 const MESHES_OF_CASE: &str = "SELECT id FROM meshes \
-     WHERE id IN (SELECT mesh_id FROM case_meshes WHERE case_id = $1) ORDER BY id FOR UPDATE";
-const DELETE_UNUSED_MESH: &str = "DELETE FROM meshes WHERE id = $1 AND standalone = 0 \
-     AND NOT EXISTS (SELECT 1 FROM case_meshes WHERE mesh_id = $1) \
-     AND NOT EXISTS (SELECT 1 FROM job_meshes WHERE mesh_id = $1) RETURNING blob";
+     WHERE id IN (SELECT mesh_id FROM case_meshes WHERE case_id = $1 \
+       UNION SELECT mesh_id FROM made_meshes JOIN jobs ON jobs.id = made_meshes.job_id \
+         WHERE jobs.case_id = $1 OR jobs.id IN (SELECT job_id FROM job_cases WHERE case_id = $1)) \
+     ORDER BY id FOR UPDATE";
 
 /// Sorts after every id.
 pub(super) const AFTER_ALL: &str = "~";
@@ -120,8 +125,8 @@ impl Store {
         }
     }
 
-    /// Erases a case: its plans, its jobs with their results, and the meshes that came with it and that
-    /// nothing else refers to. A job of it that is running finds itself gone and stops.
+    /// Erases a case: its plans, its jobs with their results, and the meshes that came with it or that its jobs made
+    /// and that nothing else refers to. A job of it that is running finds itself gone and stops.
     pub async fn delete_case(&self, id: &str, version: Option<i64>) -> Result<Change, StoreError> {
         let mut transaction = self.database.begin().await?;
         let found = query("SELECT version FROM cases WHERE id = $1 AND tenant = $2 FOR UPDATE")
@@ -136,18 +141,13 @@ impl Store {
         if version.is_some_and(|version| version != found) {
             return Ok(Change::OtherVersion(found));
         }
+        query(JOBS_OF_CASE).bind(id).fetch_all(&mut transaction).await?;
         let mut blobs = column(&mut transaction, FILES_OF_CASE, id).await?;
         let meshes = column(&mut transaction, MESHES_OF_CASE, id).await?;
         self.bury_case(&mut transaction, id).await?;
         query(DELETE_SHARED_JOBS).bind(id).execute(&mut transaction).await?;
         query("DELETE FROM cases WHERE id = $1").bind(id).execute(&mut transaction).await?;
-        for mesh in meshes {
-            let unused = column(&mut transaction, DELETE_UNUSED_MESH, &mesh).await?;
-            if !unused.is_empty() {
-                self.bury(&mut transaction, &mesh).await?;
-            }
-            blobs.extend(unused);
-        }
+        blobs.extend(self.remove_unused(&mut transaction, meshes).await?);
         transaction.commit().await?;
         self.jobs_changed();
         self.discard(blobs).await;
@@ -187,14 +187,4 @@ impl Store {
         }
         Ok(())
     }
-}
-
-/// The first column of a query with one parameter.
-async fn column(
-    transaction: &mut Transaction,
-    sql: &'static str,
-    id: &str,
-) -> Result<Vec<String>, sqlx::Error> {
-    let rows = query(sql).bind(id).fetch_all(&mut *transaction).await?;
-    rows.iter().map(|row| row.try_get(0)).collect()
 }

@@ -13,7 +13,9 @@ use super::{Store, StoreError};
 
 const PLACES: &str = "SELECT sha256, place FROM blobs";
 const REFERENCES: &str = "SELECT blob, 'mesh' AS kind, id FROM meshes \
-     UNION ALL SELECT DISTINCT blob, 'job' AS kind, job_id FROM job_files";
+     UNION ALL SELECT DISTINCT blob, 'job' AS kind, job_id FROM job_files \
+     UNION ALL SELECT meshes.blob, 'job' AS kind, made_meshes.job_id FROM made_meshes \
+       JOIN meshes ON meshes.id = made_meshes.mesh_id";
 /// Places that are about to be referred to, or removed.
 const IN_MOTION: &str =
     "SELECT place FROM unfinished_blobs UNION SELECT place FROM discarded_blobs";
@@ -85,8 +87,8 @@ impl Store {
         Ok(Findings { objects: objects.len(), dangling, orphans })
     }
 
-    /// Looks for lost bytes among those that no row knows, has jobs with lost files solved again, and
-    /// removes what is left over. Meshes that are lost stay so: only an upload or a backup has them.
+    /// Looks for lost bytes among those that no row knows, has jobs with lost files or meshes solved again, and
+    /// removes what is left over. Other meshes that are lost stay so: only an upload or a backup has them.
     pub async fn repair(&self, findings: &Findings) -> Result<Repaired, StoreError> {
         let mut repaired = Repaired::default();
         for lost in &findings.dangling {

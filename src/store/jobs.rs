@@ -3,6 +3,7 @@
 use super::cases::AFTER_ALL;
 use super::database::{Row, Transaction, is_reference, query};
 use super::events::record;
+use super::made::made_by;
 use super::{Store, StoreError, tenants};
 use crate::schema::job::JobStatus;
 
@@ -216,7 +217,8 @@ impl Store {
         Ok(Enqueued::Known(id))
     }
 
-    /// Ends a job that is accepted or running, removes one that has ended.
+    /// Ends a job that is accepted or running, removes one that has ended, with the meshes that it made and that nothing
+    /// else refers to.
     pub async fn dismiss(&self, id: &str) -> Result<Dismissal, StoreError> {
         let mut transaction = self.database.begin().await?;
         let dismissed =
@@ -228,10 +230,13 @@ impl Store {
             return Ok(Dismissal::Dismissed);
         }
         let rows = query(FILES).bind(id).bind(self.tenant()).fetch_all(&mut transaction).await?;
-        let blobs = rows.iter().map(|row| row.try_get(0)).collect::<Result<Vec<String>, _>>()?;
+        let mut blobs =
+            rows.iter().map(|row| row.try_get(0)).collect::<Result<Vec<String>, _>>()?;
+        let made = made_by(&mut transaction, id).await?;
         let removed = query(REMOVE).bind(id).bind(self.tenant()).execute(&mut transaction).await?;
         if removed == 1 {
             self.bury(&mut transaction, id).await?;
+            blobs.extend(self.remove_unused(&mut transaction, made).await?);
         }
         transaction.commit().await?;
         self.jobs_changed();

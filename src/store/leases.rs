@@ -6,8 +6,9 @@ use std::time::Duration;
 use bytes::Bytes;
 use serde::Deserialize;
 
-use super::database::{Statement, query};
+use super::database::{Statement, Transaction, query};
 use super::events::record;
+use super::made::MadeMesh;
 use super::references::{Content, hashes};
 use super::{Store, StoreError};
 
@@ -48,6 +49,15 @@ pub struct PublishedFile {
     pub media_type: String,
     pub sha256: String,
     pub bytes: Bytes,
+}
+
+/// The result of an attempt.
+#[derive(Clone, Copy, Debug)]
+pub struct Published<'a> {
+    /// The manifest, JSON.
+    pub result: &'a str,
+    pub files: &'a [PublishedFile],
+    pub meshes: &'a [MadeMesh],
 }
 
 /// A result file.
@@ -205,44 +215,60 @@ impl Store {
         Ok(row.is_some())
     }
 
-    /// Publishes the result of an attempt, all of it or, when the job is not ours any more, nothing:
-    /// bytes first, then one transaction.
-    pub async fn publish(
-        &self,
-        lease: &Lease,
-        result: &str,
-        files: &[PublishedFile],
-    ) -> Result<bool, StoreError> {
+    /// Publishes the result of an attempt, all of it or, when the job is not ours any more, nothing: bytes first, then one
+    /// transaction. The store has to be in the hand of the job's tenant.
+    pub async fn publish(&self, lease: &Lease, made: Published<'_>) -> Result<bool, StoreError> {
         let mut contents: Vec<Content> = Vec::new();
-        for file in files {
+        for file in made.files {
             contents.push((file.sha256.clone(), file.bytes.clone()));
+        }
+        for MadeMesh { mesh, .. } in made.meshes.iter().filter(|made| made.is_as_stored()) {
+            contents.push((mesh.blob.clone(), mesh.bytes.clone()));
         }
         let blobs = hashes(&contents);
         let mut transaction = self.begin_with(contents).await?;
+        match self.insert_result(&mut transaction, lease, made).await {
+            Ok(true) => {
+                transaction.commit().await?;
+                self.jobs_changed();
+                Ok(true)
+            }
+            given_up @ (Ok(false) | Err(StoreError::Contended)) => {
+                transaction.rollback().await?;
+                self.discard(blobs).await;
+                given_up
+            }
+            Err(error) => Err(error),
+        }
+    }
+
+    async fn insert_result(
+        &self,
+        transaction: &mut Transaction,
+        lease: &Lease,
+        made: Published<'_>,
+    ) -> Result<bool, StoreError> {
         let published = query(SUCCEED)
             .bind(&lease.job)
             .bind(&lease.token)
-            .bind(result)
-            .execute(&mut transaction)
+            .bind(made.result)
+            .execute(&mut *transaction)
             .await?;
         if published != 1 {
-            transaction.rollback().await?;
-            self.discard(blobs).await;
             return Ok(false);
         }
-        for file in files {
+        for file in made.files {
             query(INSERT_FILE)
                 .bind(&lease.job)
                 .bind(&file.name)
                 .bind(&file.media_type)
                 .bind(&file.sha256)
                 .bind(file.bytes.len() as i64)
-                .execute(&mut transaction)
+                .execute(&mut *transaction)
                 .await?;
         }
-        record(&mut transaction, &lease.job).await?;
-        transaction.commit().await?;
-        self.jobs_changed();
+        self.insert_made(transaction, &lease.job, made.meshes).await?;
+        record(transaction, &lease.job).await?;
         Ok(true)
     }
 

@@ -15,7 +15,7 @@ pub struct NewMesh {
     pub options: String,
     pub blob: String,
     pub bytes: Bytes,
-    /// False: it came with a case, and goes with it.
+    /// False: it came with a case or from a job, and goes with it.
     pub standalone: bool,
     pub report: String,
 }

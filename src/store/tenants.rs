@@ -35,7 +35,8 @@ const OLD_JOBS: &str = "SELECT id FROM jobs WHERE tenant = $1 \
 const OLD_MESHES: &str = "SELECT id FROM meshes WHERE tenant = $1 \
      AND created < (SELECT now_ms FROM clock) - $2 \
      AND NOT EXISTS (SELECT 1 FROM case_meshes WHERE mesh_id = meshes.id) \
-     AND NOT EXISTS (SELECT 1 FROM job_meshes WHERE mesh_id = meshes.id)";
+     AND NOT EXISTS (SELECT 1 FROM job_meshes WHERE mesh_id = meshes.id) \
+     AND NOT EXISTS (SELECT 1 FROM made_meshes WHERE mesh_id = meshes.id)";
 
 /// Who erases what is too old.
 const RETENTION: &str = "retention";

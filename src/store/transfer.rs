@@ -17,7 +17,7 @@ use super::references::{Content, hold};
 use super::{Store, StoreError};
 
 /// Every table with rows of a deployment, each behind those that it refers to.
-const TABLES: [&str; 18] = [
+const TABLES: [&str; 19] = [
     "tenants",
     "keys",
     "meshes",
@@ -29,6 +29,7 @@ const TABLES: [&str; 18] = [
     "job_tags",
     "job_cases",
     "job_meshes",
+    "made_meshes",
     "job_files",
     "job_events",
     "idempotency_keys",

@@ -4,4 +4,6 @@ pub mod fail_point;
 pub mod heartbeat;
 pub mod niceness;
 pub mod process;
+mod publication;
 pub mod slots;
+pub mod work;

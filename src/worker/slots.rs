@@ -1,23 +1,23 @@
 //! Worker threads: claim a job, have it worked on, publish. Each slot is a thread; numerics run elsewhere.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use bytes::Bytes;
 use serde_json::json;
 use tokio::runtime::Handle;
 
-use super::fail_point::{FailPoints, Injected};
+use super::fail_point::FailPoints;
 use super::heartbeat::{Heartbeat, RunningJob, worker_lost};
+use super::publication::Publication;
+use super::work::{Failure, Finished, Work};
 use crate::config::Config;
 use crate::metrics;
 use crate::schema::ErrorCode;
-use crate::schema::wire::canonical::sha256_hex;
-use crate::store::{Claim, Lease, PublishedFile, Store, StoreError};
+use crate::store::{Claim, Lease, Store, StoreError};
 use crate::traces;
 use crate::worker::process::attempt::broke_off;
 use crate::worker::process::protocol::Effort;
@@ -31,67 +31,6 @@ const LAST_WORDS: Duration = Duration::from_secs(2);
 const UNREADY: Duration = Duration::from_millis(100);
 /// Between two tries to publish while the database is busy.
 const PUBLISH_PAUSE: Duration = Duration::from_millis(200);
-
-/// What an attempt made: the manifest, and files in the folder it was given.
-pub struct Finished {
-    /// JSON.
-    pub result: String,
-    pub files: Vec<FinishedFile>,
-    pub effort: Effort,
-}
-
-/// A file by its name in the folder of the attempt.
-pub struct FinishedFile {
-    pub name: String,
-    pub media_type: String,
-    pub path: PathBuf,
-}
-
-/// Why an attempt made nothing.
-#[derive(Debug)]
-pub enum Failure {
-    /// It was told to stop.
-    Cancelled,
-    /// The job's own fault, never tried again: JSON with `type` and `detail`.
-    Permanent(serde_json::Value),
-    /// The storage's fault: tried again.
-    Storage(String),
-    /// What computed it died, and how: tried again.
-    Lost(String),
-}
-
-impl From<StoreError> for Failure {
-    fn from(error: StoreError) -> Self {
-        Failure::Storage(error.to_string())
-    }
-}
-
-impl From<Injected> for Failure {
-    fn from(_: Injected) -> Self {
-        Failure::Storage("a fail point erred".to_owned())
-    }
-}
-
-impl From<std::io::Error> for Failure {
-    fn from(error: std::io::Error) -> Self {
-        Failure::Storage(error.to_string())
-    }
-}
-
-/// From a claimed job to files in a folder: the work of one slot.
-pub trait Work: Send {
-    /// Makes ready for a job before one is claimed; an error says after which wait to ask again.
-    fn prepare(&mut self) -> Result<(), Duration> {
-        Ok(())
-    }
-
-    fn work(
-        &mut self,
-        claim: &Claim,
-        folder: &Path,
-        progress: &dyn Progress,
-    ) -> Result<Finished, Failure>;
-}
 
 /// The worker slots of this process.
 pub struct Workers {
@@ -199,16 +138,15 @@ impl Shared {
         let worked = started.elapsed();
         let made = made.and_then(|finished| {
             job.trace.phase("publish");
-            let files = read_files(finished.files)?;
-            effort = finished.effort;
-            Ok((finished.result, files))
+            effort = finished.effort.clone();
+            Publication::read(finished)
         });
         if let Err(error) = remove_attempt(&folder) {
             tracing::warn!(%error, "the files of an attempt were left to the next start");
         }
-        let ended = made.and_then(|(result, files)| {
+        let ended = made.and_then(|publication| {
             fail_points.pass("publish:before", &|| job.is_cancelled())?;
-            let published = self.publish(lease, &result, &files);
+            let published = self.publish(claim, &publication);
             fail_points.pass("publish:after", &|| job.is_cancelled())?;
             published
         });
@@ -225,16 +163,12 @@ impl Shared {
         tracing::info!(status, work_ms, duration_ms, "job ended");
     }
 
-    /// Stores the files and makes them and the manifest visible at once; false when the job is not ours.
-    fn publish(
-        &self,
-        lease: &Lease,
-        result: &str,
-        files: &[PublishedFile],
-    ) -> Result<bool, Failure> {
+    /// Makes files, meshes and the manifest visible at once; false when the job is not ours.
+    fn publish(&self, claim: &Claim, publication: &Publication) -> Result<bool, Failure> {
+        let store = self.store.of_tenant(&claim.tenant);
         let until = Instant::now() + self.lease;
         loop {
-            let published = self.store.publish(lease, result, files);
+            let published = publication.publish(&store, &claim.lease);
             match self.runtime.block_on(published) {
                 Err(error) if error.is_unavailable() && Instant::now() < until => {
                     tracing::warn!(%error, "the result waits for the database");
@@ -317,15 +251,6 @@ fn make(
         tracing::error!(reason = words.unwrap_or("unknown"), "a job panicked");
         Err(Failure::Permanent(broke_off()))
     })
-}
-
-fn read_files(files: Vec<FinishedFile>) -> std::io::Result<Vec<PublishedFile>> {
-    let read = |file: FinishedFile| {
-        let bytes = Bytes::from(std::fs::read(&file.path)?);
-        let sha256 = sha256_hex(&bytes);
-        Ok(PublishedFile { name: file.name, media_type: file.media_type, sha256, bytes })
-    };
-    files.into_iter().map(read).collect()
 }
 
 /// Removes the folder of an attempt, and that of its job when it was the only one.

@@ -86,6 +86,20 @@ fn what_is_held_is_told_before_anything_is_solved() {
 }
 
 #[test]
+fn a_command_that_has_no_store_refuses_to_keep_meshes() {
+    let folder = tempfile::tempdir().unwrap();
+    let read = fs::read_to_string(block().join("case.json")).unwrap();
+    let mut documents: serde_json::Value = serde_json::from_str(&read).unwrap();
+    documents["spec"]["keep"] = serde_json::json!(["skin"]);
+    let (case, out) = (folder.path().join("case.json"), folder.path().join("out"));
+    fs::write(&case, documents.to_string()).unwrap();
+    let done = facies(&["predict", "--case", path(&case), "--out", path(&out)]);
+    assert_eq!(done.status.code(), Some(2));
+    assert!(text(&done.stderr).contains("`keep` asks to store meshes"), "{}", text(&done.stderr));
+    assert!(!out.exists(), "nothing is written");
+}
+
+#[test]
 fn a_mesh_with_a_plan_and_the_documents_written_from_them_give_the_same_bits() {
     let folder = plan_folder(FORWARD);
     let (first, second) = (folder.path().join("first"), folder.path().join("second"));

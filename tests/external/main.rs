@@ -26,6 +26,7 @@ fn main() -> ExitCode {
         faults::slow_database::trials(),
         faults::small_disk::trials(),
         store::lost_jobs::trials(),
+        store::made::trials(),
         store::pages::trials(),
         store::queue::trials(),
         store::races::trials(),

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use bytes::Bytes;
 use facies::schema::wire::canonical::sha256_hex;
-use facies::store::{Enqueued, JobRow, NewJob, NewMesh, PublishedFile, Store};
+use facies::store::{Enqueued, JobRow, NewJob, NewMesh, Published, PublishedFile, Store};
 use tempfile::TempDir;
 
 pub const LEASE: Duration = Duration::from_secs(60);
@@ -30,6 +30,11 @@ pub fn new_job(document: &str, hash: &str) -> NewJob {
         mesh_ids: vec![],
         traceparent: None,
     }
+}
+
+/// A result without meshes.
+pub fn result<'a>(result: &'a str, files: &'a [PublishedFile]) -> Published<'a> {
+    Published { result, files, meshes: &[] }
 }
 
 pub async fn enqueue(store: &Store, hash: &str) -> String {

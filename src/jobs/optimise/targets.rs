@@ -1,8 +1,8 @@
 //! Inverse planning: the documents of a job, checked, and its targets as points of the skin.
 
-use super::OptimiseInput;
+use super::input::OptimiseInput;
 use crate::jobs::failure::JobError;
-use crate::jobs::predict::input::{PredictInput, Prepared};
+use crate::jobs::predict::{PredictInput, Prepared};
 use crate::jobs::source::MeshSource;
 use crate::schema::ErrorCode;
 use crate::schema::hashes;

@@ -7,7 +7,6 @@ use crate::jobs::result::pictures::classes_picture;
 use crate::jobs::source::MeshSource;
 use crate::schema::predict::check::{CheckDocument, ClassCounts, SkinSummary};
 use crate::schema::{Limits, WarningDocument};
-use mechanics::mesh::Warning;
 use mechanics::prediction::{NodeClass, Scene};
 
 /// The counts of a check, and the picture on demand: drawing takes longer than counting.
@@ -92,15 +91,4 @@ fn class_counts(scene: &Scene) -> ClassCounts {
         }
     }
     counts
-}
-
-/// Warnings as documents, without repeats.
-pub fn warning_documents<'a>(warnings: impl Iterator<Item = &'a Warning>) -> Vec<WarningDocument> {
-    let mut documents: Vec<WarningDocument> = Vec::new();
-    for warning in warnings.map(WarningDocument::from) {
-        if !documents.contains(&warning) {
-            documents.push(warning);
-        }
-    }
-    documents
 }

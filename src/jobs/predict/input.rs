@@ -1,39 +1,23 @@
-//! The documents of a job with their meshes, checked and converted.
+//! Input of a prediction: its documents with their meshes, checked and converted.
 
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use crate::jobs::compare::fetch;
 use crate::jobs::failure::JobError;
-use crate::jobs::optimise::OptimiseInput;
-use crate::jobs::response::ResponseInput;
+use crate::jobs::fetch::fetch;
 use crate::jobs::source::{MeshSource, SourceError, StoredMesh, StoredShape};
-use crate::jobs::study::StudyInput;
 use crate::schema::ErrorCode;
 use crate::schema::case::conversion::centre;
 use crate::schema::case::document::{CaseMeshes, NamedMesh};
 use crate::schema::hashes;
 use crate::schema::plan::document::PlanContext;
+use crate::schema::predict::document::OutputName;
 use crate::schema::predict::result::InputDocument;
-use crate::schema::{
-    CaseDocument, CompareDocument, Faults, Limits, PlanDocument, Pointer, PredictDocument,
-};
+use crate::schema::{CaseDocument, Faults, Limits, PlanDocument, Pointer, PredictDocument};
 use mechanics::mesh::Warning;
 use mechanics::mesh::quality::{QualityReport, quality};
 use mechanics::prediction::{Case, Plan, Scene, Settings};
-
-/// A job as it is queued: everything that decides its result, but for the meshes.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-#[expect(clippy::large_enum_variant, reason = "there is one for each job, not thousands in a row")]
-pub enum JobInput {
-    Predict(PredictInput),
-    Compare(CompareInput),
-    Response(ResponseInput),
-    Optimise(OptimiseInput),
-    Study(StudyInput),
-}
 
 /// A prediction: the case and the plan in full beside the spec.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -45,16 +29,6 @@ pub struct PredictInput {
     pub case: CaseDocument,
     pub plan: PlanDocument,
     pub spec: PredictDocument,
-}
-
-/// A comparison of two surfaces.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct CompareInput {
-    /// The id of the job; absent on the command line.
-    pub job: Option<String>,
-    /// From acceptance to start.
-    pub queue_s: Option<f64>,
-    pub spec: CompareDocument,
 }
 
 /// A prediction whose documents are sound: what the path takes, and where it came from.
@@ -108,6 +82,22 @@ impl PredictInput {
             actual,
             warnings,
         })
+    }
+
+    /// The files to write but for `result.json`: those asked for, or skin and moved bones. A case
+    /// without bones has no file of them.
+    pub fn files(&self) -> Vec<OutputName> {
+        let mut files = self.spec.files();
+        if self.spec.outputs.is_none() {
+            files.push(OutputName::BonesVtp);
+        }
+        let has_bones = !self.case.bones.is_empty();
+        files.retain(|name| match name {
+            OutputName::ResultJson => false,
+            OutputName::BonesVtp => has_bones,
+            _ => true,
+        });
+        files
     }
 
     fn convert(&self, meshes: &CaseMeshes, limits: &Limits) -> Result<Converted, JobError> {

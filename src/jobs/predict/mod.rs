@@ -1,8 +1,14 @@
 //! Predictions: documents and meshes checked, the expected cost, and what a plan pushes into what.
 
-pub mod check;
-pub mod cost;
-pub mod input;
-pub mod overlap;
+mod check;
+mod comparison;
+mod cost;
+mod input;
+mod job;
+mod overlap;
+mod publish;
 
 pub use check::{CheckReport, check};
+pub use input::{PredictInput, Prepared};
+pub use job::predict_job;
+pub use publish::{Predicted, statistics};

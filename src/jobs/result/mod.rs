@@ -5,3 +5,4 @@ pub mod pictures;
 pub mod provenance;
 pub mod skin;
 pub mod tissue;
+pub mod warnings;

@@ -64,19 +64,23 @@ impl Origin {
 pub fn add_method(
     provenance: &mut ProvenanceDocument,
     method: MethodName,
-    mesh: (&VolumeMesh, &QualityReport),
+    mesh: MeshSummaryDocument,
     solver: SolverDocument,
 ) {
-    let (mesh, quality) = mesh;
     provenance.method = Some(method.chosen().name().to_owned());
     provenance.why = Some(method.why().to_owned());
     provenance.solver = Some(solver);
-    provenance.mesh = Some(MeshSummaryDocument {
+    provenance.mesh = Some(mesh);
+}
+
+/// How provenance names the mesh that was computed on.
+pub fn mesh_summary(mesh: &VolumeMesh, quality: &QualityReport) -> MeshSummaryDocument {
+    MeshSummaryDocument {
         nodes: mesh.nodes.len() as u64,
         cells: mesh.cells.len() as u64,
         min_quality: quality.smallest_scaled_jacobian,
         inverted: quality.inverted as u64,
-    });
+    }
 }
 
 /// How a solver reports itself.
@@ -103,9 +107,12 @@ pub fn encode_result(result: &ResultDocument) -> Result<Vec<u8>, JobError> {
     if let Some(what) = first_null(&value, String::new()) {
         return Err(JobError::NotFinite { what });
     }
-    let mut text = format!("{value:#}");
-    text.push('\n');
-    Ok(text.into_bytes())
+    Ok(manifest_bytes(&value))
+}
+
+/// How a manifest is written.
+pub fn manifest_bytes(manifest: &Value) -> Vec<u8> {
+    format!("{manifest:#}\n").into_bytes()
 }
 
 /// The place of the first null that does not belong into a result.

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use serde_json::Value;
 
-use super::scenes::{Documents, Scenes, spec_at};
+use super::documents::{Documents, Scenes, spec_at};
 use crate::jobs::failure::JobError;
 use crate::schema::study::batch::ItemDocument;
 use crate::schema::study::document::CaseReference;

@@ -4,52 +4,38 @@ use std::collections::BTreeMap;
 
 use serde_json::Value;
 
+use super::documents::{Documents, Scenes, spec_at};
 use super::truth::known_displacement;
 use crate::jobs::failure::JobError;
-use crate::jobs::predict::input::{PredictInput, Prepared};
-use crate::jobs::source::MeshSource;
+
+use crate::jobs::fetch::found as found_mesh;
+use crate::jobs::predict::{PredictInput, Prepared};
 use crate::schema::ErrorCode;
 use crate::schema::case::material::{PlacedMaterials, in_words, merge_materials};
 use crate::schema::methods::{ElementName, MethodName};
-use crate::schema::predict::result::InputDocument;
-use crate::schema::study::document::{CaseReference, SceneReference, StudyDocument};
+use crate::schema::study::document::{CaseReference, SceneReference};
 use crate::schema::wire::strict;
 use crate::schema::{
-    CaseDocument, Faults, Limits, MaterialDocuments, PlanDocument, Pointer, PredictDocument,
-    Problem,
+    CaseDocument, Faults, MaterialDocuments, PlanDocument, Pointer, PredictDocument, Problem,
 };
-use mechanics::mesh::Warning;
 use mechanics::prediction::MethodKind;
 use mechanics::study::scenes::{scene_of, usual_truth};
 use mechanics::study::sweep::{self, SweepError};
 use mechanics::study::{Materials, StudyScene, Truth, Variant, methods};
 
 /// Fields of a `predict` spec that have their own place in a study.
-const OF_THE_STUDY: [&str; 9] =
-    ["kind", "case", "plan", "plan_id", "materials", "budget", "outputs", "compare_to", "tags"];
-
-/// Where the documents of a study stand.
-pub(super) struct Documents<'a> {
-    pub spec: &'a StudyDocument,
-    /// The cases of the spec by their ids.
-    pub cases: &'a BTreeMap<String, CaseDocument>,
-    pub sources: &'a dyn MeshSource,
-    pub limits: &'a Limits,
-}
-
-/// Scenes, and where they came from.
-#[derive(Default)]
-pub(super) struct Scenes {
-    pub scenes: Vec<StudyScene>,
-    pub inputs: Vec<InputDocument>,
-    /// The SHA-256 of each mesh and of the skin of the truth's job, by its id.
-    pub contents: BTreeMap<String, String>,
-    pub warnings: Vec<Warning>,
-}
-
-pub(super) fn spec_at() -> Pointer {
-    Pointer::root().key("spec")
-}
+const OF_THE_STUDY: [&str; 10] = [
+    "kind",
+    "case",
+    "plan",
+    "plan_id",
+    "materials",
+    "budget",
+    "outputs",
+    "keep",
+    "compare_to",
+    "tags",
+];
 
 impl Documents<'_> {
     /// The variants of all methods, each with a label of its own.
@@ -181,7 +167,7 @@ impl Documents<'_> {
             match reference {
                 SceneReference::Name(name) => found.scenes.extend(self.own_scene(name, faults)),
                 SceneReference::Case(reference) => {
-                    self.case_scene((index, reference), &mut found)?;
+                    self.case_scene(index, reference, &mut found)?;
                 }
             }
             let names = found.scenes.iter().map(|scene| &scene.name);
@@ -239,7 +225,8 @@ impl Documents<'_> {
     /// A case with each plan, and with each of the materials.
     fn case_scene(
         &self,
-        (index, reference): (usize, &CaseReference),
+        index: usize,
+        reference: &CaseReference,
         found: &mut Scenes,
     ) -> Result<(), JobError> {
         let documents = self.spec.plans_of(index, reference);
@@ -302,7 +289,7 @@ impl Documents<'_> {
         faults.into_result()?;
         if let Some(job) = self.spec.truth.as_ref().and_then(|truth| truth.job.as_ref()) {
             let at = spec_at().key("truth").key("job");
-            let skin = crate::jobs::compare::found(self.sources.predicted_skin(job), job, &at)?;
+            let skin = found_mesh(self.sources.predicted_skin(job), job, &at)?;
             found.contents.insert(job.clone(), skin.sha256.clone());
             found.inputs.push(skin.to_input("truth"));
             scene.truth = Truth::Known(known_displacement(&skin, &first, &at)?);

@@ -1,8 +1,8 @@
 //! What a study holds for true, as its documents say it.
 
-use super::scenes::{Documents, spec_at};
+use super::documents::{Documents, spec_at};
 use crate::jobs::failure::JobError;
-use crate::jobs::predict::input::Prepared;
+use crate::jobs::predict::Prepared;
 use crate::jobs::source::StoredMesh;
 use crate::schema::methods::ElementName;
 use crate::schema::study::document::TruthDocument;

@@ -1,54 +1,30 @@
-//! The spec of a job: what is to be computed, how, and within which budget.
+//! The spec of a prediction: what is to be computed, how, and within which budget.
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use utoipa::ToSchema;
 
+use super::keep::KeptName;
 use crate::schema::case::material::{MaterialDocument, MaterialDocuments};
 use crate::schema::case::membrane::MembraneDocument;
 use crate::schema::code::ErrorCode;
-use crate::schema::compare::document::{CompareDocument, CompareToDocument};
+use crate::schema::compare::document::CompareToDocument;
 use crate::schema::methods::dvs::DvsDocument;
 use crate::schema::methods::msm::MassSpringDocument;
 use crate::schema::methods::mtm::MassTensorDocument;
 use crate::schema::methods::thickness_warp::ThicknessWarpDocument;
 use crate::schema::methods::{self, ElementName, MethodName, OwnSettings};
-use crate::schema::optimise::document::OptimiseDocument;
 use crate::schema::plan::document::PlanDocument;
-use crate::schema::response::ResponseDocument;
-use crate::schema::study::document::StudyDocument;
 use crate::schema::wire::canonical;
 use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::limits::Limits;
 use crate::schema::wire::names::check_tags;
-use crate::schema::wire::problem::Problem;
-use crate::schema::wire::strict;
 use mechanics::prediction::Settings;
 
 pub use super::budget::BudgetDocument;
 pub use super::contact::ContactName;
 pub use super::output::OutputName;
 pub use super::tolerance::ToleranceDocument;
-
-/// The body of `POST /v1/jobs`, told apart by `kind`.
-#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
-#[serde(untagged)]
-#[schema(discriminator(property_name = "kind", mapping(
-    ("predict" = "#/components/schemas/PredictDocument"),
-    ("compare" = "#/components/schemas/CompareDocument"),
-    ("response" = "#/components/schemas/ResponseDocument"),
-    ("optimise" = "#/components/schemas/OptimiseDocument"),
-    ("study" = "#/components/schemas/StudyDocument"),
-    ("batch" = "#/components/schemas/StudyDocument"),
-)))]
-pub enum JobDocument {
-    // By far the largest of the documents.
-    Predict(Box<PredictDocument>),
-    Compare(CompareDocument),
-    Response(ResponseDocument),
-    Optimise(OptimiseDocument),
-    Study(StudyDocument),
-}
 
 /// `predict`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
@@ -114,6 +90,9 @@ pub struct PredictDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub outputs: Option<Vec<OutputName>>,
+    /// Meshes of the result that are stored as if they had been uploaded. Default: none. Not on the command line.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub keep: Vec<KeptName>,
     /// Compares the predicted skin with another surface in the same job.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
@@ -122,42 +101,9 @@ pub struct PredictDocument {
     pub tags: Vec<String>,
 }
 
-impl JobDocument {
-    /// The body of `POST /v1/jobs`.
-    pub fn parse(bytes: &[u8], limits: &Limits) -> Result<JobDocument, Problem> {
-        let value = strict::parse_value(bytes, limits)?;
-        let at = Pointer::root().key("kind");
-        match value.get("kind").map(Value::as_str) {
-            Some(Some("predict")) => {
-                let document: PredictDocument = strict::from_value(value)?;
-                let mut faults = Faults::default();
-                document.check_for_service(&mut faults);
-                faults.into_result().map(|()| JobDocument::Predict(Box::new(document)))
-            }
-            Some(Some("compare")) => strict::from_value(value).map(JobDocument::Compare),
-            Some(Some("response")) => strict::from_value(value).map(JobDocument::Response),
-            Some(Some("optimise")) => strict::from_value(value).map(JobDocument::Optimise),
-            Some(Some("study" | "batch")) => strict::from_value(value).map(JobDocument::Study),
-            Some(Some(other)) => {
-                let detail = format!(
-                    "`{other}` is not a kind of job; `predict`, `compare`, `response`, `optimise`, `study` and `batch` are"
-                );
-                Err(Problem::at(&at, ErrorCode::UnknownWord, detail))
-            }
-            Some(None) => {
-                Err(Problem::at(&at, ErrorCode::WrongType, "the kind of a job is a word"))
-            }
-            None => {
-                let detail = "missing field `kind`: `predict`, `compare`, `response`, `optimise`, `study` or `batch`";
-                Err(Problem::at(&at, ErrorCode::MissingField, detail))
-            }
-        }
-    }
-}
-
 impl PredictDocument {
     /// What only a spec that arrives over HTTP must have: the case by id and one plan.
-    fn check_for_service(&self, faults: &mut Faults) {
+    pub fn check_for_service(&self, faults: &mut Faults) {
         let root = Pointer::root();
         if self.case.is_none() {
             faults.add(&root.key("case"), ErrorCode::MissingField, "missing field `case`");
@@ -214,6 +160,14 @@ impl PredictDocument {
         files
     }
 
+    /// The meshes to keep, each once.
+    pub fn kept(&self) -> Vec<KeptName> {
+        let mut kept = self.keep.clone();
+        kept.sort_unstable();
+        kept.dedup();
+        kept
+    }
+
     /// What decides the numbers, for the hash of the job: no tags, no ids, the plan in full.
     pub fn content(&self) -> Value {
         let mut plain = self.clone();
@@ -222,6 +176,7 @@ impl PredictDocument {
         plain.plan = None;
         plain.plan_id = None;
         plain.outputs = Some(self.files());
+        plain.keep = self.kept();
         canonical::to_value(&plain)
     }
 }

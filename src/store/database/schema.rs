@@ -10,7 +10,7 @@ use crate::store::StoreError;
 
 /// The files of `migrations/`, in order. Their macro in sqlx would compile every engine a second time, for the
 /// compiler itself.
-const FILES: [(&str, &str); 9] = [
+const FILES: [(&str, &str); 10] = [
     ("first", include_str!("../../../migrations/0001_first.sql")),
     ("studies", include_str!("../../../migrations/0002_studies.sql")),
     ("blobs", include_str!("../../../migrations/0003_blobs.sql")),
@@ -20,6 +20,7 @@ const FILES: [(&str, &str); 9] = [
     ("traces", include_str!("../../../migrations/0007_traces.sql")),
     ("unfinished blobs", include_str!("../../../migrations/0008_unfinished_blobs.sql")),
     ("error classes", include_str!("../../../migrations/0009_error_classes.sql")),
+    ("made meshes", include_str!("../../../migrations/0010_made_meshes.sql")),
 ];
 
 /// The steps as they are written, for SQLite.

@@ -1,12 +1,12 @@
 //! One attempt at a job of the service: its document, the meshes of its worker, the numerics.
 
+use std::path::Path;
+
 use serde_json::{Value, json};
 
-use super::protocol::{Assignment, Effort, Made, MadeFile, Outcome};
-use crate::jobs::failure::JobError;
-use crate::jobs::predict::input::JobInput;
-use crate::jobs::source::MeshSource;
-use crate::jobs::work::{JobOutput, Workplace, work};
+use super::protocol::{Assignment, Effort, Made, MadeFile, MeshFile, Outcome};
+use crate::jobs::{JobError, JobInput, JobOutput, MadeMesh, MeshSource, Workplace, work};
+use crate::library::upload::upload_made;
 use crate::schema::ErrorCode;
 use crate::schema::Limits;
 use crate::schema::job::ErrorClass;
@@ -24,27 +24,43 @@ pub fn attempt(
         Err(reason) => return broken(&format!("the document of the job: {reason}")),
     };
     let place = Workplace { sources, limits, out: &assignment.folder };
-    match work(&input, &place, progress) {
-        Ok(output) => made(output),
+    let done = work(&input, &place, progress).and_then(|output| {
+        let meshes = write_meshes(&output.meshes, &assignment.folder)?;
+        Ok((output, meshes))
+    });
+    match done {
+        Ok((output, meshes)) => made(output, meshes),
         Err(error) => failed(&error),
     }
 }
 
-/// The document of a job, which now knows its job and how long it waited.
-fn read_input(assignment: &Assignment) -> Result<JobInput, serde_json::Error> {
-    let mut input: JobInput = serde_json::from_str(&assignment.document)?;
-    let (job, queue_s) = (Some(assignment.job.clone()), Some(assignment.queue_s));
-    match &mut input {
-        JobInput::Predict(input) => (input.job, input.queue_s) = (job, queue_s),
-        JobInput::Compare(input) => (input.job, input.queue_s) = (job, queue_s),
-        JobInput::Response(input) => (input.job, input.queue_s) = (job, queue_s),
-        JobInput::Optimise(input) => (input.job, input.queue_s) = (job, queue_s),
-        JobInput::Study(input) => (input.job, input.queue_s) = (job, queue_s),
+/// Writes meshes in the form in which they are stored, each with its row as for an upload.
+fn write_meshes(meshes: &[MadeMesh], folder: &Path) -> Result<Vec<MeshFile>, JobError> {
+    let mut written = Vec::with_capacity(meshes.len());
+    for mesh in meshes {
+        let row = upload_made(mesh)?.row;
+        let file = format!("kept-{}", mesh.what.name());
+        std::fs::write(folder.join(&file), &row.bytes)
+            .map_err(|source| JobError::Write { file: file.clone(), source })?;
+        written.push(MeshFile {
+            what: mesh.what,
+            file,
+            id: row.id,
+            sha256: row.sha256,
+            options: row.options,
+            report: row.report,
+        });
     }
-    Ok(input)
+    Ok(written)
 }
 
-fn made(output: JobOutput) -> Outcome {
+/// The document of a job, which now knows its job and how long it waited.
+fn read_input(assignment: &Assignment) -> Result<JobInput, serde_json::Error> {
+    let input: JobInput = serde_json::from_str(&assignment.document)?;
+    Ok(input.of_job(&assignment.job, assignment.queue_s))
+}
+
+fn made(output: JobOutput, meshes: Vec<MeshFile>) -> Outcome {
     let result = match serde_json::to_string(&output.result) {
         Ok(result) => result,
         Err(error) => return broken(&format!("the manifest: {error}")),
@@ -57,6 +73,7 @@ fn made(output: JobOutput) -> Outcome {
         files: files
             .map(|file| MadeFile { name: file.name, media_type: file.media_type })
             .collect(),
+        meshes,
         effort: Effort {
             unknowns: solver.map_or(0, |solver| solver.unknowns),
             iterations: solver.map_or(0, |solver| solver.iterations),

@@ -6,6 +6,7 @@ pub mod attempt;
 pub mod child;
 pub mod memory;
 pub mod protocol;
+mod reports;
 pub mod serve;
 mod source;
 pub mod supervisor;

@@ -13,6 +13,7 @@ use serde_json::Value;
 use super::memory::Usage;
 use crate::library::meshes::MeshCard;
 use crate::schema::Limits;
+use crate::schema::predict::keep::KeptName;
 
 /// The longest frame that is believed: a blob is a file that was accepted or made here.
 const LONGEST: u64 = 1 << 36;
@@ -127,6 +128,7 @@ pub struct Made {
     /// The manifest, JSON.
     pub result: String,
     pub files: Vec<MadeFile>,
+    pub meshes: Vec<MeshFile>,
     pub effort: Effort,
 }
 
@@ -134,6 +136,19 @@ pub struct Made {
 pub struct MadeFile {
     pub name: String,
     pub media_type: String,
+}
+
+/// A mesh to be stored: its row as for an upload, and the file with its bytes as they are to be stored.
+#[derive(Debug, Serialize, Deserialize)]
+pub struct MeshFile {
+    pub what: KeptName,
+    pub file: String,
+    pub id: String,
+    /// Of the bytes before they were read and written anew.
+    pub sha256: String,
+    pub options: String,
+    /// JSON.
+    pub report: String,
 }
 
 /// What a job was and what it took, for those who watch the service.

@@ -1,6 +1,6 @@
 //! The process of a slot: takes jobs from its worker, one after the other, and keeps what it parsed.
 
-use std::io::{self, BufReader, Stdout, Write};
+use std::io::{self, BufReader};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
@@ -9,8 +9,9 @@ use std::time::{Duration, Instant};
 
 use super::memory;
 use super::protocol::{
-    Answer, Assignment, Ended, Order, Outcome, Report, Settings, encode, read_frame, read_message,
+    Answer, Assignment, Ended, Order, Outcome, Report, Settings, read_frame, read_message,
 };
+use super::reports::Reports;
 use super::source::{FullAnswer, SlotSource};
 use crate::library::cache::MeshCache;
 use crate::worker::fail_point::FailPoints;
@@ -31,23 +32,6 @@ pub enum SlotError {
     Threads(#[from] rayon::ThreadPoolBuildError),
 }
 
-/// What a process has to say, one message at a time.
-pub struct Reports(Mutex<Stdout>);
-
-impl Reports {
-    pub fn tell(&self, report: &Report) {
-        let told = encode(report).and_then(|frame| {
-            let mut to = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-            to.write_all(&frame)?;
-            to.flush()
-        });
-        if told.is_err() {
-            // Nobody listens: what this process computes is of no use to anybody.
-            std::process::exit(0);
-        }
-    }
-}
-
 /// Serves until standard input is closed.
 pub fn serve() -> Result<(), SlotError> {
     die_with_parent();
@@ -62,7 +46,7 @@ pub fn serve() -> Result<(), SlotError> {
         .thread_name(|thread| format!("solver-{thread}"))
         .build()?;
     let (ears, heard) = listen(orders)?;
-    let reports = Reports(Mutex::new(io::stdout()));
+    let reports = Reports::to(io::stdout());
     let source = SlotSource {
         reports: &reports,
         answers: Mutex::new(heard.answers),
@@ -122,7 +106,7 @@ fn listen(mut orders: BufReader<io::Stdin>) -> Result<(Ears, Heard), SlotError> 
     let ears = stop.clone();
     std::thread::Builder::new().name("orders".into()).spawn(move || {
         while let Ok(Some(order)) = read_message(&mut orders) {
-            if take(order, &mut orders, &stop, (&assign, &answer)).is_none() {
+            if take(order, &mut orders, &stop, &assign, &answer).is_none() {
                 break;
             }
         }
@@ -136,7 +120,8 @@ fn take(
     order: Order,
     orders: &mut BufReader<io::Stdin>,
     stop: &AtomicBool,
-    (assign, answer): (&Sender<Assignment>, &Sender<FullAnswer>),
+    assign: &Sender<Assignment>,
+    answer: &Sender<FullAnswer>,
 ) -> Option<()> {
     match order {
         Order::Start(_) => None,

@@ -5,8 +5,8 @@ use std::sync::mpsc::Receiver;
 use std::sync::{Mutex, PoisonError};
 
 use super::protocol::{Answer, Question, Report};
-use super::serve::Reports;
-use crate::jobs::source::{MeshSource, SourceError, StoredMesh, StoredShape};
+use super::reports::Reports;
+use crate::jobs::{MeshSource, SourceError, StoredMesh, StoredShape};
 use crate::library::cache::MeshCache;
 use crate::library::meshes::parse_stored;
 use crate::schema::case::document::LengthUnit;

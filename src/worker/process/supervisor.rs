@@ -17,7 +17,8 @@ use crate::schema::ErrorCode;
 use crate::schema::job::ErrorClass;
 use crate::store::{Claim, StoreError};
 use crate::worker::process::attempt::broke_off;
-use crate::worker::slots::{Failure, Finished, FinishedFile, Work};
+
+use crate::worker::work::{Failure, Finished, FinishedFile, FinishedMesh, Work};
 use mechanics::progress::{Phase, Progress};
 
 /// How often the worker looks whether the job is still wanted, and what its process takes.
@@ -336,7 +337,7 @@ fn worn_out(panicked: bool, jobs: usize, bytes: Option<u64>, limit: u64) -> Opti
 
 fn finished(outcome: Outcome, folder: &Path) -> Result<Finished, Failure> {
     match outcome {
-        Outcome::Done(Made { result, files, effort }) => Ok(Finished {
+        Outcome::Done(Made { result, files, meshes, effort }) => Ok(Finished {
             result,
             files: files
                 .into_iter()
@@ -345,6 +346,10 @@ fn finished(outcome: Outcome, folder: &Path) -> Result<Finished, Failure> {
                     name: file.name,
                     media_type: file.media_type,
                 })
+                .collect(),
+            meshes: meshes
+                .into_iter()
+                .map(|mesh| FinishedMesh { path: folder.join(&mesh.file), mesh })
                 .collect(),
             effort,
         }),

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use facies::jobs::work::Workplace;
+use facies::jobs::Workplace;
 use facies::jobs::{JobInput, PredictInput, StoredShape, work};
 use facies::schema::Limits;
 use mechanics::format::Mesh;

@@ -1,6 +1,7 @@
 //! Rows and bytes, on both engines.
 
 pub mod lost_jobs;
+pub mod made;
 pub mod pages;
 pub mod queue;
 pub mod races;

@@ -4,7 +4,7 @@ use facies::schema::job::JobStatus;
 use facies::store::{Claim, Dismissal, Enqueued, JobFilter, Point, QueueRow};
 
 use crate::deployments::Deployment;
-use crate::rows::{LEASE, blob_count, enqueue, file, job, new_job};
+use crate::rows::{LEASE, blob_count, enqueue, file, job, new_job, result};
 use crate::support::trials::trials;
 
 trials! {
@@ -68,7 +68,7 @@ async fn a_worker_that_was_thought_dead_publishes_nothing(on: Deployment) {
     assert_ne!(lease.token, zombie.token);
 
     let late = [file("zombie")];
-    assert!(!store.publish(&zombie, "\"zombie\"", &late).await.unwrap());
+    assert!(!store.publish(&zombie, result("\"zombie\"", &late)).await.unwrap());
     assert!(!store.fail(&zombie, "{}").await.unwrap());
     assert!(!store.release(&zombie).await.unwrap());
     assert!(!store.lose(&zombie, 3, "{}").await.unwrap());
@@ -78,7 +78,7 @@ async fn a_worker_that_was_thought_dead_publishes_nothing(on: Deployment) {
     assert_eq!(blob_count(&store).await, 0, "its files are gone");
 
     let second = [file("second")];
-    assert!(other.publish(&lease, "\"second\"", &second).await.unwrap());
+    assert!(other.publish(&lease, result("\"second\"", &second)).await.unwrap());
     let ended = job(&store, &id).await;
     assert_eq!(ended.status, JobStatus::Successful);
     assert_eq!(ended.result.as_deref(), Some("\"second\""));
@@ -123,7 +123,7 @@ async fn a_result_that_comes_after_the_dismissal_is_dropped(on: Deployment) {
     assert_eq!(store.dismiss(&id).await.unwrap(), Dismissal::Dismissed);
     assert!(!store.holds(&lease).await.unwrap());
     let late = [file("late")];
-    assert!(!store.publish(&lease, "{}", &late).await.unwrap());
+    assert!(!store.publish(&lease, result("{}", &late)).await.unwrap());
     assert_eq!(job(&store, &id).await.status, JobStatus::Dismissed);
     assert_eq!(blob_count(&store).await, 0);
     assert_eq!(store.dismiss(&id).await.unwrap(), Dismissal::Removed);

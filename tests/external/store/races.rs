@@ -8,7 +8,7 @@ use tokio::task::JoinSet;
 
 use crate::deployments::Deployment;
 use crate::rows::mesh;
-use crate::rows::{LEASE, blob_count, enqueue, file, new_job};
+use crate::rows::{LEASE, blob_count, enqueue, file, new_job, result};
 use crate::support::trials::trials;
 
 trials! {
@@ -80,7 +80,7 @@ async fn a_dismissal_and_a_publication_have_one_winner(on: Deployment) {
         let lease = stores[0].claim(LEASE).await.unwrap().unwrap().lease;
         let files = [file("result")];
         let (published, dismissal) =
-            tokio::join!(stores[0].publish(&lease, "{}", &files), stores[1].dismiss(&id));
+            tokio::join!(stores[0].publish(&lease, result("{}", &files)), stores[1].dismiss(&id));
         let left = stores[0].job(&id).await.unwrap();
         match (published.unwrap(), dismissal.unwrap()) {
             (false, Dismissal::Dismissed) => {

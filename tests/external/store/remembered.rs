@@ -4,7 +4,7 @@ use facies::schema::job::JobStatus;
 use facies::store::{Change, Dismissal, NewCase, Point, Reserved};
 
 use crate::deployments::Deployment;
-use crate::rows::{LEASE, enqueue, new_job};
+use crate::rows::{LEASE, enqueue, new_job, result};
 use crate::support::trials::trials;
 
 trials! {
@@ -36,7 +36,7 @@ async fn every_change_of_a_job_that_can_be_seen_is_one_event(on: Deployment) {
     let late = store.claim(LEASE).await.unwrap().unwrap().lease;
     // Of a lease that is not the job's any more nothing is told.
     assert!(!store.fail(&lease, "{}").await.unwrap());
-    assert!(store.publish(&late, "{}", &[]).await.unwrap());
+    assert!(store.publish(&late, result("{}", &[])).await.unwrap());
 
     use JobStatus::{Accepted, Running, Successful};
     let events = store.job_events(&id, 0).await.unwrap().unwrap();

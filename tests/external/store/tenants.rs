@@ -5,7 +5,7 @@ use facies::store::{Dismissal, Enqueued, Store};
 use serde_json::json;
 
 use crate::deployments::Deployment;
-use crate::rows::{LEASE, enqueue, file, mesh, new_job};
+use crate::rows::{LEASE, enqueue, file, mesh, new_job, result};
 use crate::support::trials::trials;
 
 trials! {
@@ -49,7 +49,7 @@ async fn what_is_older_than_its_tenant_keeps_it_is_erased(on: Deployment) {
     for tenant in &tenants {
         let old = enqueue(tenant, "old").await;
         let lease = store.claim(LEASE).await.unwrap().unwrap().lease;
-        assert!(store.publish(&lease, "{}", &[file("a result")]).await.unwrap());
+        assert!(store.publish(&lease, result("{}", &[file("a result")])).await.unwrap());
         let waiting = enqueue(tenant, "waits").await;
         let mesh = mesh("alone", "units=mm");
         assert!(tenant.add_mesh(&mesh).await.unwrap());

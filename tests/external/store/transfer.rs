@@ -5,11 +5,12 @@ use std::path::Path;
 
 use facies::config::DatabasePlace;
 use facies::schema::key::{KeyDocument, Scope};
-use facies::store::{Deed, NewCase, Store, StoreError};
+use facies::store::{Deed, NewCase, Published, Store, StoreError};
 
 use crate::deployments::Deployment;
 use crate::rows::mesh;
 use crate::rows::{LEASE, blob_count, enqueue, file, new_job};
+use crate::store::made::made;
 use crate::support::trials::trials;
 
 trials! {
@@ -50,7 +51,9 @@ async fn fill(store: &Store) {
     let lease = store.claim(LEASE).await.unwrap().unwrap().lease;
     let point = facies::store::Point { residual: Some(1.0 / 3.0), ..Default::default() };
     assert!(store.renew(&lease, LEASE, &point).await.unwrap());
-    assert!(store.publish(&lease, "{}", &[file("a result")]).await.unwrap());
+    let (files, meshes) = ([file("a result")], [made("of the job")]);
+    let result = Published { result: "{}", files: &files, meshes: &meshes };
+    assert!(store.publish(&lease, result).await.unwrap());
     let mut waiting = new_job("{}", "waiting");
     waiting.shared_cases = vec![case.id.clone()];
     waiting.mesh_ids = vec![case_mesh.id];
@@ -77,12 +80,12 @@ async fn a_deployment_moves_to_postgresql_and_back(shared: Deployment) {
     fill(&store).await;
     let folders = ["1", "2", "3"].map(|name| first.folder().join(name));
     let moved = store.export(&folders[0]).await.unwrap();
-    assert_eq!((moved.rows, moved.blobs), (24, 2));
+    assert_eq!((moved.rows, moved.blobs), (26, 3));
     for (on, [from, to]) in [(&shared, [0, 1]), (&last, [1, 2])] {
         let store = on.open().await;
         assert_eq!(store.import(&folders[from]).await.unwrap(), moved);
         assert_eq!(store.export(&folders[to]).await.unwrap(), moved);
-        assert_eq!(blob_count(&store).await, 2);
+        assert_eq!(blob_count(&store).await, 3);
         // The waiting job is taken up where it arrived.
         assert!(store.claim(LEASE).await.unwrap().is_some());
     }

@@ -3,9 +3,9 @@
 use std::fs;
 use std::path::Path;
 
-use facies::jobs::predict::check;
-use facies::jobs::work::Workplace;
-use facies::jobs::{JobError, JobInput, JobOutput, PredictInput, StoredShape, work};
+use facies::jobs::{
+    JobError, JobInput, JobOutput, PredictInput, StoredShape, Workplace, check, work,
+};
 use facies::schema::Limits;
 use mechanics::image::{ImageVolume, Placement, Voxels};
 use mechanics::mesh::sample::block;

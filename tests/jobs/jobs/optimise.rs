@@ -3,10 +3,9 @@
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use facies::jobs::work::Workplace;
 use facies::jobs::{
     JobError, JobInput, JobOutput, MeshSource, OptimiseInput, SourceError, StoredMesh, StoredShape,
-    work,
+    Workplace, work,
 };
 use facies::schema::Limits;
 use facies::schema::case::document::LengthUnit;

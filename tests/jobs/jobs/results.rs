@@ -4,10 +4,9 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-use facies::jobs::work::Workplace;
 use facies::jobs::{
     CompareInput, JobError, JobInput, JobOutput, MeshSource, PredictInput, SourceError, StoredMesh,
-    StoredShape, work,
+    StoredShape, Workplace, work,
 };
 use facies::schema::case::document::LengthUnit;
 use facies::schema::job::ErrorClass;

@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use facies::schema::case::document::{CaseMeshes, NamedMesh};
 use facies::schema::hashes;
+use facies::schema::job_document::{JobDocument, JobKind};
 use facies::schema::plan::document::PlanContext;
-use facies::schema::predict::document::JobDocument;
 use facies::schema::wire::{canonical, strict};
 use facies::schema::{
     CaseDocument, Faults, Limits, PlanDocument, Pointer, PredictDocument, Problem,
@@ -314,6 +314,31 @@ fn a_job_is_told_apart_by_its_kind() {
     assert_eq!(refused(parse("[]")), one(failed, "missing-field", "/kind"));
     let both = parse(r#"{"kind":"predict","case":"c","plan":{},"plan_id":"p"}"#);
     assert_eq!(refused(both), one(failed, "one-of", ""));
+}
+
+#[test]
+fn an_error_about_the_kind_of_a_job_lists_every_kind() {
+    let detail = |text: &str| {
+        let problem = JobDocument::parse(text.as_bytes(), &Limits::default()).unwrap_err();
+        problem.errors[0].detail.clone()
+    };
+    assert_eq!(
+        detail("{}"),
+        "missing field `kind`: `predict`, `compare`, `response`, `optimise`, `study` or `batch`"
+    );
+    assert_eq!(
+        detail(r#"{"kind":"x"}"#),
+        "`x` is not a kind of job; `predict`, `compare`, `response`, `optimise`, `study` and `batch` are"
+    );
+}
+
+#[test]
+fn a_kind_of_job_is_stored_by_the_word_that_clients_send() {
+    for kind in JobKind::ALL {
+        assert_eq!(canonical::to_value(kind), kind.name());
+        assert_eq!(JobKind::from_name(kind.name()), Some(*kind));
+    }
+    assert_eq!(JobKind::from_name("mesh"), None);
 }
 
 fn hash(case: &str, plan: &str, spec: &str) -> String {

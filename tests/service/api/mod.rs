@@ -12,6 +12,7 @@ mod events;
 mod idempotency;
 mod images;
 mod jobs;
+mod keep;
 mod meshes;
 mod openapi;
 mod optimise;

@@ -7,7 +7,8 @@ use facies::config::Config;
 use facies::schema::job::JobStatus;
 use facies::store::{Claim, JobRow, Store};
 use facies::worker::process::protocol::Effort;
-use facies::worker::slots::{Failure, Finished, FinishedFile, Work, Workers};
+use facies::worker::slots::Workers;
+use facies::worker::work::{Failure, Finished, FinishedFile, Work};
 use mechanics::progress::Progress;
 use tempfile::TempDir;
 
@@ -48,7 +49,8 @@ impl Work for Scripted {
                     media_type: "application/json".into(),
                     path,
                 };
-                Ok(Finished { result: "{}".into(), files: vec![file], effort: Effort::default() })
+                let (files, meshes) = (vec![file], Vec::new());
+                Ok(Finished { result: "{}".into(), files, meshes, effort: Effort::default() })
             }
         }
     }

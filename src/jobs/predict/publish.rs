@@ -1,86 +1,39 @@
-//! The one function from a job document to result files.
+//! Publication of a prediction: measured, compared and written as files.
 
 use std::collections::BTreeMap;
 use std::path::Path;
+use std::sync::Arc;
 
-use super::clock::Observed;
-use super::compare::{compare_job, compare_skin};
-use super::failure::JobError;
-use super::optimise::optimise_job;
-use super::response::response_job;
-use super::source::MeshSource;
-use super::study::study_job;
-use crate::jobs::predict::check::warning_documents;
-use crate::jobs::predict::input::{JobInput, PredictInput, Prepared};
-use crate::jobs::predict::overlap::overlaps;
+use super::comparison::compare_skin;
+use super::input::{PredictInput, Prepared};
+use super::overlap::overlaps;
+use crate::jobs::clock::Observed;
+use crate::jobs::failure::JobError;
+use crate::jobs::output::{JobOutput, MadeMesh};
 use crate::jobs::result::folder::ResultFolder;
 use crate::jobs::result::pictures::displacement_picture;
-use crate::jobs::result::provenance::{Origin, add_method, encode_result, solver_document};
+use crate::jobs::result::provenance::{
+    Origin, add_method, encode_result, mesh_summary, solver_document,
+};
 use crate::jobs::result::skin::PredictedSkin;
 use crate::jobs::result::tissue::{encode_bones, encode_volume};
+use crate::jobs::result::warnings::warning_documents;
+use crate::jobs::source::StoredShape;
+use crate::schema::Triple;
 use crate::schema::compare::result::{ComparisonDocument, StatDocument};
 use crate::schema::optimise::result::OptimisationDocument;
 use crate::schema::predict::document::OutputName;
+use crate::schema::predict::keep::KeptName;
 use crate::schema::predict::result::{
     DisplacementDocument, FileDocument, ResultDocument, StatisticsDocument,
 };
-use crate::schema::{Limits, Triple};
-use mechanics::mesh::{Vector, Warning};
-use mechanics::prediction::{Prediction, Skin, predict};
+use mechanics::mesh::{Vector, VolumeMesh, Warning};
+use mechanics::prediction::{Prediction, Skin};
 use mechanics::progress::{Phase, Progress};
 use mechanics::validation::{Statistics, StatisticsError};
 
-/// What a job made.
-#[derive(Clone, Debug)]
-pub struct JobOutput {
-    /// The content of `result.json`.
-    pub result: ResultDocument,
-    /// Every file in the folder, with `result.json` itself.
-    pub files: Vec<FileDocument>,
-}
-
-/// Where a job finds its meshes, what it is allowed, and where its files go.
-pub struct Workplace<'a> {
-    pub sources: &'a dyn MeshSource,
-    pub limits: &'a Limits,
-    pub out: &'a Path,
-}
-
-/// Does a job. The same input and meshes give the same files, but for times in `result.json`.
-pub fn work(
-    input: &JobInput,
-    place: &Workplace,
-    progress: &dyn Progress,
-) -> Result<JobOutput, JobError> {
-    match input {
-        JobInput::Predict(input) => predict_job(input, place, progress),
-        JobInput::Compare(input) => compare_job(input, place, progress),
-        JobInput::Response(input) => response_job(input, place, progress),
-        JobInput::Optimise(input) => optimise_job(input, place, progress),
-        JobInput::Study(input) => study_job(input, place, progress),
-    }
-}
-
-fn predict_job(
-    input: &PredictInput,
-    place: &Workplace,
-    progress: &dyn Progress,
-) -> Result<JobOutput, JobError> {
-    let clock = Observed::start(progress, input.spec.budget.wall_s);
-
-    // 1. Documents and meshes, checked together.
-    let prepared = input.prepare(place.sources, place.limits)?;
-    prepared.admit(0, place.limits)?;
-    clock.check()?;
-
-    // 2. The displacement of the tissue.
-    let prediction = predict(&prepared.scene, &clock).map_err(|error| clock.judge(error))?;
-    let predicted = Predicted { prepared, prediction, optimisation: None };
-    predicted.publish(input, &clock, place.out)
-}
-
 /// A prediction that is to be measured, compared and written.
-pub(super) struct Predicted {
+pub struct Predicted {
     pub prepared: Prepared,
     pub prediction: Prediction,
     /// How its plan was found, if it was not stated.
@@ -138,25 +91,8 @@ impl Predicted {
         // 4. The manifest.
         let result = finished.result(input, clock, folder.files.clone());
         folder.add(OutputName::ResultJson, &encode_result(&result)?)?;
-        Ok(JobOutput { result, files: folder.files })
-    }
-}
-
-impl PredictInput {
-    /// The files to write but for `result.json`: those asked for, or skin and moved bones. A case
-    /// without bones has no file of them.
-    pub(super) fn files(&self) -> Vec<OutputName> {
-        let mut files = self.spec.files();
-        if self.spec.outputs.is_none() {
-            files.push(OutputName::BonesVtp);
-        }
-        let has_bones = !self.case.bones.is_empty();
-        files.retain(|name| match name {
-            OutputName::ResultJson => false,
-            OutputName::BonesVtp => has_bones,
-            _ => true,
-        });
-        files
+        let meshes = finished.kept(&input.spec.kept());
+        Ok(JobOutput { result, files: folder.files, meshes })
     }
 }
 
@@ -173,6 +109,23 @@ struct Finished<'a> {
 }
 
 impl Finished<'_> {
+    fn kept(&self, wanted: &[KeptName]) -> Vec<MadeMesh> {
+        let frame = self.origin.frame;
+        let shape = |what: KeptName| match what {
+            KeptName::Skin => StoredShape::Surface(Arc::new(self.skin.surface.clone())),
+            KeptName::Volume => StoredShape::Volume(Arc::new(self.moved_volume())),
+        };
+        wanted.iter().map(|&what| MadeMesh { what, shape: shape(what), frame }).collect()
+    }
+
+    fn moved_volume(&self) -> VolumeMesh {
+        let mut moved = (*self.prepared.scene.mesh).clone();
+        for (node, displacement) in moved.nodes.iter_mut().zip(&self.prediction.displacement) {
+            *node += displacement;
+        }
+        moved
+    }
+
     fn write_files(&self, input: &PredictInput, folder: &mut ResultFolder) -> Result<(), JobError> {
         let solver = solver_document(&self.prediction.solver, &self.prediction.elements);
         let field_data = self.origin.field_data(input.spec.method, &solver);
@@ -205,7 +158,7 @@ impl Finished<'_> {
     ) -> ResultDocument {
         let mut provenance = self.origin.provenance(clock);
         let solver = solver_document(&self.prediction.solver, &self.prediction.elements);
-        let mesh = (&*self.prepared.scene.mesh, &self.prepared.quality);
+        let mesh = mesh_summary(&self.prepared.scene.mesh, &self.prepared.quality);
         add_method(&mut provenance, input.spec.method, mesh, solver);
         ResultDocument {
             job: input.job.clone(),
@@ -214,6 +167,7 @@ impl Finished<'_> {
             comparison: self.comparison.clone(),
             optimisation: self.optimisation.clone(),
             study: None,
+            kept: Vec::new(),
             numerical_error_mm: None,
             reaction_mn: triples(&self.prediction.reactions),
             provenance,
@@ -223,7 +177,7 @@ impl Finished<'_> {
 }
 
 /// How far the skin, its parts and the landmarks move.
-pub(super) fn statistics(
+pub fn statistics(
     skin: &Skin,
     predicted: &PredictedSkin,
     landmarks: &BTreeMap<String, Vector>,

@@ -1,0 +1,46 @@
+//! Input of a comparison of two surfaces.
+
+use serde::{Deserialize, Serialize};
+
+use crate::jobs::failure::JobError;
+use crate::jobs::fetch::{fetch, found};
+use crate::jobs::source::{MeshSource, StoredMesh};
+use crate::schema::hashes;
+use crate::schema::{CompareDocument, Pointer};
+
+/// A comparison of two surfaces.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CompareInput {
+    /// The id of the job; absent on the command line.
+    pub job: Option<String>,
+    /// From acceptance to start.
+    pub queue_s: Option<f64>,
+    pub spec: CompareDocument,
+}
+
+impl CompareInput {
+    /// The hash of everything that decides the numbers, from the hashes of both surfaces.
+    pub fn spec_hash(&self, prediction: &str, actual: &str) -> String {
+        let actual_id = &self.spec.actual.mesh;
+        let content = |id: &str| match id == actual_id {
+            true => Some(actual.to_owned()),
+            false => Some(prediction.to_owned()),
+        };
+        hashes::compare_hash(&self.spec, &content)
+    }
+
+    /// The surface that is measured: a mesh, or the skin that a job predicted.
+    pub fn fetch_prediction(
+        &self,
+        sources: &dyn MeshSource,
+        at: &Pointer,
+    ) -> Result<StoredMesh, JobError> {
+        match &self.spec.prediction.job {
+            Some(job) => found(sources.predicted_skin(job), job, &at.key("job")),
+            None => {
+                let mesh = self.spec.prediction.mesh.clone().unwrap_or_default();
+                fetch(sources, &mesh, &at.key("mesh"))
+            }
+        }
+    }
+}

@@ -1,0 +1,89 @@
+//! The job of a comparison.
+
+use std::collections::BTreeMap;
+
+use super::input::CompareInput;
+use super::surfaces::{Compared, Pair};
+use crate::jobs::clock::Observed;
+use crate::jobs::failure::JobError;
+use crate::jobs::fetch::{fetch, no_surface};
+use crate::jobs::output::{JobOutput, Workplace};
+use crate::jobs::result::folder::ResultFolder;
+use crate::jobs::result::provenance::{Origin, encode_result};
+use crate::jobs::result::warnings::warning_documents;
+use crate::schema::predict::document::OutputName;
+use crate::schema::predict::result::ResultDocument;
+use crate::schema::{Faults, Pointer};
+use mechanics::format::vtk::vtp;
+use mechanics::format::{ArrayValues, NamedValues, SurfaceOutput};
+use mechanics::mesh::{Frame, TriangleSurface};
+use mechanics::progress::{Phase, Progress};
+
+/// Time a comparison may take, in seconds; a prediction that compares has its own budget.
+const WALL_S: f64 = 600.0;
+
+/// A comparison as a job of its own.
+pub fn compare_job(
+    input: &CompareInput,
+    place: &Workplace,
+    progress: &dyn Progress,
+) -> Result<JobOutput, JobError> {
+    let clock = Observed::start(progress, WALL_S);
+
+    // 1. Documents and surfaces.
+    let mut faults = Faults::default();
+    input.spec.check(place.limits, &mut faults);
+    faults.into_result()?;
+    let at = Pointer::root().key("spec");
+    let prediction = input.fetch_prediction(place.sources, &at.key("prediction"))?;
+    let actual_id = &input.spec.actual.mesh;
+    let actual = fetch(place.sources, actual_id, &at.key("actual").key("mesh"))?;
+    clock.check()?;
+
+    // 2. Distances.
+    clock.phase(Phase::Compare);
+    let wrong = || no_surface(&at.key("prediction"));
+    let surface = prediction.surface_in_mm().ok_or_else(wrong)?;
+    let frame = prediction.frame;
+    let pair = Pair { prediction: &surface, prediction_frame: frame, actual: &actual, at };
+    let compared = pair.compare(&input.spec.to_compare_to(), &clock)?;
+
+    // 3. Files.
+    clock.phase(Phase::Write);
+    let origin = Origin {
+        spec_hash: input.spec_hash(&prediction.sha256, &actual.sha256),
+        inputs: vec![prediction.to_input("prediction"), actual.to_input("actual")],
+        frame: frame.unwrap_or_default(),
+        queue_s: input.queue_s,
+    };
+    let mut folder = ResultFolder::open(place.out)?;
+    folder.add(OutputName::SkinVtp, &encode_distances(&surface, &compared, origin.frame)?)?;
+    let warnings = prediction.warnings.iter().chain(&actual.warnings).chain(&compared.warnings);
+    let result = ResultDocument {
+        job: input.job.clone(),
+        files: folder.files.clone(),
+        statistics: None,
+        comparison: Some(compared.document.clone()),
+        optimisation: None,
+        study: None,
+        kept: Vec::new(),
+        numerical_error_mm: None,
+        reaction_mn: BTreeMap::new(),
+        provenance: origin.provenance(&clock),
+        warnings: warning_documents(warnings),
+    };
+    folder.add(OutputName::ResultJson, &encode_result(&result)?)?;
+    Ok(JobOutput { result, files: folder.files, meshes: Vec::new() })
+}
+
+/// `skin.vtp` of a comparison: the prediction with its distance at each point.
+fn encode_distances(
+    surface: &TriangleSurface,
+    compared: &Compared,
+    frame: Frame,
+) -> Result<Vec<u8>, JobError> {
+    let mut output = SurfaceOutput::plain(surface, frame);
+    let values = ArrayValues::Reals(&compared.signed_distance);
+    output.point_arrays = vec![NamedValues { name: "signed_distance_mm", values }];
+    Ok(vtp::write(&output)?)
+}

@@ -1,0 +1,9 @@
+//! Comparisons of two surfaces, as a job of their own or as a part of a prediction.
+
+mod input;
+mod job;
+mod surfaces;
+
+pub use input::CompareInput;
+pub use job::compare_job;
+pub use surfaces::{Compared, Pair};

@@ -1,0 +1,51 @@
+//! Job input: a job as it is queued, and what the inputs of all kinds share.
+
+use serde::{Deserialize, Serialize};
+
+use super::compare::CompareInput;
+use super::optimise::OptimiseInput;
+use super::predict::PredictInput;
+use super::response::ResponseInput;
+use super::study::StudyInput;
+use crate::schema::job_document::JobKind;
+use crate::schema::study::document::StudyKind;
+
+/// Everything that decides its result, but for the meshes.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+#[expect(clippy::large_enum_variant, reason = "there is one for each job, not thousands in a row")]
+pub enum JobInput {
+    Predict(PredictInput),
+    Compare(CompareInput),
+    Response(ResponseInput),
+    Optimise(OptimiseInput),
+    Study(StudyInput),
+}
+
+impl JobInput {
+    pub fn kind(&self) -> JobKind {
+        match self {
+            JobInput::Predict(_) => JobKind::Predict,
+            JobInput::Compare(_) => JobKind::Compare,
+            JobInput::Response(_) => JobKind::Response,
+            JobInput::Optimise(_) => JobKind::Optimise,
+            JobInput::Study(input) => match input.spec.kind {
+                StudyKind::Study => JobKind::Study,
+                StudyKind::Batch => JobKind::Batch,
+            },
+        }
+    }
+
+    /// The same with the id of its job and how long it waited from acceptance to start, in s.
+    pub fn of_job(mut self, id: &str, waited_s: f64) -> JobInput {
+        let (job, queue_s) = (Some(id.to_owned()), Some(waited_s));
+        match &mut self {
+            JobInput::Predict(input) => (input.job, input.queue_s) = (job, queue_s),
+            JobInput::Compare(input) => (input.job, input.queue_s) = (job, queue_s),
+            JobInput::Response(input) => (input.job, input.queue_s) = (job, queue_s),
+            JobInput::Optimise(input) => (input.job, input.queue_s) = (job, queue_s),
+            JobInput::Study(input) => (input.job, input.queue_s) = (job, queue_s),
+        }
+        self
+    }
+}

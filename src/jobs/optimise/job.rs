@@ -1,0 +1,199 @@
+//! The job of inverse planning: response, plan, and the skin of that plan by a full solution.
+
+use std::collections::BTreeMap;
+
+use super::input::OptimiseInput;
+use super::targets::PreparedOptimisation;
+use crate::jobs::clock::Observed;
+use crate::jobs::failure::JobError;
+use crate::jobs::output::{JobOutput, Workplace};
+use crate::jobs::predict::{PredictInput, Predicted, Prepared, statistics};
+use crate::jobs::result::folder::ResultFolder;
+use crate::jobs::result::pictures::displacement_picture;
+use crate::jobs::result::provenance::{
+    Origin, add_method, encode_result, mesh_summary, solver_document,
+};
+use crate::jobs::result::skin::PredictedSkin;
+use crate::jobs::result::tissue::encode_bones;
+use crate::jobs::result::warnings::warning_documents;
+use crate::schema::OptimiseDocument;
+use crate::schema::optimise::result::OptimisationDocument;
+use crate::schema::predict::document::OutputName;
+use crate::schema::predict::result::{ResultDocument, SolverDocument};
+use mechanics::mesh::{Vector, Warning};
+use mechanics::optimisation::{Optimum, Question, optimise};
+use mechanics::prediction::{Prediction, predict};
+use mechanics::progress::{Phase, Progress};
+use mechanics::response::{Columns, Response, ResponseError, build};
+
+/// A difference between full solution and response that is told, in mm: stored in single precision and
+/// solved to the usual residual they agree to 1e-4 mm.
+const NOTICEABLE: f64 = 0.01;
+
+/// The plan that was found, and the skin that the response gives it.
+struct Found {
+    document: OptimisationDocument,
+    displacement: Vec<Vector>,
+    solver: SolverDocument,
+}
+
+/// Finds a plan and writes its skin as a prediction would.
+pub fn optimise_job(
+    input: &OptimiseInput,
+    place: &Workplace,
+    progress: &dyn Progress,
+) -> Result<JobOutput, JobError> {
+    let clock = Observed::start(progress, input.spec.budget.wall_s);
+
+    // 1. Documents and meshes, checked together.
+    let prepared = input.prepare(place.sources, place.limits)?;
+    prepared.rest.admit(prepared.moving, place.limits)?;
+    clock.check()?;
+
+    // 2. What each number of the movements does to the skin, and the plan.
+    let found = input.find(&prepared, &clock)?;
+    clock.check()?;
+
+    // 3. The plan as any other.
+    let prediction = input.prediction(&found.document);
+    let mut planned = prediction.prepare(place.sources, place.limits)?;
+    planned.spec_hash = prepared.spec_hash;
+    planned.inputs = prepared.rest.inputs;
+    planned.warnings.extend(prepared.warnings);
+    if !input.spec.verify {
+        return found.publish(&prediction, planned, &clock, place);
+    }
+    let solved = predict(&planned.scene, &clock).map_err(|error| clock.judge(error))?;
+    let (optimisation, warning) = found.verified(&planned, &solved);
+    planned.warnings.extend(warning);
+    let optimisation = Some(optimisation);
+    Predicted { prepared: planned, prediction: solved, optimisation }.publish(
+        &prediction,
+        &clock,
+        place.out,
+    )
+}
+
+impl OptimiseInput {
+    fn find(&self, prepared: &PreparedOptimisation, clock: &Observed) -> Result<Found, JobError> {
+        let scene = &prepared.rest.scene;
+        let columns = build(scene, &self.spec.moving(), clock).map_err(|error| match error {
+            ResponseError::Prediction(error) => clock.judge(error),
+            other => self.judge(other),
+        })?;
+        clock.check()?;
+        let response = columns.to_response();
+        let bounds: Vec<_> = response
+            .segments
+            .iter()
+            .map(|segment| self.spec.bounds_of(&segment.name).to_bounds())
+            .collect();
+        let question =
+            Question { response: &response, bounds: &bounds, targets: &prepared.targets };
+        let optimum = optimise(&question)?;
+        Ok(Found::new(&self.spec, &columns, &response, &optimum))
+    }
+
+    /// The prediction of a plan that was found.
+    fn prediction(&self, found: &OptimisationDocument) -> PredictInput {
+        PredictInput {
+            job: self.job.clone(),
+            queue_s: self.queue_s,
+            case: self.case.clone(),
+            plan: found.plan.clone(),
+            spec: self.spec.to_prediction(),
+        }
+    }
+}
+
+impl Found {
+    fn new(
+        spec: &OptimiseDocument,
+        columns: &Columns,
+        response: &Response,
+        optimum: &Optimum,
+    ) -> Self {
+        Found {
+            document: OptimisationDocument::new(spec, &response.segments, optimum),
+            displacement: response.apply(&optimum.movements),
+            solver: solver_document(&columns.solver, &columns.elements),
+        }
+    }
+
+    /// The answer with the largest difference between the skin of the full solution and that of the response.
+    fn verified(
+        &self,
+        planned: &Prepared,
+        solved: &Prediction,
+    ) -> (OptimisationDocument, Option<Warning>) {
+        let nodes = planned.scene.skin.nodes().iter().zip(&self.displacement);
+        let difference = nodes
+            .map(|(&node, found)| (solved.displacement[node as usize] - found).norm())
+            .fold(0.0, f64::max);
+        let detail =
+            "the skin of the full solution is not that of the response: solve both more exactly";
+        let warning =
+            Warning::new("verification-differs", detail).with("difference_mm", difference);
+        let document = self.document.clone();
+        let document =
+            OptimisationDocument { verified_difference_mm: Some(difference), ..document };
+        (document, (difference > NOTICEABLE).then_some(warning))
+    }
+
+    /// The skin of the response as files, without a full solution: no reactions, and nothing of the inside.
+    fn publish(
+        self,
+        input: &PredictInput,
+        planned: Prepared,
+        clock: &Observed,
+        place: &Workplace,
+    ) -> Result<JobOutput, JobError> {
+        clock.phase(Phase::Surface);
+        let scene = &planned.scene;
+        let skin = PredictedSkin::of_displacement(&scene.skin, self.displacement);
+        let statistics = statistics(&scene.skin, &skin, &BTreeMap::new())?;
+        clock.check()?;
+        clock.phase(Phase::Write);
+        let frame = planned.case.frame;
+        let origin = Origin {
+            spec_hash: planned.spec_hash.clone(),
+            inputs: planned.inputs.clone(),
+            frame,
+            queue_s: input.queue_s,
+        };
+        let field_data = origin.field_data(input.spec.method, &self.solver);
+        let mut folder = ResultFolder::open(place.out)?;
+        for name in input.files() {
+            let bytes = match name {
+                OutputName::BonesVtp => encode_bones(&planned.case, scene, &field_data)?,
+                OutputName::ClassesSvg => planned.classes_picture()?.into_bytes(),
+                OutputName::DisplacementSvg => {
+                    displacement_picture(scene, &skin, frame, &statistics.skin.nodes)?.into_bytes()
+                }
+                skin_file => match skin.encode(skin_file, frame, &field_data)? {
+                    Some(bytes) => bytes,
+                    None => continue,
+                },
+            };
+            folder.add(name, &bytes)?;
+        }
+        let mut provenance = origin.provenance(clock);
+        let mesh = mesh_summary(&scene.mesh, &planned.quality);
+        add_method(&mut provenance, input.spec.method, mesh, self.solver);
+        let result = ResultDocument {
+            job: input.job.clone(),
+            files: folder.files.clone(),
+            statistics: Some(statistics),
+            comparison: None,
+            optimisation: Some(self.document),
+            study: None,
+            kept: Vec::new(),
+            numerical_error_mm: None,
+            reaction_mn: BTreeMap::new(),
+            provenance,
+            warnings: warning_documents(planned.warnings.iter().chain(&scene.warnings)),
+        };
+        folder.add(OutputName::ResultJson, &encode_result(&result)?)?;
+        Ok(JobOutput { result, files: folder.files, meshes: Vec::new() })
+    }
+}

@@ -1,0 +1,35 @@
+//! Job output: what a job made, and the place where it works.
+
+use std::path::Path;
+
+use super::source::{MeshSource, StoredShape};
+use crate::schema::Limits;
+use crate::schema::predict::keep::KeptName;
+use crate::schema::predict::result::{FileDocument, ResultDocument};
+use mechanics::mesh::Frame;
+
+/// What a job made.
+#[derive(Clone, Debug)]
+pub struct JobOutput {
+    /// The content of `result.json`.
+    pub result: ResultDocument,
+    /// Every file in the folder, with `result.json` itself.
+    pub files: Vec<FileDocument>,
+    /// To be stored as meshes; the service does so when it publishes the result, and names them there.
+    pub meshes: Vec<MadeMesh>,
+}
+
+/// A mesh that a job leaves for others, in mm.
+#[derive(Clone, Debug)]
+pub struct MadeMesh {
+    pub what: KeptName,
+    pub shape: StoredShape,
+    pub frame: Frame,
+}
+
+/// Where a job finds its meshes, what it is allowed, and where its files go.
+pub struct Workplace<'a> {
+    pub sources: &'a dyn MeshSource,
+    pub limits: &'a Limits,
+    pub out: &'a Path,
+}

@@ -1,0 +1,26 @@
+//! Comparison of a predicted skin.
+
+use super::input::{PredictInput, Prepared};
+use crate::jobs::clock::Observed;
+use crate::jobs::compare::{Compared, Pair};
+use crate::jobs::failure::JobError;
+use crate::jobs::result::skin::PredictedSkin;
+use crate::schema::Pointer;
+use mechanics::mesh::Frame;
+
+/// Compares the predicted skin with what the spec names, if it names something.
+pub fn compare_skin(
+    input: &PredictInput,
+    prepared: &Prepared,
+    skin: &PredictedSkin,
+    clock: &Observed,
+) -> Result<Option<Compared>, JobError> {
+    let (Some(spec), Some(actual)) = (&input.spec.compare_to, &prepared.actual) else {
+        return Ok(None);
+    };
+    let at = Pointer::root().key("spec").key("compare_to");
+    let frame = prepared.case.frame;
+    let stated = (frame != Frame::Unspecified).then_some(frame);
+    let pair = Pair { prediction: &skin.surface, prediction_frame: stated, actual, at };
+    pair.compare(spec, clock).map(Some)
+}

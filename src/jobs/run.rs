@@ -1,0 +1,26 @@
+//! Dispatch of jobs: the one function from a job document to result files.
+
+use super::compare::compare_job;
+use super::failure::JobError;
+use super::input::JobInput;
+use super::optimise::optimise_job;
+use super::output::{JobOutput, Workplace};
+use super::predict::predict_job;
+use super::response::response_job;
+use super::study::study_job;
+use mechanics::progress::Progress;
+
+/// Does a job. The same input and meshes give the same files, but for times in `result.json`.
+pub fn work(
+    input: &JobInput,
+    place: &Workplace,
+    progress: &dyn Progress,
+) -> Result<JobOutput, JobError> {
+    match input {
+        JobInput::Predict(input) => predict_job(input, place, progress),
+        JobInput::Compare(input) => compare_job(input, place, progress),
+        JobInput::Response(input) => response_job(input, place, progress),
+        JobInput::Optimise(input) => optimise_job(input, place, progress),
+        JobInput::Study(input) => study_job(input, place, progress),
+    }
+}

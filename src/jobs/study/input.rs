@@ -1,0 +1,50 @@
+//! Input of a study.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+use super::verdict::Baseline;
+use crate::schema::study::report::ReportDocument;
+use crate::schema::{CaseDocument, StudyDocument};
+
+/// A study: its cases and its baseline in full beside the spec.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct StudyInput {
+    /// The id of the job; absent on the command line.
+    pub job: Option<String>,
+    /// From acceptance to start.
+    pub queue_s: Option<f64>,
+    /// By their ids in the spec.
+    pub cases: BTreeMap<String, CaseDocument>,
+    /// The report of the study that the spec names as baseline.
+    pub baseline: Option<Box<ReportDocument>>,
+    pub spec: StudyDocument,
+}
+
+impl StudyInput {
+    /// The ids of all meshes that its cases read.
+    pub fn mesh_ids(&self) -> Vec<String> {
+        let mut ids: Vec<String> = self.cases.values().flat_map(CaseDocument::mesh_ids).collect();
+        for plan in self.spec.clone().plan_documents_mut() {
+            for (_, id) in plan.surface_references_mut() {
+                let is_bone = |case: &CaseDocument| case.bones.iter().any(|bone| bone.name == *id);
+                if !self.cases.values().any(is_bone) {
+                    ids.push(id.clone());
+                }
+            }
+        }
+        ids.sort_unstable();
+        ids.dedup();
+        ids
+    }
+
+    /// What its outcome is judged against.
+    pub fn to_baseline(&self) -> Baseline<'_> {
+        match (&self.baseline, &self.spec.baseline) {
+            (Some(report), _) => Baseline::Report(report),
+            (None, Some(job)) => Baseline::Missing(format!("the baseline {job} has no report")),
+            (None, None) => Baseline::NotAsked,
+        }
+    }
+}

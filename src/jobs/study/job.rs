@@ -1,0 +1,155 @@
+//! The job of a study: rows one after the other, the report in every form, its charts and its outcome.
+
+use std::collections::BTreeMap;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use super::chart::chart;
+use super::files::{
+    CHART_SVG, CSV_MEDIA_TYPE, JSON_MEDIA_TYPE, JUNIT_MEDIA_TYPE, REPORT_CSV, REPORT_JSON,
+    REPORT_JUNIT, SVG_MEDIA_TYPE, csv, junit,
+};
+use super::input::StudyInput;
+use super::prepare::most_rows;
+use super::report::{ReportOrigin, encode_report, report_document};
+use super::stopwatch::MachineStopwatch;
+use super::verdict::judge;
+use crate::jobs::clock::{Observed, now_rfc3339};
+use crate::jobs::failure::JobError;
+use crate::jobs::output::{JobOutput, Workplace};
+use crate::jobs::result::folder::ResultFolder;
+use crate::jobs::result::provenance::{Origin, encode_result};
+use crate::jobs::result::warnings::warning_documents;
+use crate::schema::predict::document::OutputName;
+use crate::schema::predict::result::ResultDocument;
+use crate::schema::study::report::ReportDocument;
+use mechanics::mesh::Frame;
+use mechanics::progress::{Phase, Progress};
+use mechanics::study::{Stopwatch, StudyError, run};
+
+/// What a study may take in all: its budget once for rows, once for truths, and a minute for the rest, in s.
+fn whole_budget(rows_s: f64) -> f64 {
+    2.0 * rows_s + 60.0
+}
+
+/// Measures rows and tells which one is solved, but nothing of the iterations inside: they begin anew with every
+/// row.
+struct Rows<'a> {
+    clock: &'a Observed<'a>,
+    stopwatch: MachineStopwatch,
+    begun: AtomicUsize,
+    most: usize,
+}
+
+impl Stopwatch for Rows<'_> {
+    fn seconds(&self) -> f64 {
+        self.stopwatch.seconds()
+    }
+
+    /// A study does so where a row begins.
+    fn forget_peak(&self) {
+        self.clock.step(self.begun.fetch_add(1, Ordering::Relaxed), self.most);
+        self.stopwatch.forget_peak();
+    }
+
+    fn peak_mb(&self) -> Option<f64> {
+        self.stopwatch.peak_mb()
+    }
+}
+
+impl Progress for Rows<'_> {
+    fn phase(&self, _phase: Phase) {}
+
+    fn iteration(&self, _iteration: usize, _relative_residual: f64, _wanted: f64) {}
+
+    fn is_cancelled(&self) -> bool {
+        self.clock.is_cancelled()
+    }
+}
+
+/// Runs a study and writes its report.
+pub fn study_job(
+    input: &StudyInput,
+    place: &Workplace,
+    progress: &dyn Progress,
+) -> Result<JobOutput, JobError> {
+    let clock = Observed::start(progress, whole_budget(input.spec.budget.wall_s));
+
+    // 1. Documents and meshes, checked together.
+    let prepared = input.prepare(place.sources, place.limits)?;
+    clock.check()?;
+
+    // 2. Rows and truths.
+    clock.phase(Phase::Solve);
+    let rows = Rows {
+        clock: &clock,
+        stopwatch: MachineStopwatch::start(),
+        begun: AtomicUsize::new(0),
+        most: most_rows(&prepared.study),
+    };
+    let found = run(&prepared.study, &rows, &rows);
+    let found = found.map_err(|error| match error {
+        StudyError::Cancelled => clock.stopped(),
+        other => JobError::Study(other),
+    })?;
+
+    // 3. The outcome.
+    clock.phase(Phase::Compare);
+    let origin = ReportOrigin {
+        job: input.job.clone(),
+        spec_hash: prepared.spec_hash.clone(),
+        created: now_rfc3339(),
+    };
+    let mut report = report_document(&found, &input.spec, &prepared.study.variants, origin);
+    judge(&mut report, &input.to_baseline());
+
+    // 4. Files.
+    clock.phase(Phase::Write);
+    let mut folder = ResultFolder::open(place.out)?;
+    write_report(&report, &mut folder)?;
+    let origin = Origin {
+        spec_hash: prepared.spec_hash,
+        inputs: prepared.inputs,
+        frame: Frame::Unspecified,
+        queue_s: input.queue_s,
+    };
+    let result = ResultDocument {
+        job: input.job.clone(),
+        files: folder.files.clone(),
+        statistics: None,
+        comparison: None,
+        optimisation: None,
+        study: Some(report.summary()),
+        kept: Vec::new(),
+        numerical_error_mm: None,
+        reaction_mn: BTreeMap::new(),
+        provenance: origin.provenance(&clock),
+        warnings: warning_documents(prepared.warnings.iter()),
+    };
+    folder.add(OutputName::ResultJson, &encode_result(&result)?)?;
+    Ok(JobOutput { result, files: folder.files, meshes: Vec::new() })
+}
+
+/// The report in every form, a chart over all scenes, and one for each where there are several.
+fn write_report(report: &ReportDocument, folder: &mut ResultFolder) -> Result<(), JobError> {
+    folder.add_file(REPORT_JSON, JSON_MEDIA_TYPE, &encode_report(report)?)?;
+    folder.add_file(REPORT_CSV, CSV_MEDIA_TYPE, csv(report).as_bytes())?;
+    folder.add_file(REPORT_JUNIT, JUNIT_MEDIA_TYPE, junit(report).as_bytes())?;
+    folder.add_file(CHART_SVG, SVG_MEDIA_TYPE, chart(report, None).as_bytes())?;
+    if report.scenes.len() > 1 {
+        for (index, scene) in report.scenes.iter().enumerate() {
+            let file = format!("chart-{}-{}.svg", index + 1, file_name(&scene.name));
+            let svg = chart(report, Some(&scene.name));
+            folder.add_file(&file, SVG_MEDIA_TYPE, svg.as_bytes())?;
+        }
+    }
+    Ok(())
+}
+
+/// A name as part of a file name: letters and digits, all else a dash.
+fn file_name(name: &str) -> String {
+    let plain = |letter: char| match letter.is_ascii_alphanumeric() || letter == '_' {
+        true => letter,
+        false => '-',
+    };
+    name.chars().take(40).map(plain).collect()
+}

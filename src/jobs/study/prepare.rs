@@ -1,0 +1,80 @@
+//! Preparation of a study: scenes made, meshes fetched, documents checked.
+
+use std::collections::BTreeSet;
+
+use super::batch::Parts;
+use super::documents::Documents;
+use super::input::StudyInput;
+use crate::jobs::failure::JobError;
+use crate::jobs::source::MeshSource;
+use crate::schema::code::ErrorCode;
+use crate::schema::hashes;
+use crate::schema::predict::result::InputDocument;
+use crate::schema::study::document::StudyKind;
+use crate::schema::wire::canonical;
+use crate::schema::{CaseDocument, Faults, Limits, Pointer, Problem};
+use mechanics::mesh::Warning;
+use mechanics::study::{Study, StudyScene};
+
+/// A study whose documents are sound.
+pub struct PreparedStudy {
+    pub study: Study,
+    pub spec_hash: String,
+    pub inputs: Vec<InputDocument>,
+    pub warnings: Vec<Warning>,
+}
+
+impl StudyInput {
+    /// Makes the scenes, fetches the meshes and checks the documents. Pointers start at `/case` and `/spec`.
+    pub fn prepare(
+        &self,
+        sources: &dyn MeshSource,
+        limits: &Limits,
+    ) -> Result<PreparedStudy, JobError> {
+        let mut faults = Faults::default();
+        self.spec.check(limits, &mut faults);
+        faults.into_result()?;
+        let documents = Documents { spec: &self.spec, cases: &self.cases, sources, limits };
+        let mut faults = Faults::default();
+        let Parts { scenes, variants, pairs } = match self.spec.kind {
+            StudyKind::Study => {
+                let variants = documents.variants(&mut faults);
+                let scenes = documents.scenes(&mut faults)?;
+                Parts { scenes, variants, pairs: BTreeSet::new() }
+            }
+            StudyKind::Batch => documents.items(&mut faults)?,
+        };
+        faults.into_result()?;
+        let study = Study {
+            scenes: scenes.scenes,
+            variants,
+            pairs,
+            levels: self.spec.levels.clone(),
+            repeats: self.spec.repeats as usize,
+            budget_s: self.spec.budget.wall_s,
+            row_s: self.spec.budget.row_s,
+        };
+        let (rows, most) = (most_rows(&study), limits.study_rows as usize);
+        if rows > most {
+            let detail = format!("the study has {rows} rows, at most {most} are allowed");
+            return Err(
+                Problem::at(&Pointer::root().key("spec"), ErrorCode::TooMany, detail).into()
+            );
+        }
+        let content = |id: &str| scenes.contents.get(id).cloned();
+        let cases: Vec<&CaseDocument> =
+            self.spec.case_ids().into_iter().filter_map(|id| self.cases.get(id)).collect();
+        let baseline = self.baseline.as_ref().map(canonical::to_value);
+        let spec_hash = hashes::study_hash(&cases, &self.spec, baseline.as_ref(), &content);
+        Ok(PreparedStudy { study, spec_hash, inputs: scenes.inputs, warnings: scenes.warnings })
+    }
+}
+
+/// How many rows a study has, with those that turn out to be the truth itself.
+pub fn most_rows(study: &Study) -> usize {
+    let of_scene = |(place, scene): (usize, &StudyScene)| {
+        scene.plans.len() * scene.materials.len() * study.variants_of(place).count()
+    };
+    let on_a_mesh: usize = study.scenes.iter().enumerate().map(of_scene).sum();
+    on_a_mesh * study.levels.len()
+}

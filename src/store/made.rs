@@ -1,0 +1,112 @@
+//! Meshes that jobs made: stored with the result, and erased with the job or its case unless something else refers to
+//! them.
+//!
+//! Whoever locks jobs and meshes locks the jobs first: a publication and an erasure wait for each other, and not both.
+
+use super::database::{Transaction, is_duplicate, query};
+use super::meshes::{MeshRow, NewMesh};
+use super::{Store, StoreError};
+
+/// A mesh that a job made, to be stored with its result.
+#[derive(Clone, Debug)]
+pub struct MadeMesh {
+    pub mesh: NewMesh,
+    /// The same content, so described, where it was stored before.
+    pub known: Option<MeshRow>,
+}
+
+const KNOWN: &str = "SELECT id FROM meshes WHERE id = $1 AND tenant = $2 FOR UPDATE";
+const REFER: &str =
+    "INSERT INTO made_meshes (job_id, mesh_id) VALUES ($1, $2) ON CONFLICT DO NOTHING";
+/// Locked, so that a request which is about to refer to one of them has either done so or finds it gone.
+const MADE_BY_JOB: &str = "SELECT id FROM meshes \
+     WHERE id IN (SELECT mesh_id FROM made_meshes WHERE job_id = $1) ORDER BY id FOR UPDATE";
+const DELETE_UNUSED: &str = "DELETE FROM meshes WHERE id = $1 AND standalone = 0 \
+     AND NOT EXISTS (SELECT 1 FROM case_meshes WHERE mesh_id = $1) \
+     AND NOT EXISTS (SELECT 1 FROM job_meshes WHERE mesh_id = $1) \
+     AND NOT EXISTS (SELECT 1 FROM made_meshes WHERE mesh_id = $1) RETURNING blob";
+
+impl MadeMesh {
+    /// Under which it is stored.
+    pub fn id(&self) -> &str {
+        self.known.as_ref().map_or(&self.mesh.id, |row| &row.id)
+    }
+
+    /// Whether its bytes are those that its row refers to; an earlier program may have written others.
+    pub(super) fn is_as_stored(&self) -> bool {
+        self.known.as_ref().is_none_or(|row| row.blob == self.mesh.blob)
+    }
+}
+
+impl Store {
+    /// Stores what a job made; an error asks to look anew where one of them came or went meanwhile.
+    pub(super) async fn insert_made(
+        &self,
+        transaction: &mut Transaction,
+        job: &str,
+        made: &[MadeMesh],
+    ) -> Result<(), StoreError> {
+        let mut made: Vec<&MadeMesh> = made.iter().collect();
+        made.sort_by_key(|made| made.id());
+        for made in made {
+            match &made.known {
+                Some(row) => self.still_there(transaction, row).await?,
+                None => self.insert_mesh(transaction, &made.mesh).await.map_err(contended)?,
+            }
+            query(REFER).bind(job).bind(made.id()).execute(&mut *transaction).await?;
+        }
+        Ok(())
+    }
+
+    async fn still_there(
+        &self,
+        transaction: &mut Transaction,
+        row: &MeshRow,
+    ) -> Result<(), StoreError> {
+        let found = query(KNOWN)
+            .bind(&row.id)
+            .bind(self.tenant())
+            .fetch_optional(&mut *transaction)
+            .await?;
+        found.map(drop).ok_or(StoreError::Contended)
+    }
+
+    /// Removes those of the given meshes that came with something which is gone, and that nothing refers to. Their blobs.
+    pub(super) async fn remove_unused(
+        &self,
+        transaction: &mut Transaction,
+        meshes: Vec<String>,
+    ) -> Result<Vec<String>, sqlx::Error> {
+        let mut blobs = Vec::new();
+        for mesh in meshes {
+            let unused = column(transaction, DELETE_UNUSED, &mesh).await?;
+            if !unused.is_empty() {
+                self.bury(transaction, &mesh).await?;
+            }
+            blobs.extend(unused);
+        }
+        Ok(blobs)
+    }
+}
+
+fn contended(error: sqlx::Error) -> StoreError {
+    if is_duplicate(&error) { StoreError::Contended } else { error.into() }
+}
+
+/// The meshes that a job made.
+pub(super) async fn made_by(
+    transaction: &mut Transaction,
+    job: &str,
+) -> Result<Vec<String>, sqlx::Error> {
+    column(transaction, MADE_BY_JOB, job).await
+}
+
+/// The first column of a query with one parameter.
+pub(super) async fn column(
+    transaction: &mut Transaction,
+    sql: &'static str,
+    id: &str,
+) -> Result<Vec<String>, sqlx::Error> {
+    let rows = query(sql).bind(id).fetch_all(&mut *transaction).await?;
+    rows.iter().map(|row| row.try_get(0)).collect()
+}

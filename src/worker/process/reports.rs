@@ -1,0 +1,27 @@
+//! Reports of the process of a slot to its worker.
+
+use std::io::{Stdout, Write};
+use std::sync::{Mutex, PoisonError};
+
+use super::protocol::{Report, encode};
+
+/// What a process has to say, one message at a time.
+pub struct Reports(Mutex<Stdout>);
+
+impl Reports {
+    pub fn to(output: Stdout) -> Self {
+        Reports(Mutex::new(output))
+    }
+
+    pub fn tell(&self, report: &Report) {
+        let told = encode(report).and_then(|frame| {
+            let mut to = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+            to.write_all(&frame)?;
+            to.flush()
+        });
+        if told.is_err() {
+            // Nobody listens: what this process computes is of no use to anybody.
+            std::process::exit(0);
+        }
+    }
+}

@@ -1,0 +1,91 @@
+//! Publication of an attempt: its files and meshes read, and stored under the manifest that names them.
+
+use bytes::Bytes;
+use serde_json::Value;
+
+use super::process::protocol::MeshFile;
+use super::work::{Failure, Finished, FinishedFile, FinishedMesh};
+use crate::jobs::result::provenance::manifest_bytes;
+use crate::schema::predict::document::OutputName;
+use crate::schema::predict::keep::{KeptMeshDocument, KeptName};
+use crate::schema::wire::canonical::{sha256_hex, to_value};
+use crate::store::{Lease, MadeMesh, NewMesh, Published, PublishedFile, Store, StoreError};
+
+/// The result of an attempt in memory.
+pub struct Publication {
+    /// The manifest, JSON.
+    result: String,
+    files: Vec<PublishedFile>,
+    meshes: Vec<Kept>,
+}
+
+struct Kept {
+    what: KeptName,
+    mesh: NewMesh,
+}
+
+impl Publication {
+    /// Reads the files of an attempt, whose folder may then go.
+    pub fn read(finished: Finished) -> Result<Publication, Failure> {
+        let files = finished.files.into_iter().map(read_file);
+        let meshes = finished.meshes.into_iter().map(read_mesh);
+        Ok(Publication {
+            result: finished.result,
+            files: files.collect::<Result<_, _>>()?,
+            meshes: meshes.collect::<Result<_, _>>()?,
+        })
+    }
+
+    /// Publishes all of it, or nothing where the job is not ours any more. A mesh that is stored already keeps its id.
+    pub async fn publish(&self, store: &Store, lease: &Lease) -> Result<bool, StoreError> {
+        if self.meshes.is_empty() {
+            let published = Published { result: &self.result, files: &self.files, meshes: &[] };
+            return store.publish(lease, published).await;
+        }
+        let mut meshes = Vec::with_capacity(self.meshes.len());
+        let mut kept = Vec::with_capacity(self.meshes.len());
+        for Kept { what, mesh } in &self.meshes {
+            let known = store.mesh_by_content(&mesh.sha256, &mesh.options).await?;
+            let made = MadeMesh { mesh: mesh.clone(), known };
+            kept.push(KeptMeshDocument::new(*what, made.id()));
+            meshes.push(made);
+        }
+        let manifest = self.manifest(&kept)?;
+        let files = self.files_with(&manifest);
+        let result = manifest.to_string();
+        store.publish(lease, Published { result: &result, files: &files, meshes: &meshes }).await
+    }
+
+    fn manifest(&self, kept: &[KeptMeshDocument]) -> Result<Value, StoreError> {
+        let mut manifest: Value = serde_json::from_str(&self.result)
+            .map_err(|error| StoreError::Schema(format!("manifest of a job: {error}")))?;
+        manifest["kept"] = to_value(&kept);
+        Ok(manifest)
+    }
+
+    /// The files, that of the manifest with what it has gained.
+    fn files_with(&self, manifest: &Value) -> Vec<PublishedFile> {
+        let mut files = self.files.clone();
+        for file in &mut files {
+            if file.name == OutputName::ResultJson.file_name() {
+                file.bytes = Bytes::from(manifest_bytes(manifest));
+                file.sha256 = sha256_hex(&file.bytes);
+            }
+        }
+        files
+    }
+}
+
+fn read_file(file: FinishedFile) -> std::io::Result<PublishedFile> {
+    let bytes = Bytes::from(std::fs::read(&file.path)?);
+    let sha256 = sha256_hex(&bytes);
+    Ok(PublishedFile { name: file.name, media_type: file.media_type, sha256, bytes })
+}
+
+fn read_mesh(FinishedMesh { mesh, path }: FinishedMesh) -> std::io::Result<Kept> {
+    let bytes = Bytes::from(std::fs::read(path)?);
+    let MeshFile { what, id, sha256, options, report, .. } = mesh;
+    let blob = sha256_hex(&bytes);
+    let mesh = NewMesh { id, sha256, options, blob, bytes, standalone: false, report };
+    Ok(Kept { what, mesh })
+}

@@ -1,0 +1,77 @@
+//! The work of a slot as the rest of the worker sees it: what goes in, what comes out, how it fails.
+
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use super::fail_point::Injected;
+use super::process::protocol::{Effort, MeshFile};
+use crate::store::{Claim, StoreError};
+use mechanics::progress::Progress;
+
+/// What an attempt made: the manifest, and files in the folder it was given.
+pub struct Finished {
+    /// JSON.
+    pub result: String,
+    pub files: Vec<FinishedFile>,
+    pub meshes: Vec<FinishedMesh>,
+    pub effort: Effort,
+}
+
+/// A file by its name in the folder of the attempt.
+pub struct FinishedFile {
+    pub name: String,
+    pub media_type: String,
+    pub path: PathBuf,
+}
+
+/// A mesh to be stored, and its bytes in the folder of the attempt.
+pub struct FinishedMesh {
+    pub mesh: MeshFile,
+    pub path: PathBuf,
+}
+
+/// Why an attempt made nothing.
+#[derive(Debug)]
+pub enum Failure {
+    /// It was told to stop.
+    Cancelled,
+    /// The job's own fault, never tried again: JSON with `type` and `detail`.
+    Permanent(serde_json::Value),
+    /// The storage's fault: tried again.
+    Storage(String),
+    /// What computed it died, and how: tried again.
+    Lost(String),
+}
+
+impl From<StoreError> for Failure {
+    fn from(error: StoreError) -> Self {
+        Failure::Storage(error.to_string())
+    }
+}
+
+impl From<Injected> for Failure {
+    fn from(_: Injected) -> Self {
+        Failure::Storage("a fail point erred".to_owned())
+    }
+}
+
+impl From<std::io::Error> for Failure {
+    fn from(error: std::io::Error) -> Self {
+        Failure::Storage(error.to_string())
+    }
+}
+
+/// From a claimed job to files in a folder: the work of one slot.
+pub trait Work: Send {
+    /// Makes ready for a job before one is claimed; an error says after which wait to ask again.
+    fn prepare(&mut self) -> Result<(), Duration> {
+        Ok(())
+    }
+
+    fn work(
+        &mut self,
+        claim: &Claim,
+        folder: &Path,
+        progress: &dyn Progress,
+    ) -> Result<Finished, Failure>;
+}
