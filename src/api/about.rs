@@ -1,5 +1,8 @@
 //! What the service is: its limits, its methods, its description.
 
+use std::sync::Arc;
+
+use axum::Extension;
 use axum::http::StatusCode;
 use axum::response::Response;
 use utoipa_axum::routes;
@@ -9,6 +12,10 @@ use super::{Service, json};
 use crate::schema::Limits;
 use crate::schema::key::Scope;
 use crate::schema::methods::{MethodList, available_methods};
+
+/// The description of the service, made once from all of its routes.
+#[derive(Clone)]
+pub struct Description(pub Arc<serde_json::Value>);
 
 pub fn router() -> Resources {
     let router = Resources::new().looks(Scope::Read, routes!(limits));
@@ -29,6 +36,6 @@ async fn methods() -> Response {
 
 /// This description.
 #[utoipa::path(get, path = "/openapi.json", operation_id = "describe_service", tag = "about", responses((status = 200, description = "OpenAPI 3.1", body = serde_json::Value)))]
-async fn description() -> Response {
-    json(StatusCode::OK, &super::document())
+async fn description(Extension(description): Extension<Description>) -> Response {
+    json(StatusCode::OK, &*description.0)
 }

@@ -11,8 +11,9 @@ use utoipa::openapi::{
 };
 
 use super::access::Access;
+use super::openapi_types;
 use super::resources::Resources;
-use super::{openapi_types, resources};
+use super::routes::resources;
 use crate::schema::ProblemDocument;
 use crate::schema::job::JobEvent;
 use crate::schema::job_document::JobKind;

@@ -2,8 +2,6 @@
 
 use std::fmt;
 
-use super::VolumeMesh;
-
 /// As many ignored arrays are kept by name; the rest is counted.
 const MOST_LISTED: usize = 100;
 
@@ -67,7 +65,7 @@ impl IgnoredArrays {
         self.listed.iter().map(|array| array.name.clone()).chain(more).collect()
     }
 
-    fn find(&self, of: ValuesOf, name: &str) -> Option<&IgnoredArray> {
+    pub(super) fn find(&self, of: ValuesOf, name: &str) -> Option<&IgnoredArray> {
         self.listed.iter().find(|array| array.of == of && array.name == name)
     }
 }
@@ -79,30 +77,6 @@ pub enum ArrayUse {
     CellLabels,
     PointVectors,
     CellVectors,
-}
-
-impl VolumeMesh {
-    /// What is said of an array that is asked for and not there: why it was ignored, or what there is instead.
-    pub fn missing_array(&self, wanted: ArrayUse, name: &str) -> String {
-        let (what, of, known) = match wanted {
-            ArrayUse::PointLabels => {
-                ("integer point array", ValuesOf::Points, listed(self.node_labels.keys()))
-            }
-            ArrayUse::CellLabels => {
-                ("integer cell array", ValuesOf::Cells, listed(self.cell_labels.keys()))
-            }
-            ArrayUse::PointVectors => {
-                ("point array of 3 components", ValuesOf::Points, listed(self.node_vectors.keys()))
-            }
-            ArrayUse::CellVectors => {
-                ("cell array of 3 components", ValuesOf::Cells, listed(self.cell_vectors.keys()))
-            }
-        };
-        match self.ignored.find(of, name) {
-            Some(array) => array.to_string(),
-            None => format!("the mesh has no {what} {name:?}; it has: {known}"),
-        }
-    }
 }
 
 /// Up to 20 names, so that a message stays one line.

@@ -9,6 +9,7 @@ pub mod frame;
 pub mod half_head;
 pub mod ignored;
 pub mod jacobian;
+mod missing_array;
 pub mod orientation;
 pub mod quality;
 pub mod refinement;

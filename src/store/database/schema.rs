@@ -6,7 +6,7 @@ use sqlx::migrate::{MigrateError, Migration, MigrationType, Migrator};
 use sqlx::{AssertSqlSafe, SqlSafeStr, SqlStr};
 
 use super::{Pool, postgres, query, sqlite};
-use crate::store::StoreError;
+use crate::store::error::StoreError;
 
 /// The files of `migrations/`, in order. Their macro in sqlx would compile every engine a second time, for the
 /// compiler itself.

@@ -1,0 +1,24 @@
+//! All resources of the service with their descriptions and what each takes.
+
+use super::resources::Resources;
+
+/// Where the description is shown to people.
+pub(super) const PAGES: &[&str] = &["/docs", "/docs/", "/docs/{*rest}"];
+
+/// The resources with their descriptions, before anything is laid around them.
+pub(super) fn resources() -> Resources {
+    Resources::new()
+        .merge(super::health::router())
+        .merge(super::about::router())
+        .merge(super::meshes::router())
+        .merge(super::cases::router())
+        .merge(super::plans::router())
+        .merge(super::jobs::router())
+        .merge(super::events::router())
+        .merge(super::results::router())
+        .merge(super::report::router())
+        .merge(super::responses::router())
+        .merge(super::keys::router())
+        .merge(super::audit::router())
+        .pages(PAGES)
+}

@@ -1,0 +1,119 @@
+//! Statements run on a pool or within a transaction of either engine.
+
+use super::value::Row;
+use super::value::Statement;
+use super::value::Taker;
+use super::value::Value;
+use super::{postgres, sqlite};
+use sqlx::postgres::{PgPool, Postgres};
+use sqlx::sqlite::{Sqlite, SqlitePool};
+
+/// Connections of one engine.
+pub(in crate::store) enum Pool {
+    Sqlite(SqlitePool),
+    Postgres(PgPool),
+}
+
+/// Changes that happen together or not at all; dropped, they do not happen.
+pub(in crate::store) enum Transaction {
+    Sqlite(sqlx::Transaction<'static, Sqlite>),
+    Postgres(sqlx::Transaction<'static, Postgres>),
+}
+
+impl Transaction {
+    pub async fn commit(self) -> Result<(), sqlx::Error> {
+        match self {
+            Transaction::Sqlite(transaction) => transaction.commit().await,
+            Transaction::Postgres(transaction) => postgres::in_time(transaction.commit()).await,
+        }
+    }
+
+    pub async fn rollback(self) -> Result<(), sqlx::Error> {
+        match self {
+            Transaction::Sqlite(transaction) => transaction.rollback().await,
+            Transaction::Postgres(transaction) => postgres::in_time(transaction.rollback()).await,
+        }
+    }
+}
+
+/// Where a statement runs: on any free connection, or as a part of a transaction.
+pub(in crate::store) enum Place<'a> {
+    Pool(&'a Pool),
+    Transaction(&'a mut Transaction),
+}
+
+impl<'a> From<&'a Pool> for Place<'a> {
+    fn from(pool: &'a Pool) -> Self {
+        Place::Pool(pool)
+    }
+}
+
+impl<'a> From<&'a mut Transaction> for Place<'a> {
+    fn from(transaction: &'a mut Transaction) -> Self {
+        Place::Transaction(transaction)
+    }
+}
+
+impl Statement {
+    pub fn bind(mut self, value: impl Into<Value>) -> Self {
+        self.values.push(value.into());
+        self
+    }
+
+    /// Waits for the answer however long it takes.
+    pub fn patiently(mut self) -> Self {
+        self.patient = true;
+        self
+    }
+
+    /// Hands over the rows as they come; returns how many rows were changed.
+    pub async fn run(self, place: Place<'_>, take: Taker<'_>) -> Result<u64, sqlx::Error> {
+        match place {
+            Place::Pool(Pool::Sqlite(pool)) => {
+                sqlite::run(&mut *pool.acquire().await?, self, take).await
+            }
+            Place::Pool(Pool::Postgres(pool)) => {
+                let mut connection = pool.acquire().await?;
+                let answer = postgres::run(&mut connection, self, take).await;
+                if matches!(answer, Err(sqlx::Error::Io(_))) {
+                    // Nobody is to wait for the answer that did not come.
+                    connection.close_on_drop();
+                }
+                answer
+            }
+            Place::Transaction(Transaction::Sqlite(open)) => {
+                sqlite::run(&mut *open, self, take).await
+            }
+            Place::Transaction(Transaction::Postgres(open)) => {
+                postgres::run(&mut *open, self, take).await
+            }
+        }
+    }
+
+    /// The number of rows that it changed.
+    pub async fn execute(self, place: impl Into<Place<'_>>) -> Result<u64, sqlx::Error> {
+        self.run(place.into(), &mut |_| Ok(())).await
+    }
+
+    pub async fn fetch_all(self, place: impl Into<Place<'_>>) -> Result<Vec<Row>, sqlx::Error> {
+        let mut rows = Vec::new();
+        self.run(place.into(), &mut |row| {
+            rows.push(row);
+            Ok(())
+        })
+        .await?;
+        Ok(rows)
+    }
+
+    /// The first row, if there is one.
+    pub async fn fetch_optional(
+        self,
+        place: impl Into<Place<'_>>,
+    ) -> Result<Option<Row>, sqlx::Error> {
+        Ok(self.fetch_all(place).await?.into_iter().next())
+    }
+
+    pub async fn fetch_one(self, place: impl Into<Place<'_>>) -> Result<Row, sqlx::Error> {
+        self.fetch_optional(place).await?.ok_or(sqlx::Error::RowNotFound)
+    }
+}

@@ -1,0 +1,87 @@
+//! Why rows or bytes could not be read or written.
+
+#[derive(Debug, thiserror::Error)]
+pub enum StoreError {
+    #[error("database: {0}")]
+    Database(#[from] sqlx::Error),
+    #[error("blobs: {0}")]
+    Blobs(#[from] object_store::Error),
+    #[error("file system: {0}")]
+    Files(#[from] std::io::Error),
+    #[error(
+        "the database is at schema step {found} and this program knows steps up to {known}: start a newer program"
+    )]
+    SchemaTooNew { found: i64, known: i64 },
+    #[error(
+        "the database is at schema step {found} and this program needs step {known}: run `facies migrate`"
+    )]
+    SchemaTooOld { found: i64, known: i64 },
+    #[error("the schema of the database does not fit this program: {0}")]
+    Schema(String),
+    #[error("another facies serves this data folder")]
+    InUse,
+    #[error("blob {sha256} has changed on disk, its hash is {found}")]
+    Integrity { sha256: String, found: String },
+    #[error("blob {sha256} is not where it was kept")]
+    Missing { sha256: String },
+    #[error("others changed the same rows at the same time, again and again")]
+    Contended,
+    #[error("there is something in this deployment already: {table} has rows")]
+    NotEmpty { table: &'static str },
+    #[error("the export cannot be read: {0}")]
+    Export(String),
+    #[error("the work was interrupted")]
+    Interrupted,
+    #[error("the system has no random bytes")]
+    NoRandomness,
+}
+
+impl StoreError {
+    /// True when the disk or the quota is full.
+    pub fn is_full(&self) -> bool {
+        match self {
+            StoreError::Database(error) => super::database::is_full(error),
+            StoreError::Files(error) => is_full(error),
+            StoreError::Blobs(error) => {
+                let mut cause: Option<&(dyn std::error::Error + 'static)> = Some(error);
+                while let Some(error) = cause {
+                    if error.downcast_ref::<std::io::Error>().is_some_and(is_full) {
+                        return true;
+                    }
+                    cause = error.source();
+                }
+                false
+            }
+            _ => false,
+        }
+    }
+
+    /// True when the store is busy or out of reach, so that the same request may succeed later.
+    pub fn is_unavailable(&self) -> bool {
+        match self {
+            StoreError::Database(error) => super::database::is_unavailable(error),
+            // A server that does not answer, a disk that errs, no descriptor left.
+            StoreError::Blobs(object_store::Error::Generic { .. }) => !self.is_full(),
+            StoreError::Contended => true,
+            _ => false,
+        }
+    }
+
+    /// True when another setting, folder or program would help.
+    pub fn is_setting(&self) -> bool {
+        match self {
+            StoreError::InUse
+            | StoreError::Files(_)
+            | StoreError::SchemaTooNew { .. }
+            | StoreError::SchemaTooOld { .. }
+            | StoreError::Schema(_) => true,
+            StoreError::Database(error) => super::database::is_refused(error),
+            _ => false,
+        }
+    }
+}
+
+fn is_full(error: &std::io::Error) -> bool {
+    use std::io::ErrorKind;
+    matches!(error.kind(), ErrorKind::StorageFull | ErrorKind::QuotaExceeded)
+}
