@@ -131,3 +131,13 @@ fn replace(id: &mut String, content_of: &dyn Fn(&str) -> Option<String>) {
         *id = content;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn every_hash_of_a_job_and_the_key_of_a_response_are_made_in_one_place() {
+        let code = include_str!("hashes.rs").split("#[cfg(test)]").next().unwrap_or_default();
+        let made = code.matches("hash(json!(").count();
+        assert_eq!((made, code.matches("sha256_hex(").count()), (5, 0));
+    }
+}

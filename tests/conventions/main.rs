@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod source;
+mod wildcards;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;

@@ -1,11 +1,11 @@
 //! The dynamic volume spline: what a spec tells it, and what is told of it. Times in s, stiffness in N/m.
 
-use crate::schema::code::ErrorCode;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 use utoipa::ToSchema;
 
 use super::document::{Description, ParameterDocument, parameter};
+use crate::schema::code::ErrorCode;
 use crate::schema::wire::fault::{Faults, Pointer};
 use mechanics::model::spline::stepping::{Clock, Damping, Scheme};
 use mechanics::model::spline::{Stiffness, VolumeSpline};

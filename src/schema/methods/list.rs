@@ -1,6 +1,5 @@
 //! The list of methods that are built, and of what they serve.
 
-use crate::schema::code::ErrorCode;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
@@ -8,6 +7,7 @@ use super::describe;
 use super::document::MethodDocument;
 use super::measured::{self, MeasuredDocument};
 use super::name::{MethodName, WHY_LINEAR};
+use crate::schema::code::ErrorCode;
 use crate::schema::wire::fault::{Faults, Pointer};
 use mechanics::optimisation::UNDETERMINED;
 use mechanics::prediction::MethodKind;

@@ -23,7 +23,7 @@ use mtm::MassTensorDocument;
 pub use name::{ElementName, MethodName, WHY_ASKED, WHY_LINEAR};
 use thickness_warp::ThicknessWarpDocument;
 
-use super::code::ErrorCode;
+use crate::schema::code::ErrorCode;
 use crate::schema::wire::fault::{Faults, Pointer};
 use mechanics::prediction::{Method, MethodKind};
 

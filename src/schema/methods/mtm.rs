@@ -1,11 +1,11 @@
 //! The mass-tensor model: what a spec tells it, and what is told of it.
 
-use crate::schema::code::ErrorCode;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 use utoipa::ToSchema;
 
 use super::document::{Description, ParameterDocument};
+use crate::schema::code::ErrorCode;
 use crate::schema::wire::fault::{Faults, Pointer};
 use mechanics::model::fem::mass_tensor::{Iterations, MassTensorSettings};
 use mechanics::solver::stationary::{Iteration, Stationary};

@@ -1,10 +1,10 @@
 //! Lists of names: tags, and entries that are told apart by their names.
 
-use crate::schema::code::ErrorCode;
 use std::collections::BTreeSet;
 
 use super::fault::{Faults, Pointer};
 use super::limits::Limits;
+use crate::schema::code::ErrorCode;
 
 /// Tags are names, at most 32 of them.
 pub fn check_tags(tags: &[String], at: &Pointer, limits: &Limits, faults: &mut Faults) {
