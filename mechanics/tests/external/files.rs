@@ -60,9 +60,7 @@ fn surfaces_of_the_face_and_the_head_are_read() -> Result<(), Missing> {
             })
             .flat_map(|warning| warning.numbers.iter().map(|(_, count)| *count))
             .sum();
-        println!("{file}: {:?}", read.warnings);
         let skin = surface(read);
-        println!("{:?}", MeshReport::of_surface(&skin));
         assert_eq!(skin.triangles.len(), triangles - dropped as usize, "{file}");
     }
     Ok(())

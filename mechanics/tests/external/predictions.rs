@@ -60,7 +60,6 @@ fn a_real_face_moves_much_as_finite_elements_say() -> Result<(), Missing> {
     let spline = solve(&case, &plan, &settings);
     let scene = Scene::new(&case, &plan, &Settings::default()).unwrap();
     let [mean, p95] = apart(&scene, &finite, &spline);
-    println!("{mean} {p95}");
     assert!(mean < 0.18 && p95 < 0.52, "{mean} {p95}");
     Ok(())
 }
