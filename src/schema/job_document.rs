@@ -28,7 +28,7 @@ struct Row {
 
 /// Makes the enum of the kinds and their table, so that a kind is in both or in neither.
 macro_rules! job_kinds {
-    ($($kind:ident, $name:literal, $document:ty, $priority:literal, $has_report:literal;)+) => {
+    ($($kind:ident, $name:tt, $document:ty, $priority:literal, $has_report:literal;)+) => {
         /// What a job does.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, ToSchema)]
         pub enum JobKind {
