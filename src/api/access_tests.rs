@@ -102,7 +102,7 @@ fn assert_same(there: &BTreeSet<String>, table: &BTreeSet<String>) {
 
 #[test]
 fn every_route_takes_the_scope_and_is_noted_as_the_table_says() {
-    assert_same(&told(&resources().declared), &lines(SERVICE));
+    assert_same(&told(&crate::api::routes::resources().declared), &lines(SERVICE));
     assert_same(&told(&admin::desks().declared), &lines(ADMINISTRATION));
 }
 

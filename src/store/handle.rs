@@ -3,13 +3,15 @@
 use super::blobs::Blobs;
 use super::database::{Address, Database, query};
 use super::error::StoreError;
-use super::tenants::DEFAULT_TENANT;
 use crate::config::{DatabasePlace, Places};
 use crate::store::database::schema::Migrated;
 use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use tokio::sync::watch;
+
+/// Whose everything is where nobody says otherwise.
+pub const DEFAULT_TENANT: &str = "default";
 
 /// The database, the blobs and the folder for files under way, in the hand of one tenant: whoever asks for a case,
 /// a mesh or a job finds those of that tenant only.

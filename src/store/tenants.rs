@@ -1,10 +1,7 @@
 //! Tenants: those who share a deployment without knowing of each other.
 
 use super::database::{Row, Transaction, query};
-use super::{Store, StoreError};
-
-/// Whose everything is where nobody says otherwise.
-pub const DEFAULT_TENANT: &str = "default";
+use super::{DEFAULT_TENANT, Store, StoreError};
 
 /// A tenant and how long what it does not change is kept.
 #[derive(Clone, Debug, PartialEq, Eq)]
