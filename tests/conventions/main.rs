@@ -12,21 +12,26 @@ use std::path::Path;
 use source::{Crate, Module, rust_files};
 
 /// Modules of the numerics, and those that each may use.
-const MECHANICS: [(&str, &[&str]); 16] = [
-    ("mesh", &[]),
+const MECHANICS: [(&str, &[&str]); 18] = [
+    ("rows", &[]),
+    ("progress", &[]),
+    ("mesh", &["rows"]),
     ("material", &[]),
     ("element", &[]),
-    ("solver", &[]),
+    ("solver", &["progress", "rows"]),
     ("chart", &[]),
     ("image", &["mesh"]),
     ("plan", &["mesh"]),
-    ("registration", &["mesh"]),
+    ("registration", &["mesh", "progress"]),
     ("format", &["mesh", "image"]),
-    ("validation", &["mesh", "registration"]),
+    ("validation", &["mesh", "registration", "progress"]),
     ("boundary", &["mesh", "plan"]),
-    ("model", &["mesh", "boundary", "material", "element", "solver"]),
-    ("prediction", &["mesh", "image", "plan", "boundary", "material", "solver", "model"]),
-    ("response", &["mesh", "plan", "boundary", "model", "prediction"]),
+    ("model", &["mesh", "boundary", "material", "element", "solver", "progress", "rows"]),
+    (
+        "prediction",
+        &["mesh", "image", "plan", "boundary", "material", "solver", "model", "progress"],
+    ),
+    ("response", &["mesh", "plan", "boundary", "solver", "model", "prediction", "progress"]),
     ("optimisation", &["mesh", "plan", "response"]),
     (
         "study",
@@ -40,6 +45,7 @@ const MECHANICS: [(&str, &[&str]); 16] = [
             "prediction",
             "response",
             "validation",
+            "progress",
         ],
     ),
 ];

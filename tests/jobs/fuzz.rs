@@ -1,5 +1,5 @@
 //! Bytes changed at random in many places at once: every reader answers. A few seconds by default;
-//! `FACIES_FUZZ_S=3600 cargo test --release --test mechanics fuzz -- --nocapture` goes on for an hour and says how far it came.
+//! `FACIES_FUZZ_S=3600 cargo test --release --test jobs fuzz -- --nocapture` goes on for an hour and says how far it came.
 
 use std::time::{Duration, Instant};
 
