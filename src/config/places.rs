@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{ConfigError, Secret};
+use super::secret::{ConfigError, Secret};
 
 /// The folder of this process, the database and the blobs.
 #[derive(Clone, Debug)]

@@ -14,9 +14,8 @@
 //! and W_i = |B_i| / D_i, which turns a volume that is left over into the forces that its pressure would
 //! put on the nodes around it. It does not lose its meaning as nu goes to 1/2.
 
-use std::collections::VecDeque;
-
 use super::lanes::{Lanes, MOST_LANES};
+use super::mixed_system::{Coupling, MixedRightHandSide, MixedSolution, MixedSystem};
 use super::multigrid::{Multigrid, Workspace};
 use super::sparse_rows::SparseRows;
 use super::vector::{advance, column, dot, interleave, largest, norm, ratio, scale, subtract_all};
@@ -24,6 +23,7 @@ use super::{
     Solution, SolveReport, SolverError, System, Tolerance, Unknowns, nothing_to_solve, tell,
 };
 use crate::progress::Progress;
+use std::collections::VecDeque;
 
 /// Directions to which a new one is made conjugate: of 2, 4, 8 and all, four take within one iteration of
 /// all on shells, and each costs as much as a quarter of a product.
@@ -48,54 +48,6 @@ const MOST_ITERATIONS: usize = 50_000;
 
 /// How often a true residual above the recursive one restarts the iteration.
 const MOST_RESTARTS: usize = 8;
-
-/// K u + B^T p and B u - C p for the free displacements u and all pressures p.
-pub struct MixedSystem<'a> {
-    /// K.
-    pub stiffness: &'a System,
-    pub coupling: &'a Coupling,
-}
-
-impl MixedSystem<'_> {
-    fn free_unknowns(&self) -> usize {
-        self.stiffness.free_unknowns() + self.coupling.mass.len()
-    }
-}
-
-/// f and h.
-#[derive(Clone, Debug)]
-pub struct MixedRightHandSide {
-    pub forces: Unknowns,
-    /// One for each pressure.
-    pub volumes: Vec<[f64; 1]>,
-}
-
-/// The displacements as a solution, and the pressures.
-#[derive(Clone, Debug)]
-pub struct MixedSolution {
-    pub solution: Solution,
-    pub pressures: Vec<[f64; 1]>,
-}
-
-/// What ties pressures to displacements and to each other.
-pub struct Coupling {
-    /// B: a row for each pressure, a column for each row of K.
-    pub divergence: SparseRows<[f64; 3]>,
-    /// B^T.
-    pub gradient: SparseRows<[f64; 3]>,
-    /// C.
-    pub compliance: SparseRows<f64>,
-    /// D.
-    pub mass: Vec<f64>,
-}
-
-impl Coupling {
-    /// Memory in MB.
-    pub fn megabytes(&self) -> f64 {
-        let vectors = self.divergence.megabytes() + self.gradient.megabytes();
-        vectors + self.compliance.megabytes() + 8e-6 * self.mass.len() as f64
-    }
-}
 
 /// Solves for each right-hand side until its true residual is met, or says where it stalled.
 pub fn solve(

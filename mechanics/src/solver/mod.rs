@@ -8,6 +8,7 @@ pub mod half_matrix;
 pub mod lanes;
 pub mod layout;
 pub mod mixed;
+pub mod mixed_system;
 pub mod multigrid;
 pub mod ordering;
 mod report;

@@ -32,7 +32,8 @@ use crate::model::dofs::{Numbering, nodes_of_cells};
 use crate::model::problem::InvertedCell;
 use crate::model::problem::{Equilibrium, LoadCase, ModelError};
 use crate::progress::{Phase, Progress};
-use crate::solver::mixed::{self, Coupling, MixedRightHandSide, MixedSolution, MixedSystem};
+use crate::solver::mixed;
+use crate::solver::mixed_system::{Coupling, MixedRightHandSide, MixedSolution, MixedSystem};
 use crate::solver::sparse_rows::{Couplings, SparseRows};
 use crate::solver::{HalfMatrix, SolverError, System};
 

@@ -1,0 +1,59 @@
+//! A system of displacements and pressures: its matrices, right-hand sides and solutions.
+
+use super::lanes::{Lanes, MOST_LANES};
+use super::multigrid::{Multigrid, Workspace};
+use super::sparse_rows::SparseRows;
+use super::vector::{advance, column, dot, interleave, largest, norm, ratio, scale, subtract_all};
+use super::{
+    Solution, SolveReport, SolverError, System, Tolerance, Unknowns, nothing_to_solve, tell,
+};
+use crate::progress::Progress;
+use std::collections::VecDeque;
+
+/// K u + B^T p and B u - C p for the free displacements u and all pressures p.
+pub struct MixedSystem<'a> {
+    /// K.
+    pub stiffness: &'a System,
+    pub coupling: &'a Coupling,
+}
+
+impl MixedSystem<'_> {
+    fn free_unknowns(&self) -> usize {
+        self.stiffness.free_unknowns() + self.coupling.mass.len()
+    }
+}
+
+/// f and h.
+#[derive(Clone, Debug)]
+pub struct MixedRightHandSide {
+    pub forces: Unknowns,
+    /// One for each pressure.
+    pub volumes: Vec<[f64; 1]>,
+}
+
+/// The displacements as a solution, and the pressures.
+#[derive(Clone, Debug)]
+pub struct MixedSolution {
+    pub solution: Solution,
+    pub pressures: Vec<[f64; 1]>,
+}
+
+/// What ties pressures to displacements and to each other.
+pub struct Coupling {
+    /// B: a row for each pressure, a column for each row of K.
+    pub divergence: SparseRows<[f64; 3]>,
+    /// B^T.
+    pub gradient: SparseRows<[f64; 3]>,
+    /// C.
+    pub compliance: SparseRows<f64>,
+    /// D.
+    pub mass: Vec<f64>,
+}
+
+impl Coupling {
+    /// Memory in MB.
+    pub fn megabytes(&self) -> f64 {
+        let vectors = self.divergence.megabytes() + self.gradient.megabytes();
+        vectors + self.compliance.megabytes() + 8e-6 * self.mass.len() as f64
+    }
+}

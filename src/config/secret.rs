@@ -1,0 +1,58 @@
+//! Secrets that no log shows, and why settings are refused.
+
+use std::net::SocketAddr;
+use std::path::PathBuf;
+use std::time::Duration;
+
+/// A text that never reaches a log.
+#[derive(Clone, PartialEq)]
+pub struct Secret(String);
+
+impl Secret {
+    pub fn new(text: String) -> Secret {
+        Secret(text)
+    }
+
+    /// The text itself, for those who have to know it.
+    pub fn reveal(&self) -> &str {
+        &self.0
+    }
+
+    /// Compares in a time that depends on the length only.
+    pub fn matches(&self, other: &str) -> bool {
+        let (own, other) = (self.0.as_bytes(), other.as_bytes());
+        own.len() == other.len()
+            && own.iter().zip(other).fold(0, |difference, (a, b)| difference | (a ^ b)) == 0
+    }
+}
+
+impl std::fmt::Debug for Secret {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        formatter.write_str("…")
+    }
+}
+
+#[derive(Debug, PartialEq, thiserror::Error)]
+pub enum ConfigError {
+    #[error("{name} is `{value}`, and has to be {wanted}")]
+    Value { name: &'static str, value: String, wanted: &'static str },
+    #[error("{0} has to have 16 to 255 visible characters")]
+    Key(&'static str),
+    #[error(
+        "heartbeat-s is {heartbeat} and lease-s {lease}: a lease has to outlast two heartbeats"
+    )]
+    Heartbeat { heartbeat: f64, lease: f64 },
+    #[error("database has to begin with postgres:// or postgresql://")]
+    Database,
+    #[error(
+        "{name} is not set: a worker of its own shares the database and the blobs with the API, \
+         and what is in the data folder belongs to one process"
+    )]
+    NotShared { name: &'static str },
+    #[error("{}: {reason}", path.display())]
+    File { path: PathBuf, reason: String },
+    #[error(
+        "bind is {0}, which others can reach: set an api-key, or ask-for-keys to true, or bind to 127.0.0.1"
+    )]
+    OpenWithoutKey(SocketAddr),
+}
