@@ -15,13 +15,10 @@
 //! put on the nodes around it. It does not lose its meaning as nu goes to 1/2.
 
 use super::lanes::{Lanes, MOST_LANES};
-use super::mixed_system::{Coupling, MixedRightHandSide, MixedSolution, MixedSystem};
+use super::mixed_system::{MixedRightHandSide, MixedSolution, MixedSystem};
 use super::multigrid::{Multigrid, Workspace};
-use super::sparse_rows::SparseRows;
 use super::vector::{advance, column, dot, interleave, largest, norm, ratio, scale, subtract_all};
-use super::{
-    Solution, SolveReport, SolverError, System, Tolerance, Unknowns, nothing_to_solve, tell,
-};
+use super::{Solution, SolveReport, SolverError, Tolerance, Unknowns, nothing_to_solve, tell};
 use crate::progress::Progress;
 use std::collections::VecDeque;
 

@@ -1,14 +1,7 @@
 //! A system of displacements and pressures: its matrices, right-hand sides and solutions.
 
-use super::lanes::{Lanes, MOST_LANES};
-use super::multigrid::{Multigrid, Workspace};
 use super::sparse_rows::SparseRows;
-use super::vector::{advance, column, dot, interleave, largest, norm, ratio, scale, subtract_all};
-use super::{
-    Solution, SolveReport, SolverError, System, Tolerance, Unknowns, nothing_to_solve, tell,
-};
-use crate::progress::Progress;
-use std::collections::VecDeque;
+use super::{Solution, System, Unknowns};
 
 /// K u + B^T p and B u - C p for the free displacements u and all pressures p.
 pub struct MixedSystem<'a> {
@@ -18,7 +11,7 @@ pub struct MixedSystem<'a> {
 }
 
 impl MixedSystem<'_> {
-    fn free_unknowns(&self) -> usize {
+    pub(super) fn free_unknowns(&self) -> usize {
         self.stiffness.free_unknowns() + self.coupling.mass.len()
     }
 }
