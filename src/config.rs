@@ -8,7 +8,6 @@ pub use places::{BlobsPlace, DatabasePlace, Places};
 pub use secret::{ConfigError, Secret};
 pub use settings::{SETTINGS, Setting};
 use std::net::SocketAddr;
-use std::path::PathBuf;
 use std::time::Duration;
 
 /// The settings in force.

@@ -10,7 +10,7 @@ use tower::ServiceExt as _;
 
 use super::*;
 use crate::api::guard::{self, Door};
-use crate::api::{Service, admin, document, resources};
+use crate::api::{Service, admin, document};
 use crate::config::Config;
 use crate::library::meshes::Library;
 use crate::store::Store;

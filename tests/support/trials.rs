@@ -24,7 +24,12 @@ pub fn on_shared<F>(module: &str, name: &str, test: fn(Deployment) -> F) -> Vec<
 where
     F: Future<Output = ()> + 'static,
 {
-    let test = move || finish(async move { Ok(test(Deployment::shared().await?).await) });
+    let test = move || {
+        finish(async move {
+            test(Deployment::shared().await?).await;
+            Ok(())
+        })
+    };
     vec![trial(module, name, test)]
 }
 

@@ -270,8 +270,6 @@ fn control_points_that_do_not_fit_the_memory_are_refused_before_they_are_made() 
     assert!(needed_mb > 50.0 && allowed_mb == 50.0);
 }
 
-/// Mean and 95th percentile of the distance between two answers over the skin.
-
 fn segment(name: &str) -> CaseSegment {
     CaseSegment { name: name.to_owned(), nodes: set(name) }
 }
