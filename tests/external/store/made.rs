@@ -41,7 +41,7 @@ async fn a_fenced_attempt_stores_no_mesh(on: Deployment) {
     let lease = store.claim(LEASE).await.unwrap().unwrap().lease;
     assert_eq!(store.dismiss(&id).await.unwrap(), Dismissal::Dismissed);
     let made = made("late");
-    assert!(!store.publish(&lease, published(&[made.clone()])).await.unwrap());
+    assert!(!store.publish(&lease, published(std::slice::from_ref(&made))).await.unwrap());
     assert!(store.mesh(&made.mesh.id).await.unwrap().is_none());
     assert_eq!((blob_count(&store).await, on.objects().len()), (0, 0));
 }
@@ -52,7 +52,7 @@ async fn a_mesh_that_came_or_went_meanwhile_is_looked_for_anew(on: Deployment) {
     let lease = store.claim(LEASE).await.unwrap().unwrap().lease;
     let (first, uploaded) = (made("same"), mesh("same", "units=mm"));
     assert!(store.add_mesh(&uploaded).await.unwrap());
-    let error = store.publish(&lease, published(&[first.clone()])).await.unwrap_err();
+    let error = store.publish(&lease, published(std::slice::from_ref(&first))).await.unwrap_err();
     assert!(matches!(error, StoreError::Contended), "{error}");
     let known = looked_for(&store, &first).await;
     assert_eq!(known.id(), uploaded.id);
@@ -61,7 +61,7 @@ async fn a_mesh_that_came_or_went_meanwhile_is_looked_for_anew(on: Deployment) {
     assert!(matches!(error, StoreError::Contended), "{error}");
     assert_eq!(blob_count(&store).await, 0, "what was not published is not there");
     assert!(store.holds(&lease).await.unwrap());
-    assert!(store.publish(&lease, published(&[first.clone()])).await.unwrap());
+    assert!(store.publish(&lease, published(std::slice::from_ref(&first))).await.unwrap());
     assert_eq!(store.read_blob(&first.mesh.blob).await.unwrap(), "same");
     assert_eq!(store.dismiss(&id).await.unwrap(), Dismissal::Removed);
     assert!(store.erased(&first.mesh.id).await.unwrap().is_some());
@@ -101,7 +101,7 @@ async fn a_mesh_that_is_lost_is_made_again_by_its_job(on: Deployment) {
     let id = enqueue(&store, "a").await;
     let lease = store.claim(LEASE).await.unwrap().unwrap().lease;
     let made = made("mesh");
-    assert!(store.publish(&lease, published(&[made.clone()])).await.unwrap());
+    assert!(store.publish(&lease, published(std::slice::from_ref(&made))).await.unwrap());
     assert!(store.fsck(true).await.unwrap().is_clean());
     std::fs::remove_file(&on.objects()[0]).unwrap();
     let findings = store.fsck(false).await.unwrap();
