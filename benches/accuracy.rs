@@ -135,8 +135,10 @@ fn faces() {
 }
 
 fn face(name: &str) -> Option<VolumeMesh> {
-    let root = std::env::var_os("FACIES_SHARED")
-        .map_or_else(|| PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../shared"), PathBuf::from);
+    let root = std::env::var_os("FACIES_SHARED").map_or_else(
+        || PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../shared"),
+        PathBuf::from,
+    );
     let path = root.join(format!("data/face/{name}_face.vtu"));
     let Ok(bytes) = std::fs::read(&path) else {
         println!("skipped: {} is not here", path.display());

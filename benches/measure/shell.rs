@@ -20,8 +20,10 @@ pub fn load(size: &str) -> Option<Arc<VolumeMesh>> {
     if let Some(coarse) = size.strip_suffix('+') {
         return load(coarse).map(|mesh| Arc::new(refine(&mesh)));
     }
-    let root = std::env::var_os("FACIES_SHARED")
-        .map_or_else(|| PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../shared"), PathBuf::from);
+    let root = std::env::var_os("FACIES_SHARED").map_or_else(
+        || PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../shared"),
+        PathBuf::from,
+    );
     let path = root.join(format!("data/shell/{size}.vtu"));
     let Ok(bytes) = std::fs::read(&path) else {
         println!("skipped: {} is not here", path.display());
