@@ -130,11 +130,17 @@ async fn a_kept_mesh_stays_as_long_as_one_of_the_jobs_that_made_it() {
 async fn a_variant_of_a_study_keeps_nothing() {
     let server = Server::start();
     let case = server.case(&SMALL).await;
-    let item =
-        json!({"case": case, "plan": spec(&case, 1.0)["plan"], "variant": {"keep": ["skin"]}});
-    let batch = json!({"kind": "batch", "items": [item]});
-    let refused = ask(server.post("/v1/jobs").json(&batch)).await.problem(422, "validation-failed");
-    assert_eq!(refused["errors"][0]["code"], "unknown-field", "{refused}");
+    let mut item = json!({"case": case, "plan": spec(&case, 1.0)["plan"], "keep": ["skin"]});
+    let batch = |item: &Value| json!({"kind": "batch", "items": [item]});
+    let refused = ask(server.post("/v1/jobs").json(&batch(&item))).await;
+    let refused = refused.problem(422, "validation-failed");
+    let told = &refused["errors"][0];
+    assert_eq!(
+        (&told["code"], &told["pointer"]),
+        (&json!("unknown-field"), &json!("/items/0/keep"))
+    );
+    item.as_object_mut().unwrap().remove("keep");
+    ask(server.post("/v1/jobs").json(&batch(&item))).await.expect(StatusCode::CREATED);
     let unknown = json!({"kind": "predict", "case": case, "plan": {}, "keep": ["bones"]});
     ask(server.post("/v1/jobs").json(&unknown)).await.problem(422, "validation-failed");
 }
