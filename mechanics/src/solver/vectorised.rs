@@ -1,7 +1,7 @@
 //! The widest vector units of the processor, chosen when the program runs.
 
 /// Runs a loop compiled for the widest vector units that this processor has. The compiler neither
-/// reorders nor fuses sums, so that every processor gives the same bits.
+/// reorders nor fuses sums, so that iterations give the same bits on every processor.
 ///
 /// `body` must be a closure marked `#[inline(always)]`, or it is compiled for the oldest processors.
 #[inline]
