@@ -24,6 +24,7 @@
 //!     volume: tissue.into(),
 //!     materials: [("*".to_owned(), LinearElastic::new(15.0, 0.46, 1.0)?)].into(),
 //!     segments: vec![CaseSegment { name: "jaw".to_owned(), nodes: jaw }],
+//!     allow_unfixed: true,
 //!     ..Case::default()
 //! };
 //! let [level, forward] = [Vector::zeros(), Vector::new(0.0, -2.0, 0.0)];

@@ -128,7 +128,7 @@ async fn show(
                 ("Facies-Largest-Rotation-Deg" = f64, description = "the largest rotation of a segment"),
                 ("Facies-Nonlinearity-Estimate-Mm" = f64, description = "an order of magnitude of what linearity leaves out"),
                 ("Facies-Within-Linear-Range" = bool, description = "whether that is at most 0.5 mm"),
-                ("Facies-Warning" = Option<String>, description = "outside-linear-range"),
+                ("Facies-Warning" = Option<String>, description = "the codes of the warnings: outside-linear-range, nothing-moves, plan-units-suspect, sliding-normal-turned"),
                 ("Server-Timing" = String, description = "milliseconds to find the response, to add up its columns, and to write the answer"))),
         (status = 404, description = "there is no such case, or no response was built"),
         (status = 409, description = "the case or the program changed since the response was built"),
@@ -159,13 +159,15 @@ async fn apply(
         let applied = loaded.apply(&movements);
         let applying = started.elapsed();
         let body = encoded(&loaded, &applied, media_type, &job);
-        (body, applied.summary, applying, started.elapsed() - applying)
+        let codes: Vec<String> = applied.warnings.into_iter().map(|of| of.code).collect();
+        (body, (applied.summary, codes), applying, started.elapsed() - applying)
     });
-    let (body, summary, applying, writing) = computed.await.map_err(ApiError::internal)?;
+    let (body, (summary, codes), applying, writing) = computed.await.map_err(ApiError::internal)?;
     let body = body.map_err(ApiError::internal)?;
     let times = [("load", loading), ("apply", applying), ("write", writing)];
     let times = times.map(|(name, time)| format!("{name};dur={:.3}", time.as_secs_f64() * 1e3));
-    let response = with_summary((StatusCode::OK, body).into_response(), &found.job, &summary);
+    let response =
+        with_summary((StatusCode::OK, body).into_response(), &found.job, &summary, &codes);
     let response = with_header(response, header::CONTENT_TYPE, media_type);
     Ok(with_header(response, HeaderName::from_static("server-timing"), &times.join(", ")))
 }
@@ -186,7 +188,7 @@ fn encoded(
                 node_ids: loaded.description.node_ids.clone(),
                 displacement_mm: applied.to_triples(),
                 summary: applied.summary,
-                warnings: applied.summary.warnings(),
+                warnings: applied.warnings.clone(),
             };
             let failed = |_| WriteError::NonFinite { array: "displacement_mm".into(), count: 1 };
             serde_json::to_vec(&document).map_err(failed)
@@ -195,7 +197,12 @@ fn encoded(
 }
 
 /// The numbers of an answer as headers.
-fn with_summary(response: Response, job: &str, summary: &AppliedSummary) -> Response {
+fn with_summary(
+    response: Response,
+    job: &str,
+    summary: &AppliedSummary,
+    codes: &[String],
+) -> Response {
     let numbers = [
         ("cache-control", "private, no-store".to_owned()),
         ("vary", "Accept".to_owned()),
@@ -208,11 +215,11 @@ fn with_summary(response: Response, job: &str, summary: &AppliedSummary) -> Resp
     let response = numbers.into_iter().fold(response, |response, (name, value)| {
         with_header(response, HeaderName::from_static(name), &value)
     });
-    match summary.within_linear_range {
+    match codes.is_empty() {
         true => response,
         false => {
             let name = HeaderName::from_static("facies-warning");
-            with_header(response, name, AppliedSummary::OUTSIDE)
+            with_header(response, name, &codes.join(", "))
         }
     }
 }

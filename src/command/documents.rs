@@ -16,8 +16,8 @@ use crate::schema::{CaseDocument, Limits, PlanDocument, PredictDocument};
 #[serde(deny_unknown_fields)]
 pub struct CaseFile {
     pub case: CaseDocument,
-    #[serde(default)]
-    pub plan: PlanDocument,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub plan: Option<PlanDocument>,
     #[serde(default)]
     pub spec: PredictDocument,
 }
@@ -65,7 +65,7 @@ impl CaseFile {
         for (_, id) in self.case.mesh_references_mut() {
             lead(id);
         }
-        for (_, id) in self.plan.surface_references_mut() {
+        for (_, id) in self.plan.iter_mut().flat_map(|plan| plan.surface_references_mut()) {
             if !bones.contains(id) {
                 lead(id);
             }
@@ -77,13 +77,13 @@ impl CaseFile {
         Ok(path)
     }
 
-    /// The job that these documents ask for.
+    /// The job that these documents ask for; without a plan nothing moves.
     pub fn to_input(&self) -> PredictInput {
         PredictInput {
             job: None,
             queue_s: None,
             case: self.case.clone(),
-            plan: self.plan.clone(),
+            plan: self.plan.clone().unwrap_or_default(),
             spec: self.spec.clone(),
         }
     }

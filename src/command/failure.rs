@@ -15,7 +15,7 @@ use crate::schema::study::report::OutcomeName;
 use crate::worker::process::SlotError;
 
 /// The job ran and failed.
-const FAILED: u8 = 1;
+pub const FAILED: u8 = 1;
 /// Wrong use, or documents and meshes that are refused.
 const REFUSED: u8 = 2;
 /// Disks, memory, other programs.

@@ -19,6 +19,7 @@ pub mod settings;
 pub mod slot;
 pub mod stability;
 pub mod study;
+mod watch;
 pub mod worker;
 
 use std::process::ExitCode;

@@ -7,6 +7,7 @@ use clap::Args;
 use super::failure::CommandError;
 use super::scene::SceneArguments;
 use super::screen::{TerminalProgress, print_check, print_warnings};
+use super::watch::Watch;
 use crate::jobs::{JobInput, Workplace, check, work};
 use crate::schema::Limits;
 use crate::schema::predict::check::CheckDocument;
@@ -16,6 +17,10 @@ use crate::schema::predict::result::ResultDocument;
 /// What is kept goes to the meshes of a tenant.
 const NO_STORE: &str =
     "`keep` asks to store meshes, and a command has no store: ask for files by `outputs` instead";
+
+/// A case alone has a check and no prediction.
+const NO_PLAN: &str = "there is no plan to predict: give `plan` beside the case in the file, or --plan with --mesh; \
+                       `facies check` looks at a case alone";
 
 #[derive(Debug, Args)]
 pub struct Arguments {
@@ -33,8 +38,12 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
     if !asked.file.spec.keep.is_empty() {
         return Err(CommandError::Usage(NO_STORE.to_owned()));
     }
+    if asked.file.plan.is_none() {
+        return Err(CommandError::Usage(NO_PLAN.to_owned()));
+    }
     let limits = Limits::default();
     let input = asked.file.to_input();
+    let _watch = Watch::start(&input.spec.budget);
 
     let before = check(&input, &asked.sources, &limits)?.document;
     print_check(&before);

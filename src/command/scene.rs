@@ -109,10 +109,7 @@ impl SceneArguments {
     }
 
     fn documents_of(&self, mesh: &Path) -> Result<CaseFile, CommandError> {
-        let plan: PlanDocument = match &self.plan {
-            Some(path) => read(path)?,
-            None => PlanDocument::default(),
-        };
+        let plan = self.plan.as_deref().map(read::<PlanDocument>).transpose()?;
         let mut case = CaseDocument::of_volume(&mesh.to_string_lossy(), self.units.unit());
         case.frame = match self.frame {
             FrameArgument::Lps => FrameName::Lps,

@@ -182,7 +182,8 @@ fn read_report(path: &Path) -> Result<ReportDocument, CommandError> {
 
 /// A case with mesh paths that lead from here; its plan goes into the reference, which gets the name of the file.
 fn read_case(path: &Path, reference: &mut CaseReference) -> Result<CaseDocument, CommandError> {
-    let CaseFile { mut case, mut plan, .. } = read(path)?;
+    let CaseFile { mut case, plan, .. } = read(path)?;
+    let mut plan = plan.unwrap_or_default();
     let folder = path.parent().unwrap_or(Path::new(""));
     let lead = |id: &mut String| *id = folder.join(&*id).to_string_lossy().into_owned();
     let bones: Vec<String> = case.bones.iter().map(|bone| bone.name.clone()).collect();

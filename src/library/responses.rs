@@ -7,11 +7,11 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use crate::jobs::JobInput;
 use crate::jobs::response::{COLUMNS_FILE, DESCRIPTION_FILE, REST_FILE};
 use crate::jobs::result::skin::PredictedSkin;
-use crate::schema::CaseDocument;
 use crate::schema::hashes;
 use crate::schema::predict::document::OutputName;
 use crate::schema::predict::result::NOT_A_DEVICE;
 use crate::schema::response::{AppliedSummary, ResponseDescription};
+use crate::schema::{CaseDocument, WarningDocument};
 use crate::store::{Store, StoreError};
 use mechanics::format::{self, Mesh, ReadLimits, WriteError};
 use mechanics::mesh::{TriangleSurface, Vector};
@@ -58,6 +58,7 @@ pub struct Applied {
     /// In mm, at each node of the description.
     pub displacement: Vec<Vector>,
     pub summary: AppliedSummary,
+    pub warnings: Vec<WarningDocument>,
 }
 
 impl LoadedResponse {
@@ -65,7 +66,9 @@ impl LoadedResponse {
     pub fn apply(&self, movements: &[RigidMovement]) -> Applied {
         let displacement = self.response.apply(movements);
         let summary = AppliedSummary::new(&displacement, &self.linearity.of(movements));
-        Applied { displacement, summary }
+        let mut warnings = summary.warnings();
+        warnings.extend(self.description.warnings(movements));
+        Applied { displacement, summary, warnings }
     }
 
     /// The moved skin as binary glTF, coloured by the length of its displacement.
@@ -336,6 +339,9 @@ mod tests {
             nodes,
             values,
             linearity: linearity.clone(),
+            carries_wall: vec![false],
+            allow_unfixed: false,
+            diagonal: 1.0,
             solver,
             elements: Vec::new(),
         };

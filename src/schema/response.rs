@@ -22,6 +22,8 @@ use crate::schema::wire::limits::Limits;
 use crate::schema::wire::problem::Problem;
 use mechanics::mesh::{Frame, Vector};
 use mechanics::plan::RigidMovement;
+use mechanics::plan::doubt::{MovedSegment, beyond_face, nothing_moves, suspect_units};
+use mechanics::prediction::{are_alike, normal_turned};
 use mechanics::response::linearity::LINEAR_RANGE_MM;
 use mechanics::response::{Columns, Linearity, Nonlinearity, ResponseError, ResponseSegment};
 
@@ -118,6 +120,9 @@ impl ResponseDocument {
             ResponseError::NoSegments | ResponseError::EmptySegment { .. } => {
                 (root.key("case").key("segments"), ErrorCode::EmptySelection)
             }
+            ResponseError::NothingHeld { .. } => {
+                (root.key("case").key("fixed"), ErrorCode::NothingHeld)
+            }
             ResponseError::OtherMethod => (root.key("spec").key("method"), ErrorCode::NotLinear),
             ResponseError::Loaded | ResponseError::Prediction(_) => (root, ErrorCode::NotLinear),
         };
@@ -152,6 +157,12 @@ pub struct ResponseDescription {
     pub linearity: LinearityDocument,
     /// The centre of the bounding box of the mesh, whose displacement is limited.
     pub mesh_centre_mm: Triple,
+    /// From one corner of that box to the other: no segment goes farther. 0 where it is not known.
+    #[serde(default)]
+    pub mesh_diagonal_mm: f64,
+    /// Whether plans may move all segments alike where nothing stays.
+    #[serde(default)]
+    pub allow_unfixed: bool,
 }
 
 /// A segment that the columns can move: x' = x + (R - I)(x - centre) + t.
@@ -162,6 +173,17 @@ pub struct ResponseSegmentDocument {
     pub centre_mm: Triple,
     /// The box around the segment's nodes.
     pub box_mm: CornerPair,
+    /// Whether tissue slides on a wall that the segment carries.
+    #[serde(default)]
+    pub carries_wall: bool,
+}
+
+impl ResponseSegmentDocument {
+    /// The lowest and the highest corner of its box.
+    fn corners(&self) -> [Vector; 2] {
+        let CornerPair([a, b, c, d, e, f]) = self.box_mm;
+        [Vector::new(a, b, c), Vector::new(d, e, f)]
+    }
 }
 
 /// The binary file of the columns.
@@ -199,16 +221,18 @@ pub struct ResponseOrigin {
 impl ResponseDescription {
     pub fn new(columns: &Columns, origin: ResponseOrigin) -> Self {
         let segments = columns.segments.iter().zip(&columns.linearity.boxes);
+        let segments = segments.zip(&columns.carries_wall);
         ResponseDescription {
             job: origin.job,
             key: origin.key,
             engine: EngineDocument::this(),
             frame: origin.frame.into(),
             segments: segments
-                .map(|(segment, [low, high])| ResponseSegmentDocument {
+                .map(|((segment, [low, high]), &carries_wall)| ResponseSegmentDocument {
                     name: segment.name.clone(),
                     centre_mm: segment.centre.into(),
                     box_mm: CornerPair([low.x, low.y, low.z, high.x, high.y, high.z]),
+                    carries_wall,
                 })
                 .collect(),
             staying: origin.staying,
@@ -220,6 +244,8 @@ impl ResponseDescription {
                 range_mm: LINEAR_RANGE_MM,
             },
             mesh_centre_mm: origin.mesh_centre.into(),
+            mesh_diagonal_mm: columns.diagonal,
+            allow_unfixed: columns.allow_unfixed,
         }
     }
 
@@ -234,13 +260,10 @@ impl ResponseDescription {
     }
 
     pub fn to_linearity(&self) -> Linearity {
-        let corners = |CornerPair([a, b, c, d, e, f]): CornerPair| {
-            [Vector::new(a, b, c), Vector::new(d, e, f)]
-        };
         Linearity {
             thickness: self.linearity.thickness_mm,
             something_stays: self.linearity.something_stays,
-            boxes: self.segments.iter().map(|segment| corners(segment.box_mm)).collect(),
+            boxes: self.segments.iter().map(ResponseSegmentDocument::corners).collect(),
         }
     }
 
@@ -281,7 +304,59 @@ impl ResponseDescription {
         let by_name: BTreeMap<&str, RigidMovement> =
             planned.iter().map(|segment| (segment.name.as_str(), segment.movement)).collect();
         let of = |segment: &ResponseSegmentDocument| by_name.get(segment.name.trim()).copied();
-        Ok(self.segments.iter().map(|segment| of(segment).unwrap_or_default()).collect())
+        let movements: Vec<RigidMovement> =
+            self.segments.iter().map(|segment| of(segment).unwrap_or_default()).collect();
+        self.check_whole(&movements, &at)?;
+        Ok(movements)
+    }
+
+    /// Refuses what a prediction of the same plan refuses: segments that leave the face, and a face that goes as one.
+    fn check_whole(&self, movements: &[RigidMovement], at: &Pointer) -> Result<(), Problem> {
+        let beyond = beyond_face(&self.moved(movements), self.mesh_diagonal_mm);
+        if let Some(beyond) = beyond.filter(|_| self.mesh_diagonal_mm > 0.0) {
+            let at = at.key("segments");
+            return Err(Problem::at(&at, ErrorCode::PlanOutOfRange, beyond.to_string()));
+        }
+        let may_go = self.allow_unfixed || self.linearity.something_stays;
+        let corners = self.whole_box();
+        let still = movements.iter().all(|movement| *movement == RigidMovement::default());
+        if !may_go && !still && are_alike(movements, &corners) {
+            let detail = "nothing stays, and the plan moves all segments alike: the tissue would go with them as \
+                          one; name in `fixed` of the case what stays, or allow it with `allow_unfixed`";
+            return Err(Problem::at(at, ErrorCode::NothingHeld, detail));
+        }
+        Ok(())
+    }
+
+    /// What a reader of the skin of a plan must know of the plan.
+    pub fn warnings(&self, movements: &[RigidMovement]) -> Vec<WarningDocument> {
+        let still = movements.iter().all(|movement| *movement == RigidMovement::default());
+        let turned =
+            self.segments.iter().zip(movements).filter(|(segment, _)| segment.carries_wall);
+        let turned =
+            turned.filter_map(|(segment, movement)| normal_turned(&segment.name, movement));
+        let warnings = still.then(nothing_moves).into_iter();
+        let warnings = warnings.chain(suspect_units(&self.moved(movements))).chain(turned);
+        warnings.map(|warning| WarningDocument::from(&warning)).collect()
+    }
+
+    fn moved<'a>(&'a self, movements: &'a [RigidMovement]) -> Vec<MovedSegment<'a>> {
+        let segments = self.segments.iter().zip(movements);
+        segments
+            .map(|(segment, movement)| {
+                let (name, corners) = (segment.name.as_str(), segment.corners());
+                MovedSegment { name, movement, corners }
+            })
+            .collect()
+    }
+
+    /// The box around all segments.
+    fn whole_box(&self) -> [Vector; 2] {
+        let boxes = self.segments.iter().map(ResponseSegmentDocument::corners);
+        let around = boxes.reduce(|[low, high], [other_low, other_high]| {
+            [low.inf(&other_low), high.sup(&other_high)]
+        });
+        around.unwrap_or_default()
     }
 
     fn check_name(&self, name: &str, moves: bool, at: &Pointer, faults: &mut Faults) {

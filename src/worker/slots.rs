@@ -17,6 +17,7 @@ use super::work::{Failure, Finished, Work};
 use crate::config::Config;
 use crate::metrics;
 use crate::schema::ErrorCode;
+use crate::schema::job::ErrorClass;
 use crate::store::{Claim, Lease, Store, StoreError};
 use crate::traces;
 use crate::worker::process::attempt::broke_off;
@@ -249,7 +250,7 @@ fn make(
             .map(String::as_str)
             .or_else(|| panic.downcast_ref::<&str>().copied());
         tracing::error!(reason = words.unwrap_or("unknown"), "a job panicked");
-        Err(Failure::Permanent(broke_off()))
+        Err(Failure::Permanent(broke_off(ErrorClass::Numerical)))
     })
 }
 

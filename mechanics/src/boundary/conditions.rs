@@ -1,6 +1,8 @@
 //! What every node is held to: prescribed, joined to a segment, fixed, sliding or free
 //! (METHODS row 5; precedence at a node: prescribed component, joined, fixed, sliding, free).
 
+use std::collections::BTreeMap;
+
 use nalgebra::Matrix3;
 
 use super::hold::Hold;
@@ -42,8 +44,25 @@ pub struct HeldNodes {
     /// One entry for each segment of the case.
     pub joined: Vec<(Vec<u32>, RigidMovement)>,
     pub fixed: Vec<u32>,
-    /// Node and the unit directions across which it is held.
-    pub sliding: Vec<(u32, Vec<Vector>)>,
+    pub sliding: Vec<WallNode>,
+}
+
+/// A node that slides: held across walls, free along them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WallNode {
+    pub node: u32,
+    /// Unit normals.
+    pub across: Vec<Vector>,
+    /// The number of the segment that carries the walls; `None` where they stay.
+    pub carrier: Option<u32>,
+}
+
+/// A wall at one node: n . u = n . ((R - I) x + t), R and t those of the segment that carries it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Wall {
+    /// n, of length 1.
+    pub normal: Vector,
+    pub carrier: Option<u32>,
 }
 
 /// The class of each node, and for each node that is not free what it is held to.
@@ -51,6 +70,8 @@ pub struct HeldNodes {
 pub struct Conditions {
     pub classes: Vec<NodeClass>,
     pub holds: Vec<Hold>,
+    /// The walls of each node that slides, in the order in which they hold it.
+    pub walls: BTreeMap<u32, Vec<Wall>>,
     /// Nodes that more than one segment holds, ascending; the first of the segments has them.
     pub shared: Vec<u32>,
     pub warnings: Vec<Warning>,
@@ -83,18 +104,78 @@ pub fn combine(positions: &[Vector], held: &HeldNodes) -> Result<Conditions, Con
     for &node in &held.fixed {
         nodes[node as usize].fixed = true;
     }
-    for (node, directions) in &held.sliding {
-        nodes[*node as usize].across.extend_from_slice(directions);
+    for WallNode { node, across, carrier } in &held.sliding {
+        let wall = |normal: &Vector| Wall { normal: *normal, carrier: *carrier };
+        nodes[*node as usize].walls.extend(across.iter().map(wall));
     }
     let holds = nodes
         .iter()
         .enumerate()
-        .filter_map(|(node, conditions)| conditions.hold(node as u32))
+        .filter_map(|(node, conditions)| {
+            let carried = |segment: u32| {
+                let (_, movement) = &held.joined[segment as usize];
+                movement.displacement(&positions[node])
+            };
+            conditions.hold(node as u32, &carried)
+        })
         .collect();
-    let classes = nodes.iter().map(NodeConditions::class).collect();
+    let classes: Vec<NodeClass> = nodes.iter().map(NodeConditions::class).collect();
+    let walls = (0_u32..)
+        .zip(&nodes)
+        .filter(|(node, _)| classes[*node as usize] == NodeClass::Sliding)
+        .map(|(node, conditions)| (node, conditions.walls.clone()))
+        .collect();
     let numbered = (0_u32..).zip(&nodes);
     let shared = numbered.filter(|(_, node)| node.segments > 1).map(|(node, _)| node).collect();
-    Ok(Conditions { classes, holds, shared, warnings: overlaps(&nodes).into_iter().collect() })
+    let warnings = overlaps(&nodes).into_iter().collect();
+    Ok(Conditions { classes, holds, walls, shared, warnings })
+}
+
+/// Holds a node across its walls, each of which has moved with what carries it.
+fn add_walls(hold: &mut Hold, walls: &[Wall], carried: &dyn Fn(u32) -> Vector) {
+    for Wall { normal, carrier } in walls {
+        let value = carrier.map_or(0.0, |segment| normal.dot(&carried(segment)));
+        hold.add(normal, value);
+    }
+}
+
+impl Conditions {
+    /// Where a hold would be, along its axes, if segments displaced its node by `moved` and nothing else moved:
+    /// linear in these displacements.
+    pub fn values(&self, hold: &Hold, moved: &dyn Fn(u32) -> Vector) -> Vector {
+        match self.classes[hold.node as usize] {
+            NodeClass::Joined(segment) => hold.axes().transpose() * moved(segment),
+            NodeClass::Sliding => {
+                let mut moved_hold = Hold::free(hold.node);
+                let walls = self.walls.get(&hold.node).map(Vec::as_slice).unwrap_or_default();
+                add_walls(&mut moved_hold, walls, moved);
+                *moved_hold.values()
+            }
+            NodeClass::Prescribed | NodeClass::Fixed | NodeClass::Free => Vector::zeros(),
+        }
+    }
+
+    /// Whether a node slides on a wall that stays.
+    pub fn slides_on_rest(&self, node: u32) -> bool {
+        let walls = self.walls.get(&node).into_iter().flatten();
+        walls.into_iter().any(|wall| wall.carrier.is_none())
+    }
+
+    /// Whether anything is held that no segment carries: fixed and prescribed nodes, walls that stay.
+    pub fn something_rests(&self) -> bool {
+        let rests = |(node, class): (u32, &NodeClass)| match class {
+            NodeClass::Prescribed | NodeClass::Fixed => true,
+            NodeClass::Sliding => self.slides_on_rest(node),
+            NodeClass::Joined(_) | NodeClass::Free => false,
+        };
+        (0_u32..).zip(&self.classes).any(rests)
+    }
+
+    /// How many sliding nodes have a wall that a segment carries.
+    pub fn carried_by(&self, segment: u32) -> usize {
+        let is_carried = |walls: &&Vec<Wall>| walls.iter().any(|w| w.carrier == Some(segment));
+        self.walls.values().filter(is_carried).count()
+    }
 }
 
 /// Everything said about one node.
@@ -105,7 +186,7 @@ struct NodeConditions {
     /// How many segments hold the node.
     segments: u32,
     fixed: bool,
-    across: Vec<Vector>,
+    walls: Vec<Wall>,
 }
 
 impl NodeConditions {
@@ -165,15 +246,16 @@ impl NodeConditions {
             NodeClass::Joined(segment as u32)
         } else if self.fixed {
             NodeClass::Fixed
-        } else if !self.across.is_empty() {
+        } else if !self.walls.is_empty() {
             NodeClass::Sliding
         } else {
             NodeClass::Free
         }
     }
 
-    /// The conditions in their precedence; those that stronger ones already decide fall away.
-    fn hold(&self, node: u32) -> Option<Hold> {
+    /// The conditions in their precedence; those that stronger ones already decide fall away. `carried` is the
+    /// displacement that a segment gives what it carries here.
+    fn hold(&self, node: u32, carried: &dyn Fn(u32) -> Vector) -> Option<Hold> {
         let mut hold = Hold::free(node);
         for (component, value) in self.prescribed.into_iter().enumerate() {
             if let Some(value) = value {
@@ -189,16 +271,14 @@ impl NodeConditions {
                 );
             }
         }
-        for direction in &self.across {
-            hold.add(direction, 0.0);
-        }
+        add_walls(&mut hold, &self.walls, carried);
         (hold.count() > 0).then_some(hold)
     }
 
     /// The classes that claim this node.
     fn claims(&self) -> [bool; 4] {
         let prescribed = self.prescribed.iter().any(Option::is_some);
-        [prescribed, self.joined.is_some(), self.fixed, !self.across.is_empty()]
+        [prescribed, self.joined.is_some(), self.fixed, !self.walls.is_empty()]
     }
 }
 

@@ -8,6 +8,6 @@ pub mod sliding;
 pub mod support;
 pub mod tearing;
 
-pub use conditions::{ConditionError, Conditions, HeldNodes, NodeClass};
+pub use conditions::{ConditionError, Conditions, HeldNodes, NodeClass, Wall, WallNode};
 pub use hold::Hold;
 pub use selection::{NodeSelection, SelectionError, Selector};

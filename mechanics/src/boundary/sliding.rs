@@ -5,7 +5,7 @@ use crate::mesh::{Vector, VolumeMesh};
 
 /// Faces of a node whose normals differ by more than 45 degrees are two walls that meet in an edge:
 /// the node is held across both. Smaller differences are one curved wall and are averaged.
-const SAME_WALL: f64 = std::f64::consts::FRAC_1_SQRT_2;
+pub const SAME_WALL: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
 /// For each of the nodes the unit normals of its walls: at most three, none where no face is near.
 ///

@@ -2,18 +2,18 @@
 
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum MaterialError {
-    #[error("Young's modulus is {0} kPa, and has to be above 0 and at most 1e9 kPa")]
+    #[error("Young's modulus is {0} kPa, and has to be at least 1e-9 and at most 1e9 kPa")]
     YoungModulus(f64),
     #[error("Poisson's ratio is {0}, and has to be at least 0 and below 0.5")]
     PoissonRatio(f64),
     #[error("density is {0} g/cm3, and has to be at least 0 and at most 100 g/cm3")]
     Density(f64),
     #[error(
-        "Young's modulus along the fibre is {0} kPa, and has to be above 0 and at most 1e9 kPa"
+        "Young's modulus along the fibre is {0} kPa, and has to be at least 1e-9 and at most 1e9 kPa"
     )]
     FibreModulus(f64),
     #[error(
-        "the shear modulus along the fibre is {0} kPa, and has to be above 0 and at most 1e9 kPa"
+        "the shear modulus along the fibre is {0} kPa, and has to be at least 1e-9 and at most 1e9 kPa"
     )]
     FibreShear(f64),
     #[error("the law of paper 002 takes its shear modulus from E and nu, and no other one")]
@@ -30,7 +30,11 @@ pub enum MaterialError {
     NotPositiveDefinite { ratio: f64, poisson_ratio: f64, eigenvalue: f64, limit: f64 },
 }
 
-/// Above 0 and at most `most`.
-pub(super) fn in_range(value: f64, most: f64) -> bool {
-    value > 0.0 && value <= most
+/// Stiffness that a mistake in the unit explains and no tissue, in kPa: smaller and larger ones leave the range of
+/// single precision, in which systems are preconditioned, once they are multiplied by lengths.
+const MODULI: std::ops::RangeInclusive<f64> = 1e-9..=1e9;
+
+/// Whether a modulus in kPa can be computed with.
+pub(super) fn is_modulus(value: f64) -> bool {
+    MODULI.contains(&value)
 }

@@ -1,7 +1,7 @@
 //! Linear elastic tissue at small strain, isotropic or with fibres.
 
 use super::elastic_tensor::ElasticTensor;
-use super::error::{MaterialError, in_range};
+use super::error::{MaterialError, is_modulus};
 use super::isotropic::Isotropic;
 use super::transversely_isotropic::{Fibre, TransverselyIsotropic};
 
@@ -17,13 +17,13 @@ pub struct LinearElastic {
 }
 
 impl LinearElastic {
-    /// Young's modulus in kPa, in (0, 1e9]; Poisson's ratio in [0, 0.5); density in g/cm³ (mg/mm³).
+    /// Young's modulus in kPa, in [1e-9, 1e9]; Poisson's ratio in [0, 0.5); density in g/cm³ (mg/mm³).
     pub fn new(
         young_modulus: f64,
         poisson_ratio: f64,
         density: f64,
     ) -> Result<Self, MaterialError> {
-        if !in_range(young_modulus, 1e9) {
+        if !is_modulus(young_modulus) {
             return Err(MaterialError::YoungModulus(young_modulus));
         }
         if !(0.0..0.5).contains(&poisson_ratio) {
@@ -50,6 +50,11 @@ impl LinearElastic {
     /// Young's modulus along the fibres in kPa, where there are any.
     pub fn fibre_modulus(&self) -> Option<f64> {
         self.fibre.map(|fibre| fibre.young_modulus())
+    }
+
+    /// The shear modulus along the fibres in kPa, where there are any.
+    pub fn fibre_shear_modulus(&self) -> Option<f64> {
+        self.fibre.map(|fibre| fibre.shear_modulus())
     }
 
     pub fn has_fibre(&self) -> bool {

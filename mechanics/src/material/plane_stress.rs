@@ -10,13 +10,17 @@
 //! (METHODS rows 37, 38).
 
 use super::elastic_tensor::{AlongFibre, ElasticTensor, FibreModuli};
-use super::error::in_range;
+use super::error::is_modulus;
 use nalgebra::Vector3;
+
+/// In mm.
+const THICKNESSES: std::ops::RangeInclusive<f64> = 1e-3..=20.0;
 
 /// A sheet of skin: what it is made of, and how thick it is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlaneStress {
     thickness: f64,
+    young_modulus: f64,
     lambda: f64,
     mu: f64,
     lines: Option<FibreModuli>,
@@ -25,27 +29,27 @@ pub struct PlaneStress {
 /// Constants of a sheet, as stated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sheet {
-    /// In mm, in (0, 20].
+    /// In mm, in [1e-3, 20].
     pub thickness: f64,
-    /// E_t in kPa, in (0, 1e9].
+    /// E_t in kPa, in [1e-9, 1e9].
     pub young_modulus: f64,
     /// In [0, 0.5].
     pub poisson_ratio: f64,
-    /// E_f in kPa along the lines, in (0, 1e9]; absent where the sheet is isotropic.
+    /// E_f in kPa along the lines, in [1e-9, 1e9]; absent where the sheet is isotropic.
     pub along_lines: Option<f64>,
 }
 
 /// Why there is no such sheet.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum SheetError {
-    #[error("the thickness is {0} mm, and has to be above 0 and at most 20 mm")]
+    #[error("the thickness is {0} mm, and has to be at least 0.001 and at most 20 mm")]
     Thickness(f64),
-    #[error("Young's modulus is {0} kPa, and has to be above 0 and at most 1e9 kPa")]
+    #[error("Young's modulus is {0} kPa, and has to be at least 1e-9 and at most 1e9 kPa")]
     YoungModulus(f64),
     #[error("Poisson's ratio is {0}, and has to be at least 0 and at most 0.5")]
     PoissonRatio(f64),
     #[error(
-        "Young's modulus along the lines is {0} kPa, and has to be above 0 and at most 1e9 kPa"
+        "Young's modulus along the lines is {0} kPa, and has to be at least 1e-9 and at most 1e9 kPa"
     )]
     AlongLines(f64),
     #[error(
@@ -58,17 +62,17 @@ pub enum SheetError {
 impl PlaneStress {
     pub fn new(sheet: &Sheet) -> Result<Self, SheetError> {
         let Sheet { thickness, young_modulus, poisson_ratio, along_lines } = *sheet;
-        if !in_range(thickness, 20.0) {
+        if !THICKNESSES.contains(&thickness) {
             return Err(SheetError::Thickness(thickness));
         }
-        if !in_range(young_modulus, 1e9) {
+        if !is_modulus(young_modulus) {
             return Err(SheetError::YoungModulus(young_modulus));
         }
         if !(0.0..=0.5).contains(&poisson_ratio) {
             return Err(SheetError::PoissonRatio(poisson_ratio));
         }
         let along = along_lines.unwrap_or(young_modulus);
-        if !in_range(along, 1e9) {
+        if !is_modulus(along) {
             return Err(SheetError::AlongLines(along));
         }
         let least = young_modulus * poisson_ratio * poisson_ratio;
@@ -82,12 +86,18 @@ impl PlaneStress {
         let delta_lambda = poisson_ratio * c22 - lambda;
         let beta = c11 - c22 - 2.0 * delta_lambda;
         let moduli = FibreModuli { delta_lambda, delta_mu: 0.0, beta };
-        Ok(PlaneStress { thickness, lambda, mu, lines: along_lines.map(|_| moduli) })
+        let lines = along_lines.map(|_| moduli);
+        Ok(PlaneStress { thickness, young_modulus, lambda, mu, lines })
     }
 
     /// In mm.
     pub fn thickness(&self) -> f64 {
         self.thickness
+    }
+
+    /// E_t in kPa.
+    pub fn young_modulus(&self) -> f64 {
+        self.young_modulus
     }
 
     /// Whether the sheet has lines along which it is stiffer or softer.

@@ -14,7 +14,7 @@
 //! are not E_f and E_t, and from E_f/E_t = (1 - nu) / (2 nu^2) on its energy has no lowest value.
 
 use super::elastic_tensor::{AlongFibre, ElasticTensor, FibreModuli};
-use super::error::{MaterialError, in_range};
+use super::error::{MaterialError, is_modulus};
 use super::isotropic::Isotropic;
 use nalgebra::Vector3;
 
@@ -31,9 +31,9 @@ pub enum FibreLaw {
 /// What fibres add to a tissue whose own constants are those across them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fibre {
-    /// E_f in kPa, in (0, 1e9].
+    /// E_f in kPa, in [1e-9, 1e9].
     pub young_modulus: f64,
-    /// G_ft in kPa, in (0, 1e9]; absent: E_t / (2 (1 + nu)). Paper 002's law has none of its own.
+    /// G_ft in kPa, in [1e-9, 1e9]; absent: E_t / (2 (1 + nu)). Paper 002's law has none of its own.
     pub shear_modulus: Option<f64>,
     pub law: FibreLaw,
 }
@@ -51,7 +51,6 @@ pub struct TransverselyIsotropic {
 impl TransverselyIsotropic {
     /// Fibres in a tissue with these constants across them.
     pub fn new(across: &Isotropic, fibre: &Fibre) -> Result<Self, MaterialError> {
-        let is_modulus = |modulus| in_range(modulus, 1e9);
         if !is_modulus(fibre.young_modulus) {
             return Err(MaterialError::FibreModulus(fibre.young_modulus));
         }
@@ -81,6 +80,11 @@ impl TransverselyIsotropic {
     /// E_f in kPa.
     pub fn young_modulus(&self) -> f64 {
         self.young_modulus
+    }
+
+    /// Between the fibre and what lies across it, in kPa.
+    pub fn shear_modulus(&self) -> f64 {
+        self.mu + self.moduli.delta_mu
     }
 
     /// C with the fibre along a direction of length 1.

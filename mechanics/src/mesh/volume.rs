@@ -160,6 +160,12 @@ impl BoundaryFace {
 }
 
 impl VolumeMesh {
+    /// The lowest and the highest corner of the box around all nodes.
+    pub fn bounds(&self) -> [Vector; 2] {
+        let first = self.nodes.first().copied().unwrap_or_default();
+        self.nodes.iter().fold([first, first], |[low, high], x| [low.inf(x), high.sup(x)])
+    }
+
     /// The corner positions of a cell, as many as its shape has nodes.
     pub fn corners(&self, cell: usize) -> impl ExactSizeIterator<Item = Vector> + '_ {
         self.cells.nodes(cell).iter().map(|&node| self.nodes[node as usize])

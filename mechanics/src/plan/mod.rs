@@ -1,5 +1,6 @@
 //! What the surgeon decided: which bone segments move, and how.
 
+pub mod doubt;
 pub mod movement;
 
 pub use movement::{MovementError, RigidMovement};

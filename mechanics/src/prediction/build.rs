@@ -7,9 +7,12 @@ use super::fibres::Tissues;
 use super::problem::SceneErrors;
 use super::scene::Scene;
 use super::stiff_layer;
+use super::suspect_constants::suspect_constants;
+use super::walls;
 use crate::boundary::tearing;
-use crate::mesh::Vector;
 use crate::mesh::connectivity::Faces;
+use crate::mesh::{Vector, Warning};
+use crate::plan::doubt::nothing_moves;
 
 impl Scene {
     /// Checks a case and a plan together; says everything that is wrong, not the first thing only.
@@ -28,8 +31,10 @@ impl Scene {
         let tissue = check.tissue_of_cells(&region_of_cell, materials);
 
         // 2. What every node is held to.
-        let (segments, held) = check.held_nodes(plan, settings.sliding);
+        let (segments, held) = check.held_nodes(plan, settings);
         let conditions = check.conditions(&held);
+        check.plan_size(plan, &segments, &held);
+        check.unheld(plan, &segments, &conditions);
 
         // 3. The skin and what acts on the tissue.
         let skin = check.skin(&conditions);
@@ -50,6 +55,7 @@ impl Scene {
             segments,
             forces: vec![Vector::zeros(); case.volume.nodes.len()],
             landmarks: case.landmarks.clone(),
+            allow_unfixed: case.allow_unfixed,
             settings: settings.clone(),
             warnings: Vec::new(),
         };
@@ -64,9 +70,18 @@ impl Scene {
         scene.warnings.extend(check.warnings);
         scene.warnings.extend(cut::duplicate_nodes(&scene.mesh, &check.boundary_nodes));
         scene.warnings.extend(tearing::tearing(&scene.mesh, &scene.conditions.holds));
+        scene.warnings.extend(walls::turned_normals(&scene));
+        scene.warnings.extend(states_rest(plan, &scene));
+        scene.warnings.extend(suspect_constants(&scene, plan));
         scene.warnings.extend(scene.locking());
         scene.warnings.extend(stiff_layer::thin_stiff_layers(&scene));
         scene.warnings.extend(scene.built_in_poisson_ratio());
         Ok(scene)
     }
+}
+
+/// The warning of a plan that says something and moves nothing. An empty one is a case without a plan.
+fn states_rest(plan: &Plan, scene: &Scene) -> Option<Warning> {
+    let says = !(plan.segments.is_empty() && plan.prescribed.is_empty() && plan.loads.is_empty());
+    (says && scene.is_at_rest()).then(nothing_moves)
 }

@@ -25,6 +25,8 @@ pub struct Case {
     pub skin_regions: BTreeMap<String, NodeSelection>,
     pub segments: Vec<CaseSegment>,
     pub fixed: Vec<NodeSelection>,
+    /// True lets a plan carry the whole tissue away as one, with nothing that stays.
+    pub allow_unfixed: bool,
     pub sliding: Vec<Sliding>,
     /// By region name; `*` serves every region without an entry of its own.
     pub materials: BTreeMap<String, LinearElastic>,
@@ -78,6 +80,8 @@ pub struct CaseSegment {
 pub struct Sliding {
     pub nodes: NodeSelection,
     pub normal: SlidingNormal,
+    /// The segment that carries the wall; absent where the wall stays.
+    pub segment: Option<String>,
 }
 
 #[derive(Clone, Debug, PartialEq)]

@@ -118,7 +118,13 @@ impl<'a> Check<'a> {
         combine(&self.case.volume.nodes, held).unwrap_or_else(|error| {
             self.problems.add("/plan", SceneErrorCode::PlanConflict, error.to_string());
             let classes = vec![NodeClass::Free; self.case.volume.nodes.len()];
-            Conditions { classes, holds: Vec::new(), shared: Vec::new(), warnings: Vec::new() }
+            Conditions {
+                classes,
+                holds: Vec::new(),
+                walls: BTreeMap::new(),
+                shared: Vec::new(),
+                warnings: Vec::new(),
+            }
         })
     }
 

@@ -11,8 +11,11 @@ pub enum SceneErrorCode {
     MethodNotAvailable,
     MissingField,
     MissingMaterial,
+    NothingHeld,
     OutsideImage,
     PlanConflict,
+    PlanOutOfRange,
+    SlidingConflict,
     SlidingNormalZero,
     TooManyRegions,
     Underconstrained,
@@ -25,7 +28,7 @@ pub enum SceneErrorCode {
 }
 
 impl SceneErrorCode {
-    pub const ALL: [SceneErrorCode; 19] = [
+    pub const ALL: [SceneErrorCode; 22] = [
         SceneErrorCode::DuplicateSegment,
         SceneErrorCode::EmptySelection,
         SceneErrorCode::FibreDirectionZero,
@@ -34,8 +37,11 @@ impl SceneErrorCode {
         SceneErrorCode::MethodNotAvailable,
         SceneErrorCode::MissingField,
         SceneErrorCode::MissingMaterial,
+        SceneErrorCode::NothingHeld,
         SceneErrorCode::OutsideImage,
         SceneErrorCode::PlanConflict,
+        SceneErrorCode::PlanOutOfRange,
+        SceneErrorCode::SlidingConflict,
         SceneErrorCode::SlidingNormalZero,
         SceneErrorCode::TooManyRegions,
         SceneErrorCode::Underconstrained,
@@ -57,8 +63,11 @@ impl SceneErrorCode {
             SceneErrorCode::MethodNotAvailable => "method-not-available",
             SceneErrorCode::MissingField => "missing-field",
             SceneErrorCode::MissingMaterial => "missing-material",
+            SceneErrorCode::NothingHeld => "nothing-held",
             SceneErrorCode::OutsideImage => "outside-image",
             SceneErrorCode::PlanConflict => "plan-conflict",
+            SceneErrorCode::PlanOutOfRange => "plan-out-of-range",
+            SceneErrorCode::SlidingConflict => "sliding-conflict",
             SceneErrorCode::SlidingNormalZero => "sliding-normal-zero",
             SceneErrorCode::TooManyRegions => "too-many-regions",
             SceneErrorCode::Underconstrained => "underconstrained",

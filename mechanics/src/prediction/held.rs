@@ -1,26 +1,25 @@
 //! The checks that tell what every node is held to: segments, fixed, sliding and prescribed nodes.
 
-use super::case::{Plan, Prescribed, SlidingNormal};
+use super::case::{Plan, Prescribed, Settings};
 use super::check::Check;
 use super::error_code::SceneErrorCode;
-use crate::boundary::{HeldNodes, sliding};
-use crate::mesh::{ArrayUse, Vector};
+use crate::boundary::HeldNodes;
+use crate::mesh::ArrayUse;
+use crate::plan::doubt::{MovedSegment, beyond_face, suspect_units};
 use crate::plan::{PlannedSegment, RigidMovement};
 
 impl Check<'_> {
     pub(super) fn held_nodes(
         &mut self,
         plan: &Plan,
-        sliding: bool,
+        settings: &Settings,
     ) -> (Vec<PlannedSegment>, HeldNodes) {
         let mut held = HeldNodes::default();
         let segments = self.segments(plan, &mut held);
         for (index, selection) in self.case.fixed.iter().enumerate() {
             held.fixed.extend(self.select(selection, &format!("/case/fixed/{index}")));
         }
-        if sliding {
-            self.sliding(&mut held);
-        }
+        self.walls(&segments, settings, &mut held);
         self.prescribed(plan, &mut held);
         (segments, held)
     }
@@ -70,28 +69,25 @@ impl Check<'_> {
         segments
     }
 
-    fn sliding(&mut self, held: &mut HeldNodes) {
-        for (index, entry) in self.case.sliding.iter().enumerate() {
-            let nodes = self.select(&entry.nodes, &format!("/case/sliding/{index}/nodes"));
-            let normals = match entry.normal {
-                SlidingNormal::Surface => {
-                    sliding::wall_normals(&self.case.volume, self.boundary, &nodes)
-                }
-                SlidingNormal::Direction(direction) => {
-                    let unit: Vec<Vector> = direction.try_normalize(1e-12).into_iter().collect();
-                    nodes.iter().map(|&node| (node, unit.clone())).collect()
-                }
-            };
-            if let Some((node, _)) = normals.iter().find(|(_, normals)| normals.is_empty()) {
-                let detail = format!("node {node} has no normal to be held across");
-                self.problems.add(
-                    format!("/case/sliding/{index}/normal"),
-                    SceneErrorCode::SlidingNormalZero,
-                    detail,
-                );
-            }
-            held.sliding.extend(normals);
+    /// Refuses segments that go farther than the face is long, and warns of movements in other units.
+    pub(super) fn plan_size(&mut self, plan: &Plan, segments: &[PlannedSegment], held: &HeldNodes) {
+        let place = |node: &u32| self.case.volume.nodes[*node as usize];
+        let corners = |nodes: &[u32]| {
+            let first = place(nodes.first()?);
+            let around = nodes.iter().map(place);
+            Some(around.fold([first, first], |[low, high], x| [low.inf(&x), high.sup(&x)]))
+        };
+        let moved = segments.iter().zip(&held.joined).filter_map(|(segment, (nodes, movement))| {
+            Some(MovedSegment { name: &segment.name, movement, corners: corners(nodes)? })
+        });
+        let moved: Vec<MovedSegment> = moved.collect();
+        let [low, high] = self.case.volume.bounds();
+        if let Some(beyond) = beyond_face(&moved, (high - low).norm()) {
+            let index = plan.segments.iter().position(|planned| planned.name == beyond.name);
+            let pointer = format!("/plan/segments/{}", index.unwrap_or_default());
+            self.problems.add(pointer, SceneErrorCode::PlanOutOfRange, beyond.to_string());
         }
+        self.warnings.extend(suspect_units(&moved));
     }
 
     fn prescribed(&mut self, plan: &Plan, held: &mut HeldNodes) {

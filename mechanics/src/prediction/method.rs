@@ -5,7 +5,7 @@ use super::listed::listed;
 use crate::mesh::CellShape;
 use crate::model::fem::mass_tensor::MassTensorSettings;
 use crate::model::mass_spring::MassSpringSettings;
-use crate::model::spline::VolumeSpline;
+use crate::model::spline::{Stiffness, VolumeSpline};
 use crate::model::thickness_warp::ThicknessWarp;
 
 listed! {
@@ -199,6 +199,21 @@ impl Method {
             Method::MassTensorTransverse => MethodKind::MassTensorTransverse,
             Method::VolumeSpline(_) => MethodKind::VolumeSpline,
             Method::ThicknessWarp(_) => MethodKind::ThicknessWarp,
+        }
+    }
+
+    /// Of its links between control points in mN/mm, where it has any.
+    pub(super) fn link_stiffness(&self) -> Option<f64> {
+        match self {
+            Method::VolumeSpline(spline) => match spline.stiffness {
+                Stiffness::Lattice(links) => Some(links),
+                Stiffness::Galerkin => None,
+            },
+            Method::FemLinear
+            | Method::MassSpring(_)
+            | Method::MassTensor(_)
+            | Method::MassTensorTransverse
+            | Method::ThicknessWarp(_) => None,
         }
     }
 

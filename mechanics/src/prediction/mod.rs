@@ -19,6 +19,9 @@ pub mod scene;
 mod skin;
 mod small_strain;
 mod stiff_layer;
+mod suspect_constants;
+mod unheld;
+mod walls;
 
 use std::collections::BTreeMap;
 
@@ -34,12 +37,15 @@ pub use numerics_revision::NUMERICS_REVISION;
 pub use problem::{SceneError, SceneErrors};
 pub use scene::Scene;
 pub use skin::Skin;
+pub use unheld::are_alike;
+pub use walls::normal_turned;
 
 pub use crate::boundary::NodeClass;
 use crate::mesh::{Vector, Warning};
 use crate::model::fem::strain::{CellDeformation, deformations};
 use crate::model::problem::Equilibrium;
 pub use crate::model::problem::{InvertedCell, ModelError};
+use crate::plan::doubt::{NOTHING_MOVES, nothing_moves};
 use crate::progress::{Phase, Progress};
 pub use crate::solver::{SolveReport, SolverError};
 
@@ -77,6 +83,8 @@ pub fn predict(scene: &Scene, progress: &dyn Progress) -> Result<Prediction, Mod
 
     // 3. What a reader must know.
     let mut warnings = scene.warnings.clone();
+    let is_told = scene.warnings.iter().any(|warning| warning.code == NOTHING_MOVES);
+    warnings.extend((scene.is_at_rest() && !is_told).then(nothing_moves));
     warnings.extend(equilibrium.warnings.iter().cloned());
     warnings.extend(inverted_cells(&deformation));
     warnings.extend(small_strain::left(scene, &deformation));

@@ -25,12 +25,21 @@ pub(super) fn left_wall(scene: &Scene, displacement: &[Vector]) -> Option<Warnin
     });
     let wall = scene.mesh.surface_of(&faces);
     let search = SurfaceSearch::new(&wall).ok()?;
-    let distance = |node: &u32| {
-        let moved = scene.mesh.nodes[*node as usize] + displacement[*node as usize];
+    let off_wall = |moved: Vector| {
         let triangle = wall.triangles[search.closest(&moved).triangle];
         let [a, b, c] = triangle.map(|point| wall.points[point as usize]);
         let normal = (b - a).cross(&(c - a));
         ((moved - a).dot(&normal) / normal.norm()).abs()
+    };
+    // A wall that a segment carries is looked at from the segment, where it stands still.
+    let distance = |node: &u32| {
+        let moved = scene.mesh.nodes[*node as usize] + displacement[*node as usize];
+        let walls = scene.conditions.walls.get(node).into_iter().flatten();
+        let seen_from = |carrier: Option<u32>| match carrier {
+            Some(segment) => scene.segments[segment as usize].movement.inverse().apply(&moved),
+            None => moved,
+        };
+        walls.map(|wall| off_wall(seen_from(wall.carrier))).fold(f64::INFINITY, f64::min)
     };
     let distances: Vec<f64> = nodes.iter().map(distance).collect();
     let off = distances.iter().filter(|distance| **distance > OFF_WALL_MM).count();

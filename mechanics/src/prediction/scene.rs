@@ -62,6 +62,8 @@ pub struct Scene {
     /// For each node, in mN; quadratic elements have those of edge nodes after them.
     pub forces: Vec<Vector>,
     pub landmarks: BTreeMap<String, Vector>,
+    /// Whether a plan may carry the whole tissue away as one.
+    pub allow_unfixed: bool,
     pub settings: Settings,
     /// What a reader must know before anything is solved: overlaps, tearing, locking.
     pub warnings: Vec<Warning>,
@@ -116,6 +118,13 @@ impl Scene {
     pub fn load_case(&self) -> LoadCase {
         let held = self.conditions.holds.iter().map(|hold| *hold.values()).collect();
         LoadCase { held, forces: self.forces.clone() }
+    }
+
+    /// Whether nothing is held away from its place and nothing acts.
+    pub(super) fn is_at_rest(&self) -> bool {
+        let moves = |vector: &Vector| *vector != Vector::zeros();
+        let holds = &self.conditions.holds;
+        !holds.iter().any(|hold| moves(hold.values())) && !self.forces.iter().any(moves)
     }
 
     /// Solves the scene by the method of its settings.

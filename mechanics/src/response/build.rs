@@ -1,12 +1,12 @@
 //! The columns of a response: twelve load cases a segment, solved on one tissue.
 //!
 //! Column 4 i + j of segment s is the skin's u for u(x) = E_ij (x - centre) at the joined nodes of s, j < 3,
-//! or u = e_i, j = 3, and zero wherever else a node is held. Sliding nodes stay held across and free
-//! along, which is linear.
+//! or u = e_i, j = 3, and zero wherever else a node is held. Sliding nodes are held across their wall and free
+//! along it: at n . u(x) where s carries the wall, at zero where something else does or nothing.
 
 use super::linearity::{self, Linearity, joined_nodes};
 use super::{COLUMNS_PER_SEGMENT, Response, ResponseSegment, superposition};
-use crate::boundary::NodeClass;
+use crate::boundary::{Hold, NodeClass};
 use crate::mesh::Vector;
 use crate::model::problem::{Equilibrium, LoadCase, ModelError};
 use crate::plan::RigidMovement;
@@ -27,6 +27,12 @@ pub struct Columns {
     /// As in [`Response`], in f64.
     pub values: Vec<f64>,
     pub linearity: Linearity,
+    /// For each segment whether tissue slides on it.
+    pub carries_wall: Vec<bool>,
+    /// Whether plans may carry the whole tissue away as one.
+    pub allow_unfixed: bool,
+    /// From one corner of the box around the mesh to the other, in mm.
+    pub diagonal: f64,
     /// Of the column that took most iterations; the residual is the largest of all.
     pub solver: SolveReport,
     /// The elements used.
@@ -44,6 +50,11 @@ pub enum ResponseError {
         "{count} nodes belong to two segments, the first is node {first}: they cannot follow both"
     )]
     SharedNodes { count: usize, first: u32 },
+    #[error(
+        "nothing stays: no node is fixed or slides on a wall that stays, and every plan of segment {name:?}, the only \
+         one, would carry the tissue away as one; name in `fixed` what stays, or allow it with `allow_unfixed`"
+    )]
+    NothingHeld { name: String },
     #[error("segment {name:?} holds no node")]
     EmptySegment { name: String },
     #[error("the scene has prescribed displacements or loads, which a response does not know")]
@@ -75,6 +86,12 @@ pub fn chosen(scene: &Scene, names: &[String]) -> Result<Vec<usize>, ResponseErr
         || scene.forces.iter().any(|force| *force != Vector::zeros())
     {
         return Err(ResponseError::Loaded);
+    }
+    if let [alone] = scene.segments.as_slice()
+        && !scene.allow_unfixed
+        && !scene.conditions.something_rests()
+    {
+        return Err(ResponseError::NothingHeld { name: alone.name.clone() });
     }
     let wanted = |name: &str| names.is_empty() || names.iter().any(|other| other == name);
     let segments: Vec<usize> =
@@ -122,7 +139,20 @@ pub fn build(
     }
     let linearity = linearity::of_scene(scene, &chosen);
     let (solver, elements) = (hardest(&solved)?, scene.elements());
-    Ok(Columns { segments, nodes, values, linearity, solver, elements })
+    let carries_wall =
+        chosen.iter().map(|&number| scene.conditions.carried_by(number as u32) > 0).collect();
+    let [low, high] = scene.mesh.bounds();
+    Ok(Columns {
+        segments,
+        nodes,
+        values,
+        linearity,
+        carries_wall,
+        allow_unfixed: scene.allow_unfixed,
+        diagonal: (high - low).norm(),
+        solver,
+        elements,
+    })
 }
 
 impl Columns {
@@ -164,14 +194,15 @@ fn held_values(scene: &Scene, segment: usize, centre: &Vector, unit: usize) -> V
         displacement[row] = if column == 3 { 1.0 } else { place[column] };
         displacement
     };
-    let classes = &scene.conditions.classes;
-    let holds = scene.conditions.holds.iter();
-    holds
-        .map(|hold| match classes[hold.node as usize] == NodeClass::Joined(segment as u32) {
-            true => hold.axes().transpose() * value(hold.node),
+    let conditions = &scene.conditions;
+    let values = |hold: &Hold| {
+        let moved = |other: u32| match other as usize == segment {
+            true => value(hold.node),
             false => Vector::zeros(),
-        })
-        .collect()
+        };
+        conditions.values(hold, &moved)
+    };
+    conditions.holds.iter().map(values).collect()
 }
 
 /// All load cases stand in memory together.

@@ -17,6 +17,7 @@
 use crate::boundary::NodeClass;
 use crate::mesh::Vector;
 use crate::plan::RigidMovement;
+use crate::plan::doubt::farthest_apart;
 use crate::prediction::Scene;
 
 /// e above which an answer is said to be outside the linear range, in mm: half of the least mean error
@@ -35,7 +36,7 @@ const MEASURED_NODES: usize = 1000;
 pub struct Linearity {
     /// h in mm.
     pub thickness: f64,
-    /// Whether something is held that does not move: fixed or sliding nodes, other segments.
+    /// Whether something is held that does not move: fixed nodes, walls that stay, other segments.
     pub something_stays: bool,
     /// For each segment the lowest and the highest corner of the box around its nodes, in mm.
     pub boxes: Vec<[Vector; 2]>,
@@ -83,21 +84,12 @@ impl Linearity {
     }
 }
 
-/// The largest distance in mm between where two movements take a point of a box: that of a corner.
-fn farthest_apart(one: &RigidMovement, other: &RigidMovement, [low, high]: &[Vector; 2]) -> f64 {
-    let corner = |bits: usize| {
-        Vector::from_fn(|axis, _| if bits >> axis & 1 == 0 { low[axis] } else { high[axis] })
-    };
-    let apart = |point: Vector| (one.displacement(&point) - other.displacement(&point)).norm();
-    (0..8).map(corner).map(apart).fold(0.0, f64::max)
-}
-
 /// What the estimate needs, for the segments of these numbers.
 pub(super) fn of_scene(scene: &Scene, segments: &[usize]) -> Linearity {
-    let stays = |class: &NodeClass| match class {
+    let classes = scene.conditions.classes.iter();
+    let is_other = |class: &NodeClass| match class {
         NodeClass::Joined(segment) => !segments.contains(&(*segment as usize)),
-        NodeClass::Fixed | NodeClass::Sliding => true,
-        NodeClass::Prescribed | NodeClass::Free => false,
+        NodeClass::Fixed | NodeClass::Sliding | NodeClass::Prescribed | NodeClass::Free => false,
     };
     let box_of = |&segment: &usize| {
         let empty = [Vector::repeat(f64::INFINITY), Vector::repeat(f64::NEG_INFINITY)];
@@ -106,7 +98,7 @@ pub(super) fn of_scene(scene: &Scene, segments: &[usize]) -> Linearity {
     };
     Linearity {
         thickness: thickness(scene),
-        something_stays: scene.conditions.classes.iter().any(stays),
+        something_stays: scene.conditions.something_rests() || { classes }.any(is_other),
         boxes: segments.iter().map(box_of).collect(),
     }
 }

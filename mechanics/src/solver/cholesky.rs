@@ -12,6 +12,7 @@ use faer::{Conj, MatMut, Par, Side};
 
 use super::lanes::Lanes;
 use super::ordering::Ordering;
+use super::scaling::scaled;
 use super::vector::{column, interleave, norm};
 use super::{Solution, SolveReport, SolverError, System, Tolerance, Unknowns, tell};
 use crate::progress::{Progress, Unobserved};
@@ -57,7 +58,12 @@ fn factorised<T>(
     let mut values = vec![0.0; symbolic.len_val()];
     let factor = columns.factorise(&symbolic, &mut values, &free)?;
     let refined = Refined { system, free: &free, factor: &factor };
-    work(&|right_hand_side| refined.solve(right_hand_side, tolerance.relative_residual, progress))
+    let wanted = tolerance.relative_residual;
+    work(&|right_hand_side| {
+        let alone = std::slice::from_ref(right_hand_side);
+        let solve = |sides: &[Unknowns]| Ok(vec![refined.solve(&sides[0], wanted, progress)?]);
+        scaled(alone, solve).map(|mut solutions| solutions.remove(0))
+    })
 }
 
 /// A factor and the system whose residual refines what it solves.

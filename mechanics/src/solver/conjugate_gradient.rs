@@ -8,6 +8,7 @@
 
 use super::lanes::{Lanes, MOST_LANES};
 use super::multigrid::{Multigrid, Workspace};
+use super::scaling::scaled;
 use super::vector::{advance, column, dot, interleave, largest, norm, ratio, turn};
 use super::{Solution, SolveReport, SolverError, System, Tolerance, Unknowns, tell};
 use crate::progress::Progress;
@@ -23,6 +24,17 @@ const MOST_RESTARTS: usize = 8;
 
 /// Solves until every true relative residual is met, or says where it stalled.
 pub fn solve(
+    system: &System,
+    right_hand_sides: &[Unknowns],
+    tolerance: &Tolerance,
+    progress: &dyn Progress,
+) -> Result<Vec<Solution>, SolverError> {
+    scaled(right_hand_sides, |right_hand_sides| {
+        solve_scaled(system, right_hand_sides, tolerance, progress)
+    })
+}
+
+fn solve_scaled(
     system: &System,
     right_hand_sides: &[Unknowns],
     tolerance: &Tolerance,

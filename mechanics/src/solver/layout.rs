@@ -100,7 +100,9 @@ fn breadth_first(
     let mut order: Vec<u32> = Vec::with_capacity(rows);
     let mut clique_order = Vec::with_capacity(cliques.len());
     let has_clique = |row: &usize| !around.row(*row).is_empty();
-    for first in [start].into_iter().chain(0..rows).filter(has_clique) {
+    // Of no rows at all none is the first.
+    let begin = Some(start).filter(|&start| start < rows);
+    for first in begin.into_iter().chain(0..rows).filter(has_clique) {
         if std::mem::replace(&mut seen[first], true) {
             continue;
         }

@@ -17,6 +17,7 @@
 use super::lanes::{Lanes, MOST_LANES};
 use super::mixed_system::{MixedRightHandSide, MixedSolution, MixedSystem};
 use super::multigrid::{Multigrid, Workspace};
+use super::scaling::{factor, times};
 use super::vector::{advance, column, dot, interleave, largest, norm, ratio, scale, subtract_all};
 use super::{Solution, SolveReport, SolverError, Tolerance, Unknowns, nothing_to_solve, tell};
 use crate::progress::Progress;
@@ -66,6 +67,36 @@ pub fn solve(
         };
         return Ok(right_hand_sides.iter().map(rest).collect());
     }
+    let factors: Vec<f64> = right_hand_sides.iter().map(factor_of).collect();
+    if factors.iter().all(|factor| *factor == 1.0) {
+        return solve_scaled(system, right_hand_sides, tolerance, progress);
+    }
+    let sides = right_hand_sides.iter().zip(&factors);
+    let of_usual_size: Vec<MixedRightHandSide> = sides
+        .map(|(right, &factor)| MixedRightHandSide {
+            forces: times(&right.forces, factor),
+            volumes: times(&right.volumes, factor),
+        })
+        .collect();
+    let mut solutions = solve_scaled(system, &of_usual_size, tolerance, progress)?;
+    for (mixed, factor) in solutions.iter_mut().zip(factors) {
+        mixed.solution.unknowns = times(&mixed.solution.unknowns, factor.recip());
+        mixed.pressures = times(&mixed.pressures, factor.recip());
+    }
+    Ok(solutions)
+}
+
+/// The power of two that brings forces and volumes to a size whose squares neither vanish nor overflow.
+fn factor_of(right: &MixedRightHandSide) -> f64 {
+    factor(right.forces.as_flattened().iter().chain(right.volumes.as_flattened()))
+}
+
+fn solve_scaled(
+    system: &MixedSystem,
+    right_hand_sides: &[MixedRightHandSide],
+    tolerance: &Tolerance,
+    progress: &dyn Progress,
+) -> Result<Vec<MixedSolution>, SolverError> {
     let multigrid = Multigrid::new(system.stiffness);
     let wanted = tolerance.relative_residual;
     let alone = |right: &MixedRightHandSide| {

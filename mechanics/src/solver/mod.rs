@@ -12,6 +12,7 @@ pub mod mixed_system;
 pub mod multigrid;
 pub mod ordering;
 mod report;
+mod scaling;
 pub mod sparse_rows;
 pub mod stationary;
 mod system;

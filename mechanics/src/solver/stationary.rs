@@ -17,6 +17,7 @@ use nalgebra::Matrix3;
 use rayon::prelude::*;
 
 use super::lanes::{Lanes, add_product, add_transposed, negated};
+use super::scaling::scaled;
 use super::vector::{column, dot, interleave, norm, ratio};
 use super::vectorised::vectorised;
 use super::{
@@ -78,6 +79,21 @@ pub fn solve(
         let at_rest = SolveReport::at_rest(system.free_unknowns(), wanted);
         return Ok(nothing_to_solve(right_hand_side, &at_rest));
     }
+    let alone = std::slice::from_ref(right_hand_side);
+    let solve = |sides: &[Unknowns]| {
+        Ok(vec![solve_scaled(system, &sides[0], stationary, tolerance, progress)?])
+    };
+    scaled(alone, solve).map(|mut solutions| solutions.remove(0))
+}
+
+fn solve_scaled(
+    system: &System,
+    right_hand_side: &Unknowns,
+    stationary: &Stationary,
+    tolerance: &Tolerance,
+    progress: &dyn Progress,
+) -> Result<Solution, SolverError> {
+    let wanted = tolerance.relative_residual;
     check_memory(system, tolerance.memory_mb)?;
     let inverse = inverse_diagonal(system)?;
     let right_hand_side = interleave::<1, 3>(std::slice::from_ref(right_hand_side));

@@ -30,7 +30,7 @@ fn block(shape: CellShape) -> Case {
     let (first, second) = (within(&mesh, 0.0, 19.0), within(&mesh, 29.0, 43.0));
     mesh.node_sets.insert("first".to_owned(), first);
     mesh.node_sets.insert("second".to_owned(), second);
-    let along = |name: &str, normal| Sliding { nodes: set(name), normal };
+    let along = |name: &str, normal| Sliding { nodes: set(name), normal, segment: None };
     Case {
         segments: vec![segment("first"), segment("second")],
         fixed: vec![set("x_max")],

@@ -56,6 +56,7 @@ impl CaseDocument {
             skin_regions,
             segments: self.to_segments(&at.key("segments"), limits, faults),
             fixed: self.to_fixed(&at.key("fixed"), limits, faults),
+            allow_unfixed: self.allow_unfixed,
             sliding: self.to_sliding(&at.key("sliding"), limits, faults),
             hounsfield: self.to_hounsfield(&at.key("hounsfield"), meshes, limits, faults),
             materials,
@@ -263,7 +264,8 @@ impl CaseDocument {
                     }
                 }
             };
-            sliding.extend(nodes.map(|nodes| Sliding { nodes, normal }));
+            let segment = set.segment.as_deref().map(|name| name.trim().to_owned());
+            sliding.extend(nodes.map(|nodes| Sliding { nodes, normal, segment }));
         }
         sliding
     }

@@ -52,6 +52,10 @@ pub struct CaseDocument {
     pub segments: Vec<SegmentDocument>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub fixed: Vec<SelectionDocument>,
+    /// Permits plans that move all bones alike while nothing stays, so that the whole tissue goes with them as one.
+    #[serde(default, skip_serializing_if = "is_false")]
+    #[schema(default = false)]
+    pub allow_unfixed: bool,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub sliding: Vec<SlidingDocument>,
     /// By region name; `*` serves every region without an entry of its own.
@@ -66,6 +70,11 @@ pub struct CaseDocument {
 
 fn one() -> u32 {
     1
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for a reference")]
+fn is_false(value: &bool) -> bool {
+    !value
 }
 
 /// The unit of length of mesh files.
@@ -164,6 +173,11 @@ pub struct SlidingDocument {
     pub nodes: SelectionDocument,
     #[serde(default)]
     pub normal: NormalDocument,
+    /// The segment of the case that carries the wall, such as the jaw its teeth: the nodes follow the wall across
+    /// it and stay free along it. Absent: the wall stays.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub segment: Option<String>,
 }
 
 /// The direction across which sliding nodes are held.
@@ -204,6 +218,7 @@ impl CaseDocument {
             skin_regions: BTreeMap::new(),
             segments: Vec::new(),
             fixed: Vec::new(),
+            allow_unfixed: false,
             sliding: Vec::new(),
             materials: None,
             hounsfield: None,

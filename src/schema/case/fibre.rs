@@ -15,14 +15,14 @@ use mechanics::prediction::FibreDirection;
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FibreDocument {
-    /// Along the fibre; in (0, 1e9].
+    /// Along the fibre; in [1e-9, 1e9].
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false, exclusive_minimum = 0.0, maximum = 1e9)]
+    #[schema(nullable = false, minimum = 1e-9, maximum = 1e9)]
     pub young_modulus_kpa: Option<f64>,
-    /// Between the fibre and what lies across it; in (0, 1e9]. Default E / (2 (1 + nu)) of the material. The
+    /// Between the fibre and what lies across it; in [1e-9, 1e9]. Default E / (2 (1 + nu)) of the material. The
     /// law of paper 002 has none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false, exclusive_minimum = 0.0, maximum = 1e9)]
+    #[schema(nullable = false, minimum = 1e-9, maximum = 1e9)]
     pub shear_modulus_kpa: Option<f64>,
     /// The same in the whole region. Exactly one of `direction` and `array`; neither length nor sign matters.
     #[serde(default, skip_serializing_if = "Option::is_none")]

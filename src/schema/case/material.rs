@@ -22,9 +22,9 @@ const DEFAULT_TISSUE: (f64, f64, f64) = (15.0, 0.46, 1.0);
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MaterialDocument {
-    /// In (0, 1e9].
+    /// In [1e-9, 1e9].
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false, exclusive_minimum = 0.0, maximum = 1e9)]
+    #[schema(nullable = false, minimum = 1e-9, maximum = 1e9)]
     pub young_modulus_kpa: Option<f64>,
     /// In [0, 0.5).
     #[serde(default, skip_serializing_if = "Option::is_none")]

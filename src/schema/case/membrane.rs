@@ -14,13 +14,13 @@ use mechanics::prediction::SkinMembrane;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MembraneDocument {
-    /// In (0, 20].
+    /// In [0.001, 20].
     #[serde(default = "usual_thickness")]
-    #[schema(default = 1.5, exclusive_minimum = 0.0, maximum = 20.0)]
+    #[schema(default = 1.5, minimum = 1e-3, maximum = 20.0)]
     pub thickness_mm: f64,
-    /// In (0, 1e9]; with lines, across them.
+    /// In [1e-9, 1e9]; with lines, across them.
     #[serde(default = "usual_modulus")]
-    #[schema(default = 200.0, exclusive_minimum = 0.0, maximum = 1e9)]
+    #[schema(default = 200.0, minimum = 1e-9, maximum = 1e9)]
     pub young_modulus_kpa: f64,
     /// In [0, 0.5]; with lines, how much the sheet narrows when it is stretched along them.
     #[serde(default = "usual_ratio")]
@@ -36,8 +36,8 @@ pub struct MembraneDocument {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LinesDocument {
-    /// Along the lines; in (0, 1e9] and above nu^2 times the one across them.
-    #[schema(exclusive_minimum = 0.0, maximum = 1e9)]
+    /// Along the lines; in [1e-9, 1e9] and above nu^2 times the one across them.
+    #[schema(minimum = 1e-9, maximum = 1e9)]
     pub young_modulus_kpa: f64,
     /// The same on the whole skin, of which each face takes what lies in its plane. Exactly one of `direction`
     /// and `array`; neither length nor sign matters.

@@ -84,13 +84,13 @@ fn made(output: JobOutput, meshes: Vec<MeshFile>) -> Outcome {
 
 fn broken(reason: &str) -> Outcome {
     tracing::error!(%reason, "a job could not be worked on");
-    Outcome::Failed(broke_off())
+    Outcome::Failed(broke_off(ErrorClass::Infrastructure))
 }
 
 /// The error of a job that met a bug; what it was stands in the log only.
-pub(in crate::worker) fn broke_off() -> Value {
+pub(in crate::worker) fn broke_off(class: ErrorClass) -> Value {
     let detail = "the work broke off; the log has the details under the job's id";
-    json!({"type": ErrorCode::Internal, "class": "infrastructure", "detail": detail})
+    json!({"type": ErrorCode::Internal, "class": class, "detail": detail})
 }
 
 fn failed(error: &JobError) -> Outcome {

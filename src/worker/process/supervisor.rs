@@ -358,7 +358,8 @@ fn finished(outcome: Outcome, folder: &Path) -> Result<Finished, Failure> {
         Outcome::Storage(reason) => Err(Failure::Storage(reason)),
         Outcome::Panicked(reason) => {
             tracing::error!(%reason, "a job panicked");
-            Err(Failure::Permanent(broke_off()))
+            // The same job would meet the same bug: it is the job's own, until somebody shows otherwise.
+            Err(Failure::Permanent(broke_off(ErrorClass::Numerical)))
         }
     }
 }

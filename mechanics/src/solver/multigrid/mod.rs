@@ -22,7 +22,7 @@ use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
 
 use galerkin::{Coarse, Fine, galerkin};
-use inverse::DenseInverse;
+use inverse::{DenseInverse, inverse_block};
 use prolongator::{Prolongator, Weights};
 use smoother::Smoother;
 use ties::Ties;
@@ -41,6 +41,10 @@ const CHUNK: usize = 4096;
 /// Coarse rows at which the dense inverse takes over.
 const DENSE_ROWS: usize = 30;
 
+/// Coarse rows up to which the matrix of rows that nothing groups is inverted as a whole: 6 x 500 squared in f64 are
+/// 72 MB. More of them are parts that hardly touch each other, and each is inverted alone.
+const MOST_DENSE_ROWS: usize = 500;
+
 /// A hierarchy for one matrix and one set of held unknowns.
 pub struct Multigrid {
     finest: Smoother<3>,
@@ -53,8 +57,30 @@ struct Below {
     /// From the finest to the first coarse level.
     first: Prolongator,
     levels: Vec<CoarseLevel>,
-    coarsest: DenseInverse,
+    coarsest: Coarsest,
     coarsest_rows: usize,
+}
+
+/// The inverse on the coarsest level.
+enum Coarsest {
+    Whole(DenseInverse),
+    /// Of the block of each row on the diagonal, where there are too many rows for the whole.
+    ByRow(Vec<[[f32; 6]; 6]>),
+}
+
+impl Coarsest {
+    fn apply<const N: usize>(&self, right: &[Lanes<f32, 6, N>], x: &mut [Lanes<f32, 6, N>]) {
+        match self {
+            Coarsest::Whole(inverse) => inverse.apply(right, x),
+            Coarsest::ByRow(blocks) => {
+                for ((x, right), block) in x.iter_mut().zip(right).zip(blocks) {
+                    *x = std::array::from_fn(|i| {
+                        std::array::from_fn(|n| (0..6).map(|j| block[i][j] * right[j][n]).sum())
+                    });
+                }
+            }
+        }
+    }
 }
 
 /// A coarse level with a still coarser one below it.
@@ -181,7 +207,11 @@ impl Below {
             centres = next_centres;
             current = next;
         }
-        let (coarsest, coarsest_rows) = (dense(&current.matrix), current.matrix.rows());
+        let coarsest_rows = current.matrix.rows();
+        let coarsest = match coarsest_rows <= MOST_DENSE_ROWS {
+            true => Coarsest::Whole(dense(&current.matrix)),
+            false => Coarsest::ByRow(current.matrix.diagonal.iter().map(inverse_block).collect()),
+        };
         Below { first, levels, coarsest, coarsest_rows }
     }
 

@@ -61,6 +61,7 @@ fn slab_of(shape: CellShape, truth: Truth) -> StudyScene {
         sliding: vec![Sliding {
             nodes: set("y_min"),
             normal: SlidingNormal::Direction(Vector::y()),
+            segment: None,
         }],
         materials: tissues[0].by_region.clone(),
         volume: Arc::new(mesh),

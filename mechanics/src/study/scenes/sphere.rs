@@ -41,6 +41,7 @@ pub fn sphere_of(cells_radial: usize, cells_along: usize, shape: CellShape) -> S
     let plane = |name: &str, normal: Vector| Sliding {
         nodes: set(name),
         normal: SlidingNormal::Direction(normal),
+        segment: None,
     };
     let prescribed =
         vec![Prescribed::FromArray { nodes: set("inner"), array: MOVEMENT.to_owned() }];

@@ -105,6 +105,7 @@ fn rotation() -> Axis {
             let mut case = usual_case(&LEVELS, RING, shape_for(&variant.settings))?;
             case.segments[0].nodes = set("base");
             case.fixed.clear();
+            case.allow_unfixed = true;
             found(case, jaw(turn(degrees)), variant)
         },
         truth: |degrees| Truth::Formula(Box::new(move |x| turn(degrees).displacement(x))),

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::rc::Rc;
 
 use super::{Answer, Axis, AxisMap, Bounds, Finding, Map, Probe, Refusal, Truth, Variant, Verdict};
-use crate::mesh::Vector;
+use crate::mesh::{Vector, Warning};
 use crate::prediction::{ModelError, Prediction, Scene, predict};
 use crate::progress::Unobserved;
 use crate::solver::SolverError;
@@ -146,8 +146,14 @@ fn measured(scene: &Scene, prediction: Prediction, truth: &Known) -> Answer {
         smallest_det_f: cells.iter().map(|cell| cell.det_f).fold(f64::INFINITY, f64::min),
         inverted_share: inverted as f64 / cells.len().max(1) as f64,
         largest_rotation: cells.iter().map(|cell| cell.rotation).fold(0.0, f64::max),
-        warnings: prediction.warnings,
+        warnings: of_the_answer(prediction.warnings),
     }
+}
+
+/// Warnings of an answer, without those of how a scene is stated: they come with every answer, right or wrong.
+fn of_the_answer(mut warnings: Vec<Warning>) -> Vec<Warning> {
+    warnings.retain(|warning| warning.code != "sliding-beside-segment");
+    warnings
 }
 
 fn refused(refusal: Refusal) -> Finding {

@@ -134,7 +134,11 @@ pub fn around_ball(material: LinearElastic, shape: CellShape) -> Case {
         volume: Arc::new(mesh),
         materials: tissue(material),
         segments: vec![CaseSegment { name: "jaw".to_owned(), nodes: set("x_min") }],
-        sliding: vec![Sliding { nodes: set("wall"), normal: SlidingNormal::Surface }],
+        sliding: vec![Sliding {
+            nodes: set("wall"),
+            normal: SlidingNormal::Surface,
+            segment: None,
+        }],
         skin: Some(set("outer")),
         ..Case::default()
     }

@@ -71,7 +71,11 @@ fn tissue(shape: CellShape, cells: [usize; 3]) -> Case {
         regions: Some(RegionNames { array: "layer".to_owned(), names }),
         segments: vec![CaseSegment { name: "jaw".to_owned(), nodes: set("jaw") }],
         fixed: vec![set("skull")],
-        sliding: vec![Sliding { nodes: set("y_min"), normal: SlidingNormal::Surface }],
+        sliding: vec![Sliding {
+            nodes: set("y_min"),
+            normal: SlidingNormal::Surface,
+            segment: None,
+        }],
         ..case
     }
 }

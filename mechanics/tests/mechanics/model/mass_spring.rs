@@ -284,7 +284,7 @@ fn between_walls(turn: &RigidMovement) -> (Case, Plan) {
         ("z_min", -Vector::z()),
     ] {
         let normal = SlidingNormal::Direction(turn.rotation() * normal);
-        case.sliding.push(Sliding { nodes: set(name), normal });
+        case.sliding.push(Sliding { nodes: set(name), normal, segment: None });
     }
     let force = turn.rotation() * Vector::new(0.0, 0.3, -1.0);
     let loads = vec![Load::Force { nodes: set("z_max"), force }];

@@ -298,7 +298,7 @@ fn against_oblique_walls() -> (Case, Plan, RigidMovement) {
     let mut case = case_of(mesh, material(15.0, 0.4));
     for (name, normal) in [("x_min", Vector::x()), ("y_min", Vector::y()), ("z_min", Vector::z())] {
         let normal = SlidingNormal::Direction(turn.rotation() * normal);
-        case.sliding.push(Sliding { nodes: set(name), normal });
+        case.sliding.push(Sliding { nodes: set(name), normal, segment: None });
     }
     let force = turn.rotation() * Vector::new(0.2, 0.3, -1.0);
     let loads = vec![Load::Force { nodes: set("z_max"), force }];

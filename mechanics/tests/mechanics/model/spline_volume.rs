@@ -230,7 +230,8 @@ fn a_turned_scene_has_the_turned_answer() {
 fn sliding_nodes_are_held_across_and_nothing_pulls_them_along() {
     let (mut case, plan) = bent();
     let normal = Vector::new(0.3, 1.0, 0.2);
-    let sliding = Sliding { nodes: set("y_max"), normal: SlidingNormal::Direction(normal) };
+    let sliding =
+        Sliding { nodes: set("y_max"), normal: SlidingNormal::Direction(normal), segment: None };
     case.sliding.push(sliding);
     let settings = with(VolumeSpline { hold_weight: 1e5, ..spaced(10.0) });
     let answer = solve(&case, &plan, &settings);

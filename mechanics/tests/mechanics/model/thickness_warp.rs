@@ -144,7 +144,7 @@ fn a_blend_radius_softens_the_jump_between_bones() {
 fn what_a_warp_ignores_is_told_and_what_it_cannot_do_is_refused() {
     let mut case = two_bones(CellShape::Tet4);
     let before = solve(&case, &plan(turned()), &with(0.0));
-    let sliding = Sliding { nodes: set("y_min"), normal: SlidingNormal::Surface };
+    let sliding = Sliding { nodes: set("y_min"), normal: SlidingNormal::Surface, segment: None };
     case.sliding.push(sliding);
     case.materials.insert("*".to_owned(), material(300.0, 0.2));
     let after = solve(&case, &plan(turned()), &with(0.0));

@@ -59,6 +59,7 @@ fn an_identity_plan_moves_nothing_at_all() {
 fn tissue_joined_to_one_segment_alone_is_carried_along_by_a_translation() {
     let mut case = jaw_and_skull(CellShape::Wedge6);
     case.fixed.clear();
+    case.allow_unfixed = true;
     let shift = Vector::new(1.0, -2.0, 3.0);
     let movement = RigidMovement::about_pivot(Vector::zeros(), Vector::zeros(), shift);
     let prediction = solve(&case, &moved("jaw", movement), &exact());
@@ -69,6 +70,7 @@ fn tissue_joined_to_one_segment_alone_is_carried_along_by_a_translation() {
 fn a_rotation_carries_tissue_along_only_up_to_the_linear_artefact() {
     let mut case = jaw_and_skull(CellShape::Hex8);
     case.fixed.clear();
+    case.allow_unfixed = true;
     let prediction = solve(&case, &moved("jaw", turned()), &exact());
     let error = largest_error(&case.volume, &prediction.displacement, |x| turned().displacement(x));
     let stretch = (turned().rotation() - nalgebra::Matrix3::identity()).norm().powi(2) * 45.0;
@@ -90,7 +92,11 @@ fn classes_are_counted_and_the_stronger_one_wins() {
     let mut case = case_of(mesh, material(15.0, 0.3));
     case.segments.push(CaseSegment { name: "jaw".to_owned(), nodes: set("z_max") });
     case.fixed.push(set("z_min"));
-    case.sliding.push(Sliding { nodes: set("x_min"), normal: SlidingNormal::Surface });
+    case.sliding.push(Sliding {
+        nodes: set("x_min"),
+        normal: SlidingNormal::Surface,
+        segment: None,
+    });
     let scene = Scene::new(&case, &Plan::default(), &Settings::default()).unwrap();
     let counts = scene.class_counts();
     // The sliding wall of 16 nodes loses one row of 4 to the jaw and one to the fixed face.
@@ -162,7 +168,7 @@ fn unknown_names_and_empty_selections_say_where_they_are() {
 fn a_sliding_direction_of_length_zero_is_refused() {
     let mut case = jaw_and_skull(CellShape::Hex8);
     let normal = SlidingNormal::Direction(Vector::zeros());
-    case.sliding.push(Sliding { nodes: set("z_min"), normal });
+    case.sliding.push(Sliding { nodes: set("z_min"), normal, segment: None });
     assert_eq!(refusal(&case, &Plan::default()).1, "sliding-normal-zero");
 }
 
@@ -174,7 +180,11 @@ fn parts_that_nothing_holds_are_refused_before_anything_is_solved() {
     assert_eq!(refusal(&case, &Plan::default()).1, "underconstrained");
 
     // A sliding plane leaves two translations and one turn.
-    case.sliding.push(Sliding { nodes: set("z_min"), normal: SlidingNormal::Surface });
+    case.sliding.push(Sliding {
+        nodes: set("z_min"),
+        normal: SlidingNormal::Surface,
+        segment: None,
+    });
     let errors = Scene::new(&case, &Plan::default(), &Settings::default()).err().unwrap();
     assert!(errors.0[0].detail.contains("3 of the 6"), "{errors}");
 }

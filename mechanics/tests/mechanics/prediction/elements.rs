@@ -309,7 +309,11 @@ fn tetrahedra_slide_along_oblique_walls() {
         mesh.node_vectors.insert("lid".to_owned(), mesh.nodes.iter().map(field).collect());
         let mut case = case_of(mesh, material(15.0, 0.46));
         for wall in ["x_min", "x_max", "y_min", "y_max", "z_min"] {
-            case.sliding.push(Sliding { nodes: set(wall), normal: SlidingNormal::Surface });
+            case.sliding.push(Sliding {
+                nodes: set(wall),
+                normal: SlidingNormal::Surface,
+                segment: None,
+            });
         }
         let lid = Prescribed::FromArray { nodes: set("z_max"), array: "lid".to_owned() };
         let plan = Plan { prescribed: vec![lid], ..Plan::default() };

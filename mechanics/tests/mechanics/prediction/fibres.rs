@@ -39,7 +39,8 @@ fn bent(
     case.regions = Some(RegionNames { array: "layer".to_owned(), names });
     case.materials.insert("muscle".to_owned(), upper);
     case.fibres.insert("muscle".to_owned(), FibreDirection::Array("course".to_owned()));
-    case.sliding = vec![Sliding { nodes: set("y_min"), normal: SlidingNormal::Surface }];
+    case.sliding =
+        vec![Sliding { nodes: set("y_min"), normal: SlidingNormal::Surface, segment: None }];
     let end = |name: &str| Prescribed::FromArray { nodes: set(name), array: "bend".to_owned() };
     (case, Plan { prescribed: vec![end("x_min"), end("x_max")], ..Plan::default() })
 }

@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 
 use mechanics::boundary::conditions::combine;
-use mechanics::boundary::{Conditions, HeldNodes, Hold, NodeClass};
+use mechanics::boundary::{Conditions, HeldNodes, Hold, NodeClass, WallNode};
 use mechanics::mesh::refinement::refine;
 use mechanics::mesh::sample::block;
 use mechanics::mesh::{CellShape, Vector, VolumeMesh};
@@ -61,7 +61,10 @@ fn quadratic_slab(h: f64, nu: f64) -> SkinPoints {
     let held = HeldNodes {
         joined: vec![(patch, movement)],
         fixed: nodes_where(&|x| base(x) && (x.x.abs() > 23.9 || x.y > 23.9)),
-        sliding: nodes_where(&|x| x.y < 1e-9).iter().map(|&n| (n, vec![Vector::y()])).collect(),
+        sliding: nodes_where(&|x| x.y < 1e-9)
+            .into_iter()
+            .map(|node| WallNode { node, across: vec![Vector::y()], carrier: None })
+            .collect(),
         ..HeldNodes::default()
     };
     let Conditions { classes, mut holds, .. } = combine(&positions, &held).unwrap();

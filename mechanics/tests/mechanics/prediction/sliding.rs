@@ -45,10 +45,14 @@ impl Pressed {
         mesh.nodes.iter_mut().for_each(|node| *node = turn * *node);
         mesh.node_vectors.insert("lid".to_owned(), mesh.nodes.iter().map(field).collect());
         let mut case = case_of(mesh, material(15.0, nu));
-        let surface = |name: &&str| Sliding { nodes: set(name), normal: SlidingNormal::Surface };
+        let surface = |name: &&str| Sliding {
+            nodes: set(name),
+            normal: SlidingNormal::Surface,
+            segment: None,
+        };
         case.sliding = walls.iter().map(surface).collect();
         let below = SlidingNormal::Direction(turn * -Vector::z());
-        case.sliding.push(Sliding { nodes: set("z_min"), normal: below });
+        case.sliding.push(Sliding { nodes: set("z_min"), normal: below, segment: None });
         let lid = Prescribed::FromArray { nodes: set("z_max"), array: "lid".to_owned() };
         let plan = Plan { prescribed: vec![lid], ..Plan::default() };
         let settings = Settings { method, element, ..exact() };
@@ -147,7 +151,8 @@ fn without_contact_sliding_nodes_go_free() {
     let mut case = case_of(mesh, material(15.0, 0.3));
     case.fixed = vec![set("z_min")];
     let selection: NodeSelection = set("x_max");
-    case.sliding = vec![Sliding { nodes: selection, normal: SlidingNormal::Surface }];
+    case.sliding =
+        vec![Sliding { nodes: selection, normal: SlidingNormal::Surface, segment: None }];
     let lid = crate::scenes::hold("z_max", [Some(0.0), Some(0.0), Some(-0.5)]);
     let plan = Plan { prescribed: vec![lid], ..Plan::default() };
     let bulge = |sliding: bool| {

@@ -180,3 +180,28 @@ fn iterations_hardly_grow_with_the_mesh() {
     assert!(fine < 50, "{fine} iterations for eight times the cells of {coarse}");
     assert!(fine as f64 <= 1.5 * coarse as f64, "{coarse} and {fine} iterations");
 }
+
+#[test]
+fn right_hand_sides_whose_squares_vanish_or_overflow_are_solved_all_the_same() {
+    let system = clamped_block();
+    let usual = forces(&system, 1);
+    let known = solve(&system, std::slice::from_ref(&usual), &EXACT, &Unobserved).unwrap();
+    for power in [-600, 600] {
+        let factor = 2.0_f64.powi(power);
+        let scaled: Unknowns = usual.iter().map(|f| f.map(|value| value * factor)).collect();
+        let sides = [scaled, usual.clone()];
+        let ordering = ordering::minimum_degree(&system);
+        let both = [
+            cholesky::solve(&system, &ordering, &sides, &EXACT, &Unobserved).unwrap(),
+            conjugate_gradient::solve(&system, &sides, &EXACT, &Unobserved).unwrap(),
+        ];
+        for solutions in both {
+            let back: Unknowns =
+                solutions[0].unknowns.iter().map(|x| x.map(|value| value / factor)).collect();
+            let scale =
+                known[0].unknowns.as_flattened().iter().fold(0.0, |a: f64, b| a.max(b.abs()));
+            assert!(largest_difference(&back, &known[0].unknowns) < 1e-9 * scale, "2^{power}");
+            assert!(largest_difference(&back, &solutions[1].unknowns) < 1e-9 * scale, "2^{power}");
+        }
+    }
+}

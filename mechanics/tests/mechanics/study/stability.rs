@@ -172,7 +172,11 @@ fn a_flat_wall_is_never_left() {
         let jaw = case.volume.node_sets["x_min"].clone();
         let wall = bottom.into_iter().filter(|node| !jaw.contains(node)).collect();
         Arc::make_mut(&mut case.volume).node_sets.insert("wall".to_owned(), wall);
-        case.sliding.push(Sliding { nodes: set("wall"), normal: SlidingNormal::Surface });
+        case.sliding.push(Sliding {
+            nodes: set("wall"),
+            normal: SlidingNormal::Surface,
+            segment: None,
+        });
         let found = answer(&case, &moved(Vector::x() * -25.0), &variant.settings).unwrap();
         // The whole block slides past the end of its wall.
         assert_eq!(found.warnings, [], "{}", variant.label);
@@ -377,7 +381,7 @@ fn what_nothing_holds_or_two_segments_hold_is_refused_for_every_variant() {
 
         let mut slides = jaw_and_skull(shape_for(&variant));
         let normal = SlidingNormal::Direction(Vector::zeros());
-        slides.sliding.push(Sliding { nodes: set("z_min"), normal });
+        slides.sliding.push(Sliding { nodes: set("z_min"), normal, segment: None });
         let (pointer, code, _) = refusal(&slides, &Plan::default());
         assert_eq!((pointer.as_str(), code), ("/case/sliding/0/normal", "sliding-normal-zero"));
     }

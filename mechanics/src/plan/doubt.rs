@@ -1,0 +1,146 @@
+//! Plans that look like a mistake: nothing moves, metres for millimetres, radians for degrees, movements larger than
+//! the face.
+
+use super::RigidMovement;
+use crate::mesh::{Vector, Warning};
+
+/// Below this many mm no movement of bone is planned: in metres it would be up to 50 mm.
+const METRES_MM: f64 = 0.05;
+/// Below this angle no turn of bone is planned, in degrees: in radians it would be up to 11.5 degrees.
+const RADIANS_DEG: f64 = 0.2;
+/// Up to this many degrees a matrix is no turn but the rounding of one without.
+const ROUNDING_DEG: f64 = 1e-3;
+
+/// The code of the warning of a plan that moves nothing.
+pub const NOTHING_MOVES: &str = "nothing-moves";
+
+/// A segment, its movement, and the lowest and the highest corner of the box around its nodes, in mm.
+#[derive(Clone, Copy)]
+pub struct MovedSegment<'a> {
+    pub name: &'a str,
+    pub movement: &'a RigidMovement,
+    pub corners: [Vector; 2],
+}
+
+/// A segment that goes farther than the face is long; distances in mm.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("segment {name:?} moves by {distance:.3} mm, and the mesh is {diagonal:.3} mm across")]
+pub struct BeyondFace {
+    pub name: String,
+    pub distance: f64,
+    pub diagonal: f64,
+}
+
+impl MovedSegment<'_> {
+    /// How far the middle of the segment goes, in mm.
+    fn distance(&self) -> f64 {
+        let [low, high] = self.corners;
+        self.movement.displacement(&((low + high) * 0.5)).norm()
+    }
+
+    /// How far the corners of its box go at most, in mm.
+    fn farthest(&self) -> f64 {
+        farthest_apart(self.movement, &RigidMovement::default(), &self.corners)
+    }
+}
+
+/// The largest distance in mm between where two movements take a point of a box: that of a corner.
+pub fn farthest_apart(
+    one: &RigidMovement,
+    other: &RigidMovement,
+    [low, high]: &[Vector; 2],
+) -> f64 {
+    let corner = |bits: usize| {
+        Vector::from_fn(|axis, _| if bits >> axis & 1 == 0 { low[axis] } else { high[axis] })
+    };
+    let apart = |point: Vector| (one.displacement(&point) - other.displacement(&point)).norm();
+    (0..8).map(corner).map(apart).fold(0.0, f64::max)
+}
+
+/// The warning of a plan in which nothing moves and nothing acts.
+pub fn nothing_moves() -> Warning {
+    Warning::new(NOTHING_MOVES, "the plan moves nothing: no tissue is displaced")
+}
+
+/// A warning where all movements are so small that another unit explains them better.
+pub fn suspect_units(segments: &[MovedSegment]) -> Option<Warning> {
+    let turn = segments.iter().map(|s| s.movement.angle().to_degrees()).fold(0.0, f64::max);
+    if turn > ROUNDING_DEG && turn < RADIANS_DEG {
+        let meant = turn.to_degrees();
+        let detail = format!(
+            "no segment turns by more than {turn:.3e} degrees: are these radians, {meant:.3} degrees?"
+        );
+        let warning = Warning::new("plan-units-suspect", detail).with("rotation_deg", turn);
+        return Some(warning.with("if_radians_deg", meant));
+    }
+    let farthest = segments.iter().map(MovedSegment::farthest).fold(0.0, f64::max);
+    if turn <= ROUNDING_DEG && farthest > 0.0 && farthest < METRES_MM {
+        let meant = farthest * 1000.0;
+        let detail = format!(
+            "no segment moves by more than {farthest:.3e} mm: are these metres, {meant:.3} mm?"
+        );
+        let warning = Warning::new("plan-units-suspect", detail).with("translation_mm", farthest);
+        return Some(warning.with("if_metres_mm", meant));
+    }
+    None
+}
+
+/// The first segment whose middle goes farther than the mesh is across.
+pub fn beyond_face(segments: &[MovedSegment], diagonal: f64) -> Option<BeyondFace> {
+    let far = segments.iter().find(|segment| segment.distance() > diagonal)?;
+    Some(BeyondFace { name: far.name.to_owned(), distance: far.distance(), diagonal })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn moved(movement: &RigidMovement) -> [MovedSegment<'_>; 1] {
+        let corners = [Vector::new(-20.0, -10.0, 0.0), Vector::new(20.0, 10.0, 30.0)];
+        [MovedSegment { name: "jaw", movement, corners }]
+    }
+
+    fn shifted(x: f64) -> RigidMovement {
+        RigidMovement::about_pivot(Vector::zeros(), Vector::zeros(), Vector::new(x, 0.0, 0.0))
+    }
+
+    fn turned(degrees: f64) -> RigidMovement {
+        let angles = Vector::new(0.0, degrees.to_radians(), 0.0);
+        RigidMovement::about_pivot(angles, Vector::zeros(), Vector::zeros())
+    }
+
+    #[test]
+    fn metres_and_radians_are_told_with_what_they_would_mean() {
+        let metres = suspect_units(&moved(&shifted(0.005))).unwrap();
+        assert_eq!(metres.numbers[1].0, "if_metres_mm");
+        assert!((metres.numbers[1].1 - 5.0).abs() < 1e-12, "{metres:?}");
+        let radians = suspect_units(&moved(&turned(0.1))).unwrap();
+        assert_eq!(radians.numbers[1].0, "if_radians_deg");
+        // 0.1 rad.
+        assert!((radians.numbers[1].1 - 5.729577951).abs() < 1e-6, "{radians:?}");
+    }
+
+    #[test]
+    fn usual_movements_and_rest_are_not_suspect() {
+        for movement in [
+            shifted(0.06),
+            shifted(5.0),
+            turned(0.25),
+            turned(12.0),
+            shifted(0.0),
+            turned(1e-5).then(&shifted(5.0)),
+        ] {
+            assert_eq!(suspect_units(&moved(&movement)), None);
+        }
+        // A small shift beside a turn is a correction.
+        assert_eq!(suspect_units(&moved(&turned(3.0).then(&shifted(0.01)))), None);
+    }
+
+    #[test]
+    fn a_movement_beyond_the_size_of_the_face_is_told_with_both_lengths() {
+        let (near, far) = (shifted(59.0), shifted(61.0));
+        assert_eq!(beyond_face(&moved(&near), 60.0), None);
+        let beyond = beyond_face(&moved(&far), 60.0).unwrap();
+        assert_eq!((beyond.distance, beyond.diagonal), (61.0, 60.0));
+    }
+}

@@ -1,0 +1,92 @@
+//! Constants that only a wrong unit explains: they are computed with, and told with their numbers.
+//!
+//! What no unit explains is refused where constants are made (`material`). Between the two lie decades in which a
+//! number is more likely a mistake of a thousand than a tissue: fat has 1 to 3 kPa, bone 1e7 kPa.
+
+use super::case::{Load, Plan};
+use super::scene::Scene;
+use crate::material::LinearElastic;
+use crate::mesh::{Vector, Warning};
+
+/// More of these help nobody.
+const MOST: usize = 20;
+
+/// What a constant is called, its unit, and between which values it is usual.
+#[derive(Clone, Copy)]
+struct Usual {
+    what: &'static str,
+    unit: &'static str,
+    least: f64,
+    most: f64,
+}
+
+const MODULUS: Usual = Usual { what: "Young's modulus", unit: "kPa", least: 0.1, most: 1e7 };
+const FIBRE_MODULUS: Usual = Usual { what: "Young's modulus along fibres", ..MODULUS };
+const FIBRE_SHEAR: Usual = Usual { what: "the shear modulus along fibres", least: 0.03, ..MODULUS };
+/// 0 is allowed: without gravity or time no density is of use.
+const DENSITY: Usual = Usual { what: "density", unit: "g/cm3", least: 0.1, most: 10.0 };
+const SHEET_MODULUS: Usual = Usual { what: "Young's modulus of the membrane", ..MODULUS };
+const SHEET_THICKNESS: Usual =
+    Usual { what: "the thickness of the membrane", unit: "mm", least: 0.05, most: 10.0 };
+/// Paper 000 names 12 to 750 N/m, which are mN/mm.
+const LINK: Usual = Usual { what: "the stiffness of a link", unit: "N/m", least: 0.1, most: 1e5 };
+/// Per node: a bite exerts up to 1e6 mN on all of a jaw.
+const FORCE: Usual = Usual { what: "the force at a node", unit: "mN", least: 1e-6, most: 1e5 };
+const TRACTION: Usual = Usual { what: "traction", unit: "kPa", least: 1e-6, most: 1e3 };
+const PRESSURE: Usual = Usual { what: "pressure", ..TRACTION };
+/// In mm/ms^2: the earth has 9.81e-3, and 9810 mm/s^2 is no m/s^2.
+const GRAVITY: Usual = Usual { what: "gravity", unit: "mm/ms2", least: 1e-5, most: 0.1 };
+
+impl Usual {
+    /// A warning where a value that does something is outside.
+    fn doubt(&self, value: f64, of: &str) -> Option<Warning> {
+        let Usual { what, unit, least, most } = *self;
+        if value == 0.0 || (least..=most).contains(&value) {
+            return None;
+        }
+        let detail = format!(
+            "{what}{of} is {value:e} {unit}, and usually between {least:e} and {most:e} {unit}: is it in another unit?"
+        );
+        let warning = Warning::new("constant-suspect", detail).with("value", value);
+        Some(warning.with("usual_least", least).with("usual_most", most))
+    }
+}
+
+/// A warning for each constant of a scene that is far from what tissue and surgery have.
+pub(super) fn suspect_constants(scene: &Scene, plan: &Plan) -> Vec<Warning> {
+    let regions = scene.regions.iter().zip(&scene.materials);
+    let materials = regions.flat_map(|(name, material)| of_material(name, material));
+    let sheet = scene.settings.membrane.iter().flat_map(|membrane| {
+        let sheet = &membrane.sheet;
+        [
+            SHEET_THICKNESS.doubt(sheet.thickness(), ""),
+            SHEET_MODULUS.doubt(sheet.young_modulus(), ""),
+        ]
+    });
+    let link = scene.settings.method.link_stiffness();
+    let links = link.into_iter().map(|stiffness| LINK.doubt(stiffness, ""));
+    let loads = plan.loads.iter().enumerate().map(|(index, load)| of_load(index, load));
+    materials.chain(sheet).chain(links).chain(loads).flatten().take(MOST).collect()
+}
+
+fn of_material(name: &str, material: &LinearElastic) -> [Option<Warning>; 4] {
+    let of = format!(" of {name:?}");
+    let fibre = |usual: Usual, value: Option<f64>| value.and_then(|value| usual.doubt(value, &of));
+    [
+        MODULUS.doubt(material.young_modulus(), &of),
+        DENSITY.doubt(material.density(), &of),
+        fibre(FIBRE_MODULUS, material.fibre_modulus()),
+        fibre(FIBRE_SHEAR, material.fibre_shear_modulus()),
+    ]
+}
+
+fn of_load(index: usize, load: &Load) -> Option<Warning> {
+    let of = format!(" of load {index}");
+    let size = |vector: &Vector| vector.norm();
+    match load {
+        Load::Force { force, .. } => FORCE.doubt(size(force), &of),
+        Load::Traction { traction, .. } => TRACTION.doubt(size(traction), &of),
+        Load::Pressure { pressure, .. } => PRESSURE.doubt(pressure.abs(), &of),
+        Load::Gravity { acceleration } => GRAVITY.doubt(size(acceleration), &of),
+    }
+}

@@ -1,0 +1,274 @@
+//! Walls that tissue slides on: which bone carries each, where two contradict each other, and where one that stays
+//! lies beside a bone that moves.
+//!
+//! A wall that a segment carries holds n . u = n . ((R - I) x + t) at each of its nodes x and leaves what is along
+//! it free. Small strain keeps n; a model that knows large rotations takes R n.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::case::{Settings, Sliding, SlidingNormal};
+use super::check::Check;
+use super::error_code::SceneErrorCode;
+use super::scene::Scene;
+use crate::boundary::sliding::SAME_WALL;
+use crate::boundary::{HeldNodes, NodeSelection, WallNode, sliding};
+use crate::mesh::{Vector, Warning};
+use crate::plan::{PlannedSegment, RigidMovement};
+
+/// Above this turn of a segment, in degrees, small strain is told to keep the normals of its walls.
+pub const NORMAL_TURNED_DEG: f64 = 5.0;
+
+/// The code of that warning.
+pub const NORMAL_TURNED: &str = "sliding-normal-turned";
+
+/// A set of sliding nodes as the case states it.
+struct Wall {
+    /// Its place in the case.
+    index: usize,
+    carrier: Option<u32>,
+    /// With the normals of each node.
+    nodes: Vec<(u32, Vec<Vector>)>,
+}
+
+impl Check<'_> {
+    /// The nodes that slide, with what carries their walls.
+    pub(super) fn walls(
+        &mut self,
+        segments: &[PlannedSegment],
+        settings: &Settings,
+        held: &mut HeldNodes,
+    ) {
+        let entries = self.case.sliding.iter().enumerate();
+        let carriers: Vec<Option<u32>> =
+            entries.map(|(index, entry)| self.carrier(index, entry)).collect();
+        if !settings.sliding {
+            return;
+        }
+        let entries = self.case.sliding.iter().enumerate().zip(carriers);
+        let walls: Vec<Wall> = entries
+            .map(|((index, entry), carrier)| Wall {
+                index,
+                carrier,
+                nodes: self.normals(index, entry),
+            })
+            .collect();
+        self.two_carriers(&walls, segments);
+        self.two_bones(&walls, segments, held);
+        self.beside_moving_bone(&walls, segments, held);
+        let keeps_normals = settings.method.properties().is_small_strain;
+        for Wall { carrier, nodes, .. } in walls {
+            let turn = carrier.filter(|_| !keeps_normals);
+            let turn = turn.map(|segment| *segments[segment as usize].movement.rotation());
+            held.sliding.extend(nodes.into_iter().map(|(node, normals)| {
+                let across = match &turn {
+                    Some(rotation) => normals.iter().map(|normal| rotation * normal).collect(),
+                    None => normals,
+                };
+                WallNode { node, across, carrier }
+            }));
+        }
+    }
+
+    /// The number of the segment that an entry names.
+    fn carrier(&mut self, index: usize, entry: &Sliding) -> Option<u32> {
+        let name = entry.segment.as_deref()?;
+        let segments = &self.case.segments;
+        let place = segments.iter().position(|segment| segment.name == name);
+        if place.is_none() {
+            let is_fixed = name == "fixed" || self.case.fixed.iter().any(|set| selects(set, name));
+            let detail = match is_fixed {
+                true => format!(
+                    "{name:?} is fixed and no segment: a wall on it stays, which is what a set without \
+                     `segment` says"
+                ),
+                false => {
+                    let known: Vec<&str> =
+                        segments.iter().map(|other| other.name.as_str()).collect();
+                    let known = known.join(", ");
+                    format!("no segment of the case is called {name:?}; its segments: {known}")
+                }
+            };
+            let pointer = format!("/case/sliding/{index}/segment");
+            self.problems.add(pointer, SceneErrorCode::UnknownSegment, detail);
+        }
+        place.map(|place| place as u32)
+    }
+
+    fn normals(&mut self, index: usize, entry: &Sliding) -> Vec<(u32, Vec<Vector>)> {
+        let nodes = self.select(&entry.nodes, &format!("/case/sliding/{index}/nodes"));
+        let normals = match entry.normal {
+            SlidingNormal::Surface => {
+                sliding::wall_normals(&self.case.volume, self.boundary, &nodes)
+            }
+            SlidingNormal::Direction(direction) => {
+                let unit: Vec<Vector> = direction.try_normalize(1e-12).into_iter().collect();
+                nodes.iter().map(|&node| (node, unit.clone())).collect()
+            }
+        };
+        if let Some((node, _)) = normals.iter().find(|(_, normals)| normals.is_empty()) {
+            let detail = format!("node {node} has no normal to be held across");
+            let pointer = format!("/case/sliding/{index}/normal");
+            self.problems.add(pointer, SceneErrorCode::SlidingNormalZero, detail);
+        }
+        normals
+    }
+
+    /// Refuses nodes that two walls of nearly one direction hold while different things carry these.
+    fn two_carriers(&mut self, walls: &[Wall], segments: &[PlannedSegment]) {
+        for (place, later) in walls.iter().enumerate() {
+            for earlier in walls[..place].iter().filter(|other| other.carrier != later.carrier) {
+                let normals: BTreeMap<u32, &Vec<Vector>> =
+                    earlier.nodes.iter().map(|(node, normals)| (*node, normals)).collect();
+                let is_same = |(node, own): &&(u32, Vec<Vector>)| {
+                    let others = normals.get(node).into_iter().flat_map(|others| others.iter());
+                    others
+                        .into_iter()
+                        .any(|other| own.iter().any(|n| n.dot(other).abs() > SAME_WALL))
+                };
+                let both: Vec<u32> =
+                    later.nodes.iter().filter(is_same).map(|(node, _)| *node).collect();
+                let Some(first) = both.first() else { continue };
+                let [one, other] = [earlier, later].map(|wall| carried_by(wall.carrier, segments));
+                let detail = format!(
+                    "{} nodes, the first is node {first}, slide on a wall {one} and, less than 45 degrees apart, \
+                     on one {other}: one wall cannot follow both",
+                    both.len()
+                );
+                let pointer = format!("/case/sliding/{}", later.index);
+                self.problems.add(pointer, SceneErrorCode::SlidingConflict, detail);
+            }
+        }
+    }
+
+    /// Refuses a wall that one segment carries and that has nodes of another one.
+    fn two_bones(&mut self, walls: &[Wall], segments: &[PlannedSegment], held: &HeldNodes) {
+        for wall in walls {
+            let Some(carrier) = wall.carrier else { continue };
+            let own: BTreeSet<u32> = held.joined[carrier as usize].0.iter().copied().collect();
+            for (other, (nodes, _)) in held.joined.iter().enumerate() {
+                if other == carrier as usize {
+                    continue;
+                }
+                let others: BTreeSet<u32> = nodes.iter().copied().collect();
+                let is_shared = |node: &u32| others.contains(node) && !own.contains(node);
+                let shared: Vec<u32> =
+                    wall.nodes.iter().map(|(node, _)| *node).filter(is_shared).collect();
+                let Some(first) = shared.first() else { continue };
+                let detail = format!(
+                    "the wall {} has {} nodes of segment {:?}, the first is node {first}: leave them out, or give \
+                     them a set of their own",
+                    carried_by(wall.carrier, segments),
+                    shared.len(),
+                    segments[other].name
+                );
+                let pointer = format!("/case/sliding/{}", wall.index);
+                self.problems.add(pointer, SceneErrorCode::SlidingConflict, detail);
+            }
+        }
+    }
+
+    /// Warns of walls that stay while a bone moves that their nodes touch: nodes of it, or on one face of a cell with
+    /// one. Where no segment moves yet, each may.
+    fn beside_moving_bone(
+        &mut self,
+        walls: &[Wall],
+        segments: &[PlannedSegment],
+        held: &HeldNodes,
+    ) {
+        let mut rests = vec![false; self.case.volume.nodes.len()];
+        let resting = walls.iter().filter(|wall| wall.carrier.is_none());
+        resting.flat_map(|wall| &wall.nodes).for_each(|(node, _)| rests[*node as usize] = true);
+        if !rests.contains(&true) {
+            return;
+        }
+        let still = RigidMovement::default();
+        let any_moves = segments.iter().any(|segment| segment.movement != still);
+        let mut bone_of = vec![None; rests.len()];
+        for (number, (nodes, movement)) in (0_u32..).zip(&held.joined) {
+            if !any_moves || *movement != still {
+                nodes.iter().for_each(|&node| bone_of[node as usize] = Some(number));
+            }
+        }
+        let touching = self.touching(&rests, &bone_of);
+        let carried: BTreeSet<(u32, u32)> = walls
+            .iter()
+            .filter_map(|wall| wall.carrier.map(|carrier| (wall, carrier)))
+            .flat_map(|(wall, carrier)| wall.nodes.iter().map(move |(node, _)| (carrier, *node)))
+            .collect();
+        let mut counts: BTreeMap<u32, usize> = BTreeMap::new();
+        for (bone, _) in touching.difference(&carried) {
+            *counts.entry(*bone).or_default() += 1;
+        }
+        for (bone, count) in counts {
+            let moves = if any_moves { "moves" } else { "may move" };
+            let detail = format!(
+                "{count} sliding nodes touch segment {:?}, which {moves}, and their wall stays: name the segment in \
+                 the `segment` of their set where it carries the wall",
+                segments[bone as usize].name
+            );
+            let warning = Warning::new("sliding-beside-segment", detail);
+            self.warnings.push(warning.with("nodes", count as f64));
+        }
+    }
+
+    /// Bones and nodes at rest that are on a face of a cell together.
+    fn touching(&self, rests: &[bool], bone_of: &[Option<u32>]) -> BTreeSet<(u32, u32)> {
+        let mut touching = BTreeSet::new();
+        for (shape, nodes) in self.case.volume.cells.iter() {
+            for face in shape.faces() {
+                let corners = || face.iter().map(|&local| nodes[local]);
+                for node in corners().filter(|&node| rests[node as usize]) {
+                    let bones = corners().filter_map(|other| bone_of[other as usize]);
+                    touching.extend(bones.map(|bone| (bone, node)));
+                }
+            }
+        }
+        touching
+    }
+}
+
+/// Whether a selection is made of, or takes in, a node set of that name.
+fn selects(selection: &NodeSelection, name: &str) -> bool {
+    match selection {
+        NodeSelection::NodeSet(set) => {
+            let plain = |text: &str| text.strip_prefix("set_").unwrap_or(text).to_owned();
+            plain(set) == plain(name)
+        }
+        NodeSelection::Any(parts) => parts.iter().any(|part| selects(part, name)),
+        NodeSelection::Label { .. } | NodeSelection::NearSurface { .. } => false,
+    }
+}
+
+/// In the words of a sentence about a wall.
+fn carried_by(carrier: Option<u32>, segments: &[PlannedSegment]) -> String {
+    match carrier {
+        Some(segment) => format!("that segment {:?} carries", segments[segment as usize].name),
+        None => "that stays".to_owned(),
+    }
+}
+
+/// Warnings of walls that turn with their segments while small strain keeps their normals.
+pub(super) fn turned_normals(scene: &Scene) -> Vec<Warning> {
+    if !scene.settings.method.properties().is_small_strain {
+        return Vec::new();
+    }
+    let segments = (0_u32..).zip(&scene.segments);
+    segments
+        .filter_map(|(number, segment)| {
+            let nodes = scene.conditions.carried_by(number);
+            let warning = normal_turned(&segment.name, &segment.movement)?;
+            (nodes > 0).then(|| warning.with("nodes", nodes as f64))
+        })
+        .collect()
+}
+
+/// The warning of a segment that carries a wall and turns by more than 5 degrees.
+pub fn normal_turned(name: &str, movement: &RigidMovement) -> Option<Warning> {
+    let degrees = movement.angle().to_degrees();
+    let detail = format!(
+        "segment {name:?} carries a wall and turns by {degrees:.1} degrees, and small strain holds its nodes across \
+         the wall as it lay before"
+    );
+    let warning = Warning::new(NORMAL_TURNED, detail).with("rotation_deg", degrees);
+    (degrees > NORMAL_TURNED_DEG).then_some(warning)
+}

@@ -1,0 +1,141 @@
+//! Plans and constants that look like a mistake of the unit.
+
+use mechanics::material::{LinearElastic, MaterialError, PlaneStress, Sheet};
+use mechanics::mesh::{CellShape, Vector, Warning, sample::block};
+use mechanics::model::fem::mass_tensor::MassTensorSettings;
+use mechanics::model::spline::VolumeSpline;
+use mechanics::plan::RigidMovement;
+use mechanics::prediction::{
+    Case, CaseSegment, Load, Method, Plan, Scene, Settings, SkinMembrane, predict,
+};
+use mechanics::progress::Unobserved;
+
+use crate::scenes::{case_of, exact, material, set, solve};
+use crate::support::responses::plan_of;
+
+fn layer() -> Case {
+    let mesh = block(Vector::new(40.0, 20.0, 10.0), [4, 2, 2], CellShape::Hex8);
+    Case {
+        segments: vec![CaseSegment { name: "jaw".to_owned(), nodes: set("z_min") }],
+        fixed: vec![set("x_max")],
+        ..case_of(mesh, material(15.0, 0.45))
+    }
+}
+
+fn shifted(by: f64) -> RigidMovement {
+    RigidMovement::about_pivot(Vector::zeros(), Vector::zeros(), Vector::x() * by)
+}
+
+fn warnings(case: &Case, plan: &Plan, settings: &Settings, code: &str) -> Vec<Warning> {
+    let mut found = Scene::new(case, plan, settings).unwrap().warnings;
+    found.retain(|warning| warning.code == code);
+    found
+}
+
+#[test]
+fn a_plan_that_moves_nothing_says_so_and_a_case_without_one_does_not() {
+    let case = layer();
+    let still = plan_of(&case, &[RigidMovement::default()]);
+    let settings = Settings::default();
+    assert_eq!(warnings(&case, &still, &settings, "nothing-moves").len(), 1);
+    assert_eq!(warnings(&case, &Plan::default(), &settings, "nothing-moves"), []);
+    for plan in [still, Plan::default()] {
+        let scene = Scene::new(&case, &plan, &settings).unwrap();
+        let told = predict(&scene, &Unobserved).unwrap().warnings;
+        assert_eq!(told.iter().filter(|warning| warning.code == "nothing-moves").count(), 1);
+    }
+    let moved = plan_of(&case, &[shifted(0.5)]);
+    assert_eq!(warnings(&case, &moved, &settings, "nothing-moves"), []);
+}
+
+#[test]
+fn a_plan_in_metres_is_told_and_one_beyond_the_face_is_refused() {
+    let case = layer();
+    let told = warnings(
+        &case,
+        &plan_of(&case, &[shifted(0.005)]),
+        &Settings::default(),
+        "plan-units-suspect",
+    );
+    let numbers = &told[0].numbers;
+    assert!((numbers[0].1 - 0.005).abs() < 1e-12 && (numbers[1].1 - 5.0).abs() < 1e-9, "{told:?}");
+    let beyond = Scene::new(&case, &plan_of(&case, &[shifted(46.0)]), &Settings::default());
+    let error = beyond.err().unwrap().0.remove(0);
+    assert_eq!(
+        (error.pointer.as_str(), error.code.name()),
+        ("/plan/segments/0", "plan-out-of-range")
+    );
+    assert!(error.detail.contains("46.000 mm") && error.detail.contains("45.826 mm"), "{error}");
+}
+
+#[test]
+fn a_modulus_no_unit_explains_is_refused_with_its_number() {
+    for modulus in [1e-170, 0.99e-9, 1.01e9] {
+        let error = LinearElastic::new(modulus, 0.3, 1.0).unwrap_err();
+        assert_eq!(error, MaterialError::YoungModulus(modulus));
+        let sheet =
+            Sheet { thickness: 1.5, young_modulus: modulus, poisson_ratio: 0.3, along_lines: None };
+        assert!(PlaneStress::new(&sheet).is_err());
+    }
+    assert!(
+        LinearElastic::new(1e-9, 0.3, 1.0).is_ok() && LinearElastic::new(1e9, 0.3, 1.0).is_ok()
+    );
+    let thin =
+        Sheet { thickness: 0.9e-3, young_modulus: 1.0, poisson_ratio: 0.3, along_lines: None };
+    assert!(PlaneStress::new(&thin).is_err());
+}
+
+#[test]
+fn constants_that_a_wrong_unit_explains_are_told_with_their_numbers() {
+    let told = |constants: [f64; 3], loads: Vec<Load>, thickness: f64| -> Vec<f64> {
+        let mut case = layer();
+        let [modulus, ratio, density] = constants;
+        let material = LinearElastic::new(modulus, ratio, density).unwrap();
+        case.materials.insert("*".to_owned(), material);
+        let sheet =
+            Sheet { thickness, young_modulus: 200.0, poisson_ratio: 0.3, along_lines: None };
+        let membrane = Some(SkinMembrane { sheet: PlaneStress::new(&sheet).unwrap(), lines: None });
+        let settings = Settings { membrane, ..Settings::default() };
+        let plan = Plan { loads, ..plan_of(&case, &[shifted(1.0)]) };
+        let found = warnings(&case, &plan, &settings, "constant-suspect");
+        found.iter().map(|warning| warning.numbers[0].1).collect()
+    };
+    const NONE: [f64; 0] = [];
+    let usual = [15.0, 0.45, 1.0];
+    assert_eq!(told(usual, vec![], 1.5), NONE);
+    assert_eq!(told([0.1, 0.45, 0.0], vec![], 1.5), NONE, "no density is no mistake");
+    // MPa, Pa; kg/m3 are refused, t/mm3 are not.
+    assert_eq!(told([0.015, 0.45, 1.0], vec![], 1.5), [0.015]);
+    assert_eq!(told([1.5e7, 0.45, 1e-9], vec![], 1.5), [1.5e7, 1e-9]);
+    assert_eq!(told(usual, vec![], 0.0015), [0.0015], "metres");
+    let faces = || set("z_max");
+    let loads = vec![
+        Load::Traction { faces: faces(), traction: Vector::z() * 2e3 },
+        Load::Pressure { faces: faces(), pressure: -0.5 },
+        Load::Force { nodes: faces(), force: Vector::x() * 2e5 },
+        Load::Gravity { acceleration: Vector::new(0.0, 0.0, -9.81) },
+    ];
+    assert_eq!(told(usual, loads, 1.5), [2e3, 2e5, 9.81]);
+}
+
+#[test]
+fn a_movement_whose_squares_vanish_is_answered_like_any_other() {
+    let models = [
+        (CellShape::Tet4, Method::FemLinear),
+        (CellShape::Hex8, Method::FemLinear),
+        (CellShape::Tet4, Method::MassTensor(MassTensorSettings::default())),
+        (CellShape::Hex8, Method::VolumeSpline(VolumeSpline::default())),
+    ];
+    for (shape, method) in models {
+        let mesh = block(Vector::new(40.0, 20.0, 10.0), [4, 2, 2], shape);
+        let case = Case { volume: mesh.into(), ..layer() };
+        let settings = Settings { method, ..exact() };
+        let [usual, tiny] = [1.0, 1e-170].map(|by| {
+            let plan = plan_of(&case, &[shifted(by)]);
+            solve(&case, &plan, &settings).displacement
+        });
+        for (u, v) in usual.iter().zip(&tiny) {
+            assert!((u - v * 1e170).norm() < 1e-6, "{:?}: {u} {v}", settings.method);
+        }
+    }
+}
