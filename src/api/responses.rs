@@ -20,10 +20,9 @@ use crate::jobs::response::{
 };
 use crate::library::responses::{Applied, FoundResponse, LoadedResponse, MissingResponse};
 use crate::schema::ErrorCode;
+use crate::schema::applied::{AppliedDocument, AppliedSummary, ApplyDocument};
 use crate::schema::key::Scope;
-use crate::schema::response::{
-    AppliedDocument, AppliedSummary, ApplyDocument, ResponseDescription,
-};
+use crate::schema::response::ResponseDescription;
 use crate::schema::wire::strict;
 use mechanics::format::WriteError;
 

@@ -1,6 +1,7 @@
 //! The JSON documents of the service and the command line: units in the names, every value checked,
 //! converted once to and from the types of the path (mm, ms, mg, mN, kPa, radians).
 
+pub mod applied;
 pub mod case;
 pub mod code;
 pub mod compare;

@@ -231,3 +231,68 @@ fn alignment_takes_back_a_rigid_movement() {
     assert!(aligned.both.max < 1e-6, "{}", aligned.both.max);
     assert!((aligned.unaligned.unwrap().both.mean - 2.0).abs() < 1e-12);
 }
+
+/// A block of 40 x 20 x 10 mm with its documents.
+fn documents(change: impl Fn(&mut serde_json::Value)) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let mesh = sample::block(Vector::new(40.0, 20.0, 10.0), [4, 2, 2], CellShape::Tet4);
+    let bytes = vtu::write(&VolumeOutput::plain(&mesh, Frame::Unspecified)).unwrap();
+    fs::write(folder.path().join("block.vtu"), bytes).unwrap();
+    let mut file = serde_json::json!({
+        "case": {"units": "mm", "volume": "block.vtu",
+            "segments": [{"name": "jaw", "nodes": {"node_set": "x_min"}}],
+            "fixed": [{"node_set": "x_max"}]},
+        "plan": {"segments": [{"name": "jaw", "translation_mm": [-5, 0, 0]}]},
+    });
+    change(&mut file);
+    fs::write(folder.path().join("case.json"), file.to_string()).unwrap();
+    folder
+}
+
+fn predicted(folder: &Path) -> Output {
+    let (case, out) = (folder.join("case.json"), folder.join("out"));
+    facies(&["predict", "--case", path(&case), "--out", path(&out)])
+}
+
+#[test]
+fn a_face_that_nothing_holds_a_case_without_a_plan_and_constants_of_no_unit_end_with_code_2() {
+    let cases: [(&dyn Fn(&mut serde_json::Value), &str); 3] = [
+        (&|file| file["case"]["fixed"] = serde_json::json!([]), "(nothing-held)"),
+        (&|file| _ = file.as_object_mut().unwrap().remove("plan"), "there is no plan"),
+        (
+            &|file| {
+                let stiffness = serde_json::json!({"young_modulus_kpa": 1e-170});
+                file["spec"] = serde_json::json!({"materials": {"*": stiffness}});
+            },
+            "at least 1e-9 and at most 1e9 kPa",
+        ),
+    ];
+    for (change, words) in cases {
+        let folder = documents(change);
+        let done = predicted(folder.path());
+        assert_eq!(done.status.code(), Some(2), "{}", text(&done.stderr));
+        assert!(text(&done.stderr).contains(words), "{}", text(&done.stderr));
+    }
+    let folder = documents(|file| file["case"]["allow_unfixed"] = serde_json::json!(true));
+    assert_eq!(predicted(folder.path()).status.code(), Some(0));
+}
+
+#[test]
+fn what_looks_like_a_mistake_is_told_by_check_and_by_predict() {
+    let folder = documents(|file| {
+        file["plan"]["segments"][0]["translation_mm"] = serde_json::json!([-0.005, 0, 0]);
+        file["case"]["sliding"] = serde_json::json!([{"nodes": {"node_set": "y_min"}}]);
+        file["case"]["segments"][0]["nodes"] = serde_json::json!({"node_set": "z_min"});
+        file["spec"] = serde_json::json!({"materials": {"*": {"young_modulus_kpa": 0.015}}});
+    });
+    let case = folder.path().join("case.json");
+    let checked = facies(&["check", "--case", path(&case)]);
+    for done in [&checked, &predicted(folder.path())] {
+        let shown = text(&done.stdout);
+        for code in ["(plan-units-suspect)", "(constant-suspect)"] {
+            assert!(shown.contains(code), "{shown}");
+        }
+        // The jaw goes along this wall.
+        assert!(!shown.contains("(sliding-beside-segment)"), "{shown}");
+    }
+}

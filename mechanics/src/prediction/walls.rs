@@ -18,7 +18,10 @@ use crate::plan::{PlannedSegment, RigidMovement};
 /// Above this turn of a segment, in degrees, small strain is told to keep the normals of its walls.
 pub const NORMAL_TURNED_DEG: f64 = 5.0;
 
-/// The code of that warning.
+/// A bone that goes across a wall by less than this, in mm, slides along it.
+const ACROSS_MM: f64 = 1e-6;
+
+/// The code of the warning of turned normals.
 pub const NORMAL_TURNED: &str = "sliding-normal-turned";
 
 /// A set of sliding nodes as the case states it.
@@ -167,40 +170,42 @@ impl Check<'_> {
         }
     }
 
-    /// Warns of walls that stay while a bone moves that their nodes touch: nodes of it, or on one face of a cell with
-    /// one. Where no segment moves yet, each may.
+    /// Warns of walls that stay while a bone moves across them that their nodes touch: nodes of it, or on one face of a
+    /// cell with one. Where no segment moves yet, each may.
     fn beside_moving_bone(
         &mut self,
         walls: &[Wall],
         segments: &[PlannedSegment],
         held: &HeldNodes,
     ) {
-        let mut rests = vec![false; self.case.volume.nodes.len()];
         let resting = walls.iter().filter(|wall| wall.carrier.is_none());
-        resting.flat_map(|wall| &wall.nodes).for_each(|(node, _)| rests[*node as usize] = true);
-        if !rests.contains(&true) {
+        let mut resting_walls: BTreeMap<u32, Vec<Vector>> = BTreeMap::new();
+        for (node, normals) in resting.flat_map(|wall| &wall.nodes) {
+            resting_walls.entry(*node).or_default().extend(normals);
+        }
+        if resting_walls.is_empty() || segments.is_empty() {
             return;
         }
-        let still = RigidMovement::default();
-        let any_moves = segments.iter().any(|segment| segment.movement != still);
-        let mut bone_of = vec![None; rests.len()];
-        for (number, (nodes, movement)) in (0_u32..).zip(&held.joined) {
-            if !any_moves || *movement != still {
-                nodes.iter().for_each(|&node| bone_of[node as usize] = Some(number));
-            }
-        }
-        let touching = self.touching(&rests, &bone_of);
         let carried: BTreeSet<(u32, u32)> = walls
             .iter()
             .filter_map(|wall| wall.carrier.map(|carrier| (wall, carrier)))
             .flat_map(|(wall, carrier)| wall.nodes.iter().map(move |(node, _)| (carrier, *node)))
             .collect();
+        let still = RigidMovement::default();
+        let any_moves = segments.iter().any(|segment| segment.movement != still);
+        let crosses = |(bone, node): &(u32, u32)| {
+            let place = &self.case.volume.nodes[*node as usize];
+            let moved = segments[*bone as usize].movement.displacement(place);
+            let mut normals = resting_walls[node].iter();
+            !any_moves || normals.any(|normal| normal.dot(&moved).abs() > ACROSS_MM)
+        };
         let mut counts: BTreeMap<u32, usize> = BTreeMap::new();
-        for (bone, _) in touching.difference(&carried) {
+        let touching = self.touching(&resting_walls, held);
+        for (bone, _) in touching.difference(&carried).filter(|pair| crosses(pair)) {
             *counts.entry(*bone).or_default() += 1;
         }
         for (bone, count) in counts {
-            let moves = if any_moves { "moves" } else { "may move" };
+            let moves = if any_moves { "moves across their wall" } else { "may move" };
             let detail = format!(
                 "{count} sliding nodes touch segment {:?}, which {moves}, and their wall stays: name the segment in \
                  the `segment` of their set where it carries the wall",
@@ -211,13 +216,23 @@ impl Check<'_> {
         }
     }
 
-    /// Bones and nodes at rest that are on a face of a cell together.
-    fn touching(&self, rests: &[bool], bone_of: &[Option<u32>]) -> BTreeSet<(u32, u32)> {
+    /// Bones and nodes of walls that are on a face of a cell together.
+    fn touching(
+        &self,
+        walls: &BTreeMap<u32, Vec<Vector>>,
+        held: &HeldNodes,
+    ) -> BTreeSet<(u32, u32)> {
+        let nodes = self.case.volume.nodes.len();
+        let (mut on_wall, mut bone_of) = (vec![false; nodes], vec![None; nodes]);
+        walls.keys().for_each(|&node| on_wall[node as usize] = true);
+        for (number, (members, _)) in (0_u32..).zip(&held.joined) {
+            members.iter().for_each(|&node| bone_of[node as usize] = Some(number));
+        }
         let mut touching = BTreeSet::new();
         for (shape, nodes) in self.case.volume.cells.iter() {
             for face in shape.faces() {
                 let corners = || face.iter().map(|&local| nodes[local]);
-                for node in corners().filter(|&node| rests[node as usize]) {
+                for node in corners().filter(|&node| on_wall[node as usize]) {
                     let bones = corners().filter_map(|other| bone_of[other as usize]);
                     touching.extend(bones.map(|bone| (bone, node)));
                 }

@@ -184,6 +184,7 @@ fn a_bone_that_carries_all_tissue_around_is_a_rotation_and_the_estimate_knows_th
     let case = Case {
         skin: Some(set("z_max")),
         segments: vec![segment("z_min")],
+        allow_unfixed: true,
         ..case_of(mesh, material(15.0, 0.46))
     };
     let columns = columns(&case, &tight());

@@ -20,9 +20,11 @@ const CATALOGUE: &[ErrorCode] = &[
     ErrorCode::MissingMaterial,
     ErrorCode::NotInResponse,
     ErrorCode::NotLinear,
+    ErrorCode::NothingHeld,
     ErrorCode::PlanConflict,
     ErrorCode::PlanNotRigid,
     ErrorCode::PlanOutOfRange,
+    ErrorCode::SlidingConflict,
     ErrorCode::Underconstrained,
     ErrorCode::UnknownSegment,
 ];

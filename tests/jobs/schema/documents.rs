@@ -367,7 +367,8 @@ fn the_hash_of_a_job_depends_on_what_decides_its_numbers_and_on_nothing_else() {
 #[test]
 fn documents_survive_being_written_and_read() {
     let text = r#"{"units":"mm","volume":"v","landmarks":{"pogonion":[0,-70,-40]},"skin":{"node_set":"s"},
-        "sliding":[{"nodes":{"node_set":"a"},"normal":[0,0,1]},{"nodes":{"node_set":"b"},"normal":"surface"}]}"#;
+        "sliding":[{"nodes":{"node_set":"a"},"normal":[0,0,1]},{"nodes":{"node_set":"b"},"normal":"surface","segment":"jaw"}],
+        "allow_unfixed":true}"#;
     let case: CaseDocument = parse(text).expect("accepted");
     let again: CaseDocument = parse(&canonical::to_value(&case).to_string()).expect("accepted");
     assert_eq!(case, again);

@@ -100,7 +100,9 @@ async fn a_case_that_only_a_plan_holds_is_kept() {
     loose["plan"] = json!({"segments": []});
     let answer = ask(server.post("/v1/jobs").json(&loose)).await;
     answer.problem(422, "underconstrained");
-    loose["plan"] = json!({"segments": [{"name": "z_min", "translation_mm": [1, 0, 0]}]});
+    let moved = json!({"name": "z_min", "translation_mm": [1, 0, 0]});
+    let still = json!({"name": "z_max", "translation_mm": [0, 0, 0]});
+    loose["plan"] = json!({"segments": [moved, still]});
     server.job(&loose).await.expect(StatusCode::OK);
 }
 

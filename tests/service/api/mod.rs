@@ -9,6 +9,7 @@ mod cases;
 mod clients_that_stall;
 mod error_codes;
 mod events;
+mod held;
 mod idempotency;
 mod images;
 mod jobs;

@@ -98,7 +98,8 @@ fn of_cube<'a>(case: &Case, prediction: &'a Prediction) -> &'a [Vector] {
 
 #[test]
 fn a_wall_that_moves_along_itself_moves_no_tissue() {
-    for (shape, settings) in models() {
+    // The control points of a spline reach from the cube to the bone.
+    for (shape, settings) in models().into_iter().take(EXACT) {
         let case = between_walls(shape, 0.46);
         let prediction = solve(&case, &moved(shifted([8.0, 0.0, 0.0])), &settings);
         let largest = of_cube(&case, &prediction).iter().map(|u| u.norm()).fold(0.0, f64::max);
@@ -235,9 +236,16 @@ fn a_layer_over_a_jaw_with_teeth_rises_as_it_was_computed_independently() {
     let (prediction, [_, by_area]) = on_skin(&case, shifted([0.0, 0.0, 3.0]));
     assert!((by_area.mean - 0.72).abs() < 0.005, "{}", by_area.mean);
     let told = prediction.warnings.iter().find(|w| w.code == "sliding-beside-segment").unwrap();
-    assert!(told.detail.contains("\"jaw\", which moves"), "{}", told.detail);
+    assert!(told.detail.contains("\"jaw\", which moves across"), "{}", told.detail);
     // The square around the 6 x 6 nodes of the jaw.
     assert_eq!(told.numbers, [("nodes", 28.0)]);
+    // Along them it may go, as along a plane of symmetry; before there is a plan it may go anywhere.
+    let told = |plan: &Plan| {
+        let warnings = Scene::new(&case, plan, &exact()).unwrap().warnings;
+        warnings.into_iter().find(|warning| warning.code == "sliding-beside-segment")
+    };
+    assert_eq!(told(&moved(shifted([3.0, 0.0, 0.0]))), None);
+    assert!(told(&Plan::default()).unwrap().detail.contains("which may move"));
 }
 
 #[test]
