@@ -3,9 +3,11 @@
 use super::case::{Case, Plan, Settings};
 use super::check::Check;
 use super::cut;
+use super::far_segment::far_segments;
 use super::fibres::Tissues;
 use super::problem::SceneErrors;
 use super::scene::Scene;
+use super::skin_check::doubtful_skin;
 use super::stiff_layer;
 use crate::boundary::tearing;
 use crate::mesh::Vector;
@@ -30,6 +32,7 @@ impl Scene {
         // 2. What every node is held to.
         let (segments, held) = check.held_nodes(plan, settings.sliding);
         let conditions = check.conditions(&held);
+        let far = far_segments(case, &held);
 
         // 3. The skin and what acts on the tissue.
         let skin = check.skin(&conditions);
@@ -62,6 +65,8 @@ impl Scene {
         check.problems.give_up_if_any()?;
         scene.warnings = scene.conditions.warnings.clone();
         scene.warnings.extend(check.warnings);
+        scene.warnings.extend(far);
+        scene.warnings.extend(doubtful_skin(&scene, case.skin.is_some()));
         scene.warnings.extend(cut::duplicate_nodes(&scene.mesh, &check.boundary_nodes));
         scene.warnings.extend(tearing::tearing(&scene.mesh, &scene.conditions.holds));
         scene.warnings.extend(scene.locking());

@@ -6,5 +6,6 @@ pub mod elements;
 mod fibres;
 mod jump;
 mod patch;
+mod skin;
 mod slab_table;
 mod sliding;
