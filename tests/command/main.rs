@@ -86,6 +86,28 @@ fn what_is_held_is_told_before_anything_is_solved() {
 }
 
 #[test]
+fn a_segment_on_the_set_of_another_bone_is_told_by_the_check() {
+    let folder = tempfile::tempdir().unwrap();
+    let read = fs::read_to_string(block().join("case.json")).unwrap();
+    let mut documents: serde_json::Value = serde_json::from_str(&read).unwrap();
+    for name in ["block.vtu", "mandible.stl"] {
+        fs::copy(block().join(name), folder.path().join(name)).unwrap();
+    }
+    let case = folder.path().join("case.json");
+    let shown = |documents: &serde_json::Value| {
+        fs::write(&case, documents.to_string()).unwrap();
+        let done = facies(&["check", "--case", path(&case)]);
+        assert_eq!(done.status.code(), Some(0), "{}", text(&done.stderr));
+        text(&done.stdout) + &text(&done.stderr)
+    };
+    assert!(!shown(&documents).contains("from the bone of its name"));
+    documents["case"]["segments"][0]["nodes"]["node_set"] = "skull".into();
+    documents["case"]["fixed"][0]["node_set"] = "mandible".into();
+    let told = shown(&documents);
+    assert!(told.contains(r#"the nodes of segment "mandible" lie"#), "{told}");
+}
+
+#[test]
 fn a_command_that_has_no_store_refuses_to_keep_meshes() {
     let folder = tempfile::tempdir().unwrap();
     let read = fs::read_to_string(block().join("case.json")).unwrap();

@@ -10,10 +10,9 @@ use crate::mesh::disjoint_sets::DisjointSets;
 use crate::mesh::surface_edges::edges;
 use crate::mesh::{TriangleSurface, Vector, Warning};
 
-/// Shares of the skin above which it is told: a scan ends somewhere, and a few nodes are held at its end.
+/// Shares of the skin above which it is told: a few nodes are held where a scan ends.
 const MOST_HELD: f64 = 0.1;
 const MOST_INWARDS: f64 = 0.1;
-const MOST_BEYOND_EDGES: f64 = 0.02;
 
 /// The cosine between two faces that meet in a sharp edge: more than 60 degrees apart.
 const SHARP: f64 = 0.5;
@@ -26,8 +25,8 @@ const MEASURED_FACES: usize = 1000;
 
 /// Warnings of a skin that is no skin.
 pub(super) fn doubtful_skin(scene: &Scene, is_stated: bool) -> Vec<Warning> {
-    let beyond = || (!is_stated).then(|| beyond_edges(&scene.skin.surface)).flatten();
-    [held_skin(scene), inward_skin(scene), beyond()].into_iter().flatten().collect()
+    let unnamed = (!is_stated).then(|| unnamed_skin(&scene.skin.surface));
+    [unnamed, held_skin(scene), inward_skin(scene)].into_iter().flatten().collect()
 }
 
 /// Skin nodes that do not move freely.
@@ -93,8 +92,8 @@ fn inward_skin(scene: &Scene) -> Option<Warning> {
     (share > MOST_INWARDS).then(|| warning.with("faces_measured", measured.len() as f64))
 }
 
-/// A skin that nobody named is every free face; sharp edges part it from cut rims and inner surfaces.
-fn beyond_edges(surface: &TriangleSurface) -> Option<Warning> {
+/// A skin that nobody named is every free face; sharp edges part what faces forward from rims where tissue was cut.
+fn unnamed_skin(surface: &TriangleSurface) -> Warning {
     let mut parts = DisjointSets::new(surface.triangles.len());
     let sides = surface.sorted_sides();
     for edge in edges(&sides) {
@@ -111,15 +110,13 @@ fn beyond_edges(surface: &TriangleSurface) -> Option<Warning> {
     let whole: f64 = areas.iter().sum();
     let largest = areas.iter().copied().fold(0.0, f64::max);
     let count = areas.iter().filter(|area| **area > 0.0).count();
-    let share = 1.0 - largest / whole.max(f64::MIN_POSITIVE);
     let detail = format!(
-        "no skin is named, so that it is every free face; edges sharper than 60 degrees divide it into {count} parts, \
-         and {:.0} % of it is not the largest: cut rims and inner surfaces count as skin",
-        100.0 * share
+        "no skin is named, so that it is every free face, {:.0} mm2: cut rims and the inner sides of lips and cheeks \
+         count; edges sharper than 60 degrees divide it into {count} parts",
+        whole
     );
-    let warning = Warning::new("skin-with-rims", detail)
+    Warning::new("skin-unnamed", detail)
+        .with("area_mm2", whole)
         .with("parts", count as f64)
-        .with("share", share)
-        .with("area_mm2", whole - largest);
-    (share > MOST_BEYOND_EDGES).then_some(warning)
+        .with("share_of_largest", largest / whole.max(f64::MIN_POSITIVE))
 }

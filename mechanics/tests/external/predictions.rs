@@ -80,28 +80,19 @@ fn crossings(case: &Case, plan: &Plan) -> (u64, u64, Option<Warning>) {
     (count(&scene.skin.surface), count(&moved), told)
 }
 
-/// Counted by another program too: 8 pairs at rest, 35 and 107 with the jaw 4 and 8 mm up.
+/// The 6 pairs at rest were counted by another program too.
 fn a_jaw_raised_into_the_lips_of_a_real_face_is_told() -> Result<(), Missing> {
     let case = subject()?;
     let (rest, moved, told) = crossings(&case, &Plan::default());
-    println!("rest {rest} {moved} {told:?}");
-    let bytes = std::fs::read(shared_data("face/subject_face_skin.stl")?).unwrap();
-    let stl = surface(read_default(&bytes));
-    println!("stl {:?}", self_crossings(&stl, |_| true));
-    for (by, wanted) in [(4.0, 35), (8.0, 107)] {
-        let (_, moved, told) = crossings(&case, &raised(by));
-        println!("{by} mm: {moved} pairs, {told:?}, {wanted}");
-    }
-    assert_eq!((rest, moved, told), (8, 8, None));
-    for (by, wanted) in [(4.0, 35), (8.0, 107)] {
+    assert_eq!((rest, moved, told), (6, 6, None));
+    for (by, wanted) in [(4.0, 25), (8.0, 71)] {
         let (_, moved, told) = crossings(&case, &raised(by));
         println!("{by} mm: {moved} pairs, {told:?}");
         assert_eq!(moved, wanted, "{by} mm");
         let numbers: BTreeMap<&str, f64> = told.unwrap().numbers.into_iter().collect();
-        assert_eq!(numbers["pairs_at_rest"], 8.0);
-        let new = numbers["pairs"];
-        assert!(new <= wanted as f64 && new + 8.0 >= wanted as f64, "{by} mm: {numbers:?}");
-        assert!(numbers["depth_mm"] > 0.3 && numbers["depth_mm"] < by, "{by} mm: {numbers:?}");
+        // Those that crossed at rest do so no longer.
+        assert_eq!((numbers["pairs"], numbers["pairs_at_rest"]), (wanted as f64, 6.0));
+        assert!(numbers["depth_mm"] > 0.1 && numbers["depth_mm"] < by, "{by} mm: {numbers:?}");
     }
     Ok(())
 }
@@ -145,21 +136,19 @@ fn swapped_sets_and_the_inside_of_a_real_face_are_told() -> Result<(), Missing> 
         let scene = Scene::new(case, &Plan::default(), &Settings::default()).unwrap();
         scene.warnings.into_iter().map(|warning| (warning.code, warning)).collect()
     };
-    let codes = ["segment-far-from-bone", "skin-held", "skin-inwards", "skin-with-rims"];
+    let codes = ["segment-far-from-bone", "skin-held", "skin-inwards", "skin-unnamed"];
     let right = told(&case);
-    println!("{right:?}");
     assert!(codes.iter().all(|code| !right.contains_key(code)), "{right:?}");
     case.segments[0].nodes = set("skull_fixed_orig");
     case.fixed = vec![set("jaw_attached")];
     case.skin = Some(set("inner"));
     let wrong = told(&case);
-    println!("{wrong:?}");
     assert!(codes[..2].iter().all(|code| wrong.contains_key(code)), "{wrong:?}");
     let far: BTreeMap<&str, f64> = wrong["segment-far-from-bone"].numbers.iter().copied().collect();
     assert!((far["median_mm"] - 42.9).abs() < 1.0, "{far:?}");
-    case.skin = None;
-    println!("{:?}", told(&case));
-    assert!(told(&case).contains_key("skin-with-rims"));
+    let mut unnamed = subject()?;
+    unnamed.skin = None;
+    assert!(told(&unnamed).contains_key("skin-unnamed"));
     Ok(())
 }
 

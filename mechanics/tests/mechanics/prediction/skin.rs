@@ -194,13 +194,15 @@ fn a_skin_that_faces_what_holds_the_tissue_is_told() {
 }
 
 #[test]
-fn a_skin_that_nobody_named_is_told_to_have_rims() {
+fn a_skin_that_nobody_named_is_told_with_its_area_and_its_parts() {
     let mut case = two_bones();
     case.skin = None;
     let found = warnings(&case);
-    let rims = told(&found, "skin-with-rims").expect("the sides of a slab");
-    // The top, 60 x 20 mm, against four sides and what is free below.
-    assert!(number(rims, "parts") >= 5.0 && number(rims, "share") > 0.3, "{rims:?}");
+    let unnamed = told(&found, "skin-unnamed").expect("no skin is named");
+    // The top and four sides, of which only the faces that touch no held node count, and what is free below.
+    assert_eq!(number(unnamed, "parts"), 6.0);
+    let area = number(unnamed, "area_mm2");
+    assert!((number(unnamed, "share_of_largest") * area - 1200.0).abs() < 1e-9, "{unnamed:?}");
     case.skin = Some(set("z_max"));
-    assert_eq!(told(&warnings(&case), "skin-with-rims"), None);
+    assert_eq!(told(&warnings(&case), "skin-unnamed"), None);
 }
