@@ -228,7 +228,8 @@ impl From<ContentFormat> for ExportFormat {
     }
 }
 
-/// The mesh as a file, written anew from what was understood of the upload, in its unit and frame.
+/// The mesh as a file, written anew from what was understood of the upload, in its unit and frame; a volume mesh in
+/// RAS is written in LPS and marked so, because 3D Slicer reads no other frame from a VTU file that meshio reads.
 #[utoipa::path(
     get, path = "/v1/meshes/{id}/content", operation_id = "download_mesh", tag = "meshes",
     params(("id" = uuid::Uuid, Path, description = "the mesh"), ContentParameters),
@@ -260,14 +261,17 @@ async fn content(
     let format = parameters.format.map_or(stored_as, ExportFormat::from);
     super::guard::check_accept(&headers, format.media_type())?;
     let blob = row.blob.clone();
-    let bytes = if format == stored_as {
+    let frame = document.report.space.or(document.frame);
+    let is_turned = format == ExportFormat::Vtu && frame == Some(FrameName::Ras);
+    let bytes = if format == stored_as && !is_turned {
         service.store.read_blob(&blob).await?
     } else {
         let mesh = service.library.open(row).await?;
         Bytes::from(service.compute(move || export(&mesh, format)).await??)
     };
     let name = format!("{id}.{}", format.name());
-    let tag = format!("{blob}-{}", format.name());
+    let in_lps = if is_turned { "-lps" } else { "" };
+    let tag = format!("{blob}-{}{in_lps}", format.name());
     conditional::file(&headers, &bytes, (format.media_type(), &name), &tag)
 }
 

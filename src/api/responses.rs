@@ -1,6 +1,5 @@
 //! Plan responses: the columns for clients that add them up themselves, and the skin for one plan.
 
-use std::sync::Arc;
 use std::time::Instant;
 
 use axum::extract::Request;
@@ -20,8 +19,9 @@ use crate::jobs::response::{
 };
 use crate::library::responses::{Applied, FoundResponse, LoadedResponse, MissingResponse};
 use crate::schema::ErrorCode;
-use crate::schema::applied::{AppliedDocument, AppliedSummary, ApplyDocument};
+use crate::schema::applied::{AppliedDocument, ApplyDocument};
 use crate::schema::key::Scope;
+use crate::schema::predict::document::{RANGES_MM, USUAL_RANGE_MM};
 use crate::schema::response::ResponseDescription;
 use crate::schema::wire::strict;
 use mechanics::format::WriteError;
@@ -42,15 +42,41 @@ struct ResponseParameters {
     job: Option<String>,
 }
 
+#[derive(Deserialize, IntoParams)]
+#[serde(deny_unknown_fields)]
+#[into_params(parameter_in = Query)]
+struct ApplyParameters {
+    /// The job that built the response. Default: the newest that was built for the case as it is now,
+    /// whatever materials and segments its spec names; the answer says which.
+    #[param(format = Uuid)]
+    job: Option<String>,
+    /// The displacement in mm at which the colours of `model/gltf-binary` end; they begin at 0. Default: 10.
+    #[param(minimum = 0.001, maximum = 1000.0)]
+    range_mm: Option<f64>,
+    /// Whether triangles of the moved skin are looked for that pass through each other and do not at rest (warning
+    /// `skin-overlaps`): some milliseconds for each ten thousand triangles. Default: false, and the answer says that
+    /// it was not measured.
+    check_skin: Option<bool>,
+}
+
+impl ApplyParameters {
+    fn range_mm(&self) -> ApiResult<f64> {
+        let range = self.range_mm.unwrap_or(USUAL_RANGE_MM);
+        match RANGES_MM.contains(&range) {
+            true => Ok(range),
+            false => {
+                let detail = format!("{range} mm is not within 0.001 to 1000 mm");
+                Err(ApiError::invalid_parameter("range_mm", detail))
+            }
+        }
+    }
+}
+
 /// The response that a request means.
-async fn find(
-    service: &Service,
-    case: &str,
-    parameters: &ResponseParameters,
-) -> ApiResult<FoundResponse> {
-    let job = match &parameters.job {
+async fn find(service: &Service, case: &str, job: Option<&str>) -> ApiResult<FoundResponse> {
+    let job = match job {
         Some(text) => {
-            let unknown = || refusal(MissingResponse::NotOfCase { job: text.clone() });
+            let unknown = || refusal(MissingResponse::NotOfCase { job: text.to_owned() });
             Some(spelled(text).ok_or_else(unknown)?)
         }
         None => None,
@@ -78,8 +104,8 @@ fn refusal(missing: MissingResponse) -> ApiError {
     get, path = "/v1/cases/{id}/response", operation_id = "show_response", tag = "responses",
     params(("id" = uuid::Uuid, Path, description = "the case"), ResponseParameters),
     responses(
-        (status = 200, description = "the description, or the columns as little-endian f32 [column][node][xyz] in mm", content(
-            (ResponseDescription = "application/json"), (Vec<u8> = "application/octet-stream")),
+        (status = 200, description = "the description; or the columns as little-endian f32 [column][node][xyz] in mm; or the skin at rest, its vertices in the order of `node_ids`", content(
+            (ResponseDescription = "application/json"), (Vec<u8> = "application/octet-stream"), (Vec<u8> = "model/gltf-binary")),
             headers(("ETag" = String, description = "the hash of the content"))),
         (status = 206, description = "the range that was asked for", content((Vec<u8> = "*/*"))),
         (status = 304, description = "the client has it already"),
@@ -94,9 +120,12 @@ async fn show(
     Parameters(parameters): Parameters<ResponseParameters>,
     headers: HeaderMap,
 ) -> ApiResult {
-    let wanted = preferred(&headers, &[DESCRIPTION_MEDIA_TYPE, COLUMNS_MEDIA_TYPE])?;
-    let found = find(&service, &id, &parameters).await?;
-    let file = [DESCRIPTION_FILE, COLUMNS_FILE][wanted];
+    let offered = [DESCRIPTION_MEDIA_TYPE, COLUMNS_MEDIA_TYPE, GLB_MEDIA_TYPE];
+    let wanted = preferred(&headers, &offered)?;
+    let found = find(&service, &id, parameters.job.as_deref()).await?;
+    let Some(file) = [DESCRIPTION_FILE, COLUMNS_FILE].get(wanted) else {
+        return rest(&service, &found, &headers).await;
+    };
     let row = service.store.job_file(&found.job, file).await?;
     let row = row.ok_or_else(|| refusal(MissingResponse::NotBuilt))?;
     let response = if conditional::is_known(&headers, &row.blob) {
@@ -109,6 +138,21 @@ async fn show(
     Ok(with_header(response, HeaderName::from_static("facies-job"), &found.job))
 }
 
+/// The skin at rest as binary glTF. Its tag is that of the description, which the same job wrote.
+async fn rest(service: &Service, found: &FoundResponse, headers: &HeaderMap) -> ApiResult {
+    let tag = format!("{}-rest", found.job);
+    let response = if conditional::is_known(headers, &tag) {
+        conditional::not_modified(&tag)
+    } else {
+        let loaded = service.responses.load(found).await?;
+        let bytes = service.compute(move || loaded.rest_glb()).await?;
+        let bytes = bytes.map_err(ApiError::internal)?.into();
+        conditional::file(headers, &bytes, (GLB_MEDIA_TYPE, "rest.glb"), &tag)?
+    };
+    let response = with_header(response, header::VARY, "Accept");
+    Ok(with_header(response, HeaderName::from_static("facies-job"), &found.job))
+}
+
 /// The skin after a plan, exact within linear elasticity, in milliseconds. Segments that the plan does not
 /// name stay where they are. What linearity leaves out is estimated as 0.15 d^2 / h + 2.7 h (1 - cos theta)
 /// with d the largest movement of a segment against another or against what stays, h the thickness of the
@@ -116,7 +160,7 @@ async fn show(
 /// warning `outside-linear-range`. Beside a binary body the numbers stand in headers.
 #[utoipa::path(
     post, path = "/v1/cases/{id}/response/apply", operation_id = "apply_response", tag = "responses",
-    params(("id" = uuid::Uuid, Path, description = "the case"), ResponseParameters),
+    params(("id" = uuid::Uuid, Path, description = "the case"), ApplyParameters),
     request_body = ApplyDocument,
     responses(
         (status = 200, description = "displacement of the skin nodes in mm; as octets little-endian f32 xyz a node in the order of `node_ids`; or the moved skin", content(
@@ -127,8 +171,9 @@ async fn show(
                 ("Facies-Largest-Rotation-Deg" = f64, description = "the largest rotation of a segment"),
                 ("Facies-Nonlinearity-Estimate-Mm" = f64, description = "an order of magnitude of what linearity leaves out"),
                 ("Facies-Within-Linear-Range" = bool, description = "whether that is at most 0.5 mm"),
-                ("Facies-Warning" = Option<String>, description = "the codes of the warnings: outside-linear-range, nothing-moves, plan-units-suspect, sliding-normal-turned"),
-                ("Server-Timing" = String, description = "milliseconds to find the response, to add up its columns, and to write the answer"))),
+                ("Facies-Warning" = Option<String>, description = "the codes of the warnings: outside-linear-range, nothing-moves, plan-units-suspect, sliding-normal-turned, skin-overlaps"),
+                ("Facies-Not-Measured" = Option<String>, description = "skin-overlaps, without `check_skin`"),
+                ("Server-Timing" = String, description = "milliseconds to find the response, to add up its columns, to check the skin, and to write the answer"))),
         (status = 404, description = "there is no such case, or no response was built"),
         (status = 409, description = "the case or the program changed since the response was built"),
         (status = 422, description = "the plan asks for what the response does not know: loads, prescribed displacements, other segments, movements beyond the limits"),
@@ -137,15 +182,20 @@ async fn show(
 async fn apply(
     service: Service,
     Id(id): Id,
-    Parameters(parameters): Parameters<ResponseParameters>,
+    Parameters(parameters): Parameters<ApplyParameters>,
     request: Request,
 ) -> ApiResult {
     let started = Instant::now();
     let offered = [DESCRIPTION_MEDIA_TYPE, COLUMNS_MEDIA_TYPE, GLB_MEDIA_TYPE];
     let media_type = offered[preferred(request.headers(), &offered)?];
+    let wanted = Wanted {
+        media_type,
+        range_mm: parameters.range_mm()?,
+        check_skin: parameters.check_skin.unwrap_or(false),
+    };
     let bytes = body::json(&service, request).await?;
     let document: ApplyDocument = strict::parse(&bytes, &service.limits)?;
-    let found = find(&service, &id, &parameters).await?;
+    let found = find(&service, &id, parameters.job.as_deref()).await?;
     let loaded = service.responses.load(&found).await?;
     let movements = loaded.description.movements(&document.plan, &service.limits)?;
     let loading = started.elapsed();
@@ -155,53 +205,64 @@ async fn apply(
     let job = found.job.clone();
     let computed = tokio::task::spawn_blocking(move || {
         let started = Instant::now();
-        let applied = loaded.apply(&movements);
+        let mut applied = loaded.apply(&movements);
         let applying = started.elapsed();
-        let body = encoded(&loaded, &applied, media_type, &job);
-        let codes: Vec<String> = applied.warnings.into_iter().map(|of| of.code).collect();
-        (body, (applied.summary, codes), applying, started.elapsed() - applying)
+        if wanted.check_skin {
+            loaded.check_skin(&mut applied);
+        }
+        let checking = started.elapsed() - applying;
+        let body = wanted.encoded(&loaded, &applied, &job);
+        (body, applied, applying, checking, started.elapsed() - applying - checking)
     });
-    let (body, (summary, codes), applying, writing) = computed.await.map_err(ApiError::internal)?;
+    let (body, applied, applying, checking, writing) =
+        computed.await.map_err(ApiError::internal)?;
     let body = body.map_err(ApiError::internal)?;
-    let times = [("load", loading), ("apply", applying), ("write", writing)];
+    let times = [("load", loading), ("apply", applying), ("check", checking), ("write", writing)];
     let times = times.map(|(name, time)| format!("{name};dur={:.3}", time.as_secs_f64() * 1e3));
-    let response =
-        with_summary((StatusCode::OK, body).into_response(), &found.job, &summary, &codes);
+    let response = with_summary((StatusCode::OK, body).into_response(), &found.job, &applied);
     let response = with_header(response, header::CONTENT_TYPE, media_type);
     Ok(with_header(response, HeaderName::from_static("server-timing"), &times.join(", ")))
 }
 
-/// The body of an answer.
-fn encoded(
-    loaded: &Arc<LoadedResponse>,
-    applied: &Applied,
-    media_type: &str,
-    job: &str,
-) -> Result<Vec<u8>, WriteError> {
-    match media_type {
-        COLUMNS_MEDIA_TYPE => Ok(applied.to_bytes()),
-        GLB_MEDIA_TYPE => loaded.glb(applied),
-        _ => {
-            let document = AppliedDocument {
-                job: job.to_owned(),
-                node_ids: loaded.description.node_ids.clone(),
-                displacement_mm: applied.to_triples(),
-                summary: applied.summary,
-                warnings: applied.warnings.clone(),
-            };
-            let failed = |_| WriteError::NonFinite { array: "displacement_mm".into(), count: 1 };
-            serde_json::to_vec(&document).map_err(failed)
+/// The form of an answer, and what is looked at for it.
+#[derive(Clone, Copy)]
+struct Wanted {
+    media_type: &'static str,
+    range_mm: f64,
+    check_skin: bool,
+}
+
+impl Wanted {
+    /// The body of an answer.
+    fn encoded(
+        &self,
+        loaded: &LoadedResponse,
+        applied: &Applied,
+        job: &str,
+    ) -> Result<Vec<u8>, WriteError> {
+        match self.media_type {
+            COLUMNS_MEDIA_TYPE => Ok(applied.to_bytes()),
+            GLB_MEDIA_TYPE => loaded.glb(applied, self.range_mm),
+            _ => {
+                let document = AppliedDocument {
+                    job: job.to_owned(),
+                    node_ids: loaded.description.node_ids.clone(),
+                    displacement_mm: applied.to_triples(),
+                    summary: applied.summary,
+                    warnings: applied.warnings.clone(),
+                    not_measured: applied.not_measured(),
+                };
+                let failed =
+                    |_| WriteError::NonFinite { array: "displacement_mm".into(), count: 1 };
+                serde_json::to_vec(&document).map_err(failed)
+            }
         }
     }
 }
 
 /// The numbers of an answer as headers.
-fn with_summary(
-    response: Response,
-    job: &str,
-    summary: &AppliedSummary,
-    codes: &[String],
-) -> Response {
+fn with_summary(response: Response, job: &str, applied: &Applied) -> Response {
+    let summary = &applied.summary;
     let numbers = [
         ("cache-control", "private, no-store".to_owned()),
         ("vary", "Accept".to_owned()),
@@ -211,14 +272,14 @@ fn with_summary(
         ("facies-nonlinearity-estimate-mm", summary.nonlinearity_estimate_mm.to_string()),
         ("facies-within-linear-range", summary.within_linear_range.to_string()),
     ];
-    let response = numbers.into_iter().fold(response, |response, (name, value)| {
+    let warnings: Vec<String> =
+        applied.warnings.iter().map(|warning| warning.code.clone()).collect();
+    let words = [
+        ("facies-warning", warnings.join(", ")),
+        ("facies-not-measured", applied.not_measured().join(", ")),
+    ];
+    let words = words.into_iter().filter(|(_, text)| !text.is_empty());
+    numbers.into_iter().chain(words).fold(response, |response, (name, value)| {
         with_header(response, HeaderName::from_static(name), &value)
-    });
-    match codes.is_empty() {
-        true => response,
-        false => {
-            let name = HeaderName::from_static("facies-warning");
-            with_header(response, name, &codes.join(", "))
-        }
-    }
+    })
 }

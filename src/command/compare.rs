@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 
 use super::failure::CommandError;
-use super::files::FileSource;
+use super::files::{FileSource, ScaleArguments};
 use super::scene::UnitArgument;
 use super::screen::{TerminalProgress, print_warnings};
 use crate::jobs::{CompareInput, JobInput, Workplace, work};
@@ -58,6 +58,8 @@ pub struct Arguments {
     /// The unit of length of both meshes
     #[arg(long, default_value = "mm")]
     units: UnitArgument,
+    #[command(flatten)]
+    scale: ScaleArguments,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -76,7 +78,7 @@ enum NodeWiseArgument {
 /// Compares, writes the result and prints a table.
 pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let limits = Limits::default();
-    let sources = FileSource::new(&PathBuf::new(), arguments.units.unit());
+    let sources = FileSource::new(&PathBuf::new(), arguments.units.unit(), arguments.scale);
     let spec = arguments.document()?;
     let input = JobInput::Compare(CompareInput { job: None, queue_s: None, spec });
     let place = Workplace { sources: &sources, limits: &limits, out: &arguments.out };

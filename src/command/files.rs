@@ -5,26 +5,66 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
-use crate::jobs::{MeshSource, SourceError, StoredMesh};
+use clap::Args;
+
+use crate::jobs::{MeshSize, MeshSource, SourceError, StoredMesh};
+use crate::schema::CaseDocument;
 use crate::schema::case::document::LengthUnit;
 use crate::schema::wire::canonical;
 use mechanics::format::{self, ReadLimits};
 
+/// Whether meshes are refused that no head can measure, as the service refuses them.
+#[derive(Clone, Copy, Debug, Default, Args)]
+pub struct ScaleArguments {
+    /// Takes meshes of any size: without it one that measures less than 5 mm or more than 5 m is refused
+    #[arg(long)]
+    allow_any_scale: bool,
+}
+
+/// What the meshes of files are in.
+enum FileUnits {
+    All(LengthUnit),
+    /// By path, where each case says it for its own; two cases may disagree.
+    OfCases(BTreeMap<String, LengthUnit>),
+}
+
 /// Reads each file once.
 pub struct FileSource {
     folder: PathBuf,
-    /// What every mesh is in; absent where each case says it for its own.
-    units: Option<LengthUnit>,
+    units: FileUnits,
+    allow_any_scale: bool,
     read: Mutex<BTreeMap<String, StoredMesh>>,
 }
 
 impl FileSource {
-    pub fn new(folder: &Path, units: LengthUnit) -> Self {
-        FileSource { units: Some(units), ..FileSource::of_any_unit(folder) }
+    pub fn new(folder: &Path, units: LengthUnit, scale: ScaleArguments) -> Self {
+        FileSource {
+            folder: folder.to_owned(),
+            units: FileUnits::All(units),
+            allow_any_scale: scale.allow_any_scale,
+            read: Mutex::default(),
+        }
     }
 
-    pub fn of_any_unit(folder: &Path) -> Self {
-        FileSource { folder: folder.to_owned(), units: None, read: Mutex::default() }
+    /// Files of several cases.
+    pub fn of_cases<'a>(
+        cases: impl Iterator<Item = &'a CaseDocument>,
+        scale: ScaleArguments,
+    ) -> Self {
+        let named = |case: &CaseDocument| {
+            let units = case.units;
+            case.mesh_ids().into_iter().map(move |id| (id, units))
+        };
+        let units = FileUnits::OfCases(cases.flat_map(named).collect());
+        FileSource { units, ..FileSource::new(Path::new(""), LengthUnit::Mm, scale) }
+    }
+
+    /// The unit that every mesh is in, and the one that a mesh is measured in.
+    fn units_of(&self, id: &str) -> (Option<LengthUnit>, LengthUnit) {
+        match &self.units {
+            FileUnits::All(units) => (Some(*units), *units),
+            FileUnits::OfCases(cases) => (None, cases.get(id).copied().unwrap_or_default()),
+        }
     }
 }
 
@@ -46,7 +86,13 @@ impl MeshSource for FileSource {
             let (code, detail) = ((&error).into(), error.to_string());
             SourceError::Refused { id: id.to_owned(), code, detail }
         })?;
-        let stored = StoredMesh::new(mesh, self.units, canonical::sha256_hex(&bytes));
+        let (stated, measured) = self.units_of(id);
+        let stored = StoredMesh::new(mesh, stated, canonical::sha256_hex(&bytes));
+        let size = MeshSize::of(&stored.shape, measured);
+        size.check(self.allow_any_scale).map_err(|problem| {
+            let detail = format!("{}; --allow-any-scale takes it as it is", problem.detail);
+            SourceError::Refused { id: id.to_owned(), code: problem.code, detail }
+        })?;
         read.insert(id.to_owned(), stored.clone());
         Ok(stored)
     }

@@ -6,7 +6,7 @@ use clap::{Args, ValueEnum};
 
 use super::documents::{CaseFile, read};
 use super::failure::CommandError;
-use super::files::FileSource;
+use super::files::{FileSource, ScaleArguments};
 use crate::schema::case::document::{FrameName, LengthUnit};
 use crate::schema::case::selection::SelectionDocument;
 use crate::schema::methods::ElementName;
@@ -45,6 +45,8 @@ pub struct SceneArguments {
     /// The treatment of cells
     #[arg(long, default_value = "auto", conflicts_with = "case")]
     element: ElementArgument,
+    #[command(flatten)]
+    scale: ScaleArguments,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -104,7 +106,7 @@ impl SceneArguments {
                 return Err(CommandError::Usage(detail.to_owned()));
             }
         };
-        let sources = FileSource::new(&folder, file.case.units);
+        let sources = FileSource::new(&folder, file.case.units, self.scale);
         Ok(Asked { file, folder, sources })
     }
 

@@ -7,7 +7,7 @@ use clap::Args;
 
 use super::documents::{CaseFile, read};
 use super::failure::CommandError;
-use super::files::FileSource;
+use super::files::{FileSource, ScaleArguments};
 use super::screen::{TerminalProgress, print_warnings};
 use super::stability;
 use crate::jobs::study::files::REPORT_JSON;
@@ -65,6 +65,8 @@ pub struct Arguments {
     /// Rows with a larger p95 error of the skin end the program with 1
     #[arg(long, value_name = "MM")]
     threshold_p95_mm: Option<f64>,
+    #[command(flatten)]
+    scale: ScaleArguments,
 }
 
 /// Runs the study, writes its report and prints its rows. Not passing is an error with the exit code of the outcome.
@@ -74,7 +76,7 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
     }
     let input = arguments.input()?;
     let limits = Limits::default();
-    let sources = FileSource::of_any_unit(Path::new(""));
+    let sources = FileSource::of_cases(input.cases.values(), arguments.scale);
     let place = Workplace { sources: &sources, limits: &limits, out: &arguments.out };
     let progress = TerminalProgress::start();
     let done = work(&JobInput::Study(input), &place, &progress);

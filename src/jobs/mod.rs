@@ -11,6 +11,7 @@ mod predict;
 pub mod response;
 pub mod result;
 mod run;
+mod scale;
 mod source;
 pub mod study;
 
@@ -22,5 +23,6 @@ pub use output::{JobOutput, MadeMesh, Workplace};
 pub use predict::{CheckReport, PredictInput, check};
 pub use response::ResponseInput;
 pub use run::work;
+pub use scale::MeshSize;
 pub use source::{MeshSource, SourceError, StoredMesh, StoredShape};
 pub use study::StudyInput;

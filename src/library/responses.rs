@@ -9,14 +9,15 @@ use crate::jobs::response::{COLUMNS_FILE, DESCRIPTION_FILE, REST_FILE};
 use crate::jobs::result::skin::PredictedSkin;
 use crate::schema::applied::AppliedSummary;
 use crate::schema::hashes;
-use crate::schema::predict::document::OutputName;
+use crate::schema::predict::document::{OutputName, USUAL_RANGE_MM};
 use crate::schema::predict::result::NOT_A_DEVICE;
 use crate::schema::response::ResponseDescription;
 use crate::schema::{CaseDocument, WarningDocument};
 use crate::store::{Store, StoreError};
 use mechanics::format::{self, Mesh, ReadLimits, WriteError};
-use mechanics::mesh::{TriangleSurface, Vector};
+use mechanics::mesh::{TriangleSurface, Vector, Warning};
 use mechanics::plan::RigidMovement;
+use mechanics::prediction::{SKIN_OVERLAPS, Skin, skin_overlap};
 use mechanics::response::{Linearity, Response};
 
 /// Jobs whose verdict is remembered; beyond that all are judged anew.
@@ -60,6 +61,8 @@ pub struct Applied {
     pub displacement: Vec<Vector>,
     pub summary: AppliedSummary,
     pub warnings: Vec<WarningDocument>,
+    /// Whether the moved skin was looked at.
+    pub skin_checked: bool,
 }
 
 impl LoadedResponse {
@@ -69,21 +72,37 @@ impl LoadedResponse {
         let summary = AppliedSummary::new(&displacement, &self.linearity.of(movements));
         let mut warnings = summary.warnings();
         warnings.extend(self.description.warnings(movements));
-        Applied { displacement, summary, warnings }
+        Applied { displacement, summary, warnings, skin_checked: false }
     }
 
-    /// The moved skin as binary glTF, coloured by the length of its displacement.
-    pub fn glb(&self, applied: &Applied) -> Result<Vec<u8>, WriteError> {
-        let mut surface = self.rest.clone();
-        for (point, moved) in surface.points.iter_mut().zip(&applied.displacement) {
-            *point += moved;
+    /// Whether the moved skin passes through itself where it did not at rest. Takes milliseconds for each ten thousand
+    /// triangles, so that it is only done where it is asked for.
+    pub fn check_skin(&self, applied: &mut Applied) {
+        let skin = Skin { surface: self.rest.clone(), regions: BTreeMap::new() };
+        let mut moved = self.rest.clone();
+        for (point, by) in moved.points.iter_mut().zip(&applied.displacement) {
+            *point += by;
         }
-        let skin = PredictedSkin {
-            surface,
-            displacement: applied.displacement.clone(),
-            magnitude: applied.displacement.iter().map(Vector::norm).collect(),
-            signed_distance: None,
-        };
+        let overlap = skin_overlap(&skin, &moved);
+        applied.warnings.extend(overlap.iter().map(WarningDocument::from));
+        applied.skin_checked = true;
+    }
+
+    /// The skin at rest as binary glTF, its vertices in the order of `node_ids`.
+    pub fn rest_glb(&self) -> Result<Vec<u8>, WriteError> {
+        self.to_glb(vec![Vector::zeros(); self.rest.points.len()], USUAL_RANGE_MM)
+    }
+
+    /// The moved skin as binary glTF, its vertices in the order of `node_ids`, coloured by the length of its
+    /// displacement up to a range in mm.
+    pub fn glb(&self, applied: &Applied, range_mm: f64) -> Result<Vec<u8>, WriteError> {
+        self.to_glb(applied.displacement.clone(), range_mm)
+    }
+
+    fn to_glb(&self, displacement: Vec<Vector>, range_mm: f64) -> Result<Vec<u8>, WriteError> {
+        let rest = Skin { surface: self.rest.clone(), regions: BTreeMap::new() };
+        let mut skin = PredictedSkin::of_displacement(&rest, displacement);
+        skin.range_mm = range_mm;
         let texts = [
             ("job", self.description.job.clone().unwrap_or_default()),
             ("response_key", self.description.key.clone()),
@@ -102,6 +121,11 @@ impl LoadedResponse {
 }
 
 impl Applied {
+    /// The codes of warnings that nobody looked for.
+    pub fn not_measured(&self) -> Vec<String> {
+        (!self.skin_checked).then(|| SKIN_OVERLAPS.to_owned()).into_iter().collect()
+    }
+
     /// f32 little-endian, three a node.
     pub fn to_bytes(&self) -> Vec<u8> {
         let values = self.displacement.iter().flat_map(|moved| [moved.x, moved.y, moved.z]);

@@ -7,7 +7,7 @@ use serde_json::Value;
 use super::mesh_report::mesh_report;
 
 use super::meshes::parse_stored;
-use crate::jobs::{MadeMesh, StoredMesh, StoredShape};
+use crate::jobs::{MadeMesh, MeshSize, StoredMesh, StoredShape};
 use crate::schema::ErrorCode;
 use crate::schema::Problem;
 use crate::schema::case::document::{FrameName, LengthUnit};
@@ -16,14 +16,10 @@ use crate::schema::wire::canonical::sha256_hex;
 use crate::schema::wire::warning::WarningDocument;
 use crate::store::NewMesh;
 use mechanics::format::{
-    self, FormatError, Member, Mesh, ReadLimits, ReadMesh, SurfaceOutput, VolumeOutput, vtk,
+    self, FormatError, Member, Mesh, ReadLimits, ReadMesh, SurfaceOutput, VolumeInLps,
+    VolumeOutput, vtk,
 };
-use mechanics::mesh::{Frame, Warning};
-
-/// Diagonals of the bounding boxes of heads and their parts, in mm.
-const USUAL_DIAGONAL_MM: std::ops::RangeInclusive<f64> = 50.0..=600.0;
-/// Beyond these a unit is wrong, unless the upload says that any scale is meant.
-const POSSIBLE_DIAGONAL_MM: std::ops::RangeInclusive<f64> = 5.0..=5000.0;
+use mechanics::mesh::Frame;
 
 /// What an upload says about its bytes.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -100,7 +96,8 @@ fn understand(
     if !is_image {
         check_frame(&read, statement)?;
     }
-    let scale = check_scale(report.diagonal, units.unwrap_or_default(), statement.allow_any_scale)?;
+    let size = MeshSize { diagonal: report.diagonal, units: units.unwrap_or_default() };
+    let scale = size.check(statement.allow_any_scale)?;
     report.warnings.extend(scale.as_ref().map(WarningDocument::from));
     let id = uuid::Uuid::now_v7().to_string();
     let document = MeshDocument {
@@ -175,41 +172,17 @@ fn check_frame(read: &ReadMesh, statement: &Statement) -> Result<(), Problem> {
     }
 }
 
-fn check_scale(
-    diagonal: f64,
-    units: LengthUnit,
-    allow_any_scale: bool,
-) -> Result<Option<Warning>, Problem> {
-    let diagonal_mm = diagonal * units.in_mm();
-    if USUAL_DIAGONAL_MM.contains(&diagonal_mm) {
-        return Ok(None);
-    }
-    let others = [LengthUnit::Mm, LengthUnit::M, LengthUnit::Um];
-    let fitting = others
-        .into_iter()
-        .find(|unit| *unit != units && USUAL_DIAGONAL_MM.contains(&(diagonal * unit.in_mm())));
-    let hint = fitting.map_or(String::new(), |unit| format!("; in {} it would fit", unit.name()));
-    let detail = format!(
-        "the diagonal of the bounding box is {diagonal_mm:.4} mm, that of a head or its parts 50 to 600 mm{hint}"
-    );
-    if POSSIBLE_DIAGONAL_MM.contains(&diagonal_mm) || allow_any_scale {
-        return Ok(Some(Warning::new("units-suspect", detail).with("diagonal_mm", diagonal_mm)));
-    }
-    let problem = Problem::new(ErrorCode::UnitsSuspect, detail).with("diagonal_mm", diagonal_mm);
-    Err(match fitting {
-        Some(unit) => problem.with("suggested_units", unit.name()),
-        None => problem,
-    })
-}
-
 /// A mesh in another format, as `GET /v1/meshes/{id}/content` hands it out.
 pub fn export(mesh: &StoredMesh, format: ExportFormat) -> Result<Vec<u8>, Problem> {
     let frame = mesh.frame.unwrap_or_default();
     let surface = mesh.surface();
     let surface = surface.as_deref().map(|surface| SurfaceOutput::plain(surface, frame));
     let written = match (format, &mesh.shape, &surface) {
-        (ExportFormat::Vtu, StoredShape::Volume(_), _)
-        | (ExportFormat::Nrrd, StoredShape::Image(_), _) => return encode(&mesh.shape, frame),
+        (ExportFormat::Vtu, StoredShape::Volume(volume), _) => {
+            let written = VolumeInLps::new(volume, frame);
+            vtk::vtu::write(&VolumeOutput::plain(&written.mesh, written.frame))
+        }
+        (ExportFormat::Nrrd, StoredShape::Image(_), _) => return encode(&mesh.shape, frame),
         (ExportFormat::Vtp, _, Some(surface)) => vtk::vtp::write(surface),
         (ExportFormat::Stl, _, Some(surface)) => format::stl::write(surface),
         (ExportFormat::Ply, _, Some(surface)) => format::ply::write(surface),

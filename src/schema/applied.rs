@@ -29,6 +29,9 @@ pub struct AppliedDocument {
     #[serde(flatten)]
     pub summary: AppliedSummary,
     pub warnings: Vec<WarningDocument>,
+    /// Codes of warnings that were not looked for: `skin-overlaps` without `check_skin`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub not_measured: Vec<String>,
 }
 
 /// What is told beside the displacement, in headers where the body is binary.

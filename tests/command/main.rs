@@ -86,6 +86,28 @@ fn what_is_held_is_told_before_anything_is_solved() {
 }
 
 #[test]
+fn a_segment_on_the_set_of_another_bone_is_told_by_the_check() {
+    let folder = tempfile::tempdir().unwrap();
+    let read = fs::read_to_string(block().join("case.json")).unwrap();
+    let mut documents: serde_json::Value = serde_json::from_str(&read).unwrap();
+    for name in ["block.vtu", "mandible.stl"] {
+        fs::copy(block().join(name), folder.path().join(name)).unwrap();
+    }
+    let case = folder.path().join("case.json");
+    let shown = |documents: &serde_json::Value| {
+        fs::write(&case, documents.to_string()).unwrap();
+        let done = facies(&["check", "--case", path(&case)]);
+        assert_eq!(done.status.code(), Some(0), "{}", text(&done.stderr));
+        text(&done.stdout) + &text(&done.stderr)
+    };
+    assert!(!shown(&documents).contains("from the bone of its name"));
+    documents["case"]["segments"][0]["nodes"]["node_set"] = "skull".into();
+    documents["case"]["fixed"][0]["node_set"] = "mandible".into();
+    let told = shown(&documents);
+    assert!(told.contains(r#"the nodes of segment "mandible" lie"#), "{told}");
+}
+
+#[test]
 fn a_command_that_has_no_store_refuses_to_keep_meshes() {
     let folder = tempfile::tempdir().unwrap();
     let read = fs::read_to_string(block().join("case.json")).unwrap();
@@ -187,6 +209,48 @@ fn a_job_that_needs_more_memory_than_it_may_take_fails_with_code_1() {
     let done = facies(&["predict", "--case", path(&case), "--out", path(&out)]);
     assert_eq!(done.status.code(), Some(1), "{}", text(&done.stderr));
     assert!(text(&done.stderr).contains("budget-exceeded"), "{}", text(&done.stderr));
+}
+
+#[test]
+fn a_mesh_that_no_head_measures_is_refused_in_every_command_unless_any_scale_is_meant() {
+    let folder = tempfile::tempdir().unwrap();
+    let mesh = sample::block(Vector::repeat(166_000.0), [2, 2, 2], CellShape::Hex8);
+    let bytes = vtu::write(&VolumeOutput::plain(&mesh, Frame::Unspecified)).unwrap();
+    let file = folder.path().join("face.vtu");
+    fs::write(&file, bytes).unwrap();
+    let case = r#"{"case":{"units":"mm","volume":"face.vtu","fixed":[{"node_set":"z_min"}]},
+        "plan":{"segments":[{"name":"z_max","translation_mm":[1,0,0]}]}}"#;
+    let documents = folder.path().join("case.json");
+    fs::write(&documents, case).unwrap();
+    let (mesh, out) = (path(&file), folder.path().join("out"));
+    let out = path(&out);
+    for command in [
+        &["check", "--mesh", mesh, "--fixed", "z_min"][..],
+        &["predict", "--case", path(&documents), "--out", out],
+        &["compare", "--prediction", mesh, "--actual", mesh, "--out", out],
+        &[
+            "study",
+            "--case",
+            path(&documents),
+            "--method",
+            "fem_linear",
+            "--level",
+            "0",
+            "--out",
+            out,
+        ],
+    ] {
+        let done = facies(command);
+        assert_eq!(done.status.code(), Some(2), "{command:?}: {}", text(&done.stderr));
+        let line = text(&done.stderr);
+        assert!(line.contains("units-suspect") && line.contains("287520"), "{command:?}: {line}");
+        assert!(line.contains("in um it would fit"), "{line}");
+    }
+    let done = facies(&["check", "--mesh", mesh, "--fixed", "z_min", "--allow-any-scale"]);
+    assert_eq!(done.status.code(), Some(0), "{}", text(&done.stderr));
+    assert!(text(&done.stdout).contains("287520"), "{}", text(&done.stdout));
+    let done = facies(&["check", "--mesh", mesh, "--fixed", "z_min", "--units", "um"]);
+    assert_eq!(done.status.code(), Some(0), "{}", text(&done.stderr));
 }
 
 #[test]

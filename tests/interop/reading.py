@@ -2,6 +2,7 @@
 
 import csv
 import json
+import re
 import struct
 
 import meshio
@@ -131,6 +132,49 @@ def check_meshio_vtu(path, wanted):
     same_arrays(name, cells, found)
 
 
+def space_mark(text):
+    """What follows SPACE= in a header or a comment, up to a blank or a semicolon."""
+    found = re.search(r"SPACE=([^\s;]+)", text)
+    return found.group(1) if found else ""
+
+
+def slicer_frame(path):
+    """The frame that 3D Slicer takes a file for, as its vtkMRMLModelStorageNode finds it: a string array SPACE in the
+    field data of XML files, a mark in the header of STL and in the comments of PLY; without any it is LPS."""
+    match path.suffix:
+        case ".vtu" | ".vtp":
+            reader = (vtk.vtkXMLUnstructuredGridReader if path.suffix == ".vtu" else vtk.vtkXMLPolyDataReader)()
+            array = vtk_read(reader, path).GetFieldData().GetAbstractArray("SPACE")
+            mark = array.GetValue(0) if isinstance(array, vtk.vtkStringArray) else ""
+        case ".stl":
+            mark = space_mark(path.read_bytes()[:80].decode())
+        case ".ply":
+            head = path.read_bytes().split(b"end_header")[0].decode()
+            mark = space_mark("\n".join(line for line in head.splitlines() if line.startswith("comment")))
+    return "RAS" if mark == "RAS" else "LPS"
+
+
+def in_lps(points, frame):
+    return np.asarray(points) * ([-1, -1, 1] if frame == "RAS" else [1, 1, 1])
+
+
+def check_slicer(path, wanted):
+    """The patient's left is on the same side in 3D Slicer as in the case."""
+    in_case = wanted.get("in_case", wanted)
+    case = in_lps(in_case["points"], in_case["frame"])
+    slicer = in_lps(read_points(path), slicer_frame(path))
+    if path.suffix == ".stl":
+        case = case[np.asarray(wanted["triangles"])].reshape(-1, 3)
+    close(f"{path.name} in Slicer", case, slicer, 1e-4)
+
+
+def read_points(path):
+    if path.suffix == ".stl":
+        return trimesh.load(path, process=False).triangles.reshape(-1, 3)
+    readers = {".vtu": vtk.vtkXMLUnstructuredGridReader, ".vtp": vtk.vtkXMLPolyDataReader, ".ply": vtk.vtkPLYReader}
+    return vtk_to_numpy(vtk_read(readers[path.suffix](), path).GetPoints().GetData())
+
+
 def corners_of(wanted):
     return np.asarray(wanted["points"])[np.asarray(wanted["triangles"])]
 
@@ -230,6 +274,8 @@ def check_all(folder):
     for description in sorted(folder.glob("*.json")):
         wanted = json.loads(description.read_text())
         for path in sorted(folder.glob(description.stem + ".*")):
+            if path.suffix in (".vtu", ".vtp", ".stl", ".ply"):
+                check_slicer(path, wanted)
             match path.suffix:
                 case ".vtu":
                     check_vtk(path, wanted, vtk.vtkXMLUnstructuredGridReader())

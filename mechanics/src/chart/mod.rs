@@ -21,7 +21,7 @@ pub use displacement::DisplacementPicture;
 pub use ladder::{LadderFailure, LadderMark, LadderPicture};
 pub use raster::{Image, PngError};
 pub use stability_map::{Mark, StabilityAxis, StabilityMap};
-pub use view::{Outlook, front_of};
+pub use view::{Outlook, clear_front, front_of};
 
 /// A position in mm.
 type Vector = nalgebra::Vector3<f64>;

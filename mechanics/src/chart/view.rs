@@ -97,6 +97,24 @@ impl Extent {
 /// Where that vanishes, as on a closed surface, the axis least along `up`.
 pub fn front_of(points: &[Vector], triangles: &[[u32; 3]], up: Vector) -> Vector {
     let up = up.try_normalize(1e-12).unwrap_or_else(Vector::z);
+    let mean = mean_normal(points, triangles);
+    let level = mean - up * up.dot(&mean);
+    level.try_normalize(1e-6).unwrap_or_else(|| least_aligned(&up))
+}
+
+/// The front where it is beyond doubt: most of the surface looks one way, and that is neither up nor down.
+pub fn clear_front(points: &[Vector], triangles: &[[u32; 3]], up: Vector) -> Option<Vector> {
+    let up = up.try_normalize(1e-12)?;
+    let mean = mean_normal(points, triangles);
+    let level = mean - up * up.dot(&mean);
+    (level.norm() > CLEAR && level.norm() > mean.dot(&up).abs()).then(|| level.normalize())
+}
+
+/// The length of the mean normal of a half sphere is 0.5, of a plane 1.
+const CLEAR: f64 = 0.35;
+
+/// The mean of the normals by area; of length 1 where all are alike, zero on a closed surface.
+fn mean_normal(points: &[Vector], triangles: &[[u32; 3]]) -> Vector {
     let mut area = 0.0;
     let mut sum = Vector::zeros();
     for triangle in triangles {
@@ -105,8 +123,7 @@ pub fn front_of(points: &[Vector], triangles: &[[u32; 3]], up: Vector) -> Vector
         area += normal.norm();
         sum += normal;
     }
-    let level = sum - up * up.dot(&sum);
-    level.try_normalize(1e-6 * area).unwrap_or_else(|| least_aligned(&up))
+    sum / area.max(f64::MIN_POSITIVE)
 }
 
 #[cfg(test)]
@@ -144,5 +161,9 @@ mod tests {
         assert!((front + Vector::x()).norm() < 1e-12);
         let closed = front_of(&points, &[[0, 1, 2], [0, 2, 1]], Vector::z());
         assert_eq!(closed.z, 0.0);
+        let clear = clear_front(&points, &[[0, 1, 2]], Vector::z()).expect("one plane");
+        assert!((clear - front).norm() < 1e-12);
+        assert_eq!(clear_front(&points, &[[0, 1, 2], [0, 2, 1]], Vector::z()), None);
+        assert_eq!(clear_front(&points, &[[0, 1, 2]], Vector::x()), None, "it looks down");
     }
 }

@@ -4,18 +4,21 @@
 //! RAS          (x, y, z) mm -> (−x, z, y) / 1000 m      the same directions
 //! unspecified  as LPS
 //!
-//! Source: glTF 2.0 specification, Khronos Group, sections 3.4 (units and axes), 3.7.2 (meshes)
-//! and 4.4 (GLB).
+//! Vertices stand in the order of the surface's points, and so do the values of its arrays: an array `name_mm` of
+//! numbers or vectors is the attribute `_NAME_MM`, in mm and in the frame of the case.
+//!
+//! Source: glTF 2.0 specification, Khronos Group, sections 3.4 (units and axes), 3.7.2 (meshes; attributes of an
+//! application begin with a low line) and 4.4 (GLB).
 
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 
-use super::output::{SurfaceOutput, WriteError};
+use super::output::{ArrayValues, NamedValues, SurfaceOutput, WriteError};
 use crate::mesh::{Frame, Vector};
 
 const MILLIMETRES_PER_METRE: f64 = 1000.0;
 
-/// Bytes of the interleaved blocks for one point: position, normal, colour as f32.
-const VECTOR_BYTES: usize = 12;
+/// Bytes of an index and of an f32.
+const NUMBER_BYTES: usize = 4;
 
 const FLOAT: u32 = 5126;
 const UNSIGNED_INT: u32 = 5125;
@@ -46,37 +49,73 @@ fn turned(vector: Vector, frame: Frame) -> [f64; 3] {
     axes(frame).map(|row| Vector::from(row).dot(&vector))
 }
 
-/// A surface with normals, and with colours where the caller gives them.
+/// A block of the binary chunk: so many f32 for each vertex.
+struct Attribute {
+    name: String,
+    kind: &'static str,
+    values: Vec<f32>,
+}
+
+impl Attribute {
+    fn vectors(name: &str, values: impl Iterator<Item = [f32; 3]>) -> Self {
+        Attribute { name: name.to_owned(), kind: "VEC3", values: values.flatten().collect() }
+    }
+
+    /// An array of the points; integers have no place in glTF.
+    fn of_array(array: &NamedValues) -> Option<Self> {
+        let name = attribute_name(array.name);
+        match array.values {
+            ArrayValues::Reals(values) => {
+                let values = values.iter().map(|&value| value as f32).collect();
+                Some(Attribute { name, kind: "SCALAR", values })
+            }
+            ArrayValues::Vectors(values) => {
+                let values = values.iter().map(|v| [v.x as f32, v.y as f32, v.z as f32]);
+                Some(Attribute::vectors(&name, values))
+            }
+            ArrayValues::Integers(_) => None,
+        }
+    }
+}
+
+/// How glTF calls an array of ours.
+fn attribute_name(array: &str) -> String {
+    let upper = array.to_ascii_uppercase();
+    format!("_{}", upper.replace(|c: char| !c.is_ascii_alphanumeric(), "_"))
+}
+
+/// A surface with normals and its arrays, and with colours where the caller gives them.
 pub fn write(output: &SurfaceOutput) -> Result<Vec<u8>, WriteError> {
     output.check()?;
-    let surface = output.surface;
-    let mut binary: Vec<u8> =
-        surface.triangles.as_flattened().iter().flat_map(|corner| corner.to_le_bytes()).collect();
-    let index_bytes = binary.len();
-    let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
-    for &point in &surface.points {
-        let position = turned(point, output.frame).map(|c| (c / MILLIMETRES_PER_METRE) as f32);
-        for axis in 0..3 {
-            low[axis] = low[axis].min(position[axis]);
-            high[axis] = high[axis].max(position[axis]);
-        }
-        put(&mut binary, position);
+    let attributes = attributes(output);
+    let corners = output.surface.triangles.as_flattened();
+    let mut binary: Vec<u8> = corners.iter().flat_map(|corner| corner.to_le_bytes()).collect();
+    for attribute in &attributes {
+        binary.extend(attribute.values.iter().flat_map(|value| value.to_le_bytes()));
     }
-    for normal in surface.point_normals() {
-        // glTF asks for unit normals, also where the triangles of a point cancel.
-        let normal = normal.try_normalize(0.5).unwrap_or_else(Vector::z);
-        put(&mut binary, turned(normal, output.frame).map(|c| c as f32));
-    }
-    for colour in output.colours.unwrap_or_default() {
-        put(&mut binary, colour.map(linear));
-    }
-    let views = views(index_bytes, surface.points.len(), output.colours.is_some());
-    let scene = document(output, &views, (low, high));
+    let scene = document(output, &attributes);
     Ok(container(&scene.to_string(), binary))
 }
 
-fn put(binary: &mut Vec<u8>, values: [f32; 3]) {
-    binary.extend(values.iter().flat_map(|value| value.to_le_bytes()));
+/// Positions first.
+fn attributes(output: &SurfaceOutput) -> Vec<Attribute> {
+    let surface = output.surface;
+    let in_metres =
+        |point: &Vector| turned(*point, output.frame).map(|c| (c / MILLIMETRES_PER_METRE) as f32);
+    let unit = |normal: Vector| {
+        // glTF asks for unit normals, also where the triangles of a point cancel.
+        let normal = normal.try_normalize(0.5).unwrap_or_else(Vector::z);
+        turned(normal, output.frame).map(|c| c as f32)
+    };
+    let mut attributes = vec![
+        Attribute::vectors("POSITION", surface.points.iter().map(in_metres)),
+        Attribute::vectors("NORMAL", surface.point_normals().into_iter().map(unit)),
+    ];
+    attributes.extend(output.colours.map(|colours| {
+        Attribute::vectors("COLOR_0", colours.iter().map(|colour| colour.map(linear)))
+    }));
+    attributes.extend(output.point_arrays.iter().filter_map(Attribute::of_array));
+    attributes
 }
 
 /// glTF stores linear colours. Source: IEC 61966-2-1.
@@ -85,55 +124,58 @@ fn linear(srgb: u8) -> f32 {
     if value <= 0.04045 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
 }
 
-/// Offset, length and target of each part of the binary chunk.
-fn views(index_bytes: usize, points: usize, has_colours: bool) -> Vec<(usize, usize, u32)> {
-    let vectors = points * VECTOR_BYTES;
-    let blocks = if has_colours { 3 } else { 2 };
-    let indices = (0, index_bytes, ELEMENT_ARRAY_BUFFER);
-    let others = (0..blocks).map(|block| (index_bytes + block * vectors, vectors, ARRAY_BUFFER));
-    std::iter::once(indices).chain(others).collect()
-}
-
-fn document(
-    output: &SurfaceOutput,
-    views: &[(usize, usize, u32)],
-    (low, high): ([f32; 3], [f32; 3]),
-) -> Value {
+fn document(output: &SurfaceOutput, attributes: &[Attribute]) -> Value {
     let points = output.surface.points.len();
     let indices = output.surface.triangles.len() * 3;
-    let vector = |view: usize| json!({"bufferView": view, "componentType": FLOAT, "count": points, "type": "VEC3"});
-    let mut position = vector(1);
-    position["min"] = json!(low);
-    position["max"] = json!(high);
     let mut accessors = vec![
         json!({"bufferView": 0, "componentType": UNSIGNED_INT, "count": indices, "type": "SCALAR"}),
-        position,
-        vector(2),
     ];
-    let mut attributes = json!({"POSITION": 1, "NORMAL": 2});
-    if output.colours.is_some() {
-        accessors.push(vector(3));
-        attributes["COLOR_0"] = json!(3);
+    let mut length = indices * NUMBER_BYTES;
+    let mut views = vec![view(0, length, ELEMENT_ARRAY_BUFFER)];
+    let mut named = Map::new();
+    for attribute in attributes {
+        let accessor = accessors.len();
+        let bytes = attribute.values.len() * NUMBER_BYTES;
+        views.push(view(length, bytes, ARRAY_BUFFER));
+        length += bytes;
+        accessors.push(json!({"bufferView": accessor, "componentType": FLOAT, "count": points, "type": attribute.kind}));
+        named.insert(attribute.name.clone(), json!(accessor));
     }
-    let length: usize = views.iter().map(|(_, length, _)| length).sum();
-    let buffer_views = views.iter().map(|(offset, length, target)| {
-        json!({"buffer": 0, "byteOffset": offset, "byteLength": length, "target": target})
-    });
+    let [low, high] = bounds(&attributes[0].values);
+    accessors[1]["min"] = json!(low);
+    accessors[1]["max"] = json!(high);
     let extras = extras(output);
     json!({
         "asset": {"version": "2.0", "generator": "facies"},
         "scene": 0,
         "scenes": [{"nodes": [0]}],
         "nodes": [{"mesh": 0, "name": "skin", "extras": &extras}],
-        "meshes": [{"primitives": [{"attributes": attributes, "indices": 0, "material": 0}]}],
+        "meshes": [{"primitives": [{"attributes": named, "indices": 0, "material": 0}]}],
         "materials": [{
             "doubleSided": true,
             "pbrMetallicRoughness": {"metallicFactor": 0.0, "roughnessFactor": 0.8},
         }],
         "accessors": accessors,
-        "bufferViews": buffer_views.collect::<Vec<_>>(),
+        "bufferViews": views,
         "buffers": [{"byteLength": length}],
         "extras": extras,
+    })
+}
+
+fn view(offset: usize, length: usize, target: u32) -> Value {
+    json!({"buffer": 0, "byteOffset": offset, "byteLength": length, "target": target})
+}
+
+/// The lowest and the highest of each coordinate.
+fn bounds(positions: &[f32]) -> [[f32; 3]; 2] {
+    let (positions, _) = positions.as_chunks::<3>();
+    let empty = [[f32::INFINITY; 3], [f32::NEG_INFINITY; 3]];
+    positions.iter().fold(empty, |[low, high], position| {
+        let axes = [0, 1, 2];
+        [
+            axes.map(|axis| low[axis].min(position[axis])),
+            axes.map(|axis| high[axis].max(position[axis])),
+        ]
     })
 }
 
@@ -145,6 +187,13 @@ fn extras(output: &SurfaceOutput) -> Value {
         "units": "mm",
         "matrix4x4_to_case_row_major": back_to_case(output.frame),
     });
+    if let Some(scale) = &output.colour_scale {
+        extras["colours"] = json!({
+            "array": scale.array,
+            "attribute": attribute_name(scale.array),
+            "range": [scale.low, scale.high],
+        });
+    }
     for (name, text) in &output.field_data {
         extras[name] = json!(text);
     }

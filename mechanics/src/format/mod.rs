@@ -14,6 +14,7 @@ pub mod glb;
 mod gmsh;
 mod ignored_field;
 pub mod limits;
+mod lps;
 pub mod nrrd;
 mod obj;
 pub mod output;
@@ -27,7 +28,8 @@ pub mod vtk;
 pub use error::{FormatError, Member, Place};
 pub use file::{Mesh, MeshFormat, ReadMesh};
 pub use limits::ReadLimits;
-pub use output::{ArrayValues, NamedValues, SurfaceOutput, VolumeOutput, WriteError};
+pub use lps::VolumeInLps;
+pub use output::{ArrayValues, ColourScale, NamedValues, SurfaceOutput, VolumeOutput, WriteError};
 
 /// Reads a mesh or an image of any known format.
 pub fn read(bytes: &[u8], limits: &ReadLimits) -> Result<ReadMesh, FormatError> {

@@ -48,6 +48,16 @@ pub struct NamedValues<'a> {
     pub values: ArrayValues<'a>,
 }
 
+/// The values that colours stand for; values beyond the ends have the colour of the end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ColourScale<'a> {
+    /// The name of an array of the points.
+    pub array: &'a str,
+    /// In the unit of the array.
+    pub low: f64,
+    pub high: f64,
+}
+
 /// A surface to write, points in mm.
 #[derive(Clone, Debug)]
 pub struct SurfaceOutput<'a> {
@@ -57,6 +67,8 @@ pub struct SurfaceOutput<'a> {
     pub point_arrays: Vec<NamedValues<'a>>,
     /// One sRGB colour for each point.
     pub colours: Option<&'a [[u8; 3]]>,
+    /// What the colours stand for.
+    pub colour_scale: Option<ColourScale<'a>>,
     /// Texts beside the frame, by name.
     pub field_data: Vec<(String, String)>,
 }
@@ -95,6 +107,7 @@ impl SurfaceOutput<'_> {
             frame,
             point_arrays: Vec::new(),
             colours: None,
+            colour_scale: None,
             field_data: Vec::new(),
         }
     }

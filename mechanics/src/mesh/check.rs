@@ -4,6 +4,7 @@
 use std::collections::BTreeMap;
 
 use super::connectivity::Faces;
+use super::disjoint_sets::DisjointSets;
 use super::jacobian::signed_volume;
 use super::surface_edges::count_edges;
 use super::{CellShape, TriangleSurface, Vector, VolumeMesh, Warning};
@@ -222,16 +223,14 @@ fn volume_parts(faces: &Faces) -> Vec<u64> {
 
 /// Triangles of each part of a surface, largest first; parts hang together by points.
 fn surface_parts(surface: &TriangleSurface) -> Vec<u64> {
-    let mut parent: Vec<u32> = (0..surface.points.len() as u32).collect();
+    let mut parts = DisjointSets::new(surface.points.len());
     for &[a, b, c] in &surface.triangles {
-        for other in [b, c] {
-            let (one, other) = (root(&mut parent, a), root(&mut parent, other));
-            parent[one.max(other) as usize] = one.min(other);
-        }
+        parts.join(a, b);
+        parts.join(b, c);
     }
-    let mut triangles_of = vec![0_u64; parent.len()];
+    let mut triangles_of = vec![0_u64; surface.points.len()];
     for triangle in &surface.triangles {
-        triangles_of[root(&mut parent, triangle[0]) as usize] += 1;
+        triangles_of[parts.root(triangle[0]) as usize] += 1;
     }
     triangles_of.retain(|size| *size > 0);
     triangles_of.sort_unstable_by(|one, other| other.cmp(one));
@@ -248,14 +247,4 @@ fn unreferenced<'a>(nodes: usize, named: impl Iterator<Item = &'a u32>) -> u64 {
         is_named[node as usize] = true;
     }
     is_named.iter().filter(|named| !**named).count() as u64
-}
-
-/// The node that stands for the part of `node`. Halves the path on its way.
-fn root(parent: &mut [u32], mut node: u32) -> u32 {
-    while parent[node as usize] != node {
-        let above = parent[parent[node as usize] as usize];
-        parent[node as usize] = above;
-        node = above;
-    }
-    node
 }

@@ -1,6 +1,6 @@
 //! The nearest point of a triangle surface, and on which side of it a point lies.
 //!
-//! This is the one wrapper of the geometry library (parry): a tree of boxes over the triangles and
+//! This wraps the geometry library (parry): a tree of boxes over the triangles and
 //! the projection onto one triangle. All arithmetic is done relative to the middle of the surface,
 //! so that a scanner origin 10 km away costs no digits.
 //!
@@ -102,6 +102,24 @@ impl SurfaceSearch {
     /// The nearest point of the surface if it is less than `limit` mm away; the smaller the limit,
     /// the less is searched.
     pub fn nearer_than(&self, point: &Vector, limit: f64) -> Option<ClosestPoint> {
+        self.closest_of(point, limit, |_| true)
+    }
+
+    /// The nearest point of those triangles for which `counts` holds.
+    pub fn closest_where(
+        &self,
+        point: &Vector,
+        counts: impl Fn(usize) -> bool,
+    ) -> Option<ClosestPoint> {
+        self.closest_of(point, f64::INFINITY, counts)
+    }
+
+    fn closest_of(
+        &self,
+        point: &Vector,
+        limit: f64,
+        counts: impl Fn(usize) -> bool,
+    ) -> Option<ClosestPoint> {
         let query = to_parry(&(point - self.origin));
         let square = (limit * limit).min(f64::MAX);
         let (leaf, _) = self.tree.find_best(
@@ -111,6 +129,9 @@ impl SurfaceSearch {
                 outside.max(ParryVector::ZERO).length_squared()
             },
             |leaf, _| {
+                if !counts(self.numbers[leaf as usize] as usize) {
+                    return None;
+                }
                 let triangle = &self.triangles[leaf as usize];
                 let projection = triangle.project_local_point(query, true);
                 Some(projection.point.distance_squared(query))

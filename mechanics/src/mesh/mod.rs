@@ -4,6 +4,8 @@ pub mod area_sampling;
 pub mod check;
 pub mod closest_point;
 pub mod connectivity;
+pub mod crossing;
+pub mod disjoint_sets;
 mod face_shape;
 pub mod frame;
 pub mod half_head;

@@ -3,9 +3,11 @@
 use super::case::{Case, Plan, Settings};
 use super::check::Check;
 use super::cut;
+use super::far_segment::far_segments;
 use super::fibres::Tissues;
 use super::problem::SceneErrors;
 use super::scene::Scene;
+use super::skin_check::doubtful_skin;
 use super::stiff_layer;
 use super::suspect_constants::suspect_constants;
 use super::walls;
@@ -35,6 +37,7 @@ impl Scene {
         let conditions = check.conditions(&held);
         check.plan_size(plan, &segments, &held);
         check.unheld(plan, &segments, &conditions);
+        let far = far_segments(case, &held);
 
         // 3. The skin and what acts on the tissue.
         let skin = check.skin(&conditions);
@@ -68,6 +71,8 @@ impl Scene {
         check.problems.give_up_if_any()?;
         scene.warnings = scene.conditions.warnings.clone();
         scene.warnings.extend(check.warnings);
+        scene.warnings.extend(far);
+        scene.warnings.extend(doubtful_skin(&scene, case.skin.is_some()));
         scene.warnings.extend(cut::duplicate_nodes(&scene.mesh, &check.boundary_nodes));
         scene.warnings.extend(tearing::tearing(&scene.mesh, &scene.conditions.holds));
         scene.warnings.extend(walls::turned_normals(&scene));

@@ -37,7 +37,7 @@ impl ElementChoice {
     }
 
     /// The shapes of cells that it is made of.
-    pub(super) fn shapes(self) -> &'static [CellShape] {
+    pub fn shapes(self) -> &'static [CellShape] {
         match self {
             ElementChoice::Quadratic => TETRAHEDRA,
             ElementChoice::Auto

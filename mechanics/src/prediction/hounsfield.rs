@@ -50,6 +50,7 @@ impl Check<'_> {
             let tissue =
                 imaged(&self.case.volume, hounsfield, &sampled, (region_of_cell, materials));
             self.warnings.extend(tissue.imaged.iter().flat_map(ImagedTissue::warnings));
+            self.warnings.extend(tissue.replaced_fibres(region_of_cell));
             return tissue;
         }
         TissueOfCells {
@@ -99,6 +100,22 @@ impl Check<'_> {
 
 fn shown(x: &Vector) -> String {
     format!("({:.1}, {:.1}, {:.1})", x.x, x.y, x.z)
+}
+
+impl TissueOfCells {
+    /// Cells of regions with fibres that an image makes another tissue, which has none.
+    fn replaced_fibres(&self, region_of_cell: &[u16]) -> Option<Warning> {
+        let has_fibre = |material: u16| self.materials[usize::from(material)].has_fibre();
+        let cells = region_of_cell.iter().zip(&self.material_of_cell);
+        let of_regions = region_of_cell.iter().filter(|&&region| has_fibre(region)).count();
+        let replaced =
+            cells.filter(|&(&region, &material)| has_fibre(region) && !has_fibre(material)).count();
+        let detail = format!(
+            "{replaced} of {of_regions} cells of regions with fibres are another tissue in the image, and have none"
+        );
+        let warning = Warning::new("fibres-replaced", detail).with("cells", replaced as f64);
+        (replaced > 0).then(|| warning.with("of", of_regions as f64))
+    }
 }
 
 impl ImagedTissue {

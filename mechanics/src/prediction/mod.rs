@@ -6,6 +6,7 @@ mod check;
 mod cut;
 mod element_choice;
 mod error_code;
+mod far_segment;
 mod fibres;
 mod held;
 mod hounsfield;
@@ -17,6 +18,8 @@ mod off_wall;
 mod problem;
 pub mod scene;
 mod skin;
+mod skin_check;
+mod skin_overlap;
 mod small_strain;
 mod stiff_layer;
 mod suspect_constants;
@@ -37,6 +40,7 @@ pub use numerics_revision::NUMERICS_REVISION;
 pub use problem::{SceneError, SceneErrors};
 pub use scene::Scene;
 pub use skin::Skin;
+pub use skin_overlap::{SKIN_OVERLAPS, skin_overlap};
 pub use unheld::are_alike;
 pub use walls::normal_turned;
 
@@ -89,6 +93,8 @@ pub fn predict(scene: &Scene, progress: &dyn Progress) -> Result<Prediction, Mod
     warnings.extend(inverted_cells(&deformation));
     warnings.extend(small_strain::left(scene, &deformation));
     warnings.extend(off_wall::left_wall(scene, &equilibrium.displacement));
+    let moved = scene.skin.moved(&equilibrium.displacement);
+    warnings.extend(skin_overlap(&scene.skin, &moved));
     warnings.extend(far_landmarks(&landmarks));
     Ok(Prediction {
         reactions: reactions(scene, &equilibrium),

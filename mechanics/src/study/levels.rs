@@ -9,7 +9,12 @@ use crate::mesh::refinement::refine;
 use crate::prediction::Case;
 
 /// Finer meshes are refused: their matrices would not fit the memory of one machine.
-const MOST_CELLS: f64 = 8e6;
+pub const MOST_CELLS: f64 = 8e6;
+
+/// The cells of a mesh whose edges are halved so many times.
+pub fn cells_at(cells: usize, level: u32) -> f64 {
+    cells as f64 * 8f64.powf(f64::from(level))
+}
 
 /// The meshes of a scene by level, as far as they are made.
 pub(super) struct Levels<'a> {
@@ -32,7 +37,7 @@ impl<'a> Levels<'a> {
     }
 
     fn mesh(&mut self, level: u32) -> Result<Arc<VolumeMesh>, Refusal> {
-        let cells = self.scene.case.volume.cells.len() as f64 * 8f64.powf(f64::from(level));
+        let cells = cells_at(self.scene.case.volume.cells.len(), level);
         if cells > MOST_CELLS {
             let detail = format!(
                 "level {level} has {cells:.2e} cells, at most {MOST_CELLS:.0e} are allowed"

@@ -20,6 +20,7 @@ pub mod variant;
 
 pub use answer::LONG_S;
 pub use failure::StudyError;
+pub use levels::{MOST_CELLS, cells_at};
 pub use report::{Errors, Outcome, Report, Row, SceneReport, Solved};
 pub use run::{NOT_RUN, run};
 pub use variant::{ClosedForm, Materials, Study, StudyScene, Truth, Variant};

@@ -36,12 +36,19 @@ pub fn scene_of(name: &str) -> Option<StudyScene> {
 /// What is held for true of a case without more knowledge: quadratic tetrahedra on halved edges where the mesh is made
 /// of tetrahedra, else mean-dilatation cells on edges halved twice, or once on large meshes.
 pub fn usual_truth(case: &Case) -> Truth {
-    let cells = &case.volume.cells;
-    if cells.iter().all(|(shape, _)| shape == CellShape::Tet4) {
-        return Truth::Refined { times: 1, element: ElementChoice::Quadratic };
+    let element = usual_truth_element(case);
+    let is_small = case.volume.cells.len() <= HALVED_TWICE;
+    let times = if is_small && element != ElementChoice::Quadratic { 2 } else { 1 };
+    Truth::Refined { times, element }
+}
+
+/// The most accurate element that serves every cell of a case.
+pub fn usual_truth_element(case: &Case) -> ElementChoice {
+    let mut cells = case.volume.cells.iter();
+    match cells.all(|(shape, _)| shape == CellShape::Tet4) {
+        true => ElementChoice::Quadratic,
+        false => ElementChoice::MeanDilatation,
     }
-    let times = if cells.len() <= HALVED_TWICE { 2 } else { 1 };
-    Truth::Refined { times, element: ElementChoice::MeanDilatation }
 }
 
 /// Materials of the scenes: Young's modulus in kPa and Poisson's ratio by region.

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 use mechanics::format::vtk::{vtp, vtu};
 use mechanics::format::{
-    ArrayValues, Mesh, NamedValues, SurfaceOutput, VolumeOutput, csv, glb, ply, stl,
+    ArrayValues, Mesh, NamedValues, SurfaceOutput, VolumeInLps, VolumeOutput, csv, glb, ply, stl,
 };
 use mechanics::mesh::{Frame, TriangleSurface, Vector, VolumeMesh};
 use serde_json::{Value, json};
@@ -84,9 +84,15 @@ fn samples_of_every_written_format_lie_ready_for_other_programs() {
 
 fn put_volumes(folder: &Path) {
     let mesh = mixed_mesh();
-    let plain = VolumeOutput::plain(&mesh, Frame::Ras);
-    put(folder, "mixed.vtu", &vtu::write(&plain).unwrap());
-    put_json(folder, "mixed.json", &describe_volume(&mesh, Frame::Ras));
+    for frame in [Frame::Lps, Frame::Ras] {
+        let written = VolumeInLps::new(&mesh, frame);
+        let plain = VolumeOutput::plain(&written.mesh, written.frame);
+        let stem = format!("mixed_{}", frame.name());
+        put(folder, &format!("{stem}.vtu"), &vtu::write(&plain).unwrap());
+        let mut description = describe_volume(&written.mesh, written.frame);
+        description["in_case"] = json!({"frame": frame.name(), "points": vectors(&mesh.nodes)});
+        put_json(folder, &format!("{stem}.json"), &description);
+    }
 
     let displacement: Vec<Vector> = mesh.nodes.iter().map(|node| node * 0.01).collect();
     let positions: Vec<Vector> = mesh.nodes.iter().map(|node| node * 1.01).collect();

@@ -1,14 +1,22 @@
 //! Quality and movement of a real face, and the response of a shell like one.
 
+use std::collections::BTreeMap;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
 use mechanics::boundary::NodeSelection;
+use mechanics::mesh::crossing::self_crossings;
 use mechanics::mesh::jacobian::scaled_jacobian;
 use mechanics::mesh::quality::quality;
-use mechanics::mesh::{CellShape, Vector, VolumeMesh};
+use mechanics::mesh::{CellShape, Vector, VolumeMesh, Warning};
 use mechanics::model::spline::VolumeSpline;
 use mechanics::plan::{PlannedSegment, RigidMovement};
-use mechanics::prediction::{Case, CaseSegment, Method, Plan, Scene, Settings};
+use mechanics::prediction::{
+    Bone, Case, CaseSegment, Method, Plan, Scene, Settings, predict, skin_overlap,
+};
+use mechanics::progress::Unobserved;
 
-use crate::samples::{read_default, volume};
+use crate::samples::{read_default, surface, volume};
 use crate::scenes::{apart, case_of, material, set, solve};
 use crate::support::external::{Missing, shared_data, trials};
 use crate::support::responses::differences;
@@ -17,6 +25,9 @@ trials! {
     all_cells_of_the_subject_face_are_valid_and_four_must_be_divided_to_know
     a_real_face_moves_much_as_finite_elements_say
     the_sum_of_columns_is_the_direct_solution_on_the_face_like_shell
+    a_jaw_raised_into_the_lips_of_a_real_face_is_told
+    the_search_for_crossings_takes_little_of_a_prediction
+    swapped_sets_and_the_inside_of_a_real_face_are_told
 }
 
 fn shared_mesh(file: &str) -> Result<VolumeMesh, Missing> {
@@ -38,6 +49,106 @@ fn all_cells_of_the_subject_face_are_valid_and_four_must_be_divided_to_know() ->
         shape == CellShape::Hex8 && scaled_jacobian(shape, &corners) < 0.2
     });
     assert_eq!(below.count(), 414);
+    Ok(())
+}
+
+/// The subject with its jaw and its skull.
+fn subject() -> Result<Case, Missing> {
+    let segments = vec![CaseSegment { name: "jaw".to_owned(), nodes: set("jaw_attached") }];
+    Ok(Case {
+        skin: Some(set("outer_skin")),
+        segments,
+        fixed: vec![set("skull_fixed_orig")],
+        ..case_of(shared_mesh("face/subject_face.vtu")?, material(15.0, 0.45))
+    })
+}
+
+fn raised(by: f64) -> Plan {
+    let up = Vector::new(0.0, 0.0, by);
+    let movement = RigidMovement::about_pivot(Vector::zeros(), Vector::zeros(), up);
+    let segments = vec![PlannedSegment { name: "jaw".to_owned(), movement }];
+    Plan { segments, ..Plan::default() }
+}
+
+/// Pairs that cross in the skin of a case under a plan, at rest and after it, and the warning.
+fn crossings(case: &Case, plan: &Plan) -> (u64, u64, Option<Warning>) {
+    let scene = Scene::new(case, plan, &Settings::default()).unwrap();
+    let found = predict(&scene, &Unobserved).unwrap();
+    let moved = scene.skin.moved(&found.displacement);
+    let count = |surface| self_crossings(surface, |_| true).count;
+    let told = found.warnings.into_iter().find(|warning| warning.code == "skin-overlaps");
+    (count(&scene.skin.surface), count(&moved), told)
+}
+
+/// The 6 pairs at rest were counted by another program too.
+fn a_jaw_raised_into_the_lips_of_a_real_face_is_told() -> Result<(), Missing> {
+    let case = subject()?;
+    let (rest, moved, told) = crossings(&case, &Plan::default());
+    assert_eq!((rest, moved, told), (6, 6, None));
+    for (by, wanted) in [(4.0, 25), (8.0, 71)] {
+        let (_, moved, told) = crossings(&case, &raised(by));
+        println!("{by} mm: {moved} pairs, {told:?}");
+        assert_eq!(moved, wanted, "{by} mm");
+        let numbers: BTreeMap<&str, f64> = told.unwrap().numbers.into_iter().collect();
+        // Those that crossed at rest do so no longer.
+        assert_eq!((numbers["pairs"], numbers["pairs_at_rest"]), (wanted as f64, 6.0));
+        assert!(numbers["depth_mm"] > 0.1 && numbers["depth_mm"] < by, "{by} mm: {numbers:?}");
+    }
+    Ok(())
+}
+
+/// What the search takes of the face and of the shell of 302 265 tetrahedra, printed. One prediction of the shell takes seconds.
+fn the_search_for_crossings_takes_little_of_a_prediction() -> Result<(), Missing> {
+    let label = |value| NodeSelection::Label { array: "tag".to_owned(), value };
+    let shell = Case {
+        skin: Some(label(5)),
+        fixed: vec![label(1), label(4)],
+        ..case_of(shared_mesh("shell/300k.vtu")?, material(15.0, 0.46))
+    };
+    for case in [subject()?, shell] {
+        let scene = Scene::new(&case, &Plan::default(), &Settings::default()).unwrap();
+        let mut moved = scene.skin.surface.clone();
+        for point in &mut moved.points {
+            point.x += 0.1 * (0.1 * point.z).sin();
+        }
+        let timed = || {
+            let begun = Instant::now();
+            let told = skin_overlap(&scene.skin, &moved);
+            (begun.elapsed(), told)
+        };
+        timed();
+        let (took, told) = timed();
+        println!("{} triangles: {took:?}, {told:?}", moved.triangles.len());
+        // A bound that a busy machine keeps too.
+        assert!(took < Duration::from_secs(2), "{took:?}");
+    }
+    Ok(())
+}
+
+fn swapped_sets_and_the_inside_of_a_real_face_are_told() -> Result<(), Missing> {
+    let mut case = subject()?;
+    for bone in ["jaw", "maxilla"] {
+        let bytes = std::fs::read(shared_data(&format!("face/subject_face_{bone}.stl"))?).unwrap();
+        case.surfaces.insert(bone.to_owned(), Arc::new(surface(read_default(&bytes))));
+        case.bones.push(Bone { name: bone.to_owned(), surface: bone.to_owned() });
+    }
+    let told = |case: &Case| -> BTreeMap<&'static str, Warning> {
+        let scene = Scene::new(case, &Plan::default(), &Settings::default()).unwrap();
+        scene.warnings.into_iter().map(|warning| (warning.code, warning)).collect()
+    };
+    let codes = ["segment-far-from-bone", "skin-held", "skin-inwards", "skin-unnamed"];
+    let right = told(&case);
+    assert!(codes.iter().all(|code| !right.contains_key(code)), "{right:?}");
+    case.segments[0].nodes = set("skull_fixed_orig");
+    case.fixed = vec![set("jaw_attached")];
+    case.skin = Some(set("inner"));
+    let wrong = told(&case);
+    assert!(codes[..2].iter().all(|code| wrong.contains_key(code)), "{wrong:?}");
+    let far: BTreeMap<&str, f64> = wrong["segment-far-from-bone"].numbers.iter().copied().collect();
+    assert!((far["median_mm"] - 42.9).abs() < 1.0, "{far:?}");
+    let mut unnamed = subject()?;
+    unnamed.skin = None;
+    assert!(told(&unnamed).contains_key("skin-unnamed"));
     Ok(())
 }
 

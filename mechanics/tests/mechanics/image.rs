@@ -9,9 +9,11 @@ use mechanics::material::LinearElastic;
 use mechanics::mesh::sample::block;
 use mechanics::mesh::{CellShape, Vector, VolumeMesh};
 use mechanics::prediction::{
-    Case, ElementChoice, Hounsfield, Mixing, Plan, RegionNames, Scene, Settings, TissueWindow,
+    Case, ElementChoice, FibreDirection, Hounsfield, Mixing, Plan, RegionNames, Scene, Settings,
+    TissueWindow,
 };
 
+use crate::material::anisotropy::{MUSCLE, fibred};
 use crate::scenes::{SHAPES, case_of, exact, hold, material, solve};
 
 /// A grid of steps of 3 mm, turned out of the axes, with `value` at each centre; it holds all of [-60, 60]³.
@@ -295,4 +297,31 @@ fn more_mixtures_than_can_be_numbered_are_rounded_until_they_can() {
     // Everything lies in some window, and rounding keeps the sum of each cell.
     assert!((whole - 1.0).abs() < 1e-12, "{whole}");
     assert!(scene.material_of_cell.iter().all(|&m| (m as usize) < count));
+}
+
+#[test]
+fn cells_that_lose_their_fibres_to_a_tissue_of_the_image_are_counted() {
+    let mesh = block(Vector::new(40.0, 20.0, 20.0), [4, 2, 2], CellShape::Hex8);
+    let muscle = fibred(MUSCLE).unwrap();
+    let window = |from_hu: f64, to_hu: f64| TissueWindow {
+        name: "fat".to_owned(),
+        from_hu,
+        to_hu,
+        material: material(3.0, 0.46),
+    };
+    let warning = |tissue: TissueWindow| {
+        let image = Arc::new(oblique(|_, _, _| -50.0));
+        let mixing = Mixing::Mean;
+        let case = Case {
+            fixed: vec![crate::scenes::set("x_min")],
+            hounsfield: Some(Hounsfield { image, samples: 8, tissues: vec![tissue], mixing }),
+            fibres: [("*".to_owned(), FibreDirection::Uniform(Vector::x()))].into(),
+            ..case_of(mesh.clone(), muscle)
+        };
+        let scene = Scene::new(&case, &Plan::default(), &Settings::default()).unwrap();
+        scene.warnings.into_iter().find(|warning| warning.code == "fibres-replaced")
+    };
+    let told = warning(window(-100.0, 0.0)).expect("every cell is fat");
+    assert_eq!(told.numbers, [("cells", 16.0), ("of", 16.0)]);
+    assert_eq!(warning(window(100.0, 200.0)), None);
 }

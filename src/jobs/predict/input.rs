@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use super::facing::looks_elsewhere;
 use crate::jobs::failure::JobError;
 use crate::jobs::fetch::fetch;
 use crate::jobs::source::{MeshSource, SourceError, StoredMesh, StoredShape};
@@ -71,6 +72,7 @@ impl PredictInput {
             meshes_read.flat_map(|mesh| mesh.warnings.iter().cloned()).collect();
         warnings.extend(converted.warnings);
         warnings.extend(quality.warnings());
+        warnings.extend(looks_elsewhere(converted.case.frame, &scene.skin.surface));
         Ok(Prepared {
             case: converted.case,
             plan: converted.plan,

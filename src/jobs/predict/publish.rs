@@ -52,6 +52,7 @@ impl Predicted {
         // 1. The displacement of the skin.
         clock.phase(Phase::Surface);
         let mut skin = PredictedSkin::new(&prepared.scene.skin, &prediction);
+        skin.range_mm = input.spec.range_mm();
         let mut statistics = statistics(&prepared.scene.skin, &skin, &prediction.landmarks)?;
         statistics.imaged = prepared.scene.imaged.as_ref().map(Into::into);
         clock.check()?;

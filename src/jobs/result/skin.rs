@@ -1,9 +1,11 @@
 //! The predicted skin as files: the arrays of the API beside the moved points.
 
-use crate::schema::predict::document::OutputName;
+use crate::schema::predict::document::{OutputName, USUAL_RANGE_MM};
 use mechanics::chart::colour::{Rgb, sequential};
 use mechanics::format::vtk::vtp;
-use mechanics::format::{ArrayValues, NamedValues, SurfaceOutput, WriteError, csv, glb, ply, stl};
+use mechanics::format::{
+    ArrayValues, ColourScale, NamedValues, SurfaceOutput, WriteError, csv, glb, ply, stl,
+};
 use mechanics::mesh::{Frame, TriangleSurface, Vector};
 use mechanics::prediction::{Prediction, Skin};
 
@@ -16,6 +18,8 @@ pub struct PredictedSkin {
     pub magnitude: Vec<f64>,
     /// To the surface it was compared with, in mm, positive outside.
     pub signed_distance: Option<Vec<f64>>,
+    /// The displacement in mm at which colours end: the same for every plan, so that plans can be held side by side.
+    pub range_mm: f64,
 }
 
 impl PredictedSkin {
@@ -36,6 +40,7 @@ impl PredictedSkin {
             magnitude: displacement.iter().map(Vector::norm).collect(),
             displacement,
             signed_distance: None,
+            range_mm: USUAL_RANGE_MM,
         }
     }
 
@@ -65,6 +70,8 @@ impl PredictedSkin {
         }
         if matches!(name, OutputName::SkinGlb | OutputName::SkinPly) {
             output.colours = Some(&colours);
+            let array = "displacement_magnitude_mm";
+            output.colour_scale = Some(ColourScale { array, low: 0.0, high: self.range_mm });
         }
         match name {
             OutputName::SkinVtp => vtp::write(&output).map(Some),
@@ -76,9 +83,8 @@ impl PredictedSkin {
         }
     }
 
-    /// Colours by the length of the displacement, from none to the largest.
+    /// Colours by the length of the displacement, from none to the end of the range.
     fn colours(&self) -> Vec<Rgb> {
-        let largest = self.magnitude.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
-        self.magnitude.iter().map(|length| sequential(length / largest)).collect()
+        self.magnitude.iter().map(|length| sequential(length / self.range_mm)).collect()
     }
 }

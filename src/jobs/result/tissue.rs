@@ -1,7 +1,9 @@
 //! The moved tissue and the moved bones as files.
 
 use mechanics::format::vtk::{vtp, vtu};
-use mechanics::format::{ArrayValues, NamedValues, SurfaceOutput, VolumeOutput, WriteError};
+use mechanics::format::{
+    ArrayValues, NamedValues, SurfaceOutput, VolumeInLps, VolumeOutput, WriteError,
+};
 use mechanics::mesh::{Frame, TriangleSurface, Vector};
 use mechanics::prediction::{Case, ImagedTissue, Prediction, Scene};
 
@@ -11,17 +13,20 @@ const NO_SEGMENT: i64 = -1;
 /// `hounsfield_mean` of a cell that reaches beyond the image.
 const NO_IMAGE: f64 = -32768.0;
 
-/// `volume.vtu`: predicted positions, and how each cell is deformed.
+/// `volume.vtu`: predicted positions, and how each cell is deformed. In LPS where the case is in RAS: 3D Slicer reads a
+/// frame from a string array only, which meshio refuses, and takes a file without for LPS.
 pub fn encode_volume(
     scene: &Scene,
     prediction: &Prediction,
     frame: Frame,
     field_data: &[(String, String)],
 ) -> Result<Vec<u8>, WriteError> {
-    let mesh = &scene.mesh;
-    let displacement = &prediction.displacement;
+    let written = VolumeInLps::new(&scene.mesh, frame);
+    let (mesh, frame) = (&*written.mesh, written.frame);
+    let displacement: Vec<Vector> =
+        prediction.displacement.iter().map(|moved| written.turned(moved)).collect();
     let positions: Vec<Vector> =
-        mesh.nodes.iter().zip(displacement).map(|(node, moved)| node + moved).collect();
+        mesh.nodes.iter().zip(&displacement).map(|(node, moved)| node + moved).collect();
     let magnitude: Vec<f64> = displacement.iter().map(Vector::norm).collect();
     let node_id: Vec<i64> = (0..mesh.nodes.len() as i64).collect();
     let region: Vec<i64> = scene.region_of_cell.iter().map(|&region| i64::from(region)).collect();
@@ -50,7 +55,7 @@ pub fn encode_volume(
         positions: &positions,
         frame,
         point_arrays: vec![
-            named("displacement_mm", ArrayValues::Vectors(displacement)),
+            named("displacement_mm", ArrayValues::Vectors(&displacement)),
             named("displacement_magnitude_mm", ArrayValues::Reals(&magnitude)),
             named("node_id", ArrayValues::Integers(&node_id)),
         ],

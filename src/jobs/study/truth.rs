@@ -8,7 +8,9 @@ use crate::schema::methods::ElementName;
 use crate::schema::study::document::TruthDocument;
 use crate::schema::{ErrorCode, Faults, Pointer, Problem};
 use mechanics::mesh::Vector;
-use mechanics::study::{StudyScene, Truth};
+use mechanics::prediction::ElementChoice;
+use mechanics::study::scenes::usual_truth_element;
+use mechanics::study::{MOST_CELLS, StudyScene, Truth, cells_at};
 
 impl Documents<'_> {
     /// What the spec holds for true, if it says so.
@@ -16,7 +18,10 @@ impl Documents<'_> {
         let at = spec_at().key("truth");
         match &self.spec.truth {
             Some(TruthDocument { refine: Some(times), element, .. }) => {
-                let element = element.unwrap_or(ElementName::Quadratic).choice();
+                let usual = usual_truth_element(&scene.case);
+                let element = element.map_or(usual, ElementName::choice);
+                check_element(element, scene, &at.key("element"), faults);
+                check_cells(*times, scene, &at.key("refine"), faults);
                 scene.truth = Truth::Refined { times: *times, element };
             }
             Some(TruthDocument { closed_form: true, .. })
@@ -27,6 +32,32 @@ impl Documents<'_> {
             }
             _ => {}
         }
+    }
+}
+
+/// A truth that cannot be solved would be found out after all rows.
+fn check_element(element: ElementChoice, scene: &StudyScene, at: &Pointer, faults: &mut Faults) {
+    let mut cells = scene.case.volume.cells.iter();
+    let shapes = element.shapes();
+    if let Some((shape, _)) = cells.find(|(shape, _)| !shapes.contains(shape)) {
+        let detail = format!(
+            "scene {} has {} cells, which cannot be {}: `auto` serves every cell",
+            scene.name,
+            shape.name(),
+            element.name()
+        );
+        faults.add(at, ErrorCode::MethodNotAvailable, detail);
+    }
+}
+
+fn check_cells(times: u32, scene: &StudyScene, at: &Pointer, faults: &mut Faults) {
+    let cells = cells_at(scene.case.volume.cells.len(), times);
+    if cells > MOST_CELLS {
+        let detail = format!(
+            "the truth of scene {} has {cells:.2e} cells, at most {MOST_CELLS:.0e} are allowed",
+            scene.name
+        );
+        faults.add(at, ErrorCode::OutOfRange, detail);
     }
 }
 

@@ -26,6 +26,12 @@ pub use super::contact::ContactName;
 pub use super::output::OutputName;
 pub use super::tolerance::ToleranceDocument;
 
+/// The displacement in mm at which colours end where nothing else is said.
+pub const USUAL_RANGE_MM: f64 = 10.0;
+
+/// Ranges of colours that make sense, in mm.
+pub const RANGES_MM: std::ops::RangeInclusive<f64> = 1e-3..=1e3;
+
 /// `predict`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "lowercase")]
@@ -90,6 +96,11 @@ pub struct PredictDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub outputs: Option<Vec<OutputName>>,
+    /// The displacement at which the colours of `skin.glb` and `skin.ply` end, in mm; they begin at 0. Default: 10, for
+    /// every plan, so that files can be held side by side.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false, minimum = 0.001, maximum = 1000.0)]
+    pub range_mm: Option<f64>,
     /// Meshes of the result that are stored as if they had been uploaded. Default: none. Not on the command line.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub keep: Vec<KeptName>,
@@ -123,6 +134,7 @@ impl PredictDocument {
         let memory = self.budget.memory_mb;
         faults.check_range(&budget.key("memory_mb"), memory, 1.0..=limits.memory_mb, "MB");
         check_tags(&self.tags, &at.key("tags"), limits, faults);
+        faults.check_range(&at.key("range_mm"), self.range_mm(), RANGES_MM, "mm");
         if let Some(compare_to) = &self.compare_to {
             compare_to.check(&at.key("compare_to"), limits, faults);
         }
@@ -136,6 +148,11 @@ impl PredictDocument {
             memory_mb: memory.min(limits.slot_memory_mb),
             membrane,
         }
+    }
+
+    /// The displacement at which colours end, in mm.
+    pub fn range_mm(&self) -> f64 {
+        self.range_mm.unwrap_or(USUAL_RANGE_MM)
     }
 
     fn own_settings(&self) -> OwnSettings {

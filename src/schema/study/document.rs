@@ -149,7 +149,7 @@ pub struct TruthDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false, minimum = 0, maximum = 4)]
     pub refine: Option<u32>,
-    /// Of `refine`. Default: `quadratic`.
+    /// Of `refine`. Default: `quadratic` where all cells are tetrahedra, else `mean_dilatation`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub element: Option<ElementName>,

@@ -121,6 +121,30 @@ fn a_job_writes_the_same_bytes_on_any_number_of_threads() {
 }
 
 #[test]
+fn the_volume_of_a_case_in_ras_is_written_in_lps_where_its_skin_is() {
+    let out = tempfile::tempdir().unwrap();
+    let case = CASE.replacen('{', r#"{"frame":"RAS","#, 1);
+    predict(&case, TURN, ALL, out.path()).unwrap();
+    let bytes = fs::read(out.path().join("volume.vtu")).unwrap();
+    let volume = format::read(&bytes, &ReadLimits::default()).unwrap();
+    let skin = fs::read(out.path().join("skin.vtp")).unwrap();
+    let skin = format::read(&skin, &ReadLimits::default()).unwrap();
+    assert_eq!((volume.frame, skin.frame), (Some(Frame::Lps), Some(Frame::Ras)));
+    let (Mesh::Volume(volume), Mesh::Surface(skin)) = (volume.mesh, skin.mesh) else {
+        panic!("a volume and a surface");
+    };
+    let moved = &volume.node_vectors["displacement_mm"];
+    let rest = block(1.0);
+    let turned = |x: &Vector| Vector::new(-x.x, -x.y, x.z);
+    for (point, &node) in skin.points.iter().zip(skin.node_ids.as_ref().unwrap()) {
+        assert_eq!(turned(point), volume.nodes[node as usize]);
+        let back = volume.nodes[node as usize] - moved[node as usize];
+        // Rounding of one sum and one difference of numbers below 100.
+        assert!((turned(&rest.nodes[node as usize]) - back).norm() < 1e-13);
+    }
+}
+
+#[test]
 fn skin_and_bone_follow_a_rigid_movement_of_everything_that_is_held() {
     // Only the base is held, so the whole block moves with it, exactly in the limit of small turns.
     let plan = r#"{"segments":[{"name":"base","translation_mm":[1,2,3]}]}"#;

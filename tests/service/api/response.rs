@@ -1,5 +1,8 @@
 //! Plan responses over HTTP: built once, applied many times, refused when they do not fit.
 
+use mechanics::format::VolumeOutput;
+use mechanics::format::vtk::vtu;
+use mechanics::mesh::{CellShape, Frame, Vector, sample};
 use reqwest::StatusCode;
 use serde_json::{Value, json};
 use sqlx::sqlite::{SqliteConnectOptions, SqlitePool};
@@ -362,4 +365,126 @@ async fn a_response_survives_a_memory_without_room_and_a_restart() {
     let server = Server::start_in(folder, &[]);
     let after = apply(&server, &case, &plan(), OCTETS).await;
     assert_eq!((after.status, after.bytes), (StatusCode::OK, before.bytes));
+}
+
+/// The JSON of a binary glTF file, and the f32 of one of its attributes.
+fn gltf(bytes: &[u8], attribute: &str) -> (Value, Vec<f32>) {
+    let length = u32::from_le_bytes(bytes[12..16].try_into().unwrap()) as usize;
+    let scene: Value = serde_json::from_slice(&bytes[20..20 + length]).unwrap();
+    let number = &scene["meshes"][0]["primitives"][0]["attributes"][attribute];
+    let accessor = &scene["accessors"][number.as_u64().unwrap() as usize];
+    let view = &scene["bufferViews"][accessor["bufferView"].as_u64().unwrap() as usize];
+    let place = |name: &str| view[name].as_u64().unwrap() as usize;
+    let begin = 28 + length + place("byteOffset");
+    let values = floats(&bytes[begin..begin + place("byteLength")]);
+    (scene, values)
+}
+
+const GLB: &str = "model/gltf-binary";
+
+#[tokio::test]
+async fn a_skin_as_gltf_has_its_vertices_in_the_order_of_its_nodes_and_colours_that_mean_the_same()
+{
+    let server = Server::start();
+    let case = case(&server).await;
+    built(&server, json!({"kind": "response", "case": case})).await;
+    let path = format!("/v1/cases/{case}/response");
+    let told = ask(server.get(&path)).await.expect(StatusCode::OK);
+    let ids: Vec<usize> = serde_json::from_value(told["node_ids"].clone()).unwrap();
+
+    // The skin at rest is that of the mesh, node by node: 60 x 60 x 30 mm in 4 x 4 x 4 cells.
+    let rest = ask(server.get(&path).header("accept", GLB)).await;
+    assert_eq!((rest.status, rest.header("content-type")), (StatusCode::OK, GLB));
+    let (scene, positions) = gltf(&rest.bytes, "POSITION");
+    let (positions, _) = positions.as_chunks::<3>();
+    let matrix: Vec<f64> =
+        serde_json::from_value(scene["extras"]["matrix4x4_to_case_row_major"].clone()).unwrap();
+    assert_eq!(positions.len(), ids.len());
+    for (&node, position) in ids.iter().zip(positions) {
+        let wanted = [node % 5 * 15, node / 5 % 5 * 15].map(|x| x as f64);
+        let back = |row: usize| (0..3).map(|k| matrix[4 * row + k] * f64::from(position[k])).sum();
+        let found: [f64; 3] = [back(0), back(1), back(2)];
+        // Metres in 32 bits.
+        assert!(
+            (found[0] - wanted[0]).abs() < 1e-4 && (found[1] - wanted[1]).abs() < 1e-4,
+            "{node}"
+        );
+        assert!((found[2] - 30.0).abs() < 1e-4, "{node}");
+    }
+
+    // 1 mm and 5 mm are told apart by their colours, and their values are in the file.
+    let by = |mm: f64| json!({"segments": [{"name": "left", "translation_mm": [0, 0, mm]}]});
+    let apply_path = format!("{path}/apply");
+    let glb = async |mm: f64, query: &str| {
+        let request = server.post(&format!("{apply_path}{query}")).header("accept", GLB);
+        ask(request.json(&json!({"plan": by(mm)}))).await
+    };
+    let (small, large) = (glb(1.0, "").await.bytes, glb(5.0, "").await.bytes);
+    assert_ne!(gltf(&small, "COLOR_0").1, gltf(&large, "COLOR_0").1);
+    let (scene, moved) = gltf(&large, "_DISPLACEMENT_MM");
+    let octets = apply(&server, &case, &by(5.0), OCTETS).await;
+    assert_eq!(moved, floats(&octets.bytes));
+    let scale = json!({"array": "displacement_magnitude_mm",
+        "attribute": "_DISPLACEMENT_MAGNITUDE_MM", "range": [0.0, 10.0]});
+    assert_eq!(scene["extras"]["colours"], scale);
+    let (scene, colours) = gltf(&glb(1.0, "?range_mm=2").await.bytes, "COLOR_0");
+    assert_eq!(scene["extras"]["colours"]["range"], json!([0.0, 2.0]));
+    assert_eq!(colours, gltf(&glb(5.0, "").await.bytes, "COLOR_0").1, "half of each range");
+    glb(1.0, "?range_mm=0").await.problem(400, "invalid-parameter");
+}
+
+/// A lip on a bone, and 1 mm above it a smaller one that is held from above.
+fn lips() -> Vec<u8> {
+    let mut mesh = sample::block(Vector::new(50.0, 40.0, 6.0), [10, 8, 2], CellShape::Hex8);
+    let upper = sample::block(Vector::new(23.0, 21.0, 6.0), [5, 4, 2], CellShape::Hex8);
+    let first = mesh.nodes.len() as u32;
+    mesh.nodes.extend(upper.nodes.iter().map(|node| node + Vector::new(8.3, 6.1, 7.0)));
+    for (shape, nodes) in upper.cells.iter() {
+        let nodes: Vec<u32> = nodes.iter().map(|node| node + first).collect();
+        mesh.cells.push(shape, &nodes);
+    }
+    let ceiling = upper.node_sets["z_max"].iter().map(|node| node + first).collect();
+    mesh.node_sets.insert("ceiling".to_owned(), ceiling);
+    mesh.node_sets.insert("skin".to_owned(), (0..mesh.nodes.len() as u32).collect());
+    vtu::write(&VolumeOutput::plain(&mesh, Frame::Unspecified)).unwrap()
+}
+
+#[tokio::test]
+async fn skin_that_passes_through_itself_is_told_by_predictions_and_where_a_response_is_asked_to_look()
+ {
+    let server = Server::start();
+    let upload = server.post("/v1/meshes?units=mm").header("content-type", OCTETS).body(lips());
+    let mesh = ask(upload).await.expect(StatusCode::CREATED);
+    let case = json!({"units": "mm", "volume": mesh["id"], "skin": {"node_set": "skin"},
+        "segments": [{"name": "jaw", "nodes": {"node_set": "z_min"}}],
+        "fixed": [{"node_set": "ceiling"}]});
+    let case = ask(server.post("/v1/cases").json(&case)).await.expect(StatusCode::CREATED);
+    let case = case["id"].as_str().unwrap().to_owned();
+    built(&server, json!({"kind": "response", "case": case})).await;
+    let past = json!({"segments": [{"name": "jaw", "translation_mm": [0, 0, 3]}]});
+    let codes = |told: &Value| -> Vec<String> {
+        let warnings = told["warnings"].as_array().unwrap().iter();
+        warnings.map(|warning| warning["code"].as_str().unwrap().to_owned()).collect()
+    };
+    let overlaps = "skin-overlaps".to_owned();
+    let spec = json!({"kind": "predict", "case": case, "plan": past, "outputs": ["skin.csv"]});
+    let job = built(&server, spec).await;
+    assert!(codes(&job["results"]).contains(&overlaps), "{job}");
+
+    let path = format!("/v1/cases/{case}/response/apply");
+    let ask_for = async |query: &str, accept: &str| {
+        let request = server.post(&format!("{path}{query}")).header("accept", accept);
+        ask(request.json(&json!({"plan": past}))).await
+    };
+    let unasked = ask_for("", "application/json").await.expect(StatusCode::OK);
+    assert_eq!(unasked["not_measured"], json!([overlaps]));
+    assert!(!codes(&unasked).contains(&overlaps));
+    let asked = ask_for("?check_skin=true", "application/json").await;
+    assert!(asked.header("server-timing").contains("check;dur="));
+    let asked = asked.expect(StatusCode::OK);
+    assert!(asked.get("not_measured").is_none() && codes(&asked).contains(&overlaps), "{asked}");
+    let octets = ask_for("?check_skin=true", OCTETS).await;
+    assert_eq!(octets.header("facies-warning").rsplit(", ").next(), Some("skin-overlaps"));
+    let octets = ask_for("", OCTETS).await;
+    assert_eq!(octets.header("facies-not-measured"), overlaps);
 }

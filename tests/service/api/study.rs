@@ -413,6 +413,8 @@ async fn a_plan_that_does_not_fit_a_case_is_refused_at_its_place_in_the_study() 
         (json!({"plans": []}), "/plans"),
         (json!({"materials": [{}, material]}), "/materials/1/nose"),
         (json!({"truth": {"closed_form": true}}), "/truth/closed_form"),
+        // The block is made of hexahedra: told before its rows are solved, and not after them.
+        (json!({"truth": {"refine": 1, "element": "quadratic"}}), "/truth/element"),
     ] {
         let answer = ask(server.post("/v1/jobs").json(&spec(change))).await;
         let problem = answer.json();

@@ -240,8 +240,11 @@ fn header(output: &SurfaceOutput) -> String {
         "format binary_little_endian 1.0".into(),
         format!("comment SPACE={}", output.frame),
         "comment lengths in mm".into(),
-        format!("element vertex {}", output.surface.points.len()),
     ];
+    lines.extend(output.colour_scale.map(|scale| {
+        format!("comment colours from {} to {} of {}", scale.low, scale.high, scale.array)
+    }));
+    lines.push(format!("element vertex {}", output.surface.points.len()));
     let mut property = |kind: &str, name: &str| lines.push(format!("property {kind} {name}"));
     for axis in ["x", "y", "z"] {
         property("double", axis);

@@ -8,6 +8,7 @@ mod jump;
 mod moving_walls;
 mod no_free_node;
 mod patch;
+mod skin;
 mod slab_table;
 mod sliding;
 mod suspicious;

@@ -1,0 +1,122 @@
+//! Whether what is called skin is skin: not held, not facing the bone, without the rims where tissue was cut.
+//!
+//! Displacements of such places are part of every statistic of the skin, and mean nothing there.
+
+use rayon::prelude::*;
+
+use super::Scene;
+use crate::boundary::NodeClass;
+use crate::mesh::disjoint_sets::DisjointSets;
+use crate::mesh::surface_edges::edges;
+use crate::mesh::{TriangleSurface, Vector, Warning};
+
+/// Shares of the skin above which it is told: a few nodes are held where a scan ends.
+const MOST_HELD: f64 = 0.1;
+const MOST_INWARDS: f64 = 0.1;
+
+/// The cosine between two faces that meet in a sharp edge: more than 60 degrees apart.
+const SHARP: f64 = 0.5;
+
+/// The cosine between the normal of a face and the way to what holds the tissue, above which it faces that.
+const FACING: f64 = 0.5;
+
+/// Faces whose direction is taken, evenly chosen.
+const MEASURED_FACES: usize = 1000;
+
+/// Warnings of a skin that is no skin.
+pub(super) fn doubtful_skin(scene: &Scene, is_stated: bool) -> Vec<Warning> {
+    let unnamed = (!is_stated).then(|| unnamed_skin(&scene.skin.surface));
+    [unnamed, held_skin(scene), inward_skin(scene)].into_iter().flatten().collect()
+}
+
+/// Skin nodes that do not move freely.
+fn held_skin(scene: &Scene) -> Option<Warning> {
+    let classes = |&node: &u32| scene.conditions.classes[node as usize];
+    let nodes = scene.skin.nodes();
+    let count = |wanted: &dyn Fn(NodeClass) -> bool| {
+        nodes.iter().map(classes).filter(|&class| wanted(class)).count()
+    };
+    let held = count(&|class| class != NodeClass::Free);
+    let share = held as f64 / nodes.len().max(1) as f64;
+    let detail = format!(
+        "{held} of {} skin nodes are held: what is held by bone is no skin, and a skin that is held does not show what \
+         bone does to it",
+        nodes.len()
+    );
+    let warning = Warning::new("skin-held", detail)
+        .with("nodes", held as f64)
+        .with("share", share)
+        .with("joined", count(&|class| matches!(class, NodeClass::Joined(_))) as f64)
+        .with("fixed", count(&|class| class == NodeClass::Fixed) as f64)
+        .with("sliding", count(&|class| class == NodeClass::Sliding) as f64)
+        .with("prescribed", count(&|class| class == NodeClass::Prescribed) as f64);
+    (share > MOST_HELD).then_some(warning)
+}
+
+/// Skin that faces what holds the tissue: the inner side of lips and cheeks.
+fn inward_skin(scene: &Scene) -> Option<Warning> {
+    let surface = &scene.skin.surface;
+    let place = |node: u32| scene.mesh.nodes[node as usize];
+    let held: Vec<Vector> = scene
+        .conditions
+        .holds
+        .iter()
+        .filter(|hold| hold.count() == 3)
+        .map(|hold| place(hold.node))
+        .collect();
+    if held.is_empty() {
+        return None;
+    }
+    let step = surface.triangles.len().div_ceil(MEASURED_FACES).max(1);
+    let measured: Vec<usize> = (0..surface.triangles.len()).step_by(step).collect();
+    let areas: Vec<[f64; 2]> = measured
+        .par_iter()
+        .map(|&triangle| {
+            let normal = surface.area_vector(triangle);
+            let middle = surface.corners(triangle).iter().sum::<Vector>() / 3.0;
+            let ways = held.iter().map(|other| other - middle);
+            let way = ways.min_by(|a, b| a.norm_squared().total_cmp(&b.norm_squared()));
+            let way = way.unwrap_or_else(Vector::zeros);
+            let faces_it = way.dot(&normal) > FACING * way.norm() * normal.norm();
+            [normal.norm(), if faces_it { normal.norm() } else { 0.0 }]
+        })
+        .collect();
+    let [whole, inwards] =
+        areas.iter().fold([0.0; 2], |sum, area| [sum[0] + area[0], sum[1] + area[1]]);
+    let share = inwards / whole.max(f64::MIN_POSITIVE);
+    let detail = format!(
+        "{:.0} % of the skin faces what holds the tissue: the inner side of lips and cheeks is no skin",
+        100.0 * share
+    );
+    let warning = Warning::new("skin-inwards", detail).with("share", share);
+    (share > MOST_INWARDS).then(|| warning.with("faces_measured", measured.len() as f64))
+}
+
+/// A skin that nobody named is every free face; sharp edges part what faces forward from rims where tissue was cut.
+fn unnamed_skin(surface: &TriangleSurface) -> Warning {
+    let mut parts = DisjointSets::new(surface.triangles.len());
+    let sides = surface.sorted_sides();
+    for edge in edges(&sides) {
+        let [one, other] = edge else { continue };
+        let [a, b] = [one, other].map(|side| surface.area_vector(side.triangle as usize));
+        if a.dot(&b) > SHARP * a.norm() * b.norm() {
+            parts.join(one.triangle, other.triangle);
+        }
+    }
+    let mut areas = vec![0.0; surface.triangles.len()];
+    for triangle in 0..surface.triangles.len() {
+        areas[parts.root(triangle as u32) as usize] += surface.area_vector(triangle).norm();
+    }
+    let whole: f64 = areas.iter().sum();
+    let largest = areas.iter().copied().fold(0.0, f64::max);
+    let count = areas.iter().filter(|area| **area > 0.0).count();
+    let detail = format!(
+        "no skin is named, so that it is every free face, {:.0} mm2: cut rims and the inner sides of lips and cheeks \
+         count; edges sharper than 60 degrees divide it into {count} parts",
+        whole
+    );
+    Warning::new("skin-unnamed", detail)
+        .with("area_mm2", whole)
+        .with("parts", count as f64)
+        .with("share_of_largest", largest / whole.max(f64::MIN_POSITIVE))
+}

@@ -1,0 +1,141 @@
+//! Predicted skin that passes through itself: nothing in the models keeps a lip out of the other one.
+//!
+//! Pairs of triangles that cross after the movement and did not before it are counted; scanned lips touch, and some
+//! of their triangles cross at rest. How deep: the triangles that cross cut the skin into parts, and an edge that
+//! pierces one triangle only begins outside and ends inside. Points of the parts that such edges end in lie inside what
+//! is not theirs; their depth is the distance to the closest triangle of another part that crosses or lies inside. It
+//! is not above the true one, because a point may be closer to the rim of its own part.
+
+use std::collections::BTreeSet;
+
+use super::skin::Skin;
+use crate::mesh::crossing::{Piercing, TrianglePair, cross, piercings, self_crossings};
+use crate::mesh::disjoint_sets::DisjointSets;
+use crate::mesh::{SurfaceSearch, TriangleSurface, Vector, Warning};
+
+/// The code of the warning.
+pub const SKIN_OVERLAPS: &str = "skin-overlaps";
+
+/// Points of which the depth is taken, evenly chosen.
+const MEASURED_POINTS: usize = 1000;
+
+/// The point that lies deepest, in mm.
+struct Deepest {
+    depth: f64,
+    at: Vector,
+}
+
+/// A warning that counts the triangles of a moved skin that cross and did not cross at rest. The points of the moved
+/// skin have to be finite.
+pub fn skin_overlap(skin: &Skin, moved: &TriangleSurface) -> Option<Warning> {
+    let rest = &skin.surface;
+    let found = self_crossings(moved, |pair| !cross(rest, pair));
+    if found.count == 0 && found.untried == 0 {
+        return None;
+    }
+    let at_rest = self_crossings(rest, |_| true).count;
+    let deepest = deepest(moved, &self_crossings(moved, |_| true).pairs);
+    let (few, depth) = (
+        if found.untried > 0 { "at least " } else { "" },
+        deepest.as_ref().map_or_else(String::new, |at| format!(", {:.1} mm deep", at.depth)),
+    );
+    let place = place(skin, &found.pairs);
+    let detail = format!(
+        "the predicted skin passes through itself{place}: {few}{} pairs of triangles cross that did not at rest{depth}",
+        found.count
+    );
+    let warning = Warning::new(SKIN_OVERLAPS, detail)
+        .with("pairs", found.count as f64)
+        .with("pairs_at_rest", at_rest as f64);
+    let warning = match found.untried {
+        0 => warning,
+        untried => warning.with("triangles_not_tried_against_all", untried as f64),
+    };
+    Some(match deepest {
+        None => warning,
+        Some(Deepest { depth, at }) => {
+            warning.with("depth_mm", depth).with("x_mm", at.x).with("y_mm", at.y).with("z_mm", at.z)
+        }
+    })
+}
+
+/// The named parts of the skin that take part, or nothing.
+fn place(skin: &Skin, pairs: &[TrianglePair]) -> String {
+    let triangles = pairs.as_flattened().iter();
+    let points: BTreeSet<u32> =
+        triangles.flat_map(|&triangle| skin.surface.triangles[triangle as usize]).collect();
+    let takes_part = |points_of: &[u32]| points_of.iter().any(|point| points.contains(point));
+    let regions = skin.regions.iter().filter(|(_, points)| takes_part(points));
+    let names: Vec<String> = regions.map(|(name, _)| format!("{name:?}")).collect();
+    match names.is_empty() {
+        true => String::new(),
+        false => format!(" at {}", names.join(", ")),
+    }
+}
+
+/// The deepest of the points that lie behind skin that is not theirs, if any is found there.
+fn deepest(surface: &TriangleSurface, pairs: &[TrianglePair]) -> Option<Deepest> {
+    let part_of = parts_inside(surface, pairs);
+    let inside: Vec<u32> =
+        (0..part_of.len() as u32).filter(|&p| part_of[p as usize].is_some()).collect();
+    let crosses: BTreeSet<u32> = pairs.as_flattened().iter().copied().collect();
+    let is_near = |(number, corners): &(u32, &[u32; 3])| {
+        crosses.contains(number) || corners.iter().any(|&corner| part_of[corner as usize].is_some())
+    };
+    let near = (0_u32..).zip(&surface.triangles).filter(is_near);
+    let triangles = near.map(|(_, corners)| *corners).collect();
+    let near = TriangleSurface { points: surface.points.clone(), triangles, node_ids: None };
+    let search = SurfaceSearch::new(&near).ok()?;
+    let depth = |&point: &u32| {
+        let own = part_of[point as usize];
+        let is_other = |triangle: usize| {
+            near.triangles[triangle].iter().all(|&corner| part_of[corner as usize] != own)
+        };
+        let at = surface.points[point as usize];
+        let closest = search.closest_where(&at, is_other)?;
+        Some(Deepest { depth: closest.distance, at })
+    };
+    let step = inside.len().div_ceil(MEASURED_POINTS).max(1);
+    let measured = inside.iter().step_by(step).filter_map(depth);
+    measured.max_by(|one, other| one.depth.total_cmp(&other.depth))
+}
+
+/// For each point the part of the skin that it belongs to, where that lies behind other skin. A part with more than
+/// half of the points is what the others lie behind.
+fn parts_inside(surface: &TriangleSurface, pairs: &[TrianglePair]) -> Vec<Option<u32>> {
+    let mut is_cut = vec![false; surface.triangles.len()];
+    for &triangle in pairs.as_flattened() {
+        is_cut[triangle as usize] = true;
+    }
+    let mut parts = DisjointSets::new(surface.points.len());
+    let whole = surface.triangles.iter().zip(&is_cut).filter(|(_, is_cut)| !**is_cut);
+    for (&[a, b, c], _) in whole {
+        parts.join(a, b);
+        parts.join(b, c);
+    }
+    let mut points_of = vec![0_usize; surface.points.len()];
+    for point in 0..surface.points.len() as u32 {
+        points_of[parts.root(point) as usize] += 1;
+    }
+    let mut is_inside = vec![false; surface.points.len()];
+    for point in ends_inside(surface, pairs) {
+        let part = parts.root(point) as usize;
+        is_inside[part] = 2 * points_of[part] <= surface.points.len();
+    }
+    let part = |point: u32| Some(parts.root(point)).filter(|&part| is_inside[part as usize]);
+    (0..surface.points.len() as u32).map(part).collect()
+}
+
+/// The inner ends of edges that pierce one triangle only.
+fn ends_inside(surface: &TriangleSurface, pairs: &[TrianglePair]) -> Vec<u32> {
+    let mut found: Vec<Piercing> = pairs.iter().flat_map(|pair| piercings(surface, pair)).collect();
+    let edge = |piercing: &Piercing| {
+        let [front, behind] = piercing.edge;
+        [front.min(behind), front.max(behind)]
+    };
+    // An edge is met in each of its triangles.
+    found.sort_unstable_by_key(|piercing| (edge(piercing), *piercing));
+    found.dedup();
+    let of_edges = found.chunk_by(|one, other| edge(one) == edge(other));
+    of_edges.filter(|of_edge| of_edge.len() == 1).map(|of_edge| of_edge[0].edge[1]).collect()
+}

@@ -1,0 +1,69 @@
+//! Whether a mesh in its unit can be a head or a part of one.
+
+use super::source::StoredShape;
+use crate::schema::ErrorCode;
+use crate::schema::Problem;
+use crate::schema::case::document::LengthUnit;
+use mechanics::mesh::{Vector, Warning};
+
+/// Diagonals of the bounding boxes of heads and their parts, in mm.
+const USUAL_DIAGONAL_MM: std::ops::RangeInclusive<f64> = 50.0..=600.0;
+/// Beyond these a unit is wrong, unless it is said that any scale is meant.
+const POSSIBLE_DIAGONAL_MM: std::ops::RangeInclusive<f64> = 5.0..=5000.0;
+
+/// The diagonal of the bounding box of a mesh, in its unit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MeshSize {
+    pub diagonal: f64,
+    pub units: LengthUnit,
+}
+
+impl MeshSize {
+    /// The size of a mesh that was read; an image is in mm.
+    pub fn of(shape: &StoredShape, units: LengthUnit) -> Self {
+        match shape {
+            StoredShape::Volume(volume) => MeshSize { diagonal: diagonal(&volume.nodes), units },
+            StoredShape::Surface(surface) => {
+                MeshSize { diagonal: diagonal(&surface.points), units }
+            }
+            StoredShape::Image(image) => {
+                let (low, high) = image.bounds();
+                MeshSize { diagonal: (high - low).norm(), units: LengthUnit::Mm }
+            }
+        }
+    }
+
+    /// Refuses what no head can measure, unless any scale is meant; a warning where it is unusual.
+    pub fn check(self, allow_any_scale: bool) -> Result<Option<Warning>, Problem> {
+        let diagonal_mm = self.diagonal * self.units.in_mm();
+        if USUAL_DIAGONAL_MM.contains(&diagonal_mm) {
+            return Ok(None);
+        }
+        let fits = |unit: &LengthUnit| {
+            *unit != self.units && USUAL_DIAGONAL_MM.contains(&(self.diagonal * unit.in_mm()))
+        };
+        let fitting = [LengthUnit::Mm, LengthUnit::M, LengthUnit::Um].into_iter().find(fits);
+        let hint =
+            fitting.map_or(String::new(), |unit| format!("; in {} it would fit", unit.name()));
+        let detail = format!(
+            "the diagonal of the bounding box is {diagonal_mm:.4} mm, that of a head or its parts 50 to 600 mm{hint}"
+        );
+        if POSSIBLE_DIAGONAL_MM.contains(&diagonal_mm) || allow_any_scale {
+            let warning = Warning::new("units-suspect", detail);
+            return Ok(Some(warning.with("diagonal_mm", diagonal_mm)));
+        }
+        let problem =
+            Problem::new(ErrorCode::UnitsSuspect, detail).with("diagonal_mm", diagonal_mm);
+        Err(match fitting {
+            Some(unit) => problem.with("suggested_units", unit.name()),
+            None => problem,
+        })
+    }
+}
+
+fn diagonal(points: &[Vector]) -> f64 {
+    let Some(&first) = points.first() else { return 0.0 };
+    let (low, high) =
+        points.iter().fold((first, first), |(low, high), x| (low.inf(x), high.sup(x)));
+    (high - low).norm()
+}
