@@ -8,6 +8,7 @@ RUN apt-get update \
 WORKDIR /build
 COPY Cargo.toml Cargo.lock ./
 COPY src src
+COPY docs/errors.md docs/errors.md
 COPY mechanics mechanics
 COPY benches benches
 COPY migrations migrations

@@ -1,8 +1,7 @@
 use std::process::ExitCode;
 
-use clap::Parser;
-use facies::command::{Facies, run};
+use facies::command::{read, run};
 
 fn main() -> ExitCode {
-    run(&Facies::parse())
+    run(&read())
 }

@@ -20,6 +20,7 @@ const SERVICE: &str = "
     GET     /docs                               open
     GET     /docs/                              open
     GET     /docs/{*rest}                       open
+    GET     /errors                             open
     GET     /healthz                            open
     GET     /openapi.json                       open
     GET     /readyz                             open
@@ -60,6 +61,7 @@ const SERVICE: &str = "
 const ADMINISTRATION: &str = "
     GET     /audit                              admin  -
     GET     /audit/check                        admin  -
+    GET     /errors                             open
     GET     /healthz                            open
     GET     /lost-jobs                          admin  -
     POST    /lost-jobs/{id}/requeue             admin  noted

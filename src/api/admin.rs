@@ -70,6 +70,7 @@ pub(super) fn desks() -> Desks {
     Desks::default()
         .open("/metrics", counted)
         .open("/healthz", async || "ok\n")
+        .open("/errors", async || super::error_page::page())
         .looks("/tenants", tenants)
         .changes(Method::PUT, "/tenants/{tenant}", set_tenant)
         .looks("/tenants/{tenant}/keys", list_keys)

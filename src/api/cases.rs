@@ -234,7 +234,7 @@ async fn remove(service: Service, Id(id): Id, headers: HeaderMap) -> ApiResult {
 }
 
 /// What a job with this spec would be held by and take, without solving anything. The body is the spec
-/// that would be posted to /v1/jobs; `case` may be left out, and without a plan nothing moves. A client
+/// that would be posted to /v1/jobs; `case` may be left out, and without a plan, or without a body, nothing moves. A client
 /// that accepts `image/svg+xml` only gets a picture of the boundary, coloured by what holds it.
 #[utoipa::path(
     post, path = "/v1/cases/{id}/check", operation_id = "check_case", tag = "cases", params(("id" = uuid::Uuid, Path, description = "the case")),
@@ -249,8 +249,10 @@ async fn check(service: Service, Id(id): Id, request: Request) -> ApiResult {
     if !wants_counts {
         check_accept(request.headers(), SVG)?;
     }
-    let bytes = body::json(&service, request).await?;
-    let spec: PredictDocument = strict::parse(&bytes, &service.limits)?;
+    let spec: PredictDocument = match has_no_body(request.headers()) {
+        true => PredictDocument::default(),
+        false => strict::parse(&body::json(&service, request).await?, &service.limits)?,
+    };
     let row = row_of(&service, &id).await?;
     if spec.case.as_ref().is_some_and(|case| *case != id) {
         let mut faults = Faults::default();
@@ -267,6 +269,12 @@ async fn check(service: Service, Id(id): Id, request: Request) -> ApiResult {
     let picture = service.compute(move || report.picture()).await?.map_err(job_input::refusal)?;
     let headers = [(header::CONTENT_TYPE, SVG), (header::CACHE_CONTROL, "private, no-store")];
     Ok((headers, picture).into_response())
+}
+
+/// Whether a request comes without a body, be it of any kind.
+fn has_no_body(headers: &HeaderMap) -> bool {
+    let length = headers.get(header::CONTENT_LENGTH);
+    length.is_none_or(|length| length == "0") && !headers.contains_key(header::TRANSFER_ENCODING)
 }
 
 /// The spec of a prediction in which everything may be left out.

@@ -11,9 +11,9 @@ use utoipa::openapi::{
 };
 
 use super::access::Access;
-use super::openapi_types;
 use super::resources::Resources;
 use super::routes::resources;
+use super::{examples, openapi_types};
 use crate::schema::ProblemDocument;
 use crate::schema::job::JobEvent;
 use crate::schema::job_document::JobKind;
@@ -53,7 +53,9 @@ pub fn document() -> serde_json::Value {
     let described = serde_json::to_value(described()).unwrap_or_default();
     let mut document = openapi_types::typed(described);
     describe_check(&mut document["components"]["schemas"]);
+    document["paths"]["/v1/cases/{id}/check"]["post"]["requestBody"]["required"] = false.into();
     describe_kinds(&mut document["components"]["schemas"]["JobDocument"]);
+    examples::add(&mut document["paths"]);
     document
 }
 

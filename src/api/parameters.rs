@@ -21,6 +21,7 @@ impl<T: DeserializeOwned, S: Sync> FromRequestParts<S> for Parameters<T> {
             Err(error) => {
                 let detail = error.body_text();
                 let detail = detail.rsplit("query string: ").next().unwrap_or_default();
+                let detail = detail.replace("unknown variant", "unknown word");
                 Err(ApiError::invalid_parameter("query", detail))
             }
         }

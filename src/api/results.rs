@@ -43,7 +43,11 @@ pub(super) async fn successful(
                 .into())
         }
         JobStatus::Accepted | JobStatus::Running => {
-            let detail = format!("the job is {} and has no results yet", job.status.name());
+            let detail = format!(
+                "the job is {} and has no results yet; the header `Prefer: wait=n` waits up to n seconds, at most {}",
+                job.status.name(),
+                service.limits.wait_s
+            );
             Err(Problem::new(ErrorCode::ResultNotReady, detail)
                 .with("job_status", job.status.name())
                 .with("progress", job.progress)
@@ -80,6 +84,7 @@ async fn manifest(service: Service, Id(id): Id, headers: HeaderMap) -> ApiResult
     params(
         ("id" = uuid::Uuid, Path, description = "the job"),
         ("file" = String, Path, description = "its name in the manifest, e.g. skin.vtp"),
+        ("Prefer" = Option<String>, Header, description = "wait=n: wait at most n seconds for the end"),
     ),
     responses(
         (status = 200, description = "the file, of the media type that the manifest says", content((Vec<u8> = "*/*"))),

@@ -10,6 +10,7 @@ pub(super) fn resources() -> Resources {
     Resources::new()
         .merge(super::health::router())
         .merge(super::about::router())
+        .merge(super::error_page::router())
         .merge(super::meshes::router())
         .merge(super::cases::router())
         .merge(super::plans::router())

@@ -17,7 +17,7 @@ pub struct Arguments {
     #[command(flatten)]
     scene: SceneArguments,
     /// The folder for `check.json` and the picture `classes.svg`
-    #[arg(long, value_name = "FOLDER")]
+    #[arg(long, visible_alias = "output", value_name = "FOLDER", help_heading = "Result")]
     out: Option<PathBuf>,
 }
 

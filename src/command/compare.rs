@@ -7,7 +7,7 @@ use clap::{Args, ValueEnum};
 use super::failure::CommandError;
 use super::files::{FileSource, ScaleArguments};
 use super::scene::UnitArgument;
-use super::screen::{TerminalProgress, print_warnings};
+use super::screen::{TerminalProgress, print_files, print_warnings};
 use crate::jobs::{CompareInput, JobInput, Workplace, work};
 use crate::schema::compare::document::{
     AlignDocument, AlignMethod, CompareDocument, CompareKind, MeshReference, NodeWise,
@@ -25,7 +25,7 @@ pub struct Arguments {
     #[arg(long, value_name = "FILE")]
     actual: PathBuf,
     /// The folder for the result
-    #[arg(long, value_name = "FOLDER")]
+    #[arg(long, visible_alias = "output", value_name = "FOLDER", help_heading = "Result")]
     out: PathBuf,
     /// Whether the actual surface is moved rigidly onto the prediction first
     #[arg(long, default_value = "none")]
@@ -87,9 +87,7 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
     progress.finish();
     let done = done?;
     print_result(&done.result);
-    for file in &done.files {
-        println!("wrote      {}", arguments.out.join(&file.name).display());
-    }
+    print_files(&done.files, &arguments.out);
     Ok(())
 }
 

@@ -31,7 +31,7 @@ pub struct Arguments {
     #[arg(long)]
     serve: bool,
     /// Folder for the results
-    #[arg(long, value_name = "DIR", default_value = "facies-demo")]
+    #[arg(long, visible_alias = "output", value_name = "DIR", default_value = "facies-demo")]
     out: PathBuf,
     /// Folder of the service's database and files [default: OUT/service]
     #[arg(long, value_name = "DIR")]

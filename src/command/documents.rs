@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 
 use super::failure::CommandError;
 use super::files::relative;
@@ -27,6 +28,16 @@ pub fn read<T: DeserializeOwned>(path: &Path) -> Result<T, CommandError> {
     let bytes = std::fs::read(path)
         .map_err(|source| CommandError::Read { path: path.to_owned(), source })?;
     strict::parse(&bytes, &Limits::default())
+        .map_err(|problem| CommandError::Document { path: path.to_owned(), problem })
+}
+
+/// A spec of a job whose case stands beside it: as it is posted, and `case` may be left out.
+pub fn read_spec<T: DeserializeOwned>(path: &Path) -> Result<T, CommandError> {
+    let mut value: Value = read(path)?;
+    if let Some(members) = value.as_object_mut() {
+        members.entry("case").or_insert_with(|| "".into());
+    }
+    strict::from_value(value)
         .map_err(|problem| CommandError::Document { path: path.to_owned(), problem })
 }
 

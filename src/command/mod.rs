@@ -11,20 +11,24 @@ mod files;
 pub mod health;
 pub mod migrate;
 pub mod openapi;
+pub mod optimise;
 pub mod predict;
+pub mod response;
 mod scene;
 mod screen;
+mod selection;
 pub mod serve;
 pub mod settings;
 pub mod slot;
 pub mod stability;
 pub mod study;
+mod sweep;
 mod watch;
 pub mod worker;
 
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 
 pub use failure::CommandError;
 
@@ -42,6 +46,10 @@ enum Command {
     Demo(demo::Arguments),
     /// Predict the skin after a plan; write it with its statistics into a folder
     Predict(predict::Arguments),
+    /// Solve a case once, so that the skin of every further plan of its segments is a sum
+    Response(response::Arguments),
+    /// Find the plan that brings the skin nearest to where it is wanted
+    Optimise(optimise::Arguments),
     /// Measure the distances between two surfaces
     Compare(compare::Arguments),
     /// Hold methods against each other: how long each takes, how far it is from the truth
@@ -67,11 +75,44 @@ enum Command {
     Openapi,
 }
 
+/// Headings of the help and the commands under each.
+const GROUPS: [(&str, &[&str]); 2] = [
+    ("Predict and plan", &["demo", "check", "predict", "response", "optimise", "compare", "study"]),
+    ("Serve", &["serve", "worker", "migrate", "admin", "config", "health", "openapi"]),
+];
+
+/// The command that was asked for; ends the program where there is none.
+pub fn read() -> Facies {
+    let command = Facies::command();
+    let template = help_template(&command);
+    let matches = command.help_template(template).get_matches();
+    Facies::from_arg_matches(&matches).unwrap_or_else(|error| error.exit())
+}
+
+/// The help of the program with its commands in groups, which clap has for arguments only.
+fn help_template(command: &clap::Command) -> String {
+    let mut groups = String::new();
+    for (heading, names) in GROUPS {
+        groups += &format!("{heading}:\n");
+        for name in names {
+            let about = command.find_subcommand(name).and_then(clap::Command::get_about);
+            let about = about.map(ToString::to_string).unwrap_or_default();
+            groups += &format!("  {name:<10} {about}\n");
+        }
+        groups += "\n";
+    }
+    format!(
+        "{{about-with-newline}}\n{{usage-heading}} {{usage}}\n\n{groups}Options:\n{{options}}\n"
+    )
+}
+
 /// Runs the command and says what went wrong, one line for each mistake.
 pub fn run(facies: &Facies) -> ExitCode {
     let result = match &facies.command {
         Command::Demo(arguments) => demo::run(arguments).map_err(CommandError::from),
         Command::Predict(arguments) => predict::run(arguments),
+        Command::Response(arguments) => response::run(arguments),
+        Command::Optimise(arguments) => optimise::run(arguments),
         Command::Compare(arguments) => compare::run(arguments),
         Command::Study(arguments) => study::run(arguments),
         Command::Check(arguments) => check::run(arguments),

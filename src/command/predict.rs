@@ -6,7 +6,7 @@ use clap::Args;
 
 use super::failure::CommandError;
 use super::scene::SceneArguments;
-use super::screen::{TerminalProgress, print_check, print_warnings};
+use super::screen::{TerminalProgress, print_check, print_files, print_warnings};
 use super::watch::Watch;
 use crate::jobs::{JobInput, Workplace, check, work};
 use crate::schema::Limits;
@@ -27,7 +27,7 @@ pub struct Arguments {
     #[command(flatten)]
     scene: SceneArguments,
     /// The folder for the result
-    #[arg(long, value_name = "FOLDER")]
+    #[arg(long, visible_alias = "output", value_name = "FOLDER", help_heading = "Result")]
     out: PathBuf,
 }
 
@@ -57,9 +57,7 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let read_from = arguments.scene.case.as_deref();
     let documents = asked.file.write_beside(&asked.folder, &arguments.out, read_from)?;
     print_result(&done.result, &before);
-    for file in &done.files {
-        println!("wrote      {}", arguments.out.join(&file.name).display());
-    }
+    print_files(&done.files, &arguments.out);
     println!("wrote      {}", documents.display());
     Ok(())
 }

@@ -7,43 +7,54 @@ use clap::{Args, ValueEnum};
 use super::documents::{CaseFile, read};
 use super::failure::CommandError;
 use super::files::{FileSource, ScaleArguments};
-use crate::schema::case::document::{FrameName, LengthUnit};
+use super::selection::{segment, selection};
+use crate::schema::case::document::{FrameName, LengthUnit, SegmentDocument};
 use crate::schema::case::selection::SelectionDocument;
 use crate::schema::methods::ElementName;
 use crate::schema::{CaseDocument, MaterialDocument, PlanDocument, PredictDocument};
+
+/// Groups of the arguments in the help.
+const SCENE: &str = "What is predicted";
+const BOUNDARY: &str = "What holds and moves it";
+const TISSUE: &str = "Tissue";
 
 /// What is to be predicted.
 #[derive(Debug, Args)]
 pub struct SceneArguments {
     /// The case, plan and spec documents in one file; mesh paths are relative to it
-    #[arg(long, value_name = "FILE", required_unless_present = "mesh")]
+    #[arg(long, value_name = "FILE", required_unless_present = "mesh", help_heading = SCENE)]
     pub case: Option<PathBuf>,
     /// The volume mesh: VTU, VTK or Gmsh
-    #[arg(long, value_name = "FILE", conflicts_with = "case")]
+    #[arg(long, value_name = "FILE", conflicts_with = "case", help_heading = SCENE)]
     mesh: Option<PathBuf>,
     /// The plan document; its segments are segments of the case or node sets of the mesh
-    #[arg(long, value_name = "FILE", conflicts_with = "case")]
+    #[arg(long, value_name = "FILE", conflicts_with = "case", help_heading = SCENE)]
     plan: Option<PathBuf>,
-    /// A node set that is held; may be given several times
-    #[arg(long, value_name = "SET", conflicts_with = "case")]
-    fixed: Vec<String>,
-    /// The node set that is the skin; default: every boundary face that nothing holds
-    #[arg(long, value_name = "SET", conflicts_with = "case")]
-    skin: Option<String>,
+    /// Nodes that are held: a set of the mesh, or the nodes where an integer array has a value, as in tag=4; may be given
+    /// several times
+    #[arg(long, value_name = "SET|ARRAY=VALUE", value_parser = selection, conflicts_with = "case", help_heading = BOUNDARY)]
+    fixed: Vec<SelectionDocument>,
+    /// The nodes of the skin, as for --fixed; default: every boundary face that nothing holds
+    #[arg(long, value_name = "SET|ARRAY=VALUE", value_parser = selection, conflicts_with = "case", help_heading = BOUNDARY)]
+    skin: Option<SelectionDocument>,
+    /// A bone that plans move by NAME, and its nodes, as for --fixed; may be given several times; node sets of the mesh
+    /// are segments without it
+    #[arg(long, value_name = "NAME=SET|NAME=ARRAY=VALUE", value_parser = segment, conflicts_with = "case", help_heading = BOUNDARY)]
+    segment: Vec<SegmentDocument>,
     /// The unit of length of the mesh
-    #[arg(long, default_value = "mm", conflicts_with = "case")]
+    #[arg(long, default_value = "mm", conflicts_with = "case", help_heading = SCENE)]
     units: UnitArgument,
     /// The frame of the mesh
-    #[arg(long, default_value = "unspecified", conflicts_with = "case")]
+    #[arg(long, default_value = "unspecified", conflicts_with = "case", help_heading = SCENE)]
     frame: FrameArgument,
     /// Young's modulus of all tissue, in kPa; default 15
-    #[arg(long, value_name = "KPA", conflicts_with = "case")]
+    #[arg(long, value_name = "KPA", conflicts_with = "case", help_heading = TISSUE)]
     young_modulus_kpa: Option<f64>,
     /// Poisson's ratio of all tissue; default 0.46
-    #[arg(long, value_name = "RATIO", conflicts_with = "case")]
+    #[arg(long, value_name = "RATIO", conflicts_with = "case", help_heading = TISSUE)]
     poisson_ratio: Option<f64>,
     /// The treatment of cells
-    #[arg(long, default_value = "auto", conflicts_with = "case")]
+    #[arg(long, default_value = "auto", conflicts_with = "case", help_heading = TISSUE)]
     element: ElementArgument,
     #[command(flatten)]
     scale: ScaleArguments,
@@ -118,8 +129,9 @@ impl SceneArguments {
             FrameArgument::Ras => FrameName::Ras,
             FrameArgument::Unspecified => FrameName::Unspecified,
         };
-        case.skin = self.skin.as_deref().map(SelectionDocument::node_set);
-        case.fixed = self.fixed.iter().map(|set| SelectionDocument::node_set(set)).collect();
+        case.skin.clone_from(&self.skin);
+        case.fixed.clone_from(&self.fixed);
+        case.segments.clone_from(&self.segment);
         let element = match self.element {
             ElementArgument::Auto => ElementName::Auto,
             ElementArgument::Plain => ElementName::Plain,

@@ -1,13 +1,27 @@
 //! What the commands show: progress for people, tables for everybody.
 
+use std::io::{IsTerminal, stderr};
+use std::path::Path;
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::schema::WarningDocument;
 use crate::schema::predict::check::CheckDocument;
+use crate::schema::predict::result::FileDocument;
 use mechanics::progress::{Phase, Progress};
 
-/// The phase and the residual on one line of a terminal; nothing where there is no terminal.
-pub struct TerminalProgress(ProgressBar);
+/// Where nobody watches a terminal, a long phase is told so often.
+const LINE_EVERY: Duration = Duration::from_secs(10);
+
+/// The phase and the residual on standard error: one line that changes on a terminal, a line for each phase elsewhere.
+pub struct TerminalProgress {
+    bar: ProgressBar,
+    started: Instant,
+    /// When the last line was written; absent on a terminal.
+    last: Option<Mutex<Instant>>,
+}
 
 impl TerminalProgress {
     pub fn start() -> Self {
@@ -16,34 +30,53 @@ impl TerminalProgress {
         if let Ok(style) = ProgressStyle::with_template(template) {
             bar.set_style(style);
         }
-        TerminalProgress(bar)
+        let started = Instant::now();
+        let last = (!stderr().is_terminal()).then(|| Mutex::new(started));
+        TerminalProgress { bar, started, last }
     }
 
     pub fn finish(&self) {
-        self.0.finish_and_clear();
+        self.bar.finish_and_clear();
+    }
+
+    /// Shows what is being done; as a line at once or when the last one is old.
+    fn tell(&self, what: String, at_once: bool) {
+        let Some(last) = &self.last else {
+            self.bar.set_message(what);
+            self.bar.tick();
+            return;
+        };
+        let mut last = last.lock().unwrap_or_else(PoisonError::into_inner);
+        if at_once || last.elapsed() >= LINE_EVERY {
+            *last = Instant::now();
+            eprintln!("{:8.2} s  {what}", self.started.elapsed().as_secs_f64());
+        }
     }
 }
 
 impl Progress for TerminalProgress {
     fn phase(&self, phase: Phase) {
-        self.0.set_message(phase.name());
-        self.0.tick();
+        self.tell(phase.name().to_owned(), true);
     }
 
     fn iteration(&self, iteration: usize, relative_residual: f64, wanted: f64) {
-        self.0.set_message(format!(
-            "solve: iteration {iteration}, residual {relative_residual:.1e} of {wanted:.0e}"
-        ));
-        self.0.tick();
+        let residual = format!("residual {relative_residual:.1e} of {wanted:.0e}");
+        self.tell(format!("solve: iteration {iteration}, {residual}"), false);
     }
 
     fn step(&self, done: usize, of: usize) {
-        self.0.set_message(format!("row {} of {of}", (done + 1).min(of)));
-        self.0.tick();
+        self.tell(format!("row {} of {of}", (done + 1).min(of)), false);
     }
 
     fn is_cancelled(&self) -> bool {
         false
+    }
+}
+
+/// Where the files of a job are.
+pub fn print_files(files: &[FileDocument], folder: &Path) {
+    for file in files {
+        println!("wrote      {}", folder.join(&file.name).display());
     }
 }
 

@@ -65,6 +65,17 @@ impl Given {
     }
 }
 
+/// The group of a setting in the help: the sections of `docs/configuration.md`.
+fn heading(name: &str) -> &'static str {
+    match name {
+        "data" | "database" | "database-connections" | "blobs" => "Where things are kept",
+        "workers" | "threads-per-job" | "slot-memory-mib" | "lease-s" | "heartbeat-s"
+        | "attempts" | "grace-s" => "Jobs",
+        "log-format" | "log-level" | "traces" => "Logs and traces",
+        _ => "Requests",
+    }
+}
+
 impl Args for Arguments {
     fn augment_args(command: Command) -> Command {
         // Given twice, the last one counts, as it does in shells and container files.
@@ -79,6 +90,7 @@ impl Args for Arguments {
             };
             let argument = Arg::new(setting.name)
                 .long(setting.name)
+                .help_heading(heading(setting.name))
                 .value_name("VALUE")
                 .allow_hyphen_values(true)
                 .help(format!("{} [env: {}]{default}", setting.about, setting.variable()));

@@ -8,8 +8,9 @@ use clap::Args;
 use super::documents::{CaseFile, read};
 use super::failure::CommandError;
 use super::files::{FileSource, ScaleArguments};
-use super::screen::{TerminalProgress, print_warnings};
+use super::screen::{TerminalProgress, print_files, print_warnings};
 use super::stability;
+use super::sweep::{self, Sweep};
 use crate::jobs::study::files::REPORT_JSON;
 use crate::jobs::{JobInput, StudyInput, Workplace, work};
 use crate::schema::study::document::{
@@ -44,20 +45,24 @@ pub struct Arguments {
     /// How often every edge is halved; may be given several times; default: 0 and 1
     #[arg(long, value_name = "N")]
     level: Vec<u32>,
+    /// Every combination of values of material constants: [REGION.]young_modulus_kpa=V,V or [REGION.]poisson_ratio=V,V;
+    /// may be given several times
+    #[arg(long, value_name = "CONSTANT=V,V", value_parser = sweep::sweep)]
+    sweep: Vec<Sweep>,
     /// Solves of each row, whose median time is told
     #[arg(long, value_name = "N")]
     repeats: Option<u32>,
     /// Instead of a study: map where each method fails, what it does as movements, materials and meshes become
     /// impossible
     #[arg(long, conflicts_with_all = [
-        "small", "scene", "case", "method", "level", "repeats", "spec", "baseline", "threshold_p95_mm",
+        "small", "scene", "case", "method", "level", "sweep", "repeats", "spec", "baseline", "threshold_p95_mm",
     ])]
     stability: bool,
     /// A study document; the other arguments stand above it. Its cases are files as those of --case
     #[arg(long, value_name = "FILE")]
     spec: Option<PathBuf>,
     /// The folder for the report
-    #[arg(long, value_name = "FOLDER")]
+    #[arg(long, visible_alias = "output", value_name = "FOLDER", help_heading = "Result")]
     out: PathBuf,
     /// The report.json of an earlier study: rows that are worse than there end the program with 1
     #[arg(long, value_name = "FILE")]
@@ -85,9 +90,7 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let report = read_report(&arguments.out.join(REPORT_JSON))?;
     print_report(&report);
     print_warnings(&done.result.warnings);
-    for file in &done.files {
-        println!("wrote      {}", arguments.out.join(&file.name).display());
-    }
+    print_files(&done.files, &arguments.out);
     match report.verdict.outcome {
         OutcomeName::Pass => Ok(()),
         outcome => Err(CommandError::Verdict { outcome, reasons: report.verdict.reasons }),
@@ -110,6 +113,13 @@ impl Arguments {
         }
         if !self.level.is_empty() {
             spec.levels = self.level.clone();
+        }
+        if !self.sweep.is_empty() {
+            spec.sweep = sweep::document(&self.sweep);
+            // Constants that are swept are in the place of the tissue of the small study.
+            if self.small {
+                spec.materials.clear();
+            }
         }
         if let Some(repeats) = self.repeats {
             spec.repeats = repeats;

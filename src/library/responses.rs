@@ -15,7 +15,7 @@ use crate::schema::response::ResponseDescription;
 use crate::schema::{CaseDocument, WarningDocument};
 use crate::store::{Store, StoreError};
 use mechanics::format::{self, Mesh, ReadLimits, WriteError};
-use mechanics::mesh::{TriangleSurface, Vector, Warning};
+use mechanics::mesh::{TriangleSurface, Vector};
 use mechanics::plan::RigidMovement;
 use mechanics::prediction::{SKIN_OVERLAPS, Skin, skin_overlap};
 use mechanics::response::{Linearity, Response};

@@ -100,13 +100,17 @@ impl JobKind {
     }
 
     fn read(value: &Value) -> Result<JobKind, Problem> {
+        if !value.is_object() {
+            let detail = "expected an object with a member `kind`, found something else";
+            return Err(Problem::at(&Pointer::root(), ErrorCode::WrongType, detail));
+        }
         let at = Pointer::root().key("kind");
         let Some(kind) = value.get("kind") else {
             let detail = format!("missing field `kind`: {}", JobKind::listed("or"));
             return Err(Problem::at(&at, ErrorCode::MissingField, detail));
         };
         let Some(word) = kind.as_str() else {
-            return Err(Problem::at(&at, ErrorCode::WrongType, "the kind of a job is a word"));
+            return Err(Problem::at(&at, ErrorCode::WrongType, "the kind of a job is a string"));
         };
         JobKind::from_name(word).ok_or_else(|| {
             let detail = format!("`{word}` is not a kind of job; {} are", JobKind::listed("and"));

@@ -2,6 +2,8 @@
 
 #![allow(clippy::unwrap_used)]
 
+mod head;
+mod newcomers;
 #[path = "../support/program.rs"]
 mod program;
 mod study;

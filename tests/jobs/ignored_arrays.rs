@@ -201,3 +201,26 @@ fn more_regions_than_are_numbered_are_refused_and_none_is_taken_for_another() {
     let detail = "33792 regions, at most 32768 are told apart".to_owned();
     assert_eq!(problems[0], ("too-many-regions", detail));
 }
+
+/// What is said of a fixed set that is not there.
+fn of_a_missing_set(mesh: VolumeMesh, name: &str) -> String {
+    let mut case = case_of(mesh, material(15.0, 0.3));
+    case.fixed = vec![set(name)];
+    let found = Scene::new(&case, &Plan::default(), &Settings::default());
+    details(found.map_or_else(|errors| errors.0, |_| vec![]))[0].1.clone()
+}
+
+#[test]
+fn a_set_that_is_not_there_is_answered_with_the_arrays_that_are_and_how_they_select() {
+    let mut mesh = block(Vector::new(100.0, 100.0, 100.0), SMALL, CellShape::Hex8);
+    mesh.node_sets.clear();
+    let none = of_a_missing_set(mesh.clone(), "skull");
+    assert!(none.contains("it has none; an integer point array `set_NAME` makes one"), "{none}");
+    let labels = (0..mesh.nodes.len() as i64).map(|node| node % 3);
+    mesh.node_labels.insert("tag".to_owned(), labels.collect());
+    let other = of_a_missing_set(mesh.clone(), "skull");
+    assert!(other.contains("it has none; its integer point arrays"), "{other}");
+    assert!(other.ends_with("select nodes by `array` with `value`: tag"), "{other}");
+    let array = of_a_missing_set(mesh, "tag");
+    assert!(array.ends_with("by `array` with `value`, one of 0, 1, 2"), "{array}");
+}

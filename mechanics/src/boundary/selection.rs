@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use crate::mesh::closest_point::SurfaceSearch;
-use crate::mesh::ignored::listed;
 use crate::mesh::{ArrayUse, TriangleSurface, VolumeMesh};
 
 /// How a set of nodes is asked for (SELECT of the documents).
@@ -25,8 +24,8 @@ pub enum NodeSelection {
 
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SelectionError {
-    #[error("the mesh has no node set {name:?}; it has {known}")]
-    UnknownSet { name: String, known: String },
+    #[error("{0}")]
+    UnknownSet(String),
     #[error("{0}")]
     UnknownArray(String),
     #[error("the case has no surface {0:?}")]
@@ -60,10 +59,8 @@ impl Selector<'_> {
     fn collect(&self, selection: &NodeSelection) -> Result<Vec<u32>, SelectionError> {
         match selection {
             NodeSelection::NodeSet(name) => {
-                let set = self.mesh.node_set(name).ok_or_else(|| SelectionError::UnknownSet {
-                    name: name.clone(),
-                    known: listed(self.mesh.node_sets.keys()),
-                })?;
+                let missing = || SelectionError::UnknownSet(self.mesh.missing_set(name));
+                let set = self.mesh.node_set(name).ok_or_else(missing)?;
                 Ok(set.to_vec())
             }
             NodeSelection::Label { array, value } => self.labelled(array, *value),

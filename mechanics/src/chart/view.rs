@@ -93,6 +93,34 @@ impl Extent {
     }
 }
 
+/// Share of a surface that an outlook has to see, in projection.
+const LEAST_SEEN: f64 = 0.05;
+
+impl Outlook {
+    /// The same, or where a skin would be seen edge-on, as that of a plate that lies on its back, one that faces it.
+    pub fn facing(self, points: &[Vector], triangles: &[[u32; 3]]) -> Outlook {
+        let front = self.front.try_normalize(1e-12).unwrap_or_else(Vector::zeros);
+        let (mut area, mut seen, mut sum) = (0.0, 0.0, Vector::zeros());
+        for triangle in triangles {
+            let [a, b, c] = triangle.map(|point| points[point as usize]);
+            let normal = (b - a).cross(&(c - a));
+            area += normal.norm();
+            seen += normal.dot(&front).max(0.0);
+            sum += normal;
+        }
+        if seen > LEAST_SEEN * area {
+            return self;
+        }
+        match sum.try_normalize(LEAST_SEEN * area) {
+            None => self,
+            Some(turned) if turned.dot(&self.up).abs() > 0.9 * self.up.norm() => {
+                Outlook { front: turned, up: -self.front }
+            }
+            Some(turned) => Outlook { front: turned, up: self.up },
+        }
+    }
+}
+
 /// The front of an open skin surface: its mean outward normal without the part along `up`.
 /// Where that vanishes, as on a closed surface, the axis least along `up`.
 pub fn front_of(points: &[Vector], triangles: &[[u32; 3]], up: Vector) -> Vector {
@@ -129,6 +157,16 @@ fn mean_normal(points: &[Vector], triangles: &[[u32; 3]]) -> Vector {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_plate_that_lies_on_its_back_is_seen_from_above_and_a_face_from_the_front() {
+        let plate = [Vector::zeros(), Vector::x(), Vector::y()];
+        let outlook = Outlook::lps().facing(&plate, &[[0, 1, 2]]);
+        assert!((outlook.front - Vector::z()).norm() < 1e-12, "{:?}", outlook.front);
+        assert!((outlook.up - Vector::y()).norm() < 1e-12, "{:?}", outlook.up);
+        let face = [Vector::zeros(), Vector::x(), Vector::z()];
+        assert!((Outlook::lps().facing(&face, &[[0, 1, 2]]).front + Vector::y()).norm() < 1e-12);
+    }
 
     #[test]
     fn the_viewer_in_front_sees_the_left_side_of_the_face_on_his_right() {

@@ -1,10 +1,9 @@
-//! Why a mesh has no array of a name.
+//! Why a mesh has no array and no node set of a name.
+
+use std::collections::BTreeSet;
 
 use super::VolumeMesh;
-use super::ignored::ArrayUse;
-use super::ignored::ValuesOf;
-
-use super::ignored::listed;
+use super::ignored::{ArrayUse, ValuesOf, listed};
 
 impl VolumeMesh {
     /// What is said of an array that is asked for and not there: why it was ignored, or what there is instead.
@@ -26,6 +25,38 @@ impl VolumeMesh {
         match self.ignored.find(of, name) {
             Some(array) => array.to_string(),
             None => format!("the mesh has no {what} {name:?}; it has: {known}"),
+        }
+    }
+
+    /// What is said of a node set that is asked for and not there: which sets there are, and what else selects nodes.
+    pub fn missing_set(&self, name: &str) -> String {
+        let bare = name.strip_prefix("set_").unwrap_or(name);
+        let arrays = [bare.to_owned(), format!("set_{bare}")];
+        let ignored = arrays.iter().find_map(|array| self.ignored.find(ValuesOf::Points, array));
+        let why = ignored.map(|array| format!("; {array}")).unwrap_or_default();
+        let known = listed(self.node_sets.keys());
+        format!("the mesh has no node set {name:?}; it has {known}{why}{}", self.other_ways(name))
+    }
+
+    /// How nodes are selected that are in no set of this name.
+    fn other_ways(&self, name: &str) -> String {
+        if let Some(labels) = self.node_labels.get(name) {
+            let values: BTreeSet<i64> = labels.iter().copied().collect();
+            let values = listed(values.iter().map(i64::to_string).collect::<Vec<_>>().iter());
+            return format!(
+                "; {name:?} is an integer point array: its nodes are selected by `array` with `value`, one of {values}"
+            );
+        }
+        match self.node_labels.is_empty() {
+            true if self.node_sets.is_empty() => {
+                "; an integer point array `set_NAME` makes one of the points where it is not 0"
+                    .to_owned()
+            }
+            true => String::new(),
+            false => format!(
+                "; its integer point arrays select nodes by `array` with `value`: {}",
+                listed(self.node_labels.keys())
+            ),
         }
     }
 }

@@ -33,7 +33,7 @@ impl Problems {
 
     pub(super) fn selection(&mut self, pointer: &str, error: &SelectionError) {
         let code = match error {
-            SelectionError::UnknownSet { .. } => SceneErrorCode::UnknownSet,
+            SelectionError::UnknownSet(_) => SceneErrorCode::UnknownSet,
             SelectionError::UnknownArray(_) => SceneErrorCode::UnknownArray,
             SelectionError::UnknownSurface(_) => SceneErrorCode::UnknownSurface,
             SelectionError::FlatSurface(_) => SceneErrorCode::MeshDegenerate,

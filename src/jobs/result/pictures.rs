@@ -89,12 +89,13 @@ pub fn displacement_picture(
 
 /// From where the face is seen; without a known frame its front is found from its skin.
 fn outlook(frame: Frame, skin: &TriangleSurface) -> Outlook {
-    match frame {
+    let outlook = match frame {
         Frame::Lps => Outlook::lps(),
         Frame::Ras => Outlook::ras(),
         Frame::Unspecified => {
             let up = Vector::z();
             Outlook { front: front_of(&skin.points, &skin.triangles, up), up }
         }
-    }
+    };
+    outlook.facing(&skin.points, &skin.triangles)
 }

@@ -181,8 +181,8 @@ pub struct SlidingDocument {
 }
 
 /// The direction across which sliding nodes are held.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(untagged, expecting = "`surface` or a vector of three numbers is expected")]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
+#[serde(untagged)]
 pub enum NormalDocument {
     Word(NormalWord),
     Direction(Triple),

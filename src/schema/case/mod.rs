@@ -7,4 +7,5 @@ pub mod hounsfield;
 pub mod material;
 pub mod membrane;
 pub mod meshes;
+mod normal;
 pub mod selection;

@@ -1,12 +1,14 @@
 //! The names of methods and of elements.
 
+use std::sync::LazyLock;
+
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use utoipa::openapi::schema::{ObjectBuilder, SchemaType};
 use utoipa::openapi::{RefOr, Schema, Type};
 use utoipa::{PartialSchema, ToSchema};
 
-use crate::schema::wire::strict::NOT_AVAILABLE;
+use crate::schema::wire::reading::NOT_AVAILABLE;
 use mechanics::prediction::{ElementChoice, MethodKind};
 
 /// Why `auto` is what it is.
@@ -83,20 +85,21 @@ impl<'de> Deserialize<'de> for MethodName {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let word = String::deserialize(deserializer)?;
         MethodName::all().find(|method| method.name() == word).ok_or_else(|| {
-            let known: Vec<String> =
-                MethodName::all().map(|method| format!("`{}`", method.name())).collect();
-            let known = known.join(", ");
-            match NOT_BUILT.contains(&word.as_str()) {
-                true => D::Error::custom(format_args!(
-                    "{NOT_AVAILABLE}`{word}` is not built; there are {known}"
-                )),
-                false => D::Error::custom(format_args!(
-                    "unknown variant `{word}`, expected one of {known}"
-                )),
+            if !NOT_BUILT.contains(&word.as_str()) {
+                return D::Error::unknown_variant(&word, &WORDS);
             }
+            let known: Vec<String> = WORDS.iter().map(|name| format!("`{name}`")).collect();
+            let known = known.join(", ");
+            D::Error::custom(format_args!(
+                "{NOT_AVAILABLE}`{word}` is not built; there are {known}"
+            ))
         })
     }
 }
+
+/// The words of all methods.
+static WORDS: LazyLock<Vec<&'static str>> =
+    LazyLock::new(|| MethodName::all().map(MethodName::name).collect());
 
 impl PartialSchema for MethodName {
     fn schema() -> RefOr<Schema> {

@@ -1,11 +1,11 @@
 //! The items of a batch: a study over an explicit list of predictions in place of all combinations.
 
-use serde::de::{DeserializeOwned, Error};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::{Map, Value};
 
 use crate::schema::case::material::MaterialDocuments;
 use crate::schema::plan::document::PlanDocument;
+use crate::schema::predict::document::PredictKind;
 
 /// A `predict` spec, taken apart: what it is about, and how it is to be modelled.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,29 +24,25 @@ const PLAN: &str = "plan";
 const PLAN_ID: &str = "plan_id";
 const MATERIALS: &str = "materials";
 
-impl<'de> Deserialize<'de> for ItemDocument {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let mut members = Map::deserialize(deserializer)?;
-        if let Some(kind) = members.remove("kind").filter(|kind| kind != "predict") {
-            return Err(D::Error::custom(format!("an item is of kind `predict`, not {kind}")));
-        }
-        let case = taken(&mut members, CASE)?;
-        Ok(ItemDocument {
-            case: case.ok_or_else(|| D::Error::missing_field(CASE))?,
-            plan: taken(&mut members, PLAN)?,
-            plan_id: taken(&mut members, PLAN_ID)?,
-            materials: taken(&mut members, MATERIALS)?,
-            variant: Value::Object(members),
-        })
-    }
+/// An item as it stands in JSON.
+#[derive(Deserialize)]
+struct Members {
+    #[serde(default, rename = "kind")]
+    _kind: PredictKind,
+    case: String,
+    plan: Option<PlanDocument>,
+    plan_id: Option<String>,
+    materials: Option<MaterialDocuments>,
+    #[serde(flatten)]
+    variant: Map<String, Value>,
 }
 
-fn taken<T: DeserializeOwned, E: Error>(
-    members: &mut Map<String, Value>,
-    name: &str,
-) -> Result<Option<T>, E> {
-    let value = members.remove(name).map(serde_json::from_value).transpose();
-    value.map_err(|error| E::custom(format!("`{name}`: {error}")))
+impl<'de> Deserialize<'de> for ItemDocument {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let Members { _kind, case, plan, plan_id, materials, variant } =
+            Members::deserialize(deserializer)?;
+        Ok(ItemDocument { case, plan, plan_id, materials, variant: Value::Object(variant) })
+    }
 }
 
 impl Serialize for ItemDocument {

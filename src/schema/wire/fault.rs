@@ -38,11 +38,24 @@ pub struct Faults {
 
 impl Faults {
     pub fn add(&mut self, at: &Pointer, code: ErrorCode, detail: impl Into<String>) {
+        let error = FieldError { pointer: at.to_string(), code, detail: detail.into() };
+        if self.is_told(&error) {
+            return;
+        }
         if self.errors.len() == REPORTED_FAULTS {
             self.unreported += 1;
             return;
         }
-        self.errors.push(FieldError { pointer: at.to_string(), code, detail: detail.into() });
+        self.errors.push(error);
+    }
+
+    /// Whether the same was said before; a member that is null is not missing on top of it.
+    fn is_told(&self, error: &FieldError) -> bool {
+        self.errors.iter().any(|told| {
+            let is_null =
+                told.code == ErrorCode::NullValue && error.code == ErrorCode::MissingField;
+            told == error || (is_null && told.pointer == error.pointer)
+        })
     }
 
     pub fn is_empty(&self) -> bool {

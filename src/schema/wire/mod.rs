@@ -6,6 +6,7 @@ pub mod limits;
 pub mod names;
 pub mod pointer;
 pub mod problem;
+pub mod reading;
 pub mod strict;
 pub mod text_or_object;
 pub mod vector;

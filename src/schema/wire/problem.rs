@@ -7,8 +7,8 @@ use utoipa::ToSchema;
 use super::pointer::FieldError;
 use crate::schema::code::ErrorCode;
 
-/// What stands before the code in the `type` of a problem.
-const KIND_BASE: &str = "https://facies.invalid/problems/";
+/// What stands before the code in the `type` of a problem: the page of codes, beside what was asked for.
+const KIND_BASE: &str = "/errors#";
 
 /// Why something was refused.
 #[derive(Clone, Debug, PartialEq)]
@@ -63,7 +63,7 @@ impl Problem {
 /// `application/problem+json` (RFC 9457).
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 pub struct ProblemDocument {
-    /// URI of the kind of problem; ends with `code`.
+    /// Where the kind of problem is explained, relative to the service; ends with `code`.
     #[serde(rename = "type")]
     pub kind: String,
     /// The kind of problem in a few words.

@@ -10,15 +10,12 @@ use std::ops::Range;
 use serde::Deserialize;
 use serde::de::{DeserializeOwned, DeserializeSeed, Error, MapAccess, SeqAccess, Visitor};
 use serde_json::{Map, Number, Value};
-use serde_path_to_error::Segment;
 
 use super::fault::{Faults, Pointer};
 use super::limits::Limits;
 use super::problem::Problem;
+use super::reading;
 use crate::schema::code::ErrorCode;
-
-/// What the detail begins with where a word is known and what it stands for is not built.
-pub const NOT_AVAILABLE: &str = "not available: ";
 
 /// One document of a known shape.
 pub fn parse<T: DeserializeOwned>(bytes: &[u8], limits: &Limits) -> Result<T, Problem> {
@@ -58,64 +55,24 @@ pub fn from_value<T: DeserializeOwned>(mut value: Value) -> Result<T, Problem> {
     let mut faults = Faults::default();
     remove_nulls(&mut value, &Pointer::root(), &mut faults);
     loop {
-        let error = match serde_path_to_error::deserialize::<_, T>(&value) {
+        let mistake = match reading::read::<T>(&value) {
             Ok(document) => return faults.into_result().map(|()| document),
-            Err(error) => error,
+            Err(mistake) => mistake,
         };
-        let at = pointer_of(error.path());
-        let detail = error.inner().to_string();
-        match quoted_after(&detail, "unknown field ") {
-            Some(name) => {
-                let (parent, place) = member(&at, name);
-                faults.add(&place, ErrorCode::UnknownField, detail.clone());
-                let object = value.pointer_mut(parent.as_str()).and_then(Value::as_object_mut);
-                if object.and_then(|object| object.remove(name)).is_some() {
-                    continue;
-                }
-            }
-            None => add_shape_fault(&mut faults, &at, &detail),
+        let parent = mistake.place();
+        let at = match &mistake.member {
+            Some(name) => parent.key(name),
+            None => parent.clone(),
+        };
+        faults.add(&at, mistake.code, mistake.detail.clone());
+        let object = value.pointer_mut(parent.as_str()).and_then(Value::as_object_mut);
+        let unknown = mistake.member.filter(|_| mistake.code == ErrorCode::UnknownField);
+        let removed = object.zip(unknown).and_then(|(object, name)| object.remove(&name));
+        if removed.is_none() {
+            faults.into_result()?;
+            return Err(Problem::new(ErrorCode::ValidationFailed, mistake.detail));
         }
-        faults.into_result()?;
-        return Err(Problem::new(ErrorCode::ValidationFailed, detail));
     }
-}
-
-fn add_shape_fault(faults: &mut Faults, at: &Pointer, detail: &str) {
-    if let Some(name) = quoted_after(detail, "missing field ") {
-        faults.add(&at.key(name), ErrorCode::MissingField, detail);
-    } else if detail.starts_with("unknown variant ") {
-        faults.add(at, ErrorCode::UnknownWord, detail);
-    } else if detail.starts_with(NOT_AVAILABLE) {
-        faults.add(at, ErrorCode::MethodNotAvailable, detail);
-    } else {
-        faults.add(at, ErrorCode::WrongType, detail);
-    }
-}
-
-/// The object and the place of a member, whether or not the path already ends with it.
-fn member(at: &Pointer, name: &str) -> (Pointer, Pointer) {
-    let last = Pointer::root().key(name);
-    match at.as_str().strip_suffix(last.as_str()) {
-        Some(parent) => (Pointer::from_text(parent), at.clone()),
-        None => (at.clone(), at.key(name)),
-    }
-}
-
-/// The name in backquotes behind a prefix of one of serde's messages.
-fn quoted_after<'a>(message: &'a str, prefix: &str) -> Option<&'a str> {
-    let rest = message.strip_prefix(prefix)?.strip_prefix('`')?;
-    // serde lists what it expected behind the name, so the name ends at the last quote before that.
-    let end = rest.find("`, ").or_else(|| rest.rfind('`'))?;
-    Some(&rest[..end])
-}
-
-fn pointer_of(path: &serde_path_to_error::Path) -> Pointer {
-    path.iter().fold(Pointer::root(), |at, segment| match segment {
-        Segment::Seq { index } => at.index(*index),
-        Segment::Map { key } => at.key(key),
-        Segment::Enum { variant } => at.key(variant),
-        Segment::Unknown => at,
-    })
 }
 
 /// A member that is null says nothing a missing one does not; entries of arrays are judged by their type.

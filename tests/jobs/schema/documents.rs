@@ -311,7 +311,7 @@ fn a_job_is_told_apart_by_its_kind() {
     assert_eq!(refused(parse("{}")), one(failed, "missing-field", "/kind"));
     assert_eq!(refused(parse(r#"{"kind":"x"}"#)), one(failed, "unknown-word", "/kind"));
     assert_eq!(refused(parse(r#"{"kind":5}"#)), one(failed, "wrong-type", "/kind"));
-    assert_eq!(refused(parse("[]")), one(failed, "missing-field", "/kind"));
+    assert_eq!(refused(parse("[]")), one(failed, "wrong-type", ""));
     let both = parse(r#"{"kind":"predict","case":"c","plan":{},"plan_id":"p"}"#);
     assert_eq!(refused(both), one(failed, "one-of", ""));
 }

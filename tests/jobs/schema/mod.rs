@@ -5,3 +5,4 @@ mod fibres;
 mod methods;
 mod plan;
 mod syntax;
+mod wrong_types;

@@ -1,8 +1,12 @@
 //! What the pages say of codes is what the program answers.
 
-use std::path::Path;
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
 
 use facies::schema::ErrorCode;
+use reqwest::StatusCode;
+
+use crate::helpers::{Server, ask};
 
 fn page(name: &str) -> String {
     let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs");
@@ -44,5 +48,72 @@ fn a_code_has_the_status_that_other_pages_tell() {
     }
     for code in [ErrorCode::IdempotencyMismatch, ErrorCode::BudgetExceeded] {
         assert!(seen.contains(&code), "{code} among {seen:?}");
+    }
+}
+
+/// The codes of the table of warnings.
+fn warnings_told() -> BTreeSet<String> {
+    let text = page("errors.md");
+    let (_, table) = text.split_once("## Warnings").unwrap();
+    let code = |line: &str| line.strip_prefix("| `")?.split('`').next().map(str::to_owned);
+    table.lines().filter_map(code).collect()
+}
+
+/// The files of a folder, its folders included.
+fn sources(folder: &Path) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    entries.flat_map(|path| if path.is_dir() { sources(&path) } else { vec![path] }).collect()
+}
+
+/// Words of a file format that look like codes.
+const SPACES: [&str; 2] = ["left-posterior-superior", "right-anterior-superior"];
+
+/// Words between hyphens, as codes are written.
+fn is_code(text: &str) -> bool {
+    let words: Vec<&str> = text.trim_end_matches('?').split('-').collect();
+    words.iter().all(|word| word.len() > 1 && word.bytes().all(|byte| byte.is_ascii_lowercase()))
+}
+
+#[test]
+fn every_code_of_a_warning_in_the_sources_is_on_the_page() {
+    let told = warnings_told();
+    let mut made = BTreeSet::new();
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    for path in [root.join("src"), root.join("mechanics/src")].iter().flat_map(|at| sources(at)) {
+        let text = std::fs::read_to_string(&path).unwrap();
+        if !text.contains("Warning::new(") && !text.contains("WarningDocument {") {
+            continue;
+        }
+        let code = text.split("#[cfg(test)]").next().unwrap();
+        // A word of one part is a code only where a warning is made of it.
+        let first = code.split("Warning::new(").skip(1).filter_map(|rest| {
+            rest.trim_start().strip_prefix('"')?.split('"').next().map(str::to_owned)
+        });
+        let literals = code.split('"').skip(1).step_by(2).map(str::to_owned);
+        let literals = literals.filter(|word| word.contains('-') && is_code(word));
+        made.extend(first.chain(literals.filter(|word| !SPACES.contains(&word.as_str()))));
+    }
+    let untold: Vec<&String> = made.difference(&told).collect();
+    assert!(untold.is_empty(), "docs/errors.md lacks {untold:?}");
+    let unmade: Vec<&String> = told.difference(&made).collect();
+    assert!(unmade.is_empty(), "nothing says {unmade:?}");
+}
+
+#[tokio::test]
+async fn the_type_of_a_problem_leads_to_the_row_of_its_code_on_a_page_that_needs_no_key() {
+    let server = Server::start_with(&["--workers", "0", "--api-key", "a-key-that-nobody-has"]);
+    let refused = ask(server.get("/v1/jobs")).await.problem(401, "unauthorized");
+    let (address, anchor) = refused["type"].as_str().unwrap().split_once('#').unwrap();
+    let page = ask(server.get(address)).await;
+    assert_eq!(page.status, StatusCode::OK);
+    assert!(page.header("content-type").starts_with("text/html"));
+    let page = String::from_utf8(page.bytes).unwrap();
+    assert_eq!(anchor, "unauthorized");
+    let codes = ErrorCode::ALL.iter().map(|code| code.name().to_owned());
+    for code in codes.chain(warnings_told()) {
+        let row = page.split(&format!("<tr id=\"{code}\">")).nth(1);
+        let row = row.unwrap_or_else(|| panic!("{code}")).split("</tr>").next().unwrap();
+        let says = row.rsplit("<td>").next().unwrap();
+        assert!(says.len() > 12, "{code}: {says}");
     }
 }

@@ -450,3 +450,14 @@ async fn a_variant_of_a_client_that_is_called_like_one_that_may_fail_fails_its_g
     let own = ended(json!(["mtm"])).await;
     assert_eq!(own, (json!("pass"), json!("known-failure"), json!(["mtm jacobi"])));
 }
+
+#[tokio::test]
+async fn a_report_and_a_file_are_waited_for_by_who_prefers_to() {
+    let server = Server::start();
+    let posted = ask(server.post("/v1/jobs").json(&slab())).await.expect(StatusCode::CREATED);
+    let path = format!("/v1/jobs/{}", posted["id"].as_str().unwrap());
+    let waiting = |of: &str| server.get(&format!("{path}{of}")).header("prefer", "wait=30");
+    let reported = ask(waiting("/report?format=svg")).await;
+    assert_eq!(reported.status, StatusCode::OK);
+    assert_eq!(ask(waiting("/results/report.csv")).await.status, StatusCode::OK);
+}

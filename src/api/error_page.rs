@@ -1,0 +1,94 @@
+//! The page of error and warning codes, to which the `type` of every problem leads.
+
+use std::sync::LazyLock;
+
+use axum::http::header;
+use axum::response::{IntoResponse, Response};
+use utoipa_axum::routes;
+
+use super::resources::Resources;
+
+/// The page as it is written; a test holds it to the codes of the program.
+const WRITTEN: &str = include_str!("../../docs/errors.md");
+const HTML: &str = "text/html; charset=utf-8";
+
+static PAGE: LazyLock<String> = LazyLock::new(|| html(WRITTEN));
+
+pub fn router() -> Resources {
+    Resources::new().open(routes!(errors))
+}
+
+/// Every code of a problem, of a job's error and of a warning, each in a row that has the code as its anchor: the `type`
+/// of a problem is the address of its row.
+#[utoipa::path(
+    get, path = "/errors", operation_id = "show_errors", tag = "about",
+    responses((status = 200, description = "the page", body = String, content_type = "text/html"))
+)]
+async fn errors() -> Response {
+    page()
+}
+
+/// The page, also for the admin listener.
+pub fn page() -> Response {
+    ([(header::CONTENT_TYPE, HTML)], PAGE.as_str()).into_response()
+}
+
+/// The page as HTML: of Markdown only headings, paragraphs, words in backquotes and tables, whose rows are called by
+/// the word in their first cell.
+fn html(written: &str) -> String {
+    let mut body = String::new();
+    for block in written.split("\n\n") {
+        let lines: Vec<&str> = block.lines().collect();
+        match lines.as_slice() {
+            [] => {}
+            [heading] if heading.starts_with('#') => body += &headline(heading),
+            [head, _, rows @ ..] if head.starts_with("| ") => {
+                let table = table(&body, head, rows);
+                body += &table;
+            }
+            paragraph => body += &format!("<p>{}</p>\n", inline(&paragraph.join("\n"))),
+        }
+    }
+    format!(
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head><meta charset=\"utf-8\"><title>facies: errors and warnings</title></head>\n\
+         <body>\n{body}</body>\n</html>\n"
+    )
+}
+
+fn headline(line: &str) -> String {
+    let text = line.trim_start_matches('#');
+    let level = line.len() - text.len();
+    format!("<h{level}>{}</h{level}>\n", inline(text.trim()))
+}
+
+/// A table whose rows have anchors, but for words that are told `above` already: a warning may say what an error says.
+fn table(above: &str, head: &str, rows: &[&str]) -> String {
+    let mut table = format!("<table>\n<tr>{}</tr>\n", cells(head, "th"));
+    for row in rows {
+        let name = escaped(row.split('`').nth(1).unwrap_or_default());
+        let anchor = format!(" id=\"{name}\"");
+        let anchor = if above.contains(&anchor) { String::new() } else { anchor };
+        table += &format!("<tr{anchor}>{}</tr>\n", cells(row, "td"));
+    }
+    table + "</table>\n"
+}
+
+fn cells(row: &str, tag: &str) -> String {
+    let inner = row.trim_start_matches("| ").trim_end_matches(" |");
+    inner.split(" | ").map(|cell| format!("<{tag}>{}</{tag}>", inline(cell))).collect()
+}
+
+/// Text with what stands in backquotes as code.
+fn inline(text: &str) -> String {
+    let mut parts = text.split('`').map(escaped);
+    let first = parts.next().unwrap_or_default();
+    let code = |(index, part): (usize, String)| match index % 2 {
+        0 => format!("<code>{part}</code>"),
+        _ => part,
+    };
+    first + &parts.enumerate().map(code).collect::<String>()
+}
+
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}

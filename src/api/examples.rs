@@ -1,0 +1,141 @@
+//! Examples of the bodies of requests, for the pages of the description: all of the block in `examples/block`, with ids
+//! where those of a reader's own meshes, cases and jobs belong.
+
+use serde_json::{Map, Value, json};
+
+pub const VOLUME: &str = "0199d3a0-0000-7000-8000-000000000001";
+pub const BONE: &str = "0199d3a0-0000-7000-8000-000000000002";
+pub const CASE: &str = "0199d3a0-0000-7000-8000-000000000003";
+pub const PLAN: &str = "0199d3a0-0000-7000-8000-000000000004";
+pub const JOB: &str = "0199d3a0-0000-7000-8000-000000000005";
+
+/// Writes examples beside the schema of every JSON body of the operations.
+pub fn add(paths: &mut Value) {
+    let items = paths.as_object_mut().into_iter().flat_map(Map::values_mut);
+    for operation in items.filter_map(Value::as_object_mut).flat_map(Map::values_mut) {
+        let name = operation["operationId"].as_str().unwrap_or_default().to_owned();
+        let content = operation.pointer_mut("/requestBody/content/application~1json");
+        let Some(content) = content.and_then(Value::as_object_mut) else { continue };
+        let examples = of(&name).into_iter();
+        let examples = examples.map(|(name, value)| (name.to_owned(), json!({ "value": value })));
+        content.insert("examples".to_owned(), Value::Object(examples.collect()));
+    }
+}
+
+/// The examples of an operation, each with its name.
+fn of(operation: &str) -> Vec<(&'static str, Value)> {
+    match operation {
+        "create_case" => vec![("case", case())],
+        "check_case" => vec![("nothing moves", json!({})), ("plan", json!({ "plan": plan() }))],
+        "create_plan" | "replace_plan" => vec![("movements", plan()), ("loads", loads())],
+        "apply_response" => vec![("plan", json!({ "plan": plan() }))],
+        "create_job" => jobs(),
+        "create_key" => {
+            let scopes = ["read", "write", "run"];
+            vec![("key", json!({"label": "planning station", "scopes": scopes, "days": 365}))]
+        }
+        "rotate_key" => vec![("rotation", json!({"overlap_h": 24}))],
+        _ => Vec::new(),
+    }
+}
+
+fn case() -> Value {
+    json!({
+        "schema": 1, "name": "block", "units": "mm", "frame": "LPS",
+        "volume": VOLUME,
+        "bones": [{"name": "mandible", "mesh": BONE}],
+        "landmarks": {"pogonion": [60, 30, 20]},
+        "regions": {"array": "layer", "names": {"0": "deep", "1": "skin"}},
+        "skin": {"node_set": "skin"},
+        "segments": [{"name": "mandible", "nodes": {"node_set": "mandible"}}],
+        "fixed": [{"node_set": "skull"}],
+        "materials": {
+            "skin": {"young_modulus_kpa": 40, "poisson_ratio": 0.45},
+            "*": {"young_modulus_kpa": 10, "poisson_ratio": 0.45},
+        },
+    })
+}
+
+fn plan() -> Value {
+    json!({
+        "frame": "LPS",
+        "segments": [{
+            "name": "mandible", "translation_mm": [4, 0, 1], "rotation_deg": [0, 5, 0], "pivot_mm": [40, 30, 0],
+        }],
+    })
+}
+
+fn loads() -> Value {
+    json!({
+        "segments": [{"name": "mandible", "translation_mm": [4, 0, 0]}],
+        "loads": [
+            {"gravity_m_per_s2": [0, 0, -9.81]},
+            {"pressure_kpa": 0.1, "faces": {"node_set": "skin"}},
+        ],
+    })
+}
+
+/// One of each kind of job, and what is asked for most besides.
+fn jobs() -> Vec<(&'static str, Value)> {
+    let bounds = json!({"translation_mm": [[-10, 10], [0, 0], [-5, 5]]});
+    vec![
+        (
+            "predict",
+            json!({
+                "kind": "predict", "case": CASE, "plan": plan(), "method": "auto", "outputs": ["skin.vtp", "skin.glb"],
+            }),
+        ),
+        ("predict a plan that is kept", json!({"kind": "predict", "case": CASE, "plan_id": PLAN})),
+        (
+            "predict with a membrane",
+            json!({
+                "kind": "predict", "case": CASE, "plan": plan(),
+                "membrane": {"thickness_mm": 1.5, "young_modulus_kpa": 200, "poisson_ratio": 0.45},
+                "materials": {"deep": {"young_modulus_kpa": 15}},
+            }),
+        ),
+        (
+            "compare",
+            json!({
+                "kind": "compare", "prediction": {"job": JOB}, "actual": {"mesh": BONE}, "align": {"method": "none"},
+            }),
+        ),
+        ("response", json!({"kind": "response", "case": CASE, "segments": ["mandible"]})),
+        (
+            "optimise",
+            json!({
+                "kind": "optimise", "case": CASE,
+                "targets": [
+                    {"nodes": {"node_set": "skin"}, "displacement_mm": [2, null, null]},
+                    {"landmark": "pogonion", "displacement_mm": [3, 0, null], "sigma_mm": 0.5},
+                ],
+                "bounds": {"mandible": bounds},
+            }),
+        ),
+        (
+            "study",
+            json!({
+                "kind": "study", "scenes": ["slab", {"case": CASE, "name": "block"}],
+                "plans": ["patch 4 mm", plan()], "methods": ["fem_linear", "mtm"], "elements": ["plain", "stabilised"],
+                "levels": [0], "repeats": 1, "thresholds": {"p95_mm": 1.0},
+            }),
+        ),
+        (
+            "study of a sweep",
+            json!({
+                "kind": "study", "scenes": [{"case": CASE}], "plans": [plan()], "methods": ["fem_linear"],
+                "sweep": {"*": {"young_modulus_kpa": [10, 20, 40], "poisson_ratio": [0.43, 0.47]}}, "repeats": 1,
+            }),
+        ),
+        (
+            "batch",
+            json!({
+                "kind": "batch", "truth": {"refine": 1, "element": "mean_dilatation"}, "repeats": 1,
+                "items": [
+                    {"case": CASE, "plan_id": PLAN, "method": "fem_linear", "label": "reference"},
+                    {"case": CASE, "plan": plan(), "method": "fem_linear", "element": "plain"},
+                ],
+            }),
+        ),
+    ]
+}

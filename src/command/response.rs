@@ -1,0 +1,66 @@
+//! `facies response`: the plan response of a case, as the job of that kind builds it.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::documents::read_spec;
+use super::failure::CommandError;
+use super::scene::SceneArguments;
+use super::screen::{TerminalProgress, print_files, print_warnings};
+use crate::jobs::{JobInput, ResponseInput, Workplace, work};
+use crate::schema::{Limits, PredictDocument, ResponseDocument};
+
+#[derive(Debug, Args)]
+pub struct Arguments {
+    #[command(flatten)]
+    scene: SceneArguments,
+    /// A response document, as it is posted but for `case`; without it method, element, materials and tolerance are
+    /// those of the spec of the case file. The plan of a case file is not used
+    #[arg(long, value_name = "FILE", help_heading = "How it is computed")]
+    spec: Option<PathBuf>,
+    /// A segment that the response can move; may be given several times; default: all
+    #[arg(long, value_name = "NAME", help_heading = "How it is computed")]
+    only: Vec<String>,
+    /// The folder for the result
+    #[arg(long, visible_alias = "output", value_name = "FOLDER", help_heading = "Result")]
+    out: PathBuf,
+}
+
+/// Solves, writes columns and description, and tells what they hold.
+pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
+    let asked = arguments.scene.documents()?;
+    let mut spec = match &arguments.spec {
+        Some(path) => read_spec(path)?,
+        None => of_prediction(&asked.file.spec),
+    };
+    if !arguments.only.is_empty() {
+        spec.segments.clone_from(&arguments.only);
+    }
+    let case = asked.file.case;
+    let input = JobInput::Response(ResponseInput { job: None, queue_s: None, case, spec });
+    let limits = Limits::default();
+    let place = Workplace { sources: &asked.sources, limits: &limits, out: &arguments.out };
+    let progress = TerminalProgress::start();
+    let done = work(&input, &place, &progress);
+    progress.finish();
+    let done = done?;
+    let provenance = &done.result.provenance;
+    println!("time       {:.2} s; key {}", provenance.timing.total_s, provenance.spec_hash);
+    print_warnings(&done.result.warnings);
+    print_files(&done.files, &arguments.out);
+    Ok(())
+}
+
+/// The response of the tissue that a prediction has.
+fn of_prediction(spec: &PredictDocument) -> ResponseDocument {
+    ResponseDocument {
+        method: spec.method,
+        element: spec.element,
+        materials: spec.materials.clone(),
+        membrane: spec.membrane.clone(),
+        tolerance: spec.tolerance,
+        budget: spec.budget,
+        ..ResponseDocument::default()
+    }
+}

@@ -1,0 +1,164 @@
+//! Commands beside `predict`: responses, inverse plans, sweeps, selections by arrays, progress, help.
+
+use std::collections::BTreeSet;
+use std::fs;
+
+use facies::schema::plan::document::PlanDocument;
+use facies::schema::study::report::ReportDocument;
+use mechanics::format::VolumeOutput;
+use mechanics::format::vtk::vtu;
+use mechanics::mesh::{CellShape, Frame, Vector, sample};
+use serde_json::{Value, json};
+
+use crate::program::{block, facies, path, result, text};
+
+#[test]
+fn a_response_is_built_without_a_server() {
+    let out = tempfile::tempdir().unwrap();
+    let case = block().join("case.json");
+    let done = facies(&["response", "--case", path(&case), "--output", path(out.path())]);
+    assert_eq!(done.status.code(), Some(0), "{}", text(&done.stderr));
+    let read = fs::read(out.path().join("response.json")).unwrap();
+    let description: Value = serde_json::from_slice(&read).unwrap();
+    assert_eq!(description["segments"][0]["name"], "mandible");
+    // 12 columns of 25 nodes of the skin.
+    assert_eq!(fs::metadata(out.path().join("response.f32")).unwrap().len(), 12 * 25 * 3 * 4);
+    let none = ["response", "--case", path(&case), "--only", "nose", "--out", path(out.path())];
+    let refused = facies(&none);
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(text(&refused.stderr).contains("/spec/segments/0"), "{}", text(&refused.stderr));
+}
+
+#[test]
+fn a_plan_that_was_found_without_a_server_is_one_that_predict_takes() {
+    let folder = tempfile::tempdir().unwrap();
+    let targets = json!({
+        "targets": [{"nodes": {"node_set": "skin"}, "displacement_mm": [1, null, null]}],
+        "bounds": {"mandible": {"translation_mm": [[-10, 10], [0, 0], [-5, 5]]}},
+    });
+    let file = folder.path().join("targets.json");
+    fs::write(&file, targets.to_string()).unwrap();
+    let (case, out) = (block().join("case.json"), folder.path().join("found"));
+    let asked = ["optimise", "--case", path(&case), "--spec", path(&file), "--out", path(&out)];
+    let done = facies(&asked);
+    assert_eq!(done.status.code(), Some(0), "{}", text(&done.stderr));
+    let plan: PlanDocument =
+        serde_json::from_slice(&fs::read(out.join("plan.json")).unwrap()).unwrap();
+    assert_eq!(Some(plan), result(&out).optimisation.map(|found| found.plan));
+    let shown = text(&done.stdout);
+    assert!(shown.contains("target 0   left") && shown.contains("plan.json"), "{shown}");
+
+    let mesh = block().join("block.vtu");
+    let (plan, again) = (out.join("plan.json"), folder.path().join("again"));
+    let scene = ["--mesh", path(&mesh), "--frame", "LPS", "--fixed", "skull", "--skin", "skin"];
+    let rest = ["--plan", path(&plan), "--out", path(&again)];
+    let done = facies(&[&["predict"][..], &scene[..], &rest[..]].concat());
+    assert_eq!(done.status.code(), Some(0), "{}", text(&done.stderr));
+}
+
+#[test]
+fn a_mistake_in_a_spec_of_the_command_line_is_told_with_its_file_and_place() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("targets.json");
+    fs::write(&file, r#"{"targets":{},"bounds":{}}"#).unwrap();
+    let case = block().join("case.json");
+    let out = folder.path().join("out");
+    let asked = ["optimise", "--case", path(&case), "--spec", path(&file), "--out", path(&out)];
+    let done = facies(&asked);
+    let told = text(&done.stderr);
+    assert_eq!(done.status.code(), Some(2), "{told}");
+    assert!(told.contains("targets.json: /targets: expected an array, found an object"), "{told}");
+}
+
+#[test]
+fn a_sweep_makes_a_row_of_every_combination() {
+    let folder = tempfile::tempdir().unwrap();
+    let spec =
+        json!({"kind": "study", "truth": {"refine": 1, "element": "quadratic"}, "repeats": 1});
+    let (file, out) = (folder.path().join("study.json"), folder.path().join("out"));
+    fs::write(&file, spec.to_string()).unwrap();
+    let asked =
+        ["study", "--spec", path(&file), "--scene", "slab", "--method", "dvs", "--out", path(&out)];
+    let sweeps = ["--sweep", "young_modulus_kpa=10,20,40", "--sweep", "poisson_ratio=0.43,0.46"];
+    let done = facies(&[&asked[..], &sweeps[..]].concat());
+    let report = fs::read(out.join("report.json"));
+    let report = report.unwrap_or_else(|_| panic!("{}", text(&done.stderr)));
+    let report: ReportDocument = serde_json::from_slice(&report).unwrap();
+    let materials: BTreeSet<&str> = report.rows.iter().map(|row| row.material.as_str()).collect();
+    assert_eq!(materials.len(), 6, "{materials:?}");
+    let wrong =
+        facies(&["study", "--scene", "slab", "--sweep", "stiffness=1", "--out", path(&out)]);
+    assert_eq!(wrong.status.code(), Some(2));
+    assert!(text(&wrong.stderr).contains("a sweep is"), "{}", text(&wrong.stderr));
+}
+
+#[test]
+fn nodes_are_selected_by_the_value_of_an_array() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut mesh = sample::block(Vector::new(80.0, 60.0, 20.0), [4, 3, 2], CellShape::Hex8);
+    let tag = |node: &Vector| match node.z {
+        z if z == 0.0 => 4 + i64::from(node.x > 30.0),
+        z if z > 19.0 => 7,
+        _ => 0,
+    };
+    mesh.node_labels.insert("tag".to_owned(), mesh.nodes.iter().map(tag).collect());
+    mesh.node_sets.clear();
+    let (file, plan) = (folder.path().join("block.vtu"), folder.path().join("plan.json"));
+    fs::write(&file, vtu::write(&VolumeOutput::plain(&mesh, Frame::Unspecified)).unwrap()).unwrap();
+    fs::write(&plan, r#"{"segments":[{"name":"jaw","translation_mm":[2,0,0]}]}"#).unwrap();
+    let scene = ["check", "--mesh", path(&file), "--plan", path(&plan)];
+    let nodes = ["--fixed", "tag=4", "--skin", "tag=7", "--segment", "jaw=tag=5"];
+    let done = facies(&[&scene[..], &nodes[..]].concat());
+    let shown = text(&done.stdout);
+    assert_eq!(done.status.code(), Some(0), "{}", text(&done.stderr));
+    // Two of five columns of nodes on the left, three on the right, four rows.
+    assert!(shown.contains("joined     12 nodes to jaw"), "{shown}");
+    assert!(
+        shown.contains("fixed      8 nodes") && shown.contains("skin       20 nodes"),
+        "{shown}"
+    );
+    let wrong = facies(&["check", "--mesh", path(&file), "--fixed", "skull"]);
+    let told = text(&wrong.stderr);
+    assert!(told.contains("select nodes by `array` with `value`: tag"), "{told}");
+}
+
+#[test]
+fn progress_is_told_on_standard_error_and_the_result_on_standard_output() {
+    let out = tempfile::tempdir().unwrap();
+    let case = block().join("case.json");
+    let done = facies(&["predict", "--case", path(&case), "--output", path(out.path())]);
+    let phases: Vec<String> = text(&done.stderr)
+        .lines()
+        .filter_map(|line| line.split_once(" s  ").map(|(_, phase)| phase.to_owned()))
+        .collect();
+    let solve = phases.iter().position(|phase| phase == "solve");
+    let write = phases.iter().position(|phase| phase == "write");
+    assert!(solve.is_some() && solve < write, "{phases:?}");
+    assert!(!text(&done.stdout).contains("assemble\n"), "{}", text(&done.stdout));
+}
+
+#[test]
+fn the_help_lists_every_command_once_in_its_group_and_arguments_in_theirs() {
+    let help = text(&facies(&["--help"]).stdout);
+    for heading in ["Predict and plan:", "Serve:", "Options:"] {
+        assert!(help.contains(heading), "{help}");
+    }
+    let commands = [
+        "demo", "check", "predict", "response", "optimise", "compare", "study", "serve", "worker",
+        "migrate", "admin", "config", "health", "openapi",
+    ];
+    for command in commands {
+        let lines = help.lines().filter(|line| line.starts_with(&format!("  {command} ")));
+        let lines: Vec<&str> = lines.collect();
+        assert!(lines.len() == 1 && lines[0].len() > 25, "{command}: {lines:?}");
+        assert!(facies(&[command, "--help"]).status.success(), "{command}");
+    }
+    let predict = text(&facies(&["predict", "--help"]).stdout);
+    for heading in ["What is predicted:", "What holds and moves it:", "Tissue:", "Result:"] {
+        assert!(predict.contains(heading), "{predict}");
+    }
+    let serve = text(&facies(&["serve", "--help"]).stdout);
+    for heading in ["Where things are kept:", "Requests:", "Jobs:", "Logs and traces:"] {
+        assert!(serve.contains(heading), "{serve}");
+    }
+}
