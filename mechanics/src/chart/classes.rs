@@ -2,7 +2,8 @@
 
 use super::Vector;
 use super::colour::{self, Rgb};
-use super::raster::{Finish, Painted, PngError, Shot, draw};
+use super::facet::Finish;
+use super::raster::{Painted, Panel, PngError, Shot, draw_all};
 use super::svg::{Document, Place, Style};
 use super::view::Outlook;
 
@@ -74,28 +75,30 @@ impl ClassesPicture<'_> {
         let mut document = Document::new(width, height);
         let room = width - 2.0 * MARGIN;
         document.text([MARGIN, 42.0], room, Style::of(22.0).bold(), self.title);
-        for (panel, camera) in cameras.into_iter().enumerate() {
-            let place = Place {
-                x: MARGIN + (PANEL_WIDTH + GAP) * panel as f64,
-                y: HEAD,
-                width: PANEL_WIDTH,
-                height: panel_height,
-            };
-            let shot = Shot {
-                camera,
-                centre: extents[panel].centre(),
-                millimetres_per_pixel: Shot::scale_for(&extents, pixels_wide, pixels_high),
-                width: pixels_wide,
-                height: pixels_high,
-            };
-            let painted = Painted {
-                points: self.points,
-                triangles: self.triangles,
-                colours: &colours,
-                finish: Finish::Classes,
-            };
+        let panels: Vec<Panel> = cameras
+            .into_iter()
+            .zip(&extents)
+            .map(|(camera, extent)| Panel {
+                painted: Painted {
+                    points: self.points,
+                    triangles: self.triangles,
+                    colours: &colours,
+                    finish: Finish::Classes,
+                },
+                shot: Shot {
+                    camera,
+                    centre: extent.centre(),
+                    millimetres_per_pixel: Shot::scale_for(&extents, pixels_wide, pixels_high),
+                    width: pixels_wide,
+                    height: pixels_high,
+                },
+            })
+            .collect();
+        for (panel, png) in draw_all(&panels)?.iter().enumerate() {
+            let x = MARGIN + (PANEL_WIDTH + GAP) * panel as f64;
+            let place = Place { x, y: HEAD, width: PANEL_WIDTH, height: panel_height };
             document.rectangle(place, "#f3f4f6", 6.0);
-            document.image(place, &draw(&painted, &shot))?;
+            document.image(place, png);
             let middle = [place.x + PANEL_WIDTH / 2.0, HEAD - 10.0];
             let style = Style::of(13.0).bold().middle();
             document.text(middle, PANEL_WIDTH, style, PANELS[panel].0);

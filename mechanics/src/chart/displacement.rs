@@ -2,8 +2,9 @@
 
 use super::Vector;
 use super::colour::{self, Rgb, sequential};
+use super::facet::Finish;
 use super::legend::{Scale, round_length};
-use super::raster::{Finish, Painted, PngError, Shot, draw};
+use super::raster::{Painted, Panel, PngError, Shot, draw_all};
 use super::svg::{Document, Place, Style, wrapped};
 use super::view::{Camera, Outlook};
 
@@ -78,24 +79,31 @@ impl DisplacementPicture<'_> {
         colours: &[Rgb],
     ) -> Result<(), PngError> {
         let skin = vec![colour::SKIN; colours.len()];
-        for (row, camera) in cameras.iter().enumerate() {
-            for (column, (points, colours, finish)) in [
-                (self.before, skin.as_slice(), Finish::Bare),
-                (self.after, skin.as_slice(), Finish::Bare),
-                (self.after, colours, Finish::Values),
-            ]
-            .into_iter()
-            .enumerate()
-            {
-                let place = layout.panel(row, column);
-                document.rectangle(place, "#f3f4f6", 6.0);
-                let painted = Painted { points, triangles: self.triangles, colours, finish };
-                let below = Place { y: place.y + STRIP, height: layout.image_height, ..place };
-                document.image(below, &draw(&painted, &layout.shot(*camera, self)))?;
-            }
+        let columns = [
+            (self.before, skin.as_slice(), Finish::Bare),
+            (self.after, skin.as_slice(), Finish::Bare),
+            (self.after, colours, Finish::Values),
+        ];
+        let panel = |camera: &Camera, column: usize| {
+            let (points, colours, finish) = columns[column];
+            let painted = Painted { points, triangles: self.triangles, colours, finish };
+            Panel { painted, shot: layout.shot(*camera, self) }
+        };
+        let panels: Vec<Panel> = cameras
+            .iter()
+            .flat_map(|camera| (0..columns.len()).map(move |column| (camera, column)))
+            .map(|(camera, column)| panel(camera, column))
+            .collect();
+        for (number, png) in draw_all(&panels)?.iter().enumerate() {
+            let place = layout.panel(number / columns.len(), number % columns.len());
+            document.rectangle(place, "#f3f4f6", 6.0);
+            let below = Place { y: place.y + STRIP, height: layout.image_height, ..place };
+            document.image(below, png);
+        }
+        for (row, (name, _, _)) in ROWS.iter().enumerate() {
             let place = layout.panel(row, 0);
             let corner = [place.x + 12.0, place.y + 18.0];
-            document.text(corner, PANEL_WIDTH, Style::of(12.0).faint(), ROWS[row].0);
+            document.text(corner, PANEL_WIDTH, Style::of(12.0).faint(), name);
         }
         Ok(())
     }

@@ -7,6 +7,7 @@ mod callout;
 mod classes;
 pub mod colour;
 mod displacement;
+mod facet;
 mod ladder;
 mod ladder_legend;
 mod legend;

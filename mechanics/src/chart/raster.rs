@@ -1,12 +1,12 @@
-//! A small z-buffer: triangles, smooth normals, two lights, and more samples than pixels.
-//!
-//! Intensity = albedo (ambient + Σ lights · max(0, n·l)) + a narrow highlight (Phong, Illumination
-//! for computer generated pictures, 1975), computed in linear light. Hollows are darkened by how
-//! far the neighbours of a point rise above its tangent plane, which stands in for lost skylight.
+//! A small z-buffer with more samples than pixels: it finds what each sample shows, then shades once for
+//! each triangle in a pixel. Hollows are darkened by how far the neighbours of a point rise above its
+//! tangent plane, which stands in for lost skylight.
 
 use super::Vector;
-use super::colour::{BACK, Rgb, to_linear, to_stored};
+use super::colour::{Rgb, to_stored};
+use super::facet::{Corner, Facet, Finish, group, linear};
 use super::view::{Camera, Extent};
+use rayon::prelude::*;
 
 /// Samples along each side of a pixel.
 const SAMPLES: usize = 2;
@@ -36,24 +36,6 @@ pub struct Painted<'a> {
     pub triangles: &'a [[u32; 3]],
     pub colours: &'a [Rgb],
     pub finish: Finish,
-}
-
-/// How colours and light meet.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Finish {
-    /// Full light and shade.
-    Bare,
-    /// Colours run into each other, and are shaded so little that a legend still holds.
-    Values,
-    /// As values, but each point has the part of a triangle that is nearest to it to itself.
-    Classes,
-}
-
-impl Finish {
-    /// How much of light and shade reaches the colour.
-    fn relief(self) -> f64 {
-        if self == Finish::Bare { 1.0 } else { 0.5 }
-    }
 }
 
 /// Where a picture is taken from, and how large.
@@ -86,6 +68,7 @@ impl Image {
         let mut encoder = png::Encoder::new(&mut bytes, self.width as u32, self.height as u32);
         encoder.set_color(png::ColorType::Rgba);
         encoder.set_depth(png::BitDepth::Eight);
+        encoder.set_compression(png::Compression::Fast);
         let wrap = |source| PngError { width: self.width, height: self.height, source };
         let mut writer = encoder.write_header().map_err(wrap)?;
         writer.write_image_data(self.pixels.as_flattened()).map_err(wrap)?;
@@ -94,38 +77,52 @@ impl Image {
     }
 }
 
+/// One image of a document.
+pub struct Panel<'a> {
+    pub painted: Painted<'a>,
+    pub shot: Shot,
+}
+
+/// The images as PNG files, in the order of the panels.
+pub fn draw_all(panels: &[Panel]) -> Result<Vec<Vec<u8>>, PngError> {
+    panels.par_iter().map(|panel| draw(&panel.painted, &panel.shot).to_png()).collect()
+}
+
 /// Draws a surface; where there is none the image is transparent.
 pub fn draw(surface: &Painted, shot: &Shot) -> Image {
+    let corners = corners(surface, shot);
+    let facets: Vec<Facet> = surface
+        .triangles
+        .iter()
+        .filter_map(|triangle| Facet::new(triangle.map(|point| &corners[point as usize])))
+        .collect();
     let mut samples = Samples::new(shot.width * SAMPLES, shot.height * SAMPLES);
+    for (index, facet) in facets.iter().enumerate() {
+        samples.fill(index as u32, facet);
+    }
+    samples.resolve(&facets, surface.finish)
+}
+
+/// The points of a surface on the screen, in samples.
+fn corners(surface: &Painted, shot: &Shot) -> Vec<Corner> {
     let scale = SAMPLES as f64 / shot.millimetres_per_pixel;
+    let middle = [shot.width, shot.height].map(|side| (side * SAMPLES) as f64 / 2.0);
     let normals = point_normals(surface);
     let openness = openness(surface, &normals);
     let relief = surface.finish.relief();
-    let corners: Vec<Corner> = surface
-        .points
-        .iter()
-        .zip(&normals)
-        .enumerate()
+    let points = surface.points.iter().zip(&normals).enumerate();
+    points
         .map(|(point, (position, normal))| {
             let [right, up, towards] = shot.camera.project(position);
             Corner {
-                x: (right - shot.centre[0]) * scale + samples.width as f64 / 2.0,
-                y: (shot.centre[1] - up) * scale + samples.height as f64 / 2.0,
+                x: (right - shot.centre[0]) * scale + middle[0],
+                y: (shot.centre[1] - up) * scale + middle[1],
                 depth: towards,
                 normal: Vector::from(shot.camera.project(normal)),
                 albedo: linear(surface.colours[point]) * (1.0 - relief * (1.0 - openness[point])),
             }
         })
-        .collect();
-    for triangle in surface.triangles {
-        let [a, b, c] = triangle.map(|point| &corners[point as usize]);
-        samples.fill([a, b, c], surface.finish);
-    }
-    samples.resolve()
-}
-
-fn linear(colour: Rgb) -> Vector {
-    Vector::from(colour.map(|value| to_linear(f64::from(value) / 255.0)))
+        .collect()
 }
 
 fn point_normals(surface: &Painted) -> Vec<Vector> {
@@ -165,126 +162,78 @@ fn openness(surface: &Painted, normals: &[Vector]) -> Vec<f64> {
         .collect()
 }
 
-/// A point of the surface on the way to the screen.
-struct Corner {
-    /// In samples from the left and from the top.
-    x: f64,
-    y: f64,
-    /// Towards the viewer, in mm.
-    depth: f64,
-    /// In the axes of the camera.
-    normal: Vector,
-    albedo: Vector,
-}
-
+/// Which triangle each sample shows.
 struct Samples {
     width: usize,
     height: usize,
-    depth: Vec<f64>,
-    intensity: Vec<[f32; 3]>,
+    depth: Vec<f32>,
+    facet: Vec<u32>,
 }
+
+/// The number of a triangle that there is not.
+const NONE: u32 = u32::MAX;
 
 impl Samples {
     fn new(width: usize, height: usize) -> Self {
-        Samples {
-            width,
-            height,
-            depth: vec![f64::NEG_INFINITY; width * height],
-            intensity: vec![[0.0; 3]; width * height],
-        }
+        let count = width * height;
+        Samples { width, height, depth: vec![f32::NEG_INFINITY; count], facet: vec![NONE; count] }
     }
 
-    fn fill(&mut self, corners: [&Corner; 3], finish: Finish) {
-        let [a, b, c] = corners;
-        let twice_area = (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y);
-        if !twice_area.is_finite() || twice_area.abs() < 1e-12 {
-            return;
-        }
-        // The image's y points down, so a triangle seen from its front has a negative area here.
-        let from_front = twice_area < 0.0;
-        let range = |low: f64, high: f64, size: usize| {
+    fn fill(&mut self, index: u32, facet: &Facet) {
+        let range = |[low, high]: [f64; 2], size: usize| {
             let first = (low - 0.5).ceil().clamp(0.0, size as f64) as usize;
             let end = ((high - 0.5).floor() + 1.0).clamp(0.0, size as f64) as usize;
             first..end
         };
-        let columns = range(a.x.min(b.x).min(c.x), a.x.max(b.x).max(c.x), self.width);
-        for row in range(a.y.min(b.y).min(c.y), a.y.max(b.y).max(c.y), self.height) {
-            for column in columns.clone() {
-                let (x, y) = (column as f64 + 0.5, row as f64 + 0.5);
-                let weight_b = ((x - a.x) * (c.y - a.y) - (c.x - a.x) * (y - a.y)) / twice_area;
-                let weight_c = ((b.x - a.x) * (y - a.y) - (x - a.x) * (b.y - a.y)) / twice_area;
-                let weights = [1.0 - weight_b - weight_c, weight_b, weight_c];
-                if weights.iter().any(|&weight| weight < 0.0) {
-                    continue;
-                }
-                let sample = row * self.width + column;
-                let depth = a.depth * weights[0] + b.depth * weights[1] + c.depth * weights[2];
-                if depth > self.depth[sample] {
-                    self.depth[sample] = depth;
-                    let light = shade(corners, weights, from_front, finish);
-                    self.intensity[sample] = [light.x as f32, light.y as f32, light.z as f32];
+        let columns = range(facet.bounds(|corner| corner.x), self.width);
+        let (first, step) = (columns.start as f64 + 0.5, facet.step());
+        let depths = facet.corners.map(|corner| corner.depth);
+        for row in range(facet.bounds(|corner| corner.y), self.height) {
+            let start = facet.weights(first, row as f64 + 0.5);
+            let line = row * self.width + columns.start..row * self.width + columns.end;
+            let shown = self.depth[line.clone()].iter_mut().zip(&mut self.facet[line]);
+            for (column, (nearest, shown)) in shown.enumerate() {
+                let [a, b, c] = [0, 1, 2].map(|k| start[k] + column as f64 * step[k]);
+                let depth = (a * depths[0] + b * depths[1] + c * depths[2]) as f32;
+                if a >= 0.0 && b >= 0.0 && c >= 0.0 && depth > *nearest {
+                    *nearest = depth;
+                    *shown = index;
                 }
             }
         }
     }
 
-    /// Averages the samples of each pixel.
-    fn resolve(&self) -> Image {
+    /// Shades the pixels.
+    fn resolve(&self, facets: &[Facet], finish: Finish) -> Image {
         let (width, height) = (self.width / SAMPLES, self.height / SAMPLES);
-        let mut pixels = Vec::with_capacity(width * height);
-        for row in 0..height {
-            for column in 0..width {
-                let mut sum = [0.0; 3];
-                let mut covered = 0;
-                for dy in 0..SAMPLES {
-                    for dx in 0..SAMPLES {
-                        let sample = (row * SAMPLES + dy) * self.width + column * SAMPLES + dx;
-                        if self.depth[sample] > f64::NEG_INFINITY {
-                            covered += 1;
-                            for (total, value) in sum.iter_mut().zip(self.intensity[sample]) {
-                                *total += f64::from(value);
-                            }
-                        }
-                    }
-                }
-                let of_covered = 1.0 / f64::max(f64::from(covered), 1.0);
-                let [r, g, b] = sum.map(|total| (to_stored(total * of_covered) * 255.0).round());
-                let opacity = 255 * covered / (SAMPLES * SAMPLES) as u32;
-                pixels.push([r as u8, g as u8, b as u8, opacity as u8]);
+        let mut pixels = vec![[0; 4]; width * height];
+        pixels.par_chunks_mut(width.max(1)).enumerate().for_each(|(row, pixels)| {
+            for (column, pixel) in pixels.iter_mut().enumerate() {
+                *pixel = self.pixel(row, column, facets, finish);
             }
-        }
+        });
         Image { width, height, pixels }
     }
-}
 
-/// Light towards the viewer: a key light from the upper left, a fill light from the right.
-fn shade(corners: [&Corner; 3], weights: [f64; 3], from_front: bool, finish: Finish) -> Vector {
-    const KEY: [f64; 3] = [-0.45, 0.62, 0.64];
-    const FILL: [f64; 3] = [0.77, 0.05, 0.64];
-    let mix = |part: fn(&Corner) -> Vector| {
-        part(corners[0]) * weights[0]
-            + part(corners[1]) * weights[1]
-            + part(corners[2]) * weights[2]
-    };
-    let mut normal = mix(|corner| corner.normal).try_normalize(1e-12).unwrap_or_else(Vector::z);
-    if !from_front {
-        normal = -normal;
+    /// The mean of a pixel's samples; those of one triangle get the light of their middle.
+    fn pixel(&self, row: usize, column: usize, facets: &[Facet], finish: Finish) -> [u8; 4] {
+        let places: [[usize; 2]; SAMPLES * SAMPLES] = std::array::from_fn(|sample| {
+            [column * SAMPLES + sample % SAMPLES, row * SAMPLES + sample / SAMPLES]
+        });
+        let shown = places.map(|[x, y]| self.facet[y * self.width + x]);
+        let mut sum = Vector::zeros();
+        for (first, &facet) in shown.iter().enumerate() {
+            if facet == NONE || shown[..first].contains(&facet) {
+                continue;
+            }
+            let of_facet = places.iter().zip(&shown).filter(|(_, other)| **other == facet);
+            sum += group(&facets[facet as usize], of_facet.map(|(place, _)| place), finish);
+        }
+        let covered = shown.iter().filter(|facet| **facet != NONE).count();
+        let of_covered = 1.0 / f64::max(covered as f64, 1.0);
+        let [r, g, b] = [0, 1, 2].map(|channel| to_stored(sum[channel] * of_covered));
+        [r, g, b, (255 * covered / (SAMPLES * SAMPLES)) as u8]
     }
-    let albedo = if !from_front {
-        linear(BACK)
-    } else if finish == Finish::Classes {
-        let nearest = (1..3).fold(0, |best, k| if weights[k] > weights[best] { k } else { best });
-        corners[nearest].albedo
-    } else {
-        mix(|corner| corner.albedo)
-    };
-    let [key, fill] = [KEY, FILL].map(|light| normal.dot(&Vector::from(light)).max(0.0));
-    let skylight = 0.26 + 0.10 * normal.y;
-    let halfway = Vector::new(KEY[0], KEY[1], KEY[2] + 1.0).normalize();
-    let highlight = 0.05 * normal.dot(&halfway).max(0.0).powi(24);
-    let light = skylight + 0.72 * key + 0.22 * fill;
-    let relief = finish.relief();
-    albedo * (1.0 - relief * (1.0 - light)) + Vector::repeat(highlight * relief)
 }
 
 #[cfg(test)]

@@ -2,8 +2,6 @@
 
 use base64::Engine;
 
-use super::raster::{Image, PngError};
-
 /// Words are estimated with these widths, in font sizes: those of DejaVu Sans, the widest of the
 /// fonts asked for, so that a viewer that has another one needs less room.
 const WIDTH_NARROW: f64 = 0.40;
@@ -203,13 +201,13 @@ impl Document {
         );
     }
 
-    pub fn image(&mut self, place: Place, image: &Image) -> Result<(), PngError> {
+    /// An image in the bytes of a PNG file.
+    pub fn image(&mut self, place: Place, png: &[u8]) {
         let Place { x, y, width, height } = place;
-        let encoded = base64::engine::general_purpose::STANDARD.encode(image.to_png()?);
+        let encoded = base64::engine::general_purpose::STANDARD.encode(png);
         self.body += &format!(
             "<image x=\"{x:.1}\" y=\"{y:.1}\" width=\"{width:.1}\" height=\"{height:.1}\" href=\"data:image/png;base64,{encoded}\"/>\n"
         );
-        Ok(())
     }
 
     /// The whole document.
