@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use facies::schema::key::{KeyDocument, RotationDocument};
-use facies::schema::response::ApplyDocument;
+use facies::schema::applied::ApplyDocument;
 use facies::schema::wire::strict;
 use facies::schema::{
     CaseDocument, CompareDocument, Limits, OptimiseDocument, PlanDocument, PredictDocument,
