@@ -78,8 +78,12 @@ pub fn run(arguments: &Arguments) -> Result<(), ServeError> {
     tell_admin(server.admin);
     let workers = runtime.block_on(server.run_until(stop_signal()))?;
     workers.stop(grace);
-    runtime.block_on(close(&store));
+    // Both wait for others, and not one after the other.
+    let closing = runtime.spawn(async move { close(&store).await });
     traces::stop();
+    if let Err(error) = runtime.block_on(closing) {
+        tracing::warn!(%error, "the database was not closed");
+    }
     // What still computes for a request that nobody waits for ends with the process.
     runtime.shutdown_background();
     Ok(())
