@@ -23,6 +23,8 @@ pub struct Config {
     pub allowed_origins: Vec<String>,
     pub requests_per_minute: u32,
     pub event_streams: u32,
+    /// Keys in force that a tenant may have.
+    pub most_keys: u32,
     pub workers: usize,
     pub threads_per_job: usize,
     pub slot_memory_bytes: Option<u64>,
@@ -73,6 +75,7 @@ impl Config {
             allowed_origins: read.origins()?,
             requests_per_minute: read.whole("requests-per-minute", 0..=10_000_000)? as u32,
             event_streams: read.whole("event-streams", 1..=10_000)? as u32,
+            most_keys: read.whole("keys", 1..=100_000)? as u32,
             workers: read.whole("workers", 0..=64)?,
             threads_per_job: read.whole("threads-per-job", 1..=64)?,
             slot_memory_bytes: read.slot_memory()?,

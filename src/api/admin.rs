@@ -149,6 +149,9 @@ async fn guard(State(door): State<Door>, request: Request, next: Next) -> Respon
         return named(error.into_response(), &id);
     }
     let deed = (audit == Audit::Noted).then(|| deed_of_admin(&request, &id)).flatten();
+    if request.method() == Method::DELETE {
+        office.store.make_room();
+    }
     let run = next.run(request);
     let response = match deed {
         Some(deed) => carry_out(&office.store, deed, run).await,

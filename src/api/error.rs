@@ -77,6 +77,10 @@ impl From<StoreError> for ApiError {
                 "the stored bytes are lost or differ from their hash",
             );
         }
+        if let StoreError::TooManyKeys { keys, most } = error {
+            let problem = Problem::new(ErrorCode::TooManyKeys, error.to_string());
+            return problem.with("keys", keys).with("limit", most).into();
+        }
         ApiError::internal(error)
     }
 }

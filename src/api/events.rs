@@ -22,7 +22,7 @@ use super::streams::StreamPlace;
 use super::{Service, time};
 use crate::schema::job::{JobEvent, JobStatus};
 use crate::schema::key::Scope;
-use crate::store::{EventRow, Store, StoreError};
+use crate::store::{Changes, EventRow, Store, StoreError};
 
 const MEDIA_TYPE: &str = "text/event-stream";
 const LAST_ID: &str = "last-event-id";
@@ -101,7 +101,7 @@ fn last_id(headers: &HeaderMap) -> ApiResult<i64> {
 /// What a stream has told and has yet to tell.
 struct Told {
     place: StreamPlace,
-    changes: watch::Receiver<u64>,
+    changes: Changes,
     stopping: watch::Receiver<bool>,
     store: Store,
     job: String,
@@ -137,13 +137,13 @@ impl Told {
     async fn wait(&mut self) {
         tokio::time::sleep_until(self.looked + PAUSE).await;
         tokio::select! {
-            _ = tokio::time::timeout(LOOK, self.changes.changed()) => {}
+            _ = tokio::time::timeout(LOOK, self.changes.of(&self.job)) => {}
             _ = self.stopping.wait_for(|stopping| *stopping) => self.ended = true,
         }
     }
 
     async fn look(&mut self) -> Result<(), StoreError> {
-        self.changes.mark_unchanged();
+        self.changes.mark_seen();
         self.looked = Instant::now();
         match self.store.job_events(&self.job, self.after).await? {
             Some(events) => self.take(&events),

@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use axum::extract::{MatchedPath, Request, State};
-use axum::http::{HeaderMap, HeaderValue, header};
+use axum::http::{HeaderMap, HeaderValue, Method, header};
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
 use tracing::Instrument;
@@ -139,12 +139,16 @@ impl Entry {
         let allowed = self.caller.require(self.scope);
         let is_noted = allowed.is_err() || self.audit == Audit::Noted;
         let deed = is_noted.then(|| deed_of(&self.caller, &request, id)).flatten();
+        let method = request.method().clone();
         let run = async move {
             match allowed {
                 Ok(()) => next.run(request).await,
                 Err(error) => error.into_response(),
             }
         };
+        if method == Method::DELETE {
+            service.store.make_room();
+        }
         let mut response = match deed {
             Some(deed) => carry_out(&service.store, deed, run).await,
             None => run.await,

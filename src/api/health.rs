@@ -34,7 +34,7 @@ async fn healthz() -> Response {
     json(StatusCode::OK, &Health { status: "ok".into() })
 }
 
-/// Whether requests will be served: the database answers, files can be written, there is space.
+/// Whether requests will be served: the database answers and takes a row, files can be written, there is space.
 #[utoipa::path(get, path = "/readyz", tag = "health", responses((status = 200, description = "ready", body = Health)))]
 async fn readyz(service: Service) -> ApiResult {
     let mut failing: Vec<String> = Vec::new();

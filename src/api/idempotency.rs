@@ -19,6 +19,24 @@ pub struct NewId {
     pub id: String,
     /// Whether an earlier request may have made it already.
     pub is_known: bool,
+    /// Whether that request was told of something that was there before it.
+    pub was_found: bool,
+    /// The hash of the key, where the request has one.
+    key: Option<String>,
+}
+
+impl NewId {
+    fn fresh(id: String, key: Option<String>) -> NewId {
+        NewId { id, is_known: false, was_found: false, key }
+    }
+
+    /// Remembers that this request makes nothing and is told of what is there: sent again, it is told of the same.
+    pub async fn found(&self, service: &Service, resource: &str) -> ApiResult<()> {
+        if let Some(key) = &self.key {
+            service.store.remember_found(key, resource).await?;
+        }
+        Ok(())
+    }
 }
 
 /// The id for what a request makes at an address: that of the first request with its key, else one of its own.
@@ -30,15 +48,15 @@ pub async fn new_id(
     content: &[&[u8]],
 ) -> ApiResult<NewId> {
     let id = uuid::Uuid::now_v7().to_string();
-    let Some(key) = key(headers)? else { return Ok(NewId { id, is_known: false }) };
+    let Some(key) = key(headers)? else { return Ok(NewId::fresh(id, None)) };
     let key = sha256_hex(format!("{}\n{address}\n{key}", service.store.tenant()).as_bytes());
     let hashes: Vec<String> = content.iter().map(|part| sha256_hex(part)).collect();
     let fingerprint = sha256_hex(hashes.concat().as_bytes());
     match service.store.reserve(&key, &fingerprint, &id).await? {
-        Reserved::Fresh => Ok(NewId { id, is_known: false }),
-        Reserved::Again(id) => match service.store.erased(&id).await? {
+        Reserved::Fresh => Ok(NewId::fresh(id, Some(key))),
+        Reserved::Again { id, found } => match service.store.erased(&id).await? {
             Some(erased) => Err(gone::gone(&id, erased)),
-            None => Ok(NewId { id, is_known: true }),
+            None => Ok(NewId { id, is_known: true, was_found: found, key: Some(key) }),
         },
         Reserved::Other => {
             let detail = "another request was sent with this Idempotency-Key";

@@ -1,6 +1,6 @@
 //! From the body of `POST /v1/jobs` to a job that can be queued: references resolved, everything checked.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use tokio::runtime::Handle;
 
@@ -145,14 +145,20 @@ async fn of_study(service: &Service, mut spec: StudyDocument) -> ApiResult<NewJo
         let case: CaseDocument = serde_json::from_str(&row.document).map_err(ApiError::internal)?;
         cases.insert(row.id, case);
     }
+    // What it is held against is of patients too, and takes it with them.
+    let mut owners: BTreeSet<String> = cases.keys().cloned().collect();
     let baseline = match &spec.baseline {
         None => None,
-        Some(job) => Some(Box::new(baseline(service, job).await?)),
+        Some(job) => {
+            let (report, of) = baseline(service, job).await?;
+            owners.extend(of);
+            Some(Box::new(report))
+        }
     };
     if let Some(job) = spec.truth.as_ref().and_then(|truth| truth.job.as_ref()) {
-        predicted_skin(service, "/truth/job", job).await?;
+        owners.extend(predicted_skin(service, "/truth/job", job).await?.1);
     }
-    let ids: Vec<String> = cases.keys().cloned().collect();
+    let ids: Vec<String> = owners.into_iter().collect();
     let tags = spec.tags.clone();
     let input = StudyInput { job: None, queue_s: None, cases, baseline, spec };
     let mesh_ids = input.mesh_ids();
@@ -168,8 +174,8 @@ async fn of_study(service: &Service, mut spec: StudyDocument) -> ApiResult<NewJo
     new.with(&JobInput::Study(input))
 }
 
-/// The report of the study that another is to be held against.
-async fn baseline(service: &Service, job: &str) -> ApiResult<ReportDocument> {
+/// The report of the study that another is to be held against, and the cases of that study.
+async fn baseline(service: &Service, job: &str) -> ApiResult<(ReportDocument, Vec<String>)> {
     const AT: &str = "/baseline";
     let id = id(job).ok_or_else(|| fault(AT, ErrorCode::UnknownJob, "there is no such job"))?;
     if service.store.job(&id).await?.is_none() {
@@ -177,7 +183,7 @@ async fn baseline(service: &Service, job: &str) -> ApiResult<ReportDocument> {
     }
     let found = super::report::stored_report(service, &id).await?;
     let missing = || fault(AT, ErrorCode::NoSuchOutput, "the job is no study that has ended well");
-    Ok(found.ok_or_else(missing)?.1)
+    Ok((found.ok_or_else(missing)?.1, service.store.cases_of_job(&id).await?))
 }
 
 /// Checks a job with its meshes, off the async threads; gives it back with the hash that `prepare` finds.

@@ -95,15 +95,18 @@ async fn create(service: Service, request: Request) -> ApiResult {
     let document = JobDocument::parse(&bytes, &service.limits)?;
     let new = new_id(&service, &headers, "/v1/jobs", &[&bytes]).await?;
     if new.is_known && service.store.job(&new.id).await?.is_some() {
-        return created(&service, &new.id, false, wait).await;
+        return created(&service, &new.id, new.was_found, wait).await;
     }
     let mut accepted = job_input::of(&service, document).await?;
-    accepted.id = new.id;
+    accepted.id.clone_from(&new.id);
     accepted.traceparent = place.map(|place| place.to_string());
     let (id, deduplicated) = match service.store.enqueue(&accepted, LONGEST_QUEUE).await? {
         Enqueued::Accepted => (accepted.id, false),
         Enqueued::Known(id) => {
             let deduplicated = id != accepted.id;
+            if deduplicated {
+                new.found(&service, &id).await?;
+            }
             (id, deduplicated)
         }
         Enqueued::QueueFull => {

@@ -93,7 +93,7 @@ async fn create(service: Service, Id(case): Id, request: Request) -> ApiResult {
     let headers = request.headers().clone();
     let document = read(&service, request).await?;
     let address = format!("/v1/cases/{case}/plans");
-    let NewId { id, is_known } =
+    let NewId { id, is_known, .. } =
         new_id(&service, &headers, &address, &[document.as_bytes()]).await?;
     let is_there = is_known && service.store.plan(&case, &id).await?.is_some();
     if !is_there && !service.store.add_plan(&case, &id, &document).await? {

@@ -7,7 +7,8 @@ use tokio::time::Instant;
 
 use super::Service;
 use super::error::ApiResult;
-use crate::store::{JobRow, StoreError};
+use crate::schema::job::JobStatus;
+use crate::store::JobRow;
 
 /// Rows are looked at this often even when nothing was announced: another process may have changed them.
 const LOOK: Duration = Duration::from_secs(1);
@@ -32,21 +33,16 @@ pub async fn wait_for_end(service: &Service, id: &str, seconds: u32) -> ApiResul
     let until = Instant::now() + Duration::from_secs(seconds.into());
     let mut changes = store.job_changes();
     loop {
-        changes.mark_unchanged();
-        let job = store.job(id).await?;
+        changes.mark_seen();
         let over = Instant::now() >= until || *stopping.borrow();
-        match job {
-            Some(job) if !job.status.is_terminal() && !over => {}
-            ended => return Ok(ended),
+        // Only who has waited long enough asks for all of it.
+        if over || store.job_status(id).await?.is_none_or(JobStatus::is_terminal) {
+            return Ok(store.job(id).await?);
         }
         let next = until.min(Instant::now() + LOOK);
         // Time that runs out is no error: the row is looked at again.
         tokio::select! {
-            changed = tokio::time::timeout_at(next, changes.changed()) => {
-                if matches!(changed, Ok(Err(_))) {
-                    return Err(StoreError::Interrupted.into());
-                }
-            }
+            changed = tokio::time::timeout_at(next, changes.of(id)) => changed.unwrap_or(Ok(()))?,
             _ = stopping.wait_for(|stopping| *stopping) => {}
         }
     }

@@ -32,6 +32,7 @@ pub fn limits(config: &Config) -> Limits {
         upload_bytes: config.upload_bytes as u64,
         requests_per_minute: config.requests_per_minute,
         event_streams: config.event_streams,
+        keys: config.most_keys,
         ..Limits::default()
     };
     // Who has no slots does not know the memory of those of other processes, unless it is told.

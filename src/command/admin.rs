@@ -62,12 +62,13 @@ enum Command {
         #[command(flatten)]
         settings: Settings,
     },
-    /// Tell which rows miss their bytes and which bytes no row knows; exits with 1 where there are some
+    /// Tell which rows miss their bytes, which bytes no row knows and which meshes nothing leads to; exits with 1 where
+    /// there are some
     Fsck {
         /// Read every blob and compare it with its hash
         #[arg(long)]
         read_all: bool,
-        /// Have jobs whose files are lost solved again, and remove bytes that no row knows
+        /// Have jobs whose files are lost solved again, and remove bytes that no row knows and meshes that nothing leads to
         #[arg(long)]
         repair: bool,
         #[command(flatten)]
@@ -142,8 +143,10 @@ pub enum AdminError {
     Refused(String),
     #[error("the audit log was changed: row {at} does not follow from those before it")]
     Audit { at: i64 },
-    #[error("{dangling} blobs are lost or damaged, {orphans} are known to no row")]
-    Findings { dangling: usize, orphans: usize },
+    #[error(
+        "{dangling} blobs are lost or damaged, {orphans} are known to no row; {unreached} meshes are reached by nothing"
+    )]
+    Findings { dangling: usize, orphans: usize, unreached: usize },
 }
 
 impl AdminError {
@@ -194,7 +197,7 @@ pub fn run(arguments: &Arguments) -> Result<(), AdminError> {
 async fn open(settings: &Settings) -> Result<Store, AdminError> {
     let given = settings.given()?;
     let config = Config::without_listener(|name| given.get(name))?;
-    Ok(Store::connect(&config.places).await?)
+    Ok(Store::connect(&config.places).await?.with_most_keys(config.most_keys))
 }
 
 async fn key(command: &KeyCommand) -> Result<(), AdminError> {
@@ -294,8 +297,8 @@ async fn check(store: &Store, read_all: bool, repair: bool) -> Result<(), AdminE
     if repair && !findings.is_clean() {
         let repaired = store.repair(&findings).await?;
         println!(
-            "found {} blobs again, accepted {} jobs again, removed {} blobs",
-            repaired.found_again, repaired.jobs, repaired.removed
+            "found {} blobs again, accepted {} jobs again, removed {} blobs, erased {} meshes",
+            repaired.found_again, repaired.jobs, repaired.removed, repaired.erased
         );
         findings = store.fsck(read_all).await?;
         tell(&findings);
@@ -304,8 +307,11 @@ async fn check(store: &Store, read_all: bool, repair: bool) -> Result<(), AdminE
         println!("{} blobs, each known to a row and none missing", findings.objects);
         return Ok(());
     }
-    let (dangling, orphans) = (findings.dangling.len(), findings.orphans.len());
-    Err(AdminError::Findings { dangling, orphans })
+    Err(AdminError::Findings {
+        dangling: findings.dangling.len(),
+        orphans: findings.orphans.len(),
+        unreached: findings.unreached.len(),
+    })
 }
 
 fn tell(findings: &Findings) {
@@ -319,5 +325,8 @@ fn tell(findings: &Findings) {
     }
     for place in &findings.orphans {
         println!("known to no row: {place}");
+    }
+    for lost in &findings.unreached {
+        println!("reached by nothing: mesh {} of the tenant {:?}", lost.mesh, lost.tenant);
     }
 }

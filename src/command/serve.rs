@@ -25,6 +25,10 @@ use crate::worker::work::Work;
 
 /// How long what was done may be out of the chain of the audit log.
 const CHAIN_EVERY: Duration = Duration::from_secs(2);
+/// How long what was erased may be in the files of an embedded database.
+const WIPE_EVERY: Duration = Duration::from_secs(2);
+/// How long the store may take to be closed.
+const LAST_WORDS: Duration = Duration::from_secs(2);
 /// Between two looks for bytes that nothing refers to.
 const SWEEP_EVERY: Duration = Duration::from_secs(3600);
 
@@ -68,15 +72,33 @@ pub fn run(arguments: &Arguments) -> Result<(), ServeError> {
     let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().build()?;
     let grace = config.grace;
     let server = runtime.block_on(Server::start(config))?;
+    let store = server.service.store.clone();
     // One line on standard output, for programs that started this one with port 0.
     println!("listening on http://{}", server.address);
     tell_admin(server.admin);
     let workers = runtime.block_on(server.run_until(stop_signal()))?;
     workers.stop(grace);
+    // Both wait for others, and not one after the other.
+    let closing = runtime.spawn(async move { close(&store).await });
     traces::stop();
+    if let Err(error) = runtime.block_on(closing) {
+        tracing::warn!(%error, "the database was not closed");
+    }
     // What still computes for a request that nobody waits for ends with the process.
     runtime.shutdown_background();
     Ok(())
+}
+
+/// Closes the store, so that its files hold nothing that was erased. Who is cut off in the middle of a request is not
+/// waited for long.
+pub async fn close(store: &Store) {
+    if tokio::time::timeout(LAST_WORDS, store.close()).await.is_err() {
+        tracing::warn!("the database was not closed in time");
+    }
+    match store.wipe().await {
+        Ok(true) => {}
+        left => tracing::warn!(?left, "what was erased may be in the log of the database still"),
+    }
 }
 
 /// A server that listens and whose workers work.
@@ -137,10 +159,19 @@ impl Server {
 pub async fn open(config: &Config) -> Result<Store, ServeError> {
     metrics::start()?;
     traces::start(config.traces.as_deref())?;
-    let store = Store::connect(&config.places).await?;
+    outlive_limits_of_files()?;
+    let store = Store::connect(&config.places).await?.with_most_keys(config.most_keys);
     keep_swept(&store).await?;
     keep_chained(&store);
+    keep_wiped(&store);
     Ok(store)
+}
+
+/// A write beyond the limit on the size of files (RLIMIT_FSIZE) is an error of that write, as one on a full disk is, and
+/// not the end of the process: whoever listens to the signal is not ended by it.
+fn outlive_limits_of_files() -> std::io::Result<()> {
+    use tokio::signal::unix::{SignalKind, signal};
+    signal(SignalKind::from_raw(rustix::process::Signal::XFSZ.as_raw())).map(drop)
 }
 
 /// Listens for those who run the service, where the settings say so.
@@ -193,9 +224,11 @@ fn slot_settings(config: &Config, limits: &Limits) -> Settings {
 
 /// Sweeps what dead processes left, at once and then every hour.
 async fn keep_swept(store: &Store) -> Result<(), StoreError> {
-    let erased = store.erase_old().await?;
-    let swept = store.sweep().await?;
-    tracing::info!(erased, blobs = swept.blobs, temporary = swept.temporary, "swept");
+    match sweep_at_start(store).await {
+        // What is stored is served all the same, and can be erased.
+        Err(error) if error.is_full() => tracing::error!(%error, "nothing was swept"),
+        swept => swept?,
+    }
     let store = store.clone();
     tokio::spawn(async move {
         loop {
@@ -204,6 +237,26 @@ async fn keep_swept(store: &Store) -> Result<(), StoreError> {
         }
     });
     Ok(())
+}
+
+async fn sweep_at_start(store: &Store) -> Result<(), StoreError> {
+    let erased = store.erase_old().await?;
+    let swept = store.sweep().await?;
+    tracing::info!(erased, blobs = swept.blobs, temporary = swept.temporary, "swept");
+    Ok(())
+}
+
+/// Brings what was erased out of the files of an embedded database, soon after.
+fn keep_wiped(store: &Store) {
+    let store = store.clone();
+    tokio::spawn(async move {
+        loop {
+            if let Err(error) = store.wipe().await {
+                tracing::warn!(%error, "what was erased is in the log of the database still");
+            }
+            tokio::time::sleep(WIPE_EVERY).await;
+        }
+    });
 }
 
 /// Takes what was done into the chain of the audit log, soon after: what is in it cannot be changed unseen.

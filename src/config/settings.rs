@@ -91,6 +91,7 @@ pub const SETTINGS: &[Setting] = &[
         "requests of one client in a minute, above which it is told to wait; 0 to 10000000, 0 counts nobody",
     ),
     setting("event-streams", "8", "streams of events that one client may have open; 1 to 10000"),
+    setting("keys", "100", "keys in force that a tenant may have; 1 to 100000"),
     setting("workers", "2", "jobs solved at the same time; 0 to 64, 0 leaves the jobs to others"),
     setting("threads-per-job", "1", "threads of one job; 1 to 64; the results do not depend on it"),
     setting(

@@ -65,6 +65,7 @@ error_codes! {
     ConflictInUse 409 "conflict-in-use" "Something refers to it",
     ResponseStale 409 "response-stale" "The response is older than its case",
     Conflict 409 "conflict" "It changed meanwhile",
+    TooManyKeys 409 "too-many-keys" TOO_MUCH,
     Gone 410 "gone" "It was erased",
     PreconditionFailed 412 "precondition-failed" "It has another version",
     PayloadTooLarge 413 "payload-too-large" "The body is too large",

@@ -54,12 +54,14 @@ const DELETE_SHARED_JOBS: &str =
 /// Locked first, so that a job of the case is either published by now or finds itself gone.
 const JOBS_OF_CASE: &str = "SELECT id FROM jobs WHERE case_id = $1 \
      OR id IN (SELECT job_id FROM job_cases WHERE case_id = $1) ORDER BY id FOR UPDATE";
-/// Those that it refers to, and those that its jobs made. Locked, so that a request which is about to refer to one of
-/// them has either done so or finds it gone.
-const MESHES_OF_CASE: &str = "SELECT id FROM meshes \
-     WHERE id IN (SELECT mesh_id FROM case_meshes WHERE case_id = $1 \
-       UNION SELECT mesh_id FROM made_meshes JOIN jobs ON jobs.id = made_meshes.job_id \
-         WHERE jobs.case_id = $1 OR jobs.id IN (SELECT job_id FROM job_cases WHERE case_id = $1)) \
+/// Those that it refers to, and those that its jobs made or read: what came with another case that was erased before may
+/// have been kept for them. Locked, so that a request which is about to refer to one of them has either done so or finds it
+/// gone.
+const MESHES_OF_CASE: &str = "WITH gone AS (SELECT id FROM jobs WHERE case_id = $1 \
+       UNION SELECT job_id FROM job_cases WHERE case_id = $1) \
+     SELECT id FROM meshes WHERE id IN (SELECT mesh_id FROM case_meshes WHERE case_id = $1 \
+       UNION SELECT mesh_id FROM made_meshes WHERE job_id IN (SELECT id FROM gone) \
+       UNION SELECT mesh_id FROM job_meshes WHERE job_id IN (SELECT id FROM gone)) \
      ORDER BY id FOR UPDATE";
 
 /// Sorts after every id.
@@ -117,7 +119,7 @@ impl Store {
                 Ok(true)
             }
             Err(error) => {
-                transaction.rollback().await?;
+                transaction.rollback().await;
                 self.discard(blobs).await;
                 let meanwhile = is_duplicate(&error) || is_reference(&error);
                 if meanwhile { Ok(false) } else { Err(error.into()) }
@@ -125,8 +127,8 @@ impl Store {
         }
     }
 
-    /// Erases a case: its plans, its jobs with their results, and the meshes that came with it or that its jobs made
-    /// and that nothing else refers to. A job of it that is running finds itself gone and stops.
+    /// Erases a case: its plans, its jobs with their results, and the meshes that came with it or that its jobs made or
+    /// read and that nothing else refers to. A job of it that is running finds itself gone and stops.
     pub async fn delete_case(&self, id: &str, version: Option<i64>) -> Result<Change, StoreError> {
         let mut transaction = self.database.begin().await?;
         let found = query("SELECT version FROM cases WHERE id = $1 AND tenant = $2 FOR UPDATE")
@@ -141,7 +143,7 @@ impl Store {
         if version.is_some_and(|version| version != found) {
             return Ok(Change::OtherVersion(found));
         }
-        query(JOBS_OF_CASE).bind(id).fetch_all(&mut transaction).await?;
+        let jobs = column(&mut transaction, JOBS_OF_CASE, id).await?;
         let mut blobs = column(&mut transaction, FILES_OF_CASE, id).await?;
         let meshes = column(&mut transaction, MESHES_OF_CASE, id).await?;
         self.bury_case(&mut transaction, id).await?;
@@ -149,7 +151,8 @@ impl Store {
         query("DELETE FROM cases WHERE id = $1").bind(id).execute(&mut transaction).await?;
         blobs.extend(self.remove_unused(&mut transaction, meshes).await?);
         transaction.commit().await?;
-        self.jobs_changed();
+        self.was_erased();
+        jobs.iter().for_each(|job| self.job_changed(job));
         self.discard(blobs).await;
         Ok(Change::Done)
     }

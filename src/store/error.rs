@@ -26,6 +26,8 @@ pub enum StoreError {
     Missing { sha256: String },
     #[error("others changed the same rows at the same time, again and again")]
     Contended,
+    #[error("the tenant has {keys} keys in force, and may have {most}")]
+    TooManyKeys { keys: i64, most: i64 },
     #[error("there is something in this deployment already: {table} has rows")]
     NotEmpty { table: &'static str },
     #[error("the export cannot be read: {0}")]
@@ -83,5 +85,8 @@ impl StoreError {
 
 fn is_full(error: &std::io::Error) -> bool {
     use std::io::ErrorKind;
-    matches!(error.kind(), ErrorKind::StorageFull | ErrorKind::QuotaExceeded)
+    matches!(
+        error.kind(),
+        ErrorKind::StorageFull | ErrorKind::QuotaExceeded | ErrorKind::FileTooLarge
+    )
 }

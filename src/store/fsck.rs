@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use bytes::Bytes;
 
-use super::database::query;
+use super::database::{Row, query};
 use super::events::record;
 use super::references::new_place;
 use super::sweep::PATIENCE;
@@ -16,6 +16,12 @@ const REFERENCES: &str = "SELECT blob, 'mesh' AS kind, id FROM meshes \
      UNION ALL SELECT DISTINCT blob, 'job' AS kind, job_id FROM job_files \
      UNION ALL SELECT meshes.blob, 'job' AS kind, made_meshes.job_id FROM made_meshes \
        JOIN meshes ON meshes.id = made_meshes.mesh_id";
+/// Meshes that came with a case or from a job, and that nothing refers to any more: nobody can list them, and no erasure
+/// finds them.
+const UNREACHED: &str = "SELECT id, tenant FROM meshes WHERE standalone = 0 \
+     AND NOT EXISTS (SELECT 1 FROM case_meshes WHERE mesh_id = meshes.id) \
+     AND NOT EXISTS (SELECT 1 FROM job_meshes WHERE mesh_id = meshes.id) \
+     AND NOT EXISTS (SELECT 1 FROM made_meshes WHERE mesh_id = meshes.id) ORDER BY id";
 /// Places that are about to be referred to, or removed.
 const IN_MOTION: &str =
     "SELECT place FROM unfinished_blobs UNION SELECT place FROM discarded_blobs";
@@ -35,6 +41,15 @@ pub struct Findings {
     pub dangling: Vec<Dangling>,
     /// Places with bytes that no row knows.
     pub orphans: Vec<String>,
+    /// Meshes of what was erased, which no case and no job refers to.
+    pub unreached: Vec<Unreached>,
+}
+
+/// A mesh that nothing leads to, and whose it is.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Unreached {
+    pub mesh: String,
+    pub tenant: String,
 }
 
 /// Bytes that are lost or damaged, and who refers to them.
@@ -54,11 +69,13 @@ pub struct Repaired {
     pub jobs: usize,
     /// Places that no row knew and that are empty by now.
     pub removed: usize,
+    /// Meshes that nothing led to and that are erased.
+    pub erased: usize,
 }
 
 impl Findings {
     pub fn is_clean(&self) -> bool {
-        self.dangling.is_empty() && self.orphans.is_empty()
+        self.dangling.is_empty() && self.orphans.is_empty() && self.unreached.is_empty()
     }
 }
 
@@ -84,11 +101,12 @@ impl Store {
             }
         }
         let orphans = objects.difference(&known).cloned().collect();
-        Ok(Findings { objects: objects.len(), dangling, orphans })
+        let unreached = self.unreached().await?;
+        Ok(Findings { objects: objects.len(), dangling, orphans, unreached })
     }
 
     /// Looks for lost bytes among those that no row knows, has jobs with lost files or meshes solved again, and
-    /// removes what is left over. Other meshes that are lost stay so: only an upload or a backup has them.
+    /// removes what is left over, and the meshes that nothing leads to. Other meshes that are lost stay so: only an upload or a backup has them.
     pub async fn repair(&self, findings: &Findings) -> Result<Repaired, StoreError> {
         let mut repaired = Repaired::default();
         for lost in &findings.dangling {
@@ -104,8 +122,29 @@ impl Store {
             self.blobs.delete(place).await?;
             repaired.removed += 1;
         }
+        for Unreached { mesh, tenant } in &findings.unreached {
+            repaired.erased += usize::from(self.of_tenant(tenant).erase_unreached(mesh).await?);
+        }
         self.sweep_blobs(PATIENCE).await?;
         Ok(repaired)
+    }
+
+    async fn unreached(&self) -> Result<Vec<Unreached>, StoreError> {
+        let rows = query(UNREACHED).fetch_all(self.database.reader()).await?;
+        let unreached =
+            |row: &Row| Ok(Unreached { mesh: row.try_get("id")?, tenant: row.try_get("tenant")? });
+        rows.iter().map(unreached).collect()
+    }
+
+    /// Erases a mesh unless something refers to it by now.
+    async fn erase_unreached(&self, mesh: &str) -> Result<bool, StoreError> {
+        let mut transaction = self.database.begin().await?;
+        let blobs = self.remove_unused(&mut transaction, vec![mesh.to_owned()]).await?;
+        transaction.commit().await?;
+        self.was_erased();
+        let is_erased = !blobs.is_empty();
+        self.discard(blobs).await;
+        Ok(is_erased)
     }
 
     async fn places(&self) -> Result<BTreeMap<String, String>, StoreError> {
@@ -163,7 +202,7 @@ impl Store {
             record(&mut transaction, job).await?;
         }
         transaction.commit().await?;
-        self.jobs_changed();
+        self.job_changed(job);
         Ok(accepted == 1)
     }
 }

@@ -1,14 +1,21 @@
 //! The store as all others see it: one database and one place for bytes, scoped to a tenant.
 
 use super::blobs::Blobs;
-use super::database::{Address, Database, query};
+use super::database::{Address, Database};
 use super::error::StoreError;
+use super::spare::Spare;
+use super::wake::{Changes, Wake};
 use crate::config::{DatabasePlace, Places};
 use crate::store::database::schema::Migrated;
 use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use tokio::sync::watch;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
+use tokio::sync::Mutex;
+
+/// Keys in force that a tenant may have where no setting says otherwise.
+const MOST_KEYS: i64 = 100;
 
 /// Whose everything is where nobody says otherwise.
 pub const DEFAULT_TENANT: &str = "default";
@@ -23,10 +30,16 @@ pub struct Store {
     pub(super) folder: PathBuf,
     /// Whether other processes work on the same rows.
     pub(super) shared: bool,
-    /// Counts the changes of jobs, for those who wait for one.
-    pub(super) changes: watch::Sender<u64>,
-    /// Counts those that this process made, to be told to the others.
-    pub(super) own_changes: watch::Sender<u64>,
+    /// Tells those who wait that a job has changed.
+    pub(super) wake: Wake,
+    /// Beside an embedded database.
+    pub(super) spare: Option<Arc<Spare>>,
+    /// Whether something was erased that the files of the database may still hold.
+    pub(super) holds_erased: Arc<AtomicBool>,
+    /// When a row was last written to see whether one can be.
+    pub(super) last_written: Arc<Mutex<Option<Instant>>>,
+    /// Keys in force that a tenant may have.
+    pub(super) most_keys: i64,
     pub(super) _lock: Arc<File>,
 }
 
@@ -40,18 +53,29 @@ impl Store {
     pub async fn connect(places: &Places) -> Result<Store, StoreError> {
         std::fs::create_dir_all(places.data.join("tmp"))?;
         let lock = lock(&places.data)?;
-        let store = Store {
+        let shared = matches!(places.database, DatabasePlace::Server { .. });
+        // Before the database is opened, which may need the room.
+        let spare = (!shared).then(|| Arc::new(Spare::new(&places.data)));
+        let database = Database::open(address(places)?).await?;
+        Ok(Store {
             tenant: DEFAULT_TENANT.into(),
-            database: Database::open(address(places)?).await?,
             blobs: Blobs::open(places)?,
             folder: places.data.clone(),
-            shared: matches!(places.database, DatabasePlace::Server { .. }),
-            changes: watch::Sender::new(0),
-            own_changes: watch::Sender::new(0),
+            shared,
+            wake: Wake::new(database.writer()),
+            database,
+            spare,
+            // Whoever was here before may have been killed.
+            holds_erased: Arc::new(AtomicBool::new(true)),
+            last_written: Arc::default(),
+            most_keys: MOST_KEYS,
             _lock: Arc::new(lock),
-        };
-        store.listen_to_others();
-        Ok(store)
+        })
+    }
+
+    /// The same store with another bound on the keys of a tenant.
+    pub fn with_most_keys(self, most_keys: u32) -> Store {
+        Store { most_keys: most_keys.into(), ..self }
     }
 
     /// Brings the schema of the database up to date.
@@ -85,35 +109,47 @@ impl Store {
         self.folder.join("tmp").join(job).join(attempt.to_string())
     }
 
-    /// Changes whenever a job does.
-    pub fn job_changes(&self) -> watch::Receiver<u64> {
-        self.changes.subscribe()
+    /// What tells that jobs have changed.
+    pub fn job_changes(&self) -> Changes {
+        self.wake.changes()
     }
 
-    pub(super) fn jobs_changed(&self) {
-        self.changes.send_modify(|count| *count = count.wrapping_add(1));
-        self.own_changes.send_modify(|count| *count = count.wrapping_add(1));
+    /// To be told after a change of a job was committed.
+    pub(super) fn job_changed(&self, job: &str) {
+        self.wake.tell(job);
     }
 
-    /// Whether the database answers.
-    pub async fn ping(&self) -> Result<(), StoreError> {
-        query("SELECT now_ms FROM clock").execute(self.database.reader()).await?;
-        Ok(())
+    /// Makes sure of the room in reserve before bytes are stored; an error of a full disk where there is none.
+    pub(super) fn reserve_room(&self) -> Result<(), StoreError> {
+        match &self.spare {
+            Some(spare) => Ok(spare.hold()?),
+            None => Ok(()),
+        }
     }
 
-    /// Whether the blobs can be reached and the data folder takes a file.
-    pub async fn try_write(&self) -> Result<(), StoreError> {
-        self.blobs.ping().await?;
-        let place = self.folder.join("tmp").join(uuid::Uuid::now_v7().to_string());
-        tokio::fs::write(&place, b"facies").await?;
-        tokio::fs::remove_file(&place).await?;
-        Ok(())
+    /// Gives up the room in reserve where the disk is full, for what is about to be erased.
+    pub fn make_room(&self) {
+        if let Some(spare) = &self.spare {
+            spare.make_room();
+        }
     }
 
-    /// Bytes free for this user on the disk of the data folder.
-    pub fn free_space(&self) -> Result<u64, StoreError> {
-        let disk = rustix::fs::statvfs(&self.folder).map_err(std::io::Error::from)?;
-        Ok(disk.f_bavail.saturating_mul(disk.f_frsize))
+    /// Remembers that something was erased.
+    pub(super) fn was_erased(&self) {
+        self.holds_erased.store(true, Ordering::Relaxed);
+    }
+
+    /// Brings what was erased out of the files of the database, where something was; false while somebody who reads or
+    /// writes stands in the way.
+    pub async fn wipe(&self) -> Result<bool, StoreError> {
+        if !self.holds_erased.swap(false, Ordering::Relaxed) {
+            return Ok(true);
+        }
+        let wiped = self.database.empty_log().await;
+        if !matches!(wiped, Ok(true)) {
+            self.was_erased();
+        }
+        wiped
     }
 
     pub async fn close(&self) {

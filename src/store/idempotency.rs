@@ -12,8 +12,8 @@ const KEPT_MS: i64 = 24 * 3600 * 1000;
 pub enum Reserved {
     /// Nobody used the key before; the id given is its own.
     Fresh,
-    /// The same request was sent before, and this is the id of what it makes.
-    Again(String),
+    /// The same request was sent before, and this is the id of what it makes, or of what it `found` to be there already.
+    Again { id: String, found: bool },
     /// Another request was sent with this key.
     Other,
 }
@@ -21,7 +21,8 @@ pub enum Reserved {
 const FORGET: &str = "DELETE FROM idempotency_keys WHERE created < (SELECT now_ms FROM clock) - $1";
 const RESERVE: &str = "INSERT INTO idempotency_keys (key, fingerprint, resource, created) \
      VALUES ($1, $2, $3, (SELECT now_ms FROM clock)) ON CONFLICT (key) DO NOTHING";
-const FIND: &str = "SELECT fingerprint, resource FROM idempotency_keys WHERE key = $1";
+const FIND: &str = "SELECT fingerprint, resource, found FROM idempotency_keys WHERE key = $1";
+const FOUND: &str = "UPDATE idempotency_keys SET resource = $2, found = 1 WHERE key = $1";
 
 impl Store {
     /// Gives a key the id that what its request makes is to have, unless it has one.
@@ -47,8 +48,17 @@ impl Store {
         }
         let known: String = row.try_get("fingerprint")?;
         Ok(match known == fingerprint {
-            true => Reserved::Again(row.try_get("resource")?),
+            true => Reserved::Again {
+                id: row.try_get("resource")?,
+                found: row.try_get::<i64, _>("found")? == 1,
+            },
             false => Reserved::Other,
         })
+    }
+
+    /// Remembers that the request with a key made nothing: what it asks for was there already.
+    pub async fn remember_found(&self, key: &str, resource: &str) -> Result<(), StoreError> {
+        query(FOUND).bind(key).bind(resource).execute(self.database.writer()).await?;
+        Ok(())
     }
 }

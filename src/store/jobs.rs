@@ -3,8 +3,9 @@
 use super::cases::AFTER_ALL;
 use super::database::{Row, Transaction, is_reference, query};
 use super::events::record;
-use super::made::made_by;
+use super::made::meshes_of_job;
 use super::{Store, StoreError, tenants};
+use crate::schema::engine::EngineDocument;
 use crate::schema::job::JobStatus;
 
 /// A job to be accepted.
@@ -85,30 +86,49 @@ pub enum Dismissal {
     NotFound,
 }
 
-/// Tags hold no control characters, so that lines keep them apart.
-macro_rules! columns {
-    () => {
-        "SELECT id, kind, case_id, spec_hash, engine, status, phase, progress, iteration, residual, \
-         attempt, error, result, created, started, finished, updated, \
-         CASE WHEN status = 'accepted' THEN (SELECT COUNT(*) FROM jobs AS before \
-           WHERE before.status = 'accepted' AND before.tenant = jobs.tenant AND before.priority <= jobs.priority \
-           AND (before.priority < jobs.priority OR before.id < jobs.id)) END AS queue_position, \
-         (SELECT string_agg(tag, '\n' ORDER BY tag) FROM job_tags WHERE job_tags.job_id = jobs.id) AS tags \
-         FROM jobs WHERE "
+/// The jobs that a condition finds, newest first. Those that wait have their place in the queue of their tenant: the jobs
+/// between them and the one before them on the page, added up, so that each that waits is counted once for the page and
+/// not once for each of its rows. Tags hold no control characters, so that lines keep them apart.
+macro_rules! found {
+    ($condition:literal) => {
+        concat!(
+            "WITH page AS MATERIALIZED (SELECT id, tenant, priority, kind, case_id, spec_hash, engine, status, phase, \
+               progress, iteration, residual, attempt, error, result, created, started, finished, updated \
+               FROM jobs WHERE ",
+            $condition,
+            "), \
+             places AS MATERIALIZED (SELECT page.*, \
+               LAG(id) OVER (PARTITION BY status, priority ORDER BY id) AS last FROM page), \
+             steps AS MATERIALIZED (SELECT places.*, CASE WHEN status = 'accepted' THEN \
+                 (SELECT COUNT(*) FROM jobs WHERE jobs.tenant = places.tenant \
+                   AND jobs.status = 'accepted' AND jobs.priority = places.priority \
+                   AND jobs.id >= COALESCE(places.last, '') AND jobs.id < places.id || '') \
+                 + CASE WHEN last IS NULL THEN (SELECT COUNT(*) FROM jobs WHERE jobs.tenant = places.tenant \
+                   AND jobs.status = 'accepted' AND jobs.priority < places.priority) ELSE 0 END \
+               END AS step FROM places) \
+             SELECT id, kind, case_id, spec_hash, engine, status, phase, progress, iteration, residual, \
+               attempt, error, result, created, started, finished, updated, \
+               CAST(SUM(step) OVER (PARTITION BY status, priority ORDER BY id) AS BIGINT) AS queue_position, \
+               (SELECT string_agg(tag, '\n' ORDER BY tag) FROM job_tags WHERE job_tags.job_id = steps.id) AS tags \
+             FROM steps ORDER BY id DESC"
+        )
     };
 }
 
-const BY_ID: &str = concat!(columns!(), "id = $1 AND tenant = $2");
-const LIST: &str = concat!(
-    columns!(),
+const BY_ID: &str = found!("id = $1 AND tenant = $2");
+const LIST: &str = found!(
     "tenant = $7 AND id < $1 AND ($2 = '' OR status = $2) AND ($3 = '' OR kind = $3) \
      AND ($4 = '' OR EXISTS (SELECT 1 FROM job_tags WHERE job_tags.job_id = jobs.id AND job_tags.tag = $4)) \
      AND ($5 = '' OR case_id = $5) ORDER BY id DESC LIMIT $6"
 );
+const STATUS: &str = "SELECT status FROM jobs WHERE id = $1 AND tenant = $2";
+const CASES: &str = "SELECT case_id FROM jobs WHERE id = $1 AND tenant = $2 AND case_id IS NOT NULL \
+     UNION SELECT job_cases.case_id FROM job_cases JOIN jobs ON jobs.id = job_cases.job_id \
+       WHERE jobs.id = $1 AND jobs.tenant = $2";
 const KNOWN: &str = "SELECT id FROM jobs WHERE spec_hash = $1 AND tenant = $2";
 const INSERT: &str = "INSERT INTO jobs (id, kind, case_id, document, spec_hash, engine, tenant, priority, \
-     traceparent, status, progress, attempt, losses, claimable_from, created, updated) \
-     VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, 'accepted', 0, 0, 0, 0, \
+     traceparent, numerics, status, progress, attempt, losses, claimable_from, created, updated) \
+     VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, 'accepted', 0, 0, 0, 0, \
        (SELECT now_ms FROM clock), (SELECT now_ms FROM clock)) \
      ON CONFLICT (spec_hash) DO NOTHING";
 const DISMISS: &str = "UPDATE jobs SET status = 'dismissed', lease_token = NULL, lease_expires = NULL, \
@@ -118,8 +138,13 @@ const FILES: &str = "SELECT job_files.blob FROM job_files JOIN jobs ON jobs.id =
      WHERE jobs.id = $1 AND jobs.tenant = $2";
 const REMOVE: &str = "DELETE FROM jobs WHERE id = $1 AND tenant = $2 AND status IN ('successful', 'failed', 'dismissed')";
 
-fn job_row(row: &Row) -> Result<JobRow, sqlx::Error> {
+fn status_of(row: &Row) -> Result<JobStatus, sqlx::Error> {
     let status: String = row.try_get("status")?;
+    JobStatus::from_name(&status)
+        .ok_or_else(|| sqlx::Error::Decode(format!("job status `{status}`").into()))
+}
+
+fn job_row(row: &Row) -> Result<JobRow, sqlx::Error> {
     let tags: String = row.try_get::<Option<_>, _>("tags")?.unwrap_or_default();
     Ok(JobRow {
         id: row.try_get("id")?,
@@ -127,8 +152,7 @@ fn job_row(row: &Row) -> Result<JobRow, sqlx::Error> {
         case_id: row.try_get("case_id")?,
         spec_hash: tenants::plain(row.try_get("spec_hash")?),
         engine: row.try_get("engine")?,
-        status: JobStatus::from_name(&status)
-            .ok_or_else(|| sqlx::Error::Decode(format!("job status `{status}`").into()))?,
+        status: status_of(row)?,
         phase: row.try_get("phase")?,
         progress: row.try_get("progress")?,
         iteration: row.try_get("iteration")?,
@@ -153,6 +177,23 @@ impl Store {
             .fetch_optional(self.database.reader())
             .await?;
         Ok(row.as_ref().map(job_row).transpose()?)
+    }
+
+    /// The cases that a job goes with.
+    pub async fn cases_of_job(&self, id: &str) -> Result<Vec<String>, StoreError> {
+        let rows =
+            query(CASES).bind(id).bind(self.tenant()).fetch_all(self.database.reader()).await?;
+        Ok(rows.iter().map(|row| row.try_get(0)).collect::<Result<_, _>>()?)
+    }
+
+    /// How a job is, and nothing else of it.
+    pub async fn job_status(&self, id: &str) -> Result<Option<JobStatus>, StoreError> {
+        let row = query(STATUS)
+            .bind(id)
+            .bind(self.tenant())
+            .fetch_optional(self.database.reader())
+            .await?;
+        Ok(row.as_ref().map(status_of).transpose()?)
     }
 
     /// Jobs newest first.
@@ -193,12 +234,12 @@ impl Store {
             Ok(true) => {
                 record(&mut transaction, &job.id).await?;
                 transaction.commit().await?;
-                self.jobs_changed();
+                self.job_changed(&job.id);
                 Ok(Enqueued::Accepted)
             }
             // Another request with the same inputs came between the question and the answer.
             Ok(false) => {
-                transaction.rollback().await?;
+                transaction.rollback().await;
                 self.known(job).await
             }
             Err(error) if is_reference(&error) => Ok(Enqueued::InputGone),
@@ -217,8 +258,8 @@ impl Store {
         Ok(Enqueued::Known(id))
     }
 
-    /// Ends a job that is accepted or running, removes one that has ended, with the meshes that it made and that nothing
-    /// else refers to.
+    /// Ends a job that is accepted or running, removes one that has ended, with the meshes that it made or read and that
+    /// nothing else refers to, unless somebody uploaded them for their own sake.
     pub async fn dismiss(&self, id: &str) -> Result<Dismissal, StoreError> {
         let mut transaction = self.database.begin().await?;
         let dismissed =
@@ -226,20 +267,21 @@ impl Store {
         if dismissed == 1 {
             record(&mut transaction, id).await?;
             transaction.commit().await?;
-            self.jobs_changed();
+            self.job_changed(id);
             return Ok(Dismissal::Dismissed);
         }
         let rows = query(FILES).bind(id).bind(self.tenant()).fetch_all(&mut transaction).await?;
         let mut blobs =
             rows.iter().map(|row| row.try_get(0)).collect::<Result<Vec<String>, _>>()?;
-        let made = made_by(&mut transaction, id).await?;
+        let meshes = meshes_of_job(&mut transaction, id).await?;
         let removed = query(REMOVE).bind(id).bind(self.tenant()).execute(&mut transaction).await?;
         if removed == 1 {
             self.bury(&mut transaction, id).await?;
-            blobs.extend(self.remove_unused(&mut transaction, made).await?);
+            blobs.extend(self.remove_unused(&mut transaction, meshes).await?);
         }
         transaction.commit().await?;
-        self.jobs_changed();
+        self.was_erased();
+        self.job_changed(id);
         self.discard(blobs).await;
         Ok(match removed {
             0 => Dismissal::NotFound,
@@ -263,6 +305,7 @@ impl Store {
             .bind(self.tenant())
             .bind(job.priority)
             .bind(&job.traceparent)
+            .bind(i64::from(EngineDocument::this().numerics))
             .execute(&mut *transaction)
             .await?;
         if inserted == 0 {
@@ -292,5 +335,39 @@ impl Store {
             .await?;
         }
         Ok(true)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::store::database::query_of;
+
+    /// How SQLite finds the rows of a page, line by line.
+    async fn plan(store: &Store) -> Vec<String> {
+        let mut asked = query_of(format!("EXPLAIN QUERY PLAN {LIST}"));
+        for text in [AFTER_ALL, "", "", "", ""] {
+            asked = asked.bind(text);
+        }
+        let asked = asked.bind(9).bind(store.tenant());
+        let rows = asked.fetch_all(store.database.reader()).await.unwrap();
+        rows.iter().map(|row| row.try_get("detail").unwrap()).collect()
+    }
+
+    #[tokio::test]
+    async fn a_page_and_the_places_of_its_jobs_are_read_from_indexes_in_their_order() {
+        let folder = tempfile::TempDir::new().unwrap();
+        let store = Store::open(folder.path()).await.unwrap();
+        let plan = plan(&store).await;
+        let mut of_jobs: Vec<&str> =
+            plan.iter().map(String::as_str).filter(|line| line.contains(" jobs ")).collect();
+        of_jobs.sort_unstable();
+        let by_tenant = "SEARCH jobs USING COVERING INDEX jobs_by_tenant";
+        let wanted = [
+            format!("{by_tenant} (tenant=? AND status=? AND priority<?)"),
+            format!("{by_tenant} (tenant=? AND status=? AND priority=? AND id>? AND id<?)"),
+            "SEARCH jobs USING INDEX jobs_by_age (tenant=? AND id<?)".to_owned(),
+        ];
+        assert_eq!(of_jobs, wanted, "{plan:#?}");
     }
 }

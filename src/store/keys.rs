@@ -1,6 +1,6 @@
 //! Keys of clients. A key is `fcs_<id>_<secret>`; only the hash of the whole is stored.
 
-use super::database::{Row, query};
+use super::database::{Row, Transaction, query};
 use super::{Store, StoreError};
 use crate::schema::key::{Key, KeyDocument, scope_words};
 use crate::schema::wire::canonical::sha256_hex;
@@ -23,6 +23,15 @@ pub struct KeyRow {
     pub revoked: Option<i64>,
 }
 
+/// A key to be made.
+struct NewKey {
+    label: String,
+    scopes: String,
+    lasts_ms: Option<i64>,
+    /// Whether another ends at once, so that there is none more.
+    replaces_another: bool,
+}
+
 const INSERT: &str = "INSERT INTO keys (id, tenant, label, hash, scopes, created, expires) \
      VALUES ($1, $2, $3, $4, $5, (SELECT now_ms FROM clock), \
        (SELECT now_ms FROM clock) + CAST($6 AS BIGINT))";
@@ -42,6 +51,10 @@ const OF_TENANT: &str = concat!(
        (SELECT last.created, last.id FROM keys AS last WHERE last.id = $2 AND last.tenant = $1)) \
      ORDER BY created, id LIMIT $3"
 );
+/// Of two that make a key at the same time one waits for the other.
+const LOCK: &str = "SELECT name FROM tenants WHERE name = $1 FOR UPDATE";
+const COUNT_IN_FORCE: &str = "SELECT COUNT(*) FROM keys WHERE tenant = $1 AND revoked IS NULL \
+     AND (expires IS NULL OR expires > (SELECT now_ms FROM clock))";
 const REVOKE: &str = "UPDATE keys SET revoked = (SELECT now_ms FROM clock) \
      WHERE id = $1 AND tenant = $2 AND revoked IS NULL";
 const EXPIRE: &str = "UPDATE keys SET expires = (SELECT now_ms FROM clock) + $2 \
@@ -62,44 +75,62 @@ fn key_row(row: &Row) -> Result<KeyRow, sqlx::Error> {
 }
 
 impl Store {
-    /// Makes a key of this tenant. Only its hash is kept: whoever asked has to.
+    /// Makes a key of this tenant, unless it has as many as it may have. Only its hash is kept: whoever asked has to.
     pub async fn make_key(&self, wanted: &KeyDocument) -> Result<Key, StoreError> {
-        let lasts_ms = wanted.days.map(|days| days * DAY_MS);
-        self.add_key(&wanted.label, &scope_words(&wanted.scopes), lasts_ms).await
+        let new = NewKey {
+            label: wanted.label.clone(),
+            scopes: scope_words(&wanted.scopes),
+            lasts_ms: wanted.days.map(|days| days * DAY_MS),
+            replaces_another: false,
+        };
+        self.add_key(new).await
     }
 
-    async fn add_key(
-        &self,
-        label: &str,
-        scopes: &str,
-        lasts_ms: Option<i64>,
-    ) -> Result<Key, StoreError> {
+    async fn add_key(&self, new: NewKey) -> Result<Key, StoreError> {
         let mut random = [0; Key::RANDOM_BYTES];
         let source = rustls::crypto::ring::default_provider().secure_random;
         source.fill(&mut random).map_err(|_| StoreError::NoRandomness)?;
         let key = Key::from_random(&random);
         let mut transaction = self.database.begin().await?;
         self.enter(&mut transaction).await?;
+        if !new.replaces_another {
+            self.refuse_too_many(&mut transaction).await?;
+        }
         query(INSERT)
             .bind(&key.id)
             .bind(self.tenant())
-            .bind(label)
+            .bind(new.label)
             .bind(sha256_hex(key.text.as_bytes()))
-            .bind(scopes)
-            .bind(lasts_ms)
+            .bind(new.scopes)
+            .bind(new.lasts_ms)
             .execute(&mut transaction)
             .await?;
         transaction.commit().await?;
         Ok(key)
     }
 
+    async fn refuse_too_many(&self, transaction: &mut Transaction) -> Result<(), StoreError> {
+        query(LOCK).bind(self.tenant()).fetch_all(&mut *transaction).await?;
+        let row = query(COUNT_IN_FORCE).bind(self.tenant()).fetch_one(&mut *transaction).await?;
+        let (keys, most) = (row.try_get::<i64, _>(0)?, self.most_keys);
+        if keys >= most {
+            return Err(StoreError::TooManyKeys { keys, most });
+        }
+        Ok(())
+    }
+
     /// Makes a key that allows what another of this tenant does, which ends some time from now; `None` where there is none
-    /// in force. The new one lasts as long as the old one was made for.
+    /// in force. The new one lasts as long as the old one was made for. While both are in force both count.
     pub async fn rotate_key(&self, id: &str, overlap_h: i64) -> Result<Option<Key>, StoreError> {
         let old = self.key_in_force(id).await?.filter(|key| key.tenant == self.tenant());
         let Some(old) = old else { return Ok(None) };
-        let lasts_ms = old.expires.map(|expires| expires - old.created);
-        let key = self.add_key(&old.label, &old.scopes, lasts_ms).await?;
+        let new = NewKey {
+            lasts_ms: old.expires.map(|expires| expires - old.created),
+            label: old.label,
+            scopes: old.scopes,
+            replaces_another: overlap_h == 0,
+        };
+        let key = self.add_key(new).await?;
         self.expire_key(id, overlap_h * HOUR_MS).await?;
         Ok(Some(key))
     }

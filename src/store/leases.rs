@@ -1,5 +1,5 @@
-//! Jobs as workers see them. A claim makes a lease with a token of its own; every later write names the
-//! token, so that a worker which was thought dead and comes back changes nothing.
+//! Leases: jobs as those see them who work on them. A claim makes a lease with a token of its own; every later write names
+//! the token, so that a worker which was thought dead and comes back changes nothing.
 
 use std::time::Duration;
 
@@ -7,6 +7,7 @@ use bytes::Bytes;
 use serde::Deserialize;
 
 use super::database::{Statement, Transaction, query};
+use super::engines::note_engine;
 use super::events::record;
 use super::made::MadeMesh;
 use super::references::{Content, hashes};
@@ -18,19 +19,6 @@ pub struct Lease {
     pub job: String,
     pub token: String,
     pub attempt: i64,
-}
-
-/// A job to be worked on.
-#[derive(Clone, Debug)]
-pub struct Claim {
-    pub lease: Lease,
-    pub tenant: String,
-    pub kind: String,
-    pub document: String,
-    pub created: i64,
-    pub started: i64,
-    /// Where in a trace it was accepted.
-    pub traceparent: Option<String>,
 }
 
 /// Where a running job stands.
@@ -78,20 +66,6 @@ pub struct Reaped {
     pub accepted_again: bool,
 }
 
-const CLAIM: &str = "UPDATE jobs SET status = 'running', attempt = attempt + 1, lease_token = $1, \
-     lease_expires = (SELECT now_ms FROM clock) + $2, heartbeat = (SELECT now_ms FROM clock), \
-     phase = NULL, iteration = NULL, residual = NULL, \
-     started = COALESCE(started, (SELECT now_ms FROM clock)), updated = (SELECT now_ms FROM clock) \
-     WHERE id = (SELECT id FROM jobs WHERE status = 'accepted' AND tenant = \
-         (SELECT name FROM tenants WHERE EXISTS (SELECT 1 FROM jobs AS waiting \
-             WHERE waiting.tenant = tenants.name AND waiting.status = 'accepted' \
-             AND waiting.claimable_from <= (SELECT now_ms FROM clock)) \
-           ORDER BY served, name LIMIT 1) \
-       AND claimable_from <= (SELECT now_ms FROM clock) ORDER BY priority, id LIMIT 1 \
-       FOR UPDATE SKIP LOCKED) \
-     AND status = 'accepted' RETURNING id, attempt, tenant, kind, document, created, started, traceparent";
-const SERVED: &str =
-    "UPDATE tenants SET served = (SELECT MAX(served) FROM tenants) + 1 WHERE name = $1";
 const RENEW: &str = "UPDATE jobs SET lease_expires = (SELECT now_ms FROM clock) + $3, \
      heartbeat = (SELECT now_ms FROM clock), updated = (SELECT now_ms FROM clock), phase = $4, \
      progress = CASE WHEN $5 > progress THEN $5 ELSE progress END, iteration = $6, residual = $7 \
@@ -135,33 +109,6 @@ const FILE: &str = "SELECT name, media_type, blob, bytes FROM job_files WHERE jo
 const PAUSE_AFTER_LOSS_MS: i64 = 500;
 
 impl Store {
-    /// Takes an accepted job, if there is one, of the tenant that has waited longest for its turn: the oldest of its most
-    /// urgent ones. Two workers never take the same.
-    pub async fn claim(&self, lease: Duration) -> Result<Option<Claim>, StoreError> {
-        let token = uuid::Uuid::now_v7().to_string();
-        let mut transaction = self.database.begin().await?;
-        let row = query(CLAIM)
-            .bind(&token)
-            .bind(milliseconds(lease))
-            .fetch_optional(&mut transaction)
-            .await?;
-        let Some(row) = row else { return Ok(None) };
-        record(&mut transaction, row.try_get("id")?).await?;
-        let tenant: String = row.try_get("tenant")?;
-        query(SERVED).bind(&tenant).execute(&mut transaction).await?;
-        transaction.commit().await?;
-        self.jobs_changed();
-        Ok(Some(Claim {
-            lease: Lease { job: row.try_get("id")?, token, attempt: row.try_get("attempt")? },
-            tenant,
-            kind: row.try_get("kind")?,
-            document: row.try_get("document")?,
-            created: row.try_get("created")?,
-            started: row.try_get("started")?,
-            traceparent: row.try_get("traceparent")?,
-        }))
-    }
-
     /// Keeps a job and tells where it stands; false when it is not ours any more.
     pub async fn renew(
         &self,
@@ -184,7 +131,7 @@ impl Store {
             record(&mut transaction, &lease.job).await?;
         }
         transaction.commit().await?;
-        self.jobs_changed();
+        self.job_changed(&lease.job);
         Ok(renewed == 1)
     }
 
@@ -213,11 +160,11 @@ impl Store {
         match self.insert_result(&mut transaction, lease, made).await {
             Ok(true) => {
                 transaction.commit().await?;
-                self.jobs_changed();
+                self.job_changed(&lease.job);
                 Ok(true)
             }
             given_up @ (Ok(false) | Err(StoreError::Contended)) => {
-                transaction.rollback().await?;
+                transaction.rollback().await;
                 self.discard(blobs).await;
                 given_up
             }
@@ -251,6 +198,7 @@ impl Store {
                 .await?;
         }
         self.insert_made(transaction, &lease.job, made.meshes).await?;
+        note_engine(transaction, &lease.job, made.result).await?;
         record(transaction, &lease.job).await?;
         Ok(true)
     }
@@ -290,7 +238,7 @@ impl Store {
             record(&mut transaction, &lease.job).await?;
         }
         transaction.commit().await?;
-        self.jobs_changed();
+        self.job_changed(&lease.job);
         Ok(changed == 1)
     }
 
@@ -308,9 +256,6 @@ impl Store {
             record(&mut transaction, row.try_get("id")?).await?;
         }
         transaction.commit().await?;
-        if !rows.is_empty() {
-            self.jobs_changed();
-        }
         let mut reaped = Vec::with_capacity(rows.len());
         for row in &rows {
             reaped.push(Reaped {
@@ -319,6 +264,7 @@ impl Store {
                 accepted_again: row.try_get::<String, _>("status")? == "accepted",
             });
         }
+        reaped.iter().for_each(|reaped| self.job_changed(&reaped.job));
         Ok(reaped)
     }
 
@@ -349,6 +295,6 @@ fn class_of(error: &str) -> Option<String> {
     serde_json::from_str(error).ok().map(|Classed { class }| class)
 }
 
-fn milliseconds(duration: Duration) -> i64 {
+pub(super) fn milliseconds(duration: Duration) -> i64 {
     i64::try_from(duration.as_millis()).unwrap_or(i64::MAX)
 }

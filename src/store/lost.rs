@@ -57,7 +57,7 @@ impl Store {
             record(&mut transaction, id).await?;
         }
         transaction.commit().await?;
-        self.jobs_changed();
+        self.job_changed(id);
         Ok(changed == 1)
     }
 }

@@ -19,8 +19,9 @@ const KNOWN: &str = "SELECT id FROM meshes WHERE id = $1 AND tenant = $2 FOR UPD
 const REFER: &str =
     "INSERT INTO made_meshes (job_id, mesh_id) VALUES ($1, $2) ON CONFLICT DO NOTHING";
 /// Locked, so that a request which is about to refer to one of them has either done so or finds it gone.
-const MADE_BY_JOB: &str = "SELECT id FROM meshes \
-     WHERE id IN (SELECT mesh_id FROM made_meshes WHERE job_id = $1) ORDER BY id FOR UPDATE";
+const MESHES_OF_JOB: &str = "SELECT id FROM meshes \
+     WHERE id IN (SELECT mesh_id FROM made_meshes WHERE job_id = $1 \
+       UNION SELECT mesh_id FROM job_meshes WHERE job_id = $1) ORDER BY id FOR UPDATE";
 const DELETE_UNUSED: &str = "DELETE FROM meshes WHERE id = $1 AND standalone = 0 \
      AND NOT EXISTS (SELECT 1 FROM case_meshes WHERE mesh_id = $1) \
      AND NOT EXISTS (SELECT 1 FROM job_meshes WHERE mesh_id = $1) \
@@ -93,12 +94,12 @@ fn contended(error: sqlx::Error) -> StoreError {
     if is_duplicate(&error) { StoreError::Contended } else { error.into() }
 }
 
-/// The meshes that a job made.
-pub(super) async fn made_by(
+/// The meshes that a job made, and those that it reads: when it goes, it may be the last that refers to them.
+pub(super) async fn meshes_of_job(
     transaction: &mut Transaction,
     job: &str,
 ) -> Result<Vec<String>, sqlx::Error> {
-    column(transaction, MADE_BY_JOB, job).await
+    column(transaction, MESHES_OF_JOB, job).await
 }
 
 /// The first column of a query with one parameter.

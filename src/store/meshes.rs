@@ -89,7 +89,7 @@ impl Store {
                 Ok(true)
             }
             Err(error) => {
-                transaction.rollback().await?;
+                transaction.rollback().await;
                 self.discard(vec![mesh.blob.clone()]).await;
                 if is_duplicate(&error) { Ok(false) } else { Err(error.into()) }
             }
@@ -119,6 +119,7 @@ impl Store {
             Ok(Some(row)) => {
                 self.bury(&mut transaction, id).await?;
                 transaction.commit().await?;
+                self.was_erased();
                 self.discard(vec![row.try_get("blob")?]).await;
                 Ok(MeshDeletion::Deleted)
             }

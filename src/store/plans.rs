@@ -128,6 +128,7 @@ impl Store {
             self.bury(&mut transaction, id).await?;
         }
         transaction.commit().await?;
+        self.was_erased();
         self.plan_change(case_id, id, changed).await
     }
 

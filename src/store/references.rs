@@ -61,6 +61,7 @@ impl Store {
         &self,
         mut contents: Vec<Content>,
     ) -> Result<Transaction, StoreError> {
+        self.reserve_room()?;
         contents.sort_by(|one, other| one.0.cmp(&other.0));
         contents.dedup_by(|one, other| one.0 == other.0);
         for _ in 0..TRIES {
@@ -69,7 +70,7 @@ impl Store {
             if hold(&mut transaction, &stored).await? {
                 return Ok(transaction);
             }
-            transaction.rollback().await?;
+            transaction.rollback().await;
             self.withdraw(&stored).await?;
         }
         Err(StoreError::Contended)

@@ -47,10 +47,7 @@ fn tenant_row(row: &Row) -> Result<TenantRow, sqlx::Error> {
 impl Store {
     /// A text that is unique in its table and has to be so within a tenant only.
     pub(super) fn own(&self, text: &str) -> String {
-        match self.tenant() {
-            DEFAULT_TENANT => text.to_owned(),
-            tenant => format!("{tenant} {text}"),
-        }
+        own(self.tenant(), text)
     }
 
     /// Sees to it that the tenant has a row.
@@ -86,6 +83,7 @@ impl Store {
     /// jobs that have ended, meshes that nothing refers to. Returns how many.
     pub async fn erase_old(&self) -> Result<usize, StoreError> {
         let mut erased = 0;
+        self.make_room();
         for row in query(FORGETFUL).fetch_all(self.database.reader()).await? {
             let TenantRow { name, retention_days } = tenant_row(&row)?;
             let Some(days) = retention_days else { continue };
@@ -117,7 +115,15 @@ impl Store {
     }
 }
 
-/// A text as it was before [`Store::own`].
+/// The same for a tenant of this name.
+pub(super) fn own(tenant: &str, text: &str) -> String {
+    match tenant {
+        DEFAULT_TENANT => text.to_owned(),
+        tenant => format!("{tenant} {text}"),
+    }
+}
+
+/// A text as it was before [`own`].
 pub(super) fn plain(text: String) -> String {
     match text.rsplit_once(' ') {
         Some((_, plain)) => plain.to_owned(),

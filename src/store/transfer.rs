@@ -87,7 +87,7 @@ impl Store {
         for row in query(REFERENCED).patiently().fetch_all(&mut snapshot).await? {
             manifest.blobs.insert(row.try_get(0)?);
         }
-        snapshot.rollback().await?;
+        snapshot.rollback().await;
         for sha256 in &manifest.blobs {
             let bytes = self.read_blob(sha256).await?;
             write_durably(&folder.join("blobs").join(sha256), &bytes)?;

@@ -1,72 +1,181 @@
-//! Processes that share a database tell each other that a job has changed (NOTIFY), so that nobody who waits
-//! for one sleeps to the end of his second. It only wakes: who missed a word, because a connection broke or a
-//! proxy swallowed it, finds the change when he looks the next time.
+//! Who waits for a job is woken when it changes. Processes that share a database tell each other which jobs have (NOTIFY),
+//! so that nobody who waits for one sleeps to the end of his second. It only wakes: who missed a word, because a connection
+//! broke or a proxy swallowed it, finds the change when he looks the next time.
 
+use std::sync::Arc;
 use std::time::Duration;
 
 use sqlx::postgres::{PgListener, PgPool};
-use tokio::sync::watch;
+use tokio::sync::broadcast::{self, error::RecvError};
+use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
 
-use super::Store;
+use super::StoreError;
 use super::database::Pool;
 
 const CHANNEL: &str = "facies_jobs";
-/// Between two words to the others: a hundred jobs that move at the same time are one.
+/// Between two words to the others, each of which names what changed meanwhile.
 const PAUSE: Duration = Duration::from_millis(10);
 /// Before a lost connection is made again.
 const RECOVERY: Duration = Duration::from_secs(1);
+/// Jobs named in one word: ids of 36 characters, of which PostgreSQL takes less than 8000 at a time.
+const NAMED_AT_ONCE: usize = 100;
+/// Words that one who waits may be behind. Who is further behind looks at his job.
+const BACKLOG: usize = 1024;
+/// In place of the id of a job: some have changed, and nobody says which.
+const ANY: &str = "";
 
-impl Store {
-    /// Starts to tell and to listen, where there may be others. It ends with the last of this store.
-    pub(super) fn listen_to_others(&self) {
-        if let Pool::Postgres(pool) = self.database.writer() {
+/// Where changes of jobs are told.
+#[derive(Clone)]
+pub(super) struct Wake {
+    here: broadcast::Sender<Arc<str>>,
+    /// To the other processes, where there may be some.
+    there: Option<UnboundedSender<Arc<str>>>,
+}
+
+/// Where they are heard.
+pub struct Changes(broadcast::Receiver<Arc<str>>);
+
+impl Wake {
+    /// Tells and listens to other processes until the last of it is gone, where the database is one that many share.
+    pub fn new(pool: &Pool) -> Wake {
+        let here = broadcast::Sender::new(BACKLOG);
+        let Pool::Postgres(pool) = pool else { return Wake { here, there: None } };
+        let (there, changed) = unbounded_channel();
+        let others = Others {
+            pool: pool.clone(),
             // What this process signs its words with, so that it does not wake itself.
-            let name = uuid::Uuid::now_v7().to_string();
-            tokio::spawn(tell(pool.clone(), self.own_changes.subscribe(), name.clone()));
-            let here = self.own_changes.subscribe();
-            tokio::spawn(listen(pool.clone(), self.changes.clone(), here, name));
+            name: uuid::Uuid::now_v7().to_string(),
+        };
+        tokio::spawn(others.talk(changed, here.clone()));
+        Wake { here, there: Some(there) }
+    }
+
+    pub fn tell(&self, job: &str) {
+        let job: Arc<str> = job.into();
+        if let Some(there) = &self.there {
+            // Nobody is told any more where the pool is closed.
+            let _ = there.send(job.clone());
         }
+        // An error: nobody waits.
+        let _ = self.here.send(job);
+    }
+
+    pub fn changes(&self) -> Changes {
+        Changes(self.here.subscribe())
     }
 }
 
-async fn tell(pool: PgPool, mut own_changes: watch::Receiver<u64>, name: String) {
-    while own_changes.changed().await.is_ok() && !pool.is_closed() {
-        let told = sqlx::query("SELECT pg_notify($1, $2)").bind(CHANNEL).bind(&name);
-        if let Err(error) = told.execute(&pool).await {
-            tracing::debug!(%error, "the others were not woken");
-        }
-        tokio::time::sleep(PAUSE).await;
+impl Changes {
+    /// Forgets what was told so far.
+    pub fn mark_seen(&mut self) {
+        self.0 = self.0.resubscribe();
     }
-}
 
-async fn listen(
-    pool: PgPool,
-    changes: watch::Sender<u64>,
-    mut here: watch::Receiver<u64>,
-    name: String,
-) {
-    while !pool.is_closed() {
-        tokio::select! {
-            // Only the end of the store is waited for; its changes are told elsewhere.
-            () = async { while here.changed().await.is_ok() {} } => return,
-            heard = hear(&pool, &changes, &name) => {
-                if let Err(error) = heard {
-                    tracing::debug!(%error, "the others are not heard");
-                }
-                tokio::time::sleep(RECOVERY).await;
+    /// Until any job has changed.
+    pub async fn of_any(&mut self) -> Result<(), StoreError> {
+        match self.0.recv().await {
+            Ok(_) | Err(RecvError::Lagged(_)) => Ok(()),
+            Err(RecvError::Closed) => Err(StoreError::Interrupted),
+        }
+    }
+
+    /// Until this job has changed, or may have.
+    pub async fn of(&mut self, job: &str) -> Result<(), StoreError> {
+        loop {
+            match self.0.recv().await {
+                Ok(told) if &*told == job || &*told == ANY => return Ok(()),
+                Ok(_) => {}
+                Err(RecvError::Lagged(_)) => return Ok(()),
+                Err(RecvError::Closed) => return Err(StoreError::Interrupted),
             }
         }
     }
 }
 
-/// Wakes those who wait here whenever another process says so, until the connection breaks.
-async fn hear(pool: &PgPool, changes: &watch::Sender<u64>, name: &str) -> Result<(), sqlx::Error> {
-    let mut listener = PgListener::connect_with(pool).await?;
-    listener.listen(CHANNEL).await?;
-    loop {
-        let word = listener.recv().await?;
-        if word.payload() != name {
-            changes.send_modify(|count| *count = count.wrapping_add(1));
+/// The other processes on the same database.
+struct Others {
+    pool: PgPool,
+    name: String,
+}
+
+impl Others {
+    async fn talk(self, changed: UnboundedReceiver<Arc<str>>, here: broadcast::Sender<Arc<str>>) {
+        tokio::select! {
+            () = self.tell(changed) => {}
+            () = self.listen(&here) => {}
         }
+    }
+
+    async fn tell(&self, mut changed: UnboundedReceiver<Arc<str>>) {
+        let mut jobs = Vec::new();
+        while changed.recv_many(&mut jobs, NAMED_AT_ONCE).await > 0 && !self.pool.is_closed() {
+            let word = format!("{} {}", self.name, jobs.join(" "));
+            let told = sqlx::query("SELECT pg_notify($1, $2)").bind(CHANNEL).bind(word);
+            if let Err(error) = told.execute(&self.pool).await {
+                tracing::debug!(%error, "the others were not woken");
+            }
+            jobs.clear();
+            tokio::time::sleep(PAUSE).await;
+        }
+    }
+
+    async fn listen(&self, here: &broadcast::Sender<Arc<str>>) {
+        while !self.pool.is_closed() {
+            if let Err(error) = self.hear(here).await {
+                tracing::debug!(%error, "the others are not heard");
+            }
+            tokio::time::sleep(RECOVERY).await;
+        }
+    }
+
+    /// Wakes those who wait here whenever another process says so, until the connection breaks.
+    async fn hear(&self, here: &broadcast::Sender<Arc<str>>) -> Result<(), sqlx::Error> {
+        let mut listener = PgListener::connect_with(&self.pool).await?;
+        listener.listen(CHANNEL).await?;
+        loop {
+            let word = listener.recv().await?;
+            for job in jobs_of(word.payload(), &self.name) {
+                // An error: nobody waits.
+                let _ = here.send(job.into());
+            }
+        }
+    }
+}
+
+/// The jobs that a word of another process names; an earlier program names none.
+fn jobs_of<'a>(word: &'a str, own_name: &str) -> Vec<&'a str> {
+    match word.split_once(' ') {
+        Some((name, _)) if name == own_name => Vec::new(),
+        Some((_, jobs)) => jobs.split(' ').collect(),
+        None => vec![ANY],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use futures::FutureExt;
+
+    #[test]
+    fn a_word_names_jobs_and_one_of_an_earlier_program_names_none() {
+        assert_eq!(jobs_of("other a b", "own"), ["a", "b"]);
+        assert!(jobs_of("own a b", "own").is_empty());
+        assert_eq!(jobs_of("other", "own"), [ANY]);
+    }
+
+    #[tokio::test]
+    async fn who_waits_for_a_job_sleeps_through_the_changes_of_others() {
+        let wake = Wake { here: broadcast::Sender::new(BACKLOG), there: None };
+        let mut changes = wake.changes();
+        wake.tell("another");
+        assert!(changes.of("own").now_or_never().is_none());
+        wake.tell("own");
+        changes.of("own").await.unwrap();
+        for _ in 0..2 * BACKLOG {
+            wake.tell("another");
+        }
+        changes.of("own").await.unwrap();
+        changes.mark_seen();
+        assert!(changes.of_any().now_or_never().is_none());
     }
 }

@@ -106,12 +106,12 @@ impl Shared {
                 std::thread::sleep(wait.min(UNREADY));
                 continue;
             }
-            changes.mark_unchanged();
+            changes.mark_seen();
             match self.runtime.block_on(self.store.claim(self.lease)) {
                 Ok(Some(claim)) => self.attempt(&claim, work),
                 Ok(None) => self.runtime.block_on(async {
                     // Either a job of this process woke us, or it is time to look at the others'.
-                    let _ = tokio::time::timeout(IDLE, changes.changed()).await;
+                    let _ = tokio::time::timeout(IDLE, changes.of_any()).await;
                 }),
                 Err(error) => {
                     tracing::warn!(%error, "no job could be claimed");

@@ -58,6 +58,8 @@ pub struct Limits {
     pub requests_per_minute: u32,
     /// Streams of events that one client may have open.
     pub event_streams: u32,
+    /// Keys in force that a tenant may have.
+    pub keys: u32,
 }
 
 impl Default for Limits {
@@ -90,6 +92,7 @@ impl Default for Limits {
             study_rows: 2000,
             requests_per_minute: 60_000,
             event_streams: 8,
+            keys: 100,
         }
     }
 }

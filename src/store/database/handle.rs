@@ -128,6 +128,15 @@ impl Database {
         })
     }
 
+    /// Brings what was erased out of the files of an embedded database; false while somebody stands in the way. A server
+    /// has files of its own.
+    pub async fn empty_log(&self) -> Result<bool, StoreError> {
+        match &self.address {
+            Address::File(file) => Ok(sqlite::empty_log(file).await?),
+            Address::Server { .. } => Ok(true),
+        }
+    }
+
     pub async fn close(&self) {
         for pool in [&self.reader, &self.writer] {
             match &**pool {

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use futures::TryStreamExt;
 use sqlx::postgres::{PgConnectOptions, PgConnection, PgPool, PgPoolOptions, Postgres};
-use sqlx::{AssertSqlSafe, Either, Executor, SqlSafeStr};
+use sqlx::{AssertSqlSafe, Connection, Either, Executor, SqlSafeStr};
 
 use super::{Row, Statement, Taker, Value};
 
@@ -34,8 +34,16 @@ pub async fn connect(options: &PgConnectOptions, connections: u32) -> Result<PgP
         .after_connect(|connection, _| {
             Box::pin(async move { connection.execute(LIMITS).await.map(|_| ()) })
         })
+        .after_release(|connection, _| Box::pin(is_free(connection)))
         .connect_with(options.clone())
         .await
+}
+
+/// Whether a connection that comes back may be used again: the server answers on it, and its transaction is over.
+async fn is_free(connection: &mut PgConnection) -> Result<bool, sqlx::Error> {
+    // One that was lost in the middle of a commit says nothing at all, and would be waited for.
+    in_time(connection.ping()).await?;
+    Ok(!connection.is_in_transaction())
 }
 
 /// A connection that takes its time.

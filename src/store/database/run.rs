@@ -28,10 +28,15 @@ impl Transaction {
         }
     }
 
-    pub async fn rollback(self) -> Result<(), sqlx::Error> {
-        match self {
+    /// Undoes it. Where the engine has done so by itself or is out of reach there is nothing left to undo, and the
+    /// connection is not used again.
+    pub async fn rollback(self) {
+        let undone = match self {
             Transaction::Sqlite(transaction) => transaction.rollback().await,
             Transaction::Postgres(transaction) => postgres::in_time(transaction.rollback()).await,
+        };
+        if let Err(error) = undone {
+            tracing::debug!(%error, "nothing was left to undo");
         }
     }
 }

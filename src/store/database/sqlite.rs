@@ -9,7 +9,7 @@ use sqlx::sqlite::{
     Sqlite, SqliteConnectOptions, SqliteConnection, SqliteJournalMode, SqlitePool,
     SqlitePoolOptions, SqliteSynchronous,
 };
-use sqlx::{AssertSqlSafe, Either, Executor, SqlSafeStr};
+use sqlx::{AssertSqlSafe, Connection, Either, Executor, SqlSafeStr};
 
 use super::{Row, Statement, Taker, Value};
 
@@ -31,7 +31,16 @@ const READERS: u32 = 4;
 
 /// One connection that writes, so that writers queue here instead of failing with BUSY, and several that read.
 pub async fn connect(file: &Path) -> Result<(SqlitePool, SqlitePool), sqlx::Error> {
-    let options = SqliteConnectOptions::new()
+    let options = options(file);
+    let pool = SqlitePoolOptions::new()
+        .acquire_timeout(ACQUIRE_TIMEOUT)
+        .after_release(|connection, _| Box::pin(is_free(connection)));
+    let writer = pool.clone().max_connections(1).connect_with(options.clone()).await?;
+    Ok((writer, pool.max_connections(READERS).connect_lazy_with(options)))
+}
+
+fn options(file: &Path) -> SqliteConnectOptions {
+    SqliteConnectOptions::new()
         .filename(file)
         .create_if_missing(true)
         .journal_mode(SqliteJournalMode::Wal)
@@ -39,10 +48,29 @@ pub async fn connect(file: &Path) -> Result<(SqlitePool, SqlitePool), sqlx::Erro
         // is flushed, which NORMAL leaves to the next checkpoint.
         .synchronous(SqliteSynchronous::Full)
         .busy_timeout(BUSY_TIMEOUT)
-        .foreign_keys(true);
-    let pool = SqlitePoolOptions::new().acquire_timeout(ACQUIRE_TIMEOUT);
-    let writer = pool.clone().max_connections(1).connect_with(options.clone()).await?;
-    Ok((writer, pool.max_connections(READERS).connect_lazy_with(options)))
+        // What is deleted is overwritten with zeros.
+        .pragma("secure_delete", "ON")
+        .foreign_keys(true)
+}
+
+/// Whether a connection that comes back may be used again. Where a commit or a statement failed, SQLite may have rolled
+/// back by itself; the driver's own ROLLBACK then finds nothing, and the driver takes the connection for one that is
+/// within a transaction, in which no other can begin. Such a connection is closed, and the next one opened.
+async fn is_free(connection: &mut SqliteConnection) -> Result<bool, sqlx::Error> {
+    // What is queued behind the last statement, such as a ROLLBACK, is done by then.
+    connection.ping().await?;
+    Ok(!connection.is_in_transaction())
+}
+
+/// Brings everything in the log of writes into the file itself and empties the log; false while somebody reads or writes.
+pub async fn empty_log(file: &Path) -> Result<bool, sqlx::Error> {
+    // Waiting here would make those wait who write.
+    let options = options(file).create_if_missing(false).busy_timeout(Duration::ZERO);
+    let mut connection = SqliteConnection::connect_with(&options).await?;
+    let asked = sqlx::query_scalar("PRAGMA wal_checkpoint(TRUNCATE)");
+    let is_busy: Result<i64, _> = asked.fetch_one(&mut connection).await;
+    connection.close().await?;
+    Ok(is_busy? == 0)
 }
 
 /// A transaction that takes the write lock at once: one that reads first and writes later fails

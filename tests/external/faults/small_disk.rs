@@ -1,33 +1,61 @@
 //! A disk that is full.
 
+use std::path::PathBuf;
 use std::process::Command;
 
 use reqwest::StatusCode;
 use tempfile::TempDir;
 
 use crate::helpers::{Block, SMALL, Server, ask, serve, spec};
+use crate::invariants::works_on;
 use crate::support::external::Missing;
 use crate::support::trials::trials;
 
 trials! {
     alone {
-        a_full_disk_refuses_uploads_fails_jobs_and_serves_what_is_there
+        a_full_disk_refuses_uploads_and_serves_what_is_there
+        on_a_disk_without_a_byte_left_uploads_are_refused_and_things_are_erased
+        a_service_starts_on_a_disk_without_a_byte_left
     }
 }
 
-/// A disk of a few MiB, where this user may mount one.
+/// A disk of 24 MiB, where this user may mount one.
 struct SmallDisk(TempDir);
 
 impl SmallDisk {
     fn mount() -> Result<SmallDisk, Missing> {
         let folder = TempDir::new().unwrap();
-        let options = ["-t", "tmpfs", "-o", "size=6m", "tmpfs"];
+        let options = ["-t", "tmpfs", "-o", "size=24m", "tmpfs"];
         let mounted = Command::new("mount").args(options).arg(folder.path()).output();
         if mounted.is_ok_and(|output| output.status.success()) {
             return Ok(SmallDisk(folder));
         }
         let why = "a small disk can be mounted by root only".to_owned();
         Err(Missing { why, required_by: None })
+    }
+}
+
+impl SmallDisk {
+    fn free(&self) -> usize {
+        let disk = rustix::fs::statvfs(self.0.path()).unwrap();
+        (disk.f_bavail * disk.f_frsize) as usize
+    }
+
+    fn filler(&self) -> PathBuf {
+        self.0.path().join("filler")
+    }
+
+    fn fill_but(&self, bytes: usize) {
+        let filler = vec![0; self.free().saturating_sub(bytes)];
+        std::fs::write(self.filler(), filler).unwrap();
+    }
+
+    fn empty(&self) {
+        std::fs::remove_file(self.filler()).unwrap();
+    }
+
+    fn serve(&self) -> Server {
+        Server::start_command(serve(&self.0.path().join("data")), TempDir::new().unwrap())
     }
 }
 
@@ -38,7 +66,7 @@ impl Drop for SmallDisk {
     }
 }
 
-async fn a_full_disk_refuses_uploads_fails_jobs_and_serves_what_is_there() -> Result<(), Missing> {
+async fn a_full_disk_refuses_uploads_and_serves_what_is_there() -> Result<(), Missing> {
     let disk = SmallDisk::mount()?;
     let data = disk.0.path().join("data");
     let server = Server::start_command(serve(&data), TempDir::new().unwrap());
@@ -47,12 +75,7 @@ async fn a_full_disk_refuses_uploads_fails_jobs_and_serves_what_is_there() -> Re
     let kept = format!("/v1/jobs/{}", kept["id"].as_str().unwrap());
 
     // Leaves room for a row and not for a mesh or a result.
-    let filler = disk.0.path().join("filler");
-    let free = || {
-        let disk = rustix::fs::statvfs(disk.0.path()).unwrap();
-        (disk.f_bavail * disk.f_frsize) as usize
-    };
-    std::fs::write(&filler, vec![0; free().saturating_sub(100 << 10)]).unwrap();
+    disk.fill_but(100 << 10);
     let large = Block { cells: [40, 40, 10] };
     let answer = server.upload(large.vtu()).await;
     answer.problem(507, "storage-full");
@@ -62,9 +85,52 @@ async fn a_full_disk_refuses_uploads_fails_jobs_and_serves_what_is_there() -> Re
     assert_eq!(ask(server.get(&kept)).await.expect(StatusCode::OK)["status"], "successful");
     assert_eq!(ask(server.get("/healthz")).await.status, StatusCode::OK);
 
-    std::fs::remove_file(&filler).unwrap();
+    disk.empty();
     assert_eq!(blobs("blobs"), before);
     let again = server.upload(Block { cells: [6, 6, 6] }.vtu()).await;
     again.expect(StatusCode::CREATED);
+    Ok(())
+}
+
+async fn on_a_disk_without_a_byte_left_uploads_are_refused_and_things_are_erased()
+-> Result<(), Missing> {
+    let disk = SmallDisk::mount()?;
+    let server = disk.serve();
+    let case = server.case(&SMALL).await;
+    let job = server.job(&spec(&case, 1.0)).await.expect(StatusCode::OK);
+    disk.fill_but(0);
+    assert_eq!(disk.free(), 0);
+    let upload = async || server.upload(Block { cells: [5, 5, 5] }.vtu()).await;
+    for _ in 0..4 {
+        upload().await.problem(507, "storage-full");
+    }
+    let job = format!("/v1/jobs/{}", job["id"].as_str().unwrap());
+    assert_eq!(ask(server.delete(&job)).await.status, StatusCode::NO_CONTENT);
+    assert!(disk.free() > 1 << 20, "the room in reserve is given up");
+    // It is for what is erased, and not for the next upload.
+    upload().await.problem(507, "storage-full");
+    let erase = server.delete(&format!("/v1/cases/{case}")).header("if-match", "*");
+    assert_eq!(ask(erase).await.status, StatusCode::NO_CONTENT);
+    ask(server.get(&job)).await.problem(410, "gone");
+    disk.empty();
+    upload().await.expect(StatusCode::CREATED);
+    works_on(&server).await;
+    Ok(())
+}
+
+async fn a_service_starts_on_a_disk_without_a_byte_left() -> Result<(), Missing> {
+    let disk = SmallDisk::mount()?;
+    let mut server = disk.serve();
+    let case = server.case(&SMALL).await;
+    disk.fill_but(0);
+    let stops: [fn(Server) -> TempDir; 2] = [Server::kill, |server| server.terminate().0];
+    for stop in stops {
+        drop(stop(server));
+        server = disk.serve();
+        let case = format!("/v1/cases/{case}");
+        ask(server.get(&case)).await.expect(StatusCode::OK);
+    }
+    let erase = server.delete(&format!("/v1/cases/{case}")).header("if-match", "*");
+    assert_eq!(ask(erase).await.status, StatusCode::NO_CONTENT);
     Ok(())
 }

@@ -1,8 +1,11 @@
 //! Rows and bytes, on both engines.
 
+pub mod commits;
+pub mod erasure;
 pub mod lost_jobs;
 pub mod made;
 pub mod pages;
+pub mod places;
 pub mod queue;
 pub mod races;
 pub mod remembered;
@@ -10,3 +13,4 @@ pub mod schema_steps;
 pub mod storage;
 pub mod tenants;
 pub mod transfer;
+pub mod turns;

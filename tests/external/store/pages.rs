@@ -122,7 +122,8 @@ struct Question(bool);
 
 impl Visit for Question {
     fn record_str(&mut self, field: &Field, value: &str) {
-        self.0 |= field.name() == "summary" && value.starts_with("SELECT");
+        let begins_one = ["SELECT", "WITH"].iter().any(|word| value.starts_with(word));
+        self.0 |= field.name() == "summary" && begins_one;
     }
 
     fn record_debug(&mut self, _: &Field, _: &dyn std::fmt::Debug) {}

@@ -156,7 +156,7 @@ async fn a_process_that_waits_is_woken_by_the_change_of_another(on: Deployment) 
         for number in 0.. {
             enqueue(&stores[0], &number.to_string()).await;
             let patience = std::time::Duration::from_secs(1);
-            if tokio::time::timeout(patience, changes.changed()).await.is_ok() {
+            if tokio::time::timeout(patience, changes.of_any()).await.is_ok() {
                 return;
             }
         }

@@ -112,9 +112,12 @@ async fn a_key_belongs_to_the_request_that_used_it_first(on: Deployment) {
     let found = futures::future::join_all(together).await;
     let first = found.iter().zip(["a", "b", "c", "d"]).filter(|(it, _)| **it == Reserved::Fresh);
     let [id] = first.map(|(_, id)| id).collect::<Vec<_>>()[..] else { panic!("{found:?}") };
-    let again = Reserved::Again(id.to_owned());
+    let again = Reserved::Again { id: id.to_owned(), found: false };
     assert_eq!(found.iter().filter(|it| **it == again).count(), 3);
     assert_eq!(store.reserve("key", "another", "e").await.unwrap(), Reserved::Other);
+    store.remember_found("key", "earlier").await.unwrap();
+    let found = Reserved::Again { id: "earlier".into(), found: true };
+    assert_eq!(store.reserve("key", "request", "f").await.unwrap(), found);
     // After a day it is anybody's.
     on.execute("UPDATE idempotency_keys SET created = created - 86400001").await;
     assert_eq!(store.reserve("key", "another", "e").await.unwrap(), Reserved::Fresh);

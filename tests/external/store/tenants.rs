@@ -1,7 +1,7 @@
 //! Rows of several tenants: each finds its own, and they take turns.
 
 use facies::schema::key::{KeyDocument, Scope};
-use facies::store::{Dismissal, Enqueued, Store};
+use facies::store::{Dismissal, Enqueued, Store, StoreError};
 use serde_json::json;
 
 use crate::deployments::Deployment;
@@ -15,6 +15,7 @@ trials! {
         a_job_that_was_lost_is_accepted_again_when_somebody_says_so
         equal_things_of_two_tenants_are_two_things
         a_key_that_was_ended_is_not_let_in
+        a_tenant_has_no_more_keys_in_force_than_it_may
     }
 }
 
@@ -128,4 +129,24 @@ async fn a_key_that_was_ended_is_not_let_in(on: Deployment) {
     assert!(a.revoke_key(&next.id).await.unwrap());
     assert!(store.key_in_force(&next.id).await.unwrap().is_none());
     assert!(!a.revoke_key(&next.id).await.unwrap());
+}
+
+async fn a_tenant_has_no_more_keys_in_force_than_it_may(on: Deployment) {
+    let store = on.open().await.with_most_keys(2);
+    let (a, b) = (store.of_tenant("a"), store.of_tenant("b"));
+    let wanted = KeyDocument { label: "test".into(), scopes: [Scope::Read].into(), days: Some(1) };
+    let (many, last) = (on.again(&store).await.with_most_keys(2).of_tenant("a"), a.clone());
+    let made = [&many, &last, &many, &last].map(|store| store.make_key(&wanted));
+    let made = futures::future::join_all(made).await;
+    assert_eq!(made.iter().filter(|key| key.is_ok()).count(), 2, "of those that came together");
+    let refused = made.into_iter().find_map(Result::err).unwrap();
+    assert!(matches!(refused, StoreError::TooManyKeys { keys: 2, most: 2 }), "{refused}");
+    b.make_key(&wanted).await.unwrap();
+    let keys = a.keys(None, 9).await.unwrap();
+    assert!(a.rotate_key(&keys[0].id, 1).await.is_err(), "both would be in force");
+    let next = a.rotate_key(&keys[0].id, 0).await.unwrap().unwrap();
+    assert!(a.revoke_key(&next.id).await.unwrap());
+    a.make_key(&wanted).await.unwrap();
+    on.execute("UPDATE keys SET expires = 1").await;
+    a.make_key(&wanted).await.unwrap();
 }

@@ -1,10 +1,13 @@
 //! Cases: kept with their meshes in one request, checked before anything is solved, erased with all of it.
 
+use std::path::{Path, PathBuf};
+
 use reqwest::StatusCode;
 use reqwest::multipart::Part;
 use serde_json::json;
 
 use crate::helpers::{SMALL, Server, ask, spec};
+use crate::processes::until;
 
 #[tokio::test]
 async fn a_case_comes_with_its_meshes_or_refers_to_those_that_are_there() {
@@ -132,4 +135,40 @@ async fn erasing_a_case_takes_its_jobs_results_and_meshes_along() {
         folders.map(|folder| count(folder.unwrap().path())).sum::<usize>()
     };
     assert_eq!(files("blobs"), 1, "the mesh that was uploaded by itself stays");
+}
+
+/// The files below a folder that hold a text.
+fn holding(folder: &Path, text: &str) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    let holds = |path: PathBuf| match std::fs::read(&path) {
+        Ok(bytes) if bytes.windows(text.len()).any(|part| part == text.as_bytes()) => vec![path],
+        Ok(_) => Vec::new(),
+        Err(_) if path.is_dir() => holding(&path, text),
+        // It went meanwhile.
+        Err(_) => Vec::new(),
+    };
+    entries.flat_map(holds).collect()
+}
+
+#[tokio::test]
+async fn names_of_erased_cases_are_in_no_file_soon_after_and_none_when_the_service_has_ended() {
+    const NAME: &str = "Wilhelmine Mustermann";
+    let server = Server::start();
+    let named = async || {
+        let mut case = SMALL.case();
+        case["name"] = NAME.into();
+        let case = ask(server.post("/v1/cases").multipart(SMALL.form(&case))).await;
+        let case = case.expect(StatusCode::CREATED)["id"].as_str().unwrap().to_owned();
+        assert!(!holding(server.path(), NAME).is_empty());
+        let path = format!("/v1/cases/{case}");
+        let erase = server.delete(&path).header("if-match", "*");
+        assert_eq!(ask(erase).await.status, StatusCode::NO_CONTENT);
+    };
+    named().await;
+    until("the name is in no file", async || holding(server.path(), NAME).is_empty().then_some(()))
+        .await;
+    named().await;
+    let (folder, ended) = server.terminate();
+    assert!(ended);
+    assert_eq!(holding(folder.path(), NAME), [] as [PathBuf; 0]);
 }

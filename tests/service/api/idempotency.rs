@@ -84,3 +84,19 @@ async fn a_job_that_is_sent_again_with_its_key_is_no_duplicate() {
         assert_eq!(refused.problem(400, "invalid-parameter")["parameter"], "Idempotency-Key");
     }
 }
+
+#[tokio::test]
+async fn a_key_that_was_told_of_a_known_job_is_told_of_it_again_and_makes_no_other() {
+    let server = Server::start();
+    let case = server.case(&SMALL).await;
+    let job = server.job(&spec(&case, 1.0)).await.expect(StatusCode::OK);
+    for _ in 0..2 {
+        let told = post(&server, "/v1/jobs", "k", &spec(&case, 1.0)).await.expect(StatusCode::OK);
+        assert_eq!((&told["id"], &told["deduplicated"]), (&job["id"], &json!(true)));
+    }
+    let path = format!("/v1/jobs/{}", job["id"].as_str().unwrap());
+    assert_eq!(ask(server.delete(&path)).await.status, StatusCode::NO_CONTENT);
+    post(&server, "/v1/jobs", "k", &spec(&case, 1.0)).await.problem(410, "gone");
+    let jobs = ask(server.get("/v1/jobs")).await.expect(StatusCode::OK);
+    assert_eq!(jobs["items"], json!([]));
+}

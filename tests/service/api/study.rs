@@ -241,6 +241,28 @@ async fn cases_are_studied_against_the_skin_of_a_job_and_go_with_their_studies()
 }
 
 #[tokio::test]
+async fn a_study_goes_with_the_cases_of_what_it_is_held_against() {
+    let server = Server::start();
+    let (truth, scene) = (server.case(&SMALL).await, server.case(&SMALL).await);
+    let predicted = server.job(&spec(&truth, 2.0)).await.expect(StatusCode::OK);
+    let plan = json!({"segments": [{"name": "bone", "translation_mm": [2.0, 0.0, 0.0]}]});
+    let mut study = json!({
+        "kind": "study", "scenes": [{"case": scene, "name": "block"}], "plans": [plan],
+        "methods": ["fem_linear"], "elements": ["auto"], "repeats": 1, "truth": {"job": predicted["id"]},
+    });
+    let held_against_truth = done(&server, &study).await;
+    study["baseline"] = held_against_truth["id"].clone();
+    study["truth"] = json!({"refine": 1, "element": "mean_dilatation"});
+    let held_against_baseline = done(&server, &study).await;
+    let erase = server.delete(&format!("/v1/cases/{truth}")).header("if-match", "*");
+    assert_eq!(ask(erase).await.status, StatusCode::NO_CONTENT);
+    for job in [held_against_truth, held_against_baseline] {
+        let path = format!("/v1/jobs/{}", job["id"].as_str().unwrap());
+        ask(server.get(&path)).await.problem(410, "gone");
+    }
+}
+
+#[tokio::test]
 async fn a_study_counts_its_rows_and_stops_when_it_is_dismissed() {
     let server = Server::start_with(&["--workers", "1"]);
     let mut long = slab();

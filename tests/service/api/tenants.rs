@@ -20,7 +20,10 @@ impl Hospital {
     /// One that has been open before.
     pub fn open_in(folder: TempDir) -> Hospital {
         let settings = ["--ask-for-keys", "true", "--admin-bind", "127.0.0.1:0"];
-        let mut server = Server::start_in(folder, &settings);
+        Hospital::of(Server::start_in(folder, &settings))
+    }
+
+    fn of(mut server: Server) -> Hospital {
         let line = server.second_line();
         let office = line.strip_prefix("metrics on ").unwrap().trim_end_matches("/metrics");
         Hospital { office: office.to_owned(), server }
@@ -287,4 +290,20 @@ async fn administration_asks_for_its_key() {
     assert_eq!(told, json!([{"name": "a", "retention_days": 30}]));
     let set = server.client.put(format!("{tenants}/A%20b")).json(&json!({}));
     ask(set.bearer_auth(KEY)).await.problem(400, "invalid-parameter");
+}
+
+#[tokio::test]
+async fn keys_above_the_limit_are_refused_with_the_numbers() {
+    let folder = TempDir::new().unwrap();
+    let settings = ["--ask-for-keys", "true", "--admin-bind", "127.0.0.1:0", "--keys", "1"];
+    let hospital = Hospital::of(Server::start_in(folder, &settings));
+    let key = hospital.key("a", &ALL).await;
+    let limits = hospital.get(&key, "/v1/limits").await.expect(StatusCode::OK);
+    assert_eq!(limits["keys"], 1);
+    let wanted = json!({"label": "another", "scopes": ["read"]});
+    let by_admin = hospital.admin(Method::POST, "/tenants/a/keys").json(&wanted);
+    for refused in [hospital.post(&key, "/v1/keys", &wanted).await, ask(by_admin).await] {
+        let problem = refused.problem(409, "too-many-keys");
+        assert_eq!((&problem["keys"], &problem["limit"]), (&json!(1), &json!(1)));
+    }
 }

@@ -1,4 +1,5 @@
 //! Databases, descriptors and logs that fail for a while, and processes that are killed.
 
+mod failed_commits;
 mod outages;
 mod storage;

@@ -93,12 +93,12 @@ impl Slot {
     async fn watch(&self, id: &str, wanted: impl Fn(&JobRow) -> bool) -> JobRow {
         let mut changes = self.store.job_changes();
         loop {
-            changes.mark_unchanged();
+            changes.mark_seen();
             let job = job(&self.store, id).await;
             if wanted(&job) {
                 return job;
             }
-            changes.changed().await.unwrap();
+            changes.of(id).await.unwrap();
         }
     }
 

@@ -1,0 +1,48 @@
+//! Whether the store can be written: what readiness asks of it.
+
+use std::time::{Duration, Instant};
+
+use super::database::query;
+use super::{Store, StoreError};
+
+const CLOCK: &str = "SELECT now_ms FROM clock";
+/// A row that is gone again when it is committed, in a table that nothing refers to.
+const WRITE: &str = "INSERT INTO unfinished_blobs (id, place, begun) VALUES ($1, '', 0)";
+const TAKE_BACK: &str = "DELETE FROM unfinished_blobs WHERE id = $1";
+
+/// Whoever asks more often is told what was found then.
+const WRITTEN_EVERY: Duration = Duration::from_secs(1);
+
+impl Store {
+    /// Whether the database answers and takes a row. A commit that failed may leave a database that answers and does not.
+    pub async fn ping(&self) -> Result<(), StoreError> {
+        query(CLOCK).execute(self.database.reader()).await?;
+        let mut last = self.last_written.lock().await;
+        if last.is_some_and(|last| last.elapsed() < WRITTEN_EVERY) {
+            return Ok(());
+        }
+        *last = None;
+        let id = uuid::Uuid::now_v7().to_string();
+        let mut transaction = self.database.begin_unflushed().await?;
+        query(WRITE).bind(&id).execute(&mut transaction).await?;
+        query(TAKE_BACK).bind(&id).execute(&mut transaction).await?;
+        transaction.commit().await?;
+        *last = Some(Instant::now());
+        Ok(())
+    }
+
+    /// Whether the blobs can be reached and the data folder takes a file.
+    pub async fn try_write(&self) -> Result<(), StoreError> {
+        self.blobs.ping().await?;
+        let place = self.folder.join("tmp").join(uuid::Uuid::now_v7().to_string());
+        tokio::fs::write(&place, b"facies").await?;
+        tokio::fs::remove_file(&place).await?;
+        Ok(())
+    }
+
+    /// Bytes free for this user on the disk of the data folder.
+    pub fn free_space(&self) -> Result<u64, StoreError> {
+        let disk = rustix::fs::statvfs(&self.folder).map_err(std::io::Error::from)?;
+        Ok(disk.f_bavail.saturating_mul(disk.f_frsize))
+    }
+}
