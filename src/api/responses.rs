@@ -10,6 +10,7 @@ use serde::Deserialize;
 use utoipa::IntoParams;
 use utoipa_axum::routes;
 
+use super::download::Opened;
 use super::error::{ApiError, ApiResult};
 use super::guard::preferred;
 use super::parameters::{Id, Parameters, id as spelled};
@@ -103,8 +104,8 @@ async fn show(
     let response = if conditional::is_known(&headers, &row.blob) {
         conditional::not_modified(&row.blob)
     } else {
-        let bytes = service.store.read_blob(&row.blob).await?;
-        conditional::file(&headers, &bytes, (&row.media_type, &row.name), &row.blob)?
+        let file = Opened::blob(&service, &row.blob).await?;
+        conditional::file(&headers, file, (&row.media_type, &row.name), &row.blob)?
     };
     let response = with_header(response, header::VARY, "Accept");
     Ok(with_header(response, HeaderName::from_static("facies-job"), &found.job))

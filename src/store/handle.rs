@@ -3,6 +3,7 @@
 use super::blobs::Blobs;
 use super::database::{Address, Database, query};
 use super::error::StoreError;
+use super::open_deeds::OpenDeeds;
 use crate::config::{DatabasePlace, Places};
 use crate::store::database::schema::Migrated;
 use std::fs::File;
@@ -27,6 +28,7 @@ pub struct Store {
     pub(super) changes: watch::Sender<u64>,
     /// Counts those that this process made, to be told to the others.
     pub(super) own_changes: watch::Sender<u64>,
+    pub(super) open_deeds: OpenDeeds,
     pub(super) _lock: Arc<File>,
 }
 
@@ -48,6 +50,7 @@ impl Store {
             shared: matches!(places.database, DatabasePlace::Server { .. }),
             changes: watch::Sender::new(0),
             own_changes: watch::Sender::new(0),
+            open_deeds: OpenDeeds::default(),
             _lock: Arc::new(lock),
         };
         store.listen_to_others();

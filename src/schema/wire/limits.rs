@@ -58,6 +58,10 @@ pub struct Limits {
     pub requests_per_minute: u32,
     /// Streams of events that one client may have open.
     pub event_streams: u32,
+    /// Requests of one tenant that may wait for their turn at the parser, and as many for their turn at the check of jobs.
+    pub waiting_requests: u32,
+    /// Bytes of bodies that one client may have under way at the same time.
+    pub client_bodies_bytes: u64,
 }
 
 impl Default for Limits {
@@ -90,6 +94,8 @@ impl Default for Limits {
             study_rows: 2000,
             requests_per_minute: 60_000,
             event_streams: 8,
+            waiting_requests: 256,
+            client_bodies_bytes: 1 << 30,
         }
     }
 }

@@ -10,7 +10,7 @@ use crate::store::error::StoreError;
 
 /// The files of `migrations/`, in order. Their macro in sqlx would compile every engine a second time, for the
 /// compiler itself.
-const FILES: [(&str, &str); 10] = [
+const FILES: [(&str, &str); 11] = [
     ("first", include_str!("../../../migrations/0001_first.sql")),
     ("studies", include_str!("../../../migrations/0002_studies.sql")),
     ("blobs", include_str!("../../../migrations/0003_blobs.sql")),
@@ -21,6 +21,7 @@ const FILES: [(&str, &str); 10] = [
     ("unfinished blobs", include_str!("../../../migrations/0008_unfinished_blobs.sql")),
     ("error classes", include_str!("../../../migrations/0009_error_classes.sql")),
     ("made meshes", include_str!("../../../migrations/0010_made_meshes.sql")),
+    ("living deeds", include_str!("../../../migrations/0011_living_deeds.sql")),
 ];
 
 /// The steps as they are written, for SQLite.
