@@ -221,9 +221,14 @@ mod tests {
         let turns = Turns::new("test", 1, 2);
         let (go, wait) = std::sync::mpsc::channel::<()>();
         let turn = turns.turn("a").await.unwrap();
-        let work = turn.compute(move || wait.recv());
+        let (begin, begun) = std::sync::mpsc::channel::<()>();
+        let work = turn.compute(move || {
+            begin.send(()).unwrap();
+            wait.recv()
+        });
         let left = work.boxed().now_or_never();
         assert!(left.is_none(), "it computes");
+        begun.recv().unwrap();
         drop(turn);
         let next = asked(&turns, "a");
         go.send(()).unwrap();
