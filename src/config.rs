@@ -21,6 +21,8 @@ pub struct Config {
     pub admin_key: Option<Secret>,
     pub admin_listen: Option<SocketAddr>,
     pub allowed_origins: Vec<String>,
+    /// Names beside those of this machine by which a service that asks for no key may be called, in lower case.
+    pub allowed_hosts: Vec<String>,
     pub requests_per_minute: u32,
     pub event_streams: u32,
     /// Keys in force that a tenant may have.
@@ -33,6 +35,9 @@ pub struct Config {
     pub attempts: u32,
     pub grace: Duration,
     pub upload_bytes: usize,
+    pub waiting_requests: u32,
+    pub bodies_bytes: u64,
+    pub client_bodies_bytes: u64,
     pub body_idle: Duration,
     pub mesh_cache_bytes: usize,
     pub response_cache_bytes: usize,
@@ -72,7 +77,8 @@ impl Config {
             api_key: read.key("api-key")?,
             admin_key: read.key("admin-key")?,
             admin_listen: read.admin_listen()?,
-            allowed_origins: read.origins()?,
+            allowed_origins: read.list("allowed-origins", is_origin)?,
+            allowed_hosts: read.hosts()?,
             requests_per_minute: read.whole("requests-per-minute", 0..=10_000_000)? as u32,
             event_streams: read.whole("event-streams", 1..=10_000)? as u32,
             most_keys: read.whole("keys", 1..=100_000)? as u32,
@@ -84,6 +90,9 @@ impl Config {
             attempts: read.whole("attempts", 1..=10)? as u32,
             grace: read.seconds("grace-s", 0.0, 3600.0)?,
             upload_bytes: read.whole("upload-mib", 1..=4096)? * MIB,
+            waiting_requests: read.whole("waiting-requests", 1..=100_000)? as u32,
+            bodies_bytes: (read.whole("bodies-mib", 1..=MIB)? * MIB) as u64,
+            client_bodies_bytes: (read.whole("client-bodies-mib", 1..=MIB)? * MIB) as u64,
             body_idle: read.seconds("body-idle-s", 0.1, 600.0)?,
             mesh_cache_bytes: read.whole("mesh-cache-mib", 0..=MIB)? * MIB,
             response_cache_bytes: read.whole("response-cache-mib", 0..=MIB)? * MIB,
@@ -193,14 +202,24 @@ impl<Text: Fn(&str) -> String> Reader<Text> {
         }
     }
 
-    fn origins(&self) -> Result<Vec<String>, ConfigError> {
-        let value = (self.text)("allowed-origins");
-        let origins = value.split(',').map(str::trim).filter(|origin| !origin.is_empty());
-        let origins: Vec<String> = origins.map(str::to_owned).collect();
-        match origins.iter().all(|origin| is_origin(origin)) {
-            true => Ok(origins),
-            false => Err(out_of_range("allowed-origins", value)),
+    /// Words with commas between them.
+    fn list(
+        &self,
+        name: &'static str,
+        is_word: fn(&str) -> bool,
+    ) -> Result<Vec<String>, ConfigError> {
+        let value = (self.text)(name);
+        let words = value.split(',').map(str::trim).filter(|word| !word.is_empty());
+        let words: Vec<String> = words.map(str::to_owned).collect();
+        match words.iter().all(|word| is_word(word)) {
+            true => Ok(words),
+            false => Err(out_of_range(name, value)),
         }
+    }
+
+    fn hosts(&self) -> Result<Vec<String>, ConfigError> {
+        let hosts = self.list("allowed-hosts", is_host)?;
+        Ok(hosts.iter().map(|host| host.to_ascii_lowercase()).collect())
     }
 
     fn json_log(&self) -> Result<bool, ConfigError> {
@@ -218,6 +237,12 @@ fn is_origin(text: &str) -> bool {
     let host = text.strip_prefix("https://").or_else(|| text.strip_prefix("http://"));
     let plain = |byte: u8| byte.is_ascii_alphanumeric() || b".-:[]".contains(&byte);
     host.is_some_and(|host| !host.is_empty() && host.bytes().all(plain))
+}
+
+/// A name or an address, without a port; no wildcard, which would let in every name that resolves to this machine.
+fn is_host(text: &str) -> bool {
+    let plain = |byte: u8| byte.is_ascii_alphanumeric() || b".-".contains(&byte);
+    text.bytes().all(plain)
 }
 
 fn out_of_range(name: &'static str, value: String) -> ConfigError {
@@ -266,6 +291,8 @@ mod tests {
             ("admin-bind", "9090"),
             ("allowed-origins", "*"),
             ("allowed-origins", "https://a.example/path"),
+            ("allowed-hosts", "*.example"),
+            ("allowed-hosts", "planning:8080"),
             ("event-streams", "0"),
             ("data", ""),
             ("database", "mysql://x"),

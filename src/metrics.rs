@@ -20,6 +20,7 @@ const ITERATIONS: &str = "facies_solver_iterations";
 const SLOTS_ENDED: &str = "facies_slot_processes_ended_total";
 const JOB_MEMORY: &str = "facies_job_peak_bytes";
 const SPANS_LOST: &str = "facies_spans_lost_total";
+const RESIDENT: &str = "process_resident_memory_bytes";
 const LINES_DROPPED: &str = "facies_log_lines_dropped_total";
 
 const SECONDS: [f64; 12] =
@@ -64,6 +65,11 @@ fn describe() {
     describe_counter!(SLOTS_ENDED, "processes of slots that were ended or died, by cause");
     describe_histogram!(JOB_MEMORY, Unit::Bytes, "most memory of the process of a job");
     describe_counter!(SPANS_LOST, "spans of traces that did not reach their collector, by cause");
+    describe_gauge!(
+        RESIDENT,
+        Unit::Bytes,
+        "memory of this process that is in use, without its slots"
+    );
     describe_counter!(LINES_DROPPED, "lines of the log that nobody read in time");
 }
 
@@ -131,6 +137,11 @@ pub fn job_memory(peak_bytes: u64) {
 /// Spans found the queue full, or did not reach the collector.
 pub fn spans_lost(cause: &'static str, spans: u64) {
     counter!(SPANS_LOST, "cause" => cause).increment(spans);
+}
+
+/// What this process takes.
+pub fn process_memory(bytes: u64) {
+    gauge!(RESIDENT).set(bytes as f64);
 }
 
 /// A line of the log found no room.

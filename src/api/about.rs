@@ -1,14 +1,19 @@
-//! What the service is: its limits, its methods, its description.
+//! What the service is: where to begin, its limits, its methods, its description.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use axum::Extension;
-use axum::http::StatusCode;
-use axum::response::Response;
+use axum::http::{HeaderMap, StatusCode, header};
+use axum::response::{Html, IntoResponse, Response};
+use serde::Serialize;
+use utoipa::ToSchema;
 use utoipa_axum::routes;
 
+use super::error::ApiResult;
+use super::guard::preferred;
 use super::resources::Resources;
-use super::{Service, json};
+use super::{Service, json, with_header};
 use crate::schema::Limits;
 use crate::schema::key::Scope;
 use crate::schema::methods::{MethodList, available_methods};
@@ -19,7 +24,56 @@ pub struct Description(pub Arc<serde_json::Value>);
 
 pub fn router() -> Resources {
     let router = Resources::new().looks(Scope::Read, routes!(limits));
-    router.looks(Scope::Read, routes!(methods)).open(routes!(description)).json_only()
+    let router = router.looks(Scope::Read, routes!(methods)).open(routes!(description));
+    router.open(routes!(versions)).json_only().open(routes!(entrance))
+}
+
+/// Where a client finds what.
+#[derive(Serialize, ToSchema)]
+struct Entrance {
+    /// `facies`.
+    name: &'static str,
+    version: &'static str,
+    /// Not a medical device.
+    notice: &'static str,
+    /// Addresses by what they hold, on this service.
+    links: BTreeMap<&'static str, &'static str>,
+}
+
+const LINKS: [(&str, &str); 9] = [
+    ("cases", "/v1/cases"),
+    ("description", "/openapi.json"),
+    ("documentation", "/docs/"),
+    ("health", "/healthz"),
+    ("jobs", "/v1/jobs"),
+    ("limits", "/v1/limits"),
+    ("meshes", "/v1/meshes"),
+    ("methods", "/v1/methods"),
+    ("readiness", "/readyz"),
+];
+
+fn first_answer() -> Response {
+    let notice =
+        "Predicts how a face will look after the bones under it are moved. Not a medical device.";
+    let version = env!("CARGO_PKG_VERSION");
+    json(StatusCode::OK, &Entrance { name: "facies", version, notice, links: LINKS.into() })
+}
+
+/// Where to begin: a page for people, the addresses of everything else for programs.
+#[utoipa::path(get, path = "/", operation_id = "show_entrance", tag = "about", responses((status = 200, description = "where to find what", content(
+    (Entrance = "application/json"), (String = "text/html")))))]
+async fn entrance(headers: HeaderMap) -> ApiResult {
+    if preferred(&headers, &["application/json", "text/html"])? == 0 {
+        return Ok(with_header(first_answer(), header::VARY, "Accept"));
+    }
+    let page = include_str!("entrance.html").replace("{version}", env!("CARGO_PKG_VERSION"));
+    Ok(with_header(Html(page).into_response(), header::VARY, "Accept"))
+}
+
+/// The version of the interface that there is, and the addresses in it.
+#[utoipa::path(get, path = "/v1", operation_id = "show_version", tag = "about", responses((status = 200, description = "where to find what", body = Entrance)))]
+async fn versions() -> Response {
+    first_answer()
 }
 
 /// Every bound that is enforced.

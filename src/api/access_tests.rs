@@ -17,6 +17,7 @@ use crate::store::Store;
 
 /// Every route: its scope, and whether it is noted in the audit log.
 const SERVICE: &str = "
+    GET     /                                   open
     GET     /docs                               open
     GET     /docs/                              open
     GET     /docs/{*rest}                       open
@@ -24,6 +25,7 @@ const SERVICE: &str = "
     GET     /healthz                            open
     GET     /openapi.json                       open
     GET     /readyz                             open
+    GET     /v1                                 open
     GET     /v1/audit                           admin  -
     GET     /v1/cases                           read   -
     POST    /v1/cases                           write  noted

@@ -3,6 +3,7 @@
 
 use std::net::SocketAddr;
 use std::sync::Arc;
+use std::time::Duration;
 
 use axum::extract::{MatchedPath, Path, Query, Request, State};
 use axum::handler::Handler;
@@ -20,15 +21,17 @@ use super::caller::{bearer, unauthorized};
 use super::deeds::{carry_out, deed_of_admin};
 use super::error::{ApiError, ApiResult};
 use super::guard::named;
+use super::hosts::Hosts;
 use super::paging::PageParameters;
 use super::parameters::Parameters;
-use super::{json, keys, time};
-use crate::config::Secret;
+use super::{body, connections, json, keys, time};
+use crate::config::{Config, Secret};
 use crate::metrics;
 use crate::schema::key::{
     KeyDocument, RETENTION_DAYS, RotationDocument, Scope, TENANT_NAMES, is_key_id, is_tenant,
 };
 use crate::store::{Chain, LostRow, Store, TenantRow};
+use crate::worker::process::memory::usage;
 
 const PROMETHEUS: &str = "text/plain; version=0.0.4; charset=utf-8";
 
@@ -39,22 +42,29 @@ struct Office {
     /// Who is let in to more than metrics.
     key: Option<Arc<Secret>>,
     is_loopback: bool,
+    /// Who is believed, where there is no key and everything is answered on loopback.
+    hosts: Option<Arc<Hosts>>,
+    /// How long a client may stand still.
+    patience: Duration,
 }
 
 /// Listens on an address and answers until the process ends; the address with its port.
 pub async fn listen(
     address: SocketAddr,
-    key: Option<Secret>,
+    config: &Config,
     store: Store,
 ) -> std::io::Result<SocketAddr> {
     let listener = TcpListener::bind(address).await?;
     let address = listener.local_addr()?;
-    let office = Office { store, key: key.map(Arc::new), is_loopback: address.ip().is_loopback() };
-    tokio::spawn(async move {
-        if let Err(error) = axum::serve(listener, router(office)).await {
-            tracing::error!(%error, "the admin listener ended");
-        }
-    });
+    let key = config.admin_key.clone().map(Arc::new);
+    let is_loopback = address.ip().is_loopback();
+    let hosts =
+        (key.is_none() && is_loopback).then(|| Arc::new(Hosts::new(&config.allowed_hosts, &[])));
+    let patience = config.body_idle;
+    let office = Office { store, key, is_loopback, hosts, patience };
+    // It answers for as long as the process lives.
+    let never = std::future::pending();
+    tokio::spawn(connections::serve(listener, router(office), patience, never));
     tracing::info!(%address, "the admin listener answers");
     Ok(address)
 }
@@ -136,9 +146,12 @@ struct Door {
 /// Lets in who has the key, or who is on this machine where there is none; notes what was changed.
 async fn guard(State(door): State<Door>, request: Request, next: Next) -> Response {
     let id = uuid::Uuid::now_v7().to_string();
+    if let Some(Err(error)) = door.office.hosts.as_ref().map(|hosts| hosts.check(&request)) {
+        return named(error.into_response(), &id);
+    }
     let route = request.extensions().get::<MatchedPath>().map(MatchedPath::as_str);
     let audit = match door.declared.find(route, request.method()) {
-        Ok(Found { access: Access::Open, .. }) => return next.run(request).await,
+        Ok(Found { access: Access::Open, .. }) => return named(next.run(request).await, &id),
         Ok(Found { access: Access::Key { audit, .. }, .. }) => audit,
         Err(error) => return named(error.into_response(), &id),
     };
@@ -148,6 +161,7 @@ async fn guard(State(door): State<Door>, request: Request, next: Next) -> Respon
             unauthorized("administration needs the admin-key, as `Authorization: Bearer KEY`");
         return named(error.into_response(), &id);
     }
+    let request = request.map(|body| body::moving(body, office.patience));
     let deed = (audit == Audit::Noted).then(|| deed_of_admin(&request, &id)).flatten();
     if request.method() == Method::DELETE {
         office.store.make_room();
@@ -165,6 +179,9 @@ async fn counted(State(office): State<Office>) -> Response {
     match office.store.queue().await {
         Ok(queue) => metrics::queue(queue.waiting, queue.running, queue.oldest_ms),
         Err(error) => tracing::warn!(%error, "the queue was not counted"),
+    }
+    if let Some(usage) = usage("self") {
+        metrics::process_memory(usage.now_bytes);
     }
     ([(header::CONTENT_TYPE, PROMETHEUS)], metrics::render()).into_response()
 }

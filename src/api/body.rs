@@ -3,22 +3,22 @@
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
+use axum::BoxError;
 use axum::body::{Body, BodyDataStream};
 use axum::extract::{FromRequest, Multipart, Request};
 use axum::http::{HeaderMap, HeaderValue, header};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
-use bytes::{Bytes, BytesMut};
+use bytes::Bytes;
 use futures::{Stream, StreamExt};
-use sha2::{Digest, Sha256};
 
 use super::Service;
+use super::budget::Held;
 use super::error::{ApiError, ApiResult};
+use super::pace::Pace;
+use super::spool::{IN_MEMORY, Received, Spool};
 use crate::schema::ErrorCode;
 use crate::schema::wire::problem::Problem;
-
-/// Bytes a second below which a body is too slow, once it has taken longer than it may stand still.
-const LEAST_RATE: f64 = 16.0 * 1024.0;
 
 /// How much may come and how slowly.
 #[derive(Clone, Copy)]
@@ -87,73 +87,91 @@ pub async fn json(service: &Service, request: Request) -> ApiResult<Bytes> {
         return Err(unsupported(&kind, JSON));
     }
     let most = usize::try_from(service.limits.json_bytes).unwrap_or(usize::MAX);
-    whole(service, request, most).await
+    whole(service, request, most).await?.into_bytes().await
+}
+
+/// The document in a part of a form, as long as that of a body may be.
+pub async fn document(service: &Service, part: Received) -> ApiResult<Bytes> {
+    match usize::try_from(service.limits.json_bytes) {
+        Ok(most) if part.bytes > most as u64 => Err(too_large(most)),
+        _ => part.into_bytes().await,
+    }
 }
 
 /// The whole body of an upload, equal to its Content-Digest if it has one.
-pub async fn upload(service: &Service, request: Request) -> ApiResult<Bytes> {
+pub async fn upload(service: &Service, request: Request) -> ApiResult<Received> {
     let digest = content_digest(request.headers())?;
-    let bytes = whole(service, request, service.config.upload_bytes).await?;
-    let Some(digest) = digest else {
-        return Ok(bytes);
-    };
-    let (bytes, found) = tokio::task::spawn_blocking(move || {
-        let found = Sha256::digest(&bytes);
-        (bytes, found)
-    })
-    .await
-    .map_err(ApiError::internal)?;
-    if found.as_slice() == digest {
-        return Ok(bytes);
+    let received = whole(service, request, service.config.upload_bytes).await?;
+    if digest.is_none_or(|digest| digest == received.sha256) {
+        return Ok(received);
     }
-    let found = format!("sha-256=:{}:", STANDARD.encode(found));
-    let detail = format!("{} bytes came, and their digest is {found}", bytes.len());
+    let found = format!("sha-256=:{}:", STANDARD.encode(received.sha256));
+    let detail = format!("{} bytes came, and their digest is {found}", received.bytes);
     Err(Problem::new(ErrorCode::DigestMismatch, detail).with("digest", found).into())
 }
 
-async fn whole(service: &Service, request: Request, most: usize) -> ApiResult<Bytes> {
-    check_encoding(request.headers())?;
+async fn whole(service: &Service, request: Request, most: usize) -> ApiResult<Received> {
+    let held = begun(service, request.headers(), most)?;
     let bounds = Bounds { bytes: most, idle: service.config.body_idle };
-    check_length(request.headers(), bounds.bytes)?;
-    let mut frames = std::pin::pin!(bounded(request.into_body(), bounds));
-    let mut bytes = BytesMut::new();
+    let mut spool = Spool::new(service.ground(), held.clone());
+    let mut frames = std::pin::pin!(bounded(request.into_body(), bounds, held));
     while let Some(frame) = frames.next().await {
-        bytes.extend_from_slice(&frame?);
+        spool.push(&frame?).await?;
     }
-    Ok(bytes.freeze())
+    spool.finish().await
+}
+
+/// Checks what a request says of its body, and holds as many bytes as it announces.
+fn begun(service: &Service, headers: &HeaderMap, most: usize) -> ApiResult<Arc<Held>> {
+    check_encoding(headers)?;
+    let announced = announced(headers).unwrap_or(0);
+    if announced > most as u64 {
+        return Err(too_large(most));
+    }
+    let held = Arc::new(service.hold());
+    held.at_least(announced)?;
+    if announced > IN_MEMORY as u64 {
+        service.ground().require(announced)?;
+    }
+    Ok(held)
 }
 
 /// The parts of a multipart body by their names, all of them within the bounds of one upload.
-pub async fn parts(service: &Service, request: Request) -> ApiResult<Vec<(String, Bytes)>> {
-    check_encoding(request.headers())?;
-    let bounds = Bounds { bytes: service.config.upload_bytes, idle: service.config.body_idle };
-    check_length(request.headers(), bounds.bytes)?;
+pub async fn parts(service: &Service, request: Request) -> ApiResult<Vec<(String, Received)>> {
+    let most = service.config.upload_bytes;
+    let held = begun(service, request.headers(), most)?;
+    let bounds = Bounds { bytes: most, idle: service.config.body_idle };
     // The multipart reader wraps what it meets, so the reason for the end of the stream is kept beside it.
     let reason: Arc<Mutex<Option<ApiError>>> = Arc::default();
     let kept = reason.clone();
     let (head, body) = request.into_parts();
-    let frames = bounded(body, bounds).map(move |frame| {
+    let frames = bounded(body, bounds, held.clone()).map(move |frame| {
         frame.map_err(|error| {
             *kept.lock().unwrap_or_else(PoisonError::into_inner) = Some(error);
             std::io::Error::other("the body ended early")
         })
     });
     let request = Request::from_parts(head, Body::from_stream(frames));
-    let found = read_parts(request, service.limits.multipart_parts as usize).await;
+    let found = read_parts(request, service, held).await;
     match reason.lock().unwrap_or_else(PoisonError::into_inner).take() {
         Some(error) => Err(error),
         None => found,
     }
 }
 
-async fn read_parts(request: Request, most: usize) -> ApiResult<Vec<(String, Bytes)>> {
+async fn read_parts(
+    request: Request,
+    service: &Service,
+    held: Arc<Held>,
+) -> ApiResult<Vec<(String, Received)>> {
+    let most = service.limits.multipart_parts as usize;
     let malformed = |detail: String| ApiError::new(ErrorCode::MalformedMultipart, detail);
     let mut multipart = Multipart::from_request(request, &())
         .await
         .map_err(|error| malformed(error.body_text()))?;
-    let mut parts: Vec<(String, Bytes)> = Vec::new();
+    let mut parts: Vec<(String, Received)> = Vec::new();
     let mut unread = 0;
-    while let Some(part) =
+    while let Some(mut part) =
         multipart.next_field().await.map_err(|error| malformed(error.body_text()))?
     {
         if parts.len() == most {
@@ -167,8 +185,11 @@ async fn read_parts(request: Request, most: usize) -> ApiResult<Vec<(String, Byt
         if parts.iter().any(|(other, _)| *other == name) {
             return Err(malformed(format!("part {} has the name of another", parts.len() + 1)));
         }
-        let bytes = part.bytes().await.map_err(|error| malformed(error.body_text()))?;
-        parts.push((name, bytes));
+        let mut spool = Spool::new(service.ground(), held.clone());
+        while let Some(frame) = part.chunk().await.map_err(|error| malformed(error.body_text()))? {
+            spool.push(&frame).await?;
+        }
+        parts.push((name, spool.finish().await?));
     }
     if unread == 0 {
         return Ok(parts);
@@ -192,15 +213,9 @@ fn check_encoding(headers: &HeaderMap) -> ApiResult<()> {
     }
 }
 
-fn check_length(headers: &HeaderMap, most: usize) -> ApiResult<()> {
-    let declared = headers
-        .get(header::CONTENT_LENGTH)
-        .and_then(|value| value.to_str().ok())
-        .and_then(|value| value.parse::<u64>().ok());
-    match declared {
-        Some(declared) if declared > most as u64 => Err(too_large(most)),
-        _ => Ok(()),
-    }
+/// The length that a request says its body has.
+fn announced(headers: &HeaderMap) -> Option<u64> {
+    headers.get(header::CONTENT_LENGTH)?.to_str().ok()?.parse().ok()
 }
 
 fn too_large(most: usize) -> ApiError {
@@ -208,37 +223,73 @@ fn too_large(most: usize) -> ApiError {
     Problem::new(ErrorCode::PayloadTooLarge, detail).with("limit", most).into()
 }
 
-/// The frames of a body until it is too large or too slow.
-fn bounded(body: Body, bounds: Bounds) -> impl Stream<Item = ApiResult<Bytes>> {
-    let started = Instant::now();
-    let state = (body.into_data_stream(), 0usize, false);
-    futures::stream::unfold(state, move |(mut frames, before, ended)| async move {
-        if ended {
-            return None;
+/// The frames of a body until it is too large or too slow, or its client has too much under way.
+fn bounded(body: Body, bounds: Bounds, held: Arc<Held>) -> impl Stream<Item = ApiResult<Bytes>> {
+    let incoming = Incoming {
+        frames: body.into_data_stream(),
+        bounds,
+        held,
+        pace: Pace::new(bounds.idle),
+        count: 0,
+    };
+    futures::stream::unfold(Some(incoming), |incoming| async move {
+        let mut incoming = incoming?;
+        match incoming.next().await {
+            Ok(Some(frame)) => Some((Ok(frame), Some(incoming))),
+            Ok(None) => None,
+            Err(error) => Some((Err(error), None)),
         }
-        let frame = match tokio::time::timeout(bounds.idle, frames.next()).await {
-            Err(_) => Err(too_slow(before)),
-            Ok(None) => return None,
-            Ok(Some(Err(_))) => Err(ApiError::new(
-                ErrorCode::MalformedRequest,
-                format!("the body broke off after {before} bytes"),
-            )),
-            Ok(Some(Ok(frame))) => Ok(frame),
-        };
-        let count = before + frame.as_ref().map_or(0, Bytes::len);
-        let frame = frame.and_then(|frame| {
-            let elapsed = started.elapsed();
-            if count > bounds.bytes {
-                Err(too_large(bounds.bytes))
-            } else if elapsed > bounds.idle && (count as f64) < LEAST_RATE * elapsed.as_secs_f64() {
-                Err(too_slow(count))
-            } else {
-                Ok(frame)
-            }
-        });
-        let ended = frame.is_err();
-        Some((frame, (frames, count, ended)))
     })
+}
+
+/// A body on its way in.
+struct Incoming {
+    frames: BodyDataStream,
+    bounds: Bounds,
+    held: Arc<Held>,
+    pace: Pace,
+    count: usize,
+}
+
+impl Incoming {
+    async fn next(&mut self) -> ApiResult<Option<Bytes>> {
+        let asked = Instant::now();
+        let next = tokio::time::timeout(self.bounds.idle, self.frames.next()).await;
+        let frame = match next {
+            Err(_) => return Err(too_slow(self.count)),
+            Ok(None) => return Ok(None),
+            Ok(Some(Err(_))) => return Err(broken_off(self.count)),
+            Ok(Some(Ok(frame))) => frame,
+        };
+        self.count += frame.len();
+        if self.count > self.bounds.bytes {
+            return Err(too_large(self.bounds.bytes));
+        }
+        self.held.at_least(self.count as u64)?;
+        // What is done with a frame does not count as time of the client's.
+        match self.pace.keeps(frame.len(), asked.elapsed()) {
+            true => Ok(Some(frame)),
+            false => Err(too_slow(self.count)),
+        }
+    }
+}
+
+fn broken_off(count: usize) -> ApiError {
+    let detail = format!("the body broke off after {count} bytes");
+    ApiError::new(ErrorCode::MalformedRequest, detail)
+}
+
+/// The body of a request of those who run the service, which may stand still for so long and no longer.
+pub fn moving(body: Body, idle: Duration) -> Body {
+    let frames = body.into_data_stream();
+    let frames = futures::stream::unfold(Some(frames), move |frames| async move {
+        let mut frames = frames?;
+        match tokio::time::timeout(idle, frames.next()).await {
+            Ok(frame) => frame.map(|frame| (frame.map_err(BoxError::from), Some(frames))),
+            Err(late) => Some((Err(BoxError::from(late)), None)),
+        }
+    });
+    Body::from_stream(frames)
 }
 
 fn too_slow(count: usize) -> ApiError {

@@ -68,7 +68,7 @@ impl FromRequestParts<Service> for Service {
             return Ok(service.clone());
         }
         let caller = Caller::from_request_parts(parts, service).await?;
-        Ok(service.of_tenant(&caller.tenant))
+        Ok(service.in_hand_of(&caller.tenant, caller.client(&parts.extensions)))
     }
 }
 

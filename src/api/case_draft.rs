@@ -2,12 +2,13 @@
 
 use std::collections::BTreeMap;
 
-use bytes::Bytes;
 use tokio::runtime::Handle;
 
 use super::error::{ApiError, ApiResult};
 use super::idempotency::NewId;
 use super::meshes::{TakenIn, take_in};
+use super::spool::Received;
+use super::turns::Turn;
 use super::{Service, job_input};
 use crate::jobs::{CheckReport, PredictInput, StoredMesh};
 use crate::library::upload::{Statement, Upload};
@@ -19,10 +20,10 @@ use crate::store::NewCase;
 const CASE_PART: &str = "case";
 
 /// The parts of a form by their names.
-pub(super) type Parts = Vec<(String, Bytes)>;
+pub(super) type Parts = Vec<(String, Received)>;
 
 /// The document and the meshes of a form.
-pub(super) fn split(mut parts: Parts) -> ApiResult<(Bytes, Parts)> {
+pub(super) fn split(mut parts: Parts) -> ApiResult<(Received, Parts)> {
     let at = parts.iter().position(|(name, _)| name == CASE_PART);
     let at = at.ok_or_else(|| {
         ApiError::new(ErrorCode::MalformedMultipart, "the form has no part `case`")
@@ -38,9 +39,10 @@ pub(super) struct Draft {
 }
 
 impl Draft {
-    /// Reads the meshes and puts their ids where the document names their parts.
+    /// Reads the meshes, in the turn of their request, and puts their ids where the document names their parts.
     pub async fn read(
         service: &Service,
+        turn: &Turn,
         mut document: CaseDocument,
         parts: Parts,
         allow_any_scale: Option<bool>,
@@ -53,8 +55,8 @@ impl Draft {
         };
         let mut ids: BTreeMap<String, String> = BTreeMap::new();
         let mut uploads: Vec<Upload> = Vec::new();
-        for (name, bytes) in parts {
-            let taken = take_in(service, bytes, &statement, false).await;
+        for (name, body) in parts {
+            let taken = take_in(service, turn, body, &statement, false).await;
             let id = match taken.map_err(|error| in_part(error, &name))? {
                 TakenIn::Known(row) => row.id,
                 TakenIn::New(upload) => {
@@ -160,6 +162,7 @@ pub(super) async fn checked(
 ) -> ApiResult<CheckReport> {
     let sources = service.library.source(Handle::current(), extra);
     let limits: Limits = (*service.limits).clone();
-    let report = service.compute(move || crate::jobs::check(&input, &sources, &limits)).await?;
+    let turn = service.check_turn().await?;
+    let report = turn.compute(move || crate::jobs::check(&input, &sources, &limits)).await?;
     report.map_err(job_input::refusal)
 }

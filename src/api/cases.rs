@@ -125,20 +125,25 @@ async fn create(
     let headers = request.headers().clone();
     let (text, parts) = match kind.as_str() {
         JSON => (body::json(&service, request).await?, Vec::new()),
-        MULTIPART => split(body::parts(&service, request).await?)?,
+        MULTIPART => {
+            let (document, parts) = split(body::parts(&service, request).await?)?;
+            (body::document(&service, document).await?, parts)
+        }
         _ => return Err(body::unsupported(&kind, READ_HERE)),
     };
     let document: CaseDocument = strict::parse(&text, &service.limits)?;
     let content: Vec<&[u8]> = parts
         .iter()
-        .flat_map(|(name, bytes)| [name.as_bytes(), bytes])
+        .flat_map(|(name, part)| [name.as_bytes(), &part.sha256])
         .chain([&text[..]])
         .collect();
     let new = new_id(&service, &headers, "/v1/cases", &content).await?;
     if new.is_known && service.store.case(&new.id).await?.is_some() {
         return created(&service, &new.id).await;
     }
-    let draft = Draft::read(&service, document, parts, parameters.allow_any_scale).await?;
+    // Its meshes are in memory until the case is stored.
+    let turn = service.parse_turn().await?;
+    let draft = Draft::read(&service, &turn, document, parts, parameters.allow_any_scale).await?;
     let check = draft.check(&service).await?;
     draft.store(&service, &new, check.as_ref()).await?;
     created(&service, &new.id).await
@@ -266,8 +271,13 @@ async fn check(service: Service, Id(id): Id, request: Request) -> ApiResult {
     if wants_counts {
         return Ok(json(StatusCode::OK, &report.document));
     }
-    let picture = service.compute(move || report.picture()).await?.map_err(job_input::refusal)?;
-    let headers = [(header::CONTENT_TYPE, SVG), (header::CACHE_CONTROL, "private, no-store")];
+    let turn = service.check_turn().await?;
+    let picture = turn.compute(move || report.picture()).await?.map_err(job_input::refusal)?;
+    let headers = [
+        (header::CONTENT_TYPE, SVG),
+        (header::CACHE_CONTROL, "private, no-store"),
+        (header::CONTENT_DISPOSITION, "attachment; filename=\"check.svg\""),
+    ];
     Ok((headers, picture).into_response())
 }
 

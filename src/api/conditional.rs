@@ -2,8 +2,8 @@
 
 use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
-use bytes::Bytes;
 
+use super::download::Opened;
 use super::error::{ApiError, ApiResult};
 use crate::schema::ErrorCode;
 use crate::schema::wire::problem::Problem;
@@ -78,28 +78,25 @@ pub async fn document(headers: &HeaderMap, response: Response) -> ApiResult {
 /// An immutable file with all that goes with it: tag, 304, one range.
 pub fn file(
     headers: &HeaderMap,
-    bytes: &Bytes,
+    file: Opened,
     (media_type, name): (&str, &str),
     tag: &str,
 ) -> ApiResult {
     if is_known(headers, tag) {
         return Ok(not_modified(tag));
     }
+    let total = file.bytes;
     let range = match wanted_range(headers, tag) {
-        Some(text) => single_range(&text, bytes.len() as u64)?,
+        Some(text) => single_range(&text, total)?,
         None => None,
     };
-    let total = bytes.len();
-    let mut response = match range {
-        Some((first, last)) => {
-            let part = bytes.slice(first as usize..=last as usize);
-            let mut response = (StatusCode::PARTIAL_CONTENT, part).into_response();
-            let content_range = format!("bytes {first}-{last}/{total}");
-            set(&mut response, header::CONTENT_RANGE, &content_range);
-            response
-        }
-        None => bytes.clone().into_response(),
-    };
+    let (first, count) = range.map_or((0, total), |(first, last)| (first, last - first + 1));
+    let mut response = file.into_body(first, count)?.into_response();
+    if let Some((first, last)) = range {
+        *response.status_mut() = StatusCode::PARTIAL_CONTENT;
+        set(&mut response, header::CONTENT_RANGE, &format!("bytes {first}-{last}/{total}"));
+    }
+    set(&mut response, header::CONTENT_LENGTH, &count.to_string());
     set(&mut response, header::CONTENT_TYPE, media_type);
     let disposition = format!("attachment; filename=\"{name}\"");
     set(&mut response, header::CONTENT_DISPOSITION, &disposition);

@@ -5,6 +5,7 @@ use std::net::SocketAddr;
 use std::pin::pin;
 use std::time::Duration;
 
+use super::pace::Paced;
 use axum::Router;
 use axum::body::Body;
 use axum::extract::Request;
@@ -35,6 +36,7 @@ pub async fn serve(
             () = &mut stop => break,
         };
         prepare(&stream, patience);
+        let stream = Paced::new(stream, patience);
         let Ok(answer) = answers.call(client).await;
         let answer = answer.map_request(|request: Request<_>| request.map(Body::new));
         let connection =
@@ -50,6 +52,10 @@ pub async fn serve(
     open.shutdown().await;
 }
 
+/// Bytes of an answer that the system keeps for a client: few, so that what a client takes shows soon.
+#[cfg(target_os = "linux")]
+const SENT_AHEAD: usize = 256 << 10;
+
 /// The last piece of an answer is not held back until the client has confirmed the ones before it, and what a client does
 /// not take is not offered for ever. Elsewhere than on Linux it is.
 fn prepare(stream: &TcpStream, patience: Duration) {
@@ -61,6 +67,9 @@ fn prepare(stream: &TcpStream, patience: Duration) {
         let milliseconds = u32::try_from(patience.as_millis()).unwrap_or(u32::MAX);
         if let Err(error) = rustix::net::sockopt::set_tcp_user_timeout(stream, milliseconds) {
             tracing::debug!(%error, "TCP_USER_TIMEOUT");
+        }
+        if let Err(error) = rustix::net::sockopt::set_socket_send_buffer_size(stream, SENT_AHEAD) {
+            tracing::debug!(%error, "SO_SNDBUF");
         }
     }
 }

@@ -52,7 +52,7 @@ pub async fn carry_out(
         let object = made(&response).unwrap_or(&deed.object);
         let outcome = response.status().as_u16().to_string();
         if let Err(error) = store.end_deed(begun, object, &outcome).await {
-            tracing::error!(%error, "the audit log is not told how a request ended");
+            tracing::error!(%error, "the audit log is told later how a request ended");
         }
         response
     };

@@ -47,6 +47,10 @@ impl ApiError {
         ApiError::new(ErrorCode::NotReady, "the database or the store of blobs is out of reach")
     }
 
+    pub fn storage_full() -> Self {
+        ApiError::new(ErrorCode::StorageFull, "the disk of the service is full")
+    }
+
     /// An error of ours, told in the log only.
     pub fn internal(reason: impl std::fmt::Display) -> Self {
         tracing::error!(%reason, "internal error");
@@ -64,7 +68,7 @@ impl From<StoreError> for ApiError {
     fn from(error: StoreError) -> Self {
         if error.is_full() {
             tracing::error!(%error, "storage is full");
-            return ApiError::new(ErrorCode::StorageFull, "the disk of the service is full");
+            return ApiError::storage_full();
         }
         if error.is_unavailable() {
             tracing::warn!(%error, "storage is busy");

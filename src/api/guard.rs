@@ -13,6 +13,7 @@ use super::access::{Access, Audit, Declared, Found};
 use super::caller::{self, Caller};
 use super::deeds::{carry_out, deed_of};
 use super::error::{ApiError, ApiResult, with_problem_body};
+use super::headers::guarded;
 use super::rate::Left;
 use super::{Service, body};
 use crate::metrics::http;
@@ -55,7 +56,8 @@ pub async fn surround(State(door): State<Door>, request: Request, next: Next) ->
             Ok(Admitted::Known(entry)) => entry.pass(&door.service, request, next, &id).await,
             Err(error) => error.into_response(),
         };
-        if response.status().is_client_error() {
+        // Who still writes when the connection closes hears no answer.
+        if !response.status().is_success() {
             unread.drain().await;
         }
         response
@@ -78,7 +80,7 @@ pub async fn surround(State(door): State<Door>, request: Request, next: Next) ->
 
 /// An answer with the id of its request, and its body where it is a problem.
 pub fn named(response: Response, id: &str) -> Response {
-    let mut response = with_problem_body(response, id);
+    let mut response = guarded(with_problem_body(response, id));
     if let Ok(value) = HeaderValue::from_str(id) {
         response.headers_mut().insert(REQUEST_ID, value);
     }
@@ -119,6 +121,9 @@ struct Entry {
 /// of its route, stands beside it.
 async fn admit(door: &Door, request: &mut Request) -> ApiResult<Admitted> {
     check_head(request)?;
+    if let Some(hosts) = &door.service.hosts {
+        hosts.check(request)?;
+    }
     let route = request.extensions().get::<MatchedPath>().map(MatchedPath::as_str);
     let Found { access, is_answered } = door.declared.find(route, request.method())?;
     if is_answered {

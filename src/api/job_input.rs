@@ -78,8 +78,11 @@ async fn of_comparison(service: &Service, spec: CompareDocument) -> ApiResult<Ne
     let content_of = |id: &str| contents.get(id).cloned();
     let spec_hash = crate::schema::hashes::compare_hash(&spec, &content_of);
     let tags = spec.tags.clone();
+    let input = CompareInput { job: None, queue_s: None, spec };
+    let admit = |input: &CompareInput, sources: &dyn MeshSource, _: &Limits| input.admit(sources);
+    let (input, ()) = prepared(service, input, admit).await?;
     let new = Accepted { case_id, shared_cases: Vec::new(), spec_hash, tags, mesh_ids };
-    new.with(&JobInput::Compare(CompareInput { job: None, queue_s: None, spec }))
+    new.with(&JobInput::Compare(input))
 }
 
 /// A plan response: its case as it is at this moment, checked with its meshes.
@@ -186,21 +189,22 @@ async fn baseline(service: &Service, job: &str) -> ApiResult<(ReportDocument, Ve
     Ok((found.ok_or_else(missing)?.1, service.store.cases_of_job(&id).await?))
 }
 
-/// Checks a job with its meshes, off the async threads; gives it back with the hash that `prepare` finds.
-async fn prepared<I: Send + 'static>(
+/// Checks a job with its meshes, off the async threads; gives it back with what `prepare` finds.
+async fn prepared<I: Send + 'static, T: Send + 'static>(
     service: &Service,
     input: I,
-    prepare: fn(&I, &dyn MeshSource, &Limits) -> Result<String, JobError>,
-) -> ApiResult<(I, String)> {
+    prepare: fn(&I, &dyn MeshSource, &Limits) -> Result<T, JobError>,
+) -> ApiResult<(I, T)> {
     let sources = service.library.source(Handle::current(), BTreeMap::new());
     let limits: Limits = (*service.limits).clone();
-    let (input, hash) = service
+    let turn = service.check_turn().await?;
+    let (input, found) = turn
         .compute(move || {
-            let hash = prepare(&input, &sources, &limits);
-            (input, hash)
+            let found = prepare(&input, &sources, &limits);
+            (input, found)
         })
         .await?;
-    Ok((input, hash.map_err(|error| refusal(error).map_problem(in_spec))?))
+    Ok((input, found.map_err(|error| refusal(error).map_problem(in_spec))?))
 }
 
 /// What is known of a job when it is accepted, beside its document.

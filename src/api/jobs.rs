@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use utoipa::{IntoParams, ToSchema};
 use utoipa_axum::routes;
 
+use super::caller::Caller;
 use super::error::{ApiError, ApiResult};
 use super::idempotency::new_id;
 use super::job_view::status_info;
@@ -67,7 +68,8 @@ struct ListParameters {
 }
 
 /// Accepts a job. The same inputs, whoever sends them, are the same job. With `Prefer: wait=n` the answer
-/// comes when the job has ended, at the latest after n seconds (at most 30).
+/// comes when the job has ended, at the latest after n seconds (at most 30). One that keeps meshes (`keep`) stores what it
+/// makes, which a key has to allow (`write`).
 #[utoipa::path(
     post, path = "/v1/jobs", operation_id = "create_job", tag = "jobs",
     params(
@@ -87,12 +89,15 @@ struct ListParameters {
             ("Preference-Applied" = Option<String>, description = "the wait that was granted"))),
     )
 )]
-async fn create(service: Service, request: Request) -> ApiResult {
+async fn create(service: Service, caller: Caller, request: Request) -> ApiResult {
     let wait = wanted_wait(request.headers(), service.limits.wait_s);
     let headers = request.headers().clone();
     let place = request.extensions().get::<Option<TraceParent>>().cloned().flatten();
     let bytes = body::json(&service, request).await?;
     let document = JobDocument::parse(&bytes, &service.limits)?;
+    if document.keeps_meshes() {
+        caller.require(Scope::Write)?;
+    }
     let new = new_id(&service, &headers, "/v1/jobs", &[&bytes]).await?;
     if new.is_known && service.store.job(&new.id).await?.is_some() {
         return created(&service, &new.id, new.was_found, wait).await;

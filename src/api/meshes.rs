@@ -3,21 +3,22 @@
 use axum::extract::Request;
 use axum::http::{HeaderMap, StatusCode, header};
 use axum::response::IntoResponse;
-use bytes::Bytes;
 use serde::Deserialize;
 use utoipa::IntoParams;
 use utoipa_axum::routes;
 
+use super::download::Opened;
 use super::error::{ApiError, ApiResult};
 use super::parameters::{Id, Parameters};
 use super::resources::Resources;
+use super::spool::Received;
+use super::turns::Turn;
 use super::{Service, body, conditional, json, time, with_header};
 use crate::library::upload::{ExportFormat, Statement, Upload, export, read_upload};
 use crate::schema::ErrorCode;
 use crate::schema::case::document::{FrameName, LengthUnit};
 use crate::schema::key::Scope;
 use crate::schema::mesh::{MeshDocument, MeshKind};
-use crate::schema::wire::canonical::sha256_hex;
 use crate::store::{MeshDeletion, MeshRow};
 
 const READ_HERE: &str = "model/stl, model/obj, application/vnd.ply, application/vnd.vtk, \
@@ -92,14 +93,15 @@ async fn upload(
 ) -> ApiResult {
     let statement = parameters.into_statement()?;
     let kind = body::content_type(request.headers());
-    let bytes = if kind == MULTIPART {
+    let body = if kind == MULTIPART {
         single_part(body::parts(&service, request).await?)?
     } else if READ_HERE.split(", ").any(|known| known == kind) {
         body::upload(&service, request).await?
     } else {
         return Err(body::unsupported(&kind, READ_HERE));
     };
-    let (row, is_new) = match take_in(&service, bytes, &statement, true).await? {
+    let turn = service.parse_turn().await?;
+    let (row, is_new) = match take_in(&service, &turn, body, &statement, true).await? {
         TakenIn::Known(row) => {
             service.store.keep_mesh(&row.id).await?;
             (row, false)
@@ -120,9 +122,9 @@ struct MeshForm {
     file: Vec<u8>,
 }
 
-fn single_part(mut parts: Vec<(String, Bytes)>) -> ApiResult<Bytes> {
+fn single_part(mut parts: Vec<(String, Received)>) -> ApiResult<Received> {
     match (parts.pop(), parts.len()) {
-        (Some((_, bytes)), 0) => Ok(bytes),
+        (Some((_, part)), 0) => Ok(part),
         (last, others) => {
             let count = others + usize::from(last.is_some());
             let detail = format!("the form has {count} parts and has to have one, the file");
@@ -137,22 +139,25 @@ pub enum TakenIn {
     New(Box<Upload>),
 }
 
-/// Looks whether bytes are known, and reads them when not.
+/// Looks whether bytes are known, and reads them when not, in the turn of their request.
 pub async fn take_in(
     service: &Service,
-    bytes: Bytes,
+    turn: &Turn,
+    mut body: Received,
     statement: &Statement,
     standalone: bool,
 ) -> ApiResult<TakenIn> {
-    let hashed = bytes.clone();
-    let hash = service.compute(move || sha256_hex(&hashed)).await?;
+    let hash = body.sha256_hex();
     let known = service.store.mesh_by_content(&hash, &statement.identity()).await?;
     if let Some(row) = known {
         return Ok(TakenIn::Known(row));
     }
     let statement = statement.clone();
-    let read = service.compute(move || read_upload(&bytes, hash, &statement, standalone)).await?;
-    Ok(TakenIn::New(Box::new(read?)))
+    let read = turn.compute(move || -> ApiResult<Upload> {
+        let bytes = body.read()?;
+        Ok(read_upload(&bytes, hash, &statement, standalone)?)
+    });
+    Ok(TakenIn::New(Box::new(read.await??)))
 }
 
 async fn store(service: &Service, upload: Upload) -> ApiResult<(MeshRow, bool)> {
@@ -263,16 +268,20 @@ async fn content(
     let blob = row.blob.clone();
     let frame = document.report.space.or(document.frame);
     let is_turned = format == ExportFormat::Vtu && frame == Some(FrameName::Ras);
-    let bytes = if format == stored_as && !is_turned {
-        service.store.read_blob(&blob).await?
-    } else {
-        let mesh = service.library.open(row).await?;
-        Bytes::from(service.compute(move || export(&mesh, format)).await??)
-    };
     let name = format!("{id}.{}", format.name());
     let in_lps = if is_turned { "-lps" } else { "" };
     let tag = format!("{blob}-{}{in_lps}", format.name());
-    conditional::file(&headers, &bytes, (format.media_type(), &name), &tag)
+    if conditional::is_known(&headers, &tag) {
+        return Ok(conditional::not_modified(&tag));
+    }
+    let file = if format == stored_as && !is_turned {
+        Opened::blob(&service, &blob).await?
+    } else {
+        let turn = service.parse_turn().await?;
+        let mesh = service.library.open(row).await?;
+        Opened::made(&service, &turn, move || export(&mesh, format)).await?
+    };
+    conditional::file(&headers, file, (format.media_type(), &name), &tag)
 }
 
 /// Deletes a mesh that no case and no job refers to.

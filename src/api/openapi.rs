@@ -20,12 +20,13 @@ use crate::schema::job_document::JobKind;
 
 /// Problems that every operation may answer with: what is wrong with the head of the request, and what is
 /// wrong with the service.
-const ALWAYS: [(&str, &str); 10] = [
+const ALWAYS: [(&str, &str); 11] = [
     ("400", "a parameter or a header is not valid"),
     ("401", "the service asks for a key"),
-    ("403", "the key does not allow it"),
+    ("403", "the key does not allow it, or a page of another site asks"),
     ("406", "the header Accept does not allow the answer"),
     ("414", "the address is too long"),
+    ("421", "the service asks for no key and is called by a name that is not of its machine"),
     (
         "429",
         "the client asks for more than one may have; the header Retry-After says when to come back",

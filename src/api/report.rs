@@ -6,6 +6,7 @@ use serde::Deserialize;
 use utoipa::{IntoParams, ToSchema};
 use utoipa_axum::routes;
 
+use super::download::Opened;
 use super::error::{ApiError, ApiResult};
 use super::guard::preferred;
 use super::parameters::{Id, Parameters, id as spelled};
@@ -125,8 +126,8 @@ async fn report(
         if conditional::is_known(&headers, &row.blob) {
             return Ok(conditional::not_modified(&row.blob));
         }
-        let bytes = service.store.read_blob(&row.blob).await?;
-        let answer = conditional::file(&headers, &bytes, (&row.media_type, &row.name), &row.blob)?;
+        let file = Opened::blob(&service, &row.blob).await?;
+        let answer = conditional::file(&headers, file, (&row.media_type, &row.name), &row.blob)?;
         return Ok(told(answer, outcome));
     };
     let baseline = spelled(baseline).ok_or_else(|| {

@@ -9,6 +9,7 @@ use serde::Deserialize;
 use utoipa::IntoParams;
 use utoipa_axum::routes;
 
+use super::download::Opened;
 use super::error::{ApiError, ApiResult};
 use super::guard::preferred;
 use super::parameters::{Id, Parameters, id as spelled};
@@ -131,8 +132,8 @@ async fn show(
     let response = if conditional::is_known(&headers, &row.blob) {
         conditional::not_modified(&row.blob)
     } else {
-        let bytes = service.store.read_blob(&row.blob).await?;
-        conditional::file(&headers, &bytes, (&row.media_type, &row.name), &row.blob)?
+        let file = Opened::blob(&service, &row.blob).await?;
+        conditional::file(&headers, file, (&row.media_type, &row.name), &row.blob)?
     };
     let response = with_header(response, header::VARY, "Accept");
     Ok(with_header(response, HeaderName::from_static("facies-job"), &found.job))
@@ -144,10 +145,11 @@ async fn rest(service: &Service, found: &FoundResponse, headers: &HeaderMap) -> 
     let response = if conditional::is_known(headers, &tag) {
         conditional::not_modified(&tag)
     } else {
+        let turn = service.parse_turn().await?;
         let loaded = service.responses.load(found).await?;
-        let bytes = service.compute(move || loaded.rest_glb()).await?;
-        let bytes = bytes.map_err(ApiError::internal)?.into();
-        conditional::file(headers, &bytes, (GLB_MEDIA_TYPE, "rest.glb"), &tag)?
+        let written = move || loaded.rest_glb().map_err(unwritable);
+        let file = Opened::made(service, &turn, written).await?;
+        conditional::file(headers, file, (GLB_MEDIA_TYPE, "rest.glb"), &tag)?
     };
     let response = with_header(response, header::VARY, "Accept");
     Ok(with_header(response, HeaderName::from_static("facies-job"), &found.job))

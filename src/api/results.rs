@@ -3,6 +3,7 @@
 use axum::http::{HeaderMap, StatusCode};
 use utoipa_axum::routes;
 
+use super::download::Opened;
 use super::error::{ApiError, ApiResult};
 use super::parameters::{FileName, Id, no_such_job};
 use super::prefer::{wait_for_end, wanted_wait};
@@ -105,6 +106,6 @@ async fn file(service: Service, FileName { job, name }: FileName, headers: Heade
     if conditional::is_known(&headers, &row.blob) {
         return Ok(conditional::not_modified(&row.blob));
     }
-    let bytes = service.store.read_blob(&row.blob).await?;
-    conditional::file(&headers, &bytes, (&row.media_type, &row.name), &row.blob)
+    let file = Opened::blob(&service, &row.blob).await?;
+    conditional::file(&headers, file, (&row.media_type, &row.name), &row.blob)
 }

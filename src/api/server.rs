@@ -4,7 +4,7 @@ use super::resources::Resources;
 use super::routes::resources;
 use super::service::Service;
 use axum::extract::DefaultBodyLimit;
-use axum::middleware::from_fn_with_state;
+use axum::middleware::{from_fn, from_fn_with_state};
 use axum::{Extension, Router};
 use tower_http::catch_panic::CatchPanicLayer;
 
@@ -14,7 +14,8 @@ pub fn router(service: Service) -> Router {
     let resources: Router<Service> = router.into();
     let door = super::guard::Door { service: service.clone(), declared: declared.into() };
     let pages = utoipa_swagger_ui::SwaggerUi::new("/docs")
-        .config(utoipa_swagger_ui::Config::from("/openapi.json"));
+        .config(utoipa_swagger_ui::Config::from("/openapi.json").validator_url("none"));
+    let pages: Router<Service> = Router::from(pages).layer(from_fn(super::headers::of_pages));
     let origins = super::origins::allowed(&service.config.allowed_origins);
     let router = resources
         .route_layer(from_fn_with_state(service.clone(), super::gone::tell))

@@ -1,17 +1,22 @@
 //! What every request may use, scoped to the tenant of its caller.
 
+use super::budget::{Budget, Held, Most};
+use super::client::Client;
+use super::error::ApiResult;
+use super::hosts::Hosts;
+use super::spool::Ground;
+use super::turns::{Turn, Turns};
 use crate::config::Config;
 use crate::library::meshes::Library;
 use crate::library::responses::Responses;
 use crate::schema::Limits;
 use crate::store::Store;
-use crate::worker::niceness::give_way;
 use crate::worker::process::slot_bytes;
 use std::sync::Arc;
-use tokio::sync::Semaphore;
 
-/// Meshes that are parsed at the same time: each may take several times its size in memory.
-pub(super) const PARSED_AT_ONCE: usize = 2;
+/// Meshes that are parsed at the same time, and jobs that are checked.
+const PARSED_AT_ONCE: usize = 2;
+const CHECKED_AT_ONCE: usize = 2;
 
 /// What every request may use.
 #[derive(Clone)]
@@ -21,8 +26,14 @@ pub struct Service {
     pub store: Store,
     pub library: Library,
     pub responses: Responses,
-    pub(super) parsing: Arc<Semaphore>,
+    parsing: Turns,
+    checking: Turns,
+    budget: Budget,
+    /// Who asks, for what is counted for each client.
+    client: Client,
     pub(super) rates: Arc<super::rate::Rates>,
+    /// Who is believed, where no key is asked for.
+    pub(super) hosts: Option<Arc<Hosts>>,
     pub streams: super::streams::Streams,
 }
 
@@ -33,6 +44,9 @@ pub fn limits(config: &Config) -> Limits {
         requests_per_minute: config.requests_per_minute,
         event_streams: config.event_streams,
         keys: config.most_keys,
+        waiting_requests: config.waiting_requests,
+        // One body of the largest size always fits.
+        client_bodies_bytes: config.client_bodies_bytes.max(config.upload_bytes as u64),
         ..Limits::default()
     };
     // Who has no slots does not know the memory of those of other processes, unless it is told.
@@ -45,45 +59,57 @@ pub fn limits(config: &Config) -> Limits {
 impl Service {
     pub fn new(config: Config, store: Store, library: Library) -> Self {
         let limits = limits(&config);
+        let waiting = limits.waiting_requests as usize;
+        let hosts = || Arc::new(Hosts::new(&config.allowed_hosts, &config.allowed_origins));
         Service {
+            hosts: (!config.asks_for_keys).then(hosts),
             responses: Responses::new(store.clone(), config.response_cache_bytes),
-            config: Arc::new(config),
             limits: Arc::new(limits.clone()),
             store,
             library,
             streams: super::streams::Streams::new(limits.event_streams),
-            parsing: Arc::new(Semaphore::new(PARSED_AT_ONCE)),
+            parsing: Turns::new("parse", PARSED_AT_ONCE, waiting),
+            checking: Turns::new("check", CHECKED_AT_ONCE, waiting),
+            budget: Budget::new(Most {
+                of_process: config.bodies_bytes.max(limits.client_bodies_bytes),
+                of_client: limits.client_bodies_bytes,
+            }),
+            client: Client::named(""),
             rates: Arc::new(super::rate::Rates::new(limits.requests_per_minute)),
+            config: Arc::new(config),
         }
     }
 
-    /// The same service in the hand of a tenant.
-    pub(super) fn of_tenant(&self, tenant: &str) -> Service {
+    /// The same service in the hand of a tenant, asked by one of its clients.
+    pub(super) fn in_hand_of(&self, tenant: &str, client: Client) -> Service {
         Service {
             store: self.store.of_tenant(tenant),
             library: self.library.of_tenant(tenant),
             responses: self.responses.of_tenant(tenant),
+            client,
             ..self.clone()
         }
     }
 
-    /// Runs work that takes a processor for long, a few at a time, each on a thread of its own that gives way to those
-    /// that answer.
-    pub(super) async fn compute<T: Send + 'static>(
-        &self,
-        work: impl FnOnce() -> T + Send + 'static,
-    ) -> super::error::ApiResult<T> {
-        let permit = self.parsing.clone().acquire_owned().await;
-        let _permit = permit.map_err(super::error::ApiError::internal)?;
-        let (done, made) = tokio::sync::oneshot::channel();
-        let patient = move || {
-            give_way();
-            // Nobody waits any more where the client has gone.
-            let _ = done.send(work());
-        };
-        let thread = std::thread::Builder::new().name("parser".to_owned()).spawn(patient);
-        thread.map_err(super::error::ApiError::internal)?;
-        // A thread that panics drops its end.
-        made.await.map_err(super::error::ApiError::internal)
+    /// The turn of this request to parse a mesh or to write one: each may take several times its size in memory, which is
+    /// held until the turn is over.
+    pub(super) async fn parse_turn(&self) -> ApiResult<Turn> {
+        self.parsing.turn(self.store.tenant()).await
+    }
+
+    /// The turn of this request to check a job or a case, which needs meshes that are parsed already, or small ones.
+    pub(super) async fn check_turn(&self) -> ApiResult<Turn> {
+        self.checking.turn(self.store.tenant()).await
+    }
+
+    /// The bytes of a request, none so far.
+    pub(super) fn hold(&self) -> Held {
+        self.budget.hold(self.client.clone())
+    }
+
+    /// Where bodies and copies lie.
+    pub(super) fn ground(&self) -> Ground {
+        let floor_bytes = self.config.free_space_floor_bytes;
+        Ground { store: self.store.clone(), floor_bytes }
     }
 }

@@ -137,6 +137,7 @@ impl Server {
         let (stopping, mut stopped) = tokio::sync::watch::channel(());
         let patience = self.service.config.body_idle;
         let streams = self.service.streams.clone();
+        let store = self.service.store.clone();
         let answers = api::router(self.service);
         let served = api::connections::serve(self.listener, answers, patience, async move {
             stop.await;
@@ -150,6 +151,9 @@ impl Server {
         // A client that never ends its request does not keep the process from ending.
         if tokio::time::timeout(deadline, served).await.is_err() {
             tracing::warn!("requests were cut off");
+        }
+        if let Err(error) = store.tell_deeds().await {
+            tracing::error!(%error, "the audit log is not told how requests ended");
         }
         Ok(self.workers)
     }
@@ -180,7 +184,7 @@ pub async fn listen_for_admin(
     store: &Store,
 ) -> Result<Option<SocketAddr>, ServeError> {
     let Some(address) = config.admin_listen else { return Ok(None) };
-    let listening = api::admin::listen(address, config.admin_key.clone(), store.clone()).await;
+    let listening = api::admin::listen(address, config, store.clone()).await;
     Ok(Some(listening.map_err(|source| ServeError::Listen { address, source })?))
 }
 
@@ -264,12 +268,18 @@ fn keep_chained(store: &Store) {
     let store = store.clone();
     tokio::spawn(async move {
         loop {
-            if let Err(error) = store.chain_deeds().await {
+            if let Err(error) = chain(&store).await {
                 tracing::warn!(%error, "the audit log is not up to date");
             }
             tokio::time::sleep(CHAIN_EVERY).await;
         }
     });
+}
+
+async fn chain(store: &Store) -> Result<(), StoreError> {
+    store.tell_deeds().await?;
+    store.chain_deeds().await?;
+    Ok(())
 }
 
 /// Erases what is older than its tenant keeps it, and bytes that nothing refers to.

@@ -86,6 +86,11 @@ pub const SETTINGS: &[Setting] = &[
         "origins whose pages browsers let in, such as https://planning.example.org, with commas between them; without it none",
     ),
     setting(
+        "allowed-hosts",
+        "",
+        "names, with commas between them and without ports, by which a service that asks for no key may be called, beside localhost and loopback addresses; without it none",
+    ),
+    setting(
         "requests-per-minute",
         "60000",
         "requests of one client in a minute, above which it is told to wait; 0 to 10000000, 0 counts nobody",
@@ -121,9 +126,24 @@ pub const SETTINGS: &[Setting] = &[
     ),
     setting("upload-mib", "256", "largest body of an upload in MiB; 1 to 4096"),
     setting(
+        "bodies-mib",
+        "4096",
+        "bodies of all clients in MiB that may be under way at the same time, in files of the data folder; 1 to 1048576, and at least those of one client",
+    ),
+    setting(
+        "client-bodies-mib",
+        "1024",
+        "bodies of one client in MiB that may be under way at the same time; 1 to 1048576, and at least upload-mib",
+    ),
+    setting(
+        "waiting-requests",
+        "256",
+        "requests of one tenant that may wait for their turn at the parser, and as many for the check of jobs; 1 to 100000",
+    ),
+    setting(
         "body-idle-s",
         "30",
-        "seconds a client may stay silent in the middle of a request, between two, or take nothing of an answer; 0.1 to 600",
+        "seconds a client may stay silent in the middle of a request, between two, or take nothing of an answer, and in which it has to send or take 16 KiB a second; 0.1 to 600",
     ),
     setting("mesh-cache-mib", "1024", "memory for parsed meshes in MiB; 0 to 1048576"),
     setting("response-cache-mib", "256", "memory for plan responses in MiB; 0 to 1048576"),

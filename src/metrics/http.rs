@@ -10,6 +10,8 @@ const REQUESTS: &str = "facies_http_requests_total";
 pub(super) const TIME: &str = "facies_http_request_seconds";
 const IN_FLIGHT: &str = "facies_http_requests_in_flight";
 const STREAMS: &str = "facies_http_event_streams";
+const WAITING: &str = "facies_http_requests_waiting";
+const BODIES: &str = "facies_http_body_bytes_in_flight";
 
 pub(super) const SECONDS: [f64; 13] =
     [0.001, 0.003, 0.005, 0.01, 0.02, 0.05, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 60.0];
@@ -19,6 +21,12 @@ pub(super) fn describe() {
     describe_histogram!(TIME, Unit::Seconds, "time to the head of the answer, by route and method");
     describe_gauge!(IN_FLIGHT, "requests whose answer has not begun");
     describe_gauge!(STREAMS, "open streams of events");
+    describe_gauge!(WAITING, "requests that wait for their turn, by what for (for)");
+    describe_gauge!(
+        BODIES,
+        Unit::Bytes,
+        "bodies that come or are worked on, and copies of files that are sent"
+    );
 }
 
 /// A method that routes may have; another one is a word of the client's.
@@ -63,6 +71,16 @@ impl Drop for Request {
             .increment(1);
         histogram!(TIME, "route" => route, "method" => self.method).record(took);
     }
+}
+
+/// Requests that wait for their turn at something.
+pub fn waiting(what: &'static str, count: usize) {
+    gauge!(WAITING, "for" => what).set(count as f64);
+}
+
+/// Bytes of bodies that are under way.
+pub fn body_bytes(bytes: u64) {
+    gauge!(BODIES).set(bytes as f64);
 }
 
 /// An open stream of events.

@@ -132,6 +132,17 @@ pub enum JobDocument {
 }
 
 impl JobDocument {
+    /// Whether it leaves meshes behind that others may use.
+    pub fn keeps_meshes(&self) -> bool {
+        match self {
+            JobDocument::Predict(document) => !document.keep.is_empty(),
+            JobDocument::Compare(_)
+            | JobDocument::Response(_)
+            | JobDocument::Optimise(_)
+            | JobDocument::Study(_) => false,
+        }
+    }
+
     /// The body of `POST /v1/jobs`.
     pub fn parse(bytes: &[u8], limits: &Limits) -> Result<JobDocument, Problem> {
         let value = strict::parse_value(bytes, limits)?;

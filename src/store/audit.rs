@@ -2,22 +2,9 @@
 //! itself and of the hash before it, so that a row that was changed, taken out or put in shows.
 
 use super::database::{Row, query};
+use super::deed::Deed;
 use super::{Store, StoreError};
 use crate::schema::wire::canonical::sha256_hex;
-
-/// What somebody does.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Deed {
-    pub tenant: String,
-    /// The id of a key, `command`, or `retention`.
-    pub actor: String,
-    /// Method and route, or the command.
-    pub action: String,
-    /// The id of what it is done to, empty where there is none.
-    pub object: String,
-    /// The id of the request.
-    pub request: String,
-}
 
 /// A row of the log.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -46,18 +33,6 @@ const AFTER: &str = "SELECT number, at, tenant, actor, action, object, outcome, 
 
 /// Rows that are looked at together.
 const AT_ONCE: i64 = 1000;
-
-impl Deed {
-    pub(super) fn of_row(row: &Row) -> Result<Deed, sqlx::Error> {
-        Ok(Deed {
-            tenant: row.try_get("tenant")?,
-            actor: row.try_get("actor")?,
-            action: row.try_get("action")?,
-            object: row.try_get("object")?,
-            request: row.try_get("request")?,
-        })
-    }
-}
 
 impl AuditRow {
     /// Fields are told apart by a byte that none of them has.

@@ -12,6 +12,7 @@ use object_store::prefix::PrefixStore;
 use object_store::{ClientOptions, ObjectStore, ObjectStoreExt, PutPayload, RetryConfig};
 
 use super::StoreError;
+use super::files::FoundBlob;
 use crate::config::{BlobsPlace, Places, Secret};
 use crate::schema::wire::canonical::sha256_hex;
 
@@ -82,14 +83,19 @@ impl Blobs {
         Ok(())
     }
 
+    /// A blob that is there.
+    pub(super) async fn find(&self, place: &str, sha256: &str) -> Result<FoundBlob, StoreError> {
+        let sha256 = sha256.to_owned();
+        match self.objects.get(&place.into()).await {
+            Ok(found) => Ok(FoundBlob { sha256, found }),
+            Err(object_store::Error::NotFound { .. }) => Err(StoreError::Missing { sha256 }),
+            Err(error) => Err(error.into()),
+        }
+    }
+
     /// The bytes, compared with their hash: a blob that changed where it is kept is an error, never an answer.
     pub async fn get(&self, place: &str, sha256: &str) -> Result<Bytes, StoreError> {
-        let missing = || StoreError::Missing { sha256: sha256.to_owned() };
-        let bytes = match self.objects.get(&place.into()).await {
-            Ok(found) => found.bytes().await?,
-            Err(object_store::Error::NotFound { .. }) => return Err(missing()),
-            Err(error) => return Err(error.into()),
-        };
+        let bytes = self.find(place, sha256).await?.found.bytes().await?;
         let (bytes, found) = tokio::task::spawn_blocking(move || {
             let found = sha256_hex(&bytes);
             (bytes, found)

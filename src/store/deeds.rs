@@ -1,19 +1,24 @@
 //! What is done that changes something: noted before it begins, and taken into the chain of the audit log once it has
 //! ended.
 
-use super::audit::{AuditRow, Deed};
-use super::database::{Row, query};
+use super::audit::AuditRow;
+use super::database::{Row, Transaction, query};
+use super::deed::Deed;
+use super::open_deeds::{Begun, End, Open};
 use super::{Store, StoreError};
 
-/// How a deed ended of which nobody said so: whoever did it died, or lost the database.
+/// How a deed ended of which nobody said so: whoever did it died, or lost the database for an hour.
 const UNKNOWN: &str = "unknown";
 
-const BEGIN: &str = "INSERT INTO deeds (id, at, tenant, actor, action, object, request) \
-     VALUES ($1, (SELECT now_ms FROM clock), $2, $3, $4, $5, $6)";
+const BEGIN: &str = "INSERT INTO deeds (id, at, alive, tenant, actor, action, object, request) \
+     VALUES ($1, (SELECT now_ms FROM clock), (SELECT now_ms FROM clock), $2, $3, $4, $5, $6)";
+const LIVE: &str = "UPDATE deeds SET alive = (SELECT now_ms FROM clock) \
+     WHERE id = $1 AND alive < (SELECT now_ms FROM clock) - $2";
 const END: &str = "UPDATE deeds SET object = $2, outcome = $3 WHERE id = $1";
-/// No request takes an hour.
+/// Whoever does it says every minute that he lives.
 const ENDED: &str = "SELECT id, at, tenant, actor, action, object, request, outcome FROM deeds \
-     WHERE outcome IS NOT NULL OR at < (SELECT now_ms FROM clock) - 3600000 ORDER BY at, id LIMIT $1";
+     WHERE outcome IS NOT NULL OR COALESCE(alive, at) < (SELECT now_ms FROM clock) - 3600000 \
+     ORDER BY at, id LIMIT $1";
 const FORGET: &str = "DELETE FROM deeds WHERE id = $1";
 const FIRST_END: &str =
     "INSERT INTO audit_end (one, number, hash) VALUES (1, 0, '') ON CONFLICT (one) DO NOTHING";
@@ -27,39 +32,57 @@ const MOVE_END: &str = "UPDATE audit_end SET number = $1, hash = $2 WHERE one = 
 /// Deeds that are taken into the chain in one transaction.
 const AT_ONCE: i64 = 200;
 
-/// A deed that was begun, to be told how it ended.
-#[derive(Debug)]
-pub struct Begun(String);
+/// How often a process says of a deed that it lives, in ms.
+const LIVES_EVERY: i64 = 60_000;
 
 impl Store {
     /// Notes what is about to be done. Whoever cannot note it must not do it. The note reaches the disk no later than
     /// what is done.
     pub async fn begin_deed(&self, deed: &Deed) -> Result<Begun, StoreError> {
         let id = uuid::Uuid::now_v7().to_string();
+        let begun = self.open_deeds.begin(&id, deed);
         let mut transaction = self.database.begin_unflushed().await?;
-        query(BEGIN)
-            .bind(&id)
-            .bind(&deed.tenant)
-            .bind(&deed.actor)
-            .bind(&deed.action)
-            .bind(&deed.object)
-            .bind(&deed.request)
-            .execute(&mut transaction)
-            .await?;
+        insert(&mut transaction, &id, deed).await?;
         transaction.commit().await?;
-        Ok(Begun(id))
+        Ok(begun)
     }
 
-    /// Notes how it ended, and the id of what it was done to, which may not have been there before.
+    /// Notes how it ended, and the id of what it was done to, which may not have been there before. What the database does
+    /// not take is kept for `tell_deeds`.
     pub async fn end_deed(
         &self,
-        Begun(id): Begun,
+        begun: Begun,
         object: &str,
         outcome: &str,
     ) -> Result<(), StoreError> {
+        let end = End { object: object.to_owned(), outcome: outcome.to_owned() };
+        let id = self.open_deeds.end(begun, end);
+        self.tell(&id).await
+    }
+
+    /// Says of the deeds of this process that go on that it lives, and of those that have ended how, where the database did
+    /// not take it before.
+    pub async fn tell_deeds(&self) -> Result<(), StoreError> {
+        for id in self.open_deeds.ids(true) {
+            self.tell(&id).await?;
+        }
+        for id in self.open_deeds.ids(false) {
+            query(LIVE).bind(&id).bind(LIVES_EVERY).execute(self.database.writer()).await?;
+        }
+        Ok(())
+    }
+
+    async fn tell(&self, id: &str) -> Result<(), StoreError> {
+        let Some(Open { deed, end: Some(end) }) = self.open_deeds.get(id) else { return Ok(()) };
         let mut transaction = self.database.begin_unflushed().await?;
-        query(END).bind(&id).bind(object).bind(outcome).execute(&mut transaction).await?;
+        if set_end(&mut transaction, id, &end).await? == 0 {
+            // It is in the chain as unknown: how it ended becomes a row of its own.
+            tracing::error!(request = %deed.request, "a deed had no row that could tell its end");
+            insert(&mut transaction, id, &deed).await?;
+            set_end(&mut transaction, id, &end).await?;
+        }
         transaction.commit().await?;
+        self.open_deeds.forget(id);
         Ok(())
     }
 
@@ -127,6 +150,17 @@ impl Store {
         transaction.commit().await?;
         Ok(ended.len())
     }
+}
+
+async fn insert(transaction: &mut Transaction, id: &str, deed: &Deed) -> Result<(), sqlx::Error> {
+    let row = query(BEGIN).bind(id).bind(&deed.tenant).bind(&deed.actor).bind(&deed.action);
+    row.bind(&deed.object).bind(&deed.request).execute(transaction).await?;
+    Ok(())
+}
+
+/// The number of rows that it changed.
+async fn set_end(transaction: &mut Transaction, id: &str, end: &End) -> Result<u64, sqlx::Error> {
+    query(END).bind(id).bind(&end.object).bind(&end.outcome).execute(transaction).await
 }
 
 /// The row of the log for a deed that has ended.

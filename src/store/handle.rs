@@ -3,6 +3,7 @@
 use super::blobs::Blobs;
 use super::database::{Address, Database};
 use super::error::StoreError;
+use super::open_deeds::OpenDeeds;
 use super::spare::Spare;
 use super::wake::{Changes, Wake};
 use crate::config::{DatabasePlace, Places};
@@ -40,6 +41,7 @@ pub struct Store {
     pub(super) last_written: Arc<Mutex<Option<Instant>>>,
     /// Keys in force that a tenant may have.
     pub(super) most_keys: i64,
+    pub(super) open_deeds: OpenDeeds,
     pub(super) _lock: Arc<File>,
 }
 
@@ -69,6 +71,7 @@ impl Store {
             holds_erased: Arc::new(AtomicBool::new(true)),
             last_written: Arc::default(),
             most_keys: MOST_KEYS,
+            open_deeds: OpenDeeds::default(),
             _lock: Arc::new(lock),
         })
     }

@@ -19,9 +19,12 @@
 //! None of this counts on a clock. The time of the announcement only keeps the sweep from making those start anew
 //! who are about to store.
 
+use std::fs::File;
+
 use bytes::Bytes;
 
 use super::database::{Transaction, query};
+use super::files::FoundBlob;
 use super::{Store, StoreError};
 
 /// Bytes by their hash, to be stored.
@@ -163,13 +166,32 @@ impl Store {
 
     /// The bytes of a hash, compared with it.
     pub async fn read_blob(&self, sha256: &str) -> Result<Bytes, StoreError> {
+        self.blobs.get(&self.place_of(sha256).await?, sha256).await
+    }
+
+    /// The blob of a hash, before any of it is read.
+    pub async fn find_blob(&self, sha256: &str) -> Result<FoundBlob, StoreError> {
+        self.blobs.find(&self.place_of(sha256).await?, sha256).await
+    }
+
+    /// It as a file, compared with its hash, which can be read to its end also where the blob is erased meanwhile.
+    pub async fn file_of(&self, found: FoundBlob) -> Result<File, StoreError> {
+        found.into_file(|| self.nameless_file()).await
+    }
+
+    /// A file of this process that has no name, and is gone when nobody has it open any more.
+    pub fn nameless_file(&self) -> Result<File, StoreError> {
+        Ok(tempfile::tempfile_in(self.folder.join("tmp"))?)
+    }
+
+    /// Where the bytes of a hash are.
+    pub(super) async fn place_of(&self, sha256: &str) -> Result<String, StoreError> {
         let row = query("SELECT place FROM blobs WHERE sha256 = $1")
             .bind(sha256)
             .fetch_optional(self.database.reader())
             .await?;
         let missing = || StoreError::Missing { sha256: sha256.to_owned() };
-        let place: String = row.ok_or_else(missing)?.try_get(0)?;
-        self.blobs.get(&place, sha256).await
+        Ok(row.ok_or_else(missing)?.try_get(0)?)
     }
 }
 

@@ -19,6 +19,7 @@ use support::{
 fn main() -> ExitCode {
     support::external::run([
         api::audit::trials(),
+        api::downloads::trials(),
         api::erasures::trials(),
         data::ct::trials(),
         data::faces::trials(),

@@ -47,6 +47,12 @@ fn status(process: u32, field: &str) -> Option<String> {
     line.map(|value| value.trim().to_owned())
 }
 
+/// The memory of a process that is in use, in bytes.
+pub fn resident(process: u32) -> f64 {
+    let told = status(process, "VmRSS").unwrap();
+    told.trim_end_matches(" kB").parse::<f64>().unwrap() * 1024.0
+}
+
 /// The processes of the slots of a server.
 pub fn slots(server: &Server) -> Vec<u32> {
     slots_of(server.process())

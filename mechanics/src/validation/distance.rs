@@ -72,6 +72,15 @@ pub enum Direction<'a> {
     ToPrediction(&'a SurfaceSearch),
 }
 
+/// Refuses more samples of a surface than can be measured, before any is.
+pub fn require_possible(from: &TriangleSurface, samples_per_mm2: f64) -> Result<(), DistanceError> {
+    let samples = area_sampling::count_of_every_triangle(from, samples_per_mm2);
+    match samples <= MAX_SAMPLES {
+        true => Ok(()),
+        false => Err(DistanceError::TooManySamples { samples, allowed: MAX_SAMPLES }),
+    }
+}
+
 impl Distances {
     /// From every sample and every used vertex of `from` to the other surface.
     pub fn measure(
@@ -80,10 +89,7 @@ impl Distances {
         samples_per_mm2: f64,
         progress: &dyn Progress,
     ) -> Result<Self, DistanceError> {
-        let samples = area_sampling::count_of_every_triangle(from, samples_per_mm2);
-        if samples.is_nan() || samples > MAX_SAMPLES {
-            return Err(DistanceError::TooManySamples { samples, allowed: MAX_SAMPLES });
-        }
+        require_possible(from, samples_per_mm2)?;
         let samples = area_sampling::every_triangle(from, samples_per_mm2);
         let mut places: Vec<(Vector, f64)> =
             samples.into_iter().map(|sample| (sample.point, sample.area)).collect();

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::surfaces::admit;
 use crate::jobs::failure::JobError;
 use crate::jobs::fetch::{fetch, found};
 use crate::jobs::source::{MeshSource, StoredMesh};
@@ -27,6 +28,16 @@ impl CompareInput {
             false => Some(prediction.to_owned()),
         };
         hashes::compare_hash(&self.spec, &content)
+    }
+
+    /// Refuses what would fail for the number of its samples, which follows from the surfaces.
+    pub fn admit(&self, sources: &dyn MeshSource) -> Result<(), JobError> {
+        let at = Pointer::root().key("spec");
+        let prediction = self.fetch_prediction(sources, &at.key("prediction"))?;
+        let actual = &self.spec.actual.mesh;
+        let actual = fetch(sources, actual, &at.key("actual").key("mesh"))?;
+        let density = self.spec.samples_per_mm2;
+        admit(&prediction, density, &at).and_then(|()| admit(&actual, density, &at))
     }
 
     /// The surface that is measured: a mesh, or the skin that a job predicted.

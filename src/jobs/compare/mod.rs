@@ -6,4 +6,4 @@ mod surfaces;
 
 pub use input::CompareInput;
 pub use job::compare_job;
-pub use surfaces::{Compared, Pair};
+pub use surfaces::{Compared, Pair, admit};

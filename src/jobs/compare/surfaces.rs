@@ -12,6 +12,7 @@ use crate::schema::compare::result::ComparisonDocument;
 use crate::schema::{Pointer, Problem};
 use mechanics::mesh::{Frame, TriangleSurface, Vector, Warning};
 use mechanics::registration::Place;
+use mechanics::validation::distance::require_possible;
 use mechanics::validation::{
     Alignment, Comparison, ComparisonError, ComparisonSettings, LandmarkPair, NodeWise, compare,
 };
@@ -78,6 +79,17 @@ impl Pair<'_> {
         };
         JobError::Refused(Problem::at(&at, (&error).into(), error.to_string()))
     }
+}
+
+/// Refuses a surface of which more samples are wanted than can be measured; `at` is where its comparison stands.
+pub fn admit(surface: &StoredMesh, samples_per_mm2: f64, at: &Pointer) -> Result<(), JobError> {
+    // What is no surface is refused by the job, with its place.
+    let Some(surface) = surface.surface_in_mm() else { return Ok(()) };
+    let possible = require_possible(&surface, samples_per_mm2).map_err(ComparisonError::from);
+    possible.map_err(|error| {
+        let at = at.key("samples_per_mm2");
+        JobError::Refused(Problem::at(&at, (&error).into(), error.to_string()))
+    })
 }
 
 /// The settings of a spec that was checked.

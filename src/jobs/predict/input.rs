@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::facing::looks_elsewhere;
+use crate::jobs::compare::admit;
 use crate::jobs::failure::JobError;
 use crate::jobs::fetch::fetch;
 use crate::jobs::source::{MeshSource, SourceError, StoredMesh, StoredShape};
@@ -185,8 +186,10 @@ impl PredictInput {
         let Some(compare_to) = &self.spec.compare_to else {
             return Ok(None);
         };
-        let at = Pointer::from_text("/spec/compare_to/actual/mesh");
-        fetch(sources, &compare_to.actual.mesh, &at).map(Some)
+        let at = Pointer::from_text("/spec/compare_to");
+        let actual = fetch(sources, &compare_to.actual.mesh, &at.key("actual").key("mesh"))?;
+        admit(&actual, compare_to.samples_per_mm2, &at)?;
+        Ok(Some(actual))
     }
 
     /// The hash of everything that decides the numbers.

@@ -60,6 +60,10 @@ pub struct Limits {
     pub event_streams: u32,
     /// Keys in force that a tenant may have.
     pub keys: u32,
+    /// Requests of one tenant that may wait for their turn at the parser, and as many for their turn at the check of jobs.
+    pub waiting_requests: u32,
+    /// Bytes of bodies that one client may have under way at the same time.
+    pub client_bodies_bytes: u64,
 }
 
 impl Default for Limits {
@@ -93,6 +97,8 @@ impl Default for Limits {
             requests_per_minute: 60_000,
             event_streams: 8,
             keys: 100,
+            waiting_requests: 256,
+            client_bodies_bytes: 1 << 30,
         }
     }
 }

@@ -10,7 +10,7 @@ use crate::store::error::StoreError;
 
 /// The files of `migrations/`, in order. Their macro in sqlx would compile every engine a second time, for the
 /// compiler itself.
-const FILES: [(&str, &str); 11] = [
+const FILES: [(&str, &str); 12] = [
     ("first", include_str!("../../../migrations/0001_first.sql")),
     ("studies", include_str!("../../../migrations/0002_studies.sql")),
     ("blobs", include_str!("../../../migrations/0003_blobs.sql")),
@@ -22,6 +22,7 @@ const FILES: [(&str, &str); 11] = [
     ("error classes", include_str!("../../../migrations/0009_error_classes.sql")),
     ("made meshes", include_str!("../../../migrations/0010_made_meshes.sql")),
     ("queues", include_str!("../../../migrations/0011_queues.sql")),
+    ("living deeds", include_str!("../../../migrations/0012_living_deeds.sql")),
 ];
 
 /// The steps as they are written, for SQLite.

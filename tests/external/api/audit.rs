@@ -14,6 +14,8 @@ trials! {
     on_both {
         the_audit_log_shows_what_was_changed
         a_deed_whose_end_nobody_told_is_in_the_audit_log_as_unknown
+        a_deed_of_a_process_that_lives_is_never_unknown
+        an_end_that_the_database_did_not_take_is_told_later
     }
     alone {
         what_cannot_be_noted_is_not_done
@@ -90,9 +92,49 @@ async fn a_deed_whose_end_nobody_told_is_in_the_audit_log_as_unknown(on: Deploym
     let deed = Deed { action: "begun".into(), ..Deed::default() };
     let begun = store.begin_deed(&deed).await.unwrap();
     assert_eq!(store.audit(0, "", 10).await.unwrap(), []);
-    on.execute("UPDATE deeds SET at = at - 3600001").await;
+    on.execute(AN_HOUR_LATER).await;
     let rows = store.audit(0, "", 10).await.unwrap();
     assert_eq!((rows.len(), &rows[0].deed, rows[0].outcome.as_str()), (1, &deed, "unknown"));
-    store.end_deed(begun, "", "201").await.unwrap();
-    assert_eq!(store.audit(0, "", 10).await.unwrap(), rows, "what is in the chain stays as it is");
+    store.end_deed(begun, "made", "201").await.unwrap();
+    let told = store.audit(0, "", 10).await.unwrap();
+    assert_eq!((told.len(), &told[0]), (2, &rows[0]), "what is in the chain stays as it is");
+    let row = &told[1];
+    assert_eq!((row.outcome.as_str(), row.deed.object.as_str()), ("201", "made"));
+    assert_eq!((&row.deed.action, &row.deed.request), (&deed.action, &deed.request));
+    assert!(matches!(store.check_audit().await.unwrap(), Chain::Whole { rows: 2, .. }));
+}
+
+const AN_HOUR_LATER: &str = "UPDATE deeds SET at = at - 3600001, alive = alive - 3600001";
+
+async fn a_deed_of_a_process_that_lives_is_never_unknown(on: Deployment) {
+    let store = on.open().await;
+    let deed = Deed { action: "upload".into(), ..Deed::default() };
+    let begun = store.begin_deed(&deed).await.unwrap();
+    on.execute(AN_HOUR_LATER).await;
+    store.tell_deeds().await.unwrap();
+    assert_eq!(store.audit(0, "", 10).await.unwrap(), [], "it goes on");
+    store.end_deed(begun, "mesh", "201").await.unwrap();
+    let rows = store.audit(0, "", 10).await.unwrap();
+    assert_eq!(rows.len(), 1);
+    assert_eq!((rows[0].outcome.as_str(), rows[0].deed.object.as_str()), ("201", "mesh"));
+    let forgotten = store.begin_deed(&deed).await.unwrap();
+    drop(forgotten);
+    on.execute(AN_HOUR_LATER).await;
+    store.tell_deeds().await.unwrap();
+    assert_eq!(store.audit(1, "", 10).await.unwrap()[0].outcome, "unknown", "nobody does it");
+}
+
+async fn an_end_that_the_database_did_not_take_is_told_later(on: Deployment) {
+    let store = on.open().await;
+    let deed = Deed { action: "crashed".into(), ..Deed::default() };
+    let begun = store.begin_deed(&deed).await.unwrap();
+    on.execute("ALTER TABLE deeds RENAME TO lost").await;
+    store.end_deed(begun, "job", "201").await.unwrap_err();
+    store.tell_deeds().await.unwrap_err();
+    on.execute("ALTER TABLE lost RENAME TO deeds").await;
+    store.tell_deeds().await.unwrap();
+    let rows = store.audit(0, "", 10).await.unwrap();
+    assert_eq!((rows.len(), rows[0].outcome.as_str()), (1, "201"));
+    store.tell_deeds().await.unwrap();
+    assert_eq!(store.audit(0, "", 10).await.unwrap(), rows, "it is told once");
 }

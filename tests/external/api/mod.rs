@@ -1,4 +1,5 @@
-//! Deeds and erasures over HTTP.
+//! Deeds, downloads and erasures over HTTP.
 
 pub mod audit;
+pub mod downloads;
 pub mod erasures;

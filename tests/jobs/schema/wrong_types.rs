@@ -2,8 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use facies::schema::key::{KeyDocument, RotationDocument};
 use facies::schema::applied::ApplyDocument;
+use facies::schema::key::{KeyDocument, RotationDocument};
 use facies::schema::wire::strict;
 use facies::schema::{
     CaseDocument, CompareDocument, Limits, OptimiseDocument, PlanDocument, PredictDocument,

@@ -132,11 +132,11 @@ async fn raw(server: &Server, text: &str) -> String {
 #[tokio::test]
 async fn a_body_that_stops_coming_is_given_up() {
     let server = Server::start_with(&["--body-idle-s", "0.2"]);
-    let head = "POST /v1/meshes HTTP/1.1\r\nHost: x\r\nContent-Type: model/stl\r\nContent-Length: 99\r\n\r\nsolid";
+    let head = "POST /v1/meshes HTTP/1.1\r\nHost: localhost\r\nContent-Type: model/stl\r\nContent-Length: 99\r\n\r\nsolid";
     let answer = raw(&server, head).await;
     assert!(answer.starts_with("HTTP/1.1 408"), "74 {answer}");
     assert!(answer.contains("\"code\":\"request-timeout\""), "{answer}");
-    let smuggled = "POST /v1/jobs HTTP/1.1\r\nHost: x\r\nContent-Length: 3\r\nTransfer-Encoding: chunked\r\n\r\nzz\r\n";
+    let smuggled = "POST /v1/jobs HTTP/1.1\r\nHost: localhost\r\nContent-Length: 3\r\nTransfer-Encoding: chunked\r\n\r\nzz\r\n";
     let answer = raw(&server, smuggled).await;
     assert!(answer.starts_with("HTTP/1.1 4") || answer.is_empty(), "72 {answer}");
     let blobs = std::fs::read_dir(server.path().join("blobs")).unwrap().count();
@@ -158,7 +158,8 @@ async fn what_has_no_certain_length_is_refused_and_its_connection_closed() {
             "Content-Length: 2\r\n\r\n{} /v1/jobs HTTP/1.1\r\n\r\n".to_owned(),
         ),
     ] {
-        let head = "POST /v1/jobs HTTP/1.1\r\nHost: x\r\nContent-Type: application/json\r\n";
+        let head =
+            "POST /v1/jobs HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n";
         let answer = raw(&server, &format!("{head}{rest}")).await;
         for line in answer.lines().filter(|line| line.starts_with("HTTP/1.1")) {
             assert!(line.starts_with("HTTP/1.1 4"), "{name}: {answer}");
@@ -166,7 +167,7 @@ async fn what_has_no_certain_length_is_refused_and_its_connection_closed() {
         assert!(answer.contains("HTTP/1.1 400"), "{name}: {answer}");
     }
     let mut broken_off = TcpStream::connect(server.host()).await.unwrap();
-    let head = "POST /v1/jobs HTTP/1.1\r\nHost: x\r\nContent-Type: application/json\r\nContent-Length: 99\r\n\r\n{";
+    let head = "POST /v1/jobs HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\nContent-Length: 99\r\n\r\n{";
     broken_off.write_all(head.as_bytes()).await.unwrap();
     broken_off.shutdown().await.unwrap();
     let mut answer = String::new();

@@ -1,7 +1,10 @@
 //! Clients that stand still, or leave, in the middle of a request or of an answer.
 
+use std::time::Duration;
+
 use reqwest::StatusCode;
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
+use tokio::net::TcpStream;
 
 use crate::connections::{get, send};
 use crate::helpers::{Block, SMALL, Server, ask};
@@ -51,7 +54,7 @@ async fn clients_that_stop_reading_are_given_up_and_hold_up_nobody() {
 #[tokio::test]
 async fn a_client_that_never_ends_its_head_is_given_up() {
     let server = Server::start_with(&["--body-idle-s", "0.5"]);
-    let head = "GET /healthz HTTP/1.1\r\nHost: x\r\nX-Slow: ";
+    let head = "GET /healthz HTTP/1.1\r\nHost: localhost\r\nX-Slow: ";
     for sent in ["", head] {
         let mut stream = send(&server, sent).await;
         assert_eq!(stream.read(&mut [0]).await.unwrap(), 0, "74 {sent}");
@@ -64,7 +67,7 @@ async fn a_client_that_never_ends_its_head_is_given_up() {
 #[tokio::test]
 async fn a_body_that_comes_byte_by_byte_is_given_up() {
     let server = Server::start_with(&["--body-idle-s", "0.5"]);
-    let head = "POST /v1/meshes HTTP/1.1\r\nHost: x\r\nContent-Type: model/stl\r\nContent-Length: 999999\r\n\r\n";
+    let head = "POST /v1/meshes HTTP/1.1\r\nHost: localhost\r\nContent-Type: model/stl\r\nContent-Length: 999999\r\n\r\n";
     let mut stream = send(&server, head).await;
     let answer = until("74 it is answered", async || {
         stream.write_all(b"x").await.unwrap();
@@ -77,14 +80,62 @@ async fn a_body_that_comes_byte_by_byte_is_given_up() {
 }
 
 #[tokio::test]
+async fn what_came_at_once_is_no_excuse_for_a_body_that_trickles() {
+    let server = Server::start_with(&["--body-idle-s", "0.5"]);
+    let head = "POST /v1/meshes HTTP/1.1\r\nHost: localhost\r\nContent-Type: model/stl\r\nContent-Length: 33554432\r\n\r\n";
+    let mut stream = send(&server, head).await;
+    // At the least rate this is worth half an hour.
+    stream.write_all(&vec![b'x'; 32_000_000]).await.unwrap();
+    let answer = until("it is answered", async || {
+        stream.write_all(b"x").await.unwrap();
+        let mut answer = vec![0; 4096];
+        let count = stream.try_read(&mut answer).ok()?;
+        Some(String::from_utf8_lossy(&answer[..count]).into_owned())
+    })
+    .await;
+    assert!(answer.starts_with("HTTP/1.1 408"), "{answer}");
+}
+
+#[tokio::test]
+async fn an_answer_that_is_taken_too_slowly_is_broken_off() {
+    let server = Server::start_with(&["--body-idle-s", "0.5"]);
+    let mesh = server.upload(LARGE.vtu()).await.expect(StatusCode::CREATED);
+    let path = format!("/v1/meshes/{}/content?format=stl", mesh["id"].as_str().unwrap());
+    let nobody = sockets(&server);
+    let stream = send(&server, &get(&path).repeat(8)).await;
+    until("it is closed although something is taken all the time", async || {
+        // Some 10 KiB a second: the window of the connection moves, but not fast enough.
+        let _ = stream.try_read(&mut [0; 64]);
+        stream.ready(tokio::io::Interest::READABLE).await.ok()?;
+        (sockets(&server) <= nobody).then_some(())
+    })
+    .await;
+}
+
+#[tokio::test]
+async fn the_listener_for_administration_has_no_more_patience() {
+    let mut server = Server::start_with(&["--body-idle-s", "0.5", "--admin-bind", "127.0.0.1:0"]);
+    let line = server.second_line();
+    let office = line.strip_prefix("metrics on http://").unwrap().trim_end_matches("/metrics");
+    let head = "PUT /tenants/a HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n";
+    for sent in ["", "GET /heal", &format!("{head}Content-Length: 99\r\n\r\n{{")] {
+        let mut stream = TcpStream::connect(office).await.unwrap();
+        stream.write_all(sent.as_bytes()).await.unwrap();
+        let mut taken = Vec::new();
+        let closed = tokio::time::timeout(Duration::from_secs(30), stream.read_to_end(&mut taken));
+        let closed = closed.await;
+        assert!(closed.is_ok(), "{sent:?} is kept");
+    }
+}
+
+#[tokio::test]
 async fn a_client_that_leaves_while_it_waits_leaves_its_job_at_work() {
     let server = faulty("solve:begin:1:stop:tag=slow", &["--workers", "1"]);
     let case = server.case(&SMALL).await;
     let before = sockets(&server);
     let spec = tagged(&case, 1.0, "slow").to_string();
     let length = spec.len();
-    let head =
-        "POST /v1/jobs HTTP/1.1\r\nHost: x\r\nContent-Type: application/json\r\nPrefer: wait=30";
+    let head = "POST /v1/jobs HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\nPrefer: wait=30";
     let stream = send(&server, &format!("{head}\r\nContent-Length: {length}\r\n\r\n{spec}")).await;
     let slot = until("the job is solved", async || {
         slots(&server).into_iter().find(|slot| is_stopped(*slot))

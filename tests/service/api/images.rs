@@ -130,9 +130,9 @@ async fn an_image_is_no_mesh_of_a_case_nor_of_a_comparison() {
     wrong(&|case| case["bones"] = bone.clone(), "/bones/0/mesh").await;
     let compare = json!({"kind": "compare", "prediction": {"mesh": mesh["id"]},
                          "actual": {"mesh": image["id"]}});
-    // A job that failed within the wait has no result to answer with: 201 and its state.
-    let answer = server.job(&compare).await.expect(StatusCode::CREATED);
-    assert_eq!((&answer["status"], &answer["error"]["class"]), (&json!("failed"), &json!("input")));
+    let problem = server.job(&compare).await.problem(422, "validation-failed");
+    let error = &problem["errors"][0];
+    assert_eq!((&error["code"], &error["pointer"]), (&json!("wrong-mesh"), &json!("/actual/mesh")));
 }
 
 #[tokio::test]

@@ -6,6 +6,28 @@ use serde_json::json;
 use crate::helpers::{SMALL, Server, ask, spec};
 
 #[tokio::test]
+async fn a_comparison_of_more_samples_than_can_be_measured_is_refused_when_it_is_posted() {
+    let server = Server::start_with(&["--workers", "0"]);
+    // A hundred metres wide: 100 samples on each mm2 are 1e12.
+    let wide = b"solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 2e5 0 0\nvertex 0 1e5 0\nendloop\nendfacet\nendsolid x\n";
+    let wide = server.upload(wide.to_vec()).await.expect(StatusCode::CREATED)["id"].clone();
+    let case = server.case(&SMALL).await;
+    let mut compare = json!({"kind": "compare", "prediction": {"mesh": wide},
+        "actual": {"mesh": wide}, "samples_per_mm2": 100});
+    let mut predict = spec(&case, 1.0);
+    predict["compare_to"] = json!({"actual": {"mesh": wide}, "samples_per_mm2": 100});
+    for (job, at) in [(&compare, "/samples_per_mm2"), (&predict, "/compare_to/samples_per_mm2")] {
+        let refused = ask(server.post("/v1/jobs").json(job)).await;
+        let problem = refused.problem(422, "validation-failed");
+        let error = &problem["errors"][0];
+        assert_eq!((&error["code"], &error["pointer"]), (&json!("too-many-samples"), &json!(at)));
+        assert!(problem.to_string().contains("1.000e12 samples"), "{problem}");
+    }
+    compare["samples_per_mm2"] = json!(1e-4);
+    ask(server.post("/v1/jobs").json(&compare)).await.expect(StatusCode::CREATED);
+}
+
+#[tokio::test]
 async fn two_calls_predict_the_skin_of_a_new_patient() {
     let server = Server::start();
     let case = server.case(&SMALL).await;

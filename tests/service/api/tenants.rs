@@ -19,11 +19,12 @@ impl Hospital {
 
     /// One that has been open before.
     pub fn open_in(folder: TempDir) -> Hospital {
-        let settings = ["--ask-for-keys", "true", "--admin-bind", "127.0.0.1:0"];
-        Hospital::of(Server::start_in(folder, &settings))
+        Hospital::open_with(folder, &[])
     }
 
-    fn of(mut server: Server) -> Hospital {
+    pub fn open_with(folder: TempDir, settings: &[&str]) -> Hospital {
+        let own = ["--ask-for-keys", "true", "--admin-bind", "127.0.0.1:0"];
+        let mut server = Server::start_in(folder, &[&own, settings].concat());
         let line = server.second_line();
         let office = line.strip_prefix("metrics on ").unwrap().trim_end_matches("/metrics");
         Hospital { office: office.to_owned(), server }
@@ -50,11 +51,18 @@ impl Hospital {
         ask(request).await
     }
 
+    /// A number that is published now.
+    pub async fn metric(&self, name: &str) -> f64 {
+        let text = String::from_utf8(ask(self.admin(Method::GET, "/metrics")).await.bytes).unwrap();
+        let value = text.lines().find_map(|line| line.strip_prefix(name)?.strip_prefix(' '));
+        value.map_or(0.0, |value| value.parse().unwrap())
+    }
+
     pub async fn get(&self, key: &str, path: &str) -> Answer {
         self.send(key, Method::GET, path, None).await
     }
 
-    async fn post(&self, key: &str, path: &str, body: &Value) -> Answer {
+    pub async fn post(&self, key: &str, path: &str, body: &Value) -> Answer {
         self.send(key, Method::POST, path, Some(body)).await
     }
 }
@@ -295,8 +303,7 @@ async fn administration_asks_for_its_key() {
 #[tokio::test]
 async fn keys_above_the_limit_are_refused_with_the_numbers() {
     let folder = TempDir::new().unwrap();
-    let settings = ["--ask-for-keys", "true", "--admin-bind", "127.0.0.1:0", "--keys", "1"];
-    let hospital = Hospital::of(Server::start_in(folder, &settings));
+    let hospital = Hospital::open_with(folder, &["--keys", "1"]);
     let key = hospital.key("a", &ALL).await;
     let limits = hospital.get(&key, "/v1/limits").await.expect(StatusCode::OK);
     assert_eq!(limits["keys"], 1);
@@ -306,4 +313,31 @@ async fn keys_above_the_limit_are_refused_with_the_numbers() {
         let problem = refused.problem(409, "too-many-keys");
         assert_eq!((&problem["keys"], &problem["limit"]), (&json!(1), &json!(1)));
     }
+}
+
+#[tokio::test]
+async fn who_only_looks_at_administration_is_not_noted() {
+    let hospital = Hospital::open();
+    ask(hospital.admin(Method::HEAD, "/tenants")).await;
+    ask(hospital.admin(Method::GET, "/tenants")).await.expect(StatusCode::OK);
+    let set = hospital.admin(Method::PUT, "/tenants/a").json(&json!({}));
+    ask(set).await.expect(StatusCode::OK);
+    let all = ask(hospital.admin(Method::GET, "/audit")).await.expect(StatusCode::OK);
+    let actions: Vec<_> =
+        all["items"].as_array().unwrap().iter().map(|row| &row["action"]).collect();
+    assert_eq!(actions, ["PUT /tenants/{tenant}"]);
+}
+
+#[tokio::test]
+async fn a_job_that_keeps_meshes_takes_a_key_that_may_write() {
+    let hospital = Hospital::open();
+    let (owner, runner) = (hospital.key("a", &ALL).await, hospital.key("a", &["run"]).await);
+    let form = hospital.server.post("/v1/cases").bearer_auth(&owner);
+    let case = ask(form.multipart(SMALL.form(&SMALL.case()))).await.expect(StatusCode::CREATED);
+    let mut job = spec(case["id"].as_str().unwrap(), 1.0);
+    hospital.post(&runner, "/v1/jobs", &job).await.expect(StatusCode::CREATED);
+    job["keep"] = json!(["skin"]);
+    let refused = hospital.post(&runner, "/v1/jobs", &job).await;
+    assert_eq!(refused.problem(403, "forbidden-scope")["required_scope"], "write");
+    hospital.post(&owner, "/v1/jobs", &job).await.expect(StatusCode::CREATED);
 }

@@ -91,7 +91,7 @@ async fn an_upload_that_breaks_off_leaves_nothing() {
     let server = Server::start();
     let bytes = SMALL.vtu();
     let head = format!(
-        "POST /v1/meshes HTTP/1.1\r\nHost: x\r\nContent-Type: model/stl\r\nContent-Length: {}\r\n\r\n",
+        "POST /v1/meshes HTTP/1.1\r\nHost: localhost\r\nContent-Type: model/stl\r\nContent-Length: {}\r\n\r\n",
         bytes.len()
     );
     let mut connection = TcpStream::connect(server.host()).await.unwrap();

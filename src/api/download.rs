@@ -1,0 +1,70 @@
+//! Files on their way out: read piece by piece, so that a client that takes its time costs no memory of the file's size.
+
+use std::fs::File;
+use std::io::{Seek as _, SeekFrom, Write as _};
+use std::sync::Arc;
+
+use axum::body::Body;
+use futures::StreamExt as _;
+use tokio::io::AsyncReadExt as _;
+use tokio_util::io::ReaderStream;
+
+use super::Service;
+use super::budget::Held;
+use super::error::{ApiError, ApiResult};
+use super::turns::Turn;
+use crate::schema::wire::problem::Problem;
+use crate::store::StoreError;
+
+/// Bytes of a file in memory at a time.
+const PIECE: usize = 64 << 10;
+
+/// A file that can be sent, whole or a part of it.
+pub struct Opened {
+    file: File,
+    pub bytes: u64,
+    /// Counts a copy.
+    held: Arc<Held>,
+}
+
+impl Opened {
+    /// The file of a blob, compared with its hash.
+    pub async fn blob(service: &Service, sha256: &str) -> ApiResult<Opened> {
+        let found = service.store.find_blob(sha256).await?;
+        let (bytes, held) = (found.bytes(), Arc::new(service.hold()));
+        if found.is_far() {
+            held.at_least(bytes)?;
+            service.ground().require(bytes)?;
+        }
+        Ok(Opened { file: service.store.file_of(found).await?, bytes, held })
+    }
+
+    /// A file of what `make` makes in its turn.
+    pub async fn made(
+        service: &Service,
+        turn: &Turn,
+        make: impl FnOnce() -> Result<Vec<u8>, Problem> + Send + 'static,
+    ) -> ApiResult<Opened> {
+        let (held, ground) = (Arc::new(service.hold()), service.ground());
+        let work = move || -> ApiResult<Opened> {
+            let content = make()?;
+            let bytes = content.len() as u64;
+            held.at_least(bytes)?;
+            ground.require(bytes)?;
+            let mut file = ground.store.nameless_file()?;
+            file.write_all(&content).map_err(StoreError::from)?;
+            Ok(Opened { file, bytes, held })
+        };
+        turn.compute(work).await?
+    }
+
+    /// The bytes from `first` on, `count` of them.
+    pub fn into_body(mut self, first: u64, count: u64) -> ApiResult<Body> {
+        self.file.seek(SeekFrom::Start(first)).map_err(ApiError::internal)?;
+        let part = tokio::fs::File::from_std(self.file).take(count);
+        let pieces = ReaderStream::with_capacity(part, PIECE);
+        let held = self.held;
+        // The copy counts until its last piece is sent, or its client has gone.
+        Ok(Body::from_stream(pieces.inspect(move |_| drop(held.clone()))))
+    }
+}

@@ -1,0 +1,41 @@
+//! Headers that tell browsers what an answer may do: nothing, but for the pages of the documentation, which run their own
+//! scripts (W3C Content Security Policy 3).
+
+use axum::extract::Request;
+use axum::http::{HeaderName, HeaderValue, header};
+use axum::middleware::Next;
+use axum::response::Response;
+
+/// No script, no form, nothing that is fetched, in no frame. Styles within a page or a picture are its own.
+const NOTHING: &str = "default-src 'none'; style-src 'unsafe-inline'; base-uri 'none'; \
+     form-action 'none'; frame-ancestors 'none'";
+/// Scripts, styles and pictures of this service, which ask this service only.
+const OWN: &str = "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; \
+     img-src 'self' data:; connect-src 'self'; base-uri 'none'; form-action 'none'; \
+     frame-ancestors 'none'";
+
+/// The headers of every answer.
+pub fn guarded(mut response: Response) -> Response {
+    let fixed = [
+        (header::CONTENT_SECURITY_POLICY, NOTHING),
+        (header::X_CONTENT_TYPE_OPTIONS, "nosniff"),
+        // Addresses hold ids, which lead to patients.
+        (header::REFERRER_POLICY, "no-referrer"),
+    ];
+    for (name, value) in fixed {
+        set_once(&mut response, name, value);
+    }
+    response
+}
+
+/// Those of the pages of the documentation.
+pub async fn of_pages(request: Request, next: Next) -> Response {
+    let mut response = next.run(request).await;
+    set_once(&mut response, header::CONTENT_SECURITY_POLICY, OWN);
+    response
+}
+
+fn set_once(response: &mut Response, name: HeaderName, value: &'static str) {
+    let headers = response.headers_mut();
+    headers.entry(name).or_insert(HeaderValue::from_static(value));
+}

@@ -1,0 +1,148 @@
+//! Bodies of requests on their way in: small ones in memory, others in a file without a name in the data folder, which is
+//! gone when nobody has it open any more. Their hash is taken while they come.
+
+use std::fs::File;
+use std::io::{Read as _, Seek as _, Write as _};
+use std::sync::Arc;
+
+use bytes::{Bytes, BytesMut};
+use sha2::{Digest, Sha256};
+
+use super::budget::Held;
+use super::error::{ApiError, ApiResult};
+use crate::schema::wire::canonical::hex;
+use crate::store::{Store, StoreError};
+
+/// Bytes of one body in memory at a time; one that has no more never reaches the disk.
+pub const IN_MEMORY: usize = 256 << 10;
+
+/// Free space that is left alone.
+#[derive(Clone)]
+pub struct Ground {
+    pub store: Store,
+    pub floor_bytes: u64,
+}
+
+impl Ground {
+    /// Refuses bytes that would leave less free space than the floor.
+    pub fn require(&self, bytes: u64) -> ApiResult<()> {
+        let (free, floor) = (self.store.free_space()?, self.floor_bytes);
+        if free >= floor.saturating_add(bytes) {
+            return Ok(());
+        }
+        tracing::error!(free, floor, bytes, "a body finds no room");
+        Err(ApiError::storage_full())
+    }
+}
+
+/// A body that comes.
+pub struct Spool {
+    ground: Ground,
+    held: Arc<Held>,
+    buffer: BytesMut,
+    hasher: Sha256,
+    file: Option<File>,
+    bytes: u64,
+}
+
+/// A body that has come.
+pub struct Received {
+    content: Content,
+    pub bytes: u64,
+    pub sha256: [u8; 32],
+    _held: Arc<Held>,
+}
+
+enum Content {
+    Memory(Bytes),
+    File(File),
+}
+
+/// What is written at once, on a thread that may block.
+struct Batch {
+    file: Option<File>,
+    hasher: Sha256,
+    bytes: Bytes,
+}
+
+impl Spool {
+    pub fn new(ground: Ground, held: Arc<Held>) -> Spool {
+        let (buffer, hasher) = (BytesMut::new(), Sha256::new());
+        Spool { ground, held, buffer, hasher, file: None, bytes: 0 }
+    }
+
+    /// Takes what came next.
+    pub async fn push(&mut self, frame: &[u8]) -> ApiResult<()> {
+        self.bytes += frame.len() as u64;
+        self.buffer.extend_from_slice(frame);
+        if self.buffer.len() >= IN_MEMORY {
+            self.write().await?;
+        }
+        Ok(())
+    }
+
+    async fn write(&mut self) -> ApiResult<()> {
+        self.ground.require(self.buffer.len() as u64)?;
+        let bytes = self.buffer.split().freeze();
+        let (file, hasher) = (self.file.take(), std::mem::take(&mut self.hasher));
+        let (batch, store) = (Batch { file, hasher, bytes }, self.ground.store.clone());
+        let written = tokio::task::spawn_blocking(move || batch.write(&store)).await;
+        let batch = written.map_err(ApiError::internal)??;
+        (self.file, self.hasher) = (batch.file, batch.hasher);
+        Ok(())
+    }
+
+    /// All of it.
+    pub async fn finish(mut self) -> ApiResult<Received> {
+        let content = if self.bytes <= IN_MEMORY as u64 && self.file.is_none() {
+            let bytes = self.buffer.split().freeze();
+            self.hasher.update(&bytes);
+            Content::Memory(bytes)
+        } else {
+            self.write().await?;
+            Content::File(self.file.take().ok_or_else(|| ApiError::internal("a lost file"))?)
+        };
+        let sha256 = self.hasher.finalize().into();
+        Ok(Received { content, bytes: self.bytes, sha256, _held: self.held })
+    }
+}
+
+impl Batch {
+    fn write(mut self, store: &Store) -> Result<Batch, StoreError> {
+        let mut file = match self.file.take() {
+            Some(file) => file,
+            None => store.nameless_file()?,
+        };
+        file.write_all(&self.bytes)?;
+        self.hasher.update(&self.bytes);
+        Ok(Batch { file: Some(file), hasher: self.hasher, bytes: Bytes::new() })
+    }
+}
+
+impl Received {
+    /// All of its bytes. Reads a file: not for an async thread.
+    pub fn read(&mut self) -> Result<Bytes, StoreError> {
+        match &mut self.content {
+            Content::Memory(bytes) => Ok(bytes.clone()),
+            Content::File(file) => {
+                let mut bytes = Vec::with_capacity(usize::try_from(self.bytes).unwrap_or(0));
+                file.rewind()?;
+                file.read_to_end(&mut bytes)?;
+                Ok(bytes.into())
+            }
+        }
+    }
+
+    /// Small as it is known to be.
+    pub async fn into_bytes(mut self) -> ApiResult<Bytes> {
+        if let Content::Memory(bytes) = self.content {
+            return Ok(bytes);
+        }
+        let read = tokio::task::spawn_blocking(move || self.read()).await;
+        Ok(read.map_err(ApiError::internal)??)
+    }
+
+    pub fn sha256_hex(&self) -> String {
+        hex(&self.sha256)
+    }
+}

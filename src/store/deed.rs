@@ -1,0 +1,29 @@
+//! A deed: something that is done and noted in the audit log.
+
+use super::database::Row;
+
+/// What somebody does.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Deed {
+    pub tenant: String,
+    /// The id of a key, `command`, or `retention`.
+    pub actor: String,
+    /// Method and route, or the command.
+    pub action: String,
+    /// The id of what it is done to, empty where there is none.
+    pub object: String,
+    /// The id of the request.
+    pub request: String,
+}
+
+impl Deed {
+    pub(super) fn of_row(row: &Row) -> Result<Deed, sqlx::Error> {
+        Ok(Deed {
+            tenant: row.try_get("tenant")?,
+            actor: row.try_get("actor")?,
+            action: row.try_get("action")?,
+            object: row.try_get("object")?,
+            request: row.try_get("request")?,
+        })
+    }
+}
