@@ -19,6 +19,7 @@ use crate::jobs::response::{
     COLUMNS_FILE, COLUMNS_MEDIA_TYPE, DESCRIPTION_FILE, DESCRIPTION_MEDIA_TYPE,
 };
 use crate::library::responses::{Applied, FoundResponse, LoadedResponse, MissingResponse};
+use crate::library::upload::not_written;
 use crate::schema::ErrorCode;
 use crate::schema::applied::{AppliedDocument, ApplyDocument};
 use crate::schema::key::Scope;
@@ -147,7 +148,7 @@ async fn rest(service: &Service, found: &FoundResponse, headers: &HeaderMap) -> 
     } else {
         let turn = service.parse_turn().await?;
         let loaded = service.responses.load(found).await?;
-        let written = move || loaded.rest_glb().map_err(unwritable);
+        let written = move || loaded.rest_glb().map_err(not_written);
         let file = Opened::made(service, &turn, written).await?;
         conditional::file(headers, file, (GLB_MEDIA_TYPE, "rest.glb"), &tag)?
     };

@@ -137,7 +137,7 @@ fn encode(shape: &StoredShape, frame: Frame) -> Result<Vec<u8>, Problem> {
     written.map_err(not_written)
 }
 
-fn not_written(error: impl std::fmt::Display) -> Problem {
+pub fn not_written(error: impl std::fmt::Display) -> Problem {
     Problem::new(ErrorCode::MeshParse, format!("the mesh cannot be written: {error}"))
 }
 

@@ -17,7 +17,7 @@ use nalgebra::Matrix3;
 use rayon::prelude::*;
 
 use super::lanes::{Lanes, add_product, add_transposed, negated};
-use super::scaling::scaled;
+use super::scaling::{factor, times};
 use super::vector::{column, dot, interleave, norm, ratio};
 use super::vectorised::vectorised;
 use super::{
@@ -79,36 +79,22 @@ pub fn solve(
         let at_rest = SolveReport::at_rest(system.free_unknowns(), wanted);
         return Ok(nothing_to_solve(right_hand_side, &at_rest));
     }
-    let alone = std::slice::from_ref(right_hand_side);
-    let solve = |sides: &[Unknowns]| {
-        Ok(vec![solve_scaled(system, &sides[0], stationary, tolerance, progress)?])
-    };
-    scaled(alone, solve).map(|mut solutions| solutions.remove(0))
-}
-
-fn solve_scaled(
-    system: &System,
-    right_hand_side: &Unknowns,
-    stationary: &Stationary,
-    tolerance: &Tolerance,
-    progress: &dyn Progress,
-) -> Result<Solution, SolverError> {
-    let wanted = tolerance.relative_residual;
     check_memory(system, tolerance.memory_mb)?;
     let inverse = inverse_diagonal(system)?;
-    let right_hand_side = interleave::<1, 3>(std::slice::from_ref(right_hand_side));
+    let factor = factor(right_hand_side.as_flattened().iter());
+    let right_hand_side = interleave::<1, 3>(&[times(right_hand_side, factor)]);
     let mut run = Run::new(system, &inverse, &right_hand_side);
-    match stationary.iteration {
+    let mut solution = match stationary.iteration {
         Iteration::GaussSeidel => {
             let mut sweep = GaussSeidel::new(system, &inverse, &right_hand_side);
             run.iterate(stationary, tolerance, progress, |run| {
                 sweep.sweep(&mut run.x, &mut run.residual)
             })?;
-            Ok(run.solution("gauss_seidel", String::new(), wanted))
+            run.solution("gauss_seidel", String::new(), wanted)
         }
         Iteration::Jacobi => {
             run.iterate(stationary, tolerance, progress, |run| run.jacobi(1.0))?;
-            Ok(run.solution("jacobi", String::new(), wanted))
+            run.solution("jacobi", String::new(), wanted)
         }
         Iteration::DampedJacobi => {
             tell(progress, 0, 1.0, wanted)?;
@@ -118,9 +104,11 @@ fn solve_scaled(
             let why = format!(
                 "omega {omega:.3} is {DAMPING} of the limit 2 / lambda_max(D^-1 K), lambda_max {lambda:.3}; "
             );
-            Ok(run.solution("damped_jacobi", why, wanted))
+            run.solution("damped_jacobi", why, wanted)
         }
-    }
+    };
+    solution.unknowns = times(&solution.unknowns, factor.recip());
+    Ok(solution)
 }
 
 /// lambda_max(D^-1 K) over the free unknowns, from below, by power iteration until it grows by less than that
