@@ -21,7 +21,7 @@ const SHARP: f64 = 0.5;
 const FACING: f64 = 0.5;
 
 /// Faces whose direction is taken, evenly chosen.
-const MEASURED_FACES: usize = 1000;
+const MEASURED_FACES: usize = 250;
 
 /// Warnings of a skin that is no skin.
 pub(super) fn doubtful_skin(scene: &Scene, is_stated: bool) -> Vec<Warning> {
