@@ -76,7 +76,7 @@ fn meshes() -> Meshes {
     ]))
 }
 
-const CASE: &str = r#"{"units":"mm","volume":"block","bones":[{"name":"base","mesh":"plate"}],
+const CASE: &str = r#"{"units":"mm","volume":"block","allow_unfixed":true,"bones":[{"name":"base","mesh":"plate"}],
     "skin":{"node_set":"z_max"},"segments":[{"name":"base","nodes":{"node_set":"z_min"}}],
     "landmarks":{"tip":[40,30,40]},
     "materials":{"*":{"young_modulus_kpa":15,"poisson_ratio":0.4}}}"#;
