@@ -57,7 +57,7 @@ mod tests {
         let parts = [
             tissue(1e9, 0.0, 0.0),
             tissue(1e9, 0.499_999_999_999_999_9, 100.0),
-            tissue(1e-300, 0.0, 0.0),
+            tissue(1e-9, 0.0, 0.0),
         ];
         for shares in [[1.0, 0.0, 0.0], [0.5, 0.5, 0.0], [0.0, 0.25, 0.75], [0.0, 0.0, 1.0]] {
             let mixed = mixture(&[0, 1, 2].map(|part| (shares[part], parts[part])));

@@ -150,9 +150,13 @@ fn measured(scene: &Scene, prediction: Prediction, truth: &Known) -> Answer {
     }
 }
 
-/// Warnings of an answer, without those of how a scene is stated: they come with every answer, right or wrong.
+/// Warnings of how a scene is stated: they come with every answer, right or wrong.
+const OF_THE_SCENE: [&str; 4] =
+    ["sliding-beside-segment", "skin-held", "skin-inwards", "skin-unnamed"];
+
+/// Warnings of an answer, without those of its scene.
 fn of_the_answer(mut warnings: Vec<Warning>) -> Vec<Warning> {
-    warnings.retain(|warning| warning.code != "sliding-beside-segment");
+    warnings.retain(|warning| !OF_THE_SCENE.contains(&warning.code));
     warnings
 }
 

@@ -251,10 +251,15 @@ fn parts_that_hang_on_two_nodes_or_fewer_are_refused_with_their_place() {
 // V.45: each a typed error with its place and numbers.
 
 fn jaw_and_skull(shape: CellShape) -> Case {
-    let mesh = block(Vector::new(40.0, 20.0, 10.0), [8, 4, 3], shape);
+    let mut mesh = block(Vector::new(40.0, 20.0, 10.0), [8, 4, 3], shape);
+    let bone = ["x_min", "x_max"].map(|end| mesh.node_sets[end].clone()).concat();
+    let top = mesh.node_sets["z_max"].iter().copied();
+    let skin = top.filter(|node| !bone.contains(node)).collect();
+    mesh.node_sets.insert("skin".to_owned(), skin);
     let mut case = case_of(mesh, material(15.0, 0.45));
     case.segments.push(CaseSegment { name: "jaw".to_owned(), nodes: set("x_min") });
     case.fixed.push(set("x_max"));
+    case.skin = Some(set("skin"));
     case
 }
 
