@@ -147,7 +147,7 @@ def slicer_frame(path):
             array = vtk_read(reader, path).GetFieldData().GetAbstractArray("SPACE")
             mark = array.GetValue(0) if isinstance(array, vtk.vtkStringArray) else ""
         case ".stl":
-            mark = space_mark(path.read_bytes()[:80].decode())
+            mark = space_mark(path.read_bytes()[:80].split(b"\0")[0].decode())
         case ".ply":
             head = path.read_bytes().split(b"end_header")[0].decode()
             mark = space_mark("\n".join(line for line in head.splitlines() if line.startswith("comment")))
