@@ -3,6 +3,7 @@
 FACIES_ADDRESS and FACIES_API_KEY say which. Fails where an exit code or an output is not the promised one.
 """
 
+import html
 import json
 import os
 import pathlib
@@ -26,6 +27,12 @@ def shell(script: str, environment: dict[str, str], folder: pathlib.Path) -> int
     if told.returncode not in (0, 1, 2, 3, 4, 5):
         print(told.stderr)
     return told.returncode
+
+
+def told_by(folder: pathlib.Path, *arguments: str) -> str:
+    """What the gate prints."""
+    command = [sys.executable, str(HERE / "facies_gate.py"), *arguments]
+    return subprocess.run(command, cwd=folder, timeout=120, check=False, stdout=subprocess.PIPE, text=True).stdout
 
 
 def action(folder: pathlib.Path, **inputs: str) -> tuple[int, dict[str, str]]:
@@ -89,8 +96,17 @@ def main() -> None:
         expect("which sent and solved nothing anew", second["job"], first["job"])
         expect("the same in GitLab", gitlab(folder, STUDY=str(STUDY)), 0)
 
-        code, _ = action(folder, study=str(STUDY), baseline_tag="nobody")
+        code, _ = action(folder, study=str(STUDY), tag="branch", baseline_tag="nobody")
         expect("a baseline that is not there", (code, failures(report) > 0), (5, True))
+        expect("which speaks of its tag", "'nobody'" in html.unescape(report.read_text()), True)
+        other = changed(folder, "other", plans=["patch 1 mm"])
+        code, created = action(folder, study=other, baseline_tag="new")
+        expect("a first run makes its baseline", (code, created["outcome"]), (0, "pass"))
+        loose = changed(folder, "loose", plans=["patch 1 mm"], thresholds={"p95_mm": 50.0})
+        code, later = action(folder, study=loose, baseline_tag="new")
+        expect("and a later one is held against it", (code, later["outcome"]), (0, "pass"))
+        told = told_by(folder, loose, "--baseline-tag", "new")
+        expect("with its rows", f"rows are those of study {created['job']}" in told, True)
         worse = changed(folder, "worse", thresholds={"p95_mm": 1e-9})
         expect("rows above a threshold", action(folder, study=worse)[0], 1)
         expect("with failures in the test results", failures(report) > 0, True)

@@ -2,7 +2,13 @@
 """Posts a study of validation cases to a facies service and fails where it found a regression.
 
 The study is a document as for `facies study --spec`: its cases are files beside it, with a case and a plan.
-Meshes and cases that the service has already are not sent again. Needs Python and nothing else.
+Meshes and cases that the service has already are not sent again, and rows that it has solved before are not solved again.
+Needs Python and nothing else.
+
+    facies_gate.py study.json --baseline-tag main
+
+is the first run and every later one: where no study has the tag yet, this one gets it and is the baseline of those that
+follow. With `--tag` it is tagged in any case, and a later run is compared with the newest that has the tag.
 
 Exit codes, those of `facies study`: 0 pass, 1 worse or failed, 2 refused input, 3 the service is out of
 reach, 4 incomplete, 5 no baseline.
@@ -12,6 +18,7 @@ from __future__ import annotations
 
 import argparse
 import hashlib
+import html
 import json
 import os
 import pathlib
@@ -147,17 +154,54 @@ def baseline_of(service: Service, arguments: argparse.Namespace) -> str | None:
     query = urllib.parse.urlencode(
         {"kind": "study", "status": "successful", "tag": arguments.baseline_tag, "limit": 1})
     found = service.document("GET", f"/v1/jobs?{query}")["items"]
-    return found[0]["id"] if found else NO_JOB
+    if found:
+        return found[0]["id"]
+    if arguments.tag in ("", arguments.baseline_tag):
+        arguments.tag = arguments.baseline_tag
+        say(f"{no_study(arguments)}: this one gets it and is the baseline of later ones")
+        return None
+    say(f"{no_study(arguments)}: run once without --tag, or with --tag {arguments.baseline_tag}")
+    return NO_JOB
+
+
+def no_study(arguments: argparse.Namespace) -> str:
+    """Why there is no baseline."""
+    return f"no successful study has the tag {arguments.baseline_tag!r} of --baseline-tag"
 
 
 def finished(service: Service, job: dict, seconds: float) -> dict:
-    """The job once it has ended."""
+    """The job once it has ended; where it is meanwhile is printed when it changes."""
     until = time.monotonic() + seconds
+    told = ""
     while job["status"] in ("accepted", "running"):
         if time.monotonic() > until:
             raise Stop(OUT_OF_REACH, f"job {job['id']} is {job['status']} after {seconds:.0f} s")
-        job = service.document("GET", f"/v1/jobs/{job['id']}", Prefer="wait=30")
+        told, before = progress(job), told
+        if told != before:
+            say(told)
+        job = service.document("GET", f"/v1/jobs/{job['id']}", Prefer="wait=5")
     return job
+
+
+def progress(job: dict) -> str:
+    """Where a job is, in one line."""
+    if job["status"] == "accepted":
+        return f"waits, {job['queue_position']} before it" if "queue_position" in job else "waits"
+    parts = f", part {job['iteration'] + 1} (rows and truths)" if "iteration" in job else ""
+    return f"{job['progress']:3d} % {job.get('phase', '')}{parts}"
+
+
+def expected(truth: dict) -> str:
+    """What the truth of a scene will cost, in one line."""
+    time_s = truth.get("time_s")
+    takes = f", {time_s['low']:.0f} to {time_s['high']:.0f} s on one thread" if time_s else ""
+    return (f"the truth of {truth['scene']} is solved on {truth['meshes']} meshes, {truth['solves']} times each, "
+            f"the finest with {truth['cells']} cells{takes}")
+
+
+def say(words: str) -> None:
+    """A line that a pipeline shows at once."""
+    print(words, flush=True)
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -176,7 +220,11 @@ def run(arguments: argparse.Namespace) -> int:
     baseline = baseline_of(service, arguments)
     tags = [*study.get("tags", []), *([arguments.tag] if arguments.tag else [])]
     job = service.document("POST", "/v1/jobs", {**study, "kind": "study", "tags": tags})
-    print(f"study {job['id']}", flush=True)
+    say(f"study {job['id']}" + (", known and not solved again" if job["deduplicated"] else ""))
+    if arguments.tag and arguments.tag not in job["tags"]:
+        say(f"it was there before and has not the tag {arguments.tag!r}: --baseline {job['id']} names it")
+    for truth in job.get("truths", []) if job["status"] in ("accepted", "running") else []:
+        say(expected(truth))
     job = finished(service, job, arguments.timeout_s)
     if job["status"] != "successful":
         raise Stop(FAILED, f"job {job['id']} is {job['status']}: {json.dumps(job.get('error'))}")
@@ -184,11 +232,18 @@ def run(arguments: argparse.Namespace) -> int:
     report = f"/v1/jobs/{job['id']}/report{query}"
     if arguments.report:
         junit, _ = service.ask("GET", report, Accept="application/xml")
-        pathlib.Path(arguments.report).write_bytes(junit)
-    verdict = service.document("GET", report, Accept="application/json")["verdict"]
+        no_job = f"job {NO_JOB} is no study that has ended well"
+        text = junit.decode().replace(no_job, html.escape(no_study(arguments), quote=True))
+        pathlib.Path(arguments.report).write_text(text, encoding="utf-8")
+    found = service.document("GET", report, Accept="application/json")
+    verdict = found["verdict"]
+    if rows_of := found.get("rows_of"):
+        say(f"rows are those of study {rows_of.get('job')}, solved {rows_of['created']}, judged anew")
+    for skipped in found.get("skipped", []):
+        say(f"{skipped['label']} does not apply to {skipped['scene']}: {skipped['reason']}")
     for reason in verdict["reasons"]:
-        print(reason)
-    print(f"{verdict['rows']} rows, {verdict['worse']} worse; outcome {verdict['outcome']}")
+        say(reason.replace(f"job {NO_JOB} is no study that has ended well", no_study(arguments)))
+    say(f"{verdict['rows']} rows, {verdict['worse']} worse; outcome {verdict['outcome']}")
     tell(job["id"], verdict["outcome"])
     return EXIT_CODES[verdict["outcome"]]
 
@@ -205,7 +260,7 @@ def main() -> int:
     parser.add_argument("study", help="a study document; its cases are files beside it")
     parser.add_argument("--baseline", default="", help="the job of the study to compare with")
     parser.add_argument("--baseline-tag", default="",
-                        help="compare with the newest successful study of this tag")
+                        help="compare with the newest successful study of this tag; the first gets it")
     parser.add_argument("--tag", default="", help="a tag for this study")
     parser.add_argument("--report", default="", help="a file for the test results (JUnit)")
     parser.add_argument("--timeout-s", type=float, default=3600.0,

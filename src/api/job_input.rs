@@ -7,6 +7,7 @@ use tokio::runtime::Handle;
 use super::Service;
 use super::error::{ApiError, ApiResult};
 use super::parameters::id;
+use super::report;
 use crate::jobs::{
     CompareInput, JobError, JobInput, MeshSource, OptimiseInput, PredictInput, ResponseInput,
     SourceError, StudyInput,
@@ -17,6 +18,7 @@ use crate::schema::job::JobStatus;
 use crate::schema::job_document::JobDocument;
 use crate::schema::predict::result::EngineDocument;
 use crate::schema::study::document::SceneReference;
+use crate::schema::study::expected::{TruthCostDocument, truth_costs};
 use crate::schema::{
     CaseDocument, CompareDocument, Faults, Limits, OptimiseDocument, PlanDocument, Pointer,
     PredictDocument, Problem, ReportDocument, ResponseDocument, StudyDocument,
@@ -49,8 +51,14 @@ async fn of_prediction(service: &Service, spec: PredictDocument) -> ApiResult<Ne
         Ok(prepared.spec_hash)
     };
     let (input, spec_hash) = prepared(service, input, prepare).await?;
-    let new =
-        Accepted { case_id: Some(row.id), shared_cases: Vec::new(), spec_hash, tags, mesh_ids };
+    let new = Accepted {
+        case_id: Some(row.id),
+        shared_cases: Vec::new(),
+        spec_hash,
+        tags,
+        mesh_ids,
+        study: None,
+    };
     new.with(&JobInput::Predict(input))
 }
 
@@ -81,7 +89,8 @@ async fn of_comparison(service: &Service, spec: CompareDocument) -> ApiResult<Ne
     let input = CompareInput { job: None, queue_s: None, spec };
     let admit = |input: &CompareInput, sources: &dyn MeshSource, _: &Limits| input.admit(sources);
     let (input, ()) = prepared(service, input, admit).await?;
-    let new = Accepted { case_id, shared_cases: Vec::new(), spec_hash, tags, mesh_ids };
+    let new =
+        Accepted { case_id, shared_cases: Vec::new(), spec_hash, tags, mesh_ids, study: None };
     new.with(&JobInput::Compare(input))
 }
 
@@ -99,7 +108,8 @@ async fn of_response(service: &Service, mut spec: ResponseDocument) -> ApiResult
     };
     let (input, spec_hash) = prepared(service, input, prepare).await?;
     let case_id = Some(row.id);
-    let new = Accepted { case_id, shared_cases: Vec::new(), spec_hash, tags, mesh_ids };
+    let new =
+        Accepted { case_id, shared_cases: Vec::new(), spec_hash, tags, mesh_ids, study: None };
     new.with(&JobInput::Response(input))
 }
 
@@ -118,7 +128,8 @@ async fn of_optimisation(service: &Service, mut spec: OptimiseDocument) -> ApiRe
     };
     let (input, spec_hash) = prepared(service, input, prepare).await?;
     let case_id = Some(row.id);
-    let new = Accepted { case_id, shared_cases: Vec::new(), spec_hash, tags, mesh_ids };
+    let new =
+        Accepted { case_id, shared_cases: Vec::new(), spec_hash, tags, mesh_ids, study: None };
     new.with(&JobInput::Optimise(input))
 }
 
@@ -163,17 +174,24 @@ async fn of_study(service: &Service, mut spec: StudyDocument) -> ApiResult<NewJo
     }
     let ids: Vec<String> = owners.into_iter().collect();
     let tags = spec.tags.clone();
-    let input = StudyInput { job: None, queue_s: None, cases, baseline, spec };
+    let input = StudyInput { job: None, queue_s: None, cases, baseline, earlier: None, spec };
     let mesh_ids = input.mesh_ids();
     let prepare = |input: &StudyInput, sources: &dyn MeshSource, limits: &Limits| {
-        input.prepare(sources, limits).map(|prepared| prepared.spec_hash)
+        let prepared = input.prepare(sources, limits)?;
+        let truths = truth_costs(&prepared.study.scenes);
+        Ok((prepared.spec_hash, AcceptedStudy { rows_key: prepared.rows_key, truths }))
     };
-    let (input, spec_hash) = prepared(service, input, prepare).await?;
+    let (mut input, (spec_hash, mut study)) = prepared(service, input, prepare).await?;
+    input.earlier = report::with_rows(service, &study.rows_key, &ids).await?.map(Box::new);
+    if input.earlier.is_some() {
+        study.truths.clear();
+    }
     let (case_id, shared_cases) = match ids.as_slice() {
         [only] => (Some(only.clone()), Vec::new()),
         _ => (None, ids),
     };
-    let new = Accepted { case_id, shared_cases, spec_hash, tags, mesh_ids };
+    let study = Some(study);
+    let new = Accepted { case_id, shared_cases, spec_hash, tags, mesh_ids, study };
     new.with(&JobInput::Study(input))
 }
 
@@ -184,7 +202,7 @@ async fn baseline(service: &Service, job: &str) -> ApiResult<(ReportDocument, Ve
     if service.store.job(&id).await?.is_none() {
         return Err(fault(AT, ErrorCode::UnknownJob, "there is no such job"));
     }
-    let found = super::report::stored_report(service, &id).await?;
+    let found = report::stored_report(service, &id).await?;
     let missing = || fault(AT, ErrorCode::NoSuchOutput, "the job is no study that has ended well");
     Ok((found.ok_or_else(missing)?.1, service.store.cases_of_job(&id).await?))
 }
@@ -214,12 +232,22 @@ struct Accepted {
     spec_hash: String,
     tags: Vec<String>,
     mesh_ids: Vec<String>,
+    study: Option<AcceptedStudy>,
+}
+
+/// What is known of a study beside that: the key of its rows, and what the truths that it solves will take.
+struct AcceptedStudy {
+    rows_key: String,
+    truths: Vec<TruthCostDocument>,
 }
 
 impl Accepted {
     fn with(self, input: &JobInput) -> ApiResult<NewJob> {
         let engine = serde_json::to_string(&EngineDocument::this()).map_err(ApiError::internal)?;
+        let truths = self.study.as_ref().map(|study| serde_json::to_string(&study.truths));
         Ok(NewJob {
+            truths: truths.transpose().map_err(ApiError::internal)?,
+            rows_key: self.study.map(|study| study.rows_key),
             id: uuid::Uuid::now_v7().to_string(),
             kind: input.kind().name(),
             priority: input.kind().priority(),

@@ -33,6 +33,7 @@ pub fn status_info(row: &JobRow, deduplicated: bool) -> ApiResult<StatusInfo> {
         case: row.case_id.clone(),
         tags: row.tags.clone(),
         deduplicated,
+        truths: parsed(row.truths.as_deref())?.unwrap_or_default(),
         error: parsed(row.error.as_deref())?,
         warnings: warnings.unwrap_or_default(),
         links: links(row, results.as_ref()),

@@ -193,3 +193,25 @@ pub(super) async fn stored_report(
     let report = serde_json::from_slice(&bytes).map_err(ApiError::internal)?;
     Ok(Some((row, report)))
 }
+
+/// The report of an earlier study with the same rows, if its cases are all among those of the new one: it is kept with the
+/// new one's document, and goes with these.
+pub(super) async fn with_rows(
+    service: &Service,
+    rows_key: &str,
+    owners: &[String],
+) -> ApiResult<Option<ReportDocument>> {
+    for job in service.store.studies_with_rows(rows_key).await? {
+        let of = service.store.cases_of_job(&job).await?;
+        if !of.iter().all(|case| owners.contains(case)) {
+            continue;
+        }
+        let Some((_, report)) = stored_report(service, &job).await? else {
+            continue;
+        };
+        if report.rows_key == rows_key && report.is_complete() {
+            return Ok(Some(report));
+        }
+    }
+    Ok(None)
+}

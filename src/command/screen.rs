@@ -65,7 +65,7 @@ impl Progress for TerminalProgress {
     }
 
     fn step(&self, done: usize, of: usize) {
-        self.tell(format!("row {} of {of}", (done + 1).min(of)), false);
+        self.tell(format!("part {} of {of} (rows and truths)", (done + 1).min(of)), false);
     }
 
     fn is_cancelled(&self) -> bool {

@@ -16,6 +16,7 @@ use crate::jobs::{JobInput, StudyInput, Workplace, work};
 use crate::schema::study::document::{
     CaseReference, PlanReference, SceneReference, StudyKind, ThresholdsDocument,
 };
+use crate::schema::study::expected::truth_costs;
 use crate::schema::study::report::{OutcomeName, ReportDocument, RowDocument};
 use crate::schema::{CaseDocument, Limits, MaterialDocument, StudyDocument};
 use mechanics::study::methods;
@@ -67,6 +68,9 @@ pub struct Arguments {
     /// The report.json of an earlier study: rows that are worse than there end the program with 1
     #[arg(long, value_name = "FILE")]
     baseline: Option<PathBuf>,
+    /// A folder in which rows are kept by their content: another threshold or baseline solves nothing again
+    #[arg(long, value_name = "FOLDER", conflicts_with = "stability")]
+    keep: Option<PathBuf>,
     /// Rows with a larger p95 error of the skin end the program with 1
     #[arg(long, value_name = "MM")]
     threshold_p95_mm: Option<f64>,
@@ -79,15 +83,28 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
     if arguments.stability {
         return stability::run(&arguments.out, &methods::available());
     }
-    let input = arguments.input()?;
+    let mut input = arguments.input()?;
     let limits = Limits::default();
     let sources = FileSource::of_cases(input.cases.values(), arguments.scale);
     let place = Workplace { sources: &sources, limits: &limits, out: &arguments.out };
+    let prepared = input.prepare(&sources, &limits)?;
+    let kept = arguments.keep.as_ref().map(|folder| folder.join(prepared.rows_key + ".json"));
+    if let Some(file) = kept.as_ref().filter(|file| file.exists()) {
+        input.earlier = Some(Box::new(read_report(file)?));
+        eprintln!("rows       kept in {}", file.display());
+    } else {
+        for cost in truth_costs(&prepared.study.scenes) {
+            eprintln!("expected   {}", cost.sentence());
+        }
+    }
     let progress = TerminalProgress::start();
     let done = work(&JobInput::Study(input), &place, &progress);
     progress.finish();
     let done = done?;
     let report = read_report(&arguments.out.join(REPORT_JSON))?;
+    if let Some(file) = kept.filter(|_| report.rows_of.is_none() && report.is_complete()) {
+        keep(&arguments.out.join(REPORT_JSON), &file)?;
+    }
     print_report(&report);
     print_warnings(&done.result.warnings);
     print_files(&done.files, &arguments.out);
@@ -95,6 +112,16 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
         OutcomeName::Pass => Ok(()),
         outcome => Err(CommandError::Verdict { outcome, reasons: report.verdict.reasons }),
     }
+}
+
+/// Puts a report where a later study with the same rows finds it; half of one is never there.
+fn keep(report: &Path, file: &Path) -> Result<(), CommandError> {
+    let failed = |source| CommandError::Write { path: file.to_owned(), source };
+    let folder = file.parent().unwrap_or(Path::new(""));
+    std::fs::create_dir_all(folder).map_err(failed)?;
+    let part = file.with_extension("part");
+    std::fs::copy(report, &part).map_err(failed)?;
+    std::fs::rename(&part, file).map_err(failed)
 }
 
 impl Arguments {
@@ -129,7 +156,7 @@ impl Arguments {
             spec.thresholds = Some(ThresholdsDocument { p95_mm: Some(p95_mm), ..given });
         }
         let baseline = self.read_baseline(&mut spec)?;
-        Ok(StudyInput { job: None, queue_s: None, cases, baseline, spec })
+        Ok(StudyInput { job: None, queue_s: None, cases, baseline, earlier: None, spec })
     }
 
     /// The scenes of the arguments, or those of the document, or the usual ones; cases are read.
@@ -246,6 +273,9 @@ fn print_report(report: &ReportDocument) {
         );
         for row in report.rows.iter().filter(|row| row.scene == scene.name) {
             print_row(row);
+        }
+        for skipped in report.skipped.iter().filter(|skipped| skipped.scene == scene.name) {
+            println!("  {} does not apply: {}", skipped.label, skipped.reason);
         }
     }
     println!("\noutcome    {}", report.verdict.outcome.name());

@@ -92,6 +92,15 @@ pub fn study_hash(
     }))
 }
 
+/// The key of the rows of a study: its hash without the rules by which they are judged.
+pub fn rows_key(
+    cases: &[&CaseDocument],
+    spec: &StudyDocument,
+    content_of: &dyn Fn(&str) -> Option<String>,
+) -> String {
+    study_hash(cases, &spec.without_rules(), None, content_of)
+}
+
 /// The hash of a comparison; `content_of` also answers for the predicted skin of a job.
 pub fn compare_hash(spec: &CompareDocument, content_of: &dyn Fn(&str) -> Option<String>) -> String {
     let mut spec = spec.clone();

@@ -7,6 +7,7 @@ use utoipa::ToSchema;
 use crate::schema::job_document::JobKind;
 use crate::schema::link::Link;
 use crate::schema::predict::result::{EngineDocument, ResultDocument};
+use crate::schema::study::expected::TruthCostDocument;
 use crate::schema::wire::warning::WarningDocument;
 
 /// Where a job is in its life.
@@ -98,6 +99,10 @@ pub struct StatusInfo {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub results: Option<ResultDocument>,
+    /// Of a study: what the truths that it has to solve are expected to take, known from the start.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schema(required = false)]
+    pub truths: Vec<TruthCostDocument>,
     pub links: Vec<Link>,
 }
 

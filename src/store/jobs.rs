@@ -21,6 +21,10 @@ pub struct NewJob {
     /// Everything the job needs, resolved.
     pub document: String,
     pub spec_hash: String,
+    /// Of a study: the key of its rows.
+    pub rows_key: Option<String>,
+    /// Of a study: what its truths are expected to take, JSON.
+    pub truths: Option<String>,
     pub engine: String,
     pub tags: Vec<String>,
     /// The meshes that have to stay while the job is there.
@@ -57,6 +61,8 @@ pub struct JobRow {
     pub error: Option<String>,
     /// The manifest, JSON.
     pub result: Option<String>,
+    /// Of a study, JSON.
+    pub truths: Option<String>,
     pub created: i64,
     pub started: Option<i64>,
     pub finished: Option<i64>,
@@ -93,7 +99,7 @@ macro_rules! found {
     ($condition:literal) => {
         concat!(
             "WITH page AS MATERIALIZED (SELECT id, tenant, priority, kind, case_id, spec_hash, engine, status, phase, \
-               progress, iteration, residual, attempt, error, result, created, started, finished, updated \
+               progress, iteration, residual, attempt, error, result, truths, created, started, finished, updated \
                FROM jobs WHERE ",
             $condition,
             "), \
@@ -107,7 +113,7 @@ macro_rules! found {
                    AND jobs.status = 'accepted' AND jobs.priority < places.priority) ELSE 0 END \
                END AS step FROM places) \
              SELECT id, kind, case_id, spec_hash, engine, status, phase, progress, iteration, residual, \
-               attempt, error, result, created, started, finished, updated, \
+               attempt, error, result, truths, created, started, finished, updated, \
                CAST(SUM(step) OVER (PARTITION BY status, priority ORDER BY id) AS BIGINT) AS queue_position, \
                (SELECT string_agg(tag, '\n' ORDER BY tag) FROM job_tags WHERE job_tags.job_id = steps.id) AS tags \
              FROM steps ORDER BY id DESC"
@@ -126,9 +132,11 @@ const CASES: &str = "SELECT case_id FROM jobs WHERE id = $1 AND tenant = $2 AND 
      UNION SELECT job_cases.case_id FROM job_cases JOIN jobs ON jobs.id = job_cases.job_id \
        WHERE jobs.id = $1 AND jobs.tenant = $2";
 const KNOWN: &str = "SELECT id FROM jobs WHERE spec_hash = $1 AND tenant = $2";
+const WITH_ROWS: &str = "SELECT id FROM jobs WHERE rows_key = $1 AND tenant = $2 AND status = 'successful' \
+     ORDER BY id DESC LIMIT 8";
 const INSERT: &str = "INSERT INTO jobs (id, kind, case_id, document, spec_hash, engine, tenant, priority, \
-     traceparent, numerics, status, progress, attempt, losses, claimable_from, created, updated) \
-     VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, 'accepted', 0, 0, 0, 0, \
+     traceparent, numerics, rows_key, truths, status, progress, attempt, losses, claimable_from, created, updated) \
+     VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, 'accepted', 0, 0, 0, 0, \
        (SELECT now_ms FROM clock), (SELECT now_ms FROM clock)) \
      ON CONFLICT (spec_hash) DO NOTHING";
 const DISMISS: &str = "UPDATE jobs SET status = 'dismissed', lease_token = NULL, lease_expires = NULL, \
@@ -160,6 +168,7 @@ fn job_row(row: &Row) -> Result<JobRow, sqlx::Error> {
         attempt: row.try_get("attempt")?,
         error: row.try_get("error")?,
         result: row.try_get("result")?,
+        truths: row.try_get("truths")?,
         created: row.try_get("created")?,
         started: row.try_get("started")?,
         finished: row.try_get("finished")?,
@@ -183,6 +192,16 @@ impl Store {
     pub async fn cases_of_job(&self, id: &str) -> Result<Vec<String>, StoreError> {
         let rows =
             query(CASES).bind(id).bind(self.tenant()).fetch_all(self.database.reader()).await?;
+        Ok(rows.iter().map(|row| row.try_get(0)).collect::<Result<_, _>>()?)
+    }
+
+    /// The newest studies that have ended well with rows of this key.
+    pub async fn studies_with_rows(&self, rows_key: &str) -> Result<Vec<String>, StoreError> {
+        let rows = query(WITH_ROWS)
+            .bind(rows_key)
+            .bind(self.tenant())
+            .fetch_all(self.database.reader())
+            .await?;
         Ok(rows.iter().map(|row| row.try_get(0)).collect::<Result<_, _>>()?)
     }
 
@@ -306,6 +325,8 @@ impl Store {
             .bind(job.priority)
             .bind(&job.traceparent)
             .bind(i64::from(EngineDocument::this().numerics))
+            .bind(&job.rows_key)
+            .bind(&job.truths)
             .execute(&mut *transaction)
             .await?;
         if inserted == 0 {

@@ -25,6 +25,8 @@ pub fn new_job(document: &str, hash: &str) -> NewJob {
         shared_cases: Vec::new(),
         document: document.into(),
         spec_hash: hash.into(),
+        rows_key: None,
+        truths: None,
         engine: "test".into(),
         tags: vec!["a".into()],
         mesh_ids: vec![],

@@ -10,7 +10,7 @@ use super::deadline::Deadline;
 use crate::mesh::Vector;
 use crate::model::fem::strain::deformations;
 use crate::model::problem::{Equilibrium, ModelError};
-use crate::prediction::{Case, Plan, Scene, SceneErrors, Settings, inverted_cells};
+use crate::prediction::{Case, Plan, Scene, SceneErrorCode, SceneErrors, Settings, inverted_cells};
 use crate::progress::Progress;
 use crate::solver::SolverError;
 
@@ -55,6 +55,8 @@ pub(super) enum NoAnswer {
     /// The caller wants no more.
     Cancelled,
     Refused(Refusal),
+    /// The method or its element does not serve this scene: the sentence that says so.
+    Unserved(String),
     /// It took longer than a row may.
     Late(Refusal),
 }
@@ -80,7 +82,11 @@ impl From<Refusal> for NoAnswer {
 
 impl From<SceneErrors> for NoAnswer {
     fn from(errors: SceneErrors) -> Self {
-        NoAnswer::Refused(Refusal::from(&errors))
+        let unserved = |code| code == SceneErrorCode::MethodNotAvailable;
+        match errors.0.iter().find(|error| unserved(error.code)) {
+            Some(error) => NoAnswer::Unserved(error.detail.clone()),
+            None => NoAnswer::Refused(Refusal::from(&errors)),
+        }
     }
 }
 

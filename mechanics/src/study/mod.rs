@@ -16,13 +16,15 @@ pub mod scenes;
 pub mod stability;
 pub mod sweep;
 mod truth;
+mod truth_cost;
 pub mod variant;
 
 pub use answer::LONG_S;
 pub use failure::StudyError;
 pub use levels::{MOST_CELLS, cells_at};
-pub use report::{Errors, Outcome, Report, Row, SceneReport, Solved};
+pub use report::{Errors, Outcome, Report, Row, SceneReport, Skipped, Solved};
 pub use run::{NOT_RUN, run};
+pub use truth_cost::{TruthCost, TruthMesh, truth_cost};
 pub use variant::{ClosedForm, Materials, Study, StudyScene, Truth, Variant};
 
 /// What the caller measures while the study computes: numerics know neither clock nor memory.

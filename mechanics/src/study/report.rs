@@ -7,6 +7,20 @@ use std::collections::BTreeMap;
 pub struct Report {
     pub scenes: Vec<SceneReport>,
     pub rows: Vec<Row>,
+    pub skipped: Vec<Skipped>,
+}
+
+/// A variant that does not serve a scene: it has no rows there.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Skipped {
+    pub scene: String,
+    pub method: String,
+    /// The variant.
+    pub label: String,
+    /// A sentence.
+    pub reason: String,
+    /// Combinations with plans, materials and levels that have no row for this reason.
+    pub rows: usize,
 }
 
 /// A scene at level 0 and what is held for true in it.

@@ -5,7 +5,7 @@ use super::answer::{Answer, Bench, NoAnswer, Refusal};
 use super::error::TrueSkin;
 use super::failure::StudyError;
 use super::levels::Levels;
-use super::report::{Outcome, Report, Row, SceneReport, Solved};
+use super::report::{Outcome, Report, Row, SceneReport, Skipped, Solved};
 use super::truth::{Asked, is_the_truth};
 use super::variant::{Materials, Study, StudyScene, Variant};
 use crate::prediction::{Plan, Scene, Settings, Skin};
@@ -16,7 +16,7 @@ use std::collections::{BTreeMap, BTreeSet};
 pub const NOT_RUN: &str = "not-run";
 
 /// Runs every scene with every plan, material, level and variant. The same study gives the same report but for times
-/// and memory. Combinations that are the truth themselves have no row.
+/// and memory. Combinations that are the truth themselves have no row, nor have variants that do not serve a scene.
 pub fn run(
     study: &Study,
     stopwatch: &dyn Stopwatch,
@@ -29,9 +29,11 @@ pub fn run(
     let begun = stopwatch.seconds();
     let mut report = Report::default();
     for (place, scene) in study.scenes.iter().enumerate() {
-        let (about, rows) = SceneWork { study, place, scene, bench: &bench, begun }.run()?;
+        let work = SceneWork { study, place, scene, bench: &bench, begun };
+        let (about, rows, skipped) = work.run()?;
         report.scenes.push(about);
         report.rows.extend(rows);
+        report.skipped.extend(skipped);
     }
     Ok(report)
 }
@@ -81,7 +83,7 @@ struct Attempt<'a> {
 }
 
 impl<'a> SceneWork<'a> {
-    fn run(&self) -> Result<(SceneReport, Vec<Row>), StudyError> {
+    fn run(&self) -> Result<(SceneReport, Vec<Row>, Vec<Skipped>), StudyError> {
         // 1. The skin that errors are measured on.
         let mut levels = Levels::of(self.scene);
         let skins: Vec<Result<Skin, Refusal>> =
@@ -89,10 +91,12 @@ impl<'a> SceneWork<'a> {
 
         // 2. What the methods answer, for each plan and material.
         let mut attempts = Vec::new();
-        let mut late = Late::new();
+        let (mut late, mut skipped) = (Late::new(), Vec::new());
         for (plan, skin) in self.scene.plans.iter().zip(&skins) {
             for materials in &self.scene.materials {
-                attempts.push(self.attempts(&mut levels, &mut late, (plan, materials), skin)?);
+                let found = self.attempts(&mut levels, &mut late, (plan, materials), skin)?;
+                skipped.extend(found.1);
+                attempts.push(found.0);
             }
         }
 
@@ -123,7 +127,7 @@ impl<'a> SceneWork<'a> {
             truth_error_mm: truths.error_mm,
             truth_s,
         };
-        Ok((about, rows))
+        Ok((about, rows, summed(skipped)))
     }
 
     fn skin(&self, levels: &mut Levels, plan: &Plan) -> Result<Skin, Refusal> {
@@ -140,14 +144,19 @@ impl<'a> SceneWork<'a> {
         late: &mut Late<'a>,
         ((name, plan), materials): (&(String, Plan), &Materials),
         skin: &Result<Skin, Refusal>,
-    ) -> Result<Vec<Attempt<'a>>, StudyError> {
-        let mut attempts = Vec::new();
+    ) -> Result<(Vec<Attempt<'a>>, Vec<Skipped>), StudyError> {
+        let (mut attempts, mut skipped) = (Vec::new(), Vec::new());
         for &level in &self.study.levels {
             for variant in self.study.variants_of(self.place) {
                 if self.bench.progress.is_cancelled() {
                     return Err(StudyError::Cancelled);
                 }
                 if is_the_truth(self.scene, &variant.settings, level) {
+                    continue;
+                }
+                let unserved = skipped.iter().find(|other: &&Skipped| other.label == variant.label);
+                if let Some(unserved) = unserved.cloned() {
+                    skipped.push(unserved);
                     continue;
                 }
                 if let Some(before) = late.get(&(level, variant.label.as_str())) {
@@ -158,6 +167,10 @@ impl<'a> SceneWork<'a> {
                 attempts.push(match answer {
                     Ok(answer) => Attempt { level, variant, answer: Ok(answer) },
                     Err(NoAnswer::Refused(why)) => Attempt { level, variant, answer: Err(why) },
+                    Err(NoAnswer::Unserved(reason)) => {
+                        skipped.push(self.skipped(variant, reason));
+                        continue;
+                    }
                     Err(NoAnswer::Late(why)) => {
                         let detail = format!("not tried: {} with plan {name:?}", why.detail);
                         let after = Refusal::new(&why.code, detail);
@@ -168,7 +181,17 @@ impl<'a> SceneWork<'a> {
                 });
             }
         }
-        Ok(attempts)
+        Ok((attempts, skipped))
+    }
+
+    fn skipped(&self, variant: &Variant, reason: String) -> Skipped {
+        Skipped {
+            scene: self.scene.name.clone(),
+            method: variant.method.clone(),
+            label: variant.label.clone(),
+            reason,
+            rows: 1,
+        }
     }
 
     fn attempt(
@@ -211,6 +234,20 @@ impl<'a> SceneWork<'a> {
             outcome,
         }
     }
+}
+
+/// Each once, with the rows of all that are alike.
+fn summed(skipped: Vec<Skipped>) -> Vec<Skipped> {
+    let mut all: Vec<Skipped> = Vec::new();
+    for one in skipped {
+        let is_like =
+            |other: &&mut Skipped| (&other.label, &other.reason) == (&one.label, &one.reason);
+        match all.iter_mut().find(is_like) {
+            Some(other) => other.rows += one.rows,
+            None => all.push(one),
+        }
+    }
+    all
 }
 
 fn solved(answer: Answer, truth: &Result<TrueSkin, Refusal>) -> Result<Solved, Refusal> {

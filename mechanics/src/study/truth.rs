@@ -26,7 +26,7 @@ const RESIDUAL: f64 = 1e-10;
 const MEMORY_MB: f64 = 12_000.0;
 
 /// Plans for each segment from which on twelve columns cost less than a solve for each plan.
-const PLANS_A_SEGMENT: usize = 3;
+pub(super) const PLANS_A_SEGMENT: usize = 3;
 
 /// Orders outside of this are chance: the meshes are too coarse to show one.
 const ORDERS: std::ops::RangeInclusive<f64> = 0.5..=4.0;
@@ -133,9 +133,13 @@ impl Asked<'_> {
         // 1. The finest mesh and, for its error, one or two before it.
         let mut fields: Vec<Vec<Vec<Found>>> = Vec::new();
         let mut words = String::new();
-        for level in times.saturating_sub(2)..=times {
+        let (mut solved_meshes, of) =
+            (0, self.scene.materials.len() * (times - coarsest(times) + 1) as usize);
+        for level in coarsest(times)..=times {
             let mut of_level = vec![Vec::new(); self.scene.plans.len()];
             for materials in &self.scene.materials {
+                self.progress.step(solved_meshes, of);
+                solved_meshes += 1;
                 let solved = self.solve_plans(levels, (level, materials), element)?;
                 words = solved.words;
                 for (plan, found) in of_level.iter_mut().zip(solved.skins) {
@@ -202,6 +206,7 @@ impl Asked<'_> {
                     }
                     Err(NoAnswer::Cancelled) => return Err(StudyError::Cancelled),
                     Err(NoAnswer::Refused(refusal) | NoAnswer::Late(refusal)) => Err(refusal),
+                    Err(NoAnswer::Unserved(why)) => Err(Refusal::new("method-not-available", why)),
                 },
             });
         }
@@ -273,17 +278,9 @@ impl Finer<'_> {
     /// The columns of the segments that plans move, where they are worth their time; none where plans are
     /// solved one by one.
     fn columns(&self, plans: &[(String, Plan)]) -> Result<Option<Columns>, StudyError> {
-        let sums =
-            plans.iter().map(|(_, plan)| plan).filter(|plan| is_of_segments(plan, &self.case));
-        let mut moved: Vec<String> = sums
-            .clone()
-            .flat_map(|plan| &plan.segments)
-            .filter(|segment| segment.movement != RigidMovement::default())
-            .map(|segment| segment.name.clone())
-            .collect();
-        moved.sort_unstable();
-        moved.dedup();
-        if moved.is_empty() || sums.count() <= PLANS_A_SEGMENT * moved.len() {
+        let sums = plans.iter().filter(|(_, plan)| is_of_segments(plan, &self.case)).count();
+        let moved = moved_segments(plans, &self.case);
+        if moved.is_empty() || sums <= PLANS_A_SEGMENT * moved.len() {
             return Ok(None);
         }
         let Ok(scene) = Scene::new(&self.case, &Plan::default(), &self.settings) else {
@@ -308,11 +305,24 @@ impl Finer<'_> {
 }
 
 /// Whether all that a plan does is to move segments of the case.
-fn is_of_segments(plan: &Plan, case: &Case) -> bool {
+pub(super) fn is_of_segments(plan: &Plan, case: &Case) -> bool {
     let is_of_case = |name: &str| case.segments.iter().any(|segment| segment.name == name);
     plan.prescribed.is_empty()
         && plan.loads.is_empty()
         && plan.segments.iter().all(|segment| is_of_case(&segment.name))
+}
+
+/// The segments that such plans move.
+pub(super) fn moved_segments(plans: &[(String, Plan)], case: &Case) -> Vec<String> {
+    let sums = plans.iter().map(|(_, plan)| plan).filter(|plan| is_of_segments(plan, case));
+    let mut moved: Vec<String> = sums
+        .flat_map(|plan| &plan.segments)
+        .filter(|segment| segment.movement != RigidMovement::default())
+        .map(|segment| segment.name.clone())
+        .collect();
+    moved.sort_unstable();
+    moved.dedup();
+    moved
 }
 
 /// The plan as a sum of columns, at some of their nodes.
@@ -336,6 +346,11 @@ fn sum(columns: &Columns, plan: &Plan, nodes: &[u32]) -> Found {
 
 fn described(elements: &str, unknowns: usize, how: &str) -> String {
     format!("{elements}, {} unknowns{how}", grouped(unknowns))
+}
+
+/// The level from which on meshes are solved, so that the error of the finest is known.
+pub(super) fn coarsest(times: u32) -> u32 {
+    times.saturating_sub(2)
 }
 
 fn halved(times: u32) -> String {

@@ -140,6 +140,13 @@ fn notes(report: &ReportDocument, scene: Option<&str>) -> Vec<String> {
         });
         notes.push(format!("Truth of {}: {}{error}.", about.name, about.truth));
     }
+    let left_out = report.skipped.iter();
+    for skipped in left_out.filter(|skipped| scene.is_none_or(|scene| skipped.scene == scene)) {
+        notes.push(format!(
+            "{} does not apply to {}: {}.",
+            skipped.label, skipped.scene, skipped.reason
+        ));
+    }
     let engine = &report.engine;
     notes.push(format!(
         "{} {} ({}, {}), {}. Not a medical device.",

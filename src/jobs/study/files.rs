@@ -2,7 +2,9 @@
 
 use std::fmt::Write;
 
-use crate::schema::study::report::{OutcomeName, ReportDocument, RowDocument, RowVerdict};
+use crate::schema::study::report::{
+    OutcomeName, ReportDocument, RowDocument, RowVerdict, SkippedDocument,
+};
 
 pub const REPORT_JSON: &str = "report.json";
 pub const REPORT_CSV: &str = "report.csv";
@@ -111,6 +113,11 @@ pub fn junit(report: &ReportDocument) -> String {
             counts.add(row);
             test_case(&mut cases, row);
         }
+        for skipped in report.skipped.iter().filter(|skipped| skipped.scene == scene) {
+            counts.tests += 1;
+            counts.skipped += 1;
+            skipped_case(&mut cases, skipped);
+        }
         suite(&mut body, scene, &counts, &cases);
         suites.join(&counts);
     }
@@ -132,12 +139,13 @@ pub fn junit(report: &ReportDocument) -> String {
     )
 }
 
-/// Scenes in the order of their rows.
+/// Scenes in the order of their rows, then those of which everything is skipped.
 fn scenes(report: &ReportDocument) -> Vec<&str> {
     let mut names: Vec<&str> = Vec::new();
-    for row in &report.rows {
-        if !names.contains(&row.scene.as_str()) {
-            names.push(&row.scene);
+    let skipped = report.skipped.iter().map(|skipped| skipped.scene.as_str());
+    for name in report.rows.iter().map(|row| row.scene.as_str()).chain(skipped) {
+        if !names.contains(&name) {
+            names.push(name);
         }
     }
     names
@@ -211,6 +219,15 @@ fn test_case(cases: &mut String, row: &RowDocument) {
         );
     }
     cases.push_str("</testcase>\n");
+}
+
+/// A variant that does not serve a scene.
+fn skipped_case(cases: &mut String, skipped: &SkippedDocument) {
+    let class = escaped(&format!("study.{}", skipped.scene));
+    let (name, reason) = (escaped(&skipped.label), escaped(&skipped.reason));
+    *cases += &format!(
+        "    <testcase classname=\"{class}\" name=\"{name}\" time=\"0\"><skipped message=\"{reason}\"/></testcase>\n"
+    );
 }
 
 fn problem(cases: &mut String, what: &str, kind: &str, words: &str) {

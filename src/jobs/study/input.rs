@@ -19,6 +19,9 @@ pub struct StudyInput {
     pub cases: BTreeMap<String, CaseDocument>,
     /// The report of the study that the spec names as baseline.
     pub baseline: Option<Box<ReportDocument>>,
+    /// The report of an earlier study that may have the same rows.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub earlier: Option<Box<ReportDocument>>,
     pub spec: StudyDocument,
 }
 
@@ -37,6 +40,12 @@ impl StudyInput {
         ids.sort_unstable();
         ids.dedup();
         ids
+    }
+
+    /// The earlier report, where it has all rows of this key.
+    pub fn rows_of(&self, rows_key: &str) -> Option<&ReportDocument> {
+        let earlier = self.earlier.as_deref();
+        earlier.filter(|earlier| earlier.rows_key == rows_key && earlier.is_complete())
     }
 
     /// What its outcome is judged against.

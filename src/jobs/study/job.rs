@@ -9,8 +9,8 @@ use super::files::{
     REPORT_JUNIT, SVG_MEDIA_TYPE, csv, junit,
 };
 use super::input::StudyInput;
-use super::prepare::most_rows;
-use super::report::{ReportOrigin, encode_report, report_document};
+use super::prepare::{PreparedStudy, most_rows, truth_meshes};
+use super::report::{ReportOrigin, encode_report, kept_report, report_document};
 use super::stopwatch::MachineStopwatch;
 use super::verdict::judge;
 use crate::jobs::clock::{Observed, now_rfc3339};
@@ -37,6 +37,7 @@ struct Rows<'a> {
     clock: &'a Observed<'a>,
     stopwatch: MachineStopwatch,
     begun: AtomicUsize,
+    /// Rows, and meshes that truths are solved on.
     most: usize,
 }
 
@@ -47,7 +48,7 @@ impl Stopwatch for Rows<'_> {
 
     /// A study does so where a row begins.
     fn forget_peak(&self) {
-        self.clock.step(self.begun.fetch_add(1, Ordering::Relaxed), self.most);
+        self.begin();
         self.stopwatch.forget_peak();
     }
 
@@ -56,10 +57,21 @@ impl Stopwatch for Rows<'_> {
     }
 }
 
+impl Rows<'_> {
+    fn begin(&self) {
+        self.clock.step(self.begun.fetch_add(1, Ordering::Relaxed), self.most);
+    }
+}
+
 impl Progress for Rows<'_> {
     fn phase(&self, _phase: Phase) {}
 
     fn iteration(&self, _iteration: usize, _relative_residual: f64, _wanted: f64) {}
+
+    /// A truth does so where it is solved on a mesh, after all rows of its scene.
+    fn step(&self, _done: usize, _of: usize) {
+        self.begin();
+    }
 
     fn is_cancelled(&self) -> bool {
         self.clock.is_cancelled()
@@ -78,28 +90,11 @@ pub fn study_job(
     let prepared = input.prepare(place.sources, place.limits)?;
     clock.check()?;
 
-    // 2. Rows and truths.
-    clock.phase(Phase::Solve);
-    let rows = Rows {
-        clock: &clock,
-        stopwatch: MachineStopwatch::start(),
-        begun: AtomicUsize::new(0),
-        most: most_rows(&prepared.study),
-    };
-    let found = run(&prepared.study, &rows, &rows);
-    let found = found.map_err(|error| match error {
-        StudyError::Cancelled => clock.stopped(),
-        other => JobError::Study(other),
-    })?;
+    // 2. Rows and truths, unless an earlier study has them.
+    let mut report = rows_of(input, &prepared, &clock)?;
 
     // 3. The outcome.
     clock.phase(Phase::Compare);
-    let origin = ReportOrigin {
-        job: input.job.clone(),
-        spec_hash: prepared.spec_hash.clone(),
-        created: now_rfc3339(),
-    };
-    let mut report = report_document(&found, &input.spec, &prepared.study.variants, origin);
     judge(&mut report, &input.to_baseline());
 
     // 4. Files.
@@ -127,6 +122,36 @@ pub fn study_job(
     };
     folder.add(OutputName::ResultJson, &encode_result(&result)?)?;
     Ok(JobOutput { result, files: folder.files, meshes: Vec::new() })
+}
+
+/// The report before it is judged: rows of an earlier one where it has the same key, else solved.
+fn rows_of(
+    input: &StudyInput,
+    prepared: &PreparedStudy,
+    clock: &Observed,
+) -> Result<ReportDocument, JobError> {
+    let (spec, variants) = (&input.spec, prepared.study.variants.as_slice());
+    let origin = || ReportOrigin {
+        job: input.job.clone(),
+        spec_hash: prepared.spec_hash.clone(),
+        rows_key: prepared.rows_key.clone(),
+        created: now_rfc3339(),
+    };
+    if let Some(earlier) = input.rows_of(&prepared.rows_key) {
+        return Ok(kept_report(earlier, spec, variants, origin()));
+    }
+    clock.phase(Phase::Solve);
+    let rows = Rows {
+        clock,
+        stopwatch: MachineStopwatch::start(),
+        begun: AtomicUsize::new(0),
+        most: most_rows(&prepared.study) + truth_meshes(&prepared.study),
+    };
+    let found = run(&prepared.study, &rows, &rows).map_err(|error| match error {
+        StudyError::Cancelled => clock.stopped(),
+        other => JobError::Study(other),
+    })?;
+    Ok(report_document(&found, spec, variants, origin()))
 }
 
 /// The report in every form, a chart over all scenes, and one for each where there are several.

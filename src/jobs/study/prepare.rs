@@ -14,12 +14,14 @@ use crate::schema::study::document::StudyKind;
 use crate::schema::wire::canonical;
 use crate::schema::{CaseDocument, Faults, Limits, Pointer, Problem};
 use mechanics::mesh::Warning;
-use mechanics::study::{Study, StudyScene};
+use mechanics::study::{Study, StudyScene, truth_cost};
 
 /// A study whose documents are sound.
 pub struct PreparedStudy {
     pub study: Study,
     pub spec_hash: String,
+    /// The key of its rows.
+    pub rows_key: String,
     pub inputs: Vec<InputDocument>,
     pub warnings: Vec<Warning>,
 }
@@ -66,8 +68,23 @@ impl StudyInput {
             self.spec.case_ids().into_iter().filter_map(|id| self.cases.get(id)).collect();
         let baseline = self.baseline.as_ref().map(canonical::to_value);
         let spec_hash = hashes::study_hash(&cases, &self.spec, baseline.as_ref(), &content);
-        Ok(PreparedStudy { study, spec_hash, inputs: scenes.inputs, warnings: scenes.warnings })
+        let rows_key = hashes::rows_key(&cases, &self.spec, &content);
+        Ok(PreparedStudy {
+            study,
+            spec_hash,
+            rows_key,
+            inputs: scenes.inputs,
+            warnings: scenes.warnings,
+        })
     }
+}
+
+/// How often truths are solved on a mesh with one set of materials.
+pub fn truth_meshes(study: &Study) -> usize {
+    let of = |scene: &StudyScene| {
+        truth_cost(scene).map_or(0, |cost| cost.meshes.len() * scene.materials.len())
+    };
+    study.scenes.iter().map(of).sum()
 }
 
 /// How many rows a study has, with those that turn out to be the truth itself.

@@ -6,19 +6,20 @@ use crate::schema::predict::result::{EngineDocument, NOT_A_DEVICE};
 use crate::schema::study::document::StudyDocument;
 use crate::schema::study::report::{
     ConvergenceDocument, ErrorsDocument, NumbersDocument, ReportDocument, RowDocument,
-    RowErrorDocument, RowStatus, RowVerdict, RulesDocument, SignedRankDocument, StudySceneDocument,
-    TruthErrorDocument, VariantComparisonDocument, VerdictDocument,
+    RowErrorDocument, RowStatus, RowVerdict, RulesDocument, SignedRankDocument, SkippedDocument,
+    StudySceneDocument, TruthErrorDocument, VariantComparisonDocument, VerdictDocument,
 };
 use mechanics::study::convergence::{Series, series};
 use mechanics::study::pairwise::{Pairwise, compare_variants, many_comparisons};
 use mechanics::study::{
-    Errors, NOT_RUN, Outcome, Report, Row, SceneReport, Solved, Variant, pareto,
+    Errors, NOT_RUN, Outcome, Report, Row, SceneReport, Skipped, Solved, Variant, pareto,
 };
 
 /// What a report tells of its origin.
 pub struct ReportOrigin {
     pub job: Option<String>,
     pub spec_hash: String,
+    pub rows_key: String,
     /// RFC 3339, UTC.
     pub created: String,
 }
@@ -39,20 +40,45 @@ pub fn report_document(
         schema: 1,
         job: origin.job,
         spec_hash: origin.spec_hash,
+        rows_key: origin.rows_key,
+        rows_of: None,
         engine: EngineDocument::this(),
         created: origin.created,
         verdict: VerdictDocument::default(),
-        rules: RulesDocument {
-            thresholds: spec.thresholds.clone(),
-            tolerances: spec.tolerances,
-            expected_failures: expected_failures(spec, variants),
-        },
+        rules: rules(spec, variants),
         scenes: report.scenes.iter().map(scene_document).collect(),
         rows,
+        skipped: report.skipped.iter().map(skipped_document).collect(),
         comparisons: comparisons.iter().map(comparison_document).collect(),
         comparisons_note: many_comparisons(&comparisons),
         convergence: series(report).iter().map(convergence_document).collect(),
         statement: NOT_A_DEVICE.to_owned(),
+    }
+}
+
+/// The rows of an earlier report under the rules of this study, not judged yet.
+pub fn kept_report(
+    earlier: &ReportDocument,
+    spec: &StudyDocument,
+    variants: &[Variant],
+    origin: ReportOrigin,
+) -> ReportDocument {
+    ReportDocument {
+        job: origin.job,
+        spec_hash: origin.spec_hash,
+        rows_key: origin.rows_key,
+        rows_of: Some(earlier.source()),
+        created: origin.created,
+        rules: rules(spec, variants),
+        ..earlier.clone()
+    }
+}
+
+fn rules(spec: &StudyDocument, variants: &[Variant]) -> RulesDocument {
+    RulesDocument {
+        thresholds: spec.thresholds.clone(),
+        tolerances: spec.tolerances,
+        expected_failures: expected_failures(spec, variants),
     }
 }
 
@@ -99,6 +125,16 @@ fn scene_document(scene: &SceneReport) -> StudySceneDocument {
         truth: scene.truth.clone(),
         truth_error_mm: scene.truth_error_mm.map(|[mean, p95]| TruthErrorDocument { mean, p95 }),
         truth_s: scene.truth_s,
+    }
+}
+
+fn skipped_document(skipped: &Skipped) -> SkippedDocument {
+    SkippedDocument {
+        scene: skipped.scene.clone(),
+        method: skipped.method.clone(),
+        label: skipped.label.clone(),
+        reason: skipped.reason.clone(),
+        rows: skipped.rows as u64,
     }
 }
 

@@ -8,9 +8,10 @@ use crate::schema::study::report::{
     RulesDocument, VerdictDocument,
 };
 
-/// Differences that are none, whatever the ratios say: errors in mm to which solutions agree, and the jitter
-/// of clocks in s.
+/// Differences that are none, whatever the ratios say: errors in mm to which solutions agree, iterations by which the
+/// rounding of another processor's factorisation may change their number, and the jitter of clocks in s.
 const NO_ERROR_MM: f64 = 1e-4;
+const NO_ITERATIONS: f64 = 5.0;
 const NO_TIME_S: f64 = 0.02;
 
 /// An earlier study to hold rows against.
@@ -41,9 +42,26 @@ pub fn judge(report: &mut ReportDocument, baseline: &Baseline) {
         (row.verdict, row.reasons) = judge_row(row, earlier, &rules);
     }
     let now: Vec<Place> = report.rows.iter().map(place).collect();
-    let lost = before.keys().filter(|earlier| !now.contains(earlier)).count();
-    let common = before.len() - lost;
+    let common = before.keys().filter(|earlier| now.contains(earlier)).count();
+    let is_lost = |(place, row): &(&Place, &&RowDocument)| {
+        !now.contains(place) && !(row.status != RowStatus::Solved && is_skipped(report, row))
+    };
+    let lost = before.iter().filter(is_lost).count();
     report.verdict = whole(report, baseline, (common, lost));
+}
+
+/// Whether the variant of a row is told to serve its scene not.
+fn is_skipped(report: &ReportDocument, row: &RowDocument) -> bool {
+    report.skipped.iter().any(|skipped| skipped.scene == row.scene && skipped.label == row.label)
+}
+
+/// The labels that thresholds name and that have no row, because nothing that they name applies.
+fn unheld(report: &ReportDocument) -> Vec<&str> {
+    let bounds = report.rules.thresholds.iter().flat_map(|bounds| &bounds.labels);
+    let has_row = |label: &str| report.rows.iter().any(|row| row.label == label);
+    let is_left_out = |label: &str| report.skipped.iter().any(|skipped| skipped.label == label);
+    let labels = bounds.map(String::as_str);
+    labels.filter(|label| !has_row(label) && is_left_out(label)).collect()
 }
 
 fn judge_row(
@@ -113,18 +131,40 @@ fn grown(
     before: &NumbersDocument,
     tolerances: &TolerancesDocument,
 ) -> Vec<String> {
+    let error = Growth { name: "p95 error", unit: " mm", digits: 4, slack: NO_ERROR_MM };
+    let iterations = Growth { name: "iterations", unit: "", digits: 0, slack: NO_ITERATIONS };
+    let time = Growth { name: "wall time", unit: " s", digits: 4, slack: NO_TIME_S };
     let measured = [
-        ("p95 error", now.p95_mm, before.p95_mm, (tolerances.p95_ratio, NO_ERROR_MM), "mm"),
-        ("wall time", now.wall_s, before.wall_s, (tolerances.wall_ratio, NO_TIME_S), "s"),
+        error.beyond(now.p95_mm, before.p95_mm, Some(tolerances.p95_ratio)),
+        iterations.beyond(
+            now.iterations as f64,
+            before.iterations as f64,
+            Some(tolerances.iterations_ratio),
+        ),
+        time.beyond(now.wall_s, before.wall_s, tolerances.wall_ratio),
     ];
-    let grown = |&(_, now, before, (ratio, slack), _): &(&str, f64, f64, (f64, f64), &str)| {
-        now > before * ratio && now > before + slack
-    };
-    let worse = measured.into_iter().filter(grown).map(|(name, now, before, (ratio, _), unit)| {
+    measured.into_iter().flatten().collect()
+}
+
+/// A number of a row that may grow.
+struct Growth {
+    name: &'static str,
+    unit: &'static str,
+    digits: usize,
+    /// A difference that is none.
+    slack: f64,
+}
+
+impl Growth {
+    /// The sentence where it grew by more than is allowed; without a ratio it is not judged.
+    fn beyond(&self, now: f64, before: f64, ratio: Option<f64>) -> Option<String> {
+        let Growth { name, unit, digits, slack } = *self;
+        let ratio = ratio.filter(|ratio| now > before * ratio && now > before + slack)?;
         let times = now / before;
-        format!("{name} {now:.4} {unit} is {times:.2} times the {before:.4} {unit} of the baseline, {ratio} are allowed")
-    });
-    worse.collect()
+        Some(format!(
+            "{name} {now:.digits$}{unit} is {times:.2} times the {before:.digits$}{unit} of the baseline, {ratio} are allowed"
+        ))
+    }
 }
 
 fn whole(
@@ -146,6 +186,9 @@ fn whole(
     tell(OutcomeName::Worse, worse > 0, format!("{worse} of {rows} rows are worse than allowed"));
     tell(OutcomeName::Worse, failed > 0, format!("{failed} of {rows} rows failed"));
     tell(OutcomeName::Incomplete, solved == 0, "no row was solved".to_owned());
+    let unheld = unheld(report);
+    let words = format!("the thresholds hold for {}, which applies nowhere", unheld.join(", "));
+    tell(OutcomeName::Incomplete, !unheld.is_empty(), words);
     tell(OutcomeName::Incomplete, not_run > 0, format!("{not_run} of {rows} rows did not run"));
     let words = format!("{lost} rows of the baseline are not in this study");
     tell(OutcomeName::Incomplete, lost > 0 && common > 0, words);
@@ -171,6 +214,7 @@ fn whole(
         failed: of_status(RowStatus::Failed) as u64,
         worse: worse as u64,
         not_run: not_run as u64,
+        skipped: report.skipped.iter().map(|skipped| skipped.rows).sum(),
         baseline,
     }
 }

@@ -189,9 +189,12 @@ impl StudyDocument {
             );
         }
         let tolerances = at.key("tolerances");
-        for (name, ratio) in
-            [("p95_ratio", self.tolerances.p95_ratio), ("wall_ratio", self.tolerances.wall_ratio)]
-        {
+        let ratios = [
+            ("p95_ratio", Some(self.tolerances.p95_ratio)),
+            ("iterations_ratio", Some(self.tolerances.iterations_ratio)),
+            ("wall_ratio", self.tolerances.wall_ratio),
+        ];
+        for (name, ratio) in ratios.into_iter().filter_map(|(name, of)| Some((name, of?))) {
             faults.check_range(&tolerances.key(name), ratio, 1.0..=1000.0, "");
         }
         let budget = at.key("budget");

@@ -3,5 +3,6 @@
 pub mod batch;
 pub mod check;
 pub mod document;
+pub mod expected;
 pub mod reference;
 pub mod report;

@@ -18,6 +18,15 @@ pub struct ReportDocument {
     #[schema(nullable = false)]
     pub job: Option<String>,
     pub spec_hash: String,
+    /// The same where everything but the rules of the outcome is: thresholds, baseline, tolerances, expected failures. A
+    /// study with the key of an earlier one takes its rows and judges them anew.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    #[schema(required = false)]
+    pub rows_key: String,
+    /// The study whose rows these are; absent where they were solved for this report.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub rows_of: Option<RowsOfDocument>,
     pub engine: EngineDocument,
     /// RFC 3339, UTC.
     pub created: String,
@@ -25,6 +34,10 @@ pub struct ReportDocument {
     pub rules: RulesDocument,
     pub scenes: Vec<StudySceneDocument>,
     pub rows: Vec<RowDocument>,
+    /// What does not apply, which has no rows and judges nothing: variants that do not serve a scene.
+    #[serde(default)]
+    #[schema(required = false)]
+    pub skipped: Vec<SkippedDocument>,
     /// Every two variants on the scenes that both solved.
     pub comparisons: Vec<VariantComparisonDocument>,
     /// What a reader of many comparisons has to know.
@@ -34,6 +47,17 @@ pub struct ReportDocument {
     pub convergence: Vec<ConvergenceDocument>,
     /// What the program answers for these numbers.
     pub statement: String,
+}
+
+/// An earlier study whose rows were taken.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+pub struct RowsOfDocument {
+    /// Absent from reports of the command line.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub job: Option<String>,
+    /// When it was solved: RFC 3339, UTC.
+    pub created: String,
 }
 
 /// Whether a change may pass.
@@ -83,10 +107,27 @@ pub struct VerdictDocument {
     pub failed: u64,
     pub worse: u64,
     pub not_run: u64,
+    /// Rows that there would be if every variant served every scene.
+    #[serde(default)]
+    #[schema(required = false)]
+    pub skipped: u64,
     /// The job of the baseline.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub baseline: Option<String>,
+}
+
+/// A variant that does not serve a scene.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+pub struct SkippedDocument {
+    pub scene: String,
+    pub method: String,
+    /// The variant.
+    pub label: String,
+    /// A sentence.
+    pub reason: String,
+    /// Rows that it would have.
+    pub rows: u64,
 }
 
 /// By which rules rows were judged.
@@ -325,6 +366,17 @@ pub struct StudySummaryDocument {
 }
 
 impl ReportDocument {
+    /// Where its rows were solved.
+    pub fn source(&self) -> RowsOfDocument {
+        let own = RowsOfDocument { job: self.job.clone(), created: self.created.clone() };
+        self.rows_of.clone().unwrap_or(own)
+    }
+
+    /// Whether every row had its time.
+    pub fn is_complete(&self) -> bool {
+        self.rows.iter().all(|row| row.status != RowStatus::NotRun)
+    }
+
     pub fn summary(&self) -> StudySummaryDocument {
         let mut on_front: Vec<String> = Vec::new();
         for row in self.rows.iter().filter(|row| row.on_front) {

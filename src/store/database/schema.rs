@@ -10,7 +10,7 @@ use crate::store::error::StoreError;
 
 /// The files of `migrations/`, in order. Their macro in sqlx would compile every engine a second time, for the
 /// compiler itself.
-const FILES: [(&str, &str); 12] = [
+const FILES: [(&str, &str); 13] = [
     ("first", include_str!("../../../migrations/0001_first.sql")),
     ("studies", include_str!("../../../migrations/0002_studies.sql")),
     ("blobs", include_str!("../../../migrations/0003_blobs.sql")),
@@ -23,6 +23,7 @@ const FILES: [(&str, &str); 12] = [
     ("made meshes", include_str!("../../../migrations/0010_made_meshes.sql")),
     ("queues", include_str!("../../../migrations/0011_queues.sql")),
     ("living deeds", include_str!("../../../migrations/0012_living_deeds.sql")),
+    ("study rows", include_str!("../../../migrations/0013_study_rows.sql")),
 ];
 
 /// The steps as they are written, for SQLite.

@@ -91,16 +91,78 @@ fn rows_may_grow_by_their_ratio_and_by_what_is_only_noise() {
     };
     assert_eq!(against([1.4, 0.104], usual()), OutcomeName::Pass);
     assert_eq!(against([1.4, 0.106], usual()), OutcomeName::Worse);
-    assert_eq!(against([1.6, 0.104], usual()), OutcomeName::Worse);
-    let wide =
-        json!({"tolerances": {"p95_ratio": 1.2, "wall_ratio": 3.0}, "expected_failures": []});
+    let ratios = |ratios: Value| json!({"tolerances": ratios, "expected_failures": []});
+    // Time is judged by who asks for it only.
+    assert_eq!(against([100.0, 0.104], usual()), OutcomeName::Pass);
+    assert_eq!(against([1.6, 0.104], ratios(json!({"wall_ratio": 1.5}))), OutcomeName::Worse);
+    let wide = ratios(json!({"p95_ratio": 1.2, "wall_ratio": 3.0}));
     assert_eq!(against([2.5, 0.115], wide), OutcomeName::Pass);
+    let of_iterations = |count: u64, rules: Value| {
+        let mut row = solved("fem", 0, [1.0, 0.1]);
+        row["iterations"] = json!(count);
+        judged(&[row], rules, &Baseline::Report(&before))
+    };
+    // From 5: five more are none, whatever the ratio says.
+    assert_eq!(of_iterations(10, usual()).verdict.outcome, OutcomeName::Pass);
+    let more = of_iterations(11, usual());
+    assert_eq!(
+        more.rows[0].reasons,
+        ["iterations 11 is 2.20 times the 5 of the baseline, 1.5 are allowed"]
+    );
+    let twice = ratios(json!({"iterations_ratio": 2.5}));
+    assert_eq!(of_iterations(11, twice).verdict.outcome, OutcomeName::Pass);
     // Solutions agree to 1e-4 mm, and a clock in a busy machine to some ms.
     let tiny = report(&[solved("fem", 0, [1e-3, 1e-6])], usual());
+    let timed = || ratios(json!({"wall_ratio": 1.5}));
     let noise = [solved("fem", 0, [0.015, 9e-5])];
-    assert_eq!(outcome(&noise, usual(), &Baseline::Report(&tiny)), OutcomeName::Pass);
+    assert_eq!(outcome(&noise, timed(), &Baseline::Report(&tiny)), OutcomeName::Pass);
     let more = [solved("fem", 0, [0.03, 9e-5])];
-    assert_eq!(outcome(&more, usual(), &Baseline::Report(&tiny)), OutcomeName::Worse);
+    assert_eq!(outcome(&more, timed(), &Baseline::Report(&tiny)), OutcomeName::Worse);
+}
+
+/// With a variant that does not serve the scene.
+fn with_skipped(rows: &[Value], rules: Value, label: &str) -> ReportDocument {
+    let mut report = report(rows, rules);
+    let skipped = json!([{"scene": "slab", "method": "fem_linear", "label": label, "rows": 2, "reason": "it <is> not"}]);
+    report.skipped = serde_json::from_value(skipped).unwrap();
+    report
+}
+
+#[test]
+fn what_does_not_apply_judges_nothing_and_is_listed() {
+    let rows = [solved("fem", 0, [1.0, 0.1])];
+    let judged = |rules: Value, baseline: &Baseline| {
+        let mut report = with_skipped(&rows, rules, "quadratic");
+        judge(&mut report, baseline);
+        report
+    };
+    let alone = judged(usual(), &Baseline::NotAsked);
+    assert_eq!((alone.verdict.outcome, alone.verdict.skipped), (OutcomeName::Pass, 2));
+    let text = junit(&alone);
+    assert!(
+        text.contains("name=\"quadratic\" time=\"0\"><skipped message=\"it &lt;is&gt; not\"/>")
+    );
+    assert!(text.contains("tests=\"3\" failures=\"0\" errors=\"0\" skipped=\"1\""), "{text}");
+
+    // Baselines of earlier programs have a row that failed for it: nothing is lost. One that was solved there is.
+    let mut of_before = failed("quadratic", "failed", "method-not-available");
+    of_before["method"] = json!("fem_linear");
+    let before = report(&[rows[0].clone(), of_before], usual());
+    let held = judged(usual(), &Baseline::Report(&before));
+    assert_eq!(held.verdict.outcome, OutcomeName::Pass, "{:?}", held.verdict.reasons);
+    let before = report(&[rows[0].clone(), solved("quadratic", 0, [1.0, 0.1])], usual());
+    let held = judged(usual(), &Baseline::Report(&before));
+    assert_eq!(held.verdict.outcome, OutcomeName::Incomplete);
+
+    // Thresholds that hold for nothing else have not been kept.
+    let bounds = json!({"p95_mm": 1.0, "labels": ["quadratic"]});
+    let rules = json!({"tolerances": {}, "expected_failures": [], "thresholds": bounds});
+    let held = judged(rules, &Baseline::NotAsked);
+    assert_eq!(held.verdict.outcome, OutcomeName::Incomplete);
+    assert_eq!(held.verdict.reasons, ["the thresholds hold for quadratic, which applies nowhere"]);
+    let mut nothing = with_skipped(&[], usual(), "quadratic");
+    judge(&mut nothing, &Baseline::NotAsked);
+    assert_eq!(nothing.verdict.outcome, OutcomeName::Incomplete);
 }
 
 #[test]

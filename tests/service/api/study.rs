@@ -205,6 +205,59 @@ async fn thresholds_and_time_decide_the_outcome() {
 }
 
 #[tokio::test]
+async fn other_rules_judge_the_rows_of_an_earlier_study_anew() {
+    let server = Server::start();
+    let case = server.case(&SMALL).await;
+    let plan = json!({"segments": [{"name": "bone", "translation_mm": [2.0, 0.0, 0.0]}]});
+    let study = |case: &str, bound: f64| {
+        json!({
+            "kind": "study", "scenes": [{"case": case, "name": "block"}], "plans": [plan], "repeats": 1,
+            "methods": ["fem_linear"], "elements": ["auto", "plain"],
+            "truth": {"refine": 1, "element": "mean_dilatation"}, "thresholds": {"p95_mm": bound},
+        })
+    };
+    let first = done(&server, &study(&case, 50.0)).await;
+    let before = report(&server, &first, "").await.expect(StatusCode::OK);
+    assert_eq!((&before["verdict"]["outcome"], before.get("rows_of")), (&json!("pass"), None));
+    // The cost of the truth was told: two meshes, eight cells of one.
+    let truth = &first["truths"][0];
+    assert_eq!((&truth["scene"], &truth["meshes"]), (&json!("block"), &json!(2)));
+    assert_eq!(truth["cells"], 8 * before["scenes"][0]["cells"].as_u64().unwrap());
+    assert!(truth["time_s"]["high"].as_f64() > truth["time_s"]["low"].as_f64(), "{truth}");
+
+    let second = done(&server, &study(&case, 1e-6)).await;
+    let after = report(&server, &second, "").await.expect(StatusCode::OK);
+    assert_eq!(after["verdict"]["outcome"], "worse", "a new threshold, a new verdict");
+    assert_eq!(after["rows_of"], json!({"job": first["id"], "created": before["created"]}));
+    assert_eq!((&after["job"], &after["rows_key"]), (&second["id"], &before["rows_key"]));
+    assert_eq!(second.get("truths"), None, "no truth was solved");
+    // Times too are those that were measured: nothing was solved again.
+    for (before, after) in
+        before["rows"].as_array().unwrap().iter().zip(after["rows"].as_array().unwrap())
+    {
+        assert_eq!((&before["wall_s"], &before["p95_mm"]), (&after["wall_s"], &after["p95_mm"]));
+    }
+
+    // What is solved otherwise, and what is of another patient, is solved anew.
+    let mut finer = study(&case, 1e-6);
+    finer["repeats"] = json!(2);
+    let other = server.case(&SMALL).await;
+    for spec in [finer, study(&other, 2e-6)] {
+        let job = done(&server, &spec).await;
+        let found = report(&server, &job, "").await.expect(StatusCode::OK);
+        assert_eq!(found.get("rows_of"), None);
+    }
+
+    // A case takes the study that took the rows with it.
+    let erase = server.delete(&format!("/v1/cases/{case}")).header("if-match", "*");
+    assert_eq!(ask(erase).await.status, StatusCode::NO_CONTENT);
+    for job in [first, second] {
+        let path = format!("/v1/jobs/{}", job["id"].as_str().unwrap());
+        ask(server.get(&path)).await.problem(410, "gone");
+    }
+}
+
+#[tokio::test]
 async fn cases_are_studied_against_the_skin_of_a_job_and_go_with_their_studies() {
     let server = Server::start();
     let case = server.case(&SMALL).await;
@@ -389,6 +442,13 @@ fn bad_methods() -> Vec<Row> {
         ("who fails", json!({"expected_failures": ["msm"]}), invalid, "/expected_failures/0"),
         ("ratio 0.5", json!({"tolerances": {"p95_ratio": 0.5}}), invalid, "/tolerances/p95_ratio"),
         ("no baseline", json!({"baseline": nobody}), invalid, "/baseline"),
+        ("ratio 0", json!({"tolerances": {"wall_ratio": 0}}), invalid, "/tolerances/wall_ratio"),
+        (
+            "iterations 0",
+            json!({"tolerances": {"iterations_ratio": 0}}),
+            invalid,
+            "/tolerances/iterations_ratio",
+        ),
         ("time 0", json!({"budget": {"wall_s": 0}}), invalid, "/budget/wall_s"),
         ("memory 0", json!({"budget": {"memory_mb": 0}}), invalid, "/budget/memory_mb"),
         ("unknown field", json!({"scene": "slab"}), invalid, "/scene"),

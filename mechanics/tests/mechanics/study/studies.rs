@@ -11,13 +11,13 @@ use mechanics::plan::{PlannedSegment, RigidMovement};
 use mechanics::prediction::{
     Case, CaseSegment, ElementChoice, Method, MethodKind, Plan, RegionNames, Scene, Settings,
 };
-use mechanics::progress::Unobserved;
+use mechanics::progress::{Phase, Progress, Unobserved};
 use mechanics::study::report::Solved;
 use mechanics::study::scenes::{SCENES, scene_of, slab, slab_hex, sphere_of, usual_truth};
 use mechanics::study::sweep::{Judged, SweepError, Values, best, combinations};
 use mechanics::study::{
     Errors, Materials, NOT_RUN, Outcome, Report, Row, Stopwatch, Study, StudyError, StudyScene,
-    Truth, Variant, convergence, methods, pareto, run,
+    Truth, Variant, convergence, methods, pareto, run, truth_cost,
 };
 
 use crate::scenes::{StopsAfter, case_of, material, set, solve};
@@ -187,7 +187,7 @@ fn rows_that_are_the_truth_themselves_are_left_out() {
 }
 
 #[test]
-fn a_row_that_is_refused_or_fails_is_a_row_and_the_others_go_on() {
+fn a_row_that_fails_is_a_row_and_what_does_not_apply_is_none() {
     let mut poor = variant("poor", ElementChoice::Plain);
     poor.settings.memory_mb = 1e-3;
     let variants = vec![
@@ -211,11 +211,63 @@ fn a_row_that_is_refused_or_fails_is_a_row_and_the_others_go_on() {
         }
     };
     let told: Vec<String> = report.rows.iter().map(told).collect();
-    let (none, poor) = ("method-not-available", "budget-exceeded");
-    let known = [none, poor, "solved", poor, poor, poor];
-    assert_eq!(told, [known, ["unknown-segment"; 6]].concat());
+    let poor = "budget-exceeded";
+    let known = [poor, "solved", poor, poor];
+    assert_eq!(told, [&known[..], &["unknown-segment"; 6]].concat());
     assert_eq!(report.rows[0].element, "");
-    assert_eq!(report.rows[2].element, "hex8 plain");
+    assert_eq!(report.rows[1].element, "hex8 plain");
+    // Quadratic elements do not serve hexahedra, on either level: that is no failure.
+    let [skipped] = report.skipped.as_slice() else { panic!("{:?}", report.skipped) };
+    assert_eq!((skipped.label.as_str(), skipped.rows), ("quadratic", 2));
+    assert!(skipped.reason.contains("made of tet4 only"), "{}", skipped.reason);
+}
+
+/// Counts the meshes that truths are solved on.
+#[derive(Default)]
+struct Meshes(AtomicUsize);
+
+impl Progress for Meshes {
+    fn phase(&self, _phase: Phase) {}
+    fn iteration(&self, _iteration: usize, _relative_residual: f64, _wanted: f64) {}
+    fn step(&self, done: usize, of: usize) {
+        assert!(done < of);
+        self.0.fetch_add(1, Ordering::Relaxed);
+    }
+    fn is_cancelled(&self) -> bool {
+        false
+    }
+}
+
+#[test]
+fn what_a_truth_costs_is_known_before_and_told_while_it_is_solved() {
+    let plain = || vec![variant("plain", ElementChoice::Plain)];
+    let study = study(slab_with(|name| name != "patch 1 mm"), plain(), &[0]);
+    let scene = &study.scenes[0];
+    let (cells, nodes) = (scene.case.volume.cells.len(), scene.case.volume.nodes.len());
+    let cost = truth_cost(scene).unwrap();
+    // Level 0, for the error of the truth, and level 1. Seven plans are summed from unit movements of a segment, which
+    // cost as three.
+    let cells_at: Vec<f64> = cost.meshes.iter().map(|mesh| mesh.cells).collect();
+    assert_eq!(cells_at, [cells as f64, 8.0 * cells as f64]);
+    assert_eq!(cost.meshes[1].unknowns, (24 * 8 * nodes) as f64, "quadratic");
+    assert!(cost.meshes.iter().all(|mesh| mesh.solves == 3), "{cost:?}");
+    let told = Meshes::default();
+    run(&study, &Still, &told).unwrap();
+    assert_eq!(told.0.into_inner(), cost.meshes.len());
+
+    let mut hexahedra = slab_hex();
+    hexahedra.plans.truncate(2);
+    hexahedra.materials.truncate(1);
+    hexahedra.truth = Truth::Refined { times: 2, element: ElementChoice::MeanDilatation };
+    let cost = truth_cost(&hexahedra).unwrap();
+    let (cells, nodes) = (hexahedra.case.volume.cells.len(), hexahedra.case.volume.nodes.len());
+    assert_eq!((cost.meshes.len(), cost.meshes[2].solves), (3, 2));
+    assert_eq!(
+        (cost.meshes[2].cells, cost.meshes[2].unknowns),
+        (64.0 * cells as f64, (192 * nodes) as f64)
+    );
+    hexahedra.truth = Truth::Known(Vec::new());
+    assert_eq!(truth_cost(&hexahedra), None);
 }
 
 #[test]

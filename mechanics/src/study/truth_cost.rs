@@ -1,0 +1,51 @@
+//! The cost of a refined truth, told before anything is solved: its meshes, their unknowns and the solves on them.
+
+use super::levels::cells_at;
+use super::truth::{PLANS_A_SEGMENT, coarsest, is_of_segments, moved_segments};
+use super::variant::{StudyScene, Truth};
+use crate::mesh::CellShape;
+use crate::prediction::{ElementChoice, Plan};
+
+/// Edges for each node of a mesh whose edges carry nodes as well: eight times its nodes come of one halving.
+const WITH_EDGES: f64 = 8.0;
+
+/// What a refined truth takes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TruthCost {
+    /// Coarsest first: the finest, and one or two before it that tell its error.
+    pub meshes: Vec<TruthMesh>,
+}
+
+/// One mesh of a refined truth.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TruthMesh {
+    pub cells: f64,
+    /// Of each solve.
+    pub unknowns: f64,
+    /// For all plans and materials; unit movements of a segment count as the plans that cost as much.
+    pub solves: usize,
+}
+
+/// The cost of the truth of a scene; none where nothing is solved for it.
+pub fn truth_cost(scene: &StudyScene) -> Option<TruthCost> {
+    let Truth::Refined { times, element } = scene.truth else { return None };
+    let volume = &scene.case.volume;
+    let solves = solves(scene) * scene.materials.len();
+    let is_quadratic = element == ElementChoice::Quadratic
+        && volume.cells.iter().any(|(shape, _)| shape == CellShape::Tet4);
+    let per_node = if is_quadratic { 3.0 * WITH_EDGES } else { 3.0 };
+    let mesh = |level| TruthMesh {
+        cells: cells_at(volume.cells.len(), level),
+        unknowns: per_node * cells_at(volume.nodes.len(), level),
+        solves,
+    };
+    Some(TruthCost { meshes: (coarsest(times)..=times).map(mesh).collect() })
+}
+
+/// Solves on one mesh with one material.
+fn solves(scene: &StudyScene) -> usize {
+    let plans: Vec<&Plan> = scene.plans.iter().map(|(_, plan)| plan).collect();
+    let sums = plans.iter().filter(|plan| is_of_segments(plan, &scene.case)).count();
+    let columns = PLANS_A_SEGMENT * moved_segments(&scene.plans, &scene.case).len();
+    if columns == 0 { plans.len() } else { plans.len() - sums + sums.min(columns) }
+}

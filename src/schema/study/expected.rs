@@ -1,0 +1,71 @@
+//! What a study is expected to take, told when it is accepted.
+
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+use crate::schema::methods::time_band;
+use crate::schema::predict::check::TimeBandDocument;
+use mechanics::study::{StudyScene, TruthCost, truth_cost};
+
+/// The method whose times those of truths are told from.
+const METHOD: &str = "fem_linear";
+
+/// The cost of the truth of one scene that is solved on finer meshes; no part of any row.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct TruthCostDocument {
+    pub scene: String,
+    /// The finest mesh, and one or two before it that tell its error.
+    pub meshes: u64,
+    /// Of the finest.
+    pub cells: u64,
+    /// Of the finest.
+    pub unknowns: u64,
+    /// On each mesh, for all plans and materials.
+    pub solves: u64,
+    /// Of all solves on one thread, in s.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub time_s: Option<TimeBandDocument>,
+}
+
+/// The truths of scenes that are solved for.
+pub fn truth_costs(scenes: &[StudyScene]) -> Vec<TruthCostDocument> {
+    let cost = |scene: &StudyScene| Some(document(&scene.name, &truth_cost(scene)?));
+    scenes.iter().filter_map(cost).collect()
+}
+
+fn document(scene: &str, cost: &TruthCost) -> TruthCostDocument {
+    let finest = cost.meshes.last();
+    let of_finest = |value: Option<f64>| value.unwrap_or_default() as u64;
+    TruthCostDocument {
+        scene: scene.to_owned(),
+        meshes: cost.meshes.len() as u64,
+        cells: of_finest(finest.map(|mesh| mesh.cells)),
+        unknowns: of_finest(finest.map(|mesh| mesh.unknowns)),
+        solves: finest.map_or(0, |mesh| mesh.solves as u64),
+        time_s: time_s(cost),
+    }
+}
+
+fn time_s(cost: &TruthCost) -> Option<TimeBandDocument> {
+    let mut all = TimeBandDocument { low: 0.0, high: 0.0 };
+    for mesh in &cost.meshes {
+        let band = time_band(METHOD, mesh.unknowns as u64)?;
+        all.low += band.low * mesh.solves as f64;
+        all.high += band.high * mesh.solves as f64;
+    }
+    Some(all)
+}
+
+impl TruthCostDocument {
+    /// In one line.
+    pub fn sentence(&self) -> String {
+        let TruthCostDocument { scene, meshes, cells, unknowns, solves, time_s } = self;
+        let time = time_s.map_or_else(String::new, |time| {
+            format!(": {:.0} to {:.0} s on one thread", time.low, time.high)
+        });
+        format!(
+            "the truth of {scene} is solved on {meshes} meshes, {solves} times each, the finest with {cells} cells and {unknowns} unknowns{time}"
+        )
+    }
+}
