@@ -1,0 +1,57 @@
+"""What `facies` promises, against a service: arrays that agree with each other, progress, exceptions with codes."""
+
+import os
+import sys
+from typing import Any
+
+import numpy as np
+
+from facies import Facies, JobFailed, Refused, rigid
+
+HEAD = "examples/head/case.json"
+MOVEMENT: dict[str, list[float]] = {"translation_mm": [0, 4, 1], "rotation_deg": [3, -2, 1], "pivot_mm": [0, 10, 20]}
+PLAN = {"segments": [{"name": "mandible", **MOVEMENT}]}
+
+service = Facies(os.environ["FACIES_ADDRESS"], os.environ.get("FACIES_API_KEY"))
+head = service.case(HEAD)
+
+events: list[dict[str, Any]] = []
+prediction = service.predict(head, PLAN, progress=events.append)
+statistics = prediction.results["statistics"]["skin"]
+lengths = np.linalg.norm(prediction.displacement_mm, axis=1)
+assert prediction.displacement_mm.shape == prediction.rest_mm.shape, prediction.displacement_mm.shape
+assert prediction.skin.triangles.max() + 1 == len(lengths), "every vertex belongs to a triangle"
+assert abs(lengths.max() - statistics["area"]["max"]) < 1e-5, (lengths.max(), statistics["area"])
+assert [event["number"] for event in events] == list(range(1, len(events) + 1)), events
+assert events[-1]["status"] == "successful" and events[-1]["progress"] == 100, events[-1]
+
+response = service.response(head)
+assert len(response.node_ids) == len(response.rest.points_mm) == response.columns.shape[1]
+assert np.abs(response.rest.points_mm - prediction.rest_mm).max() < 1e-3, "vertices stand in the order of the nodes"
+here = response.displacement_mm({"mandible": rigid(**MOVEMENT)})
+there = service.apply(response, PLAN)
+assert np.abs(here - there).max() < 1e-4, np.abs(here - there).max()
+assert np.abs(here - prediction.displacement_mm).max() < 1e-3, "the response says what the prediction says"
+
+found = service.optimise(head, [{"nodes": {"node_set": "chin"}, "displacement_mm": [None, 4, None]}],
+                         {"mandible": {"translation_mm": [[0, 0], [-10, 10], [-5, 5]]}})
+again = service.predict(head, found.plan)
+assert np.abs(found.displacement_mm - again.displacement_mm).max() < 1e-3, "the plan gives the skin that is told"
+assert service.compare(found, again).both["max"] < 1e-3
+
+mesh = service.predict("examples/head/face.vtu", {"segments": [{"name": "mandible", "translation_mm": [0, 4, 1]}]},
+                       fixed=["skull", "rim"], skin="skin")
+assert mesh.displacement_mm.shape == prediction.displacement_mm.shape
+
+try:
+    service.predict(head, {"segments": [{"name": "mandibel", "translation_mm": [0, 4, 1]}]})
+    sys.exit("an unknown segment was let through")
+except Refused as refused:
+    assert (refused.code, refused.pointer) == ("unknown-segment", "/plan/segments/0/name"), refused
+    assert "mandibel" in refused.detail, refused
+try:
+    service.predict(head, PLAN, budget={"wall_s": 0.001}, element="quadratic")
+    sys.exit("a job ended within a millisecond")
+except JobFailed as failed:
+    assert failed.code == "budget-exceeded", failed
+print(f"{len(lengths)} vertices, {len(events)} events, {np.abs(here - there).max():.1e} mm from the answer of apply")

@@ -1,0 +1,76 @@
+"""What the service made: cases, predictions, plans that were found, comparisons."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .surface import Surface
+
+
+@dataclass(frozen=True)
+class Case:
+    """A stored case; `check` counts what holds its nodes, or is `None` where it takes a plan to tell."""
+
+    id: str
+    document: dict[str, Any]
+    check: dict[str, Any] | None
+
+
+@dataclass(frozen=True)
+class Prediction:
+    """A predicted skin; `results` is `result.json` (statistics, reactions, provenance, files)."""
+
+    job: str
+    skin: Surface
+    results: dict[str, Any]
+
+    @property
+    def displacement_mm(self) -> NDArray[np.float32]:
+        """A row for each vertex of the skin."""
+        return self.skin.values["_DISPLACEMENT_MM"]
+
+    @property
+    def rest_mm(self) -> NDArray[np.float64]:
+        """Where each vertex was before."""
+        return self.skin.points_mm - self.displacement_mm
+
+    @property
+    def warnings(self) -> list[dict[str, Any]]:
+        """What a reader of these numbers must know, each with its `code`."""
+        warnings: list[dict[str, Any]] = self.results["warnings"]
+        return warnings
+
+
+@dataclass(frozen=True)
+class Optimisation(Prediction):
+    """A plan that was found, with the skin that it gives."""
+
+    @property
+    def found(self) -> dict[str, Any]:
+        """Residuals, standard errors, what is at a bound, what the targets do not determine."""
+        found: dict[str, Any] = self.results["optimisation"]
+        return found
+
+    @property
+    def plan(self) -> dict[str, Any]:
+        """As `predict` takes it."""
+        plan: dict[str, Any] = self.found["plan"]
+        return plan
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Distances between two surfaces; `document` has them in both directions, by region and node by node."""
+
+    job: str
+    document: dict[str, Any]
+
+    @property
+    def both(self) -> dict[str, Any]:
+        """Both directions together: `mean`, `p95`, `max` and others, in mm."""
+        both: dict[str, Any] = self.document["both"]
+        return both

@@ -1,0 +1,213 @@
+"""The service at an address: documents go in, arrays come out, refusals are exceptions."""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Callable, Iterator, Sequence
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+import httpx
+import numpy as np
+from numpy.typing import NDArray
+
+from .errors import JobFailed, Refused
+from .response import Response
+from .results import Case, Comparison, Optimisation, Prediction
+from .surface import Surface
+
+Document = dict[str, Any]
+Progress = Callable[[Document], object]
+"""Called with every event of a job: `status`, `phase`, `progress` (0 to 100) and others."""
+File = str | PathLike[str]
+
+WAIT = {"Prefer": "wait=30"}
+# Longer than the service waits for a job, or is silent in a stream.
+PATIENCE_S = 60.0
+SKIN = "skin.glb"
+BUSY = (429, 503)
+
+
+class Facies:
+    """The service at `address`, with a key where it asks for one. A busy one is waited for, `patience_s` in all."""
+
+    def __init__(self, address: str, key: str | None = None, patience_s: float = PATIENCE_S) -> None:
+        headers = {} if key is None else {"Authorization": f"Bearer {key}"}
+        self.patience_s = patience_s
+        self._http = httpx.Client(base_url=address, headers=headers, timeout=PATIENCE_S)
+
+    def __enter__(self) -> Facies:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Closes the connections."""
+        self._http.close()
+
+    def ask(self, method: str, path: str, **request: Any) -> httpx.Response:
+        """The answer to any request; raises `Refused` where it is a refusal."""
+        until = time.monotonic() + self.patience_s
+        while True:
+            answer = self._http.request(method, path, **request)
+            if answer.is_success:
+                return answer
+            # In seconds, as the service sends it.
+            pause = float(answer.headers.get("Retry-After", 1))
+            if answer.status_code not in BUSY or time.monotonic() + pause > until:
+                raise refusal(answer)
+            time.sleep(pause)
+
+    def upload(self, mesh: File | bytes, *, units: str = "mm", frame: str = "unspecified") -> str:
+        """The id of a mesh. The same bytes are the same mesh."""
+        content = mesh if isinstance(mesh, bytes) else Path(mesh).read_bytes()
+        answer = self.ask("POST", "/v1/meshes", content=content, params={"units": units, "frame": frame},
+                          headers={"Content-Type": "application/octet-stream"})
+        return str(answer.json()["id"])
+
+    def case(self, case: File | Document) -> Case:
+        """Stores a case. A file is a `case.json` of the command line, which names meshes by their paths; a document
+        names them by their ids, or by `Path`."""
+        if isinstance(case, dict):
+            document = self._with_meshes(case, Path(), Path)
+        else:
+            file = json.loads(Path(case).read_text(encoding="utf-8"))
+            document = self._with_meshes(file.get("case", file), Path(case).parent, str)
+        made = self.ask("POST", "/v1/cases", json=document).json()
+        return Case(made["id"], made["case"], made.get("check"))
+
+    def predict(self, case: Case | File | Document, plan: Document, *, fixed: Sequence[str] = (),
+                skin: str | None = None, frame: str = "LPS", units: str = "mm",
+                progress: Progress | None = None, **spec: Any) -> Prediction:
+        """The skin after a plan. A file that is not a `.json` is a volume mesh: `fixed` and `skin` name its node sets,
+        and so do the segments of the plan. `spec` has further members of the job, such as `method`."""
+        if isinstance(case, (str, PathLike)) and Path(case).suffix != ".json":
+            case = case_of_mesh(case, plan, fixed, skin) | {"frame": frame, "units": units}
+        elif fixed or skin:
+            raise TypeError("`fixed` and `skin` go with a volume mesh; a case has its own")
+        outputs = spec.pop("outputs", ["skin.vtp", SKIN])
+        job = self.run({"kind": "predict", "case": self._id(case), "plan": plan,
+                        "outputs": sorted({*outputs, SKIN}), **spec}, progress)
+        return Prediction(job["id"], self._skin(job), job["results"])
+
+    def response(self, case: Case | File | Document, *, progress: Progress | None = None, **spec: Any) -> Response:
+        """The columns of a case, with which plans take milliseconds."""
+        id_ = self._id(case)
+        job = self.run({"kind": "response", "case": id_, **spec}, progress)
+        path, which = f"/v1/cases/{id_}/response", {"job": job["id"]}
+
+        def form(media_type: str) -> httpx.Response:
+            return self.ask("GET", path, params=which, headers={"Accept": media_type})
+
+        description = form("application/json").json()
+        columns = np.frombuffer(form("application/octet-stream").content, "<f4")
+        columns = columns.reshape(description["columns"]["count"], -1, 3)
+        rest = Surface.from_glb(form("model/gltf-binary").content)
+        return Response(id_, job["id"], description, columns, rest)
+
+    def apply(self, response: Response, plan: Document) -> NDArray[np.float32]:
+        """How far each node of the skin goes, in mm, as the service computes it: plans beyond its limits are refused."""
+        answer = self.ask("POST", f"/v1/cases/{response.case}/response/apply", json={"plan": plan},
+                          params={"job": response.job}, headers={"Accept": "application/octet-stream"})
+        return np.frombuffer(answer.content, "<f4").reshape(-1, 3)
+
+    def optimise(self, case: Case | File | Document, targets: list[Document], bounds: Document, *,
+                 progress: Progress | None = None, **spec: Any) -> Optimisation:
+        """The plan within `bounds` that brings the skin nearest to `targets`."""
+        outputs = spec.pop("outputs", ["skin.vtp", SKIN])
+        job = self.run({"kind": "optimise", "case": self._id(case), "targets": targets, "bounds": bounds,
+                        "outputs": sorted({*outputs, SKIN}), **spec}, progress)
+        return Optimisation(job["id"], self._skin(job), job["results"])
+
+    def compare(self, prediction: Prediction, actual: Prediction | File, *, units: str = "mm", frame: str = "LPS",
+                progress: Progress | None = None, **spec: Any) -> Comparison:
+        """A predicted skin against another, or against the surface in a file in `units` and `frame`."""
+        if isinstance(actual, Prediction):
+            content = self.file(actual.job, "skin.vtp")
+        else:
+            content = Path(actual).read_bytes()
+        mesh = self.upload(content, units=units, frame=frame)
+        job = self.run({"kind": "compare", "prediction": {"job": prediction.job},
+                        "actual": {"mesh": mesh}, **spec}, progress)
+        return Comparison(job["id"], job["results"]["comparison"])
+
+    def file(self, job: str, name: str) -> bytes:
+        """A file of a result."""
+        return self.ask("GET", f"/v1/jobs/{job}/results/{name}").content
+
+    def run(self, spec: Document, progress: Progress | None = None) -> Document:
+        """The last state of a job of any kind; raises `JobFailed` where it ended without results."""
+        waits = WAIT if progress is None else {}
+        job: Document = self.ask("POST", "/v1/jobs", json=spec, headers=waits).json()
+        if progress is not None:
+            for event in self.events(job["id"]):
+                progress(event)
+        while job["status"] in ("accepted", "running"):
+            job = self.ask("GET", f"/v1/jobs/{job['id']}", headers=WAIT).json()
+        if job["status"] != "successful":
+            raise JobFailed(job)
+        return job
+
+    def events(self, job: str) -> Iterator[Document]:
+        """What happens to a job until it has ended. A stream that breaks is taken up where it broke."""
+        last = 0
+        while True:
+            headers = {"Accept": "text/event-stream", "Last-Event-ID": str(last)}
+            try:
+                with self._http.stream("GET", f"/v1/jobs/{job}/events", headers=headers) as answer:
+                    if answer.status_code == 204 or answer.status_code in BUSY:
+                        return
+                    if not answer.is_success:
+                        answer.read()
+                        raise refusal(answer)
+                    for line in answer.iter_lines():
+                        if line.startswith("data:"):
+                            event = json.loads(line[len("data:"):])
+                            last = event["number"]
+                            yield event
+            except (httpx.ReadError, httpx.RemoteProtocolError):
+                continue
+
+    def _id(self, case: Case | File | Document) -> str:
+        return (case if isinstance(case, Case) else self.case(case)).id
+
+    def _skin(self, job: Document) -> Surface:
+        return Surface.from_glb(self.file(job["id"], SKIN))
+
+    def _with_meshes(self, case: Document, folder: Path, kind: type[Path] | type[str]) -> Document:
+        """The document with the ids of meshes in place of their paths, which are of this type."""
+        statement = {"units": case.get("units", "mm"), "frame": case.get("frame", "unspecified")}
+        bones = {bone["name"] for bone in case.get("bones", [])}
+
+        def known(value: Any, key: str = "") -> Any:
+            if isinstance(value, dict):
+                return {name: known(member, name) for name, member in value.items()}
+            if isinstance(value, list):
+                return [known(member) for member in value]
+            # A selection may name a bone where it names a surface.
+            is_mesh = key in ("volume", "mesh", "image") or (key == "surface" and value not in bones)
+            is_file = is_mesh and isinstance(value, kind)
+            return self.upload(folder / Path(value), **statement) if is_file else value
+
+        document: Document = known(case)
+        return document
+
+
+def case_of_mesh(mesh: File, plan: Document, fixed: Sequence[str], skin: str | None) -> Document:
+    """A case of node sets of a volume mesh: each segment of the plan is the set of its name."""
+    names = [segment["name"] for segment in plan.get("segments", [])]
+    case: Document = {"volume": Path(mesh), "fixed": [{"node_set": name} for name in fixed],
+                      "segments": [{"name": name, "nodes": {"node_set": name}} for name in names]}
+    return case if skin is None else case | {"skin": {"node_set": skin}}
+
+
+def refusal(answer: httpx.Response) -> Refused:
+    """The problem of an answer, or its status where something between us and the service answered."""
+    try:
+        return Refused(answer.json())
+    except (ValueError, KeyError, TypeError):
+        detail = f"{answer.request.url} answered {answer.text[:200]!r}"
+        return Refused({"status": answer.status_code, "code": "not-of-the-service", "detail": detail})

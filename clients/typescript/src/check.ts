@@ -1,0 +1,51 @@
+// What `Facies` promises, against a service: arrays that agree with each other, progress, exceptions with codes.
+import { strict as assert } from "node:assert";
+import { readFile } from "node:fs/promises";
+import { Facies, JobFailed, Refused, type Documents, type Movement } from "./facies.js";
+
+const folder = "examples/head/";
+const blob = async (name: string) => new Blob([await readFile(folder + name)]);
+const facies = new Facies(process.env.FACIES_ADDRESS!, process.env.FACIES_API_KEY);
+const { case: document } = JSON.parse(await readFile(`${folder}case.json`, "utf8"));
+const head = await facies.createCase(document, {
+  "face.vtu": await blob("face.vtu"), "mandible.vtp": await blob("mandible.vtp"), "maxilla.vtp": await blob("maxilla.vtp"),
+});
+const movement = { translation_mm: [0, 4, 1], rotation_deg: [3, -2, 1], pivot_mm: [0, 10, 20] } satisfies Movement;
+const plan = { segments: [{ name: "mandible", ...movement }] } as Documents["PlanDocument"];
+const apart = (a: Float32Array, b: Float32Array) => {
+  assert.equal(a.length, b.length);
+  return a.reduce((most, value, at) => Math.max(most, Math.abs(value - b[at]!)), 0);
+};
+
+const events: Documents["JobEvent"][] = [];
+const prediction = await facies.predict(head, plan, { progress: (event) => events.push(event) });
+assert.deepEqual(events.map((event) => event.number), events.map((_, at) => at + 1));
+assert.equal(events.at(-1)!.status, "successful");
+assert.equal(prediction.displacement_mm.length, prediction.skin.points_mm.length);
+
+const response = await facies.response(head);
+const here = response.displacement({ mandible: movement });
+const difference = apart(here, await facies.apply(response, plan));
+assert(difference < 1e-4, `${difference} mm from the answer of apply`);
+assert(apart(here, prediction.displacement_mm) < 1e-3, "the response says what the prediction says");
+const before = prediction.skin.points_mm.map((value, at) => value - prediction.displacement_mm[at]!);
+assert(apart(response.rest.points_mm, before) < 1e-3, "vertices stand in the order of the nodes");
+
+const found = await facies.optimise(
+  head, [{ nodes: { node_set: "chin" }, displacement_mm: [null, 4, null], sigma_mm: 1 }],
+  { mandible: { translation_mm: [[0, 0], [-10, 10], [-5, 5]] } });
+const again = await facies.predict(head, found.plan);
+assert(apart(found.displacement_mm, again.displacement_mm) < 1e-3, "the plan gives the skin that is told");
+const skin = await facies.upload(new Blob([await facies.file(again.job, "skin.vtp")]), "mm", "LPS");
+assert((await facies.compare(found, skin)).both.max < 1e-3);
+
+const mesh = { volume: await blob("face.vtu"), fixed: ["skull", "rim"], skin: "skin" };
+const ofMesh = await facies.predict(mesh, { segments: [{ name: "mandible", translation_mm: [0, 4, 1] }] });
+assert.equal(ofMesh.displacement_mm.length, here.length);
+
+const unknown = { segments: [{ name: "mandibel", translation_mm: [0, 4, 1] as [number, number, number] }] };
+await assert.rejects(facies.predict(head, unknown), (refused) => refused instanceof Refused
+  && refused.code === "unknown-segment" && refused.pointer === "/plan/segments/0/name");
+await assert.rejects(facies.predict(head, plan, { budget: { wall_s: 0.001 }, element: "quadratic" }),
+  (failed) => failed instanceof JobFailed && failed.code === "budget-exceeded");
+console.log(`${here.length / 3} vertices, ${events.length} events, ${difference.toExponential(1)} mm from the answer of apply`);

@@ -1,0 +1,74 @@
+// A plan response: the columns of which the skin of every plan is a sum.
+//
+// u = sum over segments s of C[12 s + 4 i + j] (R - I)_ij + C[12 s + 4 i + 3] t_i, where the segment moves as
+// x' = x + (R - I)(x - centre) + t.
+import type { components } from "./rest.js";
+import type { Surface } from "./surface.js";
+
+export type Triple = [number, number, number];
+/** A movement as a plan says it: rotations about x, then y, then z, through the pivot, then the translation. */
+export interface Movement {
+  translation_mm?: Triple;
+  rotation_deg?: Triple;
+  pivot_mm?: Triple;
+}
+
+const COLUMNS_PER_SEGMENT = 12;
+const AXES = [0, 1, 2] as const;
+
+/** Rows of Rz Ry Rx. */
+function rotation(degrees: Triple): [Triple, Triple, Triple] {
+  const [a, b, c] = degrees.map((angle) => (angle * Math.PI) / 180) as Triple;
+  const [sa, ca, sb, cb, sc, cc] = [a, b, c].flatMap((angle) => [Math.sin(angle), Math.cos(angle)]) as
+    [number, number, number, number, number, number];
+  return [
+    [cc * cb, cc * sb * sa - sc * ca, cc * sb * ca + sc * sa],
+    [sc * cb, sc * sb * sa + cc * ca, sc * sb * ca - cc * sa],
+    [-sb, cb * sa, cb * ca],
+  ];
+}
+
+/** The columns of a case, in mm; nodes and vertices of `rest` stand in the order of `description.node_ids`. */
+export class Response {
+  constructor(
+    readonly caseId: string,
+    readonly job: string,
+    readonly description: components["schemas"]["ResponseDescription"],
+    /** [column][node][xyz] */
+    readonly columns: Float32Array,
+    readonly rest: Surface,
+  ) {}
+
+  /** How far each node of the skin goes, xyz for each in mm, where segments move so and others stay. Without asking
+   * the service, whose `apply` also refuses plans beyond the limits and estimates what linearity leaves out. */
+  displacement(movements: Record<string, Movement>): Float32Array {
+    const numbers = this.description.node_ids.length * 3;
+    const total = new Float32Array(numbers);
+    for (const [name, movement] of Object.entries(movements)) {
+      this.coefficients(name, movement).forEach((factor, at) => {
+        if (factor === 0) return;
+        const column = (COLUMNS_PER_SEGMENT * this.segment(name) + at) * numbers;
+        for (let number = 0; number < numbers; number += 1) total[number]! += factor * this.columns[column + number]!;
+      });
+    }
+    return total;
+  }
+
+  /** What its twelve columns are multiplied with. */
+  private coefficients(name: string, movement: Movement): number[] {
+    const { translation_mm = [0, 0, 0], rotation_deg = [0, 0, 0], pivot_mm = [0, 0, 0] } = movement;
+    const centre = this.description.segments[this.segment(name)]!.centre_mm;
+    return rotation(rotation_deg).flatMap((row, i) => {
+      const turn = AXES.map((j) => row[j] - (i === j ? 1 : 0));
+      const shift = AXES.reduce<number>((sum, j) => sum + turn[j]! * (centre[j]! - pivot_mm[j]), translation_mm[i]!);
+      return [...turn, shift];
+    });
+  }
+
+  private segment(name: string): number {
+    const names = this.description.segments.map((segment) => segment.name);
+    const index = names.indexOf(name);
+    if (index < 0) throw new RangeError(`the response moves ${names.join(", ")}, not ${name}`);
+    return index;
+  }
+}
