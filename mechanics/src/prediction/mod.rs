@@ -41,7 +41,7 @@ pub use problem::{SceneError, SceneErrors};
 pub use scene::Scene;
 pub use skin::Skin;
 pub use skin_overlap::{SKIN_OVERLAPS, skin_overlap};
-pub use unheld::are_alike;
+pub use unheld::{are_alike, carried_away};
 pub use walls::normal_turned;
 
 pub use crate::boundary::NodeClass;
@@ -95,6 +95,9 @@ pub fn predict(scene: &Scene, progress: &dyn Progress) -> Result<Prediction, Mod
     warnings.extend(off_wall::left_wall(scene, &equilibrium.displacement));
     let moved = scene.skin.moved(&equilibrium.displacement);
     warnings.extend(skin_overlap(&scene.skin, &moved));
+    if !scene.allow_unfixed {
+        warnings.extend(carried_away(&scene.skin.surface, |point| moved.points[point]));
+    }
     warnings.extend(far_landmarks(&landmarks));
     Ok(Prediction {
         reactions: reactions(scene, &equilibrium),

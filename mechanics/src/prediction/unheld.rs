@@ -8,7 +8,7 @@ use super::case::Plan;
 use super::check::Check;
 use super::error_code::SceneErrorCode;
 use crate::boundary::Conditions;
-use crate::mesh::{Vector, Warning};
+use crate::mesh::{TriangleSurface, Vector, Warning};
 use crate::plan::doubt::farthest_apart;
 use crate::plan::{PlannedSegment, RigidMovement};
 
@@ -20,6 +20,36 @@ const NOTHING_HELD: &str = "nothing-held";
 
 /// What to do about it.
 const CURE: &str = "name in `fixed` what stays, or allow it with `allow_unfixed`";
+
+/// A skin goes along as one where no edge of it changes its length by more than this share of it.
+const STRETCHED: f64 = 1e-4;
+
+/// A skin that moves by less than this, in mm, goes nowhere.
+const CARRIED_MM: f64 = 0.05;
+
+/// The warning of a skin that goes along as one, whatever the conditions say that hold it: a wall beside which all
+/// moves, prescribed nodes that move too, something fixed in another part of the mesh. `moved` says where a point of
+/// the surface comes to lie. Ends at the first edge that is stretched.
+pub fn carried_away(rest: &TriangleSurface, moved: impl Fn(usize) -> Vector) -> Option<Warning> {
+    let place = |point: u32| (rest.points[point as usize], moved(point as usize));
+    let is_stretched = |[from, to]: [u32; 2]| {
+        let ((from, moved_from), (to, moved_to)) = (place(from), place(to));
+        let length = (to - from).norm();
+        ((moved_to - moved_from).norm() - length).abs() > STRETCHED * length
+    };
+    let edges = |&[a, b, c]: &[u32; 3]| [[a, b], [b, c], [c, a]];
+    if rest.triangles.iter().flat_map(edges).any(is_stretched) {
+        return None;
+    }
+    let points = rest.points.iter().enumerate();
+    let farthest = points.map(|(point, at)| (moved(point) - at).norm()).fold(0.0, f64::max);
+    let detail = format!(
+        "the skin goes along as one, by up to {farthest:.3} mm, and no edge of it is stretched by more than 0.01 %: \
+         what holds the tissue goes with it; {CURE}"
+    );
+    (farthest > CARRIED_MM)
+        .then(|| Warning::new(NOTHING_HELD, detail).with("farthest_mm", farthest))
+}
 
 /// Whether all of some movements take the corners of a box to the same places.
 pub fn are_alike(movements: &[RigidMovement], corners: &[Vector; 2]) -> bool {
@@ -74,4 +104,39 @@ impl Check<'_> {
 
 fn nothing_held(detail: String, segments: usize) -> Warning {
     Warning::new(NOTHING_HELD, detail).with("segments", segments as f64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plan::RigidMovement;
+
+    #[test]
+    fn a_skin_that_turns_and_moves_as_one_is_told_and_one_that_stretches_is_not() {
+        let points = [[0.0, 0.0, 0.0], [30.0, 0.0, 0.0], [0.0, 30.0, 0.0], [30.0, 30.0, 9.0]];
+        let points = points.map(Vector::from).to_vec();
+        let rest =
+            TriangleSurface { points, triangles: vec![[0, 1, 2], [1, 3, 2]], node_ids: None };
+        let turn = |by: f64| {
+            let angles = Vector::new(0.0, 0.3 * by, 0.2 * by);
+            RigidMovement::about_pivot(
+                angles,
+                Vector::new(5.0, 5.0, 0.0),
+                Vector::new(by, 0.0, 0.0),
+            )
+        };
+        let carried = |by: f64, along: f64| {
+            let movement = turn(by);
+            carried_away(&rest, |point| {
+                let at = rest.points[point];
+                at + movement.displacement(&at) + Vector::new(0.0, 0.0, along * at.x)
+            })
+        };
+        let told = carried(4.0, 0.0).expect("the whole skin goes along");
+        assert_eq!(told.code, "nothing-held");
+        assert!(told.numbers[0].1 > 4.0, "{told:?}");
+        // One that stretches by 0.1 %, and one that hardly moves.
+        assert_eq!(carried(4.0, 1e-3), None);
+        assert_eq!(carried(0.01, 0.0), None);
+    }
 }
