@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 
 use axum::extract::Request;
 use axum::http::{HeaderMap, StatusCode, header};
-use axum::response::IntoResponse;
+use axum::response::{IntoResponse, Response};
+use bytes::Bytes;
 use serde::{Deserialize, Serialize};
 use utoipa::{IntoParams, ToSchema};
 use utoipa_axum::routes;
@@ -18,9 +19,11 @@ use super::paging::Page;
 use super::parameters::{Id, Parameters};
 use super::resources::Resources;
 use super::{Service, body, conditional, job_input, json, time, with_header};
+use crate::jobs::PredictInput;
 use crate::schema::key::Scope;
 use crate::schema::mesh::MeshDocument;
 use crate::schema::predict::check::CheckDocument;
+use crate::schema::wire::canonical::sha256_hex;
 use crate::schema::wire::strict;
 use crate::schema::{CaseDocument, ErrorCode, Faults, PredictDocument};
 use crate::store::{CaseRow, Change};
@@ -232,7 +235,10 @@ async fn remove(service: Service, Id(id): Id, headers: HeaderMap) -> ApiResult {
     let row = row_of(&service, &id).await?;
     conditional::require_match(&headers, &row.version.to_string())?;
     match service.store.delete_case(&id, Some(row.version)).await? {
-        Change::Done => Ok(StatusCode::NO_CONTENT.into_response()),
+        Change::Done => {
+            service.pictures.forget(&id);
+            Ok(StatusCode::NO_CONTENT.into_response())
+        }
         Change::OtherVersion(version) => Err(conditional::other_version(&version.to_string())),
         Change::NotFound => Err(ApiError::not_found("case")),
     }
@@ -266,19 +272,40 @@ async fn check(service: Service, Id(id): Id, request: Request) -> ApiResult {
         faults.into_result()?;
     }
     let input = job_input::predict_input(&service, &row, spec).await?;
+    let question = question(&input)?;
+    let known = question.as_ref().filter(|_| !wants_counts);
+    if let Some(svg) = known.and_then(|question| service.pictures.get(&id, question)) {
+        return Ok(picture(svg));
+    }
     let to_spec = |error: ApiError| error.map_problem(|problem| problem.moved("/spec", ""));
     let report = checked(&service, input, BTreeMap::new()).await.map_err(to_spec)?;
     if wants_counts {
         return Ok(json(StatusCode::OK, &report.document));
     }
     let turn = service.check_turn().await?;
-    let picture = turn.compute(move || report.picture()).await?.map_err(job_input::refusal)?;
+    let drawn = turn.compute(move || report.picture()).await?.map_err(job_input::refusal)?;
+    let svg = Bytes::from(drawn);
+    if let Some(question) = question {
+        service.pictures.keep(&id, question, svg.clone());
+    }
+    Ok(picture(svg))
+}
+
+/// What decides a picture, as a hash: meshes never change, and those of a case stay as long as it does. `None` where others
+/// are asked for, which may be gone when the same is asked again.
+fn question(input: &PredictInput) -> ApiResult<Option<String>> {
+    let of_case = job_input::mesh_ids(input) == input.case.mesh_ids();
+    let text = serde_json::to_vec(input).map_err(ApiError::internal)?;
+    Ok(of_case.then(|| sha256_hex(&text)))
+}
+
+fn picture(svg: Bytes) -> Response {
     let headers = [
         (header::CONTENT_TYPE, SVG),
         (header::CACHE_CONTROL, "private, no-store"),
         (header::CONTENT_DISPOSITION, "attachment; filename=\"check.svg\""),
     ];
-    Ok((headers, picture).into_response())
+    (headers, svg).into_response()
 }
 
 /// Whether a request comes without a body, be it of any kind.

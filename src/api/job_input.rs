@@ -295,7 +295,7 @@ async fn stored_plan(
 }
 
 /// Every mesh that a prediction reads.
-fn mesh_ids(input: &PredictInput) -> Vec<String> {
+pub(super) fn mesh_ids(input: &PredictInput) -> Vec<String> {
     let mut ids = input.case.mesh_ids();
     let is_bone = |id: &str| input.case.bones.iter().any(|bone| bone.name == id);
     let mut plan = input.plan.clone();

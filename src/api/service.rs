@@ -8,6 +8,7 @@ use super::spool::Ground;
 use super::turns::{Turn, Turns};
 use crate::config::Config;
 use crate::library::meshes::Library;
+use crate::library::pictures::Pictures;
 use crate::library::responses::Responses;
 use crate::schema::Limits;
 use crate::store::Store;
@@ -26,6 +27,7 @@ pub struct Service {
     pub store: Store,
     pub library: Library,
     pub responses: Responses,
+    pub pictures: Pictures,
     parsing: Turns,
     checking: Turns,
     budget: Budget,
@@ -64,6 +66,7 @@ impl Service {
         Service {
             hosts: (!config.asks_for_keys).then(hosts),
             responses: Responses::new(store.clone(), config.response_cache_bytes),
+            pictures: Pictures::default(),
             limits: Arc::new(limits.clone()),
             store,
             library,

@@ -77,9 +77,11 @@ fn image_report(image: &ImageVolume) -> ImageReport {
 }
 
 fn describe(volume: &VolumeMesh, report: &mut MeshReport) {
+    let mut cells: BTreeMap<&str, u64> = BTreeMap::new();
     for (shape, _) in volume.cells.iter() {
-        *report.cells.entry(shape.name().to_owned()).or_default() += 1;
+        *cells.entry(shape.name()).or_default() += 1;
     }
+    report.cells = cells.into_iter().map(|(shape, count)| (shape.to_owned(), count)).collect();
     report.node_sets = sizes(&volume.node_sets);
     report.cell_sets = sizes(&volume.cell_sets);
     report.node_labels = values(&volume.node_labels);
@@ -97,6 +99,8 @@ fn sizes(sets: &BTreeMap<String, Vec<u32>>) -> BTreeMap<String, u64> {
 fn values(arrays: &BTreeMap<String, Vec<i64>>) -> BTreeMap<String, Vec<i64>> {
     let distinct = |labels: &Vec<i64>| {
         let mut values = labels.clone();
+        // Neighbours are often alike, which leaves little to sort.
+        values.dedup();
         values.sort_unstable();
         values.dedup();
         values

@@ -3,5 +3,6 @@
 pub mod cache;
 pub mod mesh_report;
 pub mod meshes;
+pub mod pictures;
 pub mod responses;
 pub mod upload;

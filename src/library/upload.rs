@@ -19,7 +19,7 @@ use mechanics::format::{
     self, FormatError, Member, Mesh, ReadLimits, ReadMesh, SurfaceOutput, VolumeInLps,
     VolumeOutput, vtk,
 };
-use mechanics::mesh::Frame;
+use mechanics::mesh::{Frame, TriangleSurface, VolumeMesh};
 
 /// What an upload says about its bytes.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -91,11 +91,13 @@ fn understand(
     let Received { read, bytes, sha256 } = received;
     let is_image = matches!(read.mesh, Mesh::Image(_));
     let units = statement.units.filter(|_| !is_image);
-    let mut report = mesh_report(&read);
     // The frame stated for a form of several parts is that of the case, to which an image is turned.
     if !is_image {
         check_frame(&read, statement)?;
     }
+    let frame = read.frame.or(statement.frame.map(Frame::from)).unwrap_or_default();
+    let (mut report, stored) =
+        rayon::join(|| mesh_report(&read), || encode_read(&read.mesh, frame));
     let size = MeshSize { diagonal: report.diagonal, units: units.unwrap_or_default() };
     let scale = size.check(statement.allow_any_scale)?;
     report.warnings.extend(scale.as_ref().map(WarningDocument::from));
@@ -112,9 +114,8 @@ fn understand(
         frame: statement.frame,
         report,
     };
-    let frame = read.frame.or(statement.frame.map(Frame::from)).unwrap_or_default();
     let mesh = StoredMesh { frame: Some(frame), ..StoredMesh::new(read, units, sha256.clone()) };
-    let stored = Bytes::from(encode(&mesh.shape, frame)?);
+    let stored = Bytes::from(stored?);
     let row = NewMesh {
         id,
         sha256,
@@ -129,12 +130,28 @@ fn understand(
 
 /// The form in which a mesh is stored: reading it gives the same mesh.
 fn encode(shape: &StoredShape, frame: Frame) -> Result<Vec<u8>, Problem> {
-    let written = match shape {
-        StoredShape::Volume(volume) => vtk::vtu::write(&VolumeOutput::plain(volume, frame)),
-        StoredShape::Surface(surface) => vtk::vtp::write(&SurfaceOutput::plain(surface, frame)),
+    match shape {
+        StoredShape::Volume(volume) => encode_volume(volume, frame),
+        StoredShape::Surface(surface) => encode_surface(surface, frame),
         StoredShape::Image(image) => Ok(format::nrrd::write(image, frame)),
-    };
-    written.map_err(not_written)
+    }
+}
+
+/// The same of a mesh that was just read.
+fn encode_read(mesh: &Mesh, frame: Frame) -> Result<Vec<u8>, Problem> {
+    match mesh {
+        Mesh::Volume(volume) => encode_volume(volume, frame),
+        Mesh::Surface(surface) => encode_surface(surface, frame),
+        Mesh::Image(image) => Ok(format::nrrd::write(image, frame)),
+    }
+}
+
+fn encode_volume(volume: &VolumeMesh, frame: Frame) -> Result<Vec<u8>, Problem> {
+    vtk::vtu::write(&VolumeOutput::plain(volume, frame)).map_err(not_written)
+}
+
+fn encode_surface(surface: &TriangleSurface, frame: Frame) -> Result<Vec<u8>, Problem> {
+    vtk::vtp::write(&SurfaceOutput::plain(surface, frame)).map_err(not_written)
 }
 
 pub fn not_written(error: impl std::fmt::Display) -> Problem {

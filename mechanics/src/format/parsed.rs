@@ -1,10 +1,13 @@
 //! The one check after any reader: what a file said becomes a mesh that the rest can trust.
 
+use rayon::prelude::*;
+
 use super::arrays::{Arrays, checked_name, insert, is_finite};
 use super::error::{FormatError, Offenders};
 use super::limits::ReadLimits;
 use super::surface_cleaning::clean;
 use super::{Mesh, MeshFormat, ReadMesh};
+use crate::mesh::orientation::CellJacobian;
 use crate::mesh::{
     CellShape, Cells, Frame, TriangleSurface, ValuesOf, Vector, VolumeMesh, Warning,
 };
@@ -222,20 +225,20 @@ fn orient(
     shape: CellShape,
     warnings: &mut Vec<Warning>,
 ) -> Result<(), FormatError> {
-    let (mut all, mut reversed, mut dented, mut flat) = (0_u64, 0_u64, 0_u64, 0_u64);
+    let of_shape = (0..mesh.cells.len()).into_par_iter();
+    let of_shape = of_shape.filter(|&cell| mesh.cells.shape(cell) == shape);
+    let jacobians: Vec<(usize, CellJacobian)> =
+        of_shape.map(|cell| (cell, mesh.cell_jacobian(cell))).collect();
+    let count = |is: fn(&CellJacobian) -> bool| {
+        jacobians.iter().filter(|(_, jacobian)| is(jacobian)).count() as u64
+    };
+    let all = jacobians.len() as u64;
+    let reversed = count(CellJacobian::is_reversed);
+    let flat = count(|jacobian| jacobian.gauss_min == 0.0 && jacobian.gauss_max == 0.0);
+    let dented = count(|jacobian| jacobian.corner_min <= 0.0 && jacobian.corner_max >= 0.0);
     let mut invalid = Offenders::default();
-    for cell in 0..mesh.cells.len() {
-        if mesh.cells.shape(cell) != shape {
-            continue;
-        }
-        let jacobian = mesh.cell_jacobian(cell);
-        all += 1;
-        reversed += u64::from(jacobian.is_reversed());
-        flat += u64::from(jacobian.gauss_min == 0.0 && jacobian.gauss_max == 0.0);
-        dented += u64::from(jacobian.corner_min <= 0.0 && jacobian.corner_max >= 0.0);
-        if !jacobian.is_valid() {
-            invalid.add(cell);
-        }
+    for (cell, _) in jacobians.iter().filter(|(_, jacobian)| !jacobian.is_valid()) {
+        invalid.add(*cell);
     }
     if all > 0 && flat == all {
         return Err(FormatError::Degenerate { what: "cells", count: all });

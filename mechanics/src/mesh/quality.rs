@@ -1,7 +1,14 @@
 //! How good the cells of a volume mesh are: volumes, dihedral angles, scaled Jacobians, folds.
 
+use std::ops::Range;
+
+use rayon::prelude::*;
+
 use super::jacobian::{jacobian_sign, scaled_jacobian, signed_volume, smallest_jacobian};
 use super::{CellShape, Vector, VolumeMesh, Warning};
+
+/// Cells that a thread measures at a time.
+const CHUNK: usize = 4096;
 
 /// How many cells a report names of each kind.
 const NAMED_CELLS: usize = 10;
@@ -18,8 +25,6 @@ pub struct QualityReport {
     pub smallest_scaled_jacobian: f64,
     /// Cells by scaled Jacobian in steps of 0.1 from 0 to 1; what is below 0 is in the first.
     pub scaled_jacobian_histogram: [usize; 10],
-    /// Of the tetrahedra, if there are any.
-    pub dihedral_angles: Option<DihedralAngles>,
     /// Hexahedra with positive corners that had to be divided before their sign was known.
     pub subdivided: usize,
     /// Cells whose Jacobian is zero or negative somewhere.
@@ -78,18 +83,64 @@ impl QualityReport {
 
 /// Measures every cell. A mesh without cells has volumes and Jacobians of zero.
 pub fn quality(mesh: &VolumeMesh) -> QualityReport {
+    let parts: Vec<(QualityReport, Vec<f64>)> =
+        chunks(mesh).map(|cells| quality_of(mesh, cells)).collect();
     let mut report = empty_report(mesh.cells.len());
-    let mut corners = Vec::with_capacity(8);
-    for (cell, (shape, _)) in mesh.cells.iter().enumerate() {
-        corners.clear();
-        corners.extend(mesh.corners(cell));
-        add_size_and_shape(&mut report, shape, &corners);
-        add_sign(&mut report, cell as u32, shape, &corners);
+    for (part, volumes) in &parts {
+        add_part(&mut report, part);
+        // One cell after the other: a sum of sums has other last digits.
+        report.total_volume = volumes.iter().fold(report.total_volume, |sum, volume| sum + volume);
     }
     if mesh.cells.is_empty() {
         [report.smallest_volume, report.largest_volume, report.smallest_scaled_jacobian] = [0.0; 3];
     }
     report
+}
+
+/// The cells in pieces that threads take.
+fn chunks(mesh: &VolumeMesh) -> impl IndexedParallelIterator<Item = Range<usize>> {
+    let cells = mesh.cells.len();
+    (0..cells.div_ceil(CHUNK))
+        .into_par_iter()
+        .map(move |chunk| chunk * CHUNK..cells.min((chunk + 1) * CHUNK))
+}
+
+/// Everything of some cells but the sum of their volumes, and the volumes.
+fn quality_of(mesh: &VolumeMesh, cells: Range<usize>) -> (QualityReport, Vec<f64>) {
+    let mut report = empty_report(cells.len());
+    let mut volumes = Vec::with_capacity(cells.len());
+    let mut corners = Vec::with_capacity(8);
+    for cell in cells {
+        corners.clear();
+        corners.extend(mesh.corners(cell));
+        let shape = mesh.cells.shape(cell);
+        volumes.push(add_size_and_shape(&mut report, shape, &corners));
+        add_sign(&mut report, cell as u32, shape, &corners);
+    }
+    (report, volumes)
+}
+
+/// Adds what was found of the cells that follow, but for the sum of their volumes.
+fn add_part(report: &mut QualityReport, part: &QualityReport) {
+    report.smallest_volume = report.smallest_volume.min(part.smallest_volume);
+    report.largest_volume = report.largest_volume.max(part.largest_volume);
+    report.smallest_scaled_jacobian =
+        report.smallest_scaled_jacobian.min(part.smallest_scaled_jacobian);
+    add_counts(&mut report.scaled_jacobian_histogram, &part.scaled_jacobian_histogram);
+    report.subdivided += part.subdivided;
+    report.inverted += part.inverted;
+    report.undecided += part.undecided;
+    add_named(&mut report.inverted_cells, &part.inverted_cells);
+    add_named(&mut report.undecided_cells, &part.undecided_cells);
+}
+
+fn add_counts(counts: &mut [usize], others: &[usize]) {
+    counts.iter_mut().zip(others).for_each(|(count, other)| *count += other);
+}
+
+fn add_named<T: Copy>(named: &mut Vec<T>, others: &[T]) {
+    let free = NAMED_CELLS - named.len();
+    named.extend(others.iter().take(free));
 }
 
 fn empty_report(cells: usize) -> QualityReport {
@@ -100,7 +151,6 @@ fn empty_report(cells: usize) -> QualityReport {
         total_volume: 0.0,
         smallest_scaled_jacobian: f64::INFINITY,
         scaled_jacobian_histogram: [0; 10],
-        dihedral_angles: None,
         subdivided: 0,
         inverted: 0,
         inverted_cells: Vec::new(),
@@ -109,26 +159,15 @@ fn empty_report(cells: usize) -> QualityReport {
     }
 }
 
-fn add_size_and_shape(report: &mut QualityReport, shape: CellShape, corners: &[Vector]) {
+/// Returns the volume, which is in no sum yet.
+fn add_size_and_shape(report: &mut QualityReport, shape: CellShape, corners: &[Vector]) -> f64 {
     let volume = signed_volume(shape, corners);
     report.smallest_volume = report.smallest_volume.min(volume);
     report.largest_volume = report.largest_volume.max(volume);
-    report.total_volume += volume;
     let scaled = scaled_jacobian(shape, corners);
     report.smallest_scaled_jacobian = report.smallest_scaled_jacobian.min(scaled);
     report.scaled_jacobian_histogram[((scaled * 10.0) as usize).min(9)] += 1;
-    if shape == CellShape::Tet4 {
-        let angles = report.dihedral_angles.get_or_insert(DihedralAngles {
-            smallest: f64::INFINITY,
-            largest: 0.0,
-            histogram: [0; 18],
-        });
-        for angle in dihedral_angles(corners) {
-            angles.smallest = angles.smallest.min(angle);
-            angles.largest = angles.largest.max(angle);
-            angles.histogram[((angle.to_degrees() / 10.0) as usize).min(17)] += 1;
-        }
-    }
+    volume
 }
 
 fn add_sign(report: &mut QualityReport, cell: u32, shape: CellShape, corners: &[Vector]) {
@@ -145,6 +184,29 @@ fn add_sign(report: &mut QualityReport, cell: u32, shape: CellShape, corners: &[
         if report.undecided_cells.len() < NAMED_CELLS {
             report.undecided_cells.push(cell);
         }
+    }
+}
+
+impl DihedralAngles {
+    /// Those of all tetrahedra of a mesh, if there are any.
+    pub fn of(mesh: &VolumeMesh) -> Option<DihedralAngles> {
+        let none = DihedralAngles { smallest: f64::INFINITY, largest: 0.0, histogram: [0; 18] };
+        let mut corners = Vec::with_capacity(4);
+        let cells = 0..mesh.cells.len();
+        let tetrahedra = cells.filter(|&cell| mesh.cells.shape(cell) == CellShape::Tet4);
+        tetrahedra.fold(None, |angles, cell| {
+            corners.clear();
+            corners.extend(mesh.corners(cell));
+            let angles = angles.unwrap_or_else(|| none.clone());
+            Some(dihedral_angles(&corners).into_iter().fold(angles, DihedralAngles::with))
+        })
+    }
+
+    fn with(mut self, angle: f64) -> DihedralAngles {
+        self.smallest = self.smallest.min(angle);
+        self.largest = self.largest.max(angle);
+        self.histogram[((angle.to_degrees() / 10.0) as usize).min(17)] += 1;
+        self
     }
 }
 

@@ -44,6 +44,7 @@ impl Scene {
         let membrane = check.membrane(&skin, settings);
         let mut scene = Scene {
             mesh: case.volume.clone(),
+            boundary: boundary.clone(),
             skin,
             regions,
             region_of_cell,

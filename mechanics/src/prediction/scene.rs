@@ -10,6 +10,7 @@ use super::method::{Method, Unknowns};
 use super::skin::Skin;
 use crate::boundary::{Conditions, NodeClass};
 use crate::material::LinearElastic;
+use crate::mesh::volume::BoundaryFace;
 use crate::mesh::{CellShape, Vector, VolumeMesh, Warning};
 use crate::model::fem::assembly::Tissue;
 use crate::model::fem::cell_stiffness::Dilatation;
@@ -39,6 +40,8 @@ enum Tetrahedron {
 /// Mesh, materials and conditions, ready to be solved.
 pub struct Scene {
     pub mesh: Arc<VolumeMesh>,
+    /// The faces that belong to one cell only.
+    pub boundary: Vec<BoundaryFace>,
     pub skin: Skin,
     /// Region names, and for each cell its entry.
     pub regions: Vec<String>,

@@ -67,6 +67,7 @@ fn inward_skin(scene: &Scene) -> Option<Warning> {
     if held.is_empty() {
         return None;
     }
+    let held = ByHeight::of(&held);
     let step = surface.triangles.len().div_ceil(MEASURED_FACES).max(1);
     let measured: Vec<usize> = (0..surface.triangles.len()).step_by(step).collect();
     let areas: Vec<[f64; 2]> = measured
@@ -74,9 +75,7 @@ fn inward_skin(scene: &Scene) -> Option<Warning> {
         .map(|&triangle| {
             let normal = surface.area_vector(triangle);
             let middle = surface.corners(triangle).iter().sum::<Vector>() / 3.0;
-            let ways = held.iter().map(|other| other - middle);
-            let way = ways.min_by(|a, b| a.norm_squared().total_cmp(&b.norm_squared()));
-            let way = way.unwrap_or_else(Vector::zeros);
+            let way = held.way_to_closest(&middle);
             let faces_it = way.dot(&normal) > FACING * way.norm() * normal.norm();
             [normal.norm(), if faces_it { normal.norm() } else { 0.0 }]
         })
@@ -90,6 +89,61 @@ fn inward_skin(scene: &Scene) -> Option<Warning> {
     );
     let warning = Warning::new("skin-inwards", detail).with("share", share);
     (share > MOST_INWARDS).then(|| warning.with("faces_measured", measured.len() as f64))
+}
+
+/// Places in ascending order of z: the closest to another is found among those about as high.
+struct ByHeight {
+    places: Vec<Numbered>,
+}
+
+/// A place and its number in the order in which places were given.
+struct Numbered {
+    place: Vector,
+    number: usize,
+}
+
+/// The closest place so far.
+struct Closest {
+    /// In mm².
+    squared: f64,
+    number: usize,
+    way: Vector,
+}
+
+impl ByHeight {
+    fn of(places: &[Vector]) -> Self {
+        let numbered = places.iter().enumerate();
+        let mut places: Vec<Numbered> =
+            numbered.map(|(number, &place)| Numbered { place, number }).collect();
+        places.sort_by(|a, b| a.place.z.total_cmp(&b.place.z));
+        ByHeight { places }
+    }
+
+    /// The way to the closest place, of several that are as close to the first.
+    fn way_to_closest(&self, from: &Vector) -> Vector {
+        let middle = self.places.partition_point(|other| other.place.z < from.z);
+        let (below, above) = self.places.split_at(middle);
+        let none = Closest { squared: f64::INFINITY, number: usize::MAX, way: Vector::zeros() };
+        let closest = none.or_of(above.iter(), from);
+        closest.or_of(below.iter().rev(), from).way
+    }
+}
+
+impl Closest {
+    /// This one, or a closer one of places that are ever higher or ever lower.
+    fn or_of<'a>(mut self, places: impl Iterator<Item = &'a Numbered>, from: &Vector) -> Self {
+        for &Numbered { place, number } in places {
+            let way = place - from;
+            if way.z * way.z > self.squared {
+                break;
+            }
+            let squared = way.norm_squared();
+            if squared < self.squared || (squared == self.squared && number < self.number) {
+                self = Closest { squared, number, way };
+            }
+        }
+        self
+    }
 }
 
 /// A skin that nobody named is every free face; sharp edges part what faces forward from rims where tissue was cut.
@@ -119,4 +173,25 @@ fn unnamed_skin(surface: &TriangleSurface) -> Warning {
         .with("area_mm2", whole)
         .with("parts", count as f64)
         .with("share_of_largest", largest / whole.max(f64::MIN_POSITIVE))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_way_to_the_closest_of_many_places_is_the_one_that_a_look_at_each_finds() {
+        let place = |number: usize| {
+            let [x, y, z] = [7, 11, 13].map(|prime| (number * prime % 17) as f64);
+            Vector::new(x, y, z)
+        };
+        let places: Vec<Vector> = (0..200).map(place).collect();
+        let sorted = ByHeight::of(&places);
+        for from in (0..100).map(|number| place(number * 3 + 1) * 0.5 + Vector::new(0.0, 4.0, 2.0))
+        {
+            let ways = places.iter().map(|place| place - from);
+            let closest = ways.min_by(|a, b| a.norm_squared().total_cmp(&b.norm_squared()));
+            assert_eq!(Some(sorted.way_to_closest(&from)), closest);
+        }
+    }
 }

@@ -65,9 +65,10 @@ impl PredictInput {
         let actual = self.fetch_actual(sources)?;
         let meshes = self.case_meshes(&stored)?;
         let converted = self.convert(&meshes, limits)?;
-        let scene = Scene::new(&converted.case, &converted.plan, &converted.settings)
-            .map_err(|errors| JobError::Refused(errors.into()))?;
-        let quality = quality(&converted.case.volume);
+        let Converted { case, plan, settings, .. } = &converted;
+        let (scene, quality) =
+            rayon::join(|| Scene::new(case, plan, settings), || quality(&case.volume));
+        let scene = scene.map_err(|errors| JobError::Refused(errors.into()))?;
         let meshes_read = stored.values().chain(&actual);
         let mut warnings: Vec<Warning> =
             meshes_read.flat_map(|mesh| mesh.warnings.iter().cloned()).collect();

@@ -34,7 +34,7 @@ fn classes_of(scene: &Scene) -> Vec<(NodeClass, NodeClasses)> {
 
 /// `classes.svg`: the boundary of the volume mesh coloured by what holds its nodes.
 pub fn classes_picture(scene: &Scene, frame: Frame, title: &str) -> Result<String, PngError> {
-    let boundary = scene.mesh.surface_of(&scene.mesh.boundary_faces());
+    let boundary = scene.mesh.surface_of(&scene.boundary);
     let (order, classes): (Vec<NodeClass>, Vec<NodeClasses>) =
         classes_of(scene).into_iter().unzip();
     let nodes = boundary.node_ids.iter().flatten();

@@ -59,6 +59,30 @@ async fn a_check_counts_what_holds_the_nodes_and_solves_nothing() {
 }
 
 #[tokio::test]
+async fn the_picture_of_a_check_is_drawn_once_and_goes_with_its_case() {
+    let server = Server::start_with(&["--workers", "0", "--mesh-cache-mib", "0"]);
+    let case = server.case(&SMALL).await;
+    let path = format!("/v1/cases/{case}");
+    let check = format!("{path}/check");
+    let picture = async |spec: &serde_json::Value| {
+        ask(server.post(&check).json(spec).header("accept", "image/svg+xml")).await
+    };
+    let drawn = picture(&json!({})).await;
+    assert_eq!(drawn.status, StatusCode::OK);
+    for folder in std::fs::read_dir(server.path().join("blobs")).unwrap() {
+        std::fs::remove_dir_all(folder.unwrap().path()).unwrap();
+    }
+    let again = picture(&json!({})).await;
+    assert_eq!(again.status, StatusCode::OK, "what is known needs no mesh");
+    assert!(again.bytes == drawn.bytes && again.bytes.starts_with(b"<svg"));
+    let moved = json!({"plan": {"segments": [{"name": "bone", "translation_mm": [1, 0, 0]}]}});
+    assert_ne!(picture(&moved).await.status, StatusCode::OK, "another question is asked anew");
+    let erased = ask(server.delete(&path).header("if-match", "*")).await;
+    assert_eq!(erased.status, StatusCode::NO_CONTENT);
+    picture(&json!({})).await.problem(410, "gone");
+}
+
+#[tokio::test]
 async fn what_is_wrong_with_a_case_is_told_and_nothing_of_it_is_kept() {
     let server = Server::start();
     let refused = async |change: &dyn Fn(&mut serde_json::Value)| {

@@ -8,15 +8,19 @@
 //! Source: VTK File Formats, docs.vtk.org, and vtkXMLDataParser.cxx.
 
 use std::borrow::Cow;
-use std::io::Read;
+use std::io::{ErrorKind, Read};
 
 use flate2::read::ZlibDecoder;
+use rayon::prelude::*;
 
 use super::document::{Appended, Content, DataArray, Document};
 use super::source::Source;
 use crate::format::error::{FormatError, Place};
 use crate::format::limits::{DecodeBudget, MOST_BYTES_OF_ONE, ReadLimits, room_for};
 use crate::format::scalar::Scalar;
+
+/// Blocks of an array that are inflated side by side: what they are copied to stays small however many there are.
+const BLOCKS_AT_ONCE: usize = 256;
 
 pub(super) struct Decoder<'d, 'a> {
     document: &'d Document<'a>,
@@ -269,23 +273,47 @@ impl<'d, 'a> Decoder<'d, 'a> {
     ) -> Result<Vec<u8>, FormatError> {
         let blocks = self.blocks(array, source)?;
         let mut decoded = room_for(blocks.decoded as usize)?;
-        for (block, &stored) in blocks.compressed.iter().enumerate() {
-            let is_last = block + 1 == blocks.compressed.len();
-            let size = if is_last { blocks.last } else { blocks.full };
-            let before = decoded.len() as u64;
-            let bytes = self.take(array, source, stored)?;
-            // One byte more than promised is enough to see that the promise was wrong.
-            let mut inflater = ZlibDecoder::new(&bytes[..]).take(size.saturating_add(1));
-            inflater
-                .read_to_end(&mut decoded)
-                .map_err(|error| self.bad(array, format!("block {block}: {error}")))?;
-            let have = decoded.len() as u64 - before;
-            if have != size {
-                let detail = format!("block {block} holds {have} bytes instead of {size}");
-                return Err(self.bad(array, detail));
-            }
+        decoded.resize(blocks.decoded as usize, 0);
+        let mut places = blocks.places(&mut decoded);
+        let mut first = 0;
+        for batch in blocks.compressed.chunks(BLOCKS_AT_ONCE) {
+            let stored: Vec<_> =
+                batch.iter().map(|&bytes| self.take(array, source, bytes)).collect();
+            let places: Vec<&mut [u8]> = places.by_ref().take(batch.len()).collect();
+            let blocks = stored.into_par_iter().zip(places).enumerate();
+            let inflated: Vec<Result<(), FormatError>> = blocks
+                .map(|(block, (stored, place))| {
+                    let wrong = |why| self.bad(array, format!("block {}{why}", first + block));
+                    inflate_to(&stored?, place).map_err(wrong)
+                })
+                .collect();
+            // Of several that are wrong the first is told, whichever was found first.
+            inflated.into_iter().collect::<Result<(), _>>()?;
+            first += batch.len();
         }
+        drop(places);
         Ok(decoded)
+    }
+}
+
+/// Inflates a block to the place that it has to fill; what is wrong with it otherwise.
+fn inflate_to(stored: &[u8], place: &mut [u8]) -> Result<(), String> {
+    let mut inflater = ZlibDecoder::new(stored);
+    let mut have = 0;
+    // One byte more than promised is enough to see that the promise was wrong.
+    let mut beyond = [0];
+    loop {
+        let free = if have < place.len() { &mut place[have..] } else { &mut beyond[..] };
+        match inflater.read(free) {
+            Ok(0) if have == place.len() => return Ok(()),
+            Ok(read) if read > 0 && have < place.len() => have += read,
+            Ok(read) => {
+                let have = have + read;
+                return Err(format!(" holds {have} bytes instead of {}", place.len()));
+            }
+            Err(error) if error.kind() == ErrorKind::Interrupted => {}
+            Err(error) => return Err(format!(": {error}")),
+        }
     }
 }
 
@@ -295,4 +323,18 @@ struct Blocks {
     full: u64,
     last: u64,
     decoded: u64,
+}
+
+impl Blocks {
+    /// Where each block goes.
+    fn places<'b>(&self, decoded: &'b mut [u8]) -> impl Iterator<Item = &'b mut [u8]> + use<'b> {
+        let (count, full, last) = (self.compressed.len(), self.full as usize, self.last as usize);
+        let mut rest = decoded;
+        (1..=count).map(move |block| {
+            let size = if block == count { last } else { full };
+            let (place, after) = std::mem::take(&mut rest).split_at_mut(size);
+            rest = after;
+            place
+        })
+    }
 }

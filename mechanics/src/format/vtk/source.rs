@@ -2,6 +2,9 @@
 
 use std::borrow::Cow;
 
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD_NO_PAD;
+
 use crate::format::error::FormatError;
 use crate::format::limits::room_for;
 
@@ -47,6 +50,7 @@ impl<'a> Source<'a> {
             Source::Base64 { text, pending } => {
                 let mut taken = room_for(count + 3)?;
                 taken.append(pending);
+                decode_plain(text, &mut taken, count);
                 while taken.len() < count {
                     if !decode_four(text, &mut taken) {
                         return Ok(None);
@@ -56,6 +60,19 @@ impl<'a> Source<'a> {
                 Ok(Some(Cow::Owned(taken)))
             }
         }
+    }
+}
+
+/// Decodes as many fours of characters as hold no more than `count` bytes and are followed by others, where they are
+/// digits throughout; leaves the text as it is where they are not.
+fn decode_plain(text: &mut &[u8], bytes: &mut Vec<u8>, count: usize) {
+    let fours = (count.saturating_sub(bytes.len()) / 3).min(text.len() / 4).saturating_sub(1);
+    let Some((plain, rest)) = text.split_at_checked(4 * fours) else { return };
+    let before = bytes.len();
+    bytes.resize(before + 3 * fours, 0);
+    match STANDARD_NO_PAD.decode_slice(plain, &mut bytes[before..]) {
+        Ok(_) => *text = rest,
+        Err(_) => bytes.truncate(before),
     }
 }
 
@@ -111,6 +128,8 @@ const BASE64_DIGITS: [u8; 256] = {
 
 #[cfg(test)]
 mod tests {
+    use base64::engine::general_purpose::STANDARD;
+
     use super::*;
 
     fn taken(text: &str, counts: &[usize]) -> Vec<Option<Vec<u8>>> {
@@ -125,6 +144,24 @@ mod tests {
         let apart = taken("aGVhZA==ZGF0YQ==", &[4, 4]);
         assert_eq!(joined, [Some(b"head".to_vec()), Some(b"data".to_vec())]);
         assert_eq!(joined, apart);
+    }
+
+    #[test]
+    fn long_base64_reads_as_the_same_bytes_however_it_is_broken_into_lines_and_parts() {
+        let bytes: Vec<u8> = (0..10_000_u32).map(|number| (number * 7 % 251) as u8).collect();
+        let (head, data) = bytes.split_at(4097);
+        let [head, data] = [head, data].map(|part| STANDARD.encode(part));
+        let lines: Vec<&str> =
+            data.as_bytes().chunks(76).map(|line| std::str::from_utf8(line).unwrap()).collect();
+        for text in [format!("{head}{data}"), format!("{head}\n{}", lines.join("\r\n"))] {
+            let parts = taken(&text, &[1, 4096, 5000, 903, 1]);
+            let [.., last] = &parts[..] else { panic!("five parts") };
+            assert_eq!(*last, None, "there is no byte more");
+            let whole: Vec<u8> = parts.into_iter().flatten().flatten().collect();
+            assert_eq!(whole, bytes);
+        }
+        let wrong = format!("{}?{}", &head[..3000], &head[3001..]);
+        assert_eq!(taken(&wrong, &[4097]), [None]);
     }
 
     #[test]

@@ -11,6 +11,7 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
+use rayon::prelude::*;
 
 use crate::format::output::{ArrayValues, NamedValues};
 use crate::mesh::{Frame, Vector};
@@ -42,17 +43,28 @@ impl Numbers<'_> {
 
     fn little_endian(&self) -> Vec<u8> {
         match self {
-            Numbers::Vectors(values) => values
-                .iter()
-                .flat_map(|vector| [vector.x, vector.y, vector.z])
-                .flat_map(f64::to_le_bytes)
-                .collect(),
-            Numbers::Reals(values) => values.iter().flat_map(|v| v.to_le_bytes()).collect(),
-            Numbers::Integers(values) => values.iter().flat_map(|v| v.to_le_bytes()).collect(),
-            Numbers::Nodes(values) => values.iter().flat_map(|v| v.to_le_bytes()).collect(),
+            Numbers::Vectors(values) => {
+                let mut bytes = Vec::with_capacity(24 * values.len());
+                for number in values.iter().flat_map(|vector| vector.iter()) {
+                    bytes.extend_from_slice(&number.to_le_bytes());
+                }
+                bytes
+            }
+            Numbers::Reals(values) => joined(values.iter().map(|value| value.to_le_bytes())),
+            Numbers::Integers(values) => joined(values.iter().map(|value| value.to_le_bytes())),
+            Numbers::Nodes(values) => joined(values.iter().map(|value| value.to_le_bytes())),
             Numbers::Bytes(values) => values.to_vec(),
         }
     }
+}
+
+/// The bytes of numbers, one number after the other.
+fn joined<const N: usize>(numbers: impl ExactSizeIterator<Item = [u8; N]>) -> Vec<u8> {
+    let mut bytes = Vec::with_capacity(N * numbers.len());
+    for number in numbers {
+        bytes.extend_from_slice(&number);
+    }
+    bytes
 }
 
 /// A VTK XML file while it is written.
@@ -175,20 +187,19 @@ fn zero_ended(text: &str) -> String {
     format!("{} 0", codes(text)).trim_start().to_string()
 }
 
-/// The block header and the blocks.
+/// The block header and the blocks, which are compressed on all threads.
 fn compressed(bytes: &[u8]) -> (Vec<u8>, Vec<u8>) {
-    let blocks = bytes.len().div_ceil(BLOCK_BYTES);
-    let mut header = vec![blocks, BLOCK_BYTES, bytes.len() % BLOCK_BYTES];
-    let mut data = Vec::new();
-    for block in bytes.chunks(BLOCK_BYTES) {
-        let mut encoder = ZlibEncoder::new(Vec::new(), Compression::new(LEVEL));
-        let stored = encoder
-            .write_all(block)
-            .and_then(|()| encoder.finish())
-            .expect("writing to memory does not fail");
-        header.push(stored.len());
-        data.extend_from_slice(&stored);
-    }
+    let stored: Vec<Vec<u8>> = bytes.par_chunks(BLOCK_BYTES).map(deflated).collect();
+    let mut header = vec![stored.len(), BLOCK_BYTES, bytes.len() % BLOCK_BYTES];
+    header.extend(stored.iter().map(Vec::len));
     let header = header.iter().flat_map(|&number| (number as u64).to_le_bytes());
-    (header.collect(), data)
+    (header.collect(), stored.concat())
+}
+
+fn deflated(block: &[u8]) -> Vec<u8> {
+    let mut encoder = ZlibEncoder::new(Vec::new(), Compression::new(LEVEL));
+    encoder
+        .write_all(block)
+        .and_then(|()| encoder.finish())
+        .expect("writing to memory does not fail")
 }

@@ -1,7 +1,7 @@
 //! Cell quality, and the proof that a Jacobian is positive everywhere inside a cell.
 
 use mechanics::mesh::jacobian::{jacobian_sign, scaled_jacobian, signed_volume, smallest_jacobian};
-use mechanics::mesh::quality::{dihedral_angles, quality};
+use mechanics::mesh::quality::{DihedralAngles, dihedral_angles, quality};
 use mechanics::mesh::{CellShape, Cells, Vector, VolumeMesh, sample};
 
 /// A hexahedron in the node order of VTK from one that counts x fastest, then y, then z.
@@ -172,7 +172,7 @@ fn the_cells_of_a_block_fill_it_and_kuhns_tetrahedra_have_angles_from_45_to_90_d
         assert!((report.total_volume - 24.0).abs() < 1e-12, "{shape:?}");
         assert_eq!((report.inverted, report.undecided, report.subdivided), (0, 0, 0));
         assert_eq!(report.scaled_jacobian_histogram.iter().sum::<usize>(), mesh.cells.len());
-        if let Some(angles) = report.dihedral_angles {
+        if let Some(angles) = DihedralAngles::of(&mesh) {
             assert!((angles.smallest.to_degrees() - 45.0).abs() < 1e-12);
             assert!((angles.largest.to_degrees() - 90.0).abs() < 1e-12);
             assert_eq!(angles.histogram.iter().sum::<usize>(), 6 * mesh.cells.len());
