@@ -8,6 +8,7 @@ pub use places::{BlobsPlace, DatabasePlace, Places};
 pub use secret::{ConfigError, Secret};
 pub use settings::{SETTINGS, Setting};
 use std::net::SocketAddr;
+use std::path::PathBuf;
 use std::time::Duration;
 
 /// The settings in force.
@@ -23,6 +24,8 @@ pub struct Config {
     pub allowed_origins: Vec<String>,
     /// Names beside those of this machine by which a service that asks for no key may be called, in lower case.
     pub allowed_hosts: Vec<String>,
+    /// Packages of the clients, which are served as they are.
+    pub clients_folder: Option<PathBuf>,
     pub requests_per_minute: u32,
     pub event_streams: u32,
     /// Keys in force that a tenant may have.
@@ -79,6 +82,7 @@ impl Config {
             admin_listen: read.admin_listen()?,
             allowed_origins: read.list("allowed-origins", is_origin)?,
             allowed_hosts: read.hosts()?,
+            clients_folder: read.clients_folder(),
             requests_per_minute: read.whole("requests-per-minute", 0..=10_000_000)? as u32,
             event_streams: read.whole("event-streams", 1..=10_000)? as u32,
             most_keys: read.whole("keys", 1..=100_000)? as u32,
@@ -215,6 +219,10 @@ impl<Text: Fn(&str) -> String> Reader<Text> {
             true => Ok(words),
             false => Err(out_of_range(name, value)),
         }
+    }
+
+    fn clients_folder(&self) -> Option<PathBuf> {
+        Some((self.text)("clients-folder")).filter(|folder| !folder.is_empty()).map(PathBuf::from)
     }
 
     fn hosts(&self) -> Result<Vec<String>, ConfigError> {

@@ -1,5 +1,5 @@
-//! Headers that tell browsers what an answer may do: nothing, but for the pages of the documentation, which run their own
-//! scripts (W3C Content Security Policy 3).
+//! Headers that tell browsers what an answer may do: nothing, but for the pages of the documentation and of the clients,
+//! which run their own scripts (W3C Content Security Policy 3).
 
 use axum::extract::Request;
 use axum::http::{HeaderName, HeaderValue, header};
@@ -30,7 +30,11 @@ pub fn guarded(mut response: Response) -> Response {
 
 /// Those of the pages of the documentation.
 pub async fn of_pages(request: Request, next: Next) -> Response {
-    let mut response = next.run(request).await;
+    as_page(next.run(request).await)
+}
+
+/// An answer that may run scripts of this service.
+pub fn as_page(mut response: Response) -> Response {
     set_once(&mut response, header::CONTENT_SECURITY_POLICY, OWN);
     response
 }

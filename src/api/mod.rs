@@ -34,6 +34,7 @@ mod openapi;
 mod openapi_types;
 mod origins;
 mod pace;
+mod packages;
 mod paging;
 mod parameters;
 mod plans;

@@ -75,6 +75,17 @@ impl<S: Send + Sync> FromRequestParts<S> for PlanPath {
     }
 }
 
+/// The name of a file of the clients.
+pub struct ClientFile(pub String);
+
+impl<S: Send + Sync> FromRequestParts<S> for ClientFile {
+    type Rejection = ApiError;
+
+    async fn from_request_parts(parts: &mut Parts, state: &S) -> ApiResult<Self> {
+        Ok(ClientFile(path_texts(parts, state).await?.pop().unwrap_or_default()))
+    }
+}
+
 /// The id of a job and the name of one of its files.
 pub struct FileName {
     pub job: String,

@@ -11,6 +11,7 @@ pub(super) fn resources() -> Resources {
         .merge(super::health::router())
         .merge(super::about::router())
         .merge(super::error_page::router())
+        .merge(super::packages::router())
         .merge(super::meshes::router())
         .merge(super::cases::router())
         .merge(super::plans::router())

@@ -63,7 +63,7 @@ pub const SETTINGS: &[Setting] = &[
     setting(
         "api-key",
         "",
-        "a key that allows everything to the tenant `default`, sent as `Authorization: Bearer KEY`; 16 to 255 visible characters; with it every request needs a key but those to /healthz, /readyz and the documentation",
+        "a key that allows everything to the tenant `default`, sent as `Authorization: Bearer KEY`; 16 to 255 visible characters; with it every request needs a key but those to /healthz, /readyz, the documentation and /clients",
     ),
     setting(
         "ask-for-keys",
@@ -89,6 +89,11 @@ pub const SETTINGS: &[Setting] = &[
         "allowed-hosts",
         "",
         "names, with commas between them and without ports, by which a service that asks for no key may be called, beside localhost and loopback addresses; without it none",
+    ),
+    setting(
+        "clients-folder",
+        "",
+        "folder whose files are served at /clients to everybody: the packages that clients/run builds; without it there are none",
     ),
     setting(
         "requests-per-minute",

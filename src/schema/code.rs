@@ -58,6 +58,7 @@ error_codes! {
     NotFound 404 "not-found" "There is nothing here",
     NoSuchJob 404 "no-such-job" "There is no such job",
     NoSuchOutput 404 "no-such-output" "The job has no such file",
+    ClientsNotBuilt 404 "clients-not-built" "The service has no clients to hand out",
     ResponseNotBuilt 404 "response-not-built" "The case has no response",
     ResultNotReady 404 "result-not-ready" "The job has not ended",
     MethodNotAllowed 405 "method-not-allowed" "The resource does not answer to this method",

@@ -84,7 +84,7 @@ impl Check<'_> {
         } else if are_alike(&movements, &corners) {
             let farthest = farthest_apart(&movements[0], &still, &corners);
             let who = match segments {
-                [alone] => format!("segment {:?}, the only one,", alone.name),
+                [alone] => format!("the only segment, {:?}", alone.name),
                 several => format!("all {} segments alike", several.len()),
             };
             let detail = format!(

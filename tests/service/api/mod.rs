@@ -8,6 +8,7 @@ mod batch;
 mod bodies_in_flight;
 mod case_page;
 mod cases;
+mod clients_folder;
 mod clients_that_stall;
 mod entrance;
 mod error_codes;
