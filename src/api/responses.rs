@@ -18,7 +18,8 @@ use super::{Service, body, conditional, with_header};
 use crate::jobs::response::{
     COLUMNS_FILE, COLUMNS_MEDIA_TYPE, DESCRIPTION_FILE, DESCRIPTION_MEDIA_TYPE,
 };
-use crate::library::responses::{Applied, FoundResponse, LoadedResponse, MissingResponse};
+use crate::library::applied::Applied;
+use crate::library::responses::{FoundResponse, LoadedResponse, MissingResponse};
 use crate::library::upload::not_written;
 use crate::schema::ErrorCode;
 use crate::schema::applied::{AppliedDocument, ApplyDocument};

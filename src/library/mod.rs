@@ -1,5 +1,6 @@
 //! Stored meshes and responses, kept parsed in memory while there is room.
 
+pub mod applied;
 pub mod cache;
 pub mod mesh_report;
 pub mod meshes;

@@ -4,6 +4,7 @@
 use std::collections::{BTreeMap, HashMap};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
+use super::applied::Applied;
 use crate::jobs::JobInput;
 use crate::jobs::response::{COLUMNS_FILE, DESCRIPTION_FILE, REST_FILE};
 use crate::jobs::result::skin::PredictedSkin;
@@ -17,7 +18,7 @@ use crate::store::{Store, StoreError};
 use mechanics::format::{self, Mesh, ReadLimits, WriteError};
 use mechanics::mesh::{TriangleSurface, Vector};
 use mechanics::plan::RigidMovement;
-use mechanics::prediction::{SKIN_OVERLAPS, Skin, carried_away, skin_overlap};
+use mechanics::prediction::{Skin, carried_away, skin_overlap};
 use mechanics::response::{Linearity, Response};
 
 /// Jobs whose verdict is remembered; beyond that all are judged anew.
@@ -53,16 +54,6 @@ pub struct LoadedResponse {
     response: Response,
     linearity: Linearity,
     rest: TriangleSurface,
-}
-
-/// The skin for one plan.
-pub struct Applied {
-    /// In mm, at each node of the description.
-    pub displacement: Vec<Vector>,
-    pub summary: AppliedSummary,
-    pub warnings: Vec<WarningDocument>,
-    /// Whether the moved skin was looked at.
-    pub skin_checked: bool,
 }
 
 impl LoadedResponse {
@@ -122,25 +113,6 @@ impl LoadedResponse {
     fn size(&self) -> usize {
         let skin = 28 * self.rest.points.len() + 12 * self.rest.triangles.len();
         4 * (self.response.columns.len() + 2 * self.response.nodes.len()) + skin
-    }
-}
-
-impl Applied {
-    /// The codes of warnings that nobody looked for.
-    pub fn not_measured(&self) -> Vec<String> {
-        (!self.skin_checked).then(|| SKIN_OVERLAPS.to_owned()).into_iter().collect()
-    }
-
-    /// f32 little-endian, three a node.
-    pub fn to_bytes(&self) -> Vec<u8> {
-        let values = self.displacement.iter().flat_map(|moved| [moved.x, moved.y, moved.z]);
-        values.flat_map(|value| (value as f32).to_le_bytes()).collect()
-    }
-
-    /// Three numbers a node with the digits that f32 columns carry.
-    pub fn to_triples(&self) -> Vec<[f32; 3]> {
-        let moved = self.displacement.iter();
-        moved.map(|moved| [moved.x as f32, moved.y as f32, moved.z as f32]).collect()
     }
 }
 

@@ -1,0 +1,35 @@
+//! A plan applied to a response.
+
+use crate::schema::WarningDocument;
+use crate::schema::applied::AppliedSummary;
+use mechanics::mesh::Vector;
+use mechanics::prediction::SKIN_OVERLAPS;
+
+/// The skin for one plan.
+pub struct Applied {
+    /// In mm, at each node of the description.
+    pub displacement: Vec<Vector>,
+    pub summary: AppliedSummary,
+    pub warnings: Vec<WarningDocument>,
+    /// Whether the moved skin was looked at.
+    pub skin_checked: bool,
+}
+
+impl Applied {
+    /// The codes of warnings that nobody looked for.
+    pub fn not_measured(&self) -> Vec<String> {
+        (!self.skin_checked).then(|| SKIN_OVERLAPS.to_owned()).into_iter().collect()
+    }
+
+    /// f32 little-endian, three a node.
+    pub fn to_bytes(&self) -> Vec<u8> {
+        let values = self.displacement.iter().flat_map(|moved| [moved.x, moved.y, moved.z]);
+        values.flat_map(|value| (value as f32).to_le_bytes()).collect()
+    }
+
+    /// Three numbers a node with the digits that f32 columns carry.
+    pub fn to_triples(&self) -> Vec<[f32; 3]> {
+        let moved = self.displacement.iter();
+        moved.map(|moved| [moved.x as f32, moved.y as f32, moved.z as f32]).collect()
+    }
+}
