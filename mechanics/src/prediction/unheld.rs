@@ -137,6 +137,6 @@ mod tests {
         assert!(told.numbers[0].1 > 4.0, "{told:?}");
         // One that stretches by 0.1 %, and one that hardly moves.
         assert_eq!(carried(4.0, 1e-3), None);
-        assert_eq!(carried(0.01, 0.0), None);
+        assert_eq!(carried(0.001, 0.0), None);
     }
 }

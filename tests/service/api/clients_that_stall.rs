@@ -70,7 +70,8 @@ async fn a_body_that_comes_byte_by_byte_is_given_up() {
     let head = "POST /v1/meshes HTTP/1.1\r\nHost: localhost\r\nContent-Type: model/stl\r\nContent-Length: 999999\r\n\r\n";
     let mut stream = send(&server, head).await;
     let answer = until("74 it is answered", async || {
-        stream.write_all(b"x").await.unwrap();
+        // Who has answered may have gone.
+        let _ = stream.write_all(b"x").await;
         let mut answer = vec![0; 4096];
         let count = stream.try_read(&mut answer).ok()?;
         Some(String::from_utf8_lossy(&answer[..count]).into_owned())
@@ -87,7 +88,8 @@ async fn what_came_at_once_is_no_excuse_for_a_body_that_trickles() {
     // At the least rate this is worth half an hour.
     stream.write_all(&vec![b'x'; 32_000_000]).await.unwrap();
     let answer = until("it is answered", async || {
-        stream.write_all(b"x").await.unwrap();
+        // Who has answered may have gone.
+        let _ = stream.write_all(b"x").await;
         let mut answer = vec![0; 4096];
         let count = stream.try_read(&mut answer).ok()?;
         Some(String::from_utf8_lossy(&answer[..count]).into_owned())

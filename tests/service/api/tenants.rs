@@ -137,7 +137,8 @@ async fn a_key_of_another_tenant_finds_nothing_at_any_address() {
     let description: Value = ask(hospital.server.get("/openapi.json")).await.json();
     let mut asked = 0;
     for (route, item) in description["paths"].as_object().unwrap() {
-        if !route.contains('{') {
+        // The packages of the clients are everybody's.
+        if !route.contains('{') || route.starts_with("/clients/") {
             continue;
         }
         let address = belongings.address(route);
