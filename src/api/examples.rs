@@ -77,6 +77,10 @@ fn loads() -> Value {
 
 /// One of each kind of job, and what is asked for most besides.
 fn jobs() -> Vec<(&'static str, Value)> {
+    [predictions_and_plans(), studies()].concat()
+}
+
+fn predictions_and_plans() -> Vec<(&'static str, Value)> {
     let bounds = json!({"translation_mm": [[-10, 10], [0, 0], [-5, 5]]});
     vec![
         (
@@ -112,6 +116,11 @@ fn jobs() -> Vec<(&'static str, Value)> {
                 "bounds": {"mandible": bounds},
             }),
         ),
+    ]
+}
+
+fn studies() -> Vec<(&'static str, Value)> {
+    vec![
         (
             "study",
             json!({

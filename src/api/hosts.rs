@@ -40,9 +40,8 @@ impl Hosts {
     }
 
     fn check_host(&self, host: &str) -> ApiResult<()> {
-        let is_known = name_of(host).is_some_and(|name| {
-            is_of_this_machine(&name) || self.names.iter().any(|known| *known == name)
-        });
+        let is_known = name_of(host)
+            .is_some_and(|name| is_of_this_machine(&name) || self.names.contains(&name));
         if is_known {
             return Ok(());
         }

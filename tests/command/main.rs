@@ -320,9 +320,11 @@ fn predicted(folder: &Path) -> Output {
     facies(&["predict", "--case", path(&case), "--out", path(&out)])
 }
 
+type Change<'a> = &'a dyn Fn(&mut serde_json::Value);
+
 #[test]
 fn a_face_that_nothing_holds_a_case_without_a_plan_and_constants_of_no_unit_end_with_code_2() {
-    let cases: [(&dyn Fn(&mut serde_json::Value), &str); 3] = [
+    let cases: [(Change, &str); 3] = [
         (&|file| file["case"]["fixed"] = serde_json::json!([]), "(nothing-held)"),
         (&|file| _ = file.as_object_mut().unwrap().remove("plan"), "there is no plan"),
         (

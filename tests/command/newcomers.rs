@@ -97,7 +97,7 @@ fn nodes_are_selected_by_the_value_of_an_array() {
     let folder = tempfile::tempdir().unwrap();
     let mut mesh = sample::block(Vector::new(80.0, 60.0, 20.0), [4, 3, 2], CellShape::Hex8);
     let tag = |node: &Vector| match node.z {
-        z if z == 0.0 => 4 + i64::from(node.x > 30.0),
+        0.0 => 4 + i64::from(node.x > 30.0),
         z if z > 19.0 => 7,
         _ => 0,
     };

@@ -44,7 +44,7 @@ pub fn judge(report: &mut ReportDocument, baseline: &Baseline) {
     let now: Vec<Place> = report.rows.iter().map(place).collect();
     let common = before.keys().filter(|earlier| now.contains(earlier)).count();
     let is_lost = |(place, row): &(&Place, &&RowDocument)| {
-        !now.contains(place) && !(row.status != RowStatus::Solved && is_skipped(report, row))
+        !now.contains(place) && (row.status == RowStatus::Solved || !is_skipped(report, row))
     };
     let lost = before.iter().filter(is_lost).count();
     report.verdict = whole(report, baseline, (common, lost));
