@@ -394,7 +394,6 @@ fn bad_scenes() -> Vec<Row> {
 
 fn bad_methods() -> Vec<Row> {
     let invalid = "validation-failed";
-    let nobody = uuid::Uuid::now_v7();
     let method = |entry: Value| json!({"methods": ["fem_linear", entry], "elements": []});
     vec![
         ("no method", json!({"methods": []}), invalid, "/methods"),
@@ -432,6 +431,13 @@ fn bad_methods() -> Vec<Row> {
         ),
         ("two of a name", json!({"methods": ["fem_linear", "fem_linear"]}), invalid, "/methods"),
         ("no element", json!({"elements": ["cubic"]}), invalid, "/elements/0"),
+    ]
+}
+
+fn bad_rules() -> Vec<Row> {
+    let invalid = "validation-failed";
+    let nobody = uuid::Uuid::now_v7();
+    vec![
         ("repeats 0", json!({"repeats": 0}), invalid, "/repeats"),
         ("no bound", json!({"thresholds": {}}), invalid, "/thresholds"),
         ("bound 0", json!({"thresholds": {"p95_mm": 0}}), invalid, "/thresholds/p95_mm"),
@@ -460,7 +466,8 @@ fn bad_methods() -> Vec<Row> {
 #[tokio::test]
 async fn every_bad_study_is_refused_with_its_place() {
     let server = Server::start_with(&["--workers", "0"]);
-    for (name, change, code, pointer) in bad_scenes().into_iter().chain(bad_methods()) {
+    let rows = [bad_scenes(), bad_methods(), bad_rules()].concat();
+    for (name, change, code, pointer) in rows {
         let mut spec = slab();
         spec.as_object_mut().unwrap().extend(change.as_object().unwrap().clone());
         let answer = ask(server.post("/v1/jobs").json(&spec)).await;
