@@ -7,8 +7,8 @@ use clap::{Args, ValueEnum};
 use super::failure::CommandError;
 use super::files::{FileSource, ScaleArguments};
 use super::scene::UnitArgument;
-use super::screen::{TerminalProgress, print_files, print_warnings};
-use crate::jobs::{CompareInput, JobInput, Workplace, work};
+use super::screen::{print_files, print_warnings, work_in_sight};
+use crate::jobs::{CompareInput, JobInput, Workplace};
 use crate::schema::compare::document::{
     AlignDocument, AlignMethod, CompareDocument, CompareKind, MeshReference, NodeWise,
     PlaceDocument, SurfaceReference,
@@ -82,10 +82,7 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let spec = arguments.document()?;
     let input = JobInput::Compare(CompareInput { job: None, queue_s: None, spec });
     let place = Workplace { sources: &sources, limits: &limits, out: &arguments.out };
-    let progress = TerminalProgress::start();
-    let done = work(&input, &place, &progress);
-    progress.finish();
-    let done = done?;
+    let done = work_in_sight(&input, &place)?;
     print_result(&done.result);
     print_files(&done.files, &arguments.out);
     Ok(())

@@ -7,8 +7,8 @@ use clap::Args;
 use super::documents::{read_spec, write};
 use super::failure::CommandError;
 use super::scene::SceneArguments;
-use super::screen::{TerminalProgress, print_files, print_warnings};
-use crate::jobs::{JobInput, OptimiseInput, Workplace, work};
+use super::screen::{print_files, print_warnings, work_in_sight};
+use crate::jobs::{JobInput, OptimiseInput, Workplace};
 use crate::schema::Limits;
 use crate::schema::optimise::result::OptimisationDocument;
 use crate::schema::wire::canonical;
@@ -37,10 +37,7 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let input = JobInput::Optimise(OptimiseInput { job: None, queue_s: None, case, spec });
     let limits = Limits::default();
     let place = Workplace { sources: &asked.sources, limits: &limits, out: &arguments.out };
-    let progress = TerminalProgress::start();
-    let done = work(&input, &place, &progress);
-    progress.finish();
-    let done = done?;
+    let done = work_in_sight(&input, &place)?;
     if let Some(found) = &done.result.optimisation {
         print_found(found);
         let plan = canonical::to_value(&found.plan);

@@ -6,9 +6,9 @@ use clap::Args;
 
 use super::failure::CommandError;
 use super::scene::SceneArguments;
-use super::screen::{TerminalProgress, print_check, print_files, print_warnings};
+use super::screen::{print_check, print_files, print_warnings, work_in_sight};
 use super::watch::Watch;
-use crate::jobs::{JobInput, Workplace, check, work};
+use crate::jobs::{JobInput, Workplace, check};
 use crate::schema::Limits;
 use crate::schema::predict::check::CheckDocument;
 use crate::schema::predict::document::OutputName;
@@ -49,10 +49,7 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
     print_check(&before);
 
     let place = Workplace { sources: &asked.sources, limits: &limits, out: &arguments.out };
-    let progress = TerminalProgress::start();
-    let done = work(&JobInput::Predict(input), &place, &progress);
-    progress.finish();
-    let done = done?;
+    let done = work_in_sight(&JobInput::Predict(input), &place)?;
 
     let read_from = arguments.scene.case.as_deref();
     let documents = asked.file.write_beside(&asked.folder, &arguments.out, read_from)?;

@@ -7,8 +7,8 @@ use clap::Args;
 use super::documents::read_spec;
 use super::failure::CommandError;
 use super::scene::SceneArguments;
-use super::screen::{TerminalProgress, print_files, print_warnings};
-use crate::jobs::{JobInput, ResponseInput, Workplace, work};
+use super::screen::{print_files, print_warnings, work_in_sight};
+use crate::jobs::{JobInput, ResponseInput, Workplace};
 use crate::schema::{Limits, PredictDocument, ResponseDocument};
 
 #[derive(Debug, Args)]
@@ -41,10 +41,7 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let input = JobInput::Response(ResponseInput { job: None, queue_s: None, case, spec });
     let limits = Limits::default();
     let place = Workplace { sources: &asked.sources, limits: &limits, out: &arguments.out };
-    let progress = TerminalProgress::start();
-    let done = work(&input, &place, &progress);
-    progress.finish();
-    let done = done?;
+    let done = work_in_sight(&input, &place)?;
     let provenance = &done.result.provenance;
     println!("time       {:.2} s; key {}", provenance.timing.total_s, provenance.spec_hash);
     print_warnings(&done.result.warnings);

@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
+use crate::jobs::{JobError, JobInput, JobOutput, Workplace, work};
 use crate::schema::WarningDocument;
 use crate::schema::predict::check::CheckDocument;
 use crate::schema::predict::result::FileDocument;
@@ -52,6 +53,14 @@ impl TerminalProgress {
             eprintln!("{:8.2} s  {what}", self.started.elapsed().as_secs_f64());
         }
     }
+}
+
+/// Does a job, and shows where it is.
+pub fn work_in_sight(input: &JobInput, place: &Workplace) -> Result<JobOutput, JobError> {
+    let progress = TerminalProgress::start();
+    let done = work(input, place, &progress);
+    progress.finish();
+    done
 }
 
 impl Progress for TerminalProgress {

@@ -8,11 +8,11 @@ use clap::Args;
 use super::documents::{CaseFile, read};
 use super::failure::CommandError;
 use super::files::{FileSource, ScaleArguments};
-use super::screen::{TerminalProgress, print_files, print_warnings};
+use super::screen::{print_files, print_warnings, work_in_sight};
 use super::stability;
 use super::sweep::{self, Sweep};
 use crate::jobs::study::files::REPORT_JSON;
-use crate::jobs::{JobInput, StudyInput, Workplace, work};
+use crate::jobs::{JobInput, StudyInput, Workplace};
 use crate::schema::study::document::{
     CaseReference, PlanReference, SceneReference, StudyKind, ThresholdsDocument,
 };
@@ -97,10 +97,7 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
             eprintln!("expected   {}", cost.sentence());
         }
     }
-    let progress = TerminalProgress::start();
-    let done = work(&JobInput::Study(input), &place, &progress);
-    progress.finish();
-    let done = done?;
+    let done = work_in_sight(&JobInput::Study(input), &place)?;
     let report = read_report(&arguments.out.join(REPORT_JSON))?;
     if let Some(file) = kept.filter(|_| report.rows_of.is_none() && report.is_complete()) {
         keep(&arguments.out.join(REPORT_JSON), &file)?;

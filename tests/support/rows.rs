@@ -3,6 +3,7 @@
 use std::time::Duration;
 
 use bytes::Bytes;
+use facies::schema::key::{KeyDocument, Scope};
 use facies::schema::wire::canonical::sha256_hex;
 use facies::store::{Enqueued, JobRow, NewJob, NewMesh, Published, PublishedFile, Store};
 use tempfile::TempDir;
@@ -77,5 +78,22 @@ pub fn mesh(content: &'static str, options: &str) -> NewMesh {
         bytes,
         standalone: true,
         report: "{}".into(),
+    }
+}
+
+/// Keys of one tenant that may read.
+pub async fn make_keys(store: &Store, count: usize) {
+    let wanted = KeyDocument { label: "test".into(), scopes: [Scope::Read].into(), days: None };
+    for _ in 0..count {
+        store.make_key(&wanted).await.unwrap();
+    }
+}
+
+/// Jobs whose worker was lost in their only attempt.
+pub async fn lose_jobs(store: &Store, count: usize) {
+    for number in 0..count {
+        enqueue(store, &format!("lost {number}")).await;
+        let lease = store.claim(LEASE).await.unwrap().unwrap().lease;
+        assert!(store.lose(&lease, 1, r#"{"class":"infrastructure"}"#).await.unwrap());
     }
 }

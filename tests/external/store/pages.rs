@@ -6,15 +6,14 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use facies::config::DatabasePlace;
-use facies::schema::key::{KeyDocument, Scope};
-use facies::store::{JobFilter, NewCase, Store};
+use facies::store::{JobFilter, NewCase};
 use tracing::field::{Field, Visit};
 use tracing::instrument::WithSubscriber;
 use tracing::subscriber::NoSubscriber;
 use tracing_subscriber::layer::{Context, Layer, SubscriberExt};
 
 use crate::deployments::Deployment;
-use crate::rows::{LEASE, enqueue, new_job};
+use crate::rows::{lose_jobs, make_keys, new_job};
 use crate::support::trials::trials;
 
 trials! {
@@ -30,21 +29,6 @@ trials! {
 
 fn ids<T>(rows: Vec<T>, id: impl Fn(T) -> String) -> Vec<String> {
     rows.into_iter().map(id).collect()
-}
-
-async fn make_keys(store: &Store, count: usize) {
-    let wanted = KeyDocument { label: "test".into(), scopes: [Scope::Read].into(), days: None };
-    for _ in 0..count {
-        store.make_key(&wanted).await.unwrap();
-    }
-}
-
-async fn lose_jobs(store: &Store, count: usize) {
-    for number in 0..count {
-        enqueue(store, &format!("lost {number}")).await;
-        let lease = store.claim(LEASE).await.unwrap().unwrap().lease;
-        assert!(store.lose(&lease, 1, r#"{"class":"infrastructure"}"#).await.unwrap());
-    }
 }
 
 async fn every_listed_job_has_its_own_tags_in_order(on: Deployment) {

@@ -8,22 +8,7 @@ use tempfile::TempDir;
 
 use super::tenants::Hospital;
 use crate::helpers::{Answer, ask};
-use crate::rows::{LEASE, enqueue};
-
-async fn make_keys(store: &Store, count: usize) {
-    let wanted = KeyDocument { label: "test".into(), scopes: [Scope::Read].into(), days: None };
-    for _ in 0..count {
-        store.make_key(&wanted).await.unwrap();
-    }
-}
-
-async fn lose_jobs(store: &Store, count: usize) {
-    for number in 0..count {
-        enqueue(store, &format!("lost {number}")).await;
-        let lease = store.claim(LEASE).await.unwrap().unwrap().lease;
-        assert!(store.lose(&lease, 1, r#"{"class":"infrastructure"}"#).await.unwrap());
-    }
-}
+use crate::rows::{lose_jobs, make_keys};
 
 /// Where the header `Link` of an answer leads on to.
 fn next(answer: &Answer) -> String {
