@@ -39,11 +39,13 @@
 
 pub mod boundary;
 pub mod chart;
+pub mod domain;
 pub mod element;
 pub mod format;
 pub mod image;
 pub mod material;
 pub mod mesh;
+pub mod meshing;
 pub mod model;
 pub mod optimisation;
 pub mod plan;

@@ -12,7 +12,7 @@ use std::path::Path;
 use source::{Crate, Module, rust_files};
 
 /// Modules of the numerics, and those that each may use.
-const MECHANICS: [(&str, &[&str]); 18] = [
+const MECHANICS: [(&str, &[&str]); 20] = [
     ("rows", &[]),
     ("progress", &[]),
     ("mesh", &["rows"]),
@@ -21,6 +21,8 @@ const MECHANICS: [(&str, &[&str]); 18] = [
     ("solver", &["progress", "rows"]),
     ("chart", &[]),
     ("image", &["mesh"]),
+    ("domain", &["mesh"]),
+    ("meshing", &[]),
     ("plan", &["mesh"]),
     ("registration", &["mesh", "progress"]),
     ("format", &["mesh", "image"]),

@@ -1,0 +1,58 @@
+//! The body that is to be meshed, as the sign of a function: tissue where it is positive.
+//!
+//! A mesher asks for signs at the nodes of a lattice, for the places where lattice edges cross a boundary, and for the
+//! nearest point of a boundary. Everything else about scans and surfaces stays on this side.
+
+use crate::mesh::Vector;
+
+/// What bounds the tissue at a place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Boundary {
+    /// The outer surface.
+    Skin,
+    /// Bone, teeth included.
+    Bone,
+    /// Where the scan or the region of interest ends.
+    Cut,
+}
+
+/// What a ball holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Coverage {
+    /// Tissue alone.
+    Inside,
+    /// No tissue.
+    Outside,
+    /// Perhaps both.
+    Mixed,
+}
+
+/// Where a segment of different signs meets the boundary.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Crossing {
+    /// On the segment, in mm.
+    pub point: Vector,
+    pub boundary: Boundary,
+}
+
+/// A body given by the sign of a function. Lengths in mm; every method is pure, so that a mesh has the same bytes on any
+/// number of threads.
+pub trait Domain: Sync {
+    /// The lowest and the highest corner of a box that holds all tissue.
+    fn bounds(&self) -> (Vector, Vector);
+
+    /// What the ball of that radius holds; `Mixed` where that is not known for certain.
+    fn coverage(&self, centre: &Vector, radius: f64) -> Coverage;
+
+    /// Positive in tissue, negative or zero outside, finite everywhere; only its sign and its roots mean anything.
+    fn value(&self, point: &Vector) -> f64;
+
+    /// Where the segment between two points of different signs meets the boundary.
+    fn crossing(&self, inside: &Vector, outside: &Vector) -> Crossing;
+
+    /// The nearest point of that boundary, or `point` itself where none is near enough to be found.
+    fn projection(&self, point: &Vector, boundary: Boundary) -> Vector;
+
+    /// How thick the tissue is about a place; infinite where that is not known.
+    fn thickness(&self, point: &Vector) -> f64;
+}
