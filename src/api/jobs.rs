@@ -9,7 +9,7 @@ use utoipa_axum::routes;
 
 use super::caller::Caller;
 use super::error::{ApiError, ApiResult};
-use super::idempotency::new_id;
+use super::idempotency::Asked;
 use super::job_view::status_info;
 use super::paging::Page;
 use super::parameters::{Id, Parameters, id, no_such_job};
@@ -98,11 +98,18 @@ async fn create(service: Service, caller: Caller, request: Request) -> ApiResult
     if document.keeps_meshes() {
         caller.require(Scope::Write)?;
     }
-    let new = new_id(&service, &headers, "/v1/jobs", &[&bytes]).await?;
+    let asked = Asked::at(&service, &headers, "/v1/jobs", &[&bytes])?;
+    if let Some(known) = asked.known(&service).await?
+        && service.store.job(&known.id).await?.is_some()
+    {
+        return created(&service, &known.id, known.was_found, wait).await;
+    }
+    let mut accepted = job_input::of(&service, document).await?;
+    // What comes before this changes nothing, so that it ends with its client.
+    let new = asked.reserve(&service).await?;
     if new.is_known && service.store.job(&new.id).await?.is_some() {
         return created(&service, &new.id, new.was_found, wait).await;
     }
-    let mut accepted = job_input::of(&service, document).await?;
     accepted.id.clone_from(&new.id);
     accepted.traceparent = place.map(|place| place.to_string());
     let (id, deduplicated) = match service.store.enqueue(&accepted, LONGEST_QUEUE).await? {

@@ -26,15 +26,17 @@ pub fn wanted_wait(headers: &HeaderMap, cap: u32) -> Option<u32> {
         .map(|seconds| u32::try_from(seconds).unwrap_or(u32::MAX).min(cap))
 }
 
-/// Waits until a job has ended, is gone, the time is up or the process is about to stop, and tells how it is then.
+/// Waits until a job has ended, is gone, the time is up, the client has left or the process is about to stop, and tells
+/// how it is then.
 pub async fn wait_for_end(service: &Service, id: &str, seconds: u32) -> ApiResult<Option<JobRow>> {
     let store = &service.store;
     let mut stopping = service.streams.stopping();
     let until = Instant::now() + Duration::from_secs(seconds.into());
     let mut changes = store.job_changes();
+    let mut has_left = false;
     loop {
         changes.mark_seen();
-        let over = Instant::now() >= until || *stopping.borrow();
+        let over = has_left || Instant::now() >= until || *stopping.borrow();
         // Only who has waited long enough asks for all of it.
         if over || store.job_status(id).await?.is_none_or(JobStatus::is_terminal) {
             return Ok(store.job(id).await?);
@@ -44,6 +46,7 @@ pub async fn wait_for_end(service: &Service, id: &str, seconds: u32) -> ApiResul
         tokio::select! {
             changed = tokio::time::timeout_at(next, changes.of(id)) => changed.unwrap_or(Ok(()))?,
             _ = stopping.wait_for(|stopping| *stopping) => {}
+            () = service.client_has_gone() => has_left = true,
         }
     }
 }

@@ -54,17 +54,21 @@ const MECHANICS: [(&str, &[&str]); 20] = [
 
 /// Modules of the service, and those of the service that each may use. Which of the numerics they use is theirs to
 /// choose.
-const SERVICE: [(&str, &[&str]); 12] = [
+const SERVICE: [(&str, &[&str]); 13] = [
     ("config", &[]),
     ("metrics", &[]),
     ("schema", &[]),
+    ("turns", &["metrics"]),
     ("telemetry", &["config", "metrics"]),
     ("traces", &["metrics"]),
     ("jobs", &["schema"]),
-    ("store", &["schema", "config"]),
+    ("store", &["schema", "config", "turns"]),
     ("library", &["schema", "jobs", "store"]),
     ("worker", &["schema", "jobs", "library", "store", "config", "metrics", "traces"]),
-    ("api", &["schema", "jobs", "library", "store", "worker", "config", "metrics", "traces"]),
+    (
+        "api",
+        &["schema", "jobs", "library", "store", "worker", "config", "metrics", "traces", "turns"],
+    ),
     ("command", &["*"]),
     ("main", &["command"]),
 ];

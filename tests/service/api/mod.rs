@@ -6,6 +6,7 @@ mod bad_meshes;
 mod bad_requests;
 mod batch;
 mod bodies_in_flight;
+mod broken_off;
 mod case_page;
 mod cases;
 mod clients_folder;

@@ -34,6 +34,10 @@ impl Hospital {
         self.server.client.request(method, format!("{}{path}", self.office))
     }
 
+    pub fn admin_host(&self) -> &str {
+        self.office.strip_prefix("http://").unwrap()
+    }
+
     /// A key of a tenant.
     pub async fn key(&self, tenant: &str, scopes: &[&str]) -> String {
         let wanted = json!({"label": "test", "scopes": scopes});
