@@ -6,14 +6,19 @@ use crate::schema::mesh::{IgnoredArrayDocument, ImageReport, MeshKind, MeshRepor
 use crate::schema::{CornerPair, Triple, WarningDocument};
 use mechanics::format::{Mesh, ReadMesh};
 use mechanics::image::{ImageVolume, Voxels};
+use mechanics::mesh::check::several_components;
+use mechanics::mesh::connectivity::Faces;
 use mechanics::mesh::quality::quality;
-use mechanics::mesh::{IgnoredArray, Vector, VolumeMesh};
+use mechanics::mesh::{IgnoredArray, Vector, VolumeMesh, Warning};
 
 /// What a mesh file holds, in the units of the file.
 pub fn mesh_report(read: &ReadMesh) -> MeshReport {
+    let mut warnings: Vec<Warning> = read.warnings.clone();
     let (kind, (low, high), nodes, triangles) = match &read.mesh {
         Mesh::Volume(volume) => {
-            let boundary = volume.boundary_faces();
+            let faces = Faces::new(volume);
+            let boundary = volume.boundary_of(&faces);
+            warnings.extend(several_components(volume, &faces));
             let triangles = boundary.iter().map(|face| face.triangles().count()).sum();
             (MeshKind::Volume, bounding_box(&volume.nodes), volume.nodes.len(), triangles)
         }
@@ -41,7 +46,7 @@ pub fn mesh_report(read: &ReadMesh) -> MeshReport {
         ignored_because: read.ignored.listed.iter().map(ignored).collect(),
         min_quality: None,
         image: None,
-        warnings: read.warnings.iter().map(WarningDocument::from).collect(),
+        warnings: warnings.iter().map(WarningDocument::from).collect(),
     };
     match &read.mesh {
         Mesh::Volume(volume) => describe(volume, &mut report),
