@@ -12,6 +12,7 @@ use crate::schema::case::document::{FrameName, LengthUnit, SegmentDocument};
 use crate::schema::case::selection::SelectionDocument;
 use crate::schema::methods::ElementName;
 use crate::schema::{CaseDocument, MaterialDocument, PlanDocument, PredictDocument};
+use mechanics::prediction::ElementChoice;
 
 /// Groups of the arguments in the help.
 const SCENE: &str = "What is predicted";
@@ -132,14 +133,15 @@ impl SceneArguments {
         case.skin.clone_from(&self.skin);
         case.fixed.clone_from(&self.fixed);
         case.segments.clone_from(&self.segment);
-        let element = match self.element {
-            ElementArgument::Auto => ElementName::Auto,
-            ElementArgument::Plain => ElementName::Plain,
-            ElementArgument::MeanDilatation => ElementName::MeanDilatation,
-            ElementArgument::Stabilised => ElementName::Stabilised,
-            ElementArgument::Quadratic => ElementName::Quadratic,
+        let choice = match self.element {
+            ElementArgument::Auto => ElementChoice::Auto,
+            ElementArgument::Plain => ElementChoice::Plain,
+            ElementArgument::MeanDilatation => ElementChoice::MeanDilatation,
+            ElementArgument::Stabilised => ElementChoice::Stabilised,
+            ElementArgument::Quadratic => ElementChoice::Quadratic,
         };
         let materials = self.material().map(|material| [("*".to_owned(), material)].into());
+        let element = ElementName::from(choice);
         let spec = PredictDocument { element, materials, ..PredictDocument::default() };
         Ok(CaseFile { case, plan, spec })
     }
