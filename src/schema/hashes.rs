@@ -114,6 +114,9 @@ pub fn compare_hash(spec: &CompareDocument, content_of: &dyn Fn(&str) -> Option<
     hash(json!({ "spec": to_value(&spec) }))
 }
 
+/// Changes where the description of a response tells what earlier ones did not, so that these are not taken for it.
+const DESCRIPTION_REVISION: u32 = 2;
+
 /// The key of a response: the case but for its name, tags, landmarks and skin regions, contents of meshes in
 /// place of their ids. The case's own id is part of it, so that a response goes when its case is erased.
 pub fn response_key(
@@ -132,6 +135,7 @@ pub fn response_key(
     hash(json!({
         "case": to_value(&case),
         "spec": spec.content(),
+        "description": DESCRIPTION_REVISION,
     }))
 }
 

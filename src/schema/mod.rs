@@ -18,6 +18,7 @@ pub mod optimise;
 pub mod plan;
 pub mod predict;
 pub mod response;
+pub mod response_part;
 pub mod study;
 pub mod wire;
 

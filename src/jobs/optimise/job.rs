@@ -150,7 +150,8 @@ impl Found {
     ) -> Result<JobOutput, JobError> {
         clock.phase(Phase::Surface);
         let scene = &planned.scene;
-        let skin = PredictedSkin::of_displacement(&scene.skin, self.displacement);
+        let mut skin = PredictedSkin::of_displacement(&scene.skin, self.displacement);
+        skin.range_mm = input.spec.range_mm();
         let statistics = statistics(&scene.skin, &skin, &BTreeMap::new())?;
         clock.check()?;
         clock.phase(Phase::Write);
@@ -180,18 +181,11 @@ impl Found {
         let mut provenance = origin.provenance(clock);
         let mesh = mesh_summary(&scene.mesh, &planned.quality);
         add_method(&mut provenance, input.spec.method, mesh, self.solver);
+        let warnings = warning_documents(planned.warnings.iter().chain(&scene.warnings));
         let result = ResultDocument {
-            job: input.job.clone(),
-            files: folder.files.clone(),
             statistics: Some(statistics),
-            comparison: None,
             optimisation: Some(self.document),
-            study: None,
-            kept: Vec::new(),
-            numerical_error_mm: None,
-            reaction_mn: BTreeMap::new(),
-            provenance,
-            warnings: warning_documents(planned.warnings.iter().chain(&scene.warnings)),
+            ..ResultDocument::new(input.job.clone(), &folder.files, provenance, warnings)
         };
         folder.add(OutputName::ResultJson, &encode_result(&result)?)?;
         Ok(JobOutput { result, files: folder.files, meshes: Vec::new() })

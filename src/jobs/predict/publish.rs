@@ -90,7 +90,7 @@ impl Predicted {
         finished.write_files(input, &mut folder)?;
 
         // 4. The manifest.
-        let result = finished.result(input, clock, folder.files.clone());
+        let result = finished.result(input, clock, &folder.files);
         folder.add(OutputName::ResultJson, &encode_result(&result)?)?;
         let meshes = finished.kept(&input.spec.kept());
         Ok(JobOutput { result, files: folder.files, meshes })
@@ -155,24 +155,20 @@ impl Finished<'_> {
         &self,
         input: &PredictInput,
         clock: &Observed,
-        files: Vec<FileDocument>,
+        files: &[FileDocument],
     ) -> ResultDocument {
         let mut provenance = self.origin.provenance(clock);
         let solver = solver_document(&self.prediction.solver, &self.prediction.elements);
         let mesh = mesh_summary(&self.prepared.scene.mesh, &self.prepared.quality);
         add_method(&mut provenance, input.spec.method, mesh, solver);
+        let warnings = warning_documents(self.warnings.iter());
         ResultDocument {
-            job: input.job.clone(),
-            files,
             statistics: Some(self.statistics.clone()),
             comparison: self.comparison.clone(),
             optimisation: self.optimisation.clone(),
-            study: None,
-            kept: Vec::new(),
-            numerical_error_mm: None,
             reaction_mn: triples(&self.prediction.reactions),
-            provenance,
-            warnings: warning_documents(self.warnings.iter()),
+            reactions: self.prediction.condition_reactions.iter().map(Into::into).collect(),
+            ..ResultDocument::new(input.job.clone(), files, provenance, warnings)
         }
     }
 }
