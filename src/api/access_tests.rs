@@ -45,6 +45,7 @@ const SERVICE: &str = "
     POST    /v1/jobs                            run    noted
     DELETE  /v1/jobs/{id}                       run    noted
     GET     /v1/jobs/{id}                       read   -
+    PATCH   /v1/jobs/{id}                       run    noted
     GET     /v1/jobs/{id}/events                read   -
     GET     /v1/jobs/{id}/report                read   -
     GET     /v1/jobs/{id}/results               read   -

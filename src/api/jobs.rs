@@ -17,14 +17,15 @@ use super::prefer::{wait_for_end, wanted_wait};
 use super::resources::Resources;
 use super::results::RETRY_AFTER_S;
 
-use crate::schema::ErrorCode;
-
+use crate::schema::job_change::JobChangeDocument;
 use crate::schema::key::Scope;
+use crate::schema::wire::strict;
+use crate::schema::{ErrorCode, Faults, Pointer};
 
 use super::{Service, body, conditional, job_input, json, with_header};
 use crate::schema::job::{JobStatus, StatusInfo};
 use crate::schema::job_document::{JobDocument, JobKind};
-use crate::store::{Dismissal, Enqueued, JobFilter, JobRow};
+use crate::store::{Dismissal, Enqueued, JobFilter, JobRow, Tagged};
 use crate::traces::TraceParent;
 
 /// Jobs that may wait at the same time.
@@ -35,7 +36,7 @@ pub fn router() -> Resources {
         .looks(Scope::Read, routes!(list))
         .changes(Scope::Run, routes!(create))
         .looks(Scope::Read, routes!(show))
-        .changes(Scope::Run, routes!(dismiss))
+        .changes(Scope::Run, routes!(change, dismiss))
         .json_only()
 }
 
@@ -67,7 +68,7 @@ struct ListParameters {
     limit: Option<u32>,
 }
 
-/// Accepts a job. The same inputs, whoever sends them, are the same job. With `Prefer: wait=n` the answer
+/// Accepts a job. The same inputs, whoever sends them, are the same job, which gets the tags of each. With `Prefer: wait=n` the answer
 /// comes when the job has ended, at the latest after n seconds (at most 30). One that keeps meshes (`keep`) stores what it
 /// makes, which a key has to allow (`write`).
 #[utoipa::path(
@@ -110,6 +111,7 @@ async fn create(service: Service, caller: Caller, request: Request) -> ApiResult
         Enqueued::Known(id) => {
             let deduplicated = id != accepted.id;
             if deduplicated {
+                tag(&service, &id, &accepted.tags, &[]).await?;
                 new.found(&service, &id).await?;
             }
             (id, deduplicated)
@@ -176,6 +178,41 @@ async fn show(service: Service, Id(id): Id, headers: HeaderMap) -> ApiResult {
     let job = wait_for_end(&service, &id, wait.unwrap_or(0)).await?;
     let answer = answer(StatusCode::OK, &job.ok_or_else(no_such_job)?, false, wait)?;
     conditional::document(&headers, answer).await
+}
+
+/// Changes the tags of a job, whatever its state. Tags to `add` are put on it and tags to `remove` are taken off, and all
+/// others stay; what is so already is no mistake. So changes of several clients do not overwrite each other, and need no
+/// If-Match.
+#[utoipa::path(
+    patch, path = "/v1/jobs/{id}", operation_id = "change_job", tag = "jobs", params(("id" = uuid::Uuid, Path, description = "the job")),
+    request_body = JobChangeDocument,
+    responses((status = 200, description = "changed", body = StatusInfo, headers(("ETag" = String, description = "the hash of this state"))))
+)]
+async fn change(service: Service, Id(id): Id, request: Request) -> ApiResult {
+    let bytes = body::json(&service, request).await?;
+    let change: JobChangeDocument = strict::parse(&bytes, &service.limits)?;
+    let mut faults = Faults::default();
+    change.check(&service.limits, &mut faults);
+    faults.into_result()?;
+    tag(&service, &id, &change.tags.add, &change.tags.remove).await?;
+    let job = service.store.job(&id).await?.ok_or_else(no_such_job)?;
+    let answer = answer(StatusCode::OK, &job, false, None)?;
+    conditional::document(&HeaderMap::new(), answer).await
+}
+
+/// Puts tags on a job and takes others off it.
+async fn tag(service: &Service, id: &str, add: &[String], remove: &[String]) -> ApiResult<()> {
+    let most = service.limits.tags as usize;
+    match service.store.change_tags(id, add, remove, most).await? {
+        Tagged::Done => Ok(()),
+        Tagged::NotFound => Err(no_such_job()),
+        Tagged::TooMany(count) => {
+            let detail = format!("job {id} would have {count} tags, at most {most} are allowed");
+            let mut faults = Faults::default();
+            faults.add(&Pointer::root().key("tags"), ErrorCode::TooMany, detail);
+            faults.into_result().map_err(ApiError::from)
+        }
+    }
 }
 
 /// Jobs, newest first.

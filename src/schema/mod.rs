@@ -8,6 +8,7 @@ pub mod compare;
 pub mod engine;
 pub mod hashes;
 pub mod job;
+pub mod job_change;
 pub mod job_document;
 pub mod key;
 pub mod link;

@@ -3,6 +3,7 @@
 use super::cases::AFTER_ALL;
 use super::database::{Row, Transaction, is_reference, query};
 use super::events::record;
+use super::job_tags::put_on;
 use super::made::meshes_of_job;
 use super::{Store, StoreError, tenants};
 use crate::schema::engine::EngineDocument;
@@ -332,13 +333,7 @@ impl Store {
         if inserted == 0 {
             return Ok(false);
         }
-        for tag in &job.tags {
-            query("INSERT INTO job_tags (job_id, tag) VALUES ($1, $2) ON CONFLICT DO NOTHING")
-                .bind(&job.id)
-                .bind(tag)
-                .execute(&mut *transaction)
-                .await?;
-        }
+        put_on(transaction, &job.id, &job.tags).await?;
         for case in &job.shared_cases {
             query("INSERT INTO job_cases (job_id, case_id) VALUES ($1, $2) ON CONFLICT DO NOTHING")
                 .bind(&job.id)

@@ -37,6 +37,7 @@ fn main() -> ExitCode {
         store::remembered::trials(),
         store::schema_steps::trials(),
         store::storage::trials(),
+        store::tags::trials(),
         store::tenants::trials(),
         store::turns::trials(),
         store::transfer::trials(),
