@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::failure::CommandError;
-use super::scene::SceneArguments;
+use super::scene::{PlanArgument, SceneArguments};
 use super::screen::{print_check, print_files, print_warnings, work_in_sight};
 use super::watch::Watch;
 use crate::jobs::{JobInput, Workplace, check};
@@ -26,6 +26,8 @@ const NO_PLAN: &str = "there is no plan to predict: give `plan` beside the case 
 pub struct Arguments {
     #[command(flatten)]
     scene: SceneArguments,
+    #[command(flatten)]
+    plan: PlanArgument,
     /// The folder for the result
     #[arg(long, visible_alias = "output", value_name = "FOLDER", help_heading = "Result")]
     out: PathBuf,
@@ -33,7 +35,7 @@ pub struct Arguments {
 
 /// Tells what is held, solves, writes the result and the documents, and prints a table.
 pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
-    let mut asked = arguments.scene.documents()?;
+    let mut asked = arguments.scene.documents(arguments.plan.plan.as_deref())?;
     asked.file.spec.outputs.get_or_insert_with(usual_outputs);
     if !asked.file.spec.keep.is_empty() {
         return Err(CommandError::Usage(NO_STORE.to_owned()));

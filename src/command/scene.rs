@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
-use super::documents::{CaseFile, read};
+use super::documents::{Asked, CaseFile, read};
 use super::failure::CommandError;
 use super::files::{FileSource, ScaleArguments};
 use super::selection::{segment, selection};
@@ -27,9 +27,6 @@ pub struct SceneArguments {
     /// The volume mesh: VTU, VTK or Gmsh
     #[arg(long, value_name = "FILE", conflicts_with = "case", help_heading = SCENE)]
     mesh: Option<PathBuf>,
-    /// The plan document; its segments are segments of the case or node sets of the mesh
-    #[arg(long, value_name = "FILE", conflicts_with = "case", help_heading = SCENE)]
-    plan: Option<PathBuf>,
     /// Nodes that are held: a set of the mesh, or the nodes where an integer array has a value, as in tag=4; may be given
     /// several times
     #[arg(long, value_name = "SET|ARRAY=VALUE", value_parser = selection, conflicts_with = "case", help_heading = BOUNDARY)]
@@ -58,6 +55,14 @@ pub struct SceneArguments {
     element: ElementArgument,
     #[command(flatten)]
     scale: ScaleArguments,
+}
+
+/// The movement that is predicted, of commands about one.
+#[derive(Debug, Args)]
+pub struct PlanArgument {
+    /// The plan document; its segments are segments of the case or node sets of the mesh
+    #[arg(long, value_name = "FILE", conflicts_with = "case", help_heading = SCENE)]
+    pub plan: Option<PathBuf>,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -96,33 +101,26 @@ impl UnitArgument {
     }
 }
 
-/// The documents, and the folder from which their mesh paths lead.
-pub struct Asked {
-    pub file: CaseFile,
-    pub folder: PathBuf,
-    pub sources: FileSource,
-}
-
 impl SceneArguments {
-    /// The documents that the arguments name or stand for.
-    pub fn documents(&self) -> Result<Asked, CommandError> {
-        let (file, folder) = match (&self.case, &self.mesh) {
+    /// The documents that the arguments name or stand for, with a plan where the command has one.
+    pub fn documents(&self, plan: Option<&Path>) -> Result<Asked, CommandError> {
+        let (file, path, folder) = match (&self.case, &self.mesh) {
             (Some(path), _) => {
                 let folder = path.parent().unwrap_or(Path::new("")).to_owned();
-                (read::<CaseFile>(path)?, folder)
+                (read::<CaseFile>(path)?, path, folder)
             }
-            (None, Some(mesh)) => (self.documents_of(mesh)?, PathBuf::new()),
+            (None, Some(mesh)) => (self.documents_of(mesh, plan)?, mesh, PathBuf::new()),
             (None, None) => {
                 let detail = "give --case, or --mesh and --plan";
                 return Err(CommandError::Usage(detail.to_owned()));
             }
         };
         let sources = FileSource::new(&folder, file.case.units, self.scale);
-        Ok(Asked { file, folder, sources })
+        Ok(Asked { file, path: path.clone(), folder, sources })
     }
 
-    fn documents_of(&self, mesh: &Path) -> Result<CaseFile, CommandError> {
-        let plan = self.plan.as_deref().map(read::<PlanDocument>).transpose()?;
+    fn documents_of(&self, mesh: &Path, plan: Option<&Path>) -> Result<CaseFile, CommandError> {
+        let plan = plan.map(read::<PlanDocument>).transpose()?;
         let mut case = CaseDocument::of_volume(&mesh.to_string_lossy(), self.units.unit());
         case.frame = match self.frame {
             FrameArgument::Lps => FrameName::Lps,

@@ -29,6 +29,10 @@ const SMALL_SCENE: &str = "slab";
 const SMALL_PLAN: &str = "patch 4,0,8 mm";
 const SMALL_TISSUE: (f64, f64) = (15.0, 0.46);
 
+/// What a case file says for `predict` is said by a study for all of its cases.
+const OWN_WAYS: &str = "a study states itself how cases are computed: say so in an entry of `methods` or in `materials` of a \
+                        document for --spec, or by --method";
+
 #[derive(Debug, Args)]
 pub struct Arguments {
     /// The slab with one plan and one tissue and every method: a minute at most
@@ -218,7 +222,9 @@ fn read_report(path: &Path) -> Result<ReportDocument, CommandError> {
 
 /// A case with mesh paths that lead from here; its plan goes into the reference, which gets the name of the file.
 fn read_case(path: &Path, reference: &mut CaseReference) -> Result<CaseDocument, CommandError> {
-    let CaseFile { mut case, plan, .. } = read(path)?;
+    let file: CaseFile = read(path)?;
+    file.refuse_spec(OWN_WAYS, path)?;
+    let CaseFile { mut case, plan, .. } = file;
     let mut plan = plan.unwrap_or_default();
     let folder = path.parent().unwrap_or(Path::new(""));
     let lead = |id: &mut String| *id = folder.join(&*id).to_string_lossy().into_owned();

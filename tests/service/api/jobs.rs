@@ -149,7 +149,7 @@ async fn tags_of_a_job_are_changed_whatever_its_state() {
     assert_eq!(ask(server.get(&path)).await.json()["tags"], json!(["b", "main"]));
     let nobody = "/v1/jobs/00000000-0000-7000-8000-000000000000";
     let request = server.request(Method::PATCH, nobody).json(&json!({"tags": {"add": ["x"]}}));
-    ask(request).await.problem(404, "not-found");
+    ask(request).await.problem(404, "no-such-job");
 }
 
 #[tokio::test]
