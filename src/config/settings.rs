@@ -93,7 +93,7 @@ pub const SETTINGS: &[Setting] = &[
     setting(
         "clients-folder",
         "",
-        "folder whose files are served at /clients to everybody: the packages that clients/run builds; without it there are none",
+        "folder whose files are served at /clients to everybody: the packages that clients/build builds; without it there are none",
     ),
     setting(
         "requests-per-minute",
