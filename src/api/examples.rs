@@ -30,6 +30,10 @@ fn of(operation: &str) -> Vec<(&'static str, Value)> {
         "create_plan" | "replace_plan" => vec![("movements", plan()), ("loads", loads())],
         "apply_response" => vec![("plan", json!({ "plan": plan() }))],
         "create_job" => jobs(),
+        "change_job" => {
+            let tags = json!({"add": ["main"], "remove": ["draft"]});
+            vec![("tags", json!({ "tags": tags }))]
+        }
         "create_key" => {
             let scopes = ["read", "write", "run"];
             vec![("key", json!({"label": "planning station", "scopes": scopes, "days": 365}))]

@@ -13,9 +13,8 @@ use super::idempotency::new_id;
 use super::job_view::status_info;
 use super::paging::Page;
 use super::parameters::{Id, Parameters, id, no_such_job};
-use super::prefer::{wait_for_end, wanted_wait};
+use super::prefer::{RETRY_AFTER_S, wait_for_end, wanted_wait};
 use super::resources::Resources;
-use super::results::RETRY_AFTER_S;
 
 use crate::schema::job_change::JobChangeDocument;
 use crate::schema::key::Scope;
@@ -255,7 +254,10 @@ async fn dismiss(service: Service, Id(id): Id) -> ApiResult<Response> {
             let job = service.store.job(&id).await?.ok_or_else(no_such_job)?;
             Ok(json(StatusCode::OK, &status_info(&job, false)?))
         }
-        Dismissal::Removed => Ok(StatusCode::NO_CONTENT.into_response()),
+        Dismissal::Removed => {
+            service.pictures.forget(&id);
+            Ok(StatusCode::NO_CONTENT.into_response())
+        }
         Dismissal::NotFound => Err(no_such_job()),
     }
 }

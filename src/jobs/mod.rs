@@ -2,6 +2,7 @@
 
 mod clock;
 mod compare;
+mod drawing;
 mod failure;
 mod fetch;
 mod input;
@@ -16,6 +17,7 @@ mod source;
 pub mod study;
 
 pub use compare::CompareInput;
+pub use drawing::Finished;
 pub use failure::JobError;
 pub use input::JobInput;
 pub use optimise::OptimiseInput;

@@ -141,6 +141,7 @@ pub fn response_job(
         comparison: None,
         optimisation: None,
         study: None,
+        pictures: Vec::new(),
         kept: Vec::new(),
         numerical_error_mm: None,
         reaction_mn: BTreeMap::new(),

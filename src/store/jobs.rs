@@ -128,6 +128,7 @@ const LIST: &str = found!(
      AND ($4 = '' OR EXISTS (SELECT 1 FROM job_tags WHERE job_tags.job_id = jobs.id AND job_tags.tag = $4)) \
      AND ($5 = '' OR case_id = $5) ORDER BY id DESC LIMIT $6"
 );
+const DOCUMENT: &str = "SELECT document FROM jobs WHERE id = $1 AND tenant = $2";
 const STATUS: &str = "SELECT status FROM jobs WHERE id = $1 AND tenant = $2";
 const CASES: &str = "SELECT case_id FROM jobs WHERE id = $1 AND tenant = $2 AND case_id IS NOT NULL \
      UNION SELECT job_cases.case_id FROM job_cases JOIN jobs ON jobs.id = job_cases.job_id \
@@ -187,6 +188,13 @@ impl Store {
             .fetch_optional(self.database.reader())
             .await?;
         Ok(row.as_ref().map(job_row).transpose()?)
+    }
+
+    /// What a job was accepted with, resolved.
+    pub async fn job_document(&self, id: &str) -> Result<Option<String>, StoreError> {
+        let row = query(DOCUMENT).bind(id).bind(self.tenant());
+        let row = row.fetch_optional(self.database.reader()).await?;
+        Ok(row.map(|row| row.try_get(0)).transpose()?)
     }
 
     /// The cases that a job goes with.

@@ -66,6 +66,7 @@ pub fn compare_job(
         comparison: Some(compared.document.clone()),
         optimisation: None,
         study: None,
+        pictures: Vec::new(),
         kept: Vec::new(),
         numerical_error_mm: None,
         reaction_mn: BTreeMap::new(),

@@ -95,7 +95,7 @@ impl OptimiseInput {
     }
 
     /// The prediction of a plan that was found.
-    fn prediction(&self, found: &OptimisationDocument) -> PredictInput {
+    pub fn prediction(&self, found: &OptimisationDocument) -> PredictInput {
         PredictInput {
             job: self.job.clone(),
             queue_s: self.queue_s,
@@ -168,7 +168,8 @@ impl Found {
                 OutputName::BonesVtp => encode_bones(&planned.case, scene, &field_data)?,
                 OutputName::ClassesSvg => planned.classes_picture()?.into_bytes(),
                 OutputName::DisplacementSvg => {
-                    displacement_picture(scene, &skin, frame, &statistics.skin.nodes)?.into_bytes()
+                    let numbers = &statistics.skin.nodes;
+                    displacement_picture(scene, &skin.surface, frame, numbers)?.into_bytes()
                 }
                 skin_file => match skin.encode(skin_file, frame, &field_data)? {
                     Some(bytes) => bytes,
@@ -182,6 +183,7 @@ impl Found {
         add_method(&mut provenance, input.spec.method, mesh, self.solver);
         let result = ResultDocument {
             job: input.job.clone(),
+            pictures: input.pictures_beside(&folder.files),
             files: folder.files.clone(),
             statistics: Some(statistics),
             comparison: None,

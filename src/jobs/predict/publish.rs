@@ -139,7 +139,7 @@ impl Finished<'_> {
                 OutputName::ClassesSvg => self.prepared.classes_picture()?.into_bytes(),
                 OutputName::DisplacementSvg => {
                     let numbers = &self.statistics.skin.nodes;
-                    displacement_picture(scene, self.skin, frame, numbers)?.into_bytes()
+                    displacement_picture(scene, &self.skin.surface, frame, numbers)?.into_bytes()
                 }
                 skin => match self.skin.encode(skin, frame, &field_data)? {
                     Some(bytes) => bytes,
@@ -163,6 +163,7 @@ impl Finished<'_> {
         add_method(&mut provenance, input.spec.method, mesh, solver);
         ResultDocument {
             job: input.job.clone(),
+            pictures: input.pictures_beside(&files),
             files,
             statistics: Some(self.statistics.clone()),
             comparison: self.comparison.clone(),

@@ -1,6 +1,5 @@
 //! The pictures of a job: what holds the boundary, and how the skin moves.
 
-use super::skin::PredictedSkin;
 use crate::schema::compare::result::StatDocument;
 use mechanics::chart::{
     ClassKind, ClassesPicture, DisplacementPicture, NodeClasses, Outlook, PngError, front_of,
@@ -59,7 +58,7 @@ pub fn classes_picture(scene: &Scene, frame: Frame, title: &str) -> Result<Strin
 /// `displacement.svg`: the skin before, after, and coloured by how far it moves.
 pub fn displacement_picture(
     scene: &Scene,
-    skin: &PredictedSkin,
+    moved: &TriangleSurface,
     frame: Frame,
     statistics: &StatDocument,
 ) -> Result<String, PngError> {
@@ -79,7 +78,7 @@ pub fn displacement_picture(
         subtitle: &subtitle,
         triangles: &before.triangles,
         before: &before.points,
-        after: &skin.surface.points,
+        after: &moved.points,
         outlook: outlook(frame, before),
         frame: frame.name(),
         statistics: &numbers,

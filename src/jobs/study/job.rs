@@ -114,6 +114,7 @@ pub fn study_job(
         comparison: None,
         optimisation: None,
         study: Some(report.summary()),
+        pictures: Vec::new(),
         kept: Vec::new(),
         numerical_error_mm: None,
         reaction_mn: BTreeMap::new(),

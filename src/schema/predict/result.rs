@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use super::keep::KeptMeshDocument;
+use super::output::PictureName;
 use crate::schema::Triple;
 use crate::schema::case::document::{FrameName, LengthUnit};
 use crate::schema::case::hounsfield::ImagedTissueDocument;
@@ -29,6 +30,9 @@ pub struct ResultDocument {
     pub job: Option<String>,
     /// The files beside this one.
     pub files: Vec<FileDocument>,
+    /// Of a job: pictures that are no files, and are drawn when they are first asked for, as if they were.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub pictures: Vec<PictureName>,
     /// Absent from comparisons.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]

@@ -109,6 +109,10 @@ async fn the_service_takes_every_example_as_it_stands_but_for_ids() {
             job = ended["id"].as_str().unwrap().to_owned();
         }
     }
+    for (name, body) in examples("change_job") {
+        let request = server.request(reqwest::Method::PATCH, &format!("/v1/jobs/{job}"));
+        assert_eq!(ask(request.json(&body)).await.status, StatusCode::OK, "{name}");
+    }
     for (name, body) in examples("apply_response") {
         let request = server.post(&format!("/v1/cases/{case}/response/apply")).json(&body);
         assert_eq!(ask(request).await.status, StatusCode::OK, "{name}");

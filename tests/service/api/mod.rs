@@ -25,6 +25,7 @@ mod openapi;
 mod optimise;
 mod origins;
 mod pages;
+mod pictures;
 mod plans;
 mod response;
 mod study;
