@@ -47,7 +47,7 @@ mesh = service.predict("examples/head/face.vtu", {"segments": [{"name": "mandibl
                        fixed=["skull", "rim"], skin="skin", progress=told.append)
 assert mesh.displacement_mm.shape == prediction.displacement_mm.shape
 size = Path("examples/head/face.vtu").stat().st_size
-sent = [event for event in told if event["phase"] == "upload"]
+sent = [event for event in told if event.get("phase") == "upload"]
 assert sent[-1] == {"phase": "upload", "file": "face.vtu", "sent_bytes": size, "total_bytes": size, "progress": 100}, sent
 shares: list[int] = []
 service.upload(b"solid x\n" + b" " * (5 << 20) + b"facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 50 0 0\nvertex 0 50 0\n"
