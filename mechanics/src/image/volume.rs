@@ -161,6 +161,11 @@ impl ImageVolume {
         &self.placement
     }
 
+    /// Turns the way from the first voxel's centre, in mm, into voxels.
+    pub(crate) fn to_index(&self) -> &Matrix3<f64> {
+        &self.to_index
+    }
+
     pub fn voxels(&self) -> &Voxels {
         &self.voxels
     }

@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used)]
 
+mod domain;
 mod format;
 mod golden;
 mod image;
