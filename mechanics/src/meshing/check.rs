@@ -6,7 +6,7 @@ use robust::{Coord3D, orient3d};
 use super::draft::Draft;
 use super::error::MeshingError;
 use super::pieces::pieces;
-use super::rims::{RimFace, boundary_faces, odd_edges, unmatched_print};
+use super::rims::{RimFace, boundary_faces, odd_edges, open_faces, unmatched_print};
 use crate::mesh::Vector;
 
 /// Fails where a cell is flat or turned over, a place is not finite, a face has other than one partner or bounds the mesh
@@ -26,7 +26,9 @@ pub(super) fn check(draft: &Draft, one_piece: bool) -> Result<Vec<RimFace>, Mesh
     broken("cells without volume or turned over", flat.len(), first)?;
     let faces = boundary_faces(draft);
     if unmatched_print(draft, &faces) != 0 {
-        return broken("cells whose faces do not meet", 1, Some(Vector::zeros())).map(|()| faces);
+        let open = open_faces(draft);
+        let first = open.first().map_or(Vector::zeros(), |face| place(face[0]));
+        broken("faces within the tissue without a partner", open.len().max(1), Some(first))?;
     }
     let odd = odd_edges(&faces);
     let first = odd.first().map(|edge| place(edge.nodes[0]));

@@ -13,7 +13,8 @@ const BITS: u32 = 21;
 /// Cells at the top of the octree along the longest axis.
 const ROOTS: f64 = 6.0;
 
-/// Room around the tissue in finest cells. Not a simple fraction, so that no lattice plane lies in a face of a box.
+/// Room around the tissue in cells of the coarsest size: all nodes of the outermost leaves lie outside. Not a simple
+/// fraction, so that no lattice plane lies in a face of a box.
 const MARGIN: f64 = 1.618;
 
 /// Where the lattice lies and how fine it gets.
@@ -32,7 +33,8 @@ impl Grid {
     /// A lattice around a box.
     pub fn new(low: &Vector, high: &Vector, size: &SizeField) -> Result<Grid, MeshingError> {
         let finite = low.iter().chain(high.iter()).all(|x| x.is_finite());
-        let extent = (high - low).add_scalar(2.0 * MARGIN * size.finest);
+        let margin = MARGIN * size.coarsest;
+        let extent = (high - low).add_scalar(2.0 * margin);
         if !finite || (high - low).min() < 0.0 {
             return Err(MeshingError::Bounds { low: *low, high: *high });
         }
@@ -46,7 +48,7 @@ impl Grid {
         let depth = widest.log2().floor().clamp(0.0, f64::from(BITS - 3)) as u8;
         let root = size.finest * f64::from(1_u32 << depth);
         let roots = [0, 1, 2].map(|axis| (extent[axis] / root).ceil().max(1.0) as u32);
-        let origin = low.add_scalar(-MARGIN * size.finest);
+        let origin = low.add_scalar(-margin);
         Ok(Grid { origin, unit: size.finest / 2.0, depth, roots })
     }
 

@@ -19,6 +19,8 @@ mod error;
 mod gaps;
 mod grid;
 mod lattice;
+#[cfg(test)]
+mod lattice_tests;
 mod node_table;
 mod octree;
 mod pieces;

@@ -71,6 +71,24 @@ pub(super) fn unmatched_print(draft: &Draft, boundary: &[RimFace]) -> u64 {
     boundary.iter().map(|face| print(face.nodes)).fold(all, u64::wrapping_sub)
 }
 
+/// The faces, by their sorted nodes, that have other than one partner and do not bound the mesh: a search in all of them.
+pub(super) fn open_faces(draft: &Draft) -> Vec<[u32; 3]> {
+    let faces = draft.tetrahedra.iter().flat_map(|tet| {
+        FACES.map(|face| {
+            let mut nodes = face.map(|local| tet[local]);
+            nodes.sort_unstable();
+            nodes
+        })
+    });
+    let mut faces: Vec<[u32; 3]> = faces.collect();
+    faces.par_sort_unstable();
+    let bounds =
+        |face: &[u32; 3]| face.iter().all(|&node| !draft.boundaries[node as usize].is_empty());
+    let groups = faces.chunk_by(|a, b| a == b);
+    let open = groups.filter(|same| same.len() > 2 || same.len() == 1 && !bounds(&same[0]));
+    open.map(|same| same[0]).collect()
+}
+
 /// A number for a face, negated for the other orientation.
 fn print([a, b, c]: [u32; 3]) -> u64 {
     let (low, high) = (b.min(c), b.max(c));

@@ -3,6 +3,9 @@
 use super::error::MeshingError;
 use crate::mesh::Vector;
 
+/// Cells along the longest side of a body, at least.
+const FEWEST: f64 = 4.0;
+
 /// How large cells may be: the edge of the cubes of the lattice in mm, the smallest of all rules, and never less than
 /// `finest`. Cubes have edges of `finest` times a power of two; a cube inside tissue is worth twelve tetrahedra.
 #[derive(Clone, Debug, PartialEq)]
@@ -77,6 +80,13 @@ impl SizeField {
             region.size + self.grading * distance
         });
         asked.fold(self.coarsest, f64::min).max(self.finest)
+    }
+
+    /// With a few cells at least along the longest side of a body.
+    #[must_use]
+    pub(super) fn bounded(&self, longest_side: f64) -> SizeField {
+        let coarsest = self.coarsest.min((longest_side / FEWEST).max(self.finest));
+        SizeField { coarsest, ..self.clone() }
     }
 
     /// All lengths times a number.

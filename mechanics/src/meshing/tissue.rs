@@ -63,7 +63,8 @@ pub fn mesh(
     settings.check()?;
     let mut watch = Watch::new(progress, STAGES);
     watch.stage()?;
-    let size = target::size_field(domain, settings, &watch)?;
+    let (low, high) = domain.bounds();
+    let size = target::size_field(domain, settings, &watch)?.bounded((high - low).max());
     let (mut draft, counts) = stuff(domain, settings, &size, &mut watch)?;
     watch.stage()?;
     let edges_cut = edge_copies::part(&mut draft);
