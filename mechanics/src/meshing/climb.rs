@@ -10,14 +10,15 @@ use rayon::prelude::*;
 
 use super::draft::Draft;
 use super::error::MeshingError;
-use super::star::Star;
+use super::star::{Move, Star};
 use super::watch::Watch;
 use crate::domain::Domain;
-use crate::mesh::Vector;
 use crate::rows::Rows;
 
 /// Cells with an angle below 30 or above 150 degrees are worked on.
 const BAD: f64 = 0.5;
+/// Nodes beside their boundary go back to it where angles stay above 20 degrees, or do not get worse.
+const FAIR: f64 = 0.35;
 /// As many colours as there are bits.
 const COLOURS: u32 = 64;
 
@@ -48,12 +49,10 @@ impl<'a> Climb<'a> {
         Ok(())
     }
 
-    /// Puts nodes back onto the boundary where cells stay good.
+    /// Puts nodes beside their boundary back onto it where cells stay fair.
     pub fn settle(&mut self, watch: &Watch) -> Result<(), MeshingError> {
-        let nodes = 0..self.draft.nodes.len() as u32;
-        let on_boundary = |node: &u32| !self.draft.boundaries[*node as usize].is_empty();
-        let nodes: Vec<u32> = nodes.filter(on_boundary).collect();
-        self.sweep(&nodes, watch, |climb, node| climb.star(node).on_boundary(BAD))?;
+        let nodes = self.draft.beside.clone();
+        self.sweep(&nodes, watch, |climb, node| climb.star(node).on_boundary(FAIR))?;
         Ok(())
     }
 
@@ -61,13 +60,13 @@ impl<'a> Climb<'a> {
     pub fn part_copies(&mut self) {
         let copies: Vec<u32> = self.draft.copies.concat();
         for node in copies {
-            if let Some(place) = self.star(node).inwards() {
+            if let Some(Move { place, .. }) = self.star(node).inwards() {
                 self.draft.nodes[node as usize] = place;
             }
         }
     }
 
-    fn star(&self, node: u32) -> Star<'_> {
+    pub fn star(&self, node: u32) -> Star<'_> {
         Star::new(self.draft, node, self.of_nodes.row(node as usize), self.domain)
     }
 
@@ -80,18 +79,21 @@ impl<'a> Climb<'a> {
     }
 
     /// Moves each of these nodes once, colour by colour; returns how many moved.
-    fn sweep(
+    pub fn sweep(
         &mut self,
         nodes: &[u32],
         watch: &Watch,
-        better: impl Fn(&Self, u32) -> Option<Vector> + Sync,
+        better: impl Fn(&Self, u32) -> Option<Move> + Sync,
     ) -> Result<usize, MeshingError> {
         let mut moved = 0;
         for group in self.coloured(nodes) {
             let places = watch.map(&group, |&node| better(self, node))?;
             let to = group.into_iter().zip(places).filter_map(|(node, place)| Some((node, place?)));
-            let to: Vec<(u32, Vector)> = to.collect();
-            to.iter().for_each(|&(node, place)| self.draft.nodes[node as usize] = place);
+            let to: Vec<(u32, Move)> = to.collect();
+            for &(node, Move { place, boundaries }) in &to {
+                self.draft.nodes[node as usize] = place;
+                self.draft.boundaries[node as usize] = boundaries;
+            }
             moved += to.len();
             let changed = to.iter().flat_map(|&(node, _)| self.of_nodes.row(node as usize));
             let changed: Vec<u32> = changed.copied().collect();

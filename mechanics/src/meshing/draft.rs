@@ -12,6 +12,8 @@ pub(super) struct Draft {
     pub tetrahedra: Vec<[u32; 4]>,
     /// Nodes at one place, one list for each place.
     pub copies: Vec<Vec<u32>>,
+    /// Nodes of a boundary that have been put beside it.
+    pub beside: Vec<u32>,
 }
 
 /// The faces of a tetrahedron by its local nodes, counter-clockwise seen from outside.
@@ -64,6 +66,7 @@ impl Draft {
             let numbers = list.iter().map(|&node| numbers[node as usize]);
             numbers.filter(|&number| number != u32::MAX).collect()
         };
+        self.beside = renumbered(&old.beside);
         self.copies = old.copies.iter().map(renumbered).filter(|list| list.len() > 1).collect();
     }
 }

@@ -51,6 +51,7 @@ fn halve(draft: &mut Draft, edge: [u32; 2], about: &[u32]) {
         draft.nodes.push(middle);
         draft.boundaries.push(if shared.is_empty() { a.and(b) } else { shared });
         copies.push(node);
+        draft.beside.push(node);
         for tet in fan {
             let whole = draft.tetrahedra[tet as usize];
             let with = |replaced: u32| whole.map(|n| if n == replaced { node } else { n });

@@ -12,6 +12,7 @@
 mod boundary_set;
 mod check;
 mod climb;
+mod creases;
 mod cuts;
 mod draft;
 mod edge_copies;

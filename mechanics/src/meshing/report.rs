@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::draft::Draft;
 use super::gaps::Gap;
 use super::pieces::Piece;
-use super::shape::dihedral_angles;
+use super::shape::dihedral_cosines;
 
 /// The dihedral angles of a mesh, in degrees.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,6 +43,8 @@ pub struct MeshingReport {
     pub stepped_back: usize,
     /// Edges cut in two because tissue touched itself along them.
     pub edges_cut: usize,
+    /// Nodes moved to where two boundaries meet.
+    pub creased: usize,
     /// Pieces that were left out, the largest first.
     pub dropped: Vec<Piece>,
     /// Gaps in the tissue that are thinner than a cell and have been filled, the largest first.
@@ -51,14 +53,14 @@ pub struct MeshingReport {
     pub sheets_lost: Vec<Gap>,
 }
 
-/// Angles are counted in classes of a hundredth of a degree.
-const CLASSES: usize = 18_000;
+/// Angles are counted in so many classes of their cosine: a hundredth of a degree at 20 degrees and above.
+const CLASSES: usize = 40_000;
 
 impl Angles {
     pub(super) fn of(draft: &Draft) -> Angles {
         let counts = draft.tetrahedra.par_chunks(1 << 14).map(|cells| {
             let mut counts = Counts::new();
-            cells.iter().for_each(|tet| counts.add(dihedral_angles(&draft.corners(tet))));
+            cells.iter().for_each(|tet| counts.add(dihedral_cosines(&draft.corners(tet))));
             counts
         });
         counts.reduce(Counts::new, Counts::and).angles()
@@ -66,40 +68,46 @@ impl Angles {
 }
 
 struct Counts {
+    /// From the largest cosine, of the smallest angle, downwards.
     classes: Vec<u32>,
-    smallest: f64,
-    largest: f64,
+    largest_cosine: f64,
+    smallest_cosine: f64,
     cells_below_ten: usize,
 }
 
 impl Counts {
     fn new() -> Counts {
-        Counts { classes: vec![0; CLASSES], smallest: 180.0, largest: 0.0, cells_below_ten: 0 }
+        let classes = vec![0; CLASSES];
+        Counts { classes, largest_cosine: -1.0, smallest_cosine: 1.0, cells_below_ten: 0 }
     }
 
-    fn add(&mut self, angles: [f64; 6]) {
-        for angle in angles {
-            self.smallest = self.smallest.min(angle);
-            self.largest = self.largest.max(angle);
-            self.classes[((angle * 100.0) as usize).min(CLASSES - 1)] += 1;
+    fn add(&mut self, cosines: [f64; 6]) {
+        let mut largest = -1.0_f64;
+        for cosine in cosines {
+            largest = largest.max(cosine);
+            self.smallest_cosine = self.smallest_cosine.min(cosine);
+            let class = (1.0 - cosine) * (CLASSES as f64 / 2.0);
+            self.classes[(class as usize).min(CLASSES - 1)] += 1;
         }
-        self.cells_below_ten += usize::from(angles.iter().any(|&angle| angle < 10.0));
+        self.largest_cosine = self.largest_cosine.max(largest);
+        // The cosine of ten degrees.
+        self.cells_below_ten += usize::from(largest > 0.984_807_753_012_208);
     }
 
     fn and(mut self, other: Counts) -> Counts {
         self.classes.iter_mut().zip(&other.classes).for_each(|(count, more)| *count += more);
-        self.smallest = self.smallest.min(other.smallest);
-        self.largest = self.largest.max(other.largest);
+        self.largest_cosine = self.largest_cosine.max(other.largest_cosine);
+        self.smallest_cosine = self.smallest_cosine.min(other.smallest_cosine);
         self.cells_below_ten += other.cells_below_ten;
         self
     }
 
     fn angles(&self) -> Angles {
         Angles {
-            smallest: self.smallest,
+            smallest: degrees(self.largest_cosine),
             thousandth: self.quantile(0.001),
             hundredth: self.quantile(0.01),
-            largest: self.largest,
+            largest: degrees(self.smallest_cosine),
             cells_below_ten: self.cells_below_ten,
         }
     }
@@ -113,6 +121,10 @@ impl Counts {
             below += u64::from(count);
             below as f64 > wanted
         });
-        class.unwrap_or_default() as f64 / 100.0
+        degrees(1.0 - class.unwrap_or_default() as f64 * (2.0 / CLASSES as f64))
     }
+}
+
+fn degrees(cosine: f64) -> f64 {
+    cosine.clamp(-1.0, 1.0).acos().to_degrees()
 }

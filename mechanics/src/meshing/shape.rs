@@ -33,7 +33,16 @@ pub(super) fn worst_sine(corners: &[Vector; 4]) -> f64 {
     if smallest.is_finite() { determinant * smallest.sqrt() } else { 0.0 }
 }
 
-/// The six dihedral angles in degrees.
-pub(super) fn dihedral_angles(corners: &[Vector; 4]) -> [f64; 6] {
-    crate::mesh::quality::dihedral_angles(corners).map(f64::to_degrees)
+/// The cosines of the six dihedral angles.
+pub(super) fn dihedral_cosines(corners: &[Vector; 4]) -> [f64; 6] {
+    let [a, b, c, d] = corners;
+    // Outwards, by the corner that the face lacks.
+    let normals = [
+        (c - b).cross(&(d - b)),
+        (d - a).cross(&(c - a)),
+        (b - a).cross(&(d - a)),
+        (c - a).cross(&(b - a)),
+    ];
+    let units = normals.map(|normal| normal / normal.norm());
+    EDGES.map(|[_, _, one, other]| -units[one].dot(&units[other]))
 }

@@ -13,7 +13,9 @@ const SPREAD: f64 = 0.1;
 /// A better place must be better by this.
 const GAIN: f64 = 1e-4;
 /// Rounds of projection onto all boundaries at a crease.
-const CREASE_ROUNDS: usize = 4;
+const CREASE_ROUNDS: usize = 6;
+/// How far a node of a crease may be from a boundary, in parts of its longest edge.
+const MEETS: f64 = 0.01;
 
 /// How far the copies of a node go into their stars, in parts of the way to the middle.
 const INWARDS: [f64; 4] = [0.1, 0.03, 0.01, 1e-3];
@@ -25,6 +27,13 @@ const HARDLY: f64 = 0.9;
 struct StarCell {
     corners: [Vector; 4],
     own: usize,
+}
+
+/// Where a node goes, and the boundaries on which it lies there.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Move {
+    pub place: Vector,
+    pub boundaries: BoundarySet,
 }
 
 /// A node with its cells.
@@ -57,7 +66,7 @@ impl<'a> Star<'a> {
     }
 
     /// A place for the node where the worst cell is better, if one is found.
-    pub fn better(&self) -> Option<Vector> {
+    pub fn better(&self) -> Option<Move> {
         let mut best = (self.worst + GAIN, None);
         for step in [self.to_middle(), self.ascent()] {
             for part in STEPS {
@@ -67,22 +76,40 @@ impl<'a> Star<'a> {
                 }
             }
         }
-        best.1
+        best.1.map(|place| self.move_to(place))
+    }
+
+    fn move_to(&self, place: Vector) -> Move {
+        Move { place, boundaries: self.boundaries }
     }
 
     /// The node on its boundaries, if it may lie there with cells that are good enough or no worse.
-    pub fn on_boundary(&self, good: f64) -> Option<Vector> {
-        let place = self.projected(&self.here)?;
+    pub fn on_boundary(&self, fair: f64) -> Option<Move> {
+        let place = self.projected(&self.here, self.boundaries)?;
         let worst = self.worst_at(&place, 0.0);
-        (place != self.here && worst > 0.0 && worst >= self.worst.min(good)).then_some(place)
+        let goes = place != self.here && worst > 0.0 && worst >= self.worst.min(fair);
+        goes.then(|| self.move_to(place))
+    }
+
+    /// The node on its boundaries and on another one, where they meet, if that is within `limit` times the longest edge and
+    /// cells stay better than `fair`.
+    pub fn on_crease(&self, other: BoundarySet, limit: f64, fair: f64) -> Option<Move> {
+        let there = self.projected(&self.here, other)?;
+        let boundaries = self.boundaries.and(other);
+        let place = self.projected(&self.here, boundaries)?;
+        let off = boundaries.iter().map(|on| (self.domain.projection(&place, on) - place).norm());
+        let near = (place - self.here).norm() < limit * self.reach;
+        let meets = there != self.here && off.fold(0.0, f64::max) < MEETS * self.reach;
+        (near && meets && self.worst_at(&place, fair) >= fair).then_some(Move { place, boundaries })
     }
 
     /// A place a little way into the star, where the worst cell is hardly worse.
-    pub fn inwards(&self) -> Option<Vector> {
+    pub fn inwards(&self) -> Option<Move> {
         let way = self.to_middle();
         let places = INWARDS.map(|part| self.here + way * part);
         let good = |place: &Vector| self.worst_at(place, 0.0) > HARDLY * self.worst.min(0.5);
-        places.into_iter().find(good).filter(|place| *place != self.here)
+        let place = places.into_iter().find(good).filter(|place| *place != self.here);
+        place.map(|place| self.move_to(place))
     }
 
     fn attempt(&self, step: Vector, best: &mut (f64, Option<Vector>)) {
@@ -91,7 +118,7 @@ impl<'a> Star<'a> {
             if self.worst_at(&place, best.0) <= best.0 {
                 return;
             }
-            let Some(projected) = self.projected(&place) else { return };
+            let Some(projected) = self.projected(&place, self.boundaries) else { return };
             place = projected;
         }
         let worst = self.worst_at(&place, best.0);
@@ -100,12 +127,12 @@ impl<'a> Star<'a> {
         }
     }
 
-    /// The nearest place on all boundaries of the node, if it is near and finite.
-    fn projected(&self, place: &Vector) -> Option<Vector> {
+    /// The nearest place on some boundaries, if it is near and finite.
+    fn projected(&self, place: &Vector, boundaries: BoundarySet) -> Option<Vector> {
         let mut at = *place;
-        let several = self.boundaries.iter().count() > 1;
+        let several = boundaries.iter().count() > 1;
         for _ in 0..if several { CREASE_ROUNDS } else { 1 } {
-            at = self.boundaries.iter().fold(at, |at, on| self.domain.projection(&at, on));
+            at = boundaries.iter().fold(at, |at, on| self.domain.projection(&at, on));
         }
         ((at - place).norm() < 0.5 * self.reach).then_some(at)
     }

@@ -203,10 +203,13 @@ impl Stencils<'_> {
             boundaries: self.warp.boundary.clone(),
             ..Draft::default()
         };
+        let cuts = &self.warp.cuts.list;
+        let points = self.lattice_nodes..;
+        let placed = points.zip(cuts.iter().zip(&self.cut_points));
+        draft.beside =
+            placed.filter(|(_, (cut, point))| cut.point != **point).map(|(node, _)| node).collect();
         draft.nodes.extend(&self.cut_points);
-        draft
-            .boundaries
-            .extend(self.warp.cuts.list.iter().map(|cut| BoundarySet::from(cut.boundary)));
+        draft.boundaries.extend(cuts.iter().map(|cut| BoundarySet::from(cut.boundary)));
         for (node, &count) in self.fans.count.iter().enumerate().filter(|(_, count)| **count > 1) {
             let first = self.copies[node];
             let further = first..first + u32::from(count) - 1;

@@ -17,7 +17,7 @@ use super::settings::MeshingSettings;
 use super::size::SizeField;
 use super::warp::Warp;
 use super::watch::Watch;
-use super::{edge_copies, pieces, pinches, stencils, target};
+use super::{creases, edge_copies, pieces, pinches, stencils, target};
 use crate::domain::{Boundary, Domain};
 use crate::mesh::{CellShape, VolumeMesh};
 use crate::progress::{Phase, Progress};
@@ -72,7 +72,9 @@ pub fn mesh(
     watch.stage()?;
     let raw_angles = Angles::of(&draft);
     let mut climb = Climb::new(&mut draft, domain);
+    let creased = creases::sharpen(&mut climb, &watch)?;
     climb.climb(settings.sweeps, &watch)?;
+    climb.settle(&watch)?;
     if settings.part_copies {
         climb.part_copies();
     }
@@ -92,6 +94,7 @@ pub fn mesh(
         copies: counts.pinched.copies,
         stepped_back: counts.pinched.stepped_back,
         edges_cut,
+        creased,
         dropped,
         gaps_closed: counts.thin.gaps,
         sheets_lost: counts.thin.sheets,

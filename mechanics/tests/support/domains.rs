@@ -47,9 +47,7 @@ pub fn shell(inner: f64, outer: f64) -> Body {
 
 /// A ring about the z axis.
 pub fn torus(large: f64, small: f64) -> Body {
-    Body::skin(large + small, move |x| {
-        small - (x.xy().norm() - large).hypot(x.z)
-    })
+    Body::skin(large + small, move |x| small - (x.xy().norm() - large).hypot(x.z))
 }
 
 /// A box with skin at the sides, bone below and a cut above.
@@ -67,6 +65,24 @@ pub fn balls(balls: Vec<(Vector, f64)>) -> Body {
     Body::skin(reach, move |x| {
         let within = balls.iter().map(|(centre, radius)| radius - (x - centre).norm());
         within.fold(f64::NEG_INFINITY, f64::max)
+    })
+}
+
+/// A gap between two parallel planes.
+#[derive(Clone, Copy)]
+pub struct Slit {
+    /// Of length 1.
+    pub normal: Vector,
+    pub offset: f64,
+    pub half_width: f64,
+}
+
+/// A ball with gaps in it.
+pub fn slit_ball(radius: f64, slits: Vec<Slit>) -> Body {
+    Body::skin(radius, move |x| {
+        let beside =
+            slits.iter().map(|slit| (x.dot(&slit.normal) - slit.offset).abs() - slit.half_width);
+        beside.fold(radius - x.norm(), f64::min)
     })
 }
 
@@ -91,7 +107,11 @@ impl Domain for Body {
         let (mut low, mut high) = (0.0, 1.0);
         for _ in 0..40 {
             let middle = (low + high) / 2.0;
-            if self.value(&inside.lerp(outside, middle)) > 0.0 { low = middle } else { high = middle }
+            if self.value(&inside.lerp(outside, middle)) > 0.0 {
+                low = middle
+            } else {
+                high = middle
+            }
         }
         let point = inside.lerp(outside, (low + high) / 2.0);
         Crossing { point, boundary: self.nearest(&point) }
@@ -103,8 +123,9 @@ impl Domain for Body {
         for _ in 0..3 {
             let here = distance(&at);
             let step = 1e-5;
-            let slope = [Vector::x(), Vector::y(), Vector::z()]
-                .map(|axis| (distance(&(at + axis * step)) - distance(&(at - axis * step))) / (2.0 * step));
+            let slope = [Vector::x(), Vector::y(), Vector::z()].map(|axis| {
+                (distance(&(at + axis * step)) - distance(&(at - axis * step))) / (2.0 * step)
+            });
             let slope = Vector::from(slope);
             if slope.norm_squared() < 0.25 {
                 return *point;
