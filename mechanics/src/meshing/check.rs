@@ -1,4 +1,4 @@
-//! What every mesh is held against before it is handed out.
+//! Checks of a finished mesh, made before it is handed out.
 
 use rayon::prelude::*;
 use robust::{Coord3D, orient3d};

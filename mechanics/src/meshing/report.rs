@@ -1,4 +1,4 @@
-//! What a reader must know of a mesh that was made.
+//! Report of a meshing: counts, dihedral angles, what was closed, lost and dropped.
 
 use rayon::prelude::*;
 

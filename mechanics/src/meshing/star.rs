@@ -36,6 +36,12 @@ pub(super) struct Move {
     pub boundaries: BoundarySet,
 }
 
+/// The best place so far, and the smallest sine there.
+struct Best {
+    worst: f64,
+    place: Option<Vector>,
+}
+
 /// A node with its cells.
 pub(super) struct Star<'a> {
     cells: Vec<StarCell>,
@@ -67,16 +73,16 @@ impl<'a> Star<'a> {
 
     /// A place for the node where the worst cell is better, if one is found.
     pub fn better(&self) -> Option<Move> {
-        let mut best = (self.worst + GAIN, None);
+        let mut best = Best { worst: self.worst + GAIN, place: None };
         for step in [self.to_middle(), self.ascent()] {
             for part in STEPS {
                 self.attempt(step * part, &mut best);
-                if best.1.is_some() {
+                if best.place.is_some() {
                     break;
                 }
             }
         }
-        best.1.map(|place| self.move_to(place))
+        best.place.map(|place| self.move_to(place))
     }
 
     fn move_to(&self, place: Vector) -> Move {
@@ -112,18 +118,18 @@ impl<'a> Star<'a> {
         place.map(|place| self.move_to(place))
     }
 
-    fn attempt(&self, step: Vector, best: &mut (f64, Option<Vector>)) {
+    fn attempt(&self, step: Vector, best: &mut Best) {
         let mut place = self.here + step;
         if !self.boundaries.is_empty() {
-            if self.worst_at(&place, best.0) <= best.0 {
+            if self.worst_at(&place, best.worst) <= best.worst {
                 return;
             }
             let Some(projected) = self.projected(&place, self.boundaries) else { return };
             place = projected;
         }
-        let worst = self.worst_at(&place, best.0);
-        if worst > best.0 {
-            *best = (worst, Some(place));
+        let worst = self.worst_at(&place, best.worst);
+        if worst > best.worst {
+            *best = Best { worst, place: Some(place) };
         }
     }
 

@@ -1,4 +1,4 @@
-//! The path from a body to its mesh.
+//! Meshing of a body: the path from the sign of its function to tetrahedra.
 
 use super::boundary_set::BoundarySet;
 use super::check::check;
