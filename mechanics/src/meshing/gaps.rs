@@ -10,6 +10,9 @@ use crate::mesh::disjoint_sets::DisjointSets;
 
 /// Places of one gap are at most so many finest cells apart along each axis.
 const APART: f64 = 3.0;
+/// A curved surface reaches across an edge by its square over eight radii: less than this part of it where the radius is
+/// longer than six edges.
+const DEEP: f64 = 0.02;
 /// So many gaps are told of.
 const TOLD: usize = 20;
 
@@ -32,38 +35,74 @@ pub(super) struct Thin {
     pub sheets: Vec<Gap>,
 }
 
-/// Looks along the edges from the centres of leaves that hold a boundary to their corners.
+/// A place on an edge of the lattice that does not lie on the side of its ends.
+struct Met {
+    ends_inside: bool,
+    place: Vector,
+}
+
+/// What is looked at.
+struct Search<'a> {
+    lattice: &'a Lattice,
+    leaves: &'a Leaves,
+    domain: &'a dyn Domain,
+}
+
+/// Looks at the middles of lattice edges about leaves that hold a boundary.
 pub(super) fn find(
     lattice: &Lattice,
     leaves: &Leaves,
     domain: &dyn Domain,
     watch: &Watch,
 ) -> Result<Thin, MeshingError> {
-    let numbers: Vec<u32> = (0..leaves.list.len() as u32).collect();
-    let numbers: Vec<u32> = numbers
-        .into_iter()
-        .filter(|&leaf| leaves.list[leaf as usize].held == Coverage::Mixed)
-        .collect();
-    let met = watch.map(&numbers, |&number| met_at(lattice, number, domain))?;
-    let side = |wanted: bool| -> Vec<Vector> {
-        let met = numbers
-            .iter()
-            .zip(&met)
-            .filter(|(number, _)| lattice.inside[**number as usize] == wanted);
-        met.flat_map(|(_, places)| places.iter().copied()).collect()
+    let numbers = 0..leaves.list.len() as u32;
+    let mixed = |&leaf: &u32| leaves.list[leaf as usize].held == Coverage::Mixed;
+    let numbers: Vec<u32> = numbers.filter(mixed).collect();
+    let search = Search { lattice, leaves, domain };
+    let met = watch.map(&numbers, |&number| search.about(number))?;
+    let side = |inside: bool| -> Vec<Vector> {
+        let met = met.iter().flatten().filter(|met| met.ends_inside == inside);
+        met.map(|met| met.place).collect()
     };
     let apart = APART * 2.0 * lattice.grid.unit;
     Ok(Thin { gaps: clusters(&side(true), apart), sheets: clusters(&side(false), apart) })
 }
 
-/// Where edges from the centre of a leaf to corners on its own side meet the other side. Centres are numbered as their leaves.
-fn met_at(lattice: &Lattice, number: u32, domain: &dyn Domain) -> Vec<Vector> {
-    let inside = lattice.inside[number as usize];
-    let corners = lattice.corners[number as usize].into_iter();
-    let own_side = corners.filter(|&corner| lattice.inside[corner as usize] == inside);
-    let middles =
-        own_side.map(|corner| (lattice.position(number) + lattice.position(corner)) / 2.0);
-    middles.filter(|middle| (domain.value(middle) > 0.0) != inside).collect()
+impl Search<'_> {
+    fn about(&self, number: u32) -> Vec<Met> {
+        self.edges(number).into_iter().filter_map(|[from, to]| self.met(from, to)).collect()
+    }
+
+    /// From the centre of a leaf to its corners, and those along the axes towards higher coordinates from its lowest corner
+    /// and from its centre. Centres are numbered as their leaves.
+    fn edges(&self, number: u32) -> Vec<[u32; 2]> {
+        let corners = &self.lattice.corners[number as usize];
+        let leaf = &self.leaves.list[number as usize];
+        let mut edges: Vec<[u32; 2]> = corners.iter().map(|&corner| [number, corner]).collect();
+        for axis in 0..3 {
+            edges.push([corners[0], corners[1 << axis]]);
+            let mut beyond = leaf.corner;
+            beyond[axis] += leaf.size;
+            edges.extend(self.leaves.at(beyond).map(|other| [number, other]));
+        }
+        edges
+    }
+
+    /// The middle of an edge whose ends lie on the other side, if it lies deeper there than a curved surface reaches.
+    fn met(&self, from: u32, to: u32) -> Option<Met> {
+        let ends_inside = self.lattice.inside[from as usize];
+        let ends = [from, to].map(|node| self.lattice.position(node));
+        let place = (ends[0] + ends[1]) / 2.0;
+        if self.lattice.inside[to as usize] != ends_inside
+            || (self.domain.value(&place) > 0.0) == ends_inside
+        {
+            return None;
+        }
+        let [inside, outside] = if ends_inside { [ends[0], place] } else { [place, ends[0]] };
+        let boundary = self.domain.crossing(&inside, &outside).boundary;
+        let depth = (self.domain.projection(&place, boundary) - place).norm();
+        (depth > DEEP * (ends[1] - ends[0]).norm()).then_some(Met { ends_inside, place })
+    }
 }
 
 /// Places that lie in neighbouring cubes together, those with most places first.

@@ -10,7 +10,7 @@ fn on_threads(threads: usize) -> impl PartialEq + std::fmt::Debug {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
     let touching = [[-10.0, 3.0, 0.0], [11.0, 0.0, 2.0], [0.0, 13.0, -9.0], [2.0, -14.0, 5.0]];
     let pair = balls(touching.map(|at| (Vector::from(at), 10.5)).to_vec());
-    let body = Body { thickness: Some(Box::new(|x| 3.0 + x.norm() / 4.0)), ..pair };
+    let body = Body { thickness: Some(Box::new(|x: &Vector| 3.0 + x.norm() / 4.0)), ..pair };
     let thickness = Some(ThicknessRule { factor: 0.8, floor: 1.0 });
     let size = SizeField { coarsest: 6.0, thickness, ..SizeField::uniform(1.2) };
     let settings = MeshingSettings { size, ..MeshingSettings::default() };
