@@ -57,7 +57,7 @@ fn skin_and_bone_of_a_shell_lie_where_they_are_and_all_of_them_is_there() {
     let search = SurfaceSearch::new(&skin).unwrap();
     for point in boundaries.into_iter().flat_map(|(_, radius)| on_sphere(radius, 2000)) {
         // A chord as long as the longest edge leaves the sphere by that squared over eight radii.
-        let distance = (search.closest_point(&point).point - point).norm();
+        let distance = search.closest(&point).distance;
         assert!(distance < 0.1 * 4.0, "{distance}");
     }
 }
