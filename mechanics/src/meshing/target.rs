@@ -93,16 +93,24 @@ fn holds(domain: &dyn Domain, centre: &Vector, edge: f64) -> bool {
 
 /// What a cube of tissue gives, with cells of a power of two times the finest.
 fn tetrahedra(size: &SizeField, sample: &Sample, edge: f64) -> f64 {
-    let mut wanted = size.at(&sample.centre, 0.0);
+    let mut cell = size.finest * (size.coarsest / size.finest).log2().floor().exp2();
+    while cell > size.finest * 1.5 && cell > wanted(size, sample, cell) {
+        cell /= 2.0;
+    }
+    let cells = edge / cell;
+    // A plane at any angle shows 3 / 2 of its area along the three axes.
+    let squares = sample.bare as f64 / 1.5 * cells.powi(2);
+    PER_CUBE * cells.powi(3) + PER_SQUARE * squares
+}
+
+/// The size asked for at a cell, as the octree does.
+fn wanted(size: &SizeField, sample: &Sample, cell: f64) -> f64 {
+    let mut wanted = size.at(&sample.centre, cell * HALF_DIAGONAL);
     if let Some(rule) = size.thickness {
         wanted = wanted.min(rule.size(sample.thickness));
     }
     if let (Some(at_boundary), true) = (size.at_boundary, sample.bare > 0) {
         wanted = wanted.min(at_boundary);
     }
-    let level = (wanted / size.finest).max(1.0).log2() + 1e-9;
-    let cells = edge / (size.finest * level.floor().exp2());
-    // A plane at any angle shows 3 / 2 of its area along the three axes.
-    let squares = sample.bare as f64 / 1.5 * cells.powi(2);
-    PER_CUBE * cells.powi(3) + PER_SQUARE * squares
+    wanted
 }

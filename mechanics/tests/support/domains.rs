@@ -100,7 +100,9 @@ impl Domain for Body {
     }
 
     fn value(&self, point: &Vector) -> f64 {
-        self.parts.iter().map(|part| part.1(point)).fold(f64::INFINITY, f64::min)
+        // NaN goes through.
+        let values = self.parts.iter().map(|part| part.1(point));
+        values.fold(f64::INFINITY, |least, value| if value >= least { least } else { value })
     }
 
     fn crossing(&self, inside: &Vector, outside: &Vector) -> Crossing {

@@ -6,7 +6,7 @@ use mechanics::domain::Boundary;
 use mechanics::mesh::{SurfaceSearch, Vector};
 use mechanics::meshing::MeshingSettings;
 
-use super::domains::{Body, Slit, ball, balls, block, shell, slit_ball, torus};
+use super::domains::{Body, ball, balls, block, shell, torus};
 use super::{assert_sound, meshed, off_sphere, on_sphere, surface, uniform};
 
 #[test]
@@ -40,7 +40,7 @@ fn hill_climbing_brings_smooth_bodies_to_nearly_thirty_degrees() {
         let tissue = meshed(&body, &uniform(4.0));
         let angles = assert_sound(&tissue);
         assert!(angles[0] > 25.0 && angles[1] < 155.0, "{angles:?}");
-        assert!(tissue.report.raw_angles.smallest < angles[0]);
+        assert!(tissue.report.raw_angles.smallest <= angles[0] + 1e-9);
     }
 }
 
@@ -102,10 +102,10 @@ fn balls_more_than_a_cell_apart_stay_two() {
 
 #[test]
 fn tissue_that_touches_itself_shares_no_place_where_copies_are_to_be_apart() {
-    let normal = Vector::new(0.5, -0.3, 0.7).normalize();
-    let slits = vec![Slit { normal, offset: 1.0, half_width: 0.5 }];
-    let settings = MeshingSettings { part_copies: true, keep_pieces: true, ..uniform(3.0) };
-    let apart = meshed(&slit_ball(20.0, slits.clone()), &settings);
+    let at = Vector::new(19.8, 0.0, 0.0);
+    let touching = || balls(vec![(-at, 20.0), (at, 20.0)]);
+    let settings = MeshingSettings { part_copies: true, ..uniform(3.0) };
+    let apart = meshed(&touching(), &settings);
     assert_sound(&apart);
     let shared = |nodes: &[Vector]| {
         let mut bits: Vec<[u64; 3]> =
@@ -114,7 +114,7 @@ fn tissue_that_touches_itself_shares_no_place_where_copies_are_to_be_apart() {
         bits.windows(2).filter(|pair| pair[0] == pair[1]).count()
     };
     let settings = MeshingSettings { part_copies: false, sweeps: 0, ..settings };
-    let as_made = meshed(&slit_ball(20.0, slits), &settings);
+    let as_made = meshed(&touching(), &settings);
     assert_sound(&as_made);
     assert!(as_made.report.copies > 0 && shared(&as_made.volume.nodes) > 0, "{:?}", as_made.report);
     assert_eq!(shared(&apart.volume.nodes), 0);
