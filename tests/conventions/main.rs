@@ -22,7 +22,7 @@ const MECHANICS: [(&str, &[&str]); 20] = [
     ("chart", &[]),
     ("image", &["mesh"]),
     ("domain", &["mesh"]),
-    ("meshing", &[]),
+    ("meshing", &["mesh", "domain", "progress", "rows"]),
     ("plan", &["mesh"]),
     ("registration", &["mesh", "progress"]),
     ("format", &["mesh", "image"]),

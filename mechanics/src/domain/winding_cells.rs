@@ -134,9 +134,9 @@ fn offset(child: usize) -> Vector {
 
 #[cfg(test)]
 mod tests {
-    use super::super::triangle::Corners;
-    use super::super::triangle_tree::Facet;
+    use super::super::mending::mend;
     use super::*;
+    use crate::mesh::TriangleSurface;
 
     /// An octahedron of four levels of halved triangles on a sphere of 10 mm, without its first `missing` triangles.
     fn tree(missing: usize) -> TriangleTree {
@@ -152,14 +152,12 @@ mod tests {
             };
             faces = faces.into_iter().flat_map(halves).collect();
         }
-        let open = if missing > 0 { [1.0; 3] } else { [0.0; 3] };
-        let facet = |(number, corners): (usize, [Vector; 3])| Facet {
-            corners: Corners(corners.map(|corner| corner * 10.0)),
-            number: number as u32,
-            // More edges than are open: a bound may be too large.
-            open: if number < missing + 200 { open } else { [0.0; 3] },
-        };
-        TriangleTree::new(faces.into_iter().enumerate().skip(missing).map(facet).collect())
+        let points = faces.iter().skip(missing).flatten().map(|corner| corner * 10.0).collect();
+        let triangles = (0..(faces.len() - missing) as u32).map(|n| [3 * n, 3 * n + 1, 3 * n + 2]);
+        let triangles = triangles.collect();
+        let mended = mend(&TriangleSurface { points, triangles, node_ids: None });
+        assert_eq!(mended.open_edges > 0, missing > 0);
+        TriangleTree::new(mended.facets)
     }
 
     #[test]

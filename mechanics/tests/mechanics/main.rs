@@ -8,6 +8,7 @@ mod golden;
 mod image;
 mod material;
 mod mesh;
+mod meshing;
 mod model;
 mod optimisation;
 mod prediction;
@@ -19,4 +20,4 @@ mod study;
 mod support;
 mod validation;
 
-use support::{samples, scenes, surfaces};
+use support::{domains, samples, scenes, surfaces};
