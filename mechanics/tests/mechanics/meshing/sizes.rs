@@ -119,7 +119,7 @@ fn balls_that_are_joined_though_they_do_not_touch_are_told_of() {
 fn a_number_of_tetrahedra_is_met_closely_where_cells_are_alike_and_roughly_where_they_are_not() {
     let graded = about(Vector::x() * 20.0, 5.0, 1.0, 4.0).size;
     for target in [20_000, 100_000] {
-        for (size, most) in [(SizeField::uniform(1.0), 1.1), (graded.clone(), 1.5)] {
+        for (size, most) in [(SizeField::uniform(1.0), 1.1), (graded.clone(), 1.7)] {
             let settings =
                 MeshingSettings { target: Some(target), size, ..MeshingSettings::default() };
             let tissue = meshed(&shell(20.0, 40.0), &settings);
