@@ -5,6 +5,9 @@ use std::collections::BTreeMap;
 use mechanics::format::{Mesh, ReadLimits, ReadMesh, read};
 use mechanics::mesh::{CellShape, Cells, TriangleSurface, Vector, VolumeMesh};
 
+#[path = "scans.rs"]
+pub mod scans;
+
 /// A hexahedron with a wedge and a tetrahedron on it; every kind of set and array.
 pub fn mixed_mesh() -> VolumeMesh {
     let nodes = [
@@ -160,7 +163,7 @@ pub fn one_of_each() -> Vec<(&'static str, Vec<u8>)> {
     let (mesh, surface) = (mixed_mesh(), closed_surface());
     let output = SurfaceOutput::plain(&surface, Frame::Lps);
     let volume = VolumeOutput::plain(&mesh, Frame::Ras);
-    vec![
+    let mut each = vec![
         ("vtu", vtu::write(&volume).unwrap()),
         ("vtp", vtp::write(&output).unwrap()),
         ("stl", stl::write(&output).unwrap()),
@@ -179,7 +182,9 @@ pub fn one_of_each() -> Vec<(&'static str, Vec<u8>)> {
             "nrrd gzip",
             nrrd(&NRRD.replace("raw", "gzip"), &gzip(&VOXELS.map(i16::to_le_bytes).concat())),
         ),
-    ]
+    ];
+    each.extend(scans::one_of_each());
+    each
 }
 
 /// An image of 3 x 2 x 4 voxels.
