@@ -12,6 +12,7 @@ mod optimisation;
 mod prediction;
 mod registration;
 mod response;
+mod segmentation;
 mod solver;
 mod study;
 #[path = "../support/mod.rs"]
