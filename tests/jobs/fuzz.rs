@@ -108,6 +108,7 @@ fn any_file_is_answered() {
         cells: 1000,
         voxels: 1000,
         decoded_floor_bytes: 1 << 16,
+        image_floor_bytes: 1 << 16,
         ..ReadLimits::default()
     };
     let mut read_well = 0;
