@@ -6,7 +6,7 @@
 use std::collections::BinaryHeap;
 
 use super::distance::squared_distance;
-use super::mask::Mask;
+use super::mask::{Grid, Mask};
 
 /// Where one of the bones is for certain.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,6 +25,19 @@ struct Reached {
     seed: usize,
 }
 
+/// The way from a seed to where its bone is thickest: a seed near the surface would be flooded from afar.
+fn climb(grid: &Grid, depth: &[f32], seed: usize) -> Vec<usize> {
+    let mut way = vec![seed];
+    let mut here = seed;
+    let deepest =
+        |voxel: usize| grid.neighbours(voxel).max_by(|&a, &b| depth[a].total_cmp(&depth[b]));
+    while let Some(next) = deepest(here).filter(|&next| depth[next] > depth[here]) {
+        way.push(next);
+        here = next;
+    }
+    way
+}
+
 /// For each voxel the number of its seed; `None` outside the mask and in pieces without a seed.
 pub fn separated(mask: &Mask, seeds: &[Seed]) -> Vec<Option<usize>> {
     let depth = squared_distance(&mask.complement());
@@ -38,7 +51,9 @@ pub fn separated(mask: &Mask, seeds: &[Seed]) -> Vec<Option<usize>> {
     };
     for (seed, Seed { voxels }) in seeds.iter().enumerate() {
         for &voxel in voxels.iter().filter(|&&voxel| mask.inside[voxel]) {
-            reach(&mut heap, voxel, seed, f32::INFINITY);
+            for voxel in climb(&mask.grid, &depth, voxel) {
+                reach(&mut heap, voxel, seed, f32::INFINITY);
+            }
         }
     }
     while let Some(Reached { thickness, voxel, seed, .. }) = heap.pop() {

@@ -14,8 +14,10 @@ const BINS: usize = 420;
 const AIR: [f64; 2] = [-1100.0, -800.0];
 const FAT: [f64; 2] = [-150.0, -50.0];
 const SOFT: [f64; 2] = [0.0, 120.0];
-/// Bone ends here; above are teeth and metal.
-const BONE_END: f64 = 1600.0;
+/// Thin and spongy bone, which the threshold has to take, ends here; whatever is denser is bone in any case.
+const BONE_END: f64 = 700.0;
+/// Noise and vessels reach so far above the mode of soft tissue.
+const ABOVE_SOFT: f64 = 150.0;
 
 /// How often values of an image lie in each bin of 10 HU from -1100 HU; values beyond are counted in the bins at the ends.
 #[derive(Clone, Debug, PartialEq)]
@@ -105,7 +107,7 @@ impl Thresholds {
         let soft_mode = histogram.mode(SOFT)?;
         let fat_mode = histogram.mode(FAT);
         let skin = histogram.otsu([air_mode, soft_mode])?;
-        let bone = histogram.otsu([soft_mode, BONE_END])?;
+        let bone = histogram.otsu([soft_mode, BONE_END])?.max(soft_mode + ABOVE_SOFT);
         Some(Thresholds { air_mode, fat_mode, soft_mode, skin, bone })
     }
 }
