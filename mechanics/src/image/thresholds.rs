@@ -101,13 +101,14 @@ impl Histogram {
 }
 
 impl Thresholds {
-    /// `None` where there is no air or no soft tissue in the image, or nothing above it.
+    /// `None` where there is no air or no soft tissue in the image.
     pub fn of(histogram: &Histogram) -> Option<Thresholds> {
         let air_mode = histogram.mode(AIR)?;
         let soft_mode = histogram.mode(SOFT)?;
         let fat_mode = histogram.mode(FAT);
         let skin = histogram.otsu([air_mode, soft_mode])?;
-        let bone = histogram.otsu([soft_mode, BONE_END])?.max(soft_mode + ABOVE_SOFT);
+        let bone = histogram.otsu([soft_mode, BONE_END]).unwrap_or(soft_mode);
+        let bone = bone.max(soft_mode + ABOVE_SOFT);
         Some(Thresholds { air_mode, fat_mode, soft_mode, skin, bone })
     }
 }
