@@ -12,7 +12,7 @@ use std::path::Path;
 use source::{Crate, Module, rust_files};
 
 /// Modules of the numerics, and those that each may use.
-const MECHANICS: [(&str, &[&str]); 20] = [
+const MECHANICS: [(&str, &[&str]); 22] = [
     ("rows", &[]),
     ("progress", &[]),
     ("mesh", &["rows"]),
@@ -23,6 +23,8 @@ const MECHANICS: [(&str, &[&str]); 20] = [
     ("image", &["mesh"]),
     ("domain", &["mesh"]),
     ("meshing", &[]),
+    ("landmarks", &["mesh"]),
+    ("osteotomy", &["mesh", "image", "domain"]),
     ("plan", &["mesh"]),
     ("registration", &["mesh", "progress"]),
     ("format", &["mesh", "image"]),

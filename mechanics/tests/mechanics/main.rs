@@ -5,10 +5,12 @@
 mod format;
 mod golden;
 mod image;
+mod landmarks;
 mod material;
 mod mesh;
 mod model;
 mod optimisation;
+mod osteotomy;
 mod prediction;
 mod registration;
 mod response;
