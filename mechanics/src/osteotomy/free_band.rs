@@ -1,8 +1,9 @@
 //! The band along an osteotomy: held nodes too near to others that move otherwise.
 
-use std::collections::{BTreeSet, HashMap};
+use std::collections::BTreeSet;
 
-use crate::mesh::{Vector, VolumeMesh};
+use super::cubes::Cubes;
+use crate::mesh::VolumeMesh;
 
 /// Held nodes, by number ascending, with one of another movement at most `band_mm` away or in one of their cells.
 /// `None` for nodes that are not held.
@@ -13,9 +14,7 @@ pub(super) fn near_others(
 ) -> BTreeSet<u32> {
     let mut near = in_mixed_cells(mesh, movements);
     if band_mm > 0.0 {
-        let buckets = Buckets::new(mesh, movements, band_mm);
-        let held = (0..movements.len()).filter(|&node| movements[node].is_some());
-        near.extend(held.filter(|&node| buckets.has_other_near(node)).map(|node| node as u32));
+        near.extend(within(mesh, movements, band_mm));
     }
     near
 }
@@ -32,37 +31,16 @@ fn in_mixed_cells(mesh: &VolumeMesh, movements: &[Option<u32>]) -> BTreeSet<u32>
     near
 }
 
-/// Held nodes by the cube they are in; cubes are as wide as the band.
-struct Buckets<'a> {
-    nodes: &'a [Vector],
-    movements: &'a [Option<u32>],
-    band_mm: f64,
-    cubes: HashMap<[i64; 3], Vec<usize>>,
-}
-
-impl<'a> Buckets<'a> {
-    fn new(mesh: &'a VolumeMesh, movements: &'a [Option<u32>], band_mm: f64) -> Self {
-        let mut buckets = Buckets { nodes: &mesh.nodes, movements, band_mm, cubes: HashMap::new() };
-        for node in (0..movements.len()).filter(|&node| movements[node].is_some()) {
-            let cube = buckets.cube(node);
-            buckets.cubes.entry(cube).or_default().push(node);
-        }
-        buckets
-    }
-
-    fn cube(&self, node: usize) -> [i64; 3] {
-        [0, 1, 2].map(|axis| (self.nodes[node][axis] / self.band_mm).floor() as i64)
-    }
-
-    fn has_other_near(&self, node: usize) -> bool {
-        let [x, y, z] = self.cube(node);
-        let other = |other: &usize| {
-            let way = self.nodes[*other] - self.nodes[node];
-            self.movements[*other] != self.movements[node] && way.norm() <= self.band_mm
-        };
-        (0..27).any(|number| {
-            let around = [x + number % 3 - 1, y + number / 3 % 3 - 1, z + number / 9 - 1];
-            self.cubes.get(&around).is_some_and(|nodes| nodes.iter().any(other))
+fn within(mesh: &VolumeMesh, movements: &[Option<u32>], band_mm: f64) -> Vec<u32> {
+    let place = |node: u32| mesh.nodes[node as usize];
+    let movement = |node: u32| movements[node as usize];
+    let held = || (0..movements.len() as u32).filter(|&node| movement(node).is_some());
+    let cubes = Cubes::new(band_mm, held().map(|node| (node, place(node))));
+    held()
+        .filter(|&node| {
+            cubes.around(&place(node)).any(|other| {
+                movement(other) != movement(node) && (place(other) - place(node)).norm() <= band_mm
+            })
         })
-    }
+        .collect()
 }

@@ -11,6 +11,7 @@ mod cap;
 pub mod classes;
 pub mod clip;
 pub mod contact;
+mod cubes;
 pub mod cut;
 mod flood;
 mod free_band;
@@ -22,6 +23,7 @@ mod markers;
 pub mod pieces;
 pub mod rule;
 pub mod surface_segment;
+pub mod teeth;
 
 pub use bone_image::BoneImage;
 pub use bone_labels::{BoneLabels, Owner};

@@ -77,7 +77,7 @@ impl Pieces {
     }
 
     /// The voxels of the largest piece, of the first one where several are as large.
-    fn largest(&self) -> Vec<usize> {
+    pub fn largest(&self) -> Vec<usize> {
         let sizes = self.sizes();
         let most = sizes.iter().copied().max().unwrap_or(0);
         let Some(largest) = sizes.iter().position(|&size| size == most) else { return Vec::new() };
