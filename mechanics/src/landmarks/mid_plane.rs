@@ -48,12 +48,12 @@ impl MidPlane {
         [lateral, point.dot(&self.axes.up), point.dot(&self.axes.anterior)]
     }
 
-    /// The plane, in steps of 1 mm, across which the front of the skin differs least from its mirror image; `None` for
-    /// a surface without a front.
+    /// The plane, in steps of 1 mm and to 1.5 mm, across which the front of the skin differs least from its mirror image;
+    /// `None` for a surface without a front.
     pub fn of(skin: &TriangleSurface, axes: FaceAxes) -> Option<MidPlane> {
         let origin = MidPlane { axes, offset: 0.0 };
         let front = Front::new(skin, &origin)?;
-        let steps = ((front.high - front.low) / 1.0).ceil() as usize;
+        let steps = (front.high - front.low).ceil() as usize;
         let offsets = (0..=steps).map(|step| front.low + step as f64);
         let judged = offsets.filter_map(|offset| Some((front.asymmetry(offset)?, offset)));
         let (_, offset) = judged.min_by(|a, b| a.0.total_cmp(&b.0))?;

@@ -36,7 +36,8 @@ fn the_mid_plane_of_a_face_is_found_wherever_the_head_is() {
     for aside in [-13.0, 0.0, 31.0] {
         let plane = plane_of(&head(aside, &BUMPS));
         let [lateral, ..] = plane.coordinates(&Vector::new(aside, 0.0, 0.0));
-        assert!(lateral.abs() <= 1.0, "{aside}: {lateral}");
+        // Half a cell of the view from the front.
+        assert!(lateral.abs() <= 1.5, "{aside}: {lateral}");
     }
     assert_eq!(FaceAxes::of(Frame::Unspecified), None);
 }

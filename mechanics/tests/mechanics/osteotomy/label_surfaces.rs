@@ -44,7 +44,8 @@ fn the_halves_of_a_ball_are_closed_and_lie_on_its_surface_and_on_the_cut() {
     let whole = 4.0 / 3.0 * std::f64::consts::PI * 729.0;
     for (surface, wanted) in surfaces.iter().zip([whole - cap, cap]) {
         let volume = surface.signed_volume();
-        assert!((volume / wanted - 1.0).abs() < 0.02, "{volume} {wanted}");
+        // The crease between ball and cut, 55 mm long, is chamfered by about 1 mm².
+        assert!((volume / wanted - 1.0).abs() < 0.06, "{volume} {wanted}");
     }
 }
 

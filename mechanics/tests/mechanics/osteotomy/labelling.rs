@@ -2,6 +2,7 @@
 
 use mechanics::image::{ImageVolume, Placement, Voxels};
 use mechanics::mesh::Vector;
+use mechanics::osteotomy::teeth::{ENAMEL_HU, Teeth};
 use mechanics::osteotomy::{
     BoneImage, Cut, CutSide, Extent, LabelError, Labelled, Osteotomy, Owner, Plane, SegmentRule,
     Side, label,
@@ -72,7 +73,7 @@ fn a_plane_parts_a_block_and_the_parts_are_the_whole() {
 #[test]
 fn the_area_of_an_oblique_cut_is_that_of_the_plane() {
     let normal = Vector::new(0.2, -0.3, 1.0);
-    let cut = Cut::unbounded("cut", plane([9.5, 6.5, 17.0], normal.into()));
+    let cut = Cut::unbounded("cut", plane([9.5, 6.5, 13.0], normal.into()));
     let found = parted(&block(), vec![cut], vec![segment("part", &[(0, Side::Below)], &[])]);
     let [contact] = &found.contacts[..] else { panic!("{:?}", found.contacts) };
     let wanted = 160.0 * normal.norm();
@@ -206,4 +207,28 @@ fn the_nearest_bone_lies_ahead_and_within_reach() {
     assert_eq!(nearest(beside, Vector::x(), 0.4), None);
     assert_eq!(nearest([1.5, 6.0, 20.0], Vector::x(), 3.0), Some((Owner::Rest, 0.5)));
     assert_eq!(nearest([-50.0, 6.0, 20.0], Vector::x(), 3.0), None);
+}
+
+#[test]
+fn teeth_are_what_is_bright_in_a_segment_and_end_where_the_reach_does() {
+    // Two bright voxels, one in either half; the lower half is a segment.
+    let image = scan([20, 14, 20], |x| {
+        let inside = (2.0..=17.0).contains(&x.x) && (2.0..=11.0).contains(&x.y);
+        let tooth = x == Vector::new(5.0, 5.0, 8.0) || x == Vector::new(5.0, 5.0, 24.0);
+        match inside && (4.0..=30.0).contains(&x.z) {
+            true if tooth => 2500.0,
+            true => 1000.0,
+            false => 0.0,
+        }
+    });
+    let cut = Cut::unbounded("cut", plane([0.0, 0.0, 15.0], [0.0, 0.0, 1.0]));
+    let found = parted(&image, vec![cut], vec![segment("part", &[(0, Side::Below)], &[])]);
+    let bone = BoneImage { image: &image, threshold: 200.0 };
+    let teeth = Teeth::new(&bone, &found.labels, ENAMEL_HU, 4.0);
+    assert_eq!(teeth.voxels(), 1);
+    let near = |x: f64, z: f64| teeth.near(&Vector::new(x, 5.0, z));
+    assert_eq!(
+        [near(5.0, 8.0), near(1.1, 8.0), near(0.9, 8.0), near(5.0, 24.0)],
+        [true, true, false, false]
+    );
 }
