@@ -11,6 +11,8 @@ use crate::mesh::{TriangleSurface, Vector};
 const STEP: f64 = 1.0;
 /// A profile that turns back by less has not turned, in mm.
 const LEAST_TURN: f64 = 1.5;
+/// The tip of a nose is no higher above its base, in mm.
+const HIGHEST_TIP: f64 = 30.0;
 
 /// Why a skin has no landmarks.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -22,6 +24,10 @@ pub enum ProfileError {
          between; a face comes forward 3 or 4 times"
     )]
     NoFace { forward: usize, back: usize },
+    #[error(
+        "the foremost point lies {above_mm:.0} mm above the base of the nose, 30 at most are a nose: is the face covered?"
+    )]
+    NoNose { above_mm: f64 },
 }
 
 /// How far in front the skin is at heights of its mid-plane, from below.
@@ -91,6 +97,10 @@ impl Profile {
         match turns[..] {
             [pogonion, sublabiale, _, subnasale, pronasale]
             | [pogonion, sublabiale, _, _, _, subnasale, pronasale] => {
+                let above_mm = pronasale.height - subnasale.height;
+                if above_mm > HIGHEST_TIP {
+                    return Err(ProfileError::NoNose { above_mm });
+                }
                 Ok(ProfileLandmarks { pogonion, sublabiale, subnasale, pronasale })
             }
             _ => {

@@ -68,6 +68,14 @@ fn a_head_without_lips_or_without_anything_has_no_landmarks_and_says_how_it_turn
 }
 
 #[test]
+fn a_face_under_a_bandage_is_refused_and_not_guessed() {
+    let bandage = [40.0, 25.0, 30.0, 40.0];
+    let found = landmarks(&head(0.0, &[bandage, BUMPS[1], BUMPS[2]])).unwrap_err();
+    let ProfileError::NoNose { above_mm } = found else { panic!("{found:?}") };
+    assert!(above_mm > 40.0, "{above_mm}");
+}
+
+#[test]
 fn parts_of_the_face_lie_at_their_landmarks_and_no_node_is_in_two() {
     let skin = head(5.0, &BUMPS);
     let plane = plane_of(&skin);
