@@ -15,6 +15,7 @@ pub mod mesh;
 pub mod methods;
 mod numerics_code;
 pub mod optimise;
+pub mod osteotomy;
 pub mod plan;
 pub mod predict;
 pub mod response;

@@ -276,9 +276,11 @@ impl ResponseDescription {
     ) -> Result<Vec<RigidMovement>, Problem> {
         let mut faults = Faults::default();
         let at = Pointer::root().key("plan");
-        for (name, is_empty) in
-            [("prescribed", plan.prescribed.is_empty()), ("loads", plan.loads.is_empty())]
-        {
+        for (name, is_empty) in [
+            ("prescribed", plan.prescribed.is_empty()),
+            ("loads", plan.loads.is_empty()),
+            ("osteotomy", plan.osteotomy.is_none()),
+        ] {
             if !is_empty {
                 let detail = format!("a response knows movements of segments and no `{name}`");
                 faults.add(&at.key(name), ErrorCode::NotInResponse, detail);

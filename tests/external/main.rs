@@ -22,6 +22,7 @@ fn main() -> ExitCode {
         api::downloads::trials(),
         api::erasures::trials(),
         data::ct::trials(),
+        data::cuts::trials(),
         data::faces::trials(),
         faults::broken_disk::trials(),
         faults::slow_database::trials(),
