@@ -189,7 +189,7 @@ mod tests {
 
     fn read(text: &str, mirrored_axes: bool) -> Result<PlannedOsteotomy, Vec<(String, ErrorCode)>> {
         let limits = Limits::default();
-        let places = |problem: Problem| {
+        let places = |problem: Problem| -> Vec<(String, ErrorCode)> {
             problem.errors.iter().map(|error| (error.pointer.clone(), error.code)).collect()
         };
         let document: OsteotomyDocument =
