@@ -2,10 +2,12 @@
 
 #![allow(clippy::unwrap_used)]
 
+#[allow(dead_code, reason = "the tests of the formats use the rest")]
+#[path = "../support/answers.rs"]
+mod answers;
 mod fuzz;
 mod ignored_arrays;
 mod jobs;
-#[allow(dead_code, reason = "the tests of the formats use the rest")]
 #[path = "../../mechanics/tests/support/samples.rs"]
 mod samples;
 #[allow(dead_code, reason = "the tests of the numerics use the rest")]
