@@ -1,5 +1,6 @@
 # docker build -t facies .
-# Built in one stage; run in another without a compiler, without root and without writing to its own files.
+# Built in two stages, the program and the packages of its clients; run in another without a compiler, without root and
+# without writing to its own files.
 FROM rust:1.95-slim-bookworm AS build
 # hadolint ignore=DL3008
 RUN apt-get update \
@@ -15,9 +16,20 @@ COPY migrations migrations
 RUN --mount=type=cache,target=/usr/local/cargo/registry --mount=type=cache,target=/build/target \
     cargo build --release --locked && cp target/release/facies /usr/local/bin/facies
 
+FROM node:22-bookworm-slim AS clients
+# hadolint ignore=DL3008
+RUN apt-get update \
+    && apt-get install --yes --no-install-recommends ca-certificates python3 python3-venv \
+    && rm -rf /var/lib/apt/lists/*
+WORKDIR /build
+COPY openapi openapi
+COPY clients clients
+RUN clients/build
+
 FROM debian:bookworm-slim
 COPY --from=build /etc/ssl/certs/ca-certificates.crt /etc/ssl/certs/ca-certificates.crt
 COPY --from=build /usr/local/bin/facies /usr/local/bin/facies
+COPY --from=clients /build/target/clients /usr/local/share/facies/clients
 RUN useradd --system --uid 10001 --home-dir /data --shell /usr/sbin/nologin facies \
     && mkdir /data && chown facies /data
 # By its number, so that a cluster can tell that it is not root.
@@ -26,7 +38,7 @@ USER 10001
 VOLUME /data
 EXPOSE 8080 9090
 # Outside a container the service binds to 127.0.0.1 alone; another address needs a key (FACIES_API_KEY).
-ENV FACIES_BIND=0.0.0.0:8080 FACIES_DATA=/data
+ENV FACIES_BIND=0.0.0.0:8080 FACIES_DATA=/data FACIES_CLIENTS_FOLDER=/usr/local/share/facies/clients
 HEALTHCHECK --interval=10s --timeout=3s --start-period=10s CMD ["facies", "health"]
 ENTRYPOINT ["facies"]
 CMD ["serve"]

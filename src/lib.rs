@@ -13,4 +13,5 @@ pub mod schema;
 pub mod store;
 pub mod telemetry;
 pub mod traces;
+pub mod turns;
 pub mod worker;

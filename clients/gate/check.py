@@ -11,6 +11,7 @@ import re
 import subprocess
 import sys
 import tempfile
+import time
 import xml.etree.ElementTree
 
 import yaml
@@ -84,6 +85,64 @@ def changed(folder: pathlib.Path, name: str, **members: object) -> str:
     return str(path)
 
 
+def red_stays_red(folder: pathlib.Path) -> None:
+    """A study that is worse than its baseline does not become the baseline, however often it is run."""
+    def of_element(element: str) -> str:
+        way = {"label": "ours", "method": "fem_linear", "element": element}
+        return changed(folder, element, plans=["patch 4 mm"], methods=[way], elements=[], tags=["trunk"])
+
+    def outcome(element: str) -> tuple[int, str]:
+        code, found = action(folder, study=of_element(element), tag="trunk", baseline_tag="trunk")
+        return code, found.get("outcome", "")
+
+    expect("a first run with --tag as --baseline-tag", outcome("stabilised"), (0, "pass"))
+    for often in ("once", "twice", "thrice"):
+        expect(f"one that is worse, {often}", outcome("plain"), (1, "worse"))
+    expect("and the first again", outcome("stabilised"), (0, "pass"))
+
+
+def broken(folder: pathlib.Path) -> None:
+    """Documents and addresses that are wrong: one line and an exit code, and no time spent on them."""
+    usual = {"units": "mm", "volume": "block.vtu"}
+    studies = {
+        "no JSON": "{", "an array": "[]", "text that is not UTF-8": b"\xff", "nested": "[" * 100000,
+        "scenes that are none": {"scenes": {}}, "a scene without a case": {"scenes": [{}]},
+        "a case that is a number": {"scenes": [{"case": 3}]}, "a case that is not there": {"scenes": [{"case": "none"}]},
+        "tags that are a word": {"scenes": [], "tags": "main"},
+    }
+    files = {
+        "a case file that is an array": [], "one without a case": {}, "a case that is an array": {"case": []},
+        "bones that are an object": {"case": {**usual, "bones": {}}}, "bones that are words": {"case": {**usual, "bones": ["x"]}},
+        "units that are a number": {"case": {**usual, "units": 3}}, "a plan that is an array": {"case": usual, "plan": []},
+        "tags of a case that are a word": {"case": {"tags": "x"}}, "a mesh that is not there": {"case": usual},
+        "a spec of its own": {"case": usual, "spec": {"kind": "predict", "method": "dvs", "tags": []}},
+    }
+    for number, (what, file) in enumerate(files.items()):
+        (folder / f"case-{number}.json").write_text(json.dumps(file))
+        studies[what] = {"scenes": [{"case": f"case-{number}.json"}]}
+    for what, study in studies.items():
+        path = folder / "broken.json"
+        text = study if isinstance(study, str | bytes) else json.dumps(study)
+        path.write_bytes(text.encode() if isinstance(text, str) else text)
+        refused(what, folder, [str(path)], 2)
+    (told, _) = refused("which is named", folder, [str(path)], 2)
+    expect("by its member", "`method`" in told and "tags" not in told, True)
+    refused("a report that cannot be written", folder, [str(STUDY), "--report", str(folder)], 2)
+    for address in ("localhost:8080", "127.0.0.1:8080", "ftp://localhost", "http://", "http://localhost:x", ""):
+        told, took_s = refused(f"the address {address!r}", folder, [str(STUDY)], 2, FACIES_ADDRESS=address)
+        expect("refused at once", took_s < 5.0 and "FACIES_ADDRESS" in told, True)
+
+
+def refused(what: str, folder: pathlib.Path, arguments: list[str], code: int, **environment: str) -> tuple[str, float]:
+    """What the gate says of a mistake, which has to be one line, and how long it took in seconds."""
+    begun = time.monotonic()
+    done = subprocess.run(
+        [sys.executable, str(HERE / "facies_gate.py"), *arguments], cwd=folder, timeout=60, check=False, text=True,
+        env={**os.environ, **environment}, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+    expect(what, (done.returncode, len(done.stderr.splitlines())), (code, 1))
+    return done.stderr, time.monotonic() - begun
+
+
 def main() -> None:
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
@@ -107,11 +166,16 @@ def main() -> None:
         expect("and a later one is held against it", (code, later["outcome"]), (0, "pass"))
         told = told_by(folder, loose, "--baseline-tag", "new")
         expect("with its rows", f"rows are those of study {created['job']}" in told, True)
+        known = changed(folder, "known", plans=["patch 1 mm"], tags=["own"])
+        expect("a study that is known gets a tag", action(folder, study=known, tag="late")[0], 0)
+        expect("by which it is found", action(folder, study=known, tag="of later", baseline_tag="late")[0], 0)
+        red_stays_red(folder)
         worse = changed(folder, "worse", thresholds={"p95_mm": 1e-9})
         expect("rows above a threshold", action(folder, study=worse)[0], 1)
         expect("with failures in the test results", failures(report) > 0, True)
         expect("the same in GitLab", gitlab(folder, STUDY=worse, BASELINE_TAG=""), 1)
         expect("and without a baseline there", gitlab(folder, STUDY=worse, BASELINE_TAG="x"), 1)
+        broken(folder)
         wrong = changed(folder, "wrong", methods=["guesswork"])
         expect("a study that is refused", action(folder, study=wrong)[0], 2)
         expect("a wrong key", action(folder, study=str(STUDY), key="none-of-the-keys")[0], 2)

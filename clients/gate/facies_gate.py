@@ -8,7 +8,8 @@ Needs Python and nothing else.
     facies_gate.py study.json --baseline-tag main
 
 is the first run and every later one: where no study has the tag yet, this one gets it and is the baseline of those that
-follow. With `--tag` it is tagged in any case, and a later run is compared with the newest that has the tag.
+follow. With `--tag` later ones get a tag as well, and a later run is compared with the newest that has it. A study gets these
+tags when its outcome is `pass` and not before, so that none that is worse is ever a baseline.
 
 Exit codes, those of `facies study`: 0 pass, 1 worse or failed, 2 refused input, 3 the service is out of
 reach, 4 incomplete, 5 no baseline.
@@ -19,6 +20,7 @@ from __future__ import annotations
 import argparse
 import hashlib
 import html
+import http.client
 import json
 import os
 import pathlib
@@ -32,6 +34,8 @@ EXIT_CODES = {"pass": 0, "worse": 1, "incomplete": 4, "no-baseline": 5}
 FAILED, REFUSED, OUT_OF_REACH = 1, 2, 3
 # No job has this id: a baseline that is asked for and not there is the service's to judge.
 NO_JOB = "00000000-0000-7000-8000-000000000000"
+# Of the spec of a case file: what names the job and its files. All else decides numbers, and a study states that itself.
+OF_FILES = ("kind", "case", "outputs", "range_mm", "keep", "tags")
 
 
 class Stop(Exception):
@@ -46,7 +50,7 @@ class Service:
     """The service at an address; busy and silent moments are waited out."""
 
     def __init__(self, address: str, key: str | None, patience_s: float) -> None:
-        self.address = address.rstrip("/")
+        self.address = checked(address)
         self.patience_s = patience_s
         self.headers = {} if not key else {"Authorization": f"Bearer {key}"}
 
@@ -68,27 +72,67 @@ class Service:
                 if error.code < 500 and error.code != 429:
                     raise Stop(REFUSED, why) from error
                 # In seconds, as the service sends it.
-                pause = float(error.headers.get("Retry-After") or pause)
-            except (urllib.error.URLError, TimeoutError, ConnectionError) as error:
+                told = error.headers.get("Retry-After") or ""
+                pause = float(told) if told.isdecimal() else pause
+            except (urllib.error.URLError, http.client.HTTPException, TimeoutError, ConnectionError) as error:
                 why = f"{method} {path}: {error}"
             if time.monotonic() + pause > until:
                 raise Stop(OUT_OF_REACH, why)
             time.sleep(pause)
 
     def document(self, method: str, path: str, body: object = None, **headers: str):
-        """The JSON of the answer to JSON."""
-        data = None if body is None else json.dumps(body).encode()
+        """The JSON of the answer to JSON, or to the bytes of a file."""
+        data = body if body is None or isinstance(body, bytes) else json.dumps(body).encode()
         if data is not None:
-            headers["Content_Type"] = "application/json"
-        return json.loads(self.ask(method, path, data, **headers)[0])
+            headers["Content_Type"] = "application/octet-stream" if data is body else "application/json"
+        answer, _ = self.ask(method, path, data, **headers)
+        try:
+            return json.loads(answer)
+        except ValueError as error:
+            why = f"{self.address} is no facies service: {method} {path} is answered with {answer[:60]!r}"
+            raise Stop(OUT_OF_REACH, why) from error
 
 
-def read(path: pathlib.Path):
-    """A JSON file."""
+def checked(address: str) -> str:
+    """An address as it is used; one that no request can reach is refused before any is tried."""
+    if not address:
+        raise Stop(REFUSED, "FACIES_ADDRESS is not set")
     try:
-        return json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
+        parts = urllib.parse.urlsplit(address)
+        said = parts.scheme in ("http", "https") and bool(parts.hostname) and parts.port != 0
+    except ValueError:
+        said = False
+    if not said:
+        meant = f"http://{address}" if "://" not in address else "http://127.0.0.1:8080"
+        raise Stop(REFUSED, f"FACIES_ADDRESS is {address!r}: write it with http:// or https://, as in {meant}")
+    return address.rstrip("/")
+
+
+def read(path: pathlib.Path) -> dict:
+    """The object of a JSON file."""
+    try:
+        document = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError, RecursionError) as error:
         raise Stop(REFUSED, f"{path}: {error}") from error
+    return as_type(dict, document, f"{path}: the document")
+
+
+def as_type(kind: type, value: object, what: str):
+    """A value of a type that JSON has; another one is refused by its place."""
+    words = {dict: "an object", list: "an array", str: "a string"}
+    if not isinstance(value, kind):
+        raise Stop(REFUSED, f"{what} is {json.dumps(value)[:60]} and has to be {words[kind]}")
+    return value
+
+
+def refuse_spec(path: pathlib.Path, file: dict) -> None:
+    """A study computes each way that it names itself; a case file that says another one is not passed over."""
+    spec = as_type(dict, file.get("spec", {}), f"{path}: /spec")
+    stated = ", ".join(f"`{name}`" for name in spec if name not in OF_FILES)
+    if stated:
+        why = (f"{path}: its `spec` states {stated}, and a study states itself how cases are computed: say so in an entry of "
+               "`methods` or in `materials` of the study")
+        raise Stop(REFUSED, why)
 
 
 def mesh_places(document: object, bones: set[str]):
@@ -114,11 +158,17 @@ class Cases:
 
     def scene(self, scene: dict, folder: pathlib.Path) -> dict:
         """The scene of a study with the id of its case in place of the file's path."""
-        path = folder / scene["case"]
+        if "case" not in scene:
+            raise Stop(REFUSED, f"the scene {json.dumps(scene)[:60]} of the study names no `case`, a file beside the study")
+        path = folder / as_type(str, scene["case"], "`case` of a scene of the study")
         file = read(path)
-        case, plan = file["case"], file.get("plan", {})
-        bones = {bone["name"] for bone in case.get("bones", [])}
-        units = {"units": case.get("units", "mm"), "frame": case.get("frame", "unspecified")}
+        refuse_spec(path, file)
+        case = as_type(dict, file.get("case"), f"{path}: /case")
+        plan = as_type(dict, file.get("plan", {}), f"{path}: /plan")
+        bones = {bone.get("name") for bone in as_type(list, case.get("bones", []), f"{path}: /case/bones")
+                 if isinstance(bone, dict)}
+        units = {name: as_type(str, case.get(name, usual), f"{path}: /case/{name}")
+                 for name, usual in (("units", "mm"), ("frame", "unspecified"))}
         for document, key in [*mesh_places(case, bones), *mesh_places(plan, bones)]:
             document[key] = self.mesh(path.parent / document[key], units)
         return {"plans": [plan], "name": path.stem, **scene, "case": self.case(case)}
@@ -130,9 +180,7 @@ class Cases:
         except OSError as error:
             raise Stop(REFUSED, f"{path}: {error}") from error
         query = urllib.parse.urlencode(units)
-        answer, _ = self.service.ask(
-            "POST", f"/v1/meshes?{query}", content, Content_Type="application/octet-stream")
-        return json.loads(answer)["id"]
+        return self.service.document("POST", f"/v1/meshes?{query}", content)["id"]
 
     def case(self, case: dict) -> str:
         """The id of a case, found again by a tag that its content makes."""
@@ -141,7 +189,7 @@ class Cases:
         known = self.service.document("GET", f"/v1/cases?limit=1&tag={tag}")["items"]
         if known:
             return known[0]["id"]
-        tagged = {**case, "tags": [*case.get("tags", []), tag]}
+        tagged = {**case, "tags": [*as_type(list, case.get("tags", []), "`tags` of a case"), tag]}
         return self.service.document("POST", "/v1/cases", tagged)["id"]
 
 
@@ -158,7 +206,7 @@ def baseline_of(service: Service, arguments: argparse.Namespace) -> str | None:
         return found[0]["id"]
     if arguments.tag in ("", arguments.baseline_tag):
         arguments.tag = arguments.baseline_tag
-        say(f"{no_study(arguments)}: this one gets it and is the baseline of later ones")
+        say(f"{no_study(arguments)}: this one gets it if it passes, and is the baseline of later ones")
         return None
     say(f"{no_study(arguments)}: run once without --tag, or with --tag {arguments.baseline_tag}")
     return NO_JOB
@@ -207,22 +255,22 @@ def say(words: str) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """The exit code of the outcome."""
     address = os.environ.get("FACIES_ADDRESS", "")
-    if not address:
-        raise Stop(REFUSED, "FACIES_ADDRESS is not set")
     service = Service(address, os.environ.get("FACIES_API_KEY"), arguments.patience_s)
     path = pathlib.Path(arguments.study)
     study = read(path)
     cases = Cases(service)
     study["scenes"] = [
         cases.scene(scene, path.parent) if isinstance(scene, dict) else scene
-        for scene in study.get("scenes", [])]
+        for scene in as_type(list, study.get("scenes", []), f"{path}: /scenes")]
     # Before the study is posted: it must not become its own baseline.
     baseline = baseline_of(service, arguments)
-    tags = [*study.get("tags", []), *([arguments.tag] if arguments.tag else [])]
-    job = service.document("POST", "/v1/jobs", {**study, "kind": "study", "tags": tags})
+    own = as_type(list, study.get("tags", []), f"{path}: /tags")
+    # Those that later runs look for wait for the outcome.
+    later = [tag for tag in dict.fromkeys([arguments.tag, arguments.baseline_tag])
+             if tag and (tag == arguments.tag or tag in own)]
+    job = service.document(
+        "POST", "/v1/jobs", {**study, "kind": "study", "tags": [tag for tag in own if tag not in later]})
     say(f"study {job['id']}" + (", known and not solved again" if job["deduplicated"] else ""))
-    if arguments.tag and arguments.tag not in job["tags"]:
-        say(f"it was there before and has not the tag {arguments.tag!r}: --baseline {job['id']} names it")
     for truth in job.get("truths", []) if job["status"] in ("accepted", "running") else []:
         say(expected(truth))
     job = finished(service, job, arguments.timeout_s)
@@ -234,7 +282,10 @@ def run(arguments: argparse.Namespace) -> int:
         junit, _ = service.ask("GET", report, Accept="application/xml")
         no_job = f"job {NO_JOB} is no study that has ended well"
         text = junit.decode().replace(no_job, html.escape(no_study(arguments), quote=True))
-        pathlib.Path(arguments.report).write_text(text, encoding="utf-8")
+        try:
+            pathlib.Path(arguments.report).write_text(text, encoding="utf-8")
+        except OSError as error:
+            raise Stop(REFUSED, f"--report {arguments.report}: {error}") from error
     found = service.document("GET", report, Accept="application/json")
     verdict = found["verdict"]
     if rows_of := found.get("rows_of"):
@@ -244,8 +295,22 @@ def run(arguments: argparse.Namespace) -> int:
     for reason in verdict["reasons"]:
         say(reason.replace(f"job {NO_JOB} is no study that has ended well", no_study(arguments)))
     say(f"{verdict['rows']} rows, {verdict['worse']} worse; outcome {verdict['outcome']}")
+    if verdict["outcome"] == "pass":
+        put_on(service, job, later)
+        if baseline and baseline > job["id"] and arguments.baseline_tag in later:
+            say(f"study {baseline} is newer and stays the baseline of {arguments.baseline_tag!r}")
+    elif later:
+        say(f"it does not get the tag {' or '.join(map(repr, later))}")
     tell(job["id"], verdict["outcome"])
     return EXIT_CODES[verdict["outcome"]]
+
+
+def put_on(service: Service, job: dict, tags: list[str]) -> None:
+    """Puts tags on a study that has not got them."""
+    missing = [tag for tag in tags if tag not in job["tags"]]
+    if missing:
+        service.document("PATCH", f"/v1/jobs/{job['id']}", {"tags": {"add": missing}})
+        say(f"it gets the tag {' and '.join(map(repr, missing))}")
 
 
 def tell(job: str, outcome: str) -> None:
@@ -261,7 +326,7 @@ def main() -> int:
     parser.add_argument("--baseline", default="", help="the job of the study to compare with")
     parser.add_argument("--baseline-tag", default="",
                         help="compare with the newest successful study of this tag; the first gets it")
-    parser.add_argument("--tag", default="", help="a tag for this study")
+    parser.add_argument("--tag", default="", help="a tag for this study, if it passes")
     parser.add_argument("--report", default="", help="a file for the test results (JUnit)")
     parser.add_argument("--timeout-s", type=float, default=3600.0,
                         help="how long to wait for the study, in seconds")

@@ -1,7 +1,10 @@
 """What `facies` promises, against a service: arrays that agree with each other, progress, exceptions with codes."""
 
+import json
 import os
 import sys
+import tempfile
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -39,9 +42,31 @@ again = service.predict(head, found.plan)
 assert np.abs(found.displacement_mm - again.displacement_mm).max() < 1e-3, "the plan gives the skin that is told"
 assert service.compare(found, again).both["max"] < 1e-3
 
+told: list[dict[str, Any]] = []
 mesh = service.predict("examples/head/face.vtu", {"segments": [{"name": "mandible", "translation_mm": [0, 4, 1]}]},
-                       fixed=["skull", "rim"], skin="skin")
+                       fixed=["skull", "rim"], skin="skin", progress=told.append)
 assert mesh.displacement_mm.shape == prediction.displacement_mm.shape
+size = Path("examples/head/face.vtu").stat().st_size
+sent = [event for event in told if event.get("phase") == "upload"]
+assert sent[-1] == {"phase": "upload", "file": "face.vtu", "sent_bytes": size, "total_bytes": size, "progress": 100}, sent
+shares: list[int] = []
+service.upload(b"solid x\n" + b" " * (5 << 20) + b"facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 50 0 0\nvertex 0 50 0\n"
+               b"endloop\nendfacet\nendsolid x\n", progress=lambda event: shares.append(event["progress"]))
+assert shares == sorted(shares) and len(shares) == 6 and shares[-1] == 100, shares
+
+soft = {"*": {"young_modulus_kpa": 5, "poisson_ratio": 0.4}}
+with tempfile.TemporaryDirectory() as folder:
+    file = json.loads(Path(HEAD).read_text())
+    for mesh_of in [file["case"], *file["case"]["bones"]]:
+        name = "volume" if "volume" in mesh_of else "mesh"
+        mesh_of[name] = str(Path(HEAD).parent.resolve() / mesh_of[name])
+    file["spec"] = {"kind": "predict", "materials": soft, "outputs": ["skin.vtp"]}
+    own = Path(folder, "case.json")
+    own.write_text(json.dumps(file))
+    of_file = service.predict(own, PLAN)
+stated = service.predict(head, PLAN, materials=soft)
+assert of_file.results["provenance"]["spec_hash"] == stated.results["provenance"]["spec_hash"], "the spec of a file counts"
+assert stated.results["provenance"]["spec_hash"] != prediction.results["provenance"]["spec_hash"]
 
 try:
     service.predict(head, {"segments": [{"name": "mandibel", "translation_mm": [0, 4, 1]}]})

@@ -37,17 +37,20 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+pub mod anatomy;
 pub mod boundary;
 pub mod chart;
 pub mod domain;
 pub mod element;
 pub mod format;
 pub mod image;
+pub mod landmarks;
 pub mod material;
 pub mod mesh;
 pub mod meshing;
 pub mod model;
 pub mod optimisation;
+pub mod osteotomy;
 pub mod plan;
 pub mod prediction;
 pub mod progress;

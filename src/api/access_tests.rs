@@ -45,6 +45,7 @@ const SERVICE: &str = "
     POST    /v1/jobs                            run    noted
     DELETE  /v1/jobs/{id}                       run    noted
     GET     /v1/jobs/{id}                       read   -
+    PATCH   /v1/jobs/{id}                       run    noted
     GET     /v1/jobs/{id}/events                read   -
     GET     /v1/jobs/{id}/report                read   -
     GET     /v1/jobs/{id}/results               read   -
@@ -156,7 +157,8 @@ async fn answer(declared: Declared, method: Method, path: &str) -> (StatusCode, 
         .route("/v1/newer", get(async || "looked"))
         .layer(from_fn_with_state(door, guard::surround))
         .with_state(service);
-    let request = Request::builder().method(method).uri(path).body(Body::empty()).unwrap();
+    let request = Request::builder().method(method).uri(path).header("host", "localhost");
+    let request = request.body(Body::empty()).unwrap();
     let response = router.oneshot(request).await.unwrap();
     let status = response.status();
     let body = to_bytes(response.into_body(), 1 << 16).await.unwrap();

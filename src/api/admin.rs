@@ -17,11 +17,12 @@ use tokio::net::TcpListener;
 
 use super::access::{Access, Audit, Declared, Found};
 use super::audit::{self, AuditParameters};
+use super::body::Coming;
 use super::caller::{bearer, unauthorized};
-use super::deeds::{carry_out, deed_of_admin};
+use super::deeds::{carry_out, deed_of_admin, erased};
 use super::error::{ApiError, ApiResult};
 use super::guard::named;
-use super::hosts::Hosts;
+use super::hosts::{Hosts, check_named_once};
 use super::paging::PageParameters;
 use super::parameters::Parameters;
 use super::{body, connections, json, keys, time};
@@ -30,7 +31,7 @@ use crate::metrics;
 use crate::schema::key::{
     KeyDocument, RETENTION_DAYS, RotationDocument, Scope, TENANT_NAMES, is_key_id, is_tenant,
 };
-use crate::store::{Chain, LostRow, Store, TenantRow};
+use crate::store::{Chain, Deed, LostRow, Store, TenantRow};
 use crate::worker::process::memory::usage;
 
 const PROMETHEUS: &str = "text/plain; version=0.0.4; charset=utf-8";
@@ -146,7 +147,7 @@ struct Door {
 /// Lets in who has the key, or who is on this machine where there is none; notes what was changed.
 async fn guard(State(door): State<Door>, request: Request, next: Next) -> Response {
     let id = uuid::Uuid::now_v7().to_string();
-    if let Some(Err(error)) = door.office.hosts.as_ref().map(|hosts| hosts.check(&request)) {
+    if let Err(error) = door.office.is_meant(&request) {
         return named(error.into_response(), &id);
     }
     let route = request.extensions().get::<MatchedPath>().map(MatchedPath::as_str);
@@ -163,15 +164,28 @@ async fn guard(State(door): State<Door>, request: Request, next: Next) -> Respon
     }
     let request = request.map(|body| body::moving(body, office.patience));
     let deed = (audit == Audit::Noted).then(|| deed_of_admin(&request, &id)).flatten();
-    if request.method() == Method::DELETE {
-        office.store.make_room();
-    }
-    let run = next.run(request);
     let response = match deed {
-        Some(deed) => carry_out(&office.store, deed, run).await,
-        None => run.await,
+        Some(deed) => noted(&office.store, deed, request, next).await,
+        None => next.run(request).await,
     };
     named(response, &id)
+}
+
+/// The answer to what those who run the service do, which is noted at once.
+async fn noted(store: &Store, deed: Deed, request: Request, next: Next) -> Response {
+    let erases = request.method() == Method::DELETE;
+    let noting = store.noting(deed);
+    let begun = noting.clone();
+    let run = async move {
+        match begun.begin().await {
+            Ok(()) => next.run(request).await,
+            Err(error) => ApiError::from(error).into_response(),
+        }
+    };
+    match erases {
+        true => carry_out(noting, Coming::default(), erased(store.clone(), run)).await,
+        false => carry_out(noting, Coming::default(), run).await,
+    }
 }
 
 /// What was counted, with the queue as it is at this moment.
@@ -187,6 +201,12 @@ async fn counted(State(office): State<Office>) -> Response {
 }
 
 impl Office {
+    /// Refuses a request that is not for a host by whose name this one is called.
+    fn is_meant(&self, request: &Request) -> ApiResult<()> {
+        check_named_once(request)?;
+        self.hosts.as_ref().map_or(Ok(()), |hosts| hosts.check(request))
+    }
+
     fn lets_in(&self, request: &Request) -> bool {
         match &self.key {
             Some(key) => bearer(request.headers()).is_some_and(|given| key.matches(given)),

@@ -1,5 +1,6 @@
 //! Bodies of requests: read within bounds of size and of time.
 
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -33,23 +34,45 @@ const DRAINED_BYTES: usize = 8 << 20;
 const DRAINED_FOR: Duration = Duration::from_secs(1);
 
 /// The part of a body that its handler has not read.
-pub struct Unread(Arc<tokio::sync::Mutex<BodyDataStream>>);
+pub struct Unread {
+    frames: Arc<tokio::sync::Mutex<BodyDataStream>>,
+    coming: Coming,
+}
+
+/// Whether a body comes still, or broke off.
+#[derive(Clone, Default)]
+pub struct Coming(Arc<AtomicBool>);
+
+impl Coming {
+    /// Whether the connection ended before the body did.
+    pub fn is_broken(&self) -> bool {
+        self.0.load(Ordering::Relaxed)
+    }
+}
 
 /// A body, and a hold on what will be left of it.
 pub fn held(body: Body) -> (Body, Unread) {
     let frames = Arc::new(tokio::sync::Mutex::new(body.into_data_stream()));
-    let unread = Unread(frames.clone());
-    let frames = futures::stream::unfold(frames, |frames| async {
+    let unread = Unread { frames: frames.clone(), coming: Coming::default() };
+    let coming = unread.coming.clone();
+    let frames = futures::stream::unfold((frames, coming), |(frames, coming)| async {
         let frame = frames.lock().await.next().await;
-        frame.map(|frame| (frame, frames))
+        if let Some(Err(_)) = &frame {
+            coming.0.store(true, Ordering::Relaxed);
+        }
+        frame.map(|frame| (frame, (frames, coming)))
     });
     (Body::from_stream(frames), unread)
 }
 
 impl Unread {
+    pub fn coming(&self) -> Coming {
+        self.coming.clone()
+    }
+
     /// Reads and forgets what is left, within bounds.
     pub async fn drain(self) {
-        let mut frames = self.0.lock().await;
+        let mut frames = self.frames.lock().await;
         let mut drained = 0;
         let drain = async {
             while let Some(Ok(frame)) = frames.next().await {
@@ -121,7 +144,8 @@ async fn whole(service: &Service, request: Request, most: usize) -> ApiResult<Re
     spool.finish().await
 }
 
-/// Checks what a request says of its body, and holds as many bytes as it announces.
+/// Checks what a request says of its body. What is announced is counted as it comes: who announces much and sends nothing
+/// keeps nobody out.
 fn begun(service: &Service, headers: &HeaderMap, most: usize) -> ApiResult<Arc<Held>> {
     check_encoding(headers)?;
     let announced = announced(headers).unwrap_or(0);
@@ -129,7 +153,7 @@ fn begun(service: &Service, headers: &HeaderMap, most: usize) -> ApiResult<Arc<H
         return Err(too_large(most));
     }
     let held = Arc::new(service.hold());
-    held.at_least(announced)?;
+    held.could_hold(announced)?;
     if announced > IN_MEMORY as u64 {
         service.ground().require(announced)?;
     }

@@ -1,7 +1,8 @@
-//! A budget of bytes in flight, for each client and for the process: bodies that come or are worked on, and copies of files
-//! that are sent. They lie on the disk of the data folder, which so many bytes cannot fill unseen.
+//! A budget of bytes in flight, for each client, for each tenant and for the process: bodies that come or are worked on, and
+//! copies of files that are sent. They lie on the disk of the data folder, which so many bytes cannot fill unseen.
 
 use std::collections::HashMap;
+use std::hash::Hash;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use super::client::Client;
@@ -17,24 +18,41 @@ pub struct Budget {
     used: Arc<Mutex<Used>>,
 }
 
-/// How many bytes may be in flight at once.
+/// How many bytes may be in flight at once. A tenant may have three quarters of what others leave of those of the process,
+/// however many keys it has: there is always something left for one more (dynamic thresholds of Choudhury and Hahne, 1998,
+/// with alpha = 3). One body alone may have all that is left, so that the largest always fits into an idle service.
 #[derive(Clone, Copy)]
 pub struct Most {
     pub of_process: u64,
     pub of_client: u64,
 }
 
+/// Whose the bytes of a request are.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Owner {
+    pub tenant: Arc<str>,
+    pub client: Client,
+}
+
 #[derive(Default)]
 struct Used {
     total: u64,
+    tenants: HashMap<Arc<str>, u64>,
     clients: HashMap<Client, u64>,
 }
 
 /// Bytes of one request, counted until this is dropped.
 pub struct Held {
     budget: Budget,
-    client: Client,
+    owner: Owner,
     bytes: Mutex<u64>,
+}
+
+/// How many bytes are there, whose, and how many there may be.
+struct Bound {
+    used: u64,
+    most: u64,
+    whose: &'static str,
 }
 
 impl Budget {
@@ -42,37 +60,50 @@ impl Budget {
         Budget { most, used: Arc::default() }
     }
 
-    /// The bytes of a request of a client, none so far.
-    pub fn hold(&self, client: Client) -> Held {
-        Held { budget: self.clone(), client, bytes: Mutex::new(0) }
+    /// The bytes of a request, none so far.
+    pub fn hold(&self, owner: Owner) -> Held {
+        Held { budget: self.clone(), owner, bytes: Mutex::new(0) }
     }
 
-    fn take(&self, client: &Client, bytes: u64) -> ApiResult<()> {
+    fn take(&self, owner: &Owner, held: u64, more: u64) -> ApiResult<()> {
         let mut used = self.lock();
-        let own = used.clients.get(client).copied().unwrap_or(0);
-        let Most { of_process, of_client } = self.most;
-        let bounds = [(own, of_client, "this client"), (used.total, of_process, "all clients")];
-        if let Some((used, most, whose)) =
-            bounds.into_iter().find(|(used, most, _)| used + bytes > *most)
-        {
-            let detail = format!(
-                "{used} bytes of bodies of {whose} are under way, and with {bytes} more there are more than {most}"
-            );
-            return Err(Problem::new(ErrorCode::Busy, detail).with("limit", most).into());
-        }
-        used.total += bytes;
-        used.clients.insert(client.clone(), own + bytes);
+        self.check(&used, owner, held, more)?;
+        used.total += more;
+        *used.tenants.entry(owner.tenant.clone()).or_default() += more;
+        *used.clients.entry(owner.client.clone()).or_default() += more;
         http::body_bytes(used.total);
         Ok(())
     }
 
-    fn give_back(&self, client: &Client, bytes: u64) {
+    /// Whether a request that holds so many bytes may hold so many more.
+    fn check(&self, used: &Used, owner: &Owner, held: u64, more: u64) -> ApiResult<()> {
+        let Most { of_process, of_client } = self.most;
+        let of_tenant = used.tenants.get(&owner.tenant).copied().unwrap_or(0);
+        let left = of_process.saturating_sub(used.total - of_tenant);
+        let is_alone = of_tenant == held;
+        let own = used.clients.get(&owner.client).copied().unwrap_or(0);
+        let bounds = [
+            Bound { used: own, most: of_client, whose: "this client" },
+            Bound {
+                used: of_tenant,
+                most: if is_alone { left } else { left / 4 * 3 },
+                whose: "this tenant",
+            },
+            Bound { used: used.total, most: of_process, whose: "all clients" },
+        ];
+        let full = bounds.into_iter().find(|bound| bound.used + more > bound.most);
+        let Some(Bound { used, most, whose }) = full else { return Ok(()) };
+        let detail = format!(
+            "{used} bytes of bodies of {whose} are under way, and with {more} more there are more than {most}"
+        );
+        Err(Problem::new(ErrorCode::Busy, detail).with("limit", most).into())
+    }
+
+    fn give_back(&self, owner: &Owner, bytes: u64) {
         let mut used = self.lock();
         used.total = used.total.saturating_sub(bytes);
-        let own = used.clients.remove(client).unwrap_or(0).saturating_sub(bytes);
-        if own > 0 {
-            used.clients.insert(client.clone(), own);
-        }
+        lessen(&mut used.tenants, &owner.tenant, bytes);
+        lessen(&mut used.clients, &owner.client, bytes);
         http::body_bytes(used.total);
     }
 
@@ -81,15 +112,33 @@ impl Budget {
     }
 }
 
+fn lessen<K: Hash + Eq + Clone>(used: &mut HashMap<K, u64>, whose: &K, bytes: u64) {
+    let left = used.remove(whose).unwrap_or(0).saturating_sub(bytes);
+    if left > 0 {
+        used.insert(whose.clone(), left);
+    }
+}
+
 impl Held {
     /// Holds at least so many bytes.
     pub fn at_least(&self, bytes: u64) -> ApiResult<()> {
-        let mut held = self.bytes.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut held = self.lock();
         if bytes > *held {
-            self.budget.take(&self.client, bytes - *held)?;
+            self.budget.take(&self.owner, *held, bytes - *held)?;
             *held = bytes;
         }
         Ok(())
+    }
+
+    /// Whether it could hold so many at this moment, so that nobody sends what is certain to be refused.
+    pub fn could_hold(&self, bytes: u64) -> ApiResult<()> {
+        let held = *self.lock();
+        let used = self.budget.lock();
+        self.budget.check(&used, &self.owner, held, bytes.saturating_sub(held))
+    }
+
+    fn lock(&self) -> MutexGuard<'_, u64> {
+        self.bytes.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
@@ -97,7 +146,7 @@ impl Drop for Held {
     fn drop(&mut self) {
         let bytes = *self.bytes.get_mut().unwrap_or_else(PoisonError::into_inner);
         if bytes > 0 {
-            self.budget.give_back(&self.client, bytes);
+            self.budget.give_back(&self.owner, bytes);
         }
     }
 }
@@ -106,19 +155,37 @@ impl Drop for Held {
 mod tests {
     use super::*;
 
+    fn owner(tenant: &str, client: &str) -> Owner {
+        Owner { tenant: tenant.into(), client: Client::named(client) }
+    }
+
     #[test]
     fn a_client_and_all_together_hold_as_much_as_they_may_and_give_it_back() {
-        let budget = Budget::new(Most { of_process: 10, of_client: 6 });
-        let [a, b] = ["a", "b"].map(Client::named);
-        let (one, two) = (budget.hold(a.clone()), budget.hold(a.clone()));
-        assert!(one.at_least(4).is_ok() && one.at_least(2).is_ok() && two.at_least(2).is_ok());
-        assert_eq!(two.at_least(3).unwrap_err().problem.code, ErrorCode::Busy);
-        let other = budget.hold(b.clone());
-        assert!(other.at_least(5).is_err(), "11 of 10");
-        assert!(other.at_least(4).is_ok());
+        let budget = Budget::new(Most { of_process: 100, of_client: 60 });
+        let (one, two) = (budget.hold(owner("a", "a")), budget.hold(owner("a", "a")));
+        assert!(one.at_least(40).is_ok() && one.at_least(20).is_ok() && two.at_least(20).is_ok());
+        assert!(two.could_hold(20).is_ok() && two.could_hold(21).is_err());
+        assert_eq!(two.at_least(21).unwrap_err().problem.code, ErrorCode::Busy);
+        let other = budget.hold(owner("b", "b"));
+        assert!(other.at_least(41).is_err(), "101 of 100");
+        assert!(other.at_least(40).is_ok(), "one body may have all that is left");
         drop(one);
-        assert!(two.at_least(6).is_ok());
+        assert!(two.at_least(45).is_ok());
         drop((two, other));
-        assert!(budget.lock().clients.is_empty() && budget.lock().total == 0);
+        let used = budget.lock();
+        assert!(used.clients.is_empty() && used.tenants.is_empty() && used.total == 0);
+    }
+
+    #[test]
+    fn a_tenant_with_many_keys_leaves_a_share_to_others() {
+        let budget = Budget::new(Most { of_process: 1000, of_client: 1000 });
+        let fill = |tenant: &str| -> Vec<Held> {
+            let keys = (0..1000).map(|key| budget.hold(owner(tenant, &format!("{tenant} {key}"))));
+            keys.take_while(|held| held.at_least(10).is_ok()).collect()
+        };
+        let (greedy, second, third) = (fill("a"), fill("b"), fill("c"));
+        assert_eq!((greedy.len(), second.len(), third.len()), (75, 18, 5));
+        drop(greedy);
+        assert_eq!(fill("d").len(), 57, "three quarters of what the others leave");
     }
 }

@@ -17,7 +17,7 @@ use crate::schema::ErrorCode;
 use crate::schema::key::{Key, Scope, scopes_of};
 use crate::schema::wire::canonical::sha256_hex;
 use crate::schema::wire::problem::Problem;
-use crate::store::DEFAULT_TENANT;
+use crate::store::{DEFAULT_TENANT, Noting};
 
 /// Who calls.
 #[derive(Clone, Debug)]
@@ -68,7 +68,9 @@ impl FromRequestParts<Service> for Service {
             return Ok(service.clone());
         }
         let caller = Caller::from_request_parts(parts, service).await?;
-        Ok(service.in_hand_of(&caller.tenant, caller.client(&parts.extensions)))
+        let noting = parts.extensions.get::<Noting>().cloned();
+        let client = caller.client(&parts.extensions);
+        Ok(service.in_hand_of(&caller.tenant, client, noting))
     }
 }
 

@@ -13,7 +13,7 @@ use utoipa_axum::routes;
 use super::case_draft::{Draft, checked, split};
 use super::error::{ApiError, ApiResult};
 use super::guard::check_accept;
-use super::idempotency::new_id;
+use super::idempotency::Asked;
 use super::meshes::document_of;
 use super::paging::Page;
 use super::parameters::{Id, Parameters};
@@ -140,14 +140,18 @@ async fn create(
         .flat_map(|(name, part)| [name.as_bytes(), &part.sha256])
         .chain([&text[..]])
         .collect();
-    let new = new_id(&service, &headers, "/v1/cases", &content).await?;
-    if new.is_known && service.store.case(&new.id).await?.is_some() {
-        return created(&service, &new.id).await;
+    let asked = Asked::at(&service, &headers, "/v1/cases", &content)?;
+    if let Some(known) = asked.known(&service).await?
+        && service.store.case(&known.id).await?.is_some()
+    {
+        return created(&service, &known.id).await;
     }
     // Its meshes are in memory until the case is stored.
     let turn = service.parse_turn().await?;
     let draft = Draft::read(&service, &turn, document, parts, parameters.allow_any_scale).await?;
     let check = draft.check(&service).await?;
+    // What comes before this changes nothing, so that it ends with its client.
+    let new = asked.reserve(&service).await?;
     draft.store(&service, &new, check.as_ref()).await?;
     created(&service, &new.id).await
 }

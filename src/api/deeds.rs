@@ -3,11 +3,13 @@
 use axum::extract::{MatchedPath, Request};
 use axum::http::{StatusCode, header};
 use axum::response::{IntoResponse, Response};
+use tokio::task::AbortHandle;
 use tracing::Instrument;
 
+use super::body::Coming;
 use super::caller::Caller;
 use super::error::ApiError;
-use crate::store::{Deed, Store};
+use crate::store::{Deed, Noting, Store};
 
 /// What a caller's request is about to do; none where no route is asked.
 pub fn deed_of(caller: &Caller, request: &Request, id: &str) -> Option<Deed> {
@@ -35,29 +37,56 @@ pub fn deed_of_admin(request: &Request, id: &str) -> Option<Deed> {
     })
 }
 
-/// Notes a request, carries it out, and notes how it was answered, also when the client goes away meanwhile. What
-/// cannot be noted is not carried out.
+/// Carries a request out that may change something. It is noted before it does, and then it runs to its end, also where
+/// its client goes away meanwhile; as long as it has changed nothing it ends with its client. How it was answered is noted
+/// as well, but not where its body never came.
 pub async fn carry_out(
-    store: &Store,
-    deed: Deed,
+    noting: Noting,
+    coming: Coming,
     run: impl Future<Output = Response> + Send + 'static,
 ) -> Response {
-    let store = store.clone();
+    let own = noting.clone();
     let work = async move {
-        let begun = match store.begin_deed(&deed).await {
-            Ok(begun) => begun,
-            Err(error) => return ApiError::from(error).into_response(),
-        };
         let response = run.await;
-        let object = made(&response).unwrap_or(&deed.object);
-        let outcome = response.status().as_u16().to_string();
-        if let Err(error) = store.end_deed(begun, object, &outcome).await {
-            tracing::error!(%error, "the audit log is told later how a request ended");
+        let object = made(&response).unwrap_or(own.object());
+        let status = response.status();
+        let is_told = !coming.is_broken() && is_told(status);
+        match own.end(object, status.as_str(), is_told).await {
+            Ok(()) => response,
+            Err(error) => ApiError::from(error).into_response(),
         }
-        response
     };
-    let done = tokio::spawn(work.in_current_span()).await;
-    done.unwrap_or_else(|error| ApiError::internal(error).into_response())
+    let task = tokio::spawn(work.in_current_span());
+    let _client = Client { noting, task: task.abort_handle() };
+    task.await.unwrap_or_else(|error| ApiError::internal(error).into_response())
+}
+
+/// The same for what erases something, which needs room on a disk that is full and leaves some.
+pub async fn erased(store: Store, run: impl Future<Output = Response>) -> Response {
+    store.make_room().await;
+    let response = run.await;
+    store.keep_room().await;
+    response
+}
+
+/// Whether an answer to what changed nothing is noted: not where the service could not give one, or was not told in time
+/// what was wanted.
+fn is_told(status: StatusCode) -> bool {
+    !status.is_server_error() && status != StatusCode::REQUEST_TIMEOUT
+}
+
+/// Who waits for an answer; dropped when it has come, or when he goes away.
+struct Client {
+    noting: Noting,
+    task: AbortHandle,
+}
+
+impl Drop for Client {
+    fn drop(&mut self) {
+        if self.noting.leave() {
+            self.task.abort();
+        }
+    }
 }
 
 /// The id of what a request made.

@@ -70,6 +70,10 @@ impl From<StoreError> for ApiError {
             tracing::error!(%error, "storage is full");
             return ApiError::storage_full();
         }
+        if let StoreError::Busy { most } = error {
+            let problem = Problem::new(ErrorCode::Busy, error.to_string());
+            return problem.with("limit", most).into();
+        }
         if error.is_unavailable() {
             tracing::warn!(%error, "storage is busy");
             return ApiError::out_of_reach();

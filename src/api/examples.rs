@@ -7,6 +7,7 @@ pub const VOLUME: &str = "0199d3a0-0000-7000-8000-000000000001";
 pub const BONE: &str = "0199d3a0-0000-7000-8000-000000000002";
 pub const CASE: &str = "0199d3a0-0000-7000-8000-000000000003";
 pub const PLAN: &str = "0199d3a0-0000-7000-8000-000000000004";
+pub const SCAN: &str = "0199d3a0-0000-7000-8000-000000000006";
 pub const JOB: &str = "0199d3a0-0000-7000-8000-000000000005";
 
 /// Writes examples beside the schema of every JSON body of the operations.
@@ -30,6 +31,10 @@ fn of(operation: &str) -> Vec<(&'static str, Value)> {
         "create_plan" | "replace_plan" => vec![("movements", plan()), ("loads", loads())],
         "apply_response" => vec![("plan", json!({ "plan": plan() }))],
         "create_job" => jobs(),
+        "change_job" => {
+            let tags = json!({"add": ["main"], "remove": ["draft"]});
+            vec![("tags", json!({ "tags": tags }))]
+        }
         "create_key" => {
             let scopes = ["read", "write", "run"];
             vec![("key", json!({"label": "planning station", "scopes": scopes, "days": 365}))]
@@ -102,6 +107,18 @@ fn predictions_and_plans() -> Vec<(&'static str, Value)> {
             "compare",
             json!({
                 "kind": "compare", "prediction": {"job": JOB}, "actual": {"mesh": BONE}, "align": {"method": "none"},
+            }),
+        ),
+        (
+            "mesh from a scan",
+            json!({
+                "kind": "mesh",
+                "scan": SCAN,
+                "osteotomy": {
+                    "cuts": [{"name": "le-fort-1", "point_mm": [60, 55, 60], "normal": [0, -0.24, 1]}],
+                    "segments": [{"name": "maxilla", "below": ["le-fort-1"]}],
+                },
+                "size": {"tetrahedra": 100_000},
             }),
         ),
         ("response", json!({"kind": "response", "case": CASE, "segments": ["mandible"]})),

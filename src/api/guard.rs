@@ -10,16 +10,19 @@ use axum::response::{IntoResponse, Response};
 use tracing::Instrument;
 
 use super::access::{Access, Audit, Declared, Found};
+use super::body::Coming;
 use super::caller::{self, Caller};
-use super::deeds::{carry_out, deed_of};
+use super::deeds::{carry_out, deed_of, erased};
 use super::error::{ApiError, ApiResult, with_problem_body};
 use super::headers::guarded;
+use super::hosts::check_named_once;
 use super::rate::Left;
 use super::{Service, body};
 use crate::metrics::http;
 use crate::schema::ErrorCode;
 use crate::schema::key::Scope;
 use crate::schema::wire::problem::Problem;
+use crate::store::Noting;
 use crate::traces::{self, TraceParent};
 
 const REQUEST_ID: &str = "x-request-id";
@@ -48,12 +51,15 @@ pub async fn surround(State(door): State<Door>, request: Request, next: Next) ->
     let span = tracing::info_span!("request", request.id = %id, trace.id = trace.trace_id());
     let (head, body) = request.into_parts();
     let (body, unread) = body::held(body);
+    let coming = unread.coming();
     let mut request = Request::from_parts(head, body);
     request.extensions_mut().insert(trace.place());
     let answered = async {
         let response = match admit(&door, &mut request).await {
             Ok(Admitted::ToAll) => next.run(request).await,
-            Ok(Admitted::Known(entry)) => entry.pass(&door.service, request, next, &id).await,
+            Ok(Admitted::Known(entry)) => {
+                entry.pass(&door.service, Entering { request, coming }, next, &id).await
+            }
             Err(error) => error.into_response(),
         };
         // Who still writes when the connection closes hears no answer.
@@ -121,6 +127,7 @@ struct Entry {
 /// of its route, stands beside it.
 async fn admit(door: &Door, request: &mut Request) -> ApiResult<Admitted> {
     check_head(request)?;
+    check_named_once(request)?;
     if let Some(hosts) = &door.service.hosts {
         hosts.check(request)?;
     }
@@ -138,30 +145,47 @@ async fn admit(door: &Door, request: &mut Request) -> ApiResult<Admitted> {
     Ok(Admitted::Known(Entry { caller, left, scope, audit }))
 }
 
+/// A request and its body.
+struct Entering {
+    request: Request,
+    coming: Coming,
+}
+
 impl Entry {
     /// Hands the request on where its key allows it. What changes something is noted, and what is not allowed.
-    async fn pass(self, service: &Service, request: Request, next: Next, id: &str) -> Response {
+    async fn pass(self, service: &Service, entering: Entering, next: Next, id: &str) -> Response {
+        let Entering { mut request, coming } = entering;
         let allowed = self.caller.require(self.scope);
         let is_noted = allowed.is_err() || self.audit == Audit::Noted;
         let deed = is_noted.then(|| deed_of(&self.caller, &request, id)).flatten();
-        let method = request.method().clone();
-        let run = async move {
-            match allowed {
-                Ok(()) => next.run(request).await,
-                Err(error) => error.into_response(),
+        let erases = request.method() == Method::DELETE;
+        let noting = deed.map(|deed| service.store.noting(deed));
+        let mut response = match (allowed, noting) {
+            (Err(error), Some(noting)) => refused(error, &noting).await,
+            (Err(error), None) => error.into_response(),
+            (Ok(()), Some(noting)) => {
+                request.extensions_mut().insert(noting.clone());
+                let run = next.run(request);
+                match erases {
+                    true => carry_out(noting, coming, erased(service.store.clone(), run)).await,
+                    false => carry_out(noting, coming, run).await,
+                }
             }
-        };
-        if method == Method::DELETE {
-            service.store.make_room();
-        }
-        let mut response = match deed {
-            Some(deed) => carry_out(&service.store, deed, run).await,
-            None => run.await,
+            (Ok(()), None) => next.run(request).await,
         };
         if let Some(left) = self.left {
             left.tell(&mut response);
         }
         response
+    }
+}
+
+/// The answer to what a key does not allow, noted without waiting for anybody who writes.
+async fn refused(error: ApiError, noting: &Noting) -> Response {
+    let response = error.into_response();
+    match noting.end(noting.object(), response.status().as_str(), true).await {
+        Ok(()) => response,
+        Err(error) => ApiError::from(error).into_response(),
     }
 }
 

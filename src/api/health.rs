@@ -34,7 +34,9 @@ async fn healthz() -> Response {
     json(StatusCode::OK, &Health { status: "ok".into() })
 }
 
-/// Whether requests will be served: the database answers and takes a row, files can be written, there is space.
+/// Whether requests will be served: the database answers and took a row within the last second, in less than two; the
+/// folder takes a file; there is space for what is sent, and for erasing. A tenant that asks for more than its turns is
+/// answered 503 `busy` by a service that is ready.
 #[utoipa::path(get, path = "/readyz", tag = "health", responses((status = 200, description = "ready", body = Health)))]
 async fn readyz(service: Service) -> ApiResult {
     let mut failing: Vec<String> = Vec::new();
@@ -48,8 +50,9 @@ async fn readyz(service: Service) -> ApiResult {
         tracing::warn!(%error, "the data folder cannot be written");
         failing.push("storage".into());
     }
+    let floor = service.config.free_space_floor_bytes;
     match service.store.free_space() {
-        Ok(free) if free >= service.config.free_space_floor_bytes => {}
+        Ok(free) if free >= floor && service.store.has_room() => {}
         _ => failing.push("free-space".into()),
     }
     if failing.is_empty() {

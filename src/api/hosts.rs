@@ -6,7 +6,7 @@ use std::net::IpAddr;
 
 use axum::extract::Request;
 use axum::http::uri::Authority;
-use axum::http::{HeaderMap, header};
+use axum::http::{HeaderMap, Version, header};
 
 use super::error::ApiResult;
 use crate::schema::ErrorCode;
@@ -69,6 +69,16 @@ impl Hosts {
         let problem = Problem::new(ErrorCode::ForeignOrigin, detail);
         Err(problem.with("origin", origins.join(", ")).into())
     }
+}
+
+/// Refuses a request of HTTP/1.1 that names no host, or several (RFC 9112, section 3.2).
+pub fn check_named_once(request: &Request) -> ApiResult<()> {
+    let count = request.headers().get_all(header::HOST).iter().count();
+    if count == 1 || request.version() != Version::HTTP_11 {
+        return Ok(());
+    }
+    let detail = format!("a request of HTTP/1.1 has one header Host, and this one has {count}");
+    Err(Problem::new(ErrorCode::MalformedRequest, detail).into())
 }
 
 /// The values of a header; one that is no text is no name that is known.

@@ -26,10 +26,6 @@ pub struct NewId {
 }
 
 impl NewId {
-    fn fresh(id: String, key: Option<String>) -> NewId {
-        NewId { id, is_known: false, was_found: false, key }
-    }
-
     /// Remembers that this request makes nothing and is told of what is there: sent again, it is told of the same.
     pub async fn found(&self, service: &Service, resource: &str) -> ApiResult<()> {
         if let Some(key) = &self.key {
@@ -39,28 +35,61 @@ impl NewId {
     }
 }
 
-/// The id for what a request makes at an address: that of the first request with its key, else one of its own.
-/// `content` is all that the request says, however it is packed.
-pub async fn new_id(
-    service: &Service,
-    headers: &HeaderMap,
-    address: &str,
-    content: &[&[u8]],
-) -> ApiResult<NewId> {
-    let id = uuid::Uuid::now_v7().to_string();
-    let Some(key) = key(headers)? else { return Ok(NewId::fresh(id, None)) };
-    let key = sha256_hex(format!("{}\n{address}\n{key}", service.store.tenant()).as_bytes());
-    let hashes: Vec<String> = content.iter().map(|part| sha256_hex(part)).collect();
-    let fingerprint = sha256_hex(hashes.concat().as_bytes());
-    match service.store.reserve(&key, &fingerprint, &id).await? {
-        Reserved::Fresh => Ok(NewId::fresh(id, Some(key))),
-        Reserved::Again { id, found } => match service.store.erased(&id).await? {
-            Some(erased) => Err(gone::gone(&id, erased)),
-            None => Ok(NewId { id, is_known: true, was_found: found, key: Some(key) }),
-        },
-        Reserved::Other => {
-            let detail = "another request was sent with this Idempotency-Key";
-            Err(ApiError::new(ErrorCode::IdempotencyMismatch, detail))
+/// A request that may have been sent before.
+pub struct Asked {
+    id: String,
+    /// The hashes of its key and of all that it says, where it has a key.
+    key: Option<(String, String)>,
+}
+
+impl Asked {
+    /// `content` is all that the request says, however it is packed.
+    pub fn at(
+        service: &Service,
+        headers: &HeaderMap,
+        address: &str,
+        content: &[&[u8]],
+    ) -> ApiResult<Asked> {
+        let id = uuid::Uuid::now_v7().to_string();
+        let Some(key) = key(headers)? else { return Ok(Asked { id, key: None }) };
+        let key = sha256_hex(format!("{}\n{address}\n{key}", service.store.tenant()).as_bytes());
+        let hashes: Vec<String> = content.iter().map(|part| sha256_hex(part)).collect();
+        let fingerprint = sha256_hex(hashes.concat().as_bytes());
+        Ok(Asked { id, key: Some((key, fingerprint)) })
+    }
+
+    /// The id of what the first request with its key makes, where that is known. Changes nothing.
+    pub async fn known(&self, service: &Service) -> ApiResult<Option<NewId>> {
+        let Some((key, fingerprint)) = &self.key else { return Ok(None) };
+        match service.store.reserved(key, fingerprint).await? {
+            Some(reserved) => self.new_id(service, reserved).await.map(Some),
+            None => Ok(None),
+        }
+    }
+
+    /// The id for what it makes: that of the first request with its key, else one of its own.
+    pub async fn reserve(&self, service: &Service) -> ApiResult<NewId> {
+        let reserved = match &self.key {
+            Some((key, fingerprint)) => service.store.reserve(key, fingerprint, &self.id).await?,
+            None => Reserved::Fresh,
+        };
+        self.new_id(service, reserved).await
+    }
+
+    async fn new_id(&self, service: &Service, reserved: Reserved) -> ApiResult<NewId> {
+        let key = self.key.as_ref().map(|(key, _)| key.clone());
+        match reserved {
+            Reserved::Fresh => {
+                Ok(NewId { id: self.id.clone(), is_known: false, was_found: false, key })
+            }
+            Reserved::Again { id, found } => match service.store.erased(&id).await? {
+                Some(erased) => Err(gone::gone(&id, erased)),
+                None => Ok(NewId { id, is_known: true, was_found: found, key }),
+            },
+            Reserved::Other => {
+                let detail = "another request was sent with this Idempotency-Key";
+                Err(ApiError::new(ErrorCode::IdempotencyMismatch, detail))
+            }
         }
     }
 }

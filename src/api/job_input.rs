@@ -9,8 +9,8 @@ use super::error::{ApiError, ApiResult};
 use super::parameters::id;
 use super::report;
 use crate::jobs::{
-    CompareInput, JobError, JobInput, MeshSource, OptimiseInput, PredictInput, ResponseInput,
-    SourceError, StudyInput,
+    CompareInput, JobError, JobInput, MeshSource, MeshingInput, OptimiseInput, PredictInput,
+    ResponseInput, SourceError, StudyInput,
 };
 use crate::schema::ErrorCode;
 
@@ -20,8 +20,8 @@ use crate::schema::predict::result::EngineDocument;
 use crate::schema::study::document::SceneReference;
 use crate::schema::study::expected::{TruthCostDocument, truth_costs};
 use crate::schema::{
-    CaseDocument, CompareDocument, Faults, Limits, OptimiseDocument, PlanDocument, Pointer,
-    PredictDocument, Problem, ReportDocument, ResponseDocument, StudyDocument,
+    CaseDocument, CompareDocument, Faults, Limits, MeshingDocument, OptimiseDocument, PlanDocument,
+    Pointer, PredictDocument, Problem, ReportDocument, ResponseDocument, StudyDocument,
 };
 use crate::store::{CaseRow, NewJob};
 
@@ -32,6 +32,7 @@ pub async fn of(service: &Service, document: JobDocument) -> ApiResult<NewJob> {
         JobDocument::Compare(spec) => of_comparison(service, spec).await,
         JobDocument::Response(spec) => of_response(service, spec).await,
         JobDocument::Optimise(spec) => of_optimisation(service, spec).await,
+        JobDocument::Mesh(spec) => of_meshing(service, spec).await,
         JobDocument::Study(spec) => of_study(service, spec).await,
     }
 }
@@ -131,6 +132,20 @@ async fn of_optimisation(service: &Service, mut spec: OptimiseDocument) -> ApiRe
     let new =
         Accepted { case_id, shared_cases: Vec::new(), spec_hash, tags, mesh_ids, study: None };
     new.with(&JobInput::Optimise(input))
+}
+
+/// A meshing: its scan, checked.
+async fn of_meshing(service: &Service, spec: MeshingDocument) -> ApiResult<NewJob> {
+    require_mesh(service, "/scan", &spec.scan).await?;
+    let (mesh_ids, tags) = (vec![spec.scan.clone()], spec.tags.clone());
+    let input = MeshingInput { job: None, queue_s: None, spec };
+    let prepare = |input: &MeshingInput, sources: &dyn MeshSource, limits: &Limits| {
+        Ok(input.prepare(sources, limits)?.spec_hash)
+    };
+    let (input, spec_hash) = prepared(service, input, prepare).await?;
+    let (case_id, shared_cases, study) = (None, Vec::new(), None);
+    let new = Accepted { case_id, shared_cases, spec_hash, tags, mesh_ids, study };
+    new.with(&JobInput::Meshing(input))
 }
 
 /// A study: its cases and its baseline as they are at this moment, its scenes made and checked.

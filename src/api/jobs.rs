@@ -9,22 +9,22 @@ use utoipa_axum::routes;
 
 use super::caller::Caller;
 use super::error::{ApiError, ApiResult};
-use super::idempotency::new_id;
+use super::idempotency::Asked;
 use super::job_view::status_info;
 use super::paging::Page;
 use super::parameters::{Id, Parameters, id, no_such_job};
-use super::prefer::{wait_for_end, wanted_wait};
+use super::prefer::{RETRY_AFTER_S, wait_for_end, wanted_wait};
 use super::resources::Resources;
-use super::results::RETRY_AFTER_S;
 
-use crate::schema::ErrorCode;
-
+use crate::schema::job_change::JobChangeDocument;
 use crate::schema::key::Scope;
+use crate::schema::wire::strict;
+use crate::schema::{ErrorCode, Faults, Pointer};
 
 use super::{Service, body, conditional, job_input, json, with_header};
 use crate::schema::job::{JobStatus, StatusInfo};
 use crate::schema::job_document::{JobDocument, JobKind};
-use crate::store::{Dismissal, Enqueued, JobFilter, JobRow};
+use crate::store::{Dismissal, Enqueued, JobFilter, JobRow, Tagged};
 use crate::traces::TraceParent;
 
 /// Jobs that may wait at the same time.
@@ -35,7 +35,7 @@ pub fn router() -> Resources {
         .looks(Scope::Read, routes!(list))
         .changes(Scope::Run, routes!(create))
         .looks(Scope::Read, routes!(show))
-        .changes(Scope::Run, routes!(dismiss))
+        .changes(Scope::Run, routes!(change, dismiss))
         .json_only()
 }
 
@@ -67,7 +67,7 @@ struct ListParameters {
     limit: Option<u32>,
 }
 
-/// Accepts a job. The same inputs, whoever sends them, are the same job. With `Prefer: wait=n` the answer
+/// Accepts a job. The same inputs, whoever sends them, are the same job, which gets the tags of each. With `Prefer: wait=n` the answer
 /// comes when the job has ended, at the latest after n seconds (at most 30). One that keeps meshes (`keep`) stores what it
 /// makes, which a key has to allow (`write`).
 #[utoipa::path(
@@ -98,11 +98,18 @@ async fn create(service: Service, caller: Caller, request: Request) -> ApiResult
     if document.keeps_meshes() {
         caller.require(Scope::Write)?;
     }
-    let new = new_id(&service, &headers, "/v1/jobs", &[&bytes]).await?;
+    let asked = Asked::at(&service, &headers, "/v1/jobs", &[&bytes])?;
+    if let Some(known) = asked.known(&service).await?
+        && service.store.job(&known.id).await?.is_some()
+    {
+        return created(&service, &known.id, known.was_found, wait).await;
+    }
+    let mut accepted = job_input::of(&service, document).await?;
+    // What comes before this changes nothing, so that it ends with its client.
+    let new = asked.reserve(&service).await?;
     if new.is_known && service.store.job(&new.id).await?.is_some() {
         return created(&service, &new.id, new.was_found, wait).await;
     }
-    let mut accepted = job_input::of(&service, document).await?;
     accepted.id.clone_from(&new.id);
     accepted.traceparent = place.map(|place| place.to_string());
     let (id, deduplicated) = match service.store.enqueue(&accepted, LONGEST_QUEUE).await? {
@@ -110,6 +117,7 @@ async fn create(service: Service, caller: Caller, request: Request) -> ApiResult
         Enqueued::Known(id) => {
             let deduplicated = id != accepted.id;
             if deduplicated {
+                tag(&service, &id, &accepted.tags, &[]).await?;
                 new.found(&service, &id).await?;
             }
             (id, deduplicated)
@@ -178,6 +186,41 @@ async fn show(service: Service, Id(id): Id, headers: HeaderMap) -> ApiResult {
     conditional::document(&headers, answer).await
 }
 
+/// Changes the tags of a job, whatever its state. Tags to `add` are put on it and tags to `remove` are taken off, and all
+/// others stay; what is so already is no mistake. So changes of several clients do not overwrite each other, and need no
+/// If-Match.
+#[utoipa::path(
+    patch, path = "/v1/jobs/{id}", operation_id = "change_job", tag = "jobs", params(("id" = uuid::Uuid, Path, description = "the job")),
+    request_body = JobChangeDocument,
+    responses((status = 200, description = "changed", body = StatusInfo, headers(("ETag" = String, description = "the hash of this state"))))
+)]
+async fn change(service: Service, Id(id): Id, request: Request) -> ApiResult {
+    let bytes = body::json(&service, request).await?;
+    let change: JobChangeDocument = strict::parse(&bytes, &service.limits)?;
+    let mut faults = Faults::default();
+    change.check(&service.limits, &mut faults);
+    faults.into_result()?;
+    tag(&service, &id, &change.tags.add, &change.tags.remove).await?;
+    let job = service.store.job(&id).await?.ok_or_else(no_such_job)?;
+    let answer = answer(StatusCode::OK, &job, false, None)?;
+    conditional::document(&HeaderMap::new(), answer).await
+}
+
+/// Puts tags on a job and takes others off it.
+async fn tag(service: &Service, id: &str, add: &[String], remove: &[String]) -> ApiResult<()> {
+    let most = service.limits.tags as usize;
+    match service.store.change_tags(id, add, remove, most).await? {
+        Tagged::Done => Ok(()),
+        Tagged::NotFound => Err(no_such_job()),
+        Tagged::TooMany(count) => {
+            let detail = format!("job {id} would have {count} tags, at most {most} are allowed");
+            let mut faults = Faults::default();
+            faults.add(&Pointer::root().key("tags"), ErrorCode::TooMany, detail);
+            faults.into_result().map_err(ApiError::from)
+        }
+    }
+}
+
 /// Jobs, newest first.
 #[utoipa::path(
     get, path = "/v1/jobs", operation_id = "list_jobs", tag = "jobs", params(ListParameters),
@@ -218,7 +261,10 @@ async fn dismiss(service: Service, Id(id): Id) -> ApiResult<Response> {
             let job = service.store.job(&id).await?.ok_or_else(no_such_job)?;
             Ok(json(StatusCode::OK, &status_info(&job, false)?))
         }
-        Dismissal::Removed => Ok(StatusCode::NO_CONTENT.into_response()),
+        Dismissal::Removed => {
+            service.pictures.forget(&id);
+            Ok(StatusCode::NO_CONTENT.into_response())
+        }
         Dismissal::NotFound => Err(no_such_job()),
     }
 }

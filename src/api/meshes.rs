@@ -22,7 +22,8 @@ use crate::schema::mesh::{MeshDocument, MeshKind};
 use crate::store::{MeshDeletion, MeshRow};
 
 const READ_HERE: &str = "model/stl, model/obj, application/vnd.ply, application/vnd.vtk, \
-     application/vnd.vtk.xml, application/x-gmsh, application/x-nrrd, application/octet-stream, multipart/form-data";
+     application/vnd.vtk.xml, application/x-gmsh, application/x-nrrd, application/x-nifti, application/gzip, \
+     application/x-metaimage, application/dicom, application/zip, application/octet-stream, multipart/form-data";
 const MULTIPART: &str = "multipart/form-data";
 
 pub fn router() -> Resources {
@@ -70,7 +71,8 @@ impl UploadParameters {
     }
 }
 
-/// Stores a mesh: VTU, VTP, VTK legacy, Gmsh, STL, PLY or OBJ, or an image: NRRD; told apart by content.
+/// Stores a mesh: VTU, VTP, VTK legacy, Gmsh, STL, PLY or OBJ, or an image: NRRD, NIfTI, MetaImage or the files of a
+/// DICOM series in one zip archive; told apart by content.
 /// Bytes that were stored before are not stored again.
 #[utoipa::path(
     post, path = "/v1/meshes", operation_id = "upload_mesh", tag = "meshes", params(UploadParameters),
@@ -78,7 +80,9 @@ impl UploadParameters {
         (Vec<u8> = "application/octet-stream"), (Vec<u8> = "model/stl"), (Vec<u8> = "model/obj"),
         (Vec<u8> = "application/vnd.ply"), (Vec<u8> = "application/vnd.vtk"),
         (Vec<u8> = "application/vnd.vtk.xml"), (Vec<u8> = "application/x-gmsh"),
-        (Vec<u8> = "application/x-nrrd"),
+        (Vec<u8> = "application/x-nrrd"), (Vec<u8> = "application/x-nifti"),
+        (Vec<u8> = "application/gzip"), (Vec<u8> = "application/x-metaimage"),
+        (Vec<u8> = "application/dicom"), (Vec<u8> = "application/zip"),
         (MeshForm = "multipart/form-data"),
     )),
     responses(

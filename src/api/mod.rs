@@ -15,6 +15,7 @@ mod conditional;
 pub mod connections;
 mod deeds;
 mod download;
+mod drawn;
 mod error;
 mod error_page;
 mod events;

@@ -120,6 +120,7 @@ fn operations(item: &mut PathItem) -> impl Iterator<Item = (Method, &mut Operati
     let operations = [
         (Method::GET, &mut item.get),
         (Method::PUT, &mut item.put),
+        (Method::PATCH, &mut item.patch),
         (Method::POST, &mut item.post),
         (Method::DELETE, &mut item.delete),
     ];

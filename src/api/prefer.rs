@@ -7,11 +7,17 @@ use tokio::time::Instant;
 
 use super::Service;
 use super::error::ApiResult;
+use super::parameters::no_such_job;
+use crate::schema::ErrorCode;
 use crate::schema::job::JobStatus;
+use crate::schema::wire::problem::Problem;
 use crate::store::JobRow;
 
 /// Rows are looked at this often even when nothing was announced: another process may have changed them.
 const LOOK: Duration = Duration::from_secs(1);
+
+/// How long a client had better wait before it asks again.
+pub const RETRY_AFTER_S: u32 = 1;
 
 /// The seconds that a client asks for, at most `cap`; `None` when it does not ask or asks for nonsense.
 pub fn wanted_wait(headers: &HeaderMap, cap: u32) -> Option<u32> {
@@ -26,15 +32,17 @@ pub fn wanted_wait(headers: &HeaderMap, cap: u32) -> Option<u32> {
         .map(|seconds| u32::try_from(seconds).unwrap_or(u32::MAX).min(cap))
 }
 
-/// Waits until a job has ended, is gone, the time is up or the process is about to stop, and tells how it is then.
+/// Waits until a job has ended, is gone, the time is up, the client has left or the process is about to stop, and tells
+/// how it is then.
 pub async fn wait_for_end(service: &Service, id: &str, seconds: u32) -> ApiResult<Option<JobRow>> {
     let store = &service.store;
     let mut stopping = service.streams.stopping();
     let until = Instant::now() + Duration::from_secs(seconds.into());
     let mut changes = store.job_changes();
+    let mut has_left = false;
     loop {
         changes.mark_seen();
-        let over = Instant::now() >= until || *stopping.borrow();
+        let over = has_left || Instant::now() >= until || *stopping.borrow();
         // Only who has waited long enough asks for all of it.
         if over || store.job_status(id).await?.is_none_or(JobStatus::is_terminal) {
             return Ok(store.job(id).await?);
@@ -44,6 +52,41 @@ pub async fn wait_for_end(service: &Service, id: &str, seconds: u32) -> ApiResul
         tokio::select! {
             changed = tokio::time::timeout_at(next, changes.of(id)) => changed.unwrap_or(Ok(()))?,
             _ = stopping.wait_for(|stopping| *stopping) => {}
+            () = service.client_has_gone() => has_left = true,
+        }
+    }
+}
+
+/// The job, when it has results; a client that prefers to wait for them does so.
+pub(super) async fn successful(
+    service: &Service,
+    id: &str,
+    headers: &HeaderMap,
+) -> ApiResult<JobRow> {
+    let wait = wanted_wait(headers, service.limits.wait_s).unwrap_or(0);
+    let job = wait_for_end(service, id, wait).await?.ok_or_else(no_such_job)?;
+    match job.status {
+        JobStatus::Successful => Ok(job),
+        JobStatus::Failed | JobStatus::Dismissed => {
+            let error = job.error.as_deref().unwrap_or("null");
+            let error: serde_json::Value = serde_json::from_str(error).unwrap_or_default();
+            let detail = format!("the job has {} and has no results", job.status.name());
+            Err(Problem::new(ErrorCode::JobFailed, detail)
+                .with("job_status", job.status.name())
+                .with("error", error)
+                .into())
+        }
+        JobStatus::Accepted | JobStatus::Running => {
+            let detail = format!(
+                "the job is {} and has no results yet; the header `Prefer: wait=n` waits up to n seconds, at most {}",
+                job.status.name(),
+                service.limits.wait_s
+            );
+            Err(Problem::new(ErrorCode::ResultNotReady, detail)
+                .with("job_status", job.status.name())
+                .with("progress", job.progress)
+                .with("retry_after_s", RETRY_AFTER_S)
+                .into())
         }
     }
 }

@@ -10,8 +10,8 @@ use super::download::Opened;
 use super::error::{ApiError, ApiResult};
 use super::guard::preferred;
 use super::parameters::{Id, Parameters, id as spelled};
+use super::prefer::successful;
 use super::resources::Resources;
-use super::results::successful;
 use super::{Service, conditional, with_header};
 use crate::jobs::study::files::{
     CHART_SVG, CSV_MEDIA_TYPE, JSON_MEDIA_TYPE, JUNIT_MEDIA_TYPE, REPORT_CSV, REPORT_JSON,

@@ -5,57 +5,16 @@ use utoipa_axum::routes;
 
 use super::download::Opened;
 use super::error::{ApiError, ApiResult};
-use super::parameters::{FileName, Id, no_such_job};
-use super::prefer::{wait_for_end, wanted_wait};
+use super::parameters::{FileName, Id};
+use super::prefer::successful;
 use super::resources::Resources;
-use super::{Service, conditional, guard, json};
-use crate::schema::ErrorCode;
-use crate::schema::job::JobStatus;
+use super::{Service, conditional, drawn, guard, json};
 use crate::schema::key::Scope;
 use crate::schema::predict::result::ResultDocument;
-use crate::schema::wire::problem::Problem;
-use crate::store::JobRow;
-
-/// How long a client had better wait before it asks again.
-pub const RETRY_AFTER_S: u32 = 1;
 
 pub fn router() -> Resources {
     let manifest = Resources::new().looks(Scope::Read, routes!(manifest)).json_only();
     manifest.looks(Scope::Read, routes!(file))
-}
-
-/// The job, when it has results; a client that prefers to wait for them does so.
-pub(super) async fn successful(
-    service: &Service,
-    id: &str,
-    headers: &HeaderMap,
-) -> ApiResult<JobRow> {
-    let wait = wanted_wait(headers, service.limits.wait_s).unwrap_or(0);
-    let job = wait_for_end(service, id, wait).await?.ok_or_else(no_such_job)?;
-    match job.status {
-        JobStatus::Successful => Ok(job),
-        JobStatus::Failed | JobStatus::Dismissed => {
-            let error = job.error.as_deref().unwrap_or("null");
-            let error: serde_json::Value = serde_json::from_str(error).unwrap_or_default();
-            let detail = format!("the job has {} and has no results", job.status.name());
-            Err(Problem::new(ErrorCode::JobFailed, detail)
-                .with("job_status", job.status.name())
-                .with("error", error)
-                .into())
-        }
-        JobStatus::Accepted | JobStatus::Running => {
-            let detail = format!(
-                "the job is {} and has no results yet; the header `Prefer: wait=n` waits up to n seconds, at most {}",
-                job.status.name(),
-                service.limits.wait_s
-            );
-            Err(Problem::new(ErrorCode::ResultNotReady, detail)
-                .with("job_status", job.status.name())
-                .with("progress", job.progress)
-                .with("retry_after_s", RETRY_AFTER_S)
-                .into())
-        }
-    }
 }
 
 /// The manifest: files with their hashes, statistics, provenance.
@@ -79,12 +38,12 @@ async fn manifest(service: Service, Id(id): Id, headers: HeaderMap) -> ApiResult
     conditional::document(&headers, json(StatusCode::OK, &result)).await
 }
 
-/// One file of the results.
+/// One file of the results, or one of its pictures, which is drawn when it is first asked for.
 #[utoipa::path(
     get, path = "/v1/jobs/{id}/results/{file}", operation_id = "download_result", tag = "jobs",
     params(
         ("id" = uuid::Uuid, Path, description = "the job"),
-        ("file" = String, Path, description = "its name in the manifest, e.g. skin.vtp"),
+        ("file" = String, Path, description = "its name in the manifest, e.g. skin.vtp or displacement.svg"),
         ("Prefer" = Option<String>, Header, description = "wait=n: wait at most n seconds for the end"),
     ),
     responses(
@@ -97,11 +56,10 @@ async fn manifest(service: Service, Id(id): Id, headers: HeaderMap) -> ApiResult
     )
 )]
 async fn file(service: Service, FileName { job, name }: FileName, headers: HeaderMap) -> ApiResult {
-    successful(&service, &job, &headers).await?;
-    let row = service.store.job_file(&job, &name).await?;
-    let row = row.ok_or_else(|| {
-        ApiError::new(ErrorCode::NoSuchOutput, "the job has no file of this name")
-    })?;
+    let found = successful(&service, &job, &headers).await?;
+    let Some(row) = service.store.job_file(&job, &name).await? else {
+        return drawn::picture(&service, &found, &name, &headers).await;
+    };
     guard::check_accept(&headers, row.media_type.split(';').next().unwrap_or_default())?;
     if conditional::is_known(&headers, &row.blob) {
         return Ok(conditional::not_modified(&row.blob));

@@ -1,6 +1,6 @@
 //! What every request may use, scoped to the tenant of its caller.
 
-use super::budget::{Budget, Held, Most};
+use super::budget::{Budget, Held, Most, Owner};
 use super::client::Client;
 use super::error::ApiResult;
 use super::hosts::Hosts;
@@ -11,7 +11,7 @@ use crate::library::meshes::Library;
 use crate::library::pictures::Pictures;
 use crate::library::responses::Responses;
 use crate::schema::Limits;
-use crate::store::Store;
+use crate::store::{Noting, Store};
 use crate::worker::process::slot_bytes;
 use std::sync::Arc;
 
@@ -33,6 +33,8 @@ pub struct Service {
     budget: Budget,
     /// Who asks, for what is counted for each client.
     client: Client,
+    /// Of a request that may change something.
+    noting: Option<Noting>,
     pub(super) rates: Arc<super::rate::Rates>,
     /// Who is believed, where no key is asked for.
     pub(super) hosts: Option<Arc<Hosts>>,
@@ -68,7 +70,7 @@ impl Service {
             responses: Responses::new(store.clone(), config.response_cache_bytes),
             pictures: Pictures::default(),
             limits: Arc::new(limits.clone()),
-            store,
+            store: store.with_most_waiting(limits.waiting_requests),
             library,
             streams: super::streams::Streams::new(limits.event_streams),
             parsing: Turns::new("parse", PARSED_AT_ONCE, waiting),
@@ -78,18 +80,25 @@ impl Service {
                 of_client: limits.client_bodies_bytes,
             }),
             client: Client::named(""),
+            noting: None,
             rates: Arc::new(super::rate::Rates::new(limits.requests_per_minute)),
             config: Arc::new(config),
         }
     }
 
-    /// The same service in the hand of a tenant, asked by one of its clients.
-    pub(super) fn in_hand_of(&self, tenant: &str, client: Client) -> Service {
+    /// The same service in the hand of a tenant, asked by one of its clients; what may change something is noted.
+    pub(super) fn in_hand_of(
+        &self,
+        tenant: &str,
+        client: Client,
+        noting: Option<Noting>,
+    ) -> Service {
         Service {
-            store: self.store.of_tenant(tenant),
+            store: self.store.asked_by(tenant, noting.as_ref()),
             library: self.library.of_tenant(tenant),
             responses: self.responses.of_tenant(tenant),
             client,
+            noting,
             ..self.clone()
         }
     }
@@ -105,9 +114,18 @@ impl Service {
         self.checking.turn(self.store.tenant()).await
     }
 
+    /// Until the client of a request has gone for which something was changed. Any other ends with its client.
+    pub(super) async fn client_has_gone(&self) {
+        match &self.noting {
+            Some(noting) => noting.left().await,
+            None => std::future::pending().await,
+        }
+    }
+
     /// The bytes of a request, none so far.
     pub(super) fn hold(&self) -> Held {
-        self.budget.hold(self.client.clone())
+        let tenant = self.store.tenant().into();
+        self.budget.hold(Owner { tenant, client: self.client.clone() })
     }
 
     /// Where bodies and copies lie.

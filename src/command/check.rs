@@ -6,7 +6,7 @@ use clap::Args;
 
 use super::documents::write;
 use super::failure::CommandError;
-use super::scene::SceneArguments;
+use super::scene::{PlanArgument, SceneArguments};
 use super::screen::print_check;
 use crate::jobs::check;
 use crate::schema::Limits;
@@ -16,6 +16,8 @@ use crate::schema::wire::canonical;
 pub struct Arguments {
     #[command(flatten)]
     scene: SceneArguments,
+    #[command(flatten)]
+    plan: PlanArgument,
     /// The folder for `check.json` and the picture `classes.svg`
     #[arg(long, visible_alias = "output", value_name = "FOLDER", help_heading = "Result")]
     out: Option<PathBuf>,
@@ -23,7 +25,7 @@ pub struct Arguments {
 
 /// Prints the counts of every class of nodes, and draws them where a folder is given.
 pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
-    let asked = arguments.scene.documents()?;
+    let asked = arguments.scene.documents(arguments.plan.plan.as_deref())?;
     let report = check(&asked.file.to_input(), &asked.sources, &Limits::default())?;
     print_check(&report.document);
     if let Some(out) = &arguments.out {

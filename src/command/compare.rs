@@ -16,23 +16,28 @@ use crate::schema::compare::document::{
 use crate::schema::predict::result::ResultDocument;
 use crate::schema::{CornerPair, Limits, Sphere};
 
+/// Groups of the arguments in the help.
+const WHAT: &str = "What is compared";
+const ALIGNED: &str = "Whether it is aligned";
+const MEASURED: &str = "How it is measured";
+
 #[derive(Debug, Args)]
 pub struct Arguments {
     /// The predicted surface, or a volume mesh whose boundary it is
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, help_heading = WHAT, value_name = "FILE")]
     prediction: PathBuf,
     /// The actual surface
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, help_heading = WHAT, value_name = "FILE")]
     actual: PathBuf,
     /// The folder for the result
     #[arg(long, visible_alias = "output", value_name = "FOLDER", help_heading = "Result")]
     out: PathBuf,
     /// Whether the actual surface is moved rigidly onto the prediction first
-    #[arg(long, default_value = "none")]
+    #[arg(long, help_heading = ALIGNED, default_value = "none")]
     align: AlignArgument,
     /// Only this sphere decides the alignment: x,y,z,r
     #[arg(
-        long,
+        long, help_heading = ALIGNED,
         value_name = "X,Y,Z,R",
         value_delimiter = ',',
         num_args = 1,
@@ -41,7 +46,7 @@ pub struct Arguments {
     mask_sphere_mm: Vec<f64>,
     /// Only this box decides the alignment: x0,y0,z0,x1,y1,z1
     #[arg(
-        long,
+        long, help_heading = ALIGNED,
         value_name = "X0,..,Z1",
         value_delimiter = ',',
         num_args = 1,
@@ -50,13 +55,13 @@ pub struct Arguments {
     )]
     mask_box_mm: Vec<f64>,
     /// Points for each mm2 of surface
-    #[arg(long, default_value_t = 1.0)]
+    #[arg(long, help_heading = MEASURED, default_value_t = 1.0)]
     samples_per_mm2: f64,
     /// Whether points of the same number are compared
-    #[arg(long, default_value = "auto")]
+    #[arg(long, help_heading = MEASURED, default_value = "auto")]
     node_wise: NodeWiseArgument,
     /// The unit of length of both meshes
-    #[arg(long, default_value = "mm")]
+    #[arg(long, help_heading = WHAT, default_value = "mm")]
     units: UnitArgument,
     #[command(flatten)]
     scale: ScaleArguments,

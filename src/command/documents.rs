@@ -4,13 +4,15 @@ use std::path::{Path, PathBuf};
 
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
+use serde_json::{Map, Value};
 
 use super::failure::CommandError;
-use super::files::relative;
+use super::files::{FileSource, relative};
 use crate::jobs::PredictInput;
 use crate::schema::wire::{canonical, strict};
-use crate::schema::{CaseDocument, Limits, PlanDocument, PredictDocument};
+use crate::schema::{
+    CaseDocument, ErrorCode, Faults, Limits, PlanDocument, Pointer, PredictDocument,
+};
 
 /// `case.json`: mesh ids are paths relative to the file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -23,6 +25,16 @@ pub struct CaseFile {
     pub spec: PredictDocument,
 }
 
+/// The documents that a command is about, and where they come from.
+pub struct Asked {
+    pub file: CaseFile,
+    /// The case file, or the mesh.
+    pub path: PathBuf,
+    /// From which mesh paths lead.
+    pub folder: PathBuf,
+    pub sources: FileSource,
+}
+
 /// Reads a document strictly.
 pub fn read<T: DeserializeOwned>(path: &Path) -> Result<T, CommandError> {
     let bytes = std::fs::read(path)
@@ -31,14 +43,56 @@ pub fn read<T: DeserializeOwned>(path: &Path) -> Result<T, CommandError> {
         .map_err(|problem| CommandError::Document { path: path.to_owned(), problem })
 }
 
-/// A spec of a job whose case stands beside it: as it is posted, and `case` may be left out.
-pub fn read_spec<T: DeserializeOwned>(path: &Path) -> Result<T, CommandError> {
+/// A spec of a job in which a member may be left out.
+pub fn read_spec_without<T: DeserializeOwned>(
+    path: &Path,
+    member: &str,
+) -> Result<T, CommandError> {
     let mut value: Value = read(path)?;
     if let Some(members) = value.as_object_mut() {
-        members.entry("case").or_insert_with(|| "".into());
+        members.entry(member).or_insert_with(|| "".into());
     }
     strict::from_value(value)
         .map_err(|problem| CommandError::Document { path: path.to_owned(), problem })
+}
+
+/// What the spec of a case file says of how tissue is computed, and every kind of job of one case may say.
+const OF_TISSUE: [&str; 6] = ["method", "element", "materials", "membrane", "tolerance", "budget"];
+
+/// What it says of the job and its files, and decides no number.
+const OF_FILES: [&str; 6] = ["kind", "case", "outputs", "range_mm", "keep", "tags"];
+
+/// The spec of another kind of job on a case file, as it is posted but for `case`: what it does not say of the tissue it has
+/// from the spec of the case file, so that all commands compute the same tissue.
+pub fn spec_beside<T: DeserializeOwned>(
+    path: Option<&Path>,
+    asked: &Asked,
+) -> Result<T, CommandError> {
+    let mut value = path.map_or_else(|| Ok(Value::Object(Map::new())), read::<Value>)?;
+    let stated = asked.file.stated();
+    let (of_tissue, others): (Map<_, _>, Map<_, _>) =
+        stated.into_iter().partition(|(name, _)| OF_TISSUE.contains(&name.as_str()));
+    refuse(&others, "only `predict` takes that", &asked.path)?;
+    if let Some(members) = value.as_object_mut() {
+        members.entry("case").or_insert_with(|| "".into());
+        for (name, stated) in of_tissue {
+            members.entry(name).or_insert(stated);
+        }
+    }
+    let path = path.unwrap_or(&asked.path);
+    strict::from_value(value)
+        .map_err(|problem| CommandError::Document { path: path.to_owned(), problem })
+}
+
+/// Refuses members of the spec of a case file.
+fn refuse(stated: &Map<String, Value>, why: &str, path: &Path) -> Result<(), CommandError> {
+    let mut faults = Faults::default();
+    for name in stated.keys() {
+        let at = Pointer::root().key("spec").key(name);
+        faults.add(&at, ErrorCode::UnknownField, format!("unknown field `{name}`: {why}"));
+    }
+    let refused = |problem| CommandError::Document { path: path.to_owned(), problem };
+    faults.into_result().map_err(refused)
 }
 
 /// Writes a file, and the folder it is in.
@@ -86,6 +140,26 @@ impl CaseFile {
         }
         write(&path, format!("{:#}\n", canonical::to_value(&self)))?;
         Ok(path)
+    }
+
+    /// What the spec says otherwise than one that says nothing, without what decides no number.
+    fn stated(&self) -> Map<String, Value> {
+        let members = |spec: &PredictDocument| match canonical::to_value(spec) {
+            Value::Object(members) => members,
+            _ => Map::new(),
+        };
+        let usual = members(&PredictDocument::default());
+        let stated = members(&self.spec).into_iter();
+        stated
+            .filter(|(name, value)| {
+                !OF_FILES.contains(&name.as_str()) && usual.get(name) != Some(value)
+            })
+            .collect()
+    }
+
+    /// Refuses a spec that says how it is to be computed, where that is said by something else.
+    pub fn refuse_spec(&self, why: &str, path: &Path) -> Result<(), CommandError> {
+        refuse(&self.stated(), why, path)
     }
 
     /// The job that these documents ask for; without a plan nothing moves.

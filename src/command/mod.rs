@@ -9,6 +9,7 @@ mod documents;
 mod failure;
 mod files;
 pub mod health;
+pub mod mesh;
 pub mod migrate;
 pub mod openapi;
 pub mod optimise;
@@ -44,6 +45,8 @@ pub struct Facies {
 enum Command {
     /// Predict a face that the program makes itself, and say how good the numbers are
     Demo(demo::Arguments),
+    /// Make a volume mesh of the soft tissue in a CT, with the segments that a plan cuts
+    Mesh(mesh::Arguments),
     /// Predict the skin after a plan; write it with its statistics into a folder
     Predict(predict::Arguments),
     /// Solve a case once, so that the skin of every further plan of its segments is a sum
@@ -77,7 +80,10 @@ enum Command {
 
 /// Headings of the help and the commands under each.
 const GROUPS: [(&str, &[&str]); 2] = [
-    ("Predict and plan", &["demo", "check", "predict", "response", "optimise", "compare", "study"]),
+    (
+        "Predict and plan",
+        &["demo", "mesh", "check", "predict", "response", "optimise", "compare", "study"],
+    ),
     ("Serve", &["serve", "worker", "migrate", "admin", "config", "health", "openapi"]),
 ];
 
@@ -110,6 +116,7 @@ fn help_template(command: &clap::Command) -> String {
 pub fn run(facies: &Facies) -> ExitCode {
     let result = match &facies.command {
         Command::Demo(arguments) => demo::run(arguments).map_err(CommandError::from),
+        Command::Mesh(arguments) => mesh::run(arguments),
         Command::Predict(arguments) => predict::run(arguments),
         Command::Response(arguments) => response::run(arguments),
         Command::Optimise(arguments) => optimise::run(arguments),

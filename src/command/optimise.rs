@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::documents::{read_spec, write};
+use super::documents::{spec_beside, write};
 use super::failure::CommandError;
 use super::scene::SceneArguments;
 use super::screen::{print_files, print_warnings, work_in_sight};
@@ -20,8 +20,8 @@ const PLAN_FILE: &str = "plan.json";
 pub struct Arguments {
     #[command(flatten)]
     scene: SceneArguments,
-    /// An optimise document with `targets` and `bounds`, as it is posted but for `case`. The plan and the spec of a case
-    /// file are not used
+    /// An optimise document with `targets` and `bounds`, as it is posted but for `case`. Method, element, materials,
+    /// membrane, tolerance and budget that it does not state are those of the case file, whose plan is not used
     #[arg(long, value_name = "FILE", help_heading = "How it is computed")]
     spec: PathBuf,
     /// The folder for the result
@@ -31,8 +31,8 @@ pub struct Arguments {
 
 /// Searches, writes the plan and its skin, and tells what is left of each target.
 pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
-    let asked = arguments.scene.documents()?;
-    let spec = read_spec(&arguments.spec)?;
+    let asked = arguments.scene.documents(None)?;
+    let spec = spec_beside(Some(&arguments.spec), &asked)?;
     let case = asked.file.case;
     let input = JobInput::Optimise(OptimiseInput { job: None, queue_s: None, case, spec });
     let limits = Limits::default();

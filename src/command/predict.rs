@@ -5,7 +5,8 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::failure::CommandError;
-use super::scene::SceneArguments;
+use super::mesh::ScanArguments;
+use super::scene::{PlanArgument, SceneArguments};
 use super::screen::{print_check, print_files, print_warnings, work_in_sight};
 use super::watch::Watch;
 use crate::jobs::{JobInput, Workplace, check};
@@ -19,13 +20,17 @@ const NO_STORE: &str =
     "`keep` asks to store meshes, and a command has no store: ask for files by `outputs` instead";
 
 /// A case alone has a check and no prediction.
-const NO_PLAN: &str = "there is no plan to predict: give `plan` beside the case in the file, or --plan with --mesh; \
+const NO_PLAN: &str = "there is no plan to predict: give `plan` beside the case in the file, or --plan with --mesh or --scan; \
                        `facies check` looks at a case alone";
 
 #[derive(Debug, Args)]
 pub struct Arguments {
     #[command(flatten)]
     scene: SceneArguments,
+    #[command(flatten)]
+    plan: PlanArgument,
+    #[command(flatten)]
+    scan: ScanArguments,
     /// The folder for the result
     #[arg(long, visible_alias = "output", value_name = "FOLDER", help_heading = "Result")]
     out: PathBuf,
@@ -33,7 +38,11 @@ pub struct Arguments {
 
 /// Tells what is held, solves, writes the result and the documents, and prints a table.
 pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
-    let mut asked = arguments.scene.documents()?;
+    let plan = arguments.plan.plan.as_deref();
+    let mut asked = match arguments.scan.is_given() {
+        true => arguments.scene.documents_of_scan(&arguments.scan, plan, &arguments.out)?,
+        false => arguments.scene.documents(plan)?,
+    };
     asked.file.spec.outputs.get_or_insert_with(usual_outputs);
     if !asked.file.spec.keep.is_empty() {
         return Err(CommandError::Usage(NO_STORE.to_owned()));

@@ -4,19 +4,19 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::documents::read_spec;
+use super::documents::spec_beside;
 use super::failure::CommandError;
 use super::scene::SceneArguments;
 use super::screen::{print_files, print_warnings, work_in_sight};
 use crate::jobs::{JobInput, ResponseInput, Workplace};
-use crate::schema::{Limits, PredictDocument, ResponseDocument};
+use crate::schema::{Limits, ResponseDocument};
 
 #[derive(Debug, Args)]
 pub struct Arguments {
     #[command(flatten)]
     scene: SceneArguments,
-    /// A response document, as it is posted but for `case`; without it method, element, materials and tolerance are
-    /// those of the spec of the case file. The plan of a case file is not used
+    /// A response document, as it is posted but for `case`. Method, element, materials, membrane, tolerance and budget that
+    /// it does not state are those of the case file, whose plan is not used
     #[arg(long, value_name = "FILE", help_heading = "How it is computed")]
     spec: Option<PathBuf>,
     /// A segment that the response can move; may be given several times; default: all
@@ -29,11 +29,8 @@ pub struct Arguments {
 
 /// Solves, writes columns and description, and tells what they hold.
 pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
-    let asked = arguments.scene.documents()?;
-    let mut spec = match &arguments.spec {
-        Some(path) => read_spec(path)?,
-        None => of_prediction(&asked.file.spec),
-    };
+    let asked = arguments.scene.documents(None)?;
+    let mut spec: ResponseDocument = spec_beside(arguments.spec.as_deref(), &asked)?;
     if !arguments.only.is_empty() {
         spec.segments.clone_from(&arguments.only);
     }
@@ -47,17 +44,4 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
     print_warnings(&done.result.warnings);
     print_files(&done.files, &arguments.out);
     Ok(())
-}
-
-/// The response of the tissue that a prediction has.
-fn of_prediction(spec: &PredictDocument) -> ResponseDocument {
-    ResponseDocument {
-        method: spec.method,
-        element: spec.element,
-        materials: spec.materials.clone(),
-        membrane: spec.membrane.clone(),
-        tolerance: spec.tolerance,
-        budget: spec.budget,
-        ..ResponseDocument::default()
-    }
 }

@@ -4,14 +4,16 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
-use super::documents::{CaseFile, read};
+use super::documents::{Asked, CaseFile, read};
 use super::failure::CommandError;
 use super::files::{FileSource, ScaleArguments};
+use super::mesh::ScanArguments;
 use super::selection::{segment, selection};
 use crate::schema::case::document::{FrameName, LengthUnit, SegmentDocument};
 use crate::schema::case::selection::SelectionDocument;
 use crate::schema::methods::ElementName;
 use crate::schema::{CaseDocument, MaterialDocument, PlanDocument, PredictDocument};
+use mechanics::prediction::ElementChoice;
 
 /// Groups of the arguments in the help.
 const SCENE: &str = "What is predicted";
@@ -22,14 +24,11 @@ const TISSUE: &str = "Tissue";
 #[derive(Debug, Args)]
 pub struct SceneArguments {
     /// The case, plan and spec documents in one file; mesh paths are relative to it
-    #[arg(long, value_name = "FILE", required_unless_present = "mesh", help_heading = SCENE)]
+    #[arg(long, value_name = "FILE", help_heading = SCENE)]
     pub case: Option<PathBuf>,
     /// The volume mesh: VTU, VTK or Gmsh
     #[arg(long, value_name = "FILE", conflicts_with = "case", help_heading = SCENE)]
     mesh: Option<PathBuf>,
-    /// The plan document; its segments are segments of the case or node sets of the mesh
-    #[arg(long, value_name = "FILE", conflicts_with = "case", help_heading = SCENE)]
-    plan: Option<PathBuf>,
     /// Nodes that are held: a set of the mesh, or the nodes where an integer array has a value, as in tag=4; may be given
     /// several times
     #[arg(long, value_name = "SET|ARRAY=VALUE", value_parser = selection, conflicts_with = "case", help_heading = BOUNDARY)]
@@ -58,6 +57,14 @@ pub struct SceneArguments {
     element: ElementArgument,
     #[command(flatten)]
     scale: ScaleArguments,
+}
+
+/// The movement that is predicted, of commands about one.
+#[derive(Debug, Args)]
+pub struct PlanArgument {
+    /// The plan document; its segments are segments of the case or node sets of the mesh
+    #[arg(long, value_name = "FILE", conflicts_with = "case", help_heading = SCENE)]
+    pub plan: Option<PathBuf>,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -96,33 +103,45 @@ impl UnitArgument {
     }
 }
 
-/// The documents, and the folder from which their mesh paths lead.
-pub struct Asked {
-    pub file: CaseFile,
-    pub folder: PathBuf,
-    pub sources: FileSource,
-}
-
 impl SceneArguments {
-    /// The documents that the arguments name or stand for.
-    pub fn documents(&self) -> Result<Asked, CommandError> {
-        let (file, folder) = match (&self.case, &self.mesh) {
+    /// The documents that the arguments name or stand for, with a plan where the command has one.
+    pub fn documents(&self, plan: Option<&Path>) -> Result<Asked, CommandError> {
+        let (file, path, folder) = match (&self.case, &self.mesh) {
             (Some(path), _) => {
                 let folder = path.parent().unwrap_or(Path::new("")).to_owned();
-                (read::<CaseFile>(path)?, folder)
+                (read::<CaseFile>(path)?, path, folder)
             }
-            (None, Some(mesh)) => (self.documents_of(mesh)?, PathBuf::new()),
+            (None, Some(mesh)) => (self.documents_of(mesh, plan)?, mesh, PathBuf::new()),
             (None, None) => {
-                let detail = "give --case, or --mesh and --plan";
+                let detail =
+                    "give --case, or --mesh and --plan, or a scan where a command takes one";
                 return Err(CommandError::Usage(detail.to_owned()));
             }
         };
         let sources = FileSource::new(&folder, file.case.units, self.scale);
-        Ok(Asked { file, folder, sources })
+        Ok(Asked { file, path: path.clone(), folder, sources })
     }
 
-    fn documents_of(&self, mesh: &Path) -> Result<CaseFile, CommandError> {
-        let plan = self.plan.as_deref().map(read::<PlanDocument>).transpose()?;
+    /// The documents of a scan that is meshed first; its mesh is written into `mesh` of the folder for the result.
+    pub fn documents_of_scan(
+        &self,
+        scan: &ScanArguments,
+        plan: Option<&Path>,
+        out: &Path,
+    ) -> Result<Asked, CommandError> {
+        if self.case.is_some() || self.mesh.is_some() {
+            let detail = "give one of --case, --mesh and --scan: a scan becomes a mesh and a case";
+            return Err(CommandError::Usage(detail.to_owned()));
+        }
+        let folder = out.join("mesh");
+        let mut file = scan.mesh(plan, &folder)?;
+        file.spec = self.spec();
+        let sources = FileSource::new(&folder, file.case.units, self.scale);
+        Ok(Asked { file, path: folder.clone(), folder, sources })
+    }
+
+    fn documents_of(&self, mesh: &Path, plan: Option<&Path>) -> Result<CaseFile, CommandError> {
+        let plan = plan.map(read::<PlanDocument>).transpose()?;
         let mut case = CaseDocument::of_volume(&mesh.to_string_lossy(), self.units.unit());
         case.frame = match self.frame {
             FrameArgument::Lps => FrameName::Lps,
@@ -132,16 +151,21 @@ impl SceneArguments {
         case.skin.clone_from(&self.skin);
         case.fixed.clone_from(&self.fixed);
         case.segments.clone_from(&self.segment);
-        let element = match self.element {
-            ElementArgument::Auto => ElementName::Auto,
-            ElementArgument::Plain => ElementName::Plain,
-            ElementArgument::MeanDilatation => ElementName::MeanDilatation,
-            ElementArgument::Stabilised => ElementName::Stabilised,
-            ElementArgument::Quadratic => ElementName::Quadratic,
+        Ok(CaseFile { case, plan, spec: self.spec() })
+    }
+
+    /// How tissue is computed, where no case file says it.
+    fn spec(&self) -> PredictDocument {
+        let choice = match self.element {
+            ElementArgument::Auto => ElementChoice::Auto,
+            ElementArgument::Plain => ElementChoice::Plain,
+            ElementArgument::MeanDilatation => ElementChoice::MeanDilatation,
+            ElementArgument::Stabilised => ElementChoice::Stabilised,
+            ElementArgument::Quadratic => ElementChoice::Quadratic,
         };
+        let element = ElementName::from(choice);
         let materials = self.material().map(|material| [("*".to_owned(), material)].into());
-        let spec = PredictDocument { element, materials, ..PredictDocument::default() };
-        Ok(CaseFile { case, plan, spec })
+        PredictDocument { element, materials, ..PredictDocument::default() }
     }
 
     fn material(&self) -> Option<MaterialDocument> {

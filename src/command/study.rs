@@ -29,50 +29,58 @@ const SMALL_SCENE: &str = "slab";
 const SMALL_PLAN: &str = "patch 4,0,8 mm";
 const SMALL_TISSUE: (f64, f64) = (15.0, 0.46);
 
+/// What a case file says for `predict` is said by a study for all of its cases.
+const OWN_WAYS: &str = "a study states itself how cases are computed: say so in an entry of `methods` or in `materials` of a \
+                        document for --spec, or by --method";
+
+/// Groups of the arguments in the help.
+const WHAT: &str = "What is solved";
+const RULES: &str = "What makes its outcome good or bad";
+
 #[derive(Debug, Args)]
 pub struct Arguments {
     /// The slab with one plan and one tissue and every method: a minute at most
-    #[arg(long, conflicts_with_all = ["scene", "case", "spec"])]
+    #[arg(long, help_heading = WHAT, conflicts_with_all = ["scene", "case", "spec"])]
     small: bool,
     /// A scene that the program makes itself: sphere, slab, slab_hex or half_head; may be given several times
-    #[arg(long, value_name = "NAME")]
+    #[arg(long, help_heading = WHAT, value_name = "NAME")]
     scene: Vec<String>,
     /// A file with a case and a plan, as for `predict`; may be given several times
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, help_heading = WHAT, value_name = "FILE")]
     case: Vec<PathBuf>,
     /// A method by its name; may be given several times; default: all
-    #[arg(long, value_name = "NAME")]
+    #[arg(long, help_heading = WHAT, value_name = "NAME")]
     method: Vec<String>,
     /// How often every edge is halved; may be given several times; default: 0 and 1
-    #[arg(long, value_name = "N")]
+    #[arg(long, help_heading = WHAT, value_name = "N")]
     level: Vec<u32>,
     /// Every combination of values of material constants: [REGION.]young_modulus_kpa=V,V or [REGION.]poisson_ratio=V,V;
     /// may be given several times
-    #[arg(long, value_name = "CONSTANT=V,V", value_parser = sweep::sweep)]
+    #[arg(long, help_heading = WHAT, value_name = "CONSTANT=V,V", value_parser = sweep::sweep)]
     sweep: Vec<Sweep>,
     /// Solves of each row, whose median time is told
-    #[arg(long, value_name = "N")]
+    #[arg(long, help_heading = WHAT, value_name = "N")]
     repeats: Option<u32>,
     /// Instead of a study: map where each method fails, what it does as movements, materials and meshes become
     /// impossible
-    #[arg(long, conflicts_with_all = [
+    #[arg(long, help_heading = WHAT, conflicts_with_all = [
         "small", "scene", "case", "method", "level", "sweep", "repeats", "spec", "baseline", "threshold_p95_mm",
     ])]
     stability: bool,
     /// A study document; the other arguments stand above it. Its cases are files as those of --case
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, help_heading = WHAT, value_name = "FILE")]
     spec: Option<PathBuf>,
     /// The folder for the report
     #[arg(long, visible_alias = "output", value_name = "FOLDER", help_heading = "Result")]
     out: PathBuf,
     /// The report.json of an earlier study: rows that are worse than there end the program with 1
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, help_heading = RULES, value_name = "FILE")]
     baseline: Option<PathBuf>,
     /// A folder in which rows are kept by their content: another threshold or baseline solves nothing again
-    #[arg(long, value_name = "FOLDER", conflicts_with = "stability")]
+    #[arg(long, help_heading = "Result", value_name = "FOLDER", conflicts_with = "stability")]
     keep: Option<PathBuf>,
     /// Rows with a larger p95 error of the skin end the program with 1
-    #[arg(long, value_name = "MM")]
+    #[arg(long, help_heading = RULES, value_name = "MM")]
     threshold_p95_mm: Option<f64>,
     #[command(flatten)]
     scale: ScaleArguments,
@@ -218,7 +226,9 @@ fn read_report(path: &Path) -> Result<ReportDocument, CommandError> {
 
 /// A case with mesh paths that lead from here; its plan goes into the reference, which gets the name of the file.
 fn read_case(path: &Path, reference: &mut CaseReference) -> Result<CaseDocument, CommandError> {
-    let CaseFile { mut case, plan, .. } = read(path)?;
+    let file: CaseFile = read(path)?;
+    file.refuse_spec(OWN_WAYS, path)?;
+    let CaseFile { mut case, plan, .. } = file;
     let mut plan = plan.unwrap_or_default();
     let folder = path.parent().unwrap_or(Path::new(""));
     let lead = |id: &mut String| *id = folder.join(&*id).to_string_lossy().into_owned();

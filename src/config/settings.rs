@@ -93,7 +93,7 @@ pub const SETTINGS: &[Setting] = &[
     setting(
         "clients-folder",
         "",
-        "folder whose files are served at /clients to everybody: the packages that clients/run builds; without it there are none",
+        "folder whose files are served at /clients to everybody: the packages that clients/build builds; without it there are none",
     ),
     setting(
         "requests-per-minute",
@@ -143,7 +143,7 @@ pub const SETTINGS: &[Setting] = &[
     setting(
         "waiting-requests",
         "256",
-        "requests of one tenant that may wait for their turn at the parser, and as many for the check of jobs; 1 to 100000",
+        "requests of one tenant that may wait for their turn at the parser, as many for the check of jobs, and as many to write; 1 to 100000",
     ),
     setting(
         "body-idle-s",

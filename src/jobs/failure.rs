@@ -6,8 +6,10 @@ use super::source::SourceError;
 use crate::schema::ErrorCode;
 use crate::schema::Problem;
 use crate::schema::job::{ErrorClass, JobErrorDocument};
+use mechanics::anatomy::AnatomyError;
 use mechanics::chart::PngError;
 use mechanics::format::WriteError;
+use mechanics::meshing::MeshingError;
 use mechanics::optimisation::OptimisationError;
 use mechanics::prediction::{InvertedCell, ModelError, SolverError};
 use mechanics::study::StudyError;
@@ -25,6 +27,8 @@ pub enum JobError {
     Prediction(#[from] ModelError),
     #[error("no plan was found: {0}")]
     Optimisation(#[from] OptimisationError),
+    #[error("the scan could not be meshed: {0}")]
+    Anatomy(AnatomyError),
     #[error("the study could not be run: {0}")]
     Study(#[from] StudyError),
     #[error("{which} ran out: {allowed} {unit} are allowed")]
@@ -51,6 +55,7 @@ impl JobError {
     pub fn class(&self) -> ErrorClass {
         match self {
             JobError::Refused(_) | JobError::Alignment(_) => ErrorClass::Input,
+            JobError::Anatomy(error) => class_of(error),
             JobError::Prediction(ModelError::Solver(SolverError::Stopped))
             | JobError::Cancelled => ErrorClass::Cancelled,
             JobError::Prediction(ModelError::Solver(SolverError::OverBudget { .. }))
@@ -77,6 +82,7 @@ impl JobError {
         match self {
             JobError::Refused(problem) => problem.code,
             JobError::Prediction(error) => error.into(),
+            JobError::Anatomy(error) => error.into(),
             JobError::Budget { .. } => ErrorCode::BudgetExceeded,
             JobError::Cancelled => ErrorCode::Cancelled,
             JobError::Alignment(_) => ErrorCode::AlignmentFailed,
@@ -130,6 +136,18 @@ impl JobError {
         match value {
             Value::Object(members) => members,
             _ => Map::new(),
+        }
+    }
+}
+
+fn class_of(error: &AnatomyError) -> ErrorClass {
+    match error {
+        AnatomyError::Meshing(MeshingError::Broken { .. } | MeshingError::NotFinite { .. }) => {
+            ErrorClass::Numerical
+        }
+        AnatomyError::Meshing(MeshingError::Cancelled) => ErrorClass::Cancelled,
+        AnatomyError::Image(_) | AnatomyError::Bone(_) | AnatomyError::Meshing(_) => {
+            ErrorClass::Input
         }
     }
 }

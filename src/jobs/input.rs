@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::compare::CompareInput;
+use super::meshing::MeshingInput;
 use super::optimise::OptimiseInput;
 use super::predict::PredictInput;
 use super::response::ResponseInput;
@@ -19,6 +20,7 @@ pub enum JobInput {
     Compare(CompareInput),
     Response(ResponseInput),
     Optimise(OptimiseInput),
+    Meshing(MeshingInput),
     Study(StudyInput),
 }
 
@@ -29,6 +31,7 @@ impl JobInput {
             JobInput::Compare(_) => JobKind::Compare,
             JobInput::Response(_) => JobKind::Response,
             JobInput::Optimise(_) => JobKind::Optimise,
+            JobInput::Meshing(_) => JobKind::Mesh,
             JobInput::Study(input) => match input.spec.kind {
                 StudyKind::Study => JobKind::Study,
                 StudyKind::Batch => JobKind::Batch,
@@ -44,6 +47,7 @@ impl JobInput {
             JobInput::Compare(input) => (input.job, input.queue_s) = (job, queue_s),
             JobInput::Response(input) => (input.job, input.queue_s) = (job, queue_s),
             JobInput::Optimise(input) => (input.job, input.queue_s) = (job, queue_s),
+            JobInput::Meshing(input) => (input.job, input.queue_s) = (job, queue_s),
             JobInput::Study(input) => (input.job, input.queue_s) = (job, queue_s),
         }
         self

@@ -2,9 +2,11 @@
 
 mod clock;
 mod compare;
+mod drawing;
 mod failure;
 mod fetch;
 mod input;
+mod meshing;
 mod optimise;
 mod output;
 mod predict;
@@ -16,8 +18,10 @@ mod source;
 pub mod study;
 
 pub use compare::CompareInput;
+pub use drawing::Finished;
 pub use failure::JobError;
 pub use input::JobInput;
+pub use meshing::MeshingInput;
 pub use optimise::OptimiseInput;
 pub use output::{JobOutput, MadeMesh, Workplace};
 pub use predict::{CheckReport, PredictInput, check};

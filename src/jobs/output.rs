@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::source::{MeshSource, StoredShape};
 use crate::schema::Limits;
-use crate::schema::predict::keep::KeptName;
+use crate::schema::predict::keep::MadeName;
 use crate::schema::predict::result::{FileDocument, ResultDocument};
 use mechanics::mesh::Frame;
 
@@ -22,7 +22,9 @@ pub struct JobOutput {
 /// A mesh that a job leaves for others, in mm.
 #[derive(Clone, Debug)]
 pub struct MadeMesh {
-    pub what: KeptName,
+    pub what: MadeName,
+    /// Of a bone, that of its segment.
+    pub name: Option<String>,
     pub shape: StoredShape,
     pub frame: Frame,
 }

@@ -1,7 +1,5 @@
 //! The job that builds a plan response: its columns, their description, and the skin they move.
 
-use std::collections::BTreeMap;
-
 use serde::{Deserialize, Serialize};
 
 use super::clock::Observed;
@@ -134,19 +132,8 @@ pub fn response_job(
     let mut provenance = origin.provenance(&clock);
     let mesh = mesh_summary(&prepared.scene.mesh, &prepared.quality);
     add_method(&mut provenance, input.spec.method, mesh, solver);
-    let result = ResultDocument {
-        job: input.job.clone(),
-        files: folder.files.clone(),
-        statistics: None,
-        comparison: None,
-        optimisation: None,
-        study: None,
-        kept: Vec::new(),
-        numerical_error_mm: None,
-        reaction_mn: BTreeMap::new(),
-        provenance,
-        warnings: warning_documents(prepared.warnings.iter().chain(&prepared.scene.warnings)),
-    };
+    let warnings = warning_documents(prepared.warnings.iter().chain(&prepared.scene.warnings));
+    let result = ResultDocument::new(input.job.clone(), &folder.files, provenance, warnings);
     folder.add(OutputName::ResultJson, &encode_result(&result)?)?;
     Ok(JobOutput { result, files: folder.files, meshes: Vec::new() })
 }

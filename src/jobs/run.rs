@@ -3,6 +3,7 @@
 use super::compare::compare_job;
 use super::failure::JobError;
 use super::input::JobInput;
+use super::meshing::meshing_job;
 use super::optimise::optimise_job;
 use super::output::{JobOutput, Workplace};
 use super::predict::predict_job;
@@ -21,6 +22,7 @@ pub fn work(
         JobInput::Compare(input) => compare_job(input, place, progress),
         JobInput::Response(input) => response_job(input, place, progress),
         JobInput::Optimise(input) => optimise_job(input, place, progress),
+        JobInput::Meshing(input) => meshing_job(input, place, progress),
         JobInput::Study(input) => study_job(input, place, progress),
     }
 }

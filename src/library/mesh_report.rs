@@ -5,15 +5,27 @@ use std::collections::BTreeMap;
 use crate::schema::mesh::{IgnoredArrayDocument, ImageReport, MeshKind, MeshReport};
 use crate::schema::{CornerPair, Triple, WarningDocument};
 use mechanics::format::{Mesh, ReadMesh};
-use mechanics::image::{ImageVolume, Voxels};
+use mechanics::image::{ImageVolume, LabelMap, Voxels, scan_report};
+use mechanics::mesh::check::several_components;
+use mechanics::mesh::connectivity::Faces;
 use mechanics::mesh::quality::quality;
-use mechanics::mesh::{IgnoredArray, Vector, VolumeMesh};
+use mechanics::mesh::{Frame, IgnoredArray, Vector, VolumeMesh, Warning};
+
+/// An image that is smaller, in mm along any axis, shows no head.
+const HEAD_MM: f64 = 80.0;
+/// One with fewer voxels along any axis does not either.
+const HEAD_VOXELS: usize = 16;
+/// Segmentation programs make no more regions.
+const MOST_REGIONS: usize = 500;
 
 /// What a mesh file holds, in the units of the file.
 pub fn mesh_report(read: &ReadMesh) -> MeshReport {
+    let mut warnings: Vec<Warning> = read.warnings.clone();
     let (kind, (low, high), nodes, triangles) = match &read.mesh {
         Mesh::Volume(volume) => {
-            let boundary = volume.boundary_faces();
+            let faces = Faces::new(volume);
+            let boundary = volume.boundary_of(&faces);
+            warnings.extend(several_components(volume, &faces));
             let triangles = boundary.iter().map(|face| face.triangles().count()).sum();
             (MeshKind::Volume, bounding_box(&volume.nodes), volume.nodes.len(), triangles)
         }
@@ -41,11 +53,14 @@ pub fn mesh_report(read: &ReadMesh) -> MeshReport {
         ignored_because: read.ignored.listed.iter().map(ignored).collect(),
         min_quality: None,
         image: None,
-        warnings: read.warnings.iter().map(WarningDocument::from).collect(),
+        warnings: warnings.iter().map(WarningDocument::from).collect(),
     };
     match &read.mesh {
         Mesh::Volume(volume) => describe(volume, &mut report),
-        Mesh::Image(image) => report.image = Some(image_report(image)),
+        Mesh::Image(image) => {
+            report.image = Some(image_report(image));
+            report.warnings.extend(findings(image, read.frame.unwrap_or_default()));
+        }
         Mesh::Surface(_) => {}
     }
     report
@@ -74,6 +89,23 @@ fn image_report(image: &ImageVolume) -> ImageReport {
         highest_hu,
         kept_as: kept_as.to_owned(),
     }
+}
+
+/// What a technician should know of a scan; nothing of an image that is none of a head.
+fn findings(image: &ImageVolume, frame: Frame) -> Vec<WarningDocument> {
+    let (size, spacing) = (image.size(), image.spacing());
+    let is_head = (0..3)
+        .all(|axis| size[axis] >= HEAD_VOXELS && size[axis] as f64 * spacing[axis] >= HEAD_MM);
+    if !is_head || is_label_map(image) {
+        return Vec::new();
+    }
+    scan_report(image, frame).findings.iter().map(WarningDocument::from).collect()
+}
+
+/// Few whole numbers from 0: regions, and no measurement.
+fn is_label_map(image: &ImageVolume) -> bool {
+    image.range().0 >= 0.0
+        && LabelMap::of(image).is_ok_and(|map| map.regions().len() <= MOST_REGIONS)
 }
 
 fn describe(volume: &VolumeMesh, report: &mut MeshReport) {

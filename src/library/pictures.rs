@@ -1,4 +1,4 @@
-//! The pictures of checks, drawn once: kept in memory while there is room, the oldest given up first.
+//! The pictures of checks and of jobs, drawn once: kept in memory while there is room, the oldest given up first.
 
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -8,41 +8,55 @@ use bytes::Bytes;
 /// Bytes of all pictures together.
 const ROOM: usize = 32 << 20;
 
-/// What was drawn, by its case and by the hash of everything that was asked of it.
+/// What was drawn: of a case by the hash of everything that was asked of it, of a job by its name.
 #[derive(Clone, Default)]
 pub struct Pictures {
     kept: Arc<Mutex<VecDeque<Picture>>>,
 }
 
 struct Picture {
-    case: String,
+    /// The case or the job.
+    of: String,
     question: String,
+    /// The case with which it is erased.
+    case: String,
     svg: Bytes,
 }
 
 impl Pictures {
-    /// A picture that was drawn before. Whether its case is still there is for its caller to know.
-    pub fn get(&self, case: &str, question: &str) -> Option<Bytes> {
+    /// A picture that was drawn before. Whether its case or job is still there is for its caller to know.
+    pub fn get(&self, of: &str, question: &str) -> Option<Bytes> {
         let kept = self.kept();
         let mut pictures = kept.iter();
-        let found = pictures.find(|kept| kept.case == case && kept.question == question);
+        let found = pictures.find(|kept| kept.of == of && kept.question == question);
         found.map(|kept| kept.svg.clone())
     }
 
+    /// Keeps the picture of a case.
     pub fn keep(&self, case: &str, question: String, svg: Bytes) {
-        if svg.len() > ROOM || self.get(case, &question).is_some() {
+        self.put(Picture { of: case.to_owned(), question, case: case.to_owned(), svg });
+    }
+
+    /// Keeps the picture of a job, which goes with the case of the job as well.
+    pub fn keep_of_job(&self, job: &str, case: Option<&str>, name: &str, svg: Bytes) {
+        let case = case.unwrap_or_default().to_owned();
+        self.put(Picture { of: job.to_owned(), question: name.to_owned(), case, svg });
+    }
+
+    fn put(&self, picture: Picture) {
+        if picture.svg.len() > ROOM || self.get(&picture.of, &picture.question).is_some() {
             return;
         }
         let mut kept = self.kept();
-        kept.push_back(Picture { case: case.to_owned(), question, svg });
+        kept.push_back(picture);
         while kept.iter().map(|picture| picture.svg.len()).sum::<usize>() > ROOM {
             kept.pop_front();
         }
     }
 
-    /// Gives up the pictures of a case that was erased.
-    pub fn forget(&self, case: &str) {
-        self.kept().retain(|picture| picture.case != case);
+    /// Gives up the pictures of a case or a job that was erased.
+    pub fn forget(&self, id: &str) {
+        self.kept().retain(|picture| picture.case != id && picture.of != id);
     }
 
     fn kept(&self) -> MutexGuard<'_, VecDeque<Picture>> {
@@ -67,6 +81,20 @@ mod tests {
         pictures.forget("a");
         assert_eq!((shown("a", "still"), shown("a", "moved")), (None, None));
         assert_eq!(shown("b", "still"), Some(Bytes::from_static(b"2")));
+    }
+
+    #[test]
+    fn the_pictures_of_a_job_go_with_it_and_with_its_case() {
+        let pictures = Pictures::default();
+        let there = || ["1", "2"].map(|job| pictures.get(job, "classes.svg").is_some());
+        for job in ["1", "2"] {
+            pictures.keep_of_job(job, Some("a"), "classes.svg", Bytes::from_static(b"x"));
+        }
+        assert_eq!(there(), [true, true]);
+        pictures.forget("1");
+        assert_eq!(there(), [false, true]);
+        pictures.forget("a");
+        assert_eq!(there(), [false, false]);
     }
 
     #[test]

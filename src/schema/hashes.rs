@@ -4,6 +4,7 @@ use serde_json::{Value, json};
 
 use super::case::document::CaseDocument;
 use super::compare::document::CompareDocument;
+use super::meshing::document::MeshingDocument;
 use super::optimise::document::OptimiseDocument;
 use super::plan::document::PlanDocument;
 use super::predict::document::PredictDocument;
@@ -114,6 +115,16 @@ pub fn compare_hash(spec: &CompareDocument, content_of: &dyn Fn(&str) -> Option<
     hash(json!({ "spec": to_value(&spec) }))
 }
 
+/// The hash of a meshing: the content of the scan in place of its id, tags left out.
+pub fn meshing_hash(spec: &MeshingDocument, scan: &str) -> String {
+    let mut spec = spec.clone();
+    scan.clone_into(&mut spec.scan);
+    hash(json!({ "spec": spec.content() }))
+}
+
+/// Changes where the description of a response tells what earlier ones did not, so that these are not taken for it.
+const DESCRIPTION_REVISION: u32 = 2;
+
 /// The key of a response: the case but for its name, tags, landmarks and skin regions, contents of meshes in
 /// place of their ids. The case's own id is part of it, so that a response goes when its case is erased.
 pub fn response_key(
@@ -132,6 +143,7 @@ pub fn response_key(
     hash(json!({
         "case": to_value(&case),
         "spec": spec.content(),
+        "description": DESCRIPTION_REVISION,
     }))
 }
 
@@ -147,6 +159,6 @@ mod tests {
     fn every_hash_of_a_job_and_the_key_of_a_response_are_made_in_one_place() {
         let code = include_str!("hashes.rs").split("#[cfg(test)]").next().unwrap_or_default();
         let made = code.matches("hash(json!(").count();
-        assert_eq!((made, code.matches("sha256_hex(").count()), (5, 0));
+        assert_eq!((made, code.matches("sha256_hex(").count()), (6, 0));
     }
 }

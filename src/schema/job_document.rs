@@ -8,6 +8,7 @@ use utoipa::ToSchema;
 
 use crate::schema::code::ErrorCode;
 use crate::schema::compare::document::CompareDocument;
+use crate::schema::meshing::document::MeshingDocument;
 use crate::schema::optimise::document::OptimiseDocument;
 use crate::schema::predict::document::PredictDocument;
 use crate::schema::response::ResponseDocument;
@@ -60,6 +61,7 @@ job_kinds! {
     Compare, "compare", CompareDocument, 0, false;
     Response, "response", ResponseDocument, 0, false;
     Optimise, "optimise", OptimiseDocument, 0, false;
+    Mesh, "mesh", MeshingDocument, 0, false;
     Study, "study", StudyDocument, 1, true;
     Batch, "batch", StudyDocument, 1, true;
 }
@@ -128,6 +130,7 @@ pub enum JobDocument {
     Compare(CompareDocument),
     Response(ResponseDocument),
     Optimise(OptimiseDocument),
+    Mesh(MeshingDocument),
     Study(StudyDocument),
 }
 
@@ -135,6 +138,7 @@ impl JobDocument {
     /// Whether it leaves meshes behind that others may use.
     pub fn keeps_meshes(&self) -> bool {
         match self {
+            JobDocument::Mesh(_) => true,
             JobDocument::Predict(document) => !document.keep.is_empty(),
             JobDocument::Compare(_)
             | JobDocument::Response(_)
@@ -156,6 +160,7 @@ impl JobDocument {
             JobKind::Compare => strict::from_value(value).map(JobDocument::Compare),
             JobKind::Response => strict::from_value(value).map(JobDocument::Response),
             JobKind::Optimise => strict::from_value(value).map(JobDocument::Optimise),
+            JobKind::Mesh => strict::from_value(value).map(JobDocument::Mesh),
             JobKind::Study | JobKind::Batch => strict::from_value(value).map(JobDocument::Study),
         }
     }

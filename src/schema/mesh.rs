@@ -16,7 +16,7 @@ pub struct MeshDocument {
     /// Of the bytes that were sent, in hexadecimal.
     pub sha256: String,
     pub bytes: u64,
-    /// As sniffed from the bytes, e.g. `vtu`, `stl`, `gmsh`, `nrrd`.
+    /// As sniffed from the bytes, e.g. `vtu`, `stl`, `gmsh`, `nrrd`, `dicom`.
     pub format: String,
     /// RFC 3339, UTC.
     pub created: String,

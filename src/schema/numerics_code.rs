@@ -1,8 +1,10 @@
 //! The codes of what the numerics say. They have words of their own, which are those of the codes.
 
 use super::code::ErrorCode;
+use mechanics::anatomy::AnatomyError;
 use mechanics::format::FormatError;
 use mechanics::mesh::SearchError;
+use mechanics::meshing::MeshingError;
 use mechanics::prediction::{ModelError, SceneErrorCode, SolverError};
 use mechanics::validation::ComparisonError;
 
@@ -93,6 +95,27 @@ impl From<&ComparisonError> for ErrorCode {
             ComparisonError::TooManySamples { .. } => ErrorCode::TooManySamples,
             ComparisonError::Statistics(_) => ErrorCode::MeshDegenerate,
             ComparisonError::Cancelled => ErrorCode::Cancelled,
+        }
+    }
+}
+
+impl From<&AnatomyError> for ErrorCode {
+    fn from(error: &AnatomyError) -> Self {
+        match error {
+            AnatomyError::Image(_) | AnatomyError::Meshing(MeshingError::Empty { .. }) => {
+                ErrorCode::NoTissue
+            }
+            AnatomyError::Bone(_) => ErrorCode::SegmentNotFound,
+            AnatomyError::Meshing(MeshingError::TooMany { .. } | MeshingError::TooFine { .. }) => {
+                ErrorCode::MeshLimits
+            }
+            AnatomyError::Meshing(MeshingError::Setting { .. }) => ErrorCode::OutOfRange,
+            AnatomyError::Meshing(MeshingError::Cancelled) => ErrorCode::Cancelled,
+            AnatomyError::Meshing(
+                MeshingError::Bounds { .. }
+                | MeshingError::NotFinite { .. }
+                | MeshingError::Broken { .. },
+            ) => ErrorCode::MeshingFailed,
         }
     }
 }

@@ -7,6 +7,7 @@ use utoipa::ToSchema;
 
 use super::code::ErrorCode;
 use super::methods::{self, ElementName, MethodName};
+use super::response_part::ResponsePartDocument;
 use super::{CornerPair, Triple, WarningDocument};
 use crate::schema::case::document::FrameName;
 use crate::schema::case::material::{MaterialDocument, MaterialDocuments};
@@ -20,10 +21,12 @@ use crate::schema::wire::canonical;
 use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::limits::Limits;
 use crate::schema::wire::problem::Problem;
+use mechanics::boundary::ConnectedPart;
+use mechanics::mesh::ignored::listed;
 use mechanics::mesh::{Frame, Vector};
 use mechanics::plan::RigidMovement;
 use mechanics::plan::doubt::{MovedSegment, beyond_face, nothing_moves, suspect_units};
-use mechanics::prediction::{are_alike, normal_turned};
+use mechanics::prediction::{GoesAlong, goes_along, normal_turned};
 use mechanics::response::linearity::LINEAR_RANGE_MM;
 use mechanics::response::{Columns, Linearity, ResponseError, ResponseSegment};
 
@@ -160,9 +163,12 @@ pub struct ResponseDescription {
     /// From one corner of that box to the other: no segment goes farther. 0 where it is not known.
     #[serde(default)]
     pub mesh_diagonal_mm: f64,
-    /// Whether plans may move all segments alike where nothing stays.
+    /// Whether plans may carry the tissue along as one.
     #[serde(default)]
     pub allow_unfixed: bool,
+    /// What hangs together, and what holds it.
+    #[serde(default)]
+    pub parts: Vec<ResponsePartDocument>,
 }
 
 /// A segment that the columns can move: x' = x + (R - I)(x - centre) + t.
@@ -222,6 +228,8 @@ impl ResponseDescription {
     pub fn new(columns: &Columns, origin: ResponseOrigin) -> Self {
         let segments = columns.segments.iter().zip(&columns.linearity.boxes);
         let segments = segments.zip(&columns.carries_wall);
+        let names: Vec<String> = columns.segments.iter().map(|of| of.name.clone()).collect();
+        let parts = columns.parts.iter().map(|part| ResponsePartDocument::new(part, &names));
         ResponseDescription {
             job: origin.job,
             key: origin.key,
@@ -246,6 +254,7 @@ impl ResponseDescription {
             mesh_centre_mm: origin.mesh_centre.into(),
             mesh_diagonal_mm: columns.diagonal,
             allow_unfixed: columns.allow_unfixed,
+            parts: parts.collect(),
         }
     }
 
@@ -276,9 +285,11 @@ impl ResponseDescription {
     ) -> Result<Vec<RigidMovement>, Problem> {
         let mut faults = Faults::default();
         let at = Pointer::root().key("plan");
-        for (name, is_empty) in
-            [("prescribed", plan.prescribed.is_empty()), ("loads", plan.loads.is_empty())]
-        {
+        for (name, is_empty) in [
+            ("prescribed", plan.prescribed.is_empty()),
+            ("loads", plan.loads.is_empty()),
+            ("osteotomy", plan.osteotomy.is_none()),
+        ] {
             if !is_empty {
                 let detail = format!("a response knows movements of segments and no `{name}`");
                 faults.add(&at.key(name), ErrorCode::NotInResponse, detail);
@@ -317,15 +328,21 @@ impl ResponseDescription {
             let at = at.key("segments");
             return Err(Problem::at(&at, ErrorCode::PlanOutOfRange, beyond.to_string()));
         }
-        let may_go = self.allow_unfixed || self.linearity.something_stays;
-        let corners = self.whole_box();
-        let still = movements.iter().all(|movement| *movement == RigidMovement::default());
-        if !may_go && !still && are_alike(movements, &corners) {
-            let detail = "nothing stays, and the plan moves all segments alike: the tissue would go with them as \
-                          one; name in `fixed` of the case what stays, or allow it with `allow_unfixed`";
-            return Err(Problem::at(at, ErrorCode::NothingHeld, detail));
+        match self.goes_along(movements).refused.into_iter().next() {
+            Some(detail) => Err(Problem::at(at, ErrorCode::NothingHeld, detail)),
+            None => Ok(()),
         }
-        Ok(())
+    }
+
+    /// The parts that a plan would carry along as one, where that is not allowed.
+    fn goes_along(&self, movements: &[RigidMovement]) -> GoesAlong {
+        if self.allow_unfixed {
+            return GoesAlong::default();
+        }
+        let segments: Vec<String> = self.segments.iter().map(|of| of.name.clone()).collect();
+        let parts: Vec<ConnectedPart> =
+            self.parts.iter().map(|part| part.to_part(&segments)).collect();
+        goes_along(&parts, |segment| movements[segment as usize])
     }
 
     /// What a reader of the skin of a plan must know of the plan.
@@ -337,6 +354,7 @@ impl ResponseDescription {
             turned.filter_map(|(segment, movement)| normal_turned(&segment.name, movement));
         let warnings = still.then(nothing_moves).into_iter();
         let warnings = warnings.chain(suspect_units(&self.moved(movements))).chain(turned);
+        let warnings = warnings.chain(self.goes_along(movements).told);
         warnings.map(|warning| WarningDocument::from(&warning)).collect()
     }
 
@@ -350,26 +368,14 @@ impl ResponseDescription {
             .collect()
     }
 
-    /// The box around all segments.
-    fn whole_box(&self) -> [Vector; 2] {
-        let boxes = self.segments.iter().map(ResponseSegmentDocument::corners);
-        let around = boxes.reduce(|[low, high], [other_low, other_high]| {
-            [low.inf(&other_low), high.sup(&other_high)]
-        });
-        around.unwrap_or_default()
-    }
-
     fn check_name(&self, name: &str, moves: bool, at: &Pointer, faults: &mut Faults) {
         let mut known = self.segments.iter().map(|segment| segment.name.trim());
         if known.any(|known| known == name) {
             return;
         }
         if !self.staying.iter().any(|staying| staying.trim() == name) {
-            let names: Vec<&str> = self.segments.iter().map(|other| other.name.as_str()).collect();
-            let detail = format!(
-                "the case has no segment {name:?}; the response moves: {}",
-                names.join(", ")
-            );
+            let names = listed(self.segments.iter().map(|other| &other.name));
+            let detail = format!("the case has no segment {name:?}; the response moves {names}");
             faults.add(at, ErrorCode::UnknownSegment, detail);
         } else if moves {
             let detail =

@@ -56,13 +56,15 @@ impl AuditRow {
 }
 
 impl Store {
-    /// Rows after a number, of a tenant or, where it is empty, of all: everything that has ended by now is there.
+    /// Rows after a number, of a tenant or, where it is empty, of all: everything that has ended by now in this process is
+    /// there.
     pub async fn audit(
         &self,
         after: i64,
         tenant: &str,
         limit: i64,
     ) -> Result<Vec<AuditRow>, StoreError> {
+        self.tell_deeds().await?;
         self.chain_deeds().await?;
         self.rows(after, tenant, limit).await
     }
@@ -84,6 +86,7 @@ impl Store {
 
     /// Looks at every row whether it follows from the one before.
     pub async fn check_audit(&self) -> Result<Chain, StoreError> {
+        self.tell_deeds().await?;
         self.chain_deeds().await?;
         let end = query(LOOK).fetch_optional(self.database.reader()).await?;
         let (number, hash): (i64, String) = match end {

@@ -2,20 +2,19 @@
 //! ended.
 
 use super::audit::AuditRow;
-use super::database::{Row, Transaction, query};
+use super::database::{Database, Row, query};
 use super::deed::Deed;
-use super::open_deeds::{Begun, End, Open};
+use super::notes::{Note, Told, Wanted};
+use super::open_deeds::{Begun, End};
 use super::{Store, StoreError};
 
 /// How a deed ended of which nobody said so: whoever did it died, or lost the database for an hour.
 const UNKNOWN: &str = "unknown";
 
-const BEGIN: &str = "INSERT INTO deeds (id, at, alive, tenant, actor, action, object, request) \
-     VALUES ($1, (SELECT now_ms FROM clock), (SELECT now_ms FROM clock), $2, $3, $4, $5, $6)";
-const LIVE: &str = "UPDATE deeds SET alive = (SELECT now_ms FROM clock) \
-     WHERE id = $1 AND alive < (SELECT now_ms FROM clock) - $2";
-const END: &str = "UPDATE deeds SET object = $2, outcome = $3 WHERE id = $1";
 /// Whoever does it says every minute that he lives.
+const LIVED: &str =
+    "SELECT id FROM deeds WHERE outcome IS NULL AND alive < (SELECT now_ms FROM clock) - 60000";
+const LIVE: &str = "UPDATE deeds SET alive = (SELECT now_ms FROM clock) WHERE id = $1";
 const ENDED: &str = "SELECT id, at, tenant, actor, action, object, request, outcome FROM deeds \
      WHERE outcome IS NOT NULL OR COALESCE(alive, at) < (SELECT now_ms FROM clock) - 3600000 \
      ORDER BY at, id LIMIT $1";
@@ -29,26 +28,34 @@ const APPEND: &str = "INSERT INTO audit \
      VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9)";
 const MOVE_END: &str = "UPDATE audit_end SET number = $1, hash = $2 WHERE one = 1";
 
-/// Deeds that are taken into the chain in one transaction.
-const AT_ONCE: i64 = 200;
+/// Deeds that are taken into the chain in one transaction, for whose end others wait.
+const AT_ONCE: i64 = 100;
 
-/// How often a process says of a deed that it lives, in ms.
-const LIVES_EVERY: i64 = 60_000;
+/// The line of writers in which the audit log stands. No tenant has such a name.
+const LINE: &str = "the audit log";
 
 impl Store {
     /// Notes what is about to be done. Whoever cannot note it must not do it. The note reaches the disk no later than
     /// what is done.
     pub async fn begin_deed(&self, deed: &Deed) -> Result<Begun, StoreError> {
+        self.begin_wanted(deed, Box::new(|| true)).await
+    }
+
+    /// The same where it is still wanted when its turn has come.
+    pub(super) async fn begin_wanted(
+        &self,
+        deed: &Deed,
+        is_wanted: Wanted,
+    ) -> Result<Begun, StoreError> {
         let id = uuid::Uuid::now_v7().to_string();
         let begun = self.open_deeds.begin(&id, deed);
-        let mut transaction = self.database.begin_unflushed().await?;
-        insert(&mut transaction, &id, deed).await?;
-        transaction.commit().await?;
+        let note = Note::Begin { id, deed: deed.clone() };
+        heard(self.notes.note(&self.of_audit(), note, is_wanted)).await?;
         Ok(begun)
     }
 
     /// Notes how it ended, and the id of what it was done to, which may not have been there before. What the database does
-    /// not take is kept for `tell_deeds`.
+    /// not take is kept for `tell_deeds`; what it has taken is on its disk.
     pub async fn end_deed(
         &self,
         begun: Begun,
@@ -57,33 +64,40 @@ impl Store {
     ) -> Result<(), StoreError> {
         let end = End { object: object.to_owned(), outcome: outcome.to_owned() };
         let id = self.open_deeds.end(begun, end);
-        self.tell(&id).await
+        heard(self.note_end(id)).await
+    }
+
+    /// Keeps for `tell_deeds` what was asked for and changed nothing. Nobody waits for its row, and nobody else does who
+    /// writes.
+    pub fn deed_without_effect(&self, deed: Deed, outcome: &str) -> Result<(), StoreError> {
+        let end = End { object: deed.object.clone(), outcome: outcome.to_owned() };
+        self.open_deeds.over(deed, end)
     }
 
     /// Says of the deeds of this process that go on that it lives, and of those that have ended how, where the database did
     /// not take it before.
     pub async fn tell_deeds(&self) -> Result<(), StoreError> {
-        for id in self.open_deeds.ids(true) {
-            self.tell(&id).await?;
+        let audit = self.of_audit();
+        let ended = self.open_deeds.ids(true).into_iter();
+        for told in ended.map(|id| self.note_end(id)).collect::<Vec<_>>() {
+            heard(told).await?;
         }
-        for id in self.open_deeds.ids(false) {
-            query(LIVE).bind(&id).bind(LIVES_EVERY).execute(self.database.writer()).await?;
+        let own = self.open_deeds.ids(false);
+        let silent = query(LIVED).fetch_all(audit.reader()).await?;
+        let silent = silent.iter().map(|row| row.try_get(0)).collect::<Result<Vec<String>, _>>()?;
+        for id in silent.iter().filter(|id| own.contains(id)) {
+            query(LIVE).bind(id).execute(&audit.writer().await?).await?;
         }
         Ok(())
     }
 
-    async fn tell(&self, id: &str) -> Result<(), StoreError> {
-        let Some(Open { deed, end: Some(end) }) = self.open_deeds.get(id) else { return Ok(()) };
-        let mut transaction = self.database.begin_unflushed().await?;
-        if set_end(&mut transaction, id, &end).await? == 0 {
-            // It is in the chain as unknown: how it ended becomes a row of its own.
-            tracing::error!(request = %deed.request, "a deed had no row that could tell its end");
-            insert(&mut transaction, id, &deed).await?;
-            set_end(&mut transaction, id, &end).await?;
-        }
-        transaction.commit().await?;
-        self.open_deeds.forget(id);
-        Ok(())
+    fn note_end(&self, id: String) -> Told {
+        self.notes.note(&self.of_audit(), Note::End { id }, Box::new(|| true))
+    }
+
+    /// Where the audit log is written: in a line of its own, and noted by nobody.
+    fn of_audit(&self) -> Database {
+        self.database.plainly(LINE)
     }
 
     /// Something that no request asks for.
@@ -123,7 +137,7 @@ impl Store {
     }
 
     async fn chain_some(&self) -> Result<usize, StoreError> {
-        let mut transaction = self.database.begin().await?;
+        let mut transaction = self.of_audit().begin().await?;
         query(FIRST_END).execute(&mut transaction).await?;
         let end = query(HOLD_END).fetch_one(&mut transaction).await?;
         let (mut number, mut hash): (i64, String) = (end.try_get("number")?, end.try_get("hash")?);
@@ -152,15 +166,9 @@ impl Store {
     }
 }
 
-async fn insert(transaction: &mut Transaction, id: &str, deed: &Deed) -> Result<(), sqlx::Error> {
-    let row = query(BEGIN).bind(id).bind(&deed.tenant).bind(&deed.actor).bind(&deed.action);
-    row.bind(&deed.object).bind(&deed.request).execute(transaction).await?;
-    Ok(())
-}
-
-/// The number of rows that it changed.
-async fn set_end(transaction: &mut Transaction, id: &str, end: &End) -> Result<u64, sqlx::Error> {
-    query(END).bind(id).bind(&end.object).bind(&end.outcome).execute(transaction).await
+/// What became of a note.
+async fn heard(told: Told) -> Result<(), StoreError> {
+    told.await.unwrap_or(Err(StoreError::Interrupted))
 }
 
 /// The row of the log for a deed that has ended.

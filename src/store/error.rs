@@ -26,6 +26,10 @@ pub enum StoreError {
     Missing { sha256: String },
     #[error("others changed the same rows at the same time, again and again")]
     Contended,
+    #[error("{most} requests wait to be noted or written already")]
+    Busy { most: usize },
+    #[error("{0}")]
+    OfMany(std::sync::Arc<StoreError>),
     #[error("the tenant has {keys} keys in force, and may have {most}")]
     TooManyKeys { keys: i64, most: i64 },
     #[error("there is something in this deployment already: {table} has rows")]
@@ -44,6 +48,7 @@ impl StoreError {
         match self {
             StoreError::Database(error) => super::database::is_full(error),
             StoreError::Files(error) => is_full(error),
+            StoreError::OfMany(error) => error.is_full(),
             StoreError::Blobs(error) => {
                 let mut cause: Option<&(dyn std::error::Error + 'static)> = Some(error);
                 while let Some(error) = cause {
@@ -64,7 +69,8 @@ impl StoreError {
             StoreError::Database(error) => super::database::is_unavailable(error),
             // A server that does not answer, a disk that errs, no descriptor left.
             StoreError::Blobs(object_store::Error::Generic { .. }) => !self.is_full(),
-            StoreError::Contended => true,
+            StoreError::Contended | StoreError::Busy { .. } => true,
+            StoreError::OfMany(error) => error.is_unavailable(),
             _ => false,
         }
     }

@@ -185,7 +185,11 @@ impl Store {
             if let Some(bytes) = self.intact(orphan, sha256).await? {
                 let place = new_place(sha256);
                 self.blobs.put(&place, bytes).await?;
-                query(MOVE).bind(sha256).bind(&place).execute(self.database.writer()).await?;
+                query(MOVE)
+                    .bind(sha256)
+                    .bind(&place)
+                    .execute(&self.database.writer().await?)
+                    .await?;
                 return Ok(true);
             }
         }

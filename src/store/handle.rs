@@ -3,6 +3,7 @@
 use super::blobs::Blobs;
 use super::database::{Address, Database};
 use super::error::StoreError;
+use super::notes::Notes;
 use super::open_deeds::OpenDeeds;
 use super::spare::Spare;
 use super::wake::{Changes, Wake};
@@ -17,6 +18,8 @@ use tokio::sync::Mutex;
 
 /// Keys in force that a tenant may have where no setting says otherwise.
 const MOST_KEYS: i64 = 100;
+/// Requests of a tenant that may wait to write.
+const MOST_WAITING: usize = 256;
 
 /// Whose everything is where nobody says otherwise.
 pub const DEFAULT_TENANT: &str = "default";
@@ -41,7 +44,10 @@ pub struct Store {
     pub(super) last_written: Arc<Mutex<Option<Instant>>>,
     /// Keys in force that a tenant may have.
     pub(super) most_keys: i64,
+    /// Requests of a tenant that may wait to write.
+    pub(super) most_waiting: usize,
     pub(super) open_deeds: OpenDeeds,
+    pub(super) notes: Notes,
     pub(super) _lock: Arc<File>,
 }
 
@@ -59,19 +65,22 @@ impl Store {
         // Before the database is opened, which may need the room.
         let spare = (!shared).then(|| Arc::new(Spare::new(&places.data)));
         let database = Database::open(address(places)?).await?;
+        let open_deeds = OpenDeeds::default();
         Ok(Store {
             tenant: DEFAULT_TENANT.into(),
             blobs: Blobs::open(places)?,
             folder: places.data.clone(),
             shared,
-            wake: Wake::new(database.writer()),
+            wake: Wake::new(database.server()),
             database,
             spare,
             // Whoever was here before may have been killed.
             holds_erased: Arc::new(AtomicBool::new(true)),
             last_written: Arc::default(),
             most_keys: MOST_KEYS,
-            open_deeds: OpenDeeds::default(),
+            most_waiting: MOST_WAITING,
+            notes: Notes::of(open_deeds.clone()),
+            open_deeds,
             _lock: Arc::new(lock),
         })
     }
@@ -79,6 +88,11 @@ impl Store {
     /// The same store with another bound on the keys of a tenant.
     pub fn with_most_keys(self, most_keys: u32) -> Store {
         Store { most_keys: most_keys.into(), ..self }
+    }
+
+    /// The same store with another bound on the requests of a tenant that wait to write.
+    pub fn with_most_waiting(self, most_waiting: u32) -> Store {
+        Store { most_waiting: most_waiting as usize, ..self }
     }
 
     /// Brings the schema of the database up to date.
@@ -130,10 +144,34 @@ impl Store {
         }
     }
 
-    /// Gives up the room in reserve where the disk is full, for what is about to be erased.
-    pub fn make_room(&self) {
-        if let Some(spare) = &self.spare {
-            spare.make_room();
+    /// Gives up the room in reserve where the disk is full, for what is about to be erased; where there is none left, brings
+    /// the log of the database into its file.
+    pub async fn make_room(&self) {
+        let Some(spare) = &self.spare else { return };
+        if !spare.make_room() {
+            self.shorten_log().await;
+        }
+    }
+
+    /// Takes room in reserve again after something was erased, as much as there is, so that nobody else takes it who writes
+    /// to the same disk.
+    pub async fn keep_room(&self) {
+        let Some(spare) = &self.spare else { return };
+        if spare.is_whole() {
+            return;
+        }
+        self.shorten_log().await;
+        spare.hold_some();
+    }
+
+    /// Whether bytes can be stored, as far as the room in reserve is concerned.
+    pub fn has_room(&self) -> bool {
+        self.spare.as_ref().is_none_or(|spare| spare.has_room())
+    }
+
+    async fn shorten_log(&self) {
+        if let Err(error) = self.database.empty_log().await {
+            tracing::warn!(%error, "the log of the database stays as long as it is");
         }
     }
 

@@ -1,7 +1,7 @@
 //! Requests that are sent again: the id of what the first of them made, or would have made. No answer is
 //! kept, only the id, so that an answer that got lost is given again as the resource is now.
 
-use super::database::query;
+use super::database::{Row, query};
 use super::{Store, StoreError};
 
 /// How long a key is remembered.
@@ -25,6 +25,16 @@ const FIND: &str = "SELECT fingerprint, resource, found FROM idempotency_keys WH
 const FOUND: &str = "UPDATE idempotency_keys SET resource = $2, found = 1 WHERE key = $1";
 
 impl Store {
+    /// What a key stands for already.
+    pub async fn reserved(
+        &self,
+        key: &str,
+        fingerprint: &str,
+    ) -> Result<Option<Reserved>, StoreError> {
+        let row = query(FIND).bind(key).fetch_optional(self.database.reader()).await?;
+        Ok(row.map(|row| reserved(&row, fingerprint)).transpose()?)
+    }
+
     /// Gives a key the id that what its request makes is to have, unless it has one.
     pub async fn reserve(
         &self,
@@ -33,32 +43,33 @@ impl Store {
         resource: &str,
     ) -> Result<Reserved, StoreError> {
         // By itself: of two that forget the same keys while they hold one of their own, each could wait for the other.
-        query(FORGET).bind(KEPT_MS).execute(self.database.writer()).await?;
+        query(FORGET).bind(KEPT_MS).execute(&self.database.writer().await?).await?;
         let mut transaction = self.database.begin().await?;
-        let reserved = query(RESERVE)
+        let is_fresh = query(RESERVE)
             .bind(key)
             .bind(fingerprint)
             .bind(resource)
             .execute(&mut transaction)
-            .await?;
+            .await?
+            == 1;
         let row = query(FIND).bind(key).fetch_one(&mut transaction).await?;
         transaction.commit().await?;
-        if reserved == 1 {
-            return Ok(Reserved::Fresh);
-        }
-        let known: String = row.try_get("fingerprint")?;
-        Ok(match known == fingerprint {
-            true => Reserved::Again {
-                id: row.try_get("resource")?,
-                found: row.try_get::<i64, _>("found")? == 1,
-            },
-            false => Reserved::Other,
-        })
+        if is_fresh { Ok(Reserved::Fresh) } else { Ok(reserved(&row, fingerprint)?) }
     }
 
     /// Remembers that the request with a key made nothing: what it asks for was there already.
     pub async fn remember_found(&self, key: &str, resource: &str) -> Result<(), StoreError> {
-        query(FOUND).bind(key).bind(resource).execute(self.database.writer()).await?;
+        query(FOUND).bind(key).bind(resource).execute(&self.database.writer().await?).await?;
         Ok(())
     }
+}
+
+/// What a row says to a request with its key.
+fn reserved(row: &Row, fingerprint: &str) -> Result<Reserved, sqlx::Error> {
+    let known: String = row.try_get("fingerprint")?;
+    if known != fingerprint {
+        return Ok(Reserved::Other);
+    }
+    let found = row.try_get::<i64, _>("found")? == 1;
+    Ok(Reserved::Again { id: row.try_get("resource")?, found })
 }

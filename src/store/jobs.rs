@@ -3,6 +3,7 @@
 use super::cases::AFTER_ALL;
 use super::database::{Row, Transaction, is_reference, query};
 use super::events::record;
+use super::job_tags::put_on;
 use super::made::meshes_of_job;
 use super::{Store, StoreError, tenants};
 use crate::schema::engine::EngineDocument;
@@ -127,6 +128,7 @@ const LIST: &str = found!(
      AND ($4 = '' OR EXISTS (SELECT 1 FROM job_tags WHERE job_tags.job_id = jobs.id AND job_tags.tag = $4)) \
      AND ($5 = '' OR case_id = $5) ORDER BY id DESC LIMIT $6"
 );
+const DOCUMENT: &str = "SELECT document FROM jobs WHERE id = $1 AND tenant = $2";
 const STATUS: &str = "SELECT status FROM jobs WHERE id = $1 AND tenant = $2";
 const CASES: &str = "SELECT case_id FROM jobs WHERE id = $1 AND tenant = $2 AND case_id IS NOT NULL \
      UNION SELECT job_cases.case_id FROM job_cases JOIN jobs ON jobs.id = job_cases.job_id \
@@ -186,6 +188,13 @@ impl Store {
             .fetch_optional(self.database.reader())
             .await?;
         Ok(row.as_ref().map(job_row).transpose()?)
+    }
+
+    /// What a job was accepted with, resolved.
+    pub async fn job_document(&self, id: &str) -> Result<Option<String>, StoreError> {
+        let row = query(DOCUMENT).bind(id).bind(self.tenant());
+        let row = row.fetch_optional(self.database.reader()).await?;
+        Ok(row.map(|row| row.try_get(0)).transpose()?)
     }
 
     /// The cases that a job goes with.
@@ -332,13 +341,7 @@ impl Store {
         if inserted == 0 {
             return Ok(false);
         }
-        for tag in &job.tags {
-            query("INSERT INTO job_tags (job_id, tag) VALUES ($1, $2) ON CONFLICT DO NOTHING")
-                .bind(&job.id)
-                .bind(tag)
-                .execute(&mut *transaction)
-                .await?;
-        }
+        put_on(transaction, &job.id, &job.tags).await?;
         for case in &job.shared_cases {
             query("INSERT INTO job_cases (job_id, case_id) VALUES ($1, $2) ON CONFLICT DO NOTHING")
                 .bind(&job.id)

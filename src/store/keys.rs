@@ -156,8 +156,11 @@ impl Store {
 
     /// Ends a key of this tenant now; false when there is none that was not revoked.
     pub async fn revoke_key(&self, id: &str) -> Result<bool, StoreError> {
-        let revoked =
-            query(REVOKE).bind(id).bind(self.tenant()).execute(self.database.writer()).await?;
+        let revoked = query(REVOKE)
+            .bind(id)
+            .bind(self.tenant())
+            .execute(&self.database.writer().await?)
+            .await?;
         Ok(revoked == 1)
     }
 
@@ -167,7 +170,7 @@ impl Store {
             .bind(id)
             .bind(after_ms)
             .bind(self.tenant())
-            .execute(self.database.writer())
+            .execute(&self.database.writer().await?)
             .await?;
         Ok(changed == 1)
     }

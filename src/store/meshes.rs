@@ -101,7 +101,7 @@ impl Store {
         query("UPDATE meshes SET standalone = 1 WHERE id = $1 AND tenant = $2 AND standalone = 0")
             .bind(id)
             .bind(self.tenant())
-            .execute(self.database.writer())
+            .execute(&self.database.writer().await?)
             .await?;
         Ok(())
     }

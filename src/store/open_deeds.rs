@@ -1,10 +1,15 @@
 //! Deeds of this process that are not told to the audit log to their end: those that go on, and those whose end the database
-//! did not take.
+//! has not taken for good.
 
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
+use super::StoreError;
 use super::deed::Deed;
+
+/// Ends that may wait to be told, some megabytes. Where the database takes none for long, nothing more is answered that
+/// would have to be noted.
+const MOST_ENDS: usize = 10_000;
 
 /// How a deed ended, and what it was done to.
 #[derive(Clone, Debug)]
@@ -20,8 +25,12 @@ pub(super) struct OpenDeeds(Arc<Mutex<HashMap<String, Open>>>);
 #[derive(Clone, Debug)]
 pub(super) struct Open {
     pub deed: Deed,
+    /// When it began, ms since 1970 by the clock of the database; `None` where no row was made before it.
+    pub at: Option<i64>,
     /// Where it has ended.
     pub end: Option<End>,
+    /// Whether the database may have been told of its end already.
+    pub was_told: bool,
 }
 
 /// A deed that was begun, to be told how it ended.
@@ -33,8 +42,16 @@ pub struct Begun {
 
 impl OpenDeeds {
     pub fn begin(&self, id: &str, deed: &Deed) -> Begun {
-        self.lock().insert(id.to_owned(), Open { deed: deed.clone(), end: None });
+        let open = Open { deed: deed.clone(), at: None, end: None, was_told: false };
+        self.lock().insert(id.to_owned(), open);
         Begun { id: id.to_owned(), deeds: self.clone(), ended: false }
+    }
+
+    /// Remembers when the row of a deed was made.
+    pub fn began(&self, id: &str, at: i64) {
+        if let Some(open) = self.lock().get_mut(id) {
+            open.at = Some(at);
+        }
     }
 
     /// Remembers how a deed ended until its row tells it.
@@ -46,8 +63,24 @@ impl OpenDeeds {
         begun.id.clone()
     }
 
-    pub fn get(&self, id: &str) -> Option<Open> {
-        self.lock().get(id).cloned()
+    /// Remembers a deed that was over before anything of it was noted.
+    pub fn over(&self, deed: Deed, end: End) -> Result<(), StoreError> {
+        let mut deeds = self.lock();
+        if deeds.values().filter(|open| open.end.is_some()).count() >= MOST_ENDS {
+            return Err(StoreError::Busy { most: MOST_ENDS });
+        }
+        let open = Open { deed, at: None, end: Some(end), was_told: false };
+        deeds.insert(uuid::Uuid::now_v7().to_string(), open);
+        Ok(())
+    }
+
+    /// A deed whose end is about to be told; how it was before.
+    pub fn tell(&self, id: &str) -> Option<Open> {
+        let mut deeds = self.lock();
+        let open = deeds.get_mut(id)?;
+        let before = open.clone();
+        open.was_told = true;
+        Some(before)
     }
 
     pub fn forget(&self, id: &str) {

@@ -82,7 +82,7 @@ impl Store {
             .bind(case_id)
             .bind(document)
             .bind(self.tenant())
-            .execute(self.database.writer())
+            .execute(&self.database.writer().await?)
             .await;
         match inserted {
             Ok(inserted) => Ok(inserted == 1),
@@ -106,7 +106,7 @@ impl Store {
             .bind(case_id)
             .bind(version.unwrap_or(0))
             .bind(self.tenant())
-            .execute(self.database.writer())
+            .execute(&self.database.writer().await?)
             .await?;
         self.plan_change(case_id, id, changed).await
     }

@@ -95,7 +95,7 @@ impl Store {
         if row.is_none() {
             self.blobs.delete(place).await?;
         }
-        query(WRITTEN).bind(id).execute(self.database.writer()).await?;
+        query(WRITTEN).bind(id).execute(&self.database.writer().await?).await?;
         Ok(())
     }
 
@@ -160,7 +160,7 @@ impl Store {
     /// Removes the bytes of a discarded place. Done twice, by two processes, it is done as well.
     pub(super) async fn remove_bytes(&self, place: &str) -> Result<(), StoreError> {
         self.blobs.delete(place).await?;
-        query(FORGET).bind(place).execute(self.database.writer()).await?;
+        query(FORGET).bind(place).execute(&self.database.writer().await?).await?;
         Ok(())
     }
 

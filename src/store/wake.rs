@@ -10,7 +10,6 @@ use tokio::sync::broadcast::{self, error::RecvError};
 use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
 
 use super::StoreError;
-use super::database::Pool;
 
 const CHANNEL: &str = "facies_jobs";
 /// Between two words to the others, each of which names what changed meanwhile.
@@ -37,9 +36,9 @@ pub struct Changes(broadcast::Receiver<Arc<str>>);
 
 impl Wake {
     /// Tells and listens to other processes until the last of it is gone, where the database is one that many share.
-    pub fn new(pool: &Pool) -> Wake {
+    pub fn new(server: Option<&PgPool>) -> Wake {
         let here = broadcast::Sender::new(BACKLOG);
-        let Pool::Postgres(pool) = pool else { return Wake { here, there: None } };
+        let Some(pool) = server else { return Wake { here, there: None } };
         let (there, changed) = unbounded_channel();
         let others = Others {
             pool: pool.clone(),

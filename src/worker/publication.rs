@@ -1,13 +1,13 @@
 //! Publication of an attempt: its files and meshes read, and stored under the manifest that names them.
 
 use bytes::Bytes;
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use super::process::protocol::MeshFile;
 use super::work::{Failure, Finished, FinishedFile, FinishedMesh};
 use crate::jobs::result::provenance::manifest_bytes;
 use crate::schema::predict::document::OutputName;
-use crate::schema::predict::keep::{KeptMeshDocument, KeptName};
+use crate::schema::predict::keep::{KeptMeshDocument, MadeName};
 use crate::schema::wire::canonical::{sha256_hex, to_value};
 use crate::store::{Lease, MadeMesh, NewMesh, Published, PublishedFile, Store, StoreError};
 
@@ -20,7 +20,8 @@ pub struct Publication {
 }
 
 struct Kept {
-    what: KeptName,
+    what: MadeName,
+    name: Option<String>,
     mesh: NewMesh,
 }
 
@@ -44,10 +45,10 @@ impl Publication {
         }
         let mut meshes = Vec::with_capacity(self.meshes.len());
         let mut kept = Vec::with_capacity(self.meshes.len());
-        for Kept { what, mesh } in &self.meshes {
+        for Kept { what, name, mesh } in &self.meshes {
             let known = store.mesh_by_content(&mesh.sha256, &mesh.options).await?;
             let made = MadeMesh { mesh: mesh.clone(), known };
-            kept.push(KeptMeshDocument::new(*what, made.id()));
+            kept.push(KeptMeshDocument::new(*what, name.clone(), made.id()));
             meshes.push(made);
         }
         let manifest = self.manifest(&kept)?;
@@ -60,6 +61,10 @@ impl Publication {
         let mut manifest: Value = serde_json::from_str(&self.result)
             .map_err(|error| StoreError::Schema(format!("manifest of a job: {error}")))?;
         manifest["kept"] = to_value(&kept);
+        // A case that a meshing proposes names its mesh as clients do.
+        if let Some(case) = manifest.pointer_mut("/meshing/case") {
+            name_meshes(case, kept);
+        }
         Ok(manifest)
     }
 
@@ -76,6 +81,21 @@ impl Publication {
     }
 }
 
+/// Puts the ids of stored meshes into a case that names them by the files of the result.
+fn name_meshes(case: &mut Value, kept: &[KeptMeshDocument]) {
+    if let Some(volume) = kept.iter().find(|mesh| mesh.what == MadeName::Volume) {
+        case["volume"] = json!(volume.mesh);
+    }
+    for bone in case["bones"].as_array_mut().into_iter().flatten() {
+        let is_it = |mesh: &&KeptMeshDocument| {
+            mesh.what == MadeName::Bone && mesh.name.as_deref() == bone["name"].as_str()
+        };
+        if let Some(surface) = kept.iter().find(is_it) {
+            bone["mesh"] = json!(surface.mesh);
+        }
+    }
+}
+
 fn read_file(file: FinishedFile) -> std::io::Result<PublishedFile> {
     let bytes = Bytes::from(std::fs::read(&file.path)?);
     let sha256 = sha256_hex(&bytes);
@@ -84,8 +104,8 @@ fn read_file(file: FinishedFile) -> std::io::Result<PublishedFile> {
 
 fn read_mesh(FinishedMesh { mesh, path }: FinishedMesh) -> std::io::Result<Kept> {
     let bytes = Bytes::from(std::fs::read(path)?);
-    let MeshFile { what, id, sha256, options, report, .. } = mesh;
+    let MeshFile { what, name, id, sha256, options, report, .. } = mesh;
     let blob = sha256_hex(&bytes);
     let mesh = NewMesh { id, sha256, options, blob, bytes, standalone: false, report };
-    Ok(Kept { what, mesh })
+    Ok(Kept { what, name, mesh })
 }

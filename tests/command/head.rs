@@ -1,15 +1,16 @@
 //! The example of a head: its files are what the program makes, and its pictures show a face.
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use mechanics::format::vtk::{vtp, vtu};
 use mechanics::format::{SurfaceOutput, VolumeOutput, nrrd};
 use mechanics::image::{ImageVolume, Placement, Voxels};
-use mechanics::mesh::half_head::half_head;
+use mechanics::mesh::half_head::{HalfHead, half_head};
 use mechanics::mesh::{Frame, Vector};
 
-use crate::program::{block, facies, path, text};
+use crate::program::{block, facies, path, result, text};
 
 /// 6912 tetrahedra.
 const FINENESS: usize = 2;
@@ -48,8 +49,17 @@ fn ct(low: Vector, high: Vector) -> Vec<u8> {
     nrrd::write(&image, Frame::Lps)
 }
 
+/// The head, whose skin is what nothing holds: the cut through the head is none.
+fn free_head() -> HalfHead {
+    let mut head = half_head(FINENESS);
+    let sets = &mut head.mesh.node_sets;
+    let held: BTreeSet<u32> = ["rim", "skull"].iter().flat_map(|set| sets[*set].clone()).collect();
+    sets.get_mut("skin").unwrap().retain(|node| !held.contains(node));
+    head
+}
+
 fn files() -> Vec<(String, Vec<u8>)> {
-    let head = half_head(FINENESS);
+    let head = free_head();
     let nodes = &head.mesh.nodes;
     let (low, high) = nodes
         .iter()
@@ -72,6 +82,36 @@ fn the_meshes_of_the_head_are_those_that_the_program_makes() {
         }
         let there = fs::read(&path).unwrap_or_default();
         assert!(there == bytes, "make {name} anew: {WRITE}=1 cargo test --test command head");
+    }
+}
+
+#[test]
+fn the_head_of_the_front_page_is_predicted_without_a_warning() {
+    let out = tempfile::tempdir().unwrap();
+    let (case, mesh, plan) =
+        (head().join("case.json"), head().join("face.vtu"), head().join("plan.json"));
+    let of_mesh = [
+        "--mesh",
+        path(&mesh),
+        "--fixed",
+        "skull",
+        "--fixed",
+        "rim",
+        "--skin",
+        "skin",
+        "--frame",
+        "LPS",
+        "--young-modulus-kpa",
+        "15",
+        "--poisson-ratio",
+        "0.45",
+        "--plan",
+        path(&plan),
+    ];
+    for scene in [&["--case", path(&case)][..], &of_mesh] {
+        let done = facies(&[&["predict"], scene, &["--out", path(out.path())]].concat());
+        assert_eq!(done.status.code(), Some(0), "{}", text(&done.stderr));
+        assert_eq!(result(out.path()).warnings, [], "{scene:?}");
     }
 }
 

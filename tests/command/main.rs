@@ -6,6 +6,10 @@ mod head;
 mod newcomers;
 #[path = "../support/program.rs"]
 mod program;
+#[allow(dead_code, reason = "the tests of the formats use the rest")]
+#[path = "../../mechanics/tests/support/samples.rs"]
+mod samples;
+mod scan;
 mod study;
 
 use std::collections::BTreeSet;

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 use std::fs;
+use std::path::{Path, PathBuf};
 
 use facies::schema::plan::document::PlanDocument;
 use facies::schema::study::report::ReportDocument;
@@ -68,6 +69,85 @@ fn a_mistake_in_a_spec_of_the_command_line_is_told_with_its_file_and_place() {
     let told = text(&done.stderr);
     assert_eq!(done.status.code(), Some(2), "{told}");
     assert!(told.contains("targets.json: /targets: expected an array, found an object"), "{told}");
+}
+
+/// The case file of the block with another spec, in a folder.
+fn block_with(folder: &Path, spec: &Value) -> PathBuf {
+    let read = fs::read(block().join("case.json")).unwrap();
+    let mut file: Value = serde_json::from_slice(&read).unwrap();
+    for mesh in ["/case/volume", "/case/bones/0/mesh"] {
+        let name = file.pointer_mut(mesh).unwrap();
+        *name = json!(block().join(name.as_str().unwrap()));
+    }
+    file["spec"] = spec.clone();
+    let path = folder.join("case.json");
+    fs::write(&path, file.to_string()).unwrap();
+    path
+}
+
+#[test]
+fn every_command_uses_the_spec_of_a_case_file_or_refuses_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let (targets, out) = (folder.path().join("targets.json"), folder.path().join("out"));
+    let mut wanted = json!({
+        "targets": [{"nodes": {"node_set": "skin"}, "displacement_mm": [1, null, null]}],
+        "bounds": {"mandible": {"translation_mm": [[-10, 10], [0, 0], [0, 0]]}}, "verify": false,
+    });
+    let optimised = |case: &Path, wanted: &Value| {
+        fs::write(&targets, wanted.to_string()).unwrap();
+        let done = facies(&[
+            "optimise",
+            "--case",
+            path(case),
+            "--spec",
+            path(&targets),
+            "--out",
+            path(&out),
+        ]);
+        assert_eq!(done.status.code(), Some(0), "{}", text(&done.stderr));
+        result(&out).provenance.spec_hash
+    };
+    let soft = json!({"deep": {"young_modulus_kpa": 5}});
+    let plain = optimised(&block_with(folder.path(), &json!({"kind": "predict"})), &wanted);
+    let of_file = json!({"materials": soft, "element": "stabilised", "outputs": ["skin.vtp"]});
+    let softer = optimised(&block_with(folder.path(), &of_file), &wanted);
+    wanted["materials"] = soft;
+    wanted["element"] = json!("stabilised");
+    let stated = optimised(&block_with(folder.path(), &json!({"element": "plain"})), &wanted);
+    assert_eq!(softer, stated);
+    assert_ne!(softer, plain);
+
+    let case = block_with(folder.path(), &json!({"contact": "none", "tags": ["x"]}));
+    let spec = ["--spec", path(&targets)];
+    for (command, more) in [
+        ("response", &[][..]),
+        ("optimise", &spec),
+        ("study", &["--method", "fem_linear", "--level", "0"]),
+    ] {
+        let asked = [command, "--case", path(&case), "--out", path(&out)];
+        let done = facies(&[&asked, more].concat());
+        let told = text(&done.stderr);
+        assert_eq!(done.status.code(), Some(2), "{command}: {told}");
+        assert!(told.contains("case.json: /spec/contact: ") && !told.contains("tags"), "{told}");
+    }
+}
+
+#[test]
+fn a_plan_is_no_argument_of_commands_that_answer_or_find_plans() {
+    let folder = tempfile::tempdir().unwrap();
+    let (mesh, plan) = (block().join("block.vtu"), folder.path().join("plan.json"));
+    fs::write(&plan, r#"{"segments":[{"name":"mandible","translation_mm":[4,0,0]}]}"#).unwrap();
+    let out = folder.path().join("out");
+    let scene = ["--mesh", path(&mesh), "--fixed", "skull", "--skin", "skin"];
+    let jaw = ["--segment", "mandible=mandible", "--out", path(&out)];
+    for command in ["response", "optimise"] {
+        let done = facies(&[&[command][..], &scene, &jaw, &["--plan", path(&plan)]].concat());
+        let told = text(&done.stderr);
+        assert_eq!(done.status.code(), Some(2), "{command}: {told}");
+        assert!(told.contains("unexpected argument '--plan'"), "{command}: {told}");
+    }
+    let done = facies(&[&["response"][..], &scene, &jaw].concat());
+    assert_eq!(done.status.code(), Some(0), "{}", text(&done.stderr));
 }
 
 #[test]

@@ -12,7 +12,7 @@ use std::path::Path;
 use source::{Crate, Module, rust_files};
 
 /// Modules of the numerics, and those that each may use.
-const MECHANICS: [(&str, &[&str]); 20] = [
+const MECHANICS: [(&str, &[&str]); 23] = [
     ("rows", &[]),
     ("progress", &[]),
     ("mesh", &["rows"]),
@@ -21,8 +21,11 @@ const MECHANICS: [(&str, &[&str]); 20] = [
     ("solver", &["progress", "rows"]),
     ("chart", &[]),
     ("image", &["mesh"]),
-    ("domain", &["mesh"]),
-    ("meshing", &[]),
+    ("domain", &["mesh", "image"]),
+    ("meshing", &["mesh", "domain", "progress", "rows"]),
+    ("landmarks", &["mesh"]),
+    ("osteotomy", &["mesh", "image", "domain"]),
+    ("anatomy", &["mesh", "image", "domain", "meshing", "osteotomy", "landmarks", "progress"]),
     ("plan", &["mesh"]),
     ("registration", &["mesh", "progress"]),
     ("format", &["mesh", "image"]),
@@ -54,17 +57,21 @@ const MECHANICS: [(&str, &[&str]); 20] = [
 
 /// Modules of the service, and those of the service that each may use. Which of the numerics they use is theirs to
 /// choose.
-const SERVICE: [(&str, &[&str]); 12] = [
+const SERVICE: [(&str, &[&str]); 13] = [
     ("config", &[]),
     ("metrics", &[]),
     ("schema", &[]),
+    ("turns", &["metrics"]),
     ("telemetry", &["config", "metrics"]),
     ("traces", &["metrics"]),
     ("jobs", &["schema"]),
-    ("store", &["schema", "config"]),
+    ("store", &["schema", "config", "turns"]),
     ("library", &["schema", "jobs", "store"]),
     ("worker", &["schema", "jobs", "library", "store", "config", "metrics", "traces"]),
-    ("api", &["schema", "jobs", "library", "store", "worker", "config", "metrics", "traces"]),
+    (
+        "api",
+        &["schema", "jobs", "library", "store", "worker", "config", "metrics", "traces", "turns"],
+    ),
     ("command", &["*"]),
     ("main", &["command"]),
 ];

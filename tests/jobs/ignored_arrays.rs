@@ -99,7 +99,7 @@ fn a_selection_of_an_array_with_too_many_values_is_told_how_many_it_has() {
 fn an_array_that_no_file_had_is_told_from_one_that_was_ignored() {
     let problems =
         details(problems(block(Vector::new(100.0, 100.0, 100.0), SMALL, CellShape::Hex8)));
-    let none = "the mesh has no integer cell array \"ids\"; it has: none";
+    let none = "the mesh has no integer cell array \"ids\"; it has none";
     assert_eq!(problems[0], ("unknown-array", none.to_owned()));
 }
 

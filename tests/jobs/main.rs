@@ -2,6 +2,8 @@
 
 #![allow(clippy::unwrap_used)]
 
+#[path = "../support/answers.rs"]
+mod answers;
 mod fuzz;
 mod ignored_arrays;
 mod jobs;

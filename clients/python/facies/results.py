@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -13,11 +13,13 @@ from .surface import Surface
 
 @dataclass(frozen=True)
 class Case:
-    """A stored case; `check` counts what holds its nodes, or is `None` where it takes a plan to tell."""
+    """A stored case; `check` counts what holds its nodes, or is `None` where it takes a plan to tell. `spec` is what its file
+    says of how it is computed: members of every job of the case, unless a call states others."""
 
     id: str
     document: dict[str, Any]
     check: dict[str, Any] | None
+    spec: dict[str, Any] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -16,18 +16,16 @@ from numpy.typing import NDArray
 from .errors import JobFailed, Refused
 from .response import Response
 from .results import Case, Comparison, Optimisation, Prediction
+from .sending import Document, File, Progress, Sending
 from .surface import Surface
-
-Document = dict[str, Any]
-Progress = Callable[[Document], object]
-"""Called with every event of a job: `status`, `phase`, `progress` (0 to 100) and others."""
-File = str | PathLike[str]
 
 WAIT = {"Prefer": "wait=30"}
 # Longer than the service waits for a job, or is silent in a stream.
 PATIENCE_S = 60.0
 SKIN = "skin.glb"
 BUSY = (429, 503)
+# Of the spec of a case file: what names the job and its files. All else says how tissue is computed.
+OF_FILES = ("kind", "case", "outputs", "range_mm", "keep", "tags")
 
 
 class Facies:
@@ -61,23 +59,26 @@ class Facies:
                 raise refusal(answer)
             time.sleep(pause)
 
-    def upload(self, mesh: File | bytes, *, units: str = "mm", frame: str = "unspecified") -> str:
+    def upload(self, mesh: File | bytes, *, units: str = "mm", frame: str = "unspecified",
+               progress: Progress | None = None) -> str:
         """The id of a mesh. The same bytes are the same mesh."""
-        content = mesh if isinstance(mesh, bytes) else Path(mesh).read_bytes()
-        answer = self.ask("POST", "/v1/meshes", content=content, params={"units": units, "frame": frame},
-                          headers={"Content-Type": "application/octet-stream"})
+        content = Sending(mesh, progress)
+        headers = {"Content-Type": "application/octet-stream", "Content-Length": str(content.total)}
+        answer = self.ask("POST", "/v1/meshes", content=content, params={"units": units, "frame": frame}, headers=headers)
         return str(answer.json()["id"])
 
-    def case(self, case: File | Document) -> Case:
-        """Stores a case. A file is a `case.json` of the command line, which names meshes by their paths; a document
-        names them by their ids, or by `Path`."""
+    def case(self, case: File | Document, *, progress: Progress | None = None) -> Case:
+        """Stores a case. A file is a `case.json` of the command line, which names meshes by their paths and may say in its
+        `spec` how it is computed; a document names them by their ids, or by `Path`."""
+        spec: Document = {}
         if isinstance(case, dict):
-            document = self._with_meshes(case, Path(), Path)
+            document = self._with_meshes(case, Path(), Path, progress)
         else:
             file = json.loads(Path(case).read_text(encoding="utf-8"))
-            document = self._with_meshes(file.get("case", file), Path(case).parent, str)
+            document = self._with_meshes(file.get("case", file), Path(case).parent, str, progress)
+            spec = {name: value for name, value in file.get("spec", {}).items() if name not in OF_FILES}
         made = self.ask("POST", "/v1/cases", json=document).json()
-        return Case(made["id"], made["case"], made.get("check"))
+        return Case(made["id"], made["case"], made.get("check"), spec)
 
     def predict(self, case: Case | File | Document, plan: Document, *, fixed: Sequence[str] = (),
                 skin: str | None = None, frame: str = "LPS", units: str = "mm",
@@ -89,14 +90,16 @@ class Facies:
         elif fixed or skin:
             raise TypeError("`fixed` and `skin` go with a volume mesh; a case has its own")
         outputs = spec.pop("outputs", ["skin.vtp", SKIN])
-        job = self.run({"kind": "predict", "case": self._id(case), "plan": plan,
-                        "outputs": sorted({*outputs, SKIN}), **spec}, progress)
+        stored = self._stored(case, progress)
+        job = self.run({"kind": "predict", "case": stored.id, "plan": plan,
+                        "outputs": sorted({*outputs, SKIN}), **stored.spec, **spec}, progress)
         return Prediction(job["id"], self._skin(job), job["results"])
 
     def response(self, case: Case | File | Document, *, progress: Progress | None = None, **spec: Any) -> Response:
         """The columns of a case, with which plans take milliseconds."""
-        id_ = self._id(case)
-        job = self.run({"kind": "response", "case": id_, **spec}, progress)
+        stored = self._stored(case, progress)
+        id_ = stored.id
+        job = self.run({"kind": "response", "case": id_, **stored.spec, **spec}, progress)
         path, which = f"/v1/cases/{id_}/response", {"job": job["id"]}
 
         def form(media_type: str) -> httpx.Response:
@@ -118,8 +121,9 @@ class Facies:
                  progress: Progress | None = None, **spec: Any) -> Optimisation:
         """The plan within `bounds` that brings the skin nearest to `targets`."""
         outputs = spec.pop("outputs", ["skin.vtp", SKIN])
-        job = self.run({"kind": "optimise", "case": self._id(case), "targets": targets, "bounds": bounds,
-                        "outputs": sorted({*outputs, SKIN}), **spec}, progress)
+        stored = self._stored(case, progress)
+        job = self.run({"kind": "optimise", "case": stored.id, "targets": targets, "bounds": bounds,
+                        "outputs": sorted({*outputs, SKIN}), **stored.spec, **spec}, progress)
         return Optimisation(job["id"], self._skin(job), job["results"])
 
     def compare(self, prediction: Prediction, actual: Prediction | File, *, units: str = "mm", frame: str = "LPS",
@@ -171,13 +175,14 @@ class Facies:
             except (httpx.ReadError, httpx.RemoteProtocolError):
                 continue
 
-    def _id(self, case: Case | File | Document) -> str:
-        return (case if isinstance(case, Case) else self.case(case)).id
+    def _stored(self, case: Case | File | Document, progress: Progress | None) -> Case:
+        return case if isinstance(case, Case) else self.case(case, progress=progress)
 
     def _skin(self, job: Document) -> Surface:
         return Surface.from_glb(self.file(job["id"], SKIN))
 
-    def _with_meshes(self, case: Document, folder: Path, kind: type[Path] | type[str]) -> Document:
+    def _with_meshes(self, case: Document, folder: Path, kind: type[Path] | type[str],
+                     progress: Progress | None) -> Document:
         """The document with the ids of meshes in place of their paths, which are of this type."""
         statement = {"units": case.get("units", "mm"), "frame": case.get("frame", "unspecified")}
         bones = {bone["name"] for bone in case.get("bones", [])}
@@ -190,7 +195,7 @@ class Facies:
             # A selection may name a bone where it names a surface.
             is_mesh = key in ("volume", "mesh", "image") or (key == "surface" and value not in bones)
             is_file = is_mesh and isinstance(value, kind)
-            return self.upload(folder / Path(value), **statement) if is_file else value
+            return self.upload(folder / Path(value), **statement, progress=progress) if is_file else value
 
         document: Document = known(case)
         return document

@@ -155,22 +155,6 @@ impl Conditions {
         }
     }
 
-    /// Whether a node slides on a wall that stays.
-    pub fn slides_on_rest(&self, node: u32) -> bool {
-        let walls = self.walls.get(&node).into_iter().flatten();
-        walls.into_iter().any(|wall| wall.carrier.is_none())
-    }
-
-    /// Whether anything is held that no segment carries: fixed and prescribed nodes, walls that stay.
-    pub fn something_rests(&self) -> bool {
-        let rests = |(node, class): (u32, &NodeClass)| match class {
-            NodeClass::Prescribed | NodeClass::Fixed => true,
-            NodeClass::Sliding => self.slides_on_rest(node),
-            NodeClass::Joined(_) | NodeClass::Free => false,
-        };
-        (0_u32..).zip(&self.classes).any(rests)
-    }
-
     /// How many sliding nodes have a wall that a segment carries.
     pub fn carried_by(&self, segment: u32) -> usize {
         let is_carried = |walls: &&Vec<Wall>| walls.iter().any(|w| w.carrier == Some(segment));

@@ -1,6 +1,8 @@
 //! From a plan and a mesh to what every node is held to.
 
+pub mod carried;
 pub mod conditions;
+pub mod freedom;
 pub mod hold;
 pub mod midpoint;
 pub mod selection;
@@ -8,6 +10,8 @@ pub mod sliding;
 pub mod support;
 pub mod tearing;
 
+pub use carried::{Carried, ConnectedPart, Form, HeldRows, Holder, connected_parts};
 pub use conditions::{ConditionError, Conditions, HeldNodes, NodeClass, Wall, WallNode};
+pub use freedom::Freedom;
 pub use hold::Hold;
 pub use selection::{NodeSelection, SelectionError, Selector};

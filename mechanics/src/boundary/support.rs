@@ -5,13 +5,9 @@
 
 use nalgebra::{Matrix6, Vector6};
 
+use super::freedom::{Freedom, free_movements};
 use super::hold::Hold;
-use crate::mesh::connectivity::Faces;
 use crate::mesh::{Vector, VolumeMesh};
-
-/// A rigid movement is held when its eigenvalue exceeds this share of the largest one: a part may be
-/// ten thousand times as long as the patch that holds it.
-const HELD: f64 = 1e-9;
 
 /// A part of the mesh that some rigid movement can carry away.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,13 +15,13 @@ pub struct LoosePart {
     pub nodes: usize,
     /// Its lowest node.
     pub first_node: u32,
-    /// How many of the six rigid movements nothing holds.
-    pub free_movements: usize,
+    /// The rigid movements that nothing holds.
+    pub freedom: Freedom,
 }
 
-/// The parts of the mesh that the holds do not keep in place.
-pub fn loose_parts(mesh: &VolumeMesh, faces: &Faces, holds: &[Hold]) -> Vec<LoosePart> {
-    let mut parts = Parts::new(mesh, &faces.parts());
+/// The parts of the mesh that the holds do not keep in place. `part_of_cell` is the part of each cell by faces.
+pub fn loose_parts(mesh: &VolumeMesh, part_of_cell: &[u32], holds: &[Hold]) -> Vec<LoosePart> {
+    let mut parts = Parts::new(mesh, part_of_cell);
     for hold in holds {
         for held in 0..hold.count() {
             let axis = hold.axes().column(held).into_owned();
@@ -43,7 +39,7 @@ pub fn loose_parts(mesh: &VolumeMesh, faces: &Faces, holds: &[Hold]) -> Vec<Loos
         .map(|body| LoosePart {
             nodes: body.nodes.len(),
             first_node: body.nodes[0],
-            free_movements: body.free_movements(),
+            freedom: Freedom::of(&body.gram, &body.centre, body.radius),
         })
         .collect()
 }
@@ -74,9 +70,7 @@ impl Body {
     }
 
     fn free_movements(&self) -> usize {
-        let eigenvalues = self.gram.symmetric_eigenvalues();
-        let least = HELD * eigenvalues.max();
-        eigenvalues.iter().filter(|value| **value <= least).count()
+        free_movements(&self.gram)
     }
 }
 

@@ -15,12 +15,18 @@ pub enum Finish {
     Values,
     /// As values, but each point has the part of a triangle that is nearest to it to itself.
     Classes,
+    /// The colours as they are, without light.
+    Flat,
 }
 
 impl Finish {
     /// How much of light and shade reaches the colour.
     pub fn relief(self) -> f64 {
-        if self == Finish::Bare { 1.0 } else { 0.5 }
+        match self {
+            Finish::Bare => 1.0,
+            Finish::Values | Finish::Classes => 0.5,
+            Finish::Flat => 0.0,
+        }
     }
 }
 

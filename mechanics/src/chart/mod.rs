@@ -12,6 +12,7 @@ mod ladder;
 mod ladder_legend;
 mod legend;
 pub mod raster;
+mod slices;
 mod stability_map;
 mod svg;
 mod symbol;
@@ -21,6 +22,7 @@ pub use classes::{ClassKind, ClassesPicture, NodeClasses};
 pub use displacement::DisplacementPicture;
 pub use ladder::{LadderFailure, LadderMark, LadderPicture};
 pub use raster::{Image, PngError};
+pub use slices::SlicesPicture;
 pub use stability_map::{Mark, StabilityAxis, StabilityMap};
 pub use view::{Outlook, clear_front, front_of};
 

@@ -3,13 +3,38 @@
 //! A mesher asks for signs at the nodes of a lattice, for the places where lattice edges cross a boundary, and for the
 //! nearest point of a boundary. Everything else about scans and surfaces stays on this side.
 
+mod airway_map;
+pub mod assessment;
+mod compartments;
+mod cut_ends;
+mod facets;
+mod flood;
+pub mod image;
+pub mod limit;
+pub mod mending;
+mod nearest_boundary;
+mod root;
+pub mod surface;
+mod thickness;
+mod triangle;
+mod triangle_tree;
+mod winding_cells;
+
+pub use assessment::Assessment;
+pub use image::{ImageDomain, ImageDomainError, ImageOptions};
+pub use limit::{Ball, Limit, LimitError, Limits};
+pub use mending::Mending;
+pub use surface::{SurfaceDomain, SurfaceDomainError};
+
 use crate::mesh::Vector;
 
 /// What bounds the tissue at a place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Boundary {
-    /// The outer surface.
+    /// The outer, visible surface.
     Skin,
+    /// Air inside the head: nose, mouth, throat.
+    Airway,
     /// Bone, teeth included.
     Bone,
     /// Where the scan or the region of interest ends.

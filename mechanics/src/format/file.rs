@@ -14,6 +14,9 @@ pub enum MeshFormat {
     Ply,
     Obj,
     Nrrd,
+    Nifti,
+    MetaImage,
+    Dicom,
 }
 
 impl MeshFormat {
@@ -28,6 +31,9 @@ impl MeshFormat {
             MeshFormat::Ply => "PLY",
             MeshFormat::Obj => "OBJ",
             MeshFormat::Nrrd => "NRRD",
+            MeshFormat::Nifti => "NIfTI",
+            MeshFormat::MetaImage => "MetaImage",
+            MeshFormat::Dicom => "DICOM",
         }
     }
 
@@ -41,6 +47,9 @@ impl MeshFormat {
             MeshFormat::Ply => "application/vnd.ply",
             MeshFormat::Obj => "model/obj",
             MeshFormat::Nrrd => "application/x-nrrd",
+            MeshFormat::Nifti => "application/x-nifti",
+            MeshFormat::MetaImage => "application/x-metaimage",
+            MeshFormat::Dicom => "application/dicom",
         }
     }
 }

@@ -21,6 +21,8 @@ pub struct ReadLimits {
     /// Files that decode to no more than this pass whatever their ratio: a small regular block
     /// compresses far better than 10:1 and threatens nobody.
     pub decoded_floor_bytes: u64,
+    /// The same for the voxels of an image: a label map of a whole head compresses a hundred times.
+    pub image_floor_bytes: u64,
     pub polygon_corners: u64,
     /// Characters in the name of a set or an array.
     pub name_length: u64,
@@ -39,6 +41,7 @@ impl Default for ReadLimits {
             decoded_bytes: 512 << 20,
             decoded_ratio: 10.0,
             decoded_floor_bytes: 16 << 20,
+            image_floor_bytes: 128 << 20,
             polygon_corners: 64,
             name_length: 128,
             label_values: 4096,
@@ -73,11 +76,16 @@ impl ReadLimits {
     }
 
     pub(super) fn decode_budget(&self, file_bytes: usize) -> DecodeBudget {
+        self.budget(file_bytes, self.decoded_floor_bytes)
+    }
+
+    pub(super) fn image_budget(&self, file_bytes: usize) -> DecodeBudget {
+        self.budget(file_bytes, self.image_floor_bytes)
+    }
+
+    fn budget(&self, file_bytes: usize, floor: u64) -> DecodeBudget {
         let by_ratio = (file_bytes as f64 * self.decoded_ratio) as u64;
-        DecodeBudget {
-            limit: by_ratio.max(self.decoded_floor_bytes).min(self.decoded_bytes),
-            used: 0,
-        }
+        DecodeBudget { limit: by_ratio.max(floor).min(self.decoded_bytes), used: 0 }
     }
 }
 

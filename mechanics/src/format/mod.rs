@@ -5,9 +5,11 @@
 //! whatever the format. A reader never opens another file. Numbers are taken as they stand; the
 //! caller knows their unit.
 
+mod archive;
 mod arrays;
 pub mod csv;
 mod cursor;
+mod dicom;
 pub mod error;
 mod file;
 pub mod glb;
@@ -15,6 +17,8 @@ mod gmsh;
 mod ignored_field;
 pub mod limits;
 mod lps;
+mod metaimage;
+mod nifti;
 pub mod nrrd;
 mod obj;
 pub mod output;
@@ -24,6 +28,7 @@ mod scalar;
 mod sniff;
 pub mod stl;
 mod surface_cleaning;
+mod voxels;
 pub mod vtk;
 pub use error::{FormatError, Member, Place};
 pub use file::{Mesh, MeshFormat, ReadMesh};
@@ -48,6 +53,10 @@ pub fn read(bytes: &[u8], limits: &ReadLimits) -> Result<ReadMesh, FormatError> 
         MeshFormat::Ply => ply::read(bytes, limits),
         MeshFormat::Obj => obj::read(bytes, limits),
         MeshFormat::Nrrd => return nrrd::read(bytes, limits),
+        MeshFormat::Nifti => return nifti::read(bytes, limits),
+        MeshFormat::MetaImage => return metaimage::read(bytes, limits),
+        MeshFormat::Dicom if archive::is_zip(bytes) => return archive::read(bytes, limits),
+        MeshFormat::Dicom => return dicom::read(bytes, limits),
     }?;
     parsed.into_mesh(format, limits)
 }

@@ -74,26 +74,6 @@ impl Scalar {
         Ok(values)
     }
 
-    /// All values in single precision.
-    pub fn singles(self, bytes: &[u8], order: ByteOrder) -> Result<Vec<f32>, FormatError> {
-        let mut values = room_for(bytes.len() / self.size() as usize)?;
-        match self {
-            Scalar::F32 => each_value!(f32, bytes, order, |value| values.push(value)),
-            Scalar::F64 => each_value!(f64, bytes, order, |value| values.push(value as f32)),
-            _ => self.each_integer(bytes, order, |value| values.push(value as f32)),
-        }
-        Ok(values)
-    }
-
-    /// Whether these are integers that all fit into 16 bits.
-    pub fn fits_i16(self, bytes: &[u8], order: ByteOrder) -> bool {
-        let mut fits = self.is_integer();
-        if fits && !matches!(self, Scalar::I8 | Scalar::U8 | Scalar::I16) {
-            self.each_integer(bytes, order, |value| fits &= i16::try_from(value).is_ok());
-        }
-        fits
-    }
-
     /// One value as a real number; zero where there are no bytes.
     pub fn real(self, bytes: &[u8], order: ByteOrder) -> f64 {
         let mut found = 0.0;
@@ -112,7 +92,8 @@ impl Scalar {
         found
     }
 
-    fn each_integer(self, bytes: &[u8], order: ByteOrder, mut each: impl FnMut(i64)) {
+    /// Calls with every value; floating point values are cut towards zero.
+    pub fn each_integer(self, bytes: &[u8], order: ByteOrder, mut each: impl FnMut(i64)) {
         match self {
             Scalar::I8 => each_value!(i8, bytes, order, |value| each(i64::from(value))),
             Scalar::U8 => each_value!(u8, bytes, order, |value| each(i64::from(value))),

@@ -2,15 +2,15 @@
 
 use super::cursor::find;
 use super::file::MeshFormat;
+use super::{archive, dicom, metaimage, nifti};
 
 /// Files that are often sent by mistake, by their first bytes.
-const FOREIGN: [(&[u8], &str); 12] = [
+const FOREIGN: [(&[u8], &str); 11] = [
     (b"\x89PNG", "it is a PNG picture"),
     (b"\xff\xd8\xff", "it is a JPEG picture"),
     (b"GIF8", "it is a GIF picture"),
     (b"%PDF", "it is a PDF document"),
-    (b"PK\x03\x04", "it is a zip archive"),
-    (b"\x1f\x8b", "it is compressed with gzip"),
+    (b"\x1f\x8b", "it is compressed with gzip and no NIfTI image"),
     (b"BZh", "it is compressed with bzip2"),
     (b"\x28\xb5\x2f\xfd", "it is compressed with zstd"),
     (b"NRRD", "it is an NRRD file of a version that is not read here"),
@@ -42,6 +42,15 @@ pub(super) fn sniff(bytes: &[u8]) -> Option<MeshFormat> {
     if bytes.starts_with(b"NRRD000") {
         return Some(MeshFormat::Nrrd);
     }
+    if nifti::is_nifti(bytes) {
+        return Some(MeshFormat::Nifti);
+    }
+    if metaimage::is_metaimage(bytes) {
+        return Some(MeshFormat::MetaImage);
+    }
+    if dicom::is_dicom(bytes) || archive::is_zip(bytes) {
+        return Some(MeshFormat::Dicom);
+    }
     if is_foreign(bytes) {
         return None;
     }
@@ -68,9 +77,6 @@ pub(super) fn sniff(bytes: &[u8]) -> Option<MeshFormat> {
 
 /// A phrase about a file that is none of ours.
 pub(super) fn foreign_kind(bytes: &[u8]) -> &'static str {
-    if is_dicom(bytes) {
-        return "it is a DICOM file";
-    }
     let text = bytes.trim_ascii_start();
     for (magic, kind) in FOREIGN {
         if text.starts_with(magic) {
@@ -84,15 +90,11 @@ pub(super) fn foreign_kind(bytes: &[u8]) -> &'static str {
     if start.starts_with(b"<") {
         return "it is XML, but neither a VTK UnstructuredGrid nor a PolyData";
     }
-    "expected one of VTU, VTP, VTK, Gmsh, STL, PLY, OBJ, or NRRD"
+    "expected one of VTU, VTP, VTK, Gmsh, STL, PLY, OBJ, NRRD, NIfTI, MetaImage, or DICOM"
 }
 
 fn is_foreign(bytes: &[u8]) -> bool {
-    is_dicom(bytes) || FOREIGN.iter().any(|(magic, _)| bytes.starts_with(magic))
-}
-
-fn is_dicom(bytes: &[u8]) -> bool {
-    bytes.get(128..132) == Some(b"DICM")
+    FOREIGN.iter().any(|(magic, _)| bytes.starts_with(magic))
 }
 
 fn declared_stl_triangles(bytes: &[u8]) -> Option<u64> {

@@ -4,6 +4,7 @@
 //! directions of the axes, and the value of a voxel stands at its centre. Between eight centres the value
 //! is trilinear; beyond the outermost centres there is none, and none is made up.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use nalgebra::Matrix3;
@@ -89,6 +90,7 @@ pub struct ImageVolume {
     placement: Placement,
     to_index: Matrix3<f64>,
     voxels: Arc<Voxels>,
+    label_names: Arc<BTreeMap<u16, String>>,
 }
 
 impl Placement {
@@ -149,7 +151,18 @@ impl ImageVolume {
             return Err(ImageError::NonFinite { count, first });
         }
         let to_index = placement.to_index()?;
-        Ok(ImageVolume { size, placement, to_index, voxels: Arc::new(voxels) })
+        let (voxels, label_names) = (Arc::new(voxels), Arc::default());
+        Ok(ImageVolume { size, placement, to_index, voxels, label_names })
+    }
+
+    /// The same image, whose values are labels with these names.
+    pub fn with_label_names(self, names: BTreeMap<u16, String>) -> ImageVolume {
+        ImageVolume { label_names: Arc::new(names), ..self }
+    }
+
+    /// What the file calls values of an image that are labels; empty for a scan.
+    pub fn label_names(&self) -> &BTreeMap<u16, String> {
+        &self.label_names
     }
 
     /// Voxels along each axis.
@@ -159,6 +172,11 @@ impl ImageVolume {
 
     pub fn placement(&self) -> &Placement {
         &self.placement
+    }
+
+    /// Turns the way from the first voxel's centre, in mm, into voxels.
+    pub(crate) fn to_index(&self) -> &Matrix3<f64> {
+        &self.to_index
     }
 
     pub fn voxels(&self) -> &Voxels {
@@ -209,7 +227,7 @@ impl ImageVolume {
     pub fn turned(&self, from: Frame, to: Frame) -> ImageVolume {
         let placement = self.placement.turned(from, to);
         let to_index = placement.to_index().unwrap_or(self.to_index);
-        ImageVolume { size: self.size, placement, to_index, voxels: self.voxels.clone() }
+        ImageVolume { placement, to_index, ..self.clone() }
     }
 
     /// The value at a point; `None` outside the centres of the outermost voxels.

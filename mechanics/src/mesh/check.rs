@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use super::connectivity::Faces;
+use super::connectivity::{Faces, parts_by_nodes};
 use super::disjoint_sets::DisjointSets;
 use super::jacobian::signed_volume;
 use super::surface_edges::count_edges;
@@ -11,6 +11,9 @@ use super::{CellShape, TriangleSurface, Vector, VolumeMesh, Warning};
 
 /// A face or a part of it measures this much from corner to corner of its bounding box, in mm.
 const USUAL_DIAGONAL_MM: std::ops::RangeInclusive<f64> = 50.0..=600.0;
+
+/// The code of the warning of a mesh in parts.
+const SEVERAL_COMPONENTS: &str = "several-components";
 
 /// Sizes of as many parts are listed.
 const MOST_PARTS_LISTED: usize = 10;
@@ -120,7 +123,7 @@ impl MeshReport {
             }
         };
         let other_parts = self.components.saturating_sub(1);
-        add("several-components", other_parts, "parts touch the largest one nowhere");
+        add(SEVERAL_COMPONENTS, other_parts, "parts touch the largest one nowhere");
         add("nonmanifold-edges", self.nonmanifold_edges, "edges belong to more than two triangles");
         add("nonmanifold-faces", self.nonmanifold_faces, "faces belong to more than two cells");
         add("duplicate-nodes", self.duplicate_nodes, "nodes lie exactly on another one");
@@ -133,6 +136,25 @@ impl MeshReport {
             self.warnings.push(warning.with("count", empty.len() as f64));
         }
     }
+}
+
+/// The warning of a volume mesh in parts that share no node: a face is one, and what is not joined to it is held and
+/// moved by itself.
+pub fn several_components(mesh: &VolumeMesh, faces: &Faces) -> Option<Warning> {
+    let mut cells: Vec<u64> = Vec::new();
+    for part in parts_by_nodes(mesh, &faces.parts()) {
+        cells.resize(cells.len().max(part as usize + 1), 0);
+        cells[part as usize] += 1;
+    }
+    cells.sort_unstable_by(|one, other| other.cmp(one));
+    let (largest, others) = cells.split_first()?;
+    let rest: u64 = others.iter().sum();
+    let detail = format!(
+        "{} parts of the mesh, {rest} cells, touch the largest one, of {largest} cells, nowhere",
+        others.len()
+    );
+    let warning = Warning::new(SEVERAL_COMPONENTS, detail).with("count", others.len() as f64);
+    (!others.is_empty()).then(|| warning.with("cells", rest as f64))
 }
 
 /// A warning where the bounding box, in mm, is no size that a face has. Names the factor that

@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use super::VolumeMesh;
+use super::disjoint_sets::DisjointSets;
 use super::volume::BoundaryFace;
 use crate::rows::Sorting;
 
@@ -76,6 +77,34 @@ impl Faces {
             })
             .collect()
     }
+}
+
+/// For each cell the number of its part: cells that share a node belong together. Parts are numbered in the order of
+/// their lowest cells. `by_faces` are the parts of cells that share faces.
+pub fn parts_by_nodes(mesh: &VolumeMesh, by_faces: &[u32]) -> Vec<u32> {
+    let count = by_faces.iter().max().map_or(0, |last| *last as usize + 1);
+    if count < 2 {
+        return by_faces.to_vec();
+    }
+    let mut joined = DisjointSets::new(count);
+    let mut part_of_node = vec![u32::MAX; mesh.nodes.len()];
+    for ((_, nodes), &part) in mesh.cells.iter().zip(by_faces) {
+        for &node in nodes {
+            let other = std::mem::replace(&mut part_of_node[node as usize], part);
+            if other != u32::MAX && other != part {
+                joined.join(other, part);
+            }
+        }
+    }
+    // The smallest of a set stands for it, so that roots come in the order of the lowest cells.
+    let mut number = vec![0; count];
+    let mut parts = 0;
+    for part in 0..count as u32 {
+        let root = joined.root(part);
+        number[part as usize] = if root == part { parts } else { number[root as usize] };
+        parts += u32::from(root == part);
+    }
+    by_faces.iter().map(|&part| number[part as usize]).collect()
 }
 
 impl VolumeMesh {

@@ -79,9 +79,9 @@ pub enum ArrayUse {
     CellVectors,
 }
 
-/// Up to 20 names, so that a message stays one line.
-pub fn listed<'a>(names: impl Iterator<Item = &'a String>) -> String {
-    let mut names: Vec<&str> = names.map(String::as_str).collect();
+/// Up to 20 names, so that a message stays one line; `none` where there are none.
+pub fn listed(names: impl IntoIterator<Item = impl AsRef<str>>) -> String {
+    let mut names: Vec<String> = names.into_iter().map(|name| name.as_ref().to_owned()).collect();
     if names.is_empty() {
         return "none".to_owned();
     }

@@ -24,7 +24,7 @@ impl VolumeMesh {
         };
         match self.ignored.find(of, name) {
             Some(array) => array.to_string(),
-            None => format!("the mesh has no {what} {name:?}; it has: {known}"),
+            None => format!("the mesh has no {what} {name:?}; it has {known}"),
         }
     }
 

@@ -3,7 +3,7 @@
 pub mod doubt;
 pub mod movement;
 
-pub use movement::{MovementError, RigidMovement};
+pub use movement::{MovementError, NUMBERS, RigidMovement};
 
 /// A segment by the name it has in the case, and its movement in the frame of the case.
 #[derive(Clone, Debug, PartialEq)]

@@ -4,6 +4,9 @@ use nalgebra::Matrix3;
 
 use crate::mesh::Vector;
 
+/// Numbers of a movement that a displacement is linear in: the rows of R - I, each followed by its t.
+pub const NUMBERS: usize = 12;
+
 /// How far a matrix may be from a rotation before it is refused.
 const RIGID_TOLERANCE: f64 = 1e-6;
 
@@ -40,6 +43,11 @@ impl RigidMovement {
             * rotation_about(0, angles_xyz.x);
         let translation = pivot - rotation * pivot + translation;
         RigidMovement { rotation, translation }
+    }
+
+    /// A rotation about a place, which then moves by a displacement in mm.
+    pub(crate) fn about_centre(rotation: Matrix3<f64>, centre: &Vector, moved: Vector) -> Self {
+        RigidMovement { rotation, translation: moved - (rotation - Matrix3::identity()) * centre }
     }
 
     /// A rotation, which has to be orthonormal with determinant +1 to 1e-6, and a translation.

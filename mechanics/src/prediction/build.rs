@@ -9,9 +9,9 @@ use super::problem::SceneErrors;
 use super::scene::Scene;
 use super::skin_check::doubtful_skin;
 use super::stiff_layer;
-use super::suspect_constants::suspect_constants;
+use super::suspect_constants::{moduli_apart, suspect_constants};
 use super::walls;
-use crate::boundary::tearing;
+use crate::boundary::{connected_parts, tearing};
 use crate::mesh::connectivity::Faces;
 use crate::mesh::{Vector, Warning};
 use crate::plan::doubt::nothing_moves;
@@ -33,14 +33,20 @@ impl Scene {
         let tissue = check.tissue_of_cells(&region_of_cell, materials);
 
         // 2. What every node is held to.
+        let sound = check.problems.count();
         let (segments, held) = check.held_nodes(plan, settings);
         let conditions = check.conditions(&held);
+        let is_sound = check.problems.count() == sound;
         check.plan_size(plan, &segments, &held);
-        check.unheld(plan, &segments, &conditions);
         let far = far_segments(case, &held);
 
         // 3. The skin and what acts on the tissue.
         let skin = check.skin(&conditions);
+        let part_of_cell = faces.parts();
+        let parts = connected_parts(&case.volume, &part_of_cell, &conditions, skin.nodes());
+        if is_sound {
+            check.unheld(plan, &segments, &parts);
+        }
         let membrane = check.membrane(&skin, settings);
         let mut scene = Scene {
             mesh: case.volume.clone(),
@@ -56,6 +62,8 @@ impl Scene {
             membrane,
             element,
             conditions,
+            stated: std::mem::take(&mut check.stated),
+            parts,
             segments,
             forces: vec![Vector::zeros(); case.volume.nodes.len()],
             landmarks: case.landmarks.clone(),
@@ -68,21 +76,29 @@ impl Scene {
         check.add_loads(plan, &mut scene);
 
         // 4. What cannot be solved, and what a reader must know.
-        check.support(&scene, &faces);
+        check.support(&scene, &part_of_cell);
         check.problems.give_up_if_any()?;
         scene.warnings = scene.conditions.warnings.clone();
         scene.warnings.extend(check.warnings);
         scene.warnings.extend(far);
         scene.warnings.extend(doubtful_skin(&scene, case.skin.is_some()));
         scene.warnings.extend(cut::duplicate_nodes(&scene.mesh, &check.boundary_nodes));
-        scene.warnings.extend(tearing::tearing(&scene.mesh, &scene.conditions.holds));
-        scene.warnings.extend(walls::turned_normals(&scene));
-        scene.warnings.extend(states_rest(plan, &scene));
-        scene.warnings.extend(suspect_constants(&scene, plan));
-        scene.warnings.extend(scene.locking());
-        scene.warnings.extend(stiff_layer::thin_stiff_layers(&scene));
-        scene.warnings.extend(scene.built_in_poisson_ratio());
+        scene.warnings.extend(scene.doubts(case, plan));
         Ok(scene)
+    }
+
+    /// What in a scene without mistakes is rarely meant.
+    fn doubts(&self, case: &Case, plan: &Plan) -> Vec<Warning> {
+        let mut warnings: Vec<Warning> = Vec::new();
+        warnings.extend(tearing::tearing(&self.mesh, &self.conditions.holds));
+        warnings.extend(walls::turned_normals(self));
+        warnings.extend(states_rest(plan, self));
+        warnings.extend(suspect_constants(self, plan));
+        warnings.extend(moduli_apart(case, self));
+        warnings.extend(self.locking());
+        warnings.extend(stiff_layer::thin_stiff_layers(self));
+        warnings.extend(self.built_in_poisson_ratio());
+        warnings
     }
 }
 

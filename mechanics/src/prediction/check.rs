@@ -9,11 +9,11 @@ use super::method::Method;
 use super::problem::Problems;
 use super::scene::Scene;
 use super::skin::{self, Skin};
+use super::stated::StatedCondition;
 use crate::boundary::conditions::combine;
 use crate::boundary::support::loose_parts;
 use crate::boundary::{Conditions, HeldNodes, NodeClass, NodeSelection, Selector};
 use crate::material::LinearElastic;
-use crate::mesh::connectivity::Faces;
 use crate::mesh::ignored::listed;
 use crate::mesh::volume::BoundaryFace;
 use crate::mesh::{ArrayUse, CellShape, Vector, Warning};
@@ -30,6 +30,8 @@ pub(super) struct Check<'a> {
     pub(super) boundary_nodes: Vec<u32>,
     pub(super) problems: Problems,
     pub(super) warnings: Vec<Warning>,
+    /// The conditions so far.
+    pub(super) stated: Vec<StatedCondition>,
 }
 
 impl<'a> Check<'a> {
@@ -39,7 +41,8 @@ impl<'a> Check<'a> {
         boundary_nodes.sort_unstable();
         boundary_nodes.dedup();
         let problems = Problems::default();
-        Check { case, boundary, boundary_nodes, problems, warnings: Vec::new() }
+        let (warnings, stated) = (Vec::new(), Vec::new());
+        Check { case, boundary, boundary_nodes, problems, warnings, stated }
     }
 
     pub(super) fn select(&mut self, selection: &NodeSelection, pointer: &str) -> Vec<u32> {
@@ -274,15 +277,16 @@ impl<'a> Check<'a> {
         faces
     }
 
-    pub(super) fn support(&mut self, scene: &Scene, faces: &Faces) {
-        let loose = loose_parts(&scene.mesh, faces, &scene.conditions.holds);
+    pub(super) fn support(&mut self, scene: &Scene, part_of_cell: &[u32]) {
+        let loose = loose_parts(&scene.mesh, part_of_cell, &scene.conditions.holds);
         for part in &loose {
             let detail = format!(
                 "the part of {} nodes that contains node {} can move freely in {} of the 6 rigid ways: \
-                 nothing holds it there ({} such parts)",
+                 it may {}; nothing holds it there ({} such parts)",
                 part.nodes,
                 part.first_node,
-                part.free_movements,
+                part.freedom.count(),
+                part.freedom,
                 loose.len()
             );
             self.problems.add("/case", SceneErrorCode::Underconstrained, detail);

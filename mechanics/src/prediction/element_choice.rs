@@ -10,16 +10,16 @@ listed! {
     /// The element for tetrahedra and the treatment of volume change in the other cells.
     #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
     pub enum ElementChoice {
-        /// The same as `Stabilised`.
+        /// The same as `Stabilised`: no element locks.
         #[default]
         Auto,
-        /// Full integration for every shape.
+        /// Full integration for every shape; locks above a Poisson ratio of 0.45, with a warning.
         Plain,
         /// Mean dilatation for hex8 and wedge6, the plain element for tet4.
         MeanDilatation,
         /// Mean dilatation for hex8 and wedge6, displacement and stabilised pressure for tet4.
         Stabilised,
-        /// Tetrahedra with a node in the middle of each edge; no other shapes.
+        /// Tetrahedra with a node in the middle of each edge; refused for other shapes.
         Quadratic,
     }
 }

@@ -3,8 +3,10 @@
 use super::case::{Plan, Prescribed, Settings};
 use super::check::Check;
 use super::error_code::SceneErrorCode;
+use super::stated::{StatedCondition, StatedHold};
 use crate::boundary::HeldNodes;
 use crate::mesh::ArrayUse;
+use crate::mesh::ignored::listed;
 use crate::plan::doubt::{MovedSegment, beyond_face, suspect_units};
 use crate::plan::{PlannedSegment, RigidMovement};
 
@@ -17,11 +19,25 @@ impl Check<'_> {
         let mut held = HeldNodes::default();
         let segments = self.segments(plan, &mut held);
         for (index, selection) in self.case.fixed.iter().enumerate() {
-            held.fixed.extend(self.select(selection, &format!("/case/fixed/{index}")));
+            let pointer = format!("/case/fixed/{index}");
+            let nodes = self.select(selection, &pointer);
+            held.fixed.extend(&nodes);
+            self.state(pointer, None, nodes, StatedHold::Fixed);
         }
         self.walls(&segments, settings, &mut held);
         self.prescribed(plan, &mut held);
         (segments, held)
+    }
+
+    /// Notes a condition, for whoever asks what it exerts.
+    pub(super) fn state(
+        &mut self,
+        pointer: String,
+        segment: Option<u32>,
+        nodes: Vec<u32>,
+        holds: StatedHold,
+    ) {
+        self.stated.push(StatedCondition { pointer, segment, nodes, holds });
     }
 
     /// The segments of the case with their movements, then those that the plan names after node sets.
@@ -39,6 +55,8 @@ impl Check<'_> {
             let planned = plan.segments.iter().find(|planned| planned.name == segment.name);
             let movement = planned.map_or_else(RigidMovement::default, |planned| planned.movement);
             let nodes = self.select(&segment.nodes, &format!("/case/segments/{index}/nodes"));
+            let (pointer, number) = (format!("/case/segments/{index}"), Some(index as u32));
+            self.state(pointer, number, nodes.clone(), StatedHold::Joined);
             held.joined.push((nodes, movement));
             segments.push(PlannedSegment { name: segment.name.clone(), movement });
         }
@@ -50,16 +68,17 @@ impl Check<'_> {
             } else if !segments.iter().any(|segment| segment.name == planned.name) {
                 match self.case.volume.node_set(&planned.name) {
                     Some(nodes) if !nodes.is_empty() => {
-                        held.joined.push((nodes.to_vec(), planned.movement));
+                        let (nodes, number) = (nodes.to_vec(), Some(segments.len() as u32));
+                        let pointer = format!("/plan/segments/{index}");
+                        self.state(pointer, number, nodes.clone(), StatedHold::Joined);
+                        held.joined.push((nodes, planned.movement));
                         segments.push(planned.clone());
                     }
                     _ => {
-                        let known: Vec<&str> =
-                            segments.iter().map(|segment| segment.name.as_str()).collect();
+                        let known = listed(segments.iter().map(|segment| &segment.name));
                         let detail = format!(
-                            "the case has neither a segment nor a node set {:?}; its segments: {}",
-                            planned.name,
-                            known.join(", ")
+                            "the case has neither a segment nor a node set {:?}; its segments: {known}",
+                            planned.name
                         );
                         self.problems.add(pointer, SceneErrorCode::UnknownSegment, detail);
                     }
@@ -97,6 +116,8 @@ impl Check<'_> {
                 Prescribed::Uniform { nodes, displacement } => {
                     let nodes = self.select(nodes, &format!("{pointer}/nodes"));
                     held.prescribed.extend(nodes.iter().map(|&node| (node, *displacement)));
+                    let components = displacement.map(|component| component.is_some());
+                    self.state(pointer, None, nodes, StatedHold::Components(components));
                 }
                 Prescribed::FromArray { nodes, array } => {
                     let nodes = self.select(nodes, &format!("{pointer}/nodes"));
@@ -113,6 +134,7 @@ impl Check<'_> {
                     let value = |node: u32| values[node as usize];
                     let whole = |node: u32| [value(node).x, value(node).y, value(node).z].map(Some);
                     held.prescribed.extend(nodes.iter().map(|&node| (node, whole(node))));
+                    self.state(pointer, None, nodes, StatedHold::Components([true; 3]));
                 }
             }
         }

@@ -16,11 +16,13 @@ mod method;
 mod numerics_revision;
 mod off_wall;
 mod problem;
+mod reaction;
 pub mod scene;
 mod skin;
 mod skin_check;
 mod skin_overlap;
 mod small_strain;
+mod stated;
 mod stiff_layer;
 mod suspect_constants;
 mod unheld;
@@ -38,16 +40,17 @@ pub use imaged_tissue::{ImagedTissue, TissueShare};
 pub use method::{Method, MethodKind, MethodProperties, Unknowns};
 pub use numerics_revision::NUMERICS_REVISION;
 pub use problem::{SceneError, SceneErrors};
+pub use reaction::ConditionReaction;
 pub use scene::Scene;
 pub use skin::Skin;
 pub use skin_overlap::{SKIN_OVERLAPS, skin_overlap};
-pub use unheld::{are_alike, carried_away};
+pub use stated::{StatedCondition, StatedHold};
+pub use unheld::{GoesAlong, NOTHING_HELD, goes_along};
 pub use walls::normal_turned;
 
 pub use crate::boundary::NodeClass;
 use crate::mesh::{Vector, Warning};
 use crate::model::fem::strain::{CellDeformation, deformations};
-use crate::model::problem::Equilibrium;
 pub use crate::model::problem::{InvertedCell, ModelError};
 use crate::plan::doubt::{NOTHING_MOVES, nothing_moves};
 use crate::progress::{Phase, Progress};
@@ -65,6 +68,8 @@ pub struct Prediction {
     pub deformation: Vec<CellDeformation>,
     /// In mN: what each segment, `fixed`, `sliding` and `prescribed` nodes exert on the tissue.
     pub reactions: BTreeMap<String, Vector>,
+    /// The same for each condition by itself, in the order of case and plan.
+    pub condition_reactions: Vec<ConditionReaction>,
     /// The displacement of each landmark in mm.
     pub landmarks: BTreeMap<String, Vector>,
     pub solver: SolveReport,
@@ -95,12 +100,10 @@ pub fn predict(scene: &Scene, progress: &dyn Progress) -> Result<Prediction, Mod
     warnings.extend(off_wall::left_wall(scene, &equilibrium.displacement));
     let moved = scene.skin.moved(&equilibrium.displacement);
     warnings.extend(skin_overlap(&scene.skin, &moved));
-    if !scene.allow_unfixed {
-        warnings.extend(carried_away(&scene.skin.surface, |point| moved.points[point]));
-    }
     warnings.extend(far_landmarks(&landmarks));
     Ok(Prediction {
-        reactions: reactions(scene, &equilibrium),
+        reactions: reaction::by_class(scene, &equilibrium),
+        condition_reactions: reaction::by_condition(scene, &equilibrium),
         landmarks: landmarks.into_iter().map(|(name, (moved, _))| (name, moved)).collect(),
         solver: equilibrium.solver,
         elements: scene.elements(),
@@ -108,20 +111,6 @@ pub fn predict(scene: &Scene, progress: &dyn Progress) -> Result<Prediction, Mod
         deformation,
         warnings,
     })
-}
-
-/// Sums the reactions of the nodes of each segment and of each other class.
-fn reactions(scene: &Scene, equilibrium: &Equilibrium) -> BTreeMap<String, Vector> {
-    let mut sums: BTreeMap<String, Vector> =
-        scene.segments.iter().map(|segment| (segment.name.clone(), Vector::zeros())).collect();
-    for (hold, reaction) in scene.conditions.holds.iter().zip(&equilibrium.reactions) {
-        let holder = match scene.conditions.classes[hold.node as usize] {
-            NodeClass::Joined(segment) => scene.segments[segment as usize].name.clone(),
-            other => other.name().to_owned(),
-        };
-        *sums.entry(holder).or_insert_with(Vector::zeros) += reaction;
-    }
-    sums
 }
 
 /// An answer that turns cells inside out says so.

@@ -42,6 +42,10 @@ impl Problems {
         self.add(pointer, code, error.to_string());
     }
 
+    pub(super) fn count(&self) -> usize {
+        self.0.len()
+    }
+
     pub(super) fn give_up_if_any(&mut self) -> Result<(), SceneErrors> {
         match self.0.is_empty() {
             true => Ok(()),

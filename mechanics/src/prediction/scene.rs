@@ -8,7 +8,8 @@ use super::element_choice::ElementChoice;
 use super::imaged_tissue::ImagedTissue;
 use super::method::{Method, Unknowns};
 use super::skin::Skin;
-use crate::boundary::{Conditions, NodeClass};
+use super::stated::StatedCondition;
+use crate::boundary::{Conditions, ConnectedPart, NodeClass};
 use crate::material::LinearElastic;
 use crate::mesh::volume::BoundaryFace;
 use crate::mesh::{CellShape, Vector, VolumeMesh, Warning};
@@ -60,6 +61,10 @@ pub struct Scene {
     /// What cells are taken as; that of the settings where the method leaves a choice.
     pub element: ElementChoice,
     pub conditions: Conditions,
+    /// The conditions as case and plan state them.
+    pub stated: Vec<StatedCondition>,
+    /// What hangs together, and what holds each part.
+    pub parts: Vec<ConnectedPart>,
     /// Segments by the number in `NodeClass::Joined`, with the movement each makes.
     pub segments: Vec<PlannedSegment>,
     /// For each node, in mN; quadratic elements have those of edge nodes after them.

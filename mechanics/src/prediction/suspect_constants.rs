@@ -3,10 +3,13 @@
 //! What no unit explains is refused where constants are made (`material`). Between the two lie decades in which a
 //! number is more likely a mistake of a thousand than a tissue: fat has 1 to 3 kPa, bone 1e7 kPa.
 
-use super::case::{Load, Plan};
+use super::case::{Case, Load, Plan};
 use super::scene::Scene;
 use crate::material::LinearElastic;
 use crate::mesh::{Vector, Warning};
+
+/// Pa among kPa: fat and muscle are a factor of a hundred apart, fat and skin of a thousand at most.
+const MODULI_APART: f64 = 1e3;
 
 /// More of these help nobody.
 const MOST: usize = 20;
@@ -67,6 +70,26 @@ pub(super) fn suspect_constants(scene: &Scene, plan: &Plan) -> Vec<Warning> {
     let links = link.into_iter().map(|stiffness| LINK.doubt(stiffness, ""));
     let loads = plan.loads.iter().enumerate().map(|(index, load)| of_load(index, load));
     materials.chain(sheet).chain(links).chain(loads).flatten().take(MOST).collect()
+}
+
+/// The warning of tissues of which one is a thousand times as stiff as another or more.
+pub(super) fn moduli_apart(case: &Case, scene: &Scene) -> Option<Warning> {
+    let regions = scene.regions.iter().zip(&scene.materials);
+    let windows = case.hounsfield.iter().flat_map(|image| &image.tissues);
+    let windows = windows.map(|window| (&window.name, &window.material));
+    let modulus =
+        |(name, material): (&String, &LinearElastic)| (material.young_modulus(), name.clone());
+    let mut moduli: Vec<(f64, String)> = regions.chain(windows).map(modulus).collect();
+    moduli.sort_by(|one, other| one.0.total_cmp(&other.0));
+    let [(softest, soft), .., (stiffest, stiff)] = moduli.as_slice() else { return None };
+    let ratio = stiffest / softest;
+    let detail = format!(
+        "Young's modulus of {stiff:?} is {stiffest} kPa and that of {soft:?} {softest} kPa, {ratio:.0} times less: \
+         is one of them in another unit?"
+    );
+    let warning = Warning::new("moduli-far-apart", detail).with("ratio", ratio);
+    let warning = warning.with("stiffest_kpa", *stiffest).with("softest_kpa", *softest);
+    (ratio >= MODULI_APART).then_some(warning)
 }
 
 fn of_material(name: &str, material: &LinearElastic) -> [Option<Warning>; 4] {

@@ -1,142 +1,122 @@
-//! Tissue that nothing keeps in place: a plan that moves all bones alike carries it away as one, without deforming
-//! it.
+//! Tissue that goes along as one: what holds it moves alike, or leaves it free to follow, so that it is not deformed
+//! and a prediction says nothing about it.
 //!
-//! Something stays where a node is fixed or prescribed, slides on a wall that stays, or belongs to a segment that the
-//! plan leaves where it is.
+//! What is judged is each connected part of the mesh, from the values at which it is held: prescribed nodes that all
+//! move too, a wall along which everything slides, something fixed in another part are no hold. A part with a tenth of
+//! the skin or more is refused; a smaller one, an island of tissue on a bone, is told.
 
 use super::case::Plan;
 use super::check::Check;
 use super::error_code::SceneErrorCode;
-use crate::boundary::Conditions;
-use crate::mesh::{TriangleSurface, Vector, Warning};
-use crate::plan::doubt::farthest_apart;
+use crate::boundary::{ConnectedPart, Freedom, Holder};
+use crate::mesh::Warning;
 use crate::plan::{PlannedSegment, RigidMovement};
 
-/// Movements that take no point of the tissue farther apart than this are one movement, in mm.
-const ALIKE: f64 = 1e-6;
-
 /// The code of the error and of the warning.
-const NOTHING_HELD: &str = "nothing-held";
+pub const NOTHING_HELD: &str = "nothing-held";
 
 /// What to do about it.
 const CURE: &str = "name in `fixed` what stays, or allow it with `allow_unfixed`";
 
-/// A skin goes along as one where no edge of it changes its length by more than this share of it.
-const STRETCHED: f64 = 1e-4;
-
-/// A skin that moves by less than this, in mm, goes nowhere.
-const CARRIED_MM: f64 = 0.05;
-
-/// The warning of a skin that goes along as one, whatever the conditions say that hold it: a wall beside which all
-/// moves, prescribed nodes that move too, something fixed in another part of the mesh. `moved` says where a point of
-/// the surface comes to lie. Ends at the first edge that is stretched.
-pub fn carried_away(rest: &TriangleSurface, moved: impl Fn(usize) -> Vector) -> Option<Warning> {
-    let place = |point: u32| (rest.points[point as usize], moved(point as usize));
-    let is_stretched = |[from, to]: [u32; 2]| {
-        let ((from, moved_from), (to, moved_to)) = (place(from), place(to));
-        let length = (to - from).norm();
-        ((moved_to - moved_from).norm() - length).abs() > STRETCHED * length
-    };
-    let edges = |&[a, b, c]: &[u32; 3]| [[a, b], [b, c], [c, a]];
-    if rest.triangles.iter().flat_map(edges).any(is_stretched) {
-        return None;
-    }
-    let points = rest.points.iter().enumerate();
-    let farthest = points.map(|(point, at)| (moved(point) - at).norm()).fold(0.0, f64::max);
-    let detail = format!(
-        "the skin goes along as one, by up to {farthest:.3} mm, and no edge of it is stretched by more than 0.01 %: \
-         what holds the tissue goes with it; {CURE}"
-    );
-    (farthest > CARRIED_MM)
-        .then(|| Warning::new(NOTHING_HELD, detail).with("farthest_mm", farthest))
+/// Parts that go along as one with a plan.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct GoesAlong {
+    /// Of parts with much of the skin: what is refused.
+    pub refused: Vec<String>,
+    /// Of the others.
+    pub told: Vec<Warning>,
 }
 
-/// Whether all of some movements take the corners of a box to the same places.
-pub fn are_alike(movements: &[RigidMovement], corners: &[Vector; 2]) -> bool {
-    let Some((first, others)) = movements.split_first() else { return true };
-    others.iter().all(|other| farthest_apart(first, other, corners) <= ALIKE)
+/// What goes along as one when each segment makes its movement.
+pub fn goes_along(
+    parts: &[ConnectedPart],
+    movement: impl Fn(u32) -> RigidMovement + Copy,
+) -> GoesAlong {
+    let mut found = GoesAlong::default();
+    for part in parts {
+        let Some(carried) = part.carried(movement) else { continue };
+        let (which, farthest) = (part_of(part, parts.len()), carried.farthest);
+        let detail = format!(
+            "{which} goes along as one, by up to {farthest:.3} mm, without being deformed: whatever holds it moves \
+             alike or leaves it free to follow; {CURE}"
+        );
+        match part.has_much_skin() {
+            true => found.refused.push(detail),
+            false => found.told.push(
+                Warning::new(NOTHING_HELD, detail)
+                    .with("farthest_mm", farthest)
+                    .with("nodes", part.nodes as f64)
+                    .with("skin_share", part.skin_share),
+            ),
+        }
+    }
+    found
+}
+
+/// A part in the words of a sentence.
+fn part_of(part: &ConnectedPart, parts: usize) -> String {
+    match parts {
+        1 => "the tissue".to_owned(),
+        _ => format!(
+            "the part of {} nodes that contains node {}, with {:.0} % of the skin,",
+            part.nodes,
+            part.first_node,
+            100.0 * part.skin_share
+        ),
+    }
+}
+
+/// What remains free of a part whose segments move, if anything does.
+fn left_free(part: &ConnectedPart, stays: impl Fn(u32) -> bool) -> Option<Freedom> {
+    let freedom = part.freedom(|holder| match holder {
+        Holder::Rest | Holder::Prescribed => true,
+        Holder::Segment(segment) => stays(segment),
+    });
+    (part.segments().next().is_some() && freedom.count() > 0).then_some(freedom)
 }
 
 impl Check<'_> {
-    /// Refuses a plan that moves all bones alike while nothing stays, and warns of a case that may come to that.
+    /// Refuses a plan that carries tissue along as one, and warns of a case that may come to that.
     pub(super) fn unheld(
         &mut self,
         plan: &Plan,
         segments: &[PlannedSegment],
-        conditions: &Conditions,
+        parts: &[ConnectedPart],
     ) {
-        if self.case.allow_unfixed || segments.is_empty() || conditions.something_rests() {
+        if self.case.allow_unfixed {
             return;
         }
-        let still = RigidMovement::default();
-        let movements: Vec<RigidMovement> = segments.iter().map(|of| of.movement).collect();
-        let corners = self.case.volume.bounds();
-        let staying = movements.iter().filter(|movement| **movement == still).count();
-        if staying == segments.len() {
-            if plan.loads.is_empty() {
-                let which = if segments.len() == 1 { "" } else { " that moves all segments alike" };
-                let detail = format!(
-                    "nothing stays: no node is fixed, prescribed or slides on a wall that stays, and a plan{which} \
-                     would carry the tissue away as one; {CURE}"
-                );
-                self.warnings.push(nothing_held(detail, segments.len()));
-            }
-        } else if are_alike(&movements, &corners) {
-            let farthest = farthest_apart(&movements[0], &still, &corners);
-            let who = match segments {
-                [alone] => format!("the only segment, {:?}", alone.name),
-                several => format!("all {} segments alike", several.len()),
-            };
-            let detail = format!(
-                "no node is fixed, prescribed or slides on a wall that stays, and the plan moves {who}: the tissue \
-                 would go with them as one, by up to {farthest:.3} mm; {CURE}"
-            );
+        let found = goes_along(parts, |segment| segments[segment as usize].movement);
+        self.warnings.extend(found.told);
+        let is_refused = !found.refused.is_empty();
+        for detail in found.refused {
             self.problems.add("/case/fixed", SceneErrorCode::NothingHeld, detail);
-        } else if staying == 0 {
-            let detail = format!(
-                "nothing stays: every segment moves, and no node is fixed, prescribed or slides on a wall that \
-                 stays; {CURE}"
-            );
-            self.warnings.push(nothing_held(detail, segments.len()));
         }
-    }
-}
-
-fn nothing_held(detail: String, segments: usize) -> Warning {
-    Warning::new(NOTHING_HELD, detail).with("segments", segments as f64)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::plan::RigidMovement;
-
-    #[test]
-    fn a_skin_that_turns_and_moves_as_one_is_told_and_one_that_stretches_is_not() {
-        let points = [[0.0, 0.0, 0.0], [30.0, 0.0, 0.0], [0.0, 30.0, 0.0], [30.0, 30.0, 9.0]];
-        let points = points.map(Vector::from).to_vec();
-        let rest =
-            TriangleSurface { points, triangles: vec![[0, 1, 2], [1, 3, 2]], node_ids: None };
-        let turn = |by: f64| {
-            let angles = Vector::new(0.0, 0.3 * by, 0.2 * by);
-            RigidMovement::about_pivot(
-                angles,
-                Vector::new(5.0, 5.0, 0.0),
-                Vector::new(by, 0.0, 0.0),
-            )
-        };
-        let carried = |by: f64, along: f64| {
-            let movement = turn(by);
-            carried_away(&rest, |point| {
-                let at = rest.points[point];
-                at + movement.displacement(&at) + Vector::new(0.0, 0.0, along * at.x)
-            })
-        };
-        let told = carried(4.0, 0.0).expect("the whole skin goes along");
-        assert_eq!(told.code, "nothing-held");
-        assert!(told.numbers[0].1 > 4.0, "{told:?}");
-        // One that stretches by 0.1 %, and one that hardly moves.
-        assert_eq!(carried(4.0, 1e-3), None);
-        assert_eq!(carried(0.001, 0.0), None);
+        let still = RigidMovement::default();
+        let is_still = segments.iter().all(|segment| segment.movement == still);
+        let acts = !(plan.loads.is_empty() && plan.prescribed.is_empty());
+        if is_refused || (is_still && acts) {
+            return;
+        }
+        let much = parts.iter().filter(|part| part.has_much_skin());
+        for part in much {
+            let stays = |segment: u32| !is_still && segments[segment as usize].movement == still;
+            let Some(freedom) = left_free(part, stays) else { continue };
+            let names: Vec<String> =
+                part.segments().map(|of| format!("{:?}", segments[of as usize].name)).collect();
+            let (which, names) = (part_of(part, parts.len()), names.join(", "));
+            let detail = match is_still {
+                true => format!(
+                    "{which} may {freedom}, but for segments that a plan may move: one that moves {names} alike in \
+                     such a way would carry it along as one; {CURE}"
+                ),
+                false => format!(
+                    "nothing that stays holds {which}: it may {freedom}, but for segments that move, {names}; {CURE}"
+                ),
+            };
+            let count = part.segments().count() as f64;
+            let warning = Warning::new(NOTHING_HELD, detail).with("segments", count);
+            self.warnings.push(warning.with("free_movements", freedom.count() as f64));
+        }
     }
 }

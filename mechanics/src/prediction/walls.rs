@@ -10,8 +10,10 @@ use super::case::{Settings, Sliding, SlidingNormal};
 use super::check::Check;
 use super::error_code::SceneErrorCode;
 use super::scene::Scene;
+use super::stated::StatedHold;
 use crate::boundary::sliding::SAME_WALL;
 use crate::boundary::{HeldNodes, NodeSelection, WallNode, sliding};
+use crate::mesh::ignored::listed;
 use crate::mesh::{Vector, Warning};
 use crate::plan::{PlannedSegment, RigidMovement};
 
@@ -59,16 +61,24 @@ impl Check<'_> {
         self.two_bones(&walls, segments, held);
         self.beside_moving_bone(&walls, segments, held);
         let keeps_normals = settings.method.properties().is_small_strain;
-        for Wall { carrier, nodes, .. } in walls {
+        for Wall { index, carrier, nodes } in walls {
             let turn = carrier.filter(|_| !keeps_normals);
             let turn = turn.map(|segment| *segments[segment as usize].movement.rotation());
-            held.sliding.extend(nodes.into_iter().map(|(node, normals)| {
-                let across = match &turn {
-                    Some(rotation) => normals.iter().map(|normal| rotation * normal).collect(),
-                    None => normals,
-                };
-                WallNode { node, across, carrier }
+            let (numbers, across): (Vec<u32>, Vec<Vec<Vector>>) = nodes
+                .into_iter()
+                .map(|(node, normals)| match &turn {
+                    Some(rotation) => (node, normals.iter().map(|n| rotation * n).collect()),
+                    None => (node, normals),
+                })
+                .unzip();
+            let walls = numbers.iter().zip(&across);
+            held.sliding.extend(walls.map(|(&node, across)| WallNode {
+                node,
+                across: across.clone(),
+                carrier,
             }));
+            let pointer = format!("/case/sliding/{index}");
+            self.state(pointer, carrier, numbers, StatedHold::Walls(across));
         }
     }
 
@@ -85,9 +95,7 @@ impl Check<'_> {
                      `segment` says"
                 ),
                 false => {
-                    let known: Vec<&str> =
-                        segments.iter().map(|other| other.name.as_str()).collect();
-                    let known = known.join(", ");
+                    let known = listed(segments.iter().map(|other| &other.name));
                     format!("no segment of the case is called {name:?}; its segments: {known}")
                 }
             };

@@ -6,8 +6,9 @@
 
 use super::linearity::{self, Linearity, joined_nodes};
 use super::{COLUMNS_PER_SEGMENT, Response, ResponseSegment, superposition};
-use crate::boundary::{Hold, NodeClass};
+use crate::boundary::{ConnectedPart, Hold, NodeClass};
 use crate::mesh::Vector;
+use crate::mesh::ignored::listed;
 use crate::model::problem::{Equilibrium, LoadCase, ModelError};
 use crate::plan::RigidMovement;
 
@@ -27,6 +28,8 @@ pub struct Columns {
     /// As in [`Response`], in f64.
     pub values: Vec<f64>,
     pub linearity: Linearity,
+    /// What hangs together, and what holds it; segments by their place in `segments`, others stay.
+    pub parts: Vec<ConnectedPart>,
     /// For each segment whether tissue slides on it.
     pub carries_wall: Vec<bool>,
     /// Whether plans may carry the whole tissue away as one.
@@ -51,8 +54,8 @@ pub enum ResponseError {
     )]
     SharedNodes { count: usize, first: u32 },
     #[error(
-        "nothing stays: no node is fixed or slides on a wall that stays, and every plan of segment {name:?}, the only \
-         one, would carry the tissue away as one; name in `fixed` what stays, or allow it with `allow_unfixed`"
+        "nothing but segment {name:?} holds the tissue: every plan that moves it would carry the tissue along as one, \
+         without deforming it; name in `fixed` what stays, or allow it with `allow_unfixed`"
     )]
     NothingHeld { name: String },
     #[error("segment {name:?} holds no node")]
@@ -72,7 +75,7 @@ pub enum ResponseError {
 pub fn chosen(scene: &Scene, names: &[String]) -> Result<Vec<usize>, ResponseError> {
     let known = || scene.segments.iter().map(|segment| segment.name.as_str());
     if let Some(name) = names.iter().find(|name| scene.segment(name).is_none()) {
-        let known = known().collect::<Vec<_>>().join(", ");
+        let known = listed(known());
         return Err(ResponseError::UnknownSegment { name: name.clone(), known });
     }
     if let Some(&first) = scene.conditions.shared.first() {
@@ -87,19 +90,35 @@ pub fn chosen(scene: &Scene, names: &[String]) -> Result<Vec<usize>, ResponseErr
     {
         return Err(ResponseError::Loaded);
     }
-    if let [alone] = scene.segments.as_slice()
-        && !scene.allow_unfixed
-        && !scene.conditions.something_rests()
-    {
-        return Err(ResponseError::NothingHeld { name: alone.name.clone() });
-    }
     let wanted = |name: &str| names.is_empty() || names.iter().any(|other| other == name);
     let segments: Vec<usize> =
         (0..).zip(known()).filter(|(_, name)| wanted(name)).map(|(number, _)| number).collect();
-    match segments.is_empty() {
-        true => Err(ResponseError::NoSegments),
-        false => Ok(segments),
+    if segments.is_empty() {
+        return Err(ResponseError::NoSegments);
     }
+    match carried_by_every_plan(scene, &segments) {
+        Some(name) if !scene.allow_unfixed => Err(ResponseError::NothingHeld { name }),
+        _ => Ok(segments),
+    }
+}
+
+/// The parts of a scene where only these segments may move, by their place in the list.
+fn parts_where(scene: &Scene, chosen: &[usize]) -> Vec<ConnectedPart> {
+    let place = |segment: u32| chosen.iter().position(|&other| other == segment as usize);
+    let number = |segment: u32| place(segment).map(|place| place as u32);
+    scene.parts.iter().map(|part| part.clone().with_segments(number)).collect()
+}
+
+/// A segment with which every part of the skin that may move goes along as one, whatever the plan: nothing else
+/// holds it.
+fn carried_by_every_plan(scene: &Scene, chosen: &[usize]) -> Option<String> {
+    let parts = parts_where(scene, chosen);
+    let moving =
+        parts.iter().filter(|part| part.has_much_skin() && part.segments().next().is_some());
+    let alone: Option<Vec<u32>> =
+        moving.map(|part| part.segments().next().filter(|_| part.held.len() == 1)).collect();
+    let segment = chosen[*alone?.first()? as usize];
+    Some(scene.segments[segment].name.clone())
 }
 
 /// Solves the columns of the named segments, of all where none is named.
@@ -137,7 +156,8 @@ pub fn build(
             values.extend_from_slice(equilibrium.displacement[node as usize].as_slice());
         }
     }
-    let linearity = linearity::of_scene(scene, &chosen);
+    let parts = parts_where(scene, &chosen);
+    let linearity = linearity::of_scene(scene, &chosen, &parts);
     let (solver, elements) = (hardest(&solved)?, scene.elements());
     let carries_wall =
         chosen.iter().map(|&number| scene.conditions.carried_by(number as u32) > 0).collect();
@@ -147,6 +167,7 @@ pub fn build(
         nodes,
         values,
         linearity,
+        parts,
         carries_wall,
         allow_unfixed: scene.allow_unfixed,
         diagonal: (high - low).norm(),

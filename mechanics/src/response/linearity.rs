@@ -14,7 +14,7 @@
 //! cos theta - 1 in each direction across the axis, and its free side by nu / (1 - nu) times that along
 //! the thickness; 2.7 = 1 + 2 nu / (1 - nu) at nu 0.46. An order of magnitude, not a bound.
 
-use crate::boundary::NodeClass;
+use crate::boundary::{ConnectedPart, Holder, NodeClass};
 use crate::mesh::Vector;
 use crate::plan::RigidMovement;
 use crate::plan::doubt::farthest_apart;
@@ -84,13 +84,9 @@ impl Linearity {
     }
 }
 
-/// What the estimate needs, for the segments of these numbers.
-pub(super) fn of_scene(scene: &Scene, segments: &[usize]) -> Linearity {
-    let classes = scene.conditions.classes.iter();
-    let is_other = |class: &NodeClass| match class {
-        NodeClass::Joined(segment) => !segments.contains(&(*segment as usize)),
-        NodeClass::Fixed | NodeClass::Sliding | NodeClass::Prescribed | NodeClass::Free => false,
-    };
+/// What the estimate needs, for the segments of these numbers and the parts where only these move.
+pub(super) fn of_scene(scene: &Scene, segments: &[usize], parts: &[ConnectedPart]) -> Linearity {
+    let mut holders = parts.iter().flat_map(|part| &part.held).map(|rows| rows.holder);
     let box_of = |&segment: &usize| {
         let empty = [Vector::repeat(f64::INFINITY), Vector::repeat(f64::NEG_INFINITY)];
         let places = joined_nodes(scene, segment);
@@ -98,7 +94,7 @@ pub(super) fn of_scene(scene: &Scene, segments: &[usize]) -> Linearity {
     };
     Linearity {
         thickness: thickness(scene),
-        something_stays: scene.conditions.something_rests() || { classes }.any(is_other),
+        something_stays: holders.any(|holder| holder == Holder::Rest),
         boxes: segments.iter().map(box_of).collect(),
     }
 }

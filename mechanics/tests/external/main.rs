@@ -5,6 +5,7 @@ mod files;
 mod interop;
 mod needs;
 mod predictions;
+mod scans;
 #[path = "../support/mod.rs"]
 mod support;
 mod surfaces;
@@ -19,6 +20,7 @@ fn main() -> ExitCode {
         interop::trials(),
         needs::trials(),
         predictions::trials(),
+        scans::trials(),
         surfaces::trials(),
     ])
 }

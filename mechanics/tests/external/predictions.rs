@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use mechanics::boundary::NodeSelection;
+use mechanics::boundary::{NodeSelection, connected_parts};
+use mechanics::mesh::connectivity::Faces;
 use mechanics::mesh::crossing::self_crossings;
 use mechanics::mesh::jacobian::scaled_jacobian;
 use mechanics::mesh::quality::quality;
@@ -12,7 +13,7 @@ use mechanics::mesh::{CellShape, Vector, VolumeMesh, Warning};
 use mechanics::model::spline::VolumeSpline;
 use mechanics::plan::{PlannedSegment, RigidMovement};
 use mechanics::prediction::{
-    Bone, Case, CaseSegment, Method, Plan, Scene, Settings, predict, skin_overlap,
+    Bone, Case, CaseSegment, Method, Plan, Scene, Settings, goes_along, predict, skin_overlap,
 };
 use mechanics::progress::Unobserved;
 
@@ -28,6 +29,7 @@ trials! {
     a_jaw_raised_into_the_lips_of_a_real_face_is_told
     the_search_for_crossings_takes_little_of_a_prediction
     swapped_sets_and_the_inside_of_a_real_face_are_told
+    whether_tissue_goes_along_as_one_is_known_in_milliseconds
 }
 
 fn shared_mesh(file: &str) -> Result<VolumeMesh, Missing> {
@@ -121,6 +123,43 @@ fn the_search_for_crossings_takes_little_of_a_prediction() -> Result<(), Missing
         println!("{} triangles: {took:?}, {told:?}", moved.triangles.len());
         // A bound that a busy machine keeps too.
         assert!(took < Duration::from_secs(2), "{took:?}");
+    }
+    Ok(())
+}
+
+/// The parts of the face and of the shell of 302 265 tetrahedra, and the movement that would carry them, printed: milliseconds,
+/// where one prediction of the shell takes seconds.
+fn whether_tissue_goes_along_as_one_is_known_in_milliseconds() -> Result<(), Missing> {
+    let label = |value| NodeSelection::Label { array: "tag".to_owned(), value };
+    let bone = |name: &str, value| CaseSegment { name: name.to_owned(), nodes: label(value) };
+    let shell = Case {
+        skin: Some(label(5)),
+        segments: vec![bone("jaw", 2), bone("mandible", 3)],
+        fixed: vec![label(1), label(4)],
+        ..case_of(shared_mesh("shell/300k.vtu")?, material(15.0, 0.46))
+    };
+    for case in [subject()?, shell] {
+        let begun = Instant::now();
+        let scene = Scene::new(&case, &raised(4.0), &Settings::default()).unwrap();
+        let checked = begun.elapsed();
+        let faces = Faces::new(&scene.mesh).parts();
+        let timed = || {
+            let begun = Instant::now();
+            let (conditions, skin) = (&scene.conditions, scene.skin.nodes());
+            let parts = connected_parts(&scene.mesh, &faces, conditions, skin);
+            let movement = |segment: u32| scene.segments[segment as usize].movement;
+            let told = goes_along(&parts, movement);
+            (begun.elapsed(), parts.len(), told)
+        };
+        timed();
+        let (took, parts, told) = timed();
+        println!("{} cells: check {checked:?}, parts {took:?}", scene.mesh.cells.len());
+        let begun = Instant::now();
+        predict(&scene, &Unobserved).unwrap();
+        println!("prediction {:?}", begun.elapsed());
+        assert_eq!((parts, told.refused.len(), told.told.len()), (1, 0, 0));
+        // A bound that a busy machine keeps too.
+        assert!(took < Duration::from_millis(500), "{took:?}");
     }
     Ok(())
 }

@@ -2,20 +2,25 @@
 
 #![allow(clippy::unwrap_used)]
 
+mod domain;
 mod format;
 mod golden;
 mod image;
+mod landmarks;
 mod material;
 mod mesh;
+mod meshing;
 mod model;
 mod optimisation;
+mod osteotomy;
 mod prediction;
 mod registration;
 mod response;
+mod segmentation;
 mod solver;
 mod study;
 #[path = "../support/mod.rs"]
 mod support;
 mod validation;
 
-use support::{samples, scenes, surfaces};
+use support::{domains, samples, scenes, surfaces};

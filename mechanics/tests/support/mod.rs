@@ -2,6 +2,7 @@
 
 #![allow(dead_code, unused_macros, reason = "each target uses a part")]
 
+pub mod domains;
 pub mod external;
 pub mod responses;
 pub mod samples;

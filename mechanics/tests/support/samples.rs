@@ -5,6 +5,9 @@ use std::collections::BTreeMap;
 use mechanics::format::{Mesh, ReadLimits, ReadMesh, read};
 use mechanics::mesh::{CellShape, Cells, TriangleSurface, Vector, VolumeMesh};
 
+#[path = "scans.rs"]
+pub mod scans;
+
 /// A hexahedron with a wedge and a tetrahedron on it; every kind of set and array.
 pub fn mixed_mesh() -> VolumeMesh {
     let nodes = [
@@ -160,7 +163,7 @@ pub fn one_of_each() -> Vec<(&'static str, Vec<u8>)> {
     let (mesh, surface) = (mixed_mesh(), closed_surface());
     let output = SurfaceOutput::plain(&surface, Frame::Lps);
     let volume = VolumeOutput::plain(&mesh, Frame::Ras);
-    vec![
+    let mut each = vec![
         ("vtu", vtu::write(&volume).unwrap()),
         ("vtp", vtp::write(&output).unwrap()),
         ("stl", stl::write(&output).unwrap()),
@@ -179,7 +182,9 @@ pub fn one_of_each() -> Vec<(&'static str, Vec<u8>)> {
             "nrrd gzip",
             nrrd(&NRRD.replace("raw", "gzip"), &gzip(&VOXELS.map(i16::to_le_bytes).concat())),
         ),
-    ]
+    ];
+    each.extend(scans::one_of_each());
+    each
 }
 
 /// An image of 3 x 2 x 4 voxels.
@@ -387,3 +392,25 @@ f 1/1/1 2//1 3/1
 f -4 -2 -1
 l 1 2
 ";
+
+/// A CT in LPS of a ball of soft tissue of radius 50 mm around (60, 60, 60), with a ball of bone of radius 30 mm around
+/// (60, 55, 60) in it; voxels of 4 mm, their values mixed where a boundary crosses them.
+pub fn ball_ct() -> Vec<u8> {
+    use mechanics::image::{ImageVolume, Placement, Voxels};
+    use mechanics::mesh::{Frame, Vector};
+    let share = |depth: f64| (depth / 4.0 + 0.5).clamp(0.0, 1.0);
+    let value = |number: usize| {
+        let index = [number % 30, number / 30 % 30, number / 900];
+        let at = Vector::from(index.map(|i| 4.0 * i as f64 + 2.0));
+        let skin = share(50.0 - (at - Vector::repeat(60.0)).norm());
+        let bone = share(30.0 - (at - Vector::new(60.0, 55.0, 60.0)).norm());
+        (-1000.0 + 1040.0 * skin + 1160.0 * bone) as i16
+    };
+    let placement = Placement {
+        origin: Vector::repeat(2.0),
+        steps: [Vector::x(), Vector::y(), Vector::z()].map(|axis| axis * 4.0),
+    };
+    let voxels = Voxels::I16((0..27_000).map(value).collect());
+    let image = ImageVolume::new([30; 3], placement, voxels).unwrap();
+    mechanics::format::nrrd::write(&image, Frame::Lps)
+}

@@ -1,7 +1,5 @@
 //! The job of a comparison.
 
-use std::collections::BTreeMap;
-
 use super::input::CompareInput;
 use super::surfaces::{Compared, Pair};
 use crate::jobs::clock::Observed;
@@ -59,18 +57,15 @@ pub fn compare_job(
     let mut folder = ResultFolder::open(place.out)?;
     folder.add(OutputName::SkinVtp, &encode_distances(&surface, &compared, origin.frame)?)?;
     let warnings = prediction.warnings.iter().chain(&actual.warnings).chain(&compared.warnings);
+    let provenance = origin.provenance(&clock);
     let result = ResultDocument {
-        job: input.job.clone(),
-        files: folder.files.clone(),
-        statistics: None,
         comparison: Some(compared.document.clone()),
-        optimisation: None,
-        study: None,
-        kept: Vec::new(),
-        numerical_error_mm: None,
-        reaction_mn: BTreeMap::new(),
-        provenance: origin.provenance(&clock),
-        warnings: warning_documents(warnings),
+        ..ResultDocument::new(
+            input.job.clone(),
+            &folder.files,
+            provenance,
+            warning_documents(warnings),
+        )
     };
     folder.add(OutputName::ResultJson, &encode_result(&result)?)?;
     Ok(JobOutput { result, files: folder.files, meshes: Vec::new() })

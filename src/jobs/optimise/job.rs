@@ -95,7 +95,7 @@ impl OptimiseInput {
     }
 
     /// The prediction of a plan that was found.
-    fn prediction(&self, found: &OptimisationDocument) -> PredictInput {
+    pub fn prediction(&self, found: &OptimisationDocument) -> PredictInput {
         PredictInput {
             job: self.job.clone(),
             queue_s: self.queue_s,
@@ -150,7 +150,8 @@ impl Found {
     ) -> Result<JobOutput, JobError> {
         clock.phase(Phase::Surface);
         let scene = &planned.scene;
-        let skin = PredictedSkin::of_displacement(&scene.skin, self.displacement);
+        let mut skin = PredictedSkin::of_displacement(&scene.skin, self.displacement);
+        skin.range_mm = input.spec.range_mm();
         let statistics = statistics(&scene.skin, &skin, &BTreeMap::new())?;
         clock.check()?;
         clock.phase(Phase::Write);
@@ -168,7 +169,8 @@ impl Found {
                 OutputName::BonesVtp => encode_bones(&planned.case, scene, &field_data)?,
                 OutputName::ClassesSvg => planned.classes_picture()?.into_bytes(),
                 OutputName::DisplacementSvg => {
-                    displacement_picture(scene, &skin, frame, &statistics.skin.nodes)?.into_bytes()
+                    let numbers = &statistics.skin.nodes;
+                    displacement_picture(scene, &skin.surface, frame, numbers)?.into_bytes()
                 }
                 skin_file => match skin.encode(skin_file, frame, &field_data)? {
                     Some(bytes) => bytes,
@@ -180,18 +182,12 @@ impl Found {
         let mut provenance = origin.provenance(clock);
         let mesh = mesh_summary(&scene.mesh, &planned.quality);
         add_method(&mut provenance, input.spec.method, mesh, self.solver);
+        let warnings = warning_documents(planned.warnings.iter().chain(&scene.warnings));
         let result = ResultDocument {
-            job: input.job.clone(),
-            files: folder.files.clone(),
+            pictures: input.pictures_beside(&folder.files),
             statistics: Some(statistics),
-            comparison: None,
             optimisation: Some(self.document),
-            study: None,
-            kept: Vec::new(),
-            numerical_error_mm: None,
-            reaction_mn: BTreeMap::new(),
-            provenance,
-            warnings: warning_documents(planned.warnings.iter().chain(&scene.warnings)),
+            ..ResultDocument::new(input.job.clone(), &folder.files, provenance, warnings)
         };
         folder.add(OutputName::ResultJson, &encode_result(&result)?)?;
         Ok(JobOutput { result, files: folder.files, meshes: Vec::new() })

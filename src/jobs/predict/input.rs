@@ -15,7 +15,8 @@ use crate::schema::case::document::{CaseMeshes, NamedMesh};
 use crate::schema::hashes;
 use crate::schema::plan::document::PlanContext;
 use crate::schema::predict::document::OutputName;
-use crate::schema::predict::result::InputDocument;
+use crate::schema::predict::output::PictureName;
+use crate::schema::predict::result::{FileDocument, InputDocument};
 use crate::schema::{CaseDocument, Faults, Limits, PlanDocument, Pointer, PredictDocument};
 use mechanics::mesh::Warning;
 use mechanics::mesh::quality::{QualityReport, quality};
@@ -102,6 +103,12 @@ impl PredictInput {
             _ => true,
         });
         files
+    }
+
+    /// The pictures of its job that are no files; a command has nobody to draw them later.
+    pub fn pictures_beside(&self, files: &[FileDocument]) -> Vec<PictureName> {
+        let has = |output: OutputName| files.iter().any(|file| file.name == output.file_name());
+        if self.job.is_some() { PictureName::beside(has) } else { Vec::new() }
     }
 
     fn convert(&self, meshes: &CaseMeshes, limits: &Limits) -> Result<Converted, JobError> {

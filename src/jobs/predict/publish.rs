@@ -90,7 +90,7 @@ impl Predicted {
         finished.write_files(input, &mut folder)?;
 
         // 4. The manifest.
-        let result = finished.result(input, clock, folder.files.clone());
+        let result = finished.result(input, clock, &folder.files);
         folder.add(OutputName::ResultJson, &encode_result(&result)?)?;
         let meshes = finished.kept(&input.spec.kept());
         Ok(JobOutput { result, files: folder.files, meshes })
@@ -116,7 +116,10 @@ impl Finished<'_> {
             KeptName::Skin => StoredShape::Surface(Arc::new(self.skin.surface.clone())),
             KeptName::Volume => StoredShape::Volume(Arc::new(self.moved_volume())),
         };
-        wanted.iter().map(|&what| MadeMesh { what, shape: shape(what), frame }).collect()
+        wanted
+            .iter()
+            .map(|&what| MadeMesh { what: what.into(), name: None, shape: shape(what), frame })
+            .collect()
     }
 
     fn moved_volume(&self) -> VolumeMesh {
@@ -139,7 +142,7 @@ impl Finished<'_> {
                 OutputName::ClassesSvg => self.prepared.classes_picture()?.into_bytes(),
                 OutputName::DisplacementSvg => {
                     let numbers = &self.statistics.skin.nodes;
-                    displacement_picture(scene, self.skin, frame, numbers)?.into_bytes()
+                    displacement_picture(scene, &self.skin.surface, frame, numbers)?.into_bytes()
                 }
                 skin => match self.skin.encode(skin, frame, &field_data)? {
                     Some(bytes) => bytes,
@@ -155,24 +158,21 @@ impl Finished<'_> {
         &self,
         input: &PredictInput,
         clock: &Observed,
-        files: Vec<FileDocument>,
+        files: &[FileDocument],
     ) -> ResultDocument {
         let mut provenance = self.origin.provenance(clock);
         let solver = solver_document(&self.prediction.solver, &self.prediction.elements);
         let mesh = mesh_summary(&self.prepared.scene.mesh, &self.prepared.quality);
         add_method(&mut provenance, input.spec.method, mesh, solver);
+        let warnings = warning_documents(self.warnings.iter());
         ResultDocument {
-            job: input.job.clone(),
-            files,
+            pictures: input.pictures_beside(files),
             statistics: Some(self.statistics.clone()),
             comparison: self.comparison.clone(),
             optimisation: self.optimisation.clone(),
-            study: None,
-            kept: Vec::new(),
-            numerical_error_mm: None,
             reaction_mn: triples(&self.prediction.reactions),
-            provenance,
-            warnings: warning_documents(self.warnings.iter()),
+            reactions: self.prediction.condition_reactions.iter().map(Into::into).collect(),
+            ..ResultDocument::new(input.job.clone(), files, provenance, warnings)
         }
     }
 }

@@ -1,9 +1,10 @@
 //! The pictures of a job: what holds the boundary, and how the skin moves.
 
-use super::skin::PredictedSkin;
 use crate::schema::compare::result::StatDocument;
+use mechanics::anatomy::Anatomy;
 use mechanics::chart::{
-    ClassKind, ClassesPicture, DisplacementPicture, NodeClasses, Outlook, PngError, front_of,
+    ClassKind, ClassesPicture, DisplacementPicture, NodeClasses, Outlook, PngError, SlicesPicture,
+    front_of,
 };
 use mechanics::mesh::{Frame, TriangleSurface, Vector};
 use mechanics::prediction::{NodeClass, Scene};
@@ -59,7 +60,7 @@ pub fn classes_picture(scene: &Scene, frame: Frame, title: &str) -> Result<Strin
 /// `displacement.svg`: the skin before, after, and coloured by how far it moves.
 pub fn displacement_picture(
     scene: &Scene,
-    skin: &PredictedSkin,
+    moved: &TriangleSurface,
     frame: Frame,
     statistics: &StatDocument,
 ) -> Result<String, PngError> {
@@ -79,10 +80,40 @@ pub fn displacement_picture(
         subtitle: &subtitle,
         triangles: &before.triangles,
         before: &before.points,
-        after: &skin.surface.points,
+        after: &moved.points,
         outlook: outlook(frame, before),
         frame: frame.name(),
         statistics: &numbers,
+    }
+    .to_svg()
+}
+
+/// `slices.svg`: three planes through a mesh, its cells coloured by size and by their smallest angle.
+pub fn slices_picture(anatomy: &Anatomy, frame: Frame) -> Result<String, PngError> {
+    let report = &anatomy.meshing;
+    let mesh = &anatomy.volume;
+    let cells: Vec<[u32; 4]> =
+        mesh.cells.iter().filter_map(|(_, nodes)| nodes.try_into().ok()).collect();
+    let boxed = mesh.nodes.iter().fold(
+        (Vector::repeat(f64::INFINITY), Vector::repeat(f64::NEG_INFINITY)),
+        |(low, high), node| (low.inf(node), high.sup(node)),
+    );
+    let subtitle = format!(
+        "{} tetrahedra, {} nodes; smallest dihedral angle {:.1}°, a thousandth below {:.1}°, largest {:.1}°",
+        report.tetrahedra,
+        report.nodes,
+        report.angles.smallest,
+        report.angles.thousandth,
+        report.angles.largest
+    );
+    SlicesPicture {
+        title: "Mesh of the soft tissue",
+        subtitle: &subtitle,
+        points: &mesh.nodes,
+        tetrahedra: &cells,
+        middle: (boxed.0 + boxed.1) / 2.0,
+        outlook: if frame == Frame::Ras { Outlook::ras() } else { Outlook::lps() },
+        frame: frame.name(),
     }
     .to_svg()
 }

@@ -1,6 +1,5 @@
 //! The job of a study: rows one after the other, the report in every form, its charts and its outcome.
 
-use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use super::chart::chart;
@@ -107,18 +106,11 @@ pub fn study_job(
         frame: Frame::Unspecified,
         queue_s: input.queue_s,
     };
+    let warnings = warning_documents(prepared.warnings.iter());
+    let provenance = origin.provenance(&clock);
     let result = ResultDocument {
-        job: input.job.clone(),
-        files: folder.files.clone(),
-        statistics: None,
-        comparison: None,
-        optimisation: None,
         study: Some(report.summary()),
-        kept: Vec::new(),
-        numerical_error_mm: None,
-        reaction_mn: BTreeMap::new(),
-        provenance: origin.provenance(&clock),
-        warnings: warning_documents(prepared.warnings.iter()),
+        ..ResultDocument::new(input.job.clone(), &folder.files, provenance, warnings)
     };
     folder.add(OutputName::ResultJson, &encode_result(&result)?)?;
     Ok(JobOutput { result, files: folder.files, meshes: Vec::new() })

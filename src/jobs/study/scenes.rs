@@ -18,6 +18,7 @@ use crate::schema::wire::strict;
 use crate::schema::{
     CaseDocument, Faults, MaterialDocuments, PlanDocument, Pointer, PredictDocument, Problem,
 };
+use mechanics::mesh::ignored::listed;
 use mechanics::prediction::MethodKind;
 use mechanics::study::scenes::{scene_of, usual_truth};
 use mechanics::study::sweep::{self, SweepError};
@@ -73,7 +74,7 @@ impl Documents<'_> {
     /// Labels that the rules of the outcome name.
     fn check_labels(&self, variants: &[Variant], faults: &mut Faults) {
         let labels = |label: &str| variants.iter().any(|variant| variant.label == label);
-        let known: Vec<&str> = variants.iter().map(|variant| variant.label.as_str()).collect();
+        let known = listed(variants.iter().map(|variant| &variant.label));
         let thresholds = self.spec.thresholds.iter().flat_map(|bounds| &bounds.labels);
         let named = [
             (spec_at().key("thresholds").key("labels"), thresholds.collect::<Vec<_>>()),
@@ -81,8 +82,7 @@ impl Documents<'_> {
         ];
         for (place, names) in named {
             for (index, name) in names.into_iter().enumerate().filter(|(_, name)| !labels(name)) {
-                let detail =
-                    format!("no variant is called {name:?}; there are: {}", known.join(", "));
+                let detail = format!("no variant is called {name:?}; there are {known}");
                 faults.add(&place.index(index), ErrorCode::UnknownLabel, detail);
             }
         }
@@ -152,7 +152,7 @@ impl Documents<'_> {
             faults.join(problem.moved("/spec", at.as_str()));
         }
         let method = spec.method.chosen().name();
-        let label = label.unwrap_or_else(|| match spec.element == ElementName::Auto {
+        let label = label.unwrap_or_else(|| match spec.element == ElementName::default() {
             true => method.to_owned(),
             false => format!("{method} {}", spec.element.name()),
         });
@@ -185,11 +185,10 @@ impl Documents<'_> {
         let mut scene = scene_of(name)?;
         let wanted = self.spec.plan_names();
         if !wanted.is_empty() {
-            let all: Vec<String> = scene.plans.iter().map(|(plan, _)| plan.clone()).collect();
+            let all = listed(scene.plans.iter().map(|(plan, _)| plan));
             scene.plans.retain(|(plan, _)| wanted.iter().any(|(_, wanted)| wanted == plan));
             if scene.plans.is_empty() {
-                let detail =
-                    format!("scene {name} has none of these plans; it has: {}", all.join(", "));
+                let detail = format!("scene {name} has none of these plans; it has {all}");
                 faults.add(&spec_at().key("plans"), ErrorCode::UnknownPlan, detail);
             }
         }

@@ -11,6 +11,7 @@ use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::limits::Limits;
 use crate::schema::wire::names::{check_distinct, check_tags};
 use mechanics::boundary::NodeSelection;
+use mechanics::mesh::ignored::listed;
 use mechanics::mesh::{Frame, TriangleSurface, Vector, VolumeMesh, Warning};
 use mechanics::prediction::{
     Bone, Case, CaseSegment, Hounsfield, RegionNames, Sliding, SlidingNormal,
@@ -304,9 +305,8 @@ fn check_regions(
     for placed in materials {
         for region in placed.materials.into_iter().flat_map(BTreeMap::keys) {
             if region != "*" && !known.contains(region) {
-                let names: Vec<&str> = known.iter().map(String::as_str).take(20).collect();
-                let detail =
-                    format!("the mesh has no region `{region}`; it has {}", names.join(", "));
+                let names = listed(&known);
+                let detail = format!("the mesh has no region `{region}`; it has {names}");
                 faults.add(&placed.at.key(region), ErrorCode::UnknownRegion, detail);
             }
         }

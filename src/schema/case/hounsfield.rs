@@ -22,8 +22,8 @@ const FARTHEST_HU: f64 = 1e6;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct HounsfieldDocument {
-    /// The image: the id of an uploaded NRRD file. It is in mm, and is turned to the frame of the case where
-    /// both are stated.
+    /// The image: the id of an uploaded scan (NRRD, NIfTI, MetaImage, DICOM). It is in mm, and is turned to the
+    /// frame of the case where both are stated.
     pub image: String,
     /// Points in each cell, the same in every cell of a shape.
     #[serde(default = "usual_samples")]

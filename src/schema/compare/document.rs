@@ -2,7 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use serde::{Deserialize, Serialize};
+use serde::de::IntoDeserializer;
+use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::Value;
 use utoipa::ToSchema;
 
@@ -11,6 +12,7 @@ use crate::schema::wire::canonical;
 use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::limits::Limits;
 use crate::schema::wire::names::check_tags;
+use crate::schema::wire::text_or_object::TextOrObject;
 use crate::schema::{CornerPair, Sphere, Triple};
 
 /// `compare`.
@@ -30,7 +32,8 @@ pub struct CompareDocument {
     pub kind: CompareKind,
     pub prediction: SurfaceReference,
     pub actual: MeshReference,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "align")]
+    #[schema(value_type = AlignReference)]
     pub align: AlignDocument,
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub regions: BTreeMap<String, PlaceDocument>,
@@ -50,7 +53,8 @@ pub struct CompareToDocument {
     #[serde(default)]
     pub kind: CompareKind,
     pub actual: MeshReference,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "align")]
+    #[schema(value_type = AlignReference)]
     pub align: AlignDocument,
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub regions: BTreeMap<String, PlaceDocument>,
@@ -103,6 +107,24 @@ pub struct AlignDocument {
     #[serde(default = "yes")]
     #[schema(default = true)]
     pub report_unaligned: bool,
+}
+
+/// A way to align by its name, or with what it has to be told. Only described here.
+#[derive(Clone, Debug, Serialize, ToSchema)]
+#[serde(untagged)]
+pub enum AlignReference {
+    Method(AlignMethod),
+    Document(AlignDocument),
+}
+
+fn align<'de, D: Deserializer<'de>>(deserializer: D) -> Result<AlignDocument, D::Error> {
+    Ok(match TextOrObject::deserialize(deserializer)? {
+        TextOrObject::Text(name) => {
+            let method = AlignMethod::deserialize(name.into_deserializer())?;
+            AlignDocument { method, ..AlignDocument::default() }
+        }
+        TextOrObject::Object(document) => document,
+    })
 }
 
 fn yes() -> bool {

@@ -28,22 +28,9 @@ pub enum MethodName {
     Named(MethodKind),
 }
 
-/// The treatment of cells.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum ElementName {
-    /// `stabilised`: no element locks.
-    #[default]
-    Auto,
-    /// Full integration for every shape; locks above a Poisson ratio of 0.45, with a warning.
-    Plain,
-    /// Mean dilatation for hex8 and wedge6, the plain element for tet4.
-    MeanDilatation,
-    /// Mean dilatation for hex8 and wedge6, displacement and stabilised pressure for tet4.
-    Stabilised,
-    /// Tetrahedra with a node in the middle of each edge; refused for other shapes.
-    Quadratic,
-}
+/// The treatment of cells, by its word.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ElementName(ElementChoice);
 
 impl MethodName {
     /// The method that is used: what `auto` chooses, or the one asked for.
@@ -116,29 +103,49 @@ impl ToSchema for MethodName {}
 impl ElementName {
     /// As it stands in documents.
     pub fn name(self) -> &'static str {
-        self.choice().name()
+        self.0.name()
     }
 
     /// The element of the path.
     pub fn choice(self) -> ElementChoice {
-        match self {
-            ElementName::Auto => ElementChoice::Auto,
-            ElementName::Plain => ElementChoice::Plain,
-            ElementName::MeanDilatation => ElementChoice::MeanDilatation,
-            ElementName::Stabilised => ElementChoice::Stabilised,
-            ElementName::Quadratic => ElementChoice::Quadratic,
-        }
+        self.0
     }
 }
 
 impl From<ElementChoice> for ElementName {
     fn from(choice: ElementChoice) -> Self {
-        match choice {
-            ElementChoice::Auto => ElementName::Auto,
-            ElementChoice::Plain => ElementName::Plain,
-            ElementChoice::MeanDilatation => ElementName::MeanDilatation,
-            ElementChoice::Stabilised => ElementName::Stabilised,
-            ElementChoice::Quadratic => ElementName::Quadratic,
-        }
+        ElementName(choice)
     }
 }
+
+impl Serialize for ElementName {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.name())
+    }
+}
+
+impl<'de> Deserialize<'de> for ElementName {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let word = String::deserialize(deserializer)?;
+        let found = ElementChoice::ALL.iter().find(|element| element.name() == word);
+        found
+            .map(|element| ElementName(*element))
+            .ok_or_else(|| D::Error::unknown_variant(&word, &ELEMENTS))
+    }
+}
+
+/// The words of all elements.
+static ELEMENTS: LazyLock<Vec<&'static str>> =
+    LazyLock::new(|| ElementChoice::ALL.iter().map(|element| element.name()).collect());
+
+impl PartialSchema for ElementName {
+    fn schema() -> RefOr<Schema> {
+        ObjectBuilder::new()
+            .schema_type(SchemaType::Type(Type::String))
+            .description(Some("The treatment of cells."))
+            .enum_values(Some(ElementChoice::ALL.iter().map(|element| element.name())))
+            .into()
+    }
+}
+
+impl ToSchema for ElementName {}

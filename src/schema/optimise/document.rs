@@ -25,6 +25,7 @@ use crate::schema::wire::limits::Limits;
 use crate::schema::wire::vector::Intervals;
 use crate::schema::{PartialTriple, Triple};
 use mechanics::mesh::Vector;
+use mechanics::mesh::ignored::listed;
 use mechanics::optimisation::{PARAMETERS_PER_SEGMENT, SegmentBounds};
 
 /// Standard deviations in mm: a ratio beyond that of these would drown the looser target in rounding.
@@ -77,6 +78,10 @@ pub struct OptimiseDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub outputs: Option<Vec<OutputName>>,
+    /// As for `predict`: the displacement at which the colours of `skin.glb` and `skin.ply` end, in mm. Default: 10.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false, minimum = 0.001, maximum = 1000.0)]
+    pub range_mm: Option<f64>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub tags: Vec<String>,
 }
@@ -187,7 +192,8 @@ impl OptimiseDocument {
 
     /// The prediction of the plan that is found, with which it shares its checks.
     pub fn to_prediction(&self) -> PredictDocument {
-        PredictDocument { outputs: self.outputs.clone(), ..self.to_response().to_prediction() }
+        let shared = self.to_response().to_prediction();
+        PredictDocument { outputs: self.outputs.clone(), range_mm: self.range_mm, ..shared }
     }
 
     /// The response that the plan is found with.
@@ -232,8 +238,8 @@ impl TargetDocument {
         if let Some(name) = &self.landmark
             && !case.landmarks.contains_key(name)
         {
-            let known: Vec<&str> = case.landmarks.keys().map(String::as_str).take(20).collect();
-            let detail = format!("the case has no landmark {name:?}; it has: {}", known.join(", "));
+            let known = listed(case.landmarks.keys());
+            let detail = format!("the case has no landmark {name:?}; it has {known}");
             faults.add(&at.key("landmark"), ErrorCode::UnknownLandmark, detail);
         }
         let places = [self.position_mm, self.displacement_mm];

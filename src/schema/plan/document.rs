@@ -10,6 +10,8 @@ use super::movement::{MovementContext, MovementDocument, RotationOrder};
 use crate::schema::case::document::FrameName;
 use crate::schema::case::selection::SelectionDocument;
 use crate::schema::code::ErrorCode;
+use crate::schema::osteotomy::conversion::{OsteotomyContext, PlannedOsteotomy};
+use crate::schema::osteotomy::document::OsteotomyDocument;
 use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::limits::Limits;
 use crate::schema::{Matrix4x4, PartialTriple, Triple};
@@ -34,6 +36,10 @@ pub struct PlanDocument {
     pub prescribed: Vec<PrescribedDocument>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub loads: Vec<LoadDocument>,
+    /// Cuts through the bone of a scan, for a case that is made from one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub osteotomy: Option<OsteotomyDocument>,
 }
 
 /// A segment of the case, or a node set of its volume mesh, and its movement in exactly one of three forms:
@@ -90,8 +96,38 @@ pub struct PlanContext<'a> {
 }
 
 impl PlanDocument {
-    /// The plan in the frame of the case. What is wrong is added to `faults`, and left out of the plan.
+    /// The cuts of a plan for a scan in `frame`, taken out of it, with its segments held against theirs. `None` where
+    /// there are none or something is wrong with them.
+    pub fn take_osteotomy(
+        &mut self,
+        at: &Pointer,
+        frame: Frame,
+        limits: &Limits,
+        faults: &mut Faults,
+    ) -> Option<PlannedOsteotomy> {
+        let document = self.osteotomy.take()?;
+        let context =
+            OsteotomyContext { mirrored_axes: self.mirrored_axes(at, frame, faults), limits };
+        let is_cut = |name: &str| document.segments.iter().any(|cut| cut.name.trim() == name);
+        for (index, segment) in self.segments.iter().enumerate() {
+            let name = segment.name.trim();
+            if !is_cut(name) {
+                let detail = format!("no segment of the osteotomy is called `{name}`");
+                let at = at.key("segments").index(index).key("name");
+                faults.add(&at, ErrorCode::UnknownSegment, detail);
+            }
+        }
+        document.to_osteotomy(&at.key("osteotomy"), &context, faults)
+    }
+
+    /// The plan in the frame of the case, whose segments are there. What is wrong is added to `faults`, and left out of
+    /// the plan.
     pub fn to_plan(&self, at: &Pointer, context: &PlanContext, faults: &mut Faults) -> Plan {
+        if self.osteotomy.is_some() {
+            let detail =
+                "the case has a mesh with its segments, and no scan whose bone could be cut";
+            faults.add(&at.key("osteotomy"), ErrorCode::NoScan, detail);
+        }
         let context = MovementContext {
             mirrored_axes: self.mirrored_axes(at, context.frame, faults),
             centre: context.centre,

@@ -18,11 +18,31 @@ pub enum KeptName {
     Volume,
 }
 
-impl KeptName {
+/// A mesh that a job leaves, in mm.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum MadeName {
+    Skin,
+    Volume,
+    /// The surface of a segment.
+    Bone,
+}
+
+impl MadeName {
     pub fn name(self) -> &'static str {
         match self {
-            KeptName::Skin => "skin",
-            KeptName::Volume => "volume",
+            MadeName::Skin => "skin",
+            MadeName::Volume => "volume",
+            MadeName::Bone => "bone",
+        }
+    }
+}
+
+impl From<KeptName> for MadeName {
+    fn from(name: KeptName) -> Self {
+        match name {
+            KeptName::Skin => MadeName::Skin,
+            KeptName::Volume => MadeName::Volume,
         }
     }
 }
@@ -30,19 +50,23 @@ impl KeptName {
 /// A mesh that was kept. It goes with the job or its case, unless something else refers to it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct KeptMeshDocument {
-    pub what: KeptName,
+    pub what: MadeName,
+    /// Of a bone, that of its segment.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub name: Option<String>,
     /// The id of the mesh.
     pub mesh: String,
     pub link: Link,
 }
 
 impl KeptMeshDocument {
-    pub fn new(what: KeptName, mesh: &str) -> Self {
+    pub fn new(what: MadeName, name: Option<String>, mesh: &str) -> Self {
         let link = Link {
             href: format!("/v1/meshes/{mesh}"),
             rel: "item".to_owned(),
             media_type: "application/json".to_owned(),
         };
-        KeptMeshDocument { what, mesh: mesh.to_owned(), link }
+        KeptMeshDocument { what, name, mesh: mesh.to_owned(), link }
     }
 }

@@ -30,6 +30,42 @@ pub enum OutputName {
     ResultJson,
 }
 
+/// A picture of a prediction, which the service draws when it is first asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+pub enum PictureName {
+    #[serde(rename = "classes.svg")]
+    Classes,
+    #[serde(rename = "displacement.svg")]
+    Displacement,
+}
+
+impl PictureName {
+    pub const ALL: [PictureName; 2] = [PictureName::Classes, PictureName::Displacement];
+
+    /// The file that it is where a spec asks for it.
+    pub fn output(self) -> OutputName {
+        match self {
+            PictureName::Classes => OutputName::ClassesSvg,
+            PictureName::Displacement => OutputName::DisplacementSvg,
+        }
+    }
+
+    /// What it is drawn from beside the input of the job.
+    pub fn drawn_from(self) -> Option<OutputName> {
+        match self {
+            PictureName::Classes => None,
+            PictureName::Displacement => Some(OutputName::SkinVtp),
+        }
+    }
+
+    /// Those that can be drawn of a job that has some files, and are not among them.
+    pub fn beside(has: impl Fn(OutputName) -> bool) -> Vec<PictureName> {
+        let is_left =
+            |picture: &PictureName| !has(picture.output()) && picture.drawn_from().is_none_or(&has);
+        PictureName::ALL.into_iter().filter(is_left).collect()
+    }
+}
+
 impl OutputName {
     pub fn file_name(self) -> &'static str {
         match self {

@@ -6,13 +6,16 @@ use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use super::keep::KeptMeshDocument;
+use super::output::PictureName;
 use crate::schema::Triple;
 use crate::schema::case::document::{FrameName, LengthUnit};
 use crate::schema::case::hounsfield::ImagedTissueDocument;
 use crate::schema::compare::result::{ComparisonDocument, StatDocument};
+use crate::schema::meshing::result::MeshingResultDocument;
 use crate::schema::optimise::result::OptimisationDocument;
 use crate::schema::study::report::StudySummaryDocument;
 use crate::schema::wire::warning::WarningDocument;
+use mechanics::prediction::ConditionReaction;
 
 pub use crate::schema::engine::EngineDocument;
 
@@ -29,6 +32,9 @@ pub struct ResultDocument {
     pub job: Option<String>,
     /// The files beside this one.
     pub files: Vec<FileDocument>,
+    /// Of a job: pictures that are no files, and are drawn when they are first asked for, as if they were.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub pictures: Vec<PictureName>,
     /// Absent from comparisons.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
@@ -44,16 +50,51 @@ pub struct ResultDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub study: Option<StudySummaryDocument>,
+    /// Of a meshing.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub meshing: Option<MeshingResultDocument>,
     /// The meshes that the spec asked to keep.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub kept: Vec<KeptMeshDocument>,
     /// Null where it was not estimated.
     pub numerical_error_mm: Option<NumericalErrorDocument>,
-    /// What each segment, and `fixed`, `sliding` and `prescribed` nodes, exert on the tissue.
+    /// The forces in mN that the nodes of each segment, and all `fixed`, `sliding` and `prescribed` nodes, exert on the
+    /// tissue: what pulls tissue upwards points upwards.
     #[serde(default)]
     pub reaction_mn: BTreeMap<String, Triple>,
+    /// The same for each condition of the case and the plan by itself.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub reactions: Vec<ReactionDocument>,
     pub provenance: ProvenanceDocument,
     pub warnings: Vec<WarningDocument>,
+}
+
+impl ResultDocument {
+    /// A result with files only; what a kind of job has beside them is put in its place.
+    pub fn new(
+        job: Option<String>,
+        files: &[FileDocument],
+        provenance: ProvenanceDocument,
+        warnings: Vec<WarningDocument>,
+    ) -> Self {
+        ResultDocument {
+            job,
+            files: files.to_vec(),
+            statistics: None,
+            comparison: None,
+            optimisation: None,
+            study: None,
+            meshing: None,
+            pictures: Vec::new(),
+            kept: Vec::new(),
+            numerical_error_mm: None,
+            reaction_mn: BTreeMap::new(),
+            reactions: Vec::new(),
+            provenance,
+            warnings,
+        }
+    }
 }
 
 /// A file of a result.
@@ -64,6 +105,21 @@ pub struct FileDocument {
     pub bytes: u64,
     /// In hexadecimal.
     pub sha256: String,
+}
+
+/// The force that one condition exerts on the tissue.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct ReactionDocument {
+    /// Its place in the case or the plan, e.g. `/case/sliding/0` or `/plan/prescribed/1`.
+    pub condition: String,
+    /// The segment that moves it; absent of what no segment moves.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub segment: Option<String>,
+    /// The nodes of which it holds a direction that no stronger condition holds.
+    pub nodes: u64,
+    /// In mN.
+    pub force_mn: Triple,
 }
 
 /// How far the skin moves, in mm.
@@ -196,4 +252,15 @@ pub struct TimingDocument {
     pub compare_s: f64,
     pub write_s: f64,
     pub total_s: f64,
+}
+
+impl From<&ConditionReaction> for ReactionDocument {
+    fn from(reaction: &ConditionReaction) -> Self {
+        ReactionDocument {
+            condition: reaction.pointer.clone(),
+            segment: reaction.segment.clone(),
+            nodes: reaction.nodes as u64,
+            force_mn: reaction.force.into(),
+        }
+    }
 }

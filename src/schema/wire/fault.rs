@@ -75,11 +75,7 @@ impl Faults {
         let shared =
             CATALOGUE.iter().find(|code| self.errors.iter().all(|error| error.code == **code));
         let count = self.errors.len() + self.unreported;
-        let first = self
-            .errors
-            .first()
-            .map(|first| format!("{}: {}", place(&first.pointer), first.detail))
-            .unwrap_or_default();
+        let first = self.errors.first().map(FieldError::sentence).unwrap_or_default();
         let detail = match count {
             1 => first,
             _ => format!("{count} mistakes, the first at {first}"),
@@ -177,8 +173,4 @@ impl From<SceneErrors> for Problem {
         }
         faults.into_problem()
     }
-}
-
-fn place(pointer: &str) -> &str {
-    if pointer.is_empty() { "the document" } else { pointer }
 }

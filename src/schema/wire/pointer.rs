@@ -55,3 +55,11 @@ pub struct FieldError {
     /// One sentence with the numbers.
     pub detail: String,
 }
+
+impl FieldError {
+    /// The mistake with its place, as one sentence.
+    pub fn sentence(&self) -> String {
+        let place = if self.pointer.is_empty() { "the document" } else { &self.pointer };
+        format!("{place}: {}", self.detail)
+    }
+}

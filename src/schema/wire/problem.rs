@@ -33,14 +33,19 @@ impl Problem {
     }
 
     /// The same problem with pointers that start at `from` starting at `to` instead: a body that is
-    /// itself the plan knows nothing of `/plan`.
+    /// itself the plan knows nothing of `/plan`. The sentence that names the first place names it anew.
     pub fn moved(mut self, from: &str, to: &str) -> Self {
+        let first = self.errors.first().map(FieldError::sentence);
         for error in &mut self.errors {
             if let Some(rest) = error.pointer.strip_prefix(from)
                 && (rest.is_empty() || rest.starts_with('/'))
             {
                 error.pointer = format!("{to}{rest}");
             }
+        }
+        let lead = first.as_ref().and_then(|first| self.detail.strip_suffix(first.as_str()));
+        if let (Some(lead), Some(first)) = (lead, self.errors.first()) {
+            self.detail = format!("{lead}{}", first.sentence());
         }
         self
     }
@@ -85,4 +90,25 @@ pub struct ProblemDocument {
     #[serde(flatten)]
     #[schema(value_type = Object)]
     pub members: Map<String, Value>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::schema::{Faults, Pointer};
+
+    #[test]
+    fn a_problem_that_is_moved_names_its_first_place_anew_in_its_sentence() {
+        let at = |text: &str| Pointer::from_text(text);
+        let mut one = Faults::default();
+        one.add(&at("/case/fixed/0"), ErrorCode::UnknownSet, "the mesh has no node set");
+        let moved = one.into_result().unwrap_err().moved("/case", "");
+        assert_eq!(moved.detail, "/fixed/0: the mesh has no node set");
+        let mut two = Faults::default();
+        two.add(&at("/case"), ErrorCode::Underconstrained, "loose");
+        two.add(&at("/case/skin"), ErrorCode::UnknownSet, "missing");
+        let moved = two.into_result().unwrap_err().moved("/case", "");
+        assert_eq!(moved.detail, "2 mistakes, the first at the document: loose");
+        assert_eq!(moved.errors[1].pointer, "/skin");
+    }
 }

@@ -1,13 +1,15 @@
 //! A database of either engine: opened, brought up to date, asked.
 
-use super::run::Pool;
-use super::run::Transaction;
+use super::run::{Open, Pool, Transaction, Writer};
 use super::schema::Migrated;
 use super::{postgres, schema, sqlite};
 use crate::store::error::StoreError;
+use crate::turns::{Full, Turn, Turns};
+use futures::future::BoxFuture;
 use sqlx::postgres::PgConnectOptions;
 use std::path::PathBuf;
 use std::sync::Arc;
+use std::time::Duration;
 
 /// Where the rows are.
 #[derive(Clone)]
@@ -25,21 +27,53 @@ impl Address {
         let options = Box::new(options.application_name("facies"));
         Ok(Address::Server { options, connections })
     }
+
+    /// How many may write at the same time; on a server some connections are left to those who read.
+    fn writers(&self) -> usize {
+        match self {
+            Address::File(_) => 1,
+            Address::Server { connections, .. } => {
+                let readers = (connections / 4).max(1);
+                connections.saturating_sub(readers).max(1) as usize
+            }
+        }
+    }
+
+    /// How long one waits who wants to write, before he is told to come back.
+    fn patience(&self) -> Duration {
+        match self {
+            Address::File(_) => sqlite::ACQUIRE_TIMEOUT,
+            Address::Server { .. } => postgres::ACQUIRE_TIMEOUT,
+        }
+    }
 }
 
-/// The connections of this process: those that read, and those that may write.
+/// What has to be done before something is written for the first time.
+pub(in crate::store) trait BeforeWriting: Send + Sync {
+    fn prepare(&self) -> BoxFuture<'_, Result<(), StoreError>>;
+}
+
+/// The connections of this process: those that read, and those that may write. Those who write take turns: the tenants
+/// that ask, the audit log, and all that the service does by itself.
 #[derive(Clone)]
 pub(in crate::store) struct Database {
     address: Address,
     writer: Arc<Pool>,
     reader: Arc<Pool>,
+    turns: Turns,
+    /// In which line of writers this one stands.
+    line: Arc<str>,
+    first: Option<Arc<dyn BeforeWriting>>,
 }
+
+/// Where those stand for whom no tenant asks.
+const OWN_LINE: &str = "";
 
 impl Database {
     /// Opens the database. The embedded one is created where it is not there and brought up to date. One
     /// that many share is refused unless its schema fits: none of them changes it under the others.
     pub async fn open(address: Address) -> Result<Database, StoreError> {
-        let database = Database::connect(address).await?;
+        let database = Database::connect(address, "write").await?;
         match &database.address {
             Address::File(_) => drop(schema::migrate(&database.writer).await?),
             Address::Server { .. } => schema::check(&database.writer).await?,
@@ -50,12 +84,12 @@ impl Database {
     /// Brings the schema up to date, each step in a transaction of its own.
     pub async fn migrate(address: Address) -> Result<Migrated, StoreError> {
         let database = match address {
-            Address::File(_) => Database::connect(address).await?,
+            Address::File(_) => Database::connect(address, "write").await?,
             // A step may take longer than any request is allowed to.
             Address::Server { options, .. } => {
                 let pool = Arc::new(Pool::Postgres(postgres::unlimited(&options).await?));
                 let address = Address::Server { options, connections: 1 };
-                Database { address, writer: pool.clone(), reader: pool }
+                Database::of_pools(address, (pool.clone(), pool), "write")
             }
         };
         let migrated = schema::migrate(&database.writer).await;
@@ -65,16 +99,17 @@ impl Database {
 
     /// A few connections of their own to the same database.
     pub async fn again(&self) -> Result<Database, StoreError> {
-        Database::connect(match &self.address {
+        let address = match &self.address {
             Address::Server { options, .. } => {
                 Address::Server { options: options.clone(), connections: 2 }
             }
-            file => file.clone(),
-        })
-        .await
+            file @ Address::File(_) => file.clone(),
+        };
+        Database::connect(address, "write again").await
     }
 
-    async fn connect(address: Address) -> Result<Database, StoreError> {
+    /// `what` is what turns are counted as.
+    async fn connect(address: Address, what: &'static str) -> Result<Database, StoreError> {
         let (writer, reader) = match &address {
             Address::File(file) => {
                 let (writer, reader) = sqlite::connect(file).await?;
@@ -86,46 +121,89 @@ impl Database {
                 (pool.clone(), pool)
             }
         };
-        Ok(Database { address, writer, reader })
+        Ok(Database::of_pools(address, (writer, reader), what))
+    }
+
+    fn of_pools(
+        address: Address,
+        (writer, reader): (Arc<Pool>, Arc<Pool>),
+        what: &'static str,
+    ) -> Database {
+        let turns = Turns::new(what, address.writers(), usize::MAX);
+        Database { address, writer, reader, turns, line: OWN_LINE.into(), first: None }
+    }
+
+    /// The same in another line of writers, for one who has nothing to do before.
+    pub fn plainly(&self, line: &str) -> Database {
+        Database { line: line.into(), first: None, ..self.clone() }
+    }
+
+    /// The same for one who has to do something before he writes.
+    pub fn after(&self, first: Arc<dyn BeforeWriting>) -> Database {
+        Database { first: Some(first), ..self.clone() }
+    }
+
+    /// How many wait in this line to write.
+    pub fn waiting(&self) -> usize {
+        self.turns.waiting(&self.line)
+    }
+
+    /// Waits until this one may write.
+    async fn turn(&self) -> Result<Turn, StoreError> {
+        if let Some(first) = &self.first {
+            first.prepare().await?;
+        }
+        let late = || StoreError::from(sqlx::Error::PoolTimedOut);
+        let turn = tokio::time::timeout(self.address.patience(), self.turns.turn(&self.line));
+        turn.await.map_err(|_| late())?.map_err(|Full { .. }| late())
     }
 
     pub fn reader(&self) -> &Pool {
         &self.reader
     }
 
-    /// For single statements.
-    pub fn writer(&self) -> &Pool {
-        &self.writer
+    /// For single statements that change something.
+    pub async fn writer(&self) -> Result<Writer, StoreError> {
+        let turn = self.turn().await?;
+        Ok(Writer { pool: self.writer.clone(), _turn: turn })
+    }
+
+    /// For words to other processes.
+    pub fn server(&self) -> Option<&sqlx::PgPool> {
+        match &*self.writer {
+            Pool::Sqlite(_) => None,
+            Pool::Postgres(pool) => Some(pool),
+        }
     }
 
     pub async fn begin(&self) -> Result<Transaction, StoreError> {
-        Ok(match &*self.writer {
-            Pool::Sqlite(pool) => Transaction::Sqlite(sqlite::begin(pool).await?),
-            Pool::Postgres(pool) => Transaction::Postgres(postgres::begin(pool).await?),
-        })
+        let turn = self.turn().await?;
+        let open = match &*self.writer {
+            Pool::Sqlite(pool) => Open::Sqlite(sqlite::begin(pool).await?),
+            Pool::Postgres(pool) => Open::Postgres(postgres::begin(pool).await?),
+        };
+        Ok(Transaction::new(open, Some(turn)))
     }
 
     /// A transaction whose commit does not wait for the disk. It is there before whatever is committed after it, since
     /// a log is written in its order; a crash of the server within a second may take it alone.
     pub async fn begin_unflushed(&self) -> Result<Transaction, StoreError> {
-        match &*self.writer {
-            Pool::Sqlite(_) => self.begin().await,
-            Pool::Postgres(pool) => {
-                Ok(Transaction::Postgres(postgres::begin_unflushed(pool).await?))
-            }
-        }
+        let Pool::Postgres(pool) = &*self.writer else { return self.begin().await };
+        let turn = self.turn().await?;
+        Ok(Transaction::new(Open::Postgres(postgres::begin_unflushed(pool).await?), Some(turn)))
     }
 
     /// A transaction that sees everything as it is when it begins, and changes nothing. It may last.
     pub async fn snapshot(&self) -> Result<Transaction, StoreError> {
-        Ok(match (&self.address, &*self.reader) {
+        let open = match (&self.address, &*self.reader) {
             (Address::Server { options, .. }, _) => {
                 let pool = postgres::unlimited(options).await?;
-                Transaction::Postgres(postgres::snapshot(&pool).await?)
+                Open::Postgres(postgres::snapshot(&pool).await?)
             }
-            (_, Pool::Sqlite(pool)) => Transaction::Sqlite(pool.begin().await?),
-            (_, Pool::Postgres(pool)) => Transaction::Postgres(postgres::snapshot(pool).await?),
-        })
+            (_, Pool::Sqlite(pool)) => Open::Sqlite(pool.begin().await?),
+            (_, Pool::Postgres(pool)) => Open::Postgres(postgres::snapshot(pool).await?),
+        };
+        Ok(Transaction::new(open, None))
     }
 
     /// Brings what was erased out of the files of an embedded database; false while somebody stands in the way. A server

@@ -17,7 +17,7 @@ pub const CLOCK: &str = "CREATE OR REPLACE VIEW clock AS \
 pub const FULL: &str = "53100";
 
 /// How long a request waits for a connection before it is told to come back.
-const ACQUIRE_TIMEOUT: Duration = Duration::from_millis(2500);
+pub const ACQUIRE_TIMEOUT: Duration = Duration::from_millis(2500);
 /// How long an answer may take. A server behind a broken network says nothing at all, and a heartbeat that
 /// waits for it would miss that its lease has run out.
 const ANSWER_TIMEOUT: Duration = Duration::from_secs(10);

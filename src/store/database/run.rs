@@ -5,8 +5,10 @@ use super::value::Statement;
 use super::value::Taker;
 use super::value::Value;
 use super::{postgres, sqlite};
+use crate::turns::Turn;
 use sqlx::postgres::{PgPool, Postgres};
 use sqlx::sqlite::{Sqlite, SqlitePool};
+use std::sync::Arc;
 
 /// Connections of one engine.
 pub(in crate::store) enum Pool {
@@ -15,25 +17,41 @@ pub(in crate::store) enum Pool {
 }
 
 /// Changes that happen together or not at all; dropped, they do not happen.
-pub(in crate::store) enum Transaction {
+pub(in crate::store) struct Transaction {
+    open: Open,
+    /// Of one that writes.
+    _turn: Option<Turn>,
+}
+
+pub(super) enum Open {
     Sqlite(sqlx::Transaction<'static, Sqlite>),
     Postgres(sqlx::Transaction<'static, Postgres>),
 }
 
+/// For single statements that change something.
+pub(in crate::store) struct Writer {
+    pub(super) pool: Arc<Pool>,
+    pub(super) _turn: Turn,
+}
+
 impl Transaction {
+    pub(super) fn new(open: Open, turn: Option<Turn>) -> Transaction {
+        Transaction { open, _turn: turn }
+    }
+
     pub async fn commit(self) -> Result<(), sqlx::Error> {
-        match self {
-            Transaction::Sqlite(transaction) => transaction.commit().await,
-            Transaction::Postgres(transaction) => postgres::in_time(transaction.commit()).await,
+        match self.open {
+            Open::Sqlite(transaction) => transaction.commit().await,
+            Open::Postgres(transaction) => postgres::in_time(transaction.commit()).await,
         }
     }
 
     /// Undoes it. Where the engine has done so by itself or is out of reach there is nothing left to undo, and the
     /// connection is not used again.
     pub async fn rollback(self) {
-        let undone = match self {
-            Transaction::Sqlite(transaction) => transaction.rollback().await,
-            Transaction::Postgres(transaction) => postgres::in_time(transaction.rollback()).await,
+        let undone = match self.open {
+            Open::Sqlite(transaction) => transaction.rollback().await,
+            Open::Postgres(transaction) => postgres::in_time(transaction.rollback()).await,
         };
         if let Err(error) = undone {
             tracing::debug!(%error, "nothing was left to undo");
@@ -50,6 +68,12 @@ pub(in crate::store) enum Place<'a> {
 impl<'a> From<&'a Pool> for Place<'a> {
     fn from(pool: &'a Pool) -> Self {
         Place::Pool(pool)
+    }
+}
+
+impl<'a> From<&'a Writer> for Place<'a> {
+    fn from(writer: &'a Writer) -> Self {
+        Place::Pool(&writer.pool)
     }
 }
 
@@ -86,10 +110,10 @@ impl Statement {
                 }
                 answer
             }
-            Place::Transaction(Transaction::Sqlite(open)) => {
+            Place::Transaction(Transaction { open: Open::Sqlite(open), .. }) => {
                 sqlite::run(&mut *open, self, take).await
             }
-            Place::Transaction(Transaction::Postgres(open)) => {
+            Place::Transaction(Transaction { open: Open::Postgres(open), .. }) => {
                 postgres::run(&mut *open, self, take).await
             }
         }

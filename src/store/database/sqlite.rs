@@ -26,7 +26,7 @@ const PASSING: [u32; 3] = [5, 10, 14];
 /// How long a statement waits for another process that writes.
 const BUSY_TIMEOUT: Duration = Duration::from_secs(5);
 /// How long a request waits for a connection before it is told to come back.
-const ACQUIRE_TIMEOUT: Duration = Duration::from_secs(10);
+pub const ACQUIRE_TIMEOUT: Duration = Duration::from_secs(10);
 const READERS: u32 = 4;
 
 /// One connection that writes, so that writers queue here instead of failing with BUSY, and several that read.

@@ -37,13 +37,14 @@ pub fn attempt(
 /// Writes meshes in the form in which they are stored, each with its row as for an upload.
 fn write_meshes(meshes: &[MadeMesh], folder: &Path) -> Result<Vec<MeshFile>, JobError> {
     let mut written = Vec::with_capacity(meshes.len());
-    for mesh in meshes {
+    for (number, mesh) in meshes.iter().enumerate() {
         let row = upload_made(mesh)?.row;
-        let file = format!("kept-{}", mesh.what.name());
+        let file = format!("kept-{number}");
         std::fs::write(folder.join(&file), &row.bytes)
             .map_err(|source| JobError::Write { file: file.clone(), source })?;
         written.push(MeshFile {
             what: mesh.what,
+            name: mesh.name.clone(),
             file,
             id: row.id,
             sha256: row.sha256,

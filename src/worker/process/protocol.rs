@@ -13,7 +13,7 @@ use serde_json::Value;
 use super::memory::Usage;
 use crate::library::meshes::MeshCard;
 use crate::schema::Limits;
-use crate::schema::predict::keep::KeptName;
+use crate::schema::predict::keep::MadeName;
 
 /// The longest frame that is believed: a blob is a file that was accepted or made here.
 const LONGEST: u64 = 1 << 36;
@@ -141,7 +141,8 @@ pub struct MadeFile {
 /// A mesh to be stored: its row as for an upload, and the file with its bytes as they are to be stored.
 #[derive(Debug, Serialize, Deserialize)]
 pub struct MeshFile {
-    pub what: KeptName,
+    pub what: MadeName,
+    pub name: Option<String>,
     pub file: String,
     pub id: String,
     /// Of the bytes before they were read and written anew.

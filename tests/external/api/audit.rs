@@ -1,13 +1,18 @@
 //! The audit log: what was done is in it, and what cannot be noted is not done.
 
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
 use facies::store::{Chain, Deed, Store};
 use reqwest::StatusCode;
 use serde_json::json;
 use sqlx::Connection;
 use sqlx::sqlite::{SqliteConnectOptions, SqliteConnection};
 
-use crate::deployments::Deployment;
+use crate::deployments::{Cluster, Deployment};
 use crate::helpers::{SMALL, Server, ask};
+use crate::processes::until;
+use crate::support::external::Missing;
 use crate::support::trials::trials;
 
 trials! {
@@ -19,6 +24,10 @@ trials! {
     }
     alone {
         what_cannot_be_noted_is_not_done
+        no_end_is_lost_and_none_told_twice_where_the_database_crashes
+    }
+    on_shared {
+        deeds_at_the_same_time_are_noted_together
     }
 }
 
@@ -33,9 +42,7 @@ async fn what_cannot_be_noted_is_not_done() {
         }
     };
     database("ALTER TABLE deeds RENAME TO lost").await;
-    let refused = ask(server.post("/v1/cases").json(&json!({}))).await;
-    refused.problem(500, "internal");
-    let made = ask(server.post("/v1/cases").json(&json!({"schema": 1, "units": "mm"}))).await;
+    let made = ask(server.post("/v1/cases").multipart(SMALL.form(&SMALL.case()))).await;
     made.problem(500, "internal");
     let cases = ask(server.get("/v1/cases")).await.expect(StatusCode::OK);
     assert_eq!(cases["items"], json!([]));
@@ -93,6 +100,8 @@ async fn a_deed_whose_end_nobody_told_is_in_the_audit_log_as_unknown(on: Deploym
     let begun = store.begin_deed(&deed).await.unwrap();
     assert_eq!(store.audit(0, "", 10).await.unwrap(), []);
     on.execute(AN_HOUR_LATER).await;
+    // As another process does it: the one that began a deed says first that it goes on.
+    store.chain_deeds().await.unwrap();
     let rows = store.audit(0, "", 10).await.unwrap();
     assert_eq!((rows.len(), &rows[0].deed, rows[0].outcome.as_str()), (1, &deed, "unknown"));
     store.end_deed(begun, "made", "201").await.unwrap();
@@ -137,4 +146,62 @@ async fn an_end_that_the_database_did_not_take_is_told_later(on: Deployment) {
     assert_eq!((rows.len(), rows[0].outcome.as_str()), (1, "201"));
     store.tell_deeds().await.unwrap();
     assert_eq!(store.audit(0, "", 10).await.unwrap(), rows, "it is told once");
+}
+
+async fn deeds_at_the_same_time_are_noted_together(on: Deployment) {
+    let store = on.open().await;
+    let one = |number: usize| {
+        let deed = Deed { action: format!("number {number}"), ..Deed::default() };
+        let store = store.clone();
+        async move {
+            let begun = store.begin_deed(&deed).await.unwrap();
+            store.end_deed(begun, "", "done").await.unwrap();
+        }
+    };
+    futures::future::join_all((0..300).map(one)).await;
+    // What wrote a row last.
+    let commits = on.texts("SELECT DISTINCT xmin::text FROM deeds").await.len();
+    assert!(commits < 30, "300 ends in {commits} transactions");
+    let rows = store.audit(0, "", 1000).await.unwrap();
+    assert_eq!(rows.len(), 300);
+    assert!(rows.iter().all(|row| row.outcome == "done"));
+}
+
+/// What PostgreSQL does not flush by itself for some hundred milliseconds is gone after a crash.
+async fn no_end_is_lost_and_none_told_twice_where_the_database_crashes() -> Result<(), Missing> {
+    const DEEDS: usize = 40;
+    let cluster = Arc::new(Cluster::start()?);
+    let on = Deployment::on(&cluster.database().await);
+    Store::migrate(&on.places).await.unwrap();
+    let store = on.open().await;
+    for round in 0..3 {
+        let action = format!("round {round}");
+        let begin = |number: usize| {
+            let request = number.to_string();
+            let deed = Deed { action: action.clone(), request, ..Deed::default() };
+            let store = &store;
+            async move { store.begin_deed(&deed).await.unwrap() }
+        };
+        let begun = futures::future::join_all((0..DEEDS).map(begin)).await;
+        // Some ends are taken and some are not, and of some nobody hears whether they were.
+        let ends = begun.into_iter().map(|begun| store.end_deed(begun, "", "201"));
+        let ends = futures::future::join_all(ends);
+        let crashes = cluster.clone();
+        let crash = move || crashes.control(&["-m", "immediate", "stop"]);
+        if round == 0 {
+            ends.await;
+            crash();
+        } else {
+            let (_, crashed) = tokio::join!(ends, tokio::task::spawn_blocking(crash));
+            crashed.unwrap();
+        }
+        cluster.control(&["start"]);
+        until("the ends are told", async || store.tell_deeds().await.ok()).await;
+        let rows = store.audit(0, "", 1000).await.unwrap();
+        let own = rows.iter().filter(|row| row.deed.action == action && row.outcome == "201");
+        let requests: BTreeSet<&str> = own.clone().map(|row| row.deed.request.as_str()).collect();
+        assert_eq!((own.count(), requests.len()), (DEEDS, DEEDS), "round {round}");
+    }
+    assert!(matches!(store.check_audit().await.unwrap(), Chain::Whole { .. }));
+    Ok(())
 }

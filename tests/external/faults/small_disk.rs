@@ -1,5 +1,6 @@
 //! A disk that is full.
 
+use std::io::Write as _;
 use std::path::PathBuf;
 use std::process::Command;
 
@@ -16,6 +17,7 @@ trials! {
         a_full_disk_refuses_uploads_and_serves_what_is_there
         on_a_disk_without_a_byte_left_uploads_are_refused_and_things_are_erased
         a_service_starts_on_a_disk_without_a_byte_left
+        one_erasure_after_the_other_finds_room_on_a_disk_that_is_filled_again_and_again
     }
 }
 
@@ -47,7 +49,8 @@ impl SmallDisk {
 
     fn fill_but(&self, bytes: usize) {
         let filler = vec![0; self.free().saturating_sub(bytes)];
-        std::fs::write(self.filler(), filler).unwrap();
+        let file = std::fs::OpenOptions::new().create(true).append(true).open(self.filler());
+        file.unwrap().write_all(&filler).unwrap();
     }
 
     fn empty(&self) {
@@ -106,7 +109,6 @@ async fn on_a_disk_without_a_byte_left_uploads_are_refused_and_things_are_erased
     }
     let job = format!("/v1/jobs/{}", job["id"].as_str().unwrap());
     assert_eq!(ask(server.delete(&job)).await.status, StatusCode::NO_CONTENT);
-    assert!(disk.free() > 1 << 20, "the room in reserve is given up");
     // It is for what is erased, and not for the next upload.
     upload().await.problem(507, "storage-full");
     let erase = server.delete(&format!("/v1/cases/{case}")).header("if-match", "*");
@@ -132,5 +134,30 @@ async fn a_service_starts_on_a_disk_without_a_byte_left() -> Result<(), Missing>
     }
     let erase = server.delete(&format!("/v1/cases/{case}")).header("if-match", "*");
     assert_eq!(ask(erase).await.status, StatusCode::NO_CONTENT);
+    Ok(())
+}
+
+async fn one_erasure_after_the_other_finds_room_on_a_disk_that_is_filled_again_and_again()
+-> Result<(), Missing> {
+    let disk = SmallDisk::mount()?;
+    let server = disk.serve();
+    let case = server.case(&SMALL).await;
+    let mut jobs = Vec::new();
+    for x in 0..4 {
+        let job = server.job(&spec(&case, f64::from(x))).await.expect(StatusCode::OK);
+        jobs.push(format!("/v1/jobs/{}", job["id"].as_str().unwrap()));
+    }
+    for job in &jobs {
+        disk.fill_but(0);
+        let erased = ask(server.delete(job)).await;
+        assert_eq!(erased.status, StatusCode::NO_CONTENT, "{}", disk.free());
+        let ready = ask(server.get("/readyz")).await.problem(503, "not-ready");
+        assert!(ready["checks"].as_array().unwrap().contains(&"free-space".into()));
+    }
+    disk.fill_but(0);
+    let erase = server.delete(&format!("/v1/cases/{case}")).header("if-match", "*");
+    assert_eq!(ask(erase).await.status, StatusCode::NO_CONTENT);
+    disk.empty();
+    works_on(&server).await;
     Ok(())
 }

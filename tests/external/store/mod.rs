@@ -11,6 +11,7 @@ pub mod races;
 pub mod remembered;
 pub mod schema_steps;
 pub mod storage;
+pub mod tags;
 pub mod tenants;
 pub mod transfer;
 pub mod turns;

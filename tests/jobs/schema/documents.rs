@@ -324,11 +324,11 @@ fn an_error_about_the_kind_of_a_job_lists_every_kind() {
     };
     assert_eq!(
         detail("{}"),
-        "missing field `kind`: `predict`, `compare`, `response`, `optimise`, `study` or `batch`"
+        "missing field `kind`: `predict`, `compare`, `response`, `optimise`, `mesh`, `study` or `batch`"
     );
     assert_eq!(
         detail(r#"{"kind":"x"}"#),
-        "`x` is not a kind of job; `predict`, `compare`, `response`, `optimise`, `study` and `batch` are"
+        "`x` is not a kind of job; `predict`, `compare`, `response`, `optimise`, `mesh`, `study` and `batch` are"
     );
 }
 
@@ -338,7 +338,7 @@ fn a_kind_of_job_is_stored_by_the_word_that_clients_send() {
         assert_eq!(canonical::to_value(kind), kind.name());
         assert_eq!(JobKind::from_name(kind.name()), Some(*kind));
     }
-    assert_eq!(JobKind::from_name("mesh"), None);
+    assert_eq!(JobKind::from_name("meshes"), None);
 }
 
 fn hash(case: &str, plan: &str, spec: &str) -> String {

@@ -186,8 +186,8 @@ fn what_was_expected_and_what_was_found_are_told() {
         )
     };
     for (member, told) in [
-        (r#""align":"icp""#, r#"expected an object, found the string "icp""#),
-        (r#""align":["icp"]"#, "expected an object, found an array"),
+        (r#""align":"ipc""#, r#"unknown word `ipc`, expected one of `none`, `landmarks`, `icp`"#),
+        (r#""align":["icp"]"#, "expected a name or an object, found an array"),
         (
             r#""align":{"method":"IPC"}"#,
             r#"unknown word `IPC`, expected one of `none`, `landmarks`, `icp`"#,

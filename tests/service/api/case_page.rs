@@ -1,6 +1,6 @@
 //! The page on the case document: the service takes every block of it.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use mechanics::format::vtk::{vtp, vtu};
 use mechanics::format::{SurfaceOutput, VolumeOutput, nrrd};
@@ -85,7 +85,7 @@ fn with(block: &Value) -> Value {
         },
         "plan": {}, "spec": {},
     });
-    for (part, members) in block.as_object().unwrap() {
+    for (part, members) in block.as_object().unwrap().iter().filter(|(part, _)| *part != "job") {
         let whole = whole[part].as_object_mut().unwrap_or_else(|| panic!("no document `{part}`"));
         whole.extend(members.as_object().unwrap().clone());
     }
@@ -106,7 +106,7 @@ async fn post_case(server: &Server, case: &Value) -> Answer {
 #[tokio::test]
 async fn the_service_takes_every_block_of_the_page_on_the_case_document() {
     let server = Server::start();
-    for (heading, block) in blocks() {
+    for (heading, block) in blocks().into_iter().filter(|(_, block)| block.get("job").is_none()) {
         let whole = with(&block);
         let kept = post_case(&server, &whole["case"]).await;
         let text = String::from_utf8_lossy(&kept.bytes).into_owned();
@@ -123,10 +123,40 @@ async fn the_service_takes_every_block_of_the_page_on_the_case_document() {
     }
 }
 
+#[tokio::test]
+async fn the_service_takes_every_other_job_of_the_page_on_the_case_document() {
+    let server = Server::start();
+    let case = json!({"case": {"landmarks": {"pogonion": [60, 30, 20]}}});
+    let case = post_case(&server, &with(&case)["case"]).await.expect(StatusCode::CREATED);
+    let segments = json!([{"name": "mandible", "translation_mm": [2, 0, 0]}]);
+    let predict = json!({"kind": "predict", "case": case["id"], "plan": {"segments": segments}});
+    let predicted = server.job(&predict).await.expect(StatusCode::OK);
+    let skin = format!("/v1/jobs/{}/results/skin.vtp", predicted["id"].as_str().unwrap());
+    let skin = server.upload(ask(server.get(&skin)).await.bytes).await.expect(StatusCode::CREATED);
+    let ids = [("CASE_ID", &case), ("JOB_ID", &predicted), ("MESH_ID", &skin)];
+    let mut kinds = BTreeSet::new();
+    for (heading, block) in blocks().into_iter().filter(|(_, block)| block.get("job").is_some()) {
+        let job = ids.iter().fold(block["job"].to_string(), |text, (word, made)| {
+            text.replace(word, made["id"].as_str().unwrap())
+        });
+        let job: Value = serde_json::from_str(&job).unwrap();
+        let answer = server.job(&job).await;
+        let text = String::from_utf8_lossy(&answer.bytes).into_owned();
+        assert!(answer.status.is_success(), "{heading}: {block}: {text}");
+        let ended = server.ended(answer.json()["id"].as_str().unwrap()).await;
+        assert_eq!(ended["status"], "successful", "{heading}: {ended}");
+        kinds.insert(job["kind"].as_str().unwrap().to_owned());
+    }
+    let wanted = ["compare", "optimise", "response", "study"].map(str::to_owned);
+    assert_eq!(kinds, wanted.into());
+}
+
 /// What a reader looks for is on the page, in a block that the test above posts.
 #[test]
 fn the_page_on_the_case_document_shows_every_member_of_case_and_plan() {
-    let shown: String = blocks().iter().map(|(_, block)| block.to_string()).collect();
+    let mut shown: String = blocks().iter().map(|(_, block)| block.to_string()).collect();
+    // Plans for scans have a page of their own.
+    shown += include_str!("../../../docs/cuts.md");
     let document = facies::api::document();
     let schemas = &document["components"]["schemas"];
     for name in [

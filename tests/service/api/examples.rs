@@ -4,6 +4,7 @@ use reqwest::StatusCode;
 use serde_json::Value;
 
 use crate::helpers::{Server, ask};
+use crate::samples::ball_ct;
 
 /// The bodies of an operation by the names of their examples.
 fn examples(operation: &str) -> Vec<(String, Value)> {
@@ -60,6 +61,19 @@ fn there_is_an_example_of_a_job_of_each_kind() {
     }
 }
 
+async fn takes_keys(server: &Server) {
+    let mut key = String::new();
+    for (name, body) in examples("create_key") {
+        let answer = ask(server.post("/v1/keys").json(&body)).await;
+        assert_eq!(answer.status, StatusCode::CREATED, "{name}");
+        key = answer.json()["id"].as_str().unwrap().to_owned();
+    }
+    for (name, body) in examples("rotate_key") {
+        let answer = ask(server.post(&format!("/v1/keys/{key}/rotation")).json(&body)).await;
+        assert_eq!(answer.status, StatusCode::CREATED, "{name}");
+    }
+}
+
 #[tokio::test]
 async fn the_service_takes_every_example_as_it_stands_but_for_ids() {
     let server = Server::start();
@@ -93,12 +107,14 @@ async fn the_service_takes_every_example_as_it_stands_but_for_ids() {
         assert_eq!(ask(request).await.status, StatusCode::OK, "{name}");
     }
     let mut job = String::new();
+    let scan = server.upload(ball_ct()).await.expect(StatusCode::CREATED);
+    let scan = scan["id"].as_str().unwrap().to_owned();
     // The comparison is of a job that has ended.
     let mut jobs = examples("create_job");
     jobs.sort_by_key(|(name, _)| name != "predict");
     for (name, body) in jobs {
-        let (case_id, plan_id, job_id) = (id(3), id(4), id(5));
-        let ids = [(&case_id, &case), (&plan_id, &plan.0), (&job_id, &job)];
+        let (case_id, plan_id, job_id, scan_id) = (id(3), id(4), id(5), id(6));
+        let ids = [(&case_id, &case), (&plan_id, &plan.0), (&job_id, &job), (&scan_id, &scan)];
         let ids: Vec<(&str, &str)> =
             ids.iter().map(|(from, to)| (from.as_str(), to.as_str())).chain(meshes).collect();
         let answer = server.job(&with_ids(&body, &ids)).await;
@@ -109,18 +125,13 @@ async fn the_service_takes_every_example_as_it_stands_but_for_ids() {
             job = ended["id"].as_str().unwrap().to_owned();
         }
     }
+    for (name, body) in examples("change_job") {
+        let request = server.request(reqwest::Method::PATCH, &format!("/v1/jobs/{job}"));
+        assert_eq!(ask(request.json(&body)).await.status, StatusCode::OK, "{name}");
+    }
     for (name, body) in examples("apply_response") {
         let request = server.post(&format!("/v1/cases/{case}/response/apply")).json(&body);
         assert_eq!(ask(request).await.status, StatusCode::OK, "{name}");
     }
-    let mut key = String::new();
-    for (name, body) in examples("create_key") {
-        let answer = ask(server.post("/v1/keys").json(&body)).await;
-        assert_eq!(answer.status, StatusCode::CREATED, "{name}");
-        key = answer.json()["id"].as_str().unwrap().to_owned();
-    }
-    for (name, body) in examples("rotate_key") {
-        let answer = ask(server.post(&format!("/v1/keys/{key}/rotation")).json(&body)).await;
-        assert_eq!(answer.status, StatusCode::CREATED, "{name}");
-    }
+    takes_keys(&server).await;
 }

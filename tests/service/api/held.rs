@@ -207,3 +207,92 @@ async fn tissue_without_a_free_node_is_answered_by_every_kind_of_job() {
         }
     }
 }
+
+#[tokio::test]
+async fn a_bone_that_moves_along_the_only_wall_is_refused_on_every_way() {
+    let server = Server::start();
+    let mut document = SMALL.case();
+    document["fixed"] = json!([]);
+    document["skin"] = json!({"node_set": "x_max"});
+    document["segments"] = json!([{"name": "bone", "nodes": {"node_set": "x_min"}}]);
+    document["sliding"] = json!([{"nodes": {"node_set": "z_min"}}]);
+    let case = kept(&server, &document).await;
+    let checked = ask(server.post(&format!("/v1/cases/{case}/check")).json(&json!({}))).await;
+    let checked = checked.expect(StatusCode::OK);
+    let told = checked["warnings"].as_array().unwrap().iter();
+    let told = told.into_iter().find(|warning| warning["code"] == "nothing-held").unwrap();
+    let words = "slide along (1, 0, 0) and (0, 1, 0)";
+    assert!(told["detail"].as_str().unwrap().contains(words), "{told}");
+    let plan = shifted(&["bone"]);
+    let moved = json!({"plan": plan});
+    let checked = ask(server.post(&format!("/v1/cases/{case}/check")).json(&moved)).await;
+    let problem = checked.problem(422, "nothing-held");
+    assert_eq!(problem["errors"][0]["pointer"], "/case/fixed");
+    assert!(problem["detail"].as_str().unwrap().starts_with("/case/fixed: "), "{problem}");
+    let predict = json!({"kind": "predict", "case": case, "plan": plan});
+    ask(server.post("/v1/jobs").json(&predict)).await.problem(422, "nothing-held");
+
+    // A response knows plans across the wall, and refuses those along it.
+    server.job(&json!({"kind": "response", "case": case})).await.expect(StatusCode::OK);
+    apply(&server, &case, &plan).await.problem(422, "nothing-held");
+    let mut across = plan.clone();
+    across["segments"][0]["translation_mm"] = json!([0, 0, 3]);
+    apply(&server, &case, &across).await.expect(StatusCode::OK);
+
+    // The plan that is found is judged as any other, and so is a row of a study.
+    let target = json!([{"nodes": {"node_set": "x_max"}, "displacement_mm": [2, 0, 0]}]);
+    let bounds = json!({"bone": {"translation_mm": [[-5, 5], [0, 0], [0, 0]]}});
+    let optimise = json!({"kind": "optimise", "case": case, "targets": target, "bounds": bounds});
+    let study = json!({"kind": "study", "scenes": [{"case": case, "plans": [plan]}], "repeats": 1,
+        "methods": ["fem_linear"], "elements": ["auto"], "truth": {"refine": 1}});
+    let found = server.job(&optimise).await.json();
+    let found = server.ended(found["id"].as_str().unwrap()).await;
+    assert_eq!(found["error"]["type"], "nothing-held", "{found}");
+    let posted = ask(server.post("/v1/jobs").json(&study)).await;
+    if posted.status == StatusCode::CREATED {
+        let ended = server.ended(posted.json()["id"].as_str().unwrap()).await;
+        let report = format!("/v1/jobs/{}/report", ended["id"].as_str().unwrap());
+        let report = String::from_utf8_lossy(&ask(server.get(&report)).await.bytes).into_owned();
+        let told = format!("{ended} {report}");
+        assert!(told.contains("nothing-held") && !told.contains("\"pass\""), "{told}");
+    } else {
+        posted.problem(422, "nothing-held");
+    }
+}
+
+#[tokio::test]
+async fn the_target_of_inverse_planning_that_is_wrong_is_named_by_its_place_in_the_request() {
+    let server = Server::start();
+    let case = server.case(&SMALL).await;
+    let target = json!([{"nodes": {"node_set": "nowhere"}, "displacement_mm": [1, 0, 0]}]);
+    let bounds = json!({"bone": {"translation_mm": [[-5, 5], [0, 0], [0, 0]]}});
+    let spec = json!({"kind": "optimise", "case": case, "targets": target, "bounds": bounds});
+    let problem = ask(server.post("/v1/jobs").json(&spec)).await;
+    let problem = problem.problem(422, "validation-failed");
+    assert_eq!(problem["errors"][0]["pointer"], "/targets/0/nodes");
+    assert!(problem["detail"].as_str().unwrap().starts_with("/targets/0/nodes: "), "{problem}");
+}
+
+#[tokio::test]
+async fn colours_of_inverse_planning_end_where_the_spec_says() {
+    let server = Server::start();
+    let case = server.case(&SMALL).await;
+    let target = json!([{"nodes": {"node_set": "x_max"}, "displacement_mm": [0.1, 0, 0]}]);
+    let bounds = json!({"bone": {"translation_mm": [[-5, 5], [0, 0], [0, 0]]}});
+    let spec = json!({"kind": "optimise", "case": case, "targets": target, "bounds": bounds,
+        "range_mm": 3});
+    for verify in [true, false] {
+        let mut spec = spec.clone();
+        spec["verify"] = json!(verify);
+        let done = server.job(&spec).await.json();
+        let done = server.ended(done["id"].as_str().unwrap()).await;
+        let path = format!("/v1/jobs/{}/results/skin.glb", done["id"].as_str().unwrap());
+        let file = ask(server.get(&path)).await;
+        let text = String::from_utf8_lossy(&file.bytes).into_owned();
+        assert!(text.contains("\"range\":[0.0,3.0]"), "{done}");
+    }
+    let mut wrong = spec.clone();
+    wrong["range_mm"] = json!(0);
+    let problem = ask(server.post("/v1/jobs").json(&wrong)).await.problem(422, "validation-failed");
+    assert_eq!(problem["errors"][0]["pointer"], "/range_mm");
+}

@@ -71,3 +71,21 @@ async fn a_client_that_knows_no_host_is_answered() {
     stream.read_to_string(&mut answer).await.unwrap();
     assert!(answer.starts_with("HTTP/1.0 200"), "{answer}");
 }
+
+#[tokio::test]
+async fn a_request_of_http_1_1_names_one_host() {
+    let hospital = Hospital::open();
+    let hosts =
+        ["", "Host: localhost\r\nHost: localhost\r\n", "Host: localhost\r\nHost: evil.example\r\n"];
+    for host in hosts {
+        for at in [hospital.server.host(), hospital.admin_host()] {
+            let mut stream = TcpStream::connect(at).await.unwrap();
+            let request = format!("GET /healthz HTTP/1.1\r\n{host}Connection: close\r\n\r\n");
+            stream.write_all(request.as_bytes()).await.unwrap();
+            let mut answer = String::new();
+            stream.read_to_string(&mut answer).await.unwrap();
+            assert!(answer.starts_with("HTTP/1.1 400"), "{host}: {answer}");
+            assert!(answer.contains("malformed-request"), "{answer}");
+        }
+    }
+}

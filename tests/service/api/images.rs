@@ -8,6 +8,7 @@ use reqwest::multipart::Part;
 use serde_json::{Value, json};
 
 use crate::helpers::{SMALL, Server, ask, spec};
+use crate::samples::scans::{Coding, dicom_slices, one_of_each, series, small_scan};
 use crate::samples::{NRRD, VOXELS, nrrd as file};
 
 fn sample() -> Vec<u8> {
@@ -64,6 +65,49 @@ async fn an_image_is_reported_and_comes_back_without_the_name_of_the_patient() {
     let mesh = mesh["id"].as_str().unwrap();
     let answer = ask(server.get(&format!("/v1/meshes/{mesh}/content?format=nrrd"))).await;
     answer.problem(422, "format-not-available");
+}
+
+#[tokio::test]
+async fn scans_of_every_format_come_through_the_same_door_and_are_kept_without_names() {
+    let server = Server::start();
+    for (name, bytes) in one_of_each() {
+        let kind = match name.split(' ').next().unwrap() {
+            "nifti" => "application/x-nifti",
+            "metaimage" => "application/x-metaimage",
+            _ => "application/zip",
+        };
+        let request = server.post("/v1/meshes").header("content-type", kind).body(bytes);
+        let scan = ask(request).await.expect(StatusCode::CREATED);
+        assert_eq!(scan["report"]["kind"], "image", "{name}");
+        assert_eq!(scan["report"]["image"]["spacing_mm"][2], 2.5, "{name}: {scan}");
+        assert!(name.starts_with(scan["format"].as_str().unwrap()), "{name}: {scan}");
+        let id = scan["id"].as_str().unwrap();
+        let kept = ask(server.get(&format!("/v1/meshes/{id}/content"))).await;
+        assert_eq!(kept.header("content-type"), "application/x-nrrd");
+        let kept = read(&kept.bytes, &ReadLimits::default()).unwrap();
+        let Mesh::Image(kept) = kept.mesh else { panic!("an image was expected") };
+        let Voxels::I16(values) = kept.voxels() else { panic!("16 bits were expected") };
+        assert!(small_scan().values.starts_with(values), "{name}");
+    }
+}
+
+#[tokio::test]
+async fn a_series_that_is_no_image_is_refused_with_its_numbers_and_without_names() {
+    let server = Server::start();
+    let mut slices = dicom_slices(&small_scan(), Coding::Explicit);
+    slices[3].position[2] += 10.0;
+    slices.remove(1);
+    let problem = server.upload(series(&slices)).await.problem(422, "mesh-parse");
+    assert_eq!(problem["format"], "DICOM");
+    let detail = problem["detail"].as_str().unwrap();
+    assert!(
+        detail.contains("slices are missing") || detail.contains("not evenly spaced"),
+        "{detail}"
+    );
+    assert!(!problem.to_string().contains("Roe"), "{problem}");
+    slices.iter_mut().for_each(|slice| slice.syntax = Some("1.2.840.10008.1.2.4.90"));
+    let problem = server.upload(series(&slices)).await.problem(422, "mesh-parse");
+    assert!(problem["detail"].as_str().unwrap().contains("JPEG 2000 Lossless"), "{problem}");
 }
 
 #[tokio::test]

@@ -1,7 +1,7 @@
 //! Jobs: from a request to results, waited for, known again, listed, dismissed, removed.
 
-use reqwest::StatusCode;
-use serde_json::json;
+use reqwest::{Method, StatusCode};
+use serde_json::{Value, json};
 
 use crate::helpers::{SMALL, Server, ask, spec};
 
@@ -109,8 +109,47 @@ async fn the_same_inputs_are_answered_by_the_job_that_is_known() {
     again["method"] = json!("auto");
     let second = ask(server.post("/v1/jobs").json(&again)).await.expect(StatusCode::OK);
     assert_eq!((&second["id"], &second["deduplicated"]), (&first["id"], &json!(true)));
+    assert_eq!(second["tags"], json!(["again"]), "it is found by the tags of everybody who asked");
+    let found = ask(server.get("/v1/jobs?tag=again")).await.expect(StatusCode::OK);
+    assert_eq!(found["items"][0]["id"], first["id"]);
     let other = server.job(&spec(&case, 1.5)).await.expect(StatusCode::OK);
     assert_ne!(other["id"], first["id"]);
+}
+
+#[tokio::test]
+async fn tags_of_a_job_are_changed_whatever_its_state() {
+    let server = Server::start();
+    let case = server.case(&SMALL).await;
+    let mut spec = spec(&case, 1.0);
+    spec["tags"] = json!(["first"]);
+    let job = server.job(&spec).await.expect(StatusCode::OK);
+    let path = format!("/v1/jobs/{}", job["id"].as_str().unwrap());
+    let change = |change: Value| {
+        let request = server.request(Method::PATCH, &path).json(&change);
+        async { ask(request).await }
+    };
+    let answer = change(json!({"tags": {"add": ["main", "b"], "remove": ["first"]}})).await;
+    assert_eq!(answer.expect(StatusCode::OK)["tags"], json!(["b", "main"]));
+    let shown = ask(server.get(&path)).await;
+    assert_eq!(shown.json()["tags"], json!(["b", "main"]));
+    assert_eq!((shown.header("etag"), &shown.bytes), (answer.header("etag"), &answer.bytes));
+
+    let many: Vec<String> = (0..31).map(|number| format!("t{number}")).collect();
+    for (wrong, code, at) in [
+        (json!({"tags": {"add": many}}), "too-many", "/tags"),
+        (json!({"tags": {"add": ["x"], "remove": ["x"]}}), "duplicate-name", "/tags/add/0"),
+        (json!({"tags": {"set": ["x"]}}), "unknown-field", "/tags/set"),
+        (json!({"tags": {"add": [""]}}), "bad-name", "/tags/add/0"),
+        (json!({"status": "successful"}), "unknown-field", "/status"),
+    ] {
+        let problem = change(wrong).await.problem(422, "validation-failed");
+        let error = &problem["errors"][0];
+        assert_eq!((&error["code"], &error["pointer"]), (&json!(code), &json!(at)));
+    }
+    assert_eq!(ask(server.get(&path)).await.json()["tags"], json!(["b", "main"]));
+    let nobody = "/v1/jobs/00000000-0000-7000-8000-000000000000";
+    let request = server.request(Method::PATCH, nobody).json(&json!({"tags": {"add": ["x"]}}));
+    ask(request).await.problem(404, "no-such-job");
 }
 
 #[tokio::test]

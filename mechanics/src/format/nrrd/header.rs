@@ -10,6 +10,9 @@ use crate::format::cursor::Cursor;
 use crate::format::error::{FormatError, Place};
 use crate::format::limits::ReadLimits;
 use crate::format::scalar::{ByteOrder, Scalar};
+use crate::format::voxels::{Rescale, Storage};
+
+use super::segments::Segments;
 use crate::image::{ImageError, Placement};
 use crate::mesh::{Frame, Vector};
 
@@ -78,6 +81,8 @@ pub(super) struct Header {
     pub size: [usize; 3],
     pub placement: Placement,
     pub frame: Option<Frame>,
+    /// What the segments of a label map are called.
+    pub label_names: BTreeMap<u16, String>,
 }
 
 /// What a field says, and on which line.
@@ -88,6 +93,7 @@ struct Field {
 
 struct Fields {
     known: BTreeMap<&'static str, Field>,
+    segments: Segments,
     /// The line that ends the header.
     end: u64,
 }
@@ -95,7 +101,7 @@ struct Fields {
 impl Header {
     /// Reads up to the empty line; the cursor then stands at the first byte of the values.
     pub fn read(cursor: &mut Cursor<'_>, limits: &ReadLimits) -> Result<Header, FormatError> {
-        let fields = Fields::read(cursor)?;
+        let fields = Fields::read(cursor, limits)?;
         for name in ["data file", "datafile"] {
             if let Some(field) = fields.known.get(name) {
                 let detail = "the voxels are in another file, which is never opened: \
@@ -120,7 +126,14 @@ impl Header {
             size,
             placement: fields.placement(mirrored)?,
             frame,
+            label_names: fields.segments.names(),
         })
+    }
+
+    /// How its numbers are stored.
+    pub fn storage(&self) -> Storage {
+        let count = self.size.iter().map(|&size| size as u64).product();
+        Storage { scalar: self.scalar, order: self.order, rescale: Rescale::NONE, count }
     }
 }
 
@@ -135,8 +148,9 @@ fn bad_line(line: u64, detail: impl Into<String>) -> FormatError {
 }
 
 impl Fields {
-    fn read(cursor: &mut Cursor<'_>) -> Result<Fields, FormatError> {
+    fn read(cursor: &mut Cursor<'_>, limits: &ReadLimits) -> Result<Fields, FormatError> {
         let mut known: BTreeMap<&'static str, Field> = BTreeMap::new();
+        let mut segments = Segments::default();
         let mut line = 1;
         cursor.line();
         loop {
@@ -145,7 +159,7 @@ impl Fields {
                 return Err(bad_line(line, "the file ends inside the header"));
             };
             if bytes.is_empty() {
-                return Ok(Fields { known, end: line });
+                return Ok(Fields { known, segments, end: line });
             }
             if bytes.starts_with(b"#") {
                 continue;
@@ -154,6 +168,7 @@ impl Fields {
                 return Err(bad_line(line, "neither a field, a key with its value, nor a comment"));
             };
             if bytes[colon + 1..].starts_with(b"=") {
+                segments.take(&bytes[..colon], &bytes[colon + 2..], limits);
                 continue;
             }
             let name = bytes[..colon].trim_ascii().to_ascii_lowercase();

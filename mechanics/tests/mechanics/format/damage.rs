@@ -12,6 +12,7 @@ fn limits() -> ReadLimits {
         cells: 1000,
         voxels: 1000,
         decoded_floor_bytes: 1 << 16,
+        image_floor_bytes: 1 << 16,
         ..ReadLimits::default()
     }
 }

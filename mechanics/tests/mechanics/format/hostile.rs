@@ -302,15 +302,11 @@ fn names_that_are_too_long_or_stand_twice_are_refused() {
 
 #[test]
 fn files_of_other_kinds_are_told_apart_by_their_content() {
-    let mut dicom = vec![0; 128];
-    dicom.extend(b"DICM\x02\x00");
-    let others: [(&[u8], &str); 11] = [
+    let others: [(&[u8], &str); 9] = [
         (b"\x89PNG\r\n\x1a\n\0\0", "PNG"),
         (b"%PDF-1.7\n", "PDF"),
-        (&dicom, "DICOM"),
         (b"<!DOCTYPE html><html></html>", "HTML"),
         (b"<html><body>", "HTML"),
-        (b"PK\x03\x04abc", "zip"),
         (b"\x1f\x8b\x08\0", "gzip"),
         (b"glTF\x02\0\0\0", "glTF"),
         (b"<VTKFile type=\"ImageData\">", "XML"),

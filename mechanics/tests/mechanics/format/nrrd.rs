@@ -247,16 +247,27 @@ fn voxels_that_are_missing_or_too_many_are_counted() {
 
 #[test]
 fn a_bomb_is_refused_by_what_it_promises() {
-    // 128 MiB of zeros in 130 kB: more than ten times the file and more than the floor.
-    let header = NRRD.replace("raw", "gzip").replace("3 2 4", "512 512 256");
+    // 256 MiB of zeros are promised in 130 kB: more than ten times the file and more than the floor.
+    let header = NRRD.replace("raw", "gzip").replace("3 2 4", "512 512 512");
     let bomb = file(&header, &gzip(&vec![0; 1 << 27]));
     assert_eq!(
         error_of(&bomb),
-        "the arrays decode to 134217728 bytes, and 16777216 bytes is the limit"
+        "the arrays decode to 268435456 bytes, and 134217728 bytes is the limit"
     );
     // A small promise is kept to, whatever follows.
     let lie = file(&NRRD.replace("raw", "gzip"), &gzip(&vec![0; 1 << 24]));
     assert!(error_of(&lie).ends_with("48 bytes declared, more are there"));
+}
+
+#[test]
+fn the_segments_of_a_label_map_keep_their_names() {
+    let lines = "Segment0_ID:=a\nSegment0_LabelValue:=3\nSegment0_Name:=Mandible\n\
+                 Segment12_Name:=Skull\nSegment12_LabelValue:=7\nSegment2_Name:=no label\nkinds";
+    let image = image(read_default(&changed("kinds", lines)));
+    let named = |image: &ImageVolume| format!("{:?}", image.label_names());
+    assert_eq!(named(&image), r#"{3: "Mandible", 7: "Skull"}"#);
+    let Mesh::Image(again) = read_default(&nrrd::write(&image, Frame::Lps)).mesh else { panic!() };
+    assert_eq!(again, image);
 }
 
 #[test]

@@ -1,7 +1,8 @@
 //! The report on an uploaded mesh.
 
-use mechanics::mesh::check::{MeshReport, units_suspect};
-use mechanics::mesh::{CellShape, TriangleSurface, Vector};
+use mechanics::mesh::check::{MeshReport, several_components, units_suspect};
+use mechanics::mesh::connectivity::Faces;
+use mechanics::mesh::{CellShape, TriangleSurface, Vector, sample};
 
 use crate::samples::{closed_surface, mixed_mesh};
 
@@ -74,4 +75,23 @@ fn a_face_in_metres_is_suspected_and_the_factor_named() {
     let micrometres = units_suspect(250_000.0).unwrap();
     assert!(micrometres.numbers.contains(&("suggested_factor", 0.001)));
     assert_eq!(units_suspect(1e9).unwrap().numbers.len(), 1);
+}
+
+#[test]
+fn parts_that_share_no_node_are_told_and_those_that_touch_in_one_are_not() {
+    let told = |shared: usize| {
+        let mut mesh = sample::block(Vector::new(1.0, 1.0, 1.0), [2, 2, 2], CellShape::Tet4);
+        let first: Vec<u32> = mesh.cells.nodes(0).to_vec();
+        let mut cell = first[..shared].to_vec();
+        while cell.len() < 4 {
+            mesh.nodes.push(Vector::new(3.0, cell.len() as f64, (cell.len() * cell.len()) as f64));
+            cell.push(mesh.nodes.len() as u32 - 1);
+        }
+        mesh.cells.push(CellShape::Tet4, &cell);
+        several_components(&mesh, &Faces::new(&mesh))
+    };
+    let warning = told(0).unwrap();
+    assert_eq!(warning.code, "several-components");
+    assert_eq!(warning.numbers, [("count", 1.0), ("cells", 1.0)]);
+    assert_eq!((told(1), told(2)), (None, None));
 }

@@ -5,7 +5,9 @@ use std::collections::BTreeMap;
 use mechanics::material::LinearElastic;
 use mechanics::mesh::sample::{ThickSphere, block, thick_sphere_octant};
 use mechanics::mesh::{CellShape, Vector};
-use mechanics::prediction::{ElementChoice, Load, Plan, Prescribed, RegionNames, Settings};
+use mechanics::prediction::{
+    ElementChoice, Load, Plan, Prescribed, RegionNames, Settings, Sliding, SlidingNormal,
+};
 
 use crate::scenes::{SHAPES, case_of, exact, hold, material, set, solve};
 
@@ -133,4 +135,32 @@ fn a_bar_under_its_own_weight_shortens_by_half_of_what_its_weight_on_top_would_d
     let top = case.volume.node_set("z_max").unwrap()[0];
     let expected = -density * 9.81e-3 * 30.0 * 30.0 / (2.0 * 15.0);
     assert!((prediction.displacement[top as usize].z - expected).abs() < 1e-12);
+}
+
+#[test]
+fn each_condition_tells_the_force_that_it_exerts_on_a_block_that_is_pulled() {
+    // Stretched by 5 % along x between walls across y, free across z: plane stress without lateral strain.
+    let mesh = block(Vector::new(40.0, 20.0, 10.0), [4, 2, 2], CellShape::Hex8);
+    let mut case = case_of(mesh, material(15.0, 0.3));
+    let wall =
+        |name: &str| Sliding { nodes: set(name), normal: SlidingNormal::Surface, segment: None };
+    case.sliding = ["x_min", "y_min", "y_max", "z_min"].map(wall).into();
+    let pulled =
+        |by: f64| Prescribed::Uniform { nodes: set("x_max"), displacement: [Some(by), None, None] };
+    let plan = Plan { prescribed: vec![pulled(2.0)], ..Plan::default() };
+    let found = solve(&case, &plan, &exact()).condition_reactions;
+    // E / (1 - nu^2) 0.05 on 200 mm2, and nu times that stress on 400 mm2.
+    let along = 15.0 / (1.0 - 0.09) * 0.05 * 200.0;
+    let across = 0.3 * 15.0 / (1.0 - 0.09) * 0.05 * 400.0;
+    for (pointer, force) in [
+        ("/case/sliding/0", Vector::new(-along, 0.0, 0.0)),
+        ("/case/sliding/1", Vector::new(0.0, -across, 0.0)),
+        ("/case/sliding/2", Vector::new(0.0, across, 0.0)),
+        ("/case/sliding/3", Vector::zeros()),
+        ("/plan/prescribed/0", Vector::new(along, 0.0, 0.0)),
+    ] {
+        let of = found.iter().find(|of| of.pointer == pointer).unwrap();
+        assert!((of.force - force).norm() < 1e-8 * along, "{pointer}: {} {force}", of.force);
+    }
+    assert_eq!(found.iter().map(|of| of.nodes).collect::<Vec<_>>(), [9, 15, 15, 15, 9]);
 }

@@ -232,7 +232,7 @@ fn a_fibred_cell_without_a_direction_is_named() {
     };
     let (code, pointer, detail) = course(Some(FibreDirection::Array("corse".to_owned())));
     assert_eq!((code, pointer.as_str()), ("unknown-array", "/case/materials/muscle/fibre/array"));
-    assert!(detail.contains("it has: course"), "{detail}");
+    assert!(detail.contains("it has course"), "{detail}");
     let (code, pointer, _) = course(Some(FibreDirection::Uniform(Vector::zeros())));
     assert_eq!(
         (code, pointer.as_str()),

@@ -254,6 +254,11 @@ fn teeth_that_move_along_their_flat_wall_pull_at_nothing() {
     let [teeth, jaw] = ["sliding", "jaw"].map(|name| prediction.reactions[name]);
     assert!(plain.max > 1.0 && jaw.x > 10.0, "{} {jaw}", plain.max);
     assert!(teeth.x.abs() < 1e-10 * jaw.x && teeth.y.abs() < 1e-10 * jaw.x, "{teeth}");
+    // The wall by itself, with the bone that carries it.
+    let found = prediction.condition_reactions.iter();
+    let wall = found.into_iter().find(|of| of.pointer == "/case/sliding/0").unwrap();
+    assert_eq!(wall.segment.as_deref(), Some("jaw"));
+    assert!((wall.force - teeth).norm() < 1e-9 * jaw.norm(), "{wall:?} {teeth}");
 }
 
 fn some_movement() -> RigidMovement {

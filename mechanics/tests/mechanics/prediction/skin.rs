@@ -63,6 +63,8 @@ fn lips(gap: f64) -> Case {
         .into(),
         segments: vec![CaseSegment { name: "jaw".to_owned(), nodes: set("z_min") }],
         fixed: vec![set("upper z_max")],
+        // Each lip goes along with what holds it.
+        allow_unfixed: true,
         ..case_of(mesh, material(15.0, 0.3))
     }
 }

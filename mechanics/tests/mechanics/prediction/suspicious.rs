@@ -6,7 +6,7 @@ use mechanics::model::fem::mass_tensor::{Iterations, MassTensorSettings};
 use mechanics::model::spline::VolumeSpline;
 use mechanics::plan::RigidMovement;
 use mechanics::prediction::{
-    Case, CaseSegment, Load, Method, Plan, Scene, Settings, SkinMembrane, predict,
+    Case, CaseSegment, Load, Method, Plan, RegionNames, Scene, Settings, SkinMembrane, predict,
 };
 use mechanics::progress::Unobserved;
 use mechanics::solver::stationary::{Iteration, Stationary};
@@ -142,4 +142,28 @@ fn a_movement_whose_squares_vanish_is_answered_like_any_other() {
             assert!((u - v * 1e170).norm() < 1e-6, "{:?}: {u} {v}", settings.method);
         }
     }
+}
+
+#[test]
+fn a_tissue_in_pascal_beside_others_in_kilopascal_is_told_with_both() {
+    let mut case = layer();
+    let mut mesh = (*case.volume).clone();
+    let cells = mesh.cells.len() as i64;
+    mesh.cell_labels.insert("layer".to_owned(), (0..cells).map(|cell| cell % 2).collect());
+    case.volume = mesh.into();
+    let names = [(0, "fat".to_owned()), (1, "skin".to_owned())].into();
+    case.regions = Some(RegionNames { array: "layer".to_owned(), names });
+    let told = |fat: f64, skin: f64| {
+        let mut case = case.clone();
+        case.materials = [("fat", fat), ("skin", skin)]
+            .map(|(name, modulus)| (name.to_owned(), material(modulus, 0.45)))
+            .into();
+        warnings(&case, &Plan::default(), &Settings::default(), "moduli-far-apart")
+    };
+    let warning = told(3.0, 30000.0).remove(0);
+    assert!(warning.detail.contains("\"skin\" is 30000 kPa"), "{}", warning.detail);
+    assert!(warning.detail.contains("\"fat\" 3 kPa"), "{}", warning.detail);
+    assert_eq!(warning.numbers[1..], [("stiffest_kpa", 30000.0), ("softest_kpa", 3.0)]);
+    assert!((warning.numbers[0].1 - 1e4).abs() < 1e-9, "{warning:?}");
+    assert_eq!(told(3.0, 2990.0), []);
 }

@@ -1,0 +1,152 @@
+//! Anatomical model: from a CT and the cuts of an operation to a mesh of the soft tissue with its node sets.
+//!
+//! [`part_bone`] parts bone into segments ([`osteotomy`](crate::osteotomy)); [`build`] does the rest: the tissue between skin and bone
+//! is meshed ([`meshing`](crate::meshing)), and each of its nodes gets a class by the bone that it lies on. The mesh that
+//! comes out has the node sets that a case names: one for each segment, `fixed`, `skin`, and parts of the skin.
+
+mod face;
+mod size;
+
+use std::collections::BTreeMap;
+
+use rayon::prelude::*;
+
+use crate::domain::{Boundary, ImageDomain, ImageDomainError, ImageOptions};
+use crate::image::ImageVolume;
+use crate::mesh::{Frame, TriangleSurface, Vector, VolumeMesh, Warning};
+use crate::meshing::{MeshingError, MeshingReport, MeshingSettings, TissueMesh, mesh};
+use crate::osteotomy::bone_image::BoneImage;
+use crate::osteotomy::classes::{BoneContact, ClassRules, NodeClasses, TissueBoundary, classify};
+use crate::osteotomy::contact::Contact;
+use crate::osteotomy::label_surface::label_surface;
+use crate::osteotomy::labelling::{Labelled, label};
+use crate::osteotomy::{LabelError, Osteotomy, Owner};
+use crate::progress::Progress;
+
+/// Bone this far behind a node, in lengths of a voxel's diagonal, is the bone that the node lies on.
+const BEHIND: f64 = 1.5;
+
+/// How a scan becomes a mesh. Lengths in mm.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct AnatomyRules {
+    pub image: ImageOptions,
+    pub osteotomy: Osteotomy,
+    /// The sizes of cells are those of the settings, refined around segments that move.
+    pub meshing: MeshingSettings,
+    /// Nodes on bone this near to others that move otherwise are free.
+    pub band_mm: f64,
+    /// Whether tissue is fixed where the scan ends.
+    pub scan_ends_fixed: bool,
+    /// Says how the head stands; without it no landmarks are looked for.
+    pub frame: Frame,
+}
+
+/// Soft tissue that is ready to be a case.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Anatomy {
+    /// With node sets: a name for each segment, `fixed`, `skin`, and `skin_NAME` for parts of the skin.
+    pub volume: VolumeMesh,
+    pub meshing: MeshingReport,
+    pub bone: Labelled,
+    pub classes: NodeClasses,
+    /// A closed surface for each segment, in their order.
+    pub bones: Vec<TriangleSurface>,
+    /// Landmarks of the skin on its mid-plane, in mm.
+    pub landmarks: BTreeMap<String, Vector>,
+    /// The names of the node sets that are parts of the skin.
+    pub skin_regions: Vec<String>,
+    pub warnings: Vec<Warning>,
+}
+
+/// Why a scan gives no mesh.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum AnatomyError {
+    #[error(transparent)]
+    Image(#[from] ImageDomainError),
+    #[error(transparent)]
+    Bone(#[from] LabelError),
+    #[error(transparent)]
+    Meshing(#[from] MeshingError),
+}
+
+/// Parts the bone of a scan into its segments.
+pub fn part_bone(scan: &ImageVolume, rules: &AnatomyRules) -> Result<Labelled, AnatomyError> {
+    Ok(label(&bone_of(scan, rules), &rules.osteotomy)?)
+}
+
+fn bone_of<'a>(scan: &'a ImageVolume, rules: &AnatomyRules) -> BoneImage<'a> {
+    BoneImage { image: scan, threshold: rules.image.bone_threshold }
+}
+
+/// Builds the model of a scan whose bone is parted. The same scan and rules give the same bits on any number of threads.
+pub fn build(
+    scan: &ImageVolume,
+    bone: Labelled,
+    rules: &AnatomyRules,
+    progress: &dyn Progress,
+) -> Result<Anatomy, AnatomyError> {
+    let domain = ImageDomain::new(scan, &rules.image)?;
+    let image = bone_of(scan, rules);
+    let mut settings = rules.meshing.clone();
+    settings.size.regions.extend(size::around_segments(&bone, settings.size.finest));
+    let tissue = mesh(&domain, &settings, progress)?;
+    let classes = classes(&tissue, &bone, rules);
+    let mut warnings = classes.warnings.clone();
+    warnings.extend(touching(&bone));
+    let skin = tissue.nodes_on(Boundary::Skin);
+    let face = face::face(&tissue.volume, &skin, rules.frame);
+    warnings.extend(face.warning);
+    let surface = |segment| label_surface(&image, &rules.osteotomy, &bone.labels, segment);
+    let bones = (0..bone.segments.len()).into_par_iter().map(surface).collect();
+    let TissueMesh { mut volume, report, .. } = tissue;
+    let names: Vec<String> = bone.segments.iter().map(|segment| segment.name.clone()).collect();
+    volume.node_sets = classes.node_sets(&names);
+    volume.node_sets.insert("skin".to_owned(), skin);
+    let skin_regions = face.regions.keys().cloned().collect();
+    let sets = face.regions.into_iter().map(|(name, nodes)| (format!("skin_{name}"), nodes));
+    volume.node_sets.extend(sets);
+    let landmarks = face.landmarks;
+    Ok(Anatomy { volume, meshing: report, bone, classes, bones, landmarks, skin_regions, warnings })
+}
+
+/// Segments that touch other bone where nothing is cut, as teeth that meet do.
+fn touching(bone: &Labelled) -> Vec<Warning> {
+    let name = |owner: Owner| match owner {
+        Owner::Segment(segment) => format!("segment `{}`", bone.segments[segment].name),
+        Owner::Rest | Owner::Sawn | Owner::Loose => "bone that stays".to_owned(),
+    };
+    let contacts = bone.contacts.iter().filter(|contact| contact.cut.is_none());
+    let warning = |contact: &Contact| {
+        let [one, other] = contact.between.map(name);
+        let [x, y, z] = contact.centre.into();
+        let detail = format!(
+            "{one} and {other} touch without a cut on {:.0} mm² around ({x:.0}, {y:.0}, {z:.0}) mm, and are parted where \
+             the bone is faintest",
+            contact.area_mm2
+        );
+        Warning::new("bones-touch", detail).with("area_mm2", contact.area_mm2)
+    };
+    contacts.map(warning).collect()
+}
+
+fn classes(tissue: &TissueMesh, bone: &Labelled, rules: &AnatomyRules) -> NodeClasses {
+    // Where boundaries meet, bone holds.
+    let order = [Boundary::Bone, Boundary::Cut, Boundary::Skin, Boundary::Airway];
+    let first = |set: &crate::meshing::BoundarySet| {
+        order.into_iter().find(|&boundary| set.contains(boundary))
+    };
+    let marks: Vec<Option<Boundary>> = tissue.boundaries.iter().map(first).collect();
+    let reach = BEHIND * bone.labels.placement().steps.iter().sum::<Vector>().norm();
+    let contact = BoneContact {
+        behind: &|place, normal| bone.labels.nearest(place, normal, reach),
+        slides: &|_| false,
+    };
+    let class_rules = ClassRules {
+        // Any two segments may be moved differently by some plan.
+        movements: (1..=bone.segments.len() as u32).collect(),
+        band_mm: rules.band_mm,
+        scan_ends_fixed: rules.scan_ends_fixed,
+        fixed_above: None,
+    };
+    classify(TissueBoundary { mesh: &tissue.volume, marks: &marks }, &contact, &class_rules)
+}

@@ -1,0 +1,355 @@
+//! Soft tissue of a CT: where a cubic B-spline of its Hounsfield units lies between air and bone.
+//!
+//! f = min((I_s - skin) / s, (bone - I_b) / s, distance to the border of the image and to the limits). I_s and I_b are one
+//! smoothed image but where that would mislead: pieces apart from the head are emptied in I_s, cavities of bone and the
+//! lining of airways beside bone are filled in I_b (see `compartments`), so that no sheet of partial volume is left there.
+//! Values are mirrored about the threshold, so that the boundary of what stays does not move.
+
+use super::compartments::{Compartment, Division, compartments};
+use super::limit::{Limit, LimitError, Limits};
+use super::nearest_boundary::{Reach, Slope, Slopes, nearest};
+use super::thickness::{Level, Surroundings, surroundings};
+use super::{Boundary, Coverage, Crossing, Domain, root};
+use crate::image::reduction::reduced;
+use crate::image::smoothing::gaussian;
+use crate::image::{CubicSpline, ImageError, ImageVolume, SplineRanges, SplineValue, Voxels};
+use crate::mesh::Vector;
+use nalgebra::Matrix3;
+
+/// What is tissue in an image. Lengths in mm, values in those of the image.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ImageOptions {
+    /// Below this value there is air.
+    pub skin_threshold: f64,
+    /// From this value on there is bone.
+    pub bone_threshold: f64,
+    /// Standard deviation of the Gaussian that smooths the image; 0 for none.
+    pub smoothing: f64,
+    /// Openings of the skin narrower than this lead into an airway.
+    pub airway_opening: f64,
+    /// Passages through bone narrower than this lead into a cavity, which counts as bone.
+    pub bone_gap: f64,
+    /// Where the body is cut off besides the border of the image.
+    pub limits: Vec<Limit>,
+}
+
+impl Default for ImageOptions {
+    /// For Hounsfield units.
+    fn default() -> Self {
+        ImageOptions {
+            skin_threshold: -300.0,
+            bone_threshold: 250.0,
+            smoothing: 0.8,
+            airway_opening: 10.0,
+            bone_gap: 5.0,
+            limits: Vec::new(),
+        }
+    }
+}
+
+/// Why an image has no tissue that could be meshed.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ImageDomainError {
+    #[error(
+        "the threshold of skin, {skin}, must be less than that of bone, {bone}, and both finite"
+    )]
+    Thresholds { skin: f64, bone: f64 },
+    #[error("{name} is {value} mm; {least} to 100 mm are possible")]
+    Length { name: &'static str, value: f64, least: f64 },
+    #[error("no voxel lies between {skin} and {bone}: the image has values from {low} to {high}")]
+    NoTissue { skin: f64, bone: f64, low: f64, high: f64 },
+    #[error("all {voxels} voxels of soft tissue are enclosed by bone or air")]
+    Enclosed { voxels: usize },
+    #[error(transparent)]
+    Image(#[from] ImageError),
+    #[error(transparent)]
+    Limit(#[from] LimitError),
+}
+
+/// A CT as a body to mesh.
+#[derive(Clone, Debug)]
+pub struct ImageDomain {
+    spline: CubicSpline<2>,
+    ranges: SplineRanges<2>,
+    origin: Vector,
+    to_index: Matrix3<f64>,
+    skin: f64,
+    bone: f64,
+    /// Values for each mm, so that members are of a size.
+    scale: f64,
+    limits: Limits,
+    thickness: Vec<f32>,
+    airway: Vec<bool>,
+    bounds: (Vector, Vector),
+    /// The longest step to a neighbouring voxel, in mm.
+    step: f64,
+}
+
+/// The parts of f, of which the least is f.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Member {
+    Skin,
+    Bone,
+    Cut,
+}
+
+const MEMBERS: [Member; 3] = [Member::Skin, Member::Bone, Member::Cut];
+
+/// What coefficients must be beyond a threshold by to be surely beyond it, of the scale: rounding of sums is far less.
+const SURELY: f64 = 1e-5;
+/// More voxels are taken together: a head is 16 million of 1 mm³, and a boundary lies within a fraction of a voxel.
+const MOST_VOXELS: usize = 1 << 24;
+/// Largest value of f, so that it is finite for points infinitely far.
+const LARGEST: f64 = 1e12;
+
+impl ImageDomain {
+    pub fn new(image: &ImageVolume, options: &ImageOptions) -> Result<Self, ImageDomainError> {
+        check(options)?;
+        let image = &reduced(image, MOST_VOXELS)?;
+        let (size, spacing) = (image.size(), image.spacing());
+        let (skin, bone) = (options.skin_threshold, options.bone_threshold);
+        let mut values = values(image);
+        gaussian(&mut values, size, spacing.map(|spacing| options.smoothing / spacing));
+        let division = Division {
+            size,
+            spacing,
+            skin,
+            bone,
+            airway_opening: options.airway_opening,
+            bone_gap: options.bone_gap,
+        };
+        let all = compartments(&values, &division);
+        let tissue = tissue_box(&all, size).ok_or_else(|| nothing(image, &values, options))?;
+        let scale = bone - skin;
+        let [skin_values, bone_values] = channels(values, &all, options);
+        let skin_level = Level { values: &skin_values, level: skin };
+        let bone_level = Level { values: &bone_values, level: bone };
+        let Surroundings { thickness, airway } =
+            surroundings(&all, &division, skin_level, bone_level);
+        let spline = CubicSpline::new(size, [skin_values, bone_values]);
+        let mut limits = Limits::new(&options.limits)?;
+        let to_index = *image.to_index();
+        border_planes(image, &mut limits);
+        Ok(ImageDomain {
+            ranges: SplineRanges::new(&spline),
+            spline,
+            origin: image.placement().origin,
+            to_index,
+            skin,
+            bone,
+            scale,
+            limits,
+            thickness,
+            airway,
+            bounds: world_box(image, tissue),
+            step: spacing.iter().copied().fold(0.0, f64::max),
+        })
+    }
+
+    /// In voxels.
+    fn place(&self, point: &Vector) -> [f64; 3] {
+        (self.to_index * (point - self.origin)).into()
+    }
+
+    fn members(&self, point: &Vector) -> [f64; 3] {
+        let [skin, bone] = self.spline.at(self.place(point));
+        let cut = self.limits.value(point);
+        [(skin - self.skin) / self.scale, (self.bone - bone) / self.scale, cut]
+    }
+
+    fn slopes(&self, point: &Vector) -> [Slope; 3] {
+        let [skin, bone] = self.spline.with_gradient(self.place(point));
+        let cut = self.limits.with_gradient(point);
+        let slope = |spline: SplineValue, sign: f64, threshold: f64| Slope {
+            value: sign * (spline.value - threshold) / self.scale,
+            gradient: self.to_index.tr_mul(&Vector::from(spline.gradient)) * (sign / self.scale),
+        };
+        let cut = Slope { value: cut.value, gradient: cut.gradient };
+        [slope(skin, 1.0, self.skin), slope(bone, -1.0, self.bone), cut]
+    }
+
+    fn boundary_at(&self, point: &Vector) -> Boundary {
+        let members = self.members(point);
+        let least = MEMBERS.into_iter().zip(members).reduce(|a, b| if b.1 < a.1 { b } else { a });
+        match least.map_or(Member::Skin, |(member, _)| member) {
+            Member::Bone => Boundary::Bone,
+            Member::Cut => Boundary::Cut,
+            Member::Skin if self.airway[self.nearest_voxel(point)] => Boundary::Airway,
+            Member::Skin => Boundary::Skin,
+        }
+    }
+
+    fn nearest_voxel(&self, point: &Vector) -> usize {
+        let place = self.place(point);
+        let [x, y, z] = self.index(place.map(|index| index + 0.5));
+        let [nx, ny, _] = self.spline.size();
+        (z * ny + y) * nx + x
+    }
+
+    /// Whole numbers of voxels, within the image.
+    fn index(&self, place: [f64; 3]) -> [usize; 3] {
+        let size = self.spline.size();
+        std::array::from_fn(|axis| (place[axis].max(0.0) as usize).min(size[axis] - 1))
+    }
+}
+
+impl Domain for ImageDomain {
+    fn bounds(&self) -> (Vector, Vector) {
+        self.bounds
+    }
+
+    fn coverage(&self, centre: &Vector, radius: f64) -> Coverage {
+        let cut = self.limits.value(centre);
+        if cut <= -radius {
+            return Coverage::Outside;
+        }
+        let place = self.place(centre);
+        let half: [f64; 3] = std::array::from_fn(|axis| self.to_index.row(axis).norm() * radius);
+        let corner = |sign: f64| std::array::from_fn(|axis| place[axis] + sign * half[axis]);
+        let range = self.ranges.over(corner(-1.0), corner(1.0));
+        let [low, high] = [range.low, range.high].map(|values| values.map(f64::from));
+        let slack = SURELY * self.scale;
+        if high[0] < self.skin - slack || low[1] > self.bone + slack {
+            Coverage::Outside
+        } else if low[0] > self.skin + slack && high[1] < self.bone - slack && cut > radius {
+            Coverage::Inside
+        } else {
+            Coverage::Mixed
+        }
+    }
+
+    fn value(&self, point: &Vector) -> f64 {
+        let [skin, bone, cut] = self.members(point);
+        skin.min(bone).min(cut).clamp(-LARGEST, LARGEST)
+    }
+
+    fn crossing(&self, inside: &Vector, outside: &Vector) -> Crossing {
+        let point = root::between(inside, outside, |point| self.value(point));
+        Crossing { point, boundary: self.boundary_at(&point) }
+    }
+
+    fn projection(&self, point: &Vector, boundary: Boundary) -> Vector {
+        let wanted = match boundary {
+            Boundary::Skin | Boundary::Airway => 0,
+            Boundary::Bone => 1,
+            Boundary::Cut => 2,
+        };
+        let reach = Reach { step: self.step, far: 3.0 * self.step };
+        let found = nearest(point, reach, |point| {
+            let slopes = self.slopes(point);
+            let [a, b] = [slopes[(wanted + 1) % 3], slopes[(wanted + 2) % 3]];
+            Slopes { wanted: slopes[wanted], bound: if a.value < b.value { a } else { b } }
+        });
+        found.unwrap_or(*point)
+    }
+
+    fn thickness(&self, point: &Vector) -> f64 {
+        let place = self.place(point);
+        let size = self.spline.size();
+        let base = self.index(place);
+        let mut sum = 0.0;
+        for corner in 0..8 {
+            let mut weight = 1.0;
+            let index: [usize; 3] = std::array::from_fn(|axis| {
+                let part = (place[axis] - base[axis] as f64).clamp(0.0, 1.0);
+                let is_far = corner >> axis & 1 == 1;
+                weight *= if is_far { part } else { 1.0 - part };
+                (base[axis] + usize::from(is_far)).min(size[axis] - 1)
+            });
+            let thickness = self.thickness[(index[2] * size[1] + index[1]) * size[0] + index[0]];
+            sum += if weight > 0.0 { weight * f64::from(thickness) } else { 0.0 };
+        }
+        sum
+    }
+}
+
+fn check(options: &ImageOptions) -> Result<(), ImageDomainError> {
+    let (skin, bone) = (options.skin_threshold, options.bone_threshold);
+    if !(skin.is_finite() && bone.is_finite() && skin < bone) {
+        return Err(ImageDomainError::Thresholds { skin, bone });
+    }
+    for (name, value) in [
+        ("smoothing", options.smoothing),
+        ("airway_opening", options.airway_opening),
+        ("bone_gap", options.bone_gap),
+    ] {
+        if !(0.0..=100.0).contains(&value) {
+            return Err(ImageDomainError::Length { name, value, least: 0.0 });
+        }
+    }
+    Ok(())
+}
+
+fn values(image: &ImageVolume) -> Vec<f32> {
+    match image.voxels() {
+        Voxels::I16(values) => values.iter().map(|&value| f32::from(value)).collect(),
+        Voxels::F32(values) => values.clone(),
+    }
+}
+
+fn nothing(image: &ImageVolume, values: &[f32], options: &ImageOptions) -> ImageDomainError {
+    let (skin, bone) = (options.skin_threshold, options.bone_threshold);
+    let between = |value: &&f32| (skin..bone).contains(&f64::from(**value));
+    match values.iter().filter(between).count() {
+        0 => {
+            let (low, high) = image.range();
+            ImageDomainError::NoTissue { skin, bone, low, high }
+        }
+        voxels => ImageDomainError::Enclosed { voxels },
+    }
+}
+
+/// The values for skin and those for bone.
+fn channels(values: Vec<f32>, all: &[Compartment], options: &ImageOptions) -> [Vec<f32>; 2] {
+    let (skin, bone) = (options.skin_threshold as f32, options.bone_threshold as f32);
+    let scale = bone - skin;
+    let emptied = |value: f32| (2.0 * skin - value).clamp(skin - scale, skin - 0.3 * scale);
+    let filled = |value: f32| (2.0 * bone - value).clamp(bone + 0.3 * scale, bone + scale);
+    let each = values.iter().zip(all);
+    let for_bone = each.map(|(&value, compartment)| match compartment {
+        Compartment::Cavity | Compartment::Lining => value.max(filled(value)),
+        _ => value,
+    });
+    let for_bone = for_bone.collect();
+    let mut for_skin = values;
+    for (value, compartment) in for_skin.iter_mut().zip(all) {
+        if *compartment == Compartment::OuterAir && *value >= skin {
+            *value = emptied(*value);
+        }
+    }
+    [for_skin, for_bone]
+}
+
+/// The first and the last voxel along each axis that tissue may reach into.
+fn tissue_box(all: &[Compartment], size: [usize; 3]) -> Option<[[usize; 3]; 2]> {
+    let tissue = (0..all.len()).filter(|&voxel| all[voxel] == Compartment::Tissue);
+    let places = tissue.map(|voxel| super::flood::place(voxel, size));
+    let boxed = places.map(|place| [place, place]).reduce(|[low, high], [a, b]| {
+        let axis = |axis: usize| (low[axis].min(a[axis]), high[axis].max(b[axis]));
+        [[axis(0).0, axis(1).0, axis(2).0], [axis(0).1, axis(1).1, axis(2).1]]
+    })?;
+    let [low, high] = boxed;
+    let last = |axis: usize| (high[axis] + 2).min(size[axis] - 1);
+    Some([low.map(|index| index.saturating_sub(2)), [last(0), last(1), last(2)]])
+}
+
+fn world_box(image: &ImageVolume, [first, last]: [[usize; 3]; 2]) -> (Vector, Vector) {
+    let corner = |number: usize| {
+        let index = std::array::from_fn(|axis| match number >> axis & 1 {
+            0 => first[axis],
+            _ => last[axis],
+        });
+        image.centre(index)
+    };
+    (1..8).map(corner).fold((corner(0), corner(0)), |(low, high), x| (low.inf(&x), high.sup(&x)))
+}
+
+/// The faces of the box through the outermost voxel centres.
+fn border_planes(image: &ImageVolume, limits: &mut Limits) {
+    let last = image.size().map(|size| size - 1);
+    for axis in 0..3 {
+        let normal: Vector = image.to_index().row(axis).transpose().normalize();
+        limits.push_plane(image.centre([0; 3]), normal);
+        limits.push_plane(image.centre(last), -normal);
+    }
+}

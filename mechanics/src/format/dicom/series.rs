@@ -1,0 +1,158 @@
+//! The files of a series as one image: which slices belong together, and whether they fit.
+
+use std::collections::BTreeMap;
+
+use super::slice::{Part, Plane, Slice};
+use super::stack::{Layer, Stack};
+use super::{FORMAT, bad};
+use crate::format::error::FormatError;
+use crate::format::limits::ReadLimits;
+use crate::format::voxels::{Rescale, VoxelBuilder};
+use crate::format::{Mesh, MeshFormat, ReadMesh};
+use crate::image::{ImageVolume, Placement, Voxels};
+use crate::mesh::{Frame, IgnoredArrays, Warning};
+
+/// A series of no more slices beside the one that is meant is taken for a scout view.
+const SCOUT: usize = 3;
+/// Directions of slices of one stack differ by no more.
+const TURNED: f64 = 1e-3;
+/// Spacings of pixels of slices of one stack differ by no more, as a part of them.
+const UNEVEN: f64 = 1e-3;
+
+/// Slices in the order of the archive, and what was said about those that are left out.
+struct Sorted {
+    slices: Vec<Slice>,
+    warnings: Vec<Warning>,
+}
+
+/// One image of all slices of a series.
+pub(in crate::format) fn assemble(
+    parts: Vec<Part>,
+    limits: &ReadLimits,
+) -> Result<ReadMesh, FormatError> {
+    let Sorted { slices, mut warnings } = sort_out(parts)?;
+    let plane = check_alike(&slices)?;
+    let [columns, rows] = plane.size;
+    limits.check_voxels((columns * rows) as u64 * slices.len() as u64)?;
+    if !slices[0].modality.is_empty() && slices[0].modality != "CT" {
+        let detail = "the modality of the series is not CT: its values may be no Hounsfield units";
+        warnings.push(Warning::new("no-hounsfield", detail));
+    }
+    let stack = Stack::of(&slices, &plane)?;
+    let [right, down] = [0, 1].map(|axis| plane.directions[axis] * plane.spacing[axis]);
+    let placement = Placement { origin: stack.origin, steps: [right, down, stack.step] };
+    let size = [columns, rows, stack.layers.len()];
+    warnings.extend(stack.warnings);
+    let voxels = voxels(&slices, &stack.layers)?;
+    let image =
+        ImageVolume::new(size, placement, voxels).map_err(|error| bad(0, error.to_string()))?;
+    Ok(ReadMesh {
+        format: MeshFormat::Dicom,
+        mesh: Mesh::Image(image),
+        frame: Some(Frame::Lps),
+        ignored: IgnoredArrays::default(),
+        warnings,
+    })
+}
+
+/// The slices of the one series that is meant.
+fn sort_out(parts: Vec<Part>) -> Result<Sorted, FormatError> {
+    let files = parts.len();
+    let mut left_out = 0;
+    let mut by_series: BTreeMap<String, Vec<Slice>> = BTreeMap::new();
+    for part in parts {
+        match part {
+            Part::Slice(slice) => by_series.entry(slice.series.clone()).or_default().push(*slice),
+            Part::Localiser | Part::NoImage => left_out += 1,
+        }
+    }
+    // Identifiers of series are not told: they lead to the patient.
+    let mut series: Vec<Vec<Slice>> = by_series.into_values().collect();
+    series.sort_by_key(|slices| std::cmp::Reverse(slices.len()));
+    let mut series = series.into_iter();
+    let nothing = || bad(0, format!("none of {files} {FORMAT} files is a slice of an image"));
+    let slices = series.next().ok_or_else(nothing)?;
+    let others: Vec<usize> = series.map(|slices| slices.len()).collect();
+    if others.iter().any(|&others| others > SCOUT || others >= slices.len()) {
+        let counts: Vec<String> = others.iter().take(10).map(usize::to_string).collect();
+        let detail = format!(
+            "{} series in one upload, of {} and {} slices: send one of them",
+            others.len() + 1,
+            slices.len(),
+            counts.join(", ")
+        );
+        return Err(bad(0, detail));
+    }
+    left_out += others.iter().sum::<usize>();
+    let detail =
+        format!("{left_out} {FORMAT} files are scout views or no slices, and are left out");
+    let warning = || Warning::new("files-passed-over", detail).with("files", left_out as f64);
+    Ok(Sorted { slices, warnings: (left_out > 0).then(warning).into_iter().collect() })
+}
+
+/// The plane of all slices, which differ in their place only.
+fn check_alike(slices: &[Slice]) -> Result<Plane, FormatError> {
+    let first = slices[0].plane;
+    for slice in slices {
+        let Plane { directions, spacing, size } = slice.plane;
+        if size != first.size {
+            let detail = format!(
+                "slices of {} x {} and of {} x {} pixels are no one image",
+                first.size[0], first.size[1], size[0], size[1]
+            );
+            return Err(bad(0, detail));
+        }
+        let uneven = (0..2).find(|&axis| {
+            (spacing[axis] - first.spacing[axis]).abs() > UNEVEN * first.spacing[axis]
+        });
+        if let Some(axis) = uneven {
+            let (one, other) = (first.spacing[axis], spacing[axis]);
+            return Err(bad(
+                0,
+                format!("the pixels of one slice are {one} mm apart, of another {other} mm"),
+            ));
+        }
+        if (0..2).any(|axis| (directions[axis] - first.directions[axis]).norm() > TURNED) {
+            return Err(bad(0, "the slices are not parallel: Image Orientation (Patient) differs"));
+        }
+    }
+    Ok(first)
+}
+
+fn voxels(slices: &[Slice], layers: &[Layer]) -> Result<Voxels, FormatError> {
+    let of_one = slices[0].voxels.len();
+    let mut builder = VoxelBuilder::integers(of_one * layers.len())?;
+    for layer in layers {
+        match *layer {
+            Layer::Slice(slice) => push(&mut builder, &slices[slice].voxels)?,
+            Layer::Between(below, above) => {
+                push(&mut builder, &mean(&slices[below].voxels, &slices[above].voxels))?;
+            }
+        }
+    }
+    Ok(builder.finish())
+}
+
+fn push(builder: &mut VoxelBuilder, voxels: &Voxels) -> Result<(), FormatError> {
+    match voxels {
+        Voxels::I16(values) => {
+            values.iter().try_for_each(|&v| builder.push_integer(i64::from(v), Rescale::NONE))
+        }
+        Voxels::F32(values) => values.iter().try_for_each(|&v| builder.push_single(v)),
+    }
+}
+
+/// The slice between two others; of integers, rounded to one.
+fn mean(below: &Voxels, above: &Voxels) -> Voxels {
+    let value = |voxels: &Voxels, at: usize| match voxels {
+        Voxels::I16(values) => f32::from(values[at]),
+        Voxels::F32(values) => values[at],
+    };
+    let means = (0..below.len()).map(|at| 0.5 * (value(below, at) + value(above, at)));
+    match (below, above) {
+        (Voxels::I16(_), Voxels::I16(_)) => {
+            Voxels::I16(means.map(|mean| mean.round() as i16).collect())
+        }
+        (Voxels::F32(_), _) | (_, Voxels::F32(_)) => Voxels::F32(means.collect()),
+    }
+}

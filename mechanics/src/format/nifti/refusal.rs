@@ -1,0 +1,9 @@
+//! What is wrong with a NIfTI file, with its byte.
+
+use crate::format::error::{FormatError, Place};
+
+pub(super) const FORMAT: &str = "NIfTI";
+
+pub(super) fn bad(at: u64, detail: impl Into<String>) -> FormatError {
+    FormatError::Parse { format: FORMAT, place: Place::Offset(at), detail: detail.into() }
+}

@@ -1,0 +1,31 @@
+//! Whether the values are Hounsfield units.
+
+use crate::image::thresholds::Thresholds;
+use crate::image::volume::ImageVolume;
+use crate::mesh::Warning;
+
+pub(super) const CODE: &str = "no-hounsfield";
+
+/// What scanners write before slope and intercept are applied.
+const STORED: f64 = 4095.0;
+/// Where the mode of air of a calibrated scanner lies.
+const AIR: std::ops::RangeInclusive<f64> = -1050.0..=-900.0;
+
+pub(super) fn findings(image: &ImageVolume, thresholds: Option<&Thresholds>) -> Vec<Warning> {
+    let (low, high) = image.range();
+    let says =
+        |detail: String| vec![Warning::new(CODE, detail).with("lowest", low).with("highest", high)];
+    match thresholds {
+        _ if low >= 0.0 && high <= STORED => says(format!(
+            "values reach from {low} to {high}: the intercept of the scanner, mostly -1024, was not applied"
+        )),
+        None => says(format!(
+            "values from {low} to {high} show no air at -1000 or no soft tissue at 40: this is no CT in Hounsfield units"
+        )),
+        Some(thresholds) if !AIR.contains(&thresholds.air_mode) => says(format!(
+            "air lies at {} HU instead of -1000: the scanner is not calibrated or slope and intercept are wrong",
+            thresholds.air_mode
+        )),
+        Some(_) => Vec::new(),
+    }
+}

@@ -1,0 +1,151 @@
+//! The profile of a face on its mid-plane, and the landmarks at which it turns.
+//!
+//! From below, the profile comes forward to the pogonion, back to the sublabiale, forward to the lips, back to the
+//! subnasale and forward to the pronasale. Turns by less than 1.5 mm do not count. Closed lips may turn once between
+//! themselves, at the stomion.
+
+use super::mid_plane::MidPlane;
+use crate::mesh::{TriangleSurface, Vector};
+
+/// Heights of a profile are so far apart, in mm.
+const STEP: f64 = 1.0;
+/// A profile that turns back by less has not turned, in mm.
+const LEAST_TURN: f64 = 1.5;
+/// The tip of a nose is no higher above its base, in mm.
+const HIGHEST_TIP: f64 = 30.0;
+
+/// Why a skin has no landmarks.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ProfileError {
+    #[error("the mid-plane does not meet the skin")]
+    Empty,
+    #[error(
+        "the profile comes forward {forward} times from the chin to its foremost point and goes back {back} times \
+         between; a face comes forward 3 or 4 times"
+    )]
+    NoFace { forward: usize, back: usize },
+    #[error(
+        "the foremost point lies {above_mm:.0} mm above the base of the nose, 30 at most are a nose: is the face covered?"
+    )]
+    NoNose { above_mm: f64 },
+}
+
+/// How far in front the skin is at heights of its mid-plane, from below.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Profile {
+    points: Vec<ProfilePoint>,
+}
+
+/// A point of a profile; lengths in mm.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ProfilePoint {
+    pub height: f64,
+    pub advance: f64,
+}
+
+/// Landmarks of the skin on the mid-plane.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ProfileLandmarks {
+    pub pogonion: ProfilePoint,
+    /// The fold between chin and lower lip.
+    pub sublabiale: ProfilePoint,
+    pub subnasale: ProfilePoint,
+    pub pronasale: ProfilePoint,
+}
+
+impl Profile {
+    pub fn of(skin: &TriangleSurface, plane: &MidPlane) -> Profile {
+        let mut foremost: Vec<ProfilePoint> = Vec::new();
+        let segments: Vec<[ProfilePoint; 2]> = (0..skin.triangles.len())
+            .filter_map(|triangle| crossing(&skin.corners(triangle), plane))
+            .collect();
+        let low = segments.iter().flatten().map(|point| point.height).fold(f64::INFINITY, f64::min);
+        let high =
+            segments.iter().flatten().map(|point| point.height).fold(f64::NEG_INFINITY, f64::max);
+        let count = if low <= high { ((high - low) / STEP) as usize + 1 } else { 0 };
+        let height = |number: usize| low + number as f64 * STEP;
+        foremost.extend(
+            (0..count)
+                .map(|number| ProfilePoint { height: height(number), advance: f64::NEG_INFINITY }),
+        );
+        for [lower, upper] in segments {
+            let first = ((lower.height - low) / STEP).ceil() as usize;
+            for number in (first..count).take_while(|&number| height(number) <= upper.height) {
+                let share =
+                    (height(number) - lower.height) / (upper.height - lower.height).max(1e-12);
+                let advance = lower.advance + (upper.advance - lower.advance) * share;
+                foremost[number].advance = foremost[number].advance.max(advance);
+            }
+        }
+        foremost.retain(|point| point.advance.is_finite());
+        Profile { points: foremost }
+    }
+
+    pub fn points(&self) -> &[ProfilePoint] {
+        &self.points
+    }
+
+    /// The landmarks, from the turns of the profile below its foremost point.
+    pub fn landmarks(&self) -> Result<ProfileLandmarks, ProfileError> {
+        let foremost = self
+            .points
+            .iter()
+            .enumerate()
+            .max_by(|a, b| a.1.advance.total_cmp(&b.1.advance))
+            .ok_or(ProfileError::Empty)?;
+        let turns = turns(&self.points[..=foremost.0]);
+        match turns[..] {
+            [pogonion, sublabiale, _, subnasale, pronasale]
+            | [pogonion, sublabiale, _, _, _, subnasale, pronasale] => {
+                let above_mm = pronasale.height - subnasale.height;
+                if above_mm > HIGHEST_TIP {
+                    return Err(ProfileError::NoNose { above_mm });
+                }
+                Ok(ProfileLandmarks { pogonion, sublabiale, subnasale, pronasale })
+            }
+            _ => {
+                let (forward, back) = (turns.len().div_ceil(2), turns.len() / 2);
+                Err(ProfileError::NoFace { forward, back })
+            }
+        }
+    }
+}
+
+/// Where a triangle crosses the mid-plane, the lower end first.
+fn crossing(corners: &[Vector; 3], plane: &MidPlane) -> Option<[ProfilePoint; 2]> {
+    let places = corners.map(|corner| plane.coordinates(&corner));
+    let mut ends = Vec::with_capacity(2);
+    for (one, other) in [(0, 1), (1, 2), (2, 0)] {
+        let [a, b] = [places[one], places[other]];
+        if (a[0] > 0.0) != (b[0] > 0.0) {
+            let share = a[0] / (a[0] - b[0]);
+            let between = |axis: usize| a[axis] + (b[axis] - a[axis]) * share;
+            ends.push(ProfilePoint { height: between(1), advance: between(2) });
+        }
+    }
+    match ends[..] {
+        [a, b] if a.height <= b.height => Some([a, b]),
+        [a, b] => Some([b, a]),
+        _ => None,
+    }
+}
+
+/// Foremost and hindmost points by turns, from the first foremost one to the last.
+fn turns(points: &[ProfilePoint]) -> Vec<ProfilePoint> {
+    let mut turns = Vec::new();
+    let Some(&first) = points.first() else { return turns };
+    let (mut best, mut seeks_front) = (first, true);
+    for &point in points {
+        let sign = if seeks_front { 1.0 } else { -1.0 };
+        if sign * (point.advance - best.advance) >= 0.0 {
+            best = point;
+        } else if sign * (best.advance - point.advance) >= LEAST_TURN {
+            turns.push(best);
+            (best, seeks_front) = (point, !seeks_front);
+        }
+    }
+    if seeks_front {
+        turns.push(best);
+    }
+    turns
+}

@@ -1,0 +1,41 @@
+//! Reasons why there is no mesh.
+
+use crate::mesh::Vector;
+
+/// Why a body was not meshed. Lengths in mm.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum MeshingError {
+    #[error("the setting `{setting}` is {value}, but must be {wanted}")]
+    Setting { setting: &'static str, value: f64, wanted: &'static str },
+    #[error(
+        "the box that is to hold the tissue reaches from {} to {}, which is no box",
+        place(low),
+        place(high)
+    )]
+    Bounds { low: Vector, high: Vector },
+    #[error(
+        "no tissue was found between {} and {} with cells of {size} mm",
+        place(low),
+        place(high)
+    )]
+    Empty { low: Vector, high: Vector, size: f64 },
+    #[error(
+        "about {estimated} tetrahedra or more would be needed, and at most {allowed} are allowed; \
+         the finest cells are {finest} mm"
+    )]
+    TooMany { estimated: u64, allowed: u64, finest: f64 },
+    #[error(
+        "the lattice would have {cells} cells of {finest} mm along an axis, and at most {allowed} can be numbered"
+    )]
+    TooFine { cells: f64, allowed: u32, finest: f64 },
+    #[error("the body has no finite {what} at {}", place(at))]
+    NotFinite { what: &'static str, at: Vector },
+    #[error("the mesh would be wrong: {count} {what}, the first at {}", place(at))]
+    Broken { what: &'static str, count: usize, at: Vector },
+    #[error("cancelled")]
+    Cancelled,
+}
+
+fn place(at: &Vector) -> String {
+    format!("({:.2}, {:.2}, {:.2})", at.x, at.y, at.z)
+}

@@ -1,0 +1,192 @@
+//! The cells about one node, and where the node makes the worst of them better.
+
+use super::boundary_set::BoundarySet;
+use super::draft::Draft;
+use super::shape::worst_sine;
+use crate::domain::Domain;
+use crate::mesh::Vector;
+
+/// Parts of a step that are tried.
+const STEPS: [f64; 3] = [1.0, 0.4, 0.16];
+/// Cells whose sine is at most this above the worst have a part in the direction of ascent.
+const SPREAD: f64 = 0.1;
+/// A better place must be better by this.
+const GAIN: f64 = 1e-4;
+/// Rounds of projection onto all boundaries at a crease.
+const CREASE_ROUNDS: usize = 6;
+/// How far a node of a crease may be from a boundary, in parts of its longest edge.
+const MEETS: f64 = 0.01;
+
+/// How far the copies of a node go into their stars, in parts of the way to the middle.
+const INWARDS: [f64; 4] = [0.1, 0.03, 0.01, 1e-3];
+/// What their worst cells keep of their sine.
+const HARDLY: f64 = 0.9;
+
+/// A cell of the star: its corners, and which of them is the node.
+#[derive(Clone, Copy)]
+struct StarCell {
+    corners: [Vector; 4],
+    own: usize,
+}
+
+/// Where a node goes, and the boundaries on which it lies there.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Move {
+    pub place: Vector,
+    pub boundaries: BoundarySet,
+}
+
+/// The best place so far, and the smallest sine there.
+struct Best {
+    worst: f64,
+    place: Option<Vector>,
+}
+
+/// A node with its cells.
+pub(super) struct Star<'a> {
+    cells: Vec<StarCell>,
+    domain: &'a dyn Domain,
+    boundaries: BoundarySet,
+    here: Vector,
+    /// The longest edge at the node.
+    reach: f64,
+    /// The smallest sine of the cells.
+    worst: f64,
+}
+
+impl<'a> Star<'a> {
+    pub fn new(draft: &Draft, node: u32, tetrahedra: &[u32], domain: &'a dyn Domain) -> Self {
+        let here = draft.nodes[node as usize];
+        let cells = tetrahedra.iter().map(|&tet| {
+            let nodes = &draft.tetrahedra[tet as usize];
+            let own = nodes.iter().position(|&other| other == node).unwrap_or_default();
+            StarCell { corners: draft.corners(nodes), own }
+        });
+        let cells: Vec<StarCell> = cells.collect();
+        let edges = cells.iter().flat_map(|cell| cell.corners.map(|at| (at - here).norm()));
+        let reach = edges.fold(0.0, f64::max);
+        let boundaries = draft.boundaries[node as usize];
+        let mut star = Star { cells, domain, boundaries, here, reach, worst: 0.0 };
+        star.worst = star.worst_at(&here, f64::NEG_INFINITY);
+        star
+    }
+
+    /// A place for the node where the worst cell is better, if one is found.
+    pub fn better(&self) -> Option<Move> {
+        let mut best = Best { worst: self.worst + GAIN, place: None };
+        for step in [self.to_middle(), self.ascent()] {
+            for part in STEPS {
+                self.attempt(step * part, &mut best);
+                if best.place.is_some() {
+                    break;
+                }
+            }
+        }
+        best.place.map(|place| self.move_to(place))
+    }
+
+    fn move_to(&self, place: Vector) -> Move {
+        Move { place, boundaries: self.boundaries }
+    }
+
+    /// The node on its boundaries, if it may lie there with cells that are good enough or no worse.
+    pub fn on_boundary(&self, fair: f64) -> Option<Move> {
+        let place = self.projected(&self.here, self.boundaries)?;
+        let worst = self.worst_at(&place, 0.0);
+        let goes = place != self.here && worst > 0.0 && worst >= self.worst.min(fair);
+        goes.then(|| self.move_to(place))
+    }
+
+    /// The node on its boundaries and on another one, where they meet, if that is within `limit` times the longest edge and
+    /// cells stay better than `fair`.
+    pub fn on_crease(&self, other: BoundarySet, limit: f64, fair: f64) -> Option<Move> {
+        let there = self.projected(&self.here, other)?;
+        let boundaries = self.boundaries.and(other);
+        let place = self.projected(&self.here, boundaries)?;
+        let off = boundaries.iter().map(|on| (self.domain.projection(&place, on) - place).norm());
+        let near = (place - self.here).norm() < limit * self.reach;
+        let meets = there != self.here && off.fold(0.0, f64::max) < MEETS * self.reach;
+        (near && meets && self.worst_at(&place, fair) >= fair).then_some(Move { place, boundaries })
+    }
+
+    /// A place a little way into the star, where the worst cell is hardly worse.
+    pub fn inwards(&self) -> Option<Move> {
+        let way = self.to_middle();
+        let places = INWARDS.map(|part| self.here + way * part);
+        let good = |place: &Vector| self.worst_at(place, 0.0) > HARDLY * self.worst.min(0.5);
+        let place = places.into_iter().find(good).filter(|place| *place != self.here);
+        place.map(|place| self.move_to(place))
+    }
+
+    fn attempt(&self, step: Vector, best: &mut Best) {
+        let mut place = self.here + step;
+        if !self.boundaries.is_empty() {
+            if self.worst_at(&place, best.worst) <= best.worst {
+                return;
+            }
+            let Some(projected) = self.projected(&place, self.boundaries) else { return };
+            place = projected;
+        }
+        let worst = self.worst_at(&place, best.worst);
+        if worst > best.worst {
+            *best = Best { worst, place: Some(place) };
+        }
+    }
+
+    /// The nearest place on some boundaries, if it is near and finite.
+    fn projected(&self, place: &Vector, boundaries: BoundarySet) -> Option<Vector> {
+        let mut at = *place;
+        let several = boundaries.iter().count() > 1;
+        for _ in 0..if several { CREASE_ROUNDS } else { 1 } {
+            at = boundaries.iter().fold(at, |at, on| self.domain.projection(&at, on));
+        }
+        ((at - place).norm() < 0.5 * self.reach).then_some(at)
+    }
+
+    /// The smallest sine with the node at a place, or less than `enough` if it is not above that.
+    fn worst_at(&self, place: &Vector, enough: f64) -> f64 {
+        let mut worst = f64::INFINITY;
+        for cell in &self.cells {
+            worst = worst.min(cell.sine_at(place));
+            if worst < enough {
+                break;
+            }
+        }
+        worst
+    }
+
+    /// To the mean of the other corners.
+    fn to_middle(&self) -> Vector {
+        let sum = self.cells.iter().map(|cell| cell.corners.iter().sum::<Vector>() - self.here);
+        sum.sum::<Vector>() / (3.0 * self.cells.len() as f64) - self.here
+    }
+
+    /// Up the gradients of the worst cells, so far that the worst would reach 30 degrees if its sine were linear.
+    fn ascent(&self) -> Vector {
+        let sines = self.cells.iter().map(|cell| (cell, cell.sine_at(&self.here)));
+        let near = sines.filter(|(_, sine)| *sine < self.worst + SPREAD);
+        let step = 1e-4 * self.reach;
+        let gradient: Vector = near
+            .map(|(cell, sine)| {
+                let weight = 1.0 - (sine - self.worst) / SPREAD;
+                let slopes = [Vector::x(), Vector::y(), Vector::z()]
+                    .map(|axis| (cell.sine_at(&(self.here + axis * step)) - sine) / step);
+                Vector::from(slopes) * (weight * weight)
+            })
+            .sum();
+        let slope = gradient.norm();
+        if slope == 0.0 || !slope.is_finite() {
+            return Vector::zeros();
+        }
+        let length = ((0.5 - self.worst).max(0.1) / slope).min(0.3 * self.reach);
+        gradient * (length / slope)
+    }
+}
+
+impl StarCell {
+    fn sine_at(&self, place: &Vector) -> f64 {
+        let mut corners = self.corners;
+        corners[self.own] = *place;
+        worst_sine(&corners)
+    }
+}

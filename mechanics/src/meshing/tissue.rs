@@ -1,0 +1,153 @@
+//! Meshing of a body: the path from the sign of its function to tetrahedra.
+
+use super::boundary_set::BoundarySet;
+use super::check::check;
+use super::climb::Climb;
+use super::cuts::Cuts;
+use super::draft::Draft;
+use super::error::MeshingError;
+use super::gaps::{self, Thin};
+use super::grid::Grid;
+use super::lattice::Lattice;
+use super::octree::Leaves;
+use super::pinches::Pinched;
+use super::refine::Refinement;
+use super::report::{Angles, MeshingReport};
+use super::settings::MeshingSettings;
+use super::size::SizeField;
+use super::warp::Warp;
+use super::watch::Watch;
+use super::{creases, edge_copies, pieces, pinches, stencils, target};
+use crate::domain::{Boundary, Domain};
+use crate::mesh::{CellShape, VolumeMesh};
+use crate::progress::{Phase, Progress};
+
+/// Stages that progress tells of.
+const STAGES: usize = 8;
+
+/// Soft tissue as it comes out of a mesher.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TissueMesh {
+    /// Tetrahedra of positive volume; no sets and no labels.
+    pub volume: VolumeMesh,
+    /// For each node the boundaries of the body that it lies on.
+    pub boundaries: Vec<BoundarySet>,
+    pub report: MeshingReport,
+}
+
+impl TissueMesh {
+    /// The nodes on a boundary, ascending.
+    pub fn nodes_on(&self, boundary: Boundary) -> Vec<u32> {
+        let on = self.boundaries.iter().enumerate().filter(|(_, set)| set.contains(boundary));
+        on.map(|(node, _)| node as u32).collect()
+    }
+}
+
+/// What the stages count before cells are made better.
+#[derive(Default)]
+struct Counts {
+    leaves: usize,
+    snapped: usize,
+    undone: usize,
+    pinched: Pinched,
+    thin: Thin,
+}
+
+/// Meshes a body. The same body and settings give the same mesh, bit by bit, on any number of threads.
+pub fn mesh(
+    domain: &dyn Domain,
+    settings: &MeshingSettings,
+    progress: &dyn Progress,
+) -> Result<TissueMesh, MeshingError> {
+    progress.phase(Phase::Mesh);
+    settings.check()?;
+    let mut watch = Watch::new(progress, STAGES);
+    watch.stage()?;
+    let (low, high) = domain.bounds();
+    let size = target::size_field(domain, settings, &watch)?.bounded((high - low).max());
+    let (mut draft, counts) = stuff(domain, settings, &size, &mut watch)?;
+    watch.stage()?;
+    let edges_cut = edge_copies::part(&mut draft);
+    let dropped = if settings.keep_pieces { Vec::new() } else { pieces::drop_small(&mut draft) };
+    watch.stage()?;
+    let raw_angles = Angles::of(&draft);
+    let mut climb = Climb::new(&mut draft, domain);
+    let creased = creases::sharpen(&mut climb, &watch)?;
+    climb.climb(settings.sweeps, &watch)?;
+    climb.settle(&watch)?;
+    if settings.part_copies {
+        climb.part_copies();
+    }
+    watch.stage()?;
+    let faces = check(&draft, !settings.keep_pieces)?;
+    let report = MeshingReport {
+        nodes: draft.nodes.len(),
+        tetrahedra: draft.tetrahedra.len(),
+        boundary_triangles: faces.len(),
+        volume: draft.tetrahedra.iter().map(|tet| draft.volume(tet)).sum(),
+        raw_angles,
+        angles: Angles::of(&draft),
+        finest: size.finest,
+        leaves: counts.leaves,
+        snapped: counts.snapped,
+        undone: counts.undone,
+        copies: counts.pinched.copies,
+        stepped_back: counts.pinched.stepped_back,
+        edges_cut,
+        creased,
+        dropped,
+        gaps_closed: counts.thin.gaps,
+        sheets_lost: counts.thin.sheets,
+    };
+    watch.end();
+    Ok(finished(draft, report))
+}
+
+/// Fills the body with the cells of a warped lattice.
+fn stuff(
+    domain: &dyn Domain,
+    settings: &MeshingSettings,
+    size: &SizeField,
+    watch: &mut Watch,
+) -> Result<(Draft, Counts), MeshingError> {
+    let (low, high) = domain.bounds();
+    let grid = Grid::new(&low, &high, size)?;
+    let refinement = Refinement { domain, size, most: settings.most_tetrahedra };
+    let leaves: Leaves = refinement.leaves(grid, watch)?;
+    watch.stage()?;
+    let lattice = Lattice::new(&leaves, domain, watch)?;
+    if lattice.tetrahedra.is_empty() {
+        return Err(MeshingError::Empty { low, high, size: size.finest });
+    }
+    let thin = if settings.find_gaps {
+        gaps::find(&lattice, &leaves, domain, watch)?
+    } else {
+        Thin::default()
+    };
+    watch.stage()?;
+    let cuts = Cuts::new(&lattice, domain, watch)?;
+    watch.stage()?;
+    let mut warp = Warp::new(&lattice, cuts, domain);
+    let (fans, pinched) = pinches::part(&mut warp);
+    watch.stage()?;
+    let draft = stencils::fill(&warp, &fans, watch)?;
+    let counts = Counts {
+        leaves: leaves.list.len(),
+        snapped: warp.snapped,
+        undone: warp.undone,
+        pinched,
+        thin,
+    };
+    if draft.tetrahedra.is_empty() {
+        return Err(MeshingError::Empty { low, high, size: size.finest });
+    }
+    Ok((draft, counts))
+}
+
+fn finished(draft: Draft, report: MeshingReport) -> TissueMesh {
+    let mut volume = VolumeMesh { nodes: draft.nodes, ..VolumeMesh::default() };
+    for tet in &draft.tetrahedra {
+        volume.cells.push(CellShape::Tet4, tet);
+    }
+    TissueMesh { volume, boundaries: draft.boundaries, report }
+}

@@ -1,0 +1,127 @@
+//! Labels of voxels: whose bone each is.
+
+use nalgebra::Matrix3;
+
+use crate::image::Placement;
+use crate::mesh::Vector;
+
+const NO_BONE: u8 = 0;
+const REST: u8 = 1;
+const SAWN: u8 = 2;
+const LOOSE: u8 = 3;
+const FIRST_SEGMENT: u8 = 4;
+
+/// Whose a piece of bone is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Owner {
+    /// Of no segment: the skull and whatever else does not move.
+    Rest,
+    /// Sawdust.
+    Sawn,
+    /// Of no segment and of nothing that could hold tissue: the hyoid, tubes, splinters.
+    Loose,
+    /// Of a segment, by its number.
+    Segment(usize),
+}
+
+/// For each voxel of an image whether it is bone, and whose; the first axis fastest.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BoneLabels {
+    size: [usize; 3],
+    placement: Placement,
+    to_index: Matrix3<f64>,
+    labels: Vec<u8>,
+}
+
+/// The bone that lies nearest to a place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NearestBone {
+    pub owner: Owner,
+    /// From the place to the centre of the voxel, in mm.
+    pub distance: f64,
+}
+
+impl BoneLabels {
+    /// All bone is of no segment yet. The placement is one that an image has.
+    pub(super) fn new(
+        size: [usize; 3],
+        placement: Placement,
+        is_bone: impl Fn(usize) -> bool,
+    ) -> BoneLabels {
+        let steps = Matrix3::from_columns(&placement.steps);
+        let to_index = steps.try_inverse().expect("the directions of an image span space");
+        let count = size.iter().product();
+        let labels = (0..count).map(|voxel| if is_bone(voxel) { REST } else { NO_BONE }).collect();
+        BoneLabels { size, placement, to_index, labels }
+    }
+
+    pub fn size(&self) -> [usize; 3] {
+        self.size
+    }
+
+    pub fn placement(&self) -> &Placement {
+        &self.placement
+    }
+
+    /// 0 no bone, 1 bone of no segment, 2 sawdust, 3 loose bone, 4 and on the segments.
+    pub fn bytes(&self) -> &[u8] {
+        &self.labels
+    }
+
+    /// Whose the bone of a voxel is; `None` where there is none.
+    pub fn owner(&self, voxel: usize) -> Option<Owner> {
+        match self.labels[voxel] {
+            NO_BONE => None,
+            REST => Some(Owner::Rest),
+            SAWN => Some(Owner::Sawn),
+            LOOSE => Some(Owner::Loose),
+            segment => Some(Owner::Segment(usize::from(segment - FIRST_SEGMENT))),
+        }
+    }
+
+    pub(super) fn set(&mut self, voxel: usize, owner: Owner) {
+        self.labels[voxel] = match owner {
+            Owner::Rest => REST,
+            Owner::Sawn => SAWN,
+            Owner::Loose => LOOSE,
+            Owner::Segment(segment) => FIRST_SEGMENT + segment as u8,
+        };
+    }
+
+    /// The bone whose voxel is nearest to `place`, of those with their centre at most `reach` mm away from it and not
+    /// behind it, seen along `ahead`. Of voxels as near as each other the first.
+    pub fn nearest(&self, place: &Vector, ahead: &Vector, reach: f64) -> Option<NearestBone> {
+        let middle = self.to_index * (place - self.placement.origin);
+        let half = [0, 1, 2].map(|axis| reach * self.to_index.row(axis).norm());
+        let range = |axis: usize| {
+            let lowest = (middle[axis] - half[axis]).ceil().max(0.0) as usize;
+            let highest = (middle[axis] + half[axis]).floor().min((self.size[axis] - 1) as f64);
+            lowest..(highest + 1.0).max(0.0) as usize
+        };
+        let mut best: Option<NearestBone> = None;
+        for (k, j, i) in
+            range(2).flat_map(|k| range(1).flat_map(move |j| range(0).map(move |i| (k, j, i))))
+        {
+            let voxel = i + self.size[0] * (j + self.size[1] * k);
+            let Some(owner) = self.owner(voxel) else { continue };
+            let way = self.centre([i, j, k]) - place;
+            let distance = way.norm();
+            let nearer = best.is_none_or(|best| distance < best.distance);
+            if distance <= reach && way.dot(ahead) >= 0.0 && nearer {
+                best = Some(NearestBone { owner, distance });
+            }
+        }
+        best
+    }
+
+    /// The centre of a voxel by its number, in mm.
+    pub fn centre_of(&self, voxel: usize) -> Vector {
+        let [nx, ny, _] = self.size;
+        self.centre([voxel % nx, voxel / nx % ny, voxel / (nx * ny)])
+    }
+
+    fn centre(&self, index: [usize; 3]) -> Vector {
+        let steps = self.placement.steps.iter().zip(index);
+        steps.fold(self.placement.origin, |sum, (step, count)| sum + step * count as f64)
+    }
+}

@@ -1,0 +1,283 @@
+//! Cuts of a saw: oriented planes through bone, with an extent and a width where they are given.
+
+use crate::mesh::Vector;
+
+/// Beyond this, in mm, no head reaches.
+const FARTHEST: f64 = 1e9;
+/// An extent, in mm², that is not a line.
+const SMALLEST_AREA: f64 = 1e-6;
+
+/// Why figures are no cut.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum CutError {
+    #[error("a point of the cut is farther than 1e9 mm away or no number")]
+    Point,
+    #[error("the normal is shorter than 1e-9, longer than 1e9 or no number")]
+    Normal,
+    #[error("the saw is {kerf} mm wide; 0 to 10 mm are possible")]
+    Kerf { kerf: f64 },
+    #[error("a disc of radius {radius} mm cuts nothing")]
+    Radius { radius: f64 },
+    #[error("a polygon of {corners} corners that spans {area} mm² on the plane cuts nothing")]
+    Polygon { corners: usize, area: f64 },
+}
+
+/// An oriented plane: what its normal points at is above it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Plane {
+    point: Vector,
+    normal: Vector,
+    axes: [Vector; 2],
+}
+
+impl Plane {
+    /// The plane through `point`, in mm, across a normal of any length.
+    pub fn new(point: Vector, normal: Vector) -> Result<Plane, CutError> {
+        if !point.iter().all(|x| x.abs() <= FARTHEST) {
+            return Err(CutError::Point);
+        }
+        let length = normal.norm();
+        if !(1e-9..=1e9).contains(&length) {
+            return Err(CutError::Normal);
+        }
+        let normal = normal / length;
+        Ok(Plane { point, normal, axes: axes(&normal) })
+    }
+
+    pub fn point(&self) -> Vector {
+        self.point
+    }
+
+    /// Of length 1, from below to above.
+    pub fn normal(&self) -> Vector {
+        self.normal
+    }
+
+    /// How far a point is above the plane, in mm; negative below.
+    pub fn height(&self, point: &Vector) -> f64 {
+        (point - self.point).dot(&self.normal)
+    }
+
+    /// The same plane moved along its normal, by mm.
+    pub fn raised(&self, by: f64) -> Plane {
+        Plane { point: self.point + self.normal * by, ..*self }
+    }
+
+    /// Two directions of length 1 in the plane, which are a right-handed frame with the normal.
+    pub fn axes(&self) -> [Vector; 2] {
+        self.axes
+    }
+}
+
+fn axes(normal: &Vector) -> [Vector; 2] {
+    let u = normal.cross(&Vector::ith(normal.iamin(), 1.0)).normalize();
+    [u, normal.cross(&u)]
+}
+
+/// The part of a plane that the saw reaches.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Extent {
+    /// Around the point of the plane; the radius in mm.
+    Disc { radius: f64 },
+    /// Corners in their order; what lies off the plane counts where its perpendicular meets it.
+    Polygon { corners: Vec<Vector> },
+}
+
+/// One of the two sides of a plane.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    Below,
+    Above,
+}
+
+/// A plane that is sawn, all of it or as far as its extent.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Cut {
+    pub name: String,
+    plane: Plane,
+    reach: Reach,
+    kerf: f64,
+}
+
+/// An extent in the axes of its plane.
+#[derive(Clone, Debug, PartialEq)]
+enum Reach {
+    Everywhere,
+    Disc { radius: f64 },
+    Polygon(Vec<[f64; 2]>),
+}
+
+impl Cut {
+    /// All of a plane, by a saw without width.
+    pub fn unbounded(name: &str, plane: Plane) -> Cut {
+        Cut { name: name.to_owned(), plane, reach: Reach::Everywhere, kerf: 0.0 }
+    }
+
+    /// As much of a plane as is given, by a saw of that width in mm.
+    pub fn new(
+        name: &str,
+        plane: Plane,
+        extent: Option<Extent>,
+        kerf: f64,
+    ) -> Result<Cut, CutError> {
+        if !(0.0..=10.0).contains(&kerf) {
+            return Err(CutError::Kerf { kerf });
+        }
+        let reach = match extent {
+            None => Reach::Everywhere,
+            Some(extent) => extent.on(&plane)?,
+        };
+        Ok(Cut { name: name.to_owned(), plane, reach, kerf })
+    }
+
+    pub fn plane(&self) -> &Plane {
+        &self.plane
+    }
+
+    pub fn is_bounded(&self) -> bool {
+        self.reach != Reach::Everywhere
+    }
+
+    /// The width of the saw in mm.
+    pub fn kerf(&self) -> f64 {
+        self.kerf
+    }
+
+    /// Whether the perpendicular of a point meets the plane within the extent.
+    pub fn reaches(&self, point: &Vector) -> bool {
+        match &self.reach {
+            Reach::Everywhere => true,
+            Reach::Disc { radius } => {
+                let [u, v] = flat(&self.plane, point);
+                u * u + v * v <= radius * radius
+            }
+            Reach::Polygon(corners) => holds(corners, &flat(&self.plane, point)),
+        }
+    }
+
+    /// Whether a point is turned to sawdust: nearer to the plane than half the width of the saw, within its extent.
+    pub fn saws(&self, point: &Vector) -> bool {
+        self.kerf > 0.0 && self.plane.height(point).abs() <= self.kerf / 2.0 && self.reaches(point)
+    }
+
+    /// Whether the saw parts two points: the straight way between them meets the plane within the extent.
+    pub fn parts(&self, one: &Vector, other: &Vector) -> bool {
+        let [below, above] = [one, other].map(|point| self.plane.height(point));
+        if (below > 0.0) == (above > 0.0) {
+            return false;
+        }
+        self.reaches(&(one + (other - one) * (below / (below - above))))
+    }
+
+    /// Whether a point is on that side, beyond the width of the saw.
+    pub fn leaves(&self, point: &Vector, side: Side) -> bool {
+        let height = self.plane.height(point);
+        match side {
+            Side::Below => height <= -self.kerf / 2.0,
+            Side::Above => height > self.kerf / 2.0,
+        }
+    }
+}
+
+impl Extent {
+    fn on(self, plane: &Plane) -> Result<Reach, CutError> {
+        match self {
+            Extent::Disc { radius } if radius.is_finite() && radius > 0.0 => {
+                Ok(Reach::Disc { radius })
+            }
+            Extent::Disc { radius } => Err(CutError::Radius { radius }),
+            Extent::Polygon { corners } => {
+                if !corners.iter().flatten().all(|x| x.abs() <= FARTHEST) {
+                    return Err(CutError::Point);
+                }
+                let corners: Vec<_> = corners.iter().map(|corner| flat(plane, corner)).collect();
+                let area = area(&corners);
+                match corners.len() >= 3 && area.abs() > SMALLEST_AREA {
+                    true => Ok(Reach::Polygon(corners)),
+                    false => Err(CutError::Polygon { corners: corners.len(), area }),
+                }
+            }
+        }
+    }
+}
+
+/// A point in the axes of a plane.
+fn flat(plane: &Plane, point: &Vector) -> [f64; 2] {
+    plane.axes.map(|axis| (point - plane.point).dot(&axis))
+}
+
+fn sides(corners: &[[f64; 2]]) -> impl Iterator<Item = ([f64; 2], [f64; 2])> + '_ {
+    corners.iter().copied().zip(corners.iter().copied().cycle().skip(1))
+}
+
+fn area(corners: &[[f64; 2]]) -> f64 {
+    sides(corners).map(|(a, b)| (a[0] * b[1] - a[1] * b[0]) / 2.0).sum()
+}
+
+/// Whether a polygon holds a point, by the parity of the sides to its right.
+fn holds(corners: &[[f64; 2]], [x, y]: &[f64; 2]) -> bool {
+    let to_the_right = |(a, b): &([f64; 2], [f64; 2])| {
+        (a[1] > *y) != (b[1] > *y) && *x < a[0] + (b[0] - a[0]) * (y - a[1]) / (b[1] - a[1])
+    };
+    sides(corners).filter(to_the_right).count() % 2 == 1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn square(kerf: f64) -> Cut {
+        let plane = Plane::new(Vector::new(1.0, 2.0, 3.0), Vector::new(0.0, 0.0, 5.0)).unwrap();
+        let corners = [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]];
+        let corners = corners.map(|[x, y]| Vector::new(x, y, -7.0)).to_vec();
+        Cut::new("square", plane, Some(Extent::Polygon { corners }), kerf).unwrap()
+    }
+
+    #[test]
+    fn a_polygon_parts_what_lies_across_it_and_nothing_beside_it() {
+        let cut = square(0.0);
+        let way = |x: f64, y: f64| [Vector::new(x, y, 2.5), Vector::new(x, y, 4.0)];
+        for (x, y, parted) in
+            [(2.0, 2.0, true), (3.9, 0.1, true), (4.1, 2.0, false), (-0.1, 2.0, false)]
+        {
+            let [below, above] = way(x, y);
+            assert_eq!(cut.parts(&below, &above), parted, "{x} {y}");
+            assert_eq!(cut.parts(&above, &below), parted, "{x} {y}");
+            assert!(!cut.parts(&below, &Vector::new(x, y, 2.9)));
+        }
+    }
+
+    #[test]
+    fn a_saw_with_a_width_leaves_nothing_within_half_of_it() {
+        let cut = square(1.0);
+        let at = |z: f64| Vector::new(2.0, 2.0, z);
+        let sides = |z: f64| [Side::Below, Side::Above].map(|side| cut.leaves(&at(z), side));
+        assert_eq!([2.4, 2.6, 3.4, 3.6].map(|z| cut.saws(&at(z))), [false, true, true, false]);
+        assert_eq!(sides(2.4), [true, false]);
+        assert_eq!(sides(2.6), [false, false]);
+        assert_eq!(sides(3.6), [false, true]);
+    }
+
+    #[test]
+    fn the_axes_of_a_plane_are_right_handed() {
+        for normal in [[0.0, 0.0, 2.0], [1.0, 1.0, 1.0], [-3.0, 0.1, 0.0]] {
+            let plane = Plane::new(Vector::zeros(), Vector::from(normal)).unwrap();
+            let [u, v] = plane.axes();
+            assert!((u.cross(&v) - plane.normal()).norm() < 1e-15);
+        }
+    }
+
+    #[test]
+    fn figures_that_cut_nothing_are_refused() {
+        let plane = Plane::new(Vector::zeros(), Vector::z()).unwrap();
+        let cut = |extent, kerf| Cut::new("cut", plane, extent, kerf).unwrap_err();
+        assert_eq!(Plane::new(Vector::zeros(), Vector::zeros()), Err(CutError::Normal));
+        assert_eq!(Plane::new(Vector::repeat(f64::NAN), Vector::z()), Err(CutError::Point));
+        assert_eq!(cut(None, -1.0), CutError::Kerf { kerf: -1.0 });
+        let disc = Extent::Disc { radius: 0.0 };
+        assert_eq!(cut(Some(disc), 0.0), CutError::Radius { radius: 0.0 });
+        let corners = vec![Vector::zeros(), Vector::x(), Vector::x() * 2.0];
+        let line = cut(Some(Extent::Polygon { corners }), 0.0);
+        assert_eq!(line, CutError::Polygon { corners: 3, area: 0.0 });
+    }
+}

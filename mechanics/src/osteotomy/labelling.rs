@@ -1,0 +1,121 @@
+//! Segments in the bone of a scan: voxels above a threshold, parted by cuts and by where bones touch.
+
+use super::bone_image::BoneImage;
+use super::bone_labels::{BoneLabels, Owner};
+use super::contact::{Bridge, Contact, bridges, contacts};
+use super::flood::flood;
+use super::grid::Grid;
+use super::label_error::LabelError;
+use super::markers::markers;
+use super::pieces::{PieceSummary, Pieces};
+use super::rule::Osteotomy;
+use crate::mesh::Vector;
+
+/// Bone of no segment in pieces smaller than this, in mm³, is loose: a hyoid has about 2 cm³, a ramus 5 and more.
+const LEAST_STANDING: f64 = 2500.0;
+
+/// A segment that was found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FoundSegment {
+    pub name: String,
+    pub voxels: usize,
+    pub volume_mm3: f64,
+    /// The mean of its voxels, in mm.
+    pub centre: Vector,
+    /// What lies on its sides of the cuts, and is of no segment.
+    pub left: PieceSummary,
+}
+
+/// The bone of a scan, parted.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Labelled {
+    pub labels: BoneLabels,
+    pub segments: Vec<FoundSegment>,
+    /// Where segments touch each other or the rest of the bone.
+    pub contacts: Vec<Contact>,
+    /// Pieces of bone too small to hold tissue.
+    pub loose: PieceSummary,
+    /// Bounded cuts around which a segment is still whole.
+    pub bridges: Vec<Bridge>,
+}
+
+/// Finds the segments of an osteotomy in the bone of a scan. The same scan and osteotomy give the same labels.
+pub fn label(bone: &BoneImage<'_>, osteotomy: &Osteotomy) -> Result<Labelled, LabelError> {
+    let grid = Grid::new(bone.image);
+    let is_bone = |voxel: usize| bone.value(voxel) > bone.threshold;
+    let mut labels = BoneLabels::new(bone.image.size(), *bone.image.placement(), is_bone);
+    let markers = markers(osteotomy, bone, &grid, &labels)?;
+    flood(osteotomy, &grid, |voxel| bone.value(voxel), &markers, &mut labels);
+    saw(osteotomy, &grid, &mut labels);
+    let segments = (0..osteotomy.segments().len())
+        .map(|segment| found(osteotomy, bone, &grid, &labels, segment))
+        .collect();
+    let loose = set_loose(osteotomy, bone, &grid, &mut labels);
+    let contacts = contacts(osteotomy, &grid, &labels);
+    let bridges = bridges(osteotomy, &grid, &labels);
+    Ok(Labelled { labels, segments, contacts, loose, bridges })
+}
+
+/// What lies within the width of a cut of a segment, and hangs together with it there, is sawdust.
+fn saw(osteotomy: &Osteotomy, grid: &Grid<'_>, labels: &mut BoneLabels) {
+    for (number, cut) in osteotomy.cuts().iter().enumerate() {
+        let lies_at = |segment: usize| {
+            osteotomy.segments()[segment].sides.iter().any(|side| side.cut == number)
+        };
+        let mut waiting: Vec<usize> = (0..grid.len())
+            .filter(|&voxel| match labels.owner(voxel) {
+                Some(Owner::Segment(segment)) => cut.kerf() > 0.0 && lies_at(segment),
+                Some(Owner::Rest | Owner::Sawn | Owner::Loose) | None => false,
+            })
+            .collect();
+        while let Some(voxel) = waiting.pop() {
+            for next in grid.neighbours(voxel).map(|neighbour| neighbour.voxel) {
+                if labels.owner(next) == Some(Owner::Rest) && cut.saws(&grid.centre(next)) {
+                    labels.set(next, Owner::Sawn);
+                    waiting.push(next);
+                }
+            }
+        }
+    }
+}
+
+/// Tells pieces of bone of no segment that are too small to hold tissue from the skull.
+fn set_loose(
+    osteotomy: &Osteotomy,
+    bone: &BoneImage<'_>,
+    grid: &Grid<'_>,
+    labels: &mut BoneLabels,
+) -> PieceSummary {
+    let is_rest = |voxel: usize| labels.owner(voxel) == Some(Owner::Rest);
+    let least = (LEAST_STANDING / bone.image.voxel_volume()).ceil() as usize;
+    let small = Pieces::new(osteotomy, grid, is_rest).smaller_than(least);
+    for voxel in small.voxels() {
+        labels.set(voxel, Owner::Loose);
+    }
+    small.summary(grid)
+}
+
+fn found(
+    osteotomy: &Osteotomy,
+    bone: &BoneImage<'_>,
+    grid: &Grid<'_>,
+    labels: &BoneLabels,
+    segment: usize,
+) -> FoundSegment {
+    let own = |voxel: &usize| labels.owner(*voxel) == Some(Owner::Segment(segment));
+    let (mut voxels, mut sum) = (0, Vector::zeros());
+    for voxel in (0..grid.len()).filter(own) {
+        voxels += 1;
+        sum += grid.centre(voxel);
+    }
+    let left = Pieces::new(osteotomy, grid, |voxel| {
+        labels.owner(voxel) == Some(Owner::Rest) && osteotomy.admits(segment, &grid.centre(voxel))
+    });
+    FoundSegment {
+        name: osteotomy.segments()[segment].name.clone(),
+        voxels,
+        volume_mm3: voxels as f64 * bone.image.voxel_volume(),
+        centre: sum / voxels.max(1) as f64,
+        left: left.summary(grid),
+    }
+}

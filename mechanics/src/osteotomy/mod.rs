@@ -1,0 +1,33 @@
+//! Osteotomies: cuts through bone, the segments between them, and what the nodes of the tissue around them are held to.
+//!
+//! [`rule::Osteotomy`] says where is cut and what comes loose. [`labelling::label`] finds the segments in the bone of a
+//! scan and [`label_surface`](label_surface::label_surface) makes closed surfaces of them;
+//! [`surface_segment`](surface_segment::surface_segment) cuts them from a closed surface of bone. [`classes::classify`]
+//! tells for each node of a mesh of the tissue with which of them it goes.
+
+pub mod bone_image;
+pub mod bone_labels;
+mod cap;
+pub mod classes;
+pub mod clip;
+pub mod contact;
+mod cubes;
+pub mod cut;
+mod flood;
+mod free_band;
+mod grid;
+pub mod label_error;
+pub mod label_surface;
+pub mod labelling;
+mod markers;
+pub mod pieces;
+pub mod rule;
+pub mod surface_segment;
+pub mod teeth;
+
+pub use bone_image::BoneImage;
+pub use bone_labels::{BoneLabels, Owner};
+pub use cut::{Cut, CutError, Extent, Plane, Side};
+pub use label_error::LabelError;
+pub use labelling::{Labelled, label};
+pub use rule::{CutSide, Osteotomy, RuleError, SegmentRule};

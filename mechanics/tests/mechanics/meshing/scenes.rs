@@ -1,0 +1,69 @@
+//! What is promised of meshes, held against many bodies that touch themselves at random.
+
+use mechanics::mesh::Vector;
+use mechanics::meshing::{MeshingSettings, RegionShape, SizeField, SizeRegion};
+
+use super::domains::{Body, Slit, balls, slit_ball};
+use super::{assert_sound, meshed, uniform};
+
+/// Source: Steele, Lea, Flood, Fast splittable pseudorandom number generators, OOPSLA 2014.
+struct Random(u64);
+
+impl Random {
+    /// From 0 to 1.
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut bits = self.0;
+        bits = (bits ^ bits >> 30).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        bits = (bits ^ bits >> 27).wrapping_mul(0x94D0_49BB_1331_11EB);
+        (bits ^ bits >> 31) as f64 / u64::MAX as f64
+    }
+
+    fn place(&mut self, half: f64) -> Vector {
+        Vector::from([0, 1, 2].map(|_| (2.0 * self.next() - 1.0) * half))
+    }
+}
+
+/// Two to sixteen balls, a ball with such holes, or a ball with gaps thinner than a cell.
+fn scene(seed: u64) -> Body {
+    let mut random = Random(seed);
+    let count = 2 + (random.next() * 14.0) as usize;
+    if seed % 3 == 2 {
+        let slit = |_| Slit {
+            normal: random.place(1.0).normalize(),
+            offset: 6.0 * random.next() - 3.0,
+            half_width: 0.05 + 0.7 * random.next(),
+        };
+        return slit_ball(15.0, (0..count / 4).map(slit).collect());
+    }
+    let list = (0..count).map(|_| (random.place(14.0), 1.5 + 6.0 * random.next()));
+    let within = balls(list.collect());
+    if seed.is_multiple_of(3) {
+        return within;
+    }
+    let holes = within.parts.into_iter().next().unwrap().1;
+    Body::skin(18.0, move |x| (18.0 - x.norm()).min(-holes(x)))
+}
+
+#[test]
+fn meshes_of_random_balls_holes_and_gaps_are_sound() {
+    let mut worst = [180.0_f64; 2];
+    let mut pinches = 0;
+    for seed in 0..42 {
+        let body = scene(seed);
+        let fine = SizeRegion {
+            shape: RegionShape::Ball { centre: Vector::zeros(), radius: 5.0 },
+            size: 1.0,
+        };
+        let graded = SizeField { coarsest: 5.0, regions: vec![fine], ..SizeField::uniform(1.0) };
+        let graded = MeshingSettings { size: graded, ..MeshingSettings::default() };
+        for (kind, settings) in [uniform(1.9), graded].into_iter().enumerate() {
+            let tissue = meshed(&body, &settings);
+            let angles = assert_sound(&tissue);
+            worst[kind] = worst[kind].min(angles[0]).min(180.0 - angles[1]);
+            pinches += tissue.report.copies + tissue.report.stepped_back + tissue.report.edges_cut;
+        }
+    }
+    assert!(pinches > 5, "{pinches}");
+    assert!(worst[0] >= 12.0 && worst[1] >= 10.0, "{worst:?}");
+}

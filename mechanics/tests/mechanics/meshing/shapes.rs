@@ -1,0 +1,131 @@
+//! Volumes, distances and angles of meshes of balls, shells, rings and boxes.
+
+use std::f64::consts::PI;
+
+use mechanics::domain::Boundary;
+use mechanics::mesh::{SurfaceSearch, Vector};
+use mechanics::meshing::MeshingSettings;
+
+use super::domains::{Body, ball, balls, block, shell, torus};
+use super::{assert_sound, meshed, off_sphere, on_sphere, surface, uniform};
+
+#[test]
+fn the_volume_of_a_ball_converges_with_the_square_of_the_cell() {
+    let exact = 4.0 / 3.0 * PI * 50.0_f64.powi(3);
+    let errors =
+        [10.0, 5.0, 2.5].map(|h| 1.0 - meshed(&ball(50.0), &uniform(h)).report.volume / exact);
+    // Inscribed: always too small, by half the square of a cell over that of the radius at most.
+    assert!(errors.iter().all(|&error| error > 0.0));
+    assert!(errors[0] < 0.5 * 0.2_f64.powi(2), "{errors:?}");
+    for pair in errors.windows(2) {
+        let order = (pair[0] / pair[1]).log2();
+        assert!((1.8..2.2).contains(&order), "{order}");
+    }
+}
+
+#[test]
+fn stuffing_alone_keeps_the_angle_that_is_proven_of_it() {
+    for size in [3.0, 4.1, 5.3] {
+        let settings = MeshingSettings { sweeps: 0, ..uniform(size) };
+        let angles = assert_sound(&meshed(&ball(40.0), &settings));
+        assert!(angles[0] > 10.78 && angles[1] < 164.74, "{angles:?}");
+    }
+}
+
+#[test]
+fn hill_climbing_brings_smooth_bodies_above_twenty_degrees() {
+    for body in
+        [ball(40.0), shell(30.0, 42.0), torus(30.0, 11.0), block(Vector::new(20.0, 16.0, 12.0))]
+    {
+        let tissue = meshed(&body, &uniform(4.0));
+        let angles = assert_sound(&tissue);
+        assert!(angles[0] > 20.0 && angles[1] < 160.0, "{angles:?}");
+        // Above thirty degrees a cell is good, and may lose some to its neighbours.
+        let raw = tissue.report.raw_angles.smallest;
+        assert!(angles[0] > raw.min(30.0) - 1e-9, "{} after {raw}", angles[0]);
+    }
+}
+
+#[test]
+fn skin_and_bone_of_a_shell_lie_where_they_are_and_all_of_them_is_there() {
+    let tissue = meshed(&shell(30.0, 42.0), &uniform(4.0));
+    assert_sound(&tissue);
+    let boundaries = [(Boundary::Skin, 42.0), (Boundary::Bone, 30.0)];
+    for (boundary, radius) in boundaries {
+        assert!(off_sphere(&tissue, boundary, radius) < 1e-6);
+    }
+    assert!(tissue.nodes_on(Boundary::Cut).is_empty());
+    let skin = surface(&tissue);
+    let search = SurfaceSearch::new(&skin).unwrap();
+    for point in boundaries.into_iter().flat_map(|(_, radius)| on_sphere(radius, 2000)) {
+        // A chord as long as the longest edge leaves the sphere by that squared over eight radii.
+        let distance = search.closest(&point).distance;
+        assert!(distance < 0.1 * 4.0, "{distance}");
+    }
+}
+
+#[test]
+fn the_boundaries_of_a_box_are_told_apart() {
+    let half = Vector::new(20.0, 16.0, 12.0);
+    let tissue = meshed(&block(half), &uniform(3.0));
+    assert_sound(&tissue);
+    type Off = fn(&Vector, &Vector) -> f64;
+    let boundaries: [(Boundary, Off); 3] = [
+        (Boundary::Skin, |half, at| (half - at.abs()).xy().min()),
+        (Boundary::Bone, |half, at| at.z + half.z),
+        (Boundary::Cut, |half, at| half.z - at.z),
+    ];
+    for (boundary, off) in boundaries {
+        let nodes = tissue.nodes_on(boundary);
+        assert!(nodes.len() > 100);
+        for at in nodes.into_iter().map(|node| tissue.volume.nodes[node as usize]) {
+            assert!(off(&half, &at).abs() < 1e-6, "{boundary:?} {at:?}");
+        }
+    }
+    // The edges of bone and cut are kept; those between sides, and corners, are cut off by less than a cell.
+    assert!(tissue.report.creased > 50, "{:?}", tissue.report);
+    let exact = 8.0 * half.product();
+    assert!((1.0 - tissue.report.volume / exact) < 0.02, "{}", tissue.report.volume / exact);
+}
+
+#[test]
+fn balls_more_than_a_cell_apart_stay_two() {
+    let at = Vector::new(21.7, 0.0, 0.0);
+    let pair = balls(vec![(at, 20.0), (-at, 20.0)]);
+    let both = meshed(&pair, &MeshingSettings { keep_pieces: true, ..uniform(3.0) });
+    let one = meshed(&pair, &uniform(3.0));
+    assert_sound(&both);
+    assert_sound(&one);
+    assert!(both.report.dropped.is_empty());
+    let [dropped] = one.report.dropped[..] else { panic!("{:?}", one.report.dropped) };
+    assert!((dropped.volume + one.report.volume) / both.report.volume > 0.9999);
+    assert!((dropped.centre.norm() - 21.7).abs() < 0.1);
+}
+
+#[test]
+fn tissue_that_touches_itself_shares_no_place_where_copies_are_to_be_apart() {
+    let at = Vector::new(19.8, 0.0, 0.0);
+    let touching = || balls(vec![(-at, 20.0), (at, 20.0)]);
+    let settings = MeshingSettings { part_copies: true, ..uniform(3.0) };
+    let apart = meshed(&touching(), &settings);
+    assert_sound(&apart);
+    let shared = |nodes: &[Vector]| {
+        let mut bits: Vec<[u64; 3]> =
+            nodes.iter().map(|at| [at.x, at.y, at.z].map(f64::to_bits)).collect();
+        bits.sort_unstable();
+        bits.windows(2).filter(|pair| pair[0] == pair[1]).count()
+    };
+    let settings = MeshingSettings { part_copies: false, sweeps: 0, ..settings };
+    let as_made = meshed(&touching(), &settings);
+    assert_sound(&as_made);
+    assert!(as_made.report.copies > 0 && shared(&as_made.volume.nodes) > 0, "{:?}", as_made.report);
+    assert_eq!(shared(&apart.volume.nodes), 0);
+}
+
+#[test]
+fn an_empty_pocket_in_tissue_is_bounded_by_bone() {
+    let body = Body { thickness: None, ..shell(8.0, 20.0) };
+    let tissue = meshed(&body, &uniform(2.0));
+    let exact = 4.0 / 3.0 * PI * (20.0_f64.powi(3) - 8.0_f64.powi(3));
+    assert!((tissue.report.volume / exact - 1.0).abs() < 0.01);
+}

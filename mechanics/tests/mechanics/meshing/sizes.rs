@@ -1,0 +1,130 @@
+//! Sizes of cells: fine where asked for, bound to the thickness of tissue, in a number asked for.
+
+use mechanics::domain::Boundary;
+use mechanics::mesh::Vector;
+use mechanics::meshing::{
+    MeshingSettings, RegionShape, SizeField, SizeRegion, ThicknessRule, TissueMesh,
+};
+
+use super::domains::{Body, ball, balls, shell};
+use super::{assert_sound, meshed, off_sphere, uniform};
+
+/// The mean edge of the cells whose first node a test picks.
+fn mean_edge(tissue: &TissueMesh, picked: impl Fn(&Vector) -> bool) -> f64 {
+    let mut sum = [0.0, 0.0];
+    for cell in 0..tissue.volume.cells.len() {
+        let corners: Vec<Vector> = tissue.volume.corners(cell).collect();
+        if picked(&corners[0]) {
+            sum[0] += (corners[1] - corners[0]).norm();
+            sum[1] += 1.0;
+        }
+    }
+    sum[0] / sum[1]
+}
+
+fn about(centre: Vector, radius: f64, size: f64, coarsest: f64) -> MeshingSettings {
+    let regions = vec![SizeRegion { shape: RegionShape::Ball { centre, radius }, size }];
+    let size = SizeField { coarsest, regions, ..SizeField::uniform(size) };
+    MeshingSettings { size, ..MeshingSettings::default() }
+}
+
+#[test]
+fn cells_are_fine_about_a_place_and_coarse_away_from_it() {
+    let place = Vector::new(40.0, 0.0, 0.0);
+    let tissue = meshed(&ball(40.0), &about(place, 6.0, 1.5, 12.0));
+    let angles = assert_sound(&tissue);
+    assert!(angles[0] > 10.0, "{angles:?}");
+    assert!(off_sphere(&tissue, Boundary::Skin, 40.0) < 0.2);
+    let near = mean_edge(&tissue, |at| (at - place).norm() < 5.0);
+    let far = mean_edge(&tissue, |at| at.x < 0.0);
+    assert!(near < 1.6 && far > 5.0, "{near} {far}");
+    let everywhere_fine = 12.0 * tissue.report.volume / 1.5_f64.powi(3);
+    assert!((tissue.report.tetrahedra as f64) < 0.1 * everywhere_fine);
+}
+
+#[test]
+fn a_box_asks_for_a_size_like_a_ball() {
+    let mut settings = about(Vector::zeros(), 5.0, 1.5, 12.0);
+    let [low, high] = [Vector::new(20.0, -4.0, -4.0), Vector::new(45.0, 4.0, 4.0)];
+    settings.size.regions[0].shape = RegionShape::Box { low, high };
+    let tissue = meshed(&ball(40.0), &settings);
+    assert!(assert_sound(&tissue)[0] > 10.0);
+    let near = mean_edge(&tissue, |at| *at > low && *at < high);
+    assert!(near < 1.7, "{near}");
+}
+
+#[test]
+fn the_boundary_may_be_finer_than_what_is_inside() {
+    let mut settings = uniform(2.0);
+    settings.size.coarsest = 16.0;
+    settings.size.at_boundary = Some(2.0);
+    let tissue = meshed(&ball(40.0), &settings);
+    assert!(assert_sound(&tissue)[0] > 10.0);
+    let skin = mean_edge(&tissue, |at| at.norm() > 38.0);
+    let inside = mean_edge(&tissue, |at| at.norm() < 15.0);
+    assert!(skin < 2.2 && inside > 5.0, "{skin} {inside}");
+}
+
+/// A shell that knows how thick it is.
+fn thin_shell() -> Body {
+    let [inner, outer] = [18.4, 20.0];
+    let thickness = move |x: &Vector| (x.norm() - inner).abs() + (x.norm() - outer).abs();
+    Body { thickness: Some(Box::new(thickness)), ..shell(inner, outer) }
+}
+
+#[test]
+fn thin_tissue_is_kept_by_the_thickness_rule() {
+    let thickness = Some(ThicknessRule { factor: 0.8, floor: 1.0 });
+    let size = SizeField { coarsest: 8.0, thickness, ..SizeField::uniform(1.0) };
+    let tissue = meshed(&thin_shell(), &MeshingSettings { size, ..MeshingSettings::default() });
+    assert!(assert_sound(&tissue)[0] > 10.0);
+    let exact = 4.0 / 3.0 * std::f64::consts::PI * (20.0_f64.powi(3) - 18.4_f64.powi(3));
+    let ratio = tissue.report.volume / exact;
+    assert!((0.98..1.02).contains(&ratio), "{ratio}");
+    assert!(tissue.report.sheets_lost.is_empty());
+}
+
+#[test]
+fn tissue_too_thin_for_its_cells_is_told_of() {
+    let tissue = meshed(&thin_shell(), &MeshingSettings { keep_pieces: true, ..uniform(2.5) });
+    let lost: usize = tissue.report.sheets_lost.iter().map(|sheet| sheet.edges).sum();
+    assert!(lost > 50, "{:?}", tissue.report);
+    for sheet in &tissue.report.sheets_lost {
+        assert!(sheet.low.amax() <= 20.0 && sheet.high.amax() <= 20.0);
+    }
+}
+
+#[test]
+fn a_gap_thinner_than_a_cell_is_told_of_by_its_place() {
+    // Half balls, 0.4 mm apart.
+    let body = Body::skin(20.0, |x| (20.0 - x.norm()).min(x.z.abs() - 0.2));
+    let tissue = meshed(&body, &uniform(3.0));
+    let gaps = &tissue.report.gaps_closed;
+    assert!(!gaps.is_empty());
+    for gap in gaps {
+        assert!(gap.low.z > -0.2 && gap.high.z < 0.2 && gap.centre.norm() < 20.0);
+    }
+}
+
+#[test]
+fn balls_that_are_joined_though_they_do_not_touch_are_told_of() {
+    let at = Vector::new(20.2, 0.0, 0.0);
+    let tissue = meshed(&balls(vec![(at, 20.0), (-at, 20.0)]), &uniform(3.0));
+    assert!(tissue.report.dropped.is_empty() && tissue.report.volume > 60_000.0);
+    let [gap] = tissue.report.gaps_closed[..] else { panic!("{:?}", tissue.report) };
+    assert!(gap.centre.norm() < 3.0 && gap.low.amax().max(gap.high.amax()) < 8.0, "{gap:?}");
+}
+
+#[test]
+fn a_number_of_tetrahedra_is_met_closely_where_cells_are_alike_and_roughly_where_they_are_not() {
+    let graded = about(Vector::x() * 20.0, 5.0, 1.0, 4.0).size;
+    for target in [20_000, 100_000] {
+        for (size, most) in [(SizeField::uniform(1.0), 1.1), (graded.clone(), 1.7)] {
+            let settings =
+                MeshingSettings { target: Some(target), size, ..MeshingSettings::default() };
+            let tissue = meshed(&shell(20.0, 40.0), &settings);
+            let ratio = tissue.report.tetrahedra as f64 / target as f64;
+            assert!((1.0 / most..most).contains(&ratio), "{target}: {ratio}");
+        }
+    }
+}

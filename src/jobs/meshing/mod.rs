@@ -1,0 +1,8 @@
+//! Meshing: from an image to a volume mesh with its node sets, and the case that it is made for.
+
+mod case;
+mod input;
+mod job;
+
+pub use input::MeshingInput;
+pub use job::meshing_job;

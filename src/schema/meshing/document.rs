@@ -1,0 +1,207 @@
+//! The spec of a meshing: the scan, what of it is tissue and bone, what is cut, and how fine the mesh is.
+
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use utoipa::ToSchema;
+
+use crate::schema::case::document::FrameName;
+use crate::schema::osteotomy::OsteotomyDocument;
+use crate::schema::osteotomy::conversion::PlannedOsteotomy;
+use crate::schema::plan::document::PlanDocument;
+use crate::schema::predict::budget::BudgetDocument;
+use crate::schema::wire::canonical;
+use crate::schema::wire::fault::{Faults, Pointer};
+use crate::schema::wire::limits::Limits;
+use crate::schema::wire::names::check_tags;
+use mechanics::anatomy::AnatomyRules;
+use mechanics::domain::ImageOptions;
+use mechanics::mesh::Frame;
+use mechanics::meshing::{MeshingSettings, SizeField};
+
+/// `mesh`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum MeshingKind {
+    #[default]
+    Mesh,
+}
+
+/// A volume mesh of the soft tissue in a CT, with a node set for each bone segment that an operation cuts loose.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MeshingDocument {
+    #[serde(default)]
+    #[schema(required)]
+    pub kind: MeshingKind,
+    /// The CT: the id of an uploaded image, in Hounsfield units.
+    pub scan: String,
+    #[serde(default)]
+    pub thresholds_hu: ThresholdsDocument,
+    /// Absent: no bone is cut, and all of it is fixed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub osteotomy: Option<OsteotomyDocument>,
+    /// The frame of the osteotomy. Default: that of the scan.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub frame: Option<FrameName>,
+    #[serde(default)]
+    pub size: MeshSizeDocument,
+    /// Whether tissue is fixed where the scan ends.
+    #[serde(default = "yes")]
+    #[schema(default = true)]
+    pub scan_ends_fixed: bool,
+    #[serde(default)]
+    pub budget: BudgetDocument,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub tags: Vec<String>,
+}
+
+fn yes() -> bool {
+    true
+}
+
+impl Default for MeshingDocument {
+    fn default() -> Self {
+        MeshingDocument {
+            kind: MeshingKind::Mesh,
+            scan: String::new(),
+            thresholds_hu: ThresholdsDocument::default(),
+            osteotomy: None,
+            frame: None,
+            size: MeshSizeDocument::default(),
+            scan_ends_fixed: yes(),
+            budget: BudgetDocument::default(),
+            tags: Vec::new(),
+        }
+    }
+}
+
+/// Values between which an image shows soft tissue, in Hounsfield units.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ThresholdsDocument {
+    /// Below this there is air.
+    #[serde(default = "usual_skin")]
+    #[schema(default = -300.0)]
+    pub skin: f64,
+    /// From this on there is bone.
+    #[serde(default = "usual_bone")]
+    #[schema(default = 250.0)]
+    pub bone: f64,
+}
+
+fn usual_skin() -> f64 {
+    ImageOptions::default().skin_threshold
+}
+
+fn usual_bone() -> f64 {
+    ImageOptions::default().bone_threshold
+}
+
+impl Default for ThresholdsDocument {
+    fn default() -> Self {
+        ThresholdsDocument { skin: usual_skin(), bone: usual_bone() }
+    }
+}
+
+/// How fine the mesh is: about so many tetrahedra, or cells of a length; fine around segments, coarse far from them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MeshSizeDocument {
+    /// Default: 300000, where no length is given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false, minimum = 1000, maximum = 4000000)]
+    pub tetrahedra: Option<u64>,
+    /// The edge of the finest cubes of the lattice, in mm; each holds twelve tetrahedra.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false, minimum = 0.5, maximum = 50.0)]
+    pub finest_mm: Option<f64>,
+    /// How many times as large cells may be far from segments.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false, minimum = 1.0, maximum = 16.0)]
+    pub coarsening: Option<f64>,
+}
+
+/// Where nothing else is said.
+const USUAL_TETRAHEDRA: u64 = 300_000;
+/// Uniform at first: the estimate of the size of a mesh is best there.
+const USUAL_COARSENING: f64 = 4.0;
+
+impl MeshingDocument {
+    /// The rules of the path for a scan in that frame; pointers start at `/spec`.
+    pub fn to_rules(&self, scan: Frame, limits: &Limits, faults: &mut Faults) -> AnatomyRules {
+        let at = Pointer::root().key("spec");
+        let ThresholdsDocument { skin, bone } = self.thresholds_hu;
+        let thresholds = at.key("thresholds_hu");
+        faults.check_range(&thresholds.key("skin"), skin, -1e6..=1e6, "HU");
+        faults.check_range(&thresholds.key("bone"), bone, -1e6..=1e6, "HU");
+        let budget = at.key("budget");
+        faults.check_range(&budget.key("wall_s"), self.budget.wall_s, 1e-3..=limits.wall_s, "s");
+        let memory = self.budget.memory_mb;
+        faults.check_range(&budget.key("memory_mb"), memory, 1.0..=limits.memory_mb, "MB");
+        check_tags(&self.tags, &at.key("tags"), limits, faults);
+        let planned = self.to_osteotomy(&at, scan, limits, faults);
+        let image =
+            ImageOptions { skin_threshold: skin, bone_threshold: bone, ..ImageOptions::default() };
+        AnatomyRules {
+            image,
+            band_mm: planned.as_ref().map_or(0.0, |planned| planned.free_band_mm),
+            osteotomy: planned.map(|planned| planned.osteotomy).unwrap_or_default(),
+            meshing: self.size.to_settings(&at.key("size"), limits, faults),
+            scan_ends_fixed: self.scan_ends_fixed,
+            frame: scan,
+        }
+    }
+
+    fn to_osteotomy(
+        &self,
+        at: &Pointer,
+        scan: Frame,
+        limits: &Limits,
+        faults: &mut Faults,
+    ) -> Option<PlannedOsteotomy> {
+        let mut plan = PlanDocument {
+            osteotomy: self.osteotomy.clone(),
+            frame: self.frame,
+            ..PlanDocument::default()
+        };
+        plan.take_osteotomy(at, scan, limits, faults)
+    }
+
+    /// What decides the mesh, for the hash: no tags, no budget.
+    pub fn content(&self) -> Value {
+        let mut plain = self.clone();
+        plain.tags.clear();
+        plain.budget = BudgetDocument::default();
+        canonical::to_value(&plain)
+    }
+}
+
+impl MeshSizeDocument {
+    fn to_settings(self, at: &Pointer, limits: &Limits, faults: &mut Faults) -> MeshingSettings {
+        let coarsening = self.coarsening.unwrap_or(USUAL_COARSENING);
+        faults.check_range(&at.key("coarsening"), coarsening, 1.0..=16.0, "");
+        let finest = self.finest_mm.unwrap_or(2.0);
+        faults.check_range(&at.key("finest_mm"), finest, 0.5..=50.0, "mm");
+        let tetrahedra = match (self.tetrahedra, self.finest_mm) {
+            (None, None) => Some(USUAL_TETRAHEDRA),
+            (tetrahedra, _) => tetrahedra,
+        };
+        if let Some(tetrahedra) = tetrahedra {
+            let most = limits.mesh_cells as f64;
+            faults.check_range(&at.key("tetrahedra"), tetrahedra as f64, 1e3..=most, "");
+            faults.check_one_of(
+                at,
+                1 + usize::from(self.finest_mm.is_some()),
+                "`tetrahedra`, `finest_mm`",
+            );
+        }
+        MeshingSettings {
+            size: SizeField::graded(finest, finest * coarsening),
+            target: tetrahedra.map(|count| count as usize),
+            most_tetrahedra: limits.mesh_cells as usize,
+            ..MeshingSettings::default()
+        }
+    }
+}

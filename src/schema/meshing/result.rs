@@ -1,0 +1,119 @@
+//! What is said of a mesh that was made.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+use crate::schema::Triple;
+use crate::schema::case::document::CaseDocument;
+use mechanics::anatomy::Anatomy;
+use mechanics::meshing::{Angles, Gap};
+use mechanics::osteotomy::labelling::FoundSegment;
+
+/// A mesh made from a scan, and the case that it is made for.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct MeshingResultDocument {
+    pub nodes: u64,
+    pub tetrahedra: u64,
+    pub volume_ml: f64,
+    /// The edge of the finest cubes of the lattice.
+    pub finest_mm: f64,
+    pub dihedral_angles_deg: AnglesDocument,
+    pub segments: Vec<FoundSegmentDocument>,
+    /// How many nodes each node set has.
+    pub node_sets: BTreeMap<String, u64>,
+    /// Nodes on bone that are free because others near them move otherwise.
+    pub free_beside_cuts: u64,
+    /// Gaps thinner than a cell that are filled with tissue now, such as closed lips; the largest first.
+    pub gaps_closed: Vec<GapDocument>,
+    /// Tissue thinner than a cell that the mesh lacks; the largest first.
+    pub sheets_lost: Vec<GapDocument>,
+    /// Tissue that hangs together with nothing else and was left out.
+    pub dropped_ml: f64,
+    /// A case of the mesh, ready to be stored and predicted on.
+    pub case: CaseDocument,
+}
+
+/// Angles between the faces of tetrahedra, in degrees.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct AnglesDocument {
+    pub smallest: f64,
+    /// A thousandth of all angles is smaller.
+    pub thousandth: f64,
+    /// A hundredth is smaller.
+    pub hundredth: f64,
+    pub largest: f64,
+}
+
+/// A segment that was found in the bone of the scan.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct FoundSegmentDocument {
+    pub name: String,
+    pub volume_ml: f64,
+    pub centre_mm: Triple,
+    /// Bone on its sides of the cuts that does not hang together with it.
+    pub left_ml: f64,
+}
+
+/// Where the mesh differs from the scan because cells are too large there.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct GapDocument {
+    pub centre_mm: Triple,
+    /// Along x, y and z.
+    pub extent_mm: Triple,
+    /// Edges of the lattice that met it.
+    pub edges: u64,
+}
+
+const MM3_IN_ML: f64 = 1000.0;
+
+impl MeshingResultDocument {
+    pub fn new(anatomy: &Anatomy, case: CaseDocument) -> Self {
+        let report = &anatomy.meshing;
+        let [x, y, z] = anatomy.bone.labels.placement().steps;
+        let voxel = x.dot(&y.cross(&z)).abs();
+        let segment = |found: &FoundSegment| FoundSegmentDocument {
+            name: found.name.clone(),
+            volume_ml: found.volume_mm3 / MM3_IN_ML,
+            centre_mm: found.centre.into(),
+            left_ml: found.left.voxels as f64 * voxel / MM3_IN_ML,
+        };
+        let sets = anatomy.volume.node_sets.iter();
+        MeshingResultDocument {
+            nodes: report.nodes as u64,
+            tetrahedra: report.tetrahedra as u64,
+            volume_ml: report.volume / MM3_IN_ML,
+            finest_mm: report.finest,
+            dihedral_angles_deg: (&report.angles).into(),
+            segments: anatomy.bone.segments.iter().map(segment).collect(),
+            node_sets: sets.map(|(name, nodes)| (name.clone(), nodes.len() as u64)).collect(),
+            free_beside_cuts: anatomy.classes.in_band as u64,
+            gaps_closed: report.gaps_closed.iter().map(GapDocument::from).collect(),
+            sheets_lost: report.sheets_lost.iter().map(GapDocument::from).collect(),
+            dropped_ml: report.dropped.iter().map(|piece| piece.volume).sum::<f64>() / MM3_IN_ML,
+            case,
+        }
+    }
+}
+
+impl From<&Angles> for AnglesDocument {
+    fn from(angles: &Angles) -> Self {
+        AnglesDocument {
+            smallest: angles.smallest,
+            thousandth: angles.thousandth,
+            hundredth: angles.hundredth,
+            largest: angles.largest,
+        }
+    }
+}
+
+impl From<&Gap> for GapDocument {
+    fn from(gap: &Gap) -> Self {
+        GapDocument {
+            centre_mm: gap.centre.into(),
+            extent_mm: (gap.high - gap.low).into(),
+            edges: gap.edges as u64,
+        }
+    }
+}

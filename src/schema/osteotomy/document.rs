@@ -1,0 +1,59 @@
+//! Where bone of a scan is cut, and which pieces come loose.
+
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+use crate::schema::Triple;
+
+/// Cuts through the bone of a scan and the segments on their sides; coordinates in the frame of the plan.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct OsteotomyDocument {
+    /// Planes that are sawn; each is named by a segment.
+    #[serde(default)]
+    pub cuts: Vec<CutDocument>,
+    /// Pieces of bone; the plan says by the same names how they move, and those that it does not name stay.
+    pub segments: Vec<CutSegmentDocument>,
+    /// Nodes on bone this near to bone that moves otherwise are free, 0 to 30 mm. Default: 3.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub free_band_mm: Option<f64>,
+}
+
+/// A plane that is sawn: all of it, or a disc, or a polygon.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CutDocument {
+    pub name: String,
+    pub point_mm: Triple,
+    /// From below to above; of any length.
+    pub normal: Triple,
+    /// Only a disc of this radius around the point is sawn.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub radius_mm: Option<f64>,
+    /// Only a polygon is sawn: its corners in their order, at least three, brought to the plane along the normal.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub corners_mm: Option<Vec<Triple>>,
+    /// The width of the saw, 0 to 10 mm. Default: 0.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub kerf_mm: Option<f64>,
+}
+
+/// The bone on given sides of cuts that is in one piece with its seeds.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CutSegmentDocument {
+    pub name: String,
+    /// Cuts that the segment lies below of.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub below: Vec<String>,
+    /// Cuts that the segment lies above of, where their normals point.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub above: Vec<String>,
+    /// Points in its bone, or at most 10 mm beside it. Default: the largest piece on its sides of the cuts.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub seeds_mm: Vec<Triple>,
+}

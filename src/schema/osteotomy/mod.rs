@@ -1,0 +1,6 @@
+//! The cuts of a plan and the segments that they part from the bone of a scan.
+
+pub mod conversion;
+pub mod document;
+
+pub use document::{CutDocument, CutSegmentDocument, OsteotomyDocument};

@@ -1,0 +1,67 @@
+//! The rows of deeds: one before a deed begins, which is told how it ended.
+
+use super::StoreError;
+use super::database::{Transaction, query};
+use super::deed::Deed;
+use super::open_deeds::{End, Open};
+
+const BEGIN: &str = "INSERT INTO deeds (id, at, alive, tenant, actor, action, object, request) \
+     VALUES ($1, (SELECT now_ms FROM clock), (SELECT now_ms FROM clock), $2, $3, $4, $5, $6) RETURNING at";
+const END: &str = "UPDATE deeds SET object = $2, outcome = $3 WHERE id = $1";
+/// Of a deed that has no row: it was over before it was noted, or its row was lost or is in the chain.
+const WHOLE: &str = "INSERT INTO deeds (id, at, alive, tenant, actor, action, object, request, outcome) \
+     VALUES ($1, COALESCE($2, (SELECT now_ms FROM clock)), (SELECT now_ms FROM clock), $3, $4, $5, $6, $7, $8) \
+     ON CONFLICT (id) DO UPDATE SET outcome = excluded.outcome";
+/// Told again, its end stands among the last rows of the chain or nowhere.
+const CHAINED: &str = "SELECT 1 FROM audit \
+     WHERE number > (SELECT number FROM audit_end WHERE one = 1) - 100000 AND tenant = $1 AND actor = $2 \
+     AND action = $3 AND object = $4 AND request = $5 AND outcome = $6 AND at = COALESCE($7, at) LIMIT 1";
+
+/// Makes the row of a deed; when it begins, by the clock of the database.
+pub(super) async fn begin(
+    transaction: &mut Transaction,
+    id: &str,
+    deed: &Deed,
+) -> Result<i64, StoreError> {
+    let row = query(BEGIN).bind(id).bind(&deed.tenant).bind(&deed.actor).bind(&deed.action);
+    let row = row.bind(&deed.object).bind(&deed.request).fetch_one(transaction).await?;
+    Ok(row.try_get("at")?)
+}
+
+/// Says in the row of a deed how it ended, once however often it is said.
+pub(super) async fn end(
+    transaction: &mut Transaction,
+    id: &str,
+    open: &Open,
+    end: &End,
+) -> Result<(), StoreError> {
+    let has_begun = open.at.is_some();
+    if has_begun {
+        let row = query(END).bind(id).bind(&end.object).bind(&end.outcome);
+        if row.execute(&mut *transaction).await? > 0 {
+            return Ok(());
+        }
+    }
+    if (has_begun || open.was_told) && is_chained(transaction, open, end).await? {
+        return Ok(());
+    }
+    if has_begun {
+        // It is in the chain as unknown, or a crash took it: how it ended becomes a row of its own.
+        tracing::error!(request = %open.deed.request, "a deed had no row that could tell its end");
+    }
+    let Deed { tenant, actor, action, request, .. } = &open.deed;
+    let row = query(WHOLE).bind(id).bind(open.at).bind(tenant).bind(actor).bind(action);
+    row.bind(&end.object).bind(request).bind(&end.outcome).execute(transaction).await?;
+    Ok(())
+}
+
+async fn is_chained(
+    transaction: &mut Transaction,
+    open: &Open,
+    end: &End,
+) -> Result<bool, StoreError> {
+    let Deed { tenant, actor, action, request, .. } = &open.deed;
+    let row = query(CHAINED).bind(tenant).bind(actor).bind(action).bind(&end.object);
+    let row = row.bind(request).bind(&end.outcome).bind(open.at).fetch_optional(transaction);
+    Ok(row.await?.is_some())
+}

@@ -1,0 +1,166 @@
+//! Notes of deeds on their way into the database: all that wait are committed together, so that however many requests
+//! there are, they wait for one commit and not for one another.
+
+use std::collections::VecDeque;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use tokio::sync::oneshot;
+
+use super::StoreError;
+use super::database::{Database, Transaction};
+use super::deed::Deed;
+use super::note_rows;
+use super::open_deeds::OpenDeeds;
+
+/// Most of them in one transaction, for whose end others wait.
+const AT_ONCE: usize = 100;
+
+/// Whether a deed is still to be begun; asked once, and where the answer is yes it is.
+pub(super) type Wanted = Box<dyn FnOnce() -> bool + Send + Sync>;
+
+/// What is to be noted.
+pub(super) enum Note {
+    Begin { id: String, deed: Deed },
+    End { id: String },
+}
+
+/// What is heard of a note. A deed that nobody wanted to be begun any more leaves its teller without an answer.
+pub(super) type Told = oneshot::Receiver<Result<(), StoreError>>;
+
+type Teller = oneshot::Sender<Result<(), StoreError>>;
+
+/// A note that waits, and who hears of it.
+struct Waiter {
+    note: Note,
+    is_wanted: Wanted,
+    teller: Teller,
+}
+
+/// Those that wait.
+#[derive(Clone, Default)]
+pub(super) struct Notes {
+    deeds: OpenDeeds,
+    waiting: Arc<Mutex<Waiting>>,
+}
+
+#[derive(Default)]
+struct Waiting {
+    notes: VecDeque<Waiter>,
+    is_written: bool,
+}
+
+impl Notes {
+    pub fn of(deeds: OpenDeeds) -> Notes {
+        Notes { deeds, waiting: Arc::default() }
+    }
+
+    /// Notes it with all that wait meanwhile.
+    pub fn note(&self, database: &Database, note: Note, is_wanted: Wanted) -> Told {
+        let (teller, told) = oneshot::channel();
+        let mut waiting = self.lock();
+        waiting.notes.push_back(Waiter { note, is_wanted, teller });
+        if !std::mem::replace(&mut waiting.is_written, true) {
+            // Whoever asked may leave while the notes of others are written.
+            tokio::spawn(Writing(self.clone()).write(database.clone()));
+        }
+        told
+    }
+
+    /// How many wait for the same tenant to begin something.
+    pub fn waiting(&self, tenant: &str) -> usize {
+        let is_his = |waiter: &&Waiter| match &waiter.note {
+            Note::Begin { deed, .. } => deed.tenant == tenant && !waiter.teller.is_closed(),
+            Note::End { .. } => false,
+        };
+        self.lock().notes.iter().filter(is_his).count()
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Waiting> {
+        self.waiting.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// The one who writes, until nothing waits.
+struct Writing(Notes);
+
+impl Writing {
+    async fn write(self, database: Database) {
+        while let Some(group) = self.next() {
+            let (notes, tellers): (Vec<Note>, Vec<Teller>) = group.into_iter().unzip();
+            let written = self.write_some(&database, &notes).await.map_err(Arc::new);
+            for teller in tellers {
+                // Whoever asked may have left.
+                let _ = teller.send(written.clone().map_err(StoreError::OfMany));
+            }
+        }
+    }
+
+    /// Those that are written next, without those that nobody wants any more.
+    fn next(&self) -> Option<Vec<(Note, Teller)>> {
+        let mut waiting = self.0.lock();
+        let count = waiting.notes.len().min(AT_ONCE);
+        if count == 0 {
+            waiting.is_written = false;
+            return None;
+        }
+        let group = waiting.notes.drain(..count).collect::<Vec<_>>();
+        drop(waiting);
+        let wanted = group
+            .into_iter()
+            .filter_map(|Waiter { note, is_wanted, teller }| is_wanted().then_some((note, teller)));
+        Some(wanted.collect())
+    }
+
+    async fn write_some(&self, database: &Database, notes: &[Note]) -> Result<(), StoreError> {
+        if notes.is_empty() {
+            return Ok(());
+        }
+        let ends = notes.iter().any(|note| matches!(note, Note::End { .. }));
+        // That something begins is on the disk before what is done; how it ended has nothing behind it.
+        let mut transaction =
+            if ends { database.begin().await? } else { database.begin_unflushed().await? };
+        let mut begun = Vec::new();
+        for note in notes {
+            begun.extend(self.write_one(&mut transaction, note).await?);
+        }
+        transaction.commit().await?;
+        for (id, at) in begun {
+            self.0.deeds.began(id, at);
+        }
+        for note in notes {
+            if let Note::End { id } = note {
+                self.0.deeds.forget(id);
+            }
+        }
+        Ok(())
+    }
+
+    /// When a deed begins, where it does.
+    async fn write_one<'a>(
+        &self,
+        transaction: &mut Transaction,
+        note: &'a Note,
+    ) -> Result<Option<(&'a str, i64)>, StoreError> {
+        match note {
+            Note::Begin { id, deed } => {
+                let at = note_rows::begin(transaction, id, deed).await?;
+                Ok(Some((id, at)))
+            }
+            Note::End { id } => {
+                if let Some(open) = self.0.deeds.tell(id)
+                    && let Some(end) = &open.end
+                {
+                    note_rows::end(transaction, id, &open, end).await?;
+                }
+                Ok(None)
+            }
+        }
+    }
+}
+
+impl Drop for Writing {
+    /// Where its runtime ended, the next who notes something goes on.
+    fn drop(&mut self) {
+        self.0.lock().is_written = false;
+    }
+}

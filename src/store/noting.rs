@@ -1,0 +1,155 @@
+//! A request on its way into the audit log: noted before it changes something for the first time, and as long as nothing
+//! was changed its client may leave.
+
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use futures::future::BoxFuture;
+use tokio::sync::watch;
+
+use super::database::BeforeWriting;
+use super::deed::Deed;
+use super::open_deeds::Begun;
+use super::{Store, StoreError};
+
+/// What a request may do, and how far it is.
+#[derive(Clone)]
+pub struct Noting(Arc<Inner>);
+
+struct Inner {
+    store: Store,
+    deed: Deed,
+    stage: Mutex<Stage>,
+    /// Of several that want to write first, one notes it.
+    alone: tokio::sync::Mutex<()>,
+    has_left: watch::Sender<bool>,
+}
+
+enum Stage {
+    NothingDone,
+    /// Its note is written at this moment.
+    Noted,
+    Begun(Begun),
+    Ended,
+    /// Its client left before anything was done.
+    Left,
+}
+
+impl Store {
+    /// A request that may change something.
+    pub fn noting(&self, deed: Deed) -> Noting {
+        Noting(Arc::new(Inner {
+            store: self.clone(),
+            deed,
+            stage: Mutex::new(Stage::NothingDone),
+            alone: tokio::sync::Mutex::default(),
+            has_left: watch::Sender::new(false),
+        }))
+    }
+
+    /// The same store in the hand of a tenant that asks: it takes its turns with other tenants when it writes, after what
+    /// it does was noted, where it is to be.
+    pub fn asked_by(&self, tenant: &str, noting: Option<&Noting>) -> Store {
+        let database = self.database.plainly(tenant);
+        let database = match noting {
+            Some(noting) => database.after(Arc::new(noting.clone())),
+            None => database,
+        };
+        Store { database, ..self.of_tenant(tenant) }
+    }
+}
+
+impl BeforeWriting for Noting {
+    fn prepare(&self) -> BoxFuture<'_, Result<(), StoreError>> {
+        Box::pin(self.begin())
+    }
+}
+
+impl Noting {
+    /// Notes that it begins, unless that was noted.
+    pub async fn begin(&self) -> Result<(), StoreError> {
+        let _alone = self.0.alone.lock().await;
+        if !matches!(*self.0.lock(), Stage::NothingDone) {
+            return Ok(());
+        }
+        self.0.refuse_too_many()?;
+        let own = self.0.clone();
+        let is_wanted = Box::new(move || own.is_noted_now());
+        let begun = self.0.store.begin_wanted(&self.0.deed, is_wanted).await;
+        let mut stage = self.0.lock();
+        match begun {
+            Ok(begun) => {
+                *stage = Stage::Begun(begun);
+                Ok(())
+            }
+            Err(error) => {
+                *stage = Stage::NothingDone;
+                Err(error)
+            }
+        }
+    }
+
+    /// The client has gone. False where something was begun, which goes on.
+    pub fn leave(&self) -> bool {
+        self.0.has_left.send_replace(true);
+        let mut stage = self.0.lock();
+        let may_leave = matches!(*stage, Stage::NothingDone | Stage::Left);
+        if may_leave {
+            *stage = Stage::Left;
+        }
+        may_leave
+    }
+
+    /// Until the client has gone.
+    pub async fn left(&self) {
+        // Nobody drops the sender before this.
+        let _ = self.0.has_left.subscribe().wait_for(|left| *left).await;
+    }
+
+    /// Notes how it ended. What changed nothing is noted soon, where it `is_told` at all; an error means that it cannot be.
+    pub async fn end(&self, object: &str, outcome: &str, is_told: bool) -> Result<(), StoreError> {
+        let stage = std::mem::replace(&mut *self.0.lock(), Stage::Ended);
+        match stage {
+            Stage::Begun(begun) => {
+                if let Err(error) = self.0.store.end_deed(begun, object, outcome).await {
+                    tracing::error!(%error, "the audit log is told later how a request ended");
+                }
+                Ok(())
+            }
+            Stage::NothingDone if is_told => {
+                let deed = Deed { object: object.to_owned(), ..self.0.deed.clone() };
+                self.0.store.deed_without_effect(deed, outcome)
+            }
+            Stage::NothingDone | Stage::Noted | Stage::Ended | Stage::Left => Ok(()),
+        }
+    }
+
+    /// What it is done to, as far as its address says so.
+    pub fn object(&self) -> &str {
+        &self.0.deed.object
+    }
+}
+
+impl Inner {
+    fn refuse_too_many(&self) -> Result<(), StoreError> {
+        let (most, tenant) = (self.store.most_waiting, &self.deed.tenant);
+        let writing = self.store.database.plainly(tenant).waiting();
+        match self.store.notes.waiting(tenant) + writing >= most {
+            true => Err(StoreError::Busy { most }),
+            false => Ok(()),
+        }
+    }
+
+    /// Whether somebody is there for whom it is begun. From now on it is.
+    fn is_noted_now(&self) -> bool {
+        let mut stage = self.lock();
+        let is_wanted = matches!(*stage, Stage::NothingDone);
+        if is_wanted {
+            *stage = Stage::Noted;
+        }
+        is_wanted
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Stage> {
+        self.stage.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
