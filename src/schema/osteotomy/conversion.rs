@@ -3,7 +3,7 @@
 use mechanics::mesh::Vector;
 use mechanics::osteotomy::contact::Bridge;
 use mechanics::osteotomy::{
-    Cut, CutError, CutSide, Extent, LabelError, Osteotomy, Plane, RuleError, SegmentRule, Side,
+    Cut, CutError, CutSide, Extent, Osteotomy, Plane, RuleError, SegmentRule, Side,
 };
 
 use super::document::{CutDocument, CutSegmentDocument, OsteotomyDocument};
@@ -11,7 +11,6 @@ use crate::schema::Triple;
 use crate::schema::code::ErrorCode;
 use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::limits::Limits;
-use crate::schema::wire::problem::Problem;
 
 /// Beside an osteotomy tissue is lifted; with cells of 4 mm this frees one row of nodes on either side.
 const FREE_BAND_MM: f64 = 3.0;
@@ -84,11 +83,6 @@ fn code_of(error: &RuleError) -> ErrorCode {
         RuleError::Unused { .. } => ErrorCode::UnusedCut,
         RuleError::BoundedWithoutSeed { .. } => ErrorCode::MissingField,
     }
-}
-
-/// Why the bone of a scan holds no such segments.
-pub fn not_found(error: &LabelError, at: &Pointer) -> Problem {
-    Problem::at(at, ErrorCode::SegmentNotFound, error.to_string())
 }
 
 /// Refuses segments that bone still holds to what a cut should part them from.
@@ -185,6 +179,7 @@ impl CutSegmentDocument {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::schema::wire::problem::Problem;
     use crate::schema::wire::strict;
 
     fn read(text: &str, mirrored_axes: bool) -> Result<PlannedOsteotomy, Vec<(String, ErrorCode)>> {
