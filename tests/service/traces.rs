@@ -17,7 +17,9 @@ fn attributes(pairs: &[(&str, &str)]) -> BTreeMap<String, String> {
     pairs.iter().map(|(name, value)| ((*name).to_owned(), (*value).to_owned())).collect()
 }
 
-#[tokio::test]
+/// The collector answers on a thread of its own while this one waits for the end: a server that ends before it is answered
+/// closes its connection, and what it sent is lost now and then.
+#[tokio::test(flavor = "multi_thread")]
 async fn a_request_a_job_and_its_phases_are_spans_of_the_clients_trace() {
     let mut collector = Collector::start().await;
     let folder = TempDir::new().unwrap();
@@ -100,7 +102,7 @@ async fn a_client_that_does_not_sample_is_followed() {
     assert!(collector.told.borrow().spans.iter().all(|span| span.trace != TRACE));
 }
 
-/// The collector answers on a thread of its own while this one waits for the end.
+/// The collector answers on a thread of its own, as above.
 #[tokio::test(flavor = "multi_thread")]
 async fn what_has_ended_is_told_before_the_process_ends() {
     let mut collector = Collector::start().await;
