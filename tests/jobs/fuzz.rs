@@ -104,7 +104,8 @@ const CASE: &str = r#"{"schema":1,"name":"a","units":"mm","frame":"LPS","volume"
     "segments":[{"name":"jaw","nodes":{"array":"tag","value":2}}],"fixed":[{"any":[{"node_set":"skull"},{"surface":"b","within_mm":2.5}]}],
     "materials":{"*":{"young_modulus_kpa":15,"poisson_ratio":0.46}},"landmarks":{"chin":[1,2.5e1,-3]}}"#;
 const PLAN: &str = r#"{"segments":[{"name":"jaw","translation_mm":[1,0,0],"rotation_deg":[0,0,3],
-    "pivot_mm":[0,40,-50]}],"loads":[{"gravity_m_per_s2":[0,0,-9.81]}]}"#;
+    "pivot_mm":[0,40,-50]}],"loads":[{"gravity_m_per_s2":[0,0,-9.81]}],
+    "osteotomy":{"cuts":[{"name":"a","point_mm":[1,2,3],"normal":[0,0,1]}],"segments":[{"name":"jaw","below":["a"]}]}}"#;
 const PREDICT: &str = r#"{"kind":"predict","case":"c","method":"fem_linear","element":"auto",
     "materials":{"*":{"young_modulus_kpa":15,"poisson_ratio":0.46}},"outputs":["skin.vtp"],
     "budget":{"wall_s":60,"memory_mb":4000},"tags":["t"]}"#;
@@ -119,6 +120,11 @@ const OPTIMISE: &str = r#"{"kind":"optimise","case":"c","targets":[{"landmark":"
 const COMPARE: &str =
     r#"{"kind":"compare","prediction":{"job":"j"},"actual":{"mesh":"m"},"samples_per_mm2":1}"#;
 const RESPONSE: &str = r#"{"kind":"response","case":"c","segments":["jaw"]}"#;
+const MESH: &str = r#"{"kind":"mesh","scan":"s","thresholds_hu":{"skin":-300,"bone":250},"frame":"RAS",
+    "osteotomy":{"cuts":[{"name":"a","point_mm":[1,2,3],"normal":[0,-0.2,1]},
+    {"name":"b","point_mm":[0,0,0],"normal":[0,0,1],"corners_mm":[[0,0,0],[9,0,0],[0,9,0]],"kerf_mm":1}],
+    "segments":[{"name":"jaw","below":["a"],"above":["b"],"seeds_mm":[[1,2,4]]}],"free_band_mm":3},
+    "size":{"finest_mm":2,"coarsening":4},"scan_ends_fixed":false,"budget":{"wall_s":60},"tags":["t"]}"#;
 
 #[test]
 fn any_document_is_answered() {
@@ -131,6 +137,7 @@ fn any_document_is_answered() {
         ("optimise", OPTIMISE),
         ("compare", COMPARE),
         ("response", RESPONSE),
+        ("mesh", MESH),
     ];
     for (name, seed) in seeds {
         assert!(answers::document(name, seed.as_bytes()), "{name} is no document");

@@ -2,8 +2,8 @@
 
 use facies::schema::wire::strict;
 use facies::schema::{
-    CaseDocument, CompareDocument, Limits, OptimiseDocument, PlanDocument, PredictDocument,
-    ResponseDocument, StudyDocument,
+    CaseDocument, CompareDocument, Limits, MeshingDocument, OptimiseDocument, PlanDocument,
+    PredictDocument, ResponseDocument, StudyDocument,
 };
 use mechanics::format::{FormatError, ReadLimits, read};
 use serde::Serialize;
@@ -40,6 +40,7 @@ pub fn document(name: &str, text: &[u8]) -> bool {
         "optimise" => parsed::<OptimiseDocument>(text),
         "compare" => parsed::<CompareDocument>(text),
         "response" => parsed::<ResponseDocument>(text),
+        "mesh" => parsed::<MeshingDocument>(text),
         _ => panic!("no document is called {name}"),
     }
 }
