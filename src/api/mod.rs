@@ -20,6 +20,7 @@ mod error;
 mod error_page;
 mod events;
 mod examples;
+mod foreseen;
 mod gone;
 mod guard;
 mod headers;

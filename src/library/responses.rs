@@ -14,7 +14,7 @@ use crate::schema::predict::document::{OutputName, USUAL_RANGE_MM};
 use crate::schema::predict::result::NOT_A_DEVICE;
 use crate::schema::response::ResponseDescription;
 use crate::schema::{CaseDocument, WarningDocument};
-use crate::store::{Store, StoreError};
+use crate::store::{CaseResponses, Store, StoreError};
 use mechanics::format::{self, Mesh, ReadLimits, WriteError};
 use mechanics::mesh::{TriangleSurface, Vector};
 use mechanics::plan::RigidMovement;
@@ -197,7 +197,18 @@ impl Responses {
         case: &str,
         job: Option<&str>,
     ) -> Result<FoundResponse, MissingResponse> {
-        let built = self.store.responses(case).await?.ok_or(MissingResponse::NoCase)?;
+        let built = self.store.responses(case).await?;
+        self.find_among(built, case, job).await
+    }
+
+    /// The same where the responses of the case have been looked up.
+    pub async fn find_among(
+        &self,
+        built: Option<CaseResponses>,
+        case: &str,
+        job: Option<&str>,
+    ) -> Result<FoundResponse, MissingResponse> {
+        let built = built.ok_or(MissingResponse::NoCase)?;
         if let Some(job) = job
             && !built.jobs.iter().any(|built| built == job)
         {
