@@ -7,6 +7,8 @@ import sys
 
 import numpy as np
 
+import surfaces
+
 
 def gmsh(algorithm):
     """Gmsh, the surface kept as it is; its own optimisation on, as by default."""
@@ -19,12 +21,9 @@ def gmsh(algorithm):
         gmsh.option.setNumber("General.NumThreads", 2)
         gmsh.option.setNumber("Mesh.Algorithm3D", algorithm)
         gmsh.option.setNumber("Mesh.MeshSizeMax", cell)
-        gmsh.model.addDiscreteEntity(2, 1)
-        numbers = np.arange(1, len(points) + 1)
-        gmsh.model.mesh.addNodes(2, 1, numbers, points.ravel())
-        gmsh.model.mesh.addElementsByType(1, 2, [], (triangles + 1).ravel())
-        gmsh.model.geo.addSurfaceLoop([1], 1)
-        gmsh.model.geo.addVolume([1], 1)
+        all_shells = enumerate(surfaces.shells(points, triangles))
+        loops = [discrete_shell(gmsh, number + 1, points, shell) for number, shell in all_shells]
+        gmsh.model.geo.addVolume(loops, 1)
         gmsh.model.geo.synchronize()
         gmsh.model.mesh.generate(3)
         tags, places, _ = gmsh.model.mesh.getNodes()
@@ -34,6 +33,15 @@ def gmsh(algorithm):
         return place, cells.astype(np.int64)
 
     return run
+
+
+def discrete_shell(gmsh, number, points, triangles):
+    """A surface of its own for each shell: HXT tells volumes apart by their surfaces."""
+    gmsh.model.addDiscreteEntity(2, number)
+    used = np.unique(triangles)
+    gmsh.model.mesh.addNodes(2, number, used + 1, points[used].ravel())
+    gmsh.model.mesh.addElementsByType(number, 2, [], (triangles + 1).ravel())
+    return gmsh.model.geo.addSurfaceLoop([number])
 
 
 def tetgen(points, triangles, holes, cell):

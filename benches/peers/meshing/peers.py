@@ -153,21 +153,15 @@ def write_surface(path, nodes, cells):
 
 
 def voids(points, triangles):
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
-    pairs = np.vstack([triangles[:, [0, 1]], triangles[:, [1, 2]]])
-    graph = coo_array((np.ones(len(pairs)), pairs.T), shape=(len(points),) * 2)
-    _, shell = connected_components(graph, directed=False)
-    a, b, c = (points[triangles[:, corner]] for corner in range(3))
-    six_volumes = np.einsum("ij,ij->i", a, np.cross(b, c))
+    """A point in each: beside its largest triangle."""
     found = []
-    for number in range(shell.max() + 1):
-        own = np.flatnonzero(shell[triangles[:, 0]] == number)
-        if six_volumes[own].sum() < 0:
-            largest = own[np.argmax(np.linalg.norm(np.cross(b - a, c - a)[own], axis=1))]
-            normal = np.cross(b - a, c - a)[largest]
-            found.append((a + b + c)[largest] / 3 + 0.02 * normal / np.linalg.norm(normal))
+    for shell in surfaces.shells(points, triangles):
+        if surfaces.enclosed(points, shell) < 0:
+            a, b, c = (points[shell[:, corner]] for corner in range(3))
+            normals = np.cross(b - a, c - a)
+            sizes = np.linalg.norm(normals, axis=1)
+            largest = np.argmax(sizes)
+            found.append((a + b + c)[largest] / 3 + 0.02 * normals[largest] / sizes[largest])
     return np.array(found).reshape(-1, 3)
 
 

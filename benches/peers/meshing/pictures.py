@@ -47,7 +47,7 @@ def drawn(axes, title, polygons, values, limits, colours):
 
 def main():
     *meshes, output = sys.argv[1:]
-    figure, grid = plt.subplots(2, len(meshes), figsize=(3.4 * len(meshes), 5.6), dpi=140, squeeze=False)
+    figure, grid = plt.subplots(2, len(meshes), figsize=(3.4 * len(meshes), 5.0), dpi=115, squeeze=False)
     for column, path in enumerate(meshes):
         nodes, cells, _ = vtu.read(path)
         polygons, crossed = slice_of(nodes, cells, 0, float(np.median(nodes[:, 0])) + 0.13)

@@ -1,6 +1,8 @@
 """Triangles of meshes and iso-surfaces, points on them, and distances between the two."""
 
 import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 FACES = np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]])
@@ -16,6 +18,26 @@ def boundary(cells):
     _, first, counts = np.unique(keys, return_index=True, return_counts=True)
     alone = np.sort(first[counts == 1])
     return faces[alone], alone // 4
+
+
+def shells(points, triangles):
+    """Triangles that hang together over edges, the shell of the largest volume first; those of voids have a negative one.
+
+    Shells may share a node: where a void touches the outside."""
+    edges = np.sort(np.vstack([triangles[:, [i, (i + 1) % 3]] for i in range(3)]), axis=1).astype(np.int64)
+    order = np.argsort(edges[:, 0] * len(points) + edges[:, 1], kind="stable")
+    of = np.tile(np.arange(len(triangles)), 3)[order]
+    same = (edges[order][1:] == edges[order][:-1]).all(axis=1)
+    pairs = np.stack([of[1:][same], of[:-1][same]])
+    graph = coo_array((np.ones(pairs.shape[1]), pairs), shape=(len(triangles),) * 2)
+    _, shell = connected_components(graph, directed=False)
+    found = [triangles[shell == number] for number in range(shell.max() + 1)]
+    return sorted(found, key=lambda one: -enclosed(points, one))
+
+
+def enclosed(points, triangles):
+    a, b, c = (points[triangles[:, corner]] for corner in range(3))
+    return float(np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6)
 
 
 def volume(nodes, cells):

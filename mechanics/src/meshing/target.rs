@@ -15,7 +15,7 @@ use crate::domain::{Coverage, Domain};
 /// The finest cells of the first scale along the longest side of the body.
 const FIRST: f64 = 32.0;
 /// A number so near to the target, as a logarithm, is met.
-const NEAR: f64 = 0.06;
+const NEAR: f64 = 0.03;
 const MOST_ROUNDS: usize = 10;
 /// By which power of the scale the number falls: 3 for cells all through a body, 2 for cells along its boundary.
 const SLOPES: [f64; 2] = [2.0, 3.2];
