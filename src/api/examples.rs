@@ -8,6 +8,8 @@ pub const BONE: &str = "0199d3a0-0000-7000-8000-000000000002";
 pub const CASE: &str = "0199d3a0-0000-7000-8000-000000000003";
 pub const PLAN: &str = "0199d3a0-0000-7000-8000-000000000004";
 pub const SCAN: &str = "0199d3a0-0000-7000-8000-000000000006";
+const SKIN: &str = "0199d3a0-0000-7000-8000-000000000007";
+const SKULL: &str = "0199d3a0-0000-7000-8000-000000000008";
 pub const JOB: &str = "0199d3a0-0000-7000-8000-000000000005";
 
 /// Writes examples beside the schema of every JSON body of the operations.
@@ -119,6 +121,18 @@ fn predictions_and_plans() -> Vec<(&'static str, Value)> {
                     "segments": [{"name": "maxilla", "below": ["le-fort-1"]}],
                 },
                 "size": {"tetrahedra": 100_000},
+            }),
+        ),
+        (
+            "mesh between surfaces",
+            json!({
+                "kind": "mesh",
+                "surfaces": {"skin": SKIN, "bone": SKULL},
+                "osteotomy": {
+                    "cuts": [{"name": "le-fort-1", "point_mm": [60, 55, 60], "normal": [0, -0.24, 1]}],
+                    "segments": [{"name": "maxilla", "below": ["le-fort-1"]}],
+                },
+                "size": {"tetrahedra": 20_000},
             }),
         ),
         ("response", json!({"kind": "response", "case": CASE, "segments": ["mandible"]})),

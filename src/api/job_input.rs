@@ -134,10 +134,14 @@ async fn of_optimisation(service: &Service, mut spec: OptimiseDocument) -> ApiRe
     new.with(&JobInput::Optimise(input))
 }
 
-/// A meshing: its scan, checked.
-async fn of_meshing(service: &Service, spec: MeshingDocument) -> ApiResult<NewJob> {
-    require_mesh(service, "/scan", &spec.scan).await?;
-    let (mesh_ids, tags) = (vec![spec.scan.clone()], spec.tags.clone());
+/// A meshing: its scan or its surfaces, checked.
+async fn of_meshing(service: &Service, mut spec: MeshingDocument) -> ApiResult<NewJob> {
+    let mut mesh_ids = Vec::new();
+    for (at, id) in spec.mesh_references_mut() {
+        require_mesh(service, at.as_str(), id).await?;
+        mesh_ids.push(id.clone());
+    }
+    let tags = spec.tags.clone();
     let input = MeshingInput { job: None, queue_s: None, spec };
     let prepare = |input: &MeshingInput, sources: &dyn MeshSource, limits: &Limits| {
         Ok(input.prepare(sources, limits)?.spec_hash)

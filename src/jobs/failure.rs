@@ -146,9 +146,10 @@ fn class_of(error: &AnatomyError) -> ErrorClass {
             ErrorClass::Numerical
         }
         AnatomyError::Meshing(MeshingError::Cancelled) => ErrorClass::Cancelled,
-        AnatomyError::Image(_) | AnatomyError::Bone(_) | AnatomyError::Meshing(_) => {
-            ErrorClass::Input
-        }
+        AnatomyError::Image(_)
+        | AnatomyError::Surface(_)
+        | AnatomyError::Bone(_)
+        | AnatomyError::Meshing(_) => ErrorClass::Input,
     }
 }
 

@@ -137,6 +137,7 @@ error_codes! {
     NotPositiveDefinite 422 "not-positive-definite" REFUSED,
     NothingHeld 422 "nothing-held" REFUSED,
     NoTissue 422 "no-tissue" REFUSED,
+    NoInside 422 "no-inside" REFUSED,
     OutsideImage 422 "outside-image" REFUSED,
     PlanConflict 422 "plan-conflict" REFUSED,
     PlanNotRigid 422 "plan-not-rigid" REFUSED,

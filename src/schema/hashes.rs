@@ -115,10 +115,12 @@ pub fn compare_hash(spec: &CompareDocument, content_of: &dyn Fn(&str) -> Option<
     hash(json!({ "spec": to_value(&spec) }))
 }
 
-/// The hash of a meshing: the content of the scan in place of its id, tags left out.
-pub fn meshing_hash(spec: &MeshingDocument, scan: &str) -> String {
+/// The hash of a meshing: the contents of the scan or the surfaces in place of their ids, tags left out.
+pub fn meshing_hash(spec: &MeshingDocument, content_of: &dyn Fn(&str) -> Option<String>) -> String {
     let mut spec = spec.clone();
-    scan.clone_into(&mut spec.scan);
+    for (_, id) in spec.mesh_references_mut() {
+        replace(id, content_of);
+    }
     hash(json!({ "spec": spec.content() }))
 }
 

@@ -105,6 +105,7 @@ impl From<&AnatomyError> for ErrorCode {
             AnatomyError::Image(_) | AnatomyError::Meshing(MeshingError::Empty { .. }) => {
                 ErrorCode::NoTissue
             }
+            AnatomyError::Surface(_) => ErrorCode::NoInside,
             AnatomyError::Bone(_) => ErrorCode::SegmentNotFound,
             AnatomyError::Meshing(MeshingError::TooMany { .. } | MeshingError::TooFine { .. }) => {
                 ErrorCode::MeshLimits

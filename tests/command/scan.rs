@@ -5,7 +5,7 @@ use std::fs;
 use serde_json::{Value, json};
 
 use crate::program::{facies, path, result, text};
-use crate::samples::ball_ct;
+use crate::samples::{BONE_BALL, SKIN_BALL, ball_ct, ball_stl};
 
 fn plan() -> Value {
     json!({
@@ -51,6 +51,36 @@ fn a_scan_and_a_plan_with_its_cuts_give_a_predicted_skin_in_one_command() {
         );
     };
     ["volume.vtu", "bone-1.vtp"].into_iter().for_each(same);
+}
+
+#[test]
+fn a_skin_and_a_bone_give_what_their_scan_gives_and_segments_need_no_cuts() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = |name: &str| folder.path().join(name);
+    fs::write(file("skin.stl"), ball_stl(SKIN_BALL)).unwrap();
+    fs::write(file("bone.stl"), ball_stl(BONE_BALL)).unwrap();
+    fs::write(file("plan.json"), plan().to_string()).unwrap();
+    let (skin, bone, plan) = (file("skin.stl"), file("bone.stl"), file("plan.json"));
+    let surfaces = ["--skin", path(&skin), "--bone", path(&bone), "--tetrahedra", "20000"];
+    let (out, whole) = (file("out"), file("whole"));
+    let rest = ["--plan", path(&plan), "--out", path(&out)];
+    let done = facies(&[&["predict"], &surfaces[..], &rest[..]].concat());
+    assert_eq!(done.status.code(), Some(0), "{}", text(&done.stderr));
+    let moved = result(&out).statistics.unwrap().skin.nodes;
+    assert!((2.0..4.0).contains(&moved.max), "{moved:?}");
+
+    // Bone that is a segment of its own needs no cuts.
+    let named = format!("skull={}", path(&bone));
+    let asked = ["mesh", "--skin", path(&skin), "--bone", &named, "--tetrahedra", "20000"];
+    let done = facies(&[&asked[..], &["--out", path(&whole)]].concat());
+    assert_eq!(done.status.code(), Some(0), "{}", text(&done.stderr));
+    let case: Value = serde_json::from_slice(&fs::read(whole.join("case.json")).unwrap()).unwrap();
+    assert_eq!(case["case"]["segments"][0]["name"], "skull");
+    assert_eq!(case["case"]["bones"], json!([{"name": "skull", "mesh": "bone-1.vtp"}]));
+
+    let alone = facies(&["mesh", "--bone", path(&bone), "--out", path(&out)]);
+    assert_eq!(alone.status.code(), Some(2));
+    assert!(text(&alone.stderr).contains("--skin FILE"), "{}", text(&alone.stderr));
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Anatomical model: from a CT and the cuts of an operation to a mesh of the soft tissue with its node sets.
+//! Anatomical model: from a CT or surfaces and the cuts of an operation to a mesh of the soft tissue with its node sets.
 //!
 //! [`part_bone`] parts bone into segments ([`osteotomy`](crate::osteotomy)); [`build`] does the rest: the tissue of a
 //! [`domain`](crate::domain), between skin and bone, is meshed ([`meshing`](crate::meshing)), and each of its nodes gets a
@@ -7,12 +7,13 @@
 
 mod face;
 mod size;
+pub mod surfaces;
 
 use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 
-use crate::domain::{Boundary, Domain, ImageDomainError, ImageOptions};
+use crate::domain::{Boundary, Domain, ImageDomainError, ImageOptions, SurfaceDomainError};
 use crate::image::ImageVolume;
 use crate::mesh::{Frame, TriangleSurface, Vector, VolumeMesh, Warning};
 use crate::meshing::{MeshingError, MeshingReport, MeshingSettings, TissueMesh, mesh};
@@ -27,9 +28,10 @@ use crate::progress::Progress;
 /// Bone this far behind a node, in lengths of a voxel's diagonal, is the bone that the node lies on.
 const BEHIND: f64 = 1.5;
 
-/// How a scan becomes a mesh. Lengths in mm.
+/// How a scan or surfaces become a mesh. Lengths in mm.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct AnatomyRules {
+    /// Of scans.
     pub image: ImageOptions,
     pub osteotomy: Osteotomy,
     /// The sizes of cells are those of the settings, refined around segments that move.
@@ -67,11 +69,13 @@ pub struct Anatomy {
     pub warnings: Vec<Warning>,
 }
 
-/// Why a scan gives no mesh.
+/// Why a scan or surfaces give no mesh.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum AnatomyError {
     #[error(transparent)]
     Image(#[from] ImageDomainError),
+    #[error(transparent)]
+    Surface(#[from] SurfaceDomainError),
     #[error(transparent)]
     Bone(#[from] LabelError),
     #[error(transparent)]
@@ -81,8 +85,12 @@ pub enum AnatomyError {
 /// Parts the bone of a scan into its segments.
 pub fn part_bone(scan: &ImageVolume, rules: &AnatomyRules) -> Result<PartedBone, AnatomyError> {
     let bone = BoneImage { image: scan, threshold: rules.image.bone_threshold };
-    let labelled = label(&bone, &rules.osteotomy)?;
-    let surface = |segment| label_surface(&bone, &rules.osteotomy, &labelled.labels, segment);
+    parted(&bone, &rules.osteotomy)
+}
+
+fn parted(bone: &BoneImage<'_>, osteotomy: &Osteotomy) -> Result<PartedBone, AnatomyError> {
+    let labelled = label(bone, osteotomy)?;
+    let surface = |segment| label_surface(bone, osteotomy, &labelled.labels, segment);
     let surfaces = (0..labelled.segments.len()).into_par_iter().map(surface).collect();
     Ok(PartedBone { labelled, surfaces })
 }

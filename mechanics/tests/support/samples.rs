@@ -414,3 +414,41 @@ pub fn ball_ct() -> Vec<u8> {
     let image = ImageVolume::new([30; 3], placement, voxels).unwrap();
     mechanics::format::nrrd::write(&image, Frame::Lps)
 }
+
+/// A ball in mm.
+#[derive(Clone, Copy)]
+pub struct SampleBall {
+    pub centre: [f64; 3],
+    pub radius: f64,
+}
+
+/// The balls of `ball_ct`.
+pub const SKIN_BALL: SampleBall = SampleBall { centre: [60.0; 3], radius: 50.0 };
+pub const BONE_BALL: SampleBall = SampleBall { centre: [60.0, 55.0, 60.0], radius: 30.0 };
+
+/// The surface of a ball as text STL, of 40 rings of 80 triangles or less, within .2 % of its radius.
+pub fn ball_stl(ball: SampleBall) -> Vec<u8> {
+    const RINGS: usize = 40;
+    let place = |ring: usize, step: usize| {
+        let angle = |part: usize| part as f64 * std::f64::consts::PI / RINGS as f64;
+        let ((sin, cos), (east, north)) = (angle(ring).sin_cos(), angle(2 * step).sin_cos());
+        let [x, y, z] = [sin * north, sin * east, cos];
+        let [a, b, c] = ball.centre;
+        let at = [a + ball.radius * x, b + ball.radius * y, c + ball.radius * z];
+        format!("vertex {:.6} {:.6} {:.6}\n", at[0], at[1], at[2])
+    };
+    let mut text = "solid ball\n".to_owned();
+    for (ring, step) in (0..RINGS).flat_map(|ring| (0..RINGS).map(move |step| (ring, step))) {
+        let next = (step + 1) % RINGS;
+        let corners = [(ring, step), (ring + 1, step), (ring + 1, next), (ring, next)];
+        let [a, b, c, d] = corners.map(|(ring, step)| place(ring, step));
+        // At the poles one of the two is a line.
+        for [p, q, r] in
+            [[&a, &b, &c], [&a, &c, &d]].into_iter().filter(|[p, q, r]| q != r && p != r)
+        {
+            text += &format!("facet normal 0 0 0\nouter loop\n{p}{q}{r}endloop\nendfacet\n");
+        }
+    }
+    text += "endsolid ball\n";
+    text.into_bytes()
+}

@@ -1,7 +1,8 @@
-//! The job of a meshing: the scan parted and meshed, its files written.
+//! The job of a meshing: the scan or the surfaces parted and meshed, the files written.
 
 use std::sync::Arc;
 
+use super::body::PartedBody;
 use super::case::{bone_file, case_of};
 use super::input::{MeshingInput, PreparedMeshing};
 use crate::jobs::clock::Observed;
@@ -18,8 +19,7 @@ use crate::schema::predict::document::OutputName;
 use crate::schema::predict::keep::MadeName;
 use crate::schema::predict::result::{FileDocument, ResultDocument};
 use crate::schema::{Faults, Pointer};
-use mechanics::anatomy::{Anatomy, AnatomyError, build, part_bone};
-use mechanics::domain::ImageDomain;
+use mechanics::anatomy::{Anatomy, AnatomyError, build};
 use mechanics::format::vtk::{vtp, vtu};
 use mechanics::format::{SurfaceOutput, VolumeOutput};
 use mechanics::mesh::Frame;
@@ -30,7 +30,7 @@ use mechanics::progress::{Phase, Progress};
 /// The picture of slices through the mesh.
 pub const SLICES_FILE: &str = "slices.svg";
 
-/// Meshes a scan and writes its files.
+/// Meshes a scan or what lies between surfaces, and writes its files.
 pub fn meshing_job(
     input: &MeshingInput,
     place: &Workplace,
@@ -38,13 +38,13 @@ pub fn meshing_job(
 ) -> Result<JobOutput, JobError> {
     let clock = Observed::start(progress, input.spec.budget.wall_s);
 
-    // 1. The document and the scan.
+    // 1. The document, and the scan or the surfaces.
     let prepared = input.prepare(place.sources, place.limits)?;
     clock.check()?;
 
     // 2. The bone, parted.
-    let (image, rules) = (&prepared.image, &prepared.rules);
-    let bone = part_bone(image, rules).map_err(JobError::Anatomy)?;
+    let rules = &prepared.rules;
+    let PartedBody { domain, bone, warnings } = prepared.body.part(rules)?;
     let mut faults = Faults::default();
     let at = Pointer::root().key("spec").key("osteotomy");
     refuse_bridges(&bone.labelled.bridges, &rules.osteotomy, &at, &mut faults);
@@ -52,12 +52,11 @@ pub fn meshing_job(
     clock.check()?;
 
     // 3. The mesh.
-    let domain = ImageDomain::new(image, &rules.image);
-    let domain = domain.map_err(|error| JobError::Anatomy(error.into()))?;
-    let anatomy = build(&domain, bone, rules, &clock).map_err(|error| match error {
+    let mut anatomy = build(&*domain, bone, rules, &clock).map_err(|error| match error {
         AnatomyError::Meshing(MeshingError::Cancelled) => clock.stopped(),
         other => JobError::Anatomy(other),
     })?;
+    anatomy.warnings.splice(0..0, warnings);
     clock.check()?;
 
     // 4. Files.
@@ -90,7 +89,7 @@ fn publish(
     let frame = prepared.frame;
     let origin = Origin {
         spec_hash: prepared.spec_hash.clone(),
-        inputs: vec![prepared.scan.to_input("scan")],
+        inputs: prepared.meshes.iter().map(|(role, mesh)| mesh.to_input(role)).collect(),
         frame,
         queue_s: input.queue_s,
     };
@@ -104,7 +103,8 @@ fn publish(
     let picture = slices_picture(anatomy, frame)?;
     folder.add_file(SLICES_FILE, OutputName::ClassesSvg.media_type(), picture.as_bytes())?;
     let case = case_of(anatomy, OutputName::VolumeVtu.file_name(), frame);
-    let warnings = prepared.scan.warnings.iter().chain(&anatomy.warnings);
+    let of_meshes = prepared.meshes.iter().flat_map(|(_, mesh)| &mesh.warnings);
+    let warnings = of_meshes.chain(&anatomy.warnings);
     let mut provenance = origin.provenance(clock);
     provenance.mesh = Some(mesh_summary(&anatomy.volume, &quality(&anatomy.volume)));
     let meshing = Some(MeshingResultDocument::new(anatomy, case));

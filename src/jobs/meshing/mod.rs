@@ -1,5 +1,6 @@
-//! Meshing: from an image to a volume mesh with its node sets, and the case that it is made for.
+//! Meshing: from an image or surfaces to a volume mesh with its node sets, and the case that it is made for.
 
+mod body;
 mod case;
 mod input;
 mod job;

@@ -1,12 +1,14 @@
-//! The spec of a meshing: the scan, what of it is tissue and bone, what is cut, and how fine the mesh is.
+//! The spec of a meshing: the scan or the surfaces, what of them is tissue and bone, what is cut, and how fine the mesh is.
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use utoipa::ToSchema;
 
+use super::surfaces::SurfacesDocument;
 use crate::schema::case::document::FrameName;
+use crate::schema::code::ErrorCode;
 use crate::schema::osteotomy::OsteotomyDocument;
-use crate::schema::osteotomy::conversion::PlannedOsteotomy;
+use crate::schema::osteotomy::conversion::{PlannedOsteotomy, given_segments};
 use crate::schema::plan::document::PlanDocument;
 use crate::schema::predict::budget::BudgetDocument;
 use crate::schema::wire::canonical;
@@ -26,7 +28,8 @@ pub enum MeshingKind {
     Mesh,
 }
 
-/// A volume mesh of the soft tissue in a CT, with a node set for each bone segment that an operation cuts loose.
+/// A volume mesh of the soft tissue in a CT or between surfaces, with a node set for each bone segment that an operation
+/// cuts loose: exactly one of `scan` and `surfaces`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MeshingDocument {
@@ -34,14 +37,20 @@ pub struct MeshingDocument {
     #[schema(required)]
     pub kind: MeshingKind,
     /// The CT: the id of an uploaded image, in Hounsfield units.
-    pub scan: String,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub scan: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub surfaces: Option<SurfacesDocument>,
+    /// Of a scan.
     #[serde(default)]
     pub thresholds_hu: ThresholdsDocument,
-    /// Absent: no bone is cut, and all of it is fixed.
+    /// Absent: no bone is cut, and all of it is fixed that is no segment already.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub osteotomy: Option<OsteotomyDocument>,
-    /// The frame of the osteotomy. Default: that of the scan.
+    /// The frame of the osteotomy, and of surfaces whose files name none. Default: that of the scan or the surfaces.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub frame: Option<FrameName>,
@@ -65,7 +74,8 @@ impl Default for MeshingDocument {
     fn default() -> Self {
         MeshingDocument {
             kind: MeshingKind::Mesh,
-            scan: String::new(),
+            scan: None,
+            surfaces: None,
             thresholds_hu: ThresholdsDocument::default(),
             osteotomy: None,
             frame: None,
@@ -129,7 +139,21 @@ const USUAL_TETRAHEDRA: u64 = 300_000;
 const USUAL_COARSENING: f64 = 4.0;
 
 impl MeshingDocument {
-    /// The rules of the path for a scan in that frame; pointers start at `/spec`.
+    /// Every mesh that it names, with its place.
+    pub fn mesh_references_mut(&mut self) -> Vec<(Pointer, &mut String)> {
+        let root = Pointer::root();
+        let scan = self.scan.iter_mut().map(|scan| (root.key("scan"), scan));
+        let at = root.key("surfaces");
+        let surfaces = self.surfaces.iter_mut().flat_map(|surfaces| surfaces.references_mut(&at));
+        scan.chain(surfaces).collect()
+    }
+
+    /// The ids of the meshes that it names, in their order.
+    pub fn mesh_ids(mut self) -> Vec<String> {
+        self.mesh_references_mut().into_iter().map(|(_, id)| id.clone()).collect()
+    }
+
+    /// The rules of the path for a scan or surfaces in that frame; pointers start at `/spec`.
     pub fn to_rules(&self, scan: Frame, limits: &Limits, faults: &mut Faults) -> AnatomyRules {
         let at = Pointer::root().key("spec");
         let ThresholdsDocument { skin, bone } = self.thresholds_hu;
@@ -141,6 +165,7 @@ impl MeshingDocument {
         let memory = self.budget.memory_mb;
         faults.check_range(&budget.key("memory_mb"), memory, 1.0..=limits.memory_mb, "MB");
         check_tags(&self.tags, &at.key("tags"), limits, faults);
+        self.check_surfaces(&at, limits, faults);
         let planned = self.to_osteotomy(&at, scan, limits, faults);
         let image =
             ImageOptions { skin_threshold: skin, bone_threshold: bone, ..ImageOptions::default() };
@@ -154,6 +179,19 @@ impl MeshingDocument {
         }
     }
 
+    fn check_surfaces(&self, at: &Pointer, limits: &Limits, faults: &mut Faults) {
+        let Some(surfaces) = &self.surfaces else { return };
+        surfaces.check(&at.key("surfaces"), limits, faults);
+        if self.thresholds_hu != ThresholdsDocument::default() {
+            let detail = "surfaces have no values that thresholds part";
+            faults.add(&at.key("thresholds_hu"), ErrorCode::NoScan, detail);
+        }
+        if self.osteotomy.is_some() && !surfaces.bones.is_empty() {
+            let detail = "`surfaces.bones` are segments already: give all bone as `surfaces.bone` to have it cut";
+            faults.add(&at.key("osteotomy"), ErrorCode::OneOf, detail);
+        }
+    }
+
     fn to_osteotomy(
         &self,
         at: &Pointer,
@@ -161,6 +199,11 @@ impl MeshingDocument {
         limits: &Limits,
         faults: &mut Faults,
     ) -> Option<PlannedOsteotomy> {
+        let bones = self.surfaces.iter().flat_map(|surfaces| &surfaces.bones);
+        let names: Vec<&str> = bones.map(|bone| bone.name.trim()).collect();
+        if !names.is_empty() {
+            return given_segments(&names, &at.key("surfaces").key("bones"), faults);
+        }
         let mut plan = PlanDocument {
             osteotomy: self.osteotomy.clone(),
             frame: self.frame,

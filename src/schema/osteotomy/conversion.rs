@@ -72,6 +72,19 @@ impl OsteotomyDocument {
     }
 }
 
+/// Segments that are bones of their own, cut by nothing; pointers start at the list of them.
+pub fn given_segments(
+    names: &[&str],
+    at: &Pointer,
+    faults: &mut Faults,
+) -> Option<PlannedOsteotomy> {
+    let rule = |&name: &&str| SegmentRule { name: name.to_owned(), ..SegmentRule::default() };
+    let osteotomy = Osteotomy::new(Vec::new(), names.iter().map(rule).collect())
+        .map_err(|error| faults.add(at, code_of(&error), error.to_string()))
+        .ok()?;
+    Some(PlannedOsteotomy { osteotomy, free_band_mm: FREE_BAND_MM })
+}
+
 fn code_of(error: &RuleError) -> ErrorCode {
     match error {
         RuleError::CutTwice { .. }

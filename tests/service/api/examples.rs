@@ -4,7 +4,7 @@ use reqwest::StatusCode;
 use serde_json::Value;
 
 use crate::helpers::{Server, ask};
-use crate::samples::ball_ct;
+use crate::samples::{BONE_BALL, SKIN_BALL, ball_ct, ball_stl};
 
 /// The bodies of an operation by the names of their examples.
 fn examples(operation: &str) -> Vec<(String, Value)> {
@@ -109,12 +109,25 @@ async fn the_service_takes_every_example_as_it_stands_but_for_ids() {
     let mut job = String::new();
     let scan = server.upload(ball_ct()).await.expect(StatusCode::CREATED);
     let scan = scan["id"].as_str().unwrap().to_owned();
+    let mut balls = Vec::new();
+    for ball in [SKIN_BALL, BONE_BALL] {
+        let kept = server.upload(ball_stl(ball)).await.expect(StatusCode::CREATED);
+        balls.push(kept["id"].as_str().unwrap().to_owned());
+    }
     // The comparison is of a job that has ended.
     let mut jobs = examples("create_job");
     jobs.sort_by_key(|(name, _)| name != "predict");
     for (name, body) in jobs {
         let (case_id, plan_id, job_id, scan_id) = (id(3), id(4), id(5), id(6));
-        let ids = [(&case_id, &case), (&plan_id, &plan.0), (&job_id, &job), (&scan_id, &scan)];
+        let (skin_id, skull_id) = (id(7), id(8));
+        let ids = [
+            (&case_id, &case),
+            (&plan_id, &plan.0),
+            (&job_id, &job),
+            (&scan_id, &scan),
+            (&skin_id, &balls[0]),
+            (&skull_id, &balls[1]),
+        ];
         let ids: Vec<(&str, &str)> =
             ids.iter().map(|(from, to)| (from.as_str(), to.as_str())).chain(meshes).collect();
         let answer = server.job(&with_ids(&body, &ids)).await;

@@ -4,7 +4,7 @@ use reqwest::StatusCode;
 use serde_json::{Value, json};
 
 use crate::helpers::{Server, ask};
-use crate::samples::ball_ct;
+use crate::samples::{BONE_BALL, SKIN_BALL, SampleBall, ball_ct, ball_stl};
 
 /// The lower half of the bone comes loose.
 fn half() -> Value {
@@ -89,4 +89,79 @@ async fn what_cannot_be_meshed_is_refused_with_its_place() {
     no_bone["osteotomy"]["cuts"][0]["point_mm"] = json!([60, 55, -500]);
     let job = ended(&server, &no_bone).await;
     assert_eq!(job["error"]["type"], "segment-not-found", "{job}");
+}
+
+async fn surface(server: &Server, ball: SampleBall) -> String {
+    let kept = server.upload(ball_stl(ball)).await.expect(StatusCode::CREATED);
+    kept["id"].as_str().unwrap().to_owned()
+}
+
+#[tokio::test]
+async fn surfaces_become_a_case_by_cuts_or_as_segments() {
+    let server = Server::start();
+    let [skin, bone] = [surface(&server, SKIN_BALL).await, surface(&server, BONE_BALL).await];
+    let cut = json!({"kind": "mesh", "surfaces": {"skin": skin, "bone": bone}, "frame": "LPS",
+        "osteotomy": half(), "size": {"tetrahedra": 20_000}});
+    let job = ended(&server, &cut).await;
+    assert_eq!(job["status"], "successful", "{job}");
+    let made = &job["results"]["meshing"];
+    let volume = made["volume_ml"].as_f64().unwrap();
+    assert!((volume / 410.5 - 1.0).abs() < 0.02, "{volume}");
+    let half = made["segments"][0]["volume_ml"].as_f64().unwrap();
+    assert!((half / 56.55 - 1.0).abs() < 0.02, "{half}");
+    assert_eq!(made["case"]["frame"], "LPS");
+    let inputs = job["results"]["provenance"]["inputs"].as_array().unwrap();
+    let roles: Vec<&Value> = inputs.iter().map(|input| &input["role"]).collect();
+    assert_eq!(roles, ["skin", "bone"]);
+
+    let bones = json!([{"name": "jaw", "mesh": bone}]);
+    let given = json!({"kind": "mesh", "surfaces": {"skin": skin, "bones": bones},
+        "size": {"tetrahedra": 20_000}});
+    let job = ended(&server, &given).await;
+    let made = &job["results"]["meshing"];
+    let whole = made["segments"][0]["volume_ml"].as_f64().unwrap();
+    assert!((whole / 113.1 - 1.0).abs() < 0.02, "{whole} {job}");
+    assert!(made["node_sets"]["jaw"].as_u64() > Some(300) && made["node_sets"]["fixed"].is_null());
+}
+
+#[tokio::test]
+async fn surfaces_that_bound_no_tissue_are_refused_with_their_place() {
+    let server = Server::start();
+    let [skin, bone] = [surface(&server, SKIN_BALL).await, surface(&server, BONE_BALL).await];
+    let sound = json!({"kind": "mesh", "surfaces": {"skin": skin, "bone": bone}});
+    let refused = async |change: &dyn Fn(&mut Value), at: &str, code: &str| {
+        let mut asked = sound.clone();
+        change(&mut asked);
+        let problem = server.job(&asked).await.problem(422, "validation-failed");
+        let fault = &problem["errors"][0];
+        assert_eq!((&fault["pointer"], &fault["code"]), (&json!(at), &json!(code)), "{problem}");
+    };
+    let named = json!([{"name": "jaw", "mesh": bone}]);
+    refused(&|asked| asked["scan"] = json!(skin), "", "one-of").await;
+    refused(&|asked| asked["surfaces"]["bones"] = named.clone(), "/surfaces", "one-of").await;
+    refused(&|asked| asked["surfaces"]["skin"] = json!("x"), "/surfaces/skin", "unknown-mesh")
+        .await;
+    let thresholds = json!({"skin": -200});
+    refused(&|asked| asked["thresholds_hu"] = thresholds.clone(), "/thresholds_hu", "no-scan")
+        .await;
+    let cut_again = |asked: &mut Value| {
+        asked["surfaces"] = json!({"skin": skin, "bones": named});
+        asked["osteotomy"] = half();
+    };
+    refused(&cut_again, "/osteotomy", "one-of").await;
+    let reserved = |asked: &mut Value| {
+        asked["surfaces"] = json!({"skin": skin, "bones": [{"name": "fixed", "mesh": bone}]});
+    };
+    refused(&reserved, "/surfaces/bones", "bad-name").await;
+
+    // A tenth of its triangles is no skin.
+    let whole = String::from_utf8(ball_stl(SKIN_BALL)).unwrap();
+    let facets: Vec<&str> = whole.split_inclusive("endfacet\n").take(300).collect();
+    let tenth = format!("{}endsolid ball\n", facets.concat());
+    let kept = server.upload(tenth.into_bytes()).await.expect(StatusCode::CREATED);
+    let mut asked = sound.clone();
+    asked["surfaces"]["skin"] = kept["id"].clone();
+    let job = ended(&server, &asked).await;
+    assert_eq!(job["error"]["type"], "no-inside", "{job}");
+    assert_eq!(job["error"]["errors"][0]["pointer"], "/spec/surfaces/skin", "{job}");
 }
