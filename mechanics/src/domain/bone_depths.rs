@@ -21,7 +21,7 @@ const NEAR: f64 = 2.0;
 /// Bone between surfaces on a grid.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BoneDepths {
-    /// From each voxel to the nearest surface in mm, to a fraction of a voxel: positive in bone, no less than two voxels
+    /// From each voxel to the nearest surface in mm, to half a voxel: positive in bone, no less than two voxels
     /// below zero.
     pub image: ImageVolume,
     /// The number of the bone in which each voxel lies deepest.
