@@ -18,6 +18,7 @@ const CATALOGUE: &[ErrorCode] = &[
     ErrorCode::MethodMismatch,
     ErrorCode::MethodNotAvailable,
     ErrorCode::MissingMaterial,
+    ErrorCode::NoInside,
     ErrorCode::NotInResponse,
     ErrorCode::NotLinear,
     ErrorCode::NothingHeld,
