@@ -26,7 +26,7 @@ pub fn add(paths: &mut Value) {
 /// The examples of an operation, each with its name.
 fn of(operation: &str) -> Vec<(&'static str, Value)> {
     match operation {
-        "create_case" => vec![("case", case())],
+        "create_case" => vec![("case", case()), ("scan to be meshed", scanned())],
         "check_case" => vec![("nothing moves", json!({})), ("plan", json!({ "plan": plan() }))],
         "create_plan" | "replace_plan" => vec![("movements", plan()), ("loads", loads())],
         "apply_response" => vec![("plan", json!({ "plan": plan() }))],
@@ -58,6 +58,20 @@ fn case() -> Value {
             "skin": {"young_modulus_kpa": 40, "poisson_ratio": 0.45},
             "*": {"young_modulus_kpa": 10, "poisson_ratio": 0.45},
         },
+    })
+}
+
+fn scanned() -> Value {
+    json!({
+        "name": "head",
+        "meshing": {
+            "kind": "mesh", "scan": SCAN, "size": {"tetrahedra": 20_000},
+            "osteotomy": {
+                "cuts": [{"name": "le-fort-1", "point_mm": [60, 55, 60], "normal": [0, -0.24, 1]}],
+                "segments": [{"name": "maxilla", "below": ["le-fort-1"]}],
+            },
+        },
+        "materials": {"*": {"young_modulus_kpa": 15, "poisson_ratio": 0.46}},
     })
 }
 

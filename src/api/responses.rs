@@ -9,6 +9,7 @@ use serde::Deserialize;
 use utoipa::IntoParams;
 use utoipa_axum::routes;
 
+use super::case_state::whole;
 use super::download::Opened;
 use super::error::{ApiError, ApiResult};
 use super::guard::preferred;
@@ -84,7 +85,13 @@ async fn find(service: &Service, case: &str, job: Option<&str>) -> ApiResult<Fou
         }
         None => None,
     };
-    service.responses.find(case, job.as_deref()).await.map_err(refusal)
+    match service.responses.find(case, job.as_deref()).await {
+        Err(missing @ MissingResponse::NotBuilt) => {
+            let row = service.store.case(case).await?;
+            Err(row.and_then(|row| whole(&row).err()).unwrap_or_else(|| refusal(missing)))
+        }
+        found => found.map_err(refusal),
+    }
 }
 
 fn refusal(missing: MissingResponse) -> ApiError {

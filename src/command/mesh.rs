@@ -68,7 +68,7 @@ impl ScanArguments {
         let limits = Limits::default();
         let sources = FileSource::new(Path::new(""), LengthUnit::Mm, ScaleArguments::default());
         let place = Workplace { sources: &sources, limits: &limits, out };
-        let input = MeshingInput { job: None, queue_s: None, spec };
+        let input = MeshingInput { job: None, queue_s: None, spec, case: None };
         let _watch = Watch::start(&input.spec.budget);
         let done = work_in_sight(&JobInput::Meshing(input), &place)?;
         let Some(result) = &done.result.meshing else {

@@ -64,6 +64,7 @@ error_codes! {
     MethodNotAllowed 405 "method-not-allowed" "The resource does not answer to this method",
     NotAcceptable 406 "not-acceptable" "The resource has no such representation",
     RequestTimeout 408 "request-timeout" "The body came too slowly",
+    CaseNotReady 409 "case-not-ready" "The case has no mesh",
     ConflictInUse 409 "conflict-in-use" "Something refers to it",
     ResponseStale 409 "response-stale" "The response is older than its case",
     Conflict 409 "conflict" "It changed meanwhile",

@@ -115,11 +115,20 @@ pub fn compare_hash(spec: &CompareDocument, content_of: &dyn Fn(&str) -> Option<
     hash(json!({ "spec": to_value(&spec) }))
 }
 
-/// The hash of a meshing: the content of the scan in place of its id, tags left out.
-pub fn meshing_hash(spec: &MeshingDocument, scan: &str) -> String {
+/// The hash of a meshing: the content of the scan in place of its id, tags left out. One that a case waits for belongs to
+/// that case, so that it goes when the case is erased.
+pub fn meshing_hash(spec: &MeshingDocument, scan: &str, case: Option<&str>) -> String {
     let mut spec = spec.clone();
     scan.clone_into(&mut spec.scan);
-    hash(json!({ "spec": spec.content() }))
+    match case {
+        None => hash(json!({ "spec": spec.content() })),
+        Some(case) => hash(json!({ "spec": spec.content(), "case": case })),
+    }
+}
+
+/// The hash of a job on a case that has no mesh yet, until it has one: `asked` is its document without the case and tags.
+pub fn waiting_hash(case: &str, asked: &Value) -> String {
+    hash(json!({ "waiting": asked, "case": case }))
 }
 
 /// Changes where the description of a response tells what earlier ones did not, so that these are not taken for it.
@@ -159,6 +168,6 @@ mod tests {
     fn every_hash_of_a_job_and_the_key_of_a_response_are_made_in_one_place() {
         let code = include_str!("hashes.rs").split("#[cfg(test)]").next().unwrap_or_default();
         let made = code.matches("hash(json!(").count();
-        assert_eq!((made, code.matches("sha256_hex(").count()), (6, 0));
+        assert_eq!((made, code.matches("sha256_hex(").count()), (8, 0));
     }
 }

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::jobs::failure::JobError;
 use crate::jobs::source::{MeshSource, SourceError, StoredMesh, StoredShape};
+use crate::schema::case::meshed::MeshedCaseDocument;
 use crate::schema::{ErrorCode, Faults, Limits, MeshingDocument, Pointer, Problem, hashes};
 use mechanics::anatomy::AnatomyRules;
 use mechanics::image::ImageVolume;
@@ -19,6 +20,16 @@ pub struct MeshingInput {
     /// From acceptance to start.
     pub queue_s: Option<f64>,
     pub spec: MeshingDocument,
+    /// The stored case that waits for the mesh, if one does.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub case: Option<WaitingCase>,
+}
+
+/// A stored case that waits for its mesh.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct WaitingCase {
+    pub id: String,
+    pub document: MeshedCaseDocument,
 }
 
 /// A meshing whose documents are sound.
@@ -47,8 +58,12 @@ impl MeshingInput {
         let mut faults = Faults::default();
         let rules = self.spec.to_rules(frame, limits, &mut faults);
         faults.into_result()?;
-        let spec_hash = hashes::meshing_hash(&self.spec, &scan.sha256);
+        let spec_hash = hashes::meshing_hash(&self.spec, &scan.sha256, self.case_id());
         Ok(PreparedMeshing { scan, image, frame, rules, spec_hash })
+    }
+
+    fn case_id(&self) -> Option<&str> {
+        self.case.as_ref().map(|case| case.id.as_str())
     }
 
     fn fetch(&self, sources: &dyn MeshSource) -> Result<StoredMesh, JobError> {

@@ -1,8 +1,9 @@
 //! Meshing: from an image to a volume mesh with its node sets, and the case that it is made for.
 
 mod case;
+mod check;
 mod input;
 mod job;
 
-pub use input::MeshingInput;
+pub use input::{MeshingInput, WaitingCase};
 pub use job::meshing_job;

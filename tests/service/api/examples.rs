@@ -84,12 +84,16 @@ async fn the_service_takes_every_example_as_it_stands_but_for_ids() {
     }
     let [volume, bone] = [(id(1), meshes[0].clone()), (id(2), meshes[1].clone())];
     let meshes = [(volume.0.as_str(), volume.1.as_str()), (bone.0.as_str(), bone.1.as_str())];
-    let mut case = String::new();
+    let scan = server.upload(ball_ct()).await.expect(StatusCode::CREATED);
+    let scan = scan["id"].as_str().unwrap().to_owned();
+    let scan_id = id(6);
+    let mut cases = Vec::new();
     for (_, body) in examples("create_case") {
-        let body = with_ids(&body, &meshes);
+        let body = with_ids(&body, &[&meshes[..], &[(scan_id.as_str(), scan.as_str())]].concat());
         let kept = ask(server.post("/v1/cases").json(&body)).await.expect(StatusCode::CREATED);
-        case = kept["id"].as_str().unwrap().to_owned();
+        cases.push(kept["id"].as_str().unwrap().to_owned());
     }
+    let case = cases[0].clone();
     let mut plan = (String::new(), String::new());
     for (name, body) in examples("create_plan") {
         let request = server.post(&format!("/v1/cases/{case}/plans")).json(&body);
@@ -107,13 +111,11 @@ async fn the_service_takes_every_example_as_it_stands_but_for_ids() {
         assert_eq!(ask(request).await.status, StatusCode::OK, "{name}");
     }
     let mut job = String::new();
-    let scan = server.upload(ball_ct()).await.expect(StatusCode::CREATED);
-    let scan = scan["id"].as_str().unwrap().to_owned();
     // The comparison is of a job that has ended.
     let mut jobs = examples("create_job");
     jobs.sort_by_key(|(name, _)| name != "predict");
     for (name, body) in jobs {
-        let (case_id, plan_id, job_id, scan_id) = (id(3), id(4), id(5), id(6));
+        let (case_id, plan_id, job_id) = (id(3), id(4), id(5));
         let ids = [(&case_id, &case), (&plan_id, &plan.0), (&job_id, &job), (&scan_id, &scan)];
         let ids: Vec<(&str, &str)> =
             ids.iter().map(|(from, to)| (from.as_str(), to.as_str())).chain(meshes).collect();
