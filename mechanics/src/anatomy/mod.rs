@@ -1,8 +1,9 @@
 //! Anatomical model: from a CT and the cuts of an operation to a mesh of the soft tissue with its node sets.
 //!
-//! [`part_bone`] parts bone into segments ([`osteotomy`](crate::osteotomy)); [`build`] does the rest: the tissue between skin and bone
-//! is meshed ([`meshing`](crate::meshing)), and each of its nodes gets a class by the bone that it lies on. The mesh that
-//! comes out has the node sets that a case names: one for each segment, `fixed`, `skin`, and parts of the skin.
+//! [`part_bone`] parts bone into segments ([`osteotomy`](crate::osteotomy)); [`build`] does the rest: the tissue of a
+//! [`domain`](crate::domain), between skin and bone, is meshed ([`meshing`](crate::meshing)), and each of its nodes gets a
+//! class by the bone that it lies on. The mesh that comes out has the node sets that a case names: one for each segment,
+//! `fixed`, `skin`, and parts of the skin.
 
 mod face;
 mod size;
@@ -11,7 +12,7 @@ use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 
-use crate::domain::{Boundary, ImageDomain, ImageDomainError, ImageOptions};
+use crate::domain::{Boundary, Domain, ImageDomainError, ImageOptions};
 use crate::image::ImageVolume;
 use crate::mesh::{Frame, TriangleSurface, Vector, VolumeMesh, Warning};
 use crate::meshing::{MeshingError, MeshingReport, MeshingSettings, TissueMesh, mesh};
@@ -39,6 +40,14 @@ pub struct AnatomyRules {
     pub scan_ends_fixed: bool,
     /// Says how the head stands; without it no landmarks are looked for.
     pub frame: Frame,
+}
+
+/// Bone in its segments.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PartedBone {
+    pub labelled: Labelled,
+    /// A closed surface for each segment, in their order.
+    pub surfaces: Vec<TriangleSurface>,
 }
 
 /// Soft tissue that is ready to be a case.
@@ -70,34 +79,31 @@ pub enum AnatomyError {
 }
 
 /// Parts the bone of a scan into its segments.
-pub fn part_bone(scan: &ImageVolume, rules: &AnatomyRules) -> Result<Labelled, AnatomyError> {
-    Ok(label(&bone_of(scan, rules), &rules.osteotomy)?)
+pub fn part_bone(scan: &ImageVolume, rules: &AnatomyRules) -> Result<PartedBone, AnatomyError> {
+    let bone = BoneImage { image: scan, threshold: rules.image.bone_threshold };
+    let labelled = label(&bone, &rules.osteotomy)?;
+    let surface = |segment| label_surface(&bone, &rules.osteotomy, &labelled.labels, segment);
+    let surfaces = (0..labelled.segments.len()).into_par_iter().map(surface).collect();
+    Ok(PartedBone { labelled, surfaces })
 }
 
-fn bone_of<'a>(scan: &'a ImageVolume, rules: &AnatomyRules) -> BoneImage<'a> {
-    BoneImage { image: scan, threshold: rules.image.bone_threshold }
-}
-
-/// Builds the model of a scan whose bone is parted. The same scan and rules give the same bits on any number of threads.
+/// Builds the model of a body whose bone is parted. The same body and rules give the same bits on any number of threads.
 pub fn build(
-    scan: &ImageVolume,
-    bone: Labelled,
+    domain: &dyn Domain,
+    bone: PartedBone,
     rules: &AnatomyRules,
     progress: &dyn Progress,
 ) -> Result<Anatomy, AnatomyError> {
-    let domain = ImageDomain::new(scan, &rules.image)?;
-    let image = bone_of(scan, rules);
+    let PartedBone { labelled: bone, surfaces: bones } = bone;
     let mut settings = rules.meshing.clone();
     settings.size.regions.extend(size::around_segments(&bone, settings.size.finest));
-    let tissue = mesh(&domain, &settings, progress)?;
+    let tissue = mesh(domain, &settings, progress)?;
     let classes = classes(&tissue, &bone, rules);
     let mut warnings = classes.warnings.clone();
     warnings.extend(touching(&bone));
     let skin = tissue.nodes_on(Boundary::Skin);
     let face = face::face(&tissue.volume, &skin, rules.frame);
     warnings.extend(face.warning);
-    let surface = |segment| label_surface(&image, &rules.osteotomy, &bone.labels, segment);
-    let bones = (0..bone.segments.len()).into_par_iter().map(surface).collect();
     let TissueMesh { mut volume, report, .. } = tissue;
     let names: Vec<String> = bone.segments.iter().map(|segment| segment.name.clone()).collect();
     volume.node_sets = classes.node_sets(&names);

@@ -20,6 +20,7 @@ use crate::schema::predict::keep::MadeName;
 use crate::schema::predict::result::{FileDocument, ResultDocument};
 use crate::schema::{Faults, Pointer};
 use mechanics::anatomy::{Anatomy, AnatomyError, build, part_bone};
+use mechanics::domain::ImageDomain;
 use mechanics::format::vtk::{vtp, vtu};
 use mechanics::format::{SurfaceOutput, VolumeOutput};
 use mechanics::mesh::Frame;
@@ -47,12 +48,14 @@ pub fn meshing_job(
     let bone = part_bone(image, rules).map_err(JobError::Anatomy)?;
     let mut faults = Faults::default();
     let at = Pointer::root().key("spec").key("osteotomy");
-    refuse_bridges(&bone.bridges, &rules.osteotomy, &at, &mut faults);
+    refuse_bridges(&bone.labelled.bridges, &rules.osteotomy, &at, &mut faults);
     faults.into_result()?;
     clock.check()?;
 
     // 3. The mesh.
-    let anatomy = build(image, bone, rules, &clock).map_err(|error| match error {
+    let domain = ImageDomain::new(image, &rules.image);
+    let domain = domain.map_err(|error| JobError::Anatomy(error.into()))?;
+    let anatomy = build(&domain, bone, rules, &clock).map_err(|error| match error {
         AnatomyError::Meshing(MeshingError::Cancelled) => clock.stopped(),
         other => JobError::Anatomy(other),
     })?;
