@@ -1,5 +1,6 @@
 //! `facies mesh`: from a scan to a volume mesh with its node sets and the case that it is made for.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -9,11 +10,12 @@ use super::failure::CommandError;
 use super::files::{FileSource, ScaleArguments};
 use super::screen::{print_files, print_warnings, work_in_sight};
 use super::watch::Watch;
-use crate::jobs::{JobInput, MeshingInput, Workplace};
+use crate::jobs::{JobInput, JobOutput, MadeMesh, MeshingInput, StoredMesh, Workplace};
 use crate::schema::case::document::LengthUnit;
 use crate::schema::meshing::result::MeshingResultDocument;
 use crate::schema::wire::canonical;
-use crate::schema::{Limits, MeshingDocument, PlanDocument, PredictDocument};
+use crate::schema::{CaseDocument, Limits, MeshingDocument, PlanDocument, PredictDocument};
+use mechanics::mesh::Frame;
 
 const SCAN: &str = "What is meshed";
 const RESULT: &str = "Result";
@@ -46,9 +48,15 @@ pub struct ScanArguments {
     tetrahedra: Option<u64>,
 }
 
+/// A scan that was meshed: its case, and the meshes that this names, in memory.
+pub struct Meshed {
+    pub file: CaseFile,
+    pub meshes: BTreeMap<String, StoredMesh>,
+}
+
 /// Meshes, writes the files, and tells what is in them.
 pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
-    let file = arguments.scan.mesh(arguments.plan.as_deref(), &arguments.out)?;
+    let Meshed { file, .. } = arguments.scan.mesh(arguments.plan.as_deref(), &arguments.out)?;
     let path = arguments.out.join("case.json");
     write(&path, format!("{:#}\n", canonical::to_value(&file)))?;
     println!("wrote      {}", path.display());
@@ -62,7 +70,7 @@ impl ScanArguments {
 
     /// Meshes the scan into a folder and tells what came out: the case with the plan without its cuts. Paths of meshes
     /// lead from the folder.
-    pub fn mesh(&self, plan: Option<&Path>, out: &Path) -> Result<CaseFile, CommandError> {
+    pub fn mesh(&self, plan: Option<&Path>, out: &Path) -> Result<Meshed, CommandError> {
         let plan = plan.map(read::<PlanDocument>).transpose()?;
         let (spec, plan) = self.spec(plan)?;
         let limits = Limits::default();
@@ -77,7 +85,9 @@ impl ScanArguments {
         print_result(result, done.result.provenance.timing.total_s);
         print_warnings(&done.result.warnings);
         print_files(&done.files, out);
-        Ok(CaseFile { case: result.case.clone(), plan, spec: PredictDocument::default() })
+        let case = result.case.clone();
+        let meshes = in_memory(&case, &done);
+        Ok(Meshed { file: CaseFile { case, plan, spec: PredictDocument::default() }, meshes })
     }
 
     /// The document of the meshing, and the plan without its cuts.
@@ -100,6 +110,24 @@ impl ScanArguments {
         }
         Ok((spec, plan))
     }
+}
+
+/// The meshes that a case names, as its files would be read.
+fn in_memory(case: &CaseDocument, done: &JobOutput) -> BTreeMap<String, StoredMesh> {
+    let stored = |made: &MadeMesh| {
+        let bone = case.bones.iter().find(|bone| made.name.as_ref() == Some(&bone.name));
+        let id = bone.map_or(&case.volume, |bone| &bone.mesh);
+        let file = done.files.iter().find(|file| file.name == *id)?;
+        let mesh = StoredMesh {
+            shape: made.shape.clone(),
+            frame: (made.frame != Frame::Unspecified).then_some(made.frame),
+            units: Some(LengthUnit::Mm),
+            warnings: Vec::new(),
+            sha256: file.sha256.clone(),
+        };
+        Some((id.clone(), mesh))
+    };
+    done.meshes.iter().filter_map(stored).collect()
 }
 
 fn print_result(result: &MeshingResultDocument, total_s: f64) {

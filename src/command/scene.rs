@@ -7,7 +7,7 @@ use clap::{Args, ValueEnum};
 use super::documents::{Asked, CaseFile, read};
 use super::failure::CommandError;
 use super::files::{FileSource, ScaleArguments};
-use super::mesh::ScanArguments;
+use super::mesh::{Meshed, ScanArguments};
 use super::selection::{segment, selection};
 use crate::schema::case::document::{FrameName, LengthUnit, SegmentDocument};
 use crate::schema::case::selection::SelectionDocument;
@@ -134,9 +134,9 @@ impl SceneArguments {
             return Err(CommandError::Usage(detail.to_owned()));
         }
         let folder = out.join("mesh");
-        let mut file = scan.mesh(plan, &folder)?;
+        let Meshed { mut file, meshes } = scan.mesh(plan, &folder)?;
         file.spec = self.spec();
-        let sources = FileSource::new(&folder, file.case.units, self.scale);
+        let sources = FileSource::new(&folder, file.case.units, self.scale).with(meshes);
         Ok(Asked { file, path: folder.clone(), folder, sources })
     }
 

@@ -44,6 +44,10 @@ fn a_scan_and_a_plan_with_its_cuts_give_a_predicted_skin_in_one_command() {
     let done = facies(&["predict", "--case", path(&case), "--out", path(&again)]);
     assert_eq!(done.status.code(), Some(0), "{}", text(&done.stderr));
     assert_eq!(result(&again).statistics.unwrap().skin.nodes, direct);
+    // The mesh that was handed over in memory is the one that was written.
+    assert_eq!(result(&again).provenance.spec_hash, result(&out).provenance.spec_hash);
+    assert_eq!(result(&again).provenance.inputs, result(&out).provenance.inputs);
+    assert_eq!(fs::read(again.join("skin.vtp")).unwrap(), fs::read(out.join("skin.vtp")).unwrap());
     let same = |name: &str| {
         assert_eq!(
             fs::read(out.join("mesh").join(name)).unwrap(),

@@ -6,6 +6,8 @@
 //! `fixed`, `skin`, and parts of the skin.
 
 mod face;
+pub mod loose;
+pub mod region;
 mod size;
 
 use std::collections::BTreeMap;
@@ -21,6 +23,7 @@ use crate::osteotomy::classes::{BoneContact, ClassRules, NodeClasses, TissueBoun
 use crate::osteotomy::contact::Contact;
 use crate::osteotomy::label_surface::label_surface;
 use crate::osteotomy::labelling::{Labelled, label};
+use crate::osteotomy::teeth::{ENAMEL_HU, MUCOSA_MM, Teeth};
 use crate::osteotomy::{LabelError, Osteotomy, Owner};
 use crate::progress::Progress;
 
@@ -38,6 +41,10 @@ pub struct AnatomyRules {
     pub band_mm: f64,
     /// Whether tissue is fixed where the scan ends.
     pub scan_ends_fixed: bool,
+    /// Only tissue about this near to segments is meshed, in mm; all of it where nothing is said.
+    pub around_segments_mm: Option<f64>,
+    /// Whether tissue slides on the teeth of segments, and is joined to the rest of their bone only.
+    pub teeth_slide: bool,
     /// Says how the head stands; without it no landmarks are looked for.
     pub frame: Frame,
 }
@@ -48,12 +55,15 @@ pub struct PartedBone {
     pub labelled: Labelled,
     /// A closed surface for each segment, in their order.
     pub surfaces: Vec<TriangleSurface>,
+    /// Those that tissue slides on, with the mucosa around them.
+    pub teeth: Option<Teeth>,
 }
 
 /// Soft tissue that is ready to be a case.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Anatomy {
-    /// With node sets: a name for each segment, `fixed`, `skin`, and `skin_NAME` for parts of the skin.
+    /// With node sets: a name for each segment, `sliding_NAME` for its teeth, `fixed`, `skin`, and `skin_NAME` for parts of
+    /// the skin.
     pub volume: VolumeMesh,
     pub meshing: MeshingReport,
     pub bone: Labelled,
@@ -84,7 +94,9 @@ pub fn part_bone(scan: &ImageVolume, rules: &AnatomyRules) -> Result<PartedBone,
     let labelled = label(&bone, &rules.osteotomy)?;
     let surface = |segment| label_surface(&bone, &rules.osteotomy, &labelled.labels, segment);
     let surfaces = (0..labelled.segments.len()).into_par_iter().map(surface).collect();
-    Ok(PartedBone { labelled, surfaces })
+    let teeth = || Teeth::new(&bone, &labelled.labels, ENAMEL_HU, MUCOSA_MM);
+    let teeth = rules.teeth_slide.then(teeth);
+    Ok(PartedBone { labelled, surfaces, teeth })
 }
 
 /// Builds the model of a body whose bone is parted. The same body and rules give the same bits on any number of threads.
@@ -94,11 +106,11 @@ pub fn build(
     rules: &AnatomyRules,
     progress: &dyn Progress,
 ) -> Result<Anatomy, AnatomyError> {
-    let PartedBone { labelled: bone, surfaces: bones } = bone;
+    let PartedBone { labelled: bone, surfaces: bones, teeth } = bone;
     let mut settings = rules.meshing.clone();
     settings.size.regions.extend(size::around_segments(&bone, settings.size.finest));
     let tissue = mesh(domain, &settings, progress)?;
-    let classes = classes(&tissue, &bone, rules);
+    let classes = classes(&tissue, &bone, teeth.as_ref(), rules);
     let mut warnings = classes.warnings.clone();
     warnings.extend(touching(&bone));
     let skin = tissue.nodes_on(Boundary::Skin);
@@ -135,7 +147,12 @@ fn touching(bone: &Labelled) -> Vec<Warning> {
     contacts.map(warning).collect()
 }
 
-fn classes(tissue: &TissueMesh, bone: &Labelled, rules: &AnatomyRules) -> NodeClasses {
+fn classes(
+    tissue: &TissueMesh,
+    bone: &Labelled,
+    teeth: Option<&Teeth>,
+    rules: &AnatomyRules,
+) -> NodeClasses {
     // Where boundaries meet, bone holds.
     let order = [Boundary::Bone, Boundary::Cut, Boundary::Skin, Boundary::Airway];
     let first = |set: &crate::meshing::BoundarySet| {
@@ -145,7 +162,7 @@ fn classes(tissue: &TissueMesh, bone: &Labelled, rules: &AnatomyRules) -> NodeCl
     let reach = BEHIND * bone.labels.placement().steps.iter().sum::<Vector>().norm();
     let contact = BoneContact {
         behind: &|place, normal| bone.labels.nearest(place, normal, reach),
-        slides: &|_| false,
+        slides: &|place| teeth.is_some_and(|teeth| teeth.near(place)),
     };
     let class_rules = ClassRules {
         // Any two segments may be moved differently by some plan.

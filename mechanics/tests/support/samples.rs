@@ -396,6 +396,11 @@ l 1 2
 /// A CT in LPS of a ball of soft tissue of radius 50 mm around (60, 60, 60), with a ball of bone of radius 30 mm around
 /// (60, 55, 60) in it; voxels of 4 mm, their values mixed where a boundary crosses them.
 pub fn ball_ct() -> Vec<u8> {
+    ball_ct_with(|_| None)
+}
+
+/// The same with other values at some places.
+pub fn ball_ct_with(other: impl Fn(mechanics::mesh::Vector) -> Option<i16>) -> Vec<u8> {
     use mechanics::image::{ImageVolume, Placement, Voxels};
     use mechanics::mesh::{Frame, Vector};
     let share = |depth: f64| (depth / 4.0 + 0.5).clamp(0.0, 1.0);
@@ -404,7 +409,7 @@ pub fn ball_ct() -> Vec<u8> {
         let at = Vector::from(index.map(|i| 4.0 * i as f64 + 2.0));
         let skin = share(50.0 - (at - Vector::repeat(60.0)).norm());
         let bone = share(30.0 - (at - Vector::new(60.0, 55.0, 60.0)).norm());
-        (-1000.0 + 1040.0 * skin + 1160.0 * bone) as i16
+        other(at).unwrap_or((-1000.0 + 1040.0 * skin + 1160.0 * bone) as i16)
     };
     let placement = Placement {
         origin: Vector::repeat(2.0),

@@ -14,18 +14,14 @@ use crate::jobs::result::provenance::{Origin, encode_result, mesh_summary};
 use crate::jobs::result::warnings::warning_documents;
 use crate::jobs::source::StoredShape;
 use crate::schema::meshing::result::MeshingResultDocument;
-use crate::schema::osteotomy::conversion::refuse_bridges;
 use crate::schema::predict::document::OutputName;
 use crate::schema::predict::keep::MadeName;
 use crate::schema::predict::result::{FileDocument, ResultDocument};
-use crate::schema::{Faults, Pointer};
-use mechanics::anatomy::{Anatomy, AnatomyError, build, part_bone};
-use mechanics::domain::ImageDomain;
+use mechanics::anatomy::Anatomy;
 use mechanics::format::vtk::{vtp, vtu};
 use mechanics::format::{SurfaceOutput, VolumeOutput};
 use mechanics::mesh::Frame;
 use mechanics::mesh::quality::quality;
-use mechanics::meshing::MeshingError;
 use mechanics::progress::{Phase, Progress};
 
 /// The picture of slices through the mesh.
@@ -44,21 +40,11 @@ pub fn meshing_job(
     clock.check()?;
 
     // 2. The bone, parted.
-    let (image, rules) = (&prepared.image, &prepared.rules);
-    let bone = part_bone(image, rules).map_err(JobError::Anatomy)?;
-    let mut faults = Faults::default();
-    let at = Pointer::root().key("spec").key("osteotomy");
-    refuse_bridges(&bone.labelled.bridges, &rules.osteotomy, &at, &mut faults);
-    faults.into_result()?;
+    let bone = prepared.part_bone()?;
     clock.check()?;
 
     // 3. The mesh.
-    let domain = ImageDomain::new(image, &rules.image);
-    let domain = domain.map_err(|error| JobError::Anatomy(error.into()))?;
-    let anatomy = build(&domain, bone, rules, &clock).map_err(|error| match error {
-        AnatomyError::Meshing(MeshingError::Cancelled) => clock.stopped(),
-        other => JobError::Anatomy(other),
-    })?;
+    let anatomy = prepared.mesh(bone, &clock)?;
     clock.check()?;
 
     // 4. The case, and what holds it.

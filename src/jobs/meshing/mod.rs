@@ -4,6 +4,7 @@ mod case;
 mod check;
 mod input;
 mod job;
+mod model;
 
 pub use input::{MeshingInput, WaitingCase};
 pub use job::meshing_job;

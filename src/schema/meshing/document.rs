@@ -5,6 +5,7 @@ use serde_json::Value;
 use utoipa::ToSchema;
 
 use crate::schema::case::document::FrameName;
+use crate::schema::code::ErrorCode;
 use crate::schema::osteotomy::OsteotomyDocument;
 use crate::schema::osteotomy::conversion::PlannedOsteotomy;
 use crate::schema::plan::document::PlanDocument;
@@ -47,10 +48,23 @@ pub struct MeshingDocument {
     pub frame: Option<FrameName>,
     #[serde(default)]
     pub size: MeshSizeDocument,
+    /// Absent: all of the head that the scan shows.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub region: Option<RegionDocument>,
+    /// Whether nodes may share a place, where tissue touches itself at a point or along an edge. Gmsh and TetGen read a mesh
+    /// only where none do; the surfaces are then apart by a little.
+    #[serde(default = "yes")]
+    #[schema(default = true)]
+    pub coincident_nodes: bool,
     /// Whether tissue is fixed where the scan ends.
     #[serde(default = "yes")]
     #[schema(default = true)]
     pub scan_ends_fixed: bool,
+    /// Whether tissue slides on the teeth of segments and their mucosa. Where it does not, it is joined to them.
+    #[serde(default = "yes")]
+    #[schema(default = true)]
+    pub teeth_slide: bool,
     #[serde(default)]
     pub budget: BudgetDocument,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -70,7 +84,10 @@ impl Default for MeshingDocument {
             osteotomy: None,
             frame: None,
             size: MeshSizeDocument::default(),
+            region: None,
+            coincident_nodes: yes(),
             scan_ends_fixed: yes(),
+            teeth_slide: yes(),
             budget: BudgetDocument::default(),
             tags: Vec::new(),
         }
@@ -123,6 +140,15 @@ pub struct MeshSizeDocument {
     pub coarsening: Option<f64>,
 }
 
+/// The part of the head that is meshed. Tissue beyond it is left out, and what remains ends there as where the scan ends.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RegionDocument {
+    /// All tissue this near to segments of the osteotomy, in mm, and little beyond.
+    #[schema(minimum = 10.0, maximum = 300.0)]
+    pub around_segments_mm: f64,
+}
+
 /// Where nothing else is said.
 const USUAL_TETRAHEDRA: u64 = 300_000;
 /// Uniform at first: the estimate of the size of a mesh is best there.
@@ -142,14 +168,26 @@ impl MeshingDocument {
         faults.check_range(&budget.key("memory_mb"), memory, 1.0..=limits.memory_mb, "MB");
         check_tags(&self.tags, &at.key("tags"), limits, faults);
         let planned = self.to_osteotomy(&at, scan, limits, faults);
+        let around_segments_mm = self.region.map(|region| region.around_segments_mm);
+        if let Some(margin) = around_segments_mm {
+            let at = at.key("region").key("around_segments_mm");
+            faults.check_range(&at, margin, 10.0..=300.0, "mm");
+            if self.osteotomy.is_none() {
+                let detail = "there are no segments without an osteotomy";
+                faults.add(&at, ErrorCode::UnknownSegment, detail);
+            }
+        }
+        let meshing = self.size.to_settings(&at.key("size"), limits, faults);
         let image =
             ImageOptions { skin_threshold: skin, bone_threshold: bone, ..ImageOptions::default() };
         AnatomyRules {
             image,
             band_mm: planned.as_ref().map_or(0.0, |planned| planned.free_band_mm),
             osteotomy: planned.map(|planned| planned.osteotomy).unwrap_or_default(),
-            meshing: self.size.to_settings(&at.key("size"), limits, faults),
+            meshing: MeshingSettings { part_copies: !self.coincident_nodes, ..meshing },
+            around_segments_mm,
             scan_ends_fixed: self.scan_ends_fixed,
+            teeth_slide: self.teeth_slide,
             frame: scan,
         }
     }

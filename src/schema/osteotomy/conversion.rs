@@ -3,7 +3,7 @@
 use mechanics::mesh::Vector;
 use mechanics::osteotomy::contact::Bridge;
 use mechanics::osteotomy::{
-    Cut, CutError, CutSide, Extent, Osteotomy, Plane, RuleError, SegmentRule, Side,
+    Cut, CutError, CutSide, Extent, LabelError, Osteotomy, Plane, RuleError, SegmentRule, Side,
 };
 
 use super::document::{CutDocument, CutSegmentDocument, OsteotomyDocument};
@@ -11,6 +11,7 @@ use crate::schema::Triple;
 use crate::schema::code::ErrorCode;
 use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::limits::Limits;
+use crate::schema::wire::problem::Problem;
 
 /// Beside an osteotomy tissue is lifted; with cells of 4 mm this frees one row of nodes on either side.
 const FREE_BAND_MM: f64 = 3.0;
@@ -83,6 +84,25 @@ fn code_of(error: &RuleError) -> ErrorCode {
         RuleError::Unused { .. } => ErrorCode::UnusedCut,
         RuleError::BoundedWithoutSeed { .. } => ErrorCode::MissingField,
     }
+}
+
+/// The refusal of a segment that the bone of a scan does not hold, at its place.
+pub fn unfound(error: &LabelError, osteotomy: &Osteotomy, at: &Pointer) -> Problem {
+    let named = |name: &str| {
+        let number = osteotomy.segments().iter().position(|segment| segment.name == name);
+        number.map_or_else(|| at.clone(), |number| at.key("segments").index(number))
+    };
+    let place = match error {
+        LabelError::NoBone { segment } => named(segment),
+        LabelError::SeedOffBone { segment, seed }
+        | LabelError::SeedAcross { segment, seed, .. } => {
+            named(segment).key("seeds_mm").index(*seed)
+        }
+        LabelError::SeedsMeet { other: segment, .. } | LabelError::NeedsSeed { segment, .. } => {
+            named(segment).key("seeds_mm")
+        }
+    };
+    Problem::at(&place, ErrorCode::SegmentNotFound, error.to_string())
 }
 
 /// Refuses segments that bone still holds to what a cut should part them from.
@@ -179,7 +199,6 @@ impl CutSegmentDocument {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::schema::wire::problem::Problem;
     use crate::schema::wire::strict;
 
     fn read(text: &str, mirrored_axes: bool) -> Result<PlannedOsteotomy, Vec<(String, ErrorCode)>> {

@@ -24,6 +24,7 @@ const CATALOGUE: &[ErrorCode] = &[
     ErrorCode::PlanConflict,
     ErrorCode::PlanNotRigid,
     ErrorCode::PlanOutOfRange,
+    ErrorCode::SegmentNotFound,
     ErrorCode::SlidingConflict,
     ErrorCode::Underconstrained,
     ErrorCode::UnknownSegment,

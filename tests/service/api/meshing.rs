@@ -1,10 +1,11 @@
 //! Scans that become meshes: a job whose mesh and case are there for predictions.
 
+use mechanics::mesh::Vector;
 use reqwest::StatusCode;
 use serde_json::{Value, json};
 
 use crate::helpers::{Server, ask};
-use crate::samples::ball_ct;
+use crate::samples::{ball_ct, ball_ct_with};
 
 /// The lower half of the bone comes loose.
 fn half() -> Value {
@@ -61,6 +62,74 @@ async fn a_scan_becomes_a_case_on_which_a_plan_is_predicted() {
     assert!((2.0..4.0).contains(&largest), "{largest}");
 }
 
+/// Enamel on the front of the lower half of the bone.
+fn toothed_ct() -> Vec<u8> {
+    let middle = Vector::new(60.0, 55.0, 60.0);
+    ball_ct_with(|at| {
+        let depth = 30.0 - (at - middle).norm();
+        let is_tooth = (1.0..7.0).contains(&depth) && at.y < 40.0 && (44.0..56.0).contains(&at.z);
+        is_tooth.then_some(2600)
+    })
+}
+
+#[tokio::test]
+async fn tissue_slides_on_teeth_that_go_with_their_bone_unless_it_is_told_not_to() {
+    let server = Server::start();
+    let request = server.post("/v1/meshes").header("content-type", "application/x-nrrd");
+    let scan = ask(request.body(toothed_ct())).await.expect(StatusCode::CREATED);
+    let mut asked = spec(scan["id"].as_str().unwrap());
+    let slides = ended(&server, &asked).await["results"]["meshing"].clone();
+    let sets = &slides["node_sets"];
+    assert!(sets["sliding_jaw"].as_u64().unwrap() > 10, "{sets}");
+    assert!(sets["jaw"].as_u64() > sets["sliding_jaw"].as_u64(), "{sets}");
+    let wall =
+        json!([{"nodes": {"node_set": "sliding_jaw"}, "normal": "surface", "segment": "jaw"}]);
+    assert_eq!(slides["case"]["sliding"], wall);
+    asked["teeth_slide"] = json!(false);
+    let joined = ended(&server, &asked).await["results"]["meshing"].clone();
+    assert_eq!(joined["node_sets"].get("sliding_jaw"), None);
+    assert_eq!(joined["case"].get("sliding"), None);
+    let both = sets["jaw"].as_u64().unwrap() + sets["sliding_jaw"].as_u64().unwrap();
+    assert_eq!(joined["node_sets"]["jaw"].as_u64(), Some(both));
+
+    // The wall goes with its bone.
+    let case =
+        ask(server.post("/v1/cases").json(&slides["case"])).await.expect(StatusCode::CREATED);
+    assert!(case["check"]["classes"]["sliding"].as_u64() > Some(10), "{case}");
+    let plan = json!({"segments": [{"name": "jaw", "translation_mm": [0, -3, 0]}]});
+    let predicted =
+        ended(&server, &json!({"kind": "predict", "case": case["id"], "plan": plan})).await;
+    assert_eq!(predicted["status"], "successful", "{predicted}");
+    let largest = predicted["results"]["statistics"]["skin"]["nodes"]["max"].as_f64().unwrap();
+    assert!((1.5..4.0).contains(&largest), "{largest}");
+}
+
+#[tokio::test]
+async fn a_region_around_segments_has_fewer_cells_of_the_same_size_and_tells_what_it_leaves_out() {
+    let server = Server::start();
+    let scan = scan(&server).await;
+    let mut asked = spec(&scan);
+    asked["osteotomy"]["cuts"][0]["point_mm"] = json!([60, 55, 45]);
+    asked["size"] = json!({"finest_mm": 6, "coarsening": 1});
+    let whole = ended(&server, &asked).await["results"].clone();
+    asked["region"] = json!({"around_segments_mm": 30});
+    let part = ended(&server, &asked).await["results"].clone();
+    let warning =
+        part["warnings"].as_array().unwrap().iter().find(|w| w["code"] == "tissue-cut-off");
+    let told = warning.unwrap()["volume_ml"].as_f64().unwrap();
+    let volume = |results: &Value| results["meshing"]["volume_ml"].as_f64().unwrap();
+    let less = volume(&whole) - volume(&part);
+    assert!((told / less - 1.0).abs() < 0.1, "{told} of {less} ml");
+    let cells = |results: &Value| results["meshing"]["tetrahedra"].as_f64().unwrap();
+    let shares = (cells(&part) / cells(&whole), volume(&part) / volume(&whole));
+    assert!((shares.0 / shares.1 - 1.0).abs() < 0.15, "{shares:?}");
+    let fixed = |results: &Value| results["meshing"]["node_sets"]["fixed"].as_u64().unwrap();
+    assert!(fixed(&part) > 0, "what is left ends in nodes that are held");
+    asked.as_object_mut().unwrap().remove("osteotomy");
+    let problem = server.job(&asked).await.problem(422, "unknown-segment");
+    assert_eq!(problem["errors"][0]["pointer"], "/region/around_segments_mm");
+}
+
 #[tokio::test]
 async fn what_cannot_be_meshed_is_refused_with_its_place() {
     let server = Server::start();
@@ -89,4 +158,10 @@ async fn what_cannot_be_meshed_is_refused_with_its_place() {
     no_bone["osteotomy"]["cuts"][0]["point_mm"] = json!([60, 55, -500]);
     let job = ended(&server, &no_bone).await;
     assert_eq!(job["error"]["type"], "segment-not-found", "{job}");
+    assert_eq!(job["error"]["errors"][0]["pointer"], "/spec/osteotomy/segments/0", "{job}");
+    let mut beside = spec(&scan);
+    beside["osteotomy"]["segments"][0]["seeds_mm"] = json!([[60, 55, 50], [1, 1, 1]]);
+    let job = ended(&server, &beside).await;
+    let told = &job["error"]["errors"][0]["pointer"];
+    assert_eq!(told, "/spec/osteotomy/segments/0/seeds_mm/1", "{job}");
 }
