@@ -197,7 +197,8 @@ mod tests {
         let turns = Turns::new("test", 1, 2);
         let running = turns.turn("a").await.unwrap();
         let (one, two) = (asked(&turns, "a"), asked(&turns, "a"));
-        assert_eq!(turns.turn("a").await.err(), Some(Full { most: 2 }));
+        let third = turns.turn("a").now_or_never().expect("it is told at once");
+        assert_eq!(third.err(), Some(Full { most: 2 }));
         assert_eq!((turns.waiting("a"), turns.waiting("b")), (2, 0));
         let mut other = asked(&turns, "b");
         drop((one, two));
@@ -206,5 +207,15 @@ mod tests {
         drop(running);
         let turn = (&mut third).now_or_never().or_else(|| (&mut other).now_or_never());
         assert!(turn.is_some(), "places of those who left are not lost");
+    }
+
+    #[tokio::test]
+    async fn a_place_that_comes_to_one_who_has_left_goes_to_the_next() {
+        let turns = Turns::new("test", 1, 2);
+        let running = turns.turn("a").await.unwrap();
+        let (one, mut other) = (asked(&turns, "a"), asked(&turns, "b"));
+        drop(one);
+        drop(running);
+        assert!((&mut other).now_or_never().is_some());
     }
 }

@@ -3,6 +3,7 @@
 
 use std::sync::LazyLock;
 
+#[allow(dead_code, reason = "each target uses a part")]
 #[path = "../../tests/support/answers.rs"]
 mod answers;
 

@@ -1,6 +1,7 @@
 //! Any bytes as a mesh or an image.
 #![no_main]
 
+#[allow(dead_code, reason = "each target uses a part")]
 #[path = "../../tests/support/answers.rs"]
 mod answers;
 

@@ -89,7 +89,6 @@ impl Budget {
                 most: if is_alone { left } else { left / 4 * 3 },
                 whose: "this tenant",
             },
-            Bound { used: used.total, most: of_process, whose: "all clients" },
         ];
         let full = bounds.into_iter().find(|bound| bound.used + more > bound.most);
         let Some(Bound { used, most, whose }) = full else { return Ok(()) };

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use std::net::SocketAddr;
 use std::sync::Arc;
 
-use axum::extract::{ConnectInfo, FromRequestParts};
+use axum::extract::{ConnectInfo, FromRequestParts, Request};
 use axum::http::request::Parts;
 use axum::http::{Extensions, HeaderMap, HeaderValue, header};
 
@@ -13,6 +13,7 @@ use super::Service;
 use super::access::Access;
 use super::client::Client;
 use super::error::{ApiError, ApiResult};
+use super::foreseen::{self, Foreseen};
 use crate::schema::ErrorCode;
 use crate::schema::key::{Key, Scope, scopes_of};
 use crate::schema::wire::canonical::sha256_hex;
@@ -88,28 +89,55 @@ impl FromRequestParts<Service> for Caller {
     }
 }
 
-/// The caller of a request.
-pub async fn identify(service: &Service, headers: &HeaderMap) -> ApiResult<Caller> {
-    match bearer(headers) {
-        None if !service.config.asks_for_keys => Ok(Caller::of_default_tenant(NO_KEY)),
-        None => Err(unauthorized("send a key as `Authorization: Bearer KEY`")),
-        Some(given) => known(service, given).await,
+/// Who sends a request, and what was looked up with the key.
+pub struct Identified {
+    pub caller: Caller,
+    pub foreseen: Option<Foreseen>,
+}
+
+impl Identified {
+    fn of_default_tenant(key: &str) -> Identified {
+        Identified { caller: Caller::of_default_tenant(key), foreseen: None }
     }
 }
 
-async fn known(service: &Service, given: &str) -> ApiResult<Caller> {
+/// The caller of a request. What comes of it does not hold the request, whose body no two threads may share.
+pub fn identify<'a>(
+    service: &'a Service,
+    request: &Request,
+) -> impl Future<Output = ApiResult<Identified>> + Send + use<'a> {
+    let given = bearer(request.headers()).map(str::to_owned);
+    let case = foreseen::case_of(request);
+    async move {
+        match given {
+            None if !service.config.asks_for_keys => Ok(Identified::of_default_tenant(NO_KEY)),
+            None => Err(unauthorized("send a key as `Authorization: Bearer KEY`")),
+            Some(given) => known(service, &given, case).await,
+        }
+    }
+}
+
+async fn known(service: &Service, given: &str, case: Option<String>) -> ApiResult<Identified> {
     if service.config.api_key.as_ref().is_some_and(|key| key.matches(given)) {
-        return Ok(Caller::of_default_tenant(KEY_OF_SETTINGS));
+        return Ok(Identified::of_default_tenant(KEY_OF_SETTINGS));
     }
     let refused = || unauthorized("this key is not known, or it was revoked or has expired");
     let key = Key::parse(given).ok_or_else(refused)?;
-    let row = service.store.key_in_force(&key.id).await?.ok_or_else(refused)?;
+    let (row, foreseen) = match case {
+        Some(case) => {
+            let found = service.store.key_and_responses(&key.id, &case).await?;
+            let (row, responses) = found.ok_or_else(refused)?;
+            (row, Some(Foreseen::now(responses)))
+        }
+        None => (service.store.key_in_force(&key.id).await?.ok_or_else(refused)?, None),
+    };
     // How long comparing takes tells about the hash of what was sent, from which no key follows.
     if row.hash != sha256_hex(key.text.as_bytes()) {
         return Err(refused());
     }
     let scopes = scopes_of(&row.scopes).map_err(ApiError::internal)?;
-    Ok(Caller { tenant: row.tenant.into(), key: row.id.into(), scopes })
+    let caller = Caller { tenant: row.tenant.into(), key: row.id.into(), scopes };
+    Ok(Identified { caller, foreseen })
 }
 
 /// The refusal of one who is not known.

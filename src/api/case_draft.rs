@@ -4,17 +4,24 @@ use std::collections::BTreeMap;
 
 use tokio::runtime::Handle;
 
+use super::accepted::{Accepted, LONGEST_QUEUE, queue_full};
 use super::error::{ApiError, ApiResult};
 use super::idempotency::NewId;
 use super::meshes::{TakenIn, take_in};
 use super::spool::Received;
 use super::turns::Turn;
-use super::{Service, job_input};
-use crate::jobs::{CheckReport, PredictInput, StoredMesh};
+use super::{Service, accepted};
+use crate::jobs::{
+    CheckReport, JobError, JobInput, MeshSource, MeshingInput, PredictInput, SourceError,
+    StoredMesh, StoredShape, WaitingCase,
+};
 use crate::library::upload::{Statement, Upload};
+use crate::schema::case::meshed::{CaseBody, MeshedCaseDocument};
 use crate::schema::predict::check::CheckDocument;
-use crate::schema::{CaseDocument, ErrorCode, Limits, PredictDocument, Problem};
-use crate::store::NewCase;
+use crate::schema::{
+    CaseDocument, ErrorCode, Faults, Limits, Pointer, PredictDocument, Problem, hashes,
+};
+use crate::store::{AddedCase, NewCase, NewJob};
 
 /// The part of a form that holds the document; the other parts are meshes.
 const CASE_PART: &str = "case";
@@ -34,8 +41,16 @@ pub(super) fn split(mut parts: Parts) -> ApiResult<(Received, Parts)> {
 
 /// A case on its way in, with the meshes that came with it.
 pub(super) struct Draft {
-    document: CaseDocument,
+    document: CaseBody,
     uploads: Vec<Upload>,
+}
+
+/// What was found of a case before it is kept.
+pub(super) enum Checked {
+    /// What holds its nodes; `None` where only a plan can tell.
+    Whole(Box<Option<CheckDocument>>),
+    /// For each mesh or image that the meshing names the hash of its content.
+    ToMesh { contents: BTreeMap<String, String> },
 }
 
 impl Draft {
@@ -43,13 +58,17 @@ impl Draft {
     pub async fn read(
         service: &Service,
         turn: &Turn,
-        mut document: CaseDocument,
+        mut document: CaseBody,
         parts: Parts,
         allow_any_scale: Option<bool>,
     ) -> ApiResult<Draft> {
+        let (units, frame) = match &document {
+            CaseBody::Whole(case) => (Some(case.units), Some(case.frame)),
+            CaseBody::ToMesh(_) => (None, None),
+        };
         let statement = Statement {
-            units: Some(document.units),
-            frame: Some(document.frame),
+            units,
+            frame,
             role: None,
             allow_any_scale: allow_any_scale.unwrap_or(false),
         };
@@ -87,22 +106,63 @@ impl Draft {
         Err(ApiError::new(ErrorCode::UnusedPart, detail))
     }
 
-    /// Whether the document and its meshes make sense; `None` where only a plan can tell.
-    pub async fn check(&self, service: &Service) -> ApiResult<Option<CheckDocument>> {
+    /// Whether the document and its meshes make sense.
+    pub async fn check(&self, service: &Service) -> ApiResult<Checked> {
+        match &self.document {
+            CaseBody::Whole(case) => {
+                self.check_whole(service, case).await.map(Box::new).map(Checked::Whole)
+            }
+            CaseBody::ToMesh(case) => self.check_scan(service, case).await,
+        }
+    }
+
+    async fn check_whole(
+        &self,
+        service: &Service,
+        case: &CaseDocument,
+    ) -> ApiResult<Option<CheckDocument>> {
         let input = PredictInput {
             job: None,
             queue_s: None,
-            case: self.document.clone(),
+            case: case.clone(),
             plan: Default::default(),
             spec: PredictDocument::default(),
         };
-        let extra = self.uploads.iter().map(|upload| (upload.row.id.clone(), upload.mesh.clone()));
-        let checked = checked(service, input, extra.collect()).await;
+        let checked = checked(service, input, self.brought()).await;
         match checked {
             Ok(report) => Ok(Some(report.document)),
-            Err(error) if needs_a_plan(&error.problem) => Ok(None),
+            // Loose parts may be held by the sets that a plan names.
+            Err(error) if error.problem.is_only(ErrorCode::Underconstrained) => Ok(None),
             Err(error) => Err(error.problem.moved("/case", "").into()),
         }
+    }
+
+    async fn check_scan(&self, service: &Service, case: &MeshedCaseDocument) -> ApiResult<Checked> {
+        let mut faults = Faults::default();
+        case.check(&service.limits, &mut faults);
+        faults.into_result()?;
+        let spec = case.meshing.clone();
+        let input = MeshingInput { job: None, queue_s: None, spec, case: None };
+        let sources = service.library.source(Handle::current(), self.brought());
+        let limits: Limits = (*service.limits).clone();
+        let image = case.hounsfield.as_ref().map(|hounsfield| hounsfield.image.clone());
+        let turn = service.check_turn().await?;
+        let prepared = turn.compute(move || {
+            image.iter().try_for_each(|image| require_image(&sources, image))?;
+            input.prepare(&sources, &limits)
+        });
+        let prepared = prepared.await?.map_err(accepted::refusal);
+        let moved = |problem: Problem| problem.moved("/spec", "/meshing");
+        let prepared = prepared.map_err(|error| error.map_problem(moved))?;
+        let contents = prepared.meshes.into_iter().map(|(_, mesh)| mesh.sha256);
+        Ok(Checked::ToMesh {
+            contents: case.meshing.clone().mesh_ids().into_iter().zip(contents).collect(),
+        })
+    }
+
+    /// The meshes that came with the case, by their ids.
+    fn brought(&self) -> BTreeMap<String, StoredMesh> {
+        self.uploads.iter().map(|upload| (upload.row.id.clone(), upload.mesh.clone())).collect()
     }
 
     /// Keeps the case and its meshes under an id, unless an earlier request with its key has done so.
@@ -110,27 +170,37 @@ impl Draft {
         self,
         service: &Service,
         new: &NewId,
-        check: Option<&CheckDocument>,
+        checked: &Checked,
+        traceparent: Option<String>,
     ) -> ApiResult<()> {
         let id = &new.id;
         let is_known = new.is_known;
         let text = |value: serde_json::Result<String>| value.map_err(ApiError::internal);
         let (rows, meshes): (Vec<_>, Vec<_>) =
             self.uploads.into_iter().map(|upload| (upload.row, upload.mesh)).unzip();
+        let check = match checked {
+            Checked::Whole(check) => check.as_ref().as_ref(),
+            Checked::ToMesh { .. } => None,
+        };
         let new = NewCase {
             id: id.clone(),
             document: text(serde_json::to_string(&self.document))?,
             report: text(serde_json::to_string(&check))?,
-            tags: self.document.tags.clone(),
+            tags: self.document.tags().to_vec(),
             mesh_ids: self.document.mesh_ids(),
             meshes: rows,
+            meshing: meshing_of(id, &self.document, checked, traceparent)?,
         };
-        if !service.store.add_case(&new).await? {
-            if is_known && service.store.case(id).await?.is_some() {
+        match service.store.add_case(&new, LONGEST_QUEUE).await? {
+            AddedCase::Stored => {}
+            AddedCase::Contended if is_known && service.store.case(id).await?.is_some() => {
                 return Ok(());
             }
-            let detail = "a mesh of the case came or went meanwhile; send the case again";
-            return Err(ApiError::new(ErrorCode::Conflict, detail));
+            AddedCase::Contended => {
+                let detail = "a mesh of the case came or went meanwhile; send the case again";
+                return Err(ApiError::new(ErrorCode::Conflict, detail));
+            }
+            AddedCase::QueueFull => return Err(queue_full()),
         }
         for (row, mesh) in new.meshes.iter().zip(meshes) {
             service.library.keep(&row.blob, mesh.shape);
@@ -148,10 +218,50 @@ fn in_part(error: ApiError, name: &str) -> ApiError {
     })
 }
 
-/// Loose parts may be held by the sets that a plan names.
-fn needs_a_plan(problem: &Problem) -> bool {
-    !problem.errors.is_empty()
-        && problem.errors.iter().all(|error| error.code == ErrorCode::Underconstrained)
+/// An image has to be there for materials before hours of meshing end without it.
+fn require_image(sources: &dyn MeshSource, image: &str) -> Result<(), JobError> {
+    let at = Pointer::root().key("hounsfield").key("image");
+    match sources.mesh(image) {
+        Ok(StoredMesh { shape: StoredShape::Image(_), .. }) => Ok(()),
+        Ok(_) => {
+            let detail = "this is a mesh, and an image is needed";
+            Err(Problem::at(&at, ErrorCode::WrongMesh, detail).into())
+        }
+        Err(SourceError::Unknown { .. }) => {
+            let detail = format!("there is no image {image:?}");
+            Err(Problem::at(&at, ErrorCode::UnknownMesh, detail).into())
+        }
+        Err(other) => Err(JobError::Source(other)),
+    }
+}
+
+/// The job that makes the mesh of a case, where it has none. It belongs to the case, and goes with it.
+fn meshing_of(
+    case: &str,
+    document: &CaseBody,
+    checked: &Checked,
+    traceparent: Option<String>,
+) -> ApiResult<Option<NewJob>> {
+    let (CaseBody::ToMesh(document), Checked::ToMesh { contents }) = (document, checked) else {
+        return Ok(None);
+    };
+    let spec = document.meshing.clone();
+    let accepted = Accepted {
+        case_id: Some(case.to_owned()),
+        shared_cases: Vec::new(),
+        spec_hash: hashes::meshing_hash(&spec, &|id| contents.get(id).cloned(), Some(case)),
+        tags: spec.tags.clone(),
+        mesh_ids: document
+            .clone()
+            .mesh_references_mut()
+            .into_iter()
+            .map(|(_, id)| id.clone())
+            .collect(),
+        study: None,
+    };
+    let waiting = WaitingCase { id: case.to_owned(), document: (**document).clone() };
+    let input = MeshingInput { job: None, queue_s: None, spec, case: Some(waiting) };
+    Ok(Some(NewJob { traceparent, ..accepted.with(&JobInput::Meshing(input))? }))
 }
 
 /// Checks a prediction over stored meshes and those of a request.
@@ -164,5 +274,5 @@ pub(super) async fn checked(
     let limits: Limits = (*service.limits).clone();
     let turn = service.check_turn().await?;
     let report = turn.compute(move || crate::jobs::check(&input, &sources, &limits)).await?;
-    report.map_err(job_input::refusal)
+    report.map_err(accepted::refusal)
 }

@@ -10,23 +10,28 @@ use serde::{Deserialize, Serialize};
 use utoipa::{IntoParams, ToSchema};
 use utoipa_axum::routes;
 
+use super::caller::Caller;
 use super::case_draft::{Draft, checked, split};
+use super::case_state::{CaseMeshingView, CaseState, meshing_view, tag_of};
 use super::error::{ApiError, ApiResult};
 use super::guard::check_accept;
 use super::idempotency::Asked;
 use super::meshes::document_of;
 use super::paging::Page;
 use super::parameters::{Id, Parameters};
+use super::prefer::{wait_for_end, wanted_wait, with_wait};
 use super::resources::Resources;
-use super::{Service, body, conditional, job_input, json, time, with_header};
+use super::{Service, accepted, body, case_state, conditional, job_input, json, time, with_header};
 use crate::jobs::PredictInput;
+use crate::schema::case::meshed::CaseBody;
 use crate::schema::key::Scope;
 use crate::schema::mesh::MeshDocument;
 use crate::schema::predict::check::CheckDocument;
 use crate::schema::wire::canonical::sha256_hex;
 use crate::schema::wire::strict;
-use crate::schema::{CaseDocument, ErrorCode, Faults, PredictDocument};
+use crate::schema::{ErrorCode, Faults, PredictDocument};
 use crate::store::{CaseRow, Change};
+use crate::traces::TraceParent;
 
 const JSON: &str = "application/json";
 const SVG: &str = "image/svg+xml";
@@ -51,7 +56,13 @@ pub struct CaseView {
     /// RFC 3339, UTC.
     pub created: String,
     pub updated: String,
-    pub case: CaseDocument,
+    pub state: CaseState,
+    /// The job that makes or has made its mesh, where that was not uploaded.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub meshing: Option<CaseMeshingView>,
+    /// As it was posted until its mesh is made, and with that mesh from then on.
+    pub case: CaseBody,
     /// The meshes that the case refers to.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub meshes: Vec<MeshDocument>,
@@ -94,7 +105,7 @@ struct ListParameters {
 #[derive(ToSchema)]
 #[allow(dead_code, reason = "describes the form for the OpenAPI document")]
 struct CaseForm {
-    case: CaseDocument,
+    case: CaseBody,
     #[serde(flatten)]
     meshes: BTreeMap<String, MeshPart>,
 }
@@ -106,24 +117,32 @@ struct CaseForm {
 struct MeshPart(Vec<u8>);
 
 /// Keeps a case. As a form it brings its meshes along: the document in the part `case` refers to the
-/// meshes by the names of their parts.
+/// meshes by the names of their parts. A case with a scan to be meshed (`meshing`) is kept in the state `meshing`, and its
+/// job is accepted, which a key has to allow (`run`): jobs on it wait until it is `ready`, and fail where it has `failed`. With
+/// `Prefer: wait=n` the answer comes when that job has ended, at the latest after n seconds (at most 30).
 #[utoipa::path(
     post, path = "/v1/cases", operation_id = "create_case", tag = "cases",
     params(
         CreateParameters,
+        ("Prefer" = Option<String>, Header, description = "wait=n: wait at most n seconds for the end of its meshing"),
         (
             "Idempotency-Key" = Option<String>, Header, min_length = 1, max_length = 255, pattern = r"^[!-~]([\t -~]*[!-~])?$",
             description = "a word of the client's, so that the request may be sent again"
         ),
     ),
-    request_body(description = "the case", content((CaseDocument = "application/json"), (CaseForm = "multipart/form-data"))),
-    responses((status = 201, description = "kept", body = CaseView, headers(("Location" = String, description = "the case"), ("ETag" = String, description = "its version"))))
+    request_body(description = "the case", content((CaseBody = "application/json"), (CaseForm = "multipart/form-data"))),
+    responses((status = 201, description = "kept", body = CaseView, headers(
+        ("Location" = String, description = "the case"), ("ETag" = String, description = "its version"),
+        ("Preference-Applied" = Option<String>, description = "the wait that was granted"))))
 )]
 async fn create(
     service: Service,
+    caller: Caller,
     Parameters(parameters): Parameters<CreateParameters>,
     request: Request,
 ) -> ApiResult {
+    let wait = wanted_wait(request.headers(), service.limits.wait_s);
+    let place = request.extensions().get::<Option<TraceParent>>().cloned().flatten();
     let kind = body::content_type(request.headers());
     let headers = request.headers().clone();
     let (text, parts) = match kind.as_str() {
@@ -134,7 +153,10 @@ async fn create(
         }
         _ => return Err(body::unsupported(&kind, READ_HERE)),
     };
-    let document: CaseDocument = strict::parse(&text, &service.limits)?;
+    let document = CaseBody::parse(&text, &service.limits)?;
+    if matches!(document, CaseBody::ToMesh(_)) {
+        caller.require(Scope::Run)?;
+    }
     let content: Vec<&[u8]> = parts
         .iter()
         .flat_map(|(name, part)| [name.as_bytes(), &part.sha256])
@@ -144,23 +166,37 @@ async fn create(
     if let Some(known) = asked.known(&service).await?
         && service.store.case(&known.id).await?.is_some()
     {
-        return created(&service, &known.id).await;
+        return created(&service, &known.id, wait).await;
     }
     // Its meshes are in memory until the case is stored.
     let turn = service.parse_turn().await?;
     let draft = Draft::read(&service, &turn, document, parts, parameters.allow_any_scale).await?;
-    let check = draft.check(&service).await?;
+    let checked = draft.check(&service).await?;
     // What comes before this changes nothing, so that it ends with its client.
     let new = asked.reserve(&service).await?;
-    draft.store(&service, &new, check.as_ref()).await?;
-    created(&service, &new.id).await
+    let place = place.map(|place| place.to_string());
+    draft.store(&service, &new, &checked, place).await?;
+    drop(turn);
+    created(&service, &new.id, wait).await
 }
 
 /// The answer to a request that made a case, or found it made.
-async fn created(service: &Service, id: &str) -> ApiResult {
-    let row = row_of(service, id).await?;
-    let answer = answer(service, StatusCode::CREATED, &row).await?;
+async fn created(service: &Service, id: &str, wait: Option<u32>) -> ApiResult {
+    let row = row_when_meshed(service, id, wait).await?;
+    let answer = with_wait(answer(service, StatusCode::CREATED, &row).await?, wait);
     Ok(with_header(answer, header::LOCATION, &format!("/v1/cases/{id}")))
+}
+
+/// The row of a case, once its meshing has ended or the wait is over.
+async fn row_when_meshed(service: &Service, id: &str, wait: Option<u32>) -> ApiResult<CaseRow> {
+    let row = row_of(service, id).await?;
+    match (&row.meshing, wait) {
+        (Some(meshing), Some(wait)) => {
+            wait_for_end(service, &meshing.job, wait).await?;
+            row_of(service, id).await
+        }
+        _ => Ok(row),
+    }
 }
 
 async fn row_of(service: &Service, id: &str) -> ApiResult<CaseRow> {
@@ -169,12 +205,17 @@ async fn row_of(service: &Service, id: &str) -> ApiResult<CaseRow> {
 }
 
 fn view(row: &CaseRow) -> ApiResult<CaseView> {
+    let case = case_state::body_of(row)?;
+    let state = case_state::state(row, &case);
+    let meshing = row.meshing.as_ref().map(|meshing| meshing_view(meshing, state));
     Ok(CaseView {
         id: row.id.clone(),
         version: row.version,
         created: time::rfc3339(row.created),
         updated: time::rfc3339(row.updated),
-        case: serde_json::from_str(&row.document).map_err(ApiError::internal)?,
+        state,
+        meshing: meshing.transpose()?,
+        case,
         meshes: Vec::new(),
         check: serde_json::from_str(&row.report).map_err(ApiError::internal)?,
     })
@@ -187,7 +228,7 @@ async fn answer(service: &Service, status: StatusCode, row: &CaseRow) -> ApiResu
             view.meshes.push(document_of(&mesh)?);
         }
     }
-    let tag = format!("\"{}\"", row.version);
+    let tag = format!("\"{}\"", tag_of(row, view.state));
     Ok(with_header(json(status, &view), header::ETAG, &tag))
 }
 
@@ -205,24 +246,37 @@ async fn list(service: Service, Parameters(parameters): Parameters<ListParameter
     Ok(json(StatusCode::OK, &CaseList { items, next }))
 }
 
-/// One case with its meshes.
+/// One case with its meshes; with `Prefer: wait=n` when its meshing has ended, at the latest after n seconds (at most 30).
 #[utoipa::path(
-    get, path = "/v1/cases/{id}", operation_id = "show_case", tag = "cases", params(("id" = uuid::Uuid, Path, description = "the case")),
+    get, path = "/v1/cases/{id}", operation_id = "show_case", tag = "cases",
+    params(
+        ("id" = uuid::Uuid, Path, description = "the case"),
+        ("Prefer" = Option<String>, Header, description = "wait=n: wait at most n seconds for the end of its meshing"),
+    ),
     responses(
-        (status = 200, description = "the case", body = CaseView, headers(("ETag" = String, description = "its version"))),
+        (status = 200, description = "the case", body = CaseView, headers(
+            ("ETag" = String, description = "its version, with its state where it is not ready"),
+            ("Preference-Applied" = Option<String>, description = "the wait that was granted"))),
         (status = 304, description = "the client has it already"),
     )
 )]
 async fn show(service: Service, Id(id): Id, headers: HeaderMap) -> ApiResult {
-    let row = row_of(&service, &id).await?;
-    let version = row.version.to_string();
+    let wait = wanted_wait(&headers, service.limits.wait_s);
+    let row = row_when_meshed(&service, &id, wait).await?;
+    let version = current_tag(&row)?;
     if conditional::is_known(&headers, &version) {
         return Ok(conditional::not_modified(&version));
     }
-    answer(&service, StatusCode::OK, &row).await
+    Ok(with_wait(answer(&service, StatusCode::OK, &row).await?, wait))
 }
 
-/// Erases a case: its plans, its jobs with their results, and the meshes that came with it.
+/// What tells a case from what it was before.
+fn current_tag(row: &CaseRow) -> ApiResult<String> {
+    Ok(tag_of(row, case_state::state(row, &case_state::body_of(row)?)))
+}
+
+/// Erases a case: its plans, its jobs with their results, and the meshes that came with it. A meshing of it that runs
+/// stops.
 #[utoipa::path(
     delete, path = "/v1/cases/{id}", operation_id = "erase_case", tag = "cases",
     params(
@@ -237,7 +291,7 @@ async fn show(service: Service, Id(id): Id, headers: HeaderMap) -> ApiResult {
 )]
 async fn remove(service: Service, Id(id): Id, headers: HeaderMap) -> ApiResult {
     let row = row_of(&service, &id).await?;
-    conditional::require_match(&headers, &row.version.to_string())?;
+    conditional::require_match(&headers, &current_tag(&row)?)?;
     match service.store.delete_case(&id, Some(row.version)).await? {
         Change::Done => {
             service.pictures.forget(&id);
@@ -287,7 +341,7 @@ async fn check(service: Service, Id(id): Id, request: Request) -> ApiResult {
         return Ok(json(StatusCode::OK, &report.document));
     }
     let turn = service.check_turn().await?;
-    let drawn = turn.compute(move || report.picture()).await?.map_err(job_input::refusal)?;
+    let drawn = turn.compute(move || report.picture()).await?.map_err(accepted::refusal)?;
     let svg = Bytes::from(drawn);
     if let Some(question) = question {
         service.pictures.keep(&id, question, svg.clone());

@@ -114,7 +114,28 @@ const LONGEST: usize = 64;
 
 #[cfg(test)]
 mod tests {
-    use super::innermost;
+    use std::time::Duration;
+
+    use futures::FutureExt as _;
+
+    use super::*;
+
+    #[tokio::test]
+    async fn what_has_changed_nothing_ends_with_its_client() {
+        let folder = tempfile::TempDir::new().unwrap();
+        let store = Store::open(folder.path()).await.unwrap();
+        let (held, ended) = tokio::sync::oneshot::channel::<()>();
+        let run = async move {
+            let _held = held;
+            std::future::pending::<Response>().await
+        };
+        let noting = store.noting(Deed::default());
+        let mut request = Box::pin(carry_out(noting, Coming::default(), run));
+        assert!((&mut request).now_or_never().is_none(), "it is at work");
+        drop(request);
+        let ended = tokio::time::timeout(Duration::from_secs(60), ended).await;
+        assert!(ended.expect("it ends").is_err(), "it is given up");
+    }
 
     #[test]
     fn a_deed_names_the_innermost_thing_of_its_path() {

@@ -9,7 +9,7 @@ use tokio::runtime::Handle;
 
 use super::error::{ApiError, ApiResult};
 use super::parameters::no_such_job;
-use super::{Service, conditional, guard, job_input};
+use super::{Service, accepted, conditional, guard};
 use crate::jobs::{Finished, JobInput};
 use crate::schema::predict::output::PictureName;
 use crate::schema::{ErrorCode, Limits};
@@ -52,7 +52,7 @@ async fn drawn(service: &Service, job: &JobRow, picture: PictureName) -> ApiResu
     let limits: Limits = (*service.limits).clone();
     let turn = service.check_turn().await?;
     let svg = turn.compute(move || finished.draw(picture, &sources, &limits)).await?;
-    let svg = Bytes::from(svg.map_err(job_input::refusal)?);
+    let svg = Bytes::from(svg.map_err(accepted::refusal)?);
     service.pictures.keep_of_job(&job.id, job.case_id.as_deref(), name, svg.clone());
     // Whoever erased it meanwhile found nothing to give up.
     if service.store.job_status(&job.id).await?.is_none() {

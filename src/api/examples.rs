@@ -8,6 +8,8 @@ pub const BONE: &str = "0199d3a0-0000-7000-8000-000000000002";
 pub const CASE: &str = "0199d3a0-0000-7000-8000-000000000003";
 pub const PLAN: &str = "0199d3a0-0000-7000-8000-000000000004";
 pub const SCAN: &str = "0199d3a0-0000-7000-8000-000000000006";
+const SKIN: &str = "0199d3a0-0000-7000-8000-000000000007";
+const SKULL: &str = "0199d3a0-0000-7000-8000-000000000008";
 pub const JOB: &str = "0199d3a0-0000-7000-8000-000000000005";
 
 /// Writes examples beside the schema of every JSON body of the operations.
@@ -26,7 +28,7 @@ pub fn add(paths: &mut Value) {
 /// The examples of an operation, each with its name.
 fn of(operation: &str) -> Vec<(&'static str, Value)> {
     match operation {
-        "create_case" => vec![("case", case())],
+        "create_case" => vec![("case", case()), ("scan to be meshed", scanned())],
         "check_case" => vec![("nothing moves", json!({})), ("plan", json!({ "plan": plan() }))],
         "create_plan" | "replace_plan" => vec![("movements", plan()), ("loads", loads())],
         "apply_response" => vec![("plan", json!({ "plan": plan() }))],
@@ -58,6 +60,20 @@ fn case() -> Value {
             "skin": {"young_modulus_kpa": 40, "poisson_ratio": 0.45},
             "*": {"young_modulus_kpa": 10, "poisson_ratio": 0.45},
         },
+    })
+}
+
+fn scanned() -> Value {
+    json!({
+        "name": "head",
+        "meshing": {
+            "kind": "mesh", "scan": SCAN, "size": {"tetrahedra": 20_000},
+            "osteotomy": {
+                "cuts": [{"name": "le-fort-1", "point_mm": [60, 55, 60], "normal": [0, -0.24, 1]}],
+                "segments": [{"name": "maxilla", "below": ["le-fort-1"]}],
+            },
+        },
+        "materials": {"*": {"young_modulus_kpa": 15, "poisson_ratio": 0.46}},
     })
 }
 
@@ -119,6 +135,18 @@ fn predictions_and_plans() -> Vec<(&'static str, Value)> {
                     "segments": [{"name": "maxilla", "below": ["le-fort-1"]}],
                 },
                 "size": {"tetrahedra": 100_000},
+            }),
+        ),
+        (
+            "mesh between surfaces",
+            json!({
+                "kind": "mesh",
+                "surfaces": {"skin": SKIN, "bone": SKULL},
+                "osteotomy": {
+                    "cuts": [{"name": "le-fort-1", "point_mm": [60, 55, 60], "normal": [0, -0.24, 1]}],
+                    "segments": [{"name": "maxilla", "below": ["le-fort-1"]}],
+                },
+                "size": {"tetrahedra": 20_000},
             }),
         ),
         ("response", json!({"kind": "response", "case": CASE, "segments": ["mandible"]})),

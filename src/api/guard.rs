@@ -11,7 +11,7 @@ use tracing::Instrument;
 
 use super::access::{Access, Audit, Declared, Found};
 use super::body::Coming;
-use super::caller::{self, Caller};
+use super::caller::{self, Caller, Identified};
 use super::deeds::{carry_out, deed_of, erased};
 use super::error::{ApiError, ApiResult, with_problem_body};
 use super::headers::guarded;
@@ -137,7 +137,11 @@ async fn admit(door: &Door, request: &mut Request) -> ApiResult<Admitted> {
         request.extensions_mut().insert(access);
     }
     let Access::Key { scope, audit } = access else { return Ok(Admitted::ToAll) };
-    let caller = caller::identify(&door.service, request.headers()).await?;
+    let identified = caller::identify(&door.service, request);
+    let Identified { caller, foreseen } = identified.await?;
+    if let Some(foreseen) = foreseen {
+        request.extensions_mut().insert(foreseen);
+    }
     let client = caller.client(request.extensions());
     request.extensions_mut().insert(client.clone());
     request.extensions_mut().insert(caller.clone());

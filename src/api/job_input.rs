@@ -2,26 +2,25 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use tokio::runtime::Handle;
-
 use super::Service;
+use super::accepted::{Accepted, AcceptedStudy, fault, in_spec, prepared, require_mesh};
+use super::case_state::{CaseOfJob, case_of_job, whole};
 use super::error::{ApiError, ApiResult};
 use super::parameters::id;
 use super::report;
+use super::waiting::Waiting;
 use crate::jobs::{
-    CompareInput, JobError, JobInput, MeshSource, MeshingInput, OptimiseInput, PredictInput,
-    ResponseInput, SourceError, StudyInput,
+    CompareInput, JobInput, MeshSource, MeshingInput, OptimiseInput, PredictInput, ResponseInput,
+    StudyInput,
 };
 use crate::schema::ErrorCode;
-
 use crate::schema::job::JobStatus;
 use crate::schema::job_document::JobDocument;
-use crate::schema::predict::result::EngineDocument;
 use crate::schema::study::document::SceneReference;
-use crate::schema::study::expected::{TruthCostDocument, truth_costs};
+use crate::schema::study::expected::truth_costs;
 use crate::schema::{
-    CaseDocument, CompareDocument, Faults, Limits, MeshingDocument, OptimiseDocument, PlanDocument,
-    Pointer, PredictDocument, Problem, ReportDocument, ResponseDocument, StudyDocument,
+    CompareDocument, Faults, Limits, MeshingDocument, OptimiseDocument, PlanDocument, Pointer,
+    PredictDocument, ReportDocument, ResponseDocument, StudyDocument,
 };
 use crate::store::{CaseRow, NewJob};
 
@@ -38,9 +37,17 @@ pub async fn of(service: &Service, document: JobDocument) -> ApiResult<NewJob> {
 }
 
 /// A prediction: its case and plan as they are at this moment, checked together with the meshes.
-async fn of_prediction(service: &Service, spec: PredictDocument) -> ApiResult<NewJob> {
+async fn of_prediction(service: &Service, mut spec: PredictDocument) -> ApiResult<NewJob> {
     let row = require_case(service, spec.case.as_deref().unwrap_or_default()).await?;
-    let input = predict_input(service, &row, spec).await?;
+    let case = match case_of_job(&row)? {
+        CaseOfJob::Whole(case) => *case,
+        CaseOfJob::Waits(meshing) => {
+            let plan = plan_of(service, &row.id, &mut spec).await?;
+            return Waiting { case: &row.id, meshing }.prediction(service, plan, spec).await;
+        }
+    };
+    let plan = plan_of(service, &row.id, &mut spec).await?;
+    let input = PredictInput { job: None, queue_s: None, case, plan, spec };
     let mesh_ids = mesh_ids(&input);
     if let Some(compare_to) = &input.spec.compare_to {
         require_mesh(service, "/compare_to/actual/mesh", &compare_to.actual.mesh).await?;
@@ -99,7 +106,12 @@ async fn of_comparison(service: &Service, spec: CompareDocument) -> ApiResult<Ne
 async fn of_response(service: &Service, mut spec: ResponseDocument) -> ApiResult<NewJob> {
     let row = require_case(service, &spec.case).await?;
     spec.case.clone_from(&row.id);
-    let case: CaseDocument = serde_json::from_str(&row.document).map_err(ApiError::internal)?;
+    let case = match case_of_job(&row)? {
+        CaseOfJob::Whole(case) => *case,
+        CaseOfJob::Waits(meshing) => {
+            return Waiting { case: &row.id, meshing }.response(service, spec).await;
+        }
+    };
     let (mesh_ids, tags) = (case.mesh_ids(), spec.tags.clone());
     let input = ResponseInput { job: None, queue_s: None, case, spec };
     let prepare = |input: &ResponseInput, sources: &dyn MeshSource, limits: &Limits| {
@@ -118,7 +130,12 @@ async fn of_response(service: &Service, mut spec: ResponseDocument) -> ApiResult
 async fn of_optimisation(service: &Service, mut spec: OptimiseDocument) -> ApiResult<NewJob> {
     let row = require_case(service, &spec.case).await?;
     spec.case.clone_from(&row.id);
-    let case: CaseDocument = serde_json::from_str(&row.document).map_err(ApiError::internal)?;
+    let case = match case_of_job(&row)? {
+        CaseOfJob::Whole(case) => *case,
+        CaseOfJob::Waits(meshing) => {
+            return Waiting { case: &row.id, meshing }.optimisation(service, spec).await;
+        }
+    };
     let tags = spec.tags.clone();
     let input = OptimiseInput { job: None, queue_s: None, case, spec };
     let mesh_ids = input.mesh_ids();
@@ -134,11 +151,15 @@ async fn of_optimisation(service: &Service, mut spec: OptimiseDocument) -> ApiRe
     new.with(&JobInput::Optimise(input))
 }
 
-/// A meshing: its scan, checked.
-async fn of_meshing(service: &Service, spec: MeshingDocument) -> ApiResult<NewJob> {
-    require_mesh(service, "/scan", &spec.scan).await?;
-    let (mesh_ids, tags) = (vec![spec.scan.clone()], spec.tags.clone());
-    let input = MeshingInput { job: None, queue_s: None, spec };
+/// A meshing: its scan or its surfaces, checked.
+async fn of_meshing(service: &Service, mut spec: MeshingDocument) -> ApiResult<NewJob> {
+    let mut mesh_ids = Vec::new();
+    for (at, id) in spec.mesh_references_mut(&Pointer::root()) {
+        require_mesh(service, at.as_str(), id).await?;
+        mesh_ids.push(id.clone());
+    }
+    let tags = spec.tags.clone();
+    let input = MeshingInput { job: None, queue_s: None, spec, case: None };
     let prepare = |input: &MeshingInput, sources: &dyn MeshSource, limits: &Limits| {
         Ok(input.prepare(sources, limits)?.spec_hash)
     };
@@ -157,7 +178,7 @@ async fn of_study(service: &Service, mut spec: StudyDocument) -> ApiResult<NewJo
         let at = format!("/scenes/{index}/case");
         let row = row.map_err(|error| error.map_problem(|problem| problem.moved("/case", &at)))?;
         reference.case.clone_from(&row.id);
-        let case: CaseDocument = serde_json::from_str(&row.document).map_err(ApiError::internal)?;
+        let case = whole(&row)?;
         cases.insert(row.id, case);
     }
     for (index, item) in spec.items.iter_mut().enumerate() {
@@ -171,7 +192,7 @@ async fn of_study(service: &Service, mut spec: StudyDocument) -> ApiResult<NewJo
             item.plan =
                 plan.map_err(|error| error.map_problem(|problem| problem.moved("", &at)))?;
         }
-        let case: CaseDocument = serde_json::from_str(&row.document).map_err(ApiError::internal)?;
+        let case = whole(&row)?;
         cases.insert(row.id, case);
     }
     // What it is held against is of patients too, and takes it with them.
@@ -222,75 +243,28 @@ async fn baseline(service: &Service, job: &str) -> ApiResult<(ReportDocument, Ve
     Ok((found.ok_or_else(missing)?.1, service.store.cases_of_job(&id).await?))
 }
 
-/// Checks a job with its meshes, off the async threads; gives it back with what `prepare` finds.
-async fn prepared<I: Send + 'static, T: Send + 'static>(
-    service: &Service,
-    input: I,
-    prepare: fn(&I, &dyn MeshSource, &Limits) -> Result<T, JobError>,
-) -> ApiResult<(I, T)> {
-    let sources = service.library.source(Handle::current(), BTreeMap::new());
-    let limits: Limits = (*service.limits).clone();
-    let turn = service.check_turn().await?;
-    let (input, found) = turn
-        .compute(move || {
-            let found = prepare(&input, &sources, &limits);
-            (input, found)
-        })
-        .await?;
-    Ok((input, found.map_err(|error| refusal(error).map_problem(in_spec))?))
-}
-
-/// What is known of a job when it is accepted, beside its document.
-struct Accepted {
-    case_id: Option<String>,
-    shared_cases: Vec<String>,
-    spec_hash: String,
-    tags: Vec<String>,
-    mesh_ids: Vec<String>,
-    study: Option<AcceptedStudy>,
-}
-
-/// What is known of a study beside that: the key of its rows, and what the truths that it solves will take.
-struct AcceptedStudy {
-    rows_key: String,
-    truths: Vec<TruthCostDocument>,
-}
-
-impl Accepted {
-    fn with(self, input: &JobInput) -> ApiResult<NewJob> {
-        let engine = serde_json::to_string(&EngineDocument::this()).map_err(ApiError::internal)?;
-        let truths = self.study.as_ref().map(|study| serde_json::to_string(&study.truths));
-        Ok(NewJob {
-            truths: truths.transpose().map_err(ApiError::internal)?,
-            rows_key: self.study.map(|study| study.rows_key),
-            id: uuid::Uuid::now_v7().to_string(),
-            kind: input.kind().name(),
-            priority: input.kind().priority(),
-            case_id: self.case_id,
-            shared_cases: self.shared_cases,
-            document: serde_json::to_string(input).map_err(ApiError::internal)?,
-            spec_hash: self.spec_hash,
-            engine,
-            tags: self.tags,
-            mesh_ids: self.mesh_ids,
-            traceparent: None,
-        })
-    }
-}
-
 /// The case and the plan of a spec in full; without a plan nothing moves.
 pub async fn predict_input(
     service: &Service,
     row: &CaseRow,
     mut spec: PredictDocument,
 ) -> ApiResult<PredictInput> {
-    let case: CaseDocument = serde_json::from_str(&row.document).map_err(ApiError::internal)?;
+    let case = whole(row)?;
+    let plan = plan_of(service, &row.id, &mut spec).await?;
+    Ok(PredictInput { job: None, queue_s: None, case, plan, spec })
+}
+
+/// The plan of a spec, taken out of it; without one nothing moves.
+async fn plan_of(
+    service: &Service,
+    case: &str,
+    spec: &mut PredictDocument,
+) -> ApiResult<PlanDocument> {
     let plan = match spec.plan.take() {
         Some(plan) => Some(plan),
-        None => stored_plan(service, &row.id, spec.plan_id.as_deref()).await?,
+        None => stored_plan(service, case, spec.plan_id.as_deref()).await?,
     };
-    let plan = plan.unwrap_or_default();
-    Ok(PredictInput { job: None, queue_s: None, case, plan, spec })
+    Ok(plan.unwrap_or_default())
 }
 
 /// The plan of a case that a document names, if it names one.
@@ -332,16 +306,6 @@ async fn require_case(service: &Service, case: &str) -> ApiResult<CaseRow> {
     row.ok_or_else(|| fault("/case", ErrorCode::UnknownCase, "there is no such case"))
 }
 
-/// The hash of a mesh that has to be there.
-async fn require_mesh(service: &Service, at: &str, mesh: &str) -> ApiResult<String> {
-    let row = match id(mesh) {
-        Some(id) => service.store.mesh(&id).await?,
-        None => None,
-    };
-    let row = row.ok_or_else(|| fault(at, ErrorCode::UnknownMesh, "there is no such mesh"))?;
-    Ok(row.sha256)
-}
-
 /// The hash of the skin that a job predicted, and the job's case.
 async fn predicted_skin(
     service: &Service,
@@ -361,37 +325,4 @@ async fn predicted_skin(
     let skin =
         skin.ok_or_else(|| fault(at, ErrorCode::NoSuchOutput, "the job wrote no skin.vtp"))?;
     Ok((skin.blob, row.case_id))
-}
-
-fn fault(at: &str, code: ErrorCode, detail: &str) -> ApiError {
-    let mut faults = Faults::default();
-    faults.add(&Pointer::from_text(at), code, detail);
-    match faults.into_result() {
-        Err(problem) => problem.into(),
-        Ok(()) => ApiError::internal("a fault vanished"),
-    }
-}
-
-/// A body that is the spec knows nothing of `/spec`.
-fn in_spec(problem: Problem) -> Problem {
-    problem.moved("/spec", "")
-}
-
-/// What a check found, as the answer to the request that asked for it.
-pub fn refusal(error: JobError) -> ApiError {
-    match error {
-        JobError::Refused(problem) => problem.into(),
-        JobError::Source(source @ SourceError::Unreadable { may_pass: false, .. }) => {
-            ApiError::internal(source)
-        }
-        JobError::Source(SourceError::Unreadable { may_pass: true, .. }) => {
-            ApiError::out_of_reach()
-        }
-        other => {
-            let document = other.to_document();
-            let mut problem = Problem::new(other.kind(), document.detail);
-            problem.members = document.members;
-            problem.into()
-        }
-    }
 }

@@ -50,7 +50,10 @@ fn message(row: &JobRow) -> String {
         (JobStatus::Accepted, _) if row.attempt > 0 => {
             format!("waits for a worker after attempt {}", row.attempt)
         }
-        (JobStatus::Accepted, _) => "waits for a worker".to_owned(),
+        (JobStatus::Accepted, _) => match &row.waits_for {
+            Some(meshing) => format!("waits for the mesh of its case, which job {meshing} makes"),
+            None => "waits for a worker".to_owned(),
+        },
         (JobStatus::Running, Some(phase)) => format!("attempt {}: {phase}", row.attempt),
         (JobStatus::Running, None) => format!("attempt {} has started", row.attempt),
         (JobStatus::Successful, _) => "the results are there".to_owned(),

@@ -7,13 +7,14 @@ use serde::{Deserialize, Serialize};
 use utoipa::{IntoParams, ToSchema};
 use utoipa_axum::routes;
 
+use super::accepted::{LONGEST_QUEUE, queue_full};
 use super::caller::Caller;
 use super::error::{ApiError, ApiResult};
 use super::idempotency::Asked;
 use super::job_view::status_info;
 use super::paging::Page;
 use super::parameters::{Id, Parameters, id, no_such_job};
-use super::prefer::{RETRY_AFTER_S, wait_for_end, wanted_wait};
+use super::prefer::{RETRY_AFTER_S, wait_for_end, wanted_wait, with_wait};
 use super::resources::Resources;
 
 use crate::schema::job_change::JobChangeDocument;
@@ -26,9 +27,6 @@ use crate::schema::job::{JobStatus, StatusInfo};
 use crate::schema::job_document::{JobDocument, JobKind};
 use crate::store::{Dismissal, Enqueued, JobFilter, JobRow, Tagged};
 use crate::traces::TraceParent;
-
-/// Jobs that may wait at the same time.
-const LONGEST_QUEUE: i64 = 10_000;
 
 pub fn router() -> Resources {
     Resources::new()
@@ -122,9 +120,10 @@ async fn create(service: Service, caller: Caller, request: Request) -> ApiResult
             }
             (id, deduplicated)
         }
-        Enqueued::QueueFull => {
-            let detail = format!("{LONGEST_QUEUE} jobs are waiting");
-            return Err(ApiError::new(ErrorCode::QueueFull, detail));
+        Enqueued::QueueFull => return Err(queue_full()),
+        Enqueued::NotMeshed => {
+            let detail = "the meshing of the case ended meanwhile without a mesh";
+            return Err(ApiError::new(ErrorCode::CaseNotReady, detail));
         }
         Enqueued::InputGone => {
             let detail = "the case or a mesh of the job was deleted meanwhile";
@@ -156,11 +155,7 @@ fn answer(status: StatusCode, job: &JobRow, deduplicated: bool, wait: Option<u32
     if !job.status.is_terminal() {
         answer = with_header(answer, header::RETRY_AFTER, &RETRY_AFTER_S.to_string());
     }
-    if let Some(wait) = wait {
-        let applied = header::HeaderName::from_static("preference-applied");
-        answer = with_header(answer, applied, &format!("wait={wait}"));
-    }
-    Ok(answer)
+    Ok(with_wait(answer, wait))
 }
 
 /// The state of a job; with `Prefer: wait=n` when it has ended, at the latest after n seconds (at most 30).

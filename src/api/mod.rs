@@ -1,6 +1,7 @@
 //! HTTP: one file for each resource, each with its `router()`.
 
 mod about;
+mod accepted;
 mod access;
 pub mod admin;
 mod answer;
@@ -9,6 +10,7 @@ mod body;
 mod budget;
 mod caller;
 mod case_draft;
+mod case_state;
 mod cases;
 mod client;
 mod conditional;
@@ -20,6 +22,7 @@ mod error;
 mod error_page;
 mod events;
 mod examples;
+mod foreseen;
 mod gone;
 mod guard;
 mod headers;
@@ -52,6 +55,7 @@ mod spool;
 mod streams;
 mod time;
 mod turns;
+mod waiting;
 
 use answer::{json, with_header};
 pub use openapi::document;

@@ -2,12 +2,13 @@
 
 use std::time::Duration;
 
-use axum::http::HeaderMap;
+use axum::http::{HeaderMap, HeaderName};
+use axum::response::Response;
 use tokio::time::Instant;
 
-use super::Service;
 use super::error::ApiResult;
 use super::parameters::no_such_job;
+use super::{Service, with_header};
 use crate::schema::ErrorCode;
 use crate::schema::job::JobStatus;
 use crate::schema::wire::problem::Problem;
@@ -30,6 +31,12 @@ pub fn wanted_wait(headers: &HeaderMap, cap: u32) -> Option<u32> {
         .find(|(name, _)| name.trim().eq_ignore_ascii_case("wait"))
         .and_then(|(_, seconds)| seconds.trim().trim_matches('"').parse::<u64>().ok())
         .map(|seconds| u32::try_from(seconds).unwrap_or(u32::MAX).min(cap))
+}
+
+/// Tells the wait that was granted.
+pub fn with_wait(answer: Response, wait: Option<u32>) -> Response {
+    let Some(wait) = wait else { return answer };
+    with_header(answer, HeaderName::from_static("preference-applied"), &format!("wait={wait}"))
 }
 
 /// Waits until a job has ended, is gone, the time is up, the client has left or the process is about to stop, and tells

@@ -9,8 +9,10 @@ use serde::Deserialize;
 use utoipa::IntoParams;
 use utoipa_axum::routes;
 
+use super::case_state::whole;
 use super::download::Opened;
 use super::error::{ApiError, ApiResult};
+use super::foreseen::Foreseen;
 use super::guard::preferred;
 use super::parameters::{Id, Parameters, id as spelled};
 use super::resources::Resources;
@@ -75,8 +77,15 @@ impl ApplyParameters {
     }
 }
 
-/// The response that a request means.
-async fn find(service: &Service, case: &str, job: Option<&str>) -> ApiResult<FoundResponse> {
+/// Which response a request means.
+struct Meant<'a> {
+    case: &'a str,
+    job: Option<&'a str>,
+    foreseen: Option<Foreseen>,
+}
+
+async fn find(service: &Service, meant: Meant<'_>) -> ApiResult<FoundResponse> {
+    let Meant { case, job, foreseen } = meant;
     let job = match job {
         Some(text) => {
             let unknown = || refusal(MissingResponse::NotOfCase { job: text.to_owned() });
@@ -84,7 +93,17 @@ async fn find(service: &Service, case: &str, job: Option<&str>) -> ApiResult<Fou
         }
         None => None,
     };
-    service.responses.find(case, job.as_deref()).await.map_err(refusal)
+    let found = match foreseen.and_then(Foreseen::fresh) {
+        Some(built) => service.responses.find_among(built, case, job.as_deref()).await,
+        None => service.responses.find(case, job.as_deref()).await,
+    };
+    match found {
+        Err(missing @ MissingResponse::NotBuilt) => {
+            let row = service.store.case(case).await?;
+            Err(row.and_then(|row| whole(&row).err()).unwrap_or_else(|| refusal(missing)))
+        }
+        found => found.map_err(refusal),
+    }
 }
 
 fn refusal(missing: MissingResponse) -> ApiError {
@@ -125,7 +144,8 @@ async fn show(
 ) -> ApiResult {
     let offered = [DESCRIPTION_MEDIA_TYPE, COLUMNS_MEDIA_TYPE, GLB_MEDIA_TYPE];
     let wanted = preferred(&headers, &offered)?;
-    let found = find(&service, &id, parameters.job.as_deref()).await?;
+    let meant = Meant { case: &id, job: parameters.job.as_deref(), foreseen: None };
+    let found = find(&service, meant).await?;
     let Some(file) = [DESCRIPTION_FILE, COLUMNS_FILE].get(wanted) else {
         return rest(&service, &found, &headers).await;
     };
@@ -197,9 +217,11 @@ async fn apply(
         range_mm: parameters.range_mm()?,
         check_skin: parameters.check_skin.unwrap_or(false),
     };
+    let foreseen = request.extensions().get::<Foreseen>().cloned();
     let bytes = body::json(&service, request).await?;
     let document: ApplyDocument = strict::parse(&bytes, &service.limits)?;
-    let found = find(&service, &id, parameters.job.as_deref()).await?;
+    let meant = Meant { case: &id, job: parameters.job.as_deref(), foreseen };
+    let found = find(&service, meant).await?;
     let loaded = service.responses.load(&found).await?;
     let movements = loaded.description.movements(&document.plan, &service.limits)?;
     let loading = started.elapsed();

@@ -43,19 +43,6 @@ pub fn read<T: DeserializeOwned>(path: &Path) -> Result<T, CommandError> {
         .map_err(|problem| CommandError::Document { path: path.to_owned(), problem })
 }
 
-/// A spec of a job in which a member may be left out.
-pub fn read_spec_without<T: DeserializeOwned>(
-    path: &Path,
-    member: &str,
-) -> Result<T, CommandError> {
-    let mut value: Value = read(path)?;
-    if let Some(members) = value.as_object_mut() {
-        members.entry(member).or_insert_with(|| "".into());
-    }
-    strict::from_value(value)
-        .map_err(|problem| CommandError::Document { path: path.to_owned(), problem })
-}
-
 /// What the spec of a case file says of how tissue is computed, and every kind of job of one case may say.
 const OF_TISSUE: [&str; 6] = ["method", "element", "materials", "membrane", "tolerance", "budget"];
 

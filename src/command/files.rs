@@ -46,6 +46,11 @@ impl FileSource {
         }
     }
 
+    /// The same with meshes that need not be read.
+    pub fn with(self, read: BTreeMap<String, StoredMesh>) -> Self {
+        FileSource { read: Mutex::new(read), ..self }
+    }
+
     /// Files of several cases.
     pub fn of_cases<'a>(
         cases: impl Iterator<Item = &'a CaseDocument>,

@@ -1,29 +1,43 @@
-//! `facies mesh`: from a scan to a volume mesh with its node sets and the case that it is made for.
+//! `facies mesh`: from a scan or surfaces to a volume mesh with its node sets and the case that it is made for.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::documents::{CaseFile, read, read_spec_without, write};
+use super::documents::{CaseFile, read, write};
 use super::failure::CommandError;
 use super::files::{FileSource, ScaleArguments};
 use super::screen::{print_files, print_warnings, work_in_sight};
+use super::selection::{BoneArgument, bone};
 use super::watch::Watch;
-use crate::jobs::{JobInput, MeshingInput, Workplace};
+use crate::jobs::JobError;
+use crate::jobs::{JobInput, JobOutput, MadeMesh, MeshingInput, StoredMesh, Workplace};
 use crate::schema::case::document::LengthUnit;
 use crate::schema::meshing::result::MeshingResultDocument;
+use crate::schema::meshing::surfaces::SurfacesDocument;
 use crate::schema::wire::canonical;
-use crate::schema::{Limits, MeshingDocument, PlanDocument, PredictDocument};
+use crate::schema::{
+    CaseDocument, ErrorCode, Faults, Limits, MeshingDocument, PlanDocument, Pointer,
+    PredictDocument,
+};
+use mechanics::mesh::Frame;
 
 const SCAN: &str = "What is meshed";
 const RESULT: &str = "Result";
 
-const NO_SCAN: &str = "give the scan that is to be meshed: --scan FILE";
+const NO_SCAN: &str = "give what is to be meshed: --scan FILE, or --skin FILE and --bone FILE";
+const NO_SKIN: &str = "--bone needs the skin around it: --skin FILE";
+const TWO_KINDS_OF_BONE: &str =
+    "give --bone once as a FILE of all bone, or every time as NAME=FILE for a segment";
 
 #[derive(Debug, Args)]
 pub struct Arguments {
     #[command(flatten)]
     scan: ScanArguments,
+    /// The surface of the skin in mm, around --bone
+    #[arg(long, value_name = "FILE", requires = "bone", help_heading = SCAN)]
+    skin: Option<String>,
     /// A plan whose osteotomy cuts the bone; without one all bone is fixed
     #[arg(long, value_name = "FILE", help_heading = SCAN)]
     plan: Option<PathBuf>,
@@ -32,23 +46,35 @@ pub struct Arguments {
     out: PathBuf,
 }
 
-/// A scan, and how it is meshed.
+/// A scan or the bone of surfaces, and how they are meshed.
 #[derive(Debug, Args)]
 pub struct ScanArguments {
     /// A CT in Hounsfield units, to be meshed first
-    #[arg(long, value_name = "FILE", help_heading = SCAN)]
+    #[arg(long, value_name = "FILE", group = "meshed", help_heading = SCAN)]
     scan: Option<PathBuf>,
-    /// A meshing document, as it is posted but for `scan` and `osteotomy`
-    #[arg(long, value_name = "FILE", requires = "scan", help_heading = SCAN)]
+    /// The surface of all bone in mm, to be meshed first with the skin around it; NAME=FILE, which may be given several
+    /// times, for bones that are segments already
+    #[arg(long, value_name = "FILE|NAME=FILE", conflicts_with = "scan", group = "meshed", help_heading = SCAN)]
+    bone: Vec<String>,
+    /// A meshing document, as it is posted but for `scan`, `surfaces` and `osteotomy`
+    #[arg(long, value_name = "FILE", requires = "meshed", help_heading = SCAN)]
     mesh_spec: Option<PathBuf>,
     /// About how many tetrahedra; default 300000
-    #[arg(long, value_name = "COUNT", requires = "scan", help_heading = SCAN)]
+    #[arg(long, value_name = "COUNT", requires = "meshed", help_heading = SCAN)]
     tetrahedra: Option<u64>,
+}
+
+/// A scan that was meshed: its case, and the meshes that this names, in memory.
+pub struct Meshed {
+    pub file: CaseFile,
+    pub meshes: BTreeMap<String, StoredMesh>,
 }
 
 /// Meshes, writes the files, and tells what is in them.
 pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
-    let file = arguments.scan.mesh(arguments.plan.as_deref(), &arguments.out)?;
+    let plan = arguments.plan.as_deref();
+    let Meshed { file, .. } =
+        arguments.scan.mesh(arguments.skin.as_deref(), plan, &arguments.out)?;
     let path = arguments.out.join("case.json");
     write(&path, format!("{:#}\n", canonical::to_value(&file)))?;
     println!("wrote      {}", path.display());
@@ -57,18 +83,23 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
 
 impl ScanArguments {
     pub fn is_given(&self) -> bool {
-        self.scan.is_some()
+        self.scan.is_some() || !self.bone.is_empty()
     }
 
-    /// Meshes the scan into a folder and tells what came out: the case with the plan without its cuts. Paths of meshes
-    /// lead from the folder.
-    pub fn mesh(&self, plan: Option<&Path>, out: &Path) -> Result<CaseFile, CommandError> {
+    /// Meshes the scan, or what lies between skin and bone, into a folder and tells what came out: the case with the plan
+    /// without its cuts. Paths of meshes lead from the folder.
+    pub fn mesh(
+        &self,
+        skin: Option<&str>,
+        plan: Option<&Path>,
+        out: &Path,
+    ) -> Result<Meshed, CommandError> {
         let plan = plan.map(read::<PlanDocument>).transpose()?;
-        let (spec, plan) = self.spec(plan)?;
+        let (spec, plan) = self.spec(skin, plan)?;
         let limits = Limits::default();
         let sources = FileSource::new(Path::new(""), LengthUnit::Mm, ScaleArguments::default());
         let place = Workplace { sources: &sources, limits: &limits, out };
-        let input = MeshingInput { job: None, queue_s: None, spec };
+        let input = MeshingInput { job: None, queue_s: None, spec, case: None };
         let _watch = Watch::start(&input.spec.budget);
         let done = work_in_sight(&JobInput::Meshing(input), &place)?;
         let Some(result) = &done.result.meshing else {
@@ -77,20 +108,26 @@ impl ScanArguments {
         print_result(result, done.result.provenance.timing.total_s);
         print_warnings(&done.result.warnings);
         print_files(&done.files, out);
-        Ok(CaseFile { case: result.case.clone(), plan, spec: PredictDocument::default() })
+        let case = result.case.clone();
+        let meshes = in_memory(&case, &done);
+        Ok(Meshed { file: CaseFile { case, plan, spec: PredictDocument::default() }, meshes })
     }
 
     /// The document of the meshing, and the plan without its cuts.
     fn spec(
         &self,
+        skin: Option<&str>,
         mut plan: Option<PlanDocument>,
     ) -> Result<(MeshingDocument, Option<PlanDocument>), CommandError> {
-        let scan = self.scan.as_deref().ok_or_else(|| CommandError::Usage(NO_SCAN.to_owned()))?;
         let mut spec = match &self.mesh_spec {
-            Some(path) => read_spec_without(path, "scan")?,
+            Some(path) => read::<MeshingDocument>(path)?,
             None => MeshingDocument::default(),
         };
-        spec.scan = scan.to_string_lossy().into_owned();
+        spec.scan = self.scan.as_ref().map(|scan| scan.to_string_lossy().into_owned());
+        spec.surfaces = match self.bone.is_empty() {
+            true => None,
+            false => Some(surfaces(skin, &self.bone)?),
+        };
         if let Some(tetrahedra) = self.tetrahedra {
             spec.size.tetrahedra = Some(tetrahedra);
         }
@@ -98,8 +135,64 @@ impl ScanArguments {
             spec.frame = plan.frame;
             spec.osteotomy = plan.osteotomy.take();
         }
+        if let Some(plan) = &plan {
+            check_segments(plan, &spec)?;
+        }
         Ok((spec, plan))
     }
+}
+
+/// A plan that moves what the meshing will not find is refused before anything is meshed.
+fn check_segments(plan: &PlanDocument, spec: &MeshingDocument) -> Result<(), CommandError> {
+    let cut = spec.osteotomy.iter().flat_map(|osteotomy| &osteotomy.segments);
+    let given = spec.surfaces.iter().flat_map(|surfaces| &surfaces.bones);
+    let known: Vec<&str> =
+        cut.map(|segment| segment.name.trim()).chain(given.map(|bone| bone.name.trim())).collect();
+    let at = Pointer::root().key("plan").key("segments");
+    let mut faults = Faults::default();
+    for (number, segment) in plan.segments.iter().enumerate() {
+        if !known.contains(&segment.name.trim()) {
+            let detail =
+                format!("there is no segment {:?}; there are: {}", segment.name, known.join(", "));
+            faults.add(&at.index(number).key("name"), ErrorCode::UnknownSegment, detail);
+        }
+    }
+    Ok(faults.into_result().map_err(JobError::from)?)
+}
+
+fn surfaces(skin: Option<&str>, bones: &[String]) -> Result<SurfacesDocument, CommandError> {
+    let usage = |detail: &str| CommandError::Usage(detail.to_owned());
+    let skin = skin.ok_or_else(|| usage(NO_SKIN))?.to_owned();
+    let mut surfaces = SurfacesDocument { skin, ..SurfacesDocument::default() };
+    for text in bones {
+        match bone(text) {
+            BoneArgument::Segment(bone) => surfaces.bones.push(bone),
+            BoneArgument::All(file) if surfaces.bone.is_none() => surfaces.bone = Some(file),
+            BoneArgument::All(_) => return Err(usage(TWO_KINDS_OF_BONE)),
+        }
+    }
+    match surfaces.bone.is_some() && !surfaces.bones.is_empty() {
+        true => Err(usage(TWO_KINDS_OF_BONE)),
+        false => Ok(surfaces),
+    }
+}
+
+/// The meshes that a case names, as its files would be read.
+fn in_memory(case: &CaseDocument, done: &JobOutput) -> BTreeMap<String, StoredMesh> {
+    let stored = |made: &MadeMesh| {
+        let bone = case.bones.iter().find(|bone| made.name.as_ref() == Some(&bone.name));
+        let id = bone.map_or(&case.volume, |bone| &bone.mesh);
+        let file = done.files.iter().find(|file| file.name == *id)?;
+        let mesh = StoredMesh {
+            shape: made.shape.clone(),
+            frame: (made.frame != Frame::Unspecified).then_some(made.frame),
+            units: Some(LengthUnit::Mm),
+            warnings: Vec::new(),
+            sha256: file.sha256.clone(),
+        };
+        Some((id.clone(), mesh))
+    };
+    done.meshes.iter().filter_map(stored).collect()
 }
 
 fn print_result(result: &MeshingResultDocument, total_s: f64) {

@@ -7,7 +7,7 @@ use clap::{Args, ValueEnum};
 use super::documents::{Asked, CaseFile, read};
 use super::failure::CommandError;
 use super::files::{FileSource, ScaleArguments};
-use super::mesh::ScanArguments;
+use super::mesh::{Meshed, ScanArguments};
 use super::selection::{segment, selection};
 use crate::schema::case::document::{FrameName, LengthUnit, SegmentDocument};
 use crate::schema::case::selection::SelectionDocument;
@@ -33,9 +33,10 @@ pub struct SceneArguments {
     /// several times
     #[arg(long, value_name = "SET|ARRAY=VALUE", value_parser = selection, conflicts_with = "case", help_heading = BOUNDARY)]
     fixed: Vec<SelectionDocument>,
-    /// The nodes of the skin, as for --fixed; default: every boundary face that nothing holds
-    #[arg(long, value_name = "SET|ARRAY=VALUE", value_parser = selection, conflicts_with = "case", help_heading = BOUNDARY)]
-    skin: Option<SelectionDocument>,
+    /// The nodes of the skin, as for --fixed; default: every boundary face that nothing holds. Where a command meshes
+    /// bone, the file of the skin around it
+    #[arg(long, value_name = "SET|ARRAY=VALUE|FILE", conflicts_with = "case", help_heading = BOUNDARY)]
+    skin: Option<String>,
     /// A bone that plans move by NAME, and its nodes, as for --fixed; may be given several times; node sets of the mesh
     /// are segments without it
     #[arg(long, value_name = "NAME=SET|NAME=ARRAY=VALUE", value_parser = segment, conflicts_with = "case", help_heading = BOUNDARY)]
@@ -122,7 +123,7 @@ impl SceneArguments {
         Ok(Asked { file, path: path.clone(), folder, sources })
     }
 
-    /// The documents of a scan that is meshed first; its mesh is written into `mesh` of the folder for the result.
+    /// The documents of a scan or surfaces that are meshed first; the mesh is written into `mesh` of the folder for the result.
     pub fn documents_of_scan(
         &self,
         scan: &ScanArguments,
@@ -130,13 +131,13 @@ impl SceneArguments {
         out: &Path,
     ) -> Result<Asked, CommandError> {
         if self.case.is_some() || self.mesh.is_some() {
-            let detail = "give one of --case, --mesh and --scan: a scan becomes a mesh and a case";
+            let detail = "give one of --case, --mesh, --scan and --bone: the last two become a mesh and a case";
             return Err(CommandError::Usage(detail.to_owned()));
         }
         let folder = out.join("mesh");
-        let mut file = scan.mesh(plan, &folder)?;
+        let Meshed { mut file, meshes } = scan.mesh(self.skin.as_deref(), plan, &folder)?;
         file.spec = self.spec();
-        let sources = FileSource::new(&folder, file.case.units, self.scale);
+        let sources = FileSource::new(&folder, file.case.units, self.scale).with(meshes);
         Ok(Asked { file, path: folder.clone(), folder, sources })
     }
 
@@ -148,7 +149,8 @@ impl SceneArguments {
             FrameArgument::Ras => FrameName::Ras,
             FrameArgument::Unspecified => FrameName::Unspecified,
         };
-        case.skin.clone_from(&self.skin);
+        let skin = self.skin.as_deref().map(selection).transpose();
+        case.skin = skin.map_err(CommandError::Usage)?;
         case.fixed.clone_from(&self.fixed);
         case.segments.clone_from(&self.segment);
         Ok(CaseFile { case, plan, spec: self.spec() })

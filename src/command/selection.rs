@@ -1,6 +1,6 @@
 //! Selections of nodes as arguments: `NAME` is a set, `ARRAY=VALUE` the nodes where an array has a value.
 
-use crate::schema::case::document::SegmentDocument;
+use crate::schema::case::document::{BoneDocument, SegmentDocument};
 use crate::schema::case::selection::SelectionDocument;
 
 /// What `--fixed` and `--skin` take: `skull`, `tag=4`, or `tag=4,7` for the nodes of either value.
@@ -30,6 +30,23 @@ pub fn segment(text: &str) -> Result<SegmentDocument, String> {
     Ok(SegmentDocument { name: name.trim().to_owned(), nodes: selection(nodes)? })
 }
 
+/// What `--bone` takes: a file of all bone, or `mandible=mandible.stl` for one that is a segment.
+#[derive(Clone, Debug, PartialEq)]
+pub enum BoneArgument {
+    All(String),
+    Segment(BoneDocument),
+}
+
+pub fn bone(text: &str) -> BoneArgument {
+    match text.split_once('=') {
+        None => BoneArgument::All(text.to_owned()),
+        Some((name, mesh)) => BoneArgument::Segment(BoneDocument {
+            name: name.trim().to_owned(),
+            mesh: mesh.to_owned(),
+        }),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -47,5 +64,8 @@ mod tests {
         let jaw = segment("jaw=tag=4").map(|found| (found.name, found.nodes.value));
         assert_eq!(jaw, Ok(("jaw".to_owned(), Some(4))));
         assert!(segment("jaw").is_err());
+        assert_eq!(bone("bone.stl"), BoneArgument::All("bone.stl".to_owned()));
+        let jaw = BoneDocument { name: "jaw".to_owned(), mesh: "a=b.stl".to_owned() };
+        assert_eq!(bone("jaw=a=b.stl"), BoneArgument::Segment(jaw));
     }
 }

@@ -5,6 +5,7 @@ use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 use super::failure::JobError;
 use crate::schema::predict::result::TimingDocument;
+use crate::schema::wire::date::date_and_time;
 use mechanics::prediction::{ModelError, SolverError};
 use mechanics::progress::{Phase, Progress};
 
@@ -127,24 +128,7 @@ impl Progress for Observed<'_> {
 /// The time of day in RFC 3339, UTC, to the second.
 pub fn now_rfc3339() -> String {
     let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
-    rfc3339(since.as_secs())
-}
-
-/// Seconds since 1970 in RFC 3339. Days to dates after Howard Hinnant, "chrono-compatible low-level
-/// date algorithms", civil_from_days.
-fn rfc3339(seconds: u64) -> String {
-    let (days, second) = (seconds / 86_400, seconds % 86_400);
-    let shifted = days + 719_468;
-    let (era, day_of_era) = (shifted / 146_097, shifted % 146_097);
-    let year_of_era =
-        (day_of_era - day_of_era / 1460 + day_of_era / 36_524 - day_of_era / 146_096) / 365;
-    let day_of_year = day_of_era - (365 * year_of_era + year_of_era / 4 - year_of_era / 100);
-    let month_from_march = (5 * day_of_year + 2) / 153;
-    let day = day_of_year - (153 * month_from_march + 2) / 5 + 1;
-    let month = if month_from_march < 10 { month_from_march + 3 } else { month_from_march - 9 };
-    let year = era * 400 + year_of_era + u64::from(month <= 2);
-    let (hour, minute, second) = (second / 3600, second / 60 % 60, second % 60);
-    format!("{year:04}-{month:02}-{day:02}T{hour:02}:{minute:02}:{second:02}Z")
+    format!("{}Z", date_and_time(i64::try_from(since.as_secs()).unwrap_or(i64::MAX)))
 }
 
 /// The peak memory of this process in MB, where the system tells.
@@ -159,14 +143,6 @@ pub fn peak_rss_mb() -> Option<f64> {
 mod tests {
     use super::*;
     use mechanics::progress::Unobserved;
-
-    #[test]
-    fn seconds_become_dates() {
-        assert_eq!(rfc3339(0), "1970-01-01T00:00:00Z");
-        assert_eq!(rfc3339(951_782_399), "2000-02-28T23:59:59Z");
-        assert_eq!(rfc3339(951_782_400), "2000-02-29T00:00:00Z");
-        assert_eq!(rfc3339(4_107_542_400), "2100-03-01T00:00:00Z");
-    }
 
     #[test]
     fn a_prediction_that_stops_without_a_request_ran_out_of_time() {

@@ -61,7 +61,10 @@ impl JobError {
             JobError::Prediction(ModelError::Solver(SolverError::OverBudget { .. }))
             | JobError::Budget { .. } => ErrorClass::Budget,
             JobError::Prediction(
-                ModelError::Inverted(_) | ModelError::StepAboveLimit { .. } | ModelError::NoBone,
+                ModelError::Inverted(_)
+                | ModelError::StepAboveLimit { .. }
+                | ModelError::NoBone
+                | ModelError::Folded { .. },
             ) => ErrorClass::Input,
             JobError::Study(StudyError::Threads(_)) => ErrorClass::Infrastructure,
             JobError::Study(_) => ErrorClass::Input,
@@ -146,9 +149,11 @@ fn class_of(error: &AnatomyError) -> ErrorClass {
             ErrorClass::Numerical
         }
         AnatomyError::Meshing(MeshingError::Cancelled) => ErrorClass::Cancelled,
-        AnatomyError::Image(_) | AnatomyError::Bone(_) | AnatomyError::Meshing(_) => {
-            ErrorClass::Input
-        }
+        AnatomyError::Image(_)
+        | AnatomyError::Surface(_)
+        | AnatomyError::Bone(_)
+        | AnatomyError::NoSkin { .. }
+        | AnatomyError::Meshing(_) => ErrorClass::Input,
     }
 }
 
@@ -160,6 +165,10 @@ fn no_equilibrium(error: &ModelError) -> Value {
             json!({ "step_s": step_s, "limit_s": limit_s })
         }
         ModelError::NoBone => json!({}),
+        ModelError::Standstill { made, steps, least_det_f } => {
+            json!({ "movement_share": made, "steps": steps, "least_det_f": least_det_f })
+        }
+        ModelError::Folded { cell, det_f } => json!({ "element": cell, "det_f": det_f }),
         ModelError::Solver(error) => no_solution(error),
     }
 }

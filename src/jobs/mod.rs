@@ -21,7 +21,7 @@ pub use compare::CompareInput;
 pub use drawing::Finished;
 pub use failure::JobError;
 pub use input::JobInput;
-pub use meshing::MeshingInput;
+pub use meshing::{MeshingInput, WaitingCase};
 pub use optimise::OptimiseInput;
 pub use output::{JobOutput, MadeMesh, Workplace};
 pub use predict::{CheckReport, PredictInput, check};

@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, HashMap};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use super::applied::Applied;
+use super::cache::{Cache, InMemory};
 use crate::jobs::JobInput;
 use crate::jobs::response::{COLUMNS_FILE, DESCRIPTION_FILE, REST_FILE};
 use crate::jobs::result::skin::PredictedSkin;
@@ -14,7 +15,7 @@ use crate::schema::predict::document::{OutputName, USUAL_RANGE_MM};
 use crate::schema::predict::result::NOT_A_DEVICE;
 use crate::schema::response::ResponseDescription;
 use crate::schema::{CaseDocument, WarningDocument};
-use crate::store::{Store, StoreError};
+use crate::store::{CaseResponses, Store, StoreError};
 use mechanics::format::{self, Mesh, ReadLimits, WriteError};
 use mechanics::mesh::{TriangleSurface, Vector};
 use mechanics::plan::RigidMovement;
@@ -103,8 +104,9 @@ impl LoadedResponse {
         let bytes = skin.encode(OutputName::SkinGlb, self.description.frame.into(), &texts)?;
         bytes.ok_or(WriteError::Empty)
     }
+}
 
-    /// About what it takes in memory, in bytes.
+impl InMemory for Arc<LoadedResponse> {
     fn size(&self) -> usize {
         let skin = 28 * self.rest.points.len() + 12 * self.rest.triangles.len();
         4 * (self.response.columns.len() + 2 * self.response.nodes.len()) + skin
@@ -118,19 +120,10 @@ pub struct Responses {
     memory: Arc<Mutex<Memory>>,
 }
 
-/// Verdicts by job, and responses by the blob of their description, which names that of the columns; the
-/// least recently used is given up first.
+/// Responses by the blob of their description, which names that of the columns, and verdicts by job.
 struct Memory {
-    room: usize,
-    used: usize,
-    clock: u64,
-    loaded: HashMap<String, Kept>,
+    loaded: Cache<Arc<LoadedResponse>>,
     verdicts: HashMap<String, Verdict>,
-}
-
-struct Kept {
-    response: Arc<LoadedResponse>,
-    last_used: u64,
 }
 
 /// Whether a response answers for its case at a version of it.
@@ -141,45 +134,11 @@ struct Verdict {
     description: Option<String>,
 }
 
-impl Memory {
-    fn new(room: usize) -> Self {
-        let (loaded, verdicts) = (HashMap::new(), HashMap::new());
-        Memory { room, used: 0, clock: 0, loaded, verdicts }
-    }
-
-    fn get(&mut self, blob: &str) -> Option<Arc<LoadedResponse>> {
-        self.clock += 1;
-        let kept = self.loaded.get_mut(blob)?;
-        kept.last_used = self.clock;
-        Some(kept.response.clone())
-    }
-
-    fn keep(&mut self, blob: &str, response: Arc<LoadedResponse>) {
-        let size = response.size();
-        if size > self.room || self.loaded.contains_key(blob) {
-            return;
-        }
-        self.clock += 1;
-        self.used += size;
-        self.loaded.insert(blob.to_owned(), Kept { response, last_used: self.clock });
-        while self.used > self.room {
-            let oldest = self.loaded.iter().min_by_key(|(_, kept)| kept.last_used);
-            let Some(oldest) = oldest.map(|(blob, _)| blob.clone()) else { break };
-            self.forget(&oldest);
-        }
-    }
-
-    fn forget(&mut self, blob: &str) {
-        if let Some(kept) = self.loaded.remove(blob) {
-            self.used -= kept.response.size();
-        }
-    }
-}
-
 impl Responses {
     /// Keeps responses of at most `room` bytes in memory.
     pub fn new(store: Store, room: usize) -> Self {
-        Responses { store, memory: Arc::new(Mutex::new(Memory::new(room))) }
+        let memory = Memory { loaded: Cache::new(room), verdicts: HashMap::new() };
+        Responses { store, memory: Arc::new(Mutex::new(memory)) }
     }
 
     /// The same responses in the hand of a tenant.
@@ -197,7 +156,18 @@ impl Responses {
         case: &str,
         job: Option<&str>,
     ) -> Result<FoundResponse, MissingResponse> {
-        let built = self.store.responses(case).await?.ok_or(MissingResponse::NoCase)?;
+        let built = self.store.responses(case).await?;
+        self.find_among(built, case, job).await
+    }
+
+    /// The same where the responses of the case have been looked up.
+    pub async fn find_among(
+        &self,
+        built: Option<CaseResponses>,
+        case: &str,
+        job: Option<&str>,
+    ) -> Result<FoundResponse, MissingResponse> {
+        let built = built.ok_or(MissingResponse::NoCase)?;
         if let Some(job) = job
             && !built.jobs.iter().any(|built| built == job)
         {
@@ -262,7 +232,7 @@ impl Responses {
 
     /// A response with its columns, from memory where it is there.
     pub async fn load(&self, found: &FoundResponse) -> Result<Arc<LoadedResponse>, StoreError> {
-        let kept = self.memory().get(&found.description);
+        let kept = self.memory().loaded.get(&found.description);
         if let Some(kept) = kept {
             return Ok(kept);
         }
@@ -272,7 +242,7 @@ impl Responses {
         let parse = move || parsed(&description, &columns, &rest);
         let parsed = tokio::task::spawn_blocking(parse).await;
         let response = Arc::new(parsed.map_err(|_| StoreError::Interrupted)??);
-        self.memory().keep(&found.description, response.clone());
+        self.memory().loaded.insert(&found.description, response.clone());
         Ok(response)
     }
 
@@ -358,16 +328,7 @@ mod tests {
     }
 
     #[test]
-    fn the_response_that_was_not_used_for_longest_makes_room() {
-        let mut memory = Memory::new(180 * 10);
-        memory.keep("a", loaded(4));
-        memory.keep("b", loaded(4));
-        assert!(memory.get("a").is_some());
-        memory.keep("c", loaded(4));
-        assert!(memory.get("b").is_none());
-        assert!(memory.get("a").is_some() && memory.get("c").is_some());
-        memory.keep("too large", loaded(11));
-        assert!(memory.get("too large").is_none() && memory.get("a").is_some());
-        assert_eq!(memory.used, 180 * 8);
+    fn a_response_takes_the_memory_of_its_columns_and_of_its_skin() {
+        assert_eq!(loaded(4).size(), 180 * 4);
     }
 }

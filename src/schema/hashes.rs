@@ -11,6 +11,7 @@ use super::predict::document::PredictDocument;
 use super::response::ResponseDocument;
 use super::study::document::StudyDocument;
 use super::wire::canonical::{hash, to_value};
+use super::wire::fault::Pointer;
 
 /// The hash of a prediction: contents of meshes in place of their ids, the plan in full, names and tags left out.
 /// `content_of` gives the SHA-256 of a mesh by its id; an id it does not know stands for itself.
@@ -115,11 +116,26 @@ pub fn compare_hash(spec: &CompareDocument, content_of: &dyn Fn(&str) -> Option<
     hash(json!({ "spec": to_value(&spec) }))
 }
 
-/// The hash of a meshing: the content of the scan in place of its id, tags left out.
-pub fn meshing_hash(spec: &MeshingDocument, scan: &str) -> String {
+/// The hash of a meshing: the contents of the scan or the surfaces in place of their ids, tags left out. One that a case waits
+/// for belongs to that case, so that it goes when the case is erased.
+pub fn meshing_hash(
+    spec: &MeshingDocument,
+    content_of: &dyn Fn(&str) -> Option<String>,
+    case: Option<&str>,
+) -> String {
     let mut spec = spec.clone();
-    scan.clone_into(&mut spec.scan);
-    hash(json!({ "spec": spec.content() }))
+    for (_, id) in spec.mesh_references_mut(&Pointer::root()) {
+        replace(id, content_of);
+    }
+    match case {
+        None => hash(json!({ "spec": spec.content() })),
+        Some(case) => hash(json!({ "spec": spec.content(), "case": case })),
+    }
+}
+
+/// The hash of a job on a case that has no mesh yet, until it has one: `asked` is its document without the case and tags.
+pub fn waiting_hash(case: &str, asked: &Value) -> String {
+    hash(json!({ "waiting": asked, "case": case }))
 }
 
 /// Changes where the description of a response tells what earlier ones did not, so that these are not taken for it.
@@ -159,6 +175,6 @@ mod tests {
     fn every_hash_of_a_job_and_the_key_of_a_response_are_made_in_one_place() {
         let code = include_str!("hashes.rs").split("#[cfg(test)]").next().unwrap_or_default();
         let made = code.matches("hash(json!(").count();
-        assert_eq!((made, code.matches("sha256_hex(").count()), (6, 0));
+        assert_eq!((made, code.matches("sha256_hex(").count()), (8, 0));
     }
 }

@@ -77,7 +77,7 @@ pub struct StatusInfo {
     pub updated: String,
     /// How often it was started.
     pub attempt: u32,
-    /// 0 is the next one; absent once it has started.
+    /// 0 is the next one; absent once it has started, and while it waits for the mesh of its case.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub queue_position: Option<u64>,

@@ -44,6 +44,8 @@ impl From<&ModelError> for ErrorCode {
             ModelError::Solver(error) => error.into(),
             ModelError::StepAboveLimit { .. } => ErrorCode::StepAboveLimit,
             ModelError::NoBone => ErrorCode::NoBone,
+            ModelError::Standstill { .. } => ErrorCode::NoEquilibrium,
+            ModelError::Folded { .. } => ErrorCode::TissueFolded,
         }
     }
 }
@@ -102,9 +104,10 @@ impl From<&ComparisonError> for ErrorCode {
 impl From<&AnatomyError> for ErrorCode {
     fn from(error: &AnatomyError) -> Self {
         match error {
-            AnatomyError::Image(_) | AnatomyError::Meshing(MeshingError::Empty { .. }) => {
-                ErrorCode::NoTissue
-            }
+            AnatomyError::Image(_)
+            | AnatomyError::NoSkin { .. }
+            | AnatomyError::Meshing(MeshingError::Empty { .. }) => ErrorCode::NoTissue,
+            AnatomyError::Surface(_) => ErrorCode::NoInside,
             AnatomyError::Bone(_) => ErrorCode::SegmentNotFound,
             AnatomyError::Meshing(MeshingError::TooMany { .. } | MeshingError::TooFine { .. }) => {
                 ErrorCode::MeshLimits
@@ -158,6 +161,8 @@ mod tests {
             ModelError::Solver(SolverError::NotFinite),
             ModelError::StepAboveLimit { step_s: 2.0, limit_s: 1.0 },
             ModelError::NoBone,
+            ModelError::Standstill { made: 0.5, steps: 9, least_det_f: 0.1 },
+            ModelError::Folded { cell: 1, det_f: -1.0 },
         ] {
             assert_eq!(ErrorCode::from(&error).name(), error.code(), "{error}");
         }

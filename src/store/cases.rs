@@ -1,9 +1,12 @@
 //! Cases: a document that refers to meshes, with its tags.
 
+use super::accepted::NewJob;
 use super::database::{Row, Transaction, is_duplicate, is_reference, query};
+use super::events::record;
 use super::made::column;
 use super::references::{Content, hashes};
 use super::{NewMesh, Store, StoreError};
+use crate::schema::job::JobStatus;
 
 /// A case to be stored, with the meshes that came in the same request.
 #[derive(Clone, Debug)]
@@ -15,6 +18,18 @@ pub struct NewCase {
     /// All meshes that the document refers to.
     pub mesh_ids: Vec<String>,
     pub meshes: Vec<NewMesh>,
+    /// The job that makes its mesh, where it has none yet.
+    pub meshing: Option<NewJob>,
+}
+
+/// What became of a case that was to be stored.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AddedCase {
+    Stored,
+    /// A mesh it counts on came or went meanwhile.
+    Contended,
+    /// Its meshing is one job too many.
+    QueueFull,
 }
 
 #[derive(Clone, Debug)]
@@ -25,6 +40,18 @@ pub struct CaseRow {
     pub version: i64,
     pub created: i64,
     pub updated: i64,
+    /// Of a case whose mesh a job makes, or has made.
+    pub meshing: Option<CaseMeshing>,
+}
+
+/// The job that a case has its mesh from, as it is now.
+#[derive(Clone, Debug)]
+pub struct CaseMeshing {
+    pub job: String,
+    /// `None` where the job was removed.
+    pub status: Option<JobStatus>,
+    /// JSON with `type` and `detail`, where it failed.
+    pub error: Option<String>,
 }
 
 /// What became of a change that names the version it knows.
@@ -36,14 +63,18 @@ pub enum Change {
     NotFound,
 }
 
-const BY_ID: &str = "SELECT id, document, report, version, created, updated FROM cases \
-     WHERE id = $1 AND tenant = $2";
-const LIST: &str = "SELECT id, document, report, version, created, updated FROM cases \
-     WHERE tenant = $4 AND id < $1 AND ($2 = '' OR EXISTS \
+const BY_ID: &str = "SELECT cases.id, cases.document, report, version, cases.created, cases.updated, \
+     meshing, jobs.status, jobs.error FROM cases LEFT JOIN jobs ON jobs.id = cases.meshing \
+     WHERE cases.id = $1 AND cases.tenant = $2";
+const LIST: &str = "SELECT cases.id, cases.document, report, version, cases.created, cases.updated, \
+     meshing, jobs.status, jobs.error FROM cases LEFT JOIN jobs ON jobs.id = cases.meshing \
+     WHERE cases.tenant = $4 AND cases.id < $1 AND ($2 = '' OR EXISTS \
        (SELECT 1 FROM case_tags WHERE case_tags.case_id = cases.id AND case_tags.tag = $2)) \
-     ORDER BY id DESC LIMIT $3";
-const INSERT: &str = "INSERT INTO cases (id, document, report, tenant, version, created, updated) \
-     VALUES ($1, $2, $3, $4, 1, (SELECT now_ms FROM clock), (SELECT now_ms FROM clock))";
+     ORDER BY cases.id DESC LIMIT $3";
+const INSERT: &str = "INSERT INTO cases (id, document, report, tenant, meshing, version, created, updated) \
+     VALUES ($1, $2, $3, $4, $5, 1, (SELECT now_ms FROM clock), (SELECT now_ms FROM clock))";
+const REFER: &str =
+    "INSERT INTO case_meshes (case_id, mesh_id) VALUES ($1, $2) ON CONFLICT DO NOTHING";
 /// What a case leaves when it goes: the files of its jobs.
 const FILES_OF_CASE: &str = "SELECT job_files.blob FROM job_files \
      JOIN jobs ON jobs.id = job_files.job_id WHERE jobs.case_id = $1 \
@@ -67,6 +98,13 @@ const MESHES_OF_CASE: &str = "WITH gone AS (SELECT id FROM jobs WHERE case_id = 
 /// Sorts after every id.
 pub(super) const AFTER_ALL: &str = "~";
 
+fn meshing_of(row: &Row) -> Result<Option<CaseMeshing>, sqlx::Error> {
+    let Some(job) = row.try_get("meshing")? else { return Ok(None) };
+    let status: Option<String> = row.try_get("status")?;
+    let status = status.as_deref().and_then(JobStatus::from_name);
+    Ok(Some(CaseMeshing { job, status, error: row.try_get("error")? }))
+}
+
 fn case_row(row: &Row) -> Result<CaseRow, sqlx::Error> {
     Ok(CaseRow {
         id: row.try_get("id")?,
@@ -75,7 +113,20 @@ fn case_row(row: &Row) -> Result<CaseRow, sqlx::Error> {
         version: row.try_get("version")?,
         created: row.try_get("created")?,
         updated: row.try_get("updated")?,
+        meshing: meshing_of(row)?,
     })
+}
+
+/// Puts meshes among those that stay as long as a case does.
+pub(super) async fn refer(
+    transaction: &mut Transaction,
+    case: &str,
+    meshes: &[String],
+) -> Result<(), sqlx::Error> {
+    for mesh in meshes {
+        query(REFER).bind(case).bind(mesh).execute(&mut *transaction).await?;
+    }
+    Ok(())
 }
 
 impl Store {
@@ -105,24 +156,34 @@ impl Store {
         Ok(rows.iter().map(case_row).collect::<Result<_, _>>()?)
     }
 
-    /// Stores a case and its meshes, or nothing: false when a mesh it counts on came or went meanwhile.
-    pub async fn add_case(&self, case: &NewCase) -> Result<bool, StoreError> {
+    /// Stores a case, its meshes and the job that is to mesh it, or nothing.
+    pub async fn add_case(
+        &self,
+        case: &NewCase,
+        longest_queue: i64,
+    ) -> Result<AddedCase, StoreError> {
         let mut contents: Vec<Content> = Vec::new();
         for mesh in &case.meshes {
             contents.push((mesh.blob.clone(), mesh.bytes.clone()));
         }
         let blobs = hashes(&contents);
         let mut transaction = self.begin_with(contents).await?;
+        if case.meshing.is_some() && self.is_queue_full(&mut transaction, longest_queue).await? {
+            transaction.rollback().await;
+            self.discard(blobs).await;
+            return Ok(AddedCase::QueueFull);
+        }
         match self.insert_case(&mut transaction, case).await {
             Ok(()) => {
                 transaction.commit().await?;
-                Ok(true)
+                case.meshing.iter().for_each(|job| self.job_changed(&job.id));
+                Ok(AddedCase::Stored)
             }
             Err(error) => {
                 transaction.rollback().await;
                 self.discard(blobs).await;
                 let meanwhile = is_duplicate(&error) || is_reference(&error);
-                if meanwhile { Ok(false) } else { Err(error.into()) }
+                if meanwhile { Ok(AddedCase::Contended) } else { Err(error.into()) }
             }
         }
     }
@@ -170,6 +231,7 @@ impl Store {
             .bind(&case.document)
             .bind(&case.report)
             .bind(self.tenant())
+            .bind(case.meshing.as_ref().map(|job| job.id.as_str()))
             .execute(&mut *transaction)
             .await?;
         for tag in &case.tags {
@@ -179,14 +241,11 @@ impl Store {
                 .execute(&mut *transaction)
                 .await?;
         }
-        for mesh in &case.mesh_ids {
-            query(
-                "INSERT INTO case_meshes (case_id, mesh_id) VALUES ($1, $2) ON CONFLICT DO NOTHING",
-            )
-            .bind(&case.id)
-            .bind(mesh)
-            .execute(&mut *transaction)
-            .await?;
+        refer(transaction, &case.id, &case.mesh_ids).await?;
+        if let Some(job) = &case.meshing {
+            self.enter(transaction).await?;
+            self.insert_job(transaction, job, "").await?;
+            record(transaction, &job.id).await?;
         }
         Ok(())
     }

@@ -5,6 +5,7 @@ use std::time::Duration;
 use super::database::{Row, query};
 use super::events::record;
 use super::leases::{Lease, milliseconds};
+use super::waiting::filled;
 use super::{Store, StoreError};
 use crate::schema::engine::EngineDocument;
 
@@ -23,17 +24,17 @@ pub struct Claim {
 
 /// Tenants with a job that can be claimed, the one that has waited longest for its turn first.
 const IN_TURN: &str = "SELECT name FROM tenants WHERE EXISTS (SELECT 1 FROM jobs \
-       WHERE jobs.tenant = tenants.name AND jobs.status = 'accepted' AND jobs.numerics <= $1 \
+       WHERE jobs.tenant = tenants.name AND jobs.status = 'accepted' AND jobs.waits_for = '' AND jobs.numerics <= $1 \
        AND jobs.claimable_from <= (SELECT now_ms FROM clock)) ORDER BY served, name";
 /// The oldest of the most urgent jobs of a tenant. One whose row somebody else holds is left to him.
 const CLAIM: &str = "UPDATE jobs SET status = 'running', attempt = attempt + 1, lease_token = $1, \
      lease_expires = (SELECT now_ms FROM clock) + $2, heartbeat = (SELECT now_ms FROM clock), \
      phase = NULL, iteration = NULL, residual = NULL, \
      started = COALESCE(started, (SELECT now_ms FROM clock)), updated = (SELECT now_ms FROM clock) \
-     WHERE id = (SELECT id FROM jobs WHERE status = 'accepted' AND tenant = $3 AND numerics <= $4 \
+     WHERE id = (SELECT id FROM jobs WHERE status = 'accepted' AND tenant = $3 AND waits_for = '' AND numerics <= $4 \
        AND claimable_from <= (SELECT now_ms FROM clock) ORDER BY priority, id LIMIT 1 \
        FOR UPDATE SKIP LOCKED) \
-     AND status = 'accepted' RETURNING id, attempt, tenant, kind, document, created, started, traceparent";
+     AND status = 'accepted' RETURNING id, attempt, tenant, kind, case_id, document, created, started, traceparent";
 /// Who holds the row of the tenant serves it as well.
 const SERVED: &str = "UPDATE tenants SET served = (SELECT MAX(served) FROM tenants) + 1 \
      WHERE name = (SELECT name FROM tenants WHERE name = $1 FOR UPDATE SKIP LOCKED)";
@@ -70,7 +71,10 @@ impl Store {
             .fetch_optional(&mut transaction)
             .await?;
         let Some(row) = row else { return Ok(None) };
-        let claim = claim_row(&row, token)?;
+        let mut claim = claim_row(&row, token)?;
+        let case: Option<String> = row.try_get("case_id")?;
+        let job = &claim.lease.job;
+        claim.document = filled(&mut transaction, job, case.as_deref(), claim.document).await?;
         record(&mut transaction, &claim.lease.job).await?;
         query(SERVED).bind(tenant).execute(&mut transaction).await?;
         transaction.commit().await?;

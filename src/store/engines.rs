@@ -3,7 +3,8 @@
 //! A job carries the revision of the numbers of the program that accepted it. A program with an earlier revision leaves it
 //! alone: it would put other numbers under a hash that promises later ones. One with the same or a later revision runs it,
 //! so that a rolling restart loses no job. Where another version ran a job than the one that accepted it, the result says
-//! which, and so does the row from then on: its engine and, where no other job has it, its hash.
+//! which, and so does the row from then on: its engine and, where no other job has it, its hash. The hash of a job that was
+//! accepted before its case had a mesh is known by then only.
 
 use serde::Deserialize;
 
@@ -23,12 +24,13 @@ struct Provenance {
     spec_hash: String,
 }
 
-const FOUND: &str = "SELECT tenant, engine FROM jobs WHERE id = $1";
+const FOUND: &str = "SELECT tenant, engine, spec_hash FROM jobs WHERE id = $1";
 const NOTE: &str = "UPDATE jobs SET engine = $2, spec_hash = CASE \
        WHEN EXISTS (SELECT 1 FROM jobs AS other WHERE other.spec_hash = $3) THEN spec_hash ELSE $3 END \
      WHERE id = $1";
 
-/// Writes down which program made the result of a job, where it is another version than the one that accepted it.
+/// Writes down which program made the result of a job, where it is another version than the one that accepted it, and of
+/// what.
 pub(super) async fn note_engine(
     transaction: &mut Transaction,
     job: &str,
@@ -37,12 +39,13 @@ pub(super) async fn note_engine(
     let Ok(Manifest { provenance }) = serde_json::from_str(manifest) else { return Ok(()) };
     let row = query(FOUND).bind(job).fetch_one(&mut *transaction).await?;
     let (tenant, accepted): (String, String) = (row.try_get("tenant")?, row.try_get("engine")?);
-    if !is_another(&accepted, &provenance.engine) {
+    let spec_hash = tenants::own(&tenant, &provenance.spec_hash);
+    let is_same = row.try_get::<String, _>("spec_hash")? == spec_hash;
+    if is_same && !is_another(&accepted, &provenance.engine) {
         return Ok(());
     }
     let engine = serde_json::to_string(&provenance.engine)
         .map_err(|error| sqlx::Error::Encode(error.into()))?;
-    let spec_hash = tenants::own(&tenant, &provenance.spec_hash);
     query(NOTE).bind(job).bind(engine).bind(spec_hash).execute(&mut *transaction).await?;
     Ok(())
 }

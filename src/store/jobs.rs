@@ -1,49 +1,12 @@
-//! Jobs as clients see them: accepted, looked at, listed, dismissed, removed.
+//! Jobs as clients see them: looked at, listed, dismissed, removed.
 
 use super::cases::AFTER_ALL;
-use super::database::{Row, Transaction, is_reference, query};
+use super::database::{Row, query};
 use super::events::record;
-use super::job_tags::put_on;
 use super::made::meshes_of_job;
+use super::waiting::fail_waiting;
 use super::{Store, StoreError, tenants};
-use crate::schema::engine::EngineDocument;
 use crate::schema::job::JobStatus;
-
-/// A job to be accepted.
-#[derive(Clone, Debug)]
-pub struct NewJob {
-    pub id: String,
-    pub kind: &'static str,
-    /// Of the accepted jobs of a tenant those with the smallest are claimed first.
-    pub priority: i64,
-    pub case_id: Option<String>,
-    /// All cases of a job that reads several; it goes when one of them is erased.
-    pub shared_cases: Vec<String>,
-    /// Everything the job needs, resolved.
-    pub document: String,
-    pub spec_hash: String,
-    /// Of a study: the key of its rows.
-    pub rows_key: Option<String>,
-    /// Of a study: what its truths are expected to take, JSON.
-    pub truths: Option<String>,
-    pub engine: String,
-    pub tags: Vec<String>,
-    /// The meshes that have to stay while the job is there.
-    pub mesh_ids: Vec<String>,
-    /// Where in a trace it is accepted, where there is one.
-    pub traceparent: Option<String>,
-}
-
-/// What became of a job that was to be accepted.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Enqueued {
-    Accepted,
-    /// The same inputs are the job of this id already.
-    Known(String),
-    QueueFull,
-    /// The case or a mesh went meanwhile.
-    InputGone,
-}
 
 #[derive(Clone, Debug)]
 pub struct JobRow {
@@ -69,7 +32,9 @@ pub struct JobRow {
     pub finished: Option<i64>,
     pub updated: i64,
     pub tags: Vec<String>,
-    /// How many accepted jobs stand before this one, where it is accepted itself.
+    /// The meshing of its case that it waits for.
+    pub waits_for: Option<String>,
+    /// How many accepted jobs stand before this one, where it could be claimed itself.
     pub queue_position: Option<i64>,
 }
 
@@ -100,22 +65,23 @@ macro_rules! found {
     ($condition:literal) => {
         concat!(
             "WITH page AS MATERIALIZED (SELECT id, tenant, priority, kind, case_id, spec_hash, engine, status, phase, \
-               progress, iteration, residual, attempt, error, result, truths, created, started, finished, updated \
-               FROM jobs WHERE ",
+               progress, iteration, residual, attempt, error, result, truths, created, started, finished, updated, \
+               waits_for FROM jobs WHERE ",
             $condition,
             "), \
              places AS MATERIALIZED (SELECT page.*, \
-               LAG(id) OVER (PARTITION BY status, priority ORDER BY id) AS last FROM page), \
-             steps AS MATERIALIZED (SELECT places.*, CASE WHEN status = 'accepted' THEN \
+               LAG(id) OVER (PARTITION BY status, waits_for, priority ORDER BY id) AS last FROM page), \
+             steps AS MATERIALIZED (SELECT places.*, CASE WHEN status = 'accepted' AND waits_for = '' THEN \
                  (SELECT COUNT(*) FROM jobs WHERE jobs.tenant = places.tenant \
-                   AND jobs.status = 'accepted' AND jobs.priority = places.priority \
+                   AND jobs.status = 'accepted' AND jobs.waits_for = '' AND jobs.priority = places.priority \
                    AND jobs.id >= COALESCE(places.last, '') AND jobs.id < places.id || '') \
                  + CASE WHEN last IS NULL THEN (SELECT COUNT(*) FROM jobs WHERE jobs.tenant = places.tenant \
-                   AND jobs.status = 'accepted' AND jobs.priority < places.priority) ELSE 0 END \
+                   AND jobs.status = 'accepted' AND jobs.waits_for = '' \
+                   AND jobs.priority < places.priority) ELSE 0 END \
                END AS step FROM places) \
              SELECT id, kind, case_id, spec_hash, engine, status, phase, progress, iteration, residual, \
-               attempt, error, result, truths, created, started, finished, updated, \
-               CAST(SUM(step) OVER (PARTITION BY status, priority ORDER BY id) AS BIGINT) AS queue_position, \
+               attempt, error, result, truths, created, started, finished, updated, waits_for, \
+               CAST(SUM(step) OVER (PARTITION BY status, waits_for, priority ORDER BY id) AS BIGINT) AS queue_position, \
                (SELECT string_agg(tag, '\n' ORDER BY tag) FROM job_tags WHERE job_tags.job_id = steps.id) AS tags \
              FROM steps ORDER BY id DESC"
         )
@@ -133,14 +99,8 @@ const STATUS: &str = "SELECT status FROM jobs WHERE id = $1 AND tenant = $2";
 const CASES: &str = "SELECT case_id FROM jobs WHERE id = $1 AND tenant = $2 AND case_id IS NOT NULL \
      UNION SELECT job_cases.case_id FROM job_cases JOIN jobs ON jobs.id = job_cases.job_id \
        WHERE jobs.id = $1 AND jobs.tenant = $2";
-const KNOWN: &str = "SELECT id FROM jobs WHERE spec_hash = $1 AND tenant = $2";
 const WITH_ROWS: &str = "SELECT id FROM jobs WHERE rows_key = $1 AND tenant = $2 AND status = 'successful' \
      ORDER BY id DESC LIMIT 8";
-const INSERT: &str = "INSERT INTO jobs (id, kind, case_id, document, spec_hash, engine, tenant, priority, \
-     traceparent, numerics, rows_key, truths, status, progress, attempt, losses, claimable_from, created, updated) \
-     VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, 'accepted', 0, 0, 0, 0, \
-       (SELECT now_ms FROM clock), (SELECT now_ms FROM clock)) \
-     ON CONFLICT (spec_hash) DO NOTHING";
 const DISMISS: &str = "UPDATE jobs SET status = 'dismissed', lease_token = NULL, lease_expires = NULL, \
      finished = (SELECT now_ms FROM clock), updated = (SELECT now_ms FROM clock) \
      WHERE id = $1 AND tenant = $2 AND status IN ('accepted', 'running')";
@@ -176,6 +136,7 @@ fn job_row(row: &Row) -> Result<JobRow, sqlx::Error> {
         finished: row.try_get("finished")?,
         updated: row.try_get("updated")?,
         tags: tags.lines().map(str::to_owned).collect(),
+        waits_for: Some(row.try_get("waits_for")?).filter(|meshing: &String| !meshing.is_empty()),
         queue_position: row.try_get("queue_position")?,
     })
 }
@@ -239,53 +200,6 @@ impl Store {
         Ok(rows.iter().map(job_row).collect::<Result<_, _>>()?)
     }
 
-    /// Accepts a job, unless one with the same inputs is known.
-    pub async fn enqueue(&self, job: &NewJob, longest_queue: i64) -> Result<Enqueued, StoreError> {
-        let mut transaction = self.database.begin().await?;
-        let known = query(KNOWN)
-            .bind(self.own(&job.spec_hash))
-            .bind(self.tenant())
-            .fetch_optional(&mut transaction)
-            .await?;
-        if let Some(row) = known {
-            return Ok(Enqueued::Known(row.try_get(0)?));
-        }
-        let waiting = query("SELECT COUNT(*) FROM jobs WHERE tenant = $1 AND status = 'accepted'")
-            .bind(self.tenant())
-            .fetch_one(&mut transaction)
-            .await?;
-        if waiting.try_get::<i64, _>(0)? >= longest_queue {
-            return Ok(Enqueued::QueueFull);
-        }
-        self.enter(&mut transaction).await?;
-        match self.insert_job(&mut transaction, job).await {
-            Ok(true) => {
-                record(&mut transaction, &job.id).await?;
-                transaction.commit().await?;
-                self.job_changed(&job.id);
-                Ok(Enqueued::Accepted)
-            }
-            // Another request with the same inputs came between the question and the answer.
-            Ok(false) => {
-                transaction.rollback().await;
-                self.known(job).await
-            }
-            Err(error) if is_reference(&error) => Ok(Enqueued::InputGone),
-            Err(error) => Err(error.into()),
-        }
-    }
-
-    /// The job that was accepted in place of this one.
-    async fn known(&self, job: &NewJob) -> Result<Enqueued, StoreError> {
-        let known = query(KNOWN)
-            .bind(self.own(&job.spec_hash))
-            .bind(self.tenant())
-            .fetch_optional(self.database.reader())
-            .await?;
-        let id = known.ok_or(StoreError::Contended)?.try_get(0)?;
-        Ok(Enqueued::Known(id))
-    }
-
     /// Ends a job that is accepted or running, removes one that has ended, with the meshes that it made or read and that
     /// nothing else refers to, unless somebody uploaded them for their own sake.
     pub async fn dismiss(&self, id: &str) -> Result<Dismissal, StoreError> {
@@ -294,8 +208,10 @@ impl Store {
             query(DISMISS).bind(id).bind(self.tenant()).execute(&mut transaction).await?;
         if dismissed == 1 {
             record(&mut transaction, id).await?;
+            let waited = fail_waiting(&mut transaction, id).await?;
             transaction.commit().await?;
             self.job_changed(id);
+            waited.iter().for_each(|job| self.job_changed(job));
             return Ok(Dismissal::Dismissed);
         }
         let rows = query(FILES).bind(id).bind(self.tenant()).fetch_all(&mut transaction).await?;
@@ -315,50 +231,6 @@ impl Store {
             0 => Dismissal::NotFound,
             _ => Dismissal::Removed,
         })
-    }
-
-    /// False when a job with the same inputs was there before.
-    async fn insert_job(
-        &self,
-        transaction: &mut Transaction,
-        job: &NewJob,
-    ) -> Result<bool, sqlx::Error> {
-        let inserted = query(INSERT)
-            .bind(&job.id)
-            .bind(job.kind)
-            .bind(&job.case_id)
-            .bind(&job.document)
-            .bind(self.own(&job.spec_hash))
-            .bind(&job.engine)
-            .bind(self.tenant())
-            .bind(job.priority)
-            .bind(&job.traceparent)
-            .bind(i64::from(EngineDocument::this().numerics))
-            .bind(&job.rows_key)
-            .bind(&job.truths)
-            .execute(&mut *transaction)
-            .await?;
-        if inserted == 0 {
-            return Ok(false);
-        }
-        put_on(transaction, &job.id, &job.tags).await?;
-        for case in &job.shared_cases {
-            query("INSERT INTO job_cases (job_id, case_id) VALUES ($1, $2) ON CONFLICT DO NOTHING")
-                .bind(&job.id)
-                .bind(case)
-                .execute(&mut *transaction)
-                .await?;
-        }
-        for mesh in &job.mesh_ids {
-            query(
-                "INSERT INTO job_meshes (job_id, mesh_id) VALUES ($1, $2) ON CONFLICT DO NOTHING",
-            )
-            .bind(&job.id)
-            .bind(mesh)
-            .execute(&mut *transaction)
-            .await?;
-        }
-        Ok(true)
     }
 }
 
@@ -388,8 +260,10 @@ mod tests {
         of_jobs.sort_unstable();
         let by_tenant = "SEARCH jobs USING COVERING INDEX jobs_by_tenant";
         let wanted = [
-            format!("{by_tenant} (tenant=? AND status=? AND priority<?)"),
-            format!("{by_tenant} (tenant=? AND status=? AND priority=? AND id>? AND id<?)"),
+            format!("{by_tenant} (tenant=? AND status=? AND waits_for=? AND priority<?)"),
+            format!(
+                "{by_tenant} (tenant=? AND status=? AND waits_for=? AND priority=? AND id>? AND id<?)"
+            ),
             "SEARCH jobs USING INDEX jobs_by_age (tenant=? AND id<?)".to_owned(),
         ];
         assert_eq!(of_jobs, wanted, "{plan:#?}");

@@ -61,7 +61,7 @@ const EXPIRE: &str = "UPDATE keys SET expires = (SELECT now_ms FROM clock) + $2 
      WHERE id = $1 AND tenant = $3 AND revoked IS NULL \
      AND (expires IS NULL OR expires > (SELECT now_ms FROM clock) + $2)";
 
-fn key_row(row: &Row) -> Result<KeyRow, sqlx::Error> {
+pub(super) fn key_row(row: &Row) -> Result<KeyRow, sqlx::Error> {
     Ok(KeyRow {
         id: row.try_get("id")?,
         tenant: row.try_get("tenant")?,

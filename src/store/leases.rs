@@ -11,6 +11,7 @@ use super::engines::note_engine;
 use super::events::record;
 use super::made::MadeMesh;
 use super::references::{Content, hashes};
+use super::waiting::{MeshedCase, complete, fail_waiting, hold_case};
 use super::{Store, StoreError};
 
 /// The right of one attempt to write to its job.
@@ -46,6 +47,8 @@ pub struct Published<'a> {
     pub result: &'a str,
     pub files: &'a [PublishedFile],
     pub meshes: &'a [MadeMesh],
+    /// Of a meshing: the case that its mesh is made for, where one waits for it.
+    pub case: Option<&'a MeshedCase>,
 }
 
 /// A result file.
@@ -178,6 +181,9 @@ impl Store {
         lease: &Lease,
         made: Published<'_>,
     ) -> Result<bool, StoreError> {
+        if made.case.is_some() {
+            hold_case(transaction, &lease.job).await?;
+        }
         let published = query(SUCCEED)
             .bind(&lease.job)
             .bind(&lease.token)
@@ -198,6 +204,9 @@ impl Store {
                 .await?;
         }
         self.insert_made(transaction, &lease.job, made.meshes).await?;
+        if let Some(case) = made.case {
+            complete(transaction, &lease.job, case).await?;
+        }
         note_engine(transaction, &lease.job, made.result).await?;
         record(transaction, &lease.job).await?;
         Ok(true)
@@ -234,11 +243,14 @@ impl Store {
     async fn end(&self, lease: &Lease, query: Statement) -> Result<bool, StoreError> {
         let mut transaction = self.database.begin().await?;
         let changed = query.execute(&mut transaction).await?;
+        let mut waited = Vec::new();
         if changed == 1 {
             record(&mut transaction, &lease.job).await?;
+            waited = fail_waiting(&mut transaction, &lease.job).await?;
         }
         transaction.commit().await?;
         self.job_changed(&lease.job);
+        waited.iter().for_each(|job| self.job_changed(job));
         Ok(changed == 1)
     }
 
@@ -252,8 +264,11 @@ impl Store {
             .bind(class_of(error))
             .fetch_all(&mut transaction)
             .await?;
+        let mut waited = Vec::new();
         for row in &rows {
-            record(&mut transaction, row.try_get("id")?).await?;
+            let id: String = row.try_get("id")?;
+            record(&mut transaction, &id).await?;
+            waited.extend(fail_waiting(&mut transaction, &id).await?);
         }
         transaction.commit().await?;
         let mut reaped = Vec::with_capacity(rows.len());
@@ -264,7 +279,11 @@ impl Store {
                 accepted_again: row.try_get::<String, _>("status")? == "accepted",
             });
         }
-        reaped.iter().for_each(|reaped| self.job_changed(&reaped.job));
+        reaped
+            .iter()
+            .map(|reaped| &reaped.job)
+            .chain(&waited)
+            .for_each(|job| self.job_changed(job));
         Ok(reaped)
     }
 

@@ -2,6 +2,7 @@
 
 use super::database::query;
 use super::events::record;
+use super::waiting::wait_again;
 use super::{Store, StoreError};
 
 /// A job that failed through no fault of its own.
@@ -17,14 +18,14 @@ pub struct LostRow {
 }
 
 const LOST: &str = "SELECT id, tenant, kind, attempt, finished, error FROM jobs \
-     WHERE status = 'failed' AND error_class = 'infrastructure' AND id > $1 ORDER BY id LIMIT $2";
+     WHERE status = 'failed' AND error_class = 'infrastructure' AND waits_for = '' AND id > $1 ORDER BY id LIMIT $2";
 const REQUEUE: &str = "UPDATE jobs SET status = 'accepted', error = NULL, error_class = NULL, losses = 0, \
      finished = NULL, claimable_from = 0, updated = (SELECT now_ms FROM clock) \
-     WHERE id = $1 AND status = 'failed' AND error_class = 'infrastructure'";
+     WHERE id = $1 AND status = 'failed' AND error_class = 'infrastructure' AND waits_for = ''";
 
 impl Store {
     /// The jobs of all tenants that failed through no fault of their own, oldest first, those after `cursor` where
-    /// one is given.
+    /// one is given. Those that failed with the meshing of their case go on with it.
     pub async fn lost_jobs(
         &self,
         cursor: Option<&str>,
@@ -49,15 +50,18 @@ impl Store {
         Ok(lost)
     }
 
-    /// Accepts such a job again; false where there is none of this id.
+    /// Accepts such a job again, and those that failed with it; false where there is none of this id.
     pub async fn requeue(&self, id: &str) -> Result<bool, StoreError> {
         let mut transaction = self.database.begin().await?;
         let changed = query(REQUEUE).bind(id).execute(&mut transaction).await?;
+        let mut waited = Vec::new();
         if changed == 1 {
             record(&mut transaction, id).await?;
+            waited = wait_again(&mut transaction, id).await?;
         }
         transaction.commit().await?;
         self.job_changed(id);
+        waited.iter().for_each(|job| self.job_changed(job));
         Ok(changed == 1)
     }
 }

@@ -1,5 +1,6 @@
 //! What is kept: rows in a database, bytes in blobs. Every query lives here, one file for each table.
 
+mod accepted;
 mod audit;
 mod blobs;
 mod cases;
@@ -35,9 +36,11 @@ mod sweep;
 mod tenants;
 mod tombstones;
 mod transfer;
+mod waiting;
 mod wake;
+pub use accepted::{Enqueued, NewJob};
 pub use audit::{AuditRow, Chain};
-pub use cases::{CaseRow, Change, NewCase};
+pub use cases::{AddedCase, CaseMeshing, CaseRow, Change, NewCase};
 pub use claims::Claim;
 pub use database::Migrated;
 pub use deed::Deed;
@@ -48,7 +51,7 @@ pub use fsck::{Dangling, Findings, Repaired, Unreached};
 pub use handle::{DEFAULT_TENANT, Store};
 pub use idempotency::Reserved;
 pub use job_tags::Tagged;
-pub use jobs::{Dismissal, Enqueued, JobFilter, JobRow, NewJob};
+pub use jobs::{Dismissal, JobFilter, JobRow};
 pub use keys::KeyRow;
 pub use leases::{FileRow, Lease, Point, Published, PublishedFile, Reaped};
 pub use lost::LostRow;
@@ -62,4 +65,5 @@ pub use responses::{CaseResponses, ResponseRow};
 pub use sweep::Swept;
 pub use tenants::TenantRow;
 pub use transfer::Moved;
+pub use waiting::MeshedCase;
 pub use wake::Changes;

@@ -65,3 +65,30 @@ async fn is_chained(
     let row = row.bind(request).bind(&end.outcome).bind(open.at).fetch_optional(transaction);
     Ok(row.await?.is_some())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::store::Store;
+
+    /// As where the database crashed after it had taken an end and before anybody heard of it.
+    #[tokio::test]
+    async fn an_end_that_is_told_again_is_in_the_log_once() {
+        let folder = tempfile::TempDir::new().unwrap();
+        let store = Store::open(folder.path()).await.unwrap();
+        let deed = Deed { action: "posted".into(), ..Deed::default() };
+        let told = End { object: "job".into(), outcome: "201".into() };
+        let mut open = Open { deed, at: None, end: None, was_told: false };
+        let mut transaction = store.database.begin().await.unwrap();
+        open.at = Some(begin(&mut transaction, "one", &open.deed).await.unwrap());
+        transaction.commit().await.unwrap();
+        for _ in 0..2 {
+            let mut transaction = store.database.begin().await.unwrap();
+            end(&mut transaction, "one", &open, &told).await.unwrap();
+            transaction.commit().await.unwrap();
+            let rows = store.audit(0, "", 10).await.unwrap();
+            assert_eq!((rows.len(), rows[0].outcome.as_str()), (1, "201"));
+            open.was_told = true;
+        }
+    }
+}

@@ -57,13 +57,18 @@ impl Notes {
     /// Notes it with all that wait meanwhile.
     pub fn note(&self, database: &Database, note: Note, is_wanted: Wanted) -> Told {
         let (teller, told) = oneshot::channel();
-        let mut waiting = self.lock();
-        waiting.notes.push_back(Waiter { note, is_wanted, teller });
-        if !std::mem::replace(&mut waiting.is_written, true) {
+        self.lock().notes.push_back(Waiter { note, is_wanted, teller });
+        if let Some(writing) = self.writing() {
             // Whoever asked may leave while the notes of others are written.
-            tokio::spawn(Writing(self.clone()).write(database.clone()));
+            tokio::spawn(writing.write(database.clone()));
         }
         told
+    }
+
+    /// The one who writes from now on, unless there is one.
+    fn writing(&self) -> Option<Writing> {
+        let is_written = std::mem::replace(&mut self.lock().is_written, true);
+        (!is_written).then(|| Writing { notes: self.clone(), is_over: false })
     }
 
     /// How many wait for the same tenant to begin something.
@@ -81,10 +86,14 @@ impl Notes {
 }
 
 /// The one who writes, until nothing waits.
-struct Writing(Notes);
+struct Writing {
+    notes: Notes,
+    /// Whether he has said that he is the one no more. The next may have begun since.
+    is_over: bool,
+}
 
 impl Writing {
-    async fn write(self, database: Database) {
+    async fn write(mut self, database: Database) {
         while let Some(group) = self.next() {
             let (notes, tellers): (Vec<Note>, Vec<Teller>) = group.into_iter().unzip();
             let written = self.write_some(&database, &notes).await.map_err(Arc::new);
@@ -96,11 +105,12 @@ impl Writing {
     }
 
     /// Those that are written next, without those that nobody wants any more.
-    fn next(&self) -> Option<Vec<(Note, Teller)>> {
-        let mut waiting = self.0.lock();
+    fn next(&mut self) -> Option<Vec<(Note, Teller)>> {
+        let mut waiting = self.notes.lock();
         let count = waiting.notes.len().min(AT_ONCE);
         if count == 0 {
             waiting.is_written = false;
+            self.is_over = true;
             return None;
         }
         let group = waiting.notes.drain(..count).collect::<Vec<_>>();
@@ -125,11 +135,11 @@ impl Writing {
         }
         transaction.commit().await?;
         for (id, at) in begun {
-            self.0.deeds.began(id, at);
+            self.notes.deeds.began(id, at);
         }
         for note in notes {
             if let Note::End { id } = note {
-                self.0.deeds.forget(id);
+                self.notes.deeds.forget(id);
             }
         }
         Ok(())
@@ -147,7 +157,7 @@ impl Writing {
                 Ok(Some((id, at)))
             }
             Note::End { id } => {
-                if let Some(open) = self.0.deeds.tell(id)
+                if let Some(open) = self.notes.deeds.tell(id)
                     && let Some(end) = &open.end
                 {
                     note_rows::end(transaction, id, &open, end).await?;
@@ -161,6 +171,26 @@ impl Writing {
 impl Drop for Writing {
     /// Where its runtime ended, the next who notes something goes on.
     fn drop(&mut self) {
-        self.0.lock().is_written = false;
+        if !self.is_over {
+            self.notes.lock().is_written = false;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_who_has_written_all_does_not_end_the_next_who_writes() {
+        let notes = Notes::default();
+        let mut first = notes.writing().expect("nobody writes");
+        assert!(notes.writing().is_none(), "one writes at a time");
+        assert!(first.next().is_none(), "nothing waits");
+        let next = notes.writing().expect("the first has ended");
+        drop(first);
+        assert!(notes.writing().is_none(), "the next goes on");
+        drop(next);
+        assert!(notes.writing().is_some(), "where its runtime ended, another goes on");
     }
 }

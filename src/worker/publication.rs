@@ -6,10 +6,13 @@ use serde_json::{Value, json};
 use super::process::protocol::MeshFile;
 use super::work::{Failure, Finished, FinishedFile, FinishedMesh};
 use crate::jobs::result::provenance::manifest_bytes;
+use crate::schema::CaseDocument;
 use crate::schema::predict::document::OutputName;
 use crate::schema::predict::keep::{KeptMeshDocument, MadeName};
 use crate::schema::wire::canonical::{sha256_hex, to_value};
-use crate::store::{Lease, MadeMesh, NewMesh, Published, PublishedFile, Store, StoreError};
+use crate::store::{
+    Lease, MadeMesh, MeshedCase, NewMesh, Published, PublishedFile, Store, StoreError,
+};
 
 /// The result of an attempt in memory.
 pub struct Publication {
@@ -40,7 +43,8 @@ impl Publication {
     /// Publishes all of it, or nothing where the job is not ours any more. A mesh that is stored already keeps its id.
     pub async fn publish(&self, store: &Store, lease: &Lease) -> Result<bool, StoreError> {
         if self.meshes.is_empty() {
-            let published = Published { result: &self.result, files: &self.files, meshes: &[] };
+            let published =
+                Published { result: &self.result, files: &self.files, meshes: &[], case: None };
             return store.publish(lease, published).await;
         }
         let mut meshes = Vec::with_capacity(self.meshes.len());
@@ -54,12 +58,14 @@ impl Publication {
         let manifest = self.manifest(&kept)?;
         let files = self.files_with(&manifest);
         let result = manifest.to_string();
-        store.publish(lease, Published { result: &result, files: &files, meshes: &meshes }).await
+        let case = meshed_case(&manifest)?;
+        let published =
+            Published { result: &result, files: &files, meshes: &meshes, case: case.as_ref() };
+        store.publish(lease, published).await
     }
 
     fn manifest(&self, kept: &[KeptMeshDocument]) -> Result<Value, StoreError> {
-        let mut manifest: Value = serde_json::from_str(&self.result)
-            .map_err(|error| StoreError::Schema(format!("manifest of a job: {error}")))?;
+        let mut manifest: Value = serde_json::from_str(&self.result).map_err(unreadable)?;
         manifest["kept"] = to_value(&kept);
         // A case that a meshing proposes names its mesh as clients do.
         if let Some(case) = manifest.pointer_mut("/meshing/case") {
@@ -81,12 +87,28 @@ impl Publication {
     }
 }
 
+fn unreadable(error: serde_json::Error) -> StoreError {
+    StoreError::Schema(format!("manifest of a job: {error}"))
+}
+
+/// The case that a meshing has found, for the one that may wait for it.
+fn meshed_case(manifest: &Value) -> Result<Option<MeshedCase>, StoreError> {
+    let Some(found) = manifest.get("meshing") else { return Ok(None) };
+    let case: CaseDocument = serde_json::from_value(found["case"].clone()).map_err(unreadable)?;
+    Ok(Some(MeshedCase {
+        document: serde_json::to_string(&case).map_err(unreadable)?,
+        report: found["check"].to_string(),
+        mesh_ids: case.mesh_ids(),
+    }))
+}
+
 /// Puts the ids of stored meshes into a case that names them by the files of the result.
 fn name_meshes(case: &mut Value, kept: &[KeptMeshDocument]) {
     if let Some(volume) = kept.iter().find(|mesh| mesh.what == MadeName::Volume) {
         case["volume"] = json!(volume.mesh);
     }
-    for bone in case["bones"].as_array_mut().into_iter().flatten() {
+    let bones = case.get_mut("bones").and_then(Value::as_array_mut);
+    for bone in bones.into_iter().flatten() {
         let is_it = |mesh: &&KeptMeshDocument| {
             mesh.what == MadeName::Bone && mesh.name.as_deref() == bone["name"].as_str()
         };

@@ -2,7 +2,9 @@
 
 use std::process::Command;
 
-use serde_json::Value;
+use reqwest::StatusCode;
+use reqwest::multipart::{Form, Part};
+use serde_json::{Value, json};
 use tempfile::TempDir;
 
 use crate::helpers::{SMALL, Server, ask, serve, spec};
@@ -10,6 +12,7 @@ use crate::invariants::{
     MEDIUM, accepted, fails, files, shows_no_result, state, succeeds, tagged, undisturbed, works_on,
 };
 use crate::processes::{descriptors, faulty, faulty_with_log, is_gone, slots, until};
+use crate::samples::ball_ct;
 
 #[tokio::test]
 async fn a_slot_that_is_killed_in_the_middle_of_a_solution_costs_one_attempt() {
@@ -41,6 +44,49 @@ async fn a_worker_that_is_killed_in_the_middle_of_a_solution_is_followed_by_the_
     let job = succeeds(&server, &id, 2).await;
     assert_eq!(files(&job), undisturbed(&MEDIUM, 2.0).await);
     assert_eq!(std::fs::read_dir(server.path().join("tmp")).unwrap().count(), 0);
+}
+
+#[tokio::test]
+async fn a_service_that_is_killed_while_it_meshes_loses_neither_the_case_nor_what_waits_for_it() {
+    for fault in ["mesh:begin:1:hold", "publish:before:1:kill", "publish:after:1:kill"] {
+        let server = faulty(fault, &["--workers", "1"]);
+        let meshing = json!({"kind": "mesh", "scan": "ct", "thresholds_hu": {"skin": -480, "bone": 620},
+            "size": {"tetrahedra": 5000},
+            "osteotomy": {
+                "cuts": [{"name": "middle", "point_mm": [60, 55, 60], "normal": [0, 0, 1]}],
+                "segments": [{"name": "jaw", "below": ["middle"]}]}});
+        let form = Form::new()
+            .part("case", Part::text(json!({ "meshing": meshing, "tags": ["ball"] }).to_string()))
+            .part("ct", Part::bytes(ball_ct()));
+        let case = ask(server.post("/v1/cases").multipart(form)).await.expect(StatusCode::CREATED);
+        let (case, meshing) =
+            (case["id"].clone(), case["meshing"]["job"].as_str().unwrap().to_owned());
+        let asked = json!({"kind": "predict", "case": case, "plan": {"loads": [{"gravity_m_per_s2": [0, 0, -9]}]}});
+        let posted = ask_to_accept(&server, &asked).await;
+        let folder = if fault.ends_with("hold") {
+            until("it meshes", async || {
+                (state(&server, &meshing).await["phase"] == "mesh").then_some(())
+            })
+            .await;
+            server.kill()
+        } else {
+            server.dies()
+        };
+        let server = Server::start_in(folder, &[]);
+        let address = format!("/v1/cases/{}", case.as_str().unwrap());
+        let view = until("the case has its mesh", async || {
+            let view = ask(server.get(&address).header("prefer", "wait=9")).await.json();
+            assert_ne!(view["state"], "failed", "{fault}: {view}");
+            (view["state"] == "ready").then_some(view)
+        })
+        .await;
+        assert_eq!(view["version"], 2, "{fault}: completed once");
+        let attempts = state(&server, &meshing).await["attempt"].clone();
+        assert_eq!(attempts, if fault.starts_with("publish:after") { 1 } else { 2 }, "{fault}");
+        if let Some(posted) = posted {
+            assert_eq!(server.ended(&posted).await["status"], "successful", "{fault}");
+        }
+    }
 }
 
 #[tokio::test]

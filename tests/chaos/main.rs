@@ -8,4 +8,4 @@ mod races;
 #[path = "../support/mod.rs"]
 mod support;
 
-use support::{deployments, helpers, invariants, processes};
+use support::{deployments, helpers, invariants, processes, samples};

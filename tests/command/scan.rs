@@ -5,7 +5,7 @@ use std::fs;
 use serde_json::{Value, json};
 
 use crate::program::{facies, path, result, text};
-use crate::samples::ball_ct;
+use crate::samples::{BONE_BALL, SKIN_BALL, ball_ct, ball_stl};
 
 fn plan() -> Value {
     json!({
@@ -44,6 +44,10 @@ fn a_scan_and_a_plan_with_its_cuts_give_a_predicted_skin_in_one_command() {
     let done = facies(&["predict", "--case", path(&case), "--out", path(&again)]);
     assert_eq!(done.status.code(), Some(0), "{}", text(&done.stderr));
     assert_eq!(result(&again).statistics.unwrap().skin.nodes, direct);
+    // The mesh that was handed over in memory is the one that was written.
+    assert_eq!(result(&again).provenance.spec_hash, result(&out).provenance.spec_hash);
+    assert_eq!(result(&again).provenance.inputs, result(&out).provenance.inputs);
+    assert_eq!(fs::read(again.join("skin.vtp")).unwrap(), fs::read(out.join("skin.vtp")).unwrap());
     let same = |name: &str| {
         assert_eq!(
             fs::read(out.join("mesh").join(name)).unwrap(),
@@ -51,6 +55,53 @@ fn a_scan_and_a_plan_with_its_cuts_give_a_predicted_skin_in_one_command() {
         );
     };
     ["volume.vtu", "bone-1.vtp"].into_iter().for_each(same);
+}
+
+#[test]
+fn a_plan_that_moves_what_is_not_cut_is_refused_before_anything_is_meshed() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = |name: &str| folder.path().join(name);
+    fs::write(file("ct.nrrd"), ball_ct()).unwrap();
+    let mut wrong = plan();
+    wrong["segments"][0]["name"] = json!("maxilla");
+    fs::write(file("plan.json"), wrong.to_string()).unwrap();
+    let (scan, plan, out) = (file("ct.nrrd"), file("plan.json"), file("out"));
+    let done =
+        facies(&["predict", "--scan", path(&scan), "--plan", path(&plan), "--out", path(&out)]);
+    assert_eq!(done.status.code(), Some(2));
+    let told = text(&done.stderr);
+    assert!(told.contains("/plan/segments/0/name") && told.contains("jaw"), "{told}");
+    assert!(!out.exists());
+}
+
+#[test]
+fn a_skin_and_a_bone_give_what_their_scan_gives_and_segments_need_no_cuts() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = |name: &str| folder.path().join(name);
+    fs::write(file("skin.stl"), ball_stl(SKIN_BALL)).unwrap();
+    fs::write(file("bone.stl"), ball_stl(BONE_BALL)).unwrap();
+    fs::write(file("plan.json"), plan().to_string()).unwrap();
+    let (skin, bone, plan) = (file("skin.stl"), file("bone.stl"), file("plan.json"));
+    let surfaces = ["--skin", path(&skin), "--bone", path(&bone), "--tetrahedra", "20000"];
+    let (out, whole) = (file("out"), file("whole"));
+    let rest = ["--plan", path(&plan), "--out", path(&out)];
+    let done = facies(&[&["predict"], &surfaces[..], &rest[..]].concat());
+    assert_eq!(done.status.code(), Some(0), "{}", text(&done.stderr));
+    let moved = result(&out).statistics.unwrap().skin.nodes;
+    assert!((2.0..4.0).contains(&moved.max), "{moved:?}");
+
+    // Bone that is a segment of its own needs no cuts.
+    let named = format!("skull={}", path(&bone));
+    let asked = ["mesh", "--skin", path(&skin), "--bone", &named, "--tetrahedra", "20000"];
+    let done = facies(&[&asked[..], &["--out", path(&whole)]].concat());
+    assert_eq!(done.status.code(), Some(0), "{}", text(&done.stderr));
+    let case: Value = serde_json::from_slice(&fs::read(whole.join("case.json")).unwrap()).unwrap();
+    assert_eq!(case["case"]["segments"][0]["name"], "skull");
+    assert_eq!(case["case"]["bones"], json!([{"name": "skull", "mesh": "bone-1.vtp"}]));
+
+    let alone = facies(&["mesh", "--bone", path(&bone), "--out", path(&out)]);
+    assert_eq!(alone.status.code(), Some(2));
+    assert!(text(&alone.stderr).contains("--skin FILE"), "{}", text(&alone.stderr));
 }
 
 #[test]

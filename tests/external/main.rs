@@ -31,6 +31,7 @@ fn main() -> ExitCode {
         store::erasure::trials(),
         store::lost_jobs::trials(),
         store::made::trials(),
+        store::meshings::trials(),
         store::pages::trials(),
         store::places::trials(),
         store::queue::trials(),

@@ -95,17 +95,23 @@ def percentile(values, share):
     return values[min(len(values) - 1, int(share * len(values)))] if values else 0.0
 
 
-def resident_kb(process):
-    """Memory of a process and its children, in KiB."""
-    total = 0
-    for status in glob.glob("/proc/[0-9]*/status"):
+def statuses():
+    """The fields of each process of this machine."""
+    for file in glob.glob("/proc/[0-9]*/status"):
         try:
-            fields = dict(line.split(":", 1) for line in open(status) if ":" in line)
+            yield dict(line.split(":", 1) for line in open(file) if ":" in line)
         except OSError:
             continue
-        if int(fields["Pid"]) == process or int(fields["PPid"]) == process:
-            total += int(fields.get("VmRSS", "0 kB").split()[0])
-    return total
+
+
+def children(process):
+    return [int(fields["Pid"]) for fields in statuses() if int(fields["PPid"]) == process]
+
+
+def resident_kb(process):
+    """Memory of a process and its children, in KiB."""
+    own = [fields for fields in statuses() if process in (int(fields["Pid"]), int(fields["PPid"]))]
+    return sum(int(fields.get("VmRSS", "0 kB").split()[0]) for fields in own)
 
 
 class Cluster:

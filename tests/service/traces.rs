@@ -12,6 +12,7 @@ use tokio::net::{TcpListener, TcpStream};
 
 use crate::collector::{CLIENT, Collector, TRACE, job_in_a_trace};
 use crate::helpers::{SMALL, Server, ask, serve};
+use crate::processes::is_quick;
 
 fn attributes(pairs: &[(&str, &str)]) -> BTreeMap<String, String> {
     pairs.iter().map(|(name, value)| ((*name).to_owned(), (*value).to_owned())).collect()
@@ -33,7 +34,7 @@ async fn a_request_a_job_and_its_phases_are_spans_of_the_clients_trace() {
     let case = stored.expect(StatusCode::CREATED)["id"].as_str().unwrap().to_owned();
     let id = job_in_a_trace(&server, &case).await;
     ask(server.get(&format!("/v1/jobs/{id}"))).await.expect(StatusCode::OK);
-    assert!(server.terminate_within(Duration::from_secs(10)));
+    assert!(server.terminate_within(Duration::from_secs(60)));
 
     let posted = collector.span("POST /v1/jobs").await;
     assert_eq!((posted.trace.as_str(), posted.parent.as_str()), (TRACE, CLIENT));
@@ -109,7 +110,7 @@ async fn what_has_ended_is_told_before_the_process_ends() {
     // Without workers the end takes milliseconds, and spans wait a second for others.
     let server = Server::start_with(&["--traces", &collector.address, "--workers", "0"]);
     ask(server.get("/v1/limits")).await.expect(StatusCode::OK);
-    assert!(server.terminate_within(Duration::from_secs(10)));
+    assert!(server.terminate_within(Duration::from_secs(60)));
     let told = &collector.told.borrow_and_update().spans;
     assert!(told.iter().any(|span| span.name == "GET /v1/limits"), "{told:?}");
 }
@@ -156,11 +157,12 @@ async fn a_collector_that_is_dead_slow_or_talks_nonsense_changes_nothing() {
         let mut server = Server::start_with(&arguments);
         let metrics = server.second_line().strip_prefix("metrics on ").unwrap().to_owned();
         let case = server.case(&SMALL).await;
-        let begun = Instant::now();
-        let id = job_in_a_trace(&server, &case).await;
-        assert_eq!(server.ended(&id).await["status"], "successful", "{name}");
         // A job of milliseconds; one that waited for its spans would take 5 s for each batch.
-        assert!(begun.elapsed() < Duration::from_secs(4), "{name}: {:?}", begun.elapsed());
+        let quick = is_quick(Duration::from_secs(4), async || {
+            let id = job_in_a_trace(&server, &case).await;
+            assert_eq!(server.ended(&id).await["status"], "successful", "{name}");
+        });
+        assert!(quick.await, "{name}: it waits for its spans");
         let is_counted = async || {
             let counted = ask(server.client.get(&metrics)).await.bytes;
             let counted = String::from_utf8(counted).unwrap();
@@ -172,6 +174,6 @@ async fn a_collector_that_is_dead_slow_or_talks_nonsense_changes_nothing() {
         }
         ask(server.get("/v1/limits")).await.expect(StatusCode::OK);
         // Two seconds for the last spans, and some for a machine with other things to do.
-        assert!(server.terminate_within(Duration::from_secs(5)), "{name}");
+        assert!(server.terminate_within(Duration::from_secs(9)), "{name}");
     }
 }

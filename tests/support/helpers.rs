@@ -24,14 +24,19 @@ pub struct Server {
     folder: TempDir,
 }
 
-/// The command that serves from a folder; short leases, so that a lost worker is noticed in a second.
+/// Leases that a worker keeps on a machine where it does not get to run for some seconds; one that is lost is noticed after
+/// as many.
+pub const LEASES: [&str; 4] = ["--lease-s", "5", "--heartbeat-s", "0.2"];
+
+/// The command that serves from a folder.
 pub fn serve(folder: &Path) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_facies"));
     command
         .arg("serve")
         .args(["--bind", "127.0.0.1:0", "--data"])
         .arg(folder)
-        .args(["--lease-s", "1", "--heartbeat-s", "0.2", "--free-space-floor-mib", "0"])
+        .args(LEASES)
+        .args(["--free-space-floor-mib", "0"])
         .stdout(Stdio::piped())
         .stderr(Stdio::null());
     command
@@ -43,7 +48,8 @@ pub fn serve_shared(on: &Deployment) -> Command {
     command.arg("serve").args(["--bind", "127.0.0.1:0"]);
     on.bring(&mut command);
     command
-        .args(["--lease-s", "1", "--heartbeat-s", "0.2", "--free-space-floor-mib", "0"])
+        .args(LEASES)
+        .args(["--free-space-floor-mib", "0"])
         .stdout(Stdio::piped())
         .stderr(Stdio::null());
     command

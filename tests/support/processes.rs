@@ -13,7 +13,11 @@ const PATIENCE: Duration = Duration::from_secs(60);
 
 /// A server whose processes break themselves as `FACIES_FAULT` says.
 pub fn faulty(fault: &str, arguments: &[&str]) -> Server {
-    let folder = TempDir::new().unwrap();
+    faulty_in(TempDir::new().unwrap(), fault, arguments)
+}
+
+/// The same on what another server left.
+pub fn faulty_in(folder: TempDir, fault: &str, arguments: &[&str]) -> Server {
     let mut command = serve(folder.path());
     command.args(arguments).env("FACIES_FAULT", fault);
     Server::start_command(command, folder)
@@ -38,6 +42,19 @@ pub async fn until<T>(what: &str, mut condition: impl AsyncFnMut() -> Option<T>)
         assert!(begun.elapsed() < PATIENCE, "{what} did not happen");
         tokio::time::sleep(Duration::from_millis(5)).await;
     }
+}
+
+/// Whether something is done within a time, in one of five attempts: on a machine with other things to do it is late now and
+/// then, and what waits for somebody who does not come is late each time.
+pub async fn is_quick(within: Duration, mut attempt: impl AsyncFnMut()) -> bool {
+    for _ in 0..5 {
+        let begun = Instant::now();
+        attempt().await;
+        if begun.elapsed() < within {
+            return true;
+        }
+    }
+    false
 }
 
 /// A field of `/proc/PROCESS/status`, while the process is there.
@@ -67,6 +84,14 @@ pub fn slots_of(process: u32) -> Vec<u32> {
         (is_child && !is_gone(process)).then_some(process)
     });
     processes.collect()
+}
+
+/// The slot of a process with workers that stands still, once one does.
+pub async fn stopped_slot(process: u32) -> u32 {
+    until("a slot stands still", async || {
+        slots_of(process).into_iter().find(|slot| is_stopped(*slot))
+    })
+    .await
 }
 
 /// What the descriptors of a process lead to.

@@ -32,12 +32,13 @@ pub fn new_job(document: &str, hash: &str) -> NewJob {
         tags: vec!["a".into()],
         mesh_ids: vec![],
         traceparent: None,
+        waits_for: None,
     }
 }
 
 /// A result without meshes.
 pub fn result<'a>(result: &'a str, files: &'a [PublishedFile]) -> Published<'a> {
-    Published { result, files, meshes: &[] }
+    Published { result, files, meshes: &[], case: None }
 }
 
 pub async fn enqueue(store: &Store, hash: &str) -> String {

@@ -4,6 +4,7 @@ use std::io::{BufRead, BufReader};
 use std::process::{Child, ChildStdout, Command, Stdio};
 
 use crate::deployments::Deployment;
+use crate::helpers::LEASES;
 
 /// A worker in a process of its own. It is killed when the test ends.
 pub struct Worker(Child);
@@ -23,7 +24,7 @@ impl Worker {
 
     pub fn command(on: &Deployment) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_facies"));
-        command.args(["worker", "--workers", "1", "--lease-s", "1", "--heartbeat-s", "0.2"]);
+        command.args(["worker", "--workers", "1"]).args(LEASES);
         on.bring(&mut command);
         command
     }

@@ -1,7 +1,7 @@
 // What `Facies` promises, against a service: arrays that agree with each other, progress, exceptions with codes.
 import { strict as assert } from "node:assert";
 import { readFile } from "node:fs/promises";
-import { Facies, JobFailed, Refused, type Documents, type Movement } from "./facies.js";
+import { Facies, JobFailed, Refused, type Documents, type Movement, type Upload } from "./facies.js";
 
 const folder = "examples/head/";
 const blob = async (name: string) => new Blob([await readFile(folder + name)]);
@@ -40,8 +40,16 @@ const skin = await facies.upload(new Blob([await facies.file(again.job, "skin.vt
 assert((await facies.compare(found, skin)).both.max < 1e-3);
 
 const mesh = { volume: await blob("face.vtu"), fixed: ["skull", "rim"], skin: "skin" };
-const ofMesh = await facies.predict(mesh, { segments: [{ name: "mandible", translation_mm: [0, 4, 1] }] });
+const jaw = { segments: [{ name: "mandible", translation_mm: [0, 4, 1] as [number, number, number] }] };
+const ofMesh = await facies.predict(mesh, jaw);
 assert.equal(ofMesh.displacement_mm.length, here.length);
+const sent: Upload[] = [];
+const uploading = (upload: Upload) => sent.push(upload);
+assert.equal((await facies.predict(mesh, jaw, { uploading })).displacement_mm.length, here.length);
+const total_bytes = mesh.volume.size;
+assert.deepEqual(sent.at(-1), { phase: "upload", sent_bytes: total_bytes, total_bytes, progress: 100 });
+assert(sent.every((one, at) => at === 0 || one.sent_bytes > sent[at - 1]!.sent_bytes) && sent.length > 1, "piece by piece");
+await assert.rejects(facies.upload(new Blob(["solid nothing"]), "mm", "LPS", uploading), (refused) => refused instanceof Refused);
 
 const unknown = { segments: [{ name: "mandibel", translation_mm: [0, 4, 1] as [number, number, number] }] };
 await assert.rejects(facies.predict(head, unknown), (refused) => refused instanceof Refused

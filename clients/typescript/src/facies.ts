@@ -2,11 +2,13 @@
 // so that a page may import it as it is.
 import { JobFailed, Refused } from "./errors.js";
 import { Response as PlanResponse } from "./response.js";
+import { post, type Uploading } from "./sending.js";
 import { readGlb, type Surface } from "./surface.js";
 import type { components } from "./rest.js";
 
 export { FaciesError, JobFailed, Refused } from "./errors.js";
 export { Response, type Movement, type Triple } from "./response.js";
+export { type Upload, type Uploading } from "./sending.js";
 export { readGlb, type Surface } from "./surface.js";
 
 export type Documents = components["schemas"];
@@ -15,7 +17,7 @@ type Results = Documents["ResultDocument"];
 export type Progress = (event: Documents["JobEvent"]) => unknown;
 /** Further members of the document of a job. */
 type Members<Document, Known extends keyof Document> = Partial<Omit<Document, "kind" | "case" | Known>>;
-type PredictOptions = Members<Documents["PredictDocument"], "plan"> & { progress?: Progress };
+type PredictOptions = Members<Documents["PredictDocument"], "plan"> & { progress?: Progress; uploading?: Uploading };
 
 /** How a volume mesh becomes a case: names of its node sets. Each segment of the plan is the set of its name. */
 export interface MeshCase {
@@ -59,9 +61,13 @@ export class Facies {
 
   /** The answer to any request; throws `Refused` where it is a refusal. */
   async ask(method: string, path: string, body?: BodyInit, headers: Record<string, string> = {}): Promise<Response> {
+    return this.asked(() => this.send(method, path, body, headers));
+  }
+
+  private async asked(send: () => Promise<Response>): Promise<Response> {
     const until = Date.now() + this.patience_s * 1000;
     for (;;) {
-      const answer = await this.send(method, path, body, headers);
+      const answer = await send();
       if (answer.ok) return answer;
       // In seconds, as the service sends it.
       const pause = Number(answer.headers.get("Retry-After") ?? 1) * 1000;
@@ -71,9 +77,15 @@ export class Facies {
   }
 
   /** The id of a mesh. The same bytes are the same mesh. */
-  async upload(mesh: Blob, units: Documents["LengthUnit"] = "mm", frame: Documents["FrameName"] = "unspecified"): Promise<string> {
+  async upload(
+    mesh: Blob, units: Documents["LengthUnit"] = "mm", frame: Documents["FrameName"] = "unspecified", uploading?: Uploading,
+  ): Promise<string> {
+    const path = `/v1/meshes?units=${units}&frame=${frame}`;
     const headers = { "Content-Type": "application/octet-stream" };
-    return (await this.json("POST", `/v1/meshes?units=${units}&frame=${frame}`, mesh, headers)).id;
+    if (uploading === undefined) return (await this.json("POST", path, mesh, headers)).id;
+    const posted = { address: this.address + path, headers: { ...headers, ...this.authorization() }, file: mesh };
+    const answer = await this.asked(() => post(posted, uploading));
+    return (await answer.json()).id;
   }
 
   /** The id of a case that is stored. The document names meshes by their ids, or by the names of `meshes`. */
@@ -88,8 +100,8 @@ export class Facies {
   async predict(
     of: string | MeshCase, plan: Documents["PlanDocument"], options: PredictOptions = {},
   ): Promise<Prediction> {
-    const { progress, outputs = ["skin.vtp"], ...members } = options;
-    const id = typeof of === "string" ? of : await this.caseOfMesh(of, plan);
+    const { progress, uploading, outputs = ["skin.vtp"], ...members } = options;
+    const id = typeof of === "string" ? of : await this.caseOfMesh(of, plan, uploading);
     const spec = { kind: "predict" as const, case: id, plan, ...members, outputs: withSkin(outputs) };
     return this.prediction(await this.run(spec, progress));
   }
@@ -168,14 +180,16 @@ export class Facies {
     }
   }
 
-  private async caseOfMesh(mesh: MeshCase, plan: Documents["PlanDocument"]): Promise<string> {
+  private async caseOfMesh(mesh: MeshCase, plan: Documents["PlanDocument"], uploading?: Uploading): Promise<string> {
     const set = (name: string) => ({ node_set: name });
     const segments = (plan.segments ?? []).map(({ name }) => ({ name, nodes: set(name) }));
+    const { units = "mm", frame = "LPS" } = mesh;
+    const sent = uploading === undefined ? undefined : await this.upload(mesh.volume, units, frame, uploading);
     const document = {
-      units: mesh.units ?? "mm", frame: mesh.frame ?? "LPS", volume: "volume", segments,
+      units, frame, volume: sent ?? "volume", segments,
       fixed: mesh.fixed.map(set), ...(mesh.skin === undefined ? {} : { skin: set(mesh.skin) }),
     };
-    return this.createCase(document as Documents["CaseDocument"], { volume: mesh.volume });
+    return this.createCase(document as Documents["CaseDocument"], sent === undefined ? { volume: mesh.volume } : {});
   }
 
   private async prediction(job: Job): Promise<Prediction> {
@@ -184,8 +198,12 @@ export class Facies {
   }
 
   private send(method: string, path: string, body?: BodyInit, headers: Record<string, string> = {}): Promise<Response> {
-    const key: Record<string, string> = this.key === undefined ? {} : { Authorization: `Bearer ${this.key}` };
-    return fetch(this.address + path, { method, headers: { ...headers, ...key }, ...(body === undefined ? {} : { body }) });
+    const all = { ...headers, ...this.authorization() };
+    return fetch(this.address + path, { method, headers: all, ...(body === undefined ? {} : { body }) });
+  }
+
+  private authorization(): Record<string, string> {
+    return this.key === undefined ? {} : { Authorization: `Bearer ${this.key}` };
   }
 
   private async json(...request: Parameters<Facies["ask"]>) {

@@ -1,34 +1,41 @@
-//! Anatomical model: from a CT and the cuts of an operation to a mesh of the soft tissue with its node sets.
+//! Anatomical model: from a CT or surfaces and the cuts of an operation to a mesh of the soft tissue with its node sets.
 //!
-//! [`part_bone`] parts bone into segments ([`osteotomy`](crate::osteotomy)); [`build`] does the rest: the tissue between skin and bone
-//! is meshed ([`meshing`](crate::meshing)), and each of its nodes gets a class by the bone that it lies on. The mesh that
-//! comes out has the node sets that a case names: one for each segment, `fixed`, `skin`, and parts of the skin.
+//! [`part_bone`] parts bone into segments ([`osteotomy`](crate::osteotomy)); [`build`] does the rest: the tissue of a
+//! [`domain`](crate::domain), between skin and bone, is meshed ([`meshing`](crate::meshing)), and each of its nodes gets a
+//! class by the bone that it lies on. The mesh that comes out has the node sets that a case names: one for each segment,
+//! `fixed`, `skin`, and parts of the skin.
 
 mod face;
+pub mod loose;
+pub mod region;
 mod size;
+pub mod surfaces;
 
 use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 
-use crate::domain::{Boundary, ImageDomain, ImageDomainError, ImageOptions};
+use crate::domain::{Boundary, Domain, ImageDomainError, ImageOptions, SurfaceDomainError};
 use crate::image::ImageVolume;
 use crate::mesh::{Frame, TriangleSurface, Vector, VolumeMesh, Warning};
 use crate::meshing::{MeshingError, MeshingReport, MeshingSettings, TissueMesh, mesh};
 use crate::osteotomy::bone_image::BoneImage;
 use crate::osteotomy::classes::{BoneContact, ClassRules, NodeClasses, TissueBoundary, classify};
 use crate::osteotomy::contact::Contact;
+use crate::osteotomy::cut::Cut;
 use crate::osteotomy::label_surface::label_surface;
 use crate::osteotomy::labelling::{Labelled, label};
+use crate::osteotomy::teeth::{ENAMEL_HU, MUCOSA_MM, Teeth};
 use crate::osteotomy::{LabelError, Osteotomy, Owner};
 use crate::progress::Progress;
 
 /// Bone this far behind a node, in lengths of a voxel's diagonal, is the bone that the node lies on.
 const BEHIND: f64 = 1.5;
 
-/// How a scan becomes a mesh. Lengths in mm.
+/// How a scan or surfaces become a mesh. Lengths in mm.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct AnatomyRules {
+    /// Of scans.
     pub image: ImageOptions,
     pub osteotomy: Osteotomy,
     /// The sizes of cells are those of the settings, refined around segments that move.
@@ -37,14 +44,29 @@ pub struct AnatomyRules {
     pub band_mm: f64,
     /// Whether tissue is fixed where the scan ends.
     pub scan_ends_fixed: bool,
+    /// Only tissue about this near to segments is meshed, in mm; all of it where nothing is said.
+    pub around_segments_mm: Option<f64>,
+    /// Whether tissue slides on the teeth of segments, and is joined to the rest of their bone only.
+    pub teeth_slide: bool,
     /// Says how the head stands; without it no landmarks are looked for.
     pub frame: Frame,
+}
+
+/// Bone in its segments.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PartedBone {
+    pub labelled: Labelled,
+    /// A closed surface for each segment, in their order.
+    pub surfaces: Vec<TriangleSurface>,
+    /// Those that tissue slides on, with the mucosa around them; none where surfaces show no enamel.
+    pub teeth: Option<Teeth>,
 }
 
 /// Soft tissue that is ready to be a case.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Anatomy {
-    /// With node sets: a name for each segment, `fixed`, `skin`, and `skin_NAME` for parts of the skin.
+    /// With node sets: a name for each segment, `sliding_NAME` for its teeth, `fixed`, `skin`, and `skin_NAME` for parts of
+    /// the skin.
     pub volume: VolumeMesh,
     pub meshing: MeshingReport,
     pub bone: Labelled,
@@ -58,55 +80,90 @@ pub struct Anatomy {
     pub warnings: Vec<Warning>,
 }
 
-/// Why a scan gives no mesh.
+/// Why a scan or surfaces give no mesh.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum AnatomyError {
     #[error(transparent)]
     Image(#[from] ImageDomainError),
     #[error(transparent)]
+    Surface(#[from] SurfaceDomainError),
+    #[error(transparent)]
     Bone(#[from] LabelError),
     #[error(transparent)]
     Meshing(#[from] MeshingError),
+    #[error(
+        "no boundary of the tissue is outer skin: nothing around it is air by the thresholds, as where values are not \
+         Hounsfield units; {tissue_ml:.0} ml are taken for tissue"
+    )]
+    NoSkin { tissue_ml: f64 },
 }
 
 /// Parts the bone of a scan into its segments.
-pub fn part_bone(scan: &ImageVolume, rules: &AnatomyRules) -> Result<Labelled, AnatomyError> {
-    Ok(label(&bone_of(scan, rules), &rules.osteotomy)?)
+pub fn part_bone(scan: &ImageVolume, rules: &AnatomyRules) -> Result<PartedBone, AnatomyError> {
+    let bone = BoneImage { image: scan, threshold: rules.image.bone_threshold };
+    let parted = parted(&bone, &rules.osteotomy)?;
+    let teeth = || Teeth::new(&bone, &parted.labelled.labels, ENAMEL_HU, MUCOSA_MM);
+    let teeth = rules.teeth_slide.then(teeth);
+    Ok(PartedBone { teeth, ..parted })
 }
 
-fn bone_of<'a>(scan: &'a ImageVolume, rules: &AnatomyRules) -> BoneImage<'a> {
-    BoneImage { image: scan, threshold: rules.image.bone_threshold }
+fn parted(bone: &BoneImage<'_>, osteotomy: &Osteotomy) -> Result<PartedBone, AnatomyError> {
+    let labelled = label(bone, osteotomy)?;
+    let surface = |segment| label_surface(bone, osteotomy, &labelled.labels, segment);
+    let surfaces = (0..labelled.segments.len()).into_par_iter().map(surface).collect();
+    Ok(PartedBone { labelled, surfaces, teeth: None })
 }
 
-/// Builds the model of a scan whose bone is parted. The same scan and rules give the same bits on any number of threads.
+/// Builds the model of a body whose bone is parted. The same body and rules give the same bits on any number of threads.
 pub fn build(
-    scan: &ImageVolume,
-    bone: Labelled,
+    domain: &dyn Domain,
+    bone: PartedBone,
     rules: &AnatomyRules,
     progress: &dyn Progress,
 ) -> Result<Anatomy, AnatomyError> {
-    let domain = ImageDomain::new(scan, &rules.image)?;
-    let image = bone_of(scan, rules);
+    let PartedBone { labelled: bone, surfaces: bones, teeth } = bone;
     let mut settings = rules.meshing.clone();
     settings.size.regions.extend(size::around_segments(&bone, settings.size.finest));
-    let tissue = mesh(&domain, &settings, progress)?;
-    let classes = classes(&tissue, &bone, rules);
+    let tissue = mesh(domain, &settings, progress)?;
+    let skin = tissue.nodes_on(Boundary::Skin);
+    if skin.is_empty() {
+        return Err(AnatomyError::NoSkin { tissue_ml: tissue.report.volume / 1000.0 });
+    }
+    let classes = classes(&tissue, &bone, teeth.as_ref(), rules);
     let mut warnings = classes.warnings.clone();
     warnings.extend(touching(&bone));
-    let skin = tissue.nodes_on(Boundary::Skin);
+    warnings.extend(missed(&bone, &rules.osteotomy));
     let face = face::face(&tissue.volume, &skin, rules.frame);
     warnings.extend(face.warning);
-    let surface = |segment| label_surface(&image, &rules.osteotomy, &bone.labels, segment);
-    let bones = (0..bone.segments.len()).into_par_iter().map(surface).collect();
     let TissueMesh { mut volume, report, .. } = tissue;
     let names: Vec<String> = bone.segments.iter().map(|segment| segment.name.clone()).collect();
     volume.node_sets = classes.node_sets(&names);
+    warnings.extend(names.iter().filter_map(|name| unmeshed(name, &volume)));
     volume.node_sets.insert("skin".to_owned(), skin);
     let skin_regions = face.regions.keys().cloned().collect();
     let sets = face.regions.into_iter().map(|(name, nodes)| (format!("skin_{name}"), nodes));
     volume.node_sets.extend(sets);
     let landmarks = face.landmarks;
     Ok(Anatomy { volume, meshing: report, bone, classes, bones, landmarks, skin_regions, warnings })
+}
+
+/// Cuts at which nothing is parted: planes beside the bone, or between bones that do not touch.
+fn missed(bone: &Labelled, osteotomy: &Osteotomy) -> Vec<Warning> {
+    let cuts = osteotomy.cuts().iter().enumerate();
+    let missed = cuts.filter(|(number, _)| !bone.contacts.iter().any(|c| c.cut == Some(*number)));
+    let warning = |(_, cut): (usize, &Cut)| {
+        let detail =
+            format!("cut `{}` meets no bone of a segment: is it where it should be?", cut.name);
+        Warning::new("cut-meets-no-bone", detail)
+    };
+    missed.map(warning).collect()
+}
+
+/// A segment that no node of the mesh lies on.
+fn unmeshed(name: &str, volume: &VolumeMesh) -> Option<Warning> {
+    let has_nodes = volume.node_sets.get(name).is_some_and(|nodes| !nodes.is_empty());
+    let detail = format!("no node of the mesh lies on segment `{name}`: plans cannot move it");
+    (!has_nodes).then(|| Warning::new("segment-without-nodes", detail))
 }
 
 /// Segments that touch other bone where nothing is cut, as teeth that meet do.
@@ -129,7 +186,12 @@ fn touching(bone: &Labelled) -> Vec<Warning> {
     contacts.map(warning).collect()
 }
 
-fn classes(tissue: &TissueMesh, bone: &Labelled, rules: &AnatomyRules) -> NodeClasses {
+fn classes(
+    tissue: &TissueMesh,
+    bone: &Labelled,
+    teeth: Option<&Teeth>,
+    rules: &AnatomyRules,
+) -> NodeClasses {
     // Where boundaries meet, bone holds.
     let order = [Boundary::Bone, Boundary::Cut, Boundary::Skin, Boundary::Airway];
     let first = |set: &crate::meshing::BoundarySet| {
@@ -139,7 +201,7 @@ fn classes(tissue: &TissueMesh, bone: &Labelled, rules: &AnatomyRules) -> NodeCl
     let reach = BEHIND * bone.labels.placement().steps.iter().sum::<Vector>().norm();
     let contact = BoneContact {
         behind: &|place, normal| bone.labels.nearest(place, normal, reach),
-        slides: &|_| false,
+        slides: &|place| teeth.is_some_and(|teeth| teeth.near(place)),
     };
     let class_rules = ClassRules {
         // Any two segments may be moved differently by some plan.

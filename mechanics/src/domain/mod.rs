@@ -5,6 +5,7 @@
 
 mod airway_map;
 pub mod assessment;
+mod bone_depths;
 mod compartments;
 mod cut_ends;
 mod facets;
@@ -14,17 +15,21 @@ pub mod limit;
 pub mod mending;
 mod nearest_boundary;
 mod root;
+mod shell;
 pub mod surface;
+pub mod surface_error;
 mod thickness;
 mod triangle;
 mod triangle_tree;
 mod winding_cells;
 
 pub use assessment::Assessment;
+pub use bone_depths::BoneDepths;
 pub use image::{ImageDomain, ImageDomainError, ImageOptions};
 pub use limit::{Ball, Limit, LimitError, Limits};
 pub use mending::Mending;
-pub use surface::{SurfaceDomain, SurfaceDomainError};
+pub use surface::SurfaceDomain;
+pub use surface_error::{SurfaceDomainError, SurfaceName};
 
 use crate::mesh::Vector;
 

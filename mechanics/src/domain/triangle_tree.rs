@@ -86,8 +86,8 @@ impl Bounds {
         one(0) * one(0) + one(1) * one(1) + one(2) * one(2)
     }
 
-    /// Whether the ray part of `start + t * way`, t in [0, 1], meets the box; `inverse` is 1 / way.
-    fn meets(&self, start: &Vector, inverse: &Vector) -> bool {
+    /// Whether any of a segment lies in the box.
+    fn meets(&self, Segment { start, inverse, .. }: &Segment) -> bool {
         let (mut from, mut to) = (0.0f64, 1.0f64);
         for axis in 0..3 {
             let one = (self.low[axis] - start[axis]) * inverse[axis];
@@ -283,53 +283,74 @@ impl TriangleTree {
     /// By how much more the surface goes around the end of a segment than around its start, as far as triangles on the way
     /// tell; `None` where that is not certain.
     pub(super) fn jump(&self, start: &Vector, end: &Vector) -> Option<f64> {
-        let way = end - start;
-        let inverse = way.map(|x| 1.0 / x);
+        let segment = Segment::new(start, end);
         let mut jump = 0.0;
-        let mut stack = Stack::new(self.nodes.len());
-        while let Some(number) = stack.pop() {
-            let node = &self.nodes[number];
-            if !node.bounds.meets(start, &inverse) {
-                continue;
-            }
-            if node.second != 0 {
-                stack.push(node.second as usize);
-                stack.push(number + 1);
-                continue;
-            }
-            for facet in
-                self.leaf(node).iter().filter(|facet| facet.bounds().meets(start, &inverse))
-            {
-                match facet.corners.passage(start, &way) {
-                    Passage::Beside => {}
-                    Passage::Through(more) => jump += more,
-                    Passage::Doubtful => return None,
-                }
+        for facet in self.along(segment) {
+            match facet.corners.passage(start, &segment.way) {
+                Passage::Beside => {}
+                Passage::Through(more) => jump += more,
+                Passage::Doubtful => return None,
             }
         }
         Some(jump)
     }
 
-    /// Adds where a segment meets triangles.
-    pub(super) fn hits(&self, start: &Vector, end: &Vector, found: &mut Vec<Hit>) {
+    /// Where a segment meets triangles.
+    pub(super) fn hits(&self, start: &Vector, end: &Vector) -> impl Iterator<Item = Hit> {
+        let segment = Segment::new(start, end);
+        self.along(segment).filter_map(move |facet| {
+            let part = facet.corners.hit(&segment.start, &segment.way)?;
+            Some(Hit { part, number: facet.number })
+        })
+    }
+
+    /// The facets whose boxes a segment meets.
+    fn along(&self, segment: Segment) -> impl Iterator<Item = &Facet> {
+        let stack = Stack::new(self.nodes.len());
+        let leaves = LeavesAlong { tree: self, segment, stack };
+        leaves.flatten().filter(move |facet| facet.bounds().meets(&segment))
+    }
+}
+
+/// A way from a start, all of it.
+#[derive(Clone, Copy)]
+struct Segment {
+    start: Vector,
+    way: Vector,
+    /// 1 / way.
+    inverse: Vector,
+}
+
+impl Segment {
+    fn new(start: &Vector, end: &Vector) -> Segment {
         let way = end - start;
-        let inverse = way.map(|x| 1.0 / x);
-        let mut stack = Stack::new(self.nodes.len());
-        while let Some(number) = stack.pop() {
-            let node = &self.nodes[number];
-            if !node.bounds.meets(start, &inverse) {
+        Segment { start: *start, way, inverse: way.map(|x| 1.0 / x) }
+    }
+}
+
+/// The leaves whose boxes a segment meets.
+struct LeavesAlong<'a> {
+    tree: &'a TriangleTree,
+    segment: Segment,
+    stack: Stack,
+}
+
+impl<'a> Iterator for LeavesAlong<'a> {
+    type Item = &'a [Facet];
+
+    fn next(&mut self) -> Option<&'a [Facet]> {
+        while let Some(number) = self.stack.pop() {
+            let node = &self.tree.nodes[number];
+            if !node.bounds.meets(&self.segment) {
                 continue;
             }
-            if node.second != 0 {
-                stack.push(node.second as usize);
-                stack.push(number + 1);
-                continue;
+            if node.second == 0 {
+                return Some(self.tree.leaf(node));
             }
-            for facet in self.leaf(node) {
-                let part = facet.corners.hit(start, &way);
-                found.extend(part.map(|part| Hit { part, number: facet.number }));
-            }
+            self.stack.push(node.second as usize);
+            self.stack.push(number + 1);
         }
+        None
     }
 }
 

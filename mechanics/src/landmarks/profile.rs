@@ -4,6 +4,8 @@
 //! subnasale and forward to the pronasale. Turns by less than 1.5 mm do not count. Closed lips may turn once between
 //! themselves, at the stomion.
 
+use std::ops::RangeInclusive;
+
 use super::mid_plane::MidPlane;
 use crate::mesh::{TriangleSurface, Vector};
 
@@ -11,6 +13,10 @@ use crate::mesh::{TriangleSurface, Vector};
 const STEP: f64 = 1.0;
 /// A profile that turns back by less has not turned, in mm.
 const LEAST_TURN: f64 = 1.5;
+/// What lies farther behind the foremost point is no face but a neck, or the back of a head whose front has a gap, in mm.
+const FRONT: f64 = 90.0;
+/// Landmarks have the skin between them, but for so much of it, in mm.
+const LARGEST_GAP: f64 = 6.0;
 /// The tip of a nose is no higher above its base, in mm.
 const HIGHEST_TIP: f64 = 30.0;
 
@@ -28,6 +34,8 @@ pub enum ProfileError {
         "the foremost point lies {above_mm:.0} mm above the base of the nose, 30 at most are a nose: is the face covered?"
     )]
     NoNose { above_mm: f64 },
+    #[error("the skin has a gap of {mm:.0} mm on the mid-plane of the face")]
+    Gap { mm: f64 },
 }
 
 /// How far in front the skin is at heights of its mid-plane, from below.
@@ -77,7 +85,8 @@ impl Profile {
                 foremost[number].advance = foremost[number].advance.max(advance);
             }
         }
-        foremost.retain(|point| point.advance.is_finite());
+        let most = foremost.iter().map(|point| point.advance).fold(f64::NEG_INFINITY, f64::max);
+        foremost.retain(|point| point.advance >= most - FRONT);
         Profile { points: foremost }
     }
 
@@ -101,6 +110,7 @@ impl Profile {
                 if above_mm > HIGHEST_TIP {
                     return Err(ProfileError::NoNose { above_mm });
                 }
+                self.check_gaps(pogonion.height..=pronasale.height)?;
                 Ok(ProfileLandmarks { pogonion, sublabiale, subnasale, pronasale })
             }
             _ => {
@@ -108,6 +118,20 @@ impl Profile {
                 Err(ProfileError::NoFace { forward, back })
             }
         }
+    }
+}
+
+impl Profile {
+    /// Between these heights the profile is whole.
+    fn check_gaps(&self, heights: RangeInclusive<f64>) -> Result<(), ProfileError> {
+        let inside: Vec<f64> = self
+            .points
+            .iter()
+            .map(|point| point.height)
+            .filter(|height| heights.contains(height))
+            .collect();
+        let mm = inside.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max);
+        if mm > LARGEST_GAP { Err(ProfileError::Gap { mm }) } else { Ok(()) }
     }
 }
 

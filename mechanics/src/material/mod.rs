@@ -2,6 +2,7 @@
 
 pub mod elastic_tensor;
 mod error;
+pub mod hyperelastic;
 mod isotropic;
 mod linear_elastic;
 pub mod mixture;

@@ -1,28 +1,37 @@
 //! The scale of a size field at which a body has about so many tetrahedra.
+//!
+//! The octree of a scale takes a small part of the time that its mesh takes, and its leaves tell how many tetrahedra come of
+//! it. The scale is found by the secant rule on the logarithms of scale and number.
 
 use super::error::MeshingError;
-use super::refine::PER_CUBE;
+use super::grid::Grid;
+use super::octree::{Leaf, Leaves};
+use super::refine::{PER_CUBE, Refinement};
 use super::settings::MeshingSettings;
 use super::size::SizeField;
 use super::watch::Watch;
 use crate::domain::{Coverage, Domain};
-use crate::mesh::Vector;
 
-/// Cubes along the longest axis of the body that are looked at.
-const CUBES: f64 = 40.0;
-/// Half the diagonal of a cube of edge 1.
-const HALF_DIAGONAL: f64 = 0.866_025_403_784_438_7;
-/// Halvings of the interval in which the scale lies.
-const HALVINGS: usize = 40;
+/// The finest cells of the first scale along the longest side of the body.
+const FIRST: f64 = 32.0;
+/// A number so near to the target, as a logarithm, is met.
+const NEAR: f64 = 0.03;
+const MOST_ROUNDS: usize = 10;
+/// By which power of the scale the number falls: 3 for cells all through a body, 2 for cells along its boundary.
+const SLOPES: [f64; 2] = [2.0, 3.2];
+const FIRST_SLOPE: f64 = 2.7;
 /// Tetrahedra for each square of the lattice's edge on the boundary, beyond those of the volume: 1.63 to 1.9 on balls.
 const PER_SQUARE: f64 = 1.7;
+/// A plane at any angle shows so much of its area along the three axes.
+const SHOWN: f64 = 1.5;
+/// Tetrahedra at a face against four smaller leaves, beyond the twelve that each leaf is worth.
+const AT_FINER: f64 = 6.0;
 
-/// A cube with tissue in its centre.
-struct Sample {
-    centre: Vector,
-    /// Its faces against cubes without.
-    bare: usize,
-    thickness: f64,
+/// A scale of the size field, and how many tetrahedra it gives; both as logarithms, the number over the target.
+#[derive(Clone, Copy)]
+struct Trial {
+    scale: f64,
+    number: f64,
 }
 
 /// The size field of the settings, scaled to their target if there is one.
@@ -32,85 +41,105 @@ pub(super) fn size_field(
     watch: &Watch,
 ) -> Result<SizeField, MeshingError> {
     let Some(target) = settings.target else { return Ok(settings.size.clone()) };
-    let (low, high) = domain.bounds();
-    let edge = (high - low).max() / CUBES;
-    let samples = samples(domain, settings, edge, watch)?;
-    if samples.is_empty() {
-        return Err(MeshingError::Empty { low, high, size: edge });
-    }
-    let count = |scale: f64| -> f64 {
-        let size = settings.size.scaled(scale);
-        samples.iter().map(|sample| tetrahedra(&size, sample, edge)).sum()
-    };
-    let [mut few, mut many] = [1e6, 1e-6];
-    for _ in 0..HALVINGS {
-        let middle = f64::sqrt(few * many);
-        if count(middle) > target as f64 { many = middle } else { few = middle }
-    }
-    Ok(settings.size.scaled(few))
+    let search = Search { domain, size: &settings.size, target, watch };
+    let found = search.scale()?;
+    Ok(settings.size.scaled(found.exp()))
 }
 
-fn samples(
-    domain: &dyn Domain,
-    settings: &MeshingSettings,
-    edge: f64,
-    watch: &Watch,
-) -> Result<Vec<Sample>, MeshingError> {
-    let (low, high) = domain.bounds();
-    let counts =
-        <[usize; 3]>::from((high - low).map(|extent| (extent / edge).ceil().max(1.0) as usize));
-    let [nx, ny, nz] = counts;
-    let centre = |number: usize| {
-        let at = [number % nx, number / nx % ny, number / (nx * ny)];
-        low + Vector::from(at.map(|x| x as f64 + 0.5)) * edge
-    };
-    let numbers: Vec<usize> = (0..nx * ny * nz).collect();
-    let tissue = watch.map(&numbers, |&number| holds(domain, &centre(number), edge))?;
-    let steps = [1, nx, nx * ny];
-    let bare = |number: usize| -> usize {
-        let at = [number % nx, number / nx % ny, number / (nx * ny)];
-        let low_sides = (0..3).filter(|&axis| at[axis] == 0 || !tissue[number - steps[axis]]);
-        let high_sides =
-            (0..3).filter(|&axis| at[axis] + 1 == counts[axis] || !tissue[number + steps[axis]]);
-        low_sides.count() + high_sides.count()
-    };
-    let held: Vec<usize> = numbers.into_iter().filter(|&number| tissue[number]).collect();
-    watch.map(&held, |&number| {
-        let centre = centre(number);
-        let bound = settings.size.thickness.is_some();
-        let thickness = if bound { domain.thickness(&centre) } else { f64::INFINITY };
-        Sample { centre, bare: bare(number), thickness }
-    })
+struct Search<'a> {
+    domain: &'a dyn Domain,
+    size: &'a SizeField,
+    target: usize,
+    watch: &'a Watch<'a>,
 }
 
-fn holds(domain: &dyn Domain, centre: &Vector, edge: f64) -> bool {
-    match domain.coverage(centre, edge * HALF_DIAGONAL) {
-        Coverage::Inside => true,
-        Coverage::Outside => false,
-        Coverage::Mixed => domain.value(centre) > 0.0,
+impl Search<'_> {
+    fn longest(&self) -> f64 {
+        let (low, high) = self.domain.bounds();
+        (high - low).max()
+    }
+
+    fn scale(&self) -> Result<f64, MeshingError> {
+        let coarsest = (self.longest() / self.size.finest).ln();
+        let mut last = self.first(coarsest)?;
+        let (mut best, mut slope) = (last, FIRST_SLOPE);
+        for _ in 0..MOST_ROUNDS {
+            let scale = (last.scale + last.number / slope).min(coarsest);
+            if last.number.abs() < NEAR || scale == last.scale {
+                break;
+            }
+            let next = self.trial(scale)?;
+            let found = (last.number - next.number) / (next.scale - last.scale);
+            slope = found.clamp(SLOPES[0], SLOPES[1]);
+            last = next;
+            best = if next.number.abs() < best.number.abs() { next } else { best };
+        }
+        Ok(best.scale)
+    }
+
+    /// The coarsest scale, from some cells along the longest side on, at which the body has tissue.
+    fn first(&self, coarsest: f64) -> Result<Trial, MeshingError> {
+        let mut scale = coarsest - FIRST.ln();
+        for _ in 0..4 {
+            let trial = self.trial(scale)?;
+            if trial.number > f64::NEG_INFINITY {
+                return Ok(trial);
+            }
+            scale -= std::f64::consts::LN_2;
+        }
+        let (low, high) = self.domain.bounds();
+        Err(MeshingError::Empty { low, high, size: self.size.finest * scale.exp() })
+    }
+
+    fn trial(&self, scale: f64) -> Result<Trial, MeshingError> {
+        let (low, high) = self.domain.bounds();
+        let size = self.size.scaled(scale.exp()).bounded(self.longest());
+        // Far more than the target would be a scale gone wrong; it is not followed to its end.
+        let most = self.target.saturating_mul(100).max(10_000_000);
+        let refinement = Refinement { domain: self.domain, size: &size, most };
+        let leaves = refinement.leaves(Grid::new(&low, &high, &size)?, self.watch)?;
+        let number = (self.tetrahedra(&leaves)? / self.target as f64).ln();
+        Ok(Trial { scale, number })
+    }
+
+    /// About how many tetrahedra come of an octree.
+    fn tetrahedra(&self, leaves: &Leaves) -> Result<f64, MeshingError> {
+        let inside = self.watch.map(&leaves.list, |leaf| self.is_inside(leaves, leaf))?;
+        let numbers: Vec<u32> = (0..leaves.list.len() as u32).collect();
+        let of_leaves = self.watch.map(&numbers, |&leaf| of_leaf(leaves, &inside, leaf))?;
+        Ok(of_leaves.into_iter().sum())
+    }
+
+    /// The middle of a leaf lies in tissue.
+    fn is_inside(&self, leaves: &Leaves, leaf: &Leaf) -> bool {
+        match leaf.held {
+            Coverage::Inside => true,
+            Coverage::Outside => false,
+            Coverage::Mixed => {
+                let middle = leaf.corner.map(|coordinate| coordinate + leaf.size / 2);
+                self.domain.value(&leaves.tree.grid.position(middle)) > 0.0
+            }
+        }
     }
 }
 
-/// What a cube of tissue gives, with cells of a power of two times the finest.
-fn tetrahedra(size: &SizeField, sample: &Sample, edge: f64) -> f64 {
-    let mut cell = size.finest * (size.coarsest / size.finest).log2().floor().exp2();
-    while cell > size.finest * 1.5 && cell > wanted(size, sample, cell) {
-        cell /= 2.0;
+fn of_leaf(leaves: &Leaves, inside: &[bool], number: u32) -> f64 {
+    if !inside[number as usize] {
+        return 0.0;
     }
-    let cells = edge / cell;
-    // A plane at any angle shows 3 / 2 of its area along the three axes.
-    let squares = sample.bare as f64 / 1.5 * cells.powi(2);
-    PER_CUBE * cells.powi(3) + PER_SQUARE * squares
-}
-
-/// The size asked for at a cell, as the octree does.
-fn wanted(size: &SizeField, sample: &Sample, cell: f64) -> f64 {
-    let mut wanted = size.at(&sample.centre, cell * HALF_DIAGONAL);
-    if let Some(rule) = size.thickness {
-        wanted = wanted.min(rule.size(sample.thickness));
+    let leaf = &leaves.list[number as usize];
+    let mut tetrahedra = PER_CUBE;
+    for axis in 0..3 {
+        for high in [false, true] {
+            let mut beyond = leaf.corner;
+            beyond[axis] =
+                if high { beyond[axis] + leaf.size } else { beyond[axis].wrapping_sub(1) };
+            let other = leaves.at(beyond);
+            let finer = other.is_some_and(|other| leaves.list[other as usize].level > leaf.level);
+            let bare = !other.is_some_and(|other| inside[other as usize]);
+            tetrahedra += if finer { AT_FINER } else { 0.0 };
+            tetrahedra += if bare { PER_SQUARE / SHOWN } else { 0.0 };
+        }
     }
-    if let (Some(at_boundary), true) = (size.at_boundary, sample.bare > 0) {
-        wanted = wanted.min(at_boundary);
-    }
-    wanted
+    tetrahedra
 }

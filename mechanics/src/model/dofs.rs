@@ -151,8 +151,8 @@ pub struct Numbering {
     pub layout: Arc<Layout>,
     pub pattern: Arc<Pattern>,
     /// Places of the nodes of each cell, cells in the order of the layout.
-    pub(super) cliques: Cliques,
-    pub(super) around: CliquesOfRow,
+    pub cliques: Cliques,
+    pub around: CliquesOfRow,
 }
 
 impl Numbering {

@@ -34,6 +34,17 @@ pub enum ModelError {
     StepAboveLimit { step_s: f64, limit_s: f64 },
     #[error("no face of the tissue lies on bone: a warp has nothing to follow")]
     NoBone,
+    /// Of tissue at finite strain.
+    #[error(
+        "no rest was found in which every cell keeps its orientation: after {steps} steps {:.1} % of the movement is made, \
+         and the most pressed cell has {:.2} % of its volume", 100.0 * made, 100.0 * least_det_f
+    )]
+    Standstill { made: f64, steps: usize, least_det_f: f64 },
+    /// Before anything is solved.
+    #[error(
+        "cell {cell} is turned inside out by its held nodes alone, det F {det_f:.3}: these movements fold the tissue between bones"
+    )]
+    Folded { cell: usize, det_f: f64 },
 }
 
 impl ModelError {
@@ -44,6 +55,8 @@ impl ModelError {
             ModelError::Solver(error) => error.code(),
             ModelError::StepAboveLimit { .. } => "step-above-limit",
             ModelError::NoBone => "no-bone",
+            ModelError::Standstill { .. } => "no-equilibrium",
+            ModelError::Folded { .. } => "tissue-folded",
         }
     }
 }

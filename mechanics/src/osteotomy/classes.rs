@@ -177,6 +177,11 @@ fn area(mesh: &VolumeMesh, corners: [u32; 3]) -> Vector {
     (b - a).cross(&(c - a)) / 2.0
 }
 
+/// The node set of what slides on a segment.
+pub fn sliding_set(segment: &str) -> String {
+    format!("sliding_{segment}")
+}
+
 impl NodeClasses {
     /// Node sets: `NAME` of each segment, `fixed`, and `sliding_NAME` or `sliding_rest`; those that hold a node.
     pub fn node_sets(&self, segments: &[String]) -> BTreeMap<String, Vec<u32>> {
@@ -185,7 +190,7 @@ impl NodeClasses {
             let name = match role {
                 Role::Joined(segment) => segments[*segment].clone(),
                 Role::Fixed => "fixed".to_owned(),
-                Role::Sliding(Some(segment)) => format!("sliding_{}", segments[*segment]),
+                Role::Sliding(Some(segment)) => sliding_set(&segments[*segment]),
                 Role::Sliding(None) => "sliding_rest".to_owned(),
                 Role::Free => continue,
             };

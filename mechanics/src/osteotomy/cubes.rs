@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use crate::mesh::Vector;
 
 /// Numbered points in cubes as wide as one searches.
+#[derive(Clone, Debug, PartialEq)]
 pub(super) struct Cubes {
     width: f64,
     numbers: HashMap<[i64; 3], Vec<u32>>,

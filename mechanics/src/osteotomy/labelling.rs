@@ -47,13 +47,44 @@ pub fn label(bone: &BoneImage<'_>, osteotomy: &Osteotomy) -> Result<Labelled, La
     let markers = markers(osteotomy, bone, &grid, &labels)?;
     flood(osteotomy, &grid, |voxel| bone.value(voxel), &markers, &mut labels);
     saw(osteotomy, &grid, &mut labels);
-    let segments = (0..osteotomy.segments().len())
-        .map(|segment| found(osteotomy, bone, &grid, &labels, segment))
-        .collect();
-    let loose = set_loose(osteotomy, bone, &grid, &mut labels);
-    let contacts = contacts(osteotomy, &grid, &labels);
-    let bridges = bridges(osteotomy, &grid, &labels);
-    Ok(Labelled { labels, segments, contacts, loose, bridges })
+    Ok(Labelled::new(osteotomy, bone, &grid, labels))
+}
+
+/// Takes bone as it is: `segment_of` gives for each voxel of bone the number of its segment, all of it one piece or not.
+pub fn label_given(
+    bone: &BoneImage<'_>,
+    osteotomy: &Osteotomy,
+    segment_of: impl Fn(usize) -> usize,
+) -> Result<Labelled, LabelError> {
+    let grid = Grid::new(bone.image);
+    let is_bone = |voxel: usize| bone.value(voxel) > bone.threshold;
+    let mut labels = BoneLabels::new(bone.image.size(), *bone.image.placement(), is_bone);
+    for voxel in (0..grid.len()).filter(|&voxel| is_bone(voxel)) {
+        labels.set(voxel, Owner::Segment(segment_of(voxel)));
+    }
+    let labelled = Labelled::new(osteotomy, bone, &grid, labels);
+    match labelled.segments.iter().find(|segment| segment.voxels == 0) {
+        Some(missing) => Err(LabelError::NoBone { segment: missing.name.clone() }),
+        None => Ok(labelled),
+    }
+}
+
+impl Labelled {
+    /// What is told of labelled bone.
+    fn new(
+        osteotomy: &Osteotomy,
+        bone: &BoneImage<'_>,
+        grid: &Grid<'_>,
+        mut labels: BoneLabels,
+    ) -> Labelled {
+        let segments = (0..osteotomy.segments().len())
+            .map(|segment| found(osteotomy, bone, grid, &labels, segment))
+            .collect();
+        let loose = set_loose(osteotomy, bone, grid, &mut labels);
+        let contacts = contacts(osteotomy, grid, &labels);
+        let bridges = bridges(osteotomy, grid, &labels);
+        Labelled { labels, segments, contacts, loose, bridges }
+    }
 }
 
 /// What lies within the width of a cut of a segment, and hangs together with it there, is sawdust.

@@ -104,7 +104,8 @@ impl Osteotomy {
 impl SegmentRule {
     fn check(&self, cuts: &[Cut]) -> Result<(), RuleError> {
         let segment = || self.name.clone();
-        if RESERVED.iter().any(|name| *name == self.name || self.name.starts_with("sliding_")) {
+        let is_part = ["sliding_", "skin_"].iter().any(|first| self.name.starts_with(first));
+        if is_part || RESERVED.contains(&self.name.as_str()) {
             return Err(RuleError::Reserved { name: segment() });
         }
         let mut named = BTreeSet::new();

@@ -9,7 +9,12 @@ use crate::mesh::Vector;
 /// Enamel in Hounsfield units. Dense bone of a jaw reaches 1700 on the CT of `examples/head_ct`.
 pub const ENAMEL_HU: f64 = 1800.0;
 
+/// Mucosa lies this near to the middle of a voxel of enamel, in mm: half a voxel of a coarse scan, and the width of attached
+/// gingiva, 1 to 9 mm.
+pub const MUCOSA_MM: f64 = 4.0;
+
 /// Voxels of teeth, and how far around them tissue is mucosa.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Teeth {
     centres: Vec<Vector>,
     reach_mm: f64,

@@ -13,6 +13,7 @@ listed! {
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     pub enum MethodKind {
         FemLinear,
+        FemNonlinear,
         MassTensor,
         MassTensorTransverse,
         MassSpring,
@@ -27,6 +28,8 @@ pub enum Method {
     /// Linear finite elements at small strain.
     #[default]
     FemLinear,
+    /// Hyperelastic finite elements at finite strain.
+    FemNonlinear,
     /// Springs along the edges of tetrahedra.
     MassSpring(MassSpringSettings),
     /// The energy of plain linear tetrahedra, brought to rest as its settings say.
@@ -92,6 +95,21 @@ const FEM_LINEAR: MethodProperties = MethodProperties {
     knows_fibres: true,
     expects_fibres: false,
     knows_membrane: true,
+    knows_loads: true,
+};
+
+const FEM_NONLINEAR: MethodProperties = MethodProperties {
+    name: "fem_nonlinear",
+    title: "the nonlinear finite element method",
+    unknowns: Unknowns::Elements,
+    elements: &[ElementChoice::Auto, ElementChoice::Plain],
+    usual_element: ElementChoice::Plain,
+    cells: TETRAHEDRA,
+    is_linear: false,
+    is_small_strain: false,
+    knows_fibres: false,
+    expects_fibres: false,
+    knows_membrane: false,
     knows_loads: true,
 };
 
@@ -176,6 +194,7 @@ impl MethodKind {
     pub fn properties(self) -> &'static MethodProperties {
         match self {
             MethodKind::FemLinear => &FEM_LINEAR,
+            MethodKind::FemNonlinear => &FEM_NONLINEAR,
             MethodKind::MassTensor => &MASS_TENSOR,
             MethodKind::MassTensorTransverse => &MASS_TENSOR_TRANSVERSE,
             MethodKind::MassSpring => &MASS_SPRING,
@@ -194,6 +213,7 @@ impl Method {
     pub fn kind(&self) -> MethodKind {
         match self {
             Method::FemLinear => MethodKind::FemLinear,
+            Method::FemNonlinear => MethodKind::FemNonlinear,
             Method::MassSpring(_) => MethodKind::MassSpring,
             Method::MassTensor(_) => MethodKind::MassTensor,
             Method::MassTensorTransverse => MethodKind::MassTensorTransverse,
@@ -210,6 +230,7 @@ impl Method {
                 Stiffness::Galerkin => None,
             },
             Method::FemLinear
+            | Method::FemNonlinear
             | Method::MassSpring(_)
             | Method::MassTensor(_)
             | Method::MassTensorTransverse

@@ -10,13 +10,15 @@ use super::method::{Method, Unknowns};
 use super::skin::Skin;
 use super::stated::StatedCondition;
 use crate::boundary::{Conditions, ConnectedPart, NodeClass};
-use crate::material::LinearElastic;
+use crate::material::hyperelastic::{Law, NeoHookean};
+use crate::material::{ElasticTensor, LinearElastic};
 use crate::mesh::volume::BoundaryFace;
 use crate::mesh::{CellShape, Vector, VolumeMesh, Warning};
 use crate::model::fem::assembly::Tissue;
 use crate::model::fem::cell_stiffness::Dilatation;
 use crate::model::fem::displacement::Problem;
 use crate::model::fem::edge_nodes::EdgeNodes;
+use crate::model::fem::finite_strain::FiniteStrain;
 use crate::model::fem::membrane::Membrane;
 use crate::model::fem::{displacement_pressure, mass_tensor, quadratic};
 use crate::model::mass_spring::POISSON_RATIO;
@@ -143,6 +145,7 @@ impl Scene {
                 let mut solved = self.solve_cases(&[self.load_case()], progress)?;
                 Ok(solved.remove(0))
             }
+            Method::FemNonlinear => self.solve_at_finite_strain(progress),
             Method::MassSpring(settings) => {
                 mass_spring::solve(&self.problem(), settings, &self.load_case(), progress)
             }
@@ -159,6 +162,24 @@ impl Scene {
                 Warped { mesh, conditions, movement: &movement, wanted_residual }.solve(warp)
             }
         }
+    }
+
+    /// Each material becomes the neo-Hookean one that agrees with it at rest.
+    fn solve_at_finite_strain(&self, progress: &dyn Progress) -> Result<Equilibrium, ModelError> {
+        let law = |material: &LinearElastic| {
+            let ElasticTensor { lambda, mu, .. } = material.tensor(&Vector::zeros());
+            Law::NeoHookean(NeoHookean { lambda, mu })
+        };
+        let laws: Vec<Law> = self.materials.iter().map(law).collect();
+        let Settings { relative_residual, memory_mb, .. } = self.settings;
+        let problem = FiniteStrain {
+            mesh: &self.mesh,
+            laws: &laws,
+            law_of_cell: &self.material_of_cell,
+            holds: &self.conditions.holds,
+            tolerance: Tolerance { relative_residual, memory_mb },
+        };
+        problem.solve(&self.load_case(), progress)
     }
 
     /// Tissue, holds and loads as models see them.
@@ -194,7 +215,10 @@ impl Scene {
         match &self.settings.method {
             Method::MassSpring(_) | Method::ThicknessWarp(_) => return Vec::new(),
             Method::VolumeSpline(spline) => return vec![spline.element()],
-            Method::FemLinear | Method::MassTensor(_) | Method::MassTensorTransverse => {}
+            Method::FemLinear
+            | Method::FemNonlinear
+            | Method::MassTensor(_)
+            | Method::MassTensorTransverse => {}
         }
         let dilatation = self.tissue().dilatation;
         [CellShape::Tet4, CellShape::Hex8, CellShape::Wedge6]

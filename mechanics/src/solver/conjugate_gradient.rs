@@ -52,6 +52,53 @@ fn solve_scaled(
     Ok(solutions)
 }
 
+/// A direction along which the quadratic form x.K x / 2 - f.x falls, whether K is positive definite or not.
+pub struct Direction {
+    /// For each free row.
+    pub unknowns: Unknowns,
+    pub iterations: usize,
+    /// |f - K x| / |f|, recursive.
+    pub relative_residual: f64,
+    /// Whether K was positive definite along everything that was tried.
+    pub is_convex: bool,
+}
+
+/// When a direction is good enough.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Enough {
+    pub relative_residual: f64,
+    pub most_iterations: usize,
+}
+
+/// Iterates until the relative residual, a direction without positive curvature or the bound of iterations is met, and
+/// keeps what was found until then (Steihaug 1983). The hierarchy may be that of a matrix near by.
+pub fn direction(
+    system: &System,
+    multigrid: &Multigrid,
+    right_hand_side: &Unknowns,
+    enough: Enough,
+    progress: &dyn Progress,
+) -> Result<Direction, SolverError> {
+    let Enough { relative_residual, most_iterations } = enough;
+    let mut run = Run::<1>::new(system, multigrid, std::slice::from_ref(right_hand_side));
+    run.most_iterations = most_iterations;
+    run.r.copy_from_slice(&run.right_hand_side);
+    let is_convex = match run.iterate(relative_residual, progress) {
+        Ok(()) => true,
+        Err(SolverError::NotConverged { .. }) => run.iterations >= most_iterations,
+        Err(other) => return Err(other),
+    };
+    if run.iterations == 0 && !is_convex {
+        run.x.copy_from_slice(&run.p);
+    }
+    let [relative_residual] = run.relative_residuals();
+    let unknowns = column(&run.x, 0);
+    if unknowns.iter().flatten().any(|value| !value.is_finite()) {
+        return Err(SolverError::NotFinite);
+    }
+    Ok(Direction { unknowns, iterations: run.iterations, relative_residual, is_convex })
+}
+
 struct Run<'a, const N: usize> {
     system: &'a System,
     multigrid: &'a Multigrid,
@@ -65,6 +112,7 @@ struct Run<'a, const N: usize> {
     p: Vec<Lanes<f64, 3, N>>,
     product: Vec<Lanes<f64, 3, N>>,
     iterations: usize,
+    most_iterations: usize,
     /// Iterations of each right-hand side.
     own_iterations: [usize; N],
     /// The largest relative residual.
@@ -87,6 +135,7 @@ impl<'a, const N: usize> Run<'a, N> {
             product: zeros(),
             right_hand_side,
             iterations: 0,
+            most_iterations: MOST_ITERATIONS,
             own_iterations: [0; N],
             history: Vec::new(),
         }
@@ -150,7 +199,7 @@ impl<'a, const N: usize> Run<'a, N> {
                 (smallest, smallest_at) = (residual, self.iterations);
             }
             let stalled = self.iterations - smallest_at > PATIENCE;
-            if !residual.is_finite() || stalled || self.iterations >= MOST_ITERATIONS {
+            if !residual.is_finite() || stalled || self.iterations >= self.most_iterations {
                 return Err(self.not_converged(wanted));
             }
             let correction = self.multigrid.apply(&self.r, &mut self.workspace);

@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used)]
 
+mod anatomy;
 mod domain;
 mod format;
 mod golden;

@@ -2,6 +2,7 @@
 
 #![allow(dead_code, unused_macros, reason = "each target uses a part")]
 
+pub mod damage;
 pub mod domains;
 pub mod external;
 pub mod responses;

@@ -396,6 +396,11 @@ l 1 2
 /// A CT in LPS of a ball of soft tissue of radius 50 mm around (60, 60, 60), with a ball of bone of radius 30 mm around
 /// (60, 55, 60) in it; voxels of 4 mm, their values mixed where a boundary crosses them.
 pub fn ball_ct() -> Vec<u8> {
+    ball_ct_with(|_| None)
+}
+
+/// The same with other values at some places.
+pub fn ball_ct_with(other: impl Fn(mechanics::mesh::Vector) -> Option<i16>) -> Vec<u8> {
     use mechanics::image::{ImageVolume, Placement, Voxels};
     use mechanics::mesh::{Frame, Vector};
     let share = |depth: f64| (depth / 4.0 + 0.5).clamp(0.0, 1.0);
@@ -404,7 +409,7 @@ pub fn ball_ct() -> Vec<u8> {
         let at = Vector::from(index.map(|i| 4.0 * i as f64 + 2.0));
         let skin = share(50.0 - (at - Vector::repeat(60.0)).norm());
         let bone = share(30.0 - (at - Vector::new(60.0, 55.0, 60.0)).norm());
-        (-1000.0 + 1040.0 * skin + 1160.0 * bone) as i16
+        other(at).unwrap_or((-1000.0 + 1040.0 * skin + 1160.0 * bone) as i16)
     };
     let placement = Placement {
         origin: Vector::repeat(2.0),
@@ -413,4 +418,42 @@ pub fn ball_ct() -> Vec<u8> {
     let voxels = Voxels::I16((0..27_000).map(value).collect());
     let image = ImageVolume::new([30; 3], placement, voxels).unwrap();
     mechanics::format::nrrd::write(&image, Frame::Lps)
+}
+
+/// A ball in mm.
+#[derive(Clone, Copy)]
+pub struct SampleBall {
+    pub centre: [f64; 3],
+    pub radius: f64,
+}
+
+/// The balls of `ball_ct`.
+pub const SKIN_BALL: SampleBall = SampleBall { centre: [60.0; 3], radius: 50.0 };
+pub const BONE_BALL: SampleBall = SampleBall { centre: [60.0, 55.0, 60.0], radius: 30.0 };
+
+/// The surface of a ball as text STL, of 40 rings of 80 triangles or less, within .2 % of its radius.
+pub fn ball_stl(ball: SampleBall) -> Vec<u8> {
+    const RINGS: usize = 40;
+    let place = |ring: usize, step: usize| {
+        let angle = |part: usize| part as f64 * std::f64::consts::PI / RINGS as f64;
+        let ((sin, cos), (east, north)) = (angle(ring).sin_cos(), angle(2 * step).sin_cos());
+        let [x, y, z] = [sin * north, sin * east, cos];
+        let [a, b, c] = ball.centre;
+        let at = [a + ball.radius * x, b + ball.radius * y, c + ball.radius * z];
+        format!("vertex {:.6} {:.6} {:.6}\n", at[0], at[1], at[2])
+    };
+    let mut text = "solid ball\n".to_owned();
+    for (ring, step) in (0..RINGS).flat_map(|ring| (0..RINGS).map(move |step| (ring, step))) {
+        let next = (step + 1) % RINGS;
+        let corners = [(ring, step), (ring + 1, step), (ring + 1, next), (ring, next)];
+        let [a, b, c, d] = corners.map(|(ring, step)| place(ring, step));
+        // At the poles one of the two is a line.
+        for [p, q, r] in
+            [[&a, &b, &c], [&a, &c, &d]].into_iter().filter(|[p, q, r]| q != r && p != r)
+        {
+            text += &format!("facet normal 0 0 0\nouter loop\n{p}{q}{r}endloop\nendfacet\n");
+        }
+    }
+    text += "endsolid ball\n";
+    text.into_bytes()
 }

@@ -1,10 +1,13 @@
 //! The case that a mesh from a scan is made for.
 
 use crate::schema::CaseDocument;
-use crate::schema::case::document::{BoneDocument, LengthUnit, SegmentDocument};
+use crate::schema::case::document::{
+    BoneDocument, LengthUnit, NormalDocument, SegmentDocument, SlidingDocument,
+};
 use crate::schema::case::selection::SelectionDocument;
 use mechanics::anatomy::Anatomy;
 use mechanics::mesh::Frame;
+use mechanics::osteotomy::classes::sliding_set;
 use mechanics::osteotomy::labelling::FoundSegment;
 
 /// The file of the surface of a segment, by its number.
@@ -27,6 +30,14 @@ pub fn case_of(anatomy: &Anatomy, volume: &str, frame: Frame) -> CaseDocument {
     if has("fixed") {
         case.fixed = vec![SelectionDocument::node_set("fixed")];
     }
+    let slides = anatomy.bone.segments.iter().filter(|segment| has(&sliding_set(&segment.name)));
+    case.sliding = slides
+        .map(|segment| SlidingDocument {
+            nodes: SelectionDocument::node_set(&sliding_set(&segment.name)),
+            normal: NormalDocument::default(),
+            segment: Some(segment.name.clone()),
+        })
+        .collect();
     case.skin = has("skin").then(|| SelectionDocument::node_set("skin"));
     let part = |name: &String| (name.clone(), SelectionDocument::node_set(&format!("skin_{name}")));
     case.skin_regions = anatomy.skin_regions.iter().map(part).collect();

@@ -1,15 +1,19 @@
-//! Input of a meshing: its document with the scan, checked and converted.
+//! Input of a meshing: its document with the scan or the surfaces, checked and converted.
 
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
+use super::body::{Body, Surfaces};
 use crate::jobs::failure::JobError;
+use crate::jobs::fetch::{fetch, no_surface};
 use crate::jobs::source::{MeshSource, SourceError, StoredMesh, StoredShape};
+use crate::schema::case::meshed::MeshedCaseDocument;
+use crate::schema::meshing::surfaces::SurfacesDocument;
 use crate::schema::{ErrorCode, Faults, Limits, MeshingDocument, Pointer, Problem, hashes};
 use mechanics::anatomy::AnatomyRules;
 use mechanics::image::ImageVolume;
-use mechanics::mesh::Frame;
+use mechanics::mesh::{Frame, TriangleSurface, Vector};
 
 /// A meshing.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -19,59 +23,160 @@ pub struct MeshingInput {
     /// From acceptance to start.
     pub queue_s: Option<f64>,
     pub spec: MeshingDocument,
+    /// The stored case that waits for the mesh, if one does.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub case: Option<WaitingCase>,
+}
+
+/// A stored case that waits for its mesh.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct WaitingCase {
+    pub id: String,
+    pub document: MeshedCaseDocument,
 }
 
 /// A meshing whose documents are sound.
 pub struct PreparedMeshing {
-    pub scan: StoredMesh,
-    pub image: Arc<ImageVolume>,
+    /// The scan or the surfaces, each with its role.
+    pub meshes: Vec<(String, StoredMesh)>,
+    pub body: Body,
     pub rules: AnatomyRules,
     pub spec_hash: String,
     /// That of the mesh.
     pub frame: Frame,
 }
 
+/// The meshes of a document, and the frame that they are in.
+struct Fetched {
+    meshes: Vec<(String, StoredMesh)>,
+    body: Body,
+    frame: Frame,
+}
+
 impl MeshingInput {
-    /// Fetches the scan and converts the document; pointers start at `/spec`.
+    /// Fetches the scan or the surfaces and converts the document; pointers start at `/spec`.
     pub fn prepare(
         &self,
         sources: &dyn MeshSource,
         limits: &Limits,
     ) -> Result<PreparedMeshing, JobError> {
-        let scan = self.fetch(sources)?;
-        let StoredShape::Image(image) = &scan.shape else {
-            let detail = "this is a mesh, and the image of a scan is needed";
-            return Err(Problem::at(&place(), ErrorCode::WrongMesh, detail).into());
+        let Fetched { meshes, body, frame } = match (&self.spec.scan, &self.spec.surfaces) {
+            (Some(scan), None) => fetch_scan(scan, sources)?,
+            (None, Some(surfaces)) => self.fetch_surfaces(surfaces, sources)?,
+            (Some(_), Some(_)) | (None, None) => {
+                let detail = "exactly one of `scan` and `surfaces` has to be given";
+                return Err(Problem::at(&place(), ErrorCode::OneOf, detail).into());
+            }
         };
-        let (image, frame) = in_lps(image, scan.frame.unwrap_or_default());
         let mut faults = Faults::default();
         let rules = self.spec.to_rules(frame, limits, &mut faults);
         faults.into_result()?;
-        let spec_hash = hashes::meshing_hash(&self.spec, &scan.sha256);
-        Ok(PreparedMeshing { scan, image, frame, rules, spec_hash })
+        let content = |id: &str| {
+            let ids = self.spec.clone().mesh_ids();
+            let number = ids.iter().position(|other| other == id)?;
+            Some(meshes[number].1.sha256.clone())
+        };
+        let spec_hash = hashes::meshing_hash(&self.spec, &content, self.case_id());
+        Ok(PreparedMeshing { meshes, body, rules, spec_hash, frame })
     }
 
-    fn fetch(&self, sources: &dyn MeshSource) -> Result<StoredMesh, JobError> {
-        let id = &self.spec.scan;
-        sources.mesh(id).map_err(|error| match error {
-            SourceError::Unknown { .. } => {
-                let detail = format!("there is no image {id:?}");
-                Problem::at(&place(), ErrorCode::UnknownMesh, detail).into()
-            }
-            SourceError::Refused { code, detail, .. } => Problem::at(&place(), code, detail).into(),
-            other @ SourceError::Unreadable { .. } => JobError::Source(other),
-        })
+    fn case_id(&self) -> Option<&str> {
+        self.case.as_ref().map(|case| case.id.as_str())
+    }
+
+    fn fetch_surfaces(
+        &self,
+        document: &SurfacesDocument,
+        sources: &dyn MeshSource,
+    ) -> Result<Fetched, JobError> {
+        let at = place().key("surfaces");
+        let places =
+            std::iter::once((at.key("skin"), &document.skin)).chain(document.bones_at(&at));
+        let places: Vec<(Pointer, &String)> = places.collect();
+        let fetched = places.iter().map(|(at, id)| fetch(sources, id, at));
+        let fetched: Vec<StoredMesh> = fetched.collect::<Result<_, _>>()?;
+        let stated = self.spec.frame.map(Frame::from);
+        let frame = one_frame(&places, &fetched)?.or(stated).unwrap_or_default();
+        let in_lps = places.iter().zip(&fetched).map(|((at, _), mesh)| {
+            let surface = mesh.surface_in_mm().ok_or_else(|| no_surface(at))?;
+            Ok(surface_in_lps(surface, frame))
+        });
+        let mut surfaces = in_lps.collect::<Result<Vec<_>, JobError>>()?.into_iter();
+        let skin = surfaces.next().unwrap_or_default();
+        let bones = surfaces.collect();
+        let body = Body::Surfaces(Surfaces { skin, bones, document: document.clone() });
+        let roles = std::iter::once("skin".to_owned()).chain(roles_of_bones(document));
+        Ok(Fetched { meshes: roles.zip(fetched).collect(), body, frame: lps_if_known(frame) })
     }
 }
 
 fn place() -> Pointer {
-    Pointer::root().key("spec").key("scan")
+    Pointer::root().key("spec")
 }
 
-/// The same in LPS where its frame is known: 3D Slicer takes a file of a volume mesh for LPS.
-fn in_lps(image: &Arc<ImageVolume>, frame: Frame) -> (Arc<ImageVolume>, Frame) {
+fn fetch_scan(id: &str, sources: &dyn MeshSource) -> Result<Fetched, JobError> {
+    let at = place().key("scan");
+    let scan = sources.mesh(id).map_err(|error| match error {
+        SourceError::Unknown { .. } => {
+            let detail = format!("there is no image {id:?}");
+            Problem::at(&at, ErrorCode::UnknownMesh, detail).into()
+        }
+        SourceError::Refused { code, detail, .. } => Problem::at(&at, code, detail).into(),
+        other @ SourceError::Unreadable { .. } => JobError::Source(other),
+    })?;
+    let StoredShape::Image(image) = &scan.shape else {
+        let detail = "this is a mesh, and the image of a scan is needed";
+        return Err(Problem::at(&at, ErrorCode::WrongMesh, detail).into());
+    };
+    let frame = scan.frame.unwrap_or_default();
+    let body = Body::Scan(image_in_lps(image, frame));
+    Ok(Fetched { meshes: vec![("scan".to_owned(), scan)], body, frame: lps_if_known(frame) })
+}
+
+fn roles_of_bones(document: &SurfacesDocument) -> impl Iterator<Item = String> {
+    let whole = document.bone.iter().map(|_| "bone".to_owned());
+    whole.chain(document.bones.iter().map(|bone| format!("bone {}", bone.name.trim())))
+}
+
+/// The frame that marks in the files of surfaces name; two that differ are refused.
+fn one_frame(
+    places: &[(Pointer, &String)],
+    fetched: &[StoredMesh],
+) -> Result<Option<Frame>, JobError> {
+    let marked = places.iter().zip(fetched);
+    let mut marked = marked.filter_map(|((at, _), mesh)| Some((at, mesh.frame?)));
+    let Some((_, first)) = marked.next() else { return Ok(None) };
+    match marked.find(|(_, frame)| *frame != first) {
+        None => Ok(Some(first)),
+        Some((at, frame)) => {
+            let detail = format!("this surface is marked {frame}, one before it {first}");
+            Err(Problem::at(at, ErrorCode::FrameConflict, detail).into())
+        }
+    }
+}
+
+/// 3D Slicer takes a file of a volume mesh for LPS, so that all is turned to it that can be.
+fn lps_if_known(frame: Frame) -> Frame {
     match frame {
-        Frame::Ras => (Arc::new(image.turned(Frame::Ras, Frame::Lps)), Frame::Lps),
-        Frame::Lps | Frame::Unspecified => (image.clone(), frame),
+        Frame::Ras | Frame::Lps => Frame::Lps,
+        Frame::Unspecified => Frame::Unspecified,
+    }
+}
+
+fn image_in_lps(image: &Arc<ImageVolume>, frame: Frame) -> Arc<ImageVolume> {
+    match frame {
+        Frame::Ras => Arc::new(image.turned(Frame::Ras, Frame::Lps)),
+        Frame::Lps | Frame::Unspecified => image.clone(),
+    }
+}
+
+fn surface_in_lps(surface: Arc<TriangleSurface>, frame: Frame) -> Arc<TriangleSurface> {
+    match frame {
+        Frame::Ras => {
+            let mut turned = (*surface).clone();
+            turned.points.iter_mut().for_each(|x| *x = Vector::new(-x.x, -x.y, x.z));
+            Arc::new(turned)
+        }
+        Frame::Lps | Frame::Unspecified => surface,
     }
 }

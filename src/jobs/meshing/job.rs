@@ -1,8 +1,9 @@
-//! The job of a meshing: the scan parted and meshed, its files written.
+//! The job of a meshing: the scan or the surfaces parted and meshed, the files written.
 
 use std::sync::Arc;
 
 use super::case::{bone_file, case_of};
+use super::check::check_made;
 use super::input::{MeshingInput, PreparedMeshing};
 use crate::jobs::clock::Observed;
 use crate::jobs::failure::JobError;
@@ -13,23 +14,20 @@ use crate::jobs::result::provenance::{Origin, encode_result, mesh_summary};
 use crate::jobs::result::warnings::warning_documents;
 use crate::jobs::source::StoredShape;
 use crate::schema::meshing::result::MeshingResultDocument;
-use crate::schema::osteotomy::conversion::refuse_bridges;
 use crate::schema::predict::document::OutputName;
 use crate::schema::predict::keep::MadeName;
 use crate::schema::predict::result::{FileDocument, ResultDocument};
-use crate::schema::{Faults, Pointer};
-use mechanics::anatomy::{Anatomy, AnatomyError, build, part_bone};
+use mechanics::anatomy::Anatomy;
 use mechanics::format::vtk::{vtp, vtu};
 use mechanics::format::{SurfaceOutput, VolumeOutput};
 use mechanics::mesh::Frame;
 use mechanics::mesh::quality::quality;
-use mechanics::meshing::MeshingError;
 use mechanics::progress::{Phase, Progress};
 
 /// The picture of slices through the mesh.
 pub const SLICES_FILE: &str = "slices.svg";
 
-/// Meshes a scan and writes its files.
+/// Meshes a scan or what lies between surfaces, and writes its files.
 pub fn meshing_job(
     input: &MeshingInput,
     place: &Workplace,
@@ -37,34 +35,36 @@ pub fn meshing_job(
 ) -> Result<JobOutput, JobError> {
     let clock = Observed::start(progress, input.spec.budget.wall_s);
 
-    // 1. The document and the scan.
+    // 1. The document, and the scan or the surfaces.
     let prepared = input.prepare(place.sources, place.limits)?;
     clock.check()?;
 
     // 2. The bone, parted.
-    let (image, rules) = (&prepared.image, &prepared.rules);
-    let bone = part_bone(image, rules).map_err(JobError::Anatomy)?;
-    let mut faults = Faults::default();
-    let at = Pointer::root().key("spec").key("osteotomy");
-    refuse_bridges(&bone.bridges, &rules.osteotomy, &at, &mut faults);
-    faults.into_result()?;
+    let body = prepared.part()?;
     clock.check()?;
 
     // 3. The mesh.
-    let anatomy = build(image, bone, rules, &clock).map_err(|error| match error {
-        AnatomyError::Meshing(MeshingError::Cancelled) => clock.stopped(),
-        other => JobError::Anatomy(other),
-    })?;
+    let anatomy = prepared.mesh(body, &clock)?;
     clock.check()?;
 
-    // 4. Files.
+    // 4. The case, and what holds it.
+    let case = case_of(&anatomy, OutputName::VolumeVtu.file_name(), prepared.frame);
+    let mut found = MeshingResultDocument::new(&anatomy, case);
+    if let Some(waiting) = &input.case {
+        found.case = waiting.document.complete(found.case);
+        found.check = check_made(&found.case, &anatomy, prepared.frame, place)?;
+    }
+    clock.check()?;
+
+    // 5. Files.
     clock.phase(Phase::Write);
-    let (result, files) = publish(input, &prepared, &anatomy, place, &clock)?;
-    Ok(JobOutput { result, files, meshes: made(anatomy, prepared.frame) })
+    let made = Made { prepared: &prepared, anatomy: &anatomy, found };
+    let (result, files) = made.publish(input, place, &clock)?;
+    Ok(JobOutput { result, files, meshes: meshes_of(anatomy, prepared.frame) })
 }
 
 /// The meshes that the case names: the volume and the segments.
-fn made(anatomy: Anatomy, frame: Frame) -> Vec<MadeMesh> {
+fn meshes_of(anatomy: Anatomy, frame: Frame) -> Vec<MadeMesh> {
     let volume = StoredShape::Volume(Arc::new(anatomy.volume));
     let bones = anatomy.bone.segments.into_iter().zip(anatomy.bones);
     let bones = bones.map(|(segment, surface)| MadeMesh {
@@ -77,37 +77,45 @@ fn made(anatomy: Anatomy, frame: Frame) -> Vec<MadeMesh> {
     std::iter::once(volume).chain(bones).collect()
 }
 
-fn publish(
-    input: &MeshingInput,
-    prepared: &PreparedMeshing,
-    anatomy: &Anatomy,
-    place: &Workplace,
-    clock: &Observed,
-) -> Result<(ResultDocument, Vec<FileDocument>), JobError> {
-    let frame = prepared.frame;
-    let origin = Origin {
-        spec_hash: prepared.spec_hash.clone(),
-        inputs: vec![prepared.scan.to_input("scan")],
-        frame,
-        queue_s: input.queue_s,
-    };
-    let mut folder = ResultFolder::open(place.out)?;
-    let volume = vtu::write(&VolumeOutput::plain(&anatomy.volume, frame))?;
-    folder.add(OutputName::VolumeVtu, &volume)?;
-    for (number, bone) in anatomy.bones.iter().enumerate() {
-        let bytes = vtp::write(&SurfaceOutput::plain(bone, frame))?;
-        folder.add_file(&bone_file(number), OutputName::BonesVtp.media_type(), &bytes)?;
+/// What a meshing has made, before it is written.
+struct Made<'a> {
+    prepared: &'a PreparedMeshing,
+    anatomy: &'a Anatomy,
+    found: MeshingResultDocument,
+}
+
+impl Made<'_> {
+    fn publish(
+        self,
+        input: &MeshingInput,
+        place: &Workplace,
+        clock: &Observed,
+    ) -> Result<(ResultDocument, Vec<FileDocument>), JobError> {
+        let Made { prepared, anatomy, found } = self;
+        let frame = prepared.frame;
+        let origin = Origin {
+            spec_hash: prepared.spec_hash.clone(),
+            inputs: prepared.meshes.iter().map(|(role, mesh)| mesh.to_input(role)).collect(),
+            frame,
+            queue_s: input.queue_s,
+        };
+        let mut folder = ResultFolder::open(place.out)?;
+        let volume = vtu::write(&VolumeOutput::plain(&anatomy.volume, frame))?;
+        folder.add(OutputName::VolumeVtu, &volume)?;
+        for (number, bone) in anatomy.bones.iter().enumerate() {
+            let bytes = vtp::write(&SurfaceOutput::plain(bone, frame))?;
+            folder.add_file(&bone_file(number), OutputName::BonesVtp.media_type(), &bytes)?;
+        }
+        let picture = slices_picture(anatomy, frame)?;
+        folder.add_file(SLICES_FILE, OutputName::ClassesSvg.media_type(), picture.as_bytes())?;
+        let of_meshes = prepared.meshes.iter().flat_map(|(_, mesh)| &mesh.warnings);
+        let warnings = of_meshes.chain(&anatomy.warnings);
+        let mut provenance = origin.provenance(clock);
+        provenance.mesh = Some(mesh_summary(&anatomy.volume, &quality(&anatomy.volume)));
+        let warnings = warning_documents(warnings);
+        let rest = ResultDocument::new(input.job.clone(), &folder.files, provenance, warnings);
+        let result = ResultDocument { meshing: Some(found), ..rest };
+        folder.add(OutputName::ResultJson, &encode_result(&result)?)?;
+        Ok((result, folder.files))
     }
-    let picture = slices_picture(anatomy, frame)?;
-    folder.add_file(SLICES_FILE, OutputName::ClassesSvg.media_type(), picture.as_bytes())?;
-    let case = case_of(anatomy, OutputName::VolumeVtu.file_name(), frame);
-    let warnings = prepared.scan.warnings.iter().chain(&anatomy.warnings);
-    let mut provenance = origin.provenance(clock);
-    provenance.mesh = Some(mesh_summary(&anatomy.volume, &quality(&anatomy.volume)));
-    let meshing = Some(MeshingResultDocument::new(anatomy, case));
-    let warnings = warning_documents(warnings);
-    let rest = ResultDocument::new(input.job.clone(), &folder.files, provenance, warnings);
-    let result = ResultDocument { meshing, ..rest };
-    folder.add(OutputName::ResultJson, &encode_result(&result)?)?;
-    Ok((result, folder.files))
 }

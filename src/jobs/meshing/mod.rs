@@ -1,8 +1,11 @@
-//! Meshing: from an image to a volume mesh with its node sets, and the case that it is made for.
+//! Meshing: from an image or surfaces to a volume mesh with its node sets, and the case that it is made for.
 
+mod body;
 mod case;
+mod check;
 mod input;
 mod job;
+mod model;
 
-pub use input::MeshingInput;
+pub use input::{MeshingInput, WaitingCase};
 pub use job::meshing_job;

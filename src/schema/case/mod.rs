@@ -6,6 +6,7 @@ pub mod fibre;
 pub mod hounsfield;
 pub mod material;
 pub mod membrane;
+pub mod meshed;
 pub mod meshes;
 mod normal;
 pub mod selection;

@@ -1,12 +1,14 @@
-//! The spec of a meshing: the scan, what of it is tissue and bone, what is cut, and how fine the mesh is.
+//! The spec of a meshing: the scan or the surfaces, what of them is tissue and bone, what is cut, and how fine the mesh is.
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use utoipa::ToSchema;
 
+use super::surfaces::SurfacesDocument;
 use crate::schema::case::document::FrameName;
+use crate::schema::code::ErrorCode;
 use crate::schema::osteotomy::OsteotomyDocument;
-use crate::schema::osteotomy::conversion::PlannedOsteotomy;
+use crate::schema::osteotomy::conversion::{PlannedOsteotomy, given_segments};
 use crate::schema::plan::document::PlanDocument;
 use crate::schema::predict::budget::BudgetDocument;
 use crate::schema::wire::canonical;
@@ -26,7 +28,8 @@ pub enum MeshingKind {
     Mesh,
 }
 
-/// A volume mesh of the soft tissue in a CT, with a node set for each bone segment that an operation cuts loose.
+/// A volume mesh of the soft tissue in a CT or between surfaces, with a node set for each bone segment that an operation
+/// cuts loose: exactly one of `scan` and `surfaces`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MeshingDocument {
@@ -34,23 +37,43 @@ pub struct MeshingDocument {
     #[schema(required)]
     pub kind: MeshingKind,
     /// The CT: the id of an uploaded image, in Hounsfield units.
-    pub scan: String,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub scan: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub surfaces: Option<SurfacesDocument>,
+    /// Of a scan.
     #[serde(default)]
-    pub thresholds_hu: ThresholdsDocument,
-    /// Absent: no bone is cut, and all of it is fixed.
+    pub thresholds_hu: HounsfieldThresholdsDocument,
+    /// Absent: no bone is cut, and all of it is fixed that is no segment already.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub osteotomy: Option<OsteotomyDocument>,
-    /// The frame of the osteotomy. Default: that of the scan.
+    /// The frame of the osteotomy, and of surfaces whose files name none. Default: LPS where the scan or the surfaces say
+    /// how they lie, whichever way they are stored; else the axes of the file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub frame: Option<FrameName>,
     #[serde(default)]
     pub size: MeshSizeDocument,
+    /// Absent: all of the head that the scan shows.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub region: Option<RegionDocument>,
+    /// Whether nodes may share a place, where tissue touches itself at a point or along an edge. Gmsh and TetGen read a mesh
+    /// only where none do; the surfaces are then apart by a little.
+    #[serde(default = "yes")]
+    #[schema(default = true)]
+    pub coincident_nodes: bool,
     /// Whether tissue is fixed where the scan ends.
     #[serde(default = "yes")]
     #[schema(default = true)]
     pub scan_ends_fixed: bool,
+    /// Whether tissue slides on the teeth of segments and their mucosa. Where it does not, it is joined to them.
+    #[serde(default = "yes")]
+    #[schema(default = true)]
+    pub teeth_slide: bool,
     #[serde(default)]
     pub budget: BudgetDocument,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -65,12 +88,16 @@ impl Default for MeshingDocument {
     fn default() -> Self {
         MeshingDocument {
             kind: MeshingKind::Mesh,
-            scan: String::new(),
-            thresholds_hu: ThresholdsDocument::default(),
+            scan: None,
+            surfaces: None,
+            thresholds_hu: HounsfieldThresholdsDocument::default(),
             osteotomy: None,
             frame: None,
             size: MeshSizeDocument::default(),
+            region: None,
+            coincident_nodes: yes(),
             scan_ends_fixed: yes(),
+            teeth_slide: yes(),
             budget: BudgetDocument::default(),
             tags: Vec::new(),
         }
@@ -80,7 +107,7 @@ impl Default for MeshingDocument {
 /// Values between which an image shows soft tissue, in Hounsfield units.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
-pub struct ThresholdsDocument {
+pub struct HounsfieldThresholdsDocument {
     /// Below this there is air.
     #[serde(default = "usual_skin")]
     #[schema(default = -300.0)]
@@ -99,9 +126,9 @@ fn usual_bone() -> f64 {
     ImageOptions::default().bone_threshold
 }
 
-impl Default for ThresholdsDocument {
+impl Default for HounsfieldThresholdsDocument {
     fn default() -> Self {
-        ThresholdsDocument { skin: usual_skin(), bone: usual_bone() }
+        HounsfieldThresholdsDocument { skin: usual_skin(), bone: usual_bone() }
     }
 }
 
@@ -123,34 +150,91 @@ pub struct MeshSizeDocument {
     pub coarsening: Option<f64>,
 }
 
+/// The part of the head that is meshed. Tissue beyond it is left out, and what remains ends there as where the scan ends.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RegionDocument {
+    /// All tissue this near to segments of the osteotomy, in mm, and little beyond.
+    #[schema(minimum = 10.0, maximum = 300.0)]
+    pub around_segments_mm: f64,
+}
+
 /// Where nothing else is said.
 const USUAL_TETRAHEDRA: u64 = 300_000;
 /// Uniform at first: the estimate of the size of a mesh is best there.
 const USUAL_COARSENING: f64 = 4.0;
 
 impl MeshingDocument {
-    /// The rules of the path for a scan in that frame; pointers start at `/spec`.
+    /// Every mesh that it names, with its place in the document that stands at a place.
+    pub fn mesh_references_mut(&mut self, root: &Pointer) -> Vec<(Pointer, &mut String)> {
+        let scan = self.scan.iter_mut().map(|scan| (root.key("scan"), scan));
+        let at = root.key("surfaces");
+        let surfaces = self.surfaces.iter_mut().flat_map(|surfaces| surfaces.references_mut(&at));
+        scan.chain(surfaces).collect()
+    }
+
+    /// The ids of the meshes that it names, in their order.
+    pub fn mesh_ids(mut self) -> Vec<String> {
+        self.mesh_references_mut(&Pointer::root()).into_iter().map(|(_, id)| id.clone()).collect()
+    }
+
+    /// The rules of the path for a scan or surfaces in that frame; pointers start at `/spec`.
     pub fn to_rules(&self, scan: Frame, limits: &Limits, faults: &mut Faults) -> AnatomyRules {
         let at = Pointer::root().key("spec");
-        let ThresholdsDocument { skin, bone } = self.thresholds_hu;
+        let HounsfieldThresholdsDocument { skin, bone } = self.thresholds_hu;
         let thresholds = at.key("thresholds_hu");
         faults.check_range(&thresholds.key("skin"), skin, -1e6..=1e6, "HU");
         faults.check_range(&thresholds.key("bone"), bone, -1e6..=1e6, "HU");
+        if skin >= bone {
+            let detail =
+                format!("tissue lies between {skin} HU and {bone} HU, which has to be larger");
+            faults.add(&thresholds, ErrorCode::OutOfRange, detail);
+        }
         let budget = at.key("budget");
         faults.check_range(&budget.key("wall_s"), self.budget.wall_s, 1e-3..=limits.wall_s, "s");
         let memory = self.budget.memory_mb;
         faults.check_range(&budget.key("memory_mb"), memory, 1.0..=limits.memory_mb, "MB");
         check_tags(&self.tags, &at.key("tags"), limits, faults);
+        self.check_surfaces(&at, limits, faults);
         let planned = self.to_osteotomy(&at, scan, limits, faults);
+        let around_segments_mm = self.region.map(|region| region.around_segments_mm);
+        if let Some(margin) = around_segments_mm {
+            let at = at.key("region").key("around_segments_mm");
+            faults.check_range(&at, margin, 10.0..=300.0, "mm");
+            if self.osteotomy.is_none() {
+                let detail = "there are no segments without an osteotomy";
+                faults.add(&at, ErrorCode::UnknownSegment, detail);
+            }
+        }
+        let meshing = self.size.to_settings(&at.key("size"), limits, faults);
         let image =
             ImageOptions { skin_threshold: skin, bone_threshold: bone, ..ImageOptions::default() };
         AnatomyRules {
             image,
             band_mm: planned.as_ref().map_or(0.0, |planned| planned.free_band_mm),
             osteotomy: planned.map(|planned| planned.osteotomy).unwrap_or_default(),
-            meshing: self.size.to_settings(&at.key("size"), limits, faults),
+            meshing: MeshingSettings { part_copies: !self.coincident_nodes, ..meshing },
+            around_segments_mm,
             scan_ends_fixed: self.scan_ends_fixed,
+            teeth_slide: self.teeth_slide,
             frame: scan,
+        }
+    }
+
+    fn check_surfaces(&self, at: &Pointer, limits: &Limits, faults: &mut Faults) {
+        let Some(surfaces) = &self.surfaces else { return };
+        surfaces.check(&at.key("surfaces"), limits, faults);
+        if self.thresholds_hu != HounsfieldThresholdsDocument::default() {
+            let detail = "surfaces have no values that thresholds part";
+            faults.add(&at.key("thresholds_hu"), ErrorCode::NoScan, detail);
+        }
+        if self.region.is_some() {
+            let detail = "only what a scan shows is meshed in part";
+            faults.add(&at.key("region"), ErrorCode::NoScan, detail);
+        }
+        if self.osteotomy.is_some() && !surfaces.bones.is_empty() {
+            let detail = "`surfaces.bones` are segments already: give all bone as `surfaces.bone` to have it cut";
+            faults.add(&at.key("osteotomy"), ErrorCode::OneOf, detail);
         }
     }
 
@@ -161,6 +245,11 @@ impl MeshingDocument {
         limits: &Limits,
         faults: &mut Faults,
     ) -> Option<PlannedOsteotomy> {
+        let bones = self.surfaces.iter().flat_map(|surfaces| &surfaces.bones);
+        let names: Vec<&str> = bones.map(|bone| bone.name.trim()).collect();
+        if !names.is_empty() {
+            return given_segments(&names, &at.key("surfaces").key("bones"), faults);
+        }
         let mut plan = PlanDocument {
             osteotomy: self.osteotomy.clone(),
             frame: self.frame,

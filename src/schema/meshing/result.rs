@@ -7,6 +7,7 @@ use utoipa::ToSchema;
 
 use crate::schema::Triple;
 use crate::schema::case::document::CaseDocument;
+use crate::schema::predict::check::CheckDocument;
 use mechanics::anatomy::Anatomy;
 use mechanics::meshing::{Angles, Gap};
 use mechanics::osteotomy::labelling::FoundSegment;
@@ -33,6 +34,10 @@ pub struct MeshingResultDocument {
     pub dropped_ml: f64,
     /// A case of the mesh, ready to be stored and predicted on.
     pub case: CaseDocument,
+    /// What holds its nodes before any segment moves, where a stored case waits for the mesh.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub check: Option<CheckDocument>,
 }
 
 /// Angles between the faces of tetrahedra, in degrees.
@@ -93,6 +98,7 @@ impl MeshingResultDocument {
             sheets_lost: report.sheets_lost.iter().map(GapDocument::from).collect(),
             dropped_ml: report.dropped.iter().map(|piece| piece.volume).sum::<f64>() / MM3_IN_ML,
             case,
+            check: None,
         }
     }
 }

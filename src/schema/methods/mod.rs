@@ -3,6 +3,7 @@
 mod document;
 pub mod dvs;
 mod fem_linear;
+mod fem_nonlinear;
 mod list;
 mod measured;
 pub mod msm;
@@ -51,6 +52,11 @@ fn row(method: MethodKind) -> MethodRow {
             description: fem_linear::description,
             is_told: |_| false,
             to_method: |_, _, _| Method::FemLinear,
+        },
+        MethodKind::FemNonlinear => MethodRow {
+            description: fem_nonlinear::description,
+            is_told: |_| false,
+            to_method: |_, _, _| Method::FemNonlinear,
         },
         MethodKind::MassTensor => MethodRow {
             description: mtm::description,

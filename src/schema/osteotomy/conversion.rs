@@ -3,7 +3,7 @@
 use mechanics::mesh::Vector;
 use mechanics::osteotomy::contact::Bridge;
 use mechanics::osteotomy::{
-    Cut, CutError, CutSide, Extent, Osteotomy, Plane, RuleError, SegmentRule, Side,
+    Cut, CutError, CutSide, Extent, LabelError, Osteotomy, Plane, RuleError, SegmentRule, Side,
 };
 
 use super::document::{CutDocument, CutSegmentDocument, OsteotomyDocument};
@@ -11,6 +11,7 @@ use crate::schema::Triple;
 use crate::schema::code::ErrorCode;
 use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::limits::Limits;
+use crate::schema::wire::problem::Problem;
 
 /// Beside an osteotomy tissue is lifted; with cells of 4 mm this frees one row of nodes on either side.
 const FREE_BAND_MM: f64 = 3.0;
@@ -72,6 +73,19 @@ impl OsteotomyDocument {
     }
 }
 
+/// Segments that are bones of their own, cut by nothing; pointers start at the list of them.
+pub fn given_segments(
+    names: &[&str],
+    at: &Pointer,
+    faults: &mut Faults,
+) -> Option<PlannedOsteotomy> {
+    let rule = |&name: &&str| SegmentRule { name: name.to_owned(), ..SegmentRule::default() };
+    let osteotomy = Osteotomy::new(Vec::new(), names.iter().map(rule).collect())
+        .map_err(|error| faults.add(at, code_of(&error), error.to_string()))
+        .ok()?;
+    Some(PlannedOsteotomy { osteotomy, free_band_mm: FREE_BAND_MM })
+}
+
 fn code_of(error: &RuleError) -> ErrorCode {
     match error {
         RuleError::CutTwice { .. }
@@ -83,6 +97,25 @@ fn code_of(error: &RuleError) -> ErrorCode {
         RuleError::Unused { .. } => ErrorCode::UnusedCut,
         RuleError::BoundedWithoutSeed { .. } => ErrorCode::MissingField,
     }
+}
+
+/// The refusal of a segment that the bone of a scan does not hold, at its place.
+pub fn unfound(error: &LabelError, osteotomy: &Osteotomy, at: &Pointer) -> Problem {
+    let named = |name: &str| {
+        let number = osteotomy.segments().iter().position(|segment| segment.name == name);
+        number.map_or_else(|| at.clone(), |number| at.key("segments").index(number))
+    };
+    let place = match error {
+        LabelError::NoBone { segment } => named(segment),
+        LabelError::SeedOffBone { segment, seed }
+        | LabelError::SeedAcross { segment, seed, .. } => {
+            named(segment).key("seeds_mm").index(*seed)
+        }
+        LabelError::SeedsMeet { other: segment, .. } | LabelError::NeedsSeed { segment, .. } => {
+            named(segment).key("seeds_mm")
+        }
+    };
+    Problem::at(&place, ErrorCode::SegmentNotFound, error.to_string())
 }
 
 /// Refuses segments that bone still holds to what a cut should part them from.
@@ -179,7 +212,6 @@ impl CutSegmentDocument {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::schema::wire::problem::Problem;
     use crate::schema::wire::strict;
 
     fn read(text: &str, mirrored_axes: bool) -> Result<PlannedOsteotomy, Vec<(String, ErrorCode)>> {

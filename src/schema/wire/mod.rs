@@ -1,6 +1,7 @@
 //! What all documents share: strict reading, faults with their place, limits, canonical JSON.
 
 pub mod canonical;
+pub mod date;
 pub mod fault;
 pub mod limits;
 pub mod names;

@@ -22,6 +22,11 @@ pub struct Problem {
 }
 
 impl Problem {
+    /// Whether all mistakes of a document are of this kind.
+    pub fn is_only(&self, code: ErrorCode) -> bool {
+        !self.errors.is_empty() && self.errors.iter().all(|error| error.code == code)
+    }
+
     pub fn new(code: ErrorCode, detail: impl Into<String>) -> Self {
         Problem { code, detail: detail.into(), errors: Vec::new(), members: Map::new() }
     }

@@ -34,6 +34,8 @@ pub async fn connect(file: &Path) -> Result<(SqlitePool, SqlitePool), sqlx::Erro
     let options = options(file);
     let pool = SqlitePoolOptions::new()
         .acquire_timeout(ACQUIRE_TIMEOUT)
+        // It is asked when it comes back, and nobody can take it away meanwhile.
+        .test_before_acquire(false)
         .after_release(|connection, _| Box::pin(is_free(connection)));
     let writer = pool.clone().max_connections(1).connect_with(options.clone()).await?;
     Ok((writer, pool.max_connections(READERS).connect_lazy_with(options)))

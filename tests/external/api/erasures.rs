@@ -10,7 +10,7 @@ use crate::connections::{get, send};
 use crate::deployments::Deployment;
 use crate::helpers::{Block, SMALL, Server, ask, serve_shared};
 use crate::invariants::{accepted, succeeds, tagged, works_on};
-use crate::processes::{faulty, is_stopped, signal, slots, until};
+use crate::processes::{faulty, signal, stopped_slot};
 use crate::support::trials::trials;
 
 trials! {
@@ -55,16 +55,11 @@ impl Download {
     }
 }
 
-async fn stopped_slot(server: &Server) -> u32 {
-    until("the job is solved", async || slots(server).into_iter().find(|slot| is_stopped(*slot)))
-        .await
-}
-
 async fn a_case_is_erased_under_a_job_and_under_a_download_that_ends_whole() {
     let server = faulty(FAULT, &["--workers", "1"]);
     let solved = server.case(&SMALL).await;
     let id = accepted(&server, &tagged(&solved, 1.0, "slow")).await;
-    let slot = stopped_slot(&server).await;
+    let slot = stopped_slot(server.process()).await;
     let downloaded = server.case(&LARGE).await;
     let download = Download::begun(&server, &downloaded).await;
     for case in [solved, downloaded] {
@@ -91,7 +86,7 @@ async fn what_is_kept_too_long_is_erased_under_a_download_and_not_under_a_job(on
     let old = server.case(&LARGE).await;
     let used = server.case(&SMALL).await;
     let id = accepted(&server, &tagged(&used, 1.0, "slow")).await;
-    let slot = stopped_slot(&server).await;
+    let slot = stopped_slot(server.process()).await;
     let download = Download::begun(&server, &old).await;
     // As the process of another host does it.
     let store = on.open().await;

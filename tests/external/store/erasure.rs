@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use facies::store::{Change, Dismissal, NewCase, NewJob, NewMesh, Store, Unreached};
+use facies::store::{AddedCase, Change, Dismissal, NewCase, NewJob, NewMesh, Store, Unreached};
 
 use crate::deployments::Deployment;
 use crate::rows::{blob_count, mesh, new_job};
@@ -32,8 +32,9 @@ async fn case(store: &Store, document: &str, meshes: &[&NewMesh]) -> String {
         tags: Vec::new(),
         mesh_ids: meshes.iter().map(|mesh| mesh.id.clone()).collect(),
         meshes: meshes.iter().map(|mesh| (*mesh).clone()).collect(),
+        meshing: None,
     };
-    assert!(store.add_case(&case).await.unwrap());
+    assert_eq!(store.add_case(&case, 100).await.unwrap(), AddedCase::Stored);
     case.id
 }
 

@@ -1,7 +1,8 @@
 //! Meshes that jobs made: published with the result or not at all, and erased with it.
 
 use facies::store::{
-    Change, Dismissal, MadeMesh, MeshDeletion, NewCase, NewMesh, Published, Store, StoreError,
+    AddedCase, Change, Dismissal, MadeMesh, MeshDeletion, NewCase, NewMesh, Published, Store,
+    StoreError,
 };
 
 use crate::deployments::Deployment;
@@ -25,7 +26,7 @@ pub fn made(content: &'static str) -> MadeMesh {
 }
 
 fn published(meshes: &[MadeMesh]) -> Published<'_> {
-    Published { result: "{}", files: &[], meshes }
+    Published { result: "{}", files: &[], meshes, case: None }
 }
 
 /// The mesh as a worker looks for it.
@@ -79,14 +80,15 @@ async fn a_case_that_is_erased_while_its_job_publishes_leaves_no_mesh(on: Deploy
             tags: vec![],
             mesh_ids: vec![],
             meshes: vec![],
+            meshing: None,
         };
-        assert!(store.add_case(&case).await.unwrap());
+        assert_eq!(store.add_case(&case, 100).await.unwrap(), AddedCase::Stored);
         let mut job = new_job("{}", &format!("job {round}"));
         job.case_id = Some(case.id.clone());
         store.enqueue(&job, 100).await.unwrap();
         let lease = store.claim(LEASE).await.unwrap().unwrap().lease;
         let (made, files) = ([made("of the job")], [file("a result")]);
-        let result = Published { result: "{}", files: &files, meshes: &made };
+        let result = Published { result: "{}", files: &files, meshes: &made, case: None };
         let (published, erased) =
             tokio::join!(store.publish(&lease, result), other.delete_case(&case.id, None));
         published.unwrap();

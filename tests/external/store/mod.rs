@@ -4,6 +4,7 @@ pub mod commits;
 pub mod erasure;
 pub mod lost_jobs;
 pub mod made;
+pub mod meshings;
 pub mod pages;
 pub mod places;
 pub mod queue;

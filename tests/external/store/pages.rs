@@ -6,7 +6,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use facies::config::DatabasePlace;
-use facies::store::{JobFilter, NewCase};
+use facies::store::{AddedCase, JobFilter, NewCase};
 use tracing::field::{Field, Visit};
 use tracing::instrument::WithSubscriber;
 use tracing::subscriber::NoSubscriber;
@@ -144,12 +144,13 @@ async fn a_page_is_one_statement_however_many_rows_it_has(on: Deployment) {
         tags: vec!["a".into(), "b".into()],
         mesh_ids: Vec::new(),
         meshes: Vec::new(),
+        meshing: None,
     };
     let id = || uuid::Uuid::now_v7().to_string();
     let parent = id();
-    assert!(store.add_case(&case(&parent)).await.unwrap());
+    assert_eq!(store.add_case(&case(&parent), 100).await.unwrap(), AddedCase::Stored);
     for number in 0..4 {
-        assert!(store.add_case(&case(&id())).await.unwrap());
+        assert_eq!(store.add_case(&case(&id()), 100).await.unwrap(), AddedCase::Stored);
         assert!(store.add_plan(&parent, &id(), "{}").await.unwrap());
         make_keys(&store.of_tenant(&format!("tenant-{number}")), 1).await;
     }

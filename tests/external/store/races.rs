@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use facies::schema::job::JobStatus;
-use facies::store::{Dismissal, Enqueued, MeshDeletion, Point, Store, StoreError};
+use facies::store::{AddedCase, Dismissal, Enqueued, MeshDeletion, Point, Store, StoreError};
 use tokio::task::JoinSet;
 
 use crate::deployments::Deployment;
@@ -132,8 +132,9 @@ async fn a_case_is_erased_while_jobs_come(on: Deployment) {
             tags: vec![],
             mesh_ids: vec![mesh.id.clone()],
             meshes: vec![facies::store::NewMesh { standalone: false, ..mesh.clone() }],
+            meshing: None,
         };
-        assert!(stores[0].add_case(&case).await.unwrap());
+        assert_eq!(stores[0].add_case(&case, 100).await.unwrap(), AddedCase::Stored);
         let mut job = new_job("{}", &format!("job {round}"));
         job.case_id = Some(case.id.clone());
         job.mesh_ids = vec![mesh.id.clone()];

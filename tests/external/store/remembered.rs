@@ -1,7 +1,7 @@
 //! What the store remembers for clients, on both engines: events of jobs, keys of requests, what was erased.
 
 use facies::schema::job::JobStatus;
-use facies::store::{Change, Dismissal, NewCase, Point, Reserved};
+use facies::store::{AddedCase, Change, Dismissal, NewCase, Point, Reserved};
 
 use crate::deployments::Deployment;
 use crate::rows::{LEASE, enqueue, new_job, result};
@@ -132,8 +132,9 @@ async fn what_was_erased_is_remembered_with_all_that_went_with_it(on: Deployment
         tags: Vec::new(),
         mesh_ids: Vec::new(),
         meshes: Vec::new(),
+        meshing: None,
     };
-    assert!(store.add_case(&case).await.unwrap());
+    assert_eq!(store.add_case(&case, 100).await.unwrap(), AddedCase::Stored);
     let plan = uuid::Uuid::now_v7().to_string();
     for _ in 0..2 {
         // Sent twice at the same time, it is there.

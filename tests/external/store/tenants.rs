@@ -122,12 +122,16 @@ async fn a_key_that_was_ended_is_not_let_in(on: Deployment) {
     assert_eq!((row.tenant.as_str(), row.scopes.as_str()), ("a", "read"));
     assert_eq!(row.expires, Some(row.created + 24 * 3600 * 1000));
     assert!(!row.hash.contains(&key.text));
+    let beside = async |id: &str| store.key_and_responses(id, "no case").await.unwrap();
+    assert_eq!(beside(&key.id).await, Some((row, None)));
     assert!(b.rotate_key(&key.id, 0).await.unwrap().is_none(), "it is none of theirs");
     assert!(!b.revoke_key(&key.id).await.unwrap());
     let next = a.rotate_key(&key.id, 0).await.unwrap().unwrap();
     assert!(store.key_in_force(&key.id).await.unwrap().is_none(), "it has given way");
+    assert_eq!(beside(&key.id).await, None);
     assert!(a.revoke_key(&next.id).await.unwrap());
     assert!(store.key_in_force(&next.id).await.unwrap().is_none());
+    assert_eq!(beside(&next.id).await, None);
     assert!(!a.revoke_key(&next.id).await.unwrap());
 }
 

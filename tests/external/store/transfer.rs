@@ -5,7 +5,7 @@ use std::path::Path;
 
 use facies::config::DatabasePlace;
 use facies::schema::key::{KeyDocument, Scope};
-use facies::store::{Deed, NewCase, Published, Store, StoreError};
+use facies::store::{AddedCase, Deed, NewCase, Published, Store, StoreError};
 
 use crate::deployments::Deployment;
 use crate::rows::mesh;
@@ -33,8 +33,9 @@ async fn fill(store: &Store) {
         tags: vec!["~".into(), "a".into()],
         mesh_ids: vec![case_mesh.id.clone()],
         meshes: vec![case_mesh.clone()],
+        meshing: None,
     };
-    assert!(store.add_case(&case).await.unwrap());
+    assert_eq!(store.add_case(&case, 100).await.unwrap(), AddedCase::Stored);
     assert!(store.add_plan(&case.id, &uuid::Uuid::now_v7().to_string(), "{}").await.unwrap());
     let erased = uuid::Uuid::now_v7().to_string();
     assert!(store.add_plan(&case.id, &erased, "{}").await.unwrap());
@@ -52,7 +53,7 @@ async fn fill(store: &Store) {
     let point = facies::store::Point { residual: Some(1.0 / 3.0), ..Default::default() };
     assert!(store.renew(&lease, LEASE, &point).await.unwrap());
     let (files, meshes) = ([file("a result")], [made("of the job")]);
-    let result = Published { result: "{}", files: &files, meshes: &meshes };
+    let result = Published { result: "{}", files: &files, meshes: &meshes, case: None };
     assert!(store.publish(&lease, result).await.unwrap());
     let mut waiting = new_job("{}", "waiting");
     waiting.shared_cases = vec![case.id.clone()];

@@ -9,7 +9,7 @@ use tempfile::TempDir;
 use crate::deployments::Deployment;
 use crate::helpers::{SMALL, Server, ask, serve_shared, spec};
 use crate::invariants::{accepted, state, tagged};
-use crate::processes::{is_stopped, signal, slots_of, until};
+use crate::processes::{signal, stopped_slot, until};
 use crate::support::external::{Missing, REQUIRE_SERVERS};
 use crate::support::trials::trials;
 use crate::workers::Worker;
@@ -78,10 +78,7 @@ async fn clocks_that_jump_cost_no_job_an_attempt() -> Result<(), Missing> {
 
     let case = api.case(&SMALL).await;
     let id = accepted(&api, &tagged(&case, 1.0, "slow")).await;
-    let slot = until("the job is solved", async || {
-        slots_of(jumping.process()).into_iter().find(|slot| is_stopped(*slot))
-    })
-    .await;
+    let slot = stopped_slot(jumping.process()).await;
     // Another worker, whose clock is right, would take what it finds without a sign of life.
     let mut command = Worker::command(&on);
     command.arg("--blobs").arg(&blobs);
@@ -90,8 +87,8 @@ async fn clocks_that_jump_cost_no_job_an_attempt() -> Result<(), Missing> {
     for (number, offset) in ["+3650d", "+0", "-1h"].into_iter().enumerate() {
         of_worker.jump(offset);
         of_api.jump(offset);
-        // Longer than a lease.
-        for _ in 0..6 {
+        // Longer than a lease: a sign of life comes each 0.2 s at the most.
+        for _ in 0..26 {
             let before = state(&api, &id).await["updated"].clone();
             until("there is a sign of life", async || {
                 (state(&api, &id).await["updated"] != before).then_some(())

@@ -12,7 +12,9 @@ use tempfile::TempDir;
 
 use crate::deployments::{Cluster, Deployment};
 use crate::helpers::{Block, SMALL, Server, ask, serve_shared, spec};
+use crate::invariants::{MEDIUM, accepted, tagged};
 use crate::partition::Way;
+use crate::processes::{signal, stopped_slot};
 use crate::support::external::Missing;
 use crate::support::trials::trials;
 use crate::workers::Worker;
@@ -35,8 +37,10 @@ trials! {
     }
 }
 
-/// Solved in seconds, so that a test can meet its job at work.
+/// Takes a while to store.
 const LARGE: Block = Block { cells: [44, 44, 30] };
+/// The slot of a job stands still until it is told to go on.
+const STANDS_STILL: &str = "solve:begin:1:stop:attempt=1:tag=slow";
 
 fn api(on: &Deployment) -> Server {
     let mut command = serve_shared(on);
@@ -99,10 +103,11 @@ async fn a_worker_tells_what_it_counts_and_that_it_lives(on: Deployment) {
 
 async fn a_job_whose_host_is_killed_is_solved_by_another(on: Deployment) {
     let api = api(&on);
-    let case = api.case(&LARGE).await;
-    let accepted = ask(api.post("/v1/jobs").json(&spec(&case, 2.0))).await;
-    let id = accepted.expect(StatusCode::CREATED)["id"].as_str().unwrap().to_owned();
-    let first = Worker::start(&on);
+    let case = api.case(&MEDIUM).await;
+    let id = accepted(&api, &spec(&case, 2.0)).await;
+    let mut command = Worker::command(&on);
+    command.env("FACIES_FAULT", "solve:iteration:3:hold");
+    let (first, _) = Worker::start_command(command);
     assert_eq!(api.started(&id).await["status"], "running");
     drop(first);
     let _second = Worker::start(&on);
@@ -116,22 +121,22 @@ async fn a_worker_cut_off_from_the_database_loses_its_job_to_another_and_changes
     let DatabasePlace::Server { address, .. } = &on.places.database else { panic!("it is shared") };
     let way = Way::to(address.reveal());
     let api = api(&on);
-    let case = api.case(&LARGE).await;
-    let accept = async |x: f64| {
-        let accepted = ask(api.post("/v1/jobs").json(&spec(&case, x))).await;
-        accepted.expect(StatusCode::CREATED)["id"].as_str().unwrap().to_owned()
-    };
-    let id = accept(3.0).await;
-    let _cut_off = Worker::start_with(&on, &["--database", &way.address]);
-    assert_eq!(api.started(&id).await["status"], "running");
+    let case = api.case(&SMALL).await;
+    let id = accepted(&api, &tagged(&case, 3.0, "slow")).await;
+    let mut command = Worker::command(&on);
+    command.args(["--database", &way.address]).env("FACIES_FAULT", STANDS_STILL);
+    let (cut_off, _) = Worker::start_command(command);
+    let slot = stopped_slot(cut_off.process()).await;
     way.cut();
+    // It solves the job, and nobody hears of it.
+    signal(slot, "CONT");
     let other = Worker::start(&on);
     let job = api.ended(&id).await;
     assert_eq!((&job["status"], &job["attempt"]), (&json!("successful"), &json!(2)));
     drop(other);
     way.mend();
     // The first one is back when it has done something else; what it had done before is not there.
-    let next = api.ended(&accept(4.0).await).await;
+    let next = api.ended(&accepted(&api, &spec(&case, 4.0)).await).await;
     assert_eq!((&next["status"], &next["attempt"]), (&json!("successful"), &json!(1)));
     assert_eq!(ask(api.get(&format!("/v1/jobs/{id}"))).await.json(), job);
 }
@@ -141,12 +146,11 @@ async fn a_restart_of_postgresql_loses_nothing_and_is_told_as_503() -> Result<()
     let on = Deployment::on(&cluster.database().await);
     Store::migrate(&on.places).await.unwrap();
     let mut command = serve_shared(&on);
-    command.args(["--workers", "1"]);
+    command.args(["--workers", "1"]).env("FACIES_FAULT", STANDS_STILL);
     let server = Server::start_command(command, TempDir::new().unwrap());
-    let case = server.case(&LARGE).await;
-    let accepted = ask(server.post("/v1/jobs").json(&spec(&case, 2.0))).await;
-    let id = accepted.expect(StatusCode::CREATED)["id"].as_str().unwrap().to_owned();
-    assert_eq!(server.started(&id).await["status"], "running");
+    let case = server.case(&SMALL).await;
+    let id = accepted(&server, &tagged(&case, 2.0, "slow")).await;
+    let slot = stopped_slot(server.process()).await;
 
     cluster.control(&["-m", "immediate", "stop"]);
     let answer = ask(server.get(&format!("/v1/jobs/{id}"))).await;
@@ -156,6 +160,7 @@ async fn a_restart_of_postgresql_loses_nothing_and_is_told_as_503() -> Result<()
     ask(server.get("/readyz")).await.problem(503, "not-ready");
     assert_eq!(ask(server.get("/healthz")).await.status, StatusCode::OK);
 
+    signal(slot, "CONT");
     cluster.control(&["start"]);
     assert_eq!(server.ended(&id).await["status"], "successful");
     let jobs = ask(server.get("/v1/jobs")).await.expect(StatusCode::OK);

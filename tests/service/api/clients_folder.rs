@@ -29,6 +29,9 @@ async fn a_service_without_a_folder_of_clients_says_so() {
     ask(server.get("/clients/facies.js")).await.problem(404, "clients-not-built");
     ask(server.get("/clients")).await.problem(404, "clients-not-built");
     ask(other.get("/clients")).await.problem(404, "clients-not-built");
+    let gone = empty.path().join("gone");
+    let third = Server::start_with(&["--clients-folder", gone.to_str().unwrap()]);
+    ask(third.get("/clients/facies.js")).await.problem(404, "clients-not-built");
 }
 
 #[tokio::test]

@@ -3,16 +3,34 @@
 use std::time::Duration;
 
 use reqwest::StatusCode;
+use tempfile::TempDir;
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::TcpStream;
 
 use crate::connections::{get, send};
 use crate::helpers::{Block, SMALL, Server, ask};
 use crate::invariants::{accepted, succeeds, tagged, works_on};
-use crate::processes::{descriptors, faulty, is_stopped, signal, slots, until};
+use crate::processes::{descriptors, faulty, faulty_in, signal, stopped_slot, until};
 
 /// Some megabytes.
 const LARGE: Block = Block { cells: [44, 44, 30] };
+
+/// A mesh that a server of usual patience has stored: one without much would give up an upload from a busy machine.
+struct Uploaded {
+    folder: TempDir,
+    path: String,
+    /// Of its content.
+    length: usize,
+}
+
+async fn uploaded() -> Uploaded {
+    let server = Server::start();
+    let mesh = server.upload(LARGE.vtu()).await.expect(StatusCode::CREATED);
+    let path = format!("/v1/meshes/{}/content", mesh["id"].as_str().unwrap());
+    let length = ask(server.get(&path)).await.bytes.len();
+    let (folder, _) = server.terminate();
+    Uploaded { folder, path, length }
+}
 
 fn sockets(server: &Server) -> usize {
     let files = descriptors(server.process());
@@ -21,11 +39,9 @@ fn sockets(server: &Server) -> usize {
 
 #[tokio::test]
 async fn clients_that_stop_reading_are_given_up_and_hold_up_nobody() {
-    let server = faulty("solve:begin:1:hang:tag=deaf", &["--body-idle-s", "1"]);
+    let Uploaded { folder, path, length } = uploaded().await;
+    let server = faulty_in(folder, "solve:begin:1:hang:tag=deaf", &["--body-idle-s", "1"]);
     let nobody = sockets(&server);
-    let mesh = server.upload(LARGE.vtu()).await.expect(StatusCode::CREATED);
-    let path = format!("/v1/meshes/{}/content", mesh["id"].as_str().unwrap());
-    let length = ask(server.get(&path)).await.bytes.len();
     let case = server.case(&SMALL).await;
     let job = accepted(&server, &tagged(&case, 1.0, "deaf")).await;
     // More than there are connections to the database, and each asks for more than any buffer takes.
@@ -97,9 +113,9 @@ async fn what_came_at_once_is_no_excuse_for_a_body_that_trickles() {
 
 #[tokio::test]
 async fn an_answer_that_is_taken_too_slowly_is_broken_off() {
-    let server = Server::start_with(&["--body-idle-s", "0.5"]);
-    let mesh = server.upload(LARGE.vtu()).await.expect(StatusCode::CREATED);
-    let path = format!("/v1/meshes/{}/content?format=stl", mesh["id"].as_str().unwrap());
+    let Uploaded { folder, path, .. } = uploaded().await;
+    let server = Server::start_in(folder, &["--body-idle-s", "0.5"]);
+    let path = format!("{path}?format=stl");
     let nobody = sockets(&server);
     let stream = send(&server, &get(&path).repeat(8)).await;
     until("it is closed although something is taken all the time", async || {
@@ -136,10 +152,7 @@ async fn a_client_that_leaves_while_it_waits_leaves_its_job_at_work() {
     let length = spec.len();
     let head = "POST /v1/jobs HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\nPrefer: wait=30";
     let stream = send(&server, &format!("{head}\r\nContent-Length: {length}\r\n\r\n{spec}")).await;
-    let slot = until("the job is solved", async || {
-        slots(&server).into_iter().find(|slot| is_stopped(*slot))
-    })
-    .await;
+    let slot = stopped_slot(server.process()).await;
     drop(stream);
     until("the service has noticed", async || (sockets(&server) <= before).then_some(())).await;
     signal(slot, "CONT");

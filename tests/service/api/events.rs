@@ -7,6 +7,7 @@ use reqwest::StatusCode;
 use serde_json::{Value, json};
 
 use crate::helpers::{Block, SMALL, Server, ask, spec};
+use crate::processes::until;
 
 /// An event as a browser would see it.
 #[derive(Clone, Debug, PartialEq)]
@@ -87,10 +88,10 @@ async fn what_happens_while_a_client_or_the_service_is_away_is_told_later() {
     let folder = server.kill();
     let server = Server::start_in(folder, &["--workers", "1"]);
     let path = format!("/v1/jobs/{id}");
-    let second = |state: &Value| state["attempt"] == 2;
-    while !second(&ask(server.get(&path)).await.json()) {
-        tokio::time::sleep(Duration::from_millis(20)).await;
-    }
+    until("the second attempt begins", async || {
+        (ask(server.get(&path)).await.json()["attempt"] == 2).then_some(())
+    })
+    .await;
     ask(server.delete(&path)).await.expect(StatusCode::OK);
     let told = followed(&server, &id, None).await;
     let states = |wanted: &str| {
@@ -120,12 +121,11 @@ async fn open_streams_are_counted_for_each_client_and_end_with_their_job() {
     assert!(!refused.header("retry-after").is_empty());
     drop(second);
     // The place is free as soon as the service notices.
-    let again = loop {
-        match open().await {
-            answer if answer.status() == StatusCode::OK => break answer,
-            _ => tokio::time::sleep(Duration::from_millis(20)).await,
-        }
-    };
+    let again = until("a place is free", async || {
+        let answer = open().await;
+        (answer.status() == StatusCode::OK).then_some(answer)
+    })
+    .await;
     ask(server.delete(&path)).await.expect(StatusCode::OK);
     for stream in [first, again] {
         let text = stream.text().await.unwrap();

@@ -4,7 +4,7 @@ use reqwest::StatusCode;
 use serde_json::Value;
 
 use crate::helpers::{Server, ask};
-use crate::samples::ball_ct;
+use crate::samples::{BONE_BALL, SKIN_BALL, ball_ct, ball_stl};
 
 /// The bodies of an operation by the names of their examples.
 fn examples(operation: &str) -> Vec<(String, Value)> {
@@ -74,6 +74,32 @@ async fn takes_keys(server: &Server) {
     }
 }
 
+async fn balls(server: &Server) -> Vec<String> {
+    let mut balls = Vec::new();
+    for ball in [SKIN_BALL, BONE_BALL] {
+        let kept = server.upload(ball_stl(ball)).await.expect(StatusCode::CREATED);
+        balls.push(kept["id"].as_str().unwrap().to_owned());
+    }
+    balls
+}
+
+/// The plans of the examples on a case; the id of the last.
+async fn planned(server: &Server, case: &str) -> String {
+    let mut plan = String::new();
+    for (name, body) in examples("create_plan") {
+        let request = server.post(&format!("/v1/cases/{case}/plans")).json(&body);
+        let answer = ask(request).await;
+        assert_eq!(answer.status, StatusCode::CREATED, "{name}");
+        plan = answer.json()["id"].as_str().unwrap().to_owned();
+    }
+    for (name, body) in examples("replace_plan") {
+        let path = format!("/v1/cases/{case}/plans/{}", plan);
+        let request = server.request(reqwest::Method::PUT, &path).header("if-match", "*");
+        assert_eq!(ask(request.json(&body)).await.status, StatusCode::OK, "{name}");
+    }
+    plan
+}
+
 #[tokio::test]
 async fn the_service_takes_every_example_as_it_stands_but_for_ids() {
     let server = Server::start();
@@ -84,37 +110,37 @@ async fn the_service_takes_every_example_as_it_stands_but_for_ids() {
     }
     let [volume, bone] = [(id(1), meshes[0].clone()), (id(2), meshes[1].clone())];
     let meshes = [(volume.0.as_str(), volume.1.as_str()), (bone.0.as_str(), bone.1.as_str())];
-    let mut case = String::new();
+    let scan = server.upload(ball_ct()).await.expect(StatusCode::CREATED);
+    let scan = scan["id"].as_str().unwrap().to_owned();
+    let scan_id = id(6);
+    let mut cases = Vec::new();
     for (_, body) in examples("create_case") {
-        let body = with_ids(&body, &meshes);
+        let body = with_ids(&body, &[&meshes[..], &[(scan_id.as_str(), scan.as_str())]].concat());
         let kept = ask(server.post("/v1/cases").json(&body)).await.expect(StatusCode::CREATED);
-        case = kept["id"].as_str().unwrap().to_owned();
+        cases.push(kept["id"].as_str().unwrap().to_owned());
     }
-    let mut plan = (String::new(), String::new());
-    for (name, body) in examples("create_plan") {
-        let request = server.post(&format!("/v1/cases/{case}/plans")).json(&body);
-        let answer = ask(request).await;
-        assert_eq!(answer.status, StatusCode::CREATED, "{name}");
-        plan = (answer.json()["id"].as_str().unwrap().to_owned(), answer.header("etag").to_owned());
-    }
-    for (name, body) in examples("replace_plan") {
-        let path = format!("/v1/cases/{case}/plans/{}", plan.0);
-        let request = server.request(reqwest::Method::PUT, &path).header("if-match", "*");
-        assert_eq!(ask(request.json(&body)).await.status, StatusCode::OK, "{name}");
-    }
+    let case = cases[0].clone();
+    let plan = planned(&server, &case).await;
     for (name, body) in examples("check_case") {
         let request = server.post(&format!("/v1/cases/{case}/check")).json(&body);
         assert_eq!(ask(request).await.status, StatusCode::OK, "{name}");
     }
     let mut job = String::new();
-    let scan = server.upload(ball_ct()).await.expect(StatusCode::CREATED);
-    let scan = scan["id"].as_str().unwrap().to_owned();
+    let balls = balls(&server).await;
     // The comparison is of a job that has ended.
     let mut jobs = examples("create_job");
     jobs.sort_by_key(|(name, _)| name != "predict");
     for (name, body) in jobs {
-        let (case_id, plan_id, job_id, scan_id) = (id(3), id(4), id(5), id(6));
-        let ids = [(&case_id, &case), (&plan_id, &plan.0), (&job_id, &job), (&scan_id, &scan)];
+        let (case_id, plan_id, job_id) = (id(3), id(4), id(5));
+        let (skin_id, skull_id) = (id(7), id(8));
+        let ids = [
+            (&case_id, &case),
+            (&plan_id, &plan),
+            (&job_id, &job),
+            (&scan_id, &scan),
+            (&skin_id, &balls[0]),
+            (&skull_id, &balls[1]),
+        ];
         let ids: Vec<(&str, &str)> =
             ids.iter().map(|(from, to)| (from.as_str(), to.as_str())).chain(meshes).collect();
         let answer = server.job(&with_ids(&body, &ids)).await;

@@ -1,10 +1,11 @@
 //! Scans that become meshes: a job whose mesh and case are there for predictions.
 
+use mechanics::mesh::Vector;
 use reqwest::StatusCode;
 use serde_json::{Value, json};
 
 use crate::helpers::{Server, ask};
-use crate::samples::ball_ct;
+use crate::samples::{BONE_BALL, SKIN_BALL, SampleBall, ball_ct, ball_ct_with, ball_stl};
 
 /// The lower half of the bone comes loose.
 fn half() -> Value {
@@ -61,6 +62,74 @@ async fn a_scan_becomes_a_case_on_which_a_plan_is_predicted() {
     assert!((2.0..4.0).contains(&largest), "{largest}");
 }
 
+/// Enamel on the front of the lower half of the bone.
+fn toothed_ct() -> Vec<u8> {
+    let middle = Vector::new(60.0, 55.0, 60.0);
+    ball_ct_with(|at| {
+        let depth = 30.0 - (at - middle).norm();
+        let is_tooth = (1.0..7.0).contains(&depth) && at.y < 40.0 && (44.0..56.0).contains(&at.z);
+        is_tooth.then_some(2600)
+    })
+}
+
+#[tokio::test]
+async fn tissue_slides_on_teeth_that_go_with_their_bone_unless_it_is_told_not_to() {
+    let server = Server::start();
+    let request = server.post("/v1/meshes").header("content-type", "application/x-nrrd");
+    let scan = ask(request.body(toothed_ct())).await.expect(StatusCode::CREATED);
+    let mut asked = spec(scan["id"].as_str().unwrap());
+    let slides = ended(&server, &asked).await["results"]["meshing"].clone();
+    let sets = &slides["node_sets"];
+    assert!(sets["sliding_jaw"].as_u64().unwrap() > 10, "{sets}");
+    assert!(sets["jaw"].as_u64() > sets["sliding_jaw"].as_u64(), "{sets}");
+    let wall =
+        json!([{"nodes": {"node_set": "sliding_jaw"}, "normal": "surface", "segment": "jaw"}]);
+    assert_eq!(slides["case"]["sliding"], wall);
+    asked["teeth_slide"] = json!(false);
+    let joined = ended(&server, &asked).await["results"]["meshing"].clone();
+    assert_eq!(joined["node_sets"].get("sliding_jaw"), None);
+    assert_eq!(joined["case"].get("sliding"), None);
+    let both = sets["jaw"].as_u64().unwrap() + sets["sliding_jaw"].as_u64().unwrap();
+    assert_eq!(joined["node_sets"]["jaw"].as_u64(), Some(both));
+
+    // The wall goes with its bone.
+    let case =
+        ask(server.post("/v1/cases").json(&slides["case"])).await.expect(StatusCode::CREATED);
+    assert!(case["check"]["classes"]["sliding"].as_u64() > Some(10), "{case}");
+    let plan = json!({"segments": [{"name": "jaw", "translation_mm": [0, -3, 0]}]});
+    let predicted =
+        ended(&server, &json!({"kind": "predict", "case": case["id"], "plan": plan})).await;
+    assert_eq!(predicted["status"], "successful", "{predicted}");
+    let largest = predicted["results"]["statistics"]["skin"]["nodes"]["max"].as_f64().unwrap();
+    assert!((1.5..4.0).contains(&largest), "{largest}");
+}
+
+#[tokio::test]
+async fn a_region_around_segments_has_fewer_cells_of_the_same_size_and_tells_what_it_leaves_out() {
+    let server = Server::start();
+    let scan = scan(&server).await;
+    let mut asked = spec(&scan);
+    asked["osteotomy"]["cuts"][0]["point_mm"] = json!([60, 55, 45]);
+    asked["size"] = json!({"finest_mm": 6, "coarsening": 1});
+    let whole = ended(&server, &asked).await["results"].clone();
+    asked["region"] = json!({"around_segments_mm": 30});
+    let part = ended(&server, &asked).await["results"].clone();
+    let warning =
+        part["warnings"].as_array().unwrap().iter().find(|w| w["code"] == "tissue-cut-off");
+    let told = warning.unwrap()["volume_ml"].as_f64().unwrap();
+    let volume = |results: &Value| results["meshing"]["volume_ml"].as_f64().unwrap();
+    let less = volume(&whole) - volume(&part);
+    assert!((told / less - 1.0).abs() < 0.1, "{told} of {less} ml");
+    let cells = |results: &Value| results["meshing"]["tetrahedra"].as_f64().unwrap();
+    let shares = (cells(&part) / cells(&whole), volume(&part) / volume(&whole));
+    assert!((shares.0 / shares.1 - 1.0).abs() < 0.15, "{shares:?}");
+    let fixed = |results: &Value| results["meshing"]["node_sets"]["fixed"].as_u64().unwrap();
+    assert!(fixed(&part) > 0, "what is left ends in nodes that are held");
+    asked.as_object_mut().unwrap().remove("osteotomy");
+    let problem = server.job(&asked).await.problem(422, "unknown-segment");
+    assert_eq!(problem["errors"][0]["pointer"], "/region/around_segments_mm");
+}
+
 #[tokio::test]
 async fn what_cannot_be_meshed_is_refused_with_its_place() {
     let server = Server::start();
@@ -89,4 +158,144 @@ async fn what_cannot_be_meshed_is_refused_with_its_place() {
     no_bone["osteotomy"]["cuts"][0]["point_mm"] = json!([60, 55, -500]);
     let job = ended(&server, &no_bone).await;
     assert_eq!(job["error"]["type"], "segment-not-found", "{job}");
+    assert_eq!(job["error"]["errors"][0]["pointer"], "/spec/osteotomy/segments/0", "{job}");
+    let mut beside = spec(&scan);
+    beside["osteotomy"]["segments"][0]["seeds_mm"] = json!([[60, 55, 50], [1, 1, 1]]);
+    let job = ended(&server, &beside).await;
+    let told = &job["error"]["errors"][0]["pointer"];
+    assert_eq!(told, "/spec/osteotomy/segments/0/seeds_mm/1", "{job}");
+}
+
+async fn surface(server: &Server, ball: SampleBall) -> String {
+    let kept = server.upload(ball_stl(ball)).await.expect(StatusCode::CREATED);
+    kept["id"].as_str().unwrap().to_owned()
+}
+
+#[tokio::test]
+async fn surfaces_become_a_case_by_cuts_or_as_segments() {
+    let server = Server::start();
+    let [skin, bone] = [surface(&server, SKIN_BALL).await, surface(&server, BONE_BALL).await];
+    let cut = json!({"kind": "mesh", "surfaces": {"skin": skin, "bone": bone}, "frame": "LPS",
+        "osteotomy": half(), "size": {"tetrahedra": 20_000}});
+    let job = ended(&server, &cut).await;
+    assert_eq!(job["status"], "successful", "{job}");
+    let made = &job["results"]["meshing"];
+    let volume = made["volume_ml"].as_f64().unwrap();
+    assert!((volume / 410.5 - 1.0).abs() < 0.02, "{volume}");
+    let half = made["segments"][0]["volume_ml"].as_f64().unwrap();
+    assert!((half / 56.55 - 1.0).abs() < 0.02, "{half}");
+    assert_eq!(made["case"]["frame"], "LPS");
+    let inputs = job["results"]["provenance"]["inputs"].as_array().unwrap();
+    let roles: Vec<&Value> = inputs.iter().map(|input| &input["role"]).collect();
+    assert_eq!(roles, ["skin", "bone"]);
+
+    let bones = json!([{"name": "jaw", "mesh": bone}]);
+    let given = json!({"kind": "mesh", "surfaces": {"skin": skin, "bones": bones},
+        "size": {"tetrahedra": 20_000}});
+    let job = ended(&server, &given).await;
+    let made = &job["results"]["meshing"];
+    let whole = made["segments"][0]["volume_ml"].as_f64().unwrap();
+    assert!((whole / 113.1 - 1.0).abs() < 0.02, "{whole} {job}");
+    assert!(made["node_sets"]["jaw"].as_u64() > Some(300) && made["node_sets"]["fixed"].is_null());
+}
+
+#[tokio::test]
+async fn surfaces_that_bound_no_tissue_are_refused_with_their_place() {
+    let server = Server::start();
+    let [skin, bone] = [surface(&server, SKIN_BALL).await, surface(&server, BONE_BALL).await];
+    let sound = json!({"kind": "mesh", "surfaces": {"skin": skin, "bone": bone}});
+    let refused = async |change: &dyn Fn(&mut Value), at: &str, code: &str| {
+        let mut asked = sound.clone();
+        change(&mut asked);
+        let problem = server.job(&asked).await.problem(422, "validation-failed");
+        let fault = &problem["errors"][0];
+        assert_eq!((&fault["pointer"], &fault["code"]), (&json!(at), &json!(code)), "{problem}");
+    };
+    let named = json!([{"name": "jaw", "mesh": bone}]);
+    refused(&|asked| asked["scan"] = json!(skin), "", "one-of").await;
+    refused(&|asked| asked["surfaces"]["bones"] = named.clone(), "/surfaces", "one-of").await;
+    refused(&|asked| asked["surfaces"]["skin"] = json!("x"), "/surfaces/skin", "unknown-mesh")
+        .await;
+    let thresholds = json!({"skin": -200});
+    refused(&|asked| asked["thresholds_hu"] = thresholds.clone(), "/thresholds_hu", "no-scan")
+        .await;
+    let cut_again = |asked: &mut Value| {
+        asked["surfaces"] = json!({"skin": skin, "bones": named});
+        asked["osteotomy"] = half();
+    };
+    refused(&cut_again, "/osteotomy", "one-of").await;
+    let reserved = |asked: &mut Value| {
+        asked["surfaces"] = json!({"skin": skin, "bones": [{"name": "fixed", "mesh": bone}]});
+    };
+    refused(&reserved, "/surfaces/bones", "bad-name").await;
+
+    // A sixth of its triangles is no skin.
+    let whole = String::from_utf8(ball_stl(SKIN_BALL)).unwrap();
+    let facets: Vec<&str> = whole.split_inclusive("endfacet\n").step_by(6).collect();
+    let sixth = format!("{}endsolid ball\n", facets.concat());
+    let kept = server.upload(sixth.into_bytes()).await.expect(StatusCode::CREATED);
+    let mut asked = sound.clone();
+    asked["surfaces"]["skin"] = kept["id"].clone();
+    let job = ended(&server, &asked).await;
+    assert_eq!(job["error"]["type"], "no-inside", "{job}");
+    assert_eq!(job["error"]["errors"][0]["pointer"], "/spec/surfaces/skin", "{job}");
+}
+
+#[tokio::test]
+async fn a_scan_without_cuts_gives_a_case_whose_bone_is_fixed() {
+    let server = Server::start();
+    let scan = scan(&server).await;
+    let mut asked = spec(&scan);
+    asked.as_object_mut().unwrap().remove("osteotomy");
+    let job = ended(&server, &asked).await;
+    assert_eq!(job["status"], "successful", "{job}");
+    let listed = ask(server.get("/v1/jobs")).await.expect(StatusCode::OK);
+    assert_eq!(listed["items"][0]["id"], job["id"], "{listed}");
+    let case = &job["results"]["meshing"]["case"];
+    let kept = ask(server.post("/v1/cases").json(case)).await.expect(StatusCode::CREATED);
+    assert!(kept["check"]["classes"]["fixed"].as_u64() > Some(300), "{kept}");
+}
+
+#[tokio::test]
+async fn a_cut_beside_all_bone_is_told() {
+    let server = Server::start();
+    let scan = scan(&server).await;
+    let mut asked = spec(&scan);
+    asked["osteotomy"]["cuts"][0]["point_mm"] = json!([60, 55, 500]);
+    let beside = ended(&server, &asked).await;
+    let told = |job: &Value| {
+        let warnings = job["results"]["warnings"].as_array().unwrap().clone();
+        let missed: Vec<Value> =
+            warnings.into_iter().filter(|w| w["code"] == "cut-meets-no-bone").collect();
+        missed
+    };
+    let missed = told(&beside);
+    assert!(missed[0]["detail"].as_str().unwrap().contains("`middle`"), "{beside}");
+    assert!(told(&ended(&server, &spec(&scan)).await).is_empty());
+}
+
+#[tokio::test]
+async fn values_that_are_no_hounsfield_units_are_not_taken_for_a_head() {
+    let server = Server::start();
+    let request = server.post("/v1/meshes").header("content-type", "application/x-nrrd");
+    let all_tissue = ball_ct_with(|_| Some(40));
+    let scan = ask(request.body(all_tissue)).await.expect(StatusCode::CREATED);
+    let asked = json!({"kind": "mesh", "scan": scan["id"], "size": {"tetrahedra": 5000}});
+    let job = ended(&server, &asked).await;
+    assert_eq!(job["error"]["type"], "no-tissue", "{job}");
+    assert!(job["error"]["detail"].as_str().unwrap().contains("outer skin"), "{job}");
+
+    let turned =
+        json!({"kind": "mesh", "scan": scan["id"], "thresholds_hu": {"skin": 250, "bone": -300}});
+    let problem = server.job(&turned).await.problem(422, "validation-failed");
+    assert_eq!(problem["errors"][0]["pointer"], "/thresholds_hu", "{problem}");
+}
+
+#[tokio::test]
+async fn no_segment_is_called_like_a_part_of_the_skin() {
+    let server = Server::start();
+    let mut asked = spec(&scan(&server).await);
+    asked["osteotomy"]["segments"][0]["name"] = json!("skin_chin");
+    let problem = server.job(&asked).await.problem(422, "validation-failed");
+    assert_eq!(problem["errors"][0]["code"], "bad-name", "{problem}");
 }

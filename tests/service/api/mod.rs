@@ -21,6 +21,7 @@ mod idempotency;
 mod images;
 mod jobs;
 mod keep;
+mod meshed_cases;
 mod meshes;
 mod meshing;
 mod openapi;

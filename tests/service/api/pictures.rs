@@ -98,11 +98,18 @@ async fn a_picture_whose_mesh_cannot_be_read_is_one_refusal_and_the_result_stays
     let server = Server::start();
     let case = server.case(&SMALL).await;
     let job = server.job(&spec(&case, 1.0)).await.expect(StatusCode::OK);
-    let (folder, _) = server.terminate();
+    for name in PICTURES {
+        assert_eq!(picture(&server, &job, name).await.status, StatusCode::OK);
+    }
     let skin = job["results"]["files"].as_array().unwrap().iter();
     let skin = skin.into_iter().find(|file| file["name"] == "skin.vtp").unwrap();
-    let place = find(folder.path(), skin["sha256"].as_str().unwrap()).expect("the stored skin");
+    let blobs = server.path().join("blobs");
+    let place = find(&blobs, skin["sha256"].as_str().unwrap()).expect("the stored skin");
     fs::write(&place, b"damaged").unwrap();
+    // What was drawn is kept, and not drawn again.
+    let kept = picture(&server, &job, "displacement.svg").await;
+    assert_eq!(kept.status, StatusCode::OK);
+    let (folder, _) = server.terminate();
     let server = Server::start_in(folder, &["--workers", "0"]);
     picture(&server, &job, "displacement.svg").await.problem(500, "internal");
     assert_eq!(picture(&server, &job, "classes.svg").await.status, StatusCode::OK);

@@ -204,6 +204,12 @@ async fn thresholds_and_time_decide_the_outcome() {
     // The first row may have begun within the millisecond, the second never has.
     let last = &rows[1];
     assert_eq!((&last["status"], &last["error"]["type"]), (&json!("not-run"), &json!("not-run")));
+
+    // Rows that were not run are not kept for another threshold.
+    spec["thresholds"] = json!({"p95_mm": 49.0});
+    let again = done(&server, &spec).await;
+    let found = report(&server, &again, "").await.expect(StatusCode::OK);
+    assert_eq!(found.get("rows_of"), None);
 }
 
 #[tokio::test]

@@ -348,3 +348,25 @@ async fn a_job_that_keeps_meshes_takes_a_key_that_may_write() {
     assert_eq!(refused.problem(403, "forbidden-scope")["required_scope"], "write");
     hospital.post(&owner, "/v1/jobs", &job).await.expect(StatusCode::CREATED);
 }
+
+#[tokio::test]
+async fn a_plan_is_applied_by_the_tenant_of_its_case_until_the_key_is_revoked() {
+    let hospital = Hospital::open();
+    let (key, other) = (hospital.key("a", &ALL).await, hospital.key("b", &ALL).await);
+    let form = hospital.server.post("/v1/cases").bearer_auth(&key);
+    let case = ask(form.multipart(SMALL.form(&SMALL.case()))).await.expect(StatusCode::CREATED);
+    let case = case["id"].as_str().unwrap();
+    let path = format!("/v1/cases/{case}/response/apply");
+    let plan = json!({"plan": {"segments": [{"name": "bone", "translation_mm": [1, 0, 0]}]}});
+    hospital.post(&key, &path, &plan).await.problem(404, "response-not-built");
+    let job = hospital.server.post("/v1/jobs").bearer_auth(&key).header("prefer", "wait=30");
+    let job = ask(job.json(&json!({"kind": "response", "case": case}))).await;
+    let job = job.expect(StatusCode::OK);
+    let applied = hospital.post(&key, &path, &plan).await;
+    assert_eq!(applied.expect(StatusCode::OK)["job"], job["id"]);
+    assert_eq!(hospital.post(&other, &path, &plan).await.status, StatusCode::NOT_FOUND);
+    let id = key.split('_').nth(1).unwrap();
+    let revoked = hospital.send(&key, Method::DELETE, &format!("/v1/keys/{id}"), None).await;
+    assert!(revoked.status.is_success());
+    hospital.post(&key, &path, &plan).await.problem(401, "unauthorized");
+}

@@ -10,7 +10,7 @@ use crate::processes::until;
 
 /// It takes a while to be read.
 const LARGE: Block = Block { cells: [44, 44, 30] };
-const UPLOADS: usize = 20;
+const UPLOADS: usize = 12;
 const WAITING: &str = "facies_http_requests_waiting{for=\"parse\"}";
 
 fn upload(hospital: &Hospital, key: &str, bytes: Vec<u8>) -> RequestBuilder {

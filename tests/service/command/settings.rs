@@ -26,7 +26,7 @@ fn a_wrong_setting_stops_the_start_with_one_line_and_78() {
     for (arguments, named) in [
         (["--workers", "many"], "workers"),
         (["--upload-mib", "0"], "upload-mib"),
-        (["--heartbeat-s", "2"], "heartbeat-s"),
+        (["--heartbeat-s", "60"], "heartbeat-s"),
         (["--log-format", "xml"], "log-format"),
         (["--log-level", "=="], "log-level"),
         (["--api-key", "short"], "api-key"),

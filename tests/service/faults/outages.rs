@@ -47,7 +47,7 @@ async fn one_who_writes_to_the_embedded_database_is_waited_for() {
     says(&mut writer, "BEGIN IMMEDIATE").await;
     let request = server.post("/v1/jobs").json(&spec(&case, 1.0));
     let posting = tokio::spawn(request.send());
-    for _ in 0..20 {
+    for _ in 0..5 {
         ask(server.get("/v1/jobs")).await.expect(StatusCode::OK);
     }
     assert!(!posting.is_finished());

@@ -1,29 +1,32 @@
 //! Things that break under the service: nothing accepted is lost, nothing half done is left.
 
+use std::path::Path;
+
 use reqwest::StatusCode;
-use serde_json::{Value, json};
+use serde_json::json;
 use tokio::io::AsyncWriteExt;
 use tokio::net::TcpStream;
 
-use crate::helpers::{Block, SMALL, Server, ask, spec};
+use crate::helpers::{SMALL, Server, ask, spec};
+use crate::invariants::{MEDIUM, accepted, tagged};
+use crate::processes::{faulty, until};
 
-/// Solved in seconds, so that a test can meet its job at work.
-const LARGE: Block = Block { cells: [44, 44, 30] };
+/// Keeps a job at work until it is told to stop, so that a test meets it there.
+const HELD: &str = "solve:iteration:3:hold:attempt=1:tag=slow";
 
-async fn accepted(server: &Server, spec: &Value) -> String {
-    let job = ask(server.post("/v1/jobs").json(spec)).await.expect(StatusCode::CREATED);
-    job["id"].as_str().unwrap().to_owned()
+/// Files under way.
+fn temporary(folder: &Path) -> usize {
+    std::fs::read_dir(folder.join("tmp")).unwrap().count()
 }
 
 #[tokio::test]
 async fn a_killed_server_loses_no_job_and_finishes_it_once() {
-    let server = Server::start();
-    let case = server.case(&LARGE).await;
-    let id = accepted(&server, &spec(&case, 2.0)).await;
-    assert_eq!(server.started(&id).await["status"], "running");
+    let server = faulty(HELD, &[]);
+    let case = server.case(&MEDIUM).await;
+    let id = accepted(&server, &tagged(&case, 2.0, "slow")).await;
+    until("the attempt is at work", async || (temporary(server.path()) == 1).then_some(())).await;
     let folder = server.kill();
-    let temporary = || std::fs::read_dir(folder.path().join("tmp")).unwrap().count();
-    assert_eq!(temporary(), 1, "the attempt was at work");
+    assert_eq!(temporary(folder.path()), 1, "the attempt was at work");
 
     let server = Server::start_in(folder, &[]);
     let job = server.ended(&id).await;
@@ -38,16 +41,15 @@ async fn a_killed_server_loses_no_job_and_finishes_it_once() {
             file["sha256"].as_str().unwrap()
         );
     }
-    let left = std::fs::read_dir(server.path().join("tmp")).unwrap().count();
-    assert_eq!(left, 0, "the files of the first attempt are gone");
+    assert_eq!(temporary(server.path()), 0, "the files of the first attempt are gone");
 }
 
 #[tokio::test]
 async fn a_dismissed_job_frees_its_worker() {
-    let server = Server::start_with(&["--workers", "1"]);
-    let large = server.case(&LARGE).await;
+    let server = faulty(HELD, &["--workers", "1"]);
+    let large = server.case(&MEDIUM).await;
     let small = server.case(&SMALL).await;
-    let id = accepted(&server, &spec(&large, 2.0)).await;
+    let id = accepted(&server, &tagged(&large, 2.0, "slow")).await;
     assert_eq!(server.started(&id).await["status"], "running");
     let dismissed = ask(server.delete(&format!("/v1/jobs/{id}"))).await.expect(StatusCode::OK);
     assert_eq!(dismissed["status"], "dismissed");
@@ -62,7 +64,7 @@ async fn a_dismissed_job_frees_its_worker() {
 #[tokio::test]
 async fn a_job_over_its_budget_of_time_fails_and_says_so() {
     let server = Server::start_with(&["--workers", "1"]);
-    let case = server.case(&LARGE).await;
+    let case = server.case(&MEDIUM).await;
     let mut hurried = spec(&case, 2.0);
     hurried["budget"] = json!({"wall_s": 0.001});
     let id = accepted(&server, &hurried).await;
@@ -75,9 +77,9 @@ async fn a_job_over_its_budget_of_time_fails_and_says_so() {
 
 #[tokio::test]
 async fn a_server_told_to_stop_gives_its_job_to_the_next() {
-    let server = Server::start_with(&["--grace-s", "0"]);
-    let case = server.case(&LARGE).await;
-    let id = accepted(&server, &spec(&case, 2.0)).await;
+    let server = faulty(HELD, &["--grace-s", "0"]);
+    let case = server.case(&MEDIUM).await;
+    let id = accepted(&server, &tagged(&case, 2.0, "slow")).await;
     assert_eq!(server.started(&id).await["status"], "running");
     let (folder, ended) = server.terminate();
     assert!(ended);
@@ -101,7 +103,6 @@ async fn an_upload_that_breaks_off_leaves_nothing() {
     let folder = server.kill();
     let server = Server::start_in(folder, &[]);
     let blobs = std::fs::read_dir(server.path().join("blobs")).unwrap().count();
-    let temporary = std::fs::read_dir(server.path().join("tmp")).unwrap().count();
-    assert_eq!((blobs, temporary), (0, 0));
+    assert_eq!((blobs, temporary(server.path())), (0, 0));
     server.upload(bytes).await.expect(StatusCode::CREATED);
 }

@@ -65,7 +65,7 @@ struct Slot {
 
 async fn slot() -> Slot {
     let (folder, store) = store().await;
-    let settings = [("workers", "1"), ("lease-s", "1"), ("heartbeat-s", "0.1")];
+    let settings = [("workers", "1"), ("lease-s", "3"), ("heartbeat-s", "0.1")];
     let config = Config::new(|name| {
         let found = settings.iter().find(|(key, _)| *key == name);
         found.map(|(_, value)| (*value).to_owned())
@@ -169,7 +169,7 @@ async fn a_long_job_keeps_its_lease() {
     let id = slot.accept("until stopped").await;
     let first = slot.starts(&id).await;
     // Two leases later by the clock of the database.
-    let later = slot.reaches(&id, |job| job.updated > first.updated + 2000).await;
+    let later = slot.reaches(&id, |job| job.updated > first.updated + 6000).await;
     assert_eq!((later.status, later.attempt), (JobStatus::Running, 1));
     slot.store.dismiss(&id).await.unwrap();
     slot.stop(LONG).await;

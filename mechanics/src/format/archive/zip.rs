@@ -100,11 +100,11 @@ impl<'a> Archive<'a> {
             let what = "files in an archive";
             return Err(FormatError::Limits { what, declared: end.files, limit: MOST_FILES });
         }
-        let within = bytes.get(end.directory as usize..).unwrap_or_default();
-        let directory = within.get(..end.directory_bytes as usize).unwrap_or_default();
-        if directory.len() as u64 != end.directory_bytes {
-            return Err(bad(end.directory, "the directory reaches beyond the end of the archive"));
-        }
+        let within = bytes.get(end.directory as usize..);
+        let directory = within.and_then(|within| within.get(..end.directory_bytes as usize));
+        let directory = directory.ok_or_else(|| {
+            bad(end.directory, "the directory reaches beyond the end of the archive")
+        })?;
         let mut cursor = Cursor::new(FORMAT, directory);
         let mut entries = Vec::new();
         let mut budget = limits.image_budget(bytes.len());

@@ -5,6 +5,7 @@ pub mod cell_stiffness;
 pub mod displacement;
 pub mod displacement_pressure;
 pub mod edge_nodes;
+pub mod finite_strain;
 pub mod loads;
 pub mod mass_tensor;
 pub mod membrane;

@@ -1,6 +1,6 @@
 //! Surfaces damaged on purpose, held against the undamaged one: the same inside, or refused by name.
 
-use mechanics::domain::{Assessment, Domain, SurfaceDomain, SurfaceDomainError};
+use mechanics::domain::{Assessment, Domain, SurfaceDomain, SurfaceDomainError, SurfaceName};
 use mechanics::mesh::{TriangleSurface, Vector};
 
 use super::{part, sphere, torus};
@@ -274,7 +274,7 @@ fn coordinates_that_are_no_place_are_refused_by_name() {
     let mut surface = sound();
     surface.triangles[3][1] = 6400;
     let wanted = SurfaceDomainError::Corner {
-        surface: "bone 1".to_owned(),
+        surface: SurfaceName::Bone(0),
         triangle: 3,
         point: 6400,
         points: 6400,

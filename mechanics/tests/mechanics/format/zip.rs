@@ -34,6 +34,12 @@ fn an_archive_without_an_image_is_no_format_that_is_read() {
         assert!(error_of(&archive).contains("without a DICOM file"), "{}", error_of(&archive));
     }
     assert!(error_of(b"PK\x03\x04abc").contains("ends before its directory"));
+    // Nothing of it lies there, and that much there is.
+    let mut beyond = b"PK\x03\x04\x14\0PK\x05\x06".to_vec();
+    beyond.extend([0; 12]);
+    beyond.extend(1091_u32.to_le_bytes());
+    beyond.extend([0; 2]);
+    assert!(error_of(&beyond).contains("beyond the end"), "{}", error_of(&beyond));
 }
 
 #[test]

@@ -1,3 +1,4 @@
 //! Laws of one material point.
 
 pub mod anisotropy;
+mod hyperelastic;

@@ -1,5 +1,6 @@
 //! Meshes of bodies whose volume, surface and folds are known.
 
+mod damage;
 mod held;
 mod refused;
 mod scenes;

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use mechanics::domain::Boundary;
 use mechanics::mesh::{SurfaceSearch, Vector};
-use mechanics::meshing::MeshingSettings;
+use mechanics::meshing::{MeshingSettings, SizeField};
 
 use super::domains::{Body, ball, balls, block, shell, torus};
 use super::{assert_sound, meshed, off_sphere, on_sphere, surface, uniform};
@@ -43,6 +43,25 @@ fn hill_climbing_brings_smooth_bodies_above_twenty_degrees() {
         // Above thirty degrees a cell is good, and may lose some to its neighbours.
         let raw = tissue.report.raw_angles.smallest;
         assert!(angles[0] > raw.min(30.0) - 1e-9, "{} after {raw}", angles[0]);
+    }
+}
+
+#[test]
+fn hill_climbing_keeps_the_volume_of_bodies_with_ridges() {
+    let ridged = |width: f64| {
+        let height = move |x: &Vector| 3.0 * (x.x / width).sin() * (x.y / width).sin();
+        Body::skin(30.0, move |x| 0.4 * (24.0 - x.norm() + height(x)))
+    };
+    let finer = SizeField { at_boundary: Some(4.0), ..SizeField::graded(2.0, 8.0) };
+    let finer = MeshingSettings { size: finer, ..MeshingSettings::default() };
+    for width in [3.0, 4.5] {
+        for settings in [uniform(4.0), finer.clone()] {
+            let [before, after] = [0, 8].map(|sweeps| {
+                let settings = MeshingSettings { sweeps, ..settings.clone() };
+                meshed(&ridged(width), &settings).report.volume
+            });
+            assert!((after / before - 1.0).abs() < 2e-3, "{width}: {before} {after}");
+        }
     }
 }
 

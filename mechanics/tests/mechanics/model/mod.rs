@@ -1,6 +1,7 @@
 //! Models: springs, mass-tensors, splines, membranes, and the order of convergence.
 
 mod convergence;
+mod finite_strain;
 mod mass_spring;
 mod mass_tensor;
 mod membrane;

@@ -1,0 +1,69 @@
+// A file on its way to the service, with its progress. `fetch` tells none in a browser, so that a page sends the file by
+// XMLHttpRequest; elsewhere it goes as a stream, whose pieces are counted as they are taken.
+
+/** How far a file is sent; `progress` goes from 0 to 100. */
+export interface Upload {
+  phase: "upload";
+  sent_bytes: number;
+  total_bytes: number;
+  progress: number;
+}
+export type Uploading = (upload: Upload) => unknown;
+
+const PIECE_BYTES = 1 << 16;
+
+/** A request by the method POST whose body is a file. */
+export interface Posted {
+  address: string;
+  headers: Record<string, string>;
+  file: Blob;
+}
+
+/** The answer to a request; `uploading` is told of the file piece by piece. */
+export function post(posted: Posted, uploading: Uploading): Promise<Response> {
+  const { file } = posted;
+  const tell = (sent: number) => {
+    const progress = Math.floor((100 * sent) / Math.max(file.size, 1));
+    uploading({ phase: "upload", sent_bytes: sent, total_bytes: file.size, progress });
+  };
+  return typeof XMLHttpRequest === "undefined" ? byStream(posted, tell) : byPage(posted, tell);
+}
+
+function byStream({ address, headers, file }: Posted, tell: (sent: number) => void): Promise<Response> {
+  let sent = 0;
+  const body = new ReadableStream<Uint8Array>({
+    async pull(pieces) {
+      if (sent === file.size) return pieces.close();
+      const piece = await file.slice(sent, sent + PIECE_BYTES).arrayBuffer();
+      pieces.enqueue(new Uint8Array(piece));
+      sent += piece.byteLength;
+      tell(sent);
+    },
+  });
+  // A body that is a stream has to say that its answer comes afterwards, a member that types of `fetch` may not have.
+  const request = { method: "POST", headers, body, duplex: "half" } as RequestInit;
+  return fetch(address, request);
+}
+
+function byPage({ address, headers, file }: Posted, tell: (sent: number) => void): Promise<Response> {
+  return new Promise((resolve, reject) => {
+    const request = new XMLHttpRequest();
+    request.open("POST", address);
+    request.responseType = "blob";
+    for (const [name, value] of Object.entries(headers)) request.setRequestHeader(name, value);
+    request.upload.onprogress = ({ loaded }) => tell(loaded);
+    request.onerror = () => reject(new TypeError("the service is out of reach"));
+    request.onload = () => resolve(answer(request));
+    request.send(file);
+  });
+}
+
+/** What a page was answered, as `fetch` would hand it over. */
+function answer(request: XMLHttpRequest): Response {
+  const headers = new Headers();
+  for (const line of request.getAllResponseHeaders().trim().split(/[\r\n]+/)) {
+    const [name, ...value] = line.split(": ");
+    if (name) headers.append(name, value.join(": "));
+  }
+  return new Response(request.response as Blob, { status: request.status, headers });
+}

@@ -1,0 +1,90 @@
+//! Bone between surfaces, parted into segments, and what of the surfaces was mended.
+//!
+//! Cuts part the depth of bone on a grid ([`BoneDepths`]) as they part the values of a scan: where bones touch, the way through
+//! the deeper bone wins. Clipping triangles instead would need surfaces without open edges, which those of real heads have.
+
+use super::{AnatomyError, PartedBone, parted};
+use crate::domain::{Assessment, BoneDepths, SurfaceDomain, SurfaceName};
+use crate::mesh::{TriangleSurface, Warning};
+use crate::osteotomy::Osteotomy;
+use crate::osteotomy::bone_image::BoneImage;
+use crate::osteotomy::labelling::label_given;
+
+/// Volumes that differ by more, as a share, are told: a doubled surface has twice the volume of its body.
+const SAME_VOLUME: f64 = 0.02;
+/// More of the inside than this is told to be uncertain.
+const CERTAIN: f64 = 1e-3;
+
+/// Parts all bone of a body between surfaces as an osteotomy says.
+pub fn part_by_cuts(
+    domain: &SurfaceDomain,
+    osteotomy: &Osteotomy,
+) -> Result<PartedBone, AnatomyError> {
+    let depths = domain.bone_depths();
+    parted(&BoneImage { image: &depths.image, threshold: 0.0 }, osteotomy)
+}
+
+/// Takes each bone of a body between surfaces as the segment of its number.
+pub fn take_as_segments(
+    domain: &SurfaceDomain,
+    bones: &[&TriangleSurface],
+    segments: &Osteotomy,
+) -> Result<PartedBone, AnatomyError> {
+    let BoneDepths { image, deepest } = domain.bone_depths();
+    let bone = BoneImage { image: &image, threshold: 0.0 };
+    let labelled = label_given(&bone, segments, |voxel| usize::from(deepest[voxel]))?;
+    let surfaces = bones.iter().map(|&bone| bone.clone()).collect();
+    Ok(PartedBone { labelled, surfaces, teeth: None })
+}
+
+/// What was mended of the surfaces of a body, and what of them could not be: a warning for each that is not whole.
+pub fn mended(domain: &SurfaceDomain) -> Vec<Warning> {
+    let bones = (0..domain.assessments().len()).map(SurfaceName::Bone);
+    let names = std::iter::once(SurfaceName::Skin).chain(bones);
+    names.zip(domain.assessments()).filter_map(|(name, found)| warning(name, found)).collect()
+}
+
+fn warning(name: SurfaceName, found: &Assessment) -> Option<Warning> {
+    let findings = findings(found);
+    if findings.is_empty() {
+        return None;
+    }
+    let warning = Warning::new("surface-mended", format!("{name}: {}", findings.join(", ")));
+    let mending = &found.mending;
+    Some(
+        warning
+            .with("degenerate", mending.degenerate as f64)
+            .with("duplicates", mending.duplicates as f64)
+            .with("turned", mending.turned as f64)
+            .with("open_edges", found.open_edges as f64)
+            .with("winding_number", found.level)
+            .with("uncertain", found.uncertain),
+    )
+}
+
+fn findings(found: &Assessment) -> Vec<String> {
+    let mending = &found.mending;
+    let counts = [
+        (mending.degenerate, "triangles without an area left out"),
+        (mending.duplicates, "triangles left out that stood there before"),
+        (mending.turned, "triangles turned to the side of those around them"),
+        (found.open_edges, "open edges closed by the winding number"),
+    ];
+    let counts = counts.into_iter().filter(|(count, _)| *count > 0);
+    let mut findings: Vec<String> = counts.map(|(count, what)| format!("{count} {what}")).collect();
+    let ml = |mm3: f64| mm3 / 1000.0;
+    if mending.was_inverted {
+        findings.push("all of it was inside out".to_owned());
+    }
+    if found.level < 1.0 {
+        findings.push(format!("the winding number inside is {:.2}, not 1", found.level));
+    }
+    if found.uncertain > CERTAIN {
+        findings.push(format!("{:.1} % of the inside is uncertain", 100.0 * found.uncertain));
+    }
+    if (found.volume_of_triangles / found.volume - 1.0).abs() > SAME_VOLUME {
+        let (triangles, body) = (ml(found.volume_of_triangles), ml(found.volume));
+        findings.push(format!("its triangles enclose {triangles:.1} ml, the body {body:.1} ml"));
+    }
+    findings
+}

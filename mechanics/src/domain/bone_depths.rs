@@ -1,0 +1,99 @@
+//! Bone on a grid: how deep each voxel lies in the surfaces of bone, for what parts bone voxel by voxel.
+
+use rayon::prelude::*;
+
+use super::flood::place;
+use super::shell::Shell;
+use super::surface::SurfaceDomain;
+use crate::image::distance::nearest_marked;
+use crate::image::{ImageVolume, Placement, Voxels};
+use crate::mesh::Vector;
+
+/// Voxels of the box of all bone, at most.
+const MOST_VOXELS: f64 = 1.5e6;
+/// Edges of voxels are no shorter, in mm.
+const FINEST: f64 = 1.0;
+/// By how much edges grow until voxels are few enough.
+const COARSER: f64 = 1.02;
+/// Within so many edges of voxels from a surface depths are exact. Farther outside they are not told apart.
+const NEAR: f64 = 2.0;
+
+/// Bone between surfaces on a grid.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BoneDepths {
+    /// From each voxel to the nearest surface in mm, to half a voxel: positive in bone, no less than two voxels
+    /// below zero.
+    pub image: ImageVolume,
+    /// The number of the bone in which each voxel lies deepest.
+    pub deepest: Vec<u16>,
+}
+
+/// The grid of the voxels.
+struct Grid {
+    low: Vector,
+    edge: f64,
+    size: [usize; 3],
+}
+
+impl SurfaceDomain {
+    /// The depths of its bones on a grid of cubes about all of them. Without bones those of one far outside.
+    pub fn bone_depths(&self) -> BoneDepths {
+        let boxes = self.bones.iter().map(|bone| bone.tree.bounds());
+        let around = boxes.reduce(|(low, high), (a, b)| (low.inf(&a), high.sup(&b)));
+        let grid = Grid::around(around.unwrap_or_default());
+        let count: usize = grid.size.iter().product();
+        let near = NEAR * grid.edge;
+        let deepest = |voxel: usize| -> (f32, u16) {
+            let point = grid.centre(voxel);
+            let depths = self.bones.iter().map(|bone| depth(bone, &point, near));
+            let numbered = depths.zip(0u16..);
+            let most = numbered.reduce(|most, one| if one.0 > most.0 { one } else { most });
+            most.map_or((-1.0, 0), |(depth, bone)| (depth as f32, bone))
+        };
+        let (mut depths, deepest): (Vec<f32>, Vec<u16>) =
+            (0..count).into_par_iter().map(deepest).unzip();
+        deepen(&mut depths, &grid, near);
+        let steps = [Vector::x(), Vector::y(), Vector::z()].map(|axis| axis * grid.edge);
+        let placement = Placement { origin: grid.low, steps };
+        let image = ImageVolume::new(grid.size, placement, Voxels::F32(depths));
+        BoneDepths { image: image.expect("cubes of finite depths are an image"), deepest }
+    }
+}
+
+impl Grid {
+    /// With two voxels more on each side, so that all bone ends within.
+    fn around((low, high): (Vector, Vector)) -> Grid {
+        let size = |edge: f64| (high - low).map(|x| (x / edge).ceil() + 4.0);
+        let mut edge = FINEST;
+        while size(edge).product() > MOST_VOXELS {
+            edge *= COARSER;
+        }
+        let size = size(edge).map(|count| count as usize);
+        Grid { low: low.add_scalar(-2.0 * edge), edge, size: size.into() }
+    }
+
+    fn centre(&self, voxel: usize) -> Vector {
+        self.low + Vector::from(place(voxel, self.size).map(|n| n as f64)) * self.edge
+    }
+}
+
+/// How deep a point lies in a bone, in mm, from `-near` to `near`.
+fn depth(bone: &Shell, point: &Vector, near: f64) -> f64 {
+    let side = if bone.value(point) > 0.0 { 1.0 } else { -1.0 };
+    if !bone.tree.has_within(point, near) {
+        return side * near;
+    }
+    let nearest = bone.tree.nearest(point, |_| true);
+    side * nearest.map_or(near, |nearest| nearest.distance.min(near))
+}
+
+/// Depths of `near` and more: to the nearest voxel outside, less its own way to the surface.
+fn deepen(depths: &mut [f32], grid: &Grid, near: f64) {
+    let outside = nearest_marked(grid.size, [grid.edge; 3], |voxel| depths[voxel] <= 0.0);
+    for (voxel, outside) in outside.iter().enumerate() {
+        if depths[voxel] >= near as f32 && outside.voxel != u32::MAX {
+            let deeper = outside.distance() as f32 + depths[outside.voxel as usize];
+            depths[voxel] = depths[voxel].max(deeper);
+        }
+    }
+}

@@ -1,0 +1,70 @@
+//! Refusals of surfaces that bound no tissue, each with its surface and its numbers.
+
+use std::fmt;
+
+use super::limit::LimitError;
+
+/// Which of the surfaces of a body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SurfaceName {
+    Skin,
+    /// By its place among the bones, from 0.
+    Bone(usize),
+}
+
+impl fmt::Display for SurfaceName {
+    /// "skin", "bone 1", "bone 2", ...
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            SurfaceName::Skin => formatter.write_str("skin"),
+            SurfaceName::Bone(number) => write!(formatter, "bone {}", number + 1),
+        }
+    }
+}
+
+/// Why surfaces bound no tissue.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SurfaceDomainError {
+    #[error(
+        "{surface}: point {point} has a coordinate {coordinate}; up to 1e6 mm from the origin are possible"
+    )]
+    Coordinate { surface: SurfaceName, point: usize, coordinate: f64 },
+    #[error("{surface}: triangle {triangle} names point {point} of {points}")]
+    Corner { surface: SurfaceName, triangle: usize, point: u32, points: usize },
+    #[error("{surface}: none of {triangles} triangles has an area")]
+    Empty { surface: SurfaceName, triangles: usize },
+    #[error(
+        "{surface}: {triangles} triangles with {open_edges} open edges enclose nothing: no winding number above 0.2"
+    )]
+    NoInside { surface: SurfaceName, triangles: usize, open_edges: usize },
+    #[error(
+        "{surface}: the winding number inside is {level:.2} where a whole surface has 1: too much of it is missing or turned ({open_edges} open edges)"
+    )]
+    Incomplete { surface: SurfaceName, level: f64, open_edges: usize },
+    #[error(
+        "{surface}: {percent:.0} % of the inside is uncertain, with winding numbers between 0.2 and 0.8 ({open_edges} open edges, {pieces} pieces)"
+    )]
+    Uncertain { surface: SurfaceName, percent: f64, open_edges: usize, pieces: usize },
+    #[error(
+        "{surface}: its triangles have {times:.0} times the area of its box; more than 20 times is no surface of a body"
+    )]
+    Tangled { surface: SurfaceName, times: f64 },
+    #[error(transparent)]
+    Limit(#[from] LimitError),
+}
+
+impl SurfaceDomainError {
+    /// The surface that it is about.
+    pub fn surface(&self) -> Option<SurfaceName> {
+        match self {
+            SurfaceDomainError::Coordinate { surface, .. }
+            | SurfaceDomainError::Corner { surface, .. }
+            | SurfaceDomainError::Empty { surface, .. }
+            | SurfaceDomainError::NoInside { surface, .. }
+            | SurfaceDomainError::Incomplete { surface, .. }
+            | SurfaceDomainError::Uncertain { surface, .. }
+            | SurfaceDomainError::Tangled { surface, .. } => Some(*surface),
+            SurfaceDomainError::Limit(_) => None,
+        }
+    }
+}

@@ -1,0 +1,166 @@
+//! Stress and tangent of a material point from the derivatives of its energy.
+//!
+//! With g_a the gradient of a shape function at rest, k_a = F g_a and h_a = F^-T g_a, the derivatives of the invariants along
+//! a displacement of node a are dI1 = 2 k_a, dI2 = 2 (I1 k_a - B k_a), dJ = J h_a, with B = F F^T, and the second ones
+//!   d2I1 = 2 (g_a . g_b) I,
+//!   d2I2 = 2 (2 k_a k_b^T - k_b k_a^T + (I1 g_a . g_b - k_a . k_b) I - (g_a . g_b) B),
+//!   d2J = J (h_a h_b^T - h_b h_a^T)
+//! (NONLINEAR, section 1, written for any W). The force on node a is V P g_a, the block of nodes a and b
+//! V (sum_i W_i d2I_i + sum_ij W_ij dI_i dI_j^T).
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::{Derivatives, Fibres, Invariants, Law};
+
+/// Fibres at a point: their law and their direction at rest, of length 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Along<'a> {
+    pub law: &'a Fibres,
+    pub direction: Vector3<f64>,
+}
+
+/// A deformed material point.
+#[derive(Clone, Debug)]
+pub struct Point {
+    f: Matrix3<f64>,
+    invariants: Invariants,
+    w: Derivatives,
+    /// J F^-T.
+    cofactor: Matrix3<f64>,
+    /// F F^T.
+    left: Matrix3<f64>,
+    fibres: Option<FibresAt>,
+}
+
+#[derive(Clone, Debug)]
+struct FibresAt {
+    direction: Vector3<f64>,
+    /// F a.
+    turned: Vector3<f64>,
+    energy: f64,
+    first: f64,
+    second: f64,
+}
+
+/// What a point needs of a shape function.
+#[derive(Clone, Copy, Debug)]
+pub struct Corner {
+    g: Vector3<f64>,
+    k: Vector3<f64>,
+    /// dI2 / 2.
+    second: Vector3<f64>,
+    /// dJ.
+    volume: Vector3<f64>,
+    along: f64,
+}
+
+impl Point {
+    /// `f` has a positive determinant.
+    #[inline]
+    pub fn new(law: &Law, fibres: Option<Along>, f: Matrix3<f64>) -> Point {
+        let invariants = Invariants::of(&f);
+        let fibres = fibres.map(|along| {
+            let turned = f * along.direction;
+            let w = along.law.at(turned.norm_squared());
+            let direction = along.direction;
+            FibresAt { direction, turned, energy: w.energy, first: w.first, second: w.second }
+        });
+        Point {
+            w: law.at(&invariants),
+            cofactor: cofactor(&f),
+            left: f * f.transpose(),
+            f,
+            invariants,
+            fibres,
+        }
+    }
+
+    /// Energy density in kPa.
+    pub fn energy(&self) -> f64 {
+        self.w.energy + self.fibres.as_ref().map_or(0.0, |fibres| fibres.energy)
+    }
+
+    /// det F.
+    pub fn volume(&self) -> f64 {
+        self.invariants.j
+    }
+
+    /// First Piola-Kirchhoff stress P = dW/dF in kPa.
+    #[inline]
+    pub fn stress(&self) -> Matrix3<f64> {
+        let w = &self.w;
+        let mut stress = self.f * (2.0 * w.by_i1) + self.cofactor * w.by_j;
+        if w.by_i2 != 0.0 {
+            stress += (self.f * self.invariants.i1 - self.left * self.f) * (2.0 * w.by_i2);
+        }
+        if let Some(fibres) = &self.fibres {
+            stress += fibres.turned * fibres.direction.transpose() * (2.0 * fibres.first);
+        }
+        stress
+    }
+
+    /// For the gradient of a shape function at rest.
+    #[inline]
+    pub fn corner(&self, g: &Vector3<f64>) -> Corner {
+        let k = self.f * g;
+        Corner {
+            g: *g,
+            k,
+            second: k * self.invariants.i1 - self.left * k,
+            volume: self.cofactor * g,
+            along: self.fibres.as_ref().map_or(0.0, |fibres| fibres.direction.dot(g)),
+        }
+    }
+
+    /// d2W / du_a du_b, for each unit of volume.
+    #[inline]
+    pub fn block(&self, a: &Corner, b: &Corner) -> Matrix3<f64> {
+        let w = &self.w;
+        let gg = a.g.dot(&b.g);
+        let by_volume = w.by_j / self.invariants.j;
+        let column = b.volume * (w.by_j_j + by_volume)
+            + b.k * (2.0 * w.by_i1_j)
+            + b.second * (2.0 * w.by_i2_j);
+        let mut block = a.volume * column.transpose() - b.volume * a.volume.transpose() * by_volume;
+        let mut isotropic = 2.0 * w.by_i1 * gg;
+        let first =
+            b.k * (4.0 * w.by_i1_i1) + b.volume * (2.0 * w.by_i1_j) + b.second * (4.0 * w.by_i1_i2);
+        block += a.k * first.transpose();
+        if w.by_i2 != 0.0 || w.by_i1_i2 != 0.0 || w.by_i2_i2 != 0.0 {
+            let second = b.k * (4.0 * w.by_i1_i2)
+                + b.volume * (2.0 * w.by_i2_j)
+                + b.second * (4.0 * w.by_i2_i2);
+            block += a.second * second.transpose();
+            let twice = 2.0 * w.by_i2;
+            block += (a.k * b.k.transpose() * 2.0 - b.k * a.k.transpose() - self.left * gg) * twice;
+            isotropic += twice * (self.invariants.i1 * gg - a.k.dot(&b.k));
+        }
+        if let Some(fibres) = &self.fibres {
+            let both = a.along * b.along;
+            isotropic += 2.0 * fibres.first * both;
+            block += fibres.turned * fibres.turned.transpose() * (4.0 * fibres.second * both);
+        }
+        for i in 0..3 {
+            block[(i, i)] += isotropic;
+        }
+        block
+    }
+}
+
+impl Law {
+    /// Lambda and mu in kPa of the linear law that it agrees with at rest.
+    pub fn at_rest(&self) -> (f64, f64) {
+        let rest = Point::new(self, None, Matrix3::identity());
+        let along = rest.corner(&Vector3::x());
+        let across = rest.block(&rest.corner(&Vector3::y()), &rest.corner(&Vector3::y()));
+        let mu = across[(0, 0)];
+        (rest.block(&along, &along)[(0, 0)] - 2.0 * mu, mu)
+    }
+}
+
+/// J F^-T, without a division.
+#[inline]
+fn cofactor(f: &Matrix3<f64>) -> Matrix3<f64> {
+    let (x, y, z) = (f.column(0), f.column(1), f.column(2));
+    Matrix3::from_columns(&[y.cross(&z), z.cross(&x), x.cross(&y)])
+}

@@ -1,0 +1,237 @@
+//! Finite strain: exact states, the linear limit, the hard block, and what is refused.
+
+use mechanics::boundary::Hold;
+use mechanics::material::hyperelastic::{Law, NeoHookean, SaintVenantKirchhoff};
+use mechanics::mesh::sample::block;
+use mechanics::mesh::{CellShape, Vector, VolumeMesh};
+use mechanics::model::fem::finite_strain::FiniteStrain;
+use mechanics::model::problem::{Equilibrium, LoadCase, ModelError};
+use mechanics::prediction::{Case, Load, Method, Plan, Prediction, Settings};
+use mechanics::progress::{Progress, Unobserved};
+use mechanics::solver::{SolverError, Tolerance};
+use nalgebra::{Matrix3, Rotation3};
+
+use crate::scenes::{StopsAfter, case_of, hold, material, on_the_boundary, set, solve};
+
+/// E 15 kPa.
+fn lame(poisson_ratio: f64) -> (f64, f64) {
+    let mu = 7.5 / (1.0 + poisson_ratio);
+    (2.0 * mu * poisson_ratio / (1.0 - 2.0 * poisson_ratio), mu)
+}
+
+fn neo_hookean(poisson_ratio: f64) -> Law {
+    let (lambda, mu) = lame(poisson_ratio);
+    Law::NeoHookean(NeoHookean { lambda, mu })
+}
+
+fn rest(
+    mesh: &VolumeMesh,
+    law: Law,
+    holds: &[Hold],
+    progress: &dyn Progress,
+) -> Result<Equilibrium, ModelError> {
+    let problem = FiniteStrain {
+        mesh,
+        laws: &[law],
+        law_of_cell: &vec![0; mesh.cells.len()],
+        holds,
+        tolerance: Tolerance { relative_residual: 1e-7, memory_mb: 1000.0 },
+    };
+    let held = holds.iter().map(|hold| *hold.values()).collect();
+    problem.solve(&LoadCase { held, forces: vec![Vector::zeros(); mesh.nodes.len()] }, progress)
+}
+
+/// Holds the nodes that something is said of.
+fn holds(mesh: &VolumeMesh, displacement: impl Fn(&Vector) -> Option<Vector>) -> Vec<Hold> {
+    let nodes = (0..).zip(&mesh.nodes);
+    nodes.filter_map(|(node, x)| displacement(x).map(|u| Hold::at(node, u))).collect()
+}
+
+fn least_det_f(mesh: &VolumeMesh, displacement: &[Vector]) -> f64 {
+    let cells = mechanics::model::fem::strain::deformations(mesh, displacement);
+    cells.iter().map(|cell| cell.det_f).fold(f64::INFINITY, f64::min)
+}
+
+fn nonlinear() -> Settings {
+    Settings { method: Method::FemNonlinear, relative_residual: 1e-11, ..Settings::default() }
+}
+
+#[test]
+fn an_affine_boundary_moves_the_inside_alike_however_large_it_is() {
+    let stretch = Matrix3::new(1.5, 0.4, 0.0, -0.2, 0.8, 0.1, 0.0, 0.3, 1.1);
+    let affine = |x: &Vector| stretch * x - x + Vector::new(3.0, 0.0, -2.0);
+    let mut mesh = block(Vector::new(9.0, 9.0, 9.0), [3, 3, 3], CellShape::Tet4);
+    let plan = on_the_boundary(&mut mesh, affine);
+    let case = case_of(mesh, material(15.0, 0.46));
+    let moved = solve(&case, &plan, &nonlinear());
+    let error = crate::scenes::largest_error(&case.volume, &moved.displacement, affine);
+    assert!(error < 1e-9, "{error}");
+    let det_f = stretch.determinant();
+    assert!(moved.deformation.iter().all(|cell| (cell.det_f - det_f).abs() < 1e-9));
+}
+
+#[test]
+fn tissue_that_is_turned_as_a_whole_stays_as_it_is() {
+    let mesh = block(Vector::new(30.0, 20.0, 10.0), [6, 4, 2], CellShape::Tet4);
+    let turn = Rotation3::from_axis_angle(&Vector::x_axis(), 80_f64.to_radians());
+    let turned = |x: &Vector| turn * x - x + Vector::new(0.0, 12.0, -5.0);
+    let ends = holds(&mesh, |x| (x.x < 1e-9 || x.x > 29.9).then(|| turned(x)));
+    let moved = rest(&mesh, neo_hookean(0.46), &ends, &Unobserved).unwrap();
+    let error = crate::scenes::largest_error(&mesh, &moved.displacement, turned);
+    assert!(error < 1e-5, "{error}");
+    assert!(moved.reactions.iter().all(|force| force.norm() < 1e-3));
+}
+
+/// A jaw lifts the middle of the bottom of a slab.
+fn lifted(by_mm: f64, settings: &Settings) -> Prediction {
+    let mut mesh = block(Vector::new(30.0, 30.0, 10.0), [10, 10, 4], CellShape::Tet4);
+    let bottom = mesh.node_sets["z_min"].clone();
+    let is_jaw = |&node: &u32| {
+        let x = &mesh.nodes[node as usize];
+        (x - Vector::new(15.0, 15.0, 0.0)).amax() < 6.1
+    };
+    let (jaw, rest): (Vec<u32>, Vec<u32>) = bottom.into_iter().partition(is_jaw);
+    mesh.node_sets.insert("jaw".to_owned(), jaw);
+    mesh.node_sets.insert("rest".to_owned(), rest);
+    let case = Case { fixed: vec![set("rest")], ..case_of(mesh, material(15.0, 0.4)) };
+    let up = hold("jaw", [Some(0.3 * by_mm), Some(0.0), Some(by_mm)]);
+    solve(&case, &Plan { prescribed: vec![up], ..Plan::default() }, settings)
+}
+
+fn distance(a: &Prediction, b: &Prediction) -> f64 {
+    let pairs = a.displacement.iter().zip(&b.displacement);
+    pairs.map(|(a, b)| (a - b).norm()).fold(0.0, f64::max)
+}
+
+#[test]
+fn what_linear_elements_leave_out_grows_with_the_square_of_the_movement() {
+    let linear = Settings {
+        element: mechanics::prediction::ElementChoice::Plain,
+        relative_residual: 1e-12,
+        ..Settings::default()
+    };
+    let apart = |mm: f64| distance(&lifted(mm, &linear), &lifted(mm, &nonlinear()));
+    let (small, twice) = (apart(0.02), apart(0.04));
+    assert!(small < 1e-4 && (3.9..4.1).contains(&(twice / small)), "{small} {twice}");
+}
+
+#[test]
+fn a_bar_is_pulled_with_the_force_of_one_material_point() {
+    let mut mesh = block(Vector::new(10.0, 4.0, 4.0), [5, 2, 2], CellShape::Tet4);
+    let corner = |name: &str, axis: usize, mesh: &mut VolumeMesh| {
+        let low =
+            (0..).zip(&mesh.nodes).filter(|(_, x)| x[axis].abs() < 1e-9).map(|(node, _)| node);
+        let low: Vec<u32> = low.collect();
+        mesh.node_sets.insert(name.to_owned(), low);
+    };
+    corner("left", 0, &mut mesh);
+    corner("front", 1, &mut mesh);
+    corner("low", 2, &mut mesh);
+    let case = case_of(mesh, material(15.0, 0.46));
+    let prescribed = vec![
+        hold("left", [Some(0.0), None, None]),
+        hold("front", [None, Some(0.0), None]),
+        hold("low", [None, None, Some(0.0)]),
+        hold("x_max", [Some(5.0), None, None]),
+    ];
+    let pulled = solve(&case, &Plan { prescribed, ..Plan::default() }, &nonlinear());
+    // REMAINING, table T2: 5.359007 kPa and a lateral stretch of .827750 at 1.5, on 16 mm^2.
+    let force = pulled.condition_reactions.iter().find(|one| one.pointer == "/plan/prescribed/3");
+    let force = force.unwrap().force.x;
+    assert!((force - 16.0 * 5.359007).abs() < 1e-4, "{force}");
+    let side = pulled.displacement.iter().map(|u| u.y).fold(0.0, f64::min);
+    assert!((side - 4.0 * (0.827750 - 1.0)).abs() < 1e-5, "{side}");
+}
+
+/// 100 x 100 x 20 mm, a patch of its bottom moved by 26.9 mm and turned by 15 degrees times a share, with or without a free
+/// ring of 25 mm around it (NONLINEAR: blocks B and A).
+fn hard_block(cells: [usize; 3], share: f64, has_ring: bool) -> (VolumeMesh, Vec<Hold>) {
+    let mesh = block(Vector::new(100.0, 100.0, 20.0), cells, CellShape::Tet4);
+    let turn = Rotation3::from_axis_angle(&Vector::y_axis(), (15.0 * share).to_radians());
+    let pivot = Vector::new(50.0, 50.0, 0.0);
+    let held = holds(&mesh, |x| {
+        let outside = [x.x, x.y].map(|v| (35.0 - v).max(v - 65.0).max(0.0));
+        match (x.z.abs() < 1e-9, outside[0].hypot(outside[1])) {
+            (true, 0.0) => {
+                Some(turn * (x - pivot) + pivot - x + Vector::new(25.0, 0.0, 10.0) * share)
+            }
+            (true, distance) if !has_ring || distance > 25.0 => Some(Vector::zeros()),
+            _ => None,
+        }
+    });
+    (mesh, held)
+}
+
+#[test]
+fn the_hard_block_comes_to_rest_and_no_cell_turns_over() {
+    for (poisson_ratio, has_ring, most) in [(0.46, true, 15), (0.49, true, 25), (0.46, false, 25)] {
+        let (mesh, held) = hard_block([20, 20, 4], 1.0, has_ring);
+        let moved = rest(&mesh, neo_hookean(poisson_ratio), &held, &Unobserved).unwrap();
+        let steps = moved.solver.iterations;
+        assert!(steps <= most, "{poisson_ratio} {has_ring}: {steps} steps");
+        assert!(least_det_f(&mesh, &moved.displacement) > 0.1);
+        // The tail is quadratic: the last step takes far more than the one before.
+        let [.., third, second, last] = moved.solver.history[..] else { unreachable!() };
+        assert!(last < 1e-7 && second < 0.05 * third, "{third} {second} {last}");
+    }
+}
+
+#[test]
+fn the_same_block_has_the_same_bits_on_one_thread_and_on_two() {
+    let (mesh, held) = hard_block([20, 20, 4], 0.5, true);
+    let on = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| rest(&mesh, neo_hookean(0.46), &held, &Unobserved).unwrap().displacement)
+    };
+    assert_eq!(on(1), on(2));
+}
+
+#[test]
+fn a_search_that_is_stopped_ends() {
+    let (mesh, held) = hard_block([10, 10, 2], 1.0, true);
+    let stopped = rest(&mesh, neo_hookean(0.46), &held, &StopsAfter::iterations(3));
+    assert!(matches!(stopped, Err(ModelError::Solver(SolverError::Stopped))));
+}
+
+#[test]
+fn bones_that_fold_a_cell_between_them_are_refused_before_anything_is_solved() {
+    let mesh = block(Vector::new(10.0, 10.0, 10.0), [2, 2, 1], CellShape::Tet4);
+    let pressed = |x: &Vector| {
+        let is_top = x.z > 9.0;
+        Some(Vector::new(0.0, 0.0, if is_top { -12.0 } else { 0.0 }))
+    };
+    let refused = rest(&mesh, neo_hookean(0.3), &holds(&mesh, pressed), &StopsAfter::iterations(0));
+    let Err(ModelError::Folded { cell, det_f }) = refused else { panic!("it is not refused") };
+    assert!(cell < mesh.cells.len() && (det_f + 0.2).abs() < 1e-12, "{cell} {det_f}");
+}
+
+#[test]
+fn a_law_that_collapses_is_told_where_it_came_to_a_standstill() {
+    let (lambda, mu) = lame(0.46);
+    let law = Law::SaintVenantKirchhoff(SaintVenantKirchhoff { lambda, mu });
+    let (mesh, held) = hard_block([20, 20, 4], 1.0, true);
+    let Err(ModelError::Standstill { made, least_det_f, .. }) =
+        rest(&mesh, law, &held, &Unobserved)
+    else {
+        panic!("it is no standstill")
+    };
+    assert!((0.05..1.0).contains(&made) && least_det_f > 0.0, "{made} {least_det_f}");
+}
+
+#[test]
+fn a_load_bends_tissue_as_linear_elements_say_where_it_is_small() {
+    let mesh = block(Vector::new(20.0, 6.0, 6.0), [10, 3, 3], CellShape::Tet4);
+    let case = Case { fixed: vec![set("x_min")], ..case_of(mesh, material(15.0, 0.3)) };
+    let plan = Plan {
+        loads: vec![Load::Gravity { acceleration: Vector::new(0.0, 0.0, -1e-6) }],
+        ..Plan::default()
+    };
+    let linear = Settings {
+        element: mechanics::prediction::ElementChoice::Plain,
+        relative_residual: 1e-12,
+        ..Settings::default()
+    };
+    let [straight, bent] = [linear, nonlinear()].map(|settings| solve(&case, &plan, &settings));
+    let most = straight.displacement.iter().map(|u| u.norm()).fold(0.0, f64::max);
+    assert!(most > 0.0 && distance(&straight, &bent) < 1e-3 * most);
+}

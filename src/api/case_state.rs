@@ -1,0 +1,139 @@
+//! State of a case: whole, being meshed, or without a mesh because its meshing failed.
+
+use serde::Serialize;
+use serde_json::{Value, json};
+use utoipa::ToSchema;
+
+use super::error::{ApiError, ApiResult};
+use crate::schema::case::meshed::CaseBody;
+use crate::schema::job::{ErrorClass, JobErrorDocument, JobStatus};
+use crate::schema::link::Link;
+use crate::schema::wire::problem::Problem;
+use crate::schema::{CaseDocument, ErrorCode};
+use crate::store::{CaseMeshing, CaseRow};
+
+/// Whether a case can be predicted on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ToSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum CaseState {
+    /// It has its mesh.
+    Ready,
+    /// A job makes its mesh; jobs on it wait.
+    Meshing,
+    /// That job made none.
+    Failed,
+}
+
+impl CaseState {
+    pub fn name(self) -> &'static str {
+        match self {
+            CaseState::Ready => "ready",
+            CaseState::Meshing => "meshing",
+            CaseState::Failed => "failed",
+        }
+    }
+}
+
+/// The job that makes the mesh of a case, or has made it.
+#[derive(Serialize, ToSchema)]
+pub struct CaseMeshingView {
+    pub job: String,
+    /// Why there is no mesh, where the case has failed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub error: Option<JobErrorDocument>,
+    pub link: Link,
+}
+
+/// The state of a case whose document was read.
+pub fn state(row: &CaseRow, body: &CaseBody) -> CaseState {
+    let Some(meshing) = &row.meshing else { return CaseState::Ready };
+    match (meshing.status, body) {
+        (Some(JobStatus::Accepted | JobStatus::Running), _) => CaseState::Meshing,
+        // The job may be removed once the case has its mesh.
+        (Some(JobStatus::Successful) | None, CaseBody::Whole(_)) => CaseState::Ready,
+        (_, CaseBody::Whole(_) | CaseBody::ToMesh(_)) => CaseState::Failed,
+    }
+}
+
+pub fn body_of(row: &CaseRow) -> ApiResult<CaseBody> {
+    CaseBody::stored(&row.document).map_err(ApiError::internal)
+}
+
+/// What a case is told by beside its version: the same version may be meshing, and fail.
+pub fn tag_of(row: &CaseRow, state: CaseState) -> String {
+    match state {
+        CaseState::Ready => row.version.to_string(),
+        CaseState::Meshing | CaseState::Failed => format!("{}-{}", row.version, state.name()),
+    }
+}
+
+/// How a case tells of its meshing.
+pub fn meshing_view(meshing: &CaseMeshing, state: CaseState) -> ApiResult<CaseMeshingView> {
+    let error = match state {
+        CaseState::Failed => Some(error_of(meshing)?),
+        CaseState::Ready | CaseState::Meshing => None,
+    };
+    let link = Link {
+        href: format!("/v1/jobs/{}", meshing.job),
+        rel: "via".to_owned(),
+        media_type: "application/json".to_owned(),
+    };
+    Ok(CaseMeshingView { job: meshing.job.clone(), error, link })
+}
+
+fn error_of(meshing: &CaseMeshing) -> ApiResult<JobErrorDocument> {
+    let ended = |how: &str| JobErrorDocument {
+        kind: ErrorCode::Cancelled.name().to_owned(),
+        class: ErrorClass::Cancelled,
+        detail: format!("the meshing was {how} before it made a mesh"),
+        members: serde_json::Map::new(),
+    };
+    match (&meshing.error, meshing.status) {
+        (Some(error), _) => serde_json::from_str(error).map_err(ApiError::internal),
+        (None, None) => Ok(ended("removed")),
+        (None, Some(_)) => Ok(ended("dismissed")),
+    }
+}
+
+/// What a job on a case has of it.
+pub enum CaseOfJob {
+    Whole(Box<CaseDocument>),
+    /// The job that makes its mesh.
+    Waits(String),
+}
+
+/// What a job on this case has of it; refused where there will be no mesh.
+pub fn case_of_job(row: &CaseRow) -> ApiResult<CaseOfJob> {
+    let body = body_of(row)?;
+    let state = state(row, &body);
+    match (state, body, &row.meshing) {
+        (CaseState::Ready, CaseBody::Whole(case), _) => Ok(CaseOfJob::Whole(case)),
+        (CaseState::Meshing, _, Some(meshing)) => Ok(CaseOfJob::Waits(meshing.job.clone())),
+        _ => Err(not_ready(row, state)),
+    }
+}
+
+/// The document of a case that has its mesh.
+pub fn whole(row: &CaseRow) -> ApiResult<CaseDocument> {
+    let body = body_of(row)?;
+    match (state(row, &body), body) {
+        (CaseState::Ready, CaseBody::Whole(case)) => Ok(*case),
+        (state, _) => Err(not_ready(row, state)),
+    }
+}
+
+/// The refusal of what needs a mesh that is not there.
+fn not_ready(row: &CaseRow, state: CaseState) -> ApiError {
+    let Some(meshing) = &row.meshing else { return ApiError::internal("a case without a mesh") };
+    let job = &meshing.job;
+    let error = error_of(meshing).ok().filter(|_| state == CaseState::Failed);
+    let why = match &error {
+        Some(error) => format!("job {job} made none: {}", error.detail),
+        None => format!("job {job} makes it"),
+    };
+    let problem = Problem::new(ErrorCode::CaseNotReady, format!("the case has no mesh: {why}"));
+    let error = error.map_or(Value::Null, |error| json!(error));
+    let problem = problem.with("state", state.name()).with("job", job.as_str());
+    if error.is_null() { problem.into() } else { problem.with("error", error).into() }
+}

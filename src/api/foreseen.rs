@@ -1,0 +1,39 @@
+//! Responses of a case, looked up together with the key of the request that applies a plan to one: two questions to a database
+//! that other processes share would take twice as long, and such a request asks nothing else.
+
+use std::time::{Duration, Instant};
+
+use axum::extract::{MatchedPath, Request};
+
+use super::parameters::id;
+use crate::store::CaseResponses;
+
+const APPLY: &str = "/v1/cases/{id}/response/apply";
+/// A body may take longer to come than what was found holds.
+const FRESH: Duration = Duration::from_secs(1);
+
+/// What was found when the request came.
+#[derive(Clone)]
+pub struct Foreseen {
+    at: Instant,
+    responses: Option<CaseResponses>,
+}
+
+impl Foreseen {
+    /// What is found now; `None` where there is no such case.
+    pub fn now(responses: Option<CaseResponses>) -> Foreseen {
+        Foreseen { at: Instant::now(), responses }
+    }
+
+    /// The responses, unless too much may have changed since; the inner `None` where there was no such case.
+    pub fn fresh(self) -> Option<Option<CaseResponses>> {
+        (self.at.elapsed() < FRESH).then_some(self.responses)
+    }
+}
+
+/// The case to whose response a request applies a plan, if it does.
+pub fn case_of(request: &Request) -> Option<String> {
+    let route = request.extensions().get::<MatchedPath>()?;
+    let case = request.uri().path().split('/').nth(3)?;
+    (route.as_str() == APPLY).then(|| id(case))?
+}

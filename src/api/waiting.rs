@@ -1,0 +1,119 @@
+//! Jobs on a case whose mesh is being made: accepted with what can be checked without it, and claimed once it is there. Their
+//! rows lack the case, which the claim puts in.
+
+use serde_json::{Value, json};
+
+use super::Service;
+use super::accepted::{Accepted, in_spec, require_mesh};
+use super::error::{ApiError, ApiResult};
+use super::parameters::id;
+use crate::jobs::{JobInput, OptimiseInput, PredictInput, ResponseInput};
+use crate::schema::case::document::LengthUnit;
+use crate::schema::wire::canonical::to_value;
+use crate::schema::{
+    CaseDocument, Faults, OptimiseDocument, PlanDocument, PredictDocument, ResponseDocument, hashes,
+};
+use crate::store::NewJob;
+
+/// A case that waits for its mesh, and the job that makes it.
+pub struct Waiting<'a> {
+    pub case: &'a str,
+    pub meshing: String,
+}
+
+impl Waiting<'_> {
+    pub async fn prediction(
+        self,
+        service: &Service,
+        mut plan: PlanDocument,
+        spec: PredictDocument,
+    ) -> ApiResult<NewJob> {
+        check(service, &spec)?;
+        let mut named: Vec<String> =
+            plan.surface_references_mut().into_iter().map(|(_, id)| id.clone()).collect();
+        if let Some(compare_to) = &spec.compare_to {
+            let mesh = &compare_to.actual.mesh;
+            require_mesh(service, "/compare_to/actual/mesh", mesh).await?;
+            named.push(mesh.clone());
+        }
+        let asked = json!({ "plan": to_value(&plan), "spec": spec.content() });
+        let (case, tags) = (to_come(), spec.tags.clone());
+        let input = PredictInput { job: None, queue_s: None, case, plan, spec };
+        self.accept(service, &JobInput::Predict(input), Asked { asked, tags, named }).await
+    }
+
+    pub async fn response(self, service: &Service, spec: ResponseDocument) -> ApiResult<NewJob> {
+        check(service, &spec.to_prediction())?;
+        let mut faults = Faults::default();
+        spec.check(&service.limits, &mut faults);
+        faults.into_result().map_err(in_spec)?;
+        let (asked, tags) = (json!({ "spec": spec.content() }), spec.tags.clone());
+        let input = ResponseInput { job: None, queue_s: None, case: to_come(), spec };
+        let asked = Asked { asked, tags, named: Vec::new() };
+        self.accept(service, &JobInput::Response(input), asked).await
+    }
+
+    pub async fn optimisation(
+        self,
+        service: &Service,
+        mut spec: OptimiseDocument,
+    ) -> ApiResult<NewJob> {
+        check(service, &spec.to_prediction())?;
+        let named = spec.surfaces_mut().into_iter().map(|id| id.clone()).collect();
+        let (asked, tags) = (json!({ "spec": spec.content() }), spec.tags.clone());
+        let input = OptimiseInput { job: None, queue_s: None, case: to_come(), spec };
+        self.accept(service, &JobInput::Optimise(input), Asked { asked, tags, named }).await
+    }
+
+    async fn accept(self, service: &Service, input: &JobInput, of: Asked) -> ApiResult<NewJob> {
+        let Asked { asked, tags, named } = of;
+        // Others are names of bones that the case will have.
+        let mut mesh_ids = Vec::new();
+        for mesh in named.iter().filter_map(|name| id(name)) {
+            if service.store.mesh(&mesh).await?.is_some() {
+                mesh_ids.push(mesh);
+            }
+        }
+        let asked = json!({ "kind": input.kind(), "asked": asked });
+        let accepted = Accepted {
+            case_id: Some(self.case.to_owned()),
+            shared_cases: Vec::new(),
+            spec_hash: hashes::waiting_hash(self.case, &asked),
+            tags,
+            mesh_ids,
+            study: None,
+        };
+        let document = without_case(input)?;
+        let waits_for = Some(self.meshing);
+        Ok(NewJob { document, waits_for, ..accepted.with(input)? })
+    }
+}
+
+/// What a job asks for.
+struct Asked {
+    /// All of it that decides the result, but for the case.
+    asked: Value,
+    tags: Vec<String>,
+    /// Meshes, and bones of the case.
+    named: Vec<String>,
+}
+
+/// Stands for the case until there is one.
+fn to_come() -> CaseDocument {
+    CaseDocument::of_volume("", LengthUnit::Mm)
+}
+
+/// Checks what needs no mesh.
+fn check(service: &Service, spec: &PredictDocument) -> ApiResult<()> {
+    let mut faults = Faults::default();
+    spec.to_settings(&service.limits, &mut faults);
+    Ok(faults.into_result().map_err(in_spec)?)
+}
+
+fn without_case(input: &JobInput) -> ApiResult<String> {
+    let mut document = serde_json::to_value(input).map_err(ApiError::internal)?;
+    for input in document.as_object_mut().into_iter().flat_map(serde_json::Map::values_mut) {
+        input["case"] = Value::Null;
+    }
+    Ok(document.to_string())
+}

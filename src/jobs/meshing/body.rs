@@ -1,0 +1,63 @@
+//! The body that is meshed: a scan, or a skin with bones, with its bone parted.
+
+use std::sync::Arc;
+
+use crate::jobs::failure::JobError;
+use crate::schema::meshing::surfaces::SurfacesDocument;
+use crate::schema::{ErrorCode, Pointer, Problem};
+use mechanics::anatomy::surfaces::{mended, part_by_cuts, take_as_segments};
+use mechanics::anatomy::{AnatomyRules, PartedBone};
+use mechanics::domain::{Domain, SurfaceDomain, SurfaceDomainError, SurfaceName};
+use mechanics::image::ImageVolume;
+use mechanics::mesh::{TriangleSurface, Warning};
+
+/// What was read.
+pub enum Body {
+    Scan(Arc<ImageVolume>),
+    Surfaces(Surfaces),
+}
+
+/// A skin and bones in mm.
+pub struct Surfaces {
+    pub skin: Arc<TriangleSurface>,
+    pub bones: Vec<Arc<TriangleSurface>>,
+    /// Where they stand.
+    pub document: SurfacesDocument,
+}
+
+/// A body ready to be meshed.
+pub struct PartedBody {
+    pub domain: Box<dyn Domain>,
+    pub bone: PartedBone,
+    pub warnings: Vec<Warning>,
+}
+
+impl Surfaces {
+    /// The body between the surfaces, with its bone in segments and what was mended.
+    pub fn part(&self, rules: &AnatomyRules) -> Result<PartedBody, JobError> {
+        let bones: Vec<&TriangleSurface> = self.bones.iter().map(AsRef::as_ref).collect();
+        let domain =
+            SurfaceDomain::new(&self.skin, &bones, &[]).map_err(|error| self.refusal(&error))?;
+        let parted = match &self.document.bone {
+            Some(_) => part_by_cuts(&domain, &rules.osteotomy),
+            None => take_as_segments(&domain, &bones, &rules.osteotomy),
+        };
+        let bone = parted.map_err(JobError::Anatomy)?;
+        let warnings = mended(&domain);
+        Ok(PartedBody { domain: Box::new(domain), bone, warnings })
+    }
+
+    /// With the place of the surface that it is about.
+    fn refusal(&self, error: &SurfaceDomainError) -> JobError {
+        let at = Pointer::root().key("spec").key("surfaces");
+        let at = match error.surface() {
+            None => at,
+            Some(SurfaceName::Skin) => at.key("skin"),
+            Some(SurfaceName::Bone(number)) => {
+                let bones = self.document.bones_at(&at);
+                bones.get(number).map_or(at, |(place, _)| place.clone())
+            }
+        };
+        Problem::at(&at, ErrorCode::NoInside, error.to_string()).into()
+    }
+}

@@ -1,0 +1,81 @@
+//! From a prepared meshing to the model of its tissue.
+
+use super::body::{Body, PartedBody};
+use super::input::PreparedMeshing;
+use crate::jobs::clock::Observed;
+use crate::jobs::failure::JobError;
+use crate::schema::osteotomy::conversion::{refuse_bridges, unfound};
+use crate::schema::{Faults, Pointer};
+use mechanics::anatomy::loose::{loose_bone, without_loose};
+use mechanics::anatomy::region::around_segments;
+use mechanics::anatomy::{Anatomy, AnatomyError, build, part_bone};
+use mechanics::domain::{ImageDomain, ImageDomainError, ImageOptions};
+use mechanics::image::{ImageVolume, scan_report};
+use mechanics::mesh::Warning;
+use mechanics::meshing::MeshingError;
+
+const MM3_IN_ML: f64 = 1000.0;
+
+impl PreparedMeshing {
+    /// The body with its bone in segments; refused where it does not hold them, or a cut leaves a bridge.
+    pub fn part(&self) -> Result<PartedBody, JobError> {
+        let osteotomy = &self.rules.osteotomy;
+        let at = Pointer::root().key("spec").key("osteotomy");
+        let parted = match &self.body {
+            Body::Scan(scan) => self.part_scan(scan).map_err(JobError::Anatomy),
+            Body::Surfaces(surfaces) => surfaces.part(&self.rules),
+        };
+        let body = parted.map_err(|error| match error {
+            JobError::Anatomy(AnatomyError::Bone(error)) => unfound(&error, osteotomy, &at).into(),
+            other => other,
+        })?;
+        let mut faults = Faults::default();
+        refuse_bridges(&body.bone.labelled.bridges, osteotomy, &at, &mut faults);
+        faults.into_result()?;
+        Ok(body)
+    }
+
+    /// With all that is to be told of the scan: its report, bone that is loose, tissue that is left out.
+    fn part_scan(&self, scan: &ImageVolume) -> Result<PartedBody, AnatomyError> {
+        let (report, bone) =
+            rayon::join(|| scan_report(scan, self.frame), || part_bone(scan, &self.rules));
+        let bone = bone?;
+        let mut options = self.rules.image.clone();
+        let margin = self.rules.around_segments_mm;
+        options.limits.extend(margin.and_then(|margin| around_segments(&bone.labelled, margin)));
+        let tissue = without_loose(scan, &bone.labelled, &options);
+        let domain = ImageDomain::new(&tissue.map_err(ImageDomainError::from)?, &options)?;
+        let mut warnings = report.findings;
+        warnings.extend(loose_bone(&bone.labelled));
+        warnings.extend(cut_off(&domain, &options)?);
+        Ok(PartedBody { domain: Box::new(domain), bone, warnings })
+    }
+
+    /// The mesh with its node sets, and all that is to be told of the body and of it.
+    pub fn mesh(&self, body: PartedBody, clock: &Observed) -> Result<Anatomy, JobError> {
+        let PartedBody { domain, bone, warnings } = body;
+        let mut anatomy =
+            build(&*domain, bone, &self.rules, clock).map_err(|error| match error {
+                AnatomyError::Meshing(MeshingError::Cancelled) => clock.stopped(),
+                other => JobError::Anatomy(other),
+            })?;
+        anatomy.warnings.splice(0..0, warnings);
+        Ok(anatomy)
+    }
+}
+
+/// How much tissue the region of interest leaves out.
+fn cut_off(
+    domain: &ImageDomain,
+    options: &ImageOptions,
+) -> Result<Option<Warning>, ImageDomainError> {
+    if options.limits.is_empty() {
+        return Ok(None);
+    }
+    let volume_ml = domain.cut_off(&options.limits)? / MM3_IN_ML;
+    let detail = format!(
+        "{volume_ml:.0} ml of soft tissue lie beyond the region and are left out; what remains ends there as where the \
+         scan ends"
+    );
+    Ok(Some(Warning::new("tissue-cut-off", detail).with("volume_ml", volume_ml)))
+}

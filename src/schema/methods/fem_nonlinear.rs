@@ -1,0 +1,34 @@
+//! Nonlinear finite elements: what is told of them.
+
+use super::document::Description;
+
+/// Its words in `GET /v1/methods`.
+pub(super) fn description() -> Description {
+    Description {
+        title: "neo-Hookean tissue at finite strain, finite elements",
+        assumptions: &[
+            "W = mu/2 (I1 - 3) - mu ln J + lambda/2 ln^2 J with the Lame constants of Young's modulus and Poisson's \
+                ratio: no cell turns inside out, and turning is no stretching",
+            "tetrahedra of first order: above a Poisson ratio of 0.45 they lock, which is told",
+            "a wall that slides keeps its normal, and loads keep their direction",
+            "where tissue may rest in several ways, as pressed and creased tissue may, one of them is found",
+        ],
+        reads: &[
+            "case.segments",
+            "case.fixed",
+            "case.sliding",
+            "case.materials.young_modulus_kpa",
+            "case.materials.poisson_ratio",
+            "case.materials.density_g_per_cm3",
+            "case.hounsfield",
+            "plan.segments",
+            "plan.prescribed",
+            "plan.loads",
+            "spec.element",
+            "spec.materials",
+            "spec.tolerance.relative_residual",
+            "spec.budget",
+        ],
+        parameters: Vec::new(),
+    }
+}
