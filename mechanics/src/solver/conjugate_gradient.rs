@@ -57,8 +57,6 @@ pub struct Direction {
     /// For each free row.
     pub unknowns: Unknowns,
     pub iterations: usize,
-    /// |f - K x| / |f|, recursive.
-    pub relative_residual: f64,
     /// Whether K was positive definite along everything that was tried.
     pub is_convex: bool,
 }
@@ -91,12 +89,11 @@ pub fn direction(
     if run.iterations == 0 && !is_convex {
         run.x.copy_from_slice(&run.p);
     }
-    let [relative_residual] = run.relative_residuals();
     let unknowns = column(&run.x, 0);
     if unknowns.iter().flatten().any(|value| !value.is_finite()) {
         return Err(SolverError::NotFinite);
     }
-    Ok(Direction { unknowns, iterations: run.iterations, relative_residual, is_convex })
+    Ok(Direction { unknowns, iterations: run.iterations, is_convex })
 }
 
 struct Run<'a, const N: usize> {

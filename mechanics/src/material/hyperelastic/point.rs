@@ -160,7 +160,7 @@ impl Law {
 
 /// J F^-T, without a division.
 #[inline]
-fn cofactor(f: &Matrix3<f64>) -> Matrix3<f64> {
+pub fn cofactor(f: &Matrix3<f64>) -> Matrix3<f64> {
     let (x, y, z) = (f.column(0), f.column(1), f.column(2));
     Matrix3::from_columns(&[y.cross(&z), z.cross(&x), x.cross(&y)])
 }

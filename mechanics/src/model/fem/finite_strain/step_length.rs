@@ -2,6 +2,8 @@
 
 use nalgebra::Matrix3;
 
+use crate::material::hyperelastic::point::cofactor;
+
 /// Halvings of an interval in which the first root lies.
 const HALVINGS: usize = 40;
 
@@ -45,10 +47,4 @@ impl Volume {
         let b3 = value + slope + curvature + bend;
         value.min(b1).min(b2).min(b3) >= 0.0
     }
-}
-
-/// J F^-T.
-fn cofactor(f: &Matrix3<f64>) -> Matrix3<f64> {
-    let (x, y, z) = (f.column(0), f.column(1), f.column(2));
-    Matrix3::from_columns(&[y.cross(&z), z.cross(&x), x.cross(&y)])
 }
