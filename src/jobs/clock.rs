@@ -78,6 +78,7 @@ impl<'a> Observed<'a> {
             mesh_s: of(Phase::Mesh),
             assemble_s: of(Phase::Assemble),
             solve_s: of(Phase::Solve),
+            estimate_s: of(Phase::Estimate),
             contact_s: of(Phase::Contact),
             surface_s: of(Phase::Surface),
             compare_s: of(Phase::Compare),

@@ -13,6 +13,7 @@ mod hounsfield;
 mod imaged_tissue;
 mod listed;
 mod method;
+mod numerical_error;
 mod numerics_revision;
 mod off_wall;
 mod problem;
@@ -38,6 +39,7 @@ pub use element_choice::ElementChoice;
 pub use error_code::SceneErrorCode;
 pub use imaged_tissue::{ImagedTissue, TissueShare};
 pub use method::{Method, MethodKind, MethodProperties, Unknowns};
+pub use numerical_error::{NotEstimated, NumericalError};
 pub use numerics_revision::NUMERICS_REVISION;
 pub use problem::{SceneError, SceneErrors};
 pub use reaction::ConditionReaction;
@@ -47,6 +49,8 @@ pub use skin_overlap::{SKIN_OVERLAPS, skin_overlap};
 pub use stated::{StatedCondition, StatedHold};
 pub use unheld::{GoesAlong, NOTHING_HELD, goes_along};
 pub use walls::normal_turned;
+
+use numerical_error::Answer;
 
 pub use crate::boundary::NodeClass;
 use crate::mesh::{Vector, Warning};
@@ -72,6 +76,10 @@ pub struct Prediction {
     pub condition_reactions: Vec<ConditionReaction>,
     /// The displacement of each landmark in mm.
     pub landmarks: BTreeMap<String, Vector>,
+    /// What the mesh leaves out of the displacement, or why that is not known.
+    pub numerical_error: Result<NumericalError, NotEstimated>,
+    /// The same at each landmark, in mm; empty where it is not known.
+    pub landmarks_missing: BTreeMap<String, Vector>,
     pub solver: SolveReport,
     /// The elements used, e.g. `hex8 mean dilatation`.
     pub elements: Vec<String>,
@@ -81,8 +89,10 @@ pub struct Prediction {
 
 /// Solves a scene by the method it asks for. The same scene gives the same bits on any number of threads.
 pub fn predict(scene: &Scene, progress: &dyn Progress) -> Result<Prediction, ModelError> {
-    // 1. Equilibrium.
-    let equilibrium = scene.solve(progress)?;
+    // 1. Equilibrium, and what the mesh leaves out of it.
+    let answer = numerical_error::solve(scene, progress)?.corrected(scene);
+    let of_mesh = answer.warnings(scene);
+    let Answer { equilibrium, numerical_error } = answer;
 
     // 2. What it does to the tissue and to the landmarks.
     progress.phase(Phase::Surface);
@@ -101,10 +111,18 @@ pub fn predict(scene: &Scene, progress: &dyn Progress) -> Result<Prediction, Mod
     let moved = scene.skin.moved(&equilibrium.displacement);
     warnings.extend(skin_overlap(&scene.skin, &moved));
     warnings.extend(far_landmarks(&landmarks));
+    warnings.extend(of_mesh);
+    let at_landmarks =
+        |missing| skin::landmark_displacement(&scene.mesh, &scene.landmarks, missing);
+    let missing = numerical_error.as_ref().map(|error| at_landmarks(&error.missing));
     Ok(Prediction {
         reactions: reaction::by_class(scene, &equilibrium),
         condition_reactions: reaction::by_condition(scene, &equilibrium),
         landmarks: landmarks.into_iter().map(|(name, (moved, _))| (name, moved)).collect(),
+        landmarks_missing: missing
+            .map(|all| all.into_iter().map(|(name, (missing, _))| (name, missing)).collect())
+            .unwrap_or_default(),
+        numerical_error,
         solver: equilibrium.solver,
         elements: scene.elements(),
         displacement: equilibrium.displacement,

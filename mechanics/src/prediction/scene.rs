@@ -16,6 +16,7 @@ use crate::mesh::volume::BoundaryFace;
 use crate::mesh::{CellShape, Vector, VolumeMesh, Warning};
 use crate::model::fem::assembly::Tissue;
 use crate::model::fem::cell_stiffness::Dilatation;
+use crate::model::fem::discretisation_error::DistributedLoads;
 use crate::model::fem::displacement::Problem;
 use crate::model::fem::edge_nodes::EdgeNodes;
 use crate::model::fem::finite_strain::FiniteStrain;
@@ -72,6 +73,8 @@ pub struct Scene {
     pub segments: Vec<PlannedSegment>,
     /// For each node, in mN; quadratic elements have those of edge nodes after them.
     pub forces: Vec<Vector>,
+    /// What of these acts between nodes too.
+    pub distributed: DistributedLoads,
     pub landmarks: BTreeMap<String, Vector>,
     /// Whether a plan may carry the whole tissue away as one.
     pub allow_unfixed: bool,

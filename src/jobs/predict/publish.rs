@@ -25,7 +25,8 @@ use crate::schema::optimise::result::OptimisationDocument;
 use crate::schema::predict::document::OutputName;
 use crate::schema::predict::keep::KeptName;
 use crate::schema::predict::result::{
-    DisplacementDocument, FileDocument, ResultDocument, StatisticsDocument,
+    DisplacementDocument, ErrorLengthsDocument, FileDocument, NumericalErrorDocument,
+    ResultDocument, StatisticsDocument,
 };
 use mechanics::mesh::{Vector, VolumeMesh, Warning};
 use mechanics::prediction::{Prediction, Skin};
@@ -54,6 +55,7 @@ impl Predicted {
         let mut skin = PredictedSkin::new(&prepared.scene.skin, &prediction);
         skin.range_mm = input.spec.range_mm();
         let mut statistics = statistics(&prepared.scene.skin, &skin, &prediction.landmarks)?;
+        let numerical_error = numerical_error(&prepared.scene.skin, &skin, &prediction)?;
         statistics.imaged = prepared.scene.imaged.as_ref().map(Into::into);
         clock.check()?;
 
@@ -82,6 +84,7 @@ impl Predicted {
             prediction: &prediction,
             skin: &skin,
             statistics,
+            numerical_error,
             comparison: compared.map(|compared| compared.document),
             optimisation,
             warnings,
@@ -104,6 +107,7 @@ struct Finished<'a> {
     prediction: &'a Prediction,
     skin: &'a PredictedSkin,
     statistics: StatisticsDocument,
+    numerical_error: Option<NumericalErrorDocument>,
     comparison: Option<ComparisonDocument>,
     optimisation: Option<OptimisationDocument>,
     warnings: Vec<Warning>,
@@ -170,6 +174,13 @@ impl Finished<'_> {
             statistics: Some(self.statistics.clone()),
             comparison: self.comparison.clone(),
             optimisation: self.optimisation.clone(),
+            numerical_error_mm: self.numerical_error.clone(),
+            numerical_error_unknown: self
+                .prediction
+                .numerical_error
+                .as_ref()
+                .err()
+                .map(|why| why.to_string()),
             reaction_mn: triples(&self.prediction.reactions),
             reactions: self.prediction.condition_reactions.iter().map(Into::into).collect(),
             ..ResultDocument::new(input.job.clone(), files, provenance, warnings)
@@ -199,6 +210,29 @@ pub fn statistics(
     }
     let landmarks = triples(landmarks);
     Ok(StatisticsDocument { skin: over(&everywhere)?, regions, landmarks, imaged: None })
+}
+
+/// The estimated error of the skin, its parts and the landmarks.
+fn numerical_error(
+    skin: &Skin,
+    predicted: &PredictedSkin,
+    prediction: &Prediction,
+) -> Result<Option<NumericalErrorDocument>, StatisticsError> {
+    let (Some(lengths), Ok(error)) = (&predicted.numerical_error, &prediction.numerical_error)
+    else {
+        return Ok(None);
+    };
+    let Statistics { mean, p95, max, .. } = Statistics::plain(lengths)?;
+    let mut regions = BTreeMap::new();
+    for (name, points) in &skin.regions {
+        let own: Vec<f64> = points.iter().map(|&point| lengths[point as usize]).collect();
+        let Statistics { mean, p95, max, .. } = Statistics::plain(&own)?;
+        regions.insert(name.clone(), ErrorLengthsDocument { mean, p95, max });
+    }
+    let at_landmarks = prediction.landmarks_missing.iter();
+    let landmarks = at_landmarks.map(|(name, missing)| (name.clone(), missing.norm())).collect();
+    let corrected = error.is_added;
+    Ok(Some(NumericalErrorDocument { mean, p95, max, regions, landmarks, corrected }))
 }
 
 fn triples(vectors: &BTreeMap<String, Vector>) -> BTreeMap<String, Triple> {

@@ -23,6 +23,7 @@ use mechanics::prediction::Settings;
 
 pub use super::budget::BudgetDocument;
 pub use super::contact::ContactName;
+pub use super::estimate::EstimateName;
 pub use super::output::OutputName;
 pub use super::tolerance::ToleranceDocument;
 
@@ -90,6 +91,12 @@ pub struct PredictDocument {
     pub contact: ContactName,
     #[serde(default)]
     pub tolerance: ToleranceDocument,
+    /// Whether the discretisation error of the skin is estimated.
+    #[serde(default, skip_serializing_if = "EstimateName::is_usual")]
+    pub estimate: EstimateName,
+    /// Adds what the mesh leaves out, as far as that is estimated, to the displacement. Default: false.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub corrected: bool,
     #[serde(default)]
     pub budget: BudgetDocument,
     /// Default: `skin.vtp` and `skin.glb`; `result.json` is always written.
@@ -138,6 +145,10 @@ impl PredictDocument {
         if let Some(compare_to) = &self.compare_to {
             compare_to.check(&at.key("compare_to"), limits, faults);
         }
+        if self.corrected && self.estimate == EstimateName::None {
+            let what = "an answer cannot be corrected by an error that is not estimated: `estimate` is \"none\"";
+            faults.add(&at.key("corrected"), ErrorCode::OneOf, what);
+        }
         let membrane = self.membrane.as_ref();
         let membrane = membrane.and_then(|sheet| sheet.to_membrane(&at.key("membrane"), faults));
         Settings {
@@ -147,6 +158,8 @@ impl PredictDocument {
             relative_residual: residual,
             memory_mb: memory.min(limits.slot_memory_mb),
             membrane,
+            estimate: self.estimate == EstimateName::Auto,
+            corrected: self.corrected,
         }
     }
 
@@ -196,4 +209,8 @@ impl PredictDocument {
         plain.keep = self.kept();
         canonical::to_value(&plain)
     }
+}
+
+fn is_false(value: &bool) -> bool {
+    !value
 }

@@ -4,6 +4,7 @@ pub mod budget;
 pub mod check;
 pub mod contact;
 pub mod document;
+pub mod estimate;
 pub mod keep;
 pub mod output;
 pub mod result;

@@ -59,6 +59,10 @@ pub struct ResultDocument {
     pub kept: Vec<KeptMeshDocument>,
     /// Null where it was not estimated.
     pub numerical_error_mm: Option<NumericalErrorDocument>,
+    /// Why the error of a prediction was not estimated.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub numerical_error_unknown: Option<String>,
     /// The forces in mN that the nodes of each segment, and all `fixed`, `sliding` and `prescribed` nodes, exert on the
     /// tissue: what pulls tissue upwards points upwards.
     #[serde(default)]
@@ -89,6 +93,7 @@ impl ResultDocument {
             pictures: Vec::new(),
             kept: Vec::new(),
             numerical_error_mm: None,
+            numerical_error_unknown: None,
             reaction_mn: BTreeMap::new(),
             reactions: Vec::new(),
             provenance,
@@ -145,11 +150,27 @@ pub struct DisplacementDocument {
     pub area: StatDocument,
 }
 
-/// The estimated error of the discretisation over the skin, in mm.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+/// What the mesh leaves out of the displacement, as an estimate: lengths over nodes that count the same, in mm.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct NumericalErrorDocument {
+    /// Over the skin.
     pub mean: f64,
     pub p95: f64,
+    pub max: f64,
+    /// By the names of `skin_regions`.
+    pub regions: BTreeMap<String, ErrorLengthsDocument>,
+    /// At each landmark.
+    pub landmarks: BTreeMap<String, f64>,
+    /// Whether it has been added to the displacement, because `corrected` asked for that.
+    pub corrected: bool,
+}
+
+/// Lengths of an estimated error over nodes, in mm.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct ErrorLengthsDocument {
+    pub mean: f64,
+    pub p95: f64,
+    pub max: f64,
 }
 
 /// Where numbers come from.
@@ -247,6 +268,9 @@ pub struct TimingDocument {
     pub mesh_s: f64,
     pub assemble_s: f64,
     pub solve_s: f64,
+    /// Of estimating errors; 0 of results from before there were estimates.
+    #[serde(default)]
+    pub estimate_s: f64,
     pub contact_s: f64,
     pub surface_s: f64,
     pub compare_s: f64,

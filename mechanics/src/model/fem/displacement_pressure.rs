@@ -61,14 +61,17 @@ pub(super) fn shear_stiffness(
     let tensor = |cell: usize| {
         let tensor = tissue.tensor(cell);
         match tissue.mesh.cells.shape(cell) {
-            CellShape::Tet4 => {
-                let lambda = tensor.lambda - tensor.pressure_part().lambda;
-                ElasticTensor { lambda, ..tensor }
-            }
+            CellShape::Tet4 => beside_pressure(tensor),
             CellShape::Hex8 | CellShape::Wedge6 => tensor,
         }
     };
     tissue.assemble_with(numbering, progress, &tensor)
+}
+
+/// What a pressure leaves of a stiffness.
+pub(super) fn beside_pressure(tensor: ElasticTensor) -> ElasticTensor {
+    let lambda = tensor.lambda - tensor.pressure_part().lambda;
+    ElasticTensor { lambda, ..tensor }
 }
 
 /// Tetrahedra that have pressures, one for each corner.

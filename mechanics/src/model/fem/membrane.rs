@@ -16,6 +16,7 @@ use crate::material::{ElasticTensor, PlaneStress};
 use crate::mesh::{Vector, VolumeMesh};
 use crate::model::dofs::{Numbering, add_cell};
 use crate::solver::{Block, HalfMatrix};
+use nalgebra::Matrix3;
 
 /// A sheet on faces of the tissue.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,12 +29,12 @@ pub struct Membrane {
 }
 
 /// What a triangle needs for its matrix.
-struct Triangle {
+pub(super) struct Triangle {
     normal: Vector,
     /// Thickness times area, in mm³.
     volume: f64,
     /// Of the barycentric coordinates, in 1/mm.
-    gradients: [Vector; 3],
+    pub gradients: [Vector; 3],
     tensor: ElasticTensor,
 }
 
@@ -83,7 +84,7 @@ impl Membrane {
     }
 
     /// Triangles with an area, and their nodes.
-    fn in_space<'a>(
+    pub(super) fn in_space<'a>(
         &'a self,
         mesh: &'a VolumeMesh,
     ) -> impl Iterator<Item = (Triangle, [u32; 3])> + 'a {
@@ -109,6 +110,15 @@ impl Membrane {
 }
 
 impl Triangle {
+    /// The block between two gradients in the plane.
+    pub fn pair(&self, gj: &Vector, gk: &Vector) -> Matrix3<f64> {
+        let mut block: Block = [[0.0; 3]; 3];
+        self.tensor.add_pair(&mut block, [gj, gk], self.volume);
+        let off_plane = self.tensor.mu * self.volume * gj.dot(gk);
+        let n = &self.normal;
+        Matrix3::from_fn(|i, j| block[i][j] - off_plane * n[i] * n[j])
+    }
+
     fn linear(&self) -> [Block; 9] {
         let mut blocks = [[[0.0; 3]; 3]; 9];
         self.add_point(&mut blocks, &self.gradients, self.volume);
