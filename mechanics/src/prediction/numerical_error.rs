@@ -69,8 +69,10 @@ pub(super) fn solve(scene: &Scene, progress: &dyn Progress) -> Result<Answer, Mo
 }
 
 fn reason_for_none(scene: &Scene) -> Option<NotEstimated> {
+    if !scene.settings.estimate {
+        return Some(NotEstimated::NotAsked);
+    }
     match &scene.settings.method {
-        _ if !scene.settings.estimate => Some(NotEstimated::NotAsked),
         Method::FemLinear | Method::MassTensorTransverse => None,
         Method::MassTensor(own) => match own.iterations {
             Iterations::Fast => None,
