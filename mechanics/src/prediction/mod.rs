@@ -6,6 +6,7 @@ mod check;
 mod cut;
 mod element_choice;
 mod error_code;
+mod exponential_tissue;
 mod far_segment;
 mod fibres;
 mod held;
@@ -37,7 +38,7 @@ pub use case::{
 pub use element_choice::ElementChoice;
 pub use error_code::SceneErrorCode;
 pub use imaged_tissue::{ImagedTissue, TissueShare};
-pub use method::{Method, MethodKind, MethodProperties, Unknowns};
+pub use method::{Laws, Method, MethodKind, MethodProperties, Unknowns};
 pub use numerics_revision::NUMERICS_REVISION;
 pub use problem::{SceneError, SceneErrors};
 pub use reaction::ConditionReaction;
@@ -97,6 +98,7 @@ pub fn predict(scene: &Scene, progress: &dyn Progress) -> Result<Prediction, Mod
     warnings.extend(equilibrium.warnings.iter().cloned());
     warnings.extend(inverted_cells(&deformation));
     warnings.extend(small_strain::left(scene, &deformation));
+    warnings.extend(exponential_tissue::warnings(scene, &equilibrium.displacement));
     warnings.extend(off_wall::left_wall(scene, &equilibrium.displacement));
     let moved = scene.skin.moved(&equilibrium.displacement);
     warnings.extend(skin_overlap(&scene.skin, &moved));

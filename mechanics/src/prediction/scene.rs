@@ -10,15 +10,16 @@ use super::method::{Method, Unknowns};
 use super::skin::Skin;
 use super::stated::StatedCondition;
 use crate::boundary::{Conditions, ConnectedPart, NodeClass};
-use crate::material::hyperelastic::{Law, NeoHookean};
-use crate::material::{ElasticTensor, LinearElastic};
+use crate::material::LinearElastic;
+use crate::material::hyperelastic::{Fibres, Law};
 use crate::mesh::volume::BoundaryFace;
 use crate::mesh::{CellShape, Vector, VolumeMesh, Warning};
 use crate::model::fem::assembly::Tissue;
 use crate::model::fem::cell_stiffness::Dilatation;
 use crate::model::fem::displacement::Problem;
 use crate::model::fem::edge_nodes::EdgeNodes;
-use crate::model::fem::finite_strain::FiniteStrain;
+use crate::model::fem::finite_strain::{FibreField, FiniteStrain};
+use crate::model::fem::mass_tensor_nonlinear::MassTensors;
 use crate::model::fem::membrane::Membrane;
 use crate::model::fem::{displacement_pressure, mass_tensor, quadratic};
 use crate::model::mass_spring::POISSON_RATIO;
@@ -152,6 +153,7 @@ impl Scene {
             Method::MassTensor(settings) => {
                 mass_tensor::solve(&self.problem(), settings, &self.load_case(), progress)
             }
+            Method::MassTensorNonlinear => self.mass_tensors().solve(&self.load_case(), progress),
             Method::VolumeSpline(spline) => spline::solve(&self.problem(), spline, progress),
             Method::ThicknessWarp(warp) => {
                 let movement = |segment: u32, x: &Vector| {
@@ -164,22 +166,35 @@ impl Scene {
         }
     }
 
-    /// Each material becomes the neo-Hookean one that agrees with it at rest.
+    /// Each material follows its law at finite strain, the neo-Hookean one where none is stated.
     fn solve_at_finite_strain(&self, progress: &dyn Progress) -> Result<Equilibrium, ModelError> {
-        let law = |material: &LinearElastic| {
-            let ElasticTensor { lambda, mu, .. } = material.tensor(&Vector::zeros());
-            Law::NeoHookean(NeoHookean { lambda, mu })
-        };
-        let laws: Vec<Law> = self.materials.iter().map(law).collect();
+        let (laws, fibres): (Vec<Law>, Vec<Option<Fibres>>) = self
+            .materials
+            .iter()
+            .map(|material| material.hyperelastic())
+            .map(|tissue| (tissue.law, tissue.fibres))
+            .unzip();
         let Settings { relative_residual, memory_mb, .. } = self.settings;
         let problem = FiniteStrain {
             mesh: &self.mesh,
             laws: &laws,
             law_of_cell: &self.material_of_cell,
+            fibres: FibreField { of_law: &fibres, of_cell: &self.fibres },
             holds: &self.conditions.holds,
             tolerance: Tolerance { relative_residual, memory_mb },
         };
         problem.solve(&self.load_case(), progress)
+    }
+
+    fn mass_tensors(&self) -> MassTensors<'_> {
+        let Settings { relative_residual, memory_mb, .. } = self.settings;
+        MassTensors {
+            mesh: &self.mesh,
+            materials: &self.materials,
+            material_of_cell: &self.material_of_cell,
+            holds: &self.conditions.holds,
+            tolerance: Tolerance { relative_residual, memory_mb },
+        }
     }
 
     /// Tissue, holds and loads as models see them.
@@ -218,7 +233,8 @@ impl Scene {
             Method::FemLinear
             | Method::FemNonlinear
             | Method::MassTensor(_)
-            | Method::MassTensorTransverse => {}
+            | Method::MassTensorTransverse
+            | Method::MassTensorNonlinear => {}
         }
         let dilatation = self.tissue().dilatation;
         [CellShape::Tet4, CellShape::Hex8, CellShape::Wedge6]

@@ -5,7 +5,7 @@ use crate::model::fem::mass_tensor::{Iterations, MassTensorSettings};
 use crate::model::mass_spring::{MassSpringSettings, Search};
 use crate::model::spline::{Stiffness, VolumeSpline};
 use crate::model::thickness_warp::ThicknessWarp;
-use crate::prediction::{ElementChoice, Method, MethodKind, Settings};
+use crate::prediction::{ElementChoice, Laws, Method, MethodKind, Settings};
 use crate::solver::stationary::{Iteration, Stationary};
 
 /// The residual at which the papers' own iterations end: their answer is then within 0.01 mm of rest on the skin
@@ -21,8 +21,8 @@ const PAPER_STIFFNESS: f64 = 80.0;
 /// All that answer the question of the truths, which are linear, each with its usual settings: finite strain is compared
 /// where it is asked for by name.
 pub fn available() -> Vec<Variant> {
-    let asks_the_same = |method: &&MethodKind| **method != MethodKind::FemNonlinear;
-    MethodKind::ALL.iter().filter(asks_the_same).flat_map(|method| of_method(*method)).collect()
+    let at_rest = |method: &&MethodKind| method.properties().laws == Laws::AtRest;
+    MethodKind::ALL.iter().filter(at_rest).flat_map(|method| of_method(*method)).collect()
 }
 
 /// Those of one method.
@@ -42,6 +42,9 @@ pub fn of_method(method: MethodKind) -> Vec<Variant> {
         ],
         MethodKind::MassTensorTransverse => {
             vec![variant("mtm_ti", Method::MassTensorTransverse)]
+        }
+        MethodKind::MassTensorNonlinear => {
+            vec![variant("mtm_nonlinear", Method::MassTensorNonlinear)]
         }
         MethodKind::MassSpring => vec![
             mass_spring("msm newton", Search::Newton),

@@ -13,7 +13,7 @@ use crate::jobs::output::{JobOutput, MadeMesh};
 use crate::jobs::result::folder::ResultFolder;
 use crate::jobs::result::pictures::displacement_picture;
 use crate::jobs::result::provenance::{
-    Origin, add_method, encode_result, mesh_summary, solver_document,
+    Origin, add_method, encode_result, laws, mesh_summary, solver_document,
 };
 use crate::jobs::result::skin::PredictedSkin;
 use crate::jobs::result::tissue::{encode_bones, encode_volume};
@@ -164,6 +164,7 @@ impl Finished<'_> {
         let solver = solver_document(&self.prediction.solver, &self.prediction.elements);
         let mesh = mesh_summary(&self.prepared.scene.mesh, &self.prepared.quality);
         add_method(&mut provenance, input.spec.method, mesh, solver);
+        provenance.laws = laws(&self.prepared.case, &self.prepared.scene);
         let warnings = warning_documents(self.warnings.iter());
         ResultDocument {
             pictures: input.pictures_beside(files),

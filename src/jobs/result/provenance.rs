@@ -1,5 +1,7 @@
 //! Where the numbers of a result come from.
 
+use std::collections::BTreeMap;
+
 use serde_json::{Value, json};
 
 use crate::jobs::clock::{Observed, now_rfc3339, peak_rss_mb};
@@ -8,11 +10,13 @@ use crate::schema::case::document::LengthUnit;
 use crate::schema::methods::MethodName;
 use crate::schema::predict::result::{
     EngineDocument, InputDocument, MeshSummaryDocument, NOT_A_DEVICE, ProvenanceDocument,
-    ResultDocument, SolverDocument,
+    ResultDocument, SolverDocument, TissueLawDocument,
 };
+use mechanics::material::LinearElastic;
+use mechanics::material::hyperelastic::{Hyperelastic, Law, SaintVenantKirchhoff};
 use mechanics::mesh::quality::QualityReport;
 use mechanics::mesh::{Frame, VolumeMesh};
-use mechanics::prediction::SolveReport;
+use mechanics::prediction::{Case, Laws, Scene, SolveReport};
 
 /// What a job knows of its origin before it starts.
 pub struct Origin {
@@ -33,6 +37,7 @@ impl Origin {
             why: None,
             solver: None,
             mesh: None,
+            laws: BTreeMap::new(),
             threads: rayon::current_num_threads() as u32,
             determinism: "bitwise".to_owned(),
             timing: clock.timing(self.queue_s),
@@ -71,6 +76,23 @@ pub fn add_method(
     provenance.why = Some(method.why().to_owned());
     provenance.solver = Some(solver);
     provenance.mesh = Some(mesh);
+}
+
+/// The laws that a scene follows at finite strain, by region and by tissue of its image.
+pub fn laws(case: &Case, scene: &Scene) -> BTreeMap<String, TissueLawDocument> {
+    let followed = |tissue: &LinearElastic| match scene.settings.method.properties().laws {
+        Laws::AtRest => None,
+        Laws::SaintVenantKirchhoff => {
+            let (lambda, mu) = (tissue.lambda(), tissue.shear_modulus());
+            let law = Law::SaintVenantKirchhoff(SaintVenantKirchhoff { lambda, mu });
+            Some(Hyperelastic { law, fibres: None })
+        }
+        Laws::Any => Some(tissue.hyperelastic()),
+    };
+    let tissues = case.hounsfield.iter().flat_map(|image| &image.tissues);
+    let names = scene.regions.iter().chain(tissues.map(|tissue| &tissue.name)).cloned();
+    let of = names.zip(scene.materials.iter().map(followed));
+    of.filter_map(|(name, law)| Some((name, (&law?).into()))).collect()
 }
 
 /// How provenance names the mesh that was computed on.

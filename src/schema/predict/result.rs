@@ -10,11 +10,13 @@ use super::output::PictureName;
 use crate::schema::Triple;
 use crate::schema::case::document::{FrameName, LengthUnit};
 use crate::schema::case::hounsfield::ImagedTissueDocument;
+use crate::schema::case::law::LawDocument;
 use crate::schema::compare::result::{ComparisonDocument, StatDocument};
 use crate::schema::meshing::result::MeshingResultDocument;
 use crate::schema::optimise::result::OptimisationDocument;
 use crate::schema::study::report::StudySummaryDocument;
 use crate::schema::wire::warning::WarningDocument;
+use mechanics::material::hyperelastic::{Fibres, Hyperelastic};
 use mechanics::prediction::ConditionReaction;
 
 pub use crate::schema::engine::EngineDocument;
@@ -172,6 +174,9 @@ pub struct ProvenanceDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub mesh: Option<MeshSummaryDocument>,
+    /// Of methods of finite strain: the law of each region, or of each tissue of an image, with its constants.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub laws: BTreeMap<String, TissueLawDocument>,
     pub threads: u32,
     /// `bitwise`: the same input gives the same bits on any number of threads.
     pub determinism: String,
@@ -185,6 +190,33 @@ pub struct ProvenanceDocument {
     /// RFC 3339, UTC.
     pub created: String,
     pub statement: String,
+}
+
+/// What a tissue followed at finite strain.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct TissueLawDocument {
+    pub law: LawDocument,
+    /// Of fibres that only pull; absent where there are none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub fibres: Option<PullingFibresDocument>,
+}
+
+/// W = k1/(2 k2) (exp(k2 (I4 - 1)^2) - 1) where fibres are stretched.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct PullingFibresDocument {
+    pub k1_kpa: f64,
+    pub k2: f64,
+}
+
+impl From<&Hyperelastic> for TissueLawDocument {
+    fn from(tissue: &Hyperelastic) -> Self {
+        let fibres = tissue.fibres;
+        TissueLawDocument {
+            law: (&tissue.law).into(),
+            fibres: fibres.map(|Fibres { k1, k2 }| PullingFibresDocument { k1_kpa: k1, k2 }),
+        }
+    }
 }
 
 /// A mesh or an image that went in.

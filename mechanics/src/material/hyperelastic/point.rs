@@ -10,6 +10,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
+use super::principal::Principal;
 use super::{Derivatives, Fibres, Invariants, Law};
 
 /// Fibres at a point: their law and their direction at rest, of length 1.
@@ -30,6 +31,7 @@ pub struct Point {
     /// F F^T.
     left: Matrix3<f64>,
     fibres: Option<FibresAt>,
+    principal: Option<Box<Principal>>,
 }
 
 #[derive(Clone, Debug)]
@@ -65,7 +67,9 @@ impl Point {
             let direction = along.direction;
             FibresAt { direction, turned, energy: w.energy, first: w.first, second: w.second }
         });
+        let of_stretches = |law| Box::new(Principal::new(law, &f, invariants.j));
         Point {
+            principal: law.in_stretches().map(of_stretches),
             w: law.at(&invariants),
             cofactor: cofactor(&f),
             left: f * f.transpose(),
@@ -77,7 +81,9 @@ impl Point {
 
     /// Energy density in kPa.
     pub fn energy(&self) -> f64 {
-        self.w.energy + self.fibres.as_ref().map_or(0.0, |fibres| fibres.energy)
+        let fibres = self.fibres.as_ref().map_or(0.0, |fibres| fibres.energy);
+        let principal = self.principal.as_ref().map_or(0.0, |principal| principal.energy);
+        self.w.energy + fibres + principal
     }
 
     /// det F.
@@ -95,6 +101,9 @@ impl Point {
         }
         if let Some(fibres) = &self.fibres {
             stress += fibres.turned * fibres.direction.transpose() * (2.0 * fibres.first);
+        }
+        if let Some(principal) = &self.principal {
+            stress += self.f * principal.second_stress;
         }
         stress
     }
@@ -139,6 +148,9 @@ impl Point {
             let both = a.along * b.along;
             isotropic += 2.0 * fibres.first * both;
             block += fibres.turned * fibres.turned.transpose() * (4.0 * fibres.second * both);
+        }
+        if let Some(principal) = &self.principal {
+            block += principal.block(&a.g, &b.g);
         }
         for i in 0..3 {
             block[(i, i)] += isotropic;

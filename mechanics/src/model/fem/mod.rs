@@ -8,6 +8,7 @@ pub mod edge_nodes;
 pub mod finite_strain;
 pub mod loads;
 pub mod mass_tensor;
+pub mod mass_tensor_nonlinear;
 pub mod membrane;
 pub mod quadratic;
 pub mod strain;

@@ -4,7 +4,7 @@ use mechanics::boundary::Hold;
 use mechanics::material::hyperelastic::{Law, NeoHookean, SaintVenantKirchhoff};
 use mechanics::mesh::sample::block;
 use mechanics::mesh::{CellShape, Vector, VolumeMesh};
-use mechanics::model::fem::finite_strain::FiniteStrain;
+use mechanics::model::fem::finite_strain::{FibreField, FiniteStrain};
 use mechanics::model::problem::{Equilibrium, LoadCase, ModelError};
 use mechanics::prediction::{Case, Load, Method, Plan, Prediction, Settings};
 use mechanics::progress::{Progress, Unobserved};
@@ -34,6 +34,7 @@ fn rest(
         mesh,
         laws: &[law],
         law_of_cell: &vec![0; mesh.cells.len()],
+        fibres: FibreField::default(),
         holds,
         tolerance: Tolerance { relative_residual: 1e-7, memory_mb: 1000.0 },
     };

@@ -3,6 +3,7 @@
 use nalgebra::Matrix3;
 use rayon::prelude::*;
 
+use super::fibres::FibreField;
 use super::step_length::Volume;
 use crate::material::hyperelastic::Law;
 use crate::material::hyperelastic::point::Point;
@@ -26,12 +27,15 @@ struct Cell {
     /// In mm^3.
     volume: f64,
     law: u16,
+    /// Its place in the mesh.
+    number: u32,
 }
 
 /// The tetrahedra of a mesh in the order of its numbering.
 pub(super) struct Cells<'a> {
     numbering: &'a Numbering,
     laws: &'a [Law],
+    fibres: FibreField<'a>,
     cells: Vec<Cell>,
     /// Positions at rest, by row.
     pub rest: Vec<Vector>,
@@ -55,10 +59,21 @@ impl<'a> Cells<'a> {
             let (volume, gradients) = tetrahedron(mesh, cell as usize)?;
             let members = numbering.cliques.row(clique);
             let rows = std::array::from_fn(|k| members[k]);
-            Ok(Cell { rows, gradients, volume, law: law_of_cell[cell as usize] })
+            Ok(Cell { rows, gradients, volume, law: law_of_cell[cell as usize], number: cell })
         };
         let cells = order.par_iter().enumerate().map(cell).collect::<Result<_, _>>()?;
-        Ok(Cells { numbering, laws, cells, rest: numbering.by_row(&mesh.nodes) })
+        let fibres = FibreField::default();
+        Ok(Cells { numbering, laws, fibres, cells, rest: numbering.by_row(&mesh.nodes) })
+    }
+
+    /// The same with fibres.
+    pub fn fibred(self, fibres: FibreField<'a>) -> Self {
+        Cells { fibres, ..self }
+    }
+
+    fn point(&self, cell: &Cell, x: &[Vector]) -> Point {
+        let fibres = self.fibres.along(cell.law, cell.number as usize);
+        Point::new(&self.laws[usize::from(cell.law)], fibres, Self::gradient(cell, x))
     }
 
     /// Of the cells at rest and at one set of positions, in MB.
@@ -100,18 +115,13 @@ impl<'a> Cells<'a> {
 
     /// The tissue at positions, one for each row.
     pub fn at(&self, x: &[Vector]) -> Deformed<'_> {
-        let point = |cell: &Cell| {
-            Point::new(&self.laws[usize::from(cell.law)], None, Self::gradient(cell, x))
-        };
+        let point = |cell: &Cell| self.point(cell, x);
         Deformed { cells: self, points: self.cells.par_iter().map(point).collect() }
     }
 
     /// Energy at positions in mN mm.
     pub fn energy(&self, x: &[Vector]) -> f64 {
-        let energy = |cell: &Cell| {
-            let f = Self::gradient(cell, x);
-            cell.volume * Point::new(&self.laws[usize::from(cell.law)], None, f).energy()
-        };
+        let energy = |cell: &Cell| cell.volume * self.point(cell, x).energy();
         let sums: Vec<f64> =
             self.cells.par_chunks(CHUNK).map(|cells| cells.iter().map(energy).sum()).collect();
         sums.iter().sum()

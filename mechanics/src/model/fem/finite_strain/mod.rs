@@ -4,6 +4,7 @@
 //! and what acts is advanced in the same steps that bring the tissue to rest (NONLINEAR, section 1).
 
 mod cells;
+mod fibres;
 mod holds;
 mod newton;
 mod step_length;
@@ -20,6 +21,7 @@ use crate::model::problem::{Equilibrium, LoadCase, ModelError};
 use crate::progress::{Phase, Progress};
 use crate::solver::Tolerance;
 use cells::Cells;
+pub use fibres::FibreField;
 use holds::along_holds;
 use newton::{Newton, Rest};
 
@@ -29,6 +31,7 @@ pub struct FiniteStrain<'a> {
     pub laws: &'a [Law],
     /// For each cell its entry in `laws`.
     pub law_of_cell: &'a [u16],
+    pub fibres: FibreField<'a>,
     pub holds: &'a [Hold],
     pub tolerance: Tolerance,
 }
@@ -44,7 +47,8 @@ impl FiniteStrain<'_> {
         self.check_held_cells(case)?;
         let numbering = number(&nodes_of_cells(self.mesh), &self.mesh.nodes, self.holds);
         let constrained = Constrained { holds: self.holds, numbering: &numbering };
-        let cells = Cells::new(self.mesh, &numbering, self.laws, self.law_of_cell)?;
+        let cells =
+            Cells::new(self.mesh, &numbering, self.laws, self.law_of_cell)?.fibred(self.fibres);
         progress.phase(Phase::Solve);
         let nodes = &self.mesh.nodes;
         let newton = Newton::new(&cells, &constrained, case, self.tolerance, progress);
