@@ -6,7 +6,7 @@ use crate::schema::Limits;
 use crate::schema::methods::{MethodName, time_band};
 use crate::schema::predict::check::TimeBandDocument;
 use mechanics::mesh::CellShape;
-use mechanics::prediction::{ElementChoice, Scene, Unknowns};
+use mechanics::prediction::{ElementChoice, Laws, Scene, Unknowns};
 use mechanics::prediction::{ModelError, SolverError};
 use mechanics::response::COLUMNS_PER_SEGMENT;
 
@@ -39,7 +39,15 @@ fn bytes_of_cell(scene: &Scene, shape: CellShape) -> f64 {
     match scene.settings.method.properties().unknowns {
         Unknowns::None | Unknowns::ControlPoints => READ_ONLY,
         Unknowns::Springs => OF_SPRINGS,
-        Unknowns::Elements => bytes_of_element(shape, scene.element),
+        Unknowns::Elements => bytes_of_element(shape, scene.element) + bytes_of_tensors(scene),
+    }
+}
+
+/// The nonlinear mass-tensor keeps 243 numbers for each cell.
+fn bytes_of_tensors(scene: &Scene) -> f64 {
+    match scene.settings.method.properties().laws {
+        Laws::AtRest | Laws::Any => 0.0,
+        Laws::SaintVenantKirchhoff => 243.0 * 8.0,
     }
 }
 

@@ -76,7 +76,7 @@ fn bent(tissue: LinearElastic) -> (Case, Plan) {
     case.fixed.push(set("x_min"));
     let plan = Plan {
         prescribed: vec![
-            hold("x_max", [Some(2.0), Some(-1.0), Some(6.0)]),
+            hold("x_max", [Some(2.0), Some(0.0), Some(6.0)]),
             hold("y_min", [None, Some(0.0), None]),
         ],
         loads: vec![Load::Gravity { acceleration: Vector::new(0.0, 0.0, -0.01) }],
