@@ -26,7 +26,7 @@ impl Stopwatch for Clock {
 #[test]
 fn no_random_scene_is_silently_wrong_and_most_have_an_answer() {
     let clock = Clock(Instant::now());
-    let bounds = Bounds { stopwatch: &clock, seconds: 60.0 };
+    let bounds = Bounds { stopwatch: &clock, seconds: 120.0 };
     let found = random(1, SCENES, &bounds, &|_| {});
     for (name, endings) in found.by_method.iter().chain(&found.by_law) {
         println!("{name}: {endings:?}");
@@ -45,7 +45,8 @@ fn no_random_scene_is_silently_wrong_and_most_have_an_answer() {
 #[test]
 fn the_same_seed_makes_the_same_scenes_and_another_one_others() {
     let clock = Clock(Instant::now());
-    let bounds = Bounds { stopwatch: &clock, seconds: 60.0 };
+    // How long a scene takes is the machine's affair.
+    let bounds = Bounds { stopwatch: &clock, seconds: f64::INFINITY };
     let of = |seed| random(seed, 25, &bounds, &|_| {}).by_method;
     assert_eq!(of(7), of(7));
     assert_ne!(of(7), of(8));

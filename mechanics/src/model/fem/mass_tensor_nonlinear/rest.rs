@@ -16,11 +16,11 @@ use crate::solver::{SolveReport, SolverError, System, Tolerance, tell};
 use super::tissue::Tetrahedra;
 
 /// The least part of the movement that is tried.
-const LEAST: f64 = 1.0 / 256.0;
+const LEAST: f64 = 1.0 / 64.0;
 
 /// Steps after which a part is given up, and all steps together.
-const MOST_STEPS: usize = 25;
-const MOST_ALTOGETHER: usize = 600;
+const MOST_STEPS: usize = 15;
+const MOST_ALTOGETHER: usize = 150;
 
 /// The relative residual at which a part that is not the last one rests.
 const ON_THE_WAY: f64 = 1e-2;
@@ -31,7 +31,7 @@ const MOST_INNER: usize = 300;
 
 /// The share of the slope by which the energy has to fall, and how often a step is halved for it.
 const ENOUGH: f64 = 1e-4;
-const MOST_HALVINGS: usize = 30;
+const MOST_HALVINGS: usize = 12;
 
 pub(super) struct Search<'a> {
     pub tetrahedra: &'a Tetrahedra<'a>,
