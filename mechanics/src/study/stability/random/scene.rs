@@ -47,9 +47,9 @@ pub(super) fn scene(seed: u64, place: u64) -> Result<RandomScene, MaterialError>
         let pressure = numbers.between(-3.0, 3.0);
         plan.loads = vec![Load::Pressure { faces: set("z_max"), pressure }];
     }
-    let method = match element {
-        ElementChoice::Auto => variant.label,
-        other => format!("{} {}", variant.method, other.name()),
+    let method = match element == ElementChoice::Auto {
+        true => variant.label,
+        false => format!("{} {}", variant.method, element.name()),
     };
     let settings = Settings { element, relative_residual: RESIDUAL, ..variant.settings };
     Ok(RandomScene { method, law, probe: Probe { case, plan, settings } })
@@ -67,12 +67,8 @@ fn method(numbers: &mut Numbers) -> (Variant, ElementChoice, CellShape) {
     let variant = variants.swap_remove(numbers.whole(0, variants.len() - 1));
     let properties = kind.properties();
     // A variant that is made for an element has it; the others take any.
-    let element = match variant.settings.element {
-        ElementChoice::Auto => {
-            *numbers.of_list(properties.elements).unwrap_or(&ElementChoice::Auto)
-        }
-        own => own,
-    };
+    let (own, any) = (variant.settings.element, numbers.of_list(properties.elements));
+    let element = if own == ElementChoice::Auto { any.copied().unwrap_or(own) } else { own };
     let shapes: Vec<CellShape> =
         properties.cells.iter().filter(|shape| element.shapes().contains(shape)).copied().collect();
     let shape = numbers.of_list(&shapes).copied().unwrap_or(CellShape::Tet4);
