@@ -6,8 +6,8 @@ use mechanics::study::Stopwatch;
 use mechanics::study::stability::Bounds;
 use mechanics::study::stability::random::{Ending, random};
 
-/// In CI; `facies study --stability --random 10000` goes on.
-const SCENES: u64 = 1000;
+/// In CI: some 20 s of processor time; `facies study --stability --random 10000` goes on.
+const SCENES: u64 = 400;
 
 struct Clock(Instant);
 
