@@ -10,7 +10,7 @@
 //!
 //! Source: METHODS A2 and A3; paper 002, eq. 33, in its corrected form, has beta = -(dlam + 2 dmu).
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
 type Vector = Vector3<f64>;
 type Block = [[f64; 3]; 3];
@@ -64,6 +64,23 @@ impl ElasticTensor {
         if let Some(fibre) = &self.fibre {
             fibre.add_pair(block, [gj, gk], weight);
         }
+    }
+
+    /// The stress in kPa of a strain: C applied to it.
+    pub fn stress(&self, strain: &Matrix3<f64>) -> Matrix3<f64> {
+        let trace = strain.trace();
+        let isotropic = strain * (2.0 * self.mu);
+        let Some(AlongFibre { direction: a, moduli }) = &self.fibre else {
+            return isotropic + Matrix3::from_diagonal_element(self.lambda * trace);
+        };
+        let (turned, fibres) = (strain * a, a * a.transpose());
+        let along = a.dot(&turned);
+        let mixed = turned * a.transpose();
+        let volume = self.lambda * trace + moduli.delta_lambda * along;
+        isotropic
+            + Matrix3::from_diagonal_element(volume)
+            + fibres * (moduli.delta_lambda * trace + moduli.beta * along)
+            + (mixed + mixed.transpose()) * (2.0 * moduli.delta_mu)
     }
 
     /// C as a part that resists changes of shape alone and a part that counts with the change of volume:
