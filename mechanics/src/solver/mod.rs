@@ -20,6 +20,7 @@ mod vector;
 mod vectorised;
 pub use half_matrix::HalfMatrix;
 pub use report::SolveReport;
+pub use vectorised::vectorised;
 pub use system::{Block, PartlyHeld, Solution, SolverError, System, Tolerance, Unknowns, tell};
 
 use crate::progress::Progress;

@@ -2,6 +2,7 @@
 
 mod convergence;
 mod finite_strain;
+mod force_series;
 mod mass_spring;
 mod mass_tensor;
 mod membrane;
