@@ -13,6 +13,7 @@ mod hounsfield;
 mod imaged_tissue;
 mod listed;
 mod method;
+mod nonlinearity;
 mod numerics_revision;
 mod off_wall;
 mod problem;
@@ -38,6 +39,7 @@ pub use element_choice::ElementChoice;
 pub use error_code::SceneErrorCode;
 pub use imaged_tissue::{ImagedTissue, TissueShare};
 pub use method::{Method, MethodKind, MethodProperties, Unknowns};
+pub use nonlinearity::{Estimated, Nonlinearity, NotEstimated};
 pub use numerics_revision::NUMERICS_REVISION;
 pub use problem::{SceneError, SceneErrors};
 pub use reaction::ConditionReaction;
@@ -72,6 +74,8 @@ pub struct Prediction {
     pub condition_reactions: Vec<ConditionReaction>,
     /// The displacement of each landmark in mm.
     pub landmarks: BTreeMap<String, Vector>,
+    /// What linear elasticity leaves out, or why that is not known.
+    pub nonlinearity: Estimated,
     pub solver: SolveReport,
     /// The elements used, e.g. `hex8 mean dilatation`.
     pub elements: Vec<String>,
@@ -82,7 +86,7 @@ pub struct Prediction {
 /// Solves a scene by the method it asks for. The same scene gives the same bits on any number of threads.
 pub fn predict(scene: &Scene, progress: &dyn Progress) -> Result<Prediction, ModelError> {
     // 1. Equilibrium.
-    let equilibrium = scene.solve(progress)?;
+    let (equilibrium, nonlinearity) = nonlinearity::solve(scene, progress)?;
 
     // 2. What it does to the tissue and to the landmarks.
     progress.phase(Phase::Surface);
@@ -96,7 +100,7 @@ pub fn predict(scene: &Scene, progress: &dyn Progress) -> Result<Prediction, Mod
     warnings.extend((scene.is_at_rest() && !is_told).then(nothing_moves));
     warnings.extend(equilibrium.warnings.iter().cloned());
     warnings.extend(inverted_cells(&deformation));
-    warnings.extend(small_strain::left(scene, &deformation));
+    warnings.extend(small_strain::left(scene, &deformation, &nonlinearity));
     warnings.extend(off_wall::left_wall(scene, &equilibrium.displacement));
     let moved = scene.skin.moved(&equilibrium.displacement);
     warnings.extend(skin_overlap(&scene.skin, &moved));
@@ -104,6 +108,7 @@ pub fn predict(scene: &Scene, progress: &dyn Progress) -> Result<Prediction, Mod
     Ok(Prediction {
         reactions: reaction::by_class(scene, &equilibrium),
         condition_reactions: reaction::by_condition(scene, &equilibrium),
+        nonlinearity,
         landmarks: landmarks.into_iter().map(|(name, (moved, _))| (name, moved)).collect(),
         solver: equilibrium.solver,
         elements: scene.elements(),

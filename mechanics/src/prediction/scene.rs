@@ -19,8 +19,9 @@ use crate::model::fem::cell_stiffness::Dilatation;
 use crate::model::fem::displacement::Problem;
 use crate::model::fem::edge_nodes::EdgeNodes;
 use crate::model::fem::finite_strain::FiniteStrain;
+use crate::model::fem::linear_system::LinearSystem;
 use crate::model::fem::membrane::Membrane;
-use crate::model::fem::{displacement_pressure, mass_tensor, quadratic};
+use crate::model::fem::{mass_tensor, quadratic};
 use crate::model::mass_spring::POISSON_RATIO;
 use crate::model::problem::{Equilibrium, LoadCase, ModelError};
 use crate::model::thickness_warp::Warped;
@@ -200,13 +201,29 @@ impl Scene {
         cases: &[LoadCase],
         progress: &dyn Progress,
     ) -> Result<Vec<Equilibrium>, ModelError> {
+        match self.assemble(progress)? {
+            Some(system) => {
+                let solved = system.solve(cases, progress)?;
+                Ok(solved.into_iter().map(|solved| solved.equilibrium).collect())
+            }
+            None => quadratic::solve_cases(&self.problem(), cases, progress),
+        }
+    }
+
+    /// The linear finite elements of this scene, assembled; none where they are quadratic.
+    pub fn assemble(
+        &self,
+        progress: &dyn Progress,
+    ) -> Result<Option<LinearSystem<'_>>, ModelError> {
         let problem = self.problem();
         match self.tetrahedron() {
-            Tetrahedron::Quadratic => quadratic::solve_cases(&problem, cases, progress),
+            Tetrahedron::Quadratic => Ok(None),
             Tetrahedron::Stabilised if self.has_tetrahedra() => {
-                displacement_pressure::solve_cases(&problem, cases, progress)
+                LinearSystem::mixed(&problem, progress).map(Some)
             }
-            Tetrahedron::Stabilised | Tetrahedron::Plain => problem.solve_cases(cases, progress),
+            Tetrahedron::Stabilised | Tetrahedron::Plain => {
+                LinearSystem::plain(&problem, progress).map(Some)
+            }
         }
     }
 

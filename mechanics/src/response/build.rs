@@ -5,10 +5,13 @@
 //! along it: at n . u(x) where s carries the wall, at zero where something else does or nothing.
 
 use super::linearity::{self, Linearity, joined_nodes};
+use super::quadratic_form::{QuadraticForm, SAMPLES, pairs};
+use super::second_order::Solutions;
 use super::{COLUMNS_PER_SEGMENT, Response, ResponseSegment, superposition};
 use crate::boundary::{ConnectedPart, Hold, NodeClass};
 use crate::mesh::Vector;
 use crate::mesh::ignored::listed;
+use crate::model::fem::force_series::ForceSeries;
 use crate::model::problem::{Equilibrium, LoadCase, ModelError};
 use crate::plan::RigidMovement;
 
@@ -19,6 +22,18 @@ use crate::solver::{SolveReport, SolverError};
 /// Bytes of one node in one load case: its force, its displacement, its unknowns.
 const BYTES_OF_NODE: f64 = 72.0;
 
+/// Bytes of one node beside the columns while those of second order are solved: forces and vectors of eight pairs.
+const BYTES_OF_PAIRS: f64 = 2000.0;
+
+/// How far a response goes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ResponseOrder {
+    #[default]
+    First,
+    /// With the quadratic form of what linearity leaves out.
+    Second,
+}
+
 /// A response in f64, as it was solved, with what tells how far it can be trusted.
 #[derive(Clone, Debug)]
 pub struct Columns {
@@ -28,6 +43,8 @@ pub struct Columns {
     /// As in [`Response`], in f64.
     pub values: Vec<f64>,
     pub linearity: Linearity,
+    /// The second order, where it was asked for.
+    pub second_order: Option<QuadraticForm>,
     /// What hangs together, and what holds it; segments by their place in `segments`, others stay.
     pub parts: Vec<ConnectedPart>,
     /// For each segment whether tissue slides on it.
@@ -62,6 +79,8 @@ pub enum ResponseError {
     EmptySegment { name: String },
     #[error("the scene has prescribed displacements or loads, which a response does not know")]
     Loaded,
+    #[error("the second order of a response is not known for quadratic tetrahedra")]
+    NoSecondOrder,
     #[error(
         "responses are built with linear finite elements, and the spec asks for another method"
     )]
@@ -127,6 +146,16 @@ pub fn build(
     names: &[String],
     progress: &dyn Progress,
 ) -> Result<Columns, ResponseError> {
+    build_to(scene, names, ResponseOrder::First, progress)
+}
+
+/// The same with columns up to an order.
+pub fn build_to(
+    scene: &Scene,
+    names: &[String],
+    order: ResponseOrder,
+    progress: &dyn Progress,
+) -> Result<Columns, ResponseError> {
     // 1. What is asked.
     let chosen = chosen(scene, names)?;
     let mut segments = Vec::with_capacity(chosen.len());
@@ -134,7 +163,7 @@ pub fn build(
         segments.push(segment_of(scene, number)?);
     }
     let columns = COLUMNS_PER_SEGMENT * segments.len();
-    check_memory(scene, columns)?;
+    check_memory(scene, columns, order)?;
     let zeros = vec![Vector::zeros(); scene.mesh.nodes.len()];
     let cases: Vec<LoadCase> = (0..columns)
         .map(|column| {
@@ -145,11 +174,11 @@ pub fn build(
         .collect();
 
     // 2. The tissue for each of them.
-    let solved = scene.solve_cases(&cases, progress)?;
+    let nodes = scene.skin.nodes().to_vec();
+    let (solved, second_order) = solve(scene, &cases, order, progress)?;
 
     // 3. Its skin.
     progress.phase(Phase::Surface);
-    let nodes = scene.skin.nodes().to_vec();
     let mut values = Vec::with_capacity(3 * columns * nodes.len());
     for equilibrium in &solved {
         for &node in &nodes {
@@ -167,6 +196,7 @@ pub fn build(
         nodes,
         values,
         linearity,
+        second_order,
         parts,
         carries_wall,
         allow_unfixed: scene.allow_unfixed,
@@ -174,6 +204,26 @@ pub fn build(
         solver,
         elements,
     })
+}
+
+/// The tissue for each load case, and its second order where that is asked for.
+fn solve(
+    scene: &Scene,
+    cases: &[LoadCase],
+    order: ResponseOrder,
+    progress: &dyn Progress,
+) -> Result<(Vec<Equilibrium>, Option<QuadraticForm>), ResponseError> {
+    if order == ResponseOrder::First {
+        return Ok((scene.solve_cases(cases, progress)?, None));
+    }
+    let system = scene.assemble(progress)?.ok_or(ResponseError::NoSecondOrder)?;
+    let columns = system.solve(cases, progress)?;
+    let pressures = system.pressures.as_ref().map(|pressures| &pressures.cells);
+    let series = ForceSeries::new(scene.tissue(), pressures);
+    let skin = scene.skin.nodes();
+    let solutions = Solutions { series, system: &system, columns: &columns, skin };
+    let form = solutions.quadratic_form(progress)?;
+    Ok((columns.into_iter().map(|solved| solved.equilibrium).collect(), Some(form)))
 }
 
 impl Columns {
@@ -227,8 +277,17 @@ fn held_values(scene: &Scene, segment: usize, centre: &Vector, unit: usize) -> V
 }
 
 /// All load cases stand in memory together.
-fn check_memory(scene: &Scene, columns: usize) -> Result<(), ModelError> {
-    let needed_mb = columns as f64 * scene.mesh.nodes.len() as f64 * BYTES_OF_NODE / 1e6;
+fn check_memory(scene: &Scene, columns: usize, order: ResponseOrder) -> Result<(), ModelError> {
+    let (nodes, skin) = (scene.mesh.nodes.len() as f64, scene.skin.nodes().len() as f64);
+    let second = match order {
+        ResponseOrder::First => 0.0,
+        ResponseOrder::Second => {
+            let stored = pairs(columns).count() * 3 * size_of::<i16>();
+            let samples = 3 * SAMPLES * size_of::<Vector>();
+            stored as f64 * skin + (samples as f64 + BYTES_OF_PAIRS) * nodes
+        }
+    };
+    let needed_mb = (columns as f64 * nodes * BYTES_OF_NODE + second) / 1e6;
     let allowed_mb = scene.settings.memory_mb;
     match needed_mb > allowed_mb {
         true => Err(SolverError::OverBudget { needed_mb, allowed_mb }.into()),

@@ -10,7 +10,7 @@
 
 use rayon::prelude::*;
 
-use super::superposition::ResponseSegment;
+use super::superposition::{ResponseSegment, coefficients};
 use crate::mesh::Vector;
 use crate::plan::RigidMovement;
 use crate::solver::vectorised;
@@ -65,8 +65,22 @@ pub fn quantised(column: &[Vector]) -> (Vec<i16>, f32) {
 }
 
 impl QuadraticForm {
-    /// Adds u2 to the displacement of each node. `numbers` are those of all segments.
-    pub fn add(&self, numbers: &[f64], displacement: &mut [Vector]) -> f64 {
+    /// Adds u2 to the displacement of each node for one movement of each segment, and tells the orders beyond the first.
+    pub fn apply(
+        &self,
+        segments: &[ResponseSegment],
+        movements: &[RigidMovement],
+        displacement: &mut [Vector],
+    ) -> BeyondLinear {
+        let moved = segments.iter().zip(movements);
+        let numbers = moved.flat_map(|(segment, movement)| coefficients(movement, &segment.centre));
+        let numbers: Vec<f64> = numbers.collect();
+        let second = self.add(&numbers, displacement);
+        BeyondLinear { second, third: self.third_order(segments, movements) }
+    }
+
+    /// Adds u2 to the displacement of each node, and tells its mean length. `numbers` are those of all segments.
+    fn add(&self, numbers: &[f64], displacement: &mut [Vector]) -> f64 {
         let length = 3 * displacement.len();
         if length == 0 {
             return 0.0;

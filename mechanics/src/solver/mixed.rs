@@ -15,11 +15,11 @@
 //! put on the nodes around it. It does not lose its meaning as nu goes to 1/2.
 
 use super::lanes::{Lanes, MOST_LANES};
+use super::mixed_scaling::scaled;
 use super::mixed_system::{MixedRightHandSide, MixedSolution, MixedSystem};
 use super::multigrid::{Multigrid, Workspace};
-use super::scaling::{factor, times};
 use super::vector::{advance, column, dot, interleave, largest, norm, ratio, scale, subtract_all};
-use super::{Solution, SolveReport, SolverError, Tolerance, Unknowns, nothing_to_solve, tell};
+use super::{Solution, SolveReport, SolverError, Tolerance, Unknowns, tell};
 use crate::progress::Progress;
 use std::collections::VecDeque;
 
@@ -54,60 +54,47 @@ pub fn solve(
     tolerance: &Tolerance,
     progress: &dyn Progress,
 ) -> Result<Vec<MixedSolution>, SolverError> {
-    let is_zero = |right: &MixedRightHandSide| {
-        let mut values = right.forces.as_flattened().iter().chain(right.volumes.as_flattened());
-        values.all(|value| *value == 0.0)
-    };
-    if right_hand_sides.iter().all(is_zero) {
-        let pressures = vec![[0.0]; system.coupling.mass.len()];
-        let at_rest = SolveReport::at_rest(system.free_unknowns(), tolerance.relative_residual);
-        let rest = |right: &MixedRightHandSide| MixedSolution {
-            solution: nothing_to_solve(&right.forces, &at_rest),
-            pressures: pressures.clone(),
-        };
-        return Ok(right_hand_sides.iter().map(rest).collect());
-    }
-    let factors: Vec<f64> = right_hand_sides.iter().map(factor_of).collect();
-    if factors.iter().all(|factor| *factor == 1.0) {
-        return solve_scaled(system, right_hand_sides, tolerance, progress);
-    }
-    let sides = right_hand_sides.iter().zip(&factors);
-    let of_usual_size: Vec<MixedRightHandSide> = sides
-        .map(|(right, &factor)| MixedRightHandSide {
-            forces: times(&right.forces, factor),
-            volumes: times(&right.volumes, factor),
-        })
-        .collect();
-    let mut solutions = solve_scaled(system, &of_usual_size, tolerance, progress)?;
-    for (mixed, factor) in solutions.iter_mut().zip(factors) {
-        mixed.solution.unknowns = times(&mixed.solution.unknowns, factor.recip());
-        mixed.pressures = times(&mixed.pressures, factor.recip());
-    }
-    Ok(solutions)
+    let wanted = tolerance.relative_residual;
+    scaled(system, right_hand_sides, wanted, |right_hand_sides| {
+        solve_scaled(system, right_hand_sides, wanted, progress)
+    })
 }
 
-/// The power of two that brings forces and volumes to a size whose squares neither vanish nor overflow.
-fn factor_of(right: &MixedRightHandSide) -> f64 {
-    factor(right.forces.as_flattened().iter().chain(right.volumes.as_flattened()))
+/// Solves until every relative residual is met or nothing more is gained, and keeps what was found until then.
+pub fn solve_loosely(
+    system: &MixedSystem,
+    right_hand_sides: &[MixedRightHandSide],
+    wanted: f64,
+    progress: &dyn Progress,
+) -> Result<Vec<MixedSolution>, SolverError> {
+    scaled(system, right_hand_sides, wanted, |right_hand_sides| {
+        let mut solutions = Vec::with_capacity(right_hand_sides.len());
+        for chunk in right_hand_sides.chunks(MOST_LANES) {
+            solutions.extend(match chunk.len() {
+                1 => Run::<1>::new(system, chunk).solve_loosely(wanted, progress),
+                2..=4 => Run::<4>::new(system, chunk).solve_loosely(wanted, progress),
+                _ => Run::<MOST_LANES>::new(system, chunk).solve_loosely(wanted, progress),
+            }?);
+        }
+        Ok(solutions)
+    })
 }
 
 fn solve_scaled(
     system: &MixedSystem,
     right_hand_sides: &[MixedRightHandSide],
-    tolerance: &Tolerance,
+    wanted: f64,
     progress: &dyn Progress,
 ) -> Result<Vec<MixedSolution>, SolverError> {
-    let multigrid = Multigrid::new(system.stiffness);
-    let wanted = tolerance.relative_residual;
     let alone = |right: &MixedRightHandSide| {
-        Run::<1>::new(system, &multigrid, std::slice::from_ref(right)).solve(wanted, progress)
+        Run::<1>::new(system, std::slice::from_ref(right)).solve(wanted, progress)
     };
     let mut solutions = Vec::with_capacity(right_hand_sides.len());
     for chunk in right_hand_sides.chunks(MOST_LANES) {
         let together = match chunk.len() {
             1 => alone(&chunk[0]),
-            2..=4 => Run::<4>::new(system, &multigrid, chunk).solve(wanted, progress),
-            _ => Run::<MOST_LANES>::new(system, &multigrid, chunk).solve(wanted, progress),
+            2..=4 => Run::<4>::new(system, chunk).solve(wanted, progress),
+            _ => Run::<MOST_LANES>::new(system, chunk).solve(wanted, progress),
         };
         match together {
             // Alone each may keep more directions.
@@ -151,11 +138,8 @@ struct Run<'a, const N: usize> {
 }
 
 impl<'a, const N: usize> Run<'a, N> {
-    fn new(
-        system: &'a MixedSystem<'a>,
-        multigrid: &'a Multigrid,
-        columns: &[MixedRightHandSide],
-    ) -> Self {
+    fn new(system: &'a MixedSystem<'a>, columns: &[MixedRightHandSide]) -> Self {
+        let multigrid = system.solver.hierarchy(system.stiffness);
         let coupling = system.coupling;
         let row_length = |row: usize| -> f64 {
             let squares = coupling.divergence.row(row).flat_map(|(_, b)| b.map(|b| b * b));
@@ -208,6 +192,24 @@ impl<'a, const N: usize> Run<'a, N> {
             self.iterate(wanted, progress)?;
         }
         Err(self.not_converged(wanted))
+    }
+
+    /// One run of the recursive residual, whatever it reaches.
+    fn solve_loosely(
+        mut self,
+        wanted: f64,
+        progress: &dyn Progress,
+    ) -> Result<Vec<MixedSolution>, SolverError> {
+        if largest(&self.relative_residuals()) > wanted {
+            match self.iterate(wanted, progress) {
+                Ok(()) | Err(SolverError::NotConverged { .. }) => (),
+                Err(other) => return Err(other),
+            }
+        }
+        match self.x.iter().chain(&self.r).flatten().all(|value| value.is_finite()) {
+            true => Ok(self.solutions(wanted)),
+            false => Err(SolverError::NotFinite),
+        }
     }
 
     /// Unknowns that are displacements.

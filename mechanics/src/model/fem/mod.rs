@@ -7,6 +7,7 @@ pub mod displacement_pressure;
 pub mod edge_nodes;
 pub mod finite_strain;
 pub mod force_series;
+pub mod linear_system;
 pub mod loads;
 pub mod mass_tensor;
 pub mod membrane;

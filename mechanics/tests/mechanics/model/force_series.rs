@@ -37,7 +37,7 @@ fn mean_of_bricks(shape: CellShape) -> Dilatation {
 }
 
 fn series(tissue: Tissue<'_>) -> ForceSeries<'_> {
-    ForceSeries { tissue, pressures_of_cell: &[], pressure_count: 0 }
+    ForceSeries::new(tissue, None)
 }
 
 fn moved(displacement: &[Vector]) -> Moved<'_> {
@@ -199,7 +199,7 @@ fn pressures_give_the_forces_of_plain_cells_where_the_gradient_is_one() {
     let pressure = materials[0].lambda() * gradient.trace();
     let pressures = vec![pressure; mesh.nodes.len()];
     let mixed =
-        ForceSeries { tissue, pressures_of_cell: &corners, pressure_count: mesh.nodes.len() };
+        ForceSeries { tissue, pressures_of_cell: corners, pressure_count: mesh.nodes.len() };
     let state = Moved { displacement: &u, pressures: &pressures };
     let Forces { nodes, volumes } = mixed.second(&[state], &[[0, 0]]).unwrap().remove(0);
     // The volume that is left over raises the pressure by p2 = lambda times it, which acts as B^T p2.

@@ -3,6 +3,7 @@
 mod convergence;
 mod finite_strain;
 mod force_series;
+mod linear_system;
 mod mass_spring;
 mod mass_tensor;
 mod membrane;

@@ -16,6 +16,7 @@ mod cell;
 use rayon::prelude::*;
 
 use super::assembly::Tissue;
+use super::displacement_pressure::PressureCells;
 use crate::mesh::Vector;
 use crate::model::problem::InvertedCell;
 use cell::{Cell, CellTerms, Strained};
@@ -40,14 +41,26 @@ pub struct Forces {
 }
 
 /// The tissue, and for each cell the numbers of the pressures of its corners; empty where no cell has any.
-#[derive(Clone, Copy)]
 pub struct ForceSeries<'a> {
     pub tissue: Tissue<'a>,
-    pub pressures_of_cell: &'a [Option<[u32; 4]>],
+    pub pressures_of_cell: Vec<Option<[u32; 4]>>,
     pub pressure_count: usize,
 }
 
-impl ForceSeries<'_> {
+impl<'a> ForceSeries<'a> {
+    /// That of tissue as a linear system sees it, whose tetrahedra may have pressures.
+    pub fn new(tissue: Tissue<'a>, pressures: Option<&PressureCells>) -> Self {
+        let mut series = ForceSeries { tissue, pressures_of_cell: Vec::new(), pressure_count: 0 };
+        if let Some(pressures) = pressures {
+            series.pressure_count = pressures.pressure_count;
+            series.pressures_of_cell = vec![None; series.tissue.mesh.cells.len()];
+            for (&cell, &numbers) in pressures.cells.iter().zip(&pressures.pressures) {
+                series.pressures_of_cell[cell as usize] = Some(numbers);
+            }
+        }
+        series
+    }
+
     /// N2(u, v), bilinear and symmetric, for pairs of states.
     pub fn second(
         &self,
