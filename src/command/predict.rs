@@ -97,6 +97,13 @@ fn print_result(result: &ResultDocument, before: &CheckDocument) {
             println!("landmark     {name} moves by {x:.3} {y:.3} {z:.3} mm");
         }
     }
+    if let Some(nonlinearity) = &result.nonlinearity_mm {
+        let left = &nonlinearity.skin;
+        println!(
+            "left out     by linear elasticity about {:.3} mm in the mean, p95 {:.3}, max {:.3}",
+            left.mean, left.p95, left.max
+        );
+    }
     for (name, reaction) in &result.reaction_mn {
         let [x, y, z] = reaction.0;
         println!("reaction     {name} {x:.1} {y:.1} {z:.1} mN");

@@ -15,7 +15,7 @@ use crate::model::fem::force_series::ForceSeries;
 use crate::model::problem::{Equilibrium, LoadCase, ModelError};
 use crate::plan::RigidMovement;
 
-use crate::prediction::Scene;
+use crate::prediction::{ElementChoice, Scene};
 use crate::progress::{Phase, Progress};
 use crate::solver::{SolveReport, SolverError};
 
@@ -121,6 +121,14 @@ pub fn chosen(scene: &Scene, names: &[String]) -> Result<Vec<usize>, ResponseErr
     }
 }
 
+/// Refuses an order that the elements of a scene do not have.
+pub fn check_order(scene: &Scene, order: ResponseOrder) -> Result<(), ResponseError> {
+    match order == ResponseOrder::Second && scene.element == ElementChoice::Quadratic {
+        true => Err(ResponseError::NoSecondOrder),
+        false => Ok(()),
+    }
+}
+
 /// The parts of a scene where only these segments may move, by their place in the list.
 fn parts_where(scene: &Scene, chosen: &[usize]) -> Vec<ConnectedPart> {
     let place = |segment: u32| chosen.iter().position(|&other| other == segment as usize);
@@ -158,6 +166,7 @@ pub fn build_to(
 ) -> Result<Columns, ResponseError> {
     // 1. What is asked.
     let chosen = chosen(scene, names)?;
+    check_order(scene, order)?;
     let mut segments = Vec::with_capacity(chosen.len());
     for &number in &chosen {
         segments.push(segment_of(scene, number)?);

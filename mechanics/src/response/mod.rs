@@ -11,7 +11,7 @@ pub mod linearity;
 pub mod quadratic_form;
 mod second_order;
 mod superposition;
-pub use build::{Columns, ResponseError, ResponseOrder, build, build_to, chosen};
+pub use build::{Columns, ResponseError, ResponseOrder, build, build_to, check_order, chosen};
 pub use linearity::{Linearity, Nonlinearity};
 pub use quadratic_form::{BeyondLinear, QuadraticForm};
 pub use superposition::{COLUMNS_PER_SEGMENT, Response, ResponseSegment, coefficients};

@@ -24,6 +24,7 @@ use crate::schema::compare::result::{ComparisonDocument, StatDocument};
 use crate::schema::optimise::result::OptimisationDocument;
 use crate::schema::predict::document::OutputName;
 use crate::schema::predict::keep::KeptName;
+use crate::schema::predict::nonlinearity::{NonlinearityDocument, skin_lengths};
 use crate::schema::predict::result::{
     DisplacementDocument, FileDocument, ResultDocument, StatisticsDocument,
 };
@@ -54,6 +55,13 @@ impl Predicted {
         let mut skin = PredictedSkin::new(&prepared.scene.skin, &prediction);
         skin.range_mm = input.spec.range_mm();
         let mut statistics = statistics(&prepared.scene.skin, &skin, &prediction.landmarks)?;
+        let nonlinearity = match &prediction.nonlinearity {
+            Ok(known) => {
+                skin.nonlinearity = Some(skin_lengths(&prepared.scene.skin, known));
+                Ok(NonlinearityDocument::new(&prepared.scene.skin, known)?)
+            }
+            Err(unknown) => Err(unknown.to_string()),
+        };
         statistics.imaged = prepared.scene.imaged.as_ref().map(Into::into);
         clock.check()?;
 
@@ -82,6 +90,7 @@ impl Predicted {
             prediction: &prediction,
             skin: &skin,
             statistics,
+            nonlinearity,
             comparison: compared.map(|compared| compared.document),
             optimisation,
             warnings,
@@ -104,6 +113,8 @@ struct Finished<'a> {
     prediction: &'a Prediction,
     skin: &'a PredictedSkin,
     statistics: StatisticsDocument,
+    /// What is left out, or why that is not known.
+    nonlinearity: Result<NonlinearityDocument, String>,
     comparison: Option<ComparisonDocument>,
     optimisation: Option<OptimisationDocument>,
     warnings: Vec<Warning>,
@@ -168,6 +179,8 @@ impl Finished<'_> {
         ResultDocument {
             pictures: input.pictures_beside(files),
             statistics: Some(self.statistics.clone()),
+            nonlinearity_mm: self.nonlinearity.as_ref().ok().cloned(),
+            nonlinearity_unknown: self.nonlinearity.as_ref().err().cloned(),
             comparison: self.comparison.clone(),
             optimisation: self.optimisation.clone(),
             reaction_mn: triples(&self.prediction.reactions),

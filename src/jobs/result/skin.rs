@@ -18,6 +18,8 @@ pub struct PredictedSkin {
     pub magnitude: Vec<f64>,
     /// To the surface it was compared with, in mm, positive outside.
     pub signed_distance: Option<Vec<f64>>,
+    /// What linear elasticity leaves out, in mm, where it is known.
+    pub nonlinearity: Option<Vec<f64>>,
     /// The displacement in mm at which colours end: the same for every plan, so that plans can be held side by side.
     pub range_mm: f64,
 }
@@ -40,6 +42,7 @@ impl PredictedSkin {
             magnitude: displacement.iter().map(Vector::norm).collect(),
             displacement,
             signed_distance: None,
+            nonlinearity: None,
             range_mm: USUAL_RANGE_MM,
         }
     }
@@ -67,6 +70,12 @@ impl PredictedSkin {
         if let Some(distance) = &self.signed_distance {
             let values = ArrayValues::Reals(distance);
             output.point_arrays.push(NamedValues { name: "signed_distance_mm", values });
+        }
+        if let Some(nonlinearity) =
+            self.nonlinearity.as_ref().filter(|_| name == OutputName::SkinVtp)
+        {
+            let values = ArrayValues::Reals(nonlinearity);
+            output.point_arrays.push(NamedValues { name: "nonlinearity_mm", values });
         }
         if matches!(name, OutputName::SkinGlb | OutputName::SkinPly) {
             output.colours = Some(&colours);

@@ -5,6 +5,7 @@ pub mod check;
 pub mod contact;
 pub mod document;
 pub mod keep;
+pub mod nonlinearity;
 pub mod output;
 pub mod result;
 pub mod tolerance;

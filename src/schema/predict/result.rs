@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use super::keep::KeptMeshDocument;
+use super::nonlinearity::NonlinearityDocument;
 use super::output::PictureName;
 use crate::schema::Triple;
 use crate::schema::case::document::{FrameName, LengthUnit};
@@ -59,6 +60,13 @@ pub struct ResultDocument {
     pub kept: Vec<KeptMeshDocument>,
     /// Null where it was not estimated.
     pub numerical_error_mm: Option<NumericalErrorDocument>,
+    /// What linear elasticity leaves out; null where `nonlinearity_unknown` says why it is not estimated.
+    #[serde(default)]
+    pub nonlinearity_mm: Option<NonlinearityDocument>,
+    /// Of a prediction without an estimate of what linear elasticity leaves out: why.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub nonlinearity_unknown: Option<String>,
     /// The forces in mN that the nodes of each segment, and all `fixed`, `sliding` and `prescribed` nodes, exert on the
     /// tissue: what pulls tissue upwards points upwards.
     #[serde(default)]
@@ -89,6 +97,8 @@ impl ResultDocument {
             pictures: Vec::new(),
             kept: Vec::new(),
             numerical_error_mm: None,
+            nonlinearity_mm: None,
+            nonlinearity_unknown: None,
             reaction_mn: BTreeMap::new(),
             reactions: Vec::new(),
             provenance,

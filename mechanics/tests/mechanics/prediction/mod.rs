@@ -7,6 +7,7 @@ mod fibres;
 mod jump;
 mod moving_walls;
 mod no_free_node;
+mod nonlinearity;
 mod patch;
 mod skin;
 mod slab_table;
