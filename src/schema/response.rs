@@ -8,7 +8,7 @@ use utoipa::ToSchema;
 use super::code::ErrorCode;
 use super::methods::{self, ElementName, MethodName};
 use super::response_part::ResponsePartDocument;
-use super::second_order::{ColumnsDocument, SecondOrderDocument};
+use super::second_order::{ColumnsDocument, LinearityDocument, SecondOrderDocument};
 use super::{CornerPair, Triple, WarningDocument};
 use crate::schema::case::document::FrameName;
 use crate::schema::case::material::{MaterialDocument, MaterialDocuments};
@@ -215,17 +215,6 @@ impl ResponseSegmentDocument {
         let CornerPair([a, b, c, d, e, f]) = self.box_mm;
         [Vector::new(a, b, c), Vector::new(d, e, f)]
     }
-}
-
-/// What the estimate of nonlinearity needs to know of the case.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct LinearityDocument {
-    /// The median distance from the skin to the nearest held node.
-    pub thickness_mm: f64,
-    /// Whether something is held that no segment of the response moves.
-    pub something_stays: bool,
-    /// The estimate above which an answer is outside the linear range.
-    pub range_mm: f64,
 }
 
 /// What a response is the answer of.

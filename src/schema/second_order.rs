@@ -1,4 +1,4 @@
-//! The binary columns of a response: of first order, and of second order in sixteen bits.
+//! The binary columns of a response, of first order and of second order in sixteen bits, and what its estimates need.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
@@ -14,6 +14,17 @@ pub struct ColumnsDocument {
     pub count: u64,
     pub bytes: u64,
     pub sha256: String,
+}
+
+/// What the estimate of nonlinearity needs to know of the case.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct LinearityDocument {
+    /// The median distance from the skin to the nearest held node.
+    pub thickness_mm: f64,
+    /// Whether something is held that no segment of the response moves.
+    pub something_stays: bool,
+    /// The estimate above which an answer is outside the linear range.
+    pub range_mm: f64,
 }
 
 /// The columns of second order. With a the twelve numbers of all segments, one after the other,

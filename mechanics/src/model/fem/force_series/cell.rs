@@ -2,7 +2,6 @@
 
 use nalgebra::Matrix3;
 
-use super::Moved;
 use crate::element::{MAX_NODES, PhysicalPoint};
 use crate::material::ElasticTensor;
 use crate::material::stress_series::{
@@ -14,6 +13,14 @@ use crate::model::fem::assembly::Tissue;
 use crate::model::fem::cell_stiffness::Dilatation;
 use crate::model::problem::InvertedCell;
 use crate::model::reference_cell;
+
+/// What a solution of the linear elements holds: a displacement in mm for each node, a pressure in kPa for each unknown
+/// that is one.
+#[derive(Clone, Copy, Debug)]
+pub struct Moved<'a> {
+    pub displacement: &'a [Vector],
+    pub pressures: &'a [f64],
+}
 
 /// A cell at rest, and the parts of its stiffness.
 pub(super) struct Cell {

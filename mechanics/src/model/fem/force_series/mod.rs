@@ -19,19 +19,12 @@ use super::assembly::Tissue;
 use super::displacement_pressure::PressureCells;
 use crate::mesh::Vector;
 use crate::model::problem::InvertedCell;
+pub use cell::Moved;
 use cell::{Cell, CellTerms, Strained};
 
 /// Cells whose forces are computed side by side before they are added in cell order, which keeps the bits independent of
 /// the number of threads.
 const CHUNK: usize = 4096;
-
-/// What a solution of the linear elements holds: a displacement in mm for each node, a pressure in kPa for each unknown
-/// that is one.
-#[derive(Clone, Copy, Debug)]
-pub struct Moved<'a> {
-    pub displacement: &'a [Vector],
-    pub pressures: &'a [f64],
-}
 
 /// Forces in mN for each node and volumes in mm^3 for each pressure.
 #[derive(Clone, Debug, PartialEq)]
