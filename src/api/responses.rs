@@ -202,9 +202,8 @@ async fn rest(service: &Service, found: &FoundResponse, headers: &HeaderMap) -> 
 }
 
 /// The skin after a plan, in milliseconds. Segments that the plan does not name stay where they are. A response of order
-/// 1 is exact within linear elasticity; what that leaves out is told by a rule of thumb, 0.15 d^2 / h + 2.7 h (1 - cos
-/// theta) with d the largest movement of a segment against another or against what stays, h the thickness of the
-/// tissue and theta the largest rotation: an order of magnitude. A response of order 2 adds the second-order term of finite
+/// 1 is exact within linear elasticity; what that leaves out is estimated from samples of the second order along and about
+/// each axis of each segment (of quadratic tetrahedra by a rule of thumb). A response of order 2 adds the second-order term of finite
 /// strain, tells its mean length, and estimates the third order from samples. Above 0.5 mm the answer carries the
 /// warning `outside-linear-range` or `outside-second-order-range`. Beside a binary body the numbers stand in headers.
 #[utoipa::path(
@@ -219,7 +218,7 @@ async fn rest(service: &Service, found: &FoundResponse, headers: &HeaderMap) -> 
                 ("Facies-Max-Mm" = f64, description = "the largest displacement of a skin node"),
                 ("Facies-Largest-Rotation-Deg" = f64, description = "the largest rotation of a segment"),
                 ("Facies-Order" = u8, description = "that of the response: 2 where the second-order term is in the displacement"),
-                ("Facies-Nonlinearity-Estimate-Mm" = f64, description = "what the displacement leaves out: of order 1 an order of magnitude, of order 2 the third-order term"),
+                ("Facies-Nonlinearity-Estimate-Mm" = f64, description = "what the displacement leaves out: of order 1 the second-order term, of order 2 the third-order term, from samples"),
                 ("Facies-Within-Linear-Range" = bool, description = "whether that is at most 0.5 mm"),
                 ("Facies-Warning" = Option<String>, description = "the codes of the warnings: outside-linear-range, outside-second-order-range, nothing-moves, plan-units-suspect, sliding-normal-turned, skin-overlaps"),
                 ("Facies-Not-Measured" = Option<String>, description = "skin-overlaps, without `check_skin`"),

@@ -336,8 +336,12 @@ mod tests {
     fn loaded(nodes: u32) -> Arc<LoadedResponse> {
         let segments = vec![ResponseSegment { name: "jaw".into(), centre: Vector::zeros() }];
         let corner = Vector::zeros();
-        let linearity =
-            Linearity { thickness: 1.0, something_stays: true, boxes: vec![[corner, corner]] };
+        let linearity = Linearity {
+            thickness: 1.0,
+            something_stays: true,
+            boxes: vec![[corner, corner]],
+            sampled: Vec::new(),
+        };
         let solver = mechanics::prediction::SolveReport::at_rest(0, 0.0);
         let values = vec![0.0; 36 * nodes as usize];
         let nodes: Vec<u32> = (0..nodes).collect();

@@ -48,8 +48,8 @@ pub struct AppliedSummary {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub second_order_mm: Option<f64>,
-    /// What the displacement leaves out, mean over the skin: of order 1 an order of magnitude by a rule of thumb, of order
-    /// 2 the third-order term, estimated from samples.
+    /// What the displacement leaves out, mean over the skin: of order 1 the second-order term, of order
+    /// 2 the third-order term, both estimated from samples.
     pub nonlinearity_estimate_mm: f64,
     /// Whether the estimate is at most 0.5 mm, and of order 2 at most half of the second-order term where it is above
     /// 0.1 mm.

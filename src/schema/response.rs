@@ -29,7 +29,9 @@ use mechanics::plan::RigidMovement;
 use mechanics::plan::doubt::{MovedSegment, beyond_face, nothing_moves, suspect_units};
 use mechanics::prediction::{GoesAlong, goes_along, normal_turned};
 use mechanics::response::linearity::LINEAR_RANGE_MM;
-use mechanics::response::{Columns, Linearity, ResponseError, ResponseOrder, ResponseSegment};
+use mechanics::response::{
+    Columns, Linearity, ResponseError, ResponseOrder, ResponseSegment, SampledSecond,
+};
 
 /// `response`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
@@ -253,6 +255,7 @@ impl ResponseDescription {
             linearity: LinearityDocument {
                 thickness_mm: columns.linearity.thickness,
                 something_stays: columns.linearity.something_stays,
+                second_order_mm: columns.linearity.sampled.iter().map(|of| of.second).collect(),
                 range_mm: LINEAR_RANGE_MM,
             },
             second_order: origin.second_order,
@@ -278,6 +281,12 @@ impl ResponseDescription {
             thickness: self.linearity.thickness_mm,
             something_stays: self.linearity.something_stays,
             boxes: self.segments.iter().map(ResponseSegmentDocument::corners).collect(),
+            sampled: { self.segments.iter().zip(&self.linearity.second_order_mm) }
+                .map(|(segment, &second)| SampledSecond {
+                    centre: segment.centre_mm.into(),
+                    second,
+                })
+                .collect(),
         }
     }
 

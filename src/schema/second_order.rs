@@ -17,12 +17,16 @@ pub struct ColumnsDocument {
 }
 
 /// What the estimate of nonlinearity needs to know of the case.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct LinearityDocument {
     /// The median distance from the skin to the nearest held node.
     pub thickness_mm: f64,
     /// Whether something is held that no segment of the response moves.
     pub something_stays: bool,
+    /// For each segment the mean length on the skin of what the second order adds for 1 mm along x, y, z and for 1 rad about
+    /// x, y, z through its centre; grows with the square. Absent where a rule of thumb has to do.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub second_order_mm: Vec<[f64; 6]>,
     /// The estimate above which an answer is outside the linear range.
     pub range_mm: f64,
 }

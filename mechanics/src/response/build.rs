@@ -4,8 +4,9 @@
 //! or u = e_i, j = 3, and zero wherever else a node is held. Sliding nodes are held across their wall and free
 //! along it: at n . u(x) where s carries the wall, at zero where something else does or nothing.
 
-use super::linearity::{self, Linearity, joined_nodes};
-use super::quadratic_form::{QuadraticForm, SAMPLES, pairs};
+use super::linearity::{self, Linearity, SampledSecond, joined_nodes};
+use super::quadratic_form::{QuadraticForm, pairs};
+use super::rigid_numbers::SAMPLES;
 use super::second_order::Solutions;
 use super::{COLUMNS_PER_SEGMENT, Response, ResponseSegment, superposition};
 use crate::boundary::{ConnectedPart, Hold, NodeClass};
@@ -184,7 +185,7 @@ pub fn build_to(
 
     // 2. The tissue for each of them.
     let nodes = scene.skin.nodes().to_vec();
-    let (solved, second_order) = solve(scene, &cases, order, progress)?;
+    let Solved { solved, sampled, second_order } = solve(scene, &cases, order, progress)?;
 
     // 3. Its skin.
     progress.phase(Phase::Surface);
@@ -195,7 +196,10 @@ pub fn build_to(
         }
     }
     let parts = parts_where(scene, &chosen);
-    let linearity = linearity::of_scene(scene, &chosen, &parts);
+    let mut linearity = linearity::of_scene(scene, &chosen, &parts);
+    let centres = segments.iter().map(|segment| segment.centre);
+    let samples = centres.zip(sampled);
+    linearity.sampled = samples.map(|(centre, second)| SampledSecond { centre, second }).collect();
     let (solver, elements) = (hardest(&solved)?, scene.elements());
     let carries_wall =
         chosen.iter().map(|&number| scene.conditions.carried_by(number as u32) > 0).collect();
@@ -215,24 +219,36 @@ pub fn build_to(
     })
 }
 
-/// The tissue for each load case, and its second order where that is asked for.
+/// The tissue for each load case, samples of its second order for each segment where elements have one, and all of it
+/// where that is asked for.
+struct Solved {
+    solved: Vec<Equilibrium>,
+    sampled: Vec<[f64; SAMPLES]>,
+    second_order: Option<QuadraticForm>,
+}
+
 fn solve(
     scene: &Scene,
     cases: &[LoadCase],
     order: ResponseOrder,
     progress: &dyn Progress,
-) -> Result<(Vec<Equilibrium>, Option<QuadraticForm>), ResponseError> {
-    if order == ResponseOrder::First {
-        return Ok((scene.solve_cases(cases, progress)?, None));
-    }
-    let system = scene.assemble(progress)?.ok_or(ResponseError::NoSecondOrder)?;
+) -> Result<Solved, ResponseError> {
+    let Some(system) = scene.assemble(progress)? else {
+        let solved = scene.solve_cases(cases, progress)?;
+        return Ok(Solved { solved, sampled: Vec::new(), second_order: None });
+    };
     let columns = system.solve(cases, progress)?;
     let pressures = system.pressures.as_ref().map(|pressures| &pressures.cells);
     let series = ForceSeries::new(scene.tissue(), pressures);
     let skin = scene.skin.nodes();
     let solutions = Solutions { series, system: &system, columns: &columns, skin };
-    let form = solutions.quadratic_form(progress)?;
-    Ok((columns.into_iter().map(|solved| solved.equilibrium).collect(), Some(form)))
+    let sampled = solutions.second_of_each(progress)?;
+    let second_order = match order {
+        ResponseOrder::First => None,
+        ResponseOrder::Second => Some(solutions.quadratic_form(progress)?),
+    };
+    let solved = columns.into_iter().map(|solved| solved.equilibrium).collect();
+    Ok(Solved { solved, sampled, second_order })
 }
 
 impl Columns {

@@ -9,9 +9,10 @@
 pub mod build;
 pub mod linearity;
 pub mod quadratic_form;
+mod rigid_numbers;
 mod second_order;
 mod superposition;
 pub use build::{Columns, ResponseError, ResponseOrder, build, build_to, check_order, chosen};
-pub use linearity::{Linearity, Nonlinearity};
+pub use linearity::{Linearity, Nonlinearity, SampledSecond};
 pub use quadratic_form::{BeyondLinear, QuadraticForm};
 pub use superposition::{COLUMNS_PER_SEGMENT, Response, ResponseSegment, coefficients};

@@ -10,6 +10,7 @@
 
 use rayon::prelude::*;
 
+use super::rigid_numbers::{SAMPLES, rigid_numbers};
 use super::superposition::{ResponseSegment, coefficients};
 use crate::mesh::Vector;
 use crate::plan::RigidMovement;
@@ -23,9 +24,6 @@ const TOGETHER: usize = 4;
 
 /// The largest stored integer.
 pub const LARGEST: f32 = 32767.0;
-
-/// Sampled directions for each segment: three translations in mm, three rotations about its centre in radians.
-pub const SAMPLES: usize = 6;
 
 /// The second order of a response, and samples of the third.
 #[derive(Clone, Debug, PartialEq)]
@@ -119,21 +117,6 @@ impl QuadraticForm {
         });
         parts.sum::<f64>().powf(1.5)
     }
-}
-
-/// The translation in mm of a centre, and the rotation vector in radians.
-fn rigid_numbers(movement: &RigidMovement, centre: &Vector) -> [f64; SAMPLES] {
-    let t = movement.displacement(centre);
-    let r = movement.rotation();
-    let twice = Vector::new(r[(2, 1)] - r[(1, 2)], r[(0, 2)] - r[(2, 0)], r[(1, 0)] - r[(0, 1)]);
-    let angle = movement.angle();
-    let sine = 0.5 * twice.norm();
-    // Half a turn has no axis in R - R^T; its length still counts, along all three axes alike.
-    let w = match sine > 1e-9 {
-        true => twice * (0.5 * angle / sine),
-        false => Vector::repeat(angle / 3_f64.sqrt()),
-    };
-    [t.x, t.y, t.z, w.x, w.y, w.z]
 }
 
 /// Adds factors times a stretch of their columns.

@@ -4,7 +4,8 @@
 //! the hierarchy of the columns themselves, and nothing moved where it is held: what a hold states is linear in the numbers
 //! of its segment. Where tissue slides it keeps the normals that it has at rest.
 
-use super::quadratic_form::{QuadraticForm, SAMPLES, pairs, quantised};
+use super::quadratic_form::{QuadraticForm, pairs, quantised};
+use super::rigid_numbers::SAMPLES;
 use super::superposition::COLUMNS_PER_SEGMENT;
 use crate::mesh::Vector;
 use crate::model::fem::force_series::{ForceSeries, Forces, Moved};
@@ -15,6 +16,9 @@ use crate::solver::SolverError;
 
 /// Relative residual of the columns of second and third order (docs/estimates.md has what looser ones leave).
 const LOOSE: f64 = 1e-2;
+
+/// Relative residual of what is only sampled of the second order.
+const SAMPLED: f64 = 0.1;
 
 /// Pairs that are solved for together.
 const TOGETHER: usize = 8;
@@ -91,7 +95,7 @@ impl Solutions<'_> {
         let twice = some.iter().map(|[k, l]| if k == l { 1.0 } else { 2.0 });
         let residuals = forces.into_iter().zip(twice);
         let residuals = residuals.map(|(forces, factor)| resisting(forces, factor)).collect();
-        let solved = self.solved(residuals, progress)?;
+        let solved = self.solved(residuals, LOOSE, progress)?;
         Ok(solved.iter().map(|state| self.at_skin(&state.displacement)).collect())
     }
 
@@ -107,12 +111,13 @@ impl Solutions<'_> {
     fn solved(
         &self,
         residuals: Vec<Residual>,
+        relative_residual: f64,
         progress: &dyn Progress,
     ) -> Result<Vec<State>, ModelError> {
         if progress.is_cancelled() {
             return Err(SolverError::Stopped.into());
         }
-        let solved = self.system.solve_for(&residuals, LOOSE, progress)?;
+        let solved = self.system.solve_for(&residuals, relative_residual, progress)?;
         Ok(solved.into_iter().map(State::from).collect())
     }
 
@@ -122,22 +127,51 @@ impl Solutions<'_> {
         segment: usize,
         progress: &dyn Progress,
     ) -> Result<[f64; SAMPLES], ModelError> {
-        let first: Vec<State> =
-            (0..SAMPLES).map(|direction| self.sampled(segment, direction)).collect();
-        let states: Vec<Moved> = first.iter().map(State::as_moved).collect();
-        let squares: [[usize; 2]; SAMPLES] = std::array::from_fn(|direction| [direction; 2]);
-        let forces = self.series.second(&states, &squares)?.into_iter();
-        let residuals = forces.map(|forces| resisting(forces, 1.0)).collect();
-        let second = self.solved(residuals, progress)?;
+        let first = self.samples(segment);
+        let second = self.squares(&first, LOOSE, progress)?;
         let both = first.iter().zip(&second);
         let forces = both.map(|(u, v)| self.series.third(u.as_moved(), v.as_moved()));
         let residuals: Result<Vec<Residual>, ModelError> =
             forces.map(|forces| Ok(resisting(forces?, 1.0))).collect();
-        let third = self.solved(residuals?, progress)?;
-        Ok(std::array::from_fn(|direction| {
-            let lengths = self.at_skin(&third[direction].displacement);
+        Ok(self.mean_lengths(&self.solved(residuals?, LOOSE, progress)?))
+    }
+
+    /// For each segment the mean length of u2 on the skin for a unit of each sampled direction.
+    pub fn second_of_each(
+        &self,
+        progress: &dyn Progress,
+    ) -> Result<Vec<[f64; SAMPLES]>, ModelError> {
+        let segments = 0..self.columns.len() / COLUMNS_PER_SEGMENT;
+        let of = |segment: usize| {
+            let second = self.squares(&self.samples(segment), SAMPLED, progress)?;
+            Ok(self.mean_lengths(&second))
+        };
+        segments.map(of).collect()
+    }
+
+    fn samples(&self, segment: usize) -> Vec<State> {
+        (0..SAMPLES).map(|direction| self.sampled(segment, direction)).collect()
+    }
+
+    /// u2 of each of the sampled directions.
+    fn squares(
+        &self,
+        first: &[State],
+        relative_residual: f64,
+        progress: &dyn Progress,
+    ) -> Result<Vec<State>, ModelError> {
+        let states: Vec<Moved> = first.iter().map(State::as_moved).collect();
+        let squares: [[usize; 2]; SAMPLES] = std::array::from_fn(|direction| [direction; 2]);
+        let forces = self.series.second(&states, &squares)?.into_iter();
+        let residuals = forces.map(|forces| resisting(forces, 1.0)).collect();
+        self.solved(residuals, relative_residual, progress)
+    }
+
+    fn mean_lengths(&self, states: &[State]) -> [f64; SAMPLES] {
+        std::array::from_fn(|direction| {
+            let lengths = self.at_skin(&states[direction].displacement);
             lengths.iter().map(Vector::norm).sum::<f64>() / lengths.len().max(1) as f64
-        }))
+        })
     }
 
     /// A unit of translation along an axis, or of rotation about one, as a sum of columns.

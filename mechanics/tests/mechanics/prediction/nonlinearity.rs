@@ -269,6 +269,9 @@ fn the_second_order_response_is_four_times_nearer_to_newton_at_nine_millimetres_
         let [first, second] = off;
         println!("{share} {first:?} {second:?} {estimates:?} {}", first[0] / second[0]);
         assert!(first[0] > 4.0 * second[0], "{share}: {first:?} {second:?}");
+        let by_samples = columns.linearity.of(&movements(share)).estimate / first[0];
+        println!("by samples {by_samples}");
+        assert!((0.5..2.0).contains(&by_samples), "{share}: {by_samples}");
         let told = estimates[0] / first[0];
         assert!((0.8..1.25).contains(&told), "{share}: {told}");
         let sampled = estimates[1] / second[0];
