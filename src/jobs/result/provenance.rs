@@ -115,10 +115,13 @@ pub fn manifest_bytes(manifest: &Value) -> Vec<u8> {
     format!("{manifest:#}\n").into_bytes()
 }
 
+/// What may be null in a result: estimates that are not known.
+const UNKNOWN: [&str; 2] = ["/numerical_error_mm", "/nonlinearity_mm"];
+
 /// The place of the first null that does not belong into a result.
 pub(in crate::jobs) fn first_null(value: &Value, at: String) -> Option<String> {
     match value {
-        Value::Null if at != "/numerical_error_mm" => Some(at),
+        Value::Null if !UNKNOWN.contains(&at.as_str()) => Some(at),
         Value::Array(entries) => {
             let mut entries = entries.iter().enumerate();
             entries.find_map(|(index, entry)| first_null(entry, format!("{at}/{index}")))
