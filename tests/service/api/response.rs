@@ -549,7 +549,10 @@ async fn an_order_that_a_response_does_not_have_is_refused() {
     let server = Server::start();
     let case = case(&server).await;
     let third = json!({"kind": "response", "case": case, "order": 3});
-    server.job(&third).await.problem(422, "out-of-range");
+    let refused = server.job(&third).await;
+    refused.problem(422, "validation-failed");
+    let told: Value = serde_json::from_slice(&refused.bytes).unwrap();
+    assert_eq!(told["errors"][0]["pointer"], "/order");
     built(&server, json!({"kind": "response", "case": case})).await;
     let path = format!("/v1/cases/{case}/response?order=2");
     ask(server.get(&path).header("accept", OCTETS)).await.problem(404, "response-not-built");
