@@ -1,7 +1,8 @@
 //! Plan response: how long its columns take to build, and to add up.
 //!
-//! `cargo bench --bench response [-- SIZE …]` adds up 24 columns of 14 000 nodes on one thread, then builds the
-//! response of the half head of the demo and of the shells of the shared data that are named.
+//! `cargo bench --bench response [-- SIZE …]` adds up 24 columns of 14 000 nodes on one thread, and the 300 of second order
+//! in sixteen bits on all, then builds the response of the half head of the demo and of the shells of the shared data that
+//! are named, to order 1 and 2.
 
 #[path = "measure/shell.rs"]
 mod measured;
@@ -15,16 +16,22 @@ use mechanics::mesh::{Vector, VolumeMesh};
 use mechanics::plan::RigidMovement;
 use mechanics::prediction::{Case, CaseSegment, Plan, Scene, Settings};
 use mechanics::progress::Unobserved;
-use mechanics::response::{Columns, Response, ResponseSegment, build};
+use mechanics::response::quadratic_form::pairs;
+use mechanics::response::{
+    Columns, QuadraticForm, Response, ResponseOrder, ResponseSegment, build_to,
+};
 
 const NODES: usize = 14_000;
 const REPEATS: usize = 2001;
 
 fn main() {
     let sizes: Vec<String> = std::env::args().skip(1).filter(|a| !a.starts_with("--")).collect();
-    println!("| response | skin nodes | columns | build s | apply ms, median | p99 | GB/s |");
+    println!(
+        "| response, order | skin nodes | columns | build s | apply ms, median | p99 | GB/s |"
+    );
     println!("| --- | --- | --- | --- | --- | --- | --- |");
-    row("made up", None, &made_up());
+    row("made up, 1", None, &made_up(), None);
+    row("made up, 2", None, &made_up(), Some(&made_up_form()));
     let head = half_head(STANDARD_FINENESS).mesh;
     built("half head of the demo", &half_head_case(head));
     for size in sizes {
@@ -46,15 +53,32 @@ fn made_up() -> Response {
     }
 }
 
-fn built(name: &str, case: &Case) {
-    let scene = Scene::new(case, &Plan::default(), &Settings::default()).expect("a valid case");
-    let started = Instant::now();
-    let columns: Columns = build(&scene, &[], &Unobserved).expect("the columns converge");
-    let seconds = started.elapsed().as_secs_f64();
-    row(name, Some(seconds), &columns.to_response());
+/// The second order of columns of that size.
+fn made_up_form() -> QuadraticForm {
+    let count = pairs(24).count();
+    let wave = |index: usize| ((index as f32 * 0.37).sin() * 32767.0) as i16;
+    QuadraticForm {
+        numbers: 24,
+        values: (0..count * 3 * NODES).map(wave).collect(),
+        scales: vec![1e-5; count],
+        third: vec![[1e-4; 6]; 2],
+    }
 }
 
-fn row(name: &str, build_s: Option<f64>, response: &Response) {
+fn built(name: &str, case: &Case) {
+    let scene = Scene::new(case, &Plan::default(), &Settings::default()).expect("a valid case");
+    for (order, label) in [(ResponseOrder::First, 1), (ResponseOrder::Second, 2)] {
+        let started = Instant::now();
+        let built = build_to(&scene, &[], order, &Unobserved);
+        let columns: Columns = built.expect("the columns converge");
+        let seconds = started.elapsed().as_secs_f64();
+        let response = columns.to_response();
+        let name = format!("{name}, {label}");
+        row(&name, Some(seconds), &response, columns.second_order.as_ref());
+    }
+}
+
+fn row(name: &str, build_s: Option<f64>, response: &Response, second: Option<&QuadraticForm>) {
     let mut times = Vec::with_capacity(REPEATS);
     let mut checksum = 0.0;
     for repeat in 0..REPEATS {
@@ -62,15 +86,20 @@ fn row(name: &str, build_s: Option<f64>, response: &Response) {
         let movement = RigidMovement::about_pivot(angles, Vector::x(), Vector::y());
         let movements = vec![movement; response.segments.len()];
         let started = Instant::now();
-        let moved = response.apply(&movements);
+        let mut moved = response.apply(&movements);
+        if let Some(form) = second {
+            form.apply(&response.segments, &movements, &mut moved);
+        }
         times.push(started.elapsed().as_secs_f64() * 1e3);
         checksum += moved[repeat % moved.len()].x;
     }
     assert!(checksum.is_finite());
     times.sort_by(f64::total_cmp);
     let median = times[REPEATS / 2];
-    let gigabytes = response.columns.len() as f64 * 4.0 / 1e9;
+    let second_bytes = second.map_or(0.0, |form| form.values.len() as f64 * 2.0);
+    let gigabytes = (response.columns.len() as f64 * 4.0 + second_bytes) / 1e9;
     let columns = response.columns.len() / (3 * response.nodes.len());
+    let columns = columns + second.map_or(0, |form| form.scales.len());
     println!(
         "| {name} | {} | {columns} | {} | {median:.3} | {:.3} | {:.1} |",
         response.nodes.len(),

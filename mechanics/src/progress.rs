@@ -7,6 +7,7 @@ pub enum Phase {
     Mesh,
     Assemble,
     Solve,
+    Estimate,
     Contact,
     Surface,
     Compare,
@@ -14,11 +15,12 @@ pub enum Phase {
 }
 
 impl Phase {
-    const ALL: [Phase; 8] = [
+    const ALL: [Phase; 9] = [
         Phase::Validate,
         Phase::Mesh,
         Phase::Assemble,
         Phase::Solve,
+        Phase::Estimate,
         Phase::Contact,
         Phase::Surface,
         Phase::Compare,
@@ -36,6 +38,7 @@ impl Phase {
             Phase::Mesh => "mesh",
             Phase::Assemble => "assemble",
             Phase::Solve => "solve",
+            Phase::Estimate => "estimate",
             Phase::Contact => "contact",
             Phase::Surface => "surface",
             Phase::Compare => "compare",

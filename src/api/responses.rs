@@ -18,7 +18,7 @@ use super::parameters::{Id, Parameters, id as spelled};
 use super::resources::Resources;
 use super::{Service, body, conditional, with_header};
 use crate::jobs::response::{
-    COLUMNS_FILE, COLUMNS_MEDIA_TYPE, DESCRIPTION_FILE, DESCRIPTION_MEDIA_TYPE,
+    COLUMNS_FILE, COLUMNS_MEDIA_TYPE, DESCRIPTION_FILE, DESCRIPTION_MEDIA_TYPE, SECOND_ORDER_FILE,
 };
 use crate::library::applied::Applied;
 use crate::library::responses::{FoundResponse, LoadedResponse, MissingResponse};
@@ -45,6 +45,24 @@ struct ResponseParameters {
     /// whatever materials and segments its spec names; the answer says which.
     #[param(format = Uuid)]
     job: Option<String>,
+    /// 2: in place of the columns those of second order, little-endian i16 [column][node][xyz], which `second_order` of
+    /// the description tells how to read; 404 where the response was built to order 1. Default: 1.
+    #[param(minimum = 1, maximum = 2)]
+    order: Option<u8>,
+}
+
+impl ResponseParameters {
+    /// The file with the columns of the order asked for.
+    fn columns_file(&self) -> ApiResult<&'static str> {
+        match self.order {
+            None | Some(1) => Ok(COLUMNS_FILE),
+            Some(2) => Ok(SECOND_ORDER_FILE),
+            Some(other) => {
+                let detail = format!("{other} is neither 1 nor 2");
+                Err(ApiError::invalid_parameter("order", detail))
+            }
+        }
+    }
 }
 
 #[derive(Deserialize, IntoParams)]
@@ -144,13 +162,19 @@ async fn show(
 ) -> ApiResult {
     let offered = [DESCRIPTION_MEDIA_TYPE, COLUMNS_MEDIA_TYPE, GLB_MEDIA_TYPE];
     let wanted = preferred(&headers, &offered)?;
+    let columns_file = parameters.columns_file()?;
     let meant = Meant { case: &id, job: parameters.job.as_deref(), foreseen: None };
     let found = find(&service, meant).await?;
-    let Some(file) = [DESCRIPTION_FILE, COLUMNS_FILE].get(wanted) else {
+    let files = [DESCRIPTION_FILE, columns_file];
+    let Some(file) = files.get(wanted) else {
         return rest(&service, &found, &headers).await;
     };
     let row = service.store.job_file(&found.job, file).await?;
-    let row = row.ok_or_else(|| refusal(MissingResponse::NotBuilt))?;
+    let row = row.ok_or_else(|| {
+        let detail =
+            "the response was built to order 1; post a job of kind `response` with `order` 2";
+        ApiError::new(ErrorCode::ResponseNotBuilt, detail.to_owned())
+    })?;
     let response = if conditional::is_known(&headers, &row.blob) {
         conditional::not_modified(&row.blob)
     } else {
@@ -177,11 +201,11 @@ async fn rest(service: &Service, found: &FoundResponse, headers: &HeaderMap) -> 
     Ok(with_header(response, HeaderName::from_static("facies-job"), &found.job))
 }
 
-/// The skin after a plan, exact within linear elasticity, in milliseconds. Segments that the plan does not
-/// name stay where they are. What linearity leaves out is estimated as 0.15 d^2 / h + 2.7 h (1 - cos theta)
-/// with d the largest movement of a segment against another or against what stays, h the thickness of the
-/// tissue and theta the largest rotation: an order of magnitude. Above 0.5 mm the answer carries the
-/// warning `outside-linear-range`. Beside a binary body the numbers stand in headers.
+/// The skin after a plan, in milliseconds. Segments that the plan does not name stay where they are. A response of order
+/// 1 is exact within linear elasticity; what that leaves out is estimated from samples of the second order along and about
+/// each axis of each segment (of quadratic tetrahedra by a rule of thumb). A response of order 2 adds the second-order term of finite
+/// strain, tells its mean length, and estimates the third order from samples. Above 0.5 mm the answer carries the
+/// warning `outside-linear-range` or `outside-second-order-range`. Beside a binary body the numbers stand in headers.
 #[utoipa::path(
     post, path = "/v1/cases/{id}/response/apply", operation_id = "apply_response", tag = "responses",
     params(("id" = uuid::Uuid, Path, description = "the case"), ApplyParameters),
@@ -193,9 +217,10 @@ async fn rest(service: &Service, found: &FoundResponse, headers: &HeaderMap) -> 
                 ("Facies-Job" = String, description = "the job that built the response"),
                 ("Facies-Max-Mm" = f64, description = "the largest displacement of a skin node"),
                 ("Facies-Largest-Rotation-Deg" = f64, description = "the largest rotation of a segment"),
-                ("Facies-Nonlinearity-Estimate-Mm" = f64, description = "an order of magnitude of what linearity leaves out"),
+                ("Facies-Order" = u8, description = "that of the response: 2 where the second-order term is in the displacement"),
+                ("Facies-Nonlinearity-Estimate-Mm" = f64, description = "what the displacement leaves out: of order 1 the second-order term, of order 2 the third-order term, from samples"),
                 ("Facies-Within-Linear-Range" = bool, description = "whether that is at most 0.5 mm"),
-                ("Facies-Warning" = Option<String>, description = "the codes of the warnings: outside-linear-range, nothing-moves, plan-units-suspect, sliding-normal-turned, skin-overlaps"),
+                ("Facies-Warning" = Option<String>, description = "the codes of the warnings: outside-linear-range, outside-second-order-range, nothing-moves, plan-units-suspect, sliding-normal-turned, skin-overlaps"),
                 ("Facies-Not-Measured" = Option<String>, description = "skin-overlaps, without `check_skin`"),
                 ("Server-Timing" = String, description = "milliseconds to find the response, to add up its columns, to check the skin, and to write the answer"))),
         (status = 404, description = "there is no such case, or no response was built"),
@@ -295,6 +320,7 @@ fn with_summary(response: Response, job: &str, applied: &Applied) -> Response {
         ("facies-job", job.to_owned()),
         ("facies-max-mm", summary.max_mm.to_string()),
         ("facies-largest-rotation-deg", summary.largest_rotation_deg.to_string()),
+        ("facies-order", summary.order.to_string()),
         ("facies-nonlinearity-estimate-mm", summary.nonlinearity_estimate_mm.to_string()),
         ("facies-within-linear-range", summary.within_linear_range.to_string()),
     ];

@@ -22,6 +22,7 @@ pub mod serve;
 pub mod settings;
 pub mod slot;
 pub mod stability;
+mod stability_random;
 pub mod study;
 mod sweep;
 mod watch;

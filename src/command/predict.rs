@@ -12,7 +12,7 @@ use super::watch::Watch;
 use crate::jobs::{JobInput, Workplace, check};
 use crate::schema::Limits;
 use crate::schema::predict::check::CheckDocument;
-use crate::schema::predict::document::OutputName;
+use crate::schema::predict::document::{EstimateName, OutputName};
 use crate::schema::predict::result::ResultDocument;
 
 /// What is kept goes to the meshes of a tenant.
@@ -31,6 +31,15 @@ pub struct Arguments {
     plan: PlanArgument,
     #[command(flatten)]
     scan: ScanArguments,
+    /// Add what the mesh leaves out, as far as that is estimated, to the displacement
+    #[arg(long, help_heading = "Result")]
+    corrected: bool,
+    /// Take the cheapest model whose expected mean error over the skin is within so many mm
+    #[arg(long, value_name = "MM", conflicts_with = "corrected", help_heading = "Result")]
+    accept: Option<f64>,
+    /// Do not estimate the error of the mesh
+    #[arg(long, conflicts_with = "corrected", help_heading = "Result")]
+    no_estimate: bool,
     /// The folder for the result
     #[arg(long, visible_alias = "output", value_name = "FOLDER", help_heading = "Result")]
     out: PathBuf,
@@ -44,6 +53,11 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
         false => arguments.scene.documents(plan)?,
     };
     asked.file.spec.outputs.get_or_insert_with(usual_outputs);
+    asked.file.spec.corrected |= arguments.corrected;
+    asked.file.spec.accept_mm = arguments.accept.or(asked.file.spec.accept_mm);
+    if arguments.no_estimate {
+        asked.file.spec.estimate = EstimateName::None;
+    }
     if !asked.file.spec.keep.is_empty() {
         return Err(CommandError::Usage(NO_STORE.to_owned()));
     }
@@ -97,6 +111,17 @@ fn print_result(result: &ResultDocument, before: &CheckDocument) {
             println!("landmark     {name} moves by {x:.3} {y:.3} {z:.3} mm");
         }
     }
+    if let Some(nonlinearity) = &result.nonlinearity_mm {
+        let left = &nonlinearity.skin;
+        println!(
+            "left out     by linear elasticity about {:.3} mm in the mean, p95 {:.3}, max {:.3}",
+            left.mean, left.p95, left.max
+        );
+    }
+    print_error_of_mesh(result);
+    if let Some(adequacy) = &result.adequacy {
+        println!("model        {}", adequacy.why());
+    }
     for (name, reaction) in &result.reaction_mn {
         let [x, y, z] = reaction.0;
         println!("reaction     {name} {x:.1} {y:.1} {z:.1} mN");
@@ -110,13 +135,28 @@ fn print_result(result: &ResultDocument, before: &CheckDocument) {
     }
     let timing = &provenance.timing;
     println!(
-        "time         {:.2} s: assemble {:.2}, solve {:.2}, write {:.2}; peak memory {:.0} MB",
+        "time         {:.2} s: assemble {:.2}, solve {:.2}, estimate {:.2}, write {:.2}; peak memory {:.0} MB",
         timing.total_s,
         timing.assemble_s,
         timing.solve_s,
+        timing.estimate_s,
         timing.write_s,
         provenance.peak_rss_mb.unwrap_or_default()
     );
     let solved: Vec<_> = result.warnings.iter().filter(|w| !before.warnings.contains(w)).collect();
     print_warnings(&solved.into_iter().cloned().collect::<Vec<_>>());
+}
+
+fn print_error_of_mesh(result: &ResultDocument) {
+    match (&result.numerical_error_mm, &result.numerical_error_unknown) {
+        (Some(error), _) => println!(
+            "mesh error   {:.3} mm mean, {:.3} p95, {:.3} max, estimated{}",
+            error.mean,
+            error.p95,
+            error.max,
+            if error.corrected { " and added" } else { "" }
+        ),
+        (None, Some(why)) => println!("mesh error   not known: {why}"),
+        (None, None) => (),
+    }
 }

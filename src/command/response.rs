@@ -22,6 +22,9 @@ pub struct Arguments {
     /// A segment that the response can move; may be given several times; default: all
     #[arg(long, value_name = "NAME", help_heading = "How it is computed")]
     only: Vec<String>,
+    /// 2: with what linear elasticity leaves out, as a quadratic form in the movements; default: 1
+    #[arg(long, value_name = "ORDER", help_heading = "How it is computed")]
+    order: Option<u8>,
     /// The folder for the result
     #[arg(long, visible_alias = "output", value_name = "FOLDER", help_heading = "Result")]
     out: PathBuf,
@@ -34,6 +37,7 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
     if !arguments.only.is_empty() {
         spec.segments.clone_from(&arguments.only);
     }
+    spec.order = arguments.order.or(spec.order);
     let case = asked.file.case;
     let input = JobInput::Response(ResponseInput { job: None, queue_s: None, case, spec });
     let limits = Limits::default();

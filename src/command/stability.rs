@@ -17,7 +17,7 @@ const PROBE_S: f64 = 30.0;
 /// Maps these variants, writes `stability.svg`, `stability.json` and `stability.csv` into the folder and prints
 /// a line for each axis and variant. An answer that is silently wrong is an error.
 pub fn run(out: &Path, variants: &[Variant]) -> Result<(), CommandError> {
-    let clock = Clock(Instant::now());
+    let clock = Clock::start();
     let bounds = Bounds { stopwatch: &clock, seconds: PROBE_S };
     let found = map(variants, &axes::every(), &bounds, &|title| eprintln!("{title} …"));
     print(&found);
@@ -33,7 +33,14 @@ pub fn run(out: &Path, variants: &[Variant]) -> Result<(), CommandError> {
     }
 }
 
-struct Clock(Instant);
+/// Since it was started.
+pub(super) struct Clock(Instant);
+
+impl Clock {
+    pub fn start() -> Self {
+        Clock(Instant::now())
+    }
+}
 
 impl Stopwatch for Clock {
     fn seconds(&self) -> f64 {

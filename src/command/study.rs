@@ -10,6 +10,7 @@ use super::failure::CommandError;
 use super::files::{FileSource, ScaleArguments};
 use super::screen::{print_files, print_warnings, work_in_sight};
 use super::stability;
+use super::stability_random;
 use super::sweep::{self, Sweep};
 use crate::jobs::study::files::REPORT_JSON;
 use crate::jobs::{JobInput, StudyInput, Workplace};
@@ -67,6 +68,12 @@ pub struct Arguments {
         "small", "scene", "case", "method", "level", "sweep", "repeats", "spec", "baseline", "threshold_p95_mm",
     ])]
     stability: bool,
+    /// With --stability: end so many random small scenes instead, each by a method and a law of its own, and count how
+    #[arg(long, help_heading = WHAT, value_name = "N", requires = "stability")]
+    random: Option<u64>,
+    /// With --random: the seed; the same one makes the same scenes
+    #[arg(long, help_heading = WHAT, value_name = "S", requires = "random", default_value_t = 1)]
+    seed: u64,
     /// A study document; the other arguments stand above it. Its cases are files as those of --case
     #[arg(long, help_heading = WHAT, value_name = "FILE")]
     spec: Option<PathBuf>,
@@ -88,6 +95,9 @@ pub struct Arguments {
 
 /// Runs the study, writes its report and prints its rows. Not passing is an error with the exit code of the outcome.
 pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
+    if let Some(scenes) = arguments.random {
+        return stability_random::run(&arguments.out, scenes, arguments.seed);
+    }
     if arguments.stability {
         return stability::run(&arguments.out, &methods::available());
     }

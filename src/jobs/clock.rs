@@ -78,12 +78,23 @@ impl<'a> Observed<'a> {
             mesh_s: of(Phase::Mesh),
             assemble_s: of(Phase::Assemble),
             solve_s: of(Phase::Solve),
+            estimate_s: of(Phase::Estimate),
             contact_s: of(Phase::Contact),
             surface_s: of(Phase::Surface),
             compare_s: of(Phase::Compare),
             write_s: of(Phase::Write),
             total_s: self.started.elapsed().as_secs_f64(),
         }
+    }
+
+    /// Since the start, in s.
+    pub fn elapsed_s(&self) -> f64 {
+        self.started.elapsed().as_secs_f64()
+    }
+
+    /// What is left of the budget, in s.
+    pub fn left_s(&self) -> f64 {
+        self.budget.saturating_sub(self.started.elapsed()).as_secs_f64()
     }
 
     fn is_over_budget(&self) -> bool {

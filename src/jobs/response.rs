@@ -16,17 +16,20 @@ use crate::schema::case::conversion::centre;
 use crate::schema::hashes;
 use crate::schema::predict::document::OutputName;
 use crate::schema::predict::result::ResultDocument;
-use crate::schema::response::{ColumnsDocument, ResponseDescription, ResponseOrigin};
+use crate::schema::response::{ResponseDescription, ResponseOrigin};
+use crate::schema::second_order::{ColumnsDocument, SecondOrderDocument};
 use crate::schema::wire::canonical;
 use crate::schema::{CaseDocument, Faults, Limits, PlanDocument, ResponseDocument};
 use mechanics::format::SurfaceOutput;
 use mechanics::format::vtk::vtp;
 use mechanics::progress::{Phase, Progress};
-use mechanics::response::{Columns, ResponseError, build, chosen};
+use mechanics::response::{Columns, QuadraticForm, ResponseError, build_to, check_order, chosen};
 
 /// f32 little-endian, [column][node][xyz].
 pub const COLUMNS_FILE: &str = "response.f32";
 pub const COLUMNS_MEDIA_TYPE: &str = "application/octet-stream";
+/// i16 little-endian, [pair][node][xyz], of a response of second order.
+pub const SECOND_ORDER_FILE: &str = "response_second_order.i16";
 /// How to read the columns, and what applying a plan needs.
 pub const DESCRIPTION_FILE: &str = "response.json";
 pub const DESCRIPTION_MEDIA_TYPE: &str = "application/json";
@@ -78,6 +81,8 @@ impl ResponseInput {
         let prepared = still.prepare(sources, limits)?;
         let chosen = chosen(&prepared.scene, &self.spec.segments);
         let segments = chosen.map_err(|error| self.judge(error))?.len();
+        check_order(&prepared.scene, self.spec.response_order())
+            .map_err(|error| self.judge(error))?;
         let content = |id: &str| prepared.contents.get(id).cloned();
         let key = hashes::response_key(&self.case, &self.spec, &content);
         Ok(PreparedResponse { key, prepared, segments })
@@ -106,11 +111,12 @@ pub fn response_job(
     clock.check()?;
 
     // 2. The columns.
-    let columns =
-        build(&prepared.scene, &input.spec.segments, &clock).map_err(|error| match error {
-            ResponseError::Prediction(error) => clock.judge(error),
-            other => input.judge(other),
-        })?;
+    let order = input.spec.response_order();
+    let built = build_to(&prepared.scene, &input.spec.segments, order, &clock);
+    let columns = built.map_err(|error| match error {
+        ResponseError::Prediction(error) => clock.judge(error),
+        other => input.judge(other),
+    })?;
     clock.check()?;
 
     // 3. Files.
@@ -149,6 +155,10 @@ fn write_columns(
     let values = columns.values.iter().map(|&value| value as f32);
     let bytes: Vec<u8> = values.flat_map(f32::to_le_bytes).collect();
     folder.add_file(COLUMNS_FILE, COLUMNS_MEDIA_TYPE, &bytes)?;
+    let second_order = match &columns.second_order {
+        Some(form) => Some(write_second_order(form, folder)?),
+        None => None,
+    };
     let moved = |name: &str| columns.segments.iter().any(|segment| segment.name == name);
     let names = prepared.scene.segments.iter().map(|segment| segment.name.clone());
     let origin = ResponseOrigin {
@@ -164,9 +174,31 @@ fn write_columns(
             bytes: bytes.len() as u64,
             sha256: canonical::sha256_hex(&bytes),
         },
+        second_order,
     };
     let description = ResponseDescription::new(columns, origin);
     let text = serde_json::to_vec(&description)
         .map_err(|error| JobError::NotFinite { what: error.to_string() })?;
     folder.add_file(DESCRIPTION_FILE, DESCRIPTION_MEDIA_TYPE, &text)
+}
+
+/// The columns of second order.
+fn write_second_order(
+    form: &QuadraticForm,
+    folder: &mut ResultFolder,
+) -> Result<SecondOrderDocument, JobError> {
+    let bytes: Vec<u8> = form.values.iter().flat_map(|value| value.to_le_bytes()).collect();
+    folder.add_file(SECOND_ORDER_FILE, COLUMNS_MEDIA_TYPE, &bytes)?;
+    Ok(SecondOrderDocument {
+        columns: ColumnsDocument {
+            file: SECOND_ORDER_FILE.to_owned(),
+            layout: "i16 little-endian [column][node][xyz], in units of scale_mm[column]"
+                .to_owned(),
+            count: form.scales.len() as u64,
+            bytes: bytes.len() as u64,
+            sha256: canonical::sha256_hex(&bytes),
+        },
+        scale_mm: form.scales.clone(),
+        third_order_mm: form.third.clone(),
+    })
 }

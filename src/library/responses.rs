@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use super::applied::Applied;
 use super::cache::{Cache, InMemory};
 use crate::jobs::JobInput;
-use crate::jobs::response::{COLUMNS_FILE, DESCRIPTION_FILE, REST_FILE};
+use crate::jobs::response::{COLUMNS_FILE, DESCRIPTION_FILE, REST_FILE, SECOND_ORDER_FILE};
 use crate::jobs::result::skin::PredictedSkin;
 use crate::schema::applied::AppliedSummary;
 use crate::schema::hashes;
@@ -20,7 +20,7 @@ use mechanics::format::{self, Mesh, ReadLimits, WriteError};
 use mechanics::mesh::{TriangleSurface, Vector};
 use mechanics::plan::RigidMovement;
 use mechanics::prediction::{Skin, skin_overlap};
-use mechanics::response::{Linearity, Response};
+use mechanics::response::{COLUMNS_PER_SEGMENT, Linearity, QuadraticForm, Response};
 
 /// Jobs whose verdict is remembered; beyond that all are judged anew.
 const MOST_VERDICTS: usize = 10_000;
@@ -53,15 +53,27 @@ pub struct FoundResponse {
 pub struct LoadedResponse {
     pub description: ResponseDescription,
     response: Response,
+    second_order: Option<QuadraticForm>,
     linearity: Linearity,
     rest: TriangleSurface,
 }
 
+/// The files of a stored response.
+struct Stored {
+    description: bytes::Bytes,
+    columns: bytes::Bytes,
+    second_order: Option<bytes::Bytes>,
+    rest: bytes::Bytes,
+}
+
 impl LoadedResponse {
-    /// One pass over the columns.
+    /// One pass over the columns of each order.
     pub fn apply(&self, movements: &[RigidMovement]) -> Applied {
-        let displacement = self.response.apply(movements);
-        let summary = AppliedSummary::new(&displacement, &self.linearity.of(movements));
+        let mut displacement = self.response.apply(movements);
+        let segments = &self.response.segments;
+        let form = self.second_order.as_ref();
+        let beyond = form.map(|form| form.apply(segments, movements, &mut displacement));
+        let summary = AppliedSummary::new(&displacement, &self.linearity.of(movements), beyond);
         let mut warnings = summary.warnings();
         warnings.extend(self.description.warnings(movements));
         Applied { displacement, summary, warnings, skin_checked: false }
@@ -109,7 +121,8 @@ impl LoadedResponse {
 impl InMemory for Arc<LoadedResponse> {
     fn size(&self) -> usize {
         let skin = 28 * self.rest.points.len() + 12 * self.rest.triangles.len();
-        4 * (self.response.columns.len() + 2 * self.response.nodes.len()) + skin
+        let second = self.second_order.as_ref().map_or(0, |form| 2 * form.values.len());
+        4 * (self.response.columns.len() + 2 * self.response.nodes.len()) + second + skin
     }
 }
 
@@ -239,7 +252,12 @@ impl Responses {
         let description = self.store.read_blob(&found.description).await?;
         let columns = self.file(&found.job, COLUMNS_FILE).await?;
         let rest = self.file(&found.job, REST_FILE).await?;
-        let parse = move || parsed(&description, &columns, &rest);
+        let second_order = match self.store.job_file(&found.job, SECOND_ORDER_FILE).await? {
+            Some(file) => Some(self.store.read_blob(&file.blob).await?),
+            None => None,
+        };
+        let stored = Stored { description, columns, second_order, rest };
+        let parse = move || parsed(&stored);
         let parsed = tokio::task::spawn_blocking(parse).await;
         let response = Arc::new(parsed.map_err(|_| StoreError::Interrupted)??);
         self.memory().loaded.insert(&found.description, response.clone());
@@ -252,9 +270,13 @@ impl Responses {
     }
 }
 
-/// A response out of its three files.
-fn parsed(description: &[u8], columns: &[u8], rest: &[u8]) -> Result<LoadedResponse, StoreError> {
-    let broken = |what: &str| StoreError::Schema(format!("stored response: {what}"));
+fn broken(what: &str) -> StoreError {
+    StoreError::Schema(format!("stored response: {what}"))
+}
+
+/// A response out of its files.
+fn parsed(stored: &Stored) -> Result<LoadedResponse, StoreError> {
+    let Stored { description, columns, second_order, rest } = stored;
     let description: ResponseDescription =
         serde_json::from_slice(description).map_err(|error| broken(&error.to_string()))?;
     // Our own writer may compress better than a stranger's file is allowed to.
@@ -270,7 +292,9 @@ fn parsed(description: &[u8], columns: &[u8], rest: &[u8]) -> Result<LoadedRespo
     {
         return Err(broken("its files do not fit each other"));
     }
+    let second_order = second_order_of(&description, second_order.as_deref())?;
     Ok(LoadedResponse {
+        second_order,
         response: Response {
             segments: description.response_segments(),
             nodes: description.node_ids.clone(),
@@ -282,18 +306,42 @@ fn parsed(description: &[u8], columns: &[u8], rest: &[u8]) -> Result<LoadedRespo
     })
 }
 
+/// The quadratic form of a response that has one.
+fn second_order_of(
+    description: &ResponseDescription,
+    bytes: Option<&[u8]>,
+) -> Result<Option<QuadraticForm>, StoreError> {
+    let Some(document) = &description.second_order else { return Ok(None) };
+    let (values, _) = bytes.unwrap_or_default().as_chunks::<2>();
+    let values: Vec<i16> = values.iter().map(|&value| i16::from_le_bytes(value)).collect();
+    let numbers = COLUMNS_PER_SEGMENT * description.segments.len();
+    let pairs = numbers * (numbers + 1) / 2;
+    if values.len() != 3 * pairs * description.node_ids.len()
+        || document.scale_mm.len() != pairs
+        || document.third_order_mm.len() != description.segments.len()
+    {
+        return Err(broken("its columns of second order do not fit"));
+    }
+    Ok(Some(document.to_form(numbers, values)))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::schema::response::{ColumnsDocument, ResponseOrigin};
+    use crate::schema::response::ResponseOrigin;
+    use crate::schema::second_order::ColumnsDocument;
     use mechanics::response::{Columns, ResponseSegment};
 
     /// A response of one segment that takes 4 * (36 + 2) + 28 bytes for each node.
     fn loaded(nodes: u32) -> Arc<LoadedResponse> {
         let segments = vec![ResponseSegment { name: "jaw".into(), centre: Vector::zeros() }];
         let corner = Vector::zeros();
-        let linearity =
-            Linearity { thickness: 1.0, something_stays: true, boxes: vec![[corner, corner]] };
+        let linearity = Linearity {
+            thickness: 1.0,
+            something_stays: true,
+            boxes: vec![[corner, corner]],
+            sampled: Vec::new(),
+        };
         let solver = mechanics::prediction::SolveReport::at_rest(0, 0.0);
         let values = vec![0.0; 36 * nodes as usize];
         let nodes: Vec<u32> = (0..nodes).collect();
@@ -306,6 +354,7 @@ mod tests {
             nodes,
             values,
             linearity: linearity.clone(),
+            second_order: None,
             parts: Vec::new(),
             carries_wall: vec![false],
             allow_unfixed: false,
@@ -321,10 +370,11 @@ mod tests {
             mesh_centre: Vector::zeros(),
             staying: Vec::new(),
             columns: ColumnsDocument { file, layout, count: 12, bytes: 0, sha256 },
+            second_order: None,
         };
         let description = ResponseDescription::new(&columns, origin);
         let response = columns.to_response();
-        Arc::new(LoadedResponse { description, response, linearity, rest })
+        Arc::new(LoadedResponse { description, response, second_order: None, linearity, rest })
     }
 
     #[test]

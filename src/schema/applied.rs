@@ -6,8 +6,8 @@ use utoipa::ToSchema;
 use super::{Triple, WarningDocument};
 use crate::schema::plan::document::PlanDocument;
 use mechanics::mesh::Vector;
-use mechanics::response::Nonlinearity;
 use mechanics::response::linearity::LINEAR_RANGE_MM;
+use mechanics::response::{BeyondLinear, Nonlinearity};
 
 /// The body of `POST /v1/cases/{id}/response/apply`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -41,38 +41,78 @@ pub struct AppliedSummary {
     pub max_mm: f64,
     /// The largest rotation of a segment.
     pub largest_rotation_deg: f64,
-    /// An order of magnitude of what linearity leaves out, mean over the skin.
+    /// That of the response: 2 where the displacement has the second-order term in it.
+    #[serde(default = "first_order")]
+    pub order: u8,
+    /// Of order 2: the mean length over the skin of the second-order term, which is what order 1 leaves out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub second_order_mm: Option<f64>,
+    /// What the displacement leaves out, mean over the skin: of order 1 the second-order term, of order
+    /// 2 the third-order term, both estimated from samples.
     pub nonlinearity_estimate_mm: f64,
-    /// Whether the estimate is at most 0.5 mm.
+    /// Whether the estimate is at most 0.5 mm, and of order 2 at most half of the second-order term where it is above
+    /// 0.1 mm.
     pub within_linear_range: bool,
 }
 
+/// Third-order terms above this many mm have to be smaller than this share of the second-order term, or the series is not
+/// to be trusted.
+const SERIES_MM: f64 = 0.1;
+const SERIES: f64 = 0.5;
+
+fn first_order() -> u8 {
+    1
+}
+
 impl AppliedSummary {
-    pub fn new(displacement: &[Vector], nonlinearity: &Nonlinearity) -> Self {
+    /// `beyond` of a response of second order.
+    pub fn new(
+        displacement: &[Vector],
+        nonlinearity: &Nonlinearity,
+        beyond: Option<BeyondLinear>,
+    ) -> Self {
         let squared = displacement.iter().map(Vector::norm_squared).fold(0.0, f64::max);
+        let is_near = |beyond: BeyondLinear| {
+            beyond.third <= LINEAR_RANGE_MM
+                && (beyond.third <= SERIES_MM || beyond.third <= SERIES * beyond.second)
+        };
         AppliedSummary {
             max_mm: squared.sqrt(),
             largest_rotation_deg: nonlinearity.largest_rotation.to_degrees(),
-            nonlinearity_estimate_mm: nonlinearity.estimate,
-            within_linear_range: nonlinearity.is_within_linear_range(),
+            order: if beyond.is_some() { 2 } else { 1 },
+            second_order_mm: beyond.map(|beyond| beyond.second),
+            nonlinearity_estimate_mm: beyond.map_or(nonlinearity.estimate, |beyond| beyond.third),
+            within_linear_range: beyond.map_or(nonlinearity.is_within_linear_range(), is_near),
         }
     }
 
     /// The word of warning that goes with an answer outside the linear range.
     pub const OUTSIDE: &'static str = "outside-linear-range";
 
+    /// The same of a response of second order.
+    pub const OUTSIDE_SECOND: &'static str = "outside-second-order-range";
+
     pub fn warnings(&self) -> Vec<WarningDocument> {
         if self.within_linear_range {
             return Vec::new();
         }
-        let detail = format!(
-            "linearity leaves out about {:.1} mm, more than {LINEAR_RANGE_MM} mm",
-            self.nonlinearity_estimate_mm
-        );
-        vec![WarningDocument {
-            code: Self::OUTSIDE.to_owned(),
-            detail,
-            numbers: serde_json::Map::new(),
-        }]
+        let estimate = self.nonlinearity_estimate_mm;
+        let (code, detail) = match self.second_order_mm {
+            None => {
+                let detail = format!(
+                    "linearity leaves out about {estimate:.1} mm, more than {LINEAR_RANGE_MM} mm"
+                );
+                (Self::OUTSIDE, detail)
+            }
+            Some(second) => {
+                let detail = format!(
+                    "the second order is {second:.2} mm and leaves out about {estimate:.2} mm: more than \
+                     {LINEAR_RANGE_MM} mm, or more than half of it"
+                );
+                (Self::OUTSIDE_SECOND, detail)
+            }
+        };
+        vec![WarningDocument { code: code.to_owned(), detail, numbers: serde_json::Map::new() }]
     }
 }

@@ -134,6 +134,7 @@ error_codes! {
     EmptySelection 422 "empty-selection" REFUSED,
     FibreDirectionZero 422 "fibre-direction-zero" REFUSED,
     MissingMaterial 422 "missing-material" REFUSED,
+    LawMismatch 422 "law-mismatch" REFUSED,
     NotInLaw 422 "not-in-law" REFUSED,
     NotPositiveDefinite 422 "not-positive-definite" REFUSED,
     NothingHeld 422 "nothing-held" REFUSED,

@@ -22,6 +22,7 @@ pub mod plan;
 pub mod predict;
 pub mod response;
 pub mod response_part;
+pub mod second_order;
 pub mod study;
 pub mod wire;
 

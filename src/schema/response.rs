@@ -8,6 +8,7 @@ use utoipa::ToSchema;
 use super::code::ErrorCode;
 use super::methods::{self, ElementName, MethodName};
 use super::response_part::ResponsePartDocument;
+use super::second_order::{ColumnsDocument, LinearityDocument, SecondOrderDocument};
 use super::{CornerPair, Triple, WarningDocument};
 use crate::schema::case::document::FrameName;
 use crate::schema::case::material::{MaterialDocument, MaterialDocuments};
@@ -28,7 +29,9 @@ use mechanics::plan::RigidMovement;
 use mechanics::plan::doubt::{MovedSegment, beyond_face, nothing_moves, suspect_units};
 use mechanics::prediction::{GoesAlong, goes_along, normal_turned};
 use mechanics::response::linearity::LINEAR_RANGE_MM;
-use mechanics::response::{Columns, Linearity, ResponseError, ResponseSegment};
+use mechanics::response::{
+    Columns, Linearity, ResponseError, ResponseOrder, ResponseSegment, SampledSecond,
+};
 
 /// `response`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
@@ -60,6 +63,11 @@ pub struct ResponseDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub membrane: Option<MembraneDocument>,
+    /// 1, the default: the skin is linear in the movements. 2: with the quadratic form of what linear elasticity leaves out,
+    /// 78 columns for one segment and 300 for two.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false, minimum = 1, maximum = 2)]
+    pub order: Option<u8>,
     /// Names of segments of the case; default: all. The others stay where they are.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub segments: Vec<String>,
@@ -86,11 +94,19 @@ impl ResponseDocument {
         }
     }
 
+    pub fn response_order(&self) -> ResponseOrder {
+        match self.order {
+            Some(2) => ResponseOrder::Second,
+            _ => ResponseOrder::First,
+        }
+    }
+
     /// What decides the numbers, for the key: no tags, segments in no order.
     pub fn content(&self) -> serde_json::Value {
         let mut plain = self.clone();
         plain.tags.clear();
         plain.segments.sort_unstable();
+        plain.order = plain.order.filter(|order| *order != 1);
         canonical::to_value(&plain)
     }
 
@@ -98,6 +114,10 @@ impl ResponseDocument {
     pub fn check(&self, limits: &Limits, faults: &mut Faults) {
         let spec = Pointer::root().key("spec");
         methods::check_linear(self.method, &spec.key("method"), faults);
+        if let Some(order) = self.order.filter(|order| !(1..=2).contains(order)) {
+            let detail = format!("{order} is neither 1 nor 2");
+            faults.add(&spec.key("order"), ErrorCode::OutOfRange, detail);
+        }
         let at = spec.key("segments");
         faults.check_length(&at, self.segments.len(), limits.list_entries as usize);
         for (index, name) in self.segments.iter().enumerate() {
@@ -125,6 +145,9 @@ impl ResponseDocument {
             }
             ResponseError::NothingHeld { .. } => {
                 (root.key("case").key("fixed"), ErrorCode::NothingHeld)
+            }
+            ResponseError::NoSecondOrder => {
+                (root.key("spec").key("order"), ErrorCode::MethodNotAvailable)
             }
             ResponseError::OtherMethod => (root.key("spec").key("method"), ErrorCode::NotLinear),
             ResponseError::Loaded | ResponseError::Prediction(_) => (root, ErrorCode::NotLinear),
@@ -158,6 +181,10 @@ pub struct ResponseDescription {
     pub node_ids: Vec<u32>,
     pub columns: ColumnsDocument,
     pub linearity: LinearityDocument,
+    /// Absent of a response of order 1.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub second_order: Option<SecondOrderDocument>,
     /// The centre of the bounding box of the mesh, whose displacement is limited.
     pub mesh_centre_mm: Triple,
     /// From one corner of that box to the other: no segment goes farther. 0 where it is not known.
@@ -192,28 +219,6 @@ impl ResponseSegmentDocument {
     }
 }
 
-/// The binary file of the columns.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct ColumnsDocument {
-    pub file: String,
-    /// `f32 little-endian [column][node][xyz], mm`.
-    pub layout: String,
-    pub count: u64,
-    pub bytes: u64,
-    pub sha256: String,
-}
-
-/// What the estimate of nonlinearity needs to know of the case.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct LinearityDocument {
-    /// The median distance from the skin to the nearest held node.
-    pub thickness_mm: f64,
-    /// Whether something is held that no segment of the response moves.
-    pub something_stays: bool,
-    /// The estimate above which an answer is outside the linear range.
-    pub range_mm: f64,
-}
-
 /// What a response is the answer of.
 pub struct ResponseOrigin {
     pub job: Option<String>,
@@ -222,6 +227,7 @@ pub struct ResponseOrigin {
     pub mesh_centre: Vector,
     pub staying: Vec<String>,
     pub columns: ColumnsDocument,
+    pub second_order: Option<SecondOrderDocument>,
 }
 
 impl ResponseDescription {
@@ -249,8 +255,10 @@ impl ResponseDescription {
             linearity: LinearityDocument {
                 thickness_mm: columns.linearity.thickness,
                 something_stays: columns.linearity.something_stays,
+                second_order_mm: columns.linearity.sampled.iter().map(|of| of.second).collect(),
                 range_mm: LINEAR_RANGE_MM,
             },
+            second_order: origin.second_order,
             mesh_centre_mm: origin.mesh_centre.into(),
             mesh_diagonal_mm: columns.diagonal,
             allow_unfixed: columns.allow_unfixed,
@@ -273,6 +281,12 @@ impl ResponseDescription {
             thickness: self.linearity.thickness_mm,
             something_stays: self.linearity.something_stays,
             boxes: self.segments.iter().map(ResponseSegmentDocument::corners).collect(),
+            sampled: { self.segments.iter().zip(&self.linearity.second_order_mm) }
+                .map(|(segment, &second)| SampledSecond {
+                    centre: segment.centre_mm.into(),
+                    second,
+                })
+                .collect(),
         }
     }
 

@@ -63,7 +63,7 @@ fn percent(phase: Phase) -> i64 {
         Phase::Mesh => 5,
         Phase::Assemble => 10,
         Phase::Solve => SOLVE_BEGINS,
-        Phase::Contact => SOLVE_ENDS,
+        Phase::Estimate | Phase::Contact => SOLVE_ENDS,
         Phase::Surface => 92,
         Phase::Compare => 94,
         Phase::Write => 97,

@@ -24,6 +24,11 @@ fn a_response_is_built_without_a_server() {
     assert_eq!(description["segments"][0]["name"], "mandible");
     // 12 columns of 25 nodes of the skin.
     assert_eq!(fs::metadata(out.path().join("response.f32")).unwrap().len(), 12 * 25 * 3 * 4);
+    let twice = ["response", "--case", path(&case), "--order", "2", "--out", path(out.path())];
+    assert_eq!(facies(&twice).status.code(), Some(0));
+    // The 78 pairs of 12 numbers.
+    let second = fs::metadata(out.path().join("response_second_order.i16")).unwrap();
+    assert_eq!(second.len(), 78 * 25 * 3 * 2);
     let none = ["response", "--case", path(&case), "--only", "nose", "--out", path(out.path())];
     let refused = facies(&none);
     assert_eq!(refused.status.code(), Some(2));

@@ -201,5 +201,5 @@ fn the_small_study_has_every_method_and_their_errors_stand_in_order() {
         .filter(|row| row.status != RowStatus::Solved)
         .map(|row| row.label.as_str())
         .collect();
-    assert_eq!(diverged, ["mtm jacobi"; 2], "{told}");
+    assert_eq!(diverged, ["mtm jacobi", "mtm jacobi", "mtm_nonlinear"], "{told}");
 }

@@ -18,6 +18,10 @@ fn attributes(pairs: &[(&str, &str)]) -> BTreeMap<String, String> {
     pairs.iter().map(|(name, value)| ((*name).to_owned(), (*value).to_owned())).collect()
 }
 
+/// Of a prediction.
+const PHASES: [&str; 8] =
+    ["validate", "assemble", "solve", "estimate", "surface", "compare", "write", "publish"];
+
 /// The collector answers on a thread of its own while this one waits for the end: a server that ends before it is answered
 /// closes its connection, and what it sent is lost now and then.
 #[tokio::test(flavor = "multi_thread")]
@@ -59,8 +63,7 @@ async fn a_request_a_job_and_its_phases_are_spans_of_the_clients_trace() {
     assert_eq!(attempt.attributes, attributes(&[&job[..], &ended].concat()));
     let phases = collector.inside(&attempt);
     let names: Vec<&str> = phases.iter().map(|phase| phase.name.as_str()).collect();
-    let told = ["validate", "assemble", "solve", "surface", "compare", "write", "publish"];
-    assert_eq!(names, told);
+    assert_eq!(names, PHASES);
     for (phase, next) in phases.iter().zip(phases.iter().skip(1)) {
         assert_eq!(phase.trace, TRACE);
         assert!(attempt.begun <= phase.begun && phase.ended <= next.begun, "{phase:?}");

@@ -1,7 +1,8 @@
 """A plan response: the columns of which the skin of every plan is a sum.
 
 u = sum over segments s of C[12 s + 4 i + j] (R - I)_ij + C[12 s + 4 i + 3] t_i, where the segment moves as
-x' = x + (R - I)(x - centre) + t.
+x' = x + (R - I)(x - centre) + t. A response of order 2 adds, over pairs k <= l of these numbers a of all segments,
+a_k a_l scale_mm[p] S[p].
 """
 
 from __future__ import annotations
@@ -39,6 +40,8 @@ class Response:
     description: dict[str, Any]
     columns: NDArray[np.float32]
     rest: Surface
+    second_order: NDArray[np.int16] | None = None
+    """Of a response of order 2: [pair][node][xyz] in units of `description["second_order"]["scale_mm"]`."""
 
     @property
     def node_ids(self) -> NDArray[np.int64]:
@@ -59,4 +62,10 @@ class Response:
             shift = matrix[:3, 3] + turn @ centre
             first = 12 * segments[name]
             coefficients[first:first + 12] = np.column_stack([turn, shift]).ravel()
-        return np.asarray(np.tensordot(coefficients, self.columns, axes=1), dtype=np.float64)
+        displacement = np.asarray(np.tensordot(coefficients, self.columns, axes=1), dtype=np.float64)
+        if self.second_order is not None:
+            k, l = np.triu_indices(len(coefficients))
+            factors = coefficients[k] * coefficients[l] * np.array(self.description["second_order"]["scale_mm"])
+            for pair in np.flatnonzero(factors):
+                displacement += factors[pair] * self.second_order[pair]
+        return displacement

@@ -109,7 +109,11 @@ class Facies:
         columns = np.frombuffer(form("application/octet-stream").content, "<f4")
         columns = columns.reshape(description["columns"]["count"], -1, 3)
         rest = Surface.from_glb(form("model/gltf-binary").content)
-        return Response(id_, job["id"], description, columns, rest)
+        second = None
+        if "second_order" in description:
+            answer = self.ask("GET", path, params={**which, "order": 2}, headers={"Accept": "application/octet-stream"})
+            second = np.frombuffer(answer.content, "<i2").reshape(description["second_order"]["columns"]["count"], -1, 3)
+        return Response(id_, job["id"], description, columns, rest, second)
 
     def apply(self, response: Response, plan: Document) -> NDArray[np.float32]:
         """How far each node of the skin goes, in mm, as the service computes it: plans beyond its limits are refused."""

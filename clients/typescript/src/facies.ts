@@ -118,7 +118,9 @@ export class Facies {
       this.bytes("GET", path, undefined, OCTETS),
       this.bytes("GET", path, undefined, GLB),
     ]);
-    return new PlanResponse(caseId, job.id, description, new Float32Array(columns), readGlb(rest));
+    const second = description.second_order === undefined
+      ? undefined : new Int16Array(await this.bytes("GET", `${path}&order=2`, undefined, OCTETS));
+    return new PlanResponse(caseId, job.id, description, new Float32Array(columns), readGlb(rest), second);
   }
 
   /** How far each node of the skin goes, in mm, as the service computes it: plans beyond its limits are refused. */

@@ -1,7 +1,8 @@
 // A plan response: the columns of which the skin of every plan is a sum.
 //
 // u = sum over segments s of C[12 s + 4 i + j] (R - I)_ij + C[12 s + 4 i + 3] t_i, where the segment moves as
-// x' = x + (R - I)(x - centre) + t.
+// x' = x + (R - I)(x - centre) + t. A response of order 2 adds, over pairs k <= l of these numbers a of all segments,
+// a_k a_l scale_mm[p] S[p].
 import type { components } from "./rest.js";
 import type { Surface } from "./surface.js";
 
@@ -28,6 +29,13 @@ function rotation(degrees: Triple): [Triple, Triple, Triple] {
   ];
 }
 
+/** Adds a factor times one of several columns of the same length. */
+function add(total: Float32Array, factor: number, columns: Float32Array | Int16Array, column: number): void {
+  if (factor === 0) return;
+  const first = column * total.length;
+  for (let number = 0; number < total.length; number += 1) total[number]! += factor * columns[first + number]!;
+}
+
 /** The columns of a case, in mm; nodes and vertices of `rest` stand in the order of `description.node_ids`. */
 export class Response {
   constructor(
@@ -37,6 +45,8 @@ export class Response {
     /** [column][node][xyz] */
     readonly columns: Float32Array,
     readonly rest: Surface,
+    /** Of a response of order 2: [pair][node][xyz] in units of `description.second_order.scale_mm`. */
+    readonly secondOrder?: Int16Array,
   ) {}
 
   /** How far each node of the skin goes, xyz for each in mm, where segments move so and others stay. Without asking
@@ -44,13 +54,21 @@ export class Response {
   displacement(movements: Record<string, Movement>): Float32Array {
     const numbers = this.description.node_ids.length * 3;
     const total = new Float32Array(numbers);
+    const factors = new Array<number>(COLUMNS_PER_SEGMENT * this.description.segments.length).fill(0);
     for (const [name, movement] of Object.entries(movements)) {
-      this.coefficients(name, movement).forEach((factor, at) => {
-        if (factor === 0) return;
-        const column = (COLUMNS_PER_SEGMENT * this.segment(name) + at) * numbers;
-        for (let number = 0; number < numbers; number += 1) total[number]! += factor * this.columns[column + number]!;
-      });
+      const first = COLUMNS_PER_SEGMENT * this.segment(name);
+      this.coefficients(name, movement).forEach((factor, at) => { factors[first + at] = factor; });
     }
+    factors.forEach((factor, column) => add(total, factor, this.columns, column));
+    const { secondOrder, description: { second_order: described } } = this;
+    if (secondOrder === undefined || described === undefined) return total;
+    let pair = 0;
+    factors.forEach((factor, k) => {
+      for (const other of factors.slice(k)) {
+        add(total, factor * other * described.scale_mm[pair]!, secondOrder, pair);
+        pair += 1;
+      }
+    });
     return total;
   }
 

@@ -10,7 +10,7 @@
 //!
 //! Source: METHODS A2 and A3; paper 002, eq. 33, in its corrected form, has beta = -(dlam + 2 dmu).
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
 type Vector = Vector3<f64>;
 type Block = [[f64; 3]; 3];
@@ -64,6 +64,26 @@ impl ElasticTensor {
         if let Some(fibre) = &self.fibre {
             fibre.add_pair(block, [gj, gk], weight);
         }
+    }
+
+    /// C : grad u, of which only the symmetric part counts:
+    ///
+    /// lambda tr E + 2 mu E + dlam [ (a.Ea) 1 + tr E a a^T ] + 2 dmu (a (Ea)^T + Ea a^T) + beta (a.Ea) a a^T.
+    #[inline]
+    pub fn stress(&self, gradient: &Matrix3<f64>) -> Matrix3<f64> {
+        let strain = (gradient + gradient.transpose()) * 0.5;
+        let mut stress = strain * (2.0 * self.mu);
+        let mut pressure = self.lambda * strain.trace();
+        if let Some(AlongFibre { direction: a, moduli }) = &self.fibre {
+            let along = strain * a;
+            let stretch = a.dot(&along);
+            pressure += moduli.delta_lambda * stretch;
+            let on_fibre = moduli.delta_lambda * strain.trace() + moduli.beta * stretch;
+            let shear = (a * along.transpose() + along * a.transpose()) * (2.0 * moduli.delta_mu);
+            stress += a * a.transpose() * on_fibre + shear;
+        }
+        (0..3).for_each(|k| stress[(k, k)] += pressure);
+        stress
     }
 
     /// C as a part that resists changes of shape alone and a part that counts with the change of volume:
@@ -166,6 +186,29 @@ impl AlongFibre {
                     + both * a[r] * a[c];
             }
             row[r] += diagonal;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn stress_along_a_gradient_is_the_block_of_two_gradients() {
+        // C : (v g_k^T) g_j is the block of j and k times v.
+        let moduli = FibreModuli { delta_lambda: 3.0, delta_mu: 5.0, beta: 11.0 };
+        let direction = Vector::new(0.36, 0.48, -0.8);
+        let fibre = Some(AlongFibre { direction, moduli });
+        let (gj, gk) = (Vector::new(0.2, -1.0, 0.7), Vector::new(1.1, 0.4, -0.3));
+        let v = Vector::new(-0.6, 0.9, 1.7);
+        for fibre in [None, fibre] {
+            let tensor = ElasticTensor { lambda: 7.0, mu: 2.0, fibre };
+            let mut block = [[0.0; 3]; 3];
+            tensor.add_pair(&mut block, [&gj, &gk], 1.0);
+            let expected = Matrix3::from_fn(|i, j| block[i][j]) * v;
+            let found = tensor.stress(&(v * gk.transpose())) * gj;
+            assert!((found - expected).norm() < 1e-13, "{found} {expected}");
         }
     }
 }

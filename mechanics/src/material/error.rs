@@ -9,6 +9,11 @@ pub enum MaterialError {
     #[error("density is {0} g/cm3, and has to be at least 0 and at most 100 g/cm3")]
     Density(f64),
     #[error(
+        "at rest this law has a Young's modulus of {young_modulus} kPa and a Poisson's ratio of {poisson_ratio}, which have to \
+         be at least 1e-9 and at most 1e9 kPa, and at least 0 and below 0.5"
+    )]
+    LawAtRest { young_modulus: f64, poisson_ratio: f64 },
+    #[error(
         "Young's modulus along the fibre is {0} kPa, and has to be at least 1e-9 and at most 1e9 kPa"
     )]
     FibreModulus(f64),

@@ -1,19 +1,24 @@
-//! Linear elastic tissue at small strain, isotropic or with fibres.
+//! Linear elastic tissue at small strain, isotropic or with fibres, and the law that it follows at finite strain.
 
 use super::elastic_tensor::ElasticTensor;
 use super::error::{MaterialError, is_modulus};
+use super::hyperelastic::{Fibres, Hyperelastic, Law, NeoHookean};
 use super::isotropic::Isotropic;
 use super::transversely_isotropic::{Fibre, TransverselyIsotropic};
 
 /// Linear elastic tissue at small strain: isotropic, or with fibres of one direction at each point.
 ///
 /// sigma = lambda tr(eps) I + 2 mu eps, with lambda = E nu / ((1 + nu)(1 - 2 nu)) and
-/// mu = E / (2 (1 + nu)); METHODS A2. With fibres these constants are those across them.
+/// mu = E / (2 (1 + nu)); METHODS A2. With fibres these constants are those across them. At finite strain it is neo-Hookean
+/// with these constants, unless a law is stated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LinearElastic {
     isotropic: Isotropic,
     density: f64,
     fibre: Option<TransverselyIsotropic>,
+    law: Option<Law>,
+    /// At finite strain.
+    fibres: Option<Fibres>,
 }
 
 impl LinearElastic {
@@ -33,7 +38,37 @@ impl LinearElastic {
             return Err(MaterialError::Density(density));
         }
         let isotropic = Isotropic { young_modulus, poisson_ratio };
-        Ok(LinearElastic { isotropic, density, fibre: None })
+        Ok(LinearElastic { isotropic, density, fibre: None, law: None, fibres: None })
+    }
+
+    /// Tissue of a law at finite strain, with the constants that the law has at rest; density as above.
+    pub fn of_law(law: Law, density: f64) -> Result<Self, MaterialError> {
+        let (lambda, mu) = law.at_rest();
+        let young_modulus = mu * (3.0 * lambda + 2.0 * mu) / (lambda + mu);
+        let poisson_ratio = 0.5 * lambda / (lambda + mu);
+        let at_rest = LinearElastic::new(young_modulus, poisson_ratio, density);
+        let tissue = at_rest.map_err(|error| match error {
+            MaterialError::Density(_) => error,
+            _ => MaterialError::LawAtRest { young_modulus, poisson_ratio },
+        })?;
+        Ok(LinearElastic { law: Some(law), ..tissue })
+    }
+
+    /// The tissue with fibres that only pull at finite strain.
+    pub fn with_pulling_fibres(self, fibres: Fibres) -> Self {
+        LinearElastic { fibres: Some(fibres), ..self }
+    }
+
+    /// What it does at finite strain: the law that is stated, or the neo-Hookean one of its constants.
+    pub fn hyperelastic(&self) -> Hyperelastic {
+        let (lambda, mu) = (self.lambda(), self.shear_modulus());
+        let law = self.law.unwrap_or(Law::NeoHookean(NeoHookean { lambda, mu }));
+        Hyperelastic { law, fibres: self.fibres }
+    }
+
+    /// The law that is stated for finite strain.
+    pub fn stated_law(&self) -> Option<&Law> {
+        self.law.as_ref()
     }
 
     /// The tissue with fibres; what it was before it is across them.
@@ -59,6 +94,11 @@ impl LinearElastic {
 
     pub fn has_fibre(&self) -> bool {
         self.fibre.is_some()
+    }
+
+    /// Whether it has fibres that only pull at finite strain.
+    pub fn has_pulling_fibres(&self) -> bool {
+        self.fibres.is_some()
     }
 
     /// The stiffness where the fibres, if there are any, have this direction of length 1.

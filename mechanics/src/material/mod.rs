@@ -7,6 +7,7 @@ mod isotropic;
 mod linear_elastic;
 pub mod mixture;
 pub mod plane_stress;
+pub mod stress_series;
 pub mod transversely_isotropic;
 pub use elastic_tensor::ElasticTensor;
 pub use error::MaterialError;

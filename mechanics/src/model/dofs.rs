@@ -67,6 +67,21 @@ impl Constrained<'_> {
         known
     }
 
+    /// Forces of nodes on the free unknowns, zero where held.
+    pub fn free_forces(&self, system: &System, forces: &[Vector]) -> Unknowns {
+        let mut by_row = vec![[0.0; 3]; self.numbering.layout.place.len()];
+        for (force, &row) in forces.iter().zip(&self.numbering.layout.place) {
+            by_row[row as usize] = (*force).into();
+        }
+        by_row.truncate(system.layout.free);
+        for partly in &system.partly_held {
+            let own = partly.axes.transpose() * Vector::from(by_row[partly.row]);
+            let free = |k: usize| if partly.held[k] { 0.0 } else { own[k] };
+            by_row[partly.row] = std::array::from_fn(free);
+        }
+        by_row
+    }
+
     /// Nodal vectors along the axes of the coordinates.
     pub fn displacement(&self, total: &[Lanes<f64, 3, 1>]) -> Vec<Vector> {
         let places = self.numbering.layout.place.iter();

@@ -14,6 +14,7 @@ use super::walls;
 use crate::boundary::{connected_parts, tearing};
 use crate::mesh::connectivity::Faces;
 use crate::mesh::{Vector, Warning};
+use crate::model::fem::discretisation_error::DistributedLoads;
 use crate::plan::doubt::nothing_moves;
 
 impl Scene {
@@ -66,6 +67,7 @@ impl Scene {
             parts,
             segments,
             forces: vec![Vector::zeros(); case.volume.nodes.len()],
+            distributed: DistributedLoads::default(),
             landmarks: case.landmarks.clone(),
             allow_unfixed: case.allow_unfixed,
             settings: settings.clone(),

@@ -144,6 +144,10 @@ pub struct Settings {
     pub memory_mb: f64,
     /// Absent: the skin is tissue like the rest.
     pub membrane: Option<SkinMembrane>,
+    /// Whether the discretisation error is estimated, where it can be.
+    pub estimate: bool,
+    /// Whether what the mesh leaves out, as far as that is estimated, is added to the displacement.
+    pub corrected: bool,
 }
 
 impl Default for Settings {
@@ -155,6 +159,8 @@ impl Default for Settings {
             relative_residual: 1e-8,
             memory_mb: 4000.0,
             membrane: None,
+            estimate: true,
+            corrected: false,
         }
     }
 }

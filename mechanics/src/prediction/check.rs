@@ -229,13 +229,18 @@ impl<'a> Check<'a> {
                 }
                 Load::Traction { faces, traction } => {
                     let faces = self.loaded_faces(faces, &pointer);
-                    self.face_load(&faces, FaceLoad::Traction(*traction), edges, &mut forces);
+                    let load = FaceLoad::Traction(*traction);
+                    self.face_load(&faces, load, edges, &mut forces);
+                    scene.distributed.faces.push((faces, load));
                 }
                 Load::Pressure { faces, pressure } => {
                     let faces = self.loaded_faces(faces, &pointer);
-                    self.face_load(&faces, FaceLoad::Pressure(*pressure), edges, &mut forces);
+                    let load = FaceLoad::Pressure(*pressure);
+                    self.face_load(&faces, load, edges, &mut forces);
+                    scene.distributed.faces.push((faces, load));
                 }
                 Load::Gravity { acceleration } => {
+                    scene.distributed.acceleration += acceleration;
                     let tissue = scene.tissue();
                     let added = match edges {
                         Some(edges) => edges.add_gravity(&tissue, *acceleration, &mut forces),

@@ -3,9 +3,11 @@
 use super::case::{Case, FibreDirection, Settings};
 use super::check::Check;
 use super::error_code::SceneErrorCode;
-use super::method::Method;
+use super::method::{Laws, Method, MethodProperties};
 use super::skin::Skin;
 use crate::material::LinearElastic;
+use crate::material::hyperelastic::Law;
+use crate::mesh::ignored::listed;
 use crate::mesh::{ArrayUse, Vector, Warning};
 use crate::model::fem::membrane::Membrane;
 
@@ -24,18 +26,25 @@ impl Check<'_> {
     /// region has fibres. Methods that know no fibres get materials without.
     pub(super) fn fibres(&mut self, tissues: Tissues, method: &Method) -> Vec<Vector> {
         let Tissues { regions, region_of_cell, materials } = tissues;
-        let fibred = materials.iter().filter(|material| material.has_fibre()).count();
-        if fibred > 0 && !method.properties().knows_fibres {
-            let detail = format!(
-                "{fibred} regions have fibres, which this method does not know: they are as stiff along as across"
-            );
-            let warning = Warning::new("fibres-ignored", detail).with("regions", fibred as f64);
-            self.warnings.push(warning);
-            materials.iter_mut().for_each(|material| *material = material.without_fibre());
-            return Vec::new();
+        let properties = method.properties();
+        self.warnings.extend(self.laws_at_rest(regions, materials, properties));
+        let has_directions = |material: &LinearElastic| match properties.laws {
+            Laws::Any => material.has_pulling_fibres(),
+            Laws::AtRest | Laws::SaintVenantKirchhoff => {
+                material.has_fibre() && properties.knows_fibres
+            }
+        };
+        let is_ignored = |material: &&mut LinearElastic| {
+            material.has_fibre() && !properties.knows_fibres && !has_directions(material)
+        };
+        let ignored: Vec<&mut LinearElastic> = materials.iter_mut().filter(is_ignored).collect();
+        if !ignored.is_empty() {
+            self.warnings.push(fibres_ignored(ignored.len()));
+            ignored.into_iter().for_each(|material| *material = material.without_fibre());
         }
-        if fibred == 0 {
-            if method.properties().expects_fibres {
+        let has_fibres: Vec<bool> = materials.iter().map(has_directions).collect();
+        if !has_fibres.contains(&true) {
+            if properties.expects_fibres {
                 let detail = "no region has fibres: this is the isotropic mass-tensor model";
                 self.warnings.push(Warning::new("fibres-missing", detail));
             }
@@ -48,11 +57,43 @@ impl Check<'_> {
         }
         for (number, (name, cells)) in regions.iter().zip(&cells_of).enumerate() {
             // Regions without a material are refused elsewhere.
-            if materials.get(number).is_some_and(LinearElastic::has_fibre) {
+            if has_fibres.get(number) == Some(&true) {
                 self.fibres_of_region(name, cells, &mut of_cell);
             }
         }
         of_cell
+    }
+
+    /// The warning of laws that are stated for a method of small strain, by region or by what an image shows.
+    fn laws_at_rest(
+        &self,
+        regions: &[String],
+        materials: &[LinearElastic],
+        method: &MethodProperties,
+    ) -> Option<Warning> {
+        let is_stated = |material: &LinearElastic| match method.laws {
+            Laws::Any => false,
+            Laws::AtRest => material.stated_law().is_some() || material.has_pulling_fibres(),
+            Laws::SaintVenantKirchhoff => {
+                let other = |law: &Law| !matches!(law, Law::SaintVenantKirchhoff(_));
+                material.stated_law().is_some_and(other) || material.has_pulling_fibres()
+            }
+        };
+        let windows = self.case.hounsfield.iter().flat_map(|image| &image.tissues);
+        let windows = windows.map(|window| (&window.name, &window.material));
+        let all = regions.iter().zip(materials).chain(windows);
+        let names: Vec<&str> = all
+            .filter(|(_, material)| is_stated(material))
+            .map(|(name, _)| name.as_str())
+            .collect();
+        let detail = format!(
+            "`{}` does not know the law of {}: its tissue has the moduli that the law has at rest, without fibres that only \
+             pull; `fem_nonlinear` follows the law",
+            method.name,
+            listed(&names)
+        );
+        let warning = Warning::new("law-at-rest", detail).with("regions", names.len() as f64);
+        (!names.is_empty()).then_some(warning)
     }
 
     fn fibres_of_region(&mut self, region: &str, cells: &[usize], of_cell: &mut [Vector]) {
@@ -152,6 +193,13 @@ impl Check<'_> {
         }
         lines.into_iter().flatten().collect()
     }
+}
+
+fn fibres_ignored(regions: usize) -> Warning {
+    let detail = format!(
+        "{regions} regions have fibres, which this method does not know: they are as stiff along as across"
+    );
+    Warning::new("fibres-ignored", detail).with("regions", regions as f64)
 }
 
 /// Gives cells their directions; the first that has none, and how many there are.

@@ -61,14 +61,19 @@ impl Check<'_> {
         }
     }
 
-    /// A mixture has one bulk and one shear modulus: a region with fibres has others.
+    /// A mixture has one bulk and one shear modulus: fibres and laws of finite strain have more.
     fn can_mix(&mut self, hounsfield: &Hounsfield, materials: &[LinearElastic]) -> bool {
-        let fibred = materials.iter().filter(|material| material.has_fibre()).count();
-        if hounsfield.mixing == Mixing::Mean || fibred == 0 {
+        let windows = hounsfield.tissues.iter().map(|window| &window.material);
+        let is_more = |material: &&LinearElastic| {
+            material.has_fibre() || material.has_pulling_fibres() || material.stated_law().is_some()
+        };
+        let more = materials.iter().chain(windows).filter(is_more).count();
+        if hounsfield.mixing == Mixing::Mean || more == 0 {
             return true;
         }
         let detail = format!(
-            "`fraction` mixes isotropic tissue, and {fibred} regions have fibres: `mean` leaves them as they are"
+            "`fraction` mixes linear isotropic tissue, and {more} tissues have fibres or a law of finite strain: `mean` \
+             leaves them as they are"
         );
         self.problems.add(format!("{PLACE}/mixing"), SceneErrorCode::MethodNotAvailable, detail);
         false
@@ -105,7 +110,10 @@ fn shown(x: &Vector) -> String {
 impl TissueOfCells {
     /// Cells of regions with fibres that an image makes another tissue, which has none.
     fn replaced_fibres(&self, region_of_cell: &[u16]) -> Option<Warning> {
-        let has_fibre = |material: u16| self.materials[usize::from(material)].has_fibre();
+        let has_fibre = |material: u16| {
+            let material = &self.materials[usize::from(material)];
+            material.has_fibre() || material.has_pulling_fibres()
+        };
         let cells = region_of_cell.iter().zip(&self.material_of_cell);
         let of_regions = region_of_cell.iter().filter(|&&region| has_fibre(region)).count();
         let replaced =

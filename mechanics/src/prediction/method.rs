@@ -16,6 +16,7 @@ listed! {
         FemNonlinear,
         MassTensor,
         MassTensorTransverse,
+        MassTensorNonlinear,
         MassSpring,
         VolumeSpline,
         ThicknessWarp,
@@ -36,6 +37,8 @@ pub enum Method {
     MassTensor(MassTensorSettings),
     /// The mass-tensor of tetrahedra with fibres: force = V g_j.C.g_k u, the plain finite element.
     MassTensorTransverse,
+    /// The mass-tensor with the full Green strain: Saint Venant-Kirchhoff tetrahedra.
+    MassTensorNonlinear,
     /// A lattice of control points over the tissue.
     VolumeSpline(VolumeSpline),
     /// Tissue that rides on the nearest bone.
@@ -53,6 +56,16 @@ pub enum Unknowns {
     ControlPoints,
     /// There are none: displacement follows from that of the bones.
     None,
+}
+
+/// Which laws of finite strain a method knows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Laws {
+    /// None: tissue is what its law is at rest.
+    AtRest,
+    /// That of Saint Venant and Kirchhoff, of the constants that any other one has at rest.
+    SaintVenantKirchhoff,
+    Any,
 }
 
 /// What is known of a method: a row of the table.
@@ -73,6 +86,8 @@ pub struct MethodProperties {
     pub is_linear: bool,
     /// Whether strain is the symmetric part of the displacement gradient, so that turning is taken for stretching.
     pub is_small_strain: bool,
+    /// Which laws of finite strain it knows; fibres that only pull with them.
+    pub laws: Laws,
     /// Whether its tissue may be stiffer along fibres than across them.
     pub knows_fibres: bool,
     /// Whether it is made for tissue with fibres.
@@ -92,6 +107,7 @@ const FEM_LINEAR: MethodProperties = MethodProperties {
     cells: EVERY_SHAPE,
     is_linear: true,
     is_small_strain: true,
+    laws: Laws::AtRest,
     knows_fibres: true,
     expects_fibres: false,
     knows_membrane: true,
@@ -102,11 +118,17 @@ const FEM_NONLINEAR: MethodProperties = MethodProperties {
     name: "fem_nonlinear",
     title: "the nonlinear finite element method",
     unknowns: Unknowns::Elements,
-    elements: &[ElementChoice::Auto, ElementChoice::Plain],
-    usual_element: ElementChoice::Plain,
-    cells: TETRAHEDRA,
+    elements: &[
+        ElementChoice::Auto,
+        ElementChoice::Plain,
+        ElementChoice::MeanDilatation,
+        ElementChoice::Stabilised,
+    ],
+    usual_element: ElementChoice::Stabilised,
+    cells: EVERY_SHAPE,
     is_linear: false,
     is_small_strain: false,
+    laws: Laws::Any,
     knows_fibres: false,
     expects_fibres: false,
     knows_membrane: false,
@@ -123,6 +145,7 @@ const MASS_TENSOR: MethodProperties = MethodProperties {
     // With its own iterations each solve stands for itself.
     is_linear: false,
     is_small_strain: true,
+    laws: Laws::AtRest,
     knows_fibres: false,
     expects_fibres: false,
     knows_membrane: true,
@@ -138,9 +161,26 @@ const MASS_TENSOR_TRANSVERSE: MethodProperties = MethodProperties {
     cells: TETRAHEDRA,
     is_linear: true,
     is_small_strain: true,
+    laws: Laws::AtRest,
     knows_fibres: true,
     expects_fibres: true,
     knows_membrane: true,
+    knows_loads: true,
+};
+
+const MASS_TENSOR_NONLINEAR: MethodProperties = MethodProperties {
+    name: "mtm_nonlinear",
+    title: "the nonlinear mass-tensor model",
+    unknowns: Unknowns::Elements,
+    elements: &[ElementChoice::Auto, ElementChoice::Plain],
+    usual_element: ElementChoice::Plain,
+    cells: TETRAHEDRA,
+    is_linear: false,
+    is_small_strain: false,
+    laws: Laws::SaintVenantKirchhoff,
+    knows_fibres: false,
+    expects_fibres: false,
+    knows_membrane: false,
     knows_loads: true,
 };
 
@@ -153,6 +193,7 @@ const MASS_SPRING: MethodProperties = MethodProperties {
     cells: TETRAHEDRA,
     is_linear: false,
     is_small_strain: false,
+    laws: Laws::AtRest,
     knows_fibres: false,
     expects_fibres: false,
     knows_membrane: false,
@@ -168,6 +209,7 @@ const VOLUME_SPLINE: MethodProperties = MethodProperties {
     cells: EVERY_SHAPE,
     is_linear: false,
     is_small_strain: true,
+    laws: Laws::AtRest,
     knows_fibres: false,
     expects_fibres: false,
     knows_membrane: false,
@@ -183,6 +225,7 @@ const THICKNESS_WARP: MethodProperties = MethodProperties {
     cells: EVERY_SHAPE,
     is_linear: false,
     is_small_strain: false,
+    laws: Laws::AtRest,
     knows_fibres: false,
     expects_fibres: false,
     knows_membrane: false,
@@ -197,6 +240,7 @@ impl MethodKind {
             MethodKind::FemNonlinear => &FEM_NONLINEAR,
             MethodKind::MassTensor => &MASS_TENSOR,
             MethodKind::MassTensorTransverse => &MASS_TENSOR_TRANSVERSE,
+            MethodKind::MassTensorNonlinear => &MASS_TENSOR_NONLINEAR,
             MethodKind::MassSpring => &MASS_SPRING,
             MethodKind::VolumeSpline => &VOLUME_SPLINE,
             MethodKind::ThicknessWarp => &THICKNESS_WARP,
@@ -217,6 +261,7 @@ impl Method {
             Method::MassSpring(_) => MethodKind::MassSpring,
             Method::MassTensor(_) => MethodKind::MassTensor,
             Method::MassTensorTransverse => MethodKind::MassTensorTransverse,
+            Method::MassTensorNonlinear => MethodKind::MassTensorNonlinear,
             Method::VolumeSpline(_) => MethodKind::VolumeSpline,
             Method::ThicknessWarp(_) => MethodKind::ThicknessWarp,
         }
@@ -234,6 +279,7 @@ impl Method {
             | Method::MassSpring(_)
             | Method::MassTensor(_)
             | Method::MassTensorTransverse
+            | Method::MassTensorNonlinear
             | Method::ThicknessWarp(_) => None,
         }
     }

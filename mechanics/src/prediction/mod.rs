@@ -1,11 +1,14 @@
 //! The path of one prediction: scene in, nodal displacement and its measures out.
 
+mod adequate;
+mod answer;
 mod build;
 pub mod case;
 mod check;
 mod cut;
 mod element_choice;
 mod error_code;
+mod exponential_tissue;
 mod far_segment;
 mod fibres;
 mod held;
@@ -13,6 +16,8 @@ mod hounsfield;
 mod imaged_tissue;
 mod listed;
 mod method;
+mod nonlinearity;
+mod numerical_error;
 mod numerics_revision;
 mod off_wall;
 mod problem;
@@ -37,7 +42,9 @@ pub use case::{
 pub use element_choice::ElementChoice;
 pub use error_code::SceneErrorCode;
 pub use imaged_tissue::{ImagedTissue, TissueShare};
-pub use method::{Method, MethodKind, MethodProperties, Unknowns};
+pub use method::{Laws, Method, MethodKind, MethodProperties, Unknowns};
+pub use nonlinearity::{Estimated, Nonlinearity, NonlinearityUnknown};
+pub use numerical_error::{NotEstimated, NumericalError};
 pub use numerics_revision::NUMERICS_REVISION;
 pub use problem::{SceneError, SceneErrors};
 pub use reaction::ConditionReaction;
@@ -48,13 +55,16 @@ pub use stated::{StatedCondition, StatedHold};
 pub use unheld::{GoesAlong, NOTHING_HELD, goes_along};
 pub use walls::normal_turned;
 
+pub use adequate::{Accepted, Adequate, Considered, Errors, Rung, Watched, predict_adequately};
+use answer::Answer;
+
 pub use crate::boundary::NodeClass;
 use crate::mesh::{Vector, Warning};
 use crate::model::fem::strain::{CellDeformation, deformations};
 pub use crate::model::problem::{InvertedCell, ModelError};
 use crate::plan::doubt::{NOTHING_MOVES, nothing_moves};
 use crate::progress::{Phase, Progress};
-pub use crate::solver::{SolveReport, SolverError};
+pub use crate::solver::{NewtonReport, SolveReport, SolverError};
 
 /// A landmark farther than this from the tissue, in mm, is told to move as something it is not part of.
 pub const LANDMARK_FAR: f64 = 2.0;
@@ -72,6 +82,12 @@ pub struct Prediction {
     pub condition_reactions: Vec<ConditionReaction>,
     /// The displacement of each landmark in mm.
     pub landmarks: BTreeMap<String, Vector>,
+    /// What linear elasticity leaves out, or why that is not known.
+    pub nonlinearity: Estimated,
+    /// What the mesh leaves out of the displacement, or why that is not known.
+    pub numerical_error: Result<NumericalError, NotEstimated>,
+    /// The same at each landmark, in mm; empty where it is not known.
+    pub landmarks_missing: BTreeMap<String, Vector>,
     pub solver: SolveReport,
     /// The elements used, e.g. `hex8 mean dilatation`.
     pub elements: Vec<String>,
@@ -81,36 +97,51 @@ pub struct Prediction {
 
 /// Solves a scene by the method it asks for. The same scene gives the same bits on any number of threads.
 pub fn predict(scene: &Scene, progress: &dyn Progress) -> Result<Prediction, ModelError> {
-    // 1. Equilibrium.
-    let equilibrium = scene.solve(progress)?;
+    let answer = answer::solve(scene, progress)?.corrected(scene.settings.corrected);
+    Ok(described(scene, answer, progress))
+}
 
-    // 2. What it does to the tissue and to the landmarks.
+/// What an answer says of the tissue and to a reader.
+fn described(scene: &Scene, answer: Answer, progress: &dyn Progress) -> Prediction {
+    let Answer { equilibrium, numerical_error, nonlinearity } = answer;
+
+    // 1. What it does to the tissue and to the landmarks.
     progress.phase(Phase::Surface);
     let deformation = deformations(&scene.mesh, &equilibrium.displacement);
     let landmarks =
         skin::landmark_displacement(&scene.mesh, &scene.landmarks, &equilibrium.displacement);
 
-    // 3. What a reader must know.
+    // 2. What a reader must know.
     let mut warnings = scene.warnings.clone();
     let is_told = scene.warnings.iter().any(|warning| warning.code == NOTHING_MOVES);
     warnings.extend((scene.is_at_rest() && !is_told).then(nothing_moves));
     warnings.extend(equilibrium.warnings.iter().cloned());
     warnings.extend(inverted_cells(&deformation));
-    warnings.extend(small_strain::left(scene, &deformation));
+    warnings.extend(small_strain::left(scene, &deformation, &nonlinearity));
+    warnings.extend(exponential_tissue::warnings(scene, &equilibrium.displacement));
     warnings.extend(off_wall::left_wall(scene, &equilibrium.displacement));
     let moved = scene.skin.moved(&equilibrium.displacement);
     warnings.extend(skin_overlap(&scene.skin, &moved));
     warnings.extend(far_landmarks(&landmarks));
-    Ok(Prediction {
+    warnings.extend(numerical_error::warning(scene, &numerical_error));
+    let at_landmarks =
+        |missing| skin::landmark_displacement(&scene.mesh, &scene.landmarks, missing);
+    let missing = numerical_error.as_ref().map(|error| at_landmarks(&error.missing));
+    Prediction {
         reactions: reaction::by_class(scene, &equilibrium),
         condition_reactions: reaction::by_condition(scene, &equilibrium),
+        nonlinearity,
         landmarks: landmarks.into_iter().map(|(name, (moved, _))| (name, moved)).collect(),
+        landmarks_missing: missing
+            .map(|all| all.into_iter().map(|(name, (missing, _))| (name, missing)).collect())
+            .unwrap_or_default(),
+        numerical_error,
         solver: equilibrium.solver,
         elements: scene.elements(),
         displacement: equilibrium.displacement,
         deformation,
         warnings,
-    })
+    }
 }
 
 /// An answer that turns cells inside out says so.

@@ -6,21 +6,24 @@ use std::sync::Arc;
 use super::case::Settings;
 use super::element_choice::ElementChoice;
 use super::imaged_tissue::ImagedTissue;
-use super::method::{Method, Unknowns};
+use super::method::{Method, MethodKind, Unknowns};
 use super::skin::Skin;
 use super::stated::StatedCondition;
 use crate::boundary::{Conditions, ConnectedPart, NodeClass};
-use crate::material::hyperelastic::{Law, NeoHookean};
-use crate::material::{ElasticTensor, LinearElastic};
+use crate::material::LinearElastic;
+use crate::material::hyperelastic::{Fibres, Law};
 use crate::mesh::volume::BoundaryFace;
 use crate::mesh::{CellShape, Vector, VolumeMesh, Warning};
 use crate::model::fem::assembly::Tissue;
 use crate::model::fem::cell_stiffness::Dilatation;
+use crate::model::fem::discretisation_error::DistributedLoads;
 use crate::model::fem::displacement::Problem;
 use crate::model::fem::edge_nodes::EdgeNodes;
-use crate::model::fem::finite_strain::FiniteStrain;
+use crate::model::fem::finite_strain::{Elements, FibreField, FiniteStrain};
+use crate::model::fem::linear_system::LinearSystem;
+use crate::model::fem::mass_tensor_nonlinear::MassTensors;
 use crate::model::fem::membrane::Membrane;
-use crate::model::fem::{displacement_pressure, mass_tensor, quadratic};
+use crate::model::fem::{mass_tensor, quadratic};
 use crate::model::mass_spring::POISSON_RATIO;
 use crate::model::problem::{Equilibrium, LoadCase, ModelError};
 use crate::model::thickness_warp::Warped;
@@ -71,6 +74,8 @@ pub struct Scene {
     pub segments: Vec<PlannedSegment>,
     /// For each node, in mN; quadratic elements have those of edge nodes after them.
     pub forces: Vec<Vector>,
+    /// What of these acts between nodes too.
+    pub distributed: DistributedLoads,
     pub landmarks: BTreeMap<String, Vector>,
     /// Whether a plan may carry the whole tissue away as one.
     pub allow_unfixed: bool,
@@ -152,6 +157,7 @@ impl Scene {
             Method::MassTensor(settings) => {
                 mass_tensor::solve(&self.problem(), settings, &self.load_case(), progress)
             }
+            Method::MassTensorNonlinear => self.mass_tensors().solve(&self.load_case(), progress),
             Method::VolumeSpline(spline) => spline::solve(&self.problem(), spline, progress),
             Method::ThicknessWarp(warp) => {
                 let movement = |segment: u32, x: &Vector| {
@@ -164,22 +170,41 @@ impl Scene {
         }
     }
 
-    /// Each material becomes the neo-Hookean one that agrees with it at rest.
+    /// Each material follows its law at finite strain, the neo-Hookean one where none is stated.
     fn solve_at_finite_strain(&self, progress: &dyn Progress) -> Result<Equilibrium, ModelError> {
-        let law = |material: &LinearElastic| {
-            let ElasticTensor { lambda, mu, .. } = material.tensor(&Vector::zeros());
-            Law::NeoHookean(NeoHookean { lambda, mu })
-        };
-        let laws: Vec<Law> = self.materials.iter().map(law).collect();
+        let (laws, fibres): (Vec<Law>, Vec<Option<Fibres>>) = self
+            .materials
+            .iter()
+            .map(|material| material.hyperelastic())
+            .map(|tissue| (tissue.law, tissue.fibres))
+            .unzip();
         let Settings { relative_residual, memory_mb, .. } = self.settings;
+        let elements = Elements {
+            stabilised: self.tetrahedron() == Tetrahedron::Stabilised,
+            mean_dilatation: self.element != ElementChoice::Plain,
+        };
         let problem = FiniteStrain {
             mesh: &self.mesh,
             laws: &laws,
             law_of_cell: &self.material_of_cell,
+            pressure_of_cell: &self.pressure_of_cell,
+            elements,
+            fibres: FibreField { of_law: &fibres, of_cell: &self.fibres },
             holds: &self.conditions.holds,
             tolerance: Tolerance { relative_residual, memory_mb },
         };
         problem.solve(&self.load_case(), progress)
+    }
+
+    fn mass_tensors(&self) -> MassTensors<'_> {
+        let Settings { relative_residual, memory_mb, .. } = self.settings;
+        MassTensors {
+            mesh: &self.mesh,
+            materials: &self.materials,
+            material_of_cell: &self.material_of_cell,
+            holds: &self.conditions.holds,
+            tolerance: Tolerance { relative_residual, memory_mb },
+        }
     }
 
     /// Tissue, holds and loads as models see them.
@@ -200,13 +225,29 @@ impl Scene {
         cases: &[LoadCase],
         progress: &dyn Progress,
     ) -> Result<Vec<Equilibrium>, ModelError> {
+        match self.assemble(progress)? {
+            Some(system) => {
+                let solved = system.solve(cases, progress)?;
+                Ok(solved.into_iter().map(|solved| solved.equilibrium).collect())
+            }
+            None => quadratic::solve_cases(&self.problem(), cases, progress),
+        }
+    }
+
+    /// The linear finite elements of this scene, assembled; none where they are quadratic.
+    pub fn assemble(
+        &self,
+        progress: &dyn Progress,
+    ) -> Result<Option<LinearSystem<'_>>, ModelError> {
         let problem = self.problem();
         match self.tetrahedron() {
-            Tetrahedron::Quadratic => quadratic::solve_cases(&problem, cases, progress),
+            Tetrahedron::Quadratic => Ok(None),
             Tetrahedron::Stabilised if self.has_tetrahedra() => {
-                displacement_pressure::solve_cases(&problem, cases, progress)
+                LinearSystem::mixed(&problem, progress).map(Some)
             }
-            Tetrahedron::Stabilised | Tetrahedron::Plain => problem.solve_cases(cases, progress),
+            Tetrahedron::Stabilised | Tetrahedron::Plain => {
+                LinearSystem::plain(&problem, progress).map(Some)
+            }
         }
     }
 
@@ -218,17 +259,23 @@ impl Scene {
             Method::FemLinear
             | Method::FemNonlinear
             | Method::MassTensor(_)
-            | Method::MassTensorTransverse => {}
+            | Method::MassTensorTransverse
+            | Method::MassTensorNonlinear => {}
         }
         let dilatation = self.tissue().dilatation;
+        let shares = self.materials.iter().any(|tissue| self.shares_volume(tissue));
         [CellShape::Tet4, CellShape::Hex8, CellShape::Wedge6]
             .into_iter()
             .filter(|shape| self.mesh.cells.iter().any(|(other, _)| other == *shape))
             .map(|shape| match (shape, self.tetrahedron(), dilatation(shape)) {
-                (CellShape::Tet4, Tetrahedron::Stabilised, _) => "tet4 stabilised".to_owned(),
+                (CellShape::Tet4, Tetrahedron::Stabilised, _) if shares => {
+                    "tet4 stabilised".to_owned()
+                }
                 (CellShape::Tet4, Tetrahedron::Quadratic, _) => "tet10 quadratic".to_owned(),
-                (_, _, Dilatation::Pointwise) => format!("{} plain", shape.name()),
-                (_, _, Dilatation::Mean) => format!("{} mean dilatation", shape.name()),
+                (_, _, Dilatation::Mean) if shares => format!("{} mean dilatation", shape.name()),
+                (_, _, Dilatation::Pointwise | Dilatation::Mean) => {
+                    format!("{} plain", shape.name())
+                }
             })
             .chain(self.membrane.as_ref().map(|_| match self.tetrahedron() {
                 Tetrahedron::Quadratic => "tri6 membrane".to_owned(),
@@ -278,13 +325,21 @@ impl Scene {
         Some(warning.with("poisson_ratio", POISSON_RATIO))
     }
 
+    /// Whether elements that do not lock serve a tissue: any of linear elasticity, some of finite strain.
+    fn shares_volume(&self, tissue: &LinearElastic) -> bool {
+        self.settings.method.kind() != MethodKind::FemNonlinear
+            || tissue.hyperelastic().law.shares_volume()
+    }
+
     pub(super) fn locking(&self) -> Option<Warning> {
         let dilatation = self.tissue().dilatation;
         let cells = self.mesh.cells.iter().zip(&self.material_of_cell);
         let locks = |shape: CellShape, material: u16| {
             let nu = self.materials[material as usize].poisson_ratio();
             let is_plain = shape != CellShape::Tet4 || self.tetrahedron() == Tetrahedron::Plain;
-            nu > LOCKING && is_plain && dilatation(shape) == Dilatation::Pointwise
+            let is_pointwise = is_plain && dilatation(shape) == Dilatation::Pointwise;
+            nu > LOCKING
+                && (is_pointwise || !self.shares_volume(&self.materials[material as usize]))
         };
         let has_elements = self.settings.method.properties().unknowns == Unknowns::Elements;
         let locking = cells.filter(|((shape, _), material)| locks(*shape, **material)).count();

@@ -1,4 +1,8 @@
-//! Whether an answer at small strain has left where small strain holds, read from the answer itself.
+//! Whether an answer at small strain has left where small strain holds.
+//!
+//! Where the second-order term is known (`nonlinearity`), e is the 95th percentile of its length over the skin, and over
+//! each part of the skin that has a name: a thin lip must not hide in a large cheek. Where it is not, of quadratic
+//! tetrahedra and of methods without a matrix of linear elements, a rule of thumb stands for it:
 //!
 //! e = p95 over free skin nodes of l (2 (1 - cos theta) + 0.9 s^2), in mm
 //!
@@ -13,11 +17,12 @@
 //! along, across and pulled back; it is at most 5 times these. An order of magnitude, not a bound.
 //!
 //! Never of single cells: their strain at the edge of a bone grows without limit as cells shrink (LADDER,
-//! pitfalls). For each part of the skin that has a name too: a thin lip must not hide in a large cheek.
+//! pitfalls).
 
 use rayon::prelude::*;
 
 use super::Scene;
+use super::nonlinearity::Estimated;
 use crate::boundary::{Hold, NodeClass};
 use crate::mesh::{Vector, Warning};
 use crate::model::fem::strain::CellDeformation;
@@ -42,7 +47,11 @@ struct AtNode {
 }
 
 /// A warning where e is above half a millimetre: `large-rotation` or `large-strain`, whichever has the larger part.
-pub(super) fn left(scene: &Scene, deformation: &[CellDeformation]) -> Option<Warning> {
+pub(super) fn left(
+    scene: &Scene,
+    deformation: &[CellDeformation],
+    estimated: &Estimated,
+) -> Option<Warning> {
     if !scene.settings.method.properties().is_small_strain {
         return None;
     }
@@ -52,7 +61,12 @@ pub(super) fn left(scene: &Scene, deformation: &[CellDeformation]) -> Option<War
     let around = around_skin_nodes(scene, deformation);
     let estimates = parts.chain(named).filter_map(|(name, points)| {
         let nodes = measured(scene, points, &around);
-        (!nodes.is_empty()).then(|| (p95(&nodes, |at| at.turned + at.stretched), name, nodes))
+        let by_rule = || p95(&nodes, |at| at.turned + at.stretched);
+        let estimate = match estimated {
+            Ok(known) => second_order(scene, points, &known.second_order),
+            Err(_) => (!nodes.is_empty()).then(by_rule),
+        };
+        estimate.map(|estimate| (estimate, name, nodes))
     });
     let (estimate, part, nodes) = estimates.max_by(|a, b| a.0.total_cmp(&b.0))?;
     if estimate <= SMALL_STRAIN_MM {
@@ -73,6 +87,14 @@ pub(super) fn left(scene: &Scene, deformation: &[CellDeformation]) -> Option<War
             .with("strain_p95", p95(&nodes, |at| at.strain))
             .with("largest_rotation_deg", largest(deformation).to_degrees()),
     )
+}
+
+/// p95 of the second-order term over points of the skin.
+fn second_order(scene: &Scene, points: &[u32], displacement: &[Vector]) -> Option<f64> {
+    let node_of = |point: &u32| scene.skin.nodes()[*point as usize] as usize;
+    let lengths: Vec<f64> =
+        points.iter().map(|point| displacement[node_of(point)].norm()).collect();
+    (!lengths.is_empty()).then(|| p95(&lengths, |length| *length))
 }
 
 fn largest(deformation: &[CellDeformation]) -> f64 {
@@ -130,8 +152,11 @@ fn measured(scene: &Scene, points: &[u32], around: &[[f64; 2]]) -> Vec<AtNode> {
 }
 
 /// The smallest value that at least 95 % of the nodes do not exceed.
-fn p95(nodes: &[AtNode], value: impl Fn(&AtNode) -> f64) -> f64 {
+fn p95<T>(nodes: &[T], value: impl Fn(&T) -> f64) -> f64 {
     let mut values: Vec<f64> = nodes.iter().map(value).collect();
+    if values.is_empty() {
+        return 0.0;
+    }
     values.sort_by(f64::total_cmp);
     values[(values.len() * 95).div_ceil(100).max(1) - 1]
 }

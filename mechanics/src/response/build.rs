@@ -4,20 +4,36 @@
 //! or u = e_i, j = 3, and zero wherever else a node is held. Sliding nodes are held across their wall and free
 //! along it: at n . u(x) where s carries the wall, at zero where something else does or nothing.
 
-use super::linearity::{self, Linearity, joined_nodes};
+use super::linearity::{self, Linearity, SampledSecond, joined_nodes};
+use super::quadratic_form::{QuadraticForm, pairs};
+use super::rigid_numbers::SAMPLES;
+use super::second_order::Solutions;
 use super::{COLUMNS_PER_SEGMENT, Response, ResponseSegment, superposition};
 use crate::boundary::{ConnectedPart, Hold, NodeClass};
 use crate::mesh::Vector;
 use crate::mesh::ignored::listed;
+use crate::model::fem::force_series::ForceSeries;
 use crate::model::problem::{Equilibrium, LoadCase, ModelError};
 use crate::plan::RigidMovement;
 
-use crate::prediction::Scene;
+use crate::prediction::{ElementChoice, Scene};
 use crate::progress::{Phase, Progress};
 use crate::solver::{SolveReport, SolverError};
 
 /// Bytes of one node in one load case: its force, its displacement, its unknowns.
 const BYTES_OF_NODE: f64 = 72.0;
+
+/// Bytes of one node beside the columns while those of second order are solved: forces and vectors of eight pairs.
+const BYTES_OF_PAIRS: f64 = 2000.0;
+
+/// How far a response goes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ResponseOrder {
+    #[default]
+    First,
+    /// With the quadratic form of what linearity leaves out.
+    Second,
+}
 
 /// A response in f64, as it was solved, with what tells how far it can be trusted.
 #[derive(Clone, Debug)]
@@ -28,6 +44,8 @@ pub struct Columns {
     /// As in [`Response`], in f64.
     pub values: Vec<f64>,
     pub linearity: Linearity,
+    /// The second order, where it was asked for.
+    pub second_order: Option<QuadraticForm>,
     /// What hangs together, and what holds it; segments by their place in `segments`, others stay.
     pub parts: Vec<ConnectedPart>,
     /// For each segment whether tissue slides on it.
@@ -62,6 +80,8 @@ pub enum ResponseError {
     EmptySegment { name: String },
     #[error("the scene has prescribed displacements or loads, which a response does not know")]
     Loaded,
+    #[error("the second order of a response is not known for quadratic tetrahedra")]
+    NoSecondOrder,
     #[error(
         "responses are built with linear finite elements, and the spec asks for another method"
     )]
@@ -102,6 +122,14 @@ pub fn chosen(scene: &Scene, names: &[String]) -> Result<Vec<usize>, ResponseErr
     }
 }
 
+/// Refuses an order that the elements of a scene do not have.
+pub fn check_order(scene: &Scene, order: ResponseOrder) -> Result<(), ResponseError> {
+    match order == ResponseOrder::Second && scene.element == ElementChoice::Quadratic {
+        true => Err(ResponseError::NoSecondOrder),
+        false => Ok(()),
+    }
+}
+
 /// The parts of a scene where only these segments may move, by their place in the list.
 fn parts_where(scene: &Scene, chosen: &[usize]) -> Vec<ConnectedPart> {
     let place = |segment: u32| chosen.iter().position(|&other| other == segment as usize);
@@ -127,14 +155,25 @@ pub fn build(
     names: &[String],
     progress: &dyn Progress,
 ) -> Result<Columns, ResponseError> {
+    build_to(scene, names, ResponseOrder::First, progress)
+}
+
+/// The same with columns up to an order.
+pub fn build_to(
+    scene: &Scene,
+    names: &[String],
+    order: ResponseOrder,
+    progress: &dyn Progress,
+) -> Result<Columns, ResponseError> {
     // 1. What is asked.
     let chosen = chosen(scene, names)?;
+    check_order(scene, order)?;
     let mut segments = Vec::with_capacity(chosen.len());
     for &number in &chosen {
         segments.push(segment_of(scene, number)?);
     }
     let columns = COLUMNS_PER_SEGMENT * segments.len();
-    check_memory(scene, columns)?;
+    check_memory(scene, columns, order)?;
     let zeros = vec![Vector::zeros(); scene.mesh.nodes.len()];
     let cases: Vec<LoadCase> = (0..columns)
         .map(|column| {
@@ -145,11 +184,11 @@ pub fn build(
         .collect();
 
     // 2. The tissue for each of them.
-    let solved = scene.solve_cases(&cases, progress)?;
+    let nodes = scene.skin.nodes().to_vec();
+    let Solved { solved, sampled, second_order } = solve(scene, &cases, order, progress)?;
 
     // 3. Its skin.
     progress.phase(Phase::Surface);
-    let nodes = scene.skin.nodes().to_vec();
     let mut values = Vec::with_capacity(3 * columns * nodes.len());
     for equilibrium in &solved {
         for &node in &nodes {
@@ -157,7 +196,10 @@ pub fn build(
         }
     }
     let parts = parts_where(scene, &chosen);
-    let linearity = linearity::of_scene(scene, &chosen, &parts);
+    let mut linearity = linearity::of_scene(scene, &chosen, &parts);
+    let centres = segments.iter().map(|segment| segment.centre);
+    let samples = centres.zip(sampled);
+    linearity.sampled = samples.map(|(centre, second)| SampledSecond { centre, second }).collect();
     let (solver, elements) = (hardest(&solved)?, scene.elements());
     let carries_wall =
         chosen.iter().map(|&number| scene.conditions.carried_by(number as u32) > 0).collect();
@@ -167,6 +209,7 @@ pub fn build(
         nodes,
         values,
         linearity,
+        second_order,
         parts,
         carries_wall,
         allow_unfixed: scene.allow_unfixed,
@@ -174,6 +217,38 @@ pub fn build(
         solver,
         elements,
     })
+}
+
+/// The tissue for each load case, samples of its second order for each segment where elements have one, and all of it
+/// where that is asked for.
+struct Solved {
+    solved: Vec<Equilibrium>,
+    sampled: Vec<[f64; SAMPLES]>,
+    second_order: Option<QuadraticForm>,
+}
+
+fn solve(
+    scene: &Scene,
+    cases: &[LoadCase],
+    order: ResponseOrder,
+    progress: &dyn Progress,
+) -> Result<Solved, ResponseError> {
+    let Some(system) = scene.assemble(progress)? else {
+        let solved = scene.solve_cases(cases, progress)?;
+        return Ok(Solved { solved, sampled: Vec::new(), second_order: None });
+    };
+    let columns = system.solve(cases, progress)?;
+    let pressures = system.pressures.as_ref().map(|pressures| &pressures.cells);
+    let series = ForceSeries::new(scene.tissue(), pressures);
+    let skin = scene.skin.nodes();
+    let solutions = Solutions { series, system: &system, columns: &columns, skin };
+    let sampled = solutions.second_of_each(progress)?;
+    let second_order = match order {
+        ResponseOrder::First => None,
+        ResponseOrder::Second => Some(solutions.quadratic_form(progress)?),
+    };
+    let solved = columns.into_iter().map(|solved| solved.equilibrium).collect();
+    Ok(Solved { solved, sampled, second_order })
 }
 
 impl Columns {
@@ -227,8 +302,17 @@ fn held_values(scene: &Scene, segment: usize, centre: &Vector, unit: usize) -> V
 }
 
 /// All load cases stand in memory together.
-fn check_memory(scene: &Scene, columns: usize) -> Result<(), ModelError> {
-    let needed_mb = columns as f64 * scene.mesh.nodes.len() as f64 * BYTES_OF_NODE / 1e6;
+fn check_memory(scene: &Scene, columns: usize, order: ResponseOrder) -> Result<(), ModelError> {
+    let (nodes, skin) = (scene.mesh.nodes.len() as f64, scene.skin.nodes().len() as f64);
+    let second = match order {
+        ResponseOrder::First => 0.0,
+        ResponseOrder::Second => {
+            let stored = pairs(columns).count() * 3 * size_of::<i16>();
+            let samples = 3 * SAMPLES * size_of::<Vector>();
+            stored as f64 * skin + (samples as f64 + BYTES_OF_PAIRS) * nodes
+        }
+    };
+    let needed_mb = (columns as f64 * nodes * BYTES_OF_NODE + second) / 1e6;
     let allowed_mb = scene.settings.memory_mb;
     match needed_mb > allowed_mb {
         true => Err(SolverError::OverBudget { needed_mb, allowed_mb }.into()),

@@ -15,13 +15,17 @@ use super::ordering::Ordering;
 use super::scaling::scaled;
 use super::vector::{column, interleave, norm};
 use super::{Solution, SolveReport, SolverError, System, Tolerance, Unknowns, tell};
-use crate::progress::{Progress, Unobserved};
+use crate::progress::Progress;
 
 /// Corrections after which a residual that is still too large will stay so.
 const MOST_REFINEMENTS: usize = 6;
 
-/// Solves for one right-hand side with a factor that is there already.
-pub type Solve<'a> = &'a dyn Fn(&Unknowns) -> Result<Solution, SolverError>;
+/// L of a system, for any number of right-hand sides.
+pub struct Factor {
+    free: FreeUnknowns,
+    symbolic: SymbolicCholesky<usize>,
+    values: Vec<f64>,
+}
 
 /// Solves by a factorisation in the given order. The factorisation itself cannot be interrupted.
 pub fn solve(
@@ -31,39 +35,36 @@ pub fn solve(
     tolerance: &Tolerance,
     progress: &dyn Progress,
 ) -> Result<Vec<Solution>, SolverError> {
-    let each = |solve: Solve| right_hand_sides.iter().map(solve).collect();
-    factorised(system, ordering, tolerance, progress, each)
-}
-
-/// Factorises once for right-hand sides of which each follows from the solution before.
-pub fn with_factor<T>(
-    system: &System,
-    ordering: &Ordering,
-    tolerance: &Tolerance,
-    work: impl FnOnce(Solve) -> Result<T, SolverError>,
-) -> Result<T, SolverError> {
-    factorised(system, ordering, tolerance, &Unobserved, work)
-}
-
-fn factorised<T>(
-    system: &System,
-    ordering: &Ordering,
-    tolerance: &Tolerance,
-    progress: &dyn Progress,
-    work: impl FnOnce(Solve) -> Result<T, SolverError>,
-) -> Result<T, SolverError> {
-    let free = FreeUnknowns::new(system, ordering);
-    let columns = free.lower_columns(system);
-    let symbolic = columns.symbolic(&free)?;
-    let mut values = vec![0.0; symbolic.len_val()];
-    let factor = columns.factorise(&symbolic, &mut values, &free)?;
-    let refined = Refined { system, free: &free, factor: &factor };
+    let factor = Factor::new(system, ordering)?;
     let wanted = tolerance.relative_residual;
-    work(&|right_hand_side| {
+    right_hand_sides.iter().map(|side| factor.solve(system, side, wanted, progress)).collect()
+}
+
+impl Factor {
+    /// Factorises in the given order.
+    pub fn new(system: &System, ordering: &Ordering) -> Result<Self, SolverError> {
+        let free = FreeUnknowns::new(system, ordering);
+        let columns = free.lower_columns(system);
+        let symbolic = columns.symbolic(&free)?;
+        let mut values = vec![0.0; symbolic.len_val()];
+        columns.factorise(&symbolic, &mut values, &free)?;
+        Ok(Factor { free, symbolic, values })
+    }
+
+    /// Solves for one right-hand side of the system that was factorised, to a relative residual.
+    pub fn solve(
+        &self,
+        system: &System,
+        right_hand_side: &Unknowns,
+        wanted: f64,
+        progress: &dyn Progress,
+    ) -> Result<Solution, SolverError> {
+        let factor = LltRef::new(&self.symbolic, &self.values);
+        let refined = Refined { system, free: &self.free, factor: &factor };
         let alone = std::slice::from_ref(right_hand_side);
         let solve = |sides: &[Unknowns]| Ok(vec![refined.solve(&sides[0], wanted, progress)?]);
         scaled(alone, solve).map(|mut solutions| solutions.remove(0))
-    })
+    }
 }
 
 /// A factor and the system whose residual refines what it solves.
@@ -112,6 +113,7 @@ impl Refined<'_> {
                 wanted_residual: wanted,
                 history: Vec::new(),
                 steps: 1,
+                newton: None,
             },
         })
     }
@@ -217,12 +219,12 @@ impl Columns {
             .map_err(|_| self.out_of_memory())
     }
 
-    fn factorise<'a>(
+    fn factorise(
         &self,
-        symbolic: &'a SymbolicCholesky<usize>,
-        values: &'a mut [f64],
+        symbolic: &SymbolicCholesky<usize>,
+        values: &mut [f64],
         free: &FreeUnknowns,
-    ) -> Result<LltRef<'a, usize, f64>, SolverError> {
+    ) -> Result<(), SolverError> {
         let matrix = SparseColMatRef::new(self.pattern(), &self.values);
         let scratch = symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Default::default());
         let mut memory = MemBuffer::try_new(scratch).map_err(|_| self.out_of_memory())?;
@@ -238,6 +240,7 @@ impl Columns {
                 stack,
                 Default::default(),
             )
+            .map(|_| ())
             .map_err(|LltError::NonPositivePivot { index }| {
                 let (node, _) = free.unknown.get(index).copied().unwrap_or_default();
                 SolverError::Singular { node }

@@ -29,25 +29,52 @@ pub fn solve(
     tolerance: &Tolerance,
     progress: &dyn Progress,
 ) -> Result<Vec<Solution>, SolverError> {
-    scaled(right_hand_sides, |right_hand_sides| {
-        solve_scaled(system, right_hand_sides, tolerance, progress)
-    })
+    solve_by(system, &Multigrid::new(system), right_hand_sides, tolerance, progress)
 }
 
-fn solve_scaled(
+/// The same with the hierarchy of the system.
+pub fn solve_by(
     system: &System,
+    multigrid: &Multigrid,
     right_hand_sides: &[Unknowns],
     tolerance: &Tolerance,
     progress: &dyn Progress,
 ) -> Result<Vec<Solution>, SolverError> {
-    let multigrid = Multigrid::new(system);
+    let wanted = tolerance.relative_residual;
+    scaled(right_hand_sides, |right_hand_sides| {
+        in_lanes(right_hand_sides, |columns| match columns.len() {
+            1 => Run::<1>::new(system, multigrid, columns).solve(wanted, progress),
+            2..=4 => Run::<4>::new(system, multigrid, columns).solve(wanted, progress),
+            _ => Run::<MOST_LANES>::new(system, multigrid, columns).solve(wanted, progress),
+        })
+    })
+}
+
+/// Solves until every relative residual is met or nothing more is gained, and keeps what was found until then.
+pub fn solve_loosely(
+    system: &System,
+    multigrid: &Multigrid,
+    right_hand_sides: &[Unknowns],
+    wanted: f64,
+    progress: &dyn Progress,
+) -> Result<Vec<Solution>, SolverError> {
+    scaled(right_hand_sides, |right_hand_sides| {
+        in_lanes(right_hand_sides, |columns| match columns.len() {
+            1 => Run::<1>::new(system, multigrid, columns).solve_loosely(wanted, progress),
+            2..=4 => Run::<4>::new(system, multigrid, columns).solve_loosely(wanted, progress),
+            _ => Run::<MOST_LANES>::new(system, multigrid, columns).solve_loosely(wanted, progress),
+        })
+    })
+}
+
+/// As many right-hand sides at once as share a pass.
+fn in_lanes(
+    right_hand_sides: &[Unknowns],
+    mut solve: impl FnMut(&[Unknowns]) -> Result<Vec<Solution>, SolverError>,
+) -> Result<Vec<Solution>, SolverError> {
     let mut solutions = Vec::with_capacity(right_hand_sides.len());
     for columns in right_hand_sides.chunks(MOST_LANES) {
-        solutions.extend(match columns.len() {
-            1 => Run::<1>::new(system, &multigrid, columns).solve(tolerance, progress)?,
-            2..=4 => Run::<4>::new(system, &multigrid, columns).solve(tolerance, progress)?,
-            _ => Run::<MOST_LANES>::new(system, &multigrid, columns).solve(tolerance, progress)?,
-        });
+        solutions.extend(solve(columns)?);
     }
     Ok(solutions)
 }
@@ -138,12 +165,7 @@ impl<'a, const N: usize> Run<'a, N> {
         }
     }
 
-    fn solve(
-        mut self,
-        tolerance: &Tolerance,
-        progress: &dyn Progress,
-    ) -> Result<Vec<Solution>, SolverError> {
-        let wanted = tolerance.relative_residual;
+    fn solve(mut self, wanted: f64, progress: &dyn Progress) -> Result<Vec<Solution>, SolverError> {
         for restart in 0..=MOST_RESTARTS {
             match restart {
                 0 => self.r.copy_from_slice(&self.right_hand_side),
@@ -156,6 +178,27 @@ impl<'a, const N: usize> Run<'a, N> {
             self.iterate(wanted, progress)?;
         }
         Err(self.not_converged(wanted))
+    }
+
+    /// One run of the recursive residual, whatever it reaches.
+    fn solve_loosely(
+        mut self,
+        wanted: f64,
+        progress: &dyn Progress,
+    ) -> Result<Vec<Solution>, SolverError> {
+        self.r.copy_from_slice(&self.right_hand_side);
+        if largest(&self.relative_residuals()) > wanted {
+            match self.iterate(wanted, progress) {
+                Ok(()) | Err(SolverError::NotConverged { .. }) => (),
+                Err(other) => return Err(other),
+            }
+        }
+        let residuals = self.relative_residuals();
+        let is_finite = |values: &Lanes<f64, 3, N>| values.iter().flatten().all(|v| v.is_finite());
+        match self.x.iter().all(is_finite) && residuals.iter().all(|r| r.is_finite()) {
+            true => Ok(self.solutions(&residuals, wanted)),
+            false => Err(SolverError::NotFinite),
+        }
     }
 
     fn relative_residuals(&self) -> [f64; N] {
@@ -249,6 +292,7 @@ impl<'a, const N: usize> Run<'a, N> {
                     wanted_residual: wanted,
                     history: Vec::new(),
                     steps: 1,
+                    newton: None,
                 },
             })
             .collect()

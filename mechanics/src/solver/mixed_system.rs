@@ -1,13 +1,16 @@
 //! A system of displacements and pressures: its matrices, right-hand sides and solutions.
 
+use super::choice::Solver;
 use super::sparse_rows::SparseRows;
-use super::{Solution, System, Unknowns};
+use super::system::{Solution, System, Unknowns};
 
 /// K u + B^T p and B u - C p for the free displacements u and all pressures p.
 pub struct MixedSystem<'a> {
     /// K.
     pub stiffness: &'a System,
     pub coupling: &'a Coupling,
+    /// Keeps the hierarchy of K.
+    pub solver: &'a Solver,
 }
 
 impl MixedSystem<'_> {

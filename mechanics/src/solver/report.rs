@@ -20,6 +20,29 @@ pub struct SolveReport {
     pub history: Vec<f64>,
     /// Steps of load or time; one where a system is solved at once.
     pub steps: u32,
+    /// Of tissue at finite strain.
+    pub newton: Option<NewtonReport>,
+}
+
+/// How tissue at finite strain came to rest.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NewtonReport {
+    /// In mN mm.
+    pub energy: f64,
+    /// The least det F of the points of all cells at rest; at every step before it was positive too.
+    pub least_det_f: f64,
+    /// The share of movement and loads that was made before each step, and at rest.
+    pub path: Vec<f64>,
+    /// Iterations of all linear systems, and hierarchies made for them.
+    pub inner_iterations: usize,
+    pub hierarchies: usize,
+    /// Steps along which the tangent was not positive definite: tissue may then rest in another way too.
+    pub indefinite_steps: usize,
+    /// Whether no direction without positive curvature was found in the tangent at rest; not asked where pressures make of
+    /// rest a saddle.
+    pub is_stable: Option<bool>,
+    /// The bulk modulus that stays in each cell while a pressure carries the rest, as a multiple of mu; 0 without.
+    pub bulk_in_cells: f64,
 }
 
 impl SolveReport {
@@ -35,6 +58,7 @@ impl SolveReport {
             wanted_residual,
             history: Vec::new(),
             steps: 1,
+            newton: None,
         }
     }
 

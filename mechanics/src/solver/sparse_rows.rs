@@ -1,5 +1,7 @@
 //! Compressed rows of small values: scalars, or vectors for the coupling of pressure and displacement.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 
 use super::cliques::Cliques;
@@ -23,6 +25,13 @@ pub struct SparseRows<T> {
 pub struct Couplings<'a> {
     pub rows: &'a [[u32; 4]],
     pub columns: &'a [[u32; 4]],
+}
+
+/// The values of neighbouring rows, and where those of each begin.
+pub(super) struct ValueChunk<'a, T> {
+    pub rows: Range<usize>,
+    pub begins: Vec<usize>,
+    pub values: &'a mut [T],
 }
 
 /// A value of a sparse matrix.
@@ -89,6 +98,31 @@ impl<T: Entry> SparseRows<T> {
 
     pub fn rows(&self) -> usize {
         self.columns.len()
+    }
+
+    /// The place of a column among those of its row.
+    ///
+    /// # Panics
+    /// When the row does not have the column.
+    pub(super) fn slot(&self, row: usize, column: u32) -> u16 {
+        let found = self.columns.row(row).binary_search(&column);
+        found.expect("the couplings are those that the matrix was made of") as u16
+    }
+
+    /// The values of chunks of rows, for threads to fill.
+    pub(super) fn row_chunks(&mut self, rows: usize) -> Vec<ValueChunk<'_, T>> {
+        let SparseRows { columns, values } = self;
+        let mut rest = values.as_mut_slice();
+        let mut chunks = Vec::new();
+        for first in (0..columns.len()).step_by(rows) {
+            let rows = first..(first + rows).min(columns.len());
+            let begin = columns.range(first).start;
+            let (own, others) = rest.split_at_mut(columns.range(rows.end - 1).end - begin);
+            rest = others;
+            let begins = rows.clone().map(|row| columns.range(row).start - begin).collect();
+            chunks.push(ValueChunk { rows, begins, values: own });
+        }
+        chunks
     }
 
     /// The columns of a row and their values.

@@ -20,9 +20,7 @@ use super::lanes::{Lanes, add_product, add_transposed, negated};
 use super::scaling::{factor, times};
 use super::vector::{column, dot, interleave, norm, ratio};
 use super::vectorised::vectorised;
-use super::{
-    Block, Solution, SolveReport, SolverError, System, Tolerance, Unknowns, nothing_to_solve, tell,
-};
+use super::{Block, Solution, SolveReport, SolverError, System, Tolerance, Unknowns, tell};
 use crate::progress::{Progress, Unobserved};
 
 /// The share of its limit that omega is set to: the power iteration sees lambda_max from below.
@@ -77,7 +75,7 @@ pub fn solve(
     let wanted = tolerance.relative_residual;
     if right_hand_side.as_flattened().iter().all(|value| *value == 0.0) {
         let at_rest = SolveReport::at_rest(system.free_unknowns(), wanted);
-        return Ok(nothing_to_solve(right_hand_side, &at_rest));
+        return Ok(Solution::at_rest(right_hand_side.len(), &at_rest));
     }
     check_memory(system, tolerance.memory_mb)?;
     let inverse = inverse_diagonal(system)?;
@@ -289,6 +287,7 @@ impl<'a> Run<'a> {
                 wanted_residual: wanted,
                 history: self.history,
                 steps: 1,
+                newton: None,
             },
         }
     }

@@ -51,6 +51,13 @@ pub struct Solution {
     pub report: SolveReport,
 }
 
+impl Solution {
+    /// That of so many rows on which nothing acts.
+    pub(super) fn at_rest(rows: usize, report: &SolveReport) -> Self {
+        Solution { unknowns: vec![[0.0; 3]; rows], report: report.clone() }
+    }
+}
+
 /// Why there is no solution.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SolverError {

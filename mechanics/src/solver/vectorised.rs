@@ -5,7 +5,7 @@
 ///
 /// `body` must be a closure marked `#[inline(always)]`, or it is compiled for the oldest processors.
 #[inline]
-pub(super) fn vectorised(body: impl FnMut()) {
+pub fn vectorised(body: impl FnMut()) {
     pulp::Arch::new().dispatch(Body(body));
 }
 

@@ -28,6 +28,10 @@ pub enum SweepError {
     UnknownRegion { region: String },
     #[error("the material of region {region:?} has fibres, and a sweep varies isotropic ones")]
     Fibres { region: String },
+    #[error(
+        "the material of region {region:?} states a law of finite strain, and a sweep varies linear ones"
+    )]
+    Law { region: String },
     #[error("region {region:?}: {source}")]
     Material { region: String, source: MaterialError },
 }
@@ -50,8 +54,11 @@ pub fn combinations(
     for (region, values) in sweep {
         let start = base.get(region).or_else(|| base.get("*"));
         let start = start.ok_or_else(|| SweepError::UnknownRegion { region: region.clone() })?;
-        if start.has_fibre() {
+        if start.has_fibre() || start.has_pulling_fibres() {
             return Err(SweepError::Fibres { region: region.clone() });
+        }
+        if start.stated_law().is_some() {
+            return Err(SweepError::Law { region: region.clone() });
         }
         let choices = choices(region, start, values)?;
         all = all

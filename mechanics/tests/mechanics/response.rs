@@ -153,7 +153,7 @@ fn what_no_response_can_follow_is_refused_with_its_numbers() {
 }
 
 #[test]
-fn the_estimate_covers_what_was_measured_on_the_slab() {
+fn the_rule_of_thumb_covers_what_was_measured_on_the_slab() {
     // Mean distance of the skin between linear and neo-Hookean tissue on a slab of 12 mm, by an independent
     // program (VERIFICATION V.29): lifted and pushed, pushed along, pulled back.
     let measured = [
@@ -165,6 +165,7 @@ fn the_estimate_covers_what_was_measured_on_the_slab() {
         thickness: 12.0,
         something_stays: true,
         boxes: vec![[Vector::zeros(), Vector::new(12.0, 12.0, 0.0)]],
+        sampled: Vec::new(),
     };
     for (direction, rows) in measured {
         for (share, difference) in rows {
@@ -193,7 +194,8 @@ fn a_bone_that_carries_all_tissue_around_is_a_rotation_and_the_estimate_knows_th
     let middle = Vector::new(30.0, 30.0, 0.0);
     let shifted = RigidMovement::about_pivot(Vector::zeros(), middle, Vector::new(9.0, 9.0, 9.0));
     // Without rotation nothing is left out, however far everything moves.
-    assert_eq!(columns.linearity.of(&[shifted]).estimate, 0.0);
+    let estimate = columns.linearity.of(&[shifted]).estimate;
+    assert!(estimate < 1e-9, "{estimate}");
     for degrees in [2.0, 10.0, 30.0] {
         let angles = Vector::new(0.0, f64::to_radians(degrees), 0.0);
         let movement = RigidMovement::about_pivot(angles, middle, Vector::zeros());

@@ -19,11 +19,12 @@ pub struct Report<'a> {
 }
 
 /// Phases that take time, as provenance names them.
-const PHASES: [(&str, &str); 7] = [
+const PHASES: [(&str, &str); 8] = [
     ("validate", "validate_s"),
     ("mesh", "mesh_s"),
     ("assemble", "assemble_s"),
     ("solve", "solve_s"),
+    ("estimate", "estimate_s"),
     ("surface", "surface_s"),
     ("compare", "compare_s"),
     ("write", "write_s"),

@@ -30,6 +30,9 @@ use mechanics::response::{Columns, Response, ResponseError, build};
 /// solved to the usual residual they agree to 1e-4 mm.
 const NOTICEABLE: f64 = 0.01;
 
+/// Why an answer without a full solution does not estimate what linear elasticity leaves out.
+const NOT_VERIFIED: &str = "the plan was not solved in full: ask with `verify`";
+
 /// The plan that was found, and the skin that the response gives it.
 struct Found {
     document: OptimisationDocument,
@@ -67,7 +70,7 @@ pub fn optimise_job(
     let (optimisation, warning) = found.verified(&planned, &solved);
     planned.warnings.extend(warning);
     let optimisation = Some(optimisation);
-    Predicted { prepared: planned, prediction: solved, optimisation }.publish(
+    Predicted { prepared: planned, prediction: solved, optimisation, adequacy: None }.publish(
         &prediction,
         &clock,
         place.out,
@@ -187,6 +190,7 @@ impl Found {
             pictures: input.pictures_beside(&folder.files),
             statistics: Some(statistics),
             optimisation: Some(self.document),
+            nonlinearity_unknown: Some(NOT_VERIFIED.to_owned()),
             ..ResultDocument::new(input.job.clone(), &folder.files, provenance, warnings)
         };
         folder.add(OutputName::ResultJson, &encode_result(&result)?)?;

@@ -1,11 +1,12 @@
 //! The job of a prediction: documents checked, the displacement solved, the result written.
 
-use super::input::PredictInput;
+use super::input::{PredictInput, Prepared};
 use super::publish::Predicted;
 use crate::jobs::clock::Observed;
 use crate::jobs::failure::JobError;
 use crate::jobs::output::{JobOutput, Workplace};
-use mechanics::prediction::predict;
+use crate::schema::predict::adequacy::AdequacyDocument;
+use mechanics::prediction::{Accepted, Watched, predict, predict_adequately};
 use mechanics::progress::Progress;
 
 /// Predicts the displacement of a case under a plan, and writes its files.
@@ -22,7 +23,30 @@ pub fn predict_job(
     clock.check()?;
 
     // 2. The displacement of the tissue.
-    let prediction = predict(&prepared.scene, &clock).map_err(|error| clock.judge(error))?;
-    let predicted = Predicted { prepared, prediction, optimisation: None };
+    let predicted = match input.spec.accept_mm {
+        Some(skin_mm) => adequately(prepared, skin_mm, &clock)?,
+        None => {
+            let prediction =
+                predict(&prepared.scene, &clock).map_err(|error| clock.judge(error))?;
+            Predicted { prepared, prediction, optimisation: None, adequacy: None }
+        }
+    };
     predicted.publish(input, &clock, place.out)
+}
+
+/// By the cheapest model whose estimated error is accepted.
+fn adequately(
+    mut prepared: Prepared,
+    skin_mm: f64,
+    clock: &Observed,
+) -> Result<Predicted, JobError> {
+    let accepted = Accepted { skin_mm, time_s: clock.left_s() };
+    let stopwatch = || clock.elapsed_s();
+    let watched = Watched { stopwatch: &stopwatch, progress: clock };
+    let Prepared { case, plan, scene, .. } = &prepared;
+    let adequate = predict_adequately(case, plan, scene, accepted, watched)
+        .map_err(|error| clock.judge(error))?;
+    let adequacy = Some(AdequacyDocument::new(&accepted, &adequate));
+    prepared.scene = adequate.scene.unwrap_or(prepared.scene);
+    Ok(Predicted { prepared, prediction: adequate.prediction, optimisation: None, adequacy })
 }

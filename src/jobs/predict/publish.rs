@@ -13,7 +13,7 @@ use crate::jobs::output::{JobOutput, MadeMesh};
 use crate::jobs::result::folder::ResultFolder;
 use crate::jobs::result::pictures::displacement_picture;
 use crate::jobs::result::provenance::{
-    Origin, add_method, encode_result, mesh_summary, solver_document,
+    Origin, add_method, encode_result, laws, mesh_summary, solver_document,
 };
 use crate::jobs::result::skin::PredictedSkin;
 use crate::jobs::result::tissue::{encode_bones, encode_volume};
@@ -21,11 +21,15 @@ use crate::jobs::result::warnings::warning_documents;
 use crate::jobs::source::StoredShape;
 use crate::schema::Triple;
 use crate::schema::compare::result::{ComparisonDocument, StatDocument};
+use crate::schema::methods::MethodName;
 use crate::schema::optimise::result::OptimisationDocument;
+use crate::schema::predict::adequacy::AdequacyDocument;
 use crate::schema::predict::document::OutputName;
 use crate::schema::predict::keep::KeptName;
+use crate::schema::predict::nonlinearity::{NonlinearityDocument, skin_lengths};
 use crate::schema::predict::result::{
-    DisplacementDocument, FileDocument, ResultDocument, StatisticsDocument,
+    DisplacementDocument, ErrorLengthsDocument, FileDocument, NumericalErrorDocument,
+    ResultDocument, StatisticsDocument,
 };
 use mechanics::mesh::{Vector, VolumeMesh, Warning};
 use mechanics::prediction::{Prediction, Skin};
@@ -38,6 +42,8 @@ pub struct Predicted {
     pub prediction: Prediction,
     /// How its plan was found, if it was not stated.
     pub optimisation: Option<OptimisationDocument>,
+    /// How its model was chosen, if an accepted error was stated.
+    pub adequacy: Option<AdequacyDocument>,
 }
 
 impl Predicted {
@@ -47,13 +53,21 @@ impl Predicted {
         clock: &Observed,
         out: &Path,
     ) -> Result<JobOutput, JobError> {
-        let Predicted { prepared, prediction, optimisation } = self;
+        let Predicted { prepared, prediction, optimisation, adequacy } = self;
 
         // 1. The displacement of the skin.
         clock.phase(Phase::Surface);
         let mut skin = PredictedSkin::new(&prepared.scene.skin, &prediction);
         skin.range_mm = input.spec.range_mm();
         let mut statistics = statistics(&prepared.scene.skin, &skin, &prediction.landmarks)?;
+        let nonlinearity = match &prediction.nonlinearity {
+            Ok(known) => {
+                skin.nonlinearity = Some(skin_lengths(&prepared.scene.skin, known));
+                Ok(NonlinearityDocument::new(&prepared.scene.skin, known)?)
+            }
+            Err(unknown) => Err(unknown.to_string()),
+        };
+        let numerical_error = numerical_error(&prepared.scene.skin, &skin, &prediction)?;
         statistics.imaged = prepared.scene.imaged.as_ref().map(Into::into);
         clock.check()?;
 
@@ -82,8 +96,11 @@ impl Predicted {
             prediction: &prediction,
             skin: &skin,
             statistics,
+            nonlinearity,
+            numerical_error,
             comparison: compared.map(|compared| compared.document),
             optimisation,
+            adequacy,
             warnings,
         };
         let mut folder = ResultFolder::open(out)?;
@@ -104,12 +121,21 @@ struct Finished<'a> {
     prediction: &'a Prediction,
     skin: &'a PredictedSkin,
     statistics: StatisticsDocument,
+    /// What is left out, or why that is not known.
+    nonlinearity: Result<NonlinearityDocument, String>,
+    numerical_error: Option<NumericalErrorDocument>,
     comparison: Option<ComparisonDocument>,
     optimisation: Option<OptimisationDocument>,
+    adequacy: Option<AdequacyDocument>,
     warnings: Vec<Warning>,
 }
 
 impl Finished<'_> {
+    /// The method that was used.
+    fn method(&self) -> MethodName {
+        MethodName::Named(self.prepared.scene.settings.method.kind())
+    }
+
     fn kept(&self, wanted: &[KeptName]) -> Vec<MadeMesh> {
         let frame = self.origin.frame;
         let shape = |what: KeptName| match what {
@@ -132,7 +158,7 @@ impl Finished<'_> {
 
     fn write_files(&self, input: &PredictInput, folder: &mut ResultFolder) -> Result<(), JobError> {
         let solver = solver_document(&self.prediction.solver, &self.prediction.elements);
-        let field_data = self.origin.field_data(input.spec.method, &solver);
+        let field_data = self.origin.field_data(self.method(), &solver);
         let scene = &self.prepared.scene;
         let frame = self.origin.frame;
         for name in input.files() {
@@ -164,12 +190,27 @@ impl Finished<'_> {
         let solver = solver_document(&self.prediction.solver, &self.prediction.elements);
         let mesh = mesh_summary(&self.prepared.scene.mesh, &self.prepared.quality);
         add_method(&mut provenance, input.spec.method, mesh, solver);
+        if let Some(adequacy) = &self.adequacy {
+            provenance.method = Some(self.method().name().to_owned());
+            provenance.why = Some(adequacy.why());
+        }
+        provenance.laws = laws(&self.prepared.case, &self.prepared.scene);
         let warnings = warning_documents(self.warnings.iter());
         ResultDocument {
             pictures: input.pictures_beside(files),
             statistics: Some(self.statistics.clone()),
+            nonlinearity_mm: self.nonlinearity.as_ref().ok().cloned(),
+            nonlinearity_unknown: self.nonlinearity.as_ref().err().cloned(),
             comparison: self.comparison.clone(),
             optimisation: self.optimisation.clone(),
+            adequacy: self.adequacy.clone(),
+            numerical_error_mm: self.numerical_error.clone(),
+            numerical_error_unknown: self
+                .prediction
+                .numerical_error
+                .as_ref()
+                .err()
+                .map(|why| why.to_string()),
             reaction_mn: triples(&self.prediction.reactions),
             reactions: self.prediction.condition_reactions.iter().map(Into::into).collect(),
             ..ResultDocument::new(input.job.clone(), files, provenance, warnings)
@@ -199,6 +240,29 @@ pub fn statistics(
     }
     let landmarks = triples(landmarks);
     Ok(StatisticsDocument { skin: over(&everywhere)?, regions, landmarks, imaged: None })
+}
+
+/// The estimated error of the skin, its parts and the landmarks.
+fn numerical_error(
+    skin: &Skin,
+    predicted: &PredictedSkin,
+    prediction: &Prediction,
+) -> Result<Option<NumericalErrorDocument>, StatisticsError> {
+    let (Some(lengths), Ok(error)) = (&predicted.numerical_error, &prediction.numerical_error)
+    else {
+        return Ok(None);
+    };
+    let Statistics { mean, p95, max, .. } = Statistics::plain(lengths)?;
+    let mut regions = BTreeMap::new();
+    for (name, points) in &skin.regions {
+        let own: Vec<f64> = points.iter().map(|&point| lengths[point as usize]).collect();
+        let Statistics { mean, p95, max, .. } = Statistics::plain(&own)?;
+        regions.insert(name.clone(), ErrorLengthsDocument { mean, p95, max });
+    }
+    let at_landmarks = prediction.landmarks_missing.iter();
+    let landmarks = at_landmarks.map(|(name, missing)| (name.clone(), missing.norm())).collect();
+    let corrected = error.is_added;
+    Ok(Some(NumericalErrorDocument { mean, p95, max, regions, landmarks, corrected }))
 }
 
 fn triples(vectors: &BTreeMap<String, Vector>) -> BTreeMap<String, Triple> {

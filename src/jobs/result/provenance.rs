@@ -1,5 +1,7 @@
 //! Where the numbers of a result come from.
 
+use std::collections::BTreeMap;
+
 use serde_json::{Value, json};
 
 use crate::jobs::clock::{Observed, now_rfc3339, peak_rss_mb};
@@ -7,12 +9,14 @@ use crate::jobs::failure::{JobError, thinned};
 use crate::schema::case::document::LengthUnit;
 use crate::schema::methods::MethodName;
 use crate::schema::predict::result::{
-    EngineDocument, InputDocument, MeshSummaryDocument, NOT_A_DEVICE, ProvenanceDocument,
-    ResultDocument, SolverDocument,
+    EngineDocument, InputDocument, MeshSummaryDocument, NOT_A_DEVICE, NewtonDocument,
+    ProvenanceDocument, ResultDocument, SolverDocument, TissueLawDocument,
 };
+use mechanics::material::LinearElastic;
+use mechanics::material::hyperelastic::{Hyperelastic, Law, SaintVenantKirchhoff};
 use mechanics::mesh::quality::QualityReport;
 use mechanics::mesh::{Frame, VolumeMesh};
-use mechanics::prediction::SolveReport;
+use mechanics::prediction::{Case, Laws, NewtonReport, Scene, SolveReport};
 
 /// What a job knows of its origin before it starts.
 pub struct Origin {
@@ -33,6 +37,7 @@ impl Origin {
             why: None,
             solver: None,
             mesh: None,
+            laws: BTreeMap::new(),
             threads: rayon::current_num_threads() as u32,
             determinism: "bitwise".to_owned(),
             timing: clock.timing(self.queue_s),
@@ -73,6 +78,23 @@ pub fn add_method(
     provenance.mesh = Some(mesh);
 }
 
+/// The laws that a scene follows at finite strain, by region and by tissue of its image.
+pub fn laws(case: &Case, scene: &Scene) -> BTreeMap<String, TissueLawDocument> {
+    let followed = |tissue: &LinearElastic| match scene.settings.method.properties().laws {
+        Laws::AtRest => None,
+        Laws::SaintVenantKirchhoff => {
+            let (lambda, mu) = (tissue.lambda(), tissue.shear_modulus());
+            let law = Law::SaintVenantKirchhoff(SaintVenantKirchhoff { lambda, mu });
+            Some(Hyperelastic { law, fibres: None })
+        }
+        Laws::Any => Some(tissue.hyperelastic()),
+    };
+    let tissues = case.hounsfield.iter().flat_map(|image| &image.tissues);
+    let names = scene.regions.iter().chain(tissues.map(|tissue| &tissue.name)).cloned();
+    let of = names.zip(scene.materials.iter().map(followed));
+    of.filter_map(|(name, law)| Some((name, (&law?).into()))).collect()
+}
+
 /// How provenance names the mesh that was computed on.
 pub fn mesh_summary(mesh: &VolumeMesh, quality: &QualityReport) -> MeshSummaryDocument {
     MeshSummaryDocument {
@@ -96,6 +118,20 @@ pub fn solver_document(solver: &SolveReport, elements: &[String]) -> SolverDocum
         elements: elements.to_vec(),
         history: thinned(&solver.history),
         steps: solver.steps,
+        newton: solver.newton.as_ref().map(newton_document),
+    }
+}
+
+fn newton_document(newton: &NewtonReport) -> NewtonDocument {
+    NewtonDocument {
+        energy_mn_mm: newton.energy,
+        least_det_f: newton.least_det_f,
+        path: thinned(&newton.path),
+        inner_iterations: newton.inner_iterations as u64,
+        hierarchies: newton.hierarchies as u64,
+        indefinite_steps: newton.indefinite_steps as u64,
+        is_stable: newton.is_stable,
+        bulk_in_cells: newton.bulk_in_cells,
     }
 }
 
@@ -115,10 +151,13 @@ pub fn manifest_bytes(manifest: &Value) -> Vec<u8> {
     format!("{manifest:#}\n").into_bytes()
 }
 
+/// What may be null in a result: estimates that are not known.
+const UNKNOWN: [&str; 2] = ["/numerical_error_mm", "/nonlinearity_mm"];
+
 /// The place of the first null that does not belong into a result.
 pub(in crate::jobs) fn first_null(value: &Value, at: String) -> Option<String> {
     match value {
-        Value::Null if at != "/numerical_error_mm" => Some(at),
+        Value::Null if !UNKNOWN.contains(&at.as_str()) => Some(at),
         Value::Array(entries) => {
             let mut entries = entries.iter().enumerate();
             entries.find_map(|(index, entry)| first_null(entry, format!("{at}/{index}")))

@@ -18,6 +18,10 @@ pub struct PredictedSkin {
     pub magnitude: Vec<f64>,
     /// To the surface it was compared with, in mm, positive outside.
     pub signed_distance: Option<Vec<f64>>,
+    /// What linear elasticity leaves out, in mm, where it is known.
+    pub nonlinearity: Option<Vec<f64>>,
+    /// What the mesh leaves out, in mm, where it is estimated.
+    pub numerical_error: Option<Vec<f64>>,
     /// The displacement in mm at which colours end: the same for every plan, so that plans can be held side by side.
     pub range_mm: f64,
 }
@@ -26,7 +30,10 @@ impl PredictedSkin {
     pub fn new(skin: &Skin, prediction: &Prediction) -> Self {
         let nodes = skin.nodes().iter();
         let displacement = nodes.map(|&node| prediction.displacement[node as usize]).collect();
-        Self::of_displacement(skin, displacement)
+        let numerical_error = prediction.numerical_error.as_ref().ok().map(|error| {
+            skin.nodes().iter().map(|&node| error.missing[node as usize].norm()).collect()
+        });
+        PredictedSkin { numerical_error, ..Self::of_displacement(skin, displacement) }
     }
 
     /// The skin with one displacement in mm for each of its points.
@@ -40,6 +47,8 @@ impl PredictedSkin {
             magnitude: displacement.iter().map(Vector::norm).collect(),
             displacement,
             signed_distance: None,
+            nonlinearity: None,
+            numerical_error: None,
             range_mm: USUAL_RANGE_MM,
         }
     }
@@ -64,9 +73,19 @@ impl PredictedSkin {
                 values: ArrayValues::Reals(&self.magnitude),
             },
         ];
+        if let Some(error) = &self.numerical_error {
+            let values = ArrayValues::Reals(error);
+            output.point_arrays.push(NamedValues { name: "numerical_error_mm", values });
+        }
         if let Some(distance) = &self.signed_distance {
             let values = ArrayValues::Reals(distance);
             output.point_arrays.push(NamedValues { name: "signed_distance_mm", values });
+        }
+        if let Some(nonlinearity) =
+            self.nonlinearity.as_ref().filter(|_| name == OutputName::SkinVtp)
+        {
+            let values = ArrayValues::Reals(nonlinearity);
+            output.point_arrays.push(NamedValues { name: "nonlinearity_mm", values });
         }
         if matches!(name, OutputName::SkinGlb | OutputName::SkinPly) {
             output.colours = Some(&colours);

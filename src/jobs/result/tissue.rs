@@ -50,15 +50,21 @@ pub fn encode_volume(
             named("young_modulus_kpa", ArrayValues::Reals(&imaged.young_modulus)),
         ]);
     }
+    let mut point_arrays = vec![
+        named("displacement_mm", ArrayValues::Vectors(&displacement)),
+        named("displacement_magnitude_mm", ArrayValues::Reals(&magnitude)),
+        named("node_id", ArrayValues::Integers(&node_id)),
+    ];
+    let error = prediction.numerical_error.as_ref().ok();
+    let error = error.map(|error| error.missing.iter().map(Vector::norm).collect::<Vec<f64>>());
+    if let Some(error) = &error {
+        point_arrays.push(named("numerical_error_mm", ArrayValues::Reals(error)));
+    }
     vtu::write(&VolumeOutput {
         mesh,
         positions: &positions,
         frame,
-        point_arrays: vec![
-            named("displacement_mm", ArrayValues::Vectors(&displacement)),
-            named("displacement_magnitude_mm", ArrayValues::Reals(&magnitude)),
-            named("node_id", ArrayValues::Integers(&node_id)),
-        ],
+        point_arrays,
         cell_arrays,
         field_data,
     })

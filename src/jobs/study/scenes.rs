@@ -320,7 +320,7 @@ impl Documents<'_> {
                     SweepError::UnknownRegion { region } => {
                         (at.key(region), ErrorCode::UnknownRegion)
                     }
-                    SweepError::Fibres { region } => {
+                    SweepError::Fibres { region } | SweepError::Law { region } => {
                         (at.key(region), ErrorCode::MethodNotAvailable)
                     }
                     SweepError::Material { region, .. } => (at.key(region), ErrorCode::OutOfRange),

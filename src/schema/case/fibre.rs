@@ -3,9 +3,11 @@
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
+use super::law::{EXPONENT, MODULUS};
 use crate::schema::Triple;
 use crate::schema::code::ErrorCode;
 use crate::schema::wire::fault::{Faults, Pointer};
+use mechanics::material::hyperelastic::Fibres;
 use mechanics::material::{Fibre, FibreLaw, LinearElastic, MaterialError};
 use mechanics::mesh::Vector;
 use mechanics::prediction::FibreDirection;
@@ -15,7 +17,7 @@ use mechanics::prediction::FibreDirection;
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FibreDocument {
-    /// Along the fibre; in [1e-9, 1e9].
+    /// Along the fibre, for methods of small strain; in [1e-9, 1e9]. May be left out where `k1_kpa` and `k2` are stated.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false, minimum = 1e-9, maximum = 1e9)]
     pub young_modulus_kpa: Option<f64>,
@@ -32,6 +34,14 @@ pub struct FibreDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub array: Option<String>,
+    /// Of fibres at finite strain, which only pull: W = k1/(2 k2) (exp(k2 (I4 - 1)^2) - 1) where they are stretched, I4 their
+    /// squared stretch, beside any law of the tissue between them. `k1_kpa` and `k2` go together.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false, minimum = 1e-9, maximum = 1e9)]
+    pub k1_kpa: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false, minimum = 1e-6, maximum = 1e3)]
+    pub k2: Option<f64>,
     /// Default `engineering`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
@@ -63,6 +73,8 @@ impl FibreDocument {
             shear_modulus_kpa: self.shear_modulus_kpa.or(base.shear_modulus_kpa),
             direction: course.direction,
             array: course.array.clone(),
+            k1_kpa: self.k1_kpa.or(base.k1_kpa),
+            k2: self.k2.or(base.k2),
             law: self.law.or(base.law),
         }
     }
@@ -74,11 +86,20 @@ impl FibreDocument {
         at: &Pointer,
         faults: &mut Faults,
     ) -> Option<(LinearElastic, FibreDirection)> {
-        if self.young_modulus_kpa.is_none() {
+        let pulling = self.pulling(at, faults);
+        let is_linear = self.young_modulus_kpa.is_some()
+            || self.shear_modulus_kpa.is_some()
+            || self.law.is_some();
+        let pulls = self.k1_kpa.is_some() || self.k2.is_some();
+        if self.young_modulus_kpa.is_none() && (is_linear || !pulls) {
             let place = at.key("young_modulus_kpa");
             faults.add(&place, ErrorCode::MissingField, "missing field `young_modulus_kpa`");
         }
         let course = to_course(self.direction, self.array.as_deref(), at, faults);
+        let across = pulling.map_or(across, |fibres| across.with_pulling_fibres(fibres));
+        if !is_linear {
+            return Some((pulling.map(|_| across)?, course?));
+        }
         let law = match self.law.unwrap_or_default() {
             FibreLawName::Engineering => FibreLaw::Engineering,
             FibreLawName::Paper002 => FibreLaw::Paper002,
@@ -97,12 +118,33 @@ impl FibreDocument {
                     MaterialError::FibreModulus(_)
                     | MaterialError::YoungModulus(_)
                     | MaterialError::PoissonRatio(_)
+                    | MaterialError::LawAtRest { .. }
                     | MaterialError::Density(_) => ("young_modulus_kpa", ErrorCode::OutOfRange),
                 };
                 faults.add(&at.key(field), code, error.to_string());
                 None
             }
         }
+    }
+}
+
+impl FibreDocument {
+    /// The fibres that only pull, where both of their constants are stated.
+    fn pulling(&self, at: &Pointer, faults: &mut Faults) -> Option<Fibres> {
+        if self.k1_kpa.is_none() && self.k2.is_none() {
+            return None;
+        }
+        let constants = [("k1_kpa", self.k1_kpa, MODULUS, "kPa"), ("k2", self.k2, EXPONENT, "")];
+        for (name, value, range, unit) in constants {
+            match value {
+                Some(value) => _ = faults.check_range(&at.key(name), value, range, unit),
+                None => {
+                    let detail = format!("missing field `{name}`: `k1_kpa` and `k2` go together");
+                    faults.add(&at.key(name), ErrorCode::MissingField, detail);
+                }
+            }
+        }
+        Some(Fibres { k1: self.k1_kpa?, k2: self.k2? })
     }
 }
 

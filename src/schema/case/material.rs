@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use super::fibre::FibreDocument;
+use super::law::{LawDocument, LawKind};
 use crate::schema::code::ErrorCode;
 use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::limits::Limits;
@@ -17,6 +18,9 @@ use mechanics::prediction::FibreDirection;
 const EVERY_REGION: &str = "*";
 /// Soft tissue where a case says nothing: Young's modulus in kPa, Poisson's ratio, density in g/cm³.
 const DEFAULT_TISSUE: (f64, f64, f64) = (15.0, 0.46, 1.0);
+
+/// By how much linear constants may differ from those of a law at rest.
+const AGREEMENT: f64 = 0.01;
 
 /// The material of a region. In a spec, what is not given stays what the case says.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -38,6 +42,11 @@ pub struct MaterialDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub fibre: Option<FibreDocument>,
+    /// What the tissue does at finite strain; absent: neo-Hookean with these constants. Where it is stated, Young's modulus and
+    /// Poisson's ratio may be left out: they are those of the law at rest, and have to agree with them to 1 %.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub law: Option<LawDocument>,
 }
 
 /// Materials by region name; `*` serves every region without an entry of its own.
@@ -46,14 +55,18 @@ pub type MaterialDocuments = BTreeMap<String, MaterialDocument>;
 impl MaterialDocument {
     /// What is given here, and for the rest what `base` gives.
     fn over(&self, base: &MaterialDocument) -> MaterialDocument {
+        // A law with moduli of its own leaves no room for those that it stands over.
+        let has_moduli = self.law.as_ref().is_some_and(LawDocument::has_moduli);
+        let below = |modulus: Option<f64>| modulus.filter(|_| !has_moduli);
         MaterialDocument {
-            young_modulus_kpa: self.young_modulus_kpa.or(base.young_modulus_kpa),
-            poisson_ratio: self.poisson_ratio.or(base.poisson_ratio),
+            young_modulus_kpa: self.young_modulus_kpa.or(below(base.young_modulus_kpa)),
+            poisson_ratio: self.poisson_ratio.or(below(base.poisson_ratio)),
             density_g_per_cm3: self.density_g_per_cm3.or(base.density_g_per_cm3),
             fibre: match (&self.fibre, &base.fibre) {
                 (Some(own), Some(base)) => Some(own.over(base)),
                 (own, base) => own.clone().or(base.clone()),
             },
+            law: self.law.clone().or_else(|| base.law.clone()),
         }
     }
 
@@ -73,7 +86,74 @@ impl MaterialDocument {
         }
     }
 
+    /// Refuses an anisotropic law without fibres.
+    fn check_pulling(&self, at: &Pointer, faults: &mut Faults) -> Option<()> {
+        let needs = self.law.as_ref().is_some_and(|law| law.kind == LawKind::FungAnisotropic);
+        let has = self.fibre.as_ref().is_some_and(|fibre| fibre.k1_kpa.is_some());
+        if needs && !has {
+            let detail = "`fung_anisotropic` has fibres: `fibre` with `k1_kpa`, `k2` and a course is missing";
+            faults.add(&at.key("fibre"), ErrorCode::MissingField, detail);
+            return None;
+        }
+        Some(())
+    }
+
+    /// The tissue without what `fibre` says.
     pub(super) fn to_isotropic(&self, at: &Pointer, faults: &mut Faults) -> Option<LinearElastic> {
+        let Some(law) = &self.law else { return self.to_linear(at, faults) };
+        self.check_pulling(at, faults)?;
+        let is_whole = self.young_modulus_kpa.is_some() && self.poisson_ratio.is_some();
+        // What is stated is checked, whether the law takes its moduli from it or not.
+        let linear = match is_whole {
+            true => Some(self.to_linear(at, faults)?),
+            false => None,
+        };
+        let place = at.key("law");
+        let law_itself = law.to_law(linear.as_ref(), &place, faults)?;
+        let density = self.density_g_per_cm3.unwrap_or(DEFAULT_TISSUE.2);
+        match LinearElastic::of_law(law_itself, density) {
+            Ok(material) => self.agrees(&material, at, faults).then_some(material),
+            Err(error) => {
+                let field = match error {
+                    MaterialError::Density(_) => at.key("density_g_per_cm3"),
+                    _ => place,
+                };
+                faults.add(&field, ErrorCode::OutOfRange, error.to_string());
+                None
+            }
+        }
+    }
+
+    /// Refuses linear constants that are not those of the law at rest.
+    fn agrees(&self, law: &LinearElastic, at: &Pointer, faults: &mut Faults) -> bool {
+        let differs = |stated: f64, own: f64| (stated - own).abs() > AGREEMENT * own.abs() + 1e-12;
+        let (young_modulus, poisson_ratio) = (law.young_modulus(), law.poisson_ratio());
+        let compressible = |nu: f64| 1.0 - 2.0 * nu;
+        let is_off = |nu: f64| {
+            let ratio = compressible(nu) / compressible(poisson_ratio);
+            differs(nu, poisson_ratio) || !(0.9..=1.1).contains(&ratio)
+        };
+        let wrong = [
+            (
+                "young_modulus_kpa",
+                self.young_modulus_kpa.filter(|e| differs(*e, young_modulus)),
+                young_modulus,
+            ),
+            ("poisson_ratio", self.poisson_ratio.filter(|nu| is_off(*nu)), poisson_ratio),
+        ];
+        let mut agrees = true;
+        for (name, stated, own) in wrong {
+            let Some(stated) = stated else { continue };
+            let detail = format!(
+                "`{name}` is {stated}, and the law has {own:.6} at rest: they have to agree to 1 %, or leave `{name}` out"
+            );
+            faults.add(&at.key(name), ErrorCode::LawMismatch, detail);
+            agrees = false;
+        }
+        agrees
+    }
+
+    fn to_linear(&self, at: &Pointer, faults: &mut Faults) -> Option<LinearElastic> {
         let missing = [
             ("young_modulus_kpa", self.young_modulus_kpa.is_none()),
             ("poisson_ratio", self.poisson_ratio.is_none()),
@@ -126,7 +206,7 @@ pub fn merge_materials(
             young_modulus_kpa: Some(young_modulus),
             poisson_ratio: Some(poisson_ratio),
             density_g_per_cm3: Some(density),
-            fibre: None,
+            ..MaterialDocument::default()
         };
         let at = case.at.key(EVERY_REGION);
         merged.insert(EVERY_REGION.to_owned(), (at, tissue));
@@ -178,6 +258,9 @@ pub fn in_words(document: &MaterialDocuments) -> String {
         }
         if let Some(ratio) = of.poisson_ratio {
             words += &format!(" nu {ratio}");
+        }
+        if let Some(law) = &of.law {
+            words += &format!(" {}", law.kind.name());
         }
         words
     };

@@ -4,6 +4,8 @@ pub mod conversion;
 pub mod document;
 pub mod fibre;
 pub mod hounsfield;
+pub mod law;
+mod law_conversion;
 pub mod material;
 pub mod membrane;
 pub mod meshed;

@@ -8,6 +8,7 @@ mod list;
 mod measured;
 pub mod msm;
 pub mod mtm;
+mod mtm_nonlinear;
 mod mtm_ti;
 mod name;
 pub mod thickness_warp;
@@ -69,6 +70,11 @@ fn row(method: MethodKind) -> MethodRow {
             description: mtm_ti::description,
             is_told: |_| false,
             to_method: |_, _, _| Method::MassTensorTransverse,
+        },
+        MethodKind::MassTensorNonlinear => MethodRow {
+            description: mtm_nonlinear::description,
+            is_told: |_| false,
+            to_method: |_, _, _| Method::MassTensorNonlinear,
         },
         MethodKind::MassSpring => MethodRow {
             description: msm::description,

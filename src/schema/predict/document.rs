@@ -23,11 +23,15 @@ use mechanics::prediction::Settings;
 
 pub use super::budget::BudgetDocument;
 pub use super::contact::ContactName;
+pub use super::estimate::EstimateName;
 pub use super::output::OutputName;
 pub use super::tolerance::ToleranceDocument;
 
 /// The displacement in mm at which colours end where nothing else is said.
 pub const USUAL_RANGE_MM: f64 = 10.0;
+
+/// Errors that may be accepted, in mm.
+const ACCEPTED_MM: std::ops::RangeInclusive<f64> = 1e-3..=1e2;
 
 /// Ranges of colours that make sense, in mm.
 pub const RANGES_MM: std::ops::RangeInclusive<f64> = 1e-3..=1e3;
@@ -90,6 +94,17 @@ pub struct PredictDocument {
     pub contact: ContactName,
     #[serde(default)]
     pub tolerance: ToleranceDocument,
+    /// The mean error over the skin in mm that is accepted, of mesh and model as far as they are estimated. Only with the
+    /// method `auto`, which then takes the cheapest model that meets it within the budget of time; absent, it is linear.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false, minimum = 0.001, maximum = 100.0)]
+    pub accept_mm: Option<f64>,
+    /// Whether the discretisation error of the skin is estimated.
+    #[serde(default, skip_serializing_if = "EstimateName::is_usual")]
+    pub estimate: EstimateName,
+    /// Adds what the mesh leaves out, as far as that is estimated, to the displacement. Default: false.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub corrected: bool,
     #[serde(default)]
     pub budget: BudgetDocument,
     /// Default: `skin.vtp` and `skin.glb`; `result.json` is always written.
@@ -135,8 +150,15 @@ impl PredictDocument {
         faults.check_range(&budget.key("memory_mb"), memory, 1.0..=limits.memory_mb, "MB");
         check_tags(&self.tags, &at.key("tags"), limits, faults);
         faults.check_range(&at.key("range_mm"), self.range_mm(), RANGES_MM, "mm");
+        if let Some(accepted) = self.accept_mm {
+            self.check_accepted(accepted, &at, faults);
+        }
         if let Some(compare_to) = &self.compare_to {
             compare_to.check(&at.key("compare_to"), limits, faults);
+        }
+        if self.corrected && self.estimate == EstimateName::None {
+            let what = "an answer cannot be corrected by an error that is not estimated: `estimate` is \"none\"";
+            faults.add(&at.key("corrected"), ErrorCode::OneOf, what);
         }
         let membrane = self.membrane.as_ref();
         let membrane = membrane.and_then(|sheet| sheet.to_membrane(&at.key("membrane"), faults));
@@ -147,6 +169,25 @@ impl PredictDocument {
             relative_residual: residual,
             memory_mb: memory.min(limits.slot_memory_mb),
             membrane,
+            estimate: self.estimate == EstimateName::Auto,
+            corrected: self.corrected,
+        }
+    }
+
+    fn check_accepted(&self, accepted: f64, at: &Pointer, faults: &mut Faults) {
+        let place = at.key("accept_mm");
+        faults.check_range(&place, accepted, ACCEPTED_MM, "mm");
+        if self.method != MethodName::Auto {
+            let detail = format!(
+                "an accepted error chooses the model, and the method is `{}`: leave one of them out",
+                self.method.name()
+            );
+            faults.add(&place, ErrorCode::MethodMismatch, detail);
+        }
+        if self.corrected || self.estimate == EstimateName::None {
+            let detail = "a model is chosen by its estimated errors, and corrected where that does: leave out `corrected` and \
+                          `estimate`";
+            faults.add(&place, ErrorCode::OneOf, detail);
         }
     }
 
@@ -196,4 +237,8 @@ impl PredictDocument {
         plain.keep = self.kept();
         canonical::to_value(&plain)
     }
+}
+
+fn is_false(value: &bool) -> bool {
+    !value
 }

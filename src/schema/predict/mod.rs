@@ -1,10 +1,13 @@
 //! The spec of a prediction, its check, and its result.
 
+pub mod adequacy;
 pub mod budget;
 pub mod check;
 pub mod contact;
 pub mod document;
+pub mod estimate;
 pub mod keep;
+pub mod nonlinearity;
 pub mod output;
 pub mod result;
 pub mod tolerance;

@@ -5,16 +5,20 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
+use super::adequacy::AdequacyDocument;
 use super::keep::KeptMeshDocument;
+use super::nonlinearity::NonlinearityDocument;
 use super::output::PictureName;
 use crate::schema::Triple;
 use crate::schema::case::document::{FrameName, LengthUnit};
 use crate::schema::case::hounsfield::ImagedTissueDocument;
+use crate::schema::case::law::LawDocument;
 use crate::schema::compare::result::{ComparisonDocument, StatDocument};
 use crate::schema::meshing::result::MeshingResultDocument;
 use crate::schema::optimise::result::OptimisationDocument;
 use crate::schema::study::report::StudySummaryDocument;
 use crate::schema::wire::warning::WarningDocument;
+use mechanics::material::hyperelastic::{Fibres, Hyperelastic};
 use mechanics::prediction::ConditionReaction;
 
 pub use crate::schema::engine::EngineDocument;
@@ -57,8 +61,23 @@ pub struct ResultDocument {
     /// The meshes that the spec asked to keep.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub kept: Vec<KeptMeshDocument>,
+    /// How the model was chosen, where an accepted error was stated.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub adequacy: Option<AdequacyDocument>,
     /// Null where it was not estimated.
     pub numerical_error_mm: Option<NumericalErrorDocument>,
+    /// What linear elasticity leaves out; null where `nonlinearity_unknown` says why it is not estimated.
+    #[serde(default)]
+    pub nonlinearity_mm: Option<NonlinearityDocument>,
+    /// Of a prediction without an estimate of what linear elasticity leaves out: why.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub nonlinearity_unknown: Option<String>,
+    /// Why the error of a prediction was not estimated.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub numerical_error_unknown: Option<String>,
     /// The forces in mN that the nodes of each segment, and all `fixed`, `sliding` and `prescribed` nodes, exert on the
     /// tissue: what pulls tissue upwards points upwards.
     #[serde(default)]
@@ -88,7 +107,11 @@ impl ResultDocument {
             meshing: None,
             pictures: Vec::new(),
             kept: Vec::new(),
+            adequacy: None,
             numerical_error_mm: None,
+            nonlinearity_mm: None,
+            nonlinearity_unknown: None,
+            numerical_error_unknown: None,
             reaction_mn: BTreeMap::new(),
             reactions: Vec::new(),
             provenance,
@@ -145,11 +168,27 @@ pub struct DisplacementDocument {
     pub area: StatDocument,
 }
 
-/// The estimated error of the discretisation over the skin, in mm.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+/// What the mesh leaves out of the displacement, as an estimate: lengths over nodes that count the same, in mm.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct NumericalErrorDocument {
+    /// Over the skin.
     pub mean: f64,
     pub p95: f64,
+    pub max: f64,
+    /// By the names of `skin_regions`.
+    pub regions: BTreeMap<String, ErrorLengthsDocument>,
+    /// At each landmark.
+    pub landmarks: BTreeMap<String, f64>,
+    /// Whether it has been added to the displacement, because `corrected` asked for that.
+    pub corrected: bool,
+}
+
+/// Lengths of an estimated error over nodes, in mm.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct ErrorLengthsDocument {
+    pub mean: f64,
+    pub p95: f64,
+    pub max: f64,
 }
 
 /// Where numbers come from.
@@ -172,6 +211,9 @@ pub struct ProvenanceDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub mesh: Option<MeshSummaryDocument>,
+    /// Of methods of finite strain: the law of each region, or of each tissue of an image, with its constants.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub laws: BTreeMap<String, TissueLawDocument>,
     pub threads: u32,
     /// `bitwise`: the same input gives the same bits on any number of threads.
     pub determinism: String,
@@ -185,6 +227,33 @@ pub struct ProvenanceDocument {
     /// RFC 3339, UTC.
     pub created: String,
     pub statement: String,
+}
+
+/// What a tissue followed at finite strain.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct TissueLawDocument {
+    pub law: LawDocument,
+    /// Of fibres that only pull; absent where there are none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub fibres: Option<PullingFibresDocument>,
+}
+
+/// W = k1/(2 k2) (exp(k2 (I4 - 1)^2) - 1) where fibres are stretched.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct PullingFibresDocument {
+    pub k1_kpa: f64,
+    pub k2: f64,
+}
+
+impl From<&Hyperelastic> for TissueLawDocument {
+    fn from(tissue: &Hyperelastic) -> Self {
+        let fibres = tissue.fibres;
+        TissueLawDocument {
+            law: (&tissue.law).into(),
+            fibres: fibres.map(|Fibres { k1, k2 }| PullingFibresDocument { k1_kpa: k1, k2 }),
+        }
+    }
 }
 
 /// A mesh or an image that went in.
@@ -224,6 +293,31 @@ pub struct SolverDocument {
     pub history: Vec<f64>,
     /// Steps of load or time.
     pub steps: u32,
+    /// Of tissue at finite strain.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub newton: Option<NewtonDocument>,
+}
+
+/// How tissue at finite strain came to rest.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct NewtonDocument {
+    pub energy_mn_mm: f64,
+    /// The least det F of the points of all cells.
+    pub least_det_f: f64,
+    /// The share of movement and loads that was made before each step, and at rest; at most 200 of them.
+    pub path: Vec<f64>,
+    pub inner_iterations: u64,
+    pub hierarchies: u64,
+    /// Steps along which the tangent was not positive definite: tissue may then rest in another way too.
+    pub indefinite_steps: u64,
+    /// Whether the tangent at rest is positive definite, as far as iterations see; not asked of elements with pressures.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub is_stable: Option<bool>,
+    /// The bulk modulus that stays in each cell while a pressure carries the rest, as a multiple of the shear modulus; 0
+    /// without pressures.
+    pub bulk_in_cells: f64,
 }
 
 /// The mesh that was computed on.
@@ -247,6 +341,9 @@ pub struct TimingDocument {
     pub mesh_s: f64,
     pub assemble_s: f64,
     pub solve_s: f64,
+    /// Of estimating errors; 0 of results from before there were estimates.
+    #[serde(default)]
+    pub estimate_s: f64,
     pub contact_s: f64,
     pub surface_s: f64,
     pub compare_s: f64,

@@ -120,7 +120,9 @@ async fn a_key_that_was_ended_is_not_let_in(on: Deployment) {
     let key = a.make_key(&wanted).await.unwrap();
     let row = store.key_in_force(&key.id).await.unwrap().unwrap();
     assert_eq!((row.tenant.as_str(), row.scopes.as_str()), ("a", "read"));
-    assert_eq!(row.expires, Some(row.created + 24 * 3600 * 1000));
+    // The clock of the database is read twice.
+    let in_force_ms = row.expires.unwrap() - row.created;
+    assert!((in_force_ms - 24 * 3600 * 1000).abs() < 1000, "{in_force_ms}");
     assert!(!row.hash.contains(&key.text));
     let beside = async |id: &str| store.key_and_responses(id, "no case").await.unwrap();
     assert_eq!(beside(&key.id).await, Some((row, None)));

@@ -225,6 +225,72 @@ fn a_job_says_which_method_and_elements_it_used() {
     assert!(done.result.warnings.iter().all(|warning| warning.code != "fibres-missing"));
 }
 
+/// The base stays and the top is drawn aside, so that the mesh has something to leave out.
+const SHEAR: &str = r#"{"segments":[{"name":"base","translation_mm":[4,0,0]}]}"#;
+const HELD: &str = r#"{"units":"mm","volume":"block","fixed":[{"node_set":"x_max"}],
+    "skin":{"node_set":"z_max"},"segments":[{"name":"base","nodes":{"node_set":"x_min"}}],
+    "skin_regions":{"far end":{"node_set":"y_max"}},"landmarks":{"tip":[40,30,40]},
+    "materials":{"*":{"young_modulus_kpa":15,"poisson_ratio":0.4}}}"#;
+
+#[test]
+fn a_prediction_tells_the_error_of_its_mesh_for_skin_parts_landmarks_and_nodes() {
+    let out = tempfile::tempdir().unwrap();
+    let spec = r#"{"outputs":["skin.vtp","volume.vtu","skin.csv"]}"#;
+    let done = predict(HELD, SHEAR, spec, out.path()).unwrap();
+    let error = done.result.numerical_error_mm.clone().unwrap();
+    assert!(0.0 < error.mean && error.mean <= error.p95 && error.p95 <= error.max);
+    assert!(error.regions["far end"].max <= error.max && error.regions["far end"].mean > 0.0);
+    assert!(error.landmarks["tip"] > 0.0 && !error.corrected);
+    assert_eq!(done.result.numerical_error_unknown, None);
+    assert!(done.result.provenance.timing.estimate_s > 0.0);
+    let csv = fs::read_to_string(out.path().join("skin.csv")).unwrap();
+    assert!(csv.lines().next().unwrap().contains("numerical_error_mm"));
+    for file in ["skin.vtp", "volume.vtu"] {
+        let bytes = fs::read(out.path().join(file)).unwrap();
+        let text = String::from_utf8_lossy(&bytes);
+        assert!(text.contains("Name=\"numerical_error_mm\""), "{file}");
+    }
+}
+
+#[test]
+fn a_corrected_prediction_moves_its_skin_by_what_was_missing() {
+    let out = tempfile::tempdir().unwrap();
+    let skin = |spec: &str| {
+        let done = predict(HELD, SHEAR, spec, out.path()).unwrap();
+        let bytes = fs::read_to_string(out.path().join("result.json")).unwrap();
+        assert!(bytes.contains("numerical_error_mm"));
+        (surface(&out.path().join("skin.vtp")).points, done.result.numerical_error_mm.unwrap())
+    };
+    let (plain, error) = skin("{}");
+    let (corrected, added) = skin(r#"{"corrected":true}"#);
+    assert!(added.corrected && (added.mean, added.max) == (error.mean, error.max));
+    let moved = plain.iter().zip(&corrected).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
+    // Rounding of a sum of numbers below 100.
+    assert!((moved - error.max).abs() < 1e-12, "{moved} {}", error.max);
+}
+
+#[test]
+fn an_error_that_is_not_known_is_null_with_its_reason_and_never_zero() {
+    let out = tempfile::tempdir().unwrap();
+    for (spec, reason) in [
+        (r#"{"estimate":"none"}"#, "not asked for"),
+        (r#"{"method":"msm"}"#, "springs"),
+        (r#"{"method":"thickness_warp"}"#, "warp"),
+        (r#"{"element":"quadratic"}"#, "quadratic"),
+        (r#"{"method":"fem_nonlinear"}"#, "finite strain"),
+    ] {
+        let done = predict(HELD, SHEAR, spec, out.path()).unwrap();
+        assert_eq!(done.result.numerical_error_mm, None, "{spec}");
+        let told = done.result.numerical_error_unknown.unwrap();
+        assert!(told.contains(reason), "{spec}: {told}");
+        let bytes = fs::read(out.path().join("skin.vtp")).unwrap();
+        assert!(!String::from_utf8_lossy(&bytes).contains("numerical_error_mm"), "{spec}");
+    }
+    let both = r#"{"estimate":"none","corrected":true}"#;
+    let refused = predict(HELD, SHEAR, both, out.path()).unwrap_err();
+    assert!(format!("{refused:?}").contains("/spec/corrected"), "{refused:?}");
+}
+
 #[test]
 fn a_skin_is_compared_within_its_own_job() {
     let out = tempfile::tempdir().unwrap();

@@ -2,6 +2,7 @@
 
 mod documents;
 mod fibres;
+mod laws;
 mod methods;
 mod plan;
 mod syntax;

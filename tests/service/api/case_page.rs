@@ -28,7 +28,7 @@ fn blocks() -> Vec<(&'static str, Value)> {
 
 /// A block of 80 x 60 x 20 mm with skull and mandible under it, and every array that the page speaks of.
 fn face() -> Vec<u8> {
-    let mut mesh = sample::block(Vector::new(80.0, 60.0, 20.0), [8, 6, 4], CellShape::Hex8);
+    let mut mesh = sample::block(Vector::new(80.0, 60.0, 20.0), [8, 6, 4], CellShape::Tet4);
     let nodes = mesh.nodes.clone();
     let chosen = |is_in: &dyn Fn(&Vector) -> bool| -> Vec<u32> {
         (0..).zip(&nodes).filter(|(_, node)| is_in(node)).map(|(number, _)| number).collect()

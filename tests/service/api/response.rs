@@ -489,3 +489,94 @@ async fn skin_that_passes_through_itself_is_told_by_predictions_and_where_a_resp
     let octets = ask_for("", OCTETS).await;
     assert_eq!(octets.header("facies-not-measured"), overlaps);
 }
+
+#[tokio::test]
+async fn a_response_of_order_two_adds_its_quadratic_form_and_hands_it_over() {
+    let server = Server::start();
+    let case = case(&server).await;
+    let job = built(&server, json!({"kind": "response", "case": case, "order": 2})).await;
+    let path = format!("/v1/cases/{case}/response");
+    let told = ask(server.get(&path)).await.expect(StatusCode::OK).clone();
+    let form = &told["second_order"];
+    assert_eq!(form["columns"]["count"], 300);
+    assert_eq!(form["third_order_mm"].as_array().unwrap().len(), 2);
+    let scales: Vec<f64> = serde_json::from_value(form["scale_mm"].clone()).unwrap();
+    let second = ask(server.get(&format!("{path}?order=2")).header("accept", OCTETS)).await;
+    assert_eq!(
+        second.header("etag"),
+        format!("\"{}\"", form["columns"]["sha256"].as_str().unwrap())
+    );
+    let (values, rest) = second.bytes.as_chunks::<2>();
+    let nodes = told["node_ids"].as_array().unwrap().len();
+    assert!(rest.is_empty() && values.len() == 300 * 3 * nodes && scales.len() == 300);
+    let first = floats(&ask(server.get(&path).header("accept", OCTETS)).await.bytes);
+
+    // What a front end does: 4 mm along z of the right bone is number 12 + 11 of both segments, whose square is the
+    // last but zero of the pairs.
+    let shift = json!({"segments": [{"name": "right", "translation_mm": [0, 0, 4.0]}]});
+    let answer = apply(&server, &case, &shift, "application/json").await;
+    let applied = answer.expect(StatusCode::OK);
+    let moved: Vec<[f64; 3]> = serde_json::from_value(applied["displacement_mm"].clone()).unwrap();
+    let column = &first[23 * 3 * nodes..];
+    let pair = &values[299 * 3 * nodes..];
+    let (mut beyond, mut largest) = (0.0_f64, 0.0_f64);
+    for ((moved, linear), square) in moved.as_flattened().iter().zip(column).zip(pair) {
+        let second = 16.0 * scales[299] * f64::from(i16::from_le_bytes(*square));
+        let sum = 4.0 * f64::from(*linear) + second;
+        assert!((moved - sum).abs() < 1e-5, "{moved} {sum}");
+        (beyond, largest) = (beyond.max(second.abs()), largest.max(moved.abs()));
+    }
+    assert!(beyond > 1e-3 * largest, "{beyond} of {largest}");
+    assert_eq!((&applied["order"], &applied["job"]), (&json!(2), &job["id"]));
+    let second_order = applied["second_order_mm"].as_f64().unwrap();
+    let left = applied["nonlinearity_estimate_mm"].as_f64().unwrap();
+    assert!(second_order > 0.0 && left > 0.0 && left < second_order, "{left} {second_order}");
+    assert_eq!(
+        (answer.header("facies-order"), &applied["within_linear_range"]),
+        ("2", &json!(true))
+    );
+
+    // Far beyond: the series is not to be trusted, and says so with its numbers.
+    let far = json!({"segments": [{"name": "right", "translation_mm": [0, 0, 24.0]}]});
+    let answer = apply(&server, &case, &far, "application/json").await;
+    let applied = answer.expect(StatusCode::OK);
+    assert_eq!(applied["within_linear_range"], false, "{applied}");
+    assert_eq!(applied["warnings"][0]["code"], "outside-second-order-range");
+}
+
+#[tokio::test]
+async fn an_order_that_a_response_does_not_have_is_refused() {
+    let server = Server::start();
+    let case = case(&server).await;
+    let third = json!({"kind": "response", "case": case, "order": 3});
+    let refused = server.job(&third).await;
+    refused.problem(422, "validation-failed");
+    let told: Value = serde_json::from_slice(&refused.bytes).unwrap();
+    assert_eq!(told["errors"][0]["pointer"], "/order");
+    built(&server, json!({"kind": "response", "case": case})).await;
+    let path = format!("/v1/cases/{case}/response?order=2");
+    ask(server.get(&path).header("accept", OCTETS)).await.problem(404, "response-not-built");
+    let applied = apply(&server, &case, &plan(), "application/json").await;
+    let told = applied.expect(StatusCode::OK);
+    assert_eq!((&told["order"], told.get("second_order_mm")), (&json!(1), None));
+}
+
+#[tokio::test]
+async fn a_prediction_tells_what_linear_elasticity_leaves_out_or_why_that_is_not_known() {
+    let server = Server::start();
+    let case = case(&server).await;
+    let spec = json!({"kind": "predict", "case": case, "plan": plan(), "outputs": ["skin.vtp"]});
+    let job = built(&server, spec.clone()).await;
+    let left = &job["results"]["nonlinearity_mm"];
+    let [mean, p95, max] = ["mean", "p95", "max"].map(|name| left["skin"][name].as_f64().unwrap());
+    assert!(0.0 < mean && mean < p95 && p95 <= max, "{left}");
+    let path = format!("/v1/jobs/{}/results/skin.vtp", job["id"].as_str().unwrap());
+    let skin = ask(server.get(&path)).await.bytes;
+    assert!(skin.windows(22).any(|part| part == b"Name=\"nonlinearity_mm\""));
+
+    let mut warped = spec;
+    warped["method"] = json!("thickness_warp");
+    let job = built(&server, warped).await;
+    assert_eq!(job["results"]["nonlinearity_mm"], Value::Null);
+    assert!(job["results"]["nonlinearity_unknown"].as_str().unwrap().contains("no linear finite"));
+}

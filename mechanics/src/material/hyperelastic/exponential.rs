@@ -1,7 +1,7 @@
 //! The exponential of the laws of Fung, Veronda and Westmann, and of fibres, continued where it would grow beyond all bounds.
 
 /// Beyond this exponent the exponential goes on as a parabola with the same value, slope and curvature (REMAINING 2.10).
-const LARGEST: f64 = 30.0;
+pub const LARGEST_EXPONENT: f64 = 30.0;
 
 /// e^x with its first two derivatives, all of them continuous.
 #[derive(Clone, Copy)]
@@ -13,8 +13,8 @@ pub(super) struct Exponential {
 
 #[inline]
 pub(super) fn exponential(x: f64) -> Exponential {
-    let value = x.min(LARGEST).exp();
-    let beyond = (x - LARGEST).max(0.0);
+    let value = x.min(LARGEST_EXPONENT).exp();
+    let beyond = (x - LARGEST_EXPONENT).max(0.0);
     Exponential {
         value: value * (1.0 + beyond + 0.5 * beyond * beyond),
         first: value * (1.0 + beyond),

@@ -26,11 +26,17 @@ impl Fibres {
         if x <= 0.0 {
             return OfStretch::default();
         }
-        let grown = exponential(self.k2 * x * x);
+        let grown = exponential(self.exponent(i4));
         OfStretch {
             energy: 0.5 * self.k1 / self.k2 * (grown.value - 1.0),
             first: self.k1 * x * grown.first,
             second: self.k1 * (grown.first + 2.0 * self.k2 * x * x * grown.second),
         }
+    }
+
+    /// k2 (I4 - 1)^2 where the fibres pull.
+    #[inline]
+    pub fn exponent(&self, i4: f64) -> f64 {
+        self.k2 * (i4 - 1.0).max(0.0).powi(2)
     }
 }

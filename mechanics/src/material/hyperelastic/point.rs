@@ -10,6 +10,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
+use super::principal::Principal;
 use super::{Derivatives, Fibres, Invariants, Law};
 
 /// Fibres at a point: their law and their direction at rest, of length 1.
@@ -17,6 +18,15 @@ use super::{Derivatives, Fibres, Invariants, Law};
 pub struct Along<'a> {
     pub law: &'a Fibres,
     pub direction: Vector3<f64>,
+}
+
+/// A part of the bulk modulus that a pressure carries in place of the law: W + p ln J - c/2 ln^2 J instead of W.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Carried {
+    /// p in kPa; c ln J where it is that of the point itself.
+    pub pressure: f64,
+    /// c in kPa.
+    pub modulus: f64,
 }
 
 /// A deformed material point.
@@ -30,6 +40,7 @@ pub struct Point {
     /// F F^T.
     left: Matrix3<f64>,
     fibres: Option<FibresAt>,
+    principal: Option<Box<Principal>>,
 }
 
 #[derive(Clone, Debug)]
@@ -65,7 +76,9 @@ impl Point {
             let direction = along.direction;
             FibresAt { direction, turned, energy: w.energy, first: w.first, second: w.second }
         });
+        let of_stretches = |law| Box::new(Principal::new(law, &f, invariants.j));
         Point {
+            principal: law.in_stretches().map(of_stretches),
             w: law.at(&invariants),
             cofactor: cofactor(&f),
             left: f * f.transpose(),
@@ -75,9 +88,28 @@ impl Point {
         }
     }
 
+    /// The same point with a pressure for a part of its bulk modulus.
+    #[inline]
+    pub fn carried(mut self, by: Carried) -> Point {
+        let (j, log) = (self.invariants.j, self.log_volume());
+        let left = by.pressure - by.modulus * log;
+        self.w.energy += (by.pressure - 0.5 * by.modulus * log) * log;
+        self.w.by_j += left / j;
+        self.w.by_j_j -= (by.modulus + left) / (j * j);
+        self
+    }
+
+    /// ln det F.
+    #[inline]
+    pub fn log_volume(&self) -> f64 {
+        self.invariants.j.ln()
+    }
+
     /// Energy density in kPa.
     pub fn energy(&self) -> f64 {
-        self.w.energy + self.fibres.as_ref().map_or(0.0, |fibres| fibres.energy)
+        let fibres = self.fibres.as_ref().map_or(0.0, |fibres| fibres.energy);
+        let principal = self.principal.as_ref().map_or(0.0, |principal| principal.energy);
+        self.w.energy + fibres + principal
     }
 
     /// det F.
@@ -95,6 +127,9 @@ impl Point {
         }
         if let Some(fibres) = &self.fibres {
             stress += fibres.turned * fibres.direction.transpose() * (2.0 * fibres.first);
+        }
+        if let Some(principal) = &self.principal {
+            stress += self.f * principal.second_stress;
         }
         stress
     }
@@ -140,10 +175,21 @@ impl Point {
             isotropic += 2.0 * fibres.first * both;
             block += fibres.turned * fibres.turned.transpose() * (4.0 * fibres.second * both);
         }
+        if let Some(principal) = &self.principal {
+            block += principal.block(&a.g, &b.g);
+        }
         for i in 0..3 {
             block[(i, i)] += isotropic;
         }
         block
+    }
+}
+
+impl Corner {
+    /// d(ln J) / du at a point with that det F.
+    #[inline]
+    pub fn of_log_volume(&self, j: f64) -> Vector3<f64> {
+        self.volume / j
     }
 }
 

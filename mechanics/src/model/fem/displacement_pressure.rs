@@ -23,76 +23,22 @@ use rayon::prelude::*;
 
 use super::assembly::Tissue;
 use super::cell_stiffness::tetrahedron;
-use super::displacement::{Problem, check_finite};
 use crate::material::ElasticTensor;
 use crate::material::elastic_tensor::PressurePart;
 use crate::mesh::{CellShape, Vector};
-use crate::model::dofs::{Constrained, Known, number, product_at_holds};
-use crate::model::dofs::{Numbering, nodes_of_cells};
+use crate::model::dofs::{Constrained, Numbering};
 use crate::model::problem::InvertedCell;
-use crate::model::problem::{Equilibrium, LoadCase, ModelError};
-use crate::progress::{Phase, Progress};
+use crate::progress::Progress;
 use crate::solver::mixed;
-use crate::solver::mixed_system::{Coupling, MixedRightHandSide, MixedSolution, MixedSystem};
+use crate::solver::mixed_system::Coupling;
 use crate::solver::sparse_rows::{Couplings, SparseRows};
 use crate::solver::{HalfMatrix, SolverError, System};
 
 /// Vectors of all unknowns that the iteration keeps at most.
 const VECTORS: usize = 2 * mixed::MOST_DIRECTIONS + 6;
 
-/// Solves for each load case; matrices and hierarchy are made once.
-pub fn solve_cases(
-    problem: &Problem,
-    cases: &[LoadCase],
-    progress: &dyn Progress,
-) -> Result<Vec<Equilibrium>, ModelError> {
-    // 1. The matrices, with sliding nodes along their own axes.
-    progress.phase(Phase::Assemble);
-    let mesh = problem.tissue.mesh;
-    let numbering = number(&nodes_of_cells(mesh), &mesh.nodes, problem.holds);
-    let constrained = Constrained { holds: problem.holds, numbering: &numbering };
-    let assembled = shear_stiffness(&problem.tissue, &numbering, progress)?;
-    let matrix = assembled.ok_or(SolverError::Stopped)?;
-    let stiffness = constrained.system(matrix, &mesh.nodes);
-    let coupling = couple(&problem.tissue, &constrained)?;
-    check_memory(&stiffness, &coupling, problem.tolerance.memory_mb)?;
-
-    // 2. What is known, and what it leaves to the free unknowns.
-    progress.phase(Phase::Solve);
-    let known: Vec<Known> = cases.par_iter().map(|case| constrained.known(case)).collect();
-    let right_hand_sides: Vec<MixedRightHandSide> = known
-        .par_iter()
-        .map(|known| {
-            let mut volumes = vec![[0.0]; coupling.mass.len()];
-            coupling.divergence.contract(&known.displacement, &mut volumes);
-            volumes.iter_mut().for_each(|[volume]| *volume = -*volume);
-            MixedRightHandSide { forces: known.right_hand_side(&stiffness), volumes }
-        })
-        .collect();
-
-    // 3. The free displacements and the pressures.
-    let system = MixedSystem { stiffness: &stiffness, coupling: &coupling };
-    let solutions = mixed::solve(&system, &right_hand_sides, &problem.tolerance, progress)?;
-
-    // 4. Displacement and reactions, back along the axes of the coordinates.
-    let equilibrium = |(known, mixed): (Known, MixedSolution)| {
-        let total = known.total(&mixed.solution.unknowns);
-        let mut internal = product_at_holds(&stiffness, &total);
-        coupling.gradient.add_expanded(&mixed.pressures, &mut internal);
-        Equilibrium {
-            displacement: constrained.displacement(&total),
-            reactions: constrained.reactions(&internal, &known.force),
-            solver: mixed.solution.report,
-            warnings: Vec::new(),
-        }
-    };
-    let equilibria: Vec<Equilibrium> =
-        known.into_par_iter().zip(solutions).map(equilibrium).collect();
-    check_finite(&equilibria)?;
-    Ok(equilibria)
-}
-
-fn check_memory(
+/// Refuses matrices that take more than they may with what the iteration adds.
+pub(super) fn check_memory(
     stiffness: &System,
     coupling: &Coupling,
     allowed_mb: f64,
@@ -107,7 +53,7 @@ fn check_memory(
 }
 
 /// K: tetrahedra with what no pressure carries, 2 mu eps : eps where they are isotropic.
-fn shear_stiffness(
+pub(super) fn shear_stiffness(
     tissue: &Tissue,
     numbering: &Numbering,
     progress: &dyn Progress,
@@ -115,27 +61,32 @@ fn shear_stiffness(
     let tensor = |cell: usize| {
         let tensor = tissue.tensor(cell);
         match tissue.mesh.cells.shape(cell) {
-            CellShape::Tet4 => {
-                let lambda = tensor.lambda - tensor.pressure_part().lambda;
-                ElasticTensor { lambda, ..tensor }
-            }
+            CellShape::Tet4 => beside_pressure(tensor),
             CellShape::Hex8 | CellShape::Wedge6 => tensor,
         }
     };
     tissue.assemble_with(numbering, progress, &tensor)
 }
 
+/// What a pressure leaves of a stiffness.
+pub(super) fn beside_pressure(tensor: ElasticTensor) -> ElasticTensor {
+    let lambda = tensor.lambda - tensor.pressure_part().lambda;
+    ElasticTensor { lambda, ..tensor }
+}
+
 /// Tetrahedra that have pressures, one for each corner.
-struct PressureCells {
-    cells: Vec<u32>,
-    nodes: Vec<[u32; 4]>,
-    pressures: Vec<[u32; 4]>,
-    pressure_count: usize,
+pub struct PressureCells {
+    pub cells: Vec<u32>,
+    /// For each of the cells the rows of its nodes.
+    pub rows: Vec<[u32; 4]>,
+    /// For each of the cells the numbers of its pressures.
+    pub pressures: Vec<[u32; 4]>,
+    pub pressure_count: usize,
 }
 
 impl PressureCells {
     /// Numbers the pressures: corners share one where they share node and material.
-    fn new(tissue: &Tissue, numbering: &Numbering) -> Self {
+    pub(super) fn new(tissue: &Tissue, numbering: &Numbering) -> Self {
         let materials = tissue.materials;
         let used: BTreeSet<u16> = tissue.pressure_of_cell.iter().copied().collect();
         let same = |own: u16| {
@@ -151,8 +102,8 @@ impl PressureCells {
                 cells_of_kind.entry(kind).or_default().push(cell as u32);
             }
         }
-        let (cells, nodes, pressures) = (Vec::new(), Vec::new(), Vec::new());
-        let mut all = PressureCells { cells, nodes, pressures, pressure_count: 0 };
+        let (cells, rows, pressures) = (Vec::new(), Vec::new(), Vec::new());
+        let mut all = PressureCells { cells, rows, pressures, pressure_count: 0 };
         // Numbers below the first of a kind are those of other kinds.
         let mut number_of_node = vec![0; tissue.mesh.nodes.len()];
         for cells in cells_of_kind.values() {
@@ -168,7 +119,7 @@ impl PressureCells {
                     }
                     *number - 1
                 });
-                all.nodes.push(corners.map(|node| numbering.layout.place[node as usize]));
+                all.rows.push(corners.map(|node| numbering.layout.place[node as usize]));
                 all.pressures.push(numbers);
             }
             all.cells.extend_from_slice(cells);
@@ -186,10 +137,13 @@ struct CellTerms {
 }
 
 /// B, B^T, C and D.
-fn couple(tissue: &Tissue, constrained: &Constrained) -> Result<Coupling, InvertedCell> {
+pub(super) fn couple(
+    tissue: &Tissue,
+    constrained: &Constrained,
+    all: &PressureCells,
+) -> Result<Coupling, InvertedCell> {
     let turned = constrained.holds.iter().filter(|hold| !hold.is_aligned());
     let axes: BTreeMap<u32, Matrix3<f64>> = turned.map(|hold| (hold.node, *hold.axes())).collect();
-    let all = PressureCells::new(tissue, constrained.numbering);
     let terms: Result<Vec<CellTerms>, InvertedCell> =
         all.cells.par_iter().map(|&cell| cell_terms(tissue, cell as usize, &axes)).collect();
     let terms = terms?;
@@ -197,8 +151,8 @@ fn couple(tissue: &Tissue, constrained: &Constrained) -> Result<Coupling, Invert
         let CellTerms { volume, gradients, .. } = &terms[cell];
         (gradients[node] * (volume / 4.0)).into()
     };
-    let by_pressure = Couplings { rows: &all.pressures, columns: &all.nodes };
-    let by_node = Couplings { rows: &all.nodes, columns: &all.pressures };
+    let by_pressure = Couplings { rows: &all.pressures, columns: &all.rows };
+    let by_node = Couplings { rows: &all.rows, columns: &all.pressures };
     let among_pressures = Couplings { rows: &all.pressures, columns: &all.pressures };
     let compliance = |cell: usize, a: usize, b: usize| {
         let CellTerms { volume, mu, lambda, .. } = terms[cell];

@@ -17,6 +17,16 @@ pub enum FaceLoad {
     Pressure(f64),
 }
 
+impl FaceLoad {
+    /// The force in mN on a piece of a face.
+    fn on(self, area_vector: &Vector) -> Vector {
+        match self {
+            FaceLoad::Traction(traction) => traction * area_vector.norm(),
+            FaceLoad::Pressure(pressure) => -area_vector * pressure,
+        }
+    }
+}
+
 /// Adds f_i = int N_i t dA over the faces: exact for flat triangles, 2 x 2 Gauss points otherwise.
 pub fn add_face_load(
     mesh: &VolumeMesh,
@@ -28,10 +38,7 @@ pub fn add_face_load(
         let nodes = face.nodes();
         let corners: Vec<Vector> = nodes.iter().map(|&node| mesh.nodes[node as usize]).collect();
         for (values, area_vector) in face_points(&corners) {
-            let force = match load {
-                FaceLoad::Traction(traction) => traction * area_vector.norm(),
-                FaceLoad::Pressure(pressure) => -area_vector * pressure,
-            };
+            let force = load.on(&area_vector);
             for (&node, value) in nodes.iter().zip(values) {
                 forces[node as usize] += force * value;
             }
@@ -60,6 +67,28 @@ fn face_points(corners: &[Vector]) -> Vec<([f64; 4], Vector)> {
             (values, along_x.cross(&along_y))
         })
         .collect()
+}
+
+/// int phi_ij t dA of each side of a face: a third of the area of a triangle, with 2 x 2 Gauss points otherwise, where phi is
+/// 4 N_i N_j / (N_i + N_j).
+pub(super) fn on_face_edges(
+    mesh: &VolumeMesh,
+    face: &BoundaryFace,
+    load: FaceLoad,
+) -> Vec<([u32; 2], Vector)> {
+    let nodes = face.nodes();
+    let corners: Vec<Vector> = nodes.iter().map(|&node| mesh.nodes[node as usize]).collect();
+    let sides = 0..nodes.len();
+    let mut forces: Vec<([u32; 2], Vector)> =
+        sides.map(|k| ([nodes[k], nodes[(k + 1) % nodes.len()]], Vector::zeros())).collect();
+    for (values, area_vector) in face_points(&corners) {
+        let force = load.on(&area_vector);
+        for (k, (_, sum)) in forces.iter_mut().enumerate() {
+            let (a, b) = (values[k], values[(k + 1) % nodes.len()]);
+            *sum += force * if nodes.len() == 3 { 1.0 / 3.0 } else { 4.0 * a * b / (a + b) };
+        }
+    }
+    forces
 }
 
 /// Adds f_i = int N_i rho g dV; acceleration in mm/ms², density in mg/mm³.
@@ -93,10 +122,7 @@ impl EdgeNodes {
         for [a, b, c] in faces.iter().flat_map(BoundaryFace::triangles) {
             let [pa, pb, pc] = [a, b, c].map(|node| mesh.nodes[node as usize]);
             let area = (pb - pa).cross(&(pc - pa)) * 0.5;
-            let force = match load {
-                FaceLoad::Traction(traction) => traction * area.norm(),
-                FaceLoad::Pressure(pressure) => -area * pressure,
-            };
+            let force = load.on(&area);
             for (from, to) in [(a, b), (b, c), (c, a)] {
                 forces[self.between(from, to) as usize] += force / 3.0;
             }

@@ -11,6 +11,8 @@
 //! Source: Zienkiewicz, Taylor, The Finite Element Method, 5th ed., vol. 1, chapter 4; skin as a membrane: paper
 //! 001 (METHODS rows 37, 38). The sheet weighs nothing.
 
+use nalgebra::Matrix3;
+
 use super::edge_nodes::EdgeNodes;
 use crate::material::{ElasticTensor, PlaneStress};
 use crate::mesh::{Vector, VolumeMesh};
@@ -28,12 +30,12 @@ pub struct Membrane {
 }
 
 /// What a triangle needs for its matrix.
-struct Triangle {
+pub(super) struct Triangle {
     normal: Vector,
     /// Thickness times area, in mm³.
     volume: f64,
     /// Of the barycentric coordinates, in 1/mm.
-    gradients: [Vector; 3],
+    pub gradients: [Vector; 3],
     tensor: ElasticTensor,
 }
 
@@ -82,8 +84,35 @@ impl Membrane {
         forces
     }
 
+    /// Adds a factor times the second order of the forces of three-node triangles, bilinear in two displacements: F S,
+    /// S = C:E, E = P (F^T F - I) P / 2, so that turning the sheet strains nothing.
+    pub(super) fn add_second_order(
+        &self,
+        mesh: &VolumeMesh,
+        [u, v]: [&[Vector]; 2],
+        factor: f64,
+        forces: &mut [Vector],
+    ) {
+        for (triangle, nodes) in self.in_space(mesh) {
+            let [g, h] = [u, v].map(|moved| triangle.gradient(nodes, moved));
+            let product = g.transpose() * h;
+            let stretching = triangle.tensor.stress(&((product + product.transpose()) * 0.25));
+            let turning = (g * triangle.stress(&h) + h * triangle.stress(&g)) * 0.5;
+            triangle.add_forces(nodes, &((turning + stretching) * factor), forces);
+        }
+    }
+
+    /// Adds the third order of the same forces along one displacement.
+    pub(super) fn add_third_order(&self, mesh: &VolumeMesh, u: &[Vector], forces: &mut [Vector]) {
+        for (triangle, nodes) in self.in_space(mesh) {
+            let h = triangle.gradient(nodes, u);
+            let stress = h * triangle.tensor.stress(&(h.transpose() * h * 0.5));
+            triangle.add_forces(nodes, &stress, forces);
+        }
+    }
+
     /// Triangles with an area, and their nodes.
-    fn in_space<'a>(
+    pub(super) fn in_space<'a>(
         &'a self,
         mesh: &'a VolumeMesh,
     ) -> impl Iterator<Item = (Triangle, [u32; 3])> + 'a {
@@ -109,6 +138,33 @@ impl Membrane {
 }
 
 impl Triangle {
+    /// The gradient of a displacement in the plane.
+    fn gradient(&self, nodes: [u32; 3], moved: &[Vector]) -> Matrix3<f64> {
+        let nodes = nodes.iter().zip(&self.gradients);
+        nodes.map(|(&node, g)| moved[node as usize] * g.transpose()).sum()
+    }
+
+    /// The stress in kPa of a small displacement gradient.
+    fn stress(&self, h: &Matrix3<f64>) -> Matrix3<f64> {
+        let plane = Matrix3::identity() - self.normal * self.normal.transpose();
+        self.tensor.stress(&(plane * (h + h.transpose()) * plane * 0.5))
+    }
+
+    fn add_forces(&self, nodes: [u32; 3], stress: &Matrix3<f64>, forces: &mut [Vector]) {
+        for (&node, g) in nodes.iter().zip(&self.gradients) {
+            forces[node as usize] += stress * g * self.volume;
+        }
+    }
+
+    /// The block between two gradients in the plane.
+    pub fn pair(&self, gj: &Vector, gk: &Vector) -> Matrix3<f64> {
+        let mut block: Block = [[0.0; 3]; 3];
+        self.tensor.add_pair(&mut block, [gj, gk], self.volume);
+        let off_plane = self.tensor.mu * self.volume * gj.dot(gk);
+        let n = &self.normal;
+        Matrix3::from_fn(|i, j| block[i][j] - off_plane * n[i] * n[j])
+    }
+
     fn linear(&self) -> [Block; 9] {
         let mut blocks = [[[0.0; 3]; 3]; 9];
         self.add_point(&mut blocks, &self.gradients, self.volume);

@@ -2,12 +2,16 @@
 
 pub mod assembly;
 pub mod cell_stiffness;
+pub mod discretisation_error;
 pub mod displacement;
 pub mod displacement_pressure;
 pub mod edge_nodes;
 pub mod finite_strain;
+pub mod force_series;
+pub mod linear_system;
 pub mod loads;
 pub mod mass_tensor;
+pub mod mass_tensor_nonlinear;
 pub mod membrane;
 pub mod quadratic;
 pub mod strain;

@@ -8,7 +8,7 @@
 
 use super::assembly::Tissue;
 use super::cell_stiffness::tetrahedron;
-use super::displacement::{Assembled, Problem, solve_displacement};
+use super::displacement::{Problem, solve_displacement};
 use super::edge_nodes::EdgeNodes;
 use crate::boundary::{Hold, midpoint};
 use crate::element::tetrahedron10;
@@ -56,11 +56,11 @@ pub fn solve_cases(
         })
         .collect();
     let constrained = Constrained { holds: &holds, numbering: &numbering };
-    let assembled = Assembled { constrained, matrix, positions: &positions };
+    let system = constrained.system(matrix, &positions);
     let solve = |system: &System, right_hand_sides: &[Unknowns]| {
         solver::solve(system, right_hand_sides, &problem.tolerance, progress)
     };
-    let mut equilibria = solve_displacement(assembled, &cases, progress, &solve)?;
+    let mut equilibria = solve_displacement(&constrained, &system, &cases, progress, &solve)?;
 
     // 3. Back to the nodes of the mesh.
     for equilibrium in &mut equilibria {

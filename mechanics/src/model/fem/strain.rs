@@ -31,16 +31,9 @@ pub fn deformations(mesh: &VolumeMesh, displacement: &[Vector]) -> Vec<CellDefor
 }
 
 fn deformation(mesh: &VolumeMesh, displacement: &[Vector], cell: usize) -> CellDeformation {
-    let corners: Vec<Vector> = mesh.corners(cell).collect();
-    let moved: Vec<Vector> =
-        mesh.cells.nodes(cell).iter().map(|&node| displacement[node as usize]).collect();
     let reference = reference_cell(mesh.cells.shape(cell));
-    let gradient = |point: &PhysicalPoint| {
-        moved
-            .iter()
-            .zip(&point.gradients)
-            .fold(Matrix3::zeros(), |sum: Matrix3<f64>, (u, g)| sum + u * g.transpose())
-    };
+    let corners: Vec<Vector> = mesh.corners(cell).collect();
+    let gradient = |point: &PhysicalPoint| gradient_of(mesh, displacement, cell, point);
     let det_f = reference
         .points
         .iter()
@@ -53,6 +46,25 @@ fn deformation(mesh: &VolumeMesh, displacement: &[Vector], cell: usize) -> CellD
     let mut principal_strain: [f64; 3] = strain.symmetric_eigenvalues().into();
     principal_strain.sort_by(|a, b| b.total_cmp(a));
     CellDeformation { det_f, principal_strain, rotation: rotation(&at_centre) }
+}
+
+/// grad u at the centre of a cell; zero of a cell without volume.
+pub fn gradient_at_centre(mesh: &VolumeMesh, displacement: &[Vector], cell: usize) -> Matrix3<f64> {
+    let corners: Vec<Vector> = mesh.corners(cell).collect();
+    let centre = reference_cell(mesh.cells.shape(cell)).centre.at(&corners);
+    centre.map_or(Matrix3::zeros(), |point| gradient_of(mesh, displacement, cell, &point))
+}
+
+fn gradient_of(
+    mesh: &VolumeMesh,
+    displacement: &[Vector],
+    cell: usize,
+    point: &PhysicalPoint,
+) -> Matrix3<f64> {
+    let moved = mesh.cells.nodes(cell).iter().map(|&node| displacement[node as usize]);
+    moved
+        .zip(&point.gradients)
+        .fold(Matrix3::zeros(), |sum: Matrix3<f64>, (u, g)| sum + u * g.transpose())
 }
 
 /// The angle of I + grad u in radians.

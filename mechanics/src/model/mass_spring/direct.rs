@@ -44,6 +44,7 @@ pub(super) fn solve(
                 wanted_residual: wanted,
                 history,
                 steps: 1,
+                newton: None,
             };
             return Ok(Found { positions, solver });
         }

@@ -202,6 +202,7 @@ impl Newton<'_> {
             wanted_residual: self.problem.tolerance.relative_residual,
             history: self.history,
             steps: 1,
+            newton: None,
         };
         Found { positions: self.positions, solver }
     }

@@ -257,6 +257,7 @@ impl Assembled<'_> {
             wanted_residual: wanted,
             history: state.history.clone(),
             steps: steps as u32,
+            newton: None,
         })
     }
 

@@ -16,10 +16,14 @@
 use super::stiffness::add_to_diagonal;
 use crate::mesh::Vector;
 use crate::model::problem::ModelError;
-use crate::progress::Progress;
+use crate::progress::{Progress, Unobserved};
+use crate::solver::cholesky::Factor;
 use crate::solver::half_matrix::HalfMatrix;
 use crate::solver::lanes::Lanes;
-use crate::solver::{SolverError, System, Tolerance, Unknowns, cholesky, ordering, tell};
+use crate::solver::{SolverError, System, Unknowns, ordering, tell};
+
+/// The relative residual of a step.
+const STEP_RESIDUAL: f64 = 1e-10;
 
 /// How time passes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -209,27 +213,24 @@ impl Motion<'_> {
         if needed_mb > memory_mb {
             return Err(SolverError::OverBudget { needed_mb, allowed_mb: memory_mb }.into());
         }
-        let tolerance = Tolerance { relative_residual: 1e-10, memory_mb };
-        let march = |solve: cholesky::Solve| {
-            let mut state = self.rest();
-            let mut product = state.velocity.clone();
-            while state.goes_on(clock, relative_rest, progress)? {
-                let backward = order == 1.0 || state.history.len() < 4;
-                let order = if backward { 1.0 } else { order };
-                let mut right = self.unbalanced(&state.displacement);
-                self.mass.multiply(&system.layout, &state.velocity, &mut product);
-                for (right, m) in right.iter_mut().zip(&product) {
-                    (0..3).for_each(|c| right[c] = order * (right[c] + m[c][0] / h));
-                }
-                let step = solve(&right)?.unknowns;
-                for (v, step) in state.velocity.iter_mut().zip(&step) {
-                    (0..3).for_each(|c| v[c][0] = step[c] / h - (order - 1.0) * v[c][0]);
-                }
-                state.advance(&step);
+        let factor = Factor::new(&system, &ordering)?;
+        let mut state = self.rest();
+        let mut product = state.velocity.clone();
+        while state.goes_on(clock, relative_rest, progress)? {
+            let backward = order == 1.0 || state.history.len() < 4;
+            let order = if backward { 1.0 } else { order };
+            let mut right = self.unbalanced(&state.displacement);
+            self.mass.multiply(&system.layout, &state.velocity, &mut product);
+            for (right, m) in right.iter_mut().zip(&product) {
+                (0..3).for_each(|c| right[c] = order * (right[c] + m[c][0] / h));
             }
-            Ok(state)
-        };
-        Ok(cholesky::with_factor(&system, &ordering, &tolerance, march)?)
+            let step = factor.solve(&system, &right, STEP_RESIDUAL, &Unobserved)?.unknowns;
+            for (v, step) in state.velocity.iter_mut().zip(&step) {
+                (0..3).for_each(|c| v[c][0] = step[c] / h - (order - 1.0) * v[c][0]);
+            }
+            state.advance(&step);
+        }
+        Ok(state)
     }
 
     /// M / h^2 + D / h + K.

@@ -8,6 +8,7 @@ pub mod axes;
 mod axis;
 mod judge;
 mod own_axes;
+pub mod random;
 mod scenes;
 
 use super::{Stopwatch, Variant};

@@ -251,6 +251,7 @@ fn other_models() -> Vec<Found> {
     let warp = with_method(Method::ThicknessWarp(ThicknessWarp { blend_radius: 4.0 }));
     vec![
         predicted("fem_nonlinear", Holds::Near, &case, &with_method(Method::FemNonlinear)),
+        predicted("mtm_nonlinear", Holds::Near, &case, &with_method(Method::MassTensorNonlinear)),
         predicted("msm newton", Holds::Near, &case, &springs(Search::Newton)),
         predicted("msm direct", Holds::Bits, &case, &springs(Search::Direct)),
         predicted("dvs galerkin", Holds::Near, &case, &spline(Stiffness::Galerkin, None)),

@@ -2,8 +2,8 @@
 
 use mechanics::material::hyperelastic::point::{Along, Point};
 use mechanics::material::hyperelastic::{
-    Fibres, Fung, Law, MooneyRivlin, NeoHookean, NeoHookeanIsochoric, PolyconvexBarrier,
-    SaintVenantKirchhoff, VerondaWestmann, Volumetric,
+    Fibres, Fung, Law, MooneyRivlin, NeoHookean, NeoHookeanIsochoric, Ogden, OgdenTerm,
+    PolyconvexBarrier, SaintVenantKirchhoff, VerondaWestmann, Volumetric,
 };
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
@@ -11,24 +11,24 @@ use nalgebra::{Matrix3, Rotation3, Vector3};
 const MU: f64 = 5.136_986_301;
 const LAMBDA: f64 = 59.075_342_466;
 const BULK: Volumetric = Volumetric::Barrier(62.5);
-const FIBRES: Fibres = Fibres { k1: 3.0, k2: 2.0 };
+pub const FIBRES: Fibres = Fibres { k1: 3.0, k2: 2.0 };
 
 fn mooney_rivlin(c10: f64, c01: f64, c20: f64, volumetric: Volumetric) -> Law {
     Law::MooneyRivlin(MooneyRivlin { c10, c01, c20, c11: 0.0, c02: 0.0, volumetric })
 }
 
-struct Row {
-    name: &'static str,
-    law: Law,
-    fibres: Option<Vector3<f64>>,
+pub struct Row {
+    pub name: &'static str,
+    pub law: Law,
+    pub fibres: Option<Vector3<f64>>,
     energy: f64,
     /// Row by row.
     stress: Vec<f64>,
     along_h: f64,
     /// P11 and the lateral stretch at .7, .9, 1.2 and 1.5.
-    uniaxial: Vec<[f64; 2]>,
+    pub uniaxial: Vec<[f64; 2]>,
     /// P11 and the stretch across the sheet at .9 and 1.2.
-    equibiaxial: Vec<[f64; 2]>,
+    pub equibiaxial: Vec<[f64; 2]>,
     /// Cauchy s12, s11, s22, s33 at a shear of .6.
     shear: Vec<f64>,
 }
@@ -50,6 +50,11 @@ fn law(name: &str) -> Law {
             Law::VerondaWestmann(VerondaWestmann { c1: 2.568_493_151, g: 2.0, volumetric: BULK })
         }
         "Fung" => Law::Fung(Fung { mu: MU, b: 1.0, volumetric: BULK }),
+        "Ogden" => {
+            let terms = [(2.0, 3.0), (-2.136_986_301, -2.0)];
+            let terms = terms.map(|(mu, alpha)| OgdenTerm { mu, alpha });
+            Law::Ogden(Ogden::new(&terms, BULK))
+        }
         "polyconvex barrier" => {
             Law::PolyconvexBarrier(PolyconvexBarrier { lambda: LAMBDA, mu: MU })
         }
@@ -58,7 +63,7 @@ fn law(name: &str) -> Law {
     }
 }
 
-fn rows() -> Vec<Row> {
+pub fn rows() -> Vec<Row> {
     let lines = TABLE.lines().filter(|line| !line.starts_with('#'));
     lines
         .map(|line| {
@@ -153,7 +158,7 @@ fn tissue_at_rest_has_no_stress_and_the_constants_of_the_linear_law() {
 }
 
 /// The positive root of a rising function in an interval.
-fn root(mut low: f64, mut high: f64, value: impl Fn(f64) -> f64) -> f64 {
+pub fn root(mut low: f64, mut high: f64, value: impl Fn(f64) -> f64) -> f64 {
     for _ in 0..80 {
         let middle = 0.5 * (low + high);
         *(if value(middle) < 0.0 { &mut low } else { &mut high }) = middle;

@@ -1,4 +1,5 @@
 //! Laws of one material point.
 
 pub mod anisotropy;
-mod hyperelastic;
+mod closed_forms;
+pub mod hyperelastic;

@@ -10,8 +10,8 @@ use mechanics::mesh::{CellShape, Vector, VolumeMesh};
 use mechanics::model::fem::assembly::Tissue;
 use mechanics::model::fem::cell_stiffness::Dilatation;
 use mechanics::model::fem::displacement::Problem;
-use mechanics::model::fem::displacement_pressure;
 use mechanics::model::fem::edge_nodes::EdgeNodes;
+use mechanics::model::fem::linear_system::LinearSystem;
 use mechanics::model::fem::quadratic;
 use mechanics::model::problem::LoadCase;
 use mechanics::model::reference_cell;
@@ -156,10 +156,9 @@ fn plain_tetrahedra_lose_their_order_at_nu_0_49() {
 #[test]
 fn halving_stabilised_tetrahedra_quarters_the_displacement_error_up_to_nu_0_4999() {
     let solve = |problem: &Problem| {
-        let solved =
-            displacement_pressure::solve_cases(problem, &[load_case(problem)], &Unobserved)
-                .unwrap();
-        solved.into_iter().next().unwrap().displacement
+        let system = LinearSystem::mixed(problem, &Unobserved).unwrap();
+        let mut solved = system.solve(&[load_case(problem)], &Unobserved).unwrap();
+        solved.remove(0).equilibrium.displacement
     };
     for nu in [0.49, 0.4999] {
         let error = |n| l2_error_of(n, CellShape::Tet4, nu, (|_| Dilatation::Pointwise, &solve));

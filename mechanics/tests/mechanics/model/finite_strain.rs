@@ -4,9 +4,9 @@ use mechanics::boundary::Hold;
 use mechanics::material::hyperelastic::{Law, NeoHookean, SaintVenantKirchhoff};
 use mechanics::mesh::sample::block;
 use mechanics::mesh::{CellShape, Vector, VolumeMesh};
-use mechanics::model::fem::finite_strain::FiniteStrain;
+use mechanics::model::fem::finite_strain::{Elements, FibreField, FiniteStrain};
 use mechanics::model::problem::{Equilibrium, LoadCase, ModelError};
-use mechanics::prediction::{Case, Load, Method, Plan, Prediction, Settings};
+use mechanics::prediction::{Case, ElementChoice, Load, Method, Plan, Prediction, Settings};
 use mechanics::progress::{Progress, Unobserved};
 use mechanics::solver::{SolverError, Tolerance};
 use nalgebra::{Matrix3, Rotation3};
@@ -24,16 +24,31 @@ fn neo_hookean(poisson_ratio: f64) -> Law {
     Law::NeoHookean(NeoHookean { lambda, mu })
 }
 
+/// Plain tetrahedra.
 fn rest(
     mesh: &VolumeMesh,
     law: Law,
     holds: &[Hold],
     progress: &dyn Progress,
 ) -> Result<Equilibrium, ModelError> {
+    rest_of(Elements::PLAIN, mesh, law, holds, progress)
+}
+
+fn rest_of(
+    elements: Elements,
+    mesh: &VolumeMesh,
+    law: Law,
+    holds: &[Hold],
+    progress: &dyn Progress,
+) -> Result<Equilibrium, ModelError> {
+    let one = vec![0; mesh.cells.len()];
     let problem = FiniteStrain {
         mesh,
         laws: &[law],
-        law_of_cell: &vec![0; mesh.cells.len()],
+        law_of_cell: &one,
+        pressure_of_cell: &one,
+        elements,
+        fibres: FibreField::default(),
         holds,
         tolerance: Tolerance { relative_residual: 1e-7, memory_mb: 1000.0 },
     };
@@ -52,34 +67,54 @@ fn least_det_f(mesh: &VolumeMesh, displacement: &[Vector]) -> f64 {
     cells.iter().map(|cell| cell.det_f).fold(f64::INFINITY, f64::min)
 }
 
+/// Each shape with the elements that there are for it.
+const EVERY: [(CellShape, Elements, ElementChoice); 6] = [
+    (CellShape::Tet4, Elements::PLAIN, ElementChoice::Plain),
+    (CellShape::Tet4, Elements::STABLE, ElementChoice::Stabilised),
+    (CellShape::Hex8, Elements::PLAIN, ElementChoice::Plain),
+    (CellShape::Hex8, Elements::STABLE, ElementChoice::Stabilised),
+    (CellShape::Wedge6, Elements::PLAIN, ElementChoice::Plain),
+    (CellShape::Wedge6, Elements::STABLE, ElementChoice::MeanDilatation),
+];
+
+/// Plain elements, which are the linear ones at rest.
 fn nonlinear() -> Settings {
-    Settings { method: Method::FemNonlinear, relative_residual: 1e-11, ..Settings::default() }
+    nonlinear_of(ElementChoice::Plain)
+}
+
+fn nonlinear_of(element: ElementChoice) -> Settings {
+    let method = Method::FemNonlinear;
+    Settings { method, element, relative_residual: 1e-11, ..Settings::default() }
 }
 
 #[test]
 fn an_affine_boundary_moves_the_inside_alike_however_large_it_is() {
     let stretch = Matrix3::new(1.5, 0.4, 0.0, -0.2, 0.8, 0.1, 0.0, 0.3, 1.1);
     let affine = |x: &Vector| stretch * x - x + Vector::new(3.0, 0.0, -2.0);
-    let mut mesh = block(Vector::new(9.0, 9.0, 9.0), [3, 3, 3], CellShape::Tet4);
-    let plan = on_the_boundary(&mut mesh, affine);
-    let case = case_of(mesh, material(15.0, 0.46));
-    let moved = solve(&case, &plan, &nonlinear());
-    let error = crate::scenes::largest_error(&case.volume, &moved.displacement, affine);
-    assert!(error < 1e-9, "{error}");
-    let det_f = stretch.determinant();
-    assert!(moved.deformation.iter().all(|cell| (cell.det_f - det_f).abs() < 1e-9));
+    for (shape, _, element) in EVERY {
+        let mut mesh = block(Vector::new(9.0, 9.0, 9.0), [3, 3, 3], shape);
+        let plan = on_the_boundary(&mut mesh, affine);
+        let case = case_of(mesh, material(15.0, 0.46));
+        let moved = solve(&case, &plan, &nonlinear_of(element));
+        let error = crate::scenes::largest_error(&case.volume, &moved.displacement, affine);
+        assert!(error < 1e-8, "{shape:?} {element:?}: {error}");
+        let det_f = stretch.determinant();
+        assert!(moved.deformation.iter().all(|cell| (cell.det_f - det_f).abs() < 1e-8));
+    }
 }
 
 #[test]
 fn tissue_that_is_turned_as_a_whole_stays_as_it_is() {
-    let mesh = block(Vector::new(30.0, 20.0, 10.0), [6, 4, 2], CellShape::Tet4);
     let turn = Rotation3::from_axis_angle(&Vector::x_axis(), 80_f64.to_radians());
     let turned = |x: &Vector| turn * x - x + Vector::new(0.0, 12.0, -5.0);
-    let ends = holds(&mesh, |x| (x.x < 1e-9 || x.x > 29.9).then(|| turned(x)));
-    let moved = rest(&mesh, neo_hookean(0.46), &ends, &Unobserved).unwrap();
-    let error = crate::scenes::largest_error(&mesh, &moved.displacement, turned);
-    assert!(error < 1e-5, "{error}");
-    assert!(moved.reactions.iter().all(|force| force.norm() < 1e-3));
+    for (shape, elements, _) in EVERY {
+        let mesh = block(Vector::new(30.0, 20.0, 10.0), [6, 4, 2], shape);
+        let ends = holds(&mesh, |x| (x.x < 1e-9 || x.x > 29.9).then(|| turned(x)));
+        let moved = rest_of(elements, &mesh, neo_hookean(0.46), &ends, &Unobserved).unwrap();
+        let error = crate::scenes::largest_error(&mesh, &moved.displacement, turned);
+        assert!(error < 1e-5, "{shape:?} {elements:?}: {error}");
+        assert!(moved.reactions.iter().all(|force| force.norm() < 1e-3));
+    }
 }
 
 /// A jaw lifts the middle of the bottom of a slab.
@@ -105,11 +140,8 @@ fn distance(a: &Prediction, b: &Prediction) -> f64 {
 
 #[test]
 fn what_linear_elements_leave_out_grows_with_the_square_of_the_movement() {
-    let linear = Settings {
-        element: mechanics::prediction::ElementChoice::Plain,
-        relative_residual: 1e-12,
-        ..Settings::default()
-    };
+    let linear =
+        Settings { element: ElementChoice::Plain, relative_residual: 1e-12, ..Settings::default() };
     let apart = |mm: f64| distance(&lifted(mm, &linear), &lifted(mm, &nonlinear()));
     let (small, twice) = (apart(0.02), apart(0.04));
     assert!(small < 1e-4 && (3.9..4.1).contains(&(twice / small)), "{small} {twice}");
@@ -117,7 +149,13 @@ fn what_linear_elements_leave_out_grows_with_the_square_of_the_movement() {
 
 #[test]
 fn a_bar_is_pulled_with_the_force_of_one_material_point() {
-    let mut mesh = block(Vector::new(10.0, 4.0, 4.0), [5, 2, 2], CellShape::Tet4);
+    for (shape, _, element) in EVERY {
+        pull_a_bar(shape, element);
+    }
+}
+
+fn pull_a_bar(shape: CellShape, element: ElementChoice) {
+    let mut mesh = block(Vector::new(10.0, 4.0, 4.0), [5, 2, 2], shape);
     let corner = |name: &str, axis: usize, mesh: &mut VolumeMesh| {
         let low =
             (0..).zip(&mesh.nodes).filter(|(_, x)| x[axis].abs() < 1e-9).map(|(node, _)| node);
@@ -134,18 +172,20 @@ fn a_bar_is_pulled_with_the_force_of_one_material_point() {
         hold("low", [None, None, Some(0.0)]),
         hold("x_max", [Some(5.0), None, None]),
     ];
-    let pulled = solve(&case, &Plan { prescribed, ..Plan::default() }, &nonlinear());
+    let pulled = solve(&case, &Plan { prescribed, ..Plan::default() }, &nonlinear_of(element));
     // REMAINING, table T2: 5.359007 kPa and a lateral stretch of .827750 at 1.5, on 16 mm^2.
     let force = pulled.condition_reactions.iter().find(|one| one.pointer == "/plan/prescribed/3");
     let force = force.unwrap().force.x;
-    assert!((force - 16.0 * 5.359007).abs() < 1e-4, "{force}");
+    assert!((force - 16.0 * 5.359007).abs() < 1e-4, "{shape:?} {element:?}: {force}");
     let side = pulled.displacement.iter().map(|u| u.y).fold(0.0, f64::min);
     assert!((side - 4.0 * (0.827750 - 1.0)).abs() < 1e-5, "{side}");
 }
 
-/// 100 x 100 x 20 mm, a patch of its bottom moved by 26.9 mm and turned by 15 degrees times a share, with or without a free
-/// ring of 25 mm around it (NONLINEAR: blocks B and A).
-fn hard_block(cells: [usize; 3], share: f64, has_ring: bool) -> (VolumeMesh, Vec<Hold>) {
+/// 100 x 100 x 20 mm, a patch of its bottom moved by 26.9 mm and turned by 15 degrees times a share, with a free ring
+/// around it, of 25 mm for block B and of none for block A of NONLINEAR.
+const RING: f64 = 25.0;
+
+fn hard_block(cells: [usize; 3], share: f64, ring_mm: f64) -> (VolumeMesh, Vec<Hold>) {
     let mesh = block(Vector::new(100.0, 100.0, 20.0), cells, CellShape::Tet4);
     let turn = Rotation3::from_axis_angle(&Vector::y_axis(), (15.0 * share).to_radians());
     let pivot = Vector::new(50.0, 50.0, 0.0);
@@ -155,7 +195,7 @@ fn hard_block(cells: [usize; 3], share: f64, has_ring: bool) -> (VolumeMesh, Vec
             (true, 0.0) => {
                 Some(turn * (x - pivot) + pivot - x + Vector::new(25.0, 0.0, 10.0) * share)
             }
-            (true, distance) if !has_ring || distance > 25.0 => Some(Vector::zeros()),
+            (true, distance) if distance > ring_mm => Some(Vector::zeros()),
             _ => None,
         }
     });
@@ -164,11 +204,11 @@ fn hard_block(cells: [usize; 3], share: f64, has_ring: bool) -> (VolumeMesh, Vec
 
 #[test]
 fn the_hard_block_comes_to_rest_and_no_cell_turns_over() {
-    for (poisson_ratio, has_ring, most) in [(0.46, true, 15), (0.49, true, 25), (0.46, false, 25)] {
-        let (mesh, held) = hard_block([20, 20, 4], 1.0, has_ring);
+    for (poisson_ratio, ring, most) in [(0.46, RING, 15), (0.49, RING, 25), (0.46, 0.0, 25)] {
+        let (mesh, held) = hard_block([20, 20, 4], 1.0, ring);
         let moved = rest(&mesh, neo_hookean(poisson_ratio), &held, &Unobserved).unwrap();
         let steps = moved.solver.iterations;
-        assert!(steps <= most, "{poisson_ratio} {has_ring}: {steps} steps");
+        assert!(steps <= most, "{poisson_ratio} {ring}: {steps} steps");
         assert!(least_det_f(&mesh, &moved.displacement) > 0.1);
         // The tail is quadratic: the last step takes far more than the one before.
         let [.., third, second, last] = moved.solver.history[..] else { unreachable!() };
@@ -177,8 +217,77 @@ fn the_hard_block_comes_to_rest_and_no_cell_turns_over() {
 }
 
 #[test]
+fn pressures_take_the_hard_block_to_rest_in_as_many_steps_for_every_poisson_ratio() {
+    let steps: Vec<usize> = [0.46, 0.49, 0.499, 0.4999]
+        .into_iter()
+        .map(|poisson_ratio| {
+            let (mesh, held) = hard_block([20, 20, 4], 1.0, RING);
+            let law = neo_hookean(poisson_ratio);
+            let moved = rest_of(Elements::STABLE, &mesh, law, &held, &Unobserved).unwrap();
+            assert!(least_det_f(&mesh, &moved.displacement) > 0.1);
+            let newton = moved.solver.newton.unwrap();
+            assert!(newton.bulk_in_cells == 1.0 && newton.is_stable.is_none());
+            moved.solver.iterations
+        })
+        .collect();
+    let (least, most) = (steps.iter().min().unwrap(), steps.iter().max().unwrap());
+    assert!(*most <= 20 && *most <= least + 5, "{steps:?}");
+}
+
+#[test]
+fn pressures_take_even_tissue_without_a_free_ring_to_rest() {
+    for poisson_ratio in [0.46, 0.4999] {
+        let (mesh, held) = hard_block([20, 20, 4], 1.0, 0.0);
+        let law = neo_hookean(poisson_ratio);
+        let moved = rest_of(Elements::STABLE, &mesh, law, &held, &Unobserved).unwrap();
+        assert!(least_det_f(&mesh, &moved.displacement) > 0.05);
+    }
+}
+
+#[test]
+fn hexahedra_and_wedges_bear_the_hard_block_too() {
+    for shape in [CellShape::Hex8, CellShape::Wedge6] {
+        for ring in [RING, 0.0] {
+            let (tetrahedra, held) = hard_block([20, 20, 4], 1.0, ring);
+            let mesh = block(Vector::new(100.0, 100.0, 20.0), [20, 20, 4], shape);
+            assert_eq!(mesh.nodes, tetrahedra.nodes);
+            let moved =
+                rest_of(Elements::STABLE, &mesh, neo_hookean(0.46), &held, &Unobserved).unwrap();
+            let newton = moved.solver.newton.unwrap();
+            assert!(newton.least_det_f > 0.01, "{shape:?}: {}", newton.least_det_f);
+        }
+    }
+}
+
+/// The mean distance of the upper sides of two blocks, one of which has nodes in between.
+fn apart_on_top(coarse: (&VolumeMesh, &[Vector]), fine: (&VolumeMesh, &[Vector])) -> f64 {
+    let key = |x: &Vector| -> [i64; 3] { x.map(|v| (v * 1e6).round() as i64).into() };
+    let of_place: std::collections::BTreeMap<[i64; 3], Vector> =
+        (fine.0.nodes.iter()).zip(fine.1).map(|(x, u)| (key(x), *u)).collect();
+    let top = coarse.0.nodes.iter().zip(coarse.1).filter(|(x, _)| x.z > 19.9);
+    let apart: Vec<f64> = top.map(|(x, u)| (u - of_place[&key(x)]).norm()).collect();
+    apart.iter().sum::<f64>() / apart.len() as f64
+}
+
+#[test]
+fn pressures_come_nearer_to_the_finest_mesh_than_plain_tetrahedra_by_far() {
+    let of = |cells: [usize; 3], elements: Elements| {
+        // Both meshes hold what lies 30 mm or more from the patch.
+        let (mesh, held) = hard_block(cells, 0.5, 29.0);
+        let moved = rest_of(elements, &mesh, neo_hookean(0.49), &held, &Unobserved).unwrap();
+        (mesh, moved.displacement)
+    };
+    let (fine, finest) = of([40, 40, 8], Elements::STABLE);
+    let [plain, stable] = [Elements::PLAIN, Elements::STABLE].map(|elements| {
+        let (coarse, moved) = of([20, 20, 4], elements);
+        apart_on_top((&coarse, &moved), (&fine, &finest))
+    });
+    assert!(plain > 3.0 * stable && stable < 0.2, "{plain} {stable}");
+}
+
+#[test]
 fn the_same_block_has_the_same_bits_on_one_thread_and_on_two() {
-    let (mesh, held) = hard_block([20, 20, 4], 0.5, true);
+    let (mesh, held) = hard_block([20, 20, 4], 0.5, RING);
     let on = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| rest(&mesh, neo_hookean(0.46), &held, &Unobserved).unwrap().displacement)
@@ -188,7 +297,7 @@ fn the_same_block_has_the_same_bits_on_one_thread_and_on_two() {
 
 #[test]
 fn a_search_that_is_stopped_ends() {
-    let (mesh, held) = hard_block([10, 10, 2], 1.0, true);
+    let (mesh, held) = hard_block([10, 10, 2], 1.0, RING);
     let stopped = rest(&mesh, neo_hookean(0.46), &held, &StopsAfter::iterations(3));
     assert!(matches!(stopped, Err(ModelError::Solver(SolverError::Stopped))));
 }
@@ -209,7 +318,7 @@ fn bones_that_fold_a_cell_between_them_are_refused_before_anything_is_solved() {
 fn a_law_that_collapses_is_told_where_it_came_to_a_standstill() {
     let (lambda, mu) = lame(0.46);
     let law = Law::SaintVenantKirchhoff(SaintVenantKirchhoff { lambda, mu });
-    let (mesh, held) = hard_block([20, 20, 4], 1.0, true);
+    let (mesh, held) = hard_block([20, 20, 4], 1.0, RING);
     let Err(ModelError::Standstill { made, least_det_f, .. }) =
         rest(&mesh, law, &held, &Unobserved)
     else {
@@ -226,11 +335,8 @@ fn a_load_bends_tissue_as_linear_elements_say_where_it_is_small() {
         loads: vec![Load::Gravity { acceleration: Vector::new(0.0, 0.0, -1e-6) }],
         ..Plan::default()
     };
-    let linear = Settings {
-        element: mechanics::prediction::ElementChoice::Plain,
-        relative_residual: 1e-12,
-        ..Settings::default()
-    };
+    let linear =
+        Settings { element: ElementChoice::Plain, relative_residual: 1e-12, ..Settings::default() };
     let [straight, bent] = [linear, nonlinear()].map(|settings| solve(&case, &plan, &settings));
     let most = straight.displacement.iter().map(|u| u.norm()).fold(0.0, f64::max);
     assert!(most > 0.0 && distance(&straight, &bent) < 1e-3 * most);

@@ -2,8 +2,12 @@
 
 mod convergence;
 mod finite_strain;
+mod finite_strain_laws;
+mod force_series;
+mod linear_system;
 mod mass_spring;
 mod mass_tensor;
+mod mass_tensor_nonlinear;
 mod membrane;
 mod spline_stepping;
 mod spline_volume;

@@ -1,5 +1,6 @@
 //! Predictions against closed forms, published numbers and each other.
 
+mod adequate;
 mod closed_form;
 mod conditions;
 pub mod elements;
@@ -7,6 +8,8 @@ mod fibres;
 mod jump;
 mod moving_walls;
 mod no_free_node;
+mod nonlinearity;
+mod numerical_error;
 mod patch;
 mod skin;
 mod slab_table;

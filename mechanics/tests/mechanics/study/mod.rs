@@ -1,5 +1,6 @@
 //! Studies, their statistics, and the map of failures.
 
 mod paired;
+mod random;
 mod stability;
 mod studies;

@@ -237,7 +237,11 @@ fn a_probe_out_of_time_is_a_failure_of_its_budget() {
 fn parts_that_hang_on_two_nodes_or_fewer_are_refused_with_their_place() {
     let found = mapped(&variants(), &["loose_parts"]);
     for variant in 0..found.variants.len() {
-        assert_eq!(at(&found, variant, 3.0).verdict, Verdict::Good);
+        let joined = at(&found, variant, 3.0);
+        // The mesh is coarse, and the answer says so.
+        assert!(matches!(joined.verdict, Verdict::Good | Verdict::Cautious), "{joined:?}");
+        let told = joined.answer.iter().flat_map(|answer| &answer.warnings);
+        assert!(told.into_iter().all(|warning| warning.code == "numerical-error-large"));
         for (shared, free) in [(2.0, "1 of the 6"), (1.0, "3 of the 6"), (0.0, "6 of the 6")] {
             let refusal = at(&found, variant, shared).refusal.clone().unwrap();
             assert_eq!(

@@ -1,36 +1,62 @@
-//! Finite elements at finite strain: four-node tetrahedra of any hyperelastic law, brought to rest by Newton's method.
+//! Finite elements at finite strain: cells of any hyperelastic law, brought to rest by Newton's method.
 //!
 //! At rest the internal forces f_a = sum_cells V P(F) g_a balance those that act, F = sum_a x_a g_a^T, P = dW/dF. What is held
-//! and what acts is advanced in the same steps that bring the tissue to rest (NONLINEAR, section 1).
+//! and what acts is advanced in the same steps that bring the tissue to rest (NONLINEAR, section 1). Tetrahedra with pressures
+//! and cells with mean dilatation do not lock (`elements`).
 
-mod cells;
+mod balance;
+mod bricks;
+mod direction;
+mod elements;
+mod fibres;
 mod holds;
 mod newton;
+mod pressures;
+mod problem;
+mod simplices;
 mod step_length;
+mod tissue;
+
+use std::collections::BTreeMap;
 
 use nalgebra::Matrix3;
 
 use crate::boundary::Hold;
-use crate::material::hyperelastic::Law;
-use crate::mesh::{Vector, VolumeMesh};
+use crate::mesh::{CellShape, Vector, Warning};
 use crate::model::dofs::{Constrained, nodes_of_cells, number};
 use crate::model::fem::cell_stiffness::tetrahedron;
 use crate::model::fem::displacement::check_finite;
 use crate::model::problem::{Equilibrium, LoadCase, ModelError};
 use crate::progress::{Phase, Progress};
-use crate::solver::Tolerance;
-use cells::Cells;
+use crate::solver::NewtonReport;
+use direction::{Directions, Tally};
+pub use elements::Elements;
+use elements::Kept;
+pub use fibres::FibreField;
 use holds::along_holds;
-use newton::{Newton, Rest};
+use newton::{Ending, Newton, Question, Rest, Start};
+pub use problem::FiniteStrain;
+use tissue::Tissue;
 
-/// Tetrahedra of hyperelastic tissue, and what holds them.
-pub struct FiniteStrain<'a> {
-    pub mesh: &'a VolumeMesh,
-    pub laws: &'a [Law],
-    /// For each cell its entry in `laws`.
-    pub law_of_cell: &'a [u16],
-    pub holds: &'a [Hold],
-    pub tolerance: Tolerance,
+/// Tissue whose tangent was not positive definite on the way may have creased one way or another.
+fn another_rest(newton: &NewtonReport) -> Option<Warning> {
+    let is_unstable = newton.is_stable == Some(false);
+    if newton.indefinite_steps == 0 && !is_unstable {
+        return None;
+    }
+    let state = if is_unstable {
+        "the state that was found is not stable"
+    } else {
+        "one of them was found"
+    };
+    let detail = format!(
+        "along {} of {} steps the tissue was not stable: it may rest in several ways, and {state}",
+        newton.indefinite_steps,
+        newton.path.len().saturating_sub(1)
+    );
+    let warning = Warning::new("another-equilibrium", detail);
+    let warning = warning.with("indefinite_steps", newton.indefinite_steps as f64);
+    Some(warning.with("energy_mn_mm", newton.energy))
 }
 
 impl FiniteStrain<'_> {
@@ -44,11 +70,10 @@ impl FiniteStrain<'_> {
         self.check_held_cells(case)?;
         let numbering = number(&nodes_of_cells(self.mesh), &self.mesh.nodes, self.holds);
         let constrained = Constrained { holds: self.holds, numbering: &numbering };
-        let cells = Cells::new(self.mesh, &numbering, self.laws, self.law_of_cell)?;
-        progress.phase(Phase::Solve);
+        let tolerance = self.tolerance;
+        let question = Question { constrained: &constrained, case, tolerance, progress };
         let nodes = &self.mesh.nodes;
-        let newton = Newton::new(&cells, &constrained, case, self.tolerance, progress);
-        let Rest { positions, forces, report } = newton.solve()?;
+        let Rest { positions, forces, report } = self.rest(question)?;
 
         let places = numbering.layout.place.iter().zip(nodes);
         let reaction = |hold: &Hold| {
@@ -58,21 +83,56 @@ impl FiniteStrain<'_> {
         let equilibrium = Equilibrium {
             displacement: places.map(|(&row, rest)| positions[row as usize] - rest).collect(),
             reactions: self.holds.iter().map(reaction).collect(),
+            warnings: report.newton.as_ref().and_then(another_rest).into_iter().collect(),
             solver: report,
-            warnings: Vec::new(),
         };
         check_finite(std::slice::from_ref(&equilibrium))?;
         Ok(equilibrium)
     }
 
-    /// No movement of bones may turn a cell inside out all of whose nodes they hold.
+    /// Brings the tissue to rest, with more of the bulk modulus in the cells where the usual share jams.
+    fn rest(&self, question: Question) -> Result<Rest, ModelError> {
+        let numbering = question.constrained.numbering;
+        let mut start = Start {
+            x: numbering.by_row(&self.mesh.nodes),
+            log_volumes: Vec::new(),
+            made: 0.0,
+            history: Vec::new(),
+            path: Vec::new(),
+            tally: Tally::default(),
+        };
+        for (kept, may_jam) in [(Kept::FIRST, true), (Kept::MORE, false)] {
+            let tissue = Tissue::new(self, numbering, kept)?;
+            let pressures = tissue.pressures(self, kept, self.axes_by_row(question));
+            let memory_mb = self.tolerance.memory_mb - tissue.megabytes();
+            question.progress.phase(Phase::Solve);
+            let directions = Directions::new(pressures, start.tally, memory_mb);
+            match Newton::new(&tissue, directions, question, start).solve(may_jam)? {
+                Ending::Rest(rest) => return Ok(rest),
+                Ending::Jam(reached) => start = reached,
+            }
+        }
+        unreachable!("the last share may not jam")
+    }
+
+    /// The axes of rows that have their own.
+    fn axes_by_row(&self, question: Question) -> BTreeMap<u32, Matrix3<f64>> {
+        let turned = self.holds.iter().filter(|hold| !hold.is_aligned());
+        let row = |node: u32| question.constrained.numbering.row(node) as u32;
+        turned.map(|hold| (row(hold.node), *hold.axes())).collect()
+    }
+
+    /// No movement of bones may turn a tetrahedron inside out all of whose nodes they hold.
     fn check_held_cells(&self, case: &LoadCase) -> Result<(), ModelError> {
         let mut held: Vec<Option<Vector>> = vec![None; self.mesh.nodes.len()];
         for (hold, value) in self.holds.iter().zip(&case.held).filter(|(hold, _)| hold.count() == 3)
         {
             held[hold.node as usize] = Some(hold.axes() * value);
         }
-        for (cell, (_, nodes)) in self.mesh.cells.iter().enumerate() {
+        for (cell, (shape, nodes)) in self.mesh.cells.iter().enumerate() {
+            if shape != CellShape::Tet4 {
+                continue;
+            }
             let moved: Option<Vec<Vector>> =
                 nodes.iter().map(|&node| held[node as usize]).collect();
             let Some(moved) = moved else { continue };

@@ -1,0 +1,289 @@
+//! Estimates of the discretisation error against true errors, as the table of docs/estimates.md:
+//! `cargo bench --bench estimates [-- SCENE …]`.
+//!
+//! One row for each scene and element: the mean and 95th percentile of the true error over the skin nodes, the effectivity
+//! of both (estimate over true), what is left of the mean once the estimate is added, and the processor time of the
+//! estimate as a share of that of assembly and solution. The truth is that of the row's last column. Scenes of the shared
+//! data are left out, aloud, where they are not here.
+
+mod measure;
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use measure::{process, shell};
+use mechanics::boundary::NodeSelection;
+use mechanics::format::{Mesh, ReadLimits, read};
+use mechanics::material::LinearElastic;
+use mechanics::mesh::refinement::refine;
+use mechanics::mesh::{CellShape, Cells, Vector, VolumeMesh};
+use mechanics::model::fem::discretisation_error::Estimate;
+use mechanics::plan::{PlannedSegment, RigidMovement};
+use mechanics::prediction::{Case, CaseSegment, ElementChoice, Plan, Scene, Settings};
+use mechanics::progress::Unobserved;
+use mechanics::study::scenes::{half_head, slab, slab_hex, sphere_of};
+
+/// What is held for true of a row.
+#[derive(Clone, Copy)]
+struct Truth {
+    /// How often every edge is halved.
+    halved: u32,
+    element: ElementChoice,
+}
+
+/// A case, the elements whose error is estimated, and the truth.
+struct Row {
+    name: String,
+    case: Case,
+    plan: Plan,
+    elements: Vec<ElementChoice>,
+    truth: Truth,
+}
+
+/// A name, and what makes its rows.
+type Entry = (&'static str, fn() -> Vec<Row>);
+
+const SCENES: [Entry; 6] = [
+    ("slab", slabs),
+    ("half_head", half_heads),
+    ("sphere", spheres),
+    ("slab_hex", slabs_hex),
+    ("face", faces),
+    ("shell", shells),
+];
+
+const TETRAHEDRA: [ElementChoice; 2] = [ElementChoice::Plain, ElementChoice::Stabilised];
+
+fn main() {
+    let asked: Vec<String> = std::env::args().skip(1).filter(|a| !a.starts_with("--")).collect();
+    println!(
+        "| scene | elements | error mean / p95 mm | effectivity mean / p95 | mean left mm | share of cpu % | truth |"
+    );
+    println!("| --- | --- | --- | --- | --- | --- | --- |");
+    for (name, rows) in SCENES {
+        if asked.is_empty() || asked.iter().any(|asked| asked == name) {
+            rows().iter().for_each(measure_row);
+        }
+    }
+}
+
+fn measure_row(row: &Row) {
+    let Some(truth) = true_skin(row) else {
+        return println!("| {} | has no truth: its cells are inverted |", row.name);
+    };
+    for &element in &row.elements {
+        let settings = Settings { element, ..Settings::default() };
+        let scene = Scene::new(&row.case, &row.plan, &settings).expect("the scene is held");
+        let begin = process::cpu_seconds();
+        let system = scene.assemble(&Unobserved).expect("sound cells").expect("first order");
+        let solved = system.solve(&[scene.load_case()], &Unobserved).expect("it converges");
+        let between = process::cpu_seconds();
+        let estimate = Estimate {
+            tissue: scene.tissue(),
+            system: &system,
+            boundary: &scene.boundary,
+            loads: &scene.distributed,
+        };
+        let error = estimate.of(&solved[0], &Unobserved).expect("an estimate");
+        let (solve_s, estimate_s) = (between - begin, process::cpu_seconds() - between);
+        let solution = &solved[0].equilibrium.displacement;
+        let nodes = scene.skin.nodes();
+        let missing: Vec<Vector> = nodes.iter().map(|&node| error.missing[node as usize]).collect();
+        let lacks: Vec<Vector> =
+            nodes.iter().zip(&truth).map(|(&node, u)| u - solution[node as usize]).collect();
+        let left: Vec<Vector> = lacks.iter().zip(&missing).map(|(a, b)| a - b).collect();
+        let (true_error, estimated) = (Measure::of(&lacks), Measure::of(&missing));
+        println!(
+            "| {} | {} | {:.4} / {:.4} | {:.2} / {:.2} | {:.4} | {:.0} | {:?} {}x |",
+            row.name,
+            scene.elements().join(", "),
+            true_error.mean,
+            true_error.p95,
+            estimated.mean / true_error.mean,
+            estimated.p95 / true_error.p95,
+            Measure::of(&left).mean,
+            100.0 * estimate_s / solve_s,
+            row.truth.element,
+            row.truth.halved,
+        );
+    }
+}
+
+/// Of lengths of vectors, in mm.
+struct Measure {
+    mean: f64,
+    p95: f64,
+}
+
+impl Measure {
+    fn of(vectors: &[Vector]) -> Self {
+        let mut lengths: Vec<f64> = vectors.iter().map(Vector::norm).collect();
+        lengths.sort_by(f64::total_cmp);
+        let mean = lengths.iter().sum::<f64>() / lengths.len() as f64;
+        Measure { mean, p95: lengths[(lengths.len() * 95).div_ceil(100) - 1] }
+    }
+}
+
+/// The displacement of the skin nodes of the row's mesh, which keep their numbers when edges are halved.
+fn true_skin(row: &Row) -> Option<Vec<Vector>> {
+    let nodes = Scene::new(&row.case, &row.plan, &Settings::default()).expect("it is held");
+    let mut case = row.case.clone();
+    for _ in 0..row.truth.halved {
+        case.volume = Arc::new(refine(&case.volume));
+    }
+    let element = row.truth.element;
+    let settings = Settings { element, memory_mb: 12_000.0, ..Settings::default() };
+    let scene = Scene::new(&case, &row.plan, &settings).ok()?;
+    let solved = scene.solve(&Unobserved).ok()?.displacement;
+    Some(nodes.skin.nodes().iter().map(|&node| solved[node as usize]).collect())
+}
+
+fn slabs() -> Vec<Row> {
+    let scene = slab();
+    let row = |materials: &mechanics::study::Materials| Row {
+        name: format!("slab, {}", materials.name),
+        case: Case { materials: materials.by_region.clone(), ..scene.case.clone() },
+        plan: scene.plans[0].1.clone(),
+        elements: TETRAHEDRA.to_vec(),
+        truth: Truth { halved: 2, element: ElementChoice::Quadratic },
+    };
+    scene.materials.iter().map(row).collect()
+}
+
+fn half_heads() -> Vec<Row> {
+    let scene = half_head();
+    let plans = scene.plans.iter().filter(|(name, _)| name.contains("4 mm"));
+    let row = |(name, plan): &(String, Plan)| Row {
+        name: format!("half head, {name}"),
+        case: scene.case.clone(),
+        plan: plan.clone(),
+        elements: TETRAHEDRA.to_vec(),
+        truth: Truth { halved: 1, element: ElementChoice::Quadratic },
+    };
+    plans.map(row).collect()
+}
+
+fn spheres() -> Vec<Row> {
+    let row = |(shape, elements, truth): (CellShape, Vec<ElementChoice>, Truth)| {
+        let scene = sphere_of(2, 8, shape);
+        Row {
+            name: format!("sphere {}", shape.name()),
+            case: scene.case,
+            plan: scene.plans[0].1.clone(),
+            elements,
+            truth,
+        }
+    };
+    let finer = |halved, element| Truth { halved, element };
+    let mean = ElementChoice::MeanDilatation;
+    vec![
+        row((CellShape::Tet4, TETRAHEDRA.to_vec(), finer(1, ElementChoice::Quadratic))),
+        row((CellShape::Hex8, vec![mean], finer(2, mean))),
+        row((CellShape::Wedge6, vec![mean], finer(2, mean))),
+    ]
+}
+
+fn slabs_hex() -> Vec<Row> {
+    let scene = slab_hex();
+    let row = |materials: &mechanics::study::Materials| Row {
+        name: format!("slab hex, {}", materials.name),
+        case: Case { materials: materials.by_region.clone(), ..scene.case.clone() },
+        plan: scene.plans[0].1.clone(),
+        elements: vec![ElementChoice::Plain, ElementChoice::MeanDilatation],
+        truth: Truth { halved: 3, element: ElementChoice::MeanDilatation },
+    };
+    scene.materials.iter().map(row).collect()
+}
+
+fn shells() -> Vec<Row> {
+    let Some(mesh) = shell::load("30k") else { return Vec::new() };
+    let row = |material: &str| {
+        let (case, plan) = shell::standard_load(&mesh, shell::materials(material));
+        Row {
+            name: format!("shell 30k ({material})"),
+            case,
+            plan,
+            elements: TETRAHEDRA.to_vec(),
+            truth: Truth { halved: 0, element: ElementChoice::Quadratic },
+        }
+    };
+    ["a", "c", "d", "b"].into_iter().map(row).collect()
+}
+
+/// The subject's and the template's face, whole and split into tetrahedra: the jaw 5 mm forward.
+fn faces() -> Vec<Row> {
+    let mut rows = Vec::new();
+    for (name, jaw, skull, forward) in [
+        ("subject", "jaw_attached", "skull_fixed_orig", -Vector::x()),
+        ("template", "mandible_fixed", "skull_nose_fixed", Vector::y()),
+    ] {
+        let Some(mesh) = load(&format!("face/{name}_face.vtu")) else { continue };
+        let mean = ElementChoice::MeanDilatation;
+        let split = tetrahedra(&mesh);
+        let whole = Truth { halved: 1, element: mean };
+        for (title, mesh, elements, truth) in [
+            (name.to_owned(), mesh, vec![mean], whole),
+            (
+                format!("{name}, split"),
+                split,
+                TETRAHEDRA.to_vec(),
+                Truth { halved: 0, element: ElementChoice::Quadratic },
+            ),
+        ] {
+            let set = |name: &str| NodeSelection::NodeSet(name.to_owned());
+            let material = LinearElastic::new(15.0, 0.49, 1.0).expect("within the ranges");
+            let case = Case {
+                volume: Arc::new(mesh),
+                segments: vec![CaseSegment { name: "jaw".to_owned(), nodes: set(jaw) }],
+                fixed: vec![set(skull)],
+                materials: BTreeMap::from([("*".to_owned(), material)]),
+                ..Case::default()
+            };
+            let movement =
+                RigidMovement::about_pivot(Vector::zeros(), Vector::zeros(), forward * 5.0);
+            let segments = vec![PlannedSegment { name: "jaw".to_owned(), movement }];
+            let plan = Plan { segments, ..Plan::default() };
+            rows.push(Row { name: title, case, plan, elements, truth });
+        }
+    }
+    rows
+}
+
+fn load(path: &str) -> Option<VolumeMesh> {
+    let root = std::env::var_os("FACIES_SHARED").map_or_else(
+        || PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../shared"),
+        PathBuf::from,
+    );
+    let path = root.join("data").join(path);
+    let Ok(bytes) = std::fs::read(&path) else {
+        println!("skipped: {} is not here", path.display());
+        return None;
+    };
+    match read(&bytes, &ReadLimits::default()).expect("the faces are valid").mesh {
+        Mesh::Volume(mesh) => Some(mesh),
+        _ => panic!("a face is a volume mesh"),
+    }
+}
+
+/// Every cell cut into the tetrahedra between its lowest node and the faces without it, whose quadrilaterals are cut from
+/// their lowest node: cells that share a face cut it alike.
+fn tetrahedra(mesh: &VolumeMesh) -> VolumeMesh {
+    let mut cells = Cells::default();
+    for (shape, nodes) in mesh.cells.iter() {
+        let lowest = *nodes.iter().min().expect("a cell has nodes");
+        for face in shape.faces() {
+            let mut face: Vec<u32> = face.iter().map(|&corner| nodes[corner]).collect();
+            if face.contains(&lowest) {
+                continue;
+            }
+            let first = (0..face.len()).min_by_key(|&k| face[k]).unwrap_or_default();
+            face.rotate_left(first);
+            for pair in face[1..].windows(2) {
+                cells.push(CellShape::Tet4, &[face[0], pair[1], pair[0], lowest]);
+            }
+        }
+    }
+    let VolumeMesh { nodes, node_sets, .. } = mesh.clone();
+    VolumeMesh { nodes, cells, node_sets, ..VolumeMesh::default() }
+}

@@ -1,0 +1,95 @@
+//! The cells of an answer with functions on their edges.
+
+use super::edge_equations::EdgeEquation;
+use super::edge_functions::MAX_EDGES;
+use super::points::EnrichedCell;
+use super::simplex::{CornerPressures, Simplex};
+use crate::element::MAX_NODES;
+use crate::mesh::{CellShape, Vector};
+use crate::model::fem::assembly::Tissue;
+use crate::model::fem::displacement_pressure::{PressureCells, beside_pressure};
+use crate::model::fem::linear_system::{LinearSystem, Solved};
+use crate::model::problem::InvertedCell;
+
+/// Tissue, and an answer of it.
+pub(super) struct Cells<'a> {
+    tissue: &'a Tissue<'a>,
+    pub displacement: &'a [Vector],
+    pressures: &'a [f64],
+    /// The numbers of the pressures of its corners, for each cell that has them.
+    numbers: Vec<Option<[u32; 4]>>,
+}
+
+/// Forces on the corners of a cell, and the volumes of its pressures; zero where it has none.
+type AtCorners = ([Vector; MAX_NODES], [f64; 4]);
+
+/// One cell with functions on its edges.
+enum Cell {
+    Simplex(Simplex),
+    Points(EnrichedCell),
+}
+
+impl<'a> Cells<'a> {
+    pub fn new(tissue: &'a Tissue<'a>, system: &LinearSystem, solved: &'a Solved) -> Self {
+        let mut numbers = vec![None; tissue.mesh.cells.len()];
+        if let Some(all) = &system.pressures {
+            let PressureCells { cells, pressures, .. } = &all.cells;
+            for (&cell, own) in cells.iter().zip(pressures) {
+                numbers[cell as usize] = Some(*own);
+            }
+        }
+        let displacement = &solved.equilibrium.displacement;
+        Cells { tissue, displacement, pressures: &solved.pressures, numbers }
+    }
+
+    pub fn pressure_numbers(&self, cell: usize) -> &Option<[u32; 4]> {
+        &self.numbers[cell]
+    }
+
+    /// r and D of each edge of a cell.
+    pub fn equations(&self, cell: usize) -> Result<[EdgeEquation; MAX_EDGES], InvertedCell> {
+        let mut moved = [Vector::zeros(); MAX_NODES];
+        let nodes = self.tissue.mesh.cells.nodes(cell);
+        for (own, &node) in moved.iter_mut().zip(nodes) {
+            *own = self.displacement[node as usize];
+        }
+        let moved = &moved[..nodes.len()];
+        Ok(match self.cell(cell)? {
+            Cell::Simplex(simplex) => simplex.equations(moved),
+            Cell::Points(points) => points.equations(moved),
+        })
+    }
+
+    /// What coefficients of its edges do to the corners of a cell.
+    pub fn at_corners(
+        &self,
+        cell: usize,
+        of_edges: &[Vector; MAX_EDGES],
+    ) -> Result<AtCorners, InvertedCell> {
+        Ok(match self.cell(cell)? {
+            Cell::Simplex(simplex) => {
+                (simplex.forces(of_edges), simplex.volumes(of_edges).unwrap_or_default())
+            }
+            Cell::Points(points) => (points.forces(of_edges), [0.0; 4]),
+        })
+    }
+
+    fn cell(&self, cell: usize) -> Result<Cell, InvertedCell> {
+        let (mesh, tensor) = (self.tissue.mesh, self.tissue.tensor(cell));
+        let shape = mesh.cells.shape(cell);
+        match shape {
+            CellShape::Tet4 => {
+                let pressures = self.numbers[cell].map(|numbers| CornerPressures {
+                    values: numbers.map(|number| self.pressures[number as usize]),
+                    mu: tensor.pressure_part().mu,
+                });
+                let own = if pressures.is_some() { beside_pressure(tensor) } else { tensor };
+                Simplex::new(mesh, cell, own, pressures).map(Cell::Simplex)
+            }
+            CellShape::Hex8 | CellShape::Wedge6 => {
+                let dilatation = (self.tissue.dilatation)(shape);
+                EnrichedCell::new(mesh, cell, &tensor, dilatation).map(Cell::Points)
+            }
+        }
+    }
+}

@@ -1,0 +1,140 @@
+//! A cell of several quadrature points with functions on its edges: hexahedra and wedges.
+//!
+//! With mean dilatation the volume change of the edge functions is taken as its mean over the cell too, as that of the corners
+//! is (`cell_stiffness`).
+
+use nalgebra::Matrix3;
+
+use super::edge_equations::EdgeEquation;
+use super::edge_functions::{Corners, MAX_EDGES, at_point};
+use crate::element::MAX_NODES;
+use crate::material::ElasticTensor;
+use crate::mesh::{CellShape, Vector, VolumeMesh};
+use crate::model::fem::cell_stiffness::Dilatation;
+use crate::model::problem::InvertedCell;
+use crate::model::reference_cell;
+use crate::solver::Block;
+
+/// Gradients at a point, or their means over a cell, and the volume that it stands for in mm³.
+struct Gradients {
+    corners: [Vector; MAX_NODES],
+    edges: [Vector; MAX_EDGES],
+    volume: f64,
+}
+
+/// Places at which gradients are taken, with the stiffness that counts there.
+pub(super) struct EnrichedCell {
+    shape: CellShape,
+    points: Vec<(Gradients, ElasticTensor)>,
+}
+
+impl EnrichedCell {
+    pub fn new(
+        mesh: &VolumeMesh,
+        cell: usize,
+        tensor: &ElasticTensor,
+        dilatation: Dilatation,
+    ) -> Result<Self, InvertedCell> {
+        let shape = mesh.cells.shape(cell);
+        let corners: Vec<Vector> = mesh.corners(cell).collect();
+        let (at_points, of_mean) = match dilatation {
+            Dilatation::Pointwise => (*tensor, None),
+            Dilatation::Mean => {
+                let (of_shape, of_volume) = tensor.split_volume();
+                (of_shape, Some(of_volume))
+            }
+        };
+        let reference = &reference_cell(shape).points;
+        let mut points = Vec::with_capacity(reference.len() + 1);
+        for point in reference {
+            let physical = point.at(&corners).ok_or(InvertedCell { cell })?;
+            let (values, gradients) = (&point.values, &physical.gradients);
+            let edges = at_point(shape, &Corners { values, gradients }).gradients;
+            let volume = physical.volume;
+            points.push((Gradients { corners: physical.gradients, edges, volume }, at_points));
+        }
+        if let Some(of_volume) = of_mean {
+            let mean = Gradients::mean(points.iter().map(|(point, _)| point));
+            points.push((mean, of_volume));
+        }
+        Ok(EnrichedCell { shape, points })
+    }
+
+    /// r and D of each edge where the corners are displaced.
+    pub fn equations(&self, displacement: &[Vector]) -> [EdgeEquation; MAX_EDGES] {
+        let mut equations = [EdgeEquation::ZERO; MAX_EDGES];
+        for (point, tensor) in &self.points {
+            let stress = tensor.stress(&gradient_of(displacement, &point.corners)) * point.volume;
+            for (number, equation) in self.edges().zip(&mut equations) {
+                equation.residual -= stress * point.edges[number];
+            }
+        }
+        for (number, equation) in self.edges().zip(&mut equations) {
+            equation.stiffness = self.block(number, number, self.resisting());
+        }
+        equations
+    }
+
+    /// The block of two edges.
+    #[cfg(test)]
+    pub fn stiffness(&self, edge: usize, other: usize) -> Matrix3<f64> {
+        self.block(edge, other, self.points.len())
+    }
+
+    /// How many places count in D: not the mean of a wedge, whose one volume change stands against nine edges and would let
+    /// each of them do a third of what they do together.
+    fn resisting(&self) -> usize {
+        match self.shape {
+            CellShape::Wedge6 => reference_cell(self.shape).points.len(),
+            CellShape::Tet4 | CellShape::Hex8 => self.points.len(),
+        }
+    }
+
+    fn block(&self, edge: usize, other: usize, places: usize) -> Matrix3<f64> {
+        let mut block: Block = [[0.0; 3]; 3];
+        for (point, tensor) in &self.points[..places] {
+            tensor.add_pair(&mut block, [&point.edges[edge], &point.edges[other]], point.volume);
+        }
+        Matrix3::from_fn(|i, j| block[i][j])
+    }
+
+    /// The forces on the corners of coefficients of the edges.
+    pub fn forces(&self, of_edges: &[Vector; MAX_EDGES]) -> [Vector; MAX_NODES] {
+        let mut forces = [Vector::zeros(); MAX_NODES];
+        let count = self.shape.edges().len();
+        for (point, tensor) in &self.points {
+            let gradient = gradient_of(&of_edges[..count], &point.edges);
+            let stress = tensor.stress(&gradient) * point.volume;
+            for (force, slope) in forces.iter_mut().zip(&point.corners) {
+                *force += stress * slope;
+            }
+        }
+        forces
+    }
+
+    fn edges(&self) -> std::ops::Range<usize> {
+        0..self.shape.edges().len()
+    }
+}
+
+impl Gradients {
+    fn mean<'a>(points: impl Iterator<Item = &'a Gradients>) -> Self {
+        let (corners, edges) = ([Vector::zeros(); MAX_NODES], [Vector::zeros(); MAX_EDGES]);
+        let mut mean = Gradients { corners, edges, volume: 0.0 };
+        for point in points {
+            mean.volume += point.volume;
+            let own = point.corners.iter().chain(&point.edges);
+            for (sum, gradient) in mean.corners.iter_mut().chain(&mut mean.edges).zip(own) {
+                *sum += gradient * point.volume;
+            }
+        }
+        let volume = mean.volume;
+        mean.corners.iter_mut().chain(&mut mean.edges).for_each(|gradient| *gradient /= volume);
+        mean
+    }
+}
+
+/// grad v of v = sum_a v_a N_a.
+pub(super) fn gradient_of(values: &[Vector], gradients: &[Vector]) -> Matrix3<f64> {
+    values.iter().zip(gradients).fold(Matrix3::zeros(), |sum, (v, g)| sum + v * g.transpose())
+}

@@ -1,0 +1,48 @@
+//! Measure of rest: forces on free unknowns that nothing balances, against what holds and loads exert.
+
+use super::holds::along_holds;
+use super::pressures::Pressures;
+use super::tissue::Deformed;
+use crate::mesh::Vector;
+use crate::model::dofs::Constrained;
+
+/// Forces are measured against what holds and loads exert, at least this share of the most on the way: tissue that is turned
+/// as a whole exerts nothing in the end.
+const LEAST_SCALE: f64 = 1e-3;
+
+/// |f_free| / |f_held|, with the forces that volumes left over by pressures stand for.
+#[derive(Default)]
+pub(super) struct Balance {
+    /// The largest norm of the forces of holds and loads on the way, in mN.
+    most_exerted: f64,
+    /// The norm of the forces on free nodes that nothing balances, in mN.
+    pub unbalanced: f64,
+    /// Relative to what is exerted.
+    pub residual: f64,
+}
+
+impl Balance {
+    /// Measures tissue at positions; what acts is given by row.
+    pub fn measure(
+        &mut self,
+        deformed: &Deformed,
+        acting: &[Vector],
+        constrained: &Constrained,
+        pressures: Option<&Pressures>,
+    ) {
+        let pairs = deformed.forces.iter().zip(acting);
+        let mut left: Vec<Vector> = pairs.map(|(internal, acting)| internal - acting).collect();
+        let mut exerted: f64 = acting.iter().map(Vector::norm_squared).sum();
+        for hold in constrained.holds {
+            let force = &mut left[constrained.numbering.row(hold.node)];
+            let own = along_holds(hold, force);
+            *force -= own;
+            exerted += own.norm_squared();
+        }
+        let volumes = pressures.map_or(0.0, |p| p.squared_forces(&deformed.volumes));
+        self.unbalanced = (left.iter().map(Vector::norm_squared).sum::<f64>() + volumes).sqrt();
+        self.most_exerted = self.most_exerted.max(exerted.sqrt());
+        let scale = exerted.sqrt().max(LEAST_SCALE * self.most_exerted);
+        self.residual = if scale > 0.0 { self.unbalanced / scale } else { 0.0 };
+    }
+}

@@ -1,0 +1,258 @@
+//! Hexahedra and wedges at positions, with one volume change for each cell or one for each of its points.
+
+use nalgebra::Matrix3;
+use rayon::prelude::*;
+
+use super::elements::Exchange;
+use super::fibres::FibreField;
+use super::problem::FiniteStrain;
+use super::step_length::Volume;
+use crate::material::hyperelastic::Law;
+use crate::material::hyperelastic::point::{Carried, Corner, Point};
+use crate::mesh::{CellShape, Vector, VolumeMesh};
+use crate::model::dofs::Numbering;
+use crate::model::problem::InvertedCell;
+use crate::model::reference_cell;
+use crate::progress::Progress;
+use crate::solver::half_matrix::HalfMatrix;
+use crate::solver::{Block, SolverError};
+
+/// Cells that one thread takes at a time.
+const CHUNK: usize = 128;
+
+/// A point of a cell at rest.
+struct PointAtRest {
+    gradients: Vec<Vector>,
+    /// In mm^3.
+    volume: f64,
+}
+
+/// A hexahedron or wedge at rest.
+struct Brick {
+    rows: Vec<u32>,
+    points: Vec<PointAtRest>,
+    volume: f64,
+    law: u16,
+    cell: usize,
+}
+
+/// The hexahedra and wedges of a mesh.
+pub(super) struct Bricks<'a> {
+    laws: &'a [Law],
+    fibres: FibreField<'a>,
+    /// For each law the bulk modulus that acts on the mean of a cell; none where volume is taken at each point.
+    means: Option<Vec<Exchange>>,
+    bricks: Vec<Brick>,
+    /// Their places in the order of the numbering, and for each cell of the mesh its brick.
+    cliques: Vec<usize>,
+    of_cell: Vec<u32>,
+}
+
+/// A brick at positions.
+struct DeformedBrick {
+    points: Vec<Point>,
+    /// In kPa.
+    pressure: f64,
+}
+
+pub(super) struct DeformedBricks<'a> {
+    bricks: &'a Bricks<'a>,
+    deformed: Vec<DeformedBrick>,
+}
+
+impl<'a> Bricks<'a> {
+    pub fn new(
+        problem: &FiniteStrain<'a>,
+        numbering: &Numbering,
+        means: Option<Vec<Exchange>>,
+    ) -> Result<Self, InvertedCell> {
+        let FiniteStrain { mesh, laws, law_of_cell, fibres, .. } = *problem;
+        let order = &numbering.layout.clique_order;
+        let is_brick =
+            |&clique: &usize| mesh.cells.shape(order[clique] as usize) != CellShape::Tet4;
+        let cliques: Vec<usize> = (0..order.len()).filter(is_brick).collect();
+        let brick = |&clique: &usize| {
+            let cell = order[clique] as usize;
+            let rows = numbering.cliques.row(clique).to_vec();
+            Brick::new(mesh, cell, rows, law_of_cell[cell])
+        };
+        let bricks = cliques.par_iter().map(brick).collect::<Result<Vec<_>, _>>()?;
+        let mut of_cell = vec![u32::MAX; if bricks.is_empty() { 0 } else { order.len() }];
+        for (brick, &clique) in cliques.iter().enumerate() {
+            of_cell[order[clique] as usize] = brick as u32;
+        }
+        Ok(Bricks { laws, fibres, means, bricks, cliques, of_cell })
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.bricks.is_empty()
+    }
+
+    pub fn megabytes(&self) -> f64 {
+        let points: usize = self.bricks.iter().map(|brick| brick.points.len()).sum();
+        (points * (size_of::<Point>() + 8 * size_of::<Vector>())) as f64 / 1e6
+    }
+
+    /// The norm of the force on each corner that a stress of lambda + 2 mu exerts, and V (lambda + 2 mu), of each point.
+    pub fn moduli(&self) -> impl Iterator<Item = (f64, f64)> {
+        self.bricks.iter().flat_map(|brick| {
+            let (lambda, mu) = self.laws[usize::from(brick.law)].at_rest();
+            brick.points.iter().map(move |point| {
+                let modulus = point.volume * (lambda + 2.0 * mu);
+                let squares: f64 = point.gradients.iter().map(Vector::norm_squared).sum();
+                (modulus * squares.sqrt(), modulus)
+            })
+        })
+    }
+
+    fn at_brick(&self, brick: &Brick, x: &[Vector]) -> DeformedBrick {
+        let law = &self.laws[usize::from(brick.law)];
+        let of_cell = brick.positions(x);
+        let fibres = self.fibres.along(brick.law, brick.cell);
+        let point = |at: &PointAtRest| Point::new(law, fibres, at.gradient(&of_cell));
+        let points: Vec<Point> = brick.points.iter().map(point).collect();
+        let Some(exchange) = self.means.as_ref().map(|means| means[usize::from(brick.law)]) else {
+            return DeformedBrick { points, pressure: 0.0 };
+        };
+        let logs = brick.points.iter().zip(&points);
+        let mean: f64 = logs.map(|(at, point)| at.volume * point.log_volume()).sum();
+        let pressure = exchange.carried * mean / brick.volume;
+        if exchange.carried <= 0.0 {
+            return DeformedBrick { points, pressure: 0.0 };
+        }
+        let by = Carried { pressure, modulus: exchange.carried };
+        let points = points.into_iter().map(|point| point.carried(by)).collect();
+        DeformedBrick { points, pressure }
+    }
+
+    pub fn at(&self, x: &[Vector]) -> DeformedBricks<'_> {
+        let deformed = self.bricks.par_iter().map(|brick| self.at_brick(brick, x)).collect();
+        DeformedBricks { bricks: self, deformed }
+    }
+
+    /// In mN mm.
+    pub fn energy(&self, x: &[Vector]) -> f64 {
+        let energy = |brick: &Brick| -> f64 {
+            let DeformedBrick { points, pressure } = self.at_brick(brick, x);
+            let points: f64 =
+                brick.points.iter().zip(&points).map(|(at, p)| at.volume * p.energy()).sum();
+            // W - c/2 ln^2 J + p ln J stands for the points, c/2 of the mean squared is asked for: half of p ln J.
+            match &self.means {
+                Some(means) if pressure != 0.0 => {
+                    let carried = means[usize::from(brick.law)].carried;
+                    points - 0.5 * brick.volume * pressure * pressure / carried
+                }
+                _ => points,
+            }
+        };
+        let sums: Vec<f64> =
+            self.bricks.par_chunks(CHUNK).map(|bricks| bricks.iter().map(energy).sum()).collect();
+        sums.iter().sum()
+    }
+
+    /// The largest part of a step up to the whole in which every point keeps that share of its volume.
+    pub fn longest_step(&self, x: &[Vector], step: &[Vector], keep: f64) -> f64 {
+        let longest = |brick: &Brick| {
+            let (here, along) = (brick.positions(x), brick.positions(step));
+            brick.points.iter().fold(1.0_f64, |most, at| {
+                Volume::along(&at.gradient(&here), &at.gradient(&along), keep).positive_until(most)
+            })
+        };
+        self.bricks.par_iter().map(longest).reduce(|| 1.0, f64::min)
+    }
+}
+
+impl Brick {
+    fn new(
+        mesh: &VolumeMesh,
+        cell: usize,
+        rows: Vec<u32>,
+        law: u16,
+    ) -> Result<Brick, InvertedCell> {
+        let corners: Vec<Vector> = mesh.corners(cell).collect();
+        let reference = reference_cell(mesh.cells.shape(cell));
+        let point = |point: &crate::element::ReferencePoint| {
+            let at = point.at(&corners).ok_or(InvertedCell { cell })?;
+            Ok(PointAtRest { gradients: at.gradients[..corners.len()].to_vec(), volume: at.volume })
+        };
+        let points = reference.points.iter().map(point).collect::<Result<Vec<_>, _>>()?;
+        let volume = points.iter().map(|point| point.volume).sum();
+        Ok(Brick { rows, points, volume, law, cell })
+    }
+
+    fn positions(&self, x: &[Vector]) -> Vec<Vector> {
+        self.rows.iter().map(|&row| x[row as usize]).collect()
+    }
+}
+
+impl PointAtRest {
+    /// F for the positions of the corners.
+    fn gradient(&self, corners: &[Vector]) -> Matrix3<f64> {
+        corners.iter().zip(&self.gradients).map(|(x, g)| x * g.transpose()).sum()
+    }
+}
+
+impl DeformedBricks<'_> {
+    /// Adds internal forces in mN.
+    pub fn add_forces(&self, forces: &mut [Vector]) {
+        let pairs = self.bricks.bricks.par_iter().zip(&self.deformed);
+        let of_bricks: Vec<Vec<Vector>> = pairs
+            .map(|(brick, deformed)| {
+                let mut forces = vec![Vector::zeros(); brick.rows.len()];
+                for (at, point) in brick.points.iter().zip(&deformed.points) {
+                    let stress = point.stress() * at.volume;
+                    forces.iter_mut().zip(&at.gradients).for_each(|(f, g)| *f += stress * g);
+                }
+                forces
+            })
+            .collect();
+        for (brick, own) in self.bricks.bricks.iter().zip(of_bricks) {
+            brick.rows.iter().zip(own).for_each(|(&row, force)| forces[row as usize] += force);
+        }
+    }
+
+    /// Adds the derivatives of the internal forces, in kPa mm.
+    pub fn add_tangent(
+        &self,
+        matrix: &mut HalfMatrix<f64, 3>,
+        numbering: &Numbering,
+        progress: &dyn Progress,
+    ) -> Result<(), SolverError> {
+        let of_cell = |cell: usize| Ok(self.tangent_of(self.bricks.of_cell[cell] as usize));
+        // The cells are known to be sound.
+        match numbering.add_cells(matrix, &self.bricks.cliques, progress, of_cell) {
+            Ok(true) => Ok(()),
+            Ok(false) | Err(InvertedCell { .. }) => Err(SolverError::Stopped),
+        }
+    }
+
+    fn tangent_of(&self, brick: usize) -> Vec<Block> {
+        let (at_rest, deformed) = (&self.bricks.bricks[brick], &self.deformed[brick]);
+        let count = at_rest.rows.len();
+        let mut sums = vec![Matrix3::zeros(); count * count];
+        let mut mean = vec![Vector::zeros(); count];
+        for (at, point) in at_rest.points.iter().zip(&deformed.points) {
+            let corners: Vec<Corner> = at.gradients.iter().map(|g| point.corner(g)).collect();
+            for (entry, sum) in sums.iter_mut().enumerate() {
+                let (a, b) = (&corners[entry / count], &corners[entry % count]);
+                *sum += point.block(a, b) * at.volume;
+            }
+            for (mean, corner) in mean.iter_mut().zip(&corners) {
+                *mean += corner.of_log_volume(point.volume()) * at.volume;
+            }
+        }
+        if let Some(means) = &self.bricks.means {
+            let factor = means[usize::from(at_rest.law)].carried / at_rest.volume;
+            for (entry, sum) in sums.iter_mut().enumerate() {
+                *sum += mean[entry / count] * mean[entry % count].transpose() * factor;
+            }
+        }
+        sums.iter().map(|m| std::array::from_fn(|i| std::array::from_fn(|j| m[(i, j)]))).collect()
+    }
+
+    /// The least det F.
+    pub fn least_volume(&self) -> f64 {
+        let volumes = self.deformed.iter().flat_map(|brick| brick.points.iter().map(Point::volume));
+        volumes.fold(f64::INFINITY, f64::min)
+    }
+}

@@ -1,0 +1,216 @@
+//! Directions of Newton's method: the linear system of a step, solved as far as the step needs.
+
+use super::pressures::Pressures;
+use super::tissue::Deformed;
+use crate::mesh::Vector;
+use crate::model::dofs::{Constrained, Known};
+use crate::model::problem::LoadCase;
+use crate::progress::{Inner, Progress};
+use crate::solver::conjugate_gradient::{self, Enough};
+use crate::solver::mixed;
+use crate::solver::mixed_system::{Coupling, MixedRightHandSide, MixedSystem};
+use crate::solver::multigrid::Multigrid;
+use crate::solver::{Solver, SolverError, System, Unknowns};
+
+/// Inner iterations after which a direction is taken as it is, without pressures and with them.
+const MOST_INNER: usize = 200;
+const MOST_INNER_MIXED: usize = 60;
+
+/// A hierarchy serves this many steps, unless it has grown this much worse.
+const SERVES: usize = 2;
+const WORSE: f64 = 1.5;
+
+/// What directions took.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Tally {
+    pub inner: usize,
+    pub hierarchies: usize,
+    /// Directions along which the tangent was not positive definite.
+    pub indefinite: usize,
+}
+
+struct Hierarchy {
+    solver: Solver,
+    served: usize,
+    /// Iterations of the first system that it served.
+    fresh: usize,
+}
+
+/// A step of positions, by row and along the axes of the coordinates, and of pressures.
+pub(super) struct Direction {
+    pub positions: Vec<Vector>,
+    pub pressures: Vec<f64>,
+    /// Whether the tangent was positive definite along all that was tried; not seen where there are pressures.
+    pub is_convex: bool,
+    /// Whether the iterations were enough.
+    pub is_met: bool,
+}
+
+/// What remains of a movement for one step.
+pub(super) struct Remaining<'a> {
+    /// Movements of the holds and forces that are not balanced yet.
+    pub case: &'a LoadCase,
+    /// Positions of the nodes.
+    pub nodes: &'a [Vector],
+    /// The relative residual that is wanted.
+    pub relative: f64,
+}
+
+/// Solves the systems of the steps, one after the other.
+pub(super) struct Directions {
+    pub pressures: Option<Pressures>,
+    hierarchy: Option<Hierarchy>,
+    pub tally: Tally,
+    memory_mb: f64,
+}
+
+/// What iterations found.
+struct Found {
+    unknowns: Unknowns,
+    pressures: Vec<f64>,
+    iterations: usize,
+    is_convex: bool,
+    is_met: bool,
+}
+
+impl Directions {
+    pub fn new(pressures: Option<Pressures>, tally: Tally, memory_mb: f64) -> Self {
+        Directions { pressures, hierarchy: None, tally, memory_mb }
+    }
+
+    pub fn of(
+        &mut self,
+        deformed: &Deformed,
+        constrained: &Constrained,
+        remaining: &Remaining,
+        progress: &dyn Progress,
+    ) -> Result<Direction, SolverError> {
+        let system = constrained.system(deformed.tangent(progress)?, remaining.nodes);
+        self.check_memory(&system)?;
+        let known = constrained.known(remaining.case);
+        let mut hierarchy = self.hierarchy();
+        let inner = Inner(progress);
+        let found = match &mut self.pressures {
+            None => {
+                let multigrid = hierarchy.solver.hierarchy(&system);
+                alone(&system, multigrid, &known, remaining.relative, &inner)?
+            }
+            Some(pressures) => {
+                let coupling = pressures.coupling_at(&|cell| deformed.gradients(cell));
+                let volumes = left_volumes(&known, coupling, &deformed.volumes);
+                let right = MixedRightHandSide { forces: known.right_hand_side(&system), volumes };
+                let solver = &hierarchy.solver;
+                let system = MixedSystem { stiffness: &system, coupling, solver };
+                together(&system, &right, remaining.relative, &inner)?
+            }
+        };
+        self.tally.inner += found.iterations;
+        self.tally.indefinite += usize::from(!found.is_convex);
+        hierarchy.serve(&found);
+        self.hierarchy = Some(hierarchy);
+        let by_node = constrained.displacement(&known.total(&found.unknowns));
+        Ok(Direction {
+            positions: constrained.numbering.by_row(&by_node),
+            pressures: found.pressures,
+            is_convex: found.is_convex,
+            is_met: found.is_met,
+        })
+    }
+
+    /// Whether the tangent is positive definite along all that iterations meet on the way to a load of no pattern.
+    pub fn is_stable(
+        &mut self,
+        deformed: &Deformed,
+        constrained: &Constrained,
+        nodes: &[Vector],
+        progress: &dyn Progress,
+    ) -> Result<Option<bool>, SolverError> {
+        if self.pressures.is_some() {
+            return Ok(None);
+        }
+        let system = constrained.system(deformed.tangent(progress)?, nodes);
+        // Multiples of the golden ratio, each less its whole part: as even and as patternless as random numbers.
+        let mut number = 0.5;
+        let mut next = || {
+            number = (number + 0.618_033_988_749_895) % 1.0;
+            number - 0.5
+        };
+        let forces = nodes.iter().map(|_| Vector::new(next(), next(), next())).collect();
+        let case = LoadCase { held: vec![Vector::zeros(); constrained.holds.len()], forces };
+        let load = constrained.known(&case).right_hand_side(&system);
+        let enough = Enough { relative_residual: 1e-6, most_iterations: MOST_INNER };
+        let multigrid = Multigrid::new(&system);
+        let inner = Inner(progress);
+        let found = conjugate_gradient::direction(&system, &multigrid, &load, enough, &inner)?;
+        Ok(Some(found.is_convex))
+    }
+
+    fn hierarchy(&mut self) -> Hierarchy {
+        match self.hierarchy.take().filter(|hierarchy| hierarchy.served < SERVES) {
+            Some(hierarchy) => hierarchy,
+            None => {
+                self.tally.hierarchies += 1;
+                Hierarchy { solver: Solver::default(), served: 0, fresh: 0 }
+            }
+        }
+    }
+
+    fn check_memory(&self, system: &System) -> Result<(), SolverError> {
+        let pressures = self.pressures.as_ref().map_or(0.0, Pressures::megabytes);
+        let needed_mb = system.megabytes() + pressures;
+        let allowed_mb = self.memory_mb;
+        match needed_mb > allowed_mb {
+            true => Err(SolverError::OverBudget { needed_mb, allowed_mb }),
+            false => Ok(()),
+        }
+    }
+}
+
+impl Hierarchy {
+    /// Counts a system that it served.
+    fn serve(&mut self, found: &Found) {
+        if self.served == 0 {
+            self.fresh = found.iterations;
+        }
+        let is_worse = found.iterations as f64 > WORSE * self.fresh as f64 + 2.0;
+        self.served = if is_worse || !found.is_convex { SERVES } else { self.served + 1 };
+    }
+}
+
+/// Displacements without pressures.
+fn alone(
+    system: &System,
+    multigrid: &Multigrid,
+    known: &Known,
+    relative_residual: f64,
+    progress: &Inner,
+) -> Result<Found, SolverError> {
+    let enough = Enough { relative_residual, most_iterations: MOST_INNER };
+    let right_hand_side = known.right_hand_side(system);
+    let found =
+        conjugate_gradient::direction(system, multigrid, &right_hand_side, enough, progress)?;
+    let conjugate_gradient::Direction { unknowns, iterations, is_convex } = found;
+    Ok(Found { unknowns, pressures: Vec::new(), iterations, is_convex, is_met: true })
+}
+
+/// Displacements and pressures.
+fn together(
+    system: &MixedSystem,
+    right_hand_side: &MixedRightHandSide,
+    relative_residual: f64,
+    progress: &Inner,
+) -> Result<Found, SolverError> {
+    let enough = Enough { relative_residual, most_iterations: MOST_INNER_MIXED };
+    let found = mixed::direction(system, right_hand_side, enough, progress)?;
+    let mixed::MixedDirection { unknowns, pressures, iterations, is_met } = found;
+    let pressures = pressures.into_iter().map(|[pressure]| pressure).collect();
+    Ok(Found { unknowns, pressures, iterations, is_convex: true, is_met })
+}
+
+/// -r - B d of the rows of pressures, d what is known of the step.
+fn left_volumes(known: &Known, coupling: &Coupling, residual: &[f64]) -> Vec<[f64; 1]> {
+    let mut volumes = vec![[0.0]; residual.len()];
+    coupling.divergence.contract(&known.displacement, &mut volumes);
+    let pairs = volumes.iter().zip(residual);
+    pairs.map(|([moved], left)| [-(moved + left)]).collect()
+}

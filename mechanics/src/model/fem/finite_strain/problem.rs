@@ -1,0 +1,22 @@
+//! A problem of finite strain: tissue, its laws and elements, and what holds it.
+
+use super::elements::Elements;
+use super::fibres::FibreField;
+use crate::boundary::Hold;
+use crate::material::hyperelastic::Law;
+use crate::mesh::VolumeMesh;
+use crate::solver::Tolerance;
+
+/// Hyperelastic tissue, and what holds it.
+pub struct FiniteStrain<'a> {
+    pub mesh: &'a VolumeMesh,
+    pub laws: &'a [Law],
+    /// For each cell its entry in `laws`.
+    pub law_of_cell: &'a [u16],
+    /// For each cell the entry of the law whose pressure it takes part in.
+    pub pressure_of_cell: &'a [u16],
+    pub elements: Elements,
+    pub fibres: FibreField<'a>,
+    pub holds: &'a [Hold],
+    pub tolerance: Tolerance,
+}

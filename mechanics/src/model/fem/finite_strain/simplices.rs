@@ -1,0 +1,230 @@
+//! Tetrahedra at positions: energy, internal forces, tangent, and how far they may go.
+
+use nalgebra::Matrix3;
+use rayon::prelude::*;
+
+use super::fibres::FibreField;
+use super::problem::FiniteStrain;
+use super::step_length::Volume;
+use crate::material::hyperelastic::Law;
+use crate::material::hyperelastic::point::{Carried, Point};
+use crate::mesh::{CellShape, Vector};
+use crate::model::dofs::Numbering;
+use crate::model::fem::cell_stiffness::tetrahedron;
+use crate::model::problem::InvertedCell;
+use crate::solver::Block;
+use crate::solver::half_matrix::{HalfMatrix, RowChunk};
+
+/// Cells or rows that one thread takes at a time.
+const CHUNK: usize = 1024;
+
+/// A tetrahedron at rest.
+pub(super) struct Simplex {
+    pub rows: [u32; 4],
+    pub gradients: [Vector; 4],
+    /// In mm^3.
+    pub volume: f64,
+    pub law: u16,
+    pub cell: u32,
+    /// The part of the bulk modulus that a pressure carries, in kPa; 0 where there is none.
+    pub carried: f64,
+}
+
+/// The tetrahedra of a mesh, in the order of its numbering.
+pub(super) struct Simplices<'a> {
+    laws: &'a [Law],
+    fibres: FibreField<'a>,
+    pub cells: Vec<Simplex>,
+    /// For each clique of the numbering its tetrahedron, or `u32::MAX`; empty where all cliques are tetrahedra.
+    of_clique: Vec<u32>,
+}
+
+pub(super) struct DeformedSimplices<'a> {
+    simplices: &'a Simplices<'a>,
+    points: Vec<Point>,
+}
+
+impl<'a> Simplices<'a> {
+    /// `carried` is the modulus that a pressure carries in each law.
+    pub fn new(
+        problem: &FiniteStrain<'a>,
+        numbering: &Numbering,
+        carried: &[f64],
+    ) -> Result<Self, InvertedCell> {
+        let FiniteStrain { mesh, laws, law_of_cell, fibres, .. } = *problem;
+        let order = &numbering.layout.clique_order;
+        let is_simplex =
+            |&clique: &usize| mesh.cells.shape(order[clique] as usize) == CellShape::Tet4;
+        let cliques: Vec<usize> = (0..order.len()).filter(is_simplex).collect();
+        let cell = |&clique: &usize| {
+            let cell = order[clique] as usize;
+            let (volume, gradients) = tetrahedron(mesh, cell)?;
+            let members = numbering.cliques.row(clique);
+            let (rows, law) = (std::array::from_fn(|k| members[k]), law_of_cell[cell]);
+            let carried = carried[usize::from(law)];
+            Ok(Simplex { rows, gradients, volume, law, cell: cell as u32, carried })
+        };
+        let cells = cliques.par_iter().map(cell).collect::<Result<Vec<_>, _>>()?;
+        let mut of_clique = Vec::new();
+        if cells.len() < order.len() {
+            of_clique = vec![u32::MAX; order.len()];
+            for (simplex, &clique) in cliques.iter().enumerate() {
+                of_clique[clique] = simplex as u32;
+            }
+        }
+        Ok(Simplices { laws, fibres, cells, of_clique })
+    }
+
+    pub fn megabytes(&self) -> f64 {
+        (self.cells.len() * (size_of::<Simplex>() + size_of::<Point>())) as f64 / 1e6
+    }
+
+    /// The norm of the forces that a stress of lambda + 2 mu exerts on the corners, and V (lambda + 2 mu), of each cell.
+    pub fn moduli(&self) -> impl Iterator<Item = (f64, f64)> {
+        let at_rest: Vec<f64> =
+            self.laws.iter().map(Law::at_rest).map(|(lambda, mu)| lambda + 2.0 * mu).collect();
+        self.cells.iter().map(move |cell| {
+            let modulus = cell.volume * at_rest[usize::from(cell.law)];
+            let squares: f64 = cell.gradients.iter().map(Vector::norm_squared).sum();
+            (modulus * squares.sqrt(), modulus)
+        })
+    }
+
+    fn point(&self, cell: &Simplex, x: &[Vector], pressure: f64) -> Point {
+        let fibres = self.fibres.along(cell.law, cell.cell as usize);
+        let point = Point::new(&self.laws[usize::from(cell.law)], fibres, cell.gradient(x));
+        match cell.carried > 0.0 {
+            true => point.carried(Carried { pressure, modulus: cell.carried }),
+            false => point,
+        }
+    }
+
+    /// At positions, one for each row, with the mean pressure of each cell; none where none has one.
+    pub fn at(&self, x: &[Vector], pressures: &[f64]) -> DeformedSimplices<'_> {
+        let pressure = |cell: usize| pressures.get(cell).copied().unwrap_or(0.0);
+        let cells = self.cells.par_iter().enumerate();
+        let points = cells.map(|(number, cell)| self.point(cell, x, pressure(number))).collect();
+        DeformedSimplices { simplices: self, points }
+    }
+
+    /// In mN mm, of tetrahedra without pressures.
+    pub fn energy(&self, x: &[Vector]) -> f64 {
+        let energy = |cell: &Simplex| cell.volume * self.point(cell, x, 0.0).energy();
+        let sums: Vec<f64> =
+            self.cells.par_chunks(CHUNK).map(|cells| cells.iter().map(energy).sum()).collect();
+        sums.iter().sum()
+    }
+
+    /// The largest part of a step up to the whole in which every cell keeps that share of its volume.
+    pub fn longest_step(&self, x: &[Vector], step: &[Vector], keep: f64) -> f64 {
+        let longest = |cells: &[Simplex]| {
+            cells.iter().fold(1.0_f64, |most, cell| {
+                let (f, d) = (cell.gradient(x), cell.gradient(step));
+                Volume::along(&f, &d, keep).positive_until(most)
+            })
+        };
+        self.cells.par_chunks(CHUNK).map(longest).reduce(|| 1.0, f64::min)
+    }
+
+    fn of_clique(&self, clique: u32) -> Option<usize> {
+        match self.of_clique.get(clique as usize) {
+            None => Some(clique as usize),
+            Some(&u32::MAX) => None,
+            Some(&simplex) => Some(simplex as usize),
+        }
+    }
+}
+
+impl Simplex {
+    /// F at positions, or the derivative of F along a step.
+    fn gradient(&self, x: &[Vector]) -> Matrix3<f64> {
+        let nodes = self.rows.iter().zip(&self.gradients);
+        nodes.map(|(&row, g)| x[row as usize] * g.transpose()).sum()
+    }
+
+    fn corner_of(&self, row: usize) -> usize {
+        self.rows.iter().position(|&own| own as usize == row).unwrap_or_default()
+    }
+}
+
+impl DeformedSimplices<'_> {
+    /// Internal forces in mN, one for each row.
+    pub fn forces(&self, numbering: &Numbering) -> Vec<Vector> {
+        let cells = &self.simplices.cells;
+        let pairs = cells.par_iter().zip(&self.points);
+        let stresses: Vec<Matrix3<f64>> =
+            pairs.map(|(cell, point)| point.stress() * cell.volume).collect();
+        let force = |row: usize| -> Vector {
+            let around = numbering.around.row(row).iter();
+            let own = around.filter_map(|&clique| self.simplices.of_clique(clique));
+            own.map(|cell| stresses[cell] * cells[cell].gradients[cells[cell].corner_of(row)]).sum()
+        };
+        (0..numbering.pattern.rows()).into_par_iter().with_min_len(CHUNK).map(force).collect()
+    }
+
+    /// The derivatives of the internal forces by the positions, in kPa mm.
+    pub fn tangent(&self, numbering: &Numbering) -> HalfMatrix<f64, 3> {
+        let mut matrix = HalfMatrix::zeros(numbering.pattern.clone());
+        matrix.row_chunks(CHUNK).into_par_iter().for_each_init(
+            || vec![0_u32; numbering.pattern.rows()],
+            |at, chunk| self.add_rows(numbering, chunk, at),
+        );
+        matrix
+    }
+
+    /// Row by row: no two threads write to the same block, and cells are added in their order. `at` is scratch: where
+    /// the block of each column of the row lies.
+    fn add_rows(&self, numbering: &Numbering, chunk: RowChunk<f64, 3>, at: &mut [u32]) {
+        let begin = numbering.pattern.range(chunk.first).start;
+        for (local, diagonal) in chunk.diagonal.iter_mut().enumerate() {
+            let row = chunk.first + local;
+            let offset = numbering.pattern.range(row).start - begin;
+            for (k, &column) in numbering.pattern.columns(row).iter().enumerate() {
+                at[column as usize] = (offset + k) as u32;
+            }
+            for &clique in numbering.around.row(row) {
+                let Some(cell) = self.simplices.of_clique(clique) else { continue };
+                let (cell, point) = (&self.simplices.cells[cell], &self.points[cell]);
+                let own = point.corner(&cell.gradients[cell.corner_of(row)]);
+                for (&column, g) in cell.rows.iter().zip(&cell.gradients) {
+                    let block = match (column as usize).cmp(&row) {
+                        std::cmp::Ordering::Greater => continue,
+                        std::cmp::Ordering::Equal => &mut *diagonal,
+                        std::cmp::Ordering::Less => &mut chunk.lower[at[column as usize] as usize],
+                    };
+                    add(block, &point.block(&own, &point.corner(g)), cell.volume);
+                }
+            }
+        }
+    }
+
+    /// The least det F.
+    pub fn least_volume(&self) -> f64 {
+        self.points.par_iter().map(Point::volume).reduce(|| f64::INFINITY, f64::min)
+    }
+
+    pub fn log_volume(&self, cell: u32) -> f64 {
+        self.points[cell as usize].log_volume()
+    }
+
+    /// F^-T g of the corners of a cell.
+    pub fn gradients(&self, cell: u32) -> [Vector; 4] {
+        let (at_rest, point) = (&self.simplices.cells[cell as usize], &self.points[cell as usize]);
+        let det_f = point.volume();
+        at_rest.gradients.map(|g| point.corner(&g).of_log_volume(det_f))
+    }
+
+    /// In mN mm: that of the points, where pressures are what they are.
+    pub fn energy(&self) -> f64 {
+        let pairs = self.simplices.cells.iter().zip(&self.points);
+        pairs.map(|(cell, point)| cell.volume * point.energy()).sum()
+    }
+}
+
+fn add(sum: &mut Block, block: &Matrix3<f64>, volume: f64) {
+    for (i, sums) in sum.iter_mut().enumerate() {
+        for (j, sum) in sums.iter_mut().enumerate() {
+            *sum += volume * block[(i, j)];
+        }
+    }
+}

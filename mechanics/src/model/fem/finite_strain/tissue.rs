@@ -1,0 +1,184 @@
+//! Tissue at positions and pressures: what its elements together exert, how it yields, and how far it may go.
+
+use std::collections::BTreeMap;
+
+use nalgebra::Matrix3;
+
+use super::bricks::{Bricks, DeformedBricks};
+use super::elements::{Elements, Exchange, Kept};
+use super::pressures::{PressureCell, Pressures};
+use super::problem::FiniteStrain;
+use super::simplices::{DeformedSimplices, Simplices};
+use crate::material::hyperelastic::Law;
+use crate::mesh::Vector;
+use crate::model::dofs::Numbering;
+use crate::model::problem::InvertedCell;
+use crate::progress::Progress;
+use crate::solver::SolverError;
+use crate::solver::half_matrix::HalfMatrix;
+
+/// What the last digits of a sum of a few terms lose, with some room.
+const ROUNDING: f64 = 1e-15;
+
+/// What a cell may lose of its volume in one step. Where no pressures carry the bulk modulus it is less above twelve times the
+/// shear modulus: what a loss does to the forces grows with their ratio.
+const LOSS: f64 = 0.3;
+const SOFT: f64 = 12.0;
+
+/// The elements of a mesh.
+pub(super) struct Tissue<'a> {
+    pub numbering: &'a Numbering,
+    simplices: Simplices<'a>,
+    bricks: Bricks<'a>,
+    /// Positions at rest, by row.
+    pub rest: Vec<Vector>,
+    /// The share of its volume that a cell keeps in one step.
+    keep: f64,
+    /// The bulk modulus that stays in the cells whose volume is shared, as a multiple of mu.
+    pub bulk_in_cells: f64,
+}
+
+/// Tissue at positions whose points all have a positive volume.
+pub(super) struct Deformed<'a> {
+    tissue: &'a Tissue<'a>,
+    simplices: DeformedSimplices<'a>,
+    bricks: DeformedBricks<'a>,
+    /// By row, in mN.
+    pub forces: Vec<Vector>,
+    /// What the pressures leave of the volumes, in mm^3; none where there are none.
+    pub volumes: Vec<f64>,
+}
+
+impl<'a> Tissue<'a> {
+    pub fn new(
+        problem: &FiniteStrain<'a>,
+        numbering: &'a Numbering,
+        kept: Kept,
+    ) -> Result<Self, InvertedCell> {
+        let FiniteStrain { mesh, laws, elements, .. } = *problem;
+        let carried: Vec<f64> = match elements.stabilised {
+            true => laws.iter().map(|law| kept.of(law).carried.max(0.0)).collect(),
+            false => vec![0.0; laws.len()],
+        };
+        let means = elements.mean_dilatation.then(|| laws.iter().map(|law| kept.of(law)).collect());
+        let simplices = Simplices::new(problem, numbering, &carried)?;
+        let bricks = Bricks::new(problem, numbering, means)?;
+        let rest = numbering.by_row(&mesh.nodes);
+        let carries_all =
+            bricks.is_empty() && simplices.cells.iter().all(|cell| cell.carried > 0.0);
+        let stiffest = laws.iter().map(Law::at_rest).map(|(lambda, mu)| lambda / mu);
+        let keep = match carries_all {
+            true => 1.0 - LOSS,
+            false => 1.0 - LOSS * (SOFT / stiffest.fold(0.0, f64::max)).sqrt().min(1.0),
+        };
+        let shares = !bricks.is_empty() || simplices.cells.iter().any(|cell| cell.carried > 0.0);
+        let bulk_in_cells = if shares { kept.0 } else { 0.0 };
+        Ok(Tissue { numbering, simplices, bricks, rest, keep, bulk_in_cells })
+    }
+
+    /// The pressures of stabilised tetrahedra; none where there are none.
+    pub fn pressures(
+        &self,
+        problem: &FiniteStrain,
+        kept: Kept,
+        axes: BTreeMap<u32, Matrix3<f64>>,
+    ) -> Option<Pressures> {
+        // Pressures are continuous within tissue of one law, whatever its regions are called.
+        let laws = problem.laws;
+        let same = |own: u16| {
+            let first = laws.iter().position(|law| *law == laws[usize::from(own)]);
+            first.unwrap_or_default() as u16
+        };
+        let exchange: Vec<Exchange> = problem.laws.iter().map(|law| kept.of(law)).collect();
+        let cells: Vec<PressureCell> = (0..)
+            .zip(&self.simplices.cells)
+            .filter(|(_, cell)| cell.carried > 0.0)
+            .map(|(simplex, cell)| PressureCell {
+                simplex,
+                rows: cell.rows,
+                kind: same(problem.pressure_of_cell[cell.cell as usize]),
+                volume: cell.volume,
+                exchange: exchange[usize::from(cell.law)],
+            })
+            .collect();
+        let at_rest = |simplex: u32| self.simplices.cells[simplex as usize].gradients;
+        (!cells.is_empty()).then(|| Pressures::new(cells, axes, &at_rest))
+    }
+
+    pub fn megabytes(&self) -> f64 {
+        self.simplices.megabytes() + self.bricks.megabytes()
+    }
+
+    /// What rounding leaves: the norm of forces in mN, since stress is a difference of terms as large as the moduli, and
+    /// energy in mN mm.
+    pub fn rounding(&self) -> Rounding {
+        let moduli = || self.simplices.moduli().chain(self.bricks.moduli());
+        let squares: f64 = moduli().map(|(force, _)| force * force).sum();
+        let energy: f64 = moduli().map(|(_, energy)| energy).sum();
+        Rounding { force: ROUNDING * squares.sqrt(), energy: ROUNDING * energy }
+    }
+
+    /// At positions, one for each row.
+    pub fn at(&self, x: &[Vector], p: &[f64], pressures: Option<&Pressures>) -> Deformed<'_> {
+        let mut means = Vec::new();
+        if let Some(pressures) = pressures {
+            means = vec![0.0; self.simplices.cells.len()];
+            pressures.means(p).for_each(|(cell, mean)| means[cell as usize] = mean);
+        }
+        let (simplices, bricks) = (self.simplices.at(x, &means), self.bricks.at(x));
+        let mut forces = simplices.forces(self.numbering);
+        bricks.add_forces(&mut forces);
+        let log_volume = |cell: u32| simplices.log_volume(cell);
+        let volumes = pressures.map(|pressures| pressures.residual(p, &log_volume));
+        Deformed { tissue: self, forces, volumes: volumes.unwrap_or_default(), simplices, bricks }
+    }
+
+    /// In mN mm, of tissue without pressures.
+    pub fn energy(&self, x: &[Vector]) -> f64 {
+        self.simplices.energy(x) + self.bricks.energy(x)
+    }
+
+    /// The largest part of a step up to the whole in which every point keeps enough of its volume.
+    pub fn longest_step(&self, x: &[Vector], step: &[Vector]) -> f64 {
+        let of_simplices = self.simplices.longest_step(x, step, self.keep);
+        of_simplices.min(self.bricks.longest_step(x, step, self.keep))
+    }
+}
+
+impl Deformed<'_> {
+    /// The derivatives of the internal forces by the positions, in kPa mm.
+    pub fn tangent(&self, progress: &dyn Progress) -> Result<HalfMatrix<f64, 3>, SolverError> {
+        let numbering = self.tissue.numbering;
+        let mut matrix = self.simplices.tangent(numbering);
+        self.bricks.add_tangent(&mut matrix, numbering, progress)?;
+        Ok(matrix)
+    }
+
+    /// F^-T g of the corners of a tetrahedron.
+    pub fn gradients(&self, simplex: u32) -> [Vector; 4] {
+        self.simplices.gradients(simplex)
+    }
+
+    /// The least det F.
+    pub fn least_volume(&self) -> f64 {
+        self.simplices.least_volume().min(self.bricks.least_volume())
+    }
+
+    /// In mN mm, at these pressures.
+    pub fn energy(&self, x: &[Vector]) -> f64 {
+        self.simplices.energy() + self.tissue.bricks.energy(x)
+    }
+}
+
+/// The norm of forces in mN, and energy in mN mm.
+pub(super) struct Rounding {
+    pub force: f64,
+    pub energy: f64,
+}
+
+impl Elements {
+    /// Four-node tetrahedra and full integration of the others.
+    pub const PLAIN: Elements = Elements { stabilised: false, mean_dilatation: false };
+    /// Elements that do not lock.
+    pub const STABLE: Elements = Elements { stabilised: true, mean_dilatation: true };
+}

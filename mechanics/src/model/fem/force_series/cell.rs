@@ -1,0 +1,218 @@
+//! One cell: its points at rest, how states strain it, and the second and third order of its forces.
+
+use nalgebra::Matrix3;
+
+use crate::element::{MAX_NODES, PhysicalPoint};
+use crate::material::ElasticTensor;
+use crate::material::stress_series::{
+    Stretch, second_green_stress, second_log_volume, second_stress, third_green_stress,
+    third_log_volume, third_stress,
+};
+use crate::mesh::Vector;
+use crate::model::fem::assembly::Tissue;
+use crate::model::fem::cell_stiffness::Dilatation;
+use crate::model::problem::InvertedCell;
+use crate::model::reference_cell;
+
+/// What a solution of the linear elements holds: a displacement in mm for each node, a pressure in kPa for each unknown
+/// that is one.
+#[derive(Clone, Copy, Debug)]
+pub struct Moved<'a> {
+    pub displacement: &'a [Vector],
+    pub pressures: &'a [f64],
+}
+
+/// A cell at rest, and the parts of its stiffness.
+pub(super) struct Cell {
+    points: Vec<PhysicalPoint>,
+    count: usize,
+    volume: f64,
+    /// What counts at each point.
+    at_points: Parts,
+    /// What counts with the mean volume change of the cell, where there is such a part.
+    of_mean: Option<Parts>,
+    /// Means of the gradients of the shape functions, where they are used.
+    mean_gradients: [Vector; MAX_NODES],
+}
+
+/// lambda and mu in kPa, and what fibres add to them.
+struct Parts {
+    lambda: f64,
+    mu: f64,
+    fibres: Option<ElasticTensor>,
+}
+
+/// Gradients and tensions of each state at each point, and the mean gradient of each state.
+pub(super) struct Strained {
+    points: usize,
+    at: Vec<Stretch>,
+    means: Vec<Matrix3<f64>>,
+}
+
+/// Forces of the corners in mN, and the volume in mm^3 that each of four pressures has.
+#[derive(Clone, Debug)]
+pub(super) struct CellTerms {
+    pub forces: [Vector; MAX_NODES],
+    pub volume: f64,
+}
+
+/// Orders of ln J at the points of a cell, and their mean.
+struct LogVolumes {
+    at: [f64; MAX_NODES],
+    mean: f64,
+}
+
+impl From<ElasticTensor> for Parts {
+    fn from(tensor: ElasticTensor) -> Self {
+        let ElasticTensor { lambda, mu, fibre } = tensor;
+        let fibres = fibre.map(|_| ElasticTensor { lambda: 0.0, mu: 0.0, fibre });
+        Parts { lambda, mu, fibres }
+    }
+}
+
+impl Strained {
+    fn of(&self, state: usize) -> &[Stretch] {
+        &self.at[state * self.points..(state + 1) * self.points]
+    }
+}
+
+impl CellTerms {
+    fn nothing() -> Self {
+        CellTerms { forces: [Vector::zeros(); MAX_NODES], volume: 0.0 }
+    }
+
+    pub fn add(&mut self, other: &CellTerms, factor: f64) {
+        for (force, more) in self.forces.iter_mut().zip(&other.forces) {
+            *force += more * factor;
+        }
+        self.volume += other.volume * factor;
+    }
+
+    /// The forces of a stress times a volume between gradients of shape functions.
+    fn add_stress(&mut self, stress: &Matrix3<f64>, gradients: &[Vector]) {
+        for (force, gradient) in self.forces.iter_mut().zip(gradients) {
+            *force += stress * gradient;
+        }
+    }
+}
+
+impl Cell {
+    /// `has_pressures` of a tetrahedron whose pressure is an unknown of its own.
+    pub fn new(tissue: &Tissue, cell: usize, has_pressures: bool) -> Result<Self, InvertedCell> {
+        let shape = tissue.mesh.cells.shape(cell);
+        let corners: Vec<Vector> = tissue.mesh.corners(cell).collect();
+        let points = reference_cell(shape).points.iter().map(|point| point.at(&corners));
+        let points: Vec<PhysicalPoint> =
+            points.collect::<Option<_>>().ok_or(InvertedCell { cell })?;
+        let mut tensor = tissue.tensor(cell);
+        if has_pressures {
+            tensor.lambda -= tensor.pressure_part().lambda;
+        }
+        let (at_points, of_mean) = match (tissue.dilatation)(shape) {
+            Dilatation::Pointwise => (tensor, None),
+            Dilatation::Mean => {
+                let (of_shape, of_volume) = tensor.split_volume();
+                (of_shape, Some(of_volume.into()))
+            }
+        };
+        let volume: f64 = points.iter().map(|point| point.volume).sum();
+        let mean = |a: usize| -> Vector {
+            points.iter().map(|point| point.gradients[a] * (point.volume / volume)).sum()
+        };
+        let mean_gradients = match &of_mean {
+            Some(_) => std::array::from_fn(mean),
+            None => [Vector::zeros(); MAX_NODES],
+        };
+        let count = corners.len();
+        Ok(Cell { count, volume, at_points: at_points.into(), of_mean, mean_gradients, points })
+    }
+
+    pub fn strained(
+        &self,
+        nodes: &[u32],
+        pressures: Option<&[u32; 4]>,
+        states: &[Moved],
+    ) -> Strained {
+        let mut strained =
+            Strained { points: self.points.len(), at: Vec::new(), means: Vec::new() };
+        for state in states {
+            let of = |gradients: &[Vector]| -> Matrix3<f64> {
+                let nodes = nodes.iter().zip(gradients);
+                nodes.map(|(&node, g)| state.displacement[node as usize] * g.transpose()).sum()
+            };
+            let mean = self.of_mean.as_ref().map_or(Matrix3::zeros(), |_| of(&self.mean_gradients));
+            let numbers = pressures.into_iter().flatten();
+            let pressure =
+                numbers.map(|&number| state.pressures[number as usize]).sum::<f64>() / 4.0;
+            let everywhere = pressure + self.mean_lambda() * mean.trace();
+            strained.means.push(mean);
+            strained.at.extend(self.points.iter().map(|point| {
+                let gradient = of(&point.gradients[..self.count]);
+                let tension = everywhere + self.at_points.lambda * gradient.trace();
+                Stretch { gradient, tension }
+            }));
+        }
+        strained
+    }
+
+    fn mean_lambda(&self) -> f64 {
+        self.of_mean.as_ref().map_or(0.0, |parts| parts.lambda)
+    }
+
+    fn log_volumes(&self, of: impl Fn(usize) -> f64) -> LogVolumes {
+        let mut logs = LogVolumes { at: [0.0; MAX_NODES], mean: 0.0 };
+        for (place, point) in self.points.iter().enumerate() {
+            logs.at[place] = of(place);
+            logs.mean += logs.at[place] * point.volume / self.volume;
+        }
+        logs
+    }
+
+    /// tau of an order at a point in kPa.
+    fn tension(&self, logs: &LogVolumes, place: usize) -> f64 {
+        self.at_points.lambda * logs.at[place] + self.mean_lambda() * logs.mean
+    }
+
+    /// N2 of a pair of states.
+    pub fn second(&self, strained: &Strained, pair: [usize; 2]) -> CellTerms {
+        let [a, b] = pair.map(|state| strained.of(state));
+        let logs = self.log_volumes(|q| second_log_volume(&a[q].gradient, &b[q].gradient));
+        let mut terms = CellTerms { volume: self.volume / 4.0 * logs.mean, ..CellTerms::nothing() };
+        for (q, point) in self.points.iter().enumerate() {
+            let tension = self.tension(&logs, q);
+            let mut stress = second_stress(self.at_points.mu, [&a[q], &b[q]], tension);
+            if let Some(fibres) = &self.at_points.fibres {
+                stress += second_green_stress(fibres, &a[q].gradient, &b[q].gradient);
+            }
+            terms.add_stress(&(stress * point.volume), &point.gradients[..self.count]);
+        }
+        if let Some(fibres) = self.of_mean.as_ref().and_then(|parts| parts.fibres.as_ref()) {
+            let [a, b] = pair.map(|state| &strained.means[state]);
+            let stress = second_green_stress(fibres, a, b) * self.volume;
+            terms.add_stress(&stress, &self.mean_gradients[..self.count]);
+        }
+        terms
+    }
+
+    /// N3 of the first state.
+    pub fn third(&self, strained: &Strained) -> CellTerms {
+        let a = strained.of(0);
+        let second = self.log_volumes(|q| second_log_volume(&a[q].gradient, &a[q].gradient));
+        let third = self.log_volumes(|q| third_log_volume(&a[q].gradient));
+        let mut terms =
+            CellTerms { volume: self.volume / 4.0 * third.mean, ..CellTerms::nothing() };
+        for (q, point) in self.points.iter().enumerate() {
+            let tensions = (self.tension(&second, q), self.tension(&third, q));
+            let mut stress = third_stress(self.at_points.mu, &a[q], tensions.0, tensions.1);
+            if let Some(fibres) = &self.at_points.fibres {
+                stress += third_green_stress(fibres, &a[q].gradient);
+            }
+            terms.add_stress(&(stress * point.volume), &point.gradients[..self.count]);
+        }
+        if let Some(fibres) = self.of_mean.as_ref().and_then(|parts| parts.fibres.as_ref()) {
+            let stress = third_green_stress(fibres, &strained.means[0]) * self.volume;
+            terms.add_stress(&stress, &self.mean_gradients[..self.count]);
+        }
+        terms
+    }
+}

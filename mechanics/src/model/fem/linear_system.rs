@@ -1,0 +1,233 @@
+//! Linear finite elements of first order, assembled once for any number of load cases and residuals: numbering, matrices,
+//! and what solving them made.
+
+use rayon::prelude::*;
+
+use super::displacement::{Problem, check_finite, solve_displacement};
+use super::displacement_pressure::{PressureCells, check_memory, couple, shear_stiffness};
+use crate::boundary::Hold;
+use crate::mesh::Vector;
+use crate::model::dofs::{Constrained, Known, Numbering, product_at_holds};
+use crate::model::problem::{Equilibrium, LoadCase, ModelError};
+use crate::progress::{Phase, Progress};
+use crate::solver::mixed_system::{Coupling, MixedRightHandSide, MixedSolution, MixedSystem};
+use crate::solver::{Solver, SolverError, System, Tolerance, Unknowns, mixed};
+
+/// K, for tetrahedra with pressures B and C beside it, and what was made to solve with them.
+pub struct LinearSystem<'a> {
+    pub holds: &'a [Hold],
+    pub numbering: Numbering,
+    /// K; where there are pressures without what they carry.
+    pub stiffness: System,
+    pub pressures: Option<Pressures>,
+    tolerance: Tolerance,
+    solver: Solver,
+}
+
+/// What ties pressures to displacements, and the cells that have them.
+pub struct Pressures {
+    pub coupling: Coupling,
+    pub cells: PressureCells,
+}
+
+/// An equilibrium and the pressures p = lambda div u in kPa that belong to it; none without pressures.
+pub struct Solved {
+    pub equilibrium: Equilibrium,
+    pub pressures: Vec<f64>,
+}
+
+/// What is left over of the equations of an answer.
+#[derive(Clone, Debug, Default)]
+pub struct Residual {
+    /// For each node, in mN. What acts along held axes does nothing.
+    pub forces: Vec<Vector>,
+    /// For each pressure, in mm³; empty where nothing is left over of them.
+    pub volumes: Vec<f64>,
+}
+
+/// What a residual changes where every hold stays.
+pub struct Correction {
+    /// For each node, in mm.
+    pub displacement: Vec<Vector>,
+    /// In kPa.
+    pub pressures: Vec<f64>,
+    pub iterations: usize,
+    /// What is left of the residual.
+    pub relative_residual: f64,
+}
+
+impl Problem<'_> {
+    /// Solves for equilibrium without pressures.
+    pub fn solve(&self, progress: &dyn Progress) -> Result<Equilibrium, ModelError> {
+        let held = self.holds.iter().map(|hold| *hold.values()).collect();
+        let case = LoadCase { held, forces: self.forces.to_vec() };
+        let mut equilibria = self.solve_cases(&[case], progress)?;
+        Ok(equilibria.remove(0))
+    }
+
+    /// Solves for each of several load cases without pressures; the tissue is assembled once.
+    pub fn solve_cases(
+        &self,
+        cases: &[LoadCase],
+        progress: &dyn Progress,
+    ) -> Result<Vec<Equilibrium>, ModelError> {
+        let solved = LinearSystem::plain(self, progress)?.solve(cases, progress)?;
+        Ok(solved.into_iter().map(|solved| solved.equilibrium).collect())
+    }
+}
+
+impl<'a> LinearSystem<'a> {
+    /// Displacements alone.
+    pub fn plain(problem: &Problem<'a>, progress: &dyn Progress) -> Result<Self, ModelError> {
+        progress.phase(Phase::Assemble);
+        let numbering = problem.numbering();
+        let matrix = problem.tissue.assemble(&numbering, progress)?.ok_or(SolverError::Stopped)?;
+        let constrained = Constrained { holds: problem.holds, numbering: &numbering };
+        let stiffness = constrained.system(matrix, &problem.tissue.mesh.nodes);
+        Ok(LinearSystem::of(problem, numbering, stiffness, None))
+    }
+
+    /// Displacements, and the pressures of tetrahedra.
+    pub fn mixed(problem: &Problem<'a>, progress: &dyn Progress) -> Result<Self, ModelError> {
+        progress.phase(Phase::Assemble);
+        let tissue = &problem.tissue;
+        let numbering = problem.numbering();
+        let constrained = Constrained { holds: problem.holds, numbering: &numbering };
+        let assembled = shear_stiffness(tissue, &numbering, progress)?;
+        let matrix = assembled.ok_or(SolverError::Stopped)?;
+        let stiffness = constrained.system(matrix, &tissue.mesh.nodes);
+        let cells = PressureCells::new(tissue, &numbering);
+        let coupling = couple(tissue, &constrained, &cells)?;
+        check_memory(&stiffness, &coupling, problem.tolerance.memory_mb)?;
+        let pressures = Pressures { coupling, cells };
+        Ok(LinearSystem::of(problem, numbering, stiffness, Some(pressures)))
+    }
+
+    fn of(
+        problem: &Problem<'a>,
+        numbering: Numbering,
+        stiffness: System,
+        pressures: Option<Pressures>,
+    ) -> Self {
+        let Problem { holds, tolerance, .. } = *problem;
+        LinearSystem {
+            holds,
+            numbering,
+            stiffness,
+            pressures,
+            tolerance,
+            solver: Solver::default(),
+        }
+    }
+
+    /// Solves for each load case.
+    pub fn solve(
+        &self,
+        cases: &[LoadCase],
+        progress: &dyn Progress,
+    ) -> Result<Vec<Solved>, ModelError> {
+        let Some(Pressures { coupling, .. }) = &self.pressures else {
+            let solve = |system: &System, sides: &[Unknowns]| {
+                self.solver.solve(system, sides, &self.tolerance, progress)
+            };
+            let (constrained, system) = (self.constrained(), &self.stiffness);
+            let solved = solve_displacement(&constrained, system, cases, progress, &solve)?;
+            let without = |equilibrium| Solved { equilibrium, pressures: Vec::new() };
+            return Ok(solved.into_iter().map(without).collect());
+        };
+        self.solve_mixed(coupling, cases, progress)
+    }
+
+    /// Displacements and pressures for each load case.
+    fn solve_mixed(
+        &self,
+        coupling: &Coupling,
+        cases: &[LoadCase],
+        progress: &dyn Progress,
+    ) -> Result<Vec<Solved>, ModelError> {
+        // 1. What is known, and what it leaves to the free unknowns.
+        progress.phase(Phase::Solve);
+        let (constrained, stiffness) = (self.constrained(), &self.stiffness);
+        let known: Vec<Known> = cases.par_iter().map(|case| constrained.known(case)).collect();
+        let side = |known: &Known| {
+            let mut volumes = vec![[0.0]; coupling.mass.len()];
+            coupling.divergence.contract(&known.displacement, &mut volumes);
+            volumes.iter_mut().for_each(|[volume]| *volume = -*volume);
+            MixedRightHandSide { forces: known.right_hand_side(stiffness), volumes }
+        };
+        let right_hand_sides: Vec<MixedRightHandSide> = known.par_iter().map(side).collect();
+
+        // 2. The free displacements and the pressures.
+        let system = MixedSystem { stiffness, coupling, solver: &self.solver };
+        let solutions = mixed::solve(&system, &right_hand_sides, &self.tolerance, progress)?;
+
+        // 3. Displacement and reactions, back along the axes of the coordinates.
+        let solved = |(known, mixed): (Known, MixedSolution)| {
+            let total = known.total(&mixed.solution.unknowns);
+            let mut internal = product_at_holds(stiffness, &total);
+            coupling.gradient.add_expanded(&mixed.pressures, &mut internal);
+            let equilibrium = Equilibrium {
+                displacement: constrained.displacement(&total),
+                reactions: constrained.reactions(&internal, &known.force),
+                solver: mixed.solution.report,
+                warnings: Vec::new(),
+            };
+            Solved { equilibrium, pressures: mixed.pressures.into_flattened() }
+        };
+        let solved: Vec<Solved> = known.into_par_iter().zip(solutions).map(solved).collect();
+        check_finite(solved.iter().map(|solved| &solved.equilibrium))?;
+        Ok(solved)
+    }
+
+    /// What each residual changes, to a relative residual that may be as loose as 0.1; where less is reached, what
+    /// was found until then. Eight residuals are solved for together.
+    pub fn solve_for(
+        &self,
+        residuals: &[Residual],
+        relative_residual: f64,
+        progress: &dyn Progress,
+    ) -> Result<Vec<Correction>, ModelError> {
+        let (constrained, stiffness) = (self.constrained(), &self.stiffness);
+        let forces = |residual: &Residual| constrained.free_forces(stiffness, &residual.forces);
+        let solutions: Vec<MixedSolution> = match &self.pressures {
+            Some(Pressures { coupling, .. }) => {
+                let side = |residual: &Residual| {
+                    let mut volumes = residual.volumes.clone();
+                    volumes.resize(coupling.mass.len(), 0.0);
+                    let volumes = volumes.into_iter().map(|volume| [volume]).collect();
+                    MixedRightHandSide { forces: forces(residual), volumes }
+                };
+                let sides: Vec<MixedRightHandSide> = residuals.par_iter().map(side).collect();
+                let system = MixedSystem { stiffness, coupling, solver: &self.solver };
+                mixed::solve_loosely(&system, &sides, relative_residual, progress)?
+            }
+            None => {
+                let sides: Vec<Unknowns> = residuals.par_iter().map(forces).collect();
+                let loose =
+                    self.solver.solve_loosely(stiffness, &sides, relative_residual, progress);
+                let solved = loose.map_err(|error| constrained.in_nodes(error))?;
+                let without = |solution| MixedSolution { solution, pressures: Vec::new() };
+                solved.into_iter().map(without).collect()
+            }
+        };
+        Ok(solutions.into_par_iter().map(|mixed| self.correction(mixed)).collect())
+    }
+
+    fn correction(&self, mixed: MixedSolution) -> Correction {
+        let MixedSolution { solution, pressures } = mixed;
+        let mut total = vec![[[0.0]; 3]; self.stiffness.matrix.rows()];
+        for (total, unknowns) in total.iter_mut().zip(&solution.unknowns) {
+            *total = unknowns.map(|value| [value]);
+        }
+        Correction {
+            displacement: self.constrained().displacement(&total),
+            pressures: pressures.into_flattened(),
+            iterations: solution.report.iterations,
+            relative_residual: solution.report.relative_residual,
+        }
+    }
+
+    fn constrained(&self) -> Constrained<'_> {
+        Constrained { holds: self.holds, numbering: &self.numbering }
+    }
+}

@@ -1,0 +1,112 @@
+//! Discretisation error of an answer: solved together with its estimate, or with the reason why there is none.
+
+use super::method::Method;
+use super::scene::Scene;
+use crate::mesh::{Vector, Warning};
+use crate::model::fem::discretisation_error::Estimate;
+use crate::model::fem::linear_system::{LinearSystem, Solved};
+use crate::model::fem::mass_tensor::Iterations;
+use crate::model::problem::ModelError;
+use crate::progress::Progress;
+use crate::solver::SolverError;
+
+/// The mean over the skin above which an answer says how large its error is, in mm.
+const LARGE_MM: f64 = 0.1;
+
+/// An estimate of what the mesh cannot show.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NumericalError {
+    /// For each node what the displacement that was solved for lacks, in mm.
+    pub missing: Vec<Vector>,
+    /// Whether the displacement of the prediction has it added.
+    pub is_added: bool,
+}
+
+/// Why there is no estimate.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum NotEstimated {
+    #[error("it was not asked for")]
+    NotAsked,
+    #[error("quadratic tetrahedra have no element of higher order to be held against")]
+    Quadratic,
+    #[error("it is not estimated at finite strain")]
+    FiniteStrain,
+    #[error("springs have no limit that a finer mesh comes to")]
+    Springs,
+    #[error("the tissue was brought to rest node by node, and left no matrix to solve with")]
+    NodeByNode,
+    #[error("a volume spline is not a function of the mesh")]
+    Spline,
+    #[error("a warp solves no equation")]
+    Warp,
+    #[error("{0}")]
+    Failed(String),
+}
+
+/// The estimate for an answer of linear elements.
+pub(super) fn estimate(
+    scene: &Scene,
+    system: &LinearSystem,
+    solved: &Solved,
+    progress: &dyn Progress,
+) -> Result<Result<NumericalError, NotEstimated>, ModelError> {
+    let (boundary, loads) = (&scene.boundary, &scene.distributed);
+    let estimate = Estimate { tissue: scene.tissue(), system, boundary, loads };
+    match estimate.of(solved, progress) {
+        Ok(error) => Ok(Ok(NumericalError { missing: error.missing, is_added: false })),
+        Err(stopped @ ModelError::Solver(SolverError::Stopped)) => Err(stopped),
+        Err(other) => Ok(Err(NotEstimated::Failed(other.to_string()))),
+    }
+}
+
+/// Why a method has no estimate.
+pub(super) fn reason_for_none(scene: &Scene) -> Option<NotEstimated> {
+    if !scene.settings.estimate {
+        return Some(NotEstimated::NotAsked);
+    }
+    match &scene.settings.method {
+        Method::FemLinear | Method::MassTensorTransverse => None,
+        Method::MassTensor(own) => match own.iterations {
+            Iterations::Fast => None,
+            Iterations::Stationary(_) => Some(NotEstimated::NodeByNode),
+        },
+        Method::FemNonlinear | Method::MassTensorNonlinear => Some(NotEstimated::FiniteStrain),
+        Method::MassSpring(_) => Some(NotEstimated::Springs),
+        Method::VolumeSpline(_) => Some(NotEstimated::Spline),
+        Method::ThicknessWarp(_) => Some(NotEstimated::Warp),
+    }
+}
+
+/// What a reader must know: an error that is large, a correction that could not be made.
+pub(super) fn warning(
+    scene: &Scene,
+    error: &Result<NumericalError, NotEstimated>,
+) -> Option<Warning> {
+    match error {
+        Ok(error) => large(scene, error),
+        Err(reason) if scene.settings.corrected => {
+            let detail = format!("the answer is not corrected for the error of its mesh: {reason}");
+            Some(Warning::new("not-corrected", detail))
+        }
+        Err(_) => None,
+    }
+}
+
+fn large(scene: &Scene, error: &NumericalError) -> Option<Warning> {
+    let nodes = scene.skin.nodes();
+    let mut lengths: Vec<f64> =
+        nodes.iter().map(|&node| error.missing[node as usize].norm()).collect();
+    lengths.sort_by(f64::total_cmp);
+    let mean = lengths.iter().sum::<f64>() / lengths.len().max(1) as f64;
+    if mean.is_nan() || mean <= LARGE_MM {
+        return None;
+    }
+    let at = |share: f64| lengths[((lengths.len() as f64 * share).ceil() as usize).max(1) - 1];
+    let what = match error.is_added {
+        true => "the mesh left out, and a correction has added,",
+        false => "the mesh leaves out",
+    };
+    let detail = format!("{what} an estimated {mean:.2} mm in the mean over the skin");
+    let warning = Warning::new("numerical-error-large", detail);
+    Some(warning.with("mean_mm", mean).with("p95_mm", at(0.95)).with("max_mm", at(1.0)))
+}

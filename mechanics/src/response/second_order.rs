@@ -1,0 +1,197 @@
+//! The second-order columns of a response: a loose solution for every pair of columns, and samples of the third order.
+//!
+//! U_kk = -K0^-1 N2(c_k, c_k) and U_kl = -2 K0^-1 N2(c_k, c_l), k < l, with N2 of `model::fem::force_series`, the matrix and
+//! the hierarchy of the columns themselves, and nothing moved where it is held: what a hold states is linear in the numbers
+//! of its segment. Where tissue slides it keeps the normals that it has at rest.
+
+use super::quadratic_form::{QuadraticForm, pairs, quantised};
+use super::rigid_numbers::SAMPLES;
+use super::superposition::COLUMNS_PER_SEGMENT;
+use crate::mesh::Vector;
+use crate::model::fem::force_series::{ForceSeries, Forces, Moved};
+use crate::model::fem::linear_system::{Correction, LinearSystem, Residual, Solved};
+use crate::model::problem::ModelError;
+use crate::progress::Progress;
+use crate::solver::SolverError;
+
+/// Relative residual of the columns of second and third order (docs/estimates.md has what looser ones leave).
+const LOOSE: f64 = 1e-2;
+
+/// Relative residual of what is only sampled of the second order.
+const SAMPLED: f64 = 0.1;
+
+/// Pairs that are solved for together.
+const TOGETHER: usize = 8;
+
+/// The columns of a response as they were solved, and what they were solved with.
+pub(super) struct Solutions<'a> {
+    pub series: ForceSeries<'a>,
+    pub system: &'a LinearSystem<'a>,
+    pub columns: &'a [Solved],
+    /// Nodes of the skin.
+    pub skin: &'a [u32],
+}
+
+/// A displacement and its pressures.
+struct State {
+    displacement: Vec<Vector>,
+    pressures: Vec<f64>,
+}
+
+impl State {
+    fn as_moved(&self) -> Moved<'_> {
+        Moved { displacement: &self.displacement, pressures: &self.pressures }
+    }
+}
+
+impl From<Correction> for State {
+    fn from(correction: Correction) -> Self {
+        State { displacement: correction.displacement, pressures: correction.pressures }
+    }
+}
+
+/// What resists some forces, as a residual.
+fn resisting(forces: Forces, factor: f64) -> Residual {
+    Residual {
+        forces: forces.nodes.into_iter().map(|force| force * -factor).collect(),
+        volumes: forces.volumes.into_iter().map(|volume| volume * -factor).collect(),
+    }
+}
+
+impl Solutions<'_> {
+    /// The columns of all pairs, and the samples of each segment.
+    pub fn quadratic_form(&self, progress: &dyn Progress) -> Result<QuadraticForm, ModelError> {
+        let numbers = self.columns.len();
+        let all: Vec<[usize; 2]> = pairs(numbers).collect();
+        let (mut values, mut scales) = (Vec::new(), Vec::new());
+        for (done, some) in all.chunks(TOGETHER).enumerate() {
+            progress.step(done * TOGETHER, all.len());
+            for column in self.columns_of(some, progress)? {
+                let (column, scale) = quantised(&column);
+                values.extend(column);
+                scales.push(scale);
+            }
+        }
+        let segments = 0..numbers / COLUMNS_PER_SEGMENT;
+        let third = segments.map(|segment| self.third_of(segment, progress));
+        let third = third.collect::<Result<_, ModelError>>()?;
+        Ok(QuadraticForm { numbers, values, scales, third })
+    }
+
+    /// U of some pairs at the nodes of the skin.
+    fn columns_of(
+        &self,
+        some: &[[usize; 2]],
+        progress: &dyn Progress,
+    ) -> Result<Vec<Vec<Vector>>, ModelError> {
+        let mut used: Vec<usize> = some.iter().flatten().copied().collect();
+        used.sort_unstable();
+        used.dedup();
+        let place = |column: usize| used.partition_point(|&other| other < column);
+        let column = |&column: &usize| self.column(column);
+        let states: Vec<Moved> = used.iter().map(column).collect();
+        let places: Vec<[usize; 2]> = some.iter().map(|pair| pair.map(place)).collect();
+        let forces = self.series.second(&states, &places)?;
+        let twice = some.iter().map(|[k, l]| if k == l { 1.0 } else { 2.0 });
+        let residuals = forces.into_iter().zip(twice);
+        let residuals = residuals.map(|(forces, factor)| resisting(forces, factor)).collect();
+        let solved = self.solved(residuals, LOOSE, progress)?;
+        Ok(solved.iter().map(|state| self.at_skin(&state.displacement)).collect())
+    }
+
+    fn column(&self, column: usize) -> Moved<'_> {
+        let Solved { equilibrium, pressures } = &self.columns[column];
+        Moved { displacement: &equilibrium.displacement, pressures }
+    }
+
+    fn at_skin(&self, displacement: &[Vector]) -> Vec<Vector> {
+        self.skin.iter().map(|&node| displacement[node as usize]).collect()
+    }
+
+    fn solved(
+        &self,
+        residuals: Vec<Residual>,
+        relative_residual: f64,
+        progress: &dyn Progress,
+    ) -> Result<Vec<State>, ModelError> {
+        if progress.is_cancelled() {
+            return Err(SolverError::Stopped.into());
+        }
+        let solved = self.system.solve_for(&residuals, relative_residual, progress)?;
+        Ok(solved.into_iter().map(State::from).collect())
+    }
+
+    /// The mean length of u3 on the skin for a unit of each sampled direction of a segment.
+    fn third_of(
+        &self,
+        segment: usize,
+        progress: &dyn Progress,
+    ) -> Result<[f64; SAMPLES], ModelError> {
+        let first = self.samples(segment);
+        let second = self.squares(&first, LOOSE, progress)?;
+        let both = first.iter().zip(&second);
+        let forces = both.map(|(u, v)| self.series.third(u.as_moved(), v.as_moved()));
+        let residuals: Result<Vec<Residual>, ModelError> =
+            forces.map(|forces| Ok(resisting(forces?, 1.0))).collect();
+        Ok(self.mean_lengths(&self.solved(residuals?, LOOSE, progress)?))
+    }
+
+    /// For each segment the mean length of u2 on the skin for a unit of each sampled direction.
+    pub fn second_of_each(
+        &self,
+        progress: &dyn Progress,
+    ) -> Result<Vec<[f64; SAMPLES]>, ModelError> {
+        let segments = 0..self.columns.len() / COLUMNS_PER_SEGMENT;
+        let of = |segment: usize| {
+            let second = self.squares(&self.samples(segment), SAMPLED, progress)?;
+            Ok(self.mean_lengths(&second))
+        };
+        segments.map(of).collect()
+    }
+
+    fn samples(&self, segment: usize) -> Vec<State> {
+        (0..SAMPLES).map(|direction| self.sampled(segment, direction)).collect()
+    }
+
+    /// u2 of each of the sampled directions.
+    fn squares(
+        &self,
+        first: &[State],
+        relative_residual: f64,
+        progress: &dyn Progress,
+    ) -> Result<Vec<State>, ModelError> {
+        let states: Vec<Moved> = first.iter().map(State::as_moved).collect();
+        let squares: [[usize; 2]; SAMPLES] = std::array::from_fn(|direction| [direction; 2]);
+        let forces = self.series.second(&states, &squares)?.into_iter();
+        let residuals = forces.map(|forces| resisting(forces, 1.0)).collect();
+        self.solved(residuals, relative_residual, progress)
+    }
+
+    fn mean_lengths(&self, states: &[State]) -> [f64; SAMPLES] {
+        std::array::from_fn(|direction| {
+            let lengths = self.at_skin(&states[direction].displacement);
+            lengths.iter().map(Vector::norm).sum::<f64>() / lengths.len().max(1) as f64
+        })
+    }
+
+    /// A unit of translation along an axis, or of rotation about one, as a sum of columns.
+    fn sampled(&self, segment: usize, direction: usize) -> State {
+        let (axis, first) = (direction % 3, segment * COLUMNS_PER_SEGMENT);
+        let [i, j] = [(axis + 1) % 3, (axis + 2) % 3];
+        let terms = match direction < 3 {
+            true => vec![(1.0, 4 * axis + 3)],
+            // u = e_axis x (x - centre): the entries (j, i) and (i, j) of R - I.
+            false => vec![(1.0, 4 * j + i), (-1.0, 4 * i + j)],
+        };
+        let of = |column: usize| self.column(first + column);
+        let mut state = State { displacement: Vec::new(), pressures: Vec::new() };
+        for (factor, column) in terms {
+            let Moved { displacement, pressures } = of(column);
+            state.displacement.resize(displacement.len(), Vector::zeros());
+            state.pressures.resize(pressures.len(), 0.0);
+            state.displacement.iter_mut().zip(displacement).for_each(|(u, v)| *u += v * factor);
+            state.pressures.iter_mut().zip(pressures).for_each(|(p, q)| *p += q * factor);
+        }
+        state
+    }
+}

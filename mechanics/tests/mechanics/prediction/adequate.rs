@@ -1,0 +1,124 @@
+//! The cheapest adequate model: what is taken, what is called met, and what is said where nothing is adequate.
+
+use mechanics::material::{PlaneStress, Sheet};
+use mechanics::mesh::refinement::refine;
+use mechanics::mesh::{CellShape, Vector};
+use mechanics::prediction::{
+    Accepted, Adequate, Case, ElementChoice, Method, Plan, Rung, Scene, Settings, SkinMembrane,
+    Watched, predict, predict_adequately,
+};
+use mechanics::progress::{Progress, Unobserved};
+
+use super::nonlinearity::{movements, slab};
+use crate::scenes::StopsAfter;
+use crate::support::responses::plan_of;
+
+/// A stopwatch on which each look is a second later.
+fn ticking() -> impl Fn() -> f64 {
+    let now = std::cell::Cell::new(0.0);
+    move || now.replace(now.get() + 1.0)
+}
+
+fn adequate(case: &Case, plan: &Plan, settings: &Settings, accepted: Accepted) -> Adequate {
+    let scene = Scene::new(case, plan, settings).unwrap();
+    let watched = Watched { stopwatch: &ticking(), progress: &Unobserved };
+    predict_adequately(case, plan, &scene, accepted, watched).unwrap()
+}
+
+fn within(skin_mm: f64) -> Accepted {
+    Accepted { skin_mm, time_s: 1e6 }
+}
+
+/// The mean over the skin of the distance to Newton's answer of stabilised elements on a mesh of which every edge is halved.
+fn true_error(case: &Case, plan: &Plan, displacement: &[Vector]) -> f64 {
+    let fine = Case { volume: refine(&case.volume).into(), ..case.clone() };
+    let settings = Settings { method: Method::FemNonlinear, ..Settings::default() };
+    let scene = Scene::new(&fine, plan, &settings).unwrap();
+    let truth = predict(&scene, &Unobserved).unwrap().displacement;
+    let coarse = Scene::new(case, plan, &Settings::default()).unwrap();
+    let nodes = coarse.skin.nodes();
+    let apart = |&node: &u32| (truth[node as usize] - displacement[node as usize]).norm();
+    nodes.iter().map(apart).sum::<f64>() / nodes.len() as f64
+}
+
+#[test]
+fn larger_movements_need_dearer_models_and_what_is_called_met_is_met() {
+    let case = slab(CellShape::Tet4, 0.45);
+    let mut taken = Vec::new();
+    for (share, skin_mm) in [(0.05, 0.1), (0.3, 0.25), (1.0, 0.5), (1.0, 0.3)] {
+        let plan = plan_of(&case, &movements(share));
+        let found = adequate(&case, &plan, &Settings::default(), within(skin_mm));
+        let error = true_error(&case, &plan, &found.prediction.displacement);
+        println!("{share}: {:?} told {:?} true {error:.4} of {skin_mm}", found.rung, found.errors);
+        assert!(!found.is_met || error <= skin_mm, "{share}: {error} of {skin_mm}");
+        assert_eq!(found.scene.is_some(), found.rung == Rung::FiniteStrain);
+        taken.push((found.rung, found.is_met));
+    }
+    assert_eq!(taken[0], (Rung::Linear, true));
+    assert!(taken.contains(&(Rung::FiniteStrain, true)), "{taken:?}");
+}
+
+#[test]
+fn an_answer_that_only_its_mesh_spoils_is_corrected() {
+    let case = slab(CellShape::Tet4, 0.45);
+    let plan = plan_of(&case, &movements(0.1));
+    let first = adequate(&case, &plan, &Settings::default(), within(100.0));
+    assert_eq!((first.rung, first.is_met), (Rung::Linear, true));
+    let (mesh, linearity) = (first.errors.mesh_mm.unwrap(), first.errors.linearity_mm.unwrap());
+    let between = 0.9 * mesh + linearity;
+    let corrected = adequate(&case, &plan, &Settings::default(), within(between));
+    assert_eq!((corrected.rung, corrected.is_met), (Rung::Corrected, true));
+    let error = corrected.prediction.numerical_error.unwrap();
+    assert!(error.is_added);
+    let pairs = first.prediction.displacement.iter().zip(&corrected.prediction.displacement);
+    let added =
+        pairs.zip(&error.missing).map(|((before, after), missing)| before + missing - after);
+    assert!(added.map(|left| left.norm()).fold(0.0, f64::max) < 1e-12);
+}
+
+#[test]
+fn without_time_the_nearest_answer_is_given_and_said_not_to_be_adequate() {
+    let case = slab(CellShape::Tet4, 0.45);
+    let plan = plan_of(&case, &movements(1.0));
+    let usual = Settings::default();
+    let skin_mm = 1.05 * adequate(&case, &plan, &usual, within(100.0)).errors.mesh_mm.unwrap();
+    // The linear answer takes a second of the stopwatch.
+    let found = adequate(&case, &plan, &usual, Accepted { skin_mm, time_s: 5.0 });
+    assert_eq!((found.rung, found.is_met), (Rung::Corrected, false));
+    let newton = found.considered.iter().find(|other| other.rung == Rung::FiniteStrain).unwrap();
+    assert!(newton.passed_over.as_ref().unwrap().contains("4.0 s are left"), "{newton:?}");
+    assert!(newton.error_mm.unwrap() <= skin_mm && newton.spent_s.is_none());
+    let warning = |code: &str| found.prediction.warnings.iter().any(|one| one.code == code);
+    assert!(warning("tolerance-not-met"));
+}
+
+#[test]
+fn tissue_that_finite_strain_does_not_know_is_answered_without_it() {
+    let case = slab(CellShape::Tet4, 0.45);
+    let plan = plan_of(&case, &movements(1.0));
+    let sheet =
+        Sheet { thickness: 1.5, young_modulus: 100.0, poisson_ratio: 0.45, along_lines: None };
+    let membrane = Some(SkinMembrane { sheet: PlaneStress::new(&sheet).unwrap(), lines: None });
+    let settings = Settings { membrane, ..Settings::default() };
+    let found = adequate(&case, &plan, &settings, within(0.05));
+    assert!(!found.is_met && found.rung != Rung::FiniteStrain);
+}
+
+#[test]
+fn elements_without_an_estimate_are_never_called_adequate() {
+    let case = slab(CellShape::Tet4, 0.45);
+    let plan = plan_of(&case, &movements(0.05));
+    let settings = Settings { element: ElementChoice::Quadratic, ..Settings::default() };
+    let found = adequate(&case, &plan, &settings, within(10.0));
+    assert_eq!((found.rung, found.is_met), (Rung::Linear, false));
+}
+
+#[test]
+fn a_search_for_a_model_stops_when_it_is_told_to() {
+    let case = slab(CellShape::Tet4, 0.45);
+    let plan = plan_of(&case, &movements(1.0));
+    let scene = Scene::new(&case, &plan, &Settings::default()).unwrap();
+    let stops: &dyn Progress = &StopsAfter::iterations(2);
+    let watched = Watched { stopwatch: &ticking(), progress: stops };
+    assert!(predict_adequately(&case, &plan, &scene, within(0.3), watched).is_err());
+}

@@ -1,0 +1,36 @@
+//! The nonlinear mass-tensor model: what is told of it.
+
+use super::document::Description;
+
+/// Its words in `GET /v1/methods`.
+pub(super) fn description() -> Description {
+    Description {
+        title: "mass-tensor with the full Green strain",
+        assumptions: &[
+            "the force of a node is a cubic polynomial of displacements, whose tensors each tetrahedron has before anything \
+                moves: Saint Venant-Kirchhoff tissue, W = lambda/2 (tr E)^2 + mu tr E^2; turning is no stretching",
+            "tissue that is pressed to less than 0.577 of its length gives way, and cells may turn inside out, which is told: \
+                fem_nonlinear with its usual law does neither",
+            "plain tetrahedra lock above a Poisson ratio of 0.45, with a warning",
+            "a wall that slides keeps its normal, and loads keep their direction",
+        ],
+        reads: &[
+            "case.segments",
+            "case.fixed",
+            "case.sliding",
+            "case.materials.young_modulus_kpa",
+            "case.materials.poisson_ratio",
+            "case.materials.density_g_per_cm3",
+            "case.materials.law",
+            "case.hounsfield",
+            "plan.segments",
+            "plan.prescribed",
+            "plan.loads",
+            "spec.contact",
+            "spec.materials",
+            "spec.tolerance.relative_residual",
+            "spec.budget",
+        ],
+        parameters: Vec::new(),
+    }
+}

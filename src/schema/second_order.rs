@@ -1,0 +1,53 @@
+//! The binary columns of a response, of first order and of second order in sixteen bits, and what its estimates need.
+
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+use mechanics::response::QuadraticForm;
+
+/// The binary file of the columns.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct ColumnsDocument {
+    pub file: String,
+    /// `f32 little-endian [column][node][xyz], mm`.
+    pub layout: String,
+    pub count: u64,
+    pub bytes: u64,
+    pub sha256: String,
+}
+
+/// What the estimate of nonlinearity needs to know of the case.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct LinearityDocument {
+    /// The median distance from the skin to the nearest held node.
+    pub thickness_mm: f64,
+    /// Whether something is held that no segment of the response moves.
+    pub something_stays: bool,
+    /// For each segment the mean length on the skin of what the second order adds for 1 mm along x, y, z and for 1 rad about
+    /// x, y, z through its centre; grows with the square. Absent where a rule of thumb has to do.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub second_order_mm: Vec<[f64; 6]>,
+    /// The estimate above which an answer is outside the linear range.
+    pub range_mm: f64,
+}
+
+/// The columns of second order. With a the twelve numbers of all segments, one after the other,
+/// u2 = sum over k <= l of a_k a_l scale_mm[p] column p, p counting (0,0), (0,1), ... (0,n-1), (1,1), ...
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct SecondOrderDocument {
+    /// `GET` hands it over with `order=2`.
+    pub columns: ColumnsDocument,
+    /// One for each column.
+    pub scale_mm: Vec<f32>,
+    /// For each segment the mean length on the skin of what the third order adds for 1 mm along x, y, z and for 1 rad about
+    /// x, y, z through its centre; grows with the cube.
+    pub third_order_mm: Vec<[f64; 6]>,
+}
+
+impl SecondOrderDocument {
+    /// The form with its columns.
+    pub fn to_form(&self, numbers: usize, values: Vec<i16>) -> QuadraticForm {
+        let (scales, third) = (self.scale_mm.clone(), self.third_order_mm.clone());
+        QuadraticForm { numbers, values, scales, third }
+    }
+}
