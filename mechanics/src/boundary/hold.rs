@@ -28,6 +28,12 @@ impl Hold {
         Hold { node, axes: Matrix3::identity(), values: displacement, count: 3 }
     }
 
+    /// The part of a vector along the directions in which the node is held.
+    pub fn part_along(&self, vector: &Vector) -> Vector {
+        let own = self.axes().transpose() * vector;
+        self.axes() * Vector::from_fn(|k, _| if k < self.count() { own[k] } else { 0.0 })
+    }
+
     /// How many directions are held: 0 to 3.
     pub fn count(&self) -> usize {
         self.count

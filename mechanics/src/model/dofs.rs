@@ -48,6 +48,12 @@ impl Constrained<'_> {
         System { layout: self.numbering.layout.clone(), matrix, partly_held, positions }
     }
 
+    /// The number of unknowns that are not held.
+    pub fn free_unknowns(&self) -> usize {
+        let partly = self.holds.iter().filter(|hold| hold.count() < 3);
+        3 * self.numbering.layout.free - partly.map(Hold::count).sum::<usize>()
+    }
+
     /// The values of holds and forces of a load case.
     pub fn known(&self, case: &LoadCase) -> Known {
         let rows = self.numbering.layout.place.len();

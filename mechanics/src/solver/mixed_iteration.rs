@@ -66,12 +66,7 @@ impl<'a, const N: usize> Run<'a, N> {
     pub fn new(system: &'a MixedSystem<'a>, columns: &[MixedRightHandSide]) -> Self {
         let multigrid = system.solver.hierarchy(system.stiffness);
         let coupling = system.coupling;
-        let row_length = |row: usize| -> f64 {
-            let squares = coupling.divergence.row(row).flat_map(|(_, b)| b.map(|b| b * b));
-            squares.sum::<f64>().sqrt()
-        };
-        let mass = coupling.mass.iter().enumerate();
-        let weights: Vec<f64> = mass.map(|(row, mass)| row_length(row) / mass).collect();
+        let weights = coupling.weights();
         let forces: Vec<Unknowns> = columns.iter().map(|right| right.forces.clone()).collect();
         let volumes: Vec<Vec<[f64; 1]>> =
             columns.iter().map(|right| right.volumes.clone()).collect();

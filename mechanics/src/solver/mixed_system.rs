@@ -47,6 +47,17 @@ pub struct Coupling {
 }
 
 impl Coupling {
+    /// W of each pressure, |B_i| / D_i: it turns a volume that is left over into the forces that its pressure would put on the
+    /// nodes around it.
+    pub fn weights(&self) -> Vec<f64> {
+        let length = |row: usize| -> f64 {
+            let squares = self.divergence.row(row).flat_map(|(_, b)| b.map(|b| b * b));
+            squares.sum::<f64>().sqrt()
+        };
+        let mass = self.mass.iter().enumerate();
+        mass.map(|(row, mass)| length(row) / mass).collect()
+    }
+
     /// Memory in MB.
     pub fn megabytes(&self) -> f64 {
         let vectors = self.divergence.megabytes() + self.gradient.megabytes();

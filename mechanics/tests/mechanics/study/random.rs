@@ -6,22 +6,10 @@ use mechanics::study::Stopwatch;
 use mechanics::study::stability::Bounds;
 use mechanics::study::stability::random::{Ending, random};
 
+use super::stability::Clock;
+
 /// In CI: some 10 s of processor time; `facies study --stability --random 10000` goes on.
 const SCENES: u64 = 350;
-
-struct Clock(Instant);
-
-impl Stopwatch for Clock {
-    fn seconds(&self) -> f64 {
-        self.0.elapsed().as_secs_f64()
-    }
-
-    fn forget_peak(&self) {}
-
-    fn peak_mb(&self) -> Option<f64> {
-        None
-    }
-}
 
 #[test]
 fn no_random_scene_is_silently_wrong_and_most_have_an_answer() {

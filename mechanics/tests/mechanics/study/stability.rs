@@ -44,7 +44,7 @@ fn shape_for(variant: &Variant) -> CellShape {
     }
 }
 
-struct Clock(Instant);
+pub(super) struct Clock(pub Instant);
 
 impl Stopwatch for Clock {
     fn seconds(&self) -> f64 {

@@ -1,6 +1,5 @@
 //! Measure of rest: forces on free unknowns that nothing balances, against what holds and loads exert.
 
-use super::holds::along_holds;
 use super::pressures::Pressures;
 use super::tissue::Deformed;
 use crate::mesh::Vector;
@@ -35,7 +34,7 @@ impl Balance {
         let mut exerted: f64 = acting.iter().map(Vector::norm_squared).sum();
         for hold in constrained.holds {
             let force = &mut left[constrained.numbering.row(hold.node)];
-            let own = along_holds(hold, force);
+            let own = hold.part_along(force);
             *force -= own;
             exerted += own.norm_squared();
         }

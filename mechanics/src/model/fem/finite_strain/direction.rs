@@ -139,20 +139,24 @@ impl Directions {
         let case = LoadCase { held: vec![Vector::zeros(); constrained.holds.len()], forces };
         let load = constrained.known(&case).right_hand_side(&system);
         let enough = Enough { relative_residual: 1e-6, most_iterations: MOST_INNER };
-        let multigrid = Multigrid::new(&system);
-        let inner = Inner(progress);
-        let found = conjugate_gradient::direction(&system, &multigrid, &load, enough, &inner)?;
+        // The hierarchy of the last step is that of a tangent near by.
+        let Hierarchy { solver, .. } =
+            self.hierarchy.take().unwrap_or_else(|| self.new_hierarchy());
+        let (multigrid, inner) = (solver.hierarchy(&system), Inner(progress));
+        let found = conjugate_gradient::direction(&system, multigrid, &load, enough, &inner)?;
         Ok(Some(found.is_convex))
     }
 
     fn hierarchy(&mut self) -> Hierarchy {
         match self.hierarchy.take().filter(|hierarchy| hierarchy.served < SERVES) {
             Some(hierarchy) => hierarchy,
-            None => {
-                self.tally.hierarchies += 1;
-                Hierarchy { solver: Solver::default(), served: 0, fresh: 0 }
-            }
+            None => self.new_hierarchy(),
         }
+    }
+
+    fn new_hierarchy(&mut self) -> Hierarchy {
+        self.tally.hierarchies += 1;
+        Hierarchy { solver: Solver::default(), served: 0, fresh: 0 }
     }
 
     fn check_memory(&self, system: &System) -> Result<(), SolverError> {

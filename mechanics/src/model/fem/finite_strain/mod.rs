@@ -9,7 +9,6 @@ mod bricks;
 mod direction;
 mod elements;
 mod fibres;
-mod holds;
 mod newton;
 mod pressures;
 mod problem;
@@ -33,7 +32,6 @@ use direction::{Directions, Tally};
 pub use elements::Elements;
 use elements::Kept;
 pub use fibres::FibreField;
-use holds::along_holds;
 use newton::{Ending, Newton, Question, Rest, Start};
 pub use problem::FiniteStrain;
 use tissue::Tissue;
@@ -78,7 +76,7 @@ impl FiniteStrain<'_> {
         let places = numbering.layout.place.iter().zip(nodes);
         let reaction = |hold: &Hold| {
             let internal = forces[numbering.row(hold.node)];
-            along_holds(hold, &(internal - case.forces[hold.node as usize]))
+            hold.part_along(&(internal - case.forces[hold.node as usize]))
         };
         let equilibrium = Equilibrium {
             displacement: places.map(|(&row, rest)| positions[row as usize] - rest).collect(),

@@ -6,7 +6,6 @@
 
 use super::balance::Balance;
 use super::direction::{Direction, Directions, Remaining, Tally};
-use super::holds::free_unknowns;
 use super::tissue::{Deformed, Rounding, Tissue};
 use crate::mesh::Vector;
 use crate::model::dofs::Constrained;
@@ -298,7 +297,7 @@ impl<'a> Newton<'a> {
         )?;
         let tally = self.directions.tally;
         let (mut energy, mut unknowns) =
-            (deformed.energy(&self.x), free_unknowns(self.question.constrained));
+            (deformed.energy(&self.x), self.question.constrained.free_unknowns());
         if let Some(pressures) = &self.directions.pressures {
             energy += pressures.energy(&self.p);
             unknowns += pressures.count();

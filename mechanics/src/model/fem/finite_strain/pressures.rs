@@ -73,11 +73,7 @@ impl Pressures {
             compliance: SparseRows::assemble(count, &among, compliance),
             mass,
         };
-        let length = |row: usize| -> f64 {
-            let squares = coupling.divergence.row(row).flat_map(|(_, b)| b.map(|b| b * b));
-            squares.sum::<f64>().sqrt()
-        };
-        let weights = (0..count).map(|row| length(row) / coupling.mass[row]).collect();
+        let weights = coupling.weights();
         Pressures {
             slots_of_divergence: Slots::new(&coupling.divergence, &by_pressure),
             slots_of_gradient: Slots::new(&coupling.gradient, &by_node),

@@ -193,7 +193,7 @@ impl Search<'_> {
         let mut exerted: f64 =
             self.case.forces.iter().map(|force| (force * share).norm_squared()).sum();
         for hold in self.constrained.holds {
-            let own = along(hold, &left[hold.node as usize]);
+            let own = hold.part_along(&left[hold.node as usize]);
             left[hold.node as usize] -= own;
             exerted += own.norm_squared();
         }
@@ -213,7 +213,7 @@ impl Search<'_> {
     fn equilibrium(&self, at: State, tolerance: Tolerance, tally: Tally) -> Equilibrium {
         let reaction = |hold: &Hold| {
             let node = hold.node as usize;
-            along(hold, &(at.forces[node] - self.case.forces[node]))
+            hold.part_along(&(at.forces[node] - self.case.forces[node]))
         };
         let reactions = self.constrained.holds.iter().map(reaction).collect();
         let Tally { history, inner, parts, halved, indefinite } = tally;
@@ -225,7 +225,7 @@ impl Search<'_> {
                  definite, {halved} times a step was halved; energy {:.6e} mN mm",
                 self.tetrahedra.energy(&at.u)
             ),
-            unknowns: self.free_unknowns(),
+            unknowns: self.constrained.free_unknowns(),
             iterations: history.len(),
             relative_residual: at.residual,
             wanted_residual: tolerance.relative_residual,
@@ -234,11 +234,6 @@ impl Search<'_> {
             newton: None,
         };
         Equilibrium { displacement: at.u, reactions, solver: report, warnings: Vec::new() }
-    }
-
-    fn free_unknowns(&self) -> usize {
-        let partly = self.constrained.holds.iter().filter(|hold| hold.count() < 3);
-        3 * self.constrained.numbering.layout.free - partly.map(Hold::count).sum::<usize>()
     }
 }
 
@@ -258,12 +253,6 @@ impl Goal {
             false => Ok(()),
         }
     }
-}
-
-/// The part of a force along the directions in which a node is held.
-fn along(hold: &Hold, force: &Vector) -> Vector {
-    let own = hold.axes().transpose() * force;
-    hold.axes() * Vector::from_fn(|k, _| if k < hold.count() { own[k] } else { 0.0 })
 }
 
 fn largest(u: &[Vector]) -> f64 {
