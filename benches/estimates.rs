@@ -22,7 +22,8 @@ use mechanics::model::fem::discretisation_error::Estimate;
 use mechanics::plan::{PlannedSegment, RigidMovement};
 use mechanics::prediction::{Case, CaseSegment, ElementChoice, Plan, Scene, Settings};
 use mechanics::progress::Unobserved;
-use mechanics::study::scenes::{half_head, slab, slab_hex, sphere_of};
+use mechanics::study::StudyScene;
+use mechanics::study::scenes::{half_head, slab, slab_hex, slab_wedge, sphere_of};
 
 /// What is held for true of a row.
 #[derive(Clone, Copy)]
@@ -48,7 +49,7 @@ const SCENES: [Entry; 6] = [
     ("slab", slabs),
     ("half_head", half_heads),
     ("sphere", spheres),
-    ("slab_hex", slabs_hex),
+    ("slab_cells", slabs_of_cells),
     ("face", faces),
     ("shell", shells),
 ];
@@ -184,16 +185,18 @@ fn spheres() -> Vec<Row> {
     ]
 }
 
-fn slabs_hex() -> Vec<Row> {
-    let scene = slab_hex();
-    let row = |materials: &mechanics::study::Materials| Row {
-        name: format!("slab hex, {}", materials.name),
-        case: Case { materials: materials.by_region.clone(), ..scene.case.clone() },
-        plan: scene.plans[0].1.clone(),
-        elements: vec![ElementChoice::Plain, ElementChoice::MeanDilatation],
-        truth: Truth { halved: 3, element: ElementChoice::MeanDilatation },
+fn slabs_of_cells() -> Vec<Row> {
+    let rows = |scene: StudyScene| {
+        let row = |materials: &mechanics::study::Materials| Row {
+            name: format!("{}, {}", scene.name, materials.name),
+            case: Case { materials: materials.by_region.clone(), ..scene.case.clone() },
+            plan: scene.plans[0].1.clone(),
+            elements: vec![ElementChoice::Plain, ElementChoice::MeanDilatation],
+            truth: Truth { halved: 3, element: ElementChoice::MeanDilatation },
+        };
+        scene.materials.iter().map(row).collect::<Vec<_>>()
     };
-    scene.materials.iter().map(row).collect()
+    [slab_hex(), slab_wedge()].into_iter().flat_map(rows).collect()
 }
 
 fn shells() -> Vec<Row> {

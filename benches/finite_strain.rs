@@ -1,28 +1,34 @@
 //! Newton's method at finite strain on a hard block, as the table of docs/finite-strain.md:
-//! `cargo bench --bench finite_strain [-- CELLS …]`.
+//! `cargo bench --bench finite_strain [-- CELLS … --vtu FOLDER]`. `--vtu` writes the mesh and the displacement of plain tetrahedra
+//! on block B at a Poisson ratio of 0.46, for peers to be held against (`benches/peers/finite_strain/run`).
 //!
 //! 100 x 100 x 20 mm of neo-Hookean tissue of 15 kPa, cut into CELLS x CELLS x CELLS/5 cubes of six tetrahedra. Its bottom is
 //! held; a patch of 30 x 30 mm is moved by s (25, 0, 10) mm and turned by 15 s degrees. Block B leaves a ring of 25 mm
-//! around the patch free, block A does not. Time is that of one call, from mesh in memory to displacement in memory, the
-//! median of three; `RAYON_NUM_THREADS` sets the threads.
+//! around the patch free, block A does not. Times are those of one call, from mesh in memory to displacement in memory,
+//! medians of three; `RAYON_NUM_THREADS` sets the threads.
 
 mod measure;
 
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use measure::median;
+use measure::process::cpu_seconds;
 use mechanics::boundary::Hold;
+use mechanics::format::vtk::vtu;
+use mechanics::format::{ArrayValues, NamedValues, VolumeOutput};
 use mechanics::material::hyperelastic::{Law, NeoHookean};
 use mechanics::mesh::sample::block;
-use mechanics::mesh::{CellShape, Vector, VolumeMesh};
+use mechanics::mesh::{CellShape, Frame, Vector, VolumeMesh};
 use mechanics::model::fem::finite_strain::{Elements, FibreField, FiniteStrain};
-use mechanics::model::problem::LoadCase;
+use mechanics::model::problem::{Equilibrium, LoadCase, ModelError};
 use mechanics::progress::Unobserved;
 use mechanics::solver::Tolerance;
 use nalgebra::Rotation3;
 
 const REPEATS: usize = 3;
 
+#[derive(Clone, Copy)]
 struct Plan {
     elements: Elements,
     block: char,
@@ -31,37 +37,78 @@ struct Plan {
 }
 
 fn main() {
-    let asked: Vec<usize> = std::env::args().skip(1).filter_map(|text| text.parse().ok()).collect();
-    let sizes = if asked.is_empty() { vec![20, 30, 45] } else { asked };
+    let (sizes, compared) = arguments();
     println!(
-        "| elements | block | tetrahedra | nu | s | wall s | steps | inner iterations | hierarchies | indefinite steps | \
-         least det F | energy mN mm | mean movement of the top mm |"
+        "| elements | block | tetrahedra | nu | s | wall s | processor s | steps | inner iterations | hierarchies | \
+         indefinite steps | least det F | energy mN mm | mean movement of the top mm |"
     );
-    println!("|{}", " --- |".repeat(13));
+    println!("|{}", " --- |".repeat(14));
     for cells in sizes {
-        for elements in [Elements::PLAIN, Elements::STABLE] {
-            for (block, poisson_ratio, share) in [
-                ('B', 0.46, 0.5),
-                ('B', 0.46, 1.0),
-                ('B', 0.49, 1.0),
-                ('B', 0.4999, 1.0),
-                ('A', 0.46, 1.0),
-                ('A', 0.49, 1.0),
-            ] {
-                row(cells, &Plan { elements, block, poisson_ratio, share });
-            }
+        match &compared {
+            Some(folder) => compare(cells, folder),
+            None => plans().for_each(|plan| row(cells, &plan)),
         }
     }
 }
 
-fn row(cells: usize, plan: &Plan) {
-    let mesh = block(Vector::new(100.0, 100.0, 20.0), [cells, cells, cells / 5], CellShape::Tet4);
-    let holds = holds(&mesh, plan);
+fn arguments() -> (Vec<usize>, Option<PathBuf>) {
+    let (mut sizes, mut compared) = (Vec::new(), None);
+    let mut given = std::env::args().skip(1);
+    while let Some(argument) = given.next() {
+        match argument.as_str() {
+            "--bench" => {} // cargo says so to every bench
+            "--vtu" => compared = Some(PathBuf::from(given.next().expect("--vtu needs a folder"))),
+            number => sizes.push(number.parse().expect("a number of cells along a side")),
+        }
+    }
+    if sizes.is_empty() {
+        sizes = if compared.is_some() { vec![20, 30] } else { vec![20, 30, 45] };
+    }
+    (sizes, compared)
+}
+
+fn plans() -> impl Iterator<Item = Plan> {
+    let blocks = [
+        ('B', 0.46, 0.5),
+        ('B', 0.46, 1.0),
+        ('B', 0.49, 1.0),
+        ('B', 0.4999, 1.0),
+        ('A', 0.46, 1.0),
+        ('A', 0.49, 1.0),
+    ];
+    [Elements::PLAIN, Elements::STABLE].into_iter().flat_map(move |elements| {
+        blocks.map(|(block, poisson_ratio, share)| Plan { elements, block, poisson_ratio, share })
+    })
+}
+
+/// The rows that peers are held against; the displacement of plain tetrahedra is written.
+fn compare(cells: usize, folder: &Path) {
+    let plan = Plan { elements: Elements::PLAIN, block: 'B', poisson_ratio: 0.46, share: 1.0 };
+    row(cells, &Plan { elements: Elements::STABLE, ..plan });
+    row(cells, &Plan { poisson_ratio: 0.49, ..plan });
+    row(cells, &plan);
+    let mesh = cut(cells);
+    let (found, ..) = solve(&mesh, &plan);
+    let displacement = found.expect("plain tetrahedra come to rest on block B").displacement;
+    let arrays =
+        vec![NamedValues { name: "displacement_mm", values: ArrayValues::Vectors(&displacement) }];
+    let output = VolumeOutput { point_arrays: arrays, ..VolumeOutput::plain(&mesh, Frame::Lps) };
+    let bytes = vtu::write(&output).expect("a mesh of ours");
+    std::fs::write(folder.join(format!("{cells}.vtu")), bytes).expect("a folder to write to");
+}
+
+fn cut(cells: usize) -> VolumeMesh {
+    block(Vector::new(100.0, 100.0, 20.0), [cells, cells, cells / 5], CellShape::Tet4)
+}
+
+/// The answer, its wall and its processor seconds.
+fn solve(mesh: &VolumeMesh, plan: &Plan) -> (Result<Equilibrium, ModelError>, f64, f64) {
+    let holds = holds(mesh, plan);
     let mu = 7.5 / (1.0 + plan.poisson_ratio);
     let lambda = 2.0 * mu * plan.poisson_ratio / (1.0 - 2.0 * plan.poisson_ratio);
     let one = vec![0; mesh.cells.len()];
     let problem = FiniteStrain {
-        mesh: &mesh,
+        mesh,
         laws: &[Law::NeoHookean(NeoHookean { lambda, mu })],
         law_of_cell: &one,
         pressure_of_cell: &one,
@@ -72,24 +119,29 @@ fn row(cells: usize, plan: &Plan) {
     };
     let held = holds.iter().map(|hold| *hold.values()).collect();
     let case = LoadCase { held, forces: vec![Vector::zeros(); mesh.nodes.len()] };
-    let solve = || {
-        let begun = Instant::now();
-        (problem.solve(&case, &Unobserved), begun.elapsed().as_secs_f64())
-    };
-    let (found, first) = solve();
+    let (begun, used) = (Instant::now(), cpu_seconds());
+    let found = problem.solve(&case, &Unobserved);
+    (found, begun.elapsed().as_secs_f64(), cpu_seconds() - used)
+}
+
+fn row(cells: usize, plan: &Plan) {
+    let mesh = cut(cells);
+    let (found, wall, processor) = solve(&mesh, plan);
     let Plan { elements, block, poisson_ratio, share } = plan;
     let element = if elements.stabilised { "stabilised" } else { "plain" };
     let head =
         format!("| {element} | {block} | {} | {poisson_ratio} | {share} |", mesh.cells.len());
     match found {
         Ok(found) => {
-            let walls: Vec<f64> = (1..REPEATS).map(|_| solve().1).chain([first]).collect();
+            let again = (1..REPEATS).map(|_| solve(&mesh, plan)).map(|(_, wall, cpu)| (wall, cpu));
+            let (walls, processors) = again.chain([(wall, processor)]).unzip();
             let top = mesh.nodes.iter().zip(&found.displacement).filter(|(x, _)| x.z > 19.999);
             let moved: Vec<f64> = top.map(|(_, u)| u.norm()).collect();
             let Some(newton) = found.solver.newton else { return };
             println!(
-                "{head} {:.2} | {} | {} | {} | {} | {:.3} | {:.1} | {:.4} |",
+                "{head} {:.2} | {:.2} | {} | {} | {} | {} | {:.3} | {:.1} | {:.4} |",
                 median(walls),
+                median(processors),
                 found.solver.iterations,
                 newton.inner_iterations,
                 newton.hierarchies,
@@ -99,7 +151,7 @@ fn row(cells: usize, plan: &Plan) {
                 moved.iter().sum::<f64>() / moved.len() as f64,
             );
         }
-        Err(error) => println!("{head} {first:.2} | {error} |{}", " |".repeat(6)),
+        Err(error) => println!("{head} {wall:.2} | {processor:.2} | {error} |{}", " |".repeat(6)),
     }
 }
 

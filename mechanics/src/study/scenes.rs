@@ -5,7 +5,7 @@ mod slab;
 mod sphere;
 
 pub use half_head::half_head;
-pub use slab::{slab, slab_hex};
+pub use slab::{slab, slab_hex, slab_wedge};
 pub use sphere::{sphere, sphere_of};
 
 use std::collections::BTreeMap;

@@ -37,6 +37,12 @@ pub fn slab_hex() -> StudyScene {
     StudyScene { name: "slab_hex".to_owned(), ..slab_of(CellShape::Hex8, truth) }
 }
 
+/// Of wedges; the truth is mean-dilatation ones of 0.75 mm.
+pub fn slab_wedge() -> StudyScene {
+    let truth = Truth::Refined { times: 3, element: ElementChoice::MeanDilatation };
+    StudyScene { name: "slab_wedge".to_owned(), ..slab_of(CellShape::Wedge6, truth) }
+}
+
 fn slab_of(shape: CellShape, truth: Truth) -> StudyScene {
     let mesh = mesh(shape);
     let set = |name: &str| NodeSelection::NodeSet(name.to_owned());

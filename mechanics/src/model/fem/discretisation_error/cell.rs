@@ -1,7 +1,10 @@
 //! The cells of an answer with functions on their edges.
 
+use nalgebra::Matrix3;
+
 use super::edge_equations::EdgeEquation;
 use super::edge_functions::MAX_EDGES;
+use super::mean_stress;
 use super::points::EnrichedCell;
 use super::simplex::{CornerPressures, Simplex};
 use crate::element::MAX_NODES;
@@ -18,6 +21,8 @@ pub(super) struct Cells<'a> {
     pressures: &'a [f64],
     /// The numbers of the pressures of its corners, for each cell that has them.
     numbers: Vec<Option<[u32; 4]>>,
+    /// The stress of the mean volume change, for each cell that has one.
+    mean_stresses: Vec<Option<Matrix3<f64>>>,
 }
 
 /// Forces on the corners of a cell, and the volumes of its pressures; zero where it has none.
@@ -39,7 +44,8 @@ impl<'a> Cells<'a> {
             }
         }
         let displacement = &solved.equilibrium.displacement;
-        Cells { tissue, displacement, pressures: &solved.pressures, numbers }
+        let mean_stresses = mean_stress::smooth(tissue, displacement);
+        Cells { tissue, displacement, pressures: &solved.pressures, numbers, mean_stresses }
     }
 
     pub fn pressure_numbers(&self, cell: usize) -> &Option<[u32; 4]> {
@@ -56,7 +62,7 @@ impl<'a> Cells<'a> {
         let moved = &moved[..nodes.len()];
         Ok(match self.cell(cell)? {
             Cell::Simplex(simplex) => simplex.equations(moved),
-            Cell::Points(points) => points.equations(moved),
+            Cell::Points(points) => points.equations(moved, &self.mean_stresses[cell]),
         })
     }
 

@@ -21,6 +21,7 @@ mod edge_functions;
 mod edges;
 mod held_edges;
 mod loads;
+mod mean_stress;
 mod points;
 mod sheet;
 mod simplex;

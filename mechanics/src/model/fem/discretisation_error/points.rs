@@ -1,7 +1,7 @@
 //! A cell of several quadrature points with functions on its edges: hexahedra and wedges.
 //!
 //! With mean dilatation the volume change of the edge functions is taken as its mean over the cell too, as that of the corners
-//! is (`cell_stiffness`).
+//! is (`cell_stiffness`), and the stress of it is that of `mean_stress`.
 
 use nalgebra::Matrix3;
 
@@ -60,17 +60,25 @@ impl EnrichedCell {
         Ok(EnrichedCell { shape, points })
     }
 
-    /// r and D of each edge where the corners are displaced.
-    pub fn equations(&self, displacement: &[Vector]) -> [EdgeEquation; MAX_EDGES] {
+    /// r and D of each edge where the corners are displaced; `mean_stress` is that of the mean volume change.
+    pub fn equations(
+        &self,
+        displacement: &[Vector],
+        mean_stress: &Option<Matrix3<f64>>,
+    ) -> [EdgeEquation; MAX_EDGES] {
         let mut equations = [EdgeEquation::ZERO; MAX_EDGES];
-        for (point, tensor) in &self.points {
-            let stress = tensor.stress(&gradient_of(displacement, &point.corners)) * point.volume;
+        let share = self.share_of_mean();
+        for (place, (point, tensor)) in self.points.iter().enumerate() {
+            let stress = match mean_stress {
+                Some(smooth) if place == self.pointwise() => *smooth,
+                _ => tensor.stress(&gradient_of(displacement, &point.corners)),
+            };
             for (number, equation) in self.edges().zip(&mut equations) {
-                equation.residual -= stress * point.edges[number];
+                equation.residual -= stress * point.edges[number] * point.volume;
             }
         }
         for (number, equation) in self.edges().zip(&mut equations) {
-            equation.stiffness = self.block(number, number, self.resisting());
+            equation.stiffness = self.block(number, number, share);
         }
         equations
     }
@@ -78,22 +86,32 @@ impl EnrichedCell {
     /// The block of two edges.
     #[cfg(test)]
     pub fn stiffness(&self, edge: usize, other: usize) -> Matrix3<f64> {
-        self.block(edge, other, self.points.len())
+        self.block(edge, other, 1.0)
     }
 
-    /// How many places count in D: not the mean of a wedge, whose one volume change stands against nine edges and would let
-    /// each of them do a third of what they do together.
-    fn resisting(&self) -> usize {
-        match self.shape {
-            CellShape::Wedge6 => reference_cell(self.shape).points.len(),
-            CellShape::Tet4 | CellShape::Hex8 => self.points.len(),
+    /// How many places are points: the mean comes after them.
+    fn pointwise(&self) -> usize {
+        reference_cell(self.shape).points.len()
+    }
+
+    /// The share of the mean that counts in D. The one volume change of a wedge stands against nine edges and would let each
+    /// of them do a third of what they do together; without it they overshoot the more the larger lambda is. It counts with
+    /// the shear modulus in place of lambda.
+    fn share_of_mean(&self) -> f64 {
+        match (self.shape, self.points.last()) {
+            (CellShape::Wedge6, Some((_, of_volume))) if self.points.len() > self.pointwise() => {
+                (self.points[0].1.mu / of_volume.lambda).min(1.0)
+            }
+            _ => 1.0,
         }
     }
 
-    fn block(&self, edge: usize, other: usize, places: usize) -> Matrix3<f64> {
+    fn block(&self, edge: usize, other: usize, share_of_mean: f64) -> Matrix3<f64> {
         let mut block: Block = [[0.0; 3]; 3];
-        for (point, tensor) in &self.points[..places] {
-            tensor.add_pair(&mut block, [&point.edges[edge], &point.edges[other]], point.volume);
+        for (place, (point, tensor)) in self.points.iter().enumerate() {
+            let share = if place == self.pointwise() { share_of_mean } else { 1.0 };
+            let pair = [&point.edges[edge], &point.edges[other]];
+            tensor.add_pair(&mut block, pair, point.volume * share);
         }
         Matrix3::from_fn(|i, j| block[i][j])
     }

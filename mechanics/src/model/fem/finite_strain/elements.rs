@@ -6,7 +6,8 @@
 //!   (NONLINEAR, section 2: the perturbed Lagrangian of `displacement_pressure`);
 //! * hexahedra and wedges with mean dilatation: p = c/V int ln J, one for each cell.
 //!
-//! The share kappa of the bulk modulus that stays in each point keeps single cells from collapsing. Only the neo-Hookean law
+//! The share kappa of the bulk modulus that stays in each point keeps single cells from collapsing on the way; near rest it goes into
+//! the pressures too, unless cells are pressed to a small part of their volume. Only the neo-Hookean law
 //! whose energy of volume is that of ln J shares it: what another law leaves in the points would no longer be convex, and no
 //! barrier against collapse (steps of Mooney-Rivlin's and of exponential laws then wander without end). The others take volume at each point.
 
@@ -29,13 +30,24 @@ impl Kept {
     pub const FIRST: Kept = Kept(1.0);
     /// After a standstill.
     pub const MORE: Kept = Kept(2.0);
+    /// Near rest, where no cell is pressed to a small part of its volume: the tangent at rest is the matrix of linear elements.
+    pub const NONE: Kept = Kept(0.0);
 
-    /// c and mu: at most half of lambda stays, so that the rest has something to act on.
+    /// c and mu of tetrahedra: at most half of lambda stays, so that the rest has something to act on.
     pub fn of(self, law: &Law) -> Exchange {
         let (lambda, mu) = law.at_rest();
         let kept = (self.0 * mu).min(0.5 * lambda);
         let carried = if law.shares_volume() { lambda - kept } else { 0.0 };
         Exchange { carried, mu }
+    }
+
+    /// c and mu of cells with mean dilatation. Linear ones take all of the bulk modulus lambda + 2/3 mu as a mean.
+    pub fn of_bricks(self, law: &Law) -> Exchange {
+        let own = self.of(law);
+        match self == Kept::NONE && law.shares_volume() {
+            true => Exchange { carried: own.carried + 2.0 / 3.0 * own.mu, ..own },
+            false => own,
+        }
     }
 }
 

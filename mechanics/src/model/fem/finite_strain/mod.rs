@@ -27,12 +27,12 @@ use crate::model::fem::cell_stiffness::tetrahedron;
 use crate::model::fem::displacement::check_finite;
 use crate::model::problem::{Equilibrium, LoadCase, ModelError};
 use crate::progress::{Phase, Progress};
-use crate::solver::NewtonReport;
+use crate::solver::{NewtonReport, SolverError};
 use direction::{Directions, Tally};
 pub use elements::Elements;
 use elements::Kept;
 pub use fibres::FibreField;
-use newton::{Ending, Newton, Question, Rest, Start};
+use newton::{Ending, Newton, Question, Rest, Start, Until};
 pub use problem::FiniteStrain;
 use tissue::Tissue;
 
@@ -88,29 +88,62 @@ impl FiniteStrain<'_> {
         Ok(equilibrium)
     }
 
-    /// Brings the tissue to rest, with more of the bulk modulus in the cells where the usual share jams.
+    /// Brings the tissue to rest: near it with a share of the bulk modulus in the cells, then with none, where it bears that.
     fn rest(&self, question: Question) -> Result<Rest, ModelError> {
-        let numbering = question.constrained.numbering;
-        let mut start = Start {
-            x: numbering.by_row(&self.mesh.nodes),
+        let start = Start {
+            x: question.constrained.numbering.by_row(&self.mesh.nodes),
             log_volumes: Vec::new(),
             made: 0.0,
             history: Vec::new(),
             path: Vec::new(),
             tally: Tally::default(),
         };
-        for (kept, may_jam) in [(Kept::FIRST, true), (Kept::MORE, false)] {
-            let tissue = Tissue::new(self, numbering, kept)?;
-            let pressures = tissue.pressures(self, kept, self.axes_by_row(question));
-            let memory_mb = self.tolerance.memory_mb - tissue.megabytes();
-            question.progress.phase(Phase::Solve);
-            let directions = Directions::new(pressures, start.tally, memory_mb);
-            match Newton::new(&tissue, directions, question, start).solve(may_jam)? {
-                Ending::Rest(rest) => return Ok(rest),
-                Ending::Jam(reached) => start = reached,
-            }
+        let near = match self.with_bulk_in_cells(question, start, true)? {
+            Ending::Rest(rest) => return Ok(rest),
+            Ending::Near(near) | Ending::Jam(near) => near,
+        };
+        let until = Until { jammed: true, near: false };
+        match self.newton(Kept::NONE, question, near.clone(), until) {
+            Ok(Ending::Rest(rest)) => return Ok(rest),
+            Ok(Ending::Jam(_) | Ending::Near(_)) | Err(ModelError::Standstill { .. }) => {}
+            Err(ModelError::Solver(SolverError::NotConverged { .. })) => {}
+            Err(error) => return Err(error),
         }
-        unreachable!("the last share may not jam")
+        match self.with_bulk_in_cells(question, near, false)? {
+            Ending::Rest(rest) => Ok(rest),
+            Ending::Jam(_) | Ending::Near(_) => unreachable!("only rest ends it"),
+        }
+    }
+
+    /// With the usual share in the cells, and with more where that jams.
+    fn with_bulk_in_cells(
+        &self,
+        question: Question,
+        start: Start,
+        near: bool,
+    ) -> Result<Ending, ModelError> {
+        match self.newton(Kept::FIRST, question, start, Until { jammed: true, near })? {
+            Ending::Jam(reached) => {
+                self.newton(Kept::MORE, question, reached, Until { jammed: false, near })
+            }
+            ended => Ok(ended),
+        }
+    }
+
+    fn newton(
+        &self,
+        kept: Kept,
+        question: Question,
+        start: Start,
+        until: Until,
+    ) -> Result<Ending, ModelError> {
+        let tissue = Tissue::new(self, question.constrained.numbering, kept)?;
+        let pressures = tissue.pressures(self, kept, self.axes_by_row(question));
+        let memory_mb = self.tolerance.memory_mb - tissue.megabytes();
+        question.progress.phase(Phase::Solve);
+        let directions = Directions::new(pressures, start.tally, memory_mb);
+        let until = Until { near: until.near && tissue.bulk_in_cells > 0.0, ..until };
+        Newton::new(&tissue, directions, question, start).solve(until)
     }
 
     /// The axes of rows that have their own.

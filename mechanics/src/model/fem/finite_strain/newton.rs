@@ -40,7 +40,22 @@ const LEAST_AHEAD: f64 = 1e-3;
 const ENOUGH: f64 = 1e-4;
 const MOST_HALVINGS: usize = 30;
 
+/// The relative residual at which tissue is near rest, and the volume that each cell has to have then, for all of the bulk modulus
+/// to be shared.
+const NEAR: f64 = 0.01;
+const ROOMY: f64 = 0.2;
+
+/// What ends Newton's method beside rest.
+#[derive(Clone, Copy)]
+pub(super) struct Until {
+    /// Tissue with pressures that goes on in short steps only.
+    pub jammed: bool,
+    /// Tissue near rest none of whose cells is pressed to a small part of its volume.
+    pub near: bool,
+}
+
 /// Where Newton's method begins.
+#[derive(Clone)]
 pub(super) struct Start {
     /// Positions by row.
     pub x: Vec<Vector>,
@@ -90,6 +105,8 @@ pub(super) enum Ending {
     Rest(Rest),
     /// More of the bulk modulus has to stay in the cells.
     Jam(Start),
+    /// All of it may be shared.
+    Near(Start),
 }
 
 /// Tissue at rest.
@@ -128,8 +145,8 @@ impl<'a> Newton<'a> {
         }
     }
 
-    /// Goes on until rest is found, or says why it is not. With `may_jam` a jam of tissue with pressures ends it too.
-    pub fn solve(mut self, may_jam: bool) -> Result<Ending, ModelError> {
+    /// Goes on until rest is found or what else ends it, or says why it is not found.
+    pub fn solve(mut self, until: Until) -> Result<Ending, ModelError> {
         let Question { constrained, tolerance, progress, .. } = self.question;
         let wanted = tolerance.relative_residual;
         loop {
@@ -147,18 +164,29 @@ impl<'a> Newton<'a> {
                 let (positions, forces) = (self.x, deformed.forces);
                 return Ok(Ending::Rest(Rest { positions, forces, report }));
             }
+            let is_near = self.made >= 1.0 && residual <= NEAR;
+            if until.near && is_near && deformed.least_volume() >= ROOMY {
+                return Ok(Ending::Near(self.reached()));
+            }
             if self.history.len() > MOST_STEPS {
                 return Err(self.not_converged().into());
             }
             self.step(&deformed)?;
-            if may_jam && self.jammed >= MOST_JAMMED {
-                let pressures = self.directions.pressures.as_ref();
-                let log_volumes = pressures.map_or_else(Vec::new, |own| own.log_volumes(&self.p));
-                let tally = self.directions.tally;
-                let Newton { x, made, history, path, .. } = self;
-                return Ok(Ending::Jam(Start { x, log_volumes, made, history, path, tally }));
+            if until.jammed && self.jammed >= MOST_JAMMED {
+                return Ok(Ending::Jam(self.reached()));
             }
         }
+    }
+
+    /// The state reached, which is measured again where it is gone on from.
+    fn reached(mut self) -> Start {
+        self.history.pop();
+        self.path.pop();
+        let pressures = self.directions.pressures.as_ref();
+        let log_volumes = pressures.map_or_else(Vec::new, |own| own.log_volumes(&self.p));
+        let tally = self.directions.tally;
+        let Newton { x, made, history, path, .. } = self;
+        Start { x, log_volumes, made, history, path, tally }
     }
 
     /// One step: a direction, how far, and the same of the movement of the bones.

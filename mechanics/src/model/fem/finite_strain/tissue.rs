@@ -60,7 +60,8 @@ impl<'a> Tissue<'a> {
             true => laws.iter().map(|law| kept.of(law).carried.max(0.0)).collect(),
             false => vec![0.0; laws.len()],
         };
-        let means = elements.mean_dilatation.then(|| laws.iter().map(|law| kept.of(law)).collect());
+        let means =
+            elements.mean_dilatation.then(|| laws.iter().map(|law| kept.of_bricks(law)).collect());
         let simplices = Simplices::new(problem, numbering, &carried)?;
         let bricks = Bricks::new(problem, numbering, means)?;
         let rest = numbering.by_row(&mesh.nodes);

@@ -22,13 +22,19 @@ def decoded(text, kind):
     return np.frombuffer(b"".join(parts), KINDS[kind])
 
 
-def read(path):
-    """Nodes, cells, and the sets of nodes by name."""
+def arrays(path):
+    """Every array of the file by its name, flat."""
     text = open(path).read()
-    arrays = {}
+    found = {}
     for attributes, body in re.findall(r"<DataArray ([^>]*)>\s*([^<]*)</DataArray>", text):
         field = dict(re.findall(r'(\w+)="([^"]*)"', attributes))
-        if field["format"] == "binary" and field["Name"] not in arrays:
-            arrays[field["Name"]] = decoded(body.strip(), field["type"])
-    sets = {name[4:]: values > 0 for name, values in arrays.items() if name.startswith("set_")}
-    return arrays["Points"].reshape(-1, 3), arrays["connectivity"].reshape(-1, 4), sets
+        if field["format"] == "binary" and field["Name"] not in found:
+            found[field["Name"]] = decoded(body.strip(), field["type"])
+    return found
+
+
+def read(path):
+    """Nodes, cells, and the sets of nodes by name."""
+    found = arrays(path)
+    sets = {name[4:]: values > 0 for name, values in found.items() if name.startswith("set_")}
+    return found["Points"].reshape(-1, 3), found["connectivity"].reshape(-1, 4), sets

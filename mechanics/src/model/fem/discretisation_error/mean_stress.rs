@@ -1,0 +1,85 @@
+//! The stress that comes of the mean volume change of wedges, made smooth.
+//!
+//! There are two wedges for each node, and with one volume change each their pressures alternate between neighbours in patterns
+//! that grow with lambda. Edge functions see such a pattern as a load. Its mean around the nodes of a kind of tissue, and of these over the
+//! cell, is what the answer means (Hughes, The Finite Element Method, 1987, section 4.4). Hexahedra keep their own: their
+//! patterns are weak, and in thin layers the mean takes away what is left of the pressure's slope.
+
+use nalgebra::Matrix3;
+use rayon::prelude::*;
+
+use super::points::gradient_of;
+use crate::mesh::{CellShape, Vector};
+use crate::model::fem::assembly::Tissue;
+use crate::model::fem::cell_stiffness::Dilatation;
+use crate::model::reference_cell;
+
+/// A stress in kPa, weighted by the volume in mm³ that it acts in.
+#[derive(Clone, Copy)]
+struct Weighted {
+    stress: Matrix3<f64>,
+    volume: f64,
+}
+
+/// Of the cells around a node that are of one kind of tissue.
+struct AroundNode {
+    kind: u16,
+    sum: Weighted,
+}
+
+/// For each wedge that takes volume as a mean the stress of it, smooth within each kind of tissue.
+pub(super) fn smooth(tissue: &Tissue, displacement: &[Vector]) -> Vec<Option<Matrix3<f64>>> {
+    let cells = &tissue.mesh.cells;
+    if cells.iter().all(|(shape, _)| shape != CellShape::Wedge6) {
+        return vec![None; cells.len()];
+    }
+    let own: Vec<Option<Weighted>> =
+        (0..cells.len()).into_par_iter().map(|cell| of_cell(tissue, cell, displacement)).collect();
+    let mut around: Vec<Vec<AroundNode>> = Vec::new();
+    around.resize_with(tissue.mesh.nodes.len(), Vec::new);
+    for (cell, own) in own.iter().enumerate() {
+        let Some(Weighted { stress, volume }) = *own else { continue };
+        let kind = tissue.pressure_of_cell[cell];
+        for &node in cells.nodes(cell) {
+            let sums = &mut around[node as usize];
+            match sums.iter_mut().find(|known| known.kind == kind) {
+                Some(AroundNode { sum, .. }) => {
+                    sum.stress += stress;
+                    sum.volume += volume;
+                }
+                None => sums.push(AroundNode { kind, sum: Weighted { stress, volume } }),
+            }
+        }
+    }
+    let mean = |cell: usize| {
+        let (nodes, kind) = (cells.nodes(cell), tissue.pressure_of_cell[cell]);
+        let at_nodes = nodes.iter().filter_map(|&node| {
+            let own = around[node as usize].iter().find(|known| known.kind == kind)?;
+            Some(own.sum.stress / own.sum.volume)
+        });
+        at_nodes.sum::<Matrix3<f64>>() / nodes.len() as f64
+    };
+    let is_wedge = |cell: usize| cells.shape(cell) == CellShape::Wedge6;
+    own.iter()
+        .enumerate()
+        .map(|(cell, own)| own.filter(|_| is_wedge(cell)).map(|_| mean(cell)))
+        .collect()
+}
+
+fn of_cell(tissue: &Tissue, cell: usize, displacement: &[Vector]) -> Option<Weighted> {
+    let shape = tissue.mesh.cells.shape(cell);
+    if (tissue.dilatation)(shape) == Dilatation::Pointwise {
+        return None;
+    }
+    let corners: Vec<Vector> = tissue.mesh.corners(cell).collect();
+    let nodes = tissue.mesh.cells.nodes(cell);
+    let moved: Vec<Vector> = nodes.iter().map(|&node| displacement[node as usize]).collect();
+    let (mut gradient, mut volume) = (Matrix3::zeros(), 0.0);
+    for point in &reference_cell(shape).points {
+        let physical = point.at(&corners)?;
+        gradient += gradient_of(&moved, &physical.gradients) * physical.volume;
+        volume += physical.volume;
+    }
+    let (_, of_volume) = tissue.tensor(cell).split_volume();
+    Some(Weighted { stress: of_volume.stress(&gradient), volume })
+}
