@@ -4,6 +4,7 @@ pub mod elastic_tensor;
 mod error;
 pub mod hyperelastic;
 mod isotropic;
+pub mod law_series;
 mod linear_elastic;
 pub mod mixture;
 pub mod plane_stress;

@@ -10,6 +10,7 @@ use std::collections::BTreeMap;
 use super::method::Method;
 use super::scene::Scene;
 use super::skin::landmark_displacement;
+use crate::material::LinearElastic;
 use crate::mesh::Vector;
 use crate::model::fem::force_series::{ForceSeries, Moved};
 use crate::model::fem::linear_system::{LinearSystem, Residual, Solved};
@@ -41,6 +42,8 @@ pub enum NonlinearityUnknown {
     OtherMethod,
     #[error("no second order is known of quadratic tetrahedra")]
     Quadratic,
+    #[error("no second order is known of fibres that only pull: they are not smooth at rest")]
+    PullingFibres,
     #[error("the loose solution of the second order failed: {0}")]
     Failed(ModelError),
 }
@@ -54,7 +57,10 @@ pub(super) fn reason_for_none(scene: &Scene) -> Option<NonlinearityUnknown> {
         return Some(NonlinearityUnknown::NotAsked);
     }
     match scene.settings.method {
-        Method::FemLinear | Method::MassTensorTransverse => None,
+        Method::FemLinear | Method::MassTensorTransverse => {
+            let pulls = scene.materials.iter().any(LinearElastic::has_pulling_fibres);
+            pulls.then_some(NonlinearityUnknown::PullingFibres)
+        }
         Method::FemNonlinear | Method::MassTensorNonlinear => {
             Some(NonlinearityUnknown::FiniteStrain)
         }

@@ -10,6 +10,7 @@ use super::rigid_numbers::SAMPLES;
 use super::second_order::Solutions;
 use super::{COLUMNS_PER_SEGMENT, Response, ResponseSegment, superposition};
 use crate::boundary::{ConnectedPart, Hold, NodeClass};
+use crate::material::LinearElastic;
 use crate::mesh::Vector;
 use crate::mesh::ignored::listed;
 use crate::model::fem::force_series::ForceSeries;
@@ -80,7 +81,9 @@ pub enum ResponseError {
     EmptySegment { name: String },
     #[error("the scene has prescribed displacements or loads, which a response does not know")]
     Loaded,
-    #[error("the second order of a response is not known for quadratic tetrahedra")]
+    #[error(
+        "the second order of a response is not known for quadratic tetrahedra, nor for fibres that only pull"
+    )]
     NoSecondOrder,
     #[error(
         "responses are built with linear finite elements, and the spec asks for another method"
@@ -122,12 +125,18 @@ pub fn chosen(scene: &Scene, names: &[String]) -> Result<Vec<usize>, ResponseErr
     }
 }
 
-/// Refuses an order that the elements of a scene do not have.
+/// Refuses an order that the elements of a scene, or its tissue, do not have.
 pub fn check_order(scene: &Scene, order: ResponseOrder) -> Result<(), ResponseError> {
-    match order == ResponseOrder::Second && scene.element == ElementChoice::Quadratic {
+    let has_none = scene.element == ElementChoice::Quadratic || pulls(scene);
+    match order == ResponseOrder::Second && has_none {
         true => Err(ResponseError::NoSecondOrder),
         false => Ok(()),
     }
+}
+
+/// Whether some tissue has fibres that only pull, of which no second order is known.
+fn pulls(scene: &Scene) -> bool {
+    scene.materials.iter().any(LinearElastic::has_pulling_fibres)
 }
 
 /// The parts of a scene where only these segments may move, by their place in the list.
@@ -242,7 +251,10 @@ fn solve(
     let series = ForceSeries::new(scene.tissue(), pressures);
     let skin = scene.skin.nodes();
     let solutions = Solutions { series, system: &system, columns: &columns, skin };
-    let sampled = solutions.second_of_each(progress)?;
+    let sampled = match pulls(scene) {
+        true => Vec::new(),
+        false => solutions.second_of_each(progress)?,
+    };
     let second_order = match order {
         ResponseOrder::First => None,
         ResponseOrder::Second => Some(solutions.quadratic_form(progress)?),

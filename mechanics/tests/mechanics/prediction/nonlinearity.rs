@@ -1,5 +1,9 @@
 //! What linearity leaves out: the second-order term of a prediction and of a response, held against Newton's answer.
 
+use mechanics::material::LinearElastic;
+use mechanics::material::hyperelastic::{
+    Fibres, Fung, Law, NeoHookean, SaintVenantKirchhoff, Volumetric,
+};
 use mechanics::mesh::half_head::half_head;
 use mechanics::mesh::sample::block;
 use mechanics::mesh::{CellShape, Vector};
@@ -9,7 +13,7 @@ use mechanics::prediction::{
     Prediction, Scene, Settings, predict,
 };
 use mechanics::progress::Unobserved;
-use mechanics::response::{Columns, ResponseError, ResponseOrder, build_to};
+use mechanics::response::{Columns, ResponseError, ResponseOrder, build_to, check_order};
 use mechanics::study::methods;
 
 use crate::scenes::{case_of, material, set};
@@ -52,8 +56,11 @@ fn linear() -> Settings {
 }
 
 fn newton() -> Settings {
-    Settings { method: Method::FemNonlinear, element: ElementChoice::Plain, ..Settings::default() }
+    Settings { method: Method::FemNonlinear, ..linear() }
 }
+
+/// Those of tetrahedra.
+const ELEMENTS: [ElementChoice; 2] = [ElementChoice::Plain, ElementChoice::Stabilised];
 
 /// A share of 9 mm and 5 degrees of the first bone, and less of the second.
 pub(super) fn movements(share: f64) -> Vec<RigidMovement> {
@@ -85,9 +92,9 @@ fn left_out(estimated: &Estimated) -> &[Vector] {
 }
 
 /// What is estimated over what Newton changes on the skin, in the mean and at the 95th percentile.
-fn effectivity(case: &Case, movements: &[RigidMovement]) -> [f64; 2] {
-    let (scene, by_linear) = solved(case, movements, &linear());
-    let (_, exact) = solved(case, movements, &newton());
+fn effectivity(case: &Case, movements: &[RigidMovement], element: ElementChoice) -> [f64; 2] {
+    let (scene, by_linear) = solved(case, movements, &Settings { element, ..linear() });
+    let (_, exact) = solved(case, movements, &Settings { element, ..newton() });
     let skin = scene.skin.nodes();
     let error = |&node: &u32| {
         let node = node as usize;
@@ -109,11 +116,56 @@ fn is_within(effectivity: [f64; 2]) -> bool {
 
 #[test]
 fn the_estimate_is_what_newton_changes_for_plans_up_to_eleven_millimetres_and_six_degrees() {
-    let case = slab(CellShape::Tet4, 0.45);
-    for share in [0.05, 0.3, 0.6, 1.0, 1.2] {
-        let found = effectivity(&case, &movements(share));
-        assert!(is_within(found), "{share}: {found:?}");
+    for element in ELEMENTS {
+        let case = slab(CellShape::Tet4, 0.45);
+        for share in [0.05, 0.3, 0.6, 1.0, 1.2] {
+            let found = effectivity(&case, &movements(share), element);
+            assert!(is_within(found), "{element:?} {share}: {found:?}");
+        }
     }
+    let case = slab(CellShape::Hex8, 0.45);
+    for share in [0.05, 0.6, 1.2] {
+        let found = effectivity(&case, &movements(share), ElementChoice::MeanDilatation);
+        assert!(is_within(found), "hexahedra {share}: {found:?}");
+    }
+}
+
+#[test]
+fn the_estimate_is_that_of_the_law_that_is_stated() {
+    let (lambda, mu) = (20.0, 5.0);
+    let volumetric = Volumetric::Logarithmic(lambda + 2.0 / 3.0 * mu);
+    let stiffening = Law::Fung(Fung { mu, b: 10.0, volumetric });
+    let mut told = Vec::new();
+    for law in [
+        Law::NeoHookean(NeoHookean { lambda, mu }),
+        Law::SaintVenantKirchhoff(SaintVenantKirchhoff { lambda, mu }),
+        stiffening,
+    ] {
+        let material = LinearElastic::of_law(law, 1.0).unwrap();
+        let case =
+            Case { materials: [("*".to_owned(), material)].into(), ..slab(CellShape::Tet4, 0.4) };
+        for share in [0.05, 0.2] {
+            let found = effectivity(&case, &movements(share), ElementChoice::Plain);
+            assert!(is_within(found), "{law:?} {share}: {found:?}");
+        }
+        let (_, by_linear) = solved(&case, &movements(0.2), &linear());
+        let lengths = left_out(&by_linear.nonlinearity).iter().map(Vector::norm);
+        told.push(lengths.fold(0.0, f64::max));
+    }
+    // They are not one another's.
+    assert!(told[1] > 1.2 * told[0] && told[2] > 1.2 * told[0], "{told:?}");
+}
+
+#[test]
+fn what_is_left_out_of_fibres_that_only_pull_is_not_known() {
+    let fibres = Fibres { k1: 5.0, k2: 1.0 };
+    let mut case = slab(CellShape::Tet4, 0.45);
+    let pulling = material(15.0, 0.45).with_pulling_fibres(fibres);
+    case.materials = [("*".to_owned(), pulling)].into();
+    let (scene, prediction) = solved(&case, &movements(0.1), &linear());
+    assert_eq!(prediction.nonlinearity.unwrap_err(), NonlinearityUnknown::PullingFibres);
+    let refused = check_order(&scene, ResponseOrder::Second).unwrap_err();
+    assert_eq!(refused, ResponseError::NoSecondOrder);
 }
 
 /// The hard block of NONLINEAR: a patch of the bottom moves, the bottom around it is free for 25 mm.
@@ -147,8 +199,11 @@ fn the_estimate_is_what_newton_changes_on_the_hard_block_up_to_eleven_millimetre
         let angles = Vector::y() * (15_f64.to_radians() * share);
         let along = Vector::new(25.0, 0.0, 10.0) * share;
         let movement = RigidMovement::about_pivot(angles, Vector::new(50.0, 50.0, 0.0), along);
-        let found = effectivity(&case, &[movement]);
-        assert!(found.iter().all(|ratio| (least..most).contains(ratio)), "{share}: {found:?}");
+        for element in ELEMENTS {
+            let found = effectivity(&case, &[movement], element);
+            let is_within = found.iter().all(|ratio| (least..most).contains(ratio));
+            assert!(is_within, "{element:?} {share}: {found:?}");
+        }
     }
 }
 
@@ -170,8 +225,10 @@ fn the_estimate_is_what_newton_changes_on_a_half_head_whose_jaws_move_by_up_to_t
             RigidMovement::about_pivot(Vector::zeros(), pivot, Vector::y() * (4.0 * share)),
             RigidMovement::about_pivot(turn, pivot, forward),
         ];
-        let found = effectivity(&case, &jaws);
-        assert!(is_within(found), "{share}: {found:?}");
+        for element in ELEMENTS {
+            let found = effectivity(&case, &jaws, element);
+            assert!(is_within(found), "{element:?} {share}: {found:?}");
+        }
     }
 }
 

@@ -4,6 +4,7 @@ use nalgebra::Matrix3;
 
 use crate::element::{MAX_NODES, PhysicalPoint};
 use crate::material::ElasticTensor;
+use crate::material::law_series::LawSeries;
 use crate::material::stress_series::{
     Stretch, second_green_stress, second_log_volume, second_stress, third_green_stress,
     third_log_volume, third_stress,
@@ -33,6 +34,8 @@ pub(super) struct Cell {
     of_mean: Option<Parts>,
     /// Means of the gradients of the shape functions, where they are used.
     mean_gradients: [Vector; MAX_NODES],
+    /// What the stated law adds at each point.
+    law: Option<LawSeries>,
 }
 
 /// lambda and mu in kPa, and what fibres add to them.
@@ -124,7 +127,10 @@ impl Cell {
             None => [Vector::zeros(); MAX_NODES],
         };
         let count = corners.len();
-        Ok(Cell { count, volume, at_points: at_points.into(), of_mean, mean_gradients, points })
+        let material = &tissue.materials[usize::from(tissue.material_of_cell[cell])];
+        let law = material.stated_law().and_then(LawSeries::of);
+        let at_points = at_points.into();
+        Ok(Cell { count, volume, at_points, of_mean, mean_gradients, points, law })
     }
 
     pub fn strained(
@@ -184,6 +190,9 @@ impl Cell {
             if let Some(fibres) = &self.at_points.fibres {
                 stress += second_green_stress(fibres, &a[q].gradient, &b[q].gradient);
             }
+            if let Some(law) = &self.law {
+                stress += law.second(&a[q].gradient, &b[q].gradient);
+            }
             terms.add_stress(&(stress * point.volume), &point.gradients[..self.count]);
         }
         if let Some(fibres) = self.of_mean.as_ref().and_then(|parts| parts.fibres.as_ref()) {
@@ -206,6 +215,9 @@ impl Cell {
             let mut stress = third_stress(self.at_points.mu, &a[q], tensions.0, tensions.1);
             if let Some(fibres) = &self.at_points.fibres {
                 stress += third_green_stress(fibres, &a[q].gradient);
+            }
+            if let Some(law) = &self.law {
+                stress += law.third(&a[q].gradient);
             }
             terms.add_stress(&(stress * point.volume), &point.gradients[..self.count]);
         }
