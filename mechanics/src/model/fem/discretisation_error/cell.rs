@@ -8,7 +8,7 @@ use crate::element::MAX_NODES;
 use crate::mesh::{CellShape, Vector};
 use crate::model::fem::assembly::Tissue;
 use crate::model::fem::displacement_pressure::{PressureCells, beside_pressure};
-use crate::model::fem::linear_system::{LinearSystem, Solved};
+use crate::model::fem::linear_system::LinearSystem;
 use crate::model::problem::InvertedCell;
 
 /// Tissue, and an answer of it.
@@ -30,7 +30,12 @@ enum Cell {
 }
 
 impl<'a> Cells<'a> {
-    pub fn new(tissue: &'a Tissue<'a>, system: &LinearSystem, solved: &'a Solved) -> Self {
+    pub fn new(
+        tissue: &'a Tissue<'a>,
+        system: &LinearSystem,
+        displacement: &'a [Vector],
+        pressures: &'a [f64],
+    ) -> Self {
         let mut numbers = vec![None; tissue.mesh.cells.len()];
         if let Some(all) = &system.pressures {
             let PressureCells { cells, pressures, .. } = &all.cells;
@@ -38,8 +43,7 @@ impl<'a> Cells<'a> {
                 numbers[cell as usize] = Some(*own);
             }
         }
-        let displacement = &solved.equilibrium.displacement;
-        Cells { tissue, displacement, pressures: &solved.pressures, numbers }
+        Cells { tissue, displacement, pressures, numbers }
     }
 
     pub fn pressure_numbers(&self, cell: usize) -> &Option<[u32; 4]> {
