@@ -162,7 +162,7 @@ fn truth_of(task: &Task, scene: &Scene) -> (Vec<Vector>, Measure) {
         let finer = quadratic.on(&finest.bisection).expect("no loads act between nodes");
         finer.solve(&Unobserved).expect("it is solved").displacement
     };
-    let (coarse, fine) = (on(task.truth / 2), on(task.truth));
+    let (coarse, fine) = (on(task.truth / 4), on(task.truth));
     let own = Measure::of(scene, &coarse, &fine);
     (fine, own)
 }
