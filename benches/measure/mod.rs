@@ -4,6 +4,7 @@
 
 pub mod process;
 pub mod shell;
+pub mod split;
 pub mod yardstick;
 
 use std::time::Instant;

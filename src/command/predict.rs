@@ -37,8 +37,11 @@ pub struct Arguments {
     /// Take the cheapest model whose expected mean error over the skin is within so many mm
     #[arg(long, value_name = "MM", conflicts_with = "corrected", help_heading = "Result")]
     accept: Option<f64>,
+    /// Refine the mesh until the estimated mean error over the skin is within so many mm
+    #[arg(long, value_name = "MM", conflicts_with = "accept", help_heading = "Result")]
+    refine: Option<f64>,
     /// Do not estimate the error of the mesh
-    #[arg(long, conflicts_with = "corrected", help_heading = "Result")]
+    #[arg(long, conflicts_with_all = ["corrected", "refine"], help_heading = "Result")]
     no_estimate: bool,
     /// The folder for the result
     #[arg(long, visible_alias = "output", value_name = "FOLDER", help_heading = "Result")]
@@ -55,6 +58,9 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
     asked.file.spec.outputs.get_or_insert_with(usual_outputs);
     asked.file.spec.corrected |= arguments.corrected;
     asked.file.spec.accept_mm = arguments.accept.or(asked.file.spec.accept_mm);
+    if let Some(accept_mm) = arguments.refine {
+        asked.file.spec.refine_to(accept_mm);
+    }
     if arguments.no_estimate {
         asked.file.spec.estimate = EstimateName::None;
     }
@@ -121,6 +127,9 @@ fn print_result(result: &ResultDocument, before: &CheckDocument) {
     print_error_of_mesh(result);
     if let Some(adequacy) = &result.adequacy {
         println!("model        {}", adequacy.why());
+    }
+    if let Some(refinement) = &result.refinement {
+        println!("refined      {}", refinement.summary());
     }
     for (name, reaction) in &result.reaction_mn {
         let [x, y, z] = reaction.0;

@@ -1,6 +1,7 @@
 //! What was scanned: volume meshes of soft tissue and triangle surfaces, node positions in mm.
 
 pub mod area_sampling;
+pub mod bisection;
 pub mod check;
 pub mod closest_point;
 pub mod connectivity;

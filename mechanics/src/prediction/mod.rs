@@ -1,5 +1,6 @@
 //! The path of one prediction: scene in, nodal displacement and its measures out.
 
+mod adaptive;
 mod adequate;
 mod answer;
 mod build;
@@ -22,6 +23,7 @@ mod numerics_revision;
 mod off_wall;
 mod problem;
 mod reaction;
+mod refined_scene;
 pub mod scene;
 mod skin;
 mod skin_check;
@@ -48,6 +50,7 @@ pub use numerical_error::{NotEstimated, NumericalError};
 pub use numerics_revision::NUMERICS_REVISION;
 pub use problem::{SceneError, SceneErrors};
 pub use reaction::ConditionReaction;
+pub use refined_scene::NotRefined;
 pub use scene::Scene;
 pub use skin::Skin;
 pub use skin_overlap::{SKIN_OVERLAPS, skin_overlap};
@@ -55,6 +58,7 @@ pub use stated::{StatedCondition, StatedHold};
 pub use unheld::{GoesAlong, NOTHING_HELD, goes_along};
 pub use walls::normal_turned;
 
+pub use adaptive::{Adapted, AdaptiveError, Level, Stop, Wanted, predict_adaptively};
 pub use adequate::{Accepted, Adequate, Considered, Errors, Rung, Watched, predict_adequately};
 use answer::Answer;
 

@@ -70,11 +70,14 @@ pub fn optimise_job(
     let (optimisation, warning) = found.verified(&planned, &solved);
     planned.warnings.extend(warning);
     let optimisation = Some(optimisation);
-    Predicted { prepared: planned, prediction: solved, optimisation, adequacy: None }.publish(
-        &prediction,
-        &clock,
-        place.out,
-    )
+    Predicted {
+        prepared: planned,
+        prediction: solved,
+        optimisation,
+        adequacy: None,
+        refinement: None,
+    }
+    .publish(&prediction, &clock, place.out)
 }
 
 impl OptimiseInput {

@@ -29,7 +29,9 @@ pub fn check(
     limits: &Limits,
 ) -> Result<CheckReport, JobError> {
     let prepared = input.prepare(sources, limits)?;
-    Ok(CheckReport { document: prepared.summary(input), prepared })
+    let refine = input.spec.refine.as_ref();
+    let refine = refine.map(|own| cost::refined_bound(&prepared.scene, own.cells, limits));
+    Ok(CheckReport { document: CheckDocument { refine, ..prepared.summary(input) }, prepared })
 }
 
 impl Prepared {
@@ -58,6 +60,7 @@ impl Prepared {
             unknowns: (3 * nodes - held) as u64,
             memory_mb: cost::memory_mb(scene, 0),
             time_s: cost::time_s(scene, input.spec.method),
+            refine: None,
             method: input.spec.method.chosen().name().to_owned(),
             why: input.spec.method.why().to_owned(),
             warnings: warnings.map(WarningDocument::from).collect(),

@@ -5,6 +5,7 @@ use crate::jobs::failure::JobError;
 use crate::schema::Limits;
 use crate::schema::methods::{MethodName, time_band};
 use crate::schema::predict::check::TimeBandDocument;
+use crate::schema::predict::refine::RefineBoundDocument;
 use mechanics::mesh::CellShape;
 use mechanics::prediction::{ElementChoice, Laws, MethodKind, Scene, Unknowns};
 use mechanics::prediction::{ModelError, SolverError};
@@ -28,6 +29,8 @@ const AT_FINITE_STRAIN: f64 = 2.5;
 const STEPS: [f64; 2] = [4.0, 25.0];
 /// A cell that is read, drawn and written, and not assembled.
 const READ_ONLY: f64 = 200.0;
+/// A mesh that is refined is there beside the one before it and the tree of its cells.
+const BESIDE_ANOTHER: f64 = 1.5;
 /// Of one column of a response at one node: its right-hand side, its unknowns and its vectors of the iteration. 24
 /// columns at the 50 700 nodes of `docs/performance.md` took 254 MB more than one.
 const COLUMN_AT_NODE: f64 = 210.0;
@@ -101,6 +104,16 @@ pub fn time_s(scene: &Scene, method: MethodName) -> Option<TimeBandDocument> {
         });
     }
     time_band(method.chosen().name(), unknowns as u64)
+}
+
+/// The most cells up to which a scene may be refined, and what these are expected to take: the cells of the spec, or fewer
+/// where the memory of a slot holds no more.
+pub fn refined_bound(scene: &Scene, asked: u64, limits: &Limits) -> RefineBoundDocument {
+    let of_cell = (memory_mb(scene, 0) - PROGRAM_MB) / scene.mesh.cells.len().max(1) as f64;
+    let fitting = ((limits.slot_memory_mb - PROGRAM_MB) / (of_cell * BESIDE_ANOTHER)).max(0.0);
+    let cells = asked.min(fitting as u64);
+    let memory_mb = PROGRAM_MB + cells as f64 * of_cell * BESIDE_ANOTHER;
+    RefineBoundDocument { cells, memory_mb }
 }
 
 impl Prepared {

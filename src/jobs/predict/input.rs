@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::facing::looks_elsewhere;
+use super::refinable::check_refinable;
 use crate::jobs::compare::admit;
 use crate::jobs::failure::JobError;
 use crate::jobs::fetch::fetch;
@@ -70,6 +71,9 @@ impl PredictInput {
         let (scene, quality) =
             rayon::join(|| Scene::new(case, plan, settings), || quality(&case.volume));
         let scene = scene.map_err(|errors| JobError::Refused(errors.into()))?;
+        if let Some(refine) = &self.spec.refine {
+            check_refinable(refine, &scene)?;
+        }
         let meshes_read = stored.values().chain(&actual);
         let mut warnings: Vec<Warning> =
             meshes_read.flat_map(|mesh| mesh.warnings.iter().cloned()).collect();

@@ -1,12 +1,17 @@
 //! The job of a prediction: documents checked, the displacement solved, the result written.
 
+use super::cost::refined_bound;
 use super::input::{PredictInput, Prepared};
 use super::publish::Predicted;
 use crate::jobs::clock::Observed;
 use crate::jobs::failure::JobError;
 use crate::jobs::output::{JobOutput, Workplace};
 use crate::schema::predict::adequacy::AdequacyDocument;
-use mechanics::prediction::{Accepted, Watched, predict, predict_adequately};
+use crate::schema::predict::refine::{RefineDocument, RefinementDocument};
+use crate::schema::{ErrorCode, Limits, Pointer, Problem};
+use mechanics::prediction::{
+    Accepted, AdaptiveError, Watched, predict, predict_adaptively, predict_adequately,
+};
 use mechanics::progress::Progress;
 
 /// Predicts the displacement of a case under a plan, and writes its files.
@@ -23,12 +28,13 @@ pub fn predict_job(
     clock.check()?;
 
     // 2. The displacement of the tissue.
-    let predicted = match input.spec.accept_mm {
-        Some(skin_mm) => adequately(prepared, skin_mm, &clock)?,
-        None => {
+    let predicted = match (&input.spec.refine, input.spec.accept_mm) {
+        (Some(refine), _) => refined(prepared, refine, &clock, place.limits)?,
+        (None, Some(skin_mm)) => adequately(prepared, skin_mm, &clock)?,
+        (None, None) => {
             let prediction =
                 predict(&prepared.scene, &clock).map_err(|error| clock.judge(error))?;
-            Predicted { prepared, prediction, optimisation: None, adequacy: None }
+            Predicted::of(prepared, prediction)
         }
     };
     predicted.publish(input, &clock, place.out)
@@ -48,5 +54,29 @@ fn adequately(
         .map_err(|error| clock.judge(error))?;
     let adequacy = Some(AdequacyDocument::new(&accepted, &adequate));
     prepared.scene = adequate.scene.unwrap_or(prepared.scene);
-    Ok(Predicted { prepared, prediction: adequate.prediction, optimisation: None, adequacy })
+    Ok(Predicted { adequacy, ..Predicted::of(prepared, adequate.prediction) })
+}
+
+/// On meshes that are refined until the estimated error of the skin is accepted.
+fn refined(
+    prepared: Prepared,
+    refine: &RefineDocument,
+    clock: &Observed,
+    limits: &Limits,
+) -> Result<Predicted, JobError> {
+    let bound = refined_bound(&prepared.scene, refine.cells, limits);
+    let wanted = refine.wanted(bound.cells as usize, clock.left_s());
+    let stopwatch = || clock.elapsed_s();
+    let adapted = match predict_adaptively(&prepared.scene, &wanted, &stopwatch, clock) {
+        Ok(adapted) => adapted,
+        Err(AdaptiveError::Model(error)) => return Err(clock.judge(error)),
+        Err(error) => return Err(not_refined(&error)),
+    };
+    let refinement = Some(RefinementDocument::new(&wanted, &adapted));
+    Ok(Predicted { refinement, ..Predicted::of(prepared, adapted.prediction) })
+}
+
+fn not_refined(error: &AdaptiveError) -> JobError {
+    let at = Pointer::from_text("/spec/refine");
+    JobError::Refused(Problem::at(&at, ErrorCode::MethodNotAvailable, error.to_string()))
 }

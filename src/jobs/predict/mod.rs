@@ -8,6 +8,7 @@ mod input;
 mod job;
 mod overlap;
 mod publish;
+mod refinable;
 
 pub use check::{CheckReport, check};
 pub use input::{PredictInput, Prepared};

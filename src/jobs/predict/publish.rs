@@ -27,6 +27,7 @@ use crate::schema::predict::adequacy::AdequacyDocument;
 use crate::schema::predict::document::OutputName;
 use crate::schema::predict::keep::KeptName;
 use crate::schema::predict::nonlinearity::{NonlinearityDocument, skin_lengths};
+use crate::schema::predict::refine::RefinementDocument;
 use crate::schema::predict::result::{
     DisplacementDocument, ErrorLengthsDocument, FileDocument, NumericalErrorDocument,
     ResultDocument, StatisticsDocument,
@@ -44,16 +45,23 @@ pub struct Predicted {
     pub optimisation: Option<OptimisationDocument>,
     /// How its model was chosen, if an accepted error was stated.
     pub adequacy: Option<AdequacyDocument>,
+    /// How its mesh was refined, if that was asked for.
+    pub refinement: Option<RefinementDocument>,
 }
 
 impl Predicted {
+    /// A prediction whose plan, model and mesh are those that were stated.
+    pub fn of(prepared: Prepared, prediction: Prediction) -> Self {
+        Predicted { prepared, prediction, optimisation: None, adequacy: None, refinement: None }
+    }
+
     pub fn publish(
         self,
         input: &PredictInput,
         clock: &Observed,
         out: &Path,
     ) -> Result<JobOutput, JobError> {
-        let Predicted { prepared, prediction, optimisation, adequacy } = self;
+        let Predicted { prepared, prediction, optimisation, adequacy, refinement } = self;
 
         // 1. The displacement of the skin.
         clock.phase(Phase::Surface);
@@ -101,6 +109,7 @@ impl Predicted {
             comparison: compared.map(|compared| compared.document),
             optimisation,
             adequacy,
+            refinement,
             warnings,
         };
         let mut folder = ResultFolder::open(out)?;
@@ -127,6 +136,7 @@ struct Finished<'a> {
     comparison: Option<ComparisonDocument>,
     optimisation: Option<OptimisationDocument>,
     adequacy: Option<AdequacyDocument>,
+    refinement: Option<RefinementDocument>,
     warnings: Vec<Warning>,
 }
 
@@ -204,6 +214,7 @@ impl Finished<'_> {
             comparison: self.comparison.clone(),
             optimisation: self.optimisation.clone(),
             adequacy: self.adequacy.clone(),
+            refinement: self.refinement.clone(),
             numerical_error_mm: self.numerical_error.clone(),
             numerical_error_unknown: self
                 .prediction

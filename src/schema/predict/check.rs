@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
+use super::refine::RefineBoundDocument;
 use crate::schema::case::hounsfield::ImagedTissueDocument;
 use crate::schema::wire::warning::WarningDocument;
 
@@ -27,6 +28,10 @@ pub struct CheckDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub time_s: Option<TimeBandDocument>,
+    /// Where the spec has the mesh refined; numbers above are those of the mesh as it is.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub refine: Option<RefineBoundDocument>,
     /// The method that `auto` chooses.
     pub method: String,
     pub why: String,

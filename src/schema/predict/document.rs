@@ -5,6 +5,7 @@ use serde_json::Value;
 use utoipa::ToSchema;
 
 use super::keep::KeptName;
+use super::refine::{ACCEPTED_MM, RefineDocument};
 use crate::schema::case::material::{MaterialDocument, MaterialDocuments};
 use crate::schema::case::membrane::MembraneDocument;
 use crate::schema::code::ErrorCode;
@@ -19,7 +20,7 @@ use crate::schema::wire::canonical;
 use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::limits::Limits;
 use crate::schema::wire::names::check_tags;
-use mechanics::prediction::Settings;
+use mechanics::prediction::{ElementChoice, MethodKind, Settings};
 
 pub use super::budget::BudgetDocument;
 pub use super::contact::ContactName;
@@ -29,9 +30,6 @@ pub use super::tolerance::ToleranceDocument;
 
 /// The displacement in mm at which colours end where nothing else is said.
 pub const USUAL_RANGE_MM: f64 = 10.0;
-
-/// Errors that may be accepted, in mm.
-const ACCEPTED_MM: std::ops::RangeInclusive<f64> = 1e-3..=1e2;
 
 /// Ranges of colours that make sense, in mm.
 pub const RANGES_MM: std::ops::RangeInclusive<f64> = 1e-3..=1e3;
@@ -99,6 +97,11 @@ pub struct PredictDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false, minimum = 0.001, maximum = 100.0)]
     pub accept_mm: Option<f64>,
+    /// Refines the mesh where the estimate of its error asks for it. Only with the methods `auto` and `fem_linear`. The result is
+    /// given at the nodes of the mesh of the case. Absent: the mesh is taken as it is.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub refine: Option<RefineDocument>,
     /// Whether the discretisation error of the skin is estimated.
     #[serde(default, skip_serializing_if = "EstimateName::is_usual")]
     pub estimate: EstimateName,
@@ -153,6 +156,10 @@ impl PredictDocument {
         if let Some(accepted) = self.accept_mm {
             self.check_accepted(accepted, &at, faults);
         }
+        if let Some(refine) = &self.refine {
+            refine.check(&at.key("refine"), limits, faults);
+            self.check_refined(&at.key("refine"), faults);
+        }
         if let Some(compare_to) = &self.compare_to {
             compare_to.check(&at.key("compare_to"), limits, faults);
         }
@@ -189,6 +196,37 @@ impl PredictDocument {
                           `estimate`";
             faults.add(&place, ErrorCode::OneOf, detail);
         }
+    }
+
+    fn check_refined(&self, at: &Pointer, faults: &mut Faults) {
+        let is_linear = match self.method {
+            MethodName::Auto => true,
+            MethodName::Named(kind) => kind == MethodKind::FemLinear,
+        };
+        if !is_linear {
+            let name = self.method.name();
+            let detail = format!(
+                "meshes are refined for `fem_linear` and `auto`, and the method is `{name}`"
+            );
+            faults.add(at, ErrorCode::MethodMismatch, detail);
+        }
+        if self.element.choice() == ElementChoice::Quadratic {
+            let detail =
+                "meshes are refined for elements of first order: leave out `element` or `refine`";
+            faults.add(at, ErrorCode::OneOf, detail);
+        }
+        if self.accept_mm.is_some() || self.estimate == EstimateName::None {
+            let detail = "a mesh is refined by the estimate of its error, and a model chosen for the mesh as it is: leave out \
+                          `estimate`, and either `accept_mm` or `refine`";
+            faults.add(at, ErrorCode::OneOf, detail);
+        }
+    }
+
+    /// Refines the mesh to another accepted error; limits and bounds that are stated stay.
+    pub fn refine_to(&mut self, accept_mm: f64) {
+        let stated = self.refine.take();
+        let usual = || RefineDocument::new(accept_mm);
+        self.refine = Some(stated.map_or_else(usual, |own| RefineDocument { accept_mm, ..own }));
     }
 
     /// The displacement at which colours end, in mm.

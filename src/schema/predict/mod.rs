@@ -9,5 +9,6 @@ pub mod estimate;
 pub mod keep;
 pub mod nonlinearity;
 pub mod output;
+pub mod refine;
 pub mod result;
 pub mod tolerance;

@@ -9,6 +9,7 @@ use super::adequacy::AdequacyDocument;
 use super::keep::KeptMeshDocument;
 use super::nonlinearity::NonlinearityDocument;
 use super::output::PictureName;
+use super::refine::RefinementDocument;
 use crate::schema::Triple;
 use crate::schema::case::document::{FrameName, LengthUnit};
 use crate::schema::case::hounsfield::ImagedTissueDocument;
@@ -65,6 +66,10 @@ pub struct ResultDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub adequacy: Option<AdequacyDocument>,
+    /// How the mesh was refined, where that was asked for. Whatever else the result has stands at the nodes of the case.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub refinement: Option<RefinementDocument>,
     /// Null where it was not estimated.
     pub numerical_error_mm: Option<NumericalErrorDocument>,
     /// What linear elasticity leaves out; null where `nonlinearity_unknown` says why it is not estimated.
@@ -108,6 +113,7 @@ impl ResultDocument {
             pictures: Vec::new(),
             kept: Vec::new(),
             adequacy: None,
+            refinement: None,
             numerical_error_mm: None,
             nonlinearity_mm: None,
             nonlinearity_unknown: None,

@@ -3,5 +3,6 @@
 mod failures;
 mod image;
 mod optimise;
+mod refined;
 mod results;
 mod study_report;

@@ -17,7 +17,7 @@ use mechanics::mesh::{CellShape, Frame, TriangleSurface, Vector, VolumeMesh, sam
 use mechanics::progress::{Phase, Progress, Unobserved};
 
 /// Meshes held in memory.
-struct Meshes(BTreeMap<&'static str, StoredMesh>);
+pub struct Meshes(BTreeMap<&'static str, StoredMesh>);
 
 impl MeshSource for Meshes {
     fn mesh(&self, id: &str) -> Result<StoredMesh, SourceError> {
@@ -44,6 +44,11 @@ fn block(factor: f64) -> VolumeMesh {
     sample::block(Vector::new(80.0, 60.0, 40.0) * factor, [4, 3, 2], CellShape::Tet4)
 }
 
+/// The same block of hexahedra.
+fn bricks() -> VolumeMesh {
+    sample::block(Vector::new(80.0, 60.0, 40.0), [4, 3, 2], CellShape::Hex8)
+}
+
 /// A triangle of bone, shared by the tests that need one.
 fn plate() -> TriangleSurface {
     TriangleSurface {
@@ -62,9 +67,10 @@ fn cube(x: f64) -> TriangleSurface {
     surface
 }
 
-fn meshes() -> Meshes {
+pub fn meshes() -> Meshes {
     let volume = |factor, name| stored(StoredShape::Volume(block(factor).into()), name);
     Meshes(BTreeMap::from([
+        ("bricks", stored(StoredShape::Volume(bricks().into()), "sha of bricks")),
         ("block", volume(1.0, "sha of block")),
         (
             "block in m",
@@ -83,7 +89,7 @@ const CASE: &str = r#"{"units":"mm","volume":"block","allow_unfixed":true,"bones
 const TURN: &str = r#"{"segments":[{"name":"base","translation_mm":[1,2,3],"rotation_deg":[0,0,10],"pivot_mm":[5,5,0]}]}"#;
 const ALL: &str = r#"{"outputs":["skin.vtp","skin.stl","skin.ply","skin.glb","skin.csv","volume.vtu","bones.vtp"]}"#;
 
-fn predict_input(case: &str, plan: &str, spec: &str) -> PredictInput {
+pub fn predict_input(case: &str, plan: &str, spec: &str) -> PredictInput {
     let case: CaseDocument = serde_json::from_str(case).unwrap();
     let plan: PlanDocument = serde_json::from_str(plan).unwrap();
     let spec: PredictDocument = serde_json::from_str(spec).unwrap();
@@ -95,7 +101,7 @@ fn run(input: JobInput, out: &Path, progress: &dyn Progress) -> Result<JobOutput
     work(&input, &Workplace { sources: &sources, limits: &limits, out }, progress)
 }
 
-fn predict(case: &str, plan: &str, spec: &str, out: &Path) -> Result<JobOutput, JobError> {
+pub fn predict(case: &str, plan: &str, spec: &str, out: &Path) -> Result<JobOutput, JobError> {
     run(JobInput::Predict(predict_input(case, plan, spec)), out, &Unobserved)
 }
 

@@ -43,13 +43,17 @@ pub(super) fn check_memory(
     coupling: &Coupling,
     allowed_mb: f64,
 ) -> Result<(), SolverError> {
-    let unknowns = 3 * stiffness.layout.free + coupling.mass.len();
-    let vectors_mb = 8e-6 * (VECTORS * unknowns) as f64;
-    let needed_mb = stiffness.megabytes() + coupling.megabytes() + vectors_mb;
+    let needed_mb = megabytes(stiffness, coupling);
     match needed_mb <= allowed_mb {
         true => Ok(()),
         false => Err(SolverError::OverBudget { needed_mb, allowed_mb }),
     }
+}
+
+/// What matrices, hierarchy and vectors take, in MB.
+pub(super) fn megabytes(stiffness: &System, coupling: &Coupling) -> f64 {
+    let unknowns = 3 * stiffness.layout.free + coupling.mass.len();
+    stiffness.megabytes() + coupling.megabytes() + 8e-6 * (VECTORS * unknowns) as f64
 }
 
 /// K: tetrahedra with what no pressure carries, 2 mu eps : eps where they are isotropic.

@@ -4,7 +4,9 @@
 use rayon::prelude::*;
 
 use super::displacement::{Problem, check_finite, solve_displacement};
-use super::displacement_pressure::{PressureCells, check_memory, couple, shear_stiffness};
+use super::displacement_pressure::{
+    PressureCells, check_memory, couple, megabytes, shear_stiffness,
+};
 use crate::boundary::Hold;
 use crate::mesh::Vector;
 use crate::model::dofs::{Constrained, Known, Numbering, product_at_holds};
@@ -224,6 +226,14 @@ impl<'a> LinearSystem<'a> {
             pressures: pressures.into_flattened(),
             iterations: solution.report.iterations,
             relative_residual: solution.report.relative_residual,
+        }
+    }
+
+    /// What matrices, hierarchy and vectors take, in MB.
+    pub fn megabytes(&self) -> f64 {
+        match &self.pressures {
+            Some(Pressures { coupling, .. }) => megabytes(&self.stiffness, coupling),
+            None => self.stiffness.megabytes(),
         }
     }
 

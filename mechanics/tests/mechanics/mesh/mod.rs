@@ -1,4 +1,5 @@
 //! Meshes: quality, and the report of a check.
 
+mod bisection;
 mod check;
 mod quality;

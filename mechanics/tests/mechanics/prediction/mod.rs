@@ -1,5 +1,6 @@
 //! Predictions against closed forms, published numbers and each other.
 
+mod adaptive;
 mod adequate;
 mod closed_form;
 mod conditions;
@@ -11,6 +12,7 @@ mod no_free_node;
 mod nonlinearity;
 mod numerical_error;
 mod patch;
+mod refined_scene;
 mod skin;
 mod slab_table;
 mod sliding;

@@ -11,7 +11,7 @@ use crate::element::MAX_NODES;
 use crate::mesh::{CellShape, Vector};
 use crate::model::fem::assembly::Tissue;
 use crate::model::fem::displacement_pressure::{PressureCells, beside_pressure};
-use crate::model::fem::linear_system::{LinearSystem, Solved};
+use crate::model::fem::linear_system::LinearSystem;
 use crate::model::problem::InvertedCell;
 
 /// Tissue, and an answer of it.
@@ -35,7 +35,12 @@ enum Cell {
 }
 
 impl<'a> Cells<'a> {
-    pub fn new(tissue: &'a Tissue<'a>, system: &LinearSystem, solved: &'a Solved) -> Self {
+    pub fn new(
+        tissue: &'a Tissue<'a>,
+        system: &LinearSystem,
+        displacement: &'a [Vector],
+        pressures: &'a [f64],
+    ) -> Self {
         let mut numbers = vec![None; tissue.mesh.cells.len()];
         if let Some(all) = &system.pressures {
             let PressureCells { cells, pressures, .. } = &all.cells;
@@ -43,9 +48,8 @@ impl<'a> Cells<'a> {
                 numbers[cell as usize] = Some(*own);
             }
         }
-        let displacement = &solved.equilibrium.displacement;
         let mean_stresses = mean_stress::smooth(tissue, displacement);
-        Cells { tissue, displacement, pressures: &solved.pressures, numbers, mean_stresses }
+        Cells { tissue, displacement, pressures, numbers, mean_stresses }
     }
 
     pub fn pressure_numbers(&self, cell: usize) -> &Option<[u32; 4]> {

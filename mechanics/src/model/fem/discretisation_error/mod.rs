@@ -20,6 +20,7 @@ mod edge_equations;
 mod edge_functions;
 mod edges;
 mod held_edges;
+mod indicators;
 mod loads;
 mod mean_stress;
 mod points;
@@ -27,7 +28,7 @@ mod sheet;
 mod simplex;
 
 use super::assembly::Tissue;
-use super::linear_system::{LinearSystem, Residual, Solved};
+use super::linear_system::{Correction, LinearSystem, Residual, Solved};
 use crate::mesh::Vector;
 use crate::mesh::volume::BoundaryFace;
 use crate::model::problem::ModelError;
@@ -39,6 +40,7 @@ use edges::Edges;
 use held_edges::HeldEdges;
 use sheet::Sheet;
 
+pub use indicators::{Goal, marked};
 pub use loads::DistributedLoads;
 
 /// Relative residual of the solve: the first digit of an estimate is all that it has.
@@ -83,7 +85,7 @@ impl Estimate<'_> {
     ) -> Result<DiscretisationError, ModelError> {
         progress.phase(Phase::Estimate);
         let edges = Edges::new(self.tissue.mesh, &self.system.numbering);
-        let cells = Cells::new(&self.tissue, self.system, solved);
+        let cells = self.cells(&solved.equilibrium.displacement, &solved.pressures);
         let (residual, squared_energy_norm) = self.at_corners(&edges, &cells)?;
         let mut corrections = self.system.solve_for(&[residual], self.tolerance(), progress)?;
         let correction = corrections.remove(0);
@@ -105,9 +107,12 @@ impl Estimate<'_> {
         if most > CONTRAST * least || locks { TIGHTER } else { LOOSE }
     }
 
-    /// What the edge functions do to the equations of the corners, and their squared energy norm.
-    fn at_corners(&self, edges: &Edges, cells: &Cells) -> Result<(Residual, f64), ModelError> {
-        // 1. The equations of the edges, and b.
+    fn cells<'b>(&'b self, displacement: &'b [Vector], pressures: &'b [f64]) -> Cells<'b> {
+        Cells::new(&self.tissue, self.system, displacement, pressures)
+    }
+
+    /// The equations of the edges beside an answer; nothing acts on them but the answer.
+    fn equations(&self, edges: &Edges, cells: &Cells) -> Result<EdgeEquations, ModelError> {
         let mut equations = EdgeEquations::zeros(edges.count());
         edges.each_cell(
             |cell| cells.equations(cell),
@@ -116,15 +121,29 @@ impl Estimate<'_> {
                 cell.numbers().iter().zip(&own).for_each(|(&edge, own)| equations.add(edge, own));
             },
         )?;
-        let mesh = self.tissue.mesh;
-        let is_edge = |edge: usize| equations.stiffness[edge][(0, 0)] > 0.0;
-        let sheet = self.tissue.membrane.map(|skin| Sheet::new(skin, mesh, edges, is_edge));
-        if let Some(sheet) = &sheet {
+        if let Some(sheet) = self.sheet(edges, &equations) {
             sheet.add_equations(cells.displacement, &mut equations);
         }
+        Ok(equations)
+    }
+
+    /// The membrane, if there is one.
+    fn sheet<'b>(&'b self, edges: &'b Edges<'b>, equations: &EdgeEquations) -> Option<Sheet<'b>> {
+        let is_edge = |edge: usize| equations.stiffness[edge][(0, 0)] > 0.0;
+        self.tissue.membrane.map(|skin| Sheet::new(skin, self.tissue.mesh, edges, is_edge))
+    }
+
+    fn held_edges(&self, edges: &Edges) -> HeldEdges {
+        HeldEdges::new(self.boundary, self.system.holds, self.tissue.mesh.nodes.len(), edges)
+    }
+
+    /// What the edge functions do to the equations of the corners, and their squared energy norm.
+    fn at_corners(&self, edges: &Edges, cells: &Cells) -> Result<(Residual, f64), ModelError> {
+        // 1. The equations of the edges, and b.
+        let mut equations = self.equations(edges, cells)?;
+        let mesh = self.tissue.mesh;
         self.loads.add_to(&self.tissue, edges, &mut equations.residual)?;
-        let (faces, holds) = (self.boundary, self.system.holds);
-        let steps = equations.steps(&HeldEdges::new(faces, holds, mesh.nodes.len(), edges));
+        let steps = equations.steps(&self.held_edges(edges));
 
         let squared_energy_norm = equations.work(&steps);
 
@@ -144,7 +163,7 @@ impl Estimate<'_> {
                 }
             },
         )?;
-        if let Some(sheet) = &sheet {
+        if let Some(sheet) = self.sheet(edges, &equations) {
             sheet.subtract_forces(&steps, &mut residual.forces);
         }
         Ok((residual, squared_energy_norm))

@@ -1,0 +1,330 @@
+//! Adaptive refinement: solve, estimate, mark, refine, until the estimated error of the skin is accepted or a bound is met.
+//!
+//! The error that is estimated at the skin nodes of the case (`numerical_error`) is held against what is accepted, over the whole
+//! skin and over parts of it that have a limit of their own. Where it is larger, the goal of the next refinement is that error
+//! itself, made linear: the mean over the skin of the displacement along the direction in which each place is estimated to
+//! be off, J(v) = int w . v dA with w = sum_g e / (|e| tol_g A_g) over the limits g that are not met. Cells with half of what
+//! the mesh leaves out of it (`discretisation_error::indicators`) are halved three times. Tissue is not made anew: the finer
+//! scene asks the question of the first one (`refined_scene`), and its answer is given at the nodes of the case.
+
+use std::collections::BTreeMap;
+
+use super::answer::Answer;
+use super::nonlinearity;
+use super::numerical_error::{self, NotEstimated, NumericalError};
+use super::refined_scene::NotRefined;
+use super::scene::Scene;
+use super::{Prediction, described};
+use crate::mesh::bisection::{Bisection, HALVES_EVERY_EDGE, NotTetrahedra};
+use crate::mesh::{Vector, Warning};
+use crate::model::fem::discretisation_error::{Estimate, Goal, marked};
+use crate::model::fem::linear_system::{LinearSystem, Solved};
+use crate::model::fem::strain::deformations;
+use crate::model::problem::ModelError;
+use crate::progress::Progress;
+
+/// The share of the indicators that marked cells have together.
+const MARKED_SHARE: f64 = 0.5;
+
+/// What a finer mesh may need more than its number of cells tells.
+const MEMORY_MARGIN: f64 = 1.15;
+
+/// Time for a mesh of more cells grows by this power of their number.
+const TIME_GROWTH: f64 = 1.1;
+
+/// What is accepted, and what it may take.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Wanted {
+    /// The mean error over the skin nodes of the case, in mm.
+    pub skin_mm: f64,
+    /// The same for named parts of the skin.
+    pub regions_mm: BTreeMap<String, f64>,
+    /// The most cells of a mesh.
+    pub cells: usize,
+    /// For all meshes together, in s.
+    pub time_s: f64,
+}
+
+/// A mesh that was solved on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Level {
+    pub cells: usize,
+    pub nodes: usize,
+    pub unknowns: usize,
+    /// The estimated error at the skin nodes of the case, in mm.
+    pub mean_mm: f64,
+    pub p95_mm: f64,
+    /// Its mean over each part of the skin that has a limit of its own.
+    pub regions_mm: BTreeMap<String, f64>,
+    pub spent_s: f64,
+}
+
+/// Why no finer mesh was made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stop {
+    /// The estimate is within what is accepted.
+    Met,
+    Cells,
+    Time,
+    Memory,
+}
+
+/// A prediction with the meshes that it took.
+pub struct Adapted {
+    /// At the nodes and cells of the scene.
+    pub prediction: Prediction,
+    /// None where no mesh was made.
+    pub finest: Option<Finest>,
+    pub levels: Vec<Level>,
+    pub stop: Stop,
+}
+
+/// The last mesh of an adaptive prediction.
+pub struct Finest {
+    /// Any scene on the mesh of the case may be taken to this one by `Scene::on`.
+    pub bisection: Bisection,
+    pub scene: Scene,
+    /// Of all its nodes, in mm.
+    pub displacement: Vec<Vector>,
+}
+
+/// Why nothing was refined.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum AdaptiveError {
+    #[error(transparent)]
+    Shape(#[from] NotTetrahedra),
+    #[error(transparent)]
+    Scene(#[from] NotRefined),
+    #[error(
+        "meshes are refined where an estimate of their error asks for it, and there is none: {0}"
+    )]
+    NotEstimated(#[from] NotEstimated),
+    #[error("{0:?} is no part of the skin")]
+    UnknownRegion(String),
+    #[error(transparent)]
+    Model(#[from] ModelError),
+}
+
+/// What a limit is about: skin nodes of the case and, on a finer mesh, skin nodes there.
+struct Limit<'a> {
+    name: Option<&'a str>,
+    accepted_mm: f64,
+    nodes: Vec<u32>,
+}
+
+impl Stop {
+    /// As documents call it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Stop::Met => "met",
+            Stop::Cells => "cells",
+            Stop::Time => "time",
+            Stop::Memory => "memory",
+        }
+    }
+}
+
+impl Wanted {
+    fn limits<'a>(&'a self, scene: &Scene) -> Result<Vec<Limit<'a>>, AdaptiveError> {
+        let skin = scene.skin.nodes();
+        let mut limits =
+            vec![Limit { name: None, accepted_mm: self.skin_mm, nodes: skin.to_vec() }];
+        for (name, &accepted_mm) in &self.regions_mm {
+            let points = scene.skin.regions.get(name);
+            let points = points.ok_or_else(|| AdaptiveError::UnknownRegion(name.clone()))?;
+            let nodes = points.iter().map(|&point| skin[point as usize]).collect();
+            limits.push(Limit { name: Some(name), accepted_mm, nodes });
+        }
+        Ok(limits)
+    }
+}
+
+impl Limit<'_> {
+    fn mean(&self, missing: &[Vector]) -> f64 {
+        let sum: f64 = self.nodes.iter().map(|&node| missing[node as usize].norm()).sum();
+        sum / self.nodes.len().max(1) as f64
+    }
+
+    /// Skin nodes of a mesh that it is about, and their areas.
+    fn on(&self, scene: &Scene) -> Vec<(u32, f64)> {
+        let (nodes, areas) = (scene.skin.nodes(), scene.skin.surface.point_areas());
+        let at = |point: usize| (nodes[point], areas[point]);
+        match self.name {
+            None => (0..nodes.len()).map(at).collect(),
+            Some(name) => {
+                let points = scene.skin.regions.get(name).into_iter().flatten();
+                points.map(|&point| at(point as usize)).collect()
+            }
+        }
+    }
+}
+
+/// A scene on one mesh, solved.
+struct Step<'a> {
+    scene: &'a Scene,
+    system: LinearSystem<'a>,
+    solved: Solved,
+    error: NumericalError,
+}
+
+impl<'a> Step<'a> {
+    fn solve(scene: &'a Scene, progress: &dyn Progress) -> Result<Self, AdaptiveError> {
+        let system = scene.assemble(progress)?.ok_or(NotEstimated::Quadratic)?;
+        let solved = system.solve(&[scene.load_case()], progress)?.remove(0);
+        let error = numerical_error::estimate(scene, &system, &solved, progress)??;
+        Ok(Step { scene, system, solved, error })
+    }
+
+    fn answer(self, progress: &dyn Progress) -> Result<Answer, ModelError> {
+        let Step { scene, system, solved, error } = self;
+        let nonlinearity = match nonlinearity::reason_for_none(scene) {
+            Some(reason) => Err(reason),
+            None => nonlinearity::estimate(scene, &system, &solved, progress)?,
+        };
+        let answer =
+            Answer { equilibrium: solved.equilibrium, numerical_error: Ok(error), nonlinearity };
+        Ok(answer.corrected(scene.settings.corrected))
+    }
+
+    /// The cells from which most of the error comes that is not accepted.
+    fn marked(&self, limits: &[&Limit], progress: &dyn Progress) -> Result<Vec<usize>, ModelError> {
+        let Scene { mesh, skin, boundary, distributed: loads, .. } = self.scene;
+        let mut weights = vec![Vector::zeros(); mesh.nodes.len()];
+        for limit in limits {
+            let nodes = limit.on(self.scene);
+            let area: f64 = nodes.iter().map(|(_, area)| area).sum();
+            for (node, _) in nodes {
+                let missing = self.error.missing[node as usize];
+                let along = missing.try_normalize(0.0).unwrap_or_default();
+                weights[node as usize] += along / (limit.accepted_mm * area);
+            }
+        }
+        let nodes = skin.nodes();
+        let corners = |points: &[u32; 3]| points.map(|point| nodes[point as usize]);
+        let triangles: Vec<[u32; 3]> = skin.surface.triangles.iter().map(corners).collect();
+        let goal = Goal { triangles: &triangles, weights: &weights };
+        let estimate =
+            Estimate { tissue: self.scene.tissue(), system: &self.system, boundary, loads };
+        Ok(marked(&estimate.indicators(&self.solved, &goal, progress)?, MARKED_SHARE))
+    }
+
+    /// The next mesh, or the bound that does not allow one.
+    fn finer(
+        &self,
+        bisection: &Bisection,
+        open: &[&Limit],
+        most_cells: usize,
+        progress: &dyn Progress,
+    ) -> Result<Result<Bisection, Stop>, ModelError> {
+        let mut finer = bisection.clone();
+        finer.refine(&self.marked(open, progress)?, HALVES_EVERY_EDGE);
+        if finer.cell_count() > most_cells {
+            return Ok(Err(Stop::Cells));
+        }
+        let growth = finer.cell_count() as f64 / bisection.cell_count() as f64;
+        let needed_mb = self.system.megabytes() * growth * MEMORY_MARGIN;
+        let fits = needed_mb <= self.scene.settings.memory_mb;
+        Ok(if fits { Ok(finer) } else { Err(Stop::Memory) })
+    }
+
+    fn level(&self, limits: &[Limit], spent_s: f64) -> Level {
+        let missing = &self.error.missing;
+        let mut lengths: Vec<f64> =
+            limits[0].nodes.iter().map(|&node| missing[node as usize].norm()).collect();
+        lengths.sort_by(f64::total_cmp);
+        let p95 = (lengths.len() * 95).div_ceil(100).max(1) - 1;
+        let named = limits.iter().filter_map(|limit| Some((limit.name?, limit.mean(missing))));
+        Level {
+            cells: self.scene.mesh.cells.len(),
+            nodes: self.scene.mesh.nodes.len(),
+            unknowns: self.solved.equilibrium.solver.unknowns,
+            mean_mm: limits[0].mean(missing),
+            p95_mm: lengths.get(p95).copied().unwrap_or_default(),
+            regions_mm: named.map(|(name, mean)| (name.to_owned(), mean)).collect(),
+            spent_s,
+        }
+    }
+}
+
+/// Predicts a scene on meshes that are refined until what is wanted is met; `stopwatch` tells seconds.
+pub fn predict_adaptively(
+    scene: &Scene,
+    wanted: &Wanted,
+    stopwatch: &dyn Fn() -> f64,
+    progress: &dyn Progress,
+) -> Result<Adapted, AdaptiveError> {
+    let limits = wanted.limits(scene)?;
+    if let Some(reason) = numerical_error::reason_for_none(scene) {
+        return Err(reason.into());
+    }
+    let begun = stopwatch();
+    let mut bisection = Bisection::new(scene.mesh.clone())?;
+    let mut finest: Option<Scene> = None;
+    let mut levels: Vec<Level> = Vec::new();
+    let (answer, stop) = loop {
+        let level_begun = stopwatch();
+        let step = Step::solve(finest.as_ref().unwrap_or(scene), progress)?;
+        let open: Vec<&Limit> =
+            limits.iter().filter(|own| own.mean(&step.error.missing) > own.accepted_mm).collect();
+        let next = match open.is_empty() {
+            true => Err(Stop::Met),
+            false => step.finer(&bisection, &open, wanted.cells, progress)?,
+        };
+        let spent_s = stopwatch() - level_begun;
+        levels.push(step.level(&limits, spent_s));
+        let next = next.and_then(|finer| {
+            let growth = finer.cell_count() as f64 / bisection.cell_count() as f64;
+            let expected_s = spent_s * growth.powf(TIME_GROWTH);
+            let fits = stopwatch() - begun + expected_s <= wanted.time_s;
+            if fits { Ok(finer) } else { Err(Stop::Time) }
+        });
+        match next {
+            Err(stop) => break (step.answer(progress)?, stop),
+            Ok(finer) => {
+                drop(step);
+                finest = Some(scene.on(&finer)?);
+                bisection = finer;
+            }
+        }
+    };
+    let mut prediction = described(finest.as_ref().unwrap_or(scene), answer, progress);
+    let finest = finest.map(|on_it| {
+        let displacement = at_first_nodes(&mut prediction, scene);
+        Finest { bisection, scene: on_it, displacement }
+    });
+    prediction.warnings.extend((stop != Stop::Met).then(|| not_met(&limits, &levels, stop)));
+    Ok(Adapted { prediction, finest, levels, stop })
+}
+
+/// Gives a prediction at the nodes and cells of the scene that was refined; returns the displacement of all nodes.
+fn at_first_nodes(prediction: &mut Prediction, scene: &Scene) -> Vec<Vector> {
+    let count = scene.mesh.nodes.len();
+    let all = prediction.displacement.clone();
+    prediction.displacement.truncate(count);
+    prediction.deformation = deformations(&scene.mesh, &prediction.displacement);
+    if let Ok(left) = &mut prediction.nonlinearity {
+        left.second_order.truncate(count);
+    }
+    if let Ok(error) = &mut prediction.numerical_error {
+        error.missing.truncate(count);
+    }
+    all
+}
+
+fn not_met(limits: &[Limit], levels: &[Level], stop: Stop) -> Warning {
+    let bound = match stop {
+        Stop::Met => "nothing",
+        Stop::Cells => "the bound on cells",
+        Stop::Time => "the time that is left",
+        Stop::Memory => "the memory that is allowed",
+    };
+    let wanted = limits[0].accepted_mm;
+    let mean = levels.last().map_or(f64::NAN, |level| level.mean_mm);
+    let cells = levels.last().map_or(0, |level| level.cells);
+    let detail = format!(
+        "the mesh of {cells} cells leaves out an estimated {mean:.3} mm in the mean over the skin, where {wanted:.3} mm were to be \
+         met there, or more over a part of it with a limit of its own: {bound} allows no finer one"
+    );
+    let warning = Warning::new("tolerance-not-met", detail).with("accepted_mm", wanted);
+    warning.with("expected_mm", mean)
+}

@@ -1,0 +1,131 @@
+//! Adaptive refinement: where the skin is off, until it is not, at the nodes of the case.
+
+use std::collections::BTreeMap;
+
+use mechanics::mesh::CellShape;
+use mechanics::mesh::Vector;
+use mechanics::mesh::refinement::refine;
+use mechanics::mesh::sample::block;
+use mechanics::prediction::{
+    Adapted, Case, Plan, Scene, Settings, Stop, Wanted, predict, predict_adaptively,
+};
+use mechanics::progress::Unobserved;
+use mechanics::study::scenes::slab;
+
+use crate::scenes::{case_of, hold, material, set};
+
+fn scene() -> (Case, Plan) {
+    let slab = slab();
+    let materials = slab.materials[0].by_region.clone();
+    (Case { materials, ..slab.case }, slab.plans[0].1.clone())
+}
+
+fn wanted(skin_mm: f64, cells: usize) -> Wanted {
+    Wanted { skin_mm, regions_mm: BTreeMap::new(), cells, time_s: f64::INFINITY }
+}
+
+fn adapted(case: &Case, plan: &Plan, wanted: &Wanted) -> Adapted {
+    let scene = Scene::new(case, plan, &Settings::default()).unwrap();
+    predict_adaptively(&scene, wanted, &|| 0.0, &Unobserved).unwrap()
+}
+
+/// The mean distance at skin nodes of the case, in mm.
+fn apart(case: &Case, plan: &Plan, a: &[Vector], b: &[Vector]) -> f64 {
+    let scene = Scene::new(case, plan, &Settings::default()).unwrap();
+    let nodes = scene.skin.nodes().iter().map(|&node| node as usize);
+    nodes.clone().map(|node| (a[node] - b[node]).norm()).sum::<f64>() / nodes.len() as f64
+}
+
+#[test]
+fn a_mesh_that_is_good_enough_is_left_alone() {
+    let (case, plan) = scene();
+    let adapted = adapted(&case, &plan, &wanted(10.0, 1_000_000));
+    assert_eq!((adapted.stop, adapted.levels.len()), (Stop::Met, 1));
+    assert!(adapted.finest.is_none());
+    let scene = Scene::new(&case, &plan, &Settings::default()).unwrap();
+    assert_eq!(adapted.prediction.displacement, predict(&scene, &Unobserved).unwrap().displacement);
+}
+
+#[test]
+fn fewer_unknowns_where_they_count_come_nearer_than_many_everywhere() {
+    let (case, plan) = scene();
+    let mut finer = case.clone();
+    let solve = |case: &Case| {
+        let scene = Scene::new(case, &plan, &Settings::default()).unwrap();
+        predict(&scene, &Unobserved).unwrap()
+    };
+    finer.volume = refine(&finer.volume).into();
+    let uniform = solve(&finer);
+    finer.volume = refine(&finer.volume).into();
+    let truth = solve(&finer).displacement;
+    let adapted = adapted(&case, &plan, &wanted(1e-3, finer.volume.cells.len() / 24));
+    let [of_uniform, of_adapted] =
+        [&uniform, &adapted.prediction].map(|own| apart(&case, &plan, &own.displacement, &truth));
+    assert_eq!(adapted.stop, Stop::Cells);
+    assert!(adapted.prediction.solver.unknowns < uniform.solver.unknowns);
+    assert!(of_adapted < of_uniform, "{of_adapted} {of_uniform}");
+    assert_eq!(adapted.prediction.displacement.len(), case.volume.nodes.len());
+    assert_eq!(adapted.prediction.deformation.len(), case.volume.cells.len());
+    let codes: Vec<&str> = adapted.prediction.warnings.iter().map(|w| w.code.as_ref()).collect();
+    assert!(codes.contains(&"tolerance-not-met"), "{codes:?}");
+}
+
+#[test]
+fn refinement_goes_on_until_the_estimate_is_accepted() {
+    let (case, plan) = scene();
+    let coarse = adapted(&case, &plan, &wanted(10.0, 1_000_000)).levels[0].mean_mm;
+    let adapted = adapted(&case, &plan, &wanted(0.5 * coarse, 1_000_000));
+    let means: Vec<f64> = adapted.levels.iter().map(|level| level.mean_mm).collect();
+    assert_eq!(adapted.stop, Stop::Met, "{means:?}");
+    let (last, before) = means.split_last().unwrap();
+    assert!(*last <= 0.5 * coarse && before.iter().all(|mean| *mean > 0.5 * coarse), "{means:?}");
+}
+
+#[test]
+fn a_part_of_the_skin_with_a_limit_of_its_own_is_refined_for() {
+    // A slab held below whose bottom moves at both ends, and only the skin above one of them counts.
+    let mut mesh = block(Vector::new(60.0, 20.0, 10.0), [18, 6, 3], CellShape::Tet4);
+    let where_ = |holds: &dyn Fn(&Vector) -> bool| -> Vec<u32> {
+        (0_u32..).zip(&mesh.nodes).filter(|(_, x)| holds(x)).map(|(node, _)| node).collect()
+    };
+    let ends = where_(&|x| x.z == 0.0 && (x.x - 30.0).abs() > 20.0);
+    let rest = where_(&|x| x.z == 0.0 && (x.x - 30.0).abs() <= 20.0);
+    let left = where_(&|x| x.z == 10.0 && x.x < 15.0);
+    mesh.node_sets.extend([
+        ("ends".to_owned(), ends),
+        ("rest".into(), rest),
+        ("left".into(), left),
+    ]);
+    let case = Case {
+        skin: Some(set("z_max")),
+        skin_regions: BTreeMap::from([("left".to_owned(), set("left"))]),
+        fixed: vec![set("rest")],
+        ..case_of(mesh, material(15.0, 0.45))
+    };
+    let plan = Plan {
+        prescribed: vec![hold("ends", [Some(0.0), Some(0.0), Some(4.0)])],
+        ..Plan::default()
+    };
+    let cells = 4 * case.volume.cells.len();
+    let own =
+        Wanted { regions_mm: BTreeMap::from([("left".to_owned(), 1e-3)]), ..wanted(100.0, cells) };
+    let adapted = adapted(&case, &plan, &own);
+    assert!(adapted.levels.len() > 1);
+    assert!(adapted.levels.iter().all(|level| level.regions_mm.contains_key("left")));
+    let finest = adapted.finest.unwrap();
+    let first_new = case.volume.nodes.len();
+    let new = &finest.scene.mesh.nodes[first_new..];
+    let on_the_left = new.iter().filter(|x| x.x < 30.0).count();
+    assert!(on_the_left > 4 * (new.len() - on_the_left), "{on_the_left} of {}", new.len());
+}
+
+#[test]
+fn the_same_scene_gives_the_same_meshes_on_one_thread_and_on_two() {
+    let (case, plan) = scene();
+    let on = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let adapted = pool.install(|| adapted(&case, &plan, &wanted(1e-3, 20_000)));
+        (adapted.levels, adapted.prediction.displacement, adapted.finest.unwrap().scene.mesh)
+    };
+    assert_eq!(on(1), on(2));
+}

@@ -1,0 +1,137 @@
+//! Refinement of the mesh of a prediction where the estimate of its error asks for it, and how it went.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+use crate::schema::code::ErrorCode;
+use crate::schema::wire::fault::{Faults, Pointer};
+use crate::schema::wire::limits::Limits;
+use mechanics::prediction::{Adapted, Level, Stop, Wanted};
+
+/// Errors that may be accepted, in mm.
+pub const ACCEPTED_MM: std::ops::RangeInclusive<f64> = 1e-3..=1e2;
+
+/// Until the estimated error of the skin is accepted, or a bound is met. Only tetrahedra, of linear finite elements.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RefineDocument {
+    /// The mean error over the skin nodes of the case that is accepted, in mm.
+    #[schema(minimum = 0.001, maximum = 100.0)]
+    pub accept_mm: f64,
+    /// The same for some of `skin_regions`, by name.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub regions: BTreeMap<String, f64>,
+    /// The most cells of a mesh.
+    #[serde(default = "usual_cells")]
+    #[schema(default = 400_000, minimum = 1)]
+    pub cells: u64,
+}
+
+fn usual_cells() -> u64 {
+    400_000
+}
+
+/// What `check` tells of the mesh that may be refined.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct RefineBoundDocument {
+    /// The most cells of a mesh: those of the spec, or fewer where the memory of a job holds no more.
+    pub cells: u64,
+    /// What the process of the job is expected to take with so many.
+    pub memory_mb: f64,
+}
+
+/// How the mesh was refined.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct RefinementDocument {
+    pub accepted_mm: f64,
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub accepted_regions_mm: BTreeMap<String, f64>,
+    /// Whether the estimates on the last mesh are within what was accepted.
+    pub met: bool,
+    /// Why no finer mesh was made: `met`, or the bound `cells`, `time` or `memory`.
+    pub stopped: String,
+    /// The meshes, the first one that of the case.
+    pub levels: Vec<RefinementLevelDocument>,
+}
+
+/// A mesh that was solved on, with the estimated error at the skin nodes of the case.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct RefinementLevelDocument {
+    pub cells: u64,
+    pub nodes: u64,
+    pub unknowns: u64,
+    pub mean_mm: f64,
+    pub p95_mm: f64,
+    /// The mean over each part of the skin with a limit of its own.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub regions_mm: BTreeMap<String, f64>,
+    /// Of solving, estimating and marking, in s.
+    pub spent_s: f64,
+}
+
+impl RefineDocument {
+    pub fn new(accept_mm: f64) -> Self {
+        RefineDocument { accept_mm, regions: BTreeMap::new(), cells: usual_cells() }
+    }
+
+    pub fn check(&self, at: &Pointer, limits: &Limits, faults: &mut Faults) {
+        faults.check_range(&at.key("accept_mm"), self.accept_mm, ACCEPTED_MM, "mm");
+        for (name, &accepted) in &self.regions {
+            faults.check_range(&at.key("regions").key(name), accepted, ACCEPTED_MM, "mm");
+        }
+        if !(1..=limits.mesh_cells).contains(&self.cells) {
+            let detail = format!("{} is outside of 1 to {}", self.cells, limits.mesh_cells);
+            faults.add(&at.key("cells"), ErrorCode::OutOfRange, detail);
+        }
+    }
+
+    /// What the path is asked for, with the bounds that hold.
+    pub fn wanted(&self, cells: usize, time_s: f64) -> Wanted {
+        let regions_mm = self.regions.clone();
+        Wanted { skin_mm: self.accept_mm, regions_mm, cells, time_s }
+    }
+}
+
+impl RefinementDocument {
+    pub fn new(wanted: &Wanted, adapted: &Adapted) -> Self {
+        RefinementDocument {
+            accepted_mm: wanted.skin_mm,
+            accepted_regions_mm: wanted.regions_mm.clone(),
+            met: adapted.stop == Stop::Met,
+            stopped: adapted.stop.name().to_owned(),
+            levels: adapted.levels.iter().map(RefinementLevelDocument::from).collect(),
+        }
+    }
+
+    /// In words.
+    pub fn summary(&self) -> String {
+        let Some(last) = self.levels.last() else { return "no mesh was solved on".to_owned() };
+        let verdict = match self.met {
+            true => "within".to_owned(),
+            false => format!("short of (bound: {})", self.stopped),
+        };
+        format!(
+            "{} meshes, the last of {} cells: an estimated {:.3} mm in the mean over the skin, {verdict} {} mm",
+            self.levels.len(),
+            last.cells,
+            last.mean_mm,
+            self.accepted_mm
+        )
+    }
+}
+
+impl From<&Level> for RefinementLevelDocument {
+    fn from(level: &Level) -> Self {
+        RefinementLevelDocument {
+            cells: level.cells as u64,
+            nodes: level.nodes as u64,
+            unknowns: level.unknowns as u64,
+            mean_mm: level.mean_mm,
+            p95_mm: level.p95_mm,
+            regions_mm: level.regions_mm.clone(),
+            spent_s: level.spent_s,
+        }
+    }
+}
