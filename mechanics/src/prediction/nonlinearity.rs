@@ -10,6 +10,7 @@ use std::collections::BTreeMap;
 use super::method::Method;
 use super::scene::Scene;
 use super::skin::landmark_displacement;
+use super::walls::turned_at_second_order;
 use crate::material::LinearElastic;
 use crate::mesh::Vector;
 use crate::model::fem::force_series::{ForceSeries, Moved};
@@ -44,6 +45,10 @@ pub enum NonlinearityUnknown {
     Quadratic,
     #[error("no second order is known of fibres that only pull: they are not smooth at rest")]
     PullingFibres,
+    #[error(
+        "a wall turns with segment {segment:?}, and small strain holds its nodes across the wall as it lay before"
+    )]
+    TurnedWall { segment: String },
     #[error("the loose solution of the second order failed: {0}")]
     Failed(ModelError),
 }
@@ -59,7 +64,11 @@ pub(super) fn reason_for_none(scene: &Scene) -> Option<NonlinearityUnknown> {
     match scene.settings.method {
         Method::FemLinear | Method::MassTensorTransverse => {
             let pulls = scene.materials.iter().any(LinearElastic::has_pulling_fibres);
-            pulls.then_some(NonlinearityUnknown::PullingFibres)
+            if pulls {
+                return Some(NonlinearityUnknown::PullingFibres);
+            }
+            let turned = turned_at_second_order(scene);
+            turned.map(|segment| NonlinearityUnknown::TurnedWall { segment })
         }
         Method::FemNonlinear | Method::MassTensorNonlinear => {
             Some(NonlinearityUnknown::FiniteStrain)

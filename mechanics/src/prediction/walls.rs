@@ -20,6 +20,9 @@ use crate::plan::{PlannedSegment, RigidMovement};
 /// Above this turn of a segment, in degrees, small strain is told to keep the normals of its walls.
 pub const NORMAL_TURNED_DEG: f64 = 5.0;
 
+/// Above this turn the second order is not known: across a wall it is that of the normal that turns.
+pub const NORMAL_TURNED_AT_SECOND_ORDER_DEG: f64 = 0.1;
+
 /// A bone that goes across a wall by less than this, in mm, slides along it.
 const ACROSS_MM: f64 = 1e-6;
 
@@ -279,19 +282,30 @@ pub(super) fn turned_normals(scene: &Scene) -> Vec<Warning> {
     segments
         .filter_map(|(number, segment)| {
             let nodes = scene.conditions.carried_by(number);
-            let warning = normal_turned(&segment.name, &segment.movement)?;
+            let warning = normal_turned(&segment.name, &segment.movement, NORMAL_TURNED_DEG)?;
             (nodes > 0).then(|| warning.with("nodes", nodes as f64))
         })
         .collect()
 }
 
-/// The warning of a segment that carries a wall and turns by more than 5 degrees.
-pub fn normal_turned(name: &str, movement: &RigidMovement) -> Option<Warning> {
+/// The first segment that carries a wall and turns by more than the second order bears.
+pub(super) fn turned_at_second_order(scene: &Scene) -> Option<String> {
+    let mut segments = (0_u32..).zip(&scene.segments);
+    let turns = |segment: &PlannedSegment| {
+        segment.movement.angle().to_degrees() > NORMAL_TURNED_AT_SECOND_ORDER_DEG
+    };
+    let carries = |number: u32| scene.conditions.carried_by(number) > 0;
+    let turned = segments.find(|(number, segment)| turns(segment) && carries(*number))?;
+    Some(turned.1.name.clone())
+}
+
+/// The warning of a segment that carries a wall and turns by more than that many degrees.
+pub fn normal_turned(name: &str, movement: &RigidMovement, limit_deg: f64) -> Option<Warning> {
     let degrees = movement.angle().to_degrees();
     let detail = format!(
         "segment {name:?} carries a wall and turns by {degrees:.1} degrees, and small strain holds its nodes across \
          the wall as it lay before"
     );
     let warning = Warning::new(NORMAL_TURNED, detail).with("rotation_deg", degrees);
-    (degrees > NORMAL_TURNED_DEG).then_some(warning)
+    (degrees > limit_deg).then_some(warning)
 }

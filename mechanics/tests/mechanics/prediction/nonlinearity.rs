@@ -10,7 +10,7 @@ use mechanics::mesh::{CellShape, Vector};
 use mechanics::plan::RigidMovement;
 use mechanics::prediction::{
     Case, CaseSegment, ElementChoice, Estimated, Method, MethodKind, NonlinearityUnknown, Plan,
-    Prediction, Scene, Settings, predict,
+    Prediction, Scene, Settings, Sliding, SlidingNormal, predict,
 };
 use mechanics::progress::Unobserved;
 use mechanics::response::{Columns, ResponseError, ResponseOrder, build_to, check_order};
@@ -136,15 +136,16 @@ fn the_estimate_is_that_of_the_law_that_is_stated() {
     let volumetric = Volumetric::Logarithmic(lambda + 2.0 / 3.0 * mu);
     let stiffening = Law::Fung(Fung { mu, b: 10.0, volumetric });
     let mut told = Vec::new();
-    for law in [
-        Law::NeoHookean(NeoHookean { lambda, mu }),
-        Law::SaintVenantKirchhoff(SaintVenantKirchhoff { lambda, mu }),
-        stiffening,
+    // The third order of an exponential law grows faster than its second.
+    for (law, shares) in [
+        (Law::NeoHookean(NeoHookean { lambda, mu }), vec![0.05, 0.2]),
+        (Law::SaintVenantKirchhoff(SaintVenantKirchhoff { lambda, mu }), vec![0.05, 0.2]),
+        (stiffening, vec![0.05]),
     ] {
         let material = LinearElastic::of_law(law, 1.0).unwrap();
         let case =
             Case { materials: [("*".to_owned(), material)].into(), ..slab(CellShape::Tet4, 0.4) };
-        for share in [0.05, 0.2] {
+        for share in shares {
             let found = effectivity(&case, &movements(share), ElementChoice::Plain);
             assert!(is_within(found), "{law:?} {share}: {found:?}");
         }
@@ -154,6 +155,23 @@ fn the_estimate_is_that_of_the_law_that_is_stated() {
     }
     // They are not one another's.
     assert!(told[1] > 1.2 * told[0] && told[2] > 1.2 * told[0], "{told:?}");
+}
+
+#[test]
+fn what_is_left_out_where_a_wall_turns_with_its_segment_is_not_known() {
+    let segment = Some("first".to_owned());
+    let normal = SlidingNormal::Direction(Vector::x());
+    let case = Case {
+        sliding: vec![Sliding { nodes: set("x_min"), normal, segment }],
+        ..slab(CellShape::Tet4, 0.45)
+    };
+    let (_, turned) = solved(&case, &movements(0.5), &linear());
+    let wanted = NonlinearityUnknown::TurnedWall { segment: "first".to_owned() };
+    assert_eq!(turned.nonlinearity.unwrap_err(), wanted);
+    let straight = [Vector::x(), Vector::zeros()]
+        .map(|along| RigidMovement::about_pivot(Vector::zeros(), Vector::zeros(), along));
+    let (_, straight) = solved(&case, &straight, &linear());
+    assert!(straight.nonlinearity.is_ok());
 }
 
 #[test]
