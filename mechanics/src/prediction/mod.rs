@@ -55,7 +55,9 @@ pub use stated::{StatedCondition, StatedHold};
 pub use unheld::{GoesAlong, NOTHING_HELD, goes_along};
 pub use walls::normal_turned;
 
-pub use adequate::{Accepted, Adequate, Considered, Errors, Rung, Watched, predict_adequately};
+pub use adequate::{
+    Accepted, Adequate, Considered, Errors, MAY_TAKE, MeanErrors, Rung, Watched, predict_adequately,
+};
 use answer::Answer;
 
 pub use crate::boundary::NodeClass;

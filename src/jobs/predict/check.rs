@@ -60,6 +60,7 @@ impl Prepared {
             time_s: cost::time_s(scene, input.spec.method),
             method: input.spec.method.chosen().name().to_owned(),
             why: input.spec.method.why().to_owned(),
+            auto: self.expectation(input),
             warnings: warnings.map(WarningDocument::from).collect(),
         }
     }

@@ -7,8 +7,13 @@
 mod balance;
 mod bricks;
 mod direction;
+mod edge_block;
 mod elements;
+mod enriched;
+mod enriched_brick;
+mod enriched_simplex;
 mod fibres;
+mod mesh_error;
 mod newton;
 mod pressures;
 mod problem;
@@ -32,6 +37,7 @@ use direction::{Directions, Tally};
 pub use elements::Elements;
 use elements::Kept;
 pub use fibres::FibreField;
+pub use mesh_error::{Finer, MeshError, NoMeshError};
 use newton::{Ending, Newton, Question, Rest, Start};
 pub use problem::FiniteStrain;
 use tissue::Tissue;
@@ -64,6 +70,17 @@ impl FiniteStrain<'_> {
         case: &LoadCase,
         progress: &dyn Progress,
     ) -> Result<Equilibrium, ModelError> {
+        let (equilibrium, _) = self.solve_and(case, None, progress)?;
+        Ok(equilibrium)
+    }
+
+    /// Solves a load case for rest, and estimates what its mesh leaves out where it is told what acts between the nodes.
+    pub fn solve_and(
+        &self,
+        case: &LoadCase,
+        finer: Option<&Finer>,
+        progress: &dyn Progress,
+    ) -> Result<(Equilibrium, Option<MeshError>), ModelError> {
         progress.phase(Phase::Assemble);
         self.check_held_cells(case)?;
         let numbering = number(&nodes_of_cells(self.mesh), &self.mesh.nodes, self.holds);
@@ -71,7 +88,10 @@ impl FiniteStrain<'_> {
         let tolerance = self.tolerance;
         let question = Question { constrained: &constrained, case, tolerance, progress };
         let nodes = &self.mesh.nodes;
-        let Rest { positions, forces, report } = self.rest(question)?;
+        let (tissue, mut rest) = self.rest(question)?;
+        let error = finer.map(|finer| finer.of(&tissue, &mut rest, &constrained, progress));
+        let error = error.transpose()?;
+        let Rest { positions, forces, report, .. } = rest;
 
         let places = numbering.layout.place.iter().zip(nodes);
         let reaction = |hold: &Hold| {
@@ -85,11 +105,11 @@ impl FiniteStrain<'_> {
             solver: report,
         };
         check_finite(std::slice::from_ref(&equilibrium))?;
-        Ok(equilibrium)
+        Ok((equilibrium, error))
     }
 
     /// Brings the tissue to rest, with more of the bulk modulus in the cells where the usual share jams.
-    fn rest(&self, question: Question) -> Result<Rest, ModelError> {
+    fn rest<'a>(&'a self, question: Question<'a>) -> Result<(Tissue<'a>, Rest), ModelError> {
         let numbering = question.constrained.numbering;
         let mut start = Start {
             x: numbering.by_row(&self.mesh.nodes),
@@ -106,7 +126,7 @@ impl FiniteStrain<'_> {
             question.progress.phase(Phase::Solve);
             let directions = Directions::new(pressures, start.tally, memory_mb);
             match Newton::new(&tissue, directions, question, start).solve(may_jam)? {
-                Ending::Rest(rest) => return Ok(rest),
+                Ending::Rest(rest) => return Ok((tissue, rest)),
                 Ending::Jam(reached) => start = reached,
             }
         }
