@@ -8,19 +8,14 @@
 
 mod measure;
 
-use std::collections::BTreeMap;
-use std::path::PathBuf;
 use std::sync::Arc;
 
-use measure::{process, shell};
-use mechanics::boundary::NodeSelection;
-use mechanics::format::{Mesh, ReadLimits, read};
-use mechanics::material::LinearElastic;
+use measure::{face, process, shell};
 use mechanics::mesh::refinement::refine;
 use mechanics::mesh::{CellShape, Cells, Vector, VolumeMesh};
 use mechanics::model::fem::discretisation_error::Estimate;
 use mechanics::plan::{PlannedSegment, RigidMovement};
-use mechanics::prediction::{Case, CaseSegment, ElementChoice, Plan, Scene, Settings};
+use mechanics::prediction::{Case, ElementChoice, Method, Plan, Scene, Settings, predict};
 use mechanics::progress::Unobserved;
 use mechanics::study::StudyScene;
 use mechanics::study::scenes::{half_head, slab, slab_hex, slab_wedge, sphere_of};
@@ -40,18 +35,20 @@ struct Row {
     plan: Plan,
     elements: Vec<ElementChoice>,
     truth: Truth,
+    method: Method,
 }
 
 /// A name, and what makes its rows.
 type Entry = (&'static str, fn() -> Vec<Row>);
 
-const SCENES: [Entry; 6] = [
+const SCENES: [Entry; 7] = [
     ("slab", slabs),
     ("half_head", half_heads),
     ("sphere", spheres),
     ("slab_cells", slabs_of_cells),
     ("face", faces),
     ("shell", shells),
+    ("finite", at_finite_strain),
 ];
 
 const TETRAHEDRA: [ElementChoice; 2] = [ElementChoice::Plain, ElementChoice::Stabilised];
@@ -74,23 +71,18 @@ fn measure_row(row: &Row) {
         return println!("| {} | has no truth: its cells are inverted |", row.name);
     };
     for &element in &row.elements {
-        let settings = Settings { element, ..Settings::default() };
+        let settings = Settings { element, method: row.method.clone(), ..Settings::default() };
         let scene = Scene::new(&row.case, &row.plan, &settings).expect("the scene is held");
-        let begin = process::cpu_seconds();
-        let system = scene.assemble(&Unobserved).expect("sound cells").expect("first order");
-        let solved = system.solve(&[scene.load_case()], &Unobserved).expect("it converges");
-        let between = process::cpu_seconds();
-        let estimate = Estimate {
-            tissue: scene.tissue(),
-            system: &system,
-            boundary: &scene.boundary,
-            loads: &scene.distributed,
+        let answer = match row.method == Method::FemNonlinear {
+            true => answer_at_finite_strain(row, &scene),
+            false => Some(linear_answer(&scene)),
         };
-        let error = estimate.of(&solved[0], &Unobserved).expect("an estimate");
-        let (solve_s, estimate_s) = (between - begin, process::cpu_seconds() - between);
-        let solution = &solved[0].equilibrium.displacement;
+        let Some(Answer { solution, error, solve_s, estimate_s }) = answer else {
+            println!("| {} | {} | has no answer |", row.name, scene.elements().join(", "));
+            continue;
+        };
         let nodes = scene.skin.nodes();
-        let missing: Vec<Vector> = nodes.iter().map(|&node| error.missing[node as usize]).collect();
+        let missing: Vec<Vector> = nodes.iter().map(|&node| error[node as usize]).collect();
         let lacks: Vec<Vector> =
             nodes.iter().zip(&truth).map(|(&node, u)| u - solution[node as usize]).collect();
         let left: Vec<Vector> = lacks.iter().zip(&missing).map(|(a, b)| a - b).collect();
@@ -109,6 +101,43 @@ fn measure_row(row: &Row) {
             row.truth.halved,
         );
     }
+}
+
+/// Displacement, its estimated error, and processor time.
+struct Answer {
+    solution: Vec<Vector>,
+    error: Vec<Vector>,
+    solve_s: f64,
+    estimate_s: f64,
+}
+
+fn linear_answer(scene: &Scene) -> Answer {
+    let begin = process::cpu_seconds();
+    let system = scene.assemble(&Unobserved).expect("sound cells").expect("first order");
+    let mut solved = system.solve(&[scene.load_case()], &Unobserved).expect("it converges");
+    let between = process::cpu_seconds();
+    let estimate = Estimate {
+        tissue: scene.tissue(),
+        system: &system,
+        boundary: &scene.boundary,
+        loads: &scene.distributed,
+    };
+    let error = estimate.of(&solved[0], &Unobserved).expect("an estimate").missing;
+    let (solve_s, estimate_s) = (between - begin, process::cpu_seconds() - between);
+    Answer { solution: solved.remove(0).equilibrium.displacement, error, solve_s, estimate_s }
+}
+
+/// The time of the estimate is that of a prediction with it less that of one without.
+fn answer_at_finite_strain(row: &Row, scene: &Scene) -> Option<Answer> {
+    let settings = Settings { estimate: false, ..scene.settings.clone() };
+    let without = Scene::new(&row.case, &row.plan, &settings).expect("the scene is held");
+    let begin = process::cpu_seconds();
+    predict(&without, &Unobserved).ok()?;
+    let between = process::cpu_seconds();
+    let found = predict(scene, &Unobserved).ok()?;
+    let (solve_s, both_s) = (between - begin, process::cpu_seconds() - between);
+    let (solution, estimate_s) = (found.displacement, both_s - solve_s);
+    Some(Answer { solution, error: found.numerical_error.ok()?.missing, solve_s, estimate_s })
 }
 
 /// Of lengths of vectors, in mm.
@@ -134,7 +163,9 @@ fn true_skin(row: &Row) -> Option<Vec<Vector>> {
         case.volume = Arc::new(refine(&case.volume));
     }
     let element = row.truth.element;
-    let settings = Settings { element, memory_mb: 12_000.0, ..Settings::default() };
+    let (method, estimate) = (row.method.clone(), false);
+    let settings =
+        Settings { element, method, estimate, memory_mb: 12_000.0, ..Settings::default() };
     let scene = Scene::new(&case, &row.plan, &settings).ok()?;
     let solved = scene.solve(&Unobserved).ok()?.displacement;
     Some(nodes.skin.nodes().iter().map(|&node| solved[node as usize]).collect())
@@ -148,6 +179,7 @@ fn slabs() -> Vec<Row> {
         plan: scene.plans[0].1.clone(),
         elements: TETRAHEDRA.to_vec(),
         truth: Truth { halved: 2, element: ElementChoice::Quadratic },
+        method: Method::FemLinear,
     };
     scene.materials.iter().map(row).collect()
 }
@@ -161,6 +193,7 @@ fn half_heads() -> Vec<Row> {
         plan: plan.clone(),
         elements: TETRAHEDRA.to_vec(),
         truth: Truth { halved: 1, element: ElementChoice::Quadratic },
+        method: Method::FemLinear,
     };
     plans.map(row).collect()
 }
@@ -174,6 +207,7 @@ fn spheres() -> Vec<Row> {
             plan: scene.plans[0].1.clone(),
             elements,
             truth,
+            method: Method::FemLinear,
         }
     };
     let finer = |halved, element| Truth { halved, element };
@@ -193,6 +227,7 @@ fn slabs_of_cells() -> Vec<Row> {
             plan: scene.plans[0].1.clone(),
             elements: vec![ElementChoice::Plain, ElementChoice::MeanDilatation],
             truth: Truth { halved: 3, element: ElementChoice::MeanDilatation },
+            method: Method::FemLinear,
         };
         scene.materials.iter().map(row).collect::<Vec<_>>()
     };
@@ -209,64 +244,63 @@ fn shells() -> Vec<Row> {
             plan,
             elements: TETRAHEDRA.to_vec(),
             truth: Truth { halved: 0, element: ElementChoice::Quadratic },
+            method: Method::FemLinear,
         }
     };
     ["a", "c", "d", "b"].into_iter().map(row).collect()
 }
 
+/// Movements of 10 mm at finite strain; the truth is the same with every edge halved.
+fn at_finite_strain() -> Vec<Row> {
+    let finite = |mut row: Row, halved: u32| {
+        let moved: Vec<PlannedSegment> = row.plan.segments.iter().map(ten_millimetres).collect();
+        row.name = format!("{}, 10 mm at finite strain", row.name);
+        row.plan = Plan { segments: moved, ..row.plan.clone() };
+        row.method = Method::FemNonlinear;
+        row.truth.halved = halved;
+        row.truth.element = match row.elements[0] {
+            ElementChoice::Plain if row.elements.len() > 1 => ElementChoice::Stabilised,
+            _ => ElementChoice::MeanDilatation,
+        };
+        row
+    };
+    let whole = |row: &Row| !row.name.contains("split");
+    let slabs = slabs().into_iter().map(|row| finite(row, 2));
+    let cells = slabs_of_cells().into_iter().map(|row| finite(row, 2));
+    let heads = half_heads().into_iter().map(|row| finite(row, 1));
+    let faces = faces().into_iter().filter(whole).map(|row| finite(row, 1));
+    slabs.chain(cells).chain(heads).chain(faces).collect()
+}
+
+/// The same direction, 10 mm long.
+fn ten_millimetres(segment: &PlannedSegment) -> PlannedSegment {
+    let along = segment.movement.translation() * (10.0 / segment.movement.translation().norm());
+    let movement = RigidMovement::about_pivot(Vector::zeros(), Vector::zeros(), along);
+    PlannedSegment { name: segment.name.clone(), movement }
+}
+
 /// The subject's and the template's face, whole and split into tetrahedra: the jaw 5 mm forward.
 fn faces() -> Vec<Row> {
     let mut rows = Vec::new();
-    for (name, jaw, skull, forward) in [
-        ("subject", "jaw_attached", "skull_fixed_orig", -Vector::x()),
-        ("template", "mandible_fixed", "skull_nose_fixed", Vector::y()),
-    ] {
-        let Some(mesh) = load(&format!("face/{name}_face.vtu")) else { continue };
-        let mean = ElementChoice::MeanDilatation;
+    for face in face::faces() {
+        let Some(mesh) = face.load() else { continue };
+        let (mean, name) = (ElementChoice::MeanDilatation, face.name);
         let split = tetrahedra(&mesh);
         let whole = Truth { halved: 1, element: mean };
-        for (title, mesh, elements, truth) in [
+        let quadratic = Truth { halved: 0, element: ElementChoice::Quadratic };
+        for (name, mesh, elements, truth) in [
             (name.to_owned(), mesh, vec![mean], whole),
-            (
-                format!("{name}, split"),
-                split,
-                TETRAHEDRA.to_vec(),
-                Truth { halved: 0, element: ElementChoice::Quadratic },
-            ),
+            (format!("{name}, split"), split, TETRAHEDRA.to_vec(), quadratic),
         ] {
-            let set = |name: &str| NodeSelection::NodeSet(name.to_owned());
-            let material = LinearElastic::new(15.0, 0.49, 1.0).expect("within the ranges");
-            let case = Case {
-                volume: Arc::new(mesh),
-                segments: vec![CaseSegment { name: "jaw".to_owned(), nodes: set(jaw) }],
-                fixed: vec![set(skull)],
-                materials: BTreeMap::from([("*".to_owned(), material)]),
-                ..Case::default()
-            };
-            let movement =
-                RigidMovement::about_pivot(Vector::zeros(), Vector::zeros(), forward * 5.0);
+            let by = face.forward * 5.0;
+            let movement = RigidMovement::about_pivot(Vector::zeros(), Vector::zeros(), by);
             let segments = vec![PlannedSegment { name: "jaw".to_owned(), movement }];
             let plan = Plan { segments, ..Plan::default() };
-            rows.push(Row { name: title, case, plan, elements, truth });
+            let (case, method) = (face.case(mesh, 0.49), Method::FemLinear);
+            rows.push(Row { name, case, plan, elements, truth, method });
         }
     }
     rows
-}
-
-fn load(path: &str) -> Option<VolumeMesh> {
-    let root = std::env::var_os("FACIES_SHARED").map_or_else(
-        || PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../shared"),
-        PathBuf::from,
-    );
-    let path = root.join("data").join(path);
-    let Ok(bytes) = std::fs::read(&path) else {
-        println!("skipped: {} is not here", path.display());
-        return None;
-    };
-    match read(&bytes, &ReadLimits::default()).expect("the faces are valid").mesh {
-        Mesh::Volume(mesh) => Some(mesh),
-        _ => panic!("a face is a volume mesh"),
-    }
 }
 
 /// Every cell cut into the tetrahedra between its lowest node and the faces without it, whose quadrilaterals are cut from

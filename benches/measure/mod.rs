@@ -1,7 +1,8 @@
-//! What the benches share: the shells and their standard load, yardsticks of the machine, and clocks.
+//! What the benches share: the shells and their standard load, the faces, yardsticks of the machine, and clocks.
 
 #![allow(dead_code, reason = "each bench uses the parts it needs")]
 
+pub mod face;
 pub mod process;
 pub mod shell;
 pub mod split;

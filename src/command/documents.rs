@@ -47,8 +47,18 @@ pub fn read<T: DeserializeOwned>(path: &Path) -> Result<T, CommandError> {
 const OF_TISSUE: [&str; 6] = ["method", "element", "materials", "membrane", "tolerance", "budget"];
 
 /// What it says of the job and its files, and decides no number.
-const OF_FILES: [&str; 9] =
-    ["accept_mm", "kind", "case", "estimate", "outputs", "range_mm", "refine", "keep", "tags"];
+const OF_FILES: [&str; 10] = [
+    "accept_mm",
+    "accept_regions_mm",
+    "kind",
+    "case",
+    "estimate",
+    "outputs",
+    "range_mm",
+    "refine",
+    "keep",
+    "tags",
+];
 
 /// The spec of another kind of job on a case file, as it is posted but for `case`: what it does not say of the tissue it has
 /// from the spec of the case file, so that all commands compute the same tissue.

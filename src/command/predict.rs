@@ -34,7 +34,7 @@ pub struct Arguments {
     /// Add what the mesh leaves out, as far as that is estimated, to the displacement
     #[arg(long, help_heading = "Result")]
     corrected: bool,
-    /// Take the cheapest model whose expected mean error over the skin is within so many mm
+    /// Take the cheapest model whose expected mean error over the skin is within so many mm [default: 0.1]
     #[arg(long, value_name = "MM", conflicts_with = "corrected", help_heading = "Result")]
     accept: Option<f64>,
     /// Refine the mesh until the estimated mean error over the skin is within so many mm

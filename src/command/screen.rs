@@ -10,6 +10,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use crate::jobs::{JobError, JobInput, JobOutput, Workplace, work};
 use crate::schema::WarningDocument;
 use crate::schema::predict::check::CheckDocument;
+use crate::schema::predict::expectation::ExpectationDocument;
 use crate::schema::predict::result::FileDocument;
 use mechanics::progress::{Phase, Progress};
 
@@ -116,7 +117,27 @@ pub fn print_check(check: &CheckDocument) {
     let time = check.time_s.map(|time| format!(", {:.1} to {:.1} s", time.low, time.high));
     let (unknowns, time) = (check.unknowns, time.unwrap_or_default());
     println!("unknowns   {unknowns}, about {:.0} MB{time}", check.memory_mb);
+    if let Some(auto) = &check.auto {
+        print_expectation(auto);
+    }
     print_warnings(&check.warnings);
+}
+
+fn print_expectation(auto: &ExpectationDocument) {
+    let ExpectationDocument { accepted_mm, movement_mm, rotation_deg, at_least, at_most, .. } =
+        auto;
+    let models = match at_least == at_most {
+        true => format!("`{at_least}`"),
+        false => format!("`{at_least}` to `{at_most}`"),
+    };
+    println!(
+        "auto       {models} for {accepted_mm} mm of error, by {movement_mm:.1} mm and {rotation_deg:.1} degrees of movement"
+    );
+    for rung in &auto.rungs {
+        let time = rung.time_s.map(|time| format!(", {:.1} to {:.1} s", time.low, time.high));
+        let time = time.unwrap_or_default();
+        println!("  {:<14} about {:.0} MB{time}", rung.name, rung.memory_mb);
+    }
 }
 
 pub fn print_warnings(warnings: &[WarningDocument]) {

@@ -303,7 +303,7 @@ fn at_first_nodes(prediction: &mut Prediction, scene: &Scene) -> Vec<Vector> {
     prediction.displacement.truncate(count);
     prediction.deformation = deformations(&scene.mesh, &prediction.displacement);
     if let Ok(left) = &mut prediction.nonlinearity {
-        left.second_order.truncate(count);
+        left.left_out.truncate(count);
     }
     if let Ok(error) = &mut prediction.numerical_error {
         error.missing.truncate(count);

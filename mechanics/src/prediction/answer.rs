@@ -1,8 +1,12 @@
 //! The answer of a scene: its equilibrium, what the mesh leaves out of it, and what linearity does.
 
+use super::method::MethodKind;
 use super::nonlinearity::{self, Estimated, NonlinearityUnknown};
 use super::numerical_error::{self, NotEstimated, NumericalError};
 use super::scene::Scene;
+use crate::mesh::Vector;
+use crate::model::fem::finite_strain::NoMeshError;
+use crate::model::fem::linear_system::{LinearSystem, Solved};
 use crate::model::problem::{Equilibrium, ModelError};
 use crate::progress::Progress;
 
@@ -13,16 +17,49 @@ pub(super) struct Answer {
     pub nonlinearity: Estimated,
 }
 
+/// What was solved of a scene, with linear elements of first order or otherwise.
+pub(super) enum Linear<'a> {
+    Solved(Box<LinearAnswer<'a>>),
+    Other(Answer),
+}
+
+/// An answer of linear elements of first order, with the matrix that it was solved with.
+pub(super) struct LinearAnswer<'a> {
+    system: LinearSystem<'a>,
+    solved: Solved,
+    pub numerical_error: Result<NumericalError, NotEstimated>,
+    pub nonlinearity: Estimated,
+}
+
 /// Solves a scene by its method, and estimates what the answer leaves out where that is possible and asked for.
 pub(super) fn solve(scene: &Scene, progress: &dyn Progress) -> Result<Answer, ModelError> {
+    Ok(match linear(scene, progress)? {
+        Linear::Solved(answer) => answer.into_answer(),
+        Linear::Other(answer) => answer,
+    })
+}
+
+/// The same, with the matrix where there is one.
+pub(super) fn linear<'a>(
+    scene: &'a Scene,
+    progress: &dyn Progress,
+) -> Result<Linear<'a>, ModelError> {
     let of_mesh = numerical_error::reason_for_none(scene);
     let of_linearity = nonlinearity::reason_for_none(scene);
-    let without = |of_mesh, of_linearity| -> Result<Answer, ModelError> {
+    let without = |of_mesh, of_linearity| -> Result<Linear, ModelError> {
+        let (numerical_error, nonlinearity) = (Err(of_mesh), Err(of_linearity));
         let equilibrium = scene.solve(progress)?;
-        Ok(Answer { equilibrium, numerical_error: Err(of_mesh), nonlinearity: Err(of_linearity) })
+        Ok(Linear::Other(Answer { equilibrium, numerical_error, nonlinearity }))
     };
     if let (Some(of_mesh), Some(of_linearity)) = (&of_mesh, &of_linearity) {
         return without(of_mesh.clone(), of_linearity.clone());
+    }
+    if let (None, Some(of_linearity)) = (&of_mesh, &of_linearity)
+        && scene.settings.method.kind() == MethodKind::FemNonlinear
+    {
+        let (equilibrium, numerical_error) = at_finite_strain(scene, progress)?;
+        let nonlinearity = Err(of_linearity.clone());
+        return Ok(Linear::Other(Answer { equilibrium, numerical_error, nonlinearity }));
     }
     let Some(system) = scene.assemble(progress)? else {
         return without(NotEstimated::Quadratic, NonlinearityUnknown::Quadratic);
@@ -36,7 +73,43 @@ pub(super) fn solve(scene: &Scene, progress: &dyn Progress) -> Result<Answer, Mo
         Some(reason) => Err(reason),
         None => nonlinearity::estimate(scene, &system, &solved, progress)?,
     };
-    Ok(Answer { equilibrium: solved.equilibrium, numerical_error, nonlinearity })
+    let answer = LinearAnswer { system, solved, numerical_error, nonlinearity };
+    Ok(Linear::Solved(Box::new(answer)))
+}
+
+/// At finite strain the last tangent is at hand.
+fn at_finite_strain(
+    scene: &Scene,
+    progress: &dyn Progress,
+) -> Result<(Equilibrium, Result<NumericalError, NotEstimated>), ModelError> {
+    let (equilibrium, error) = scene.solve_at_finite_strain(true, progress)?;
+    let error = error.unwrap_or(Err(NoMeshError::NotSolved));
+    Ok((equilibrium, error.map(NumericalError::from).map_err(NotEstimated::AtRest)))
+}
+
+impl LinearAnswer<'_> {
+    pub fn displacement(&self) -> &[Vector] {
+        &self.solved.equilibrium.displacement
+    }
+
+    pub fn into_answer(self) -> Answer {
+        Answer {
+            equilibrium: self.solved.equilibrium,
+            numerical_error: self.numerical_error,
+            nonlinearity: self.nonlinearity,
+        }
+    }
+
+    /// The answer to second order, with what that leaves out; what the mesh leaves out is that of the first.
+    pub fn to_second_order(
+        &self,
+        scene: &Scene,
+        progress: &dyn Progress,
+    ) -> Result<Answer, ModelError> {
+        let (equilibrium, nonlinearity) =
+            nonlinearity::to_second_order(scene, &self.system, &self.solved, progress)?;
+        Ok(Answer { equilibrium, numerical_error: self.numerical_error.clone(), nonlinearity })
+    }
 }
 
 impl Answer {

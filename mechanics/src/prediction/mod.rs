@@ -59,7 +59,9 @@ pub use unheld::{GoesAlong, NOTHING_HELD, goes_along};
 pub use walls::{NORMAL_TURNED_AT_SECOND_ORDER_DEG, NORMAL_TURNED_DEG, normal_turned};
 
 pub use adaptive::{Adapted, AdaptiveError, Level, Stop, Wanted, predict_adaptively};
-pub use adequate::{Accepted, Adequate, Considered, Errors, Rung, Watched, predict_adequately};
+pub use adequate::{
+    Accepted, Adequate, Considered, Errors, MAY_TAKE, MeanErrors, Rung, Watched, predict_adequately,
+};
 use answer::Answer;
 
 pub use crate::boundary::NodeClass;

@@ -3,7 +3,7 @@
 //! u2 = -K0^-1 N2(u1, u1), with N2 of `model::fem::force_series`, the matrix and the hierarchy that u1 was solved with, and
 //! nothing moved where it is held: a held node is already where a finite movement takes it. One evaluation of forces and
 //! one loose solution (NONLINEAR, sections 4 and 7: |u2| is .96 to 1.16 of the true error from .5 to 27 mm).
-//! u1 + u2 is the answer to second order.
+//! u1 + u2 is the answer to second order; what that leaves out is told by u3 = -K0^-1 [2 N2(u1, u2) + N3(u1, u1, u1)].
 
 use std::collections::BTreeMap;
 
@@ -13,20 +13,21 @@ use super::skin::landmark_displacement;
 use super::walls::turned_at_second_order;
 use crate::material::LinearElastic;
 use crate::mesh::Vector;
-use crate::model::fem::force_series::{ForceSeries, Moved};
-use crate::model::fem::linear_system::{LinearSystem, Residual, Solved};
+use crate::model::fem::force_series::{ForceSeries, Forces, Moved};
+use crate::model::fem::linear_system::{Correction, LinearSystem, Residual, Solved};
 use crate::model::problem::{Equilibrium, ModelError};
 use crate::progress::Progress;
 use crate::solver::SolverError;
 
-/// Relative residual of the solution of an estimate.
+/// Relative residual of the solution of an estimate, and of a second order that is part of an answer.
 const LOOSE: f64 = 0.1;
+const OF_ANSWER: f64 = 1e-3;
 
-/// The second-order term of an answer, in mm.
+/// The first term that an answer leaves out, in mm: that of second order of a linear one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Nonlinearity {
     /// For each node of the mesh.
-    pub second_order: Vec<Vector>,
+    pub left_out: Vec<Vector>,
     pub landmarks: BTreeMap<String, Vector>,
 }
 
@@ -88,14 +89,38 @@ pub(super) fn estimate(
     progress: &dyn Progress,
 ) -> Result<Estimated, ModelError> {
     match second_order(scene, system, solved, progress) {
-        Ok(second_order) => {
-            let landmarks = landmark_displacement(&scene.mesh, &scene.landmarks, &second_order);
-            let landmarks = landmarks.into_iter().map(|(name, (moved, _))| (name, moved)).collect();
-            Ok(Ok(Nonlinearity { second_order, landmarks }))
-        }
+        Ok(second_order) => Ok(Ok(Nonlinearity::of(scene, second_order.displacement))),
         Err(stopped @ ModelError::Solver(SolverError::Stopped)) => Err(stopped),
         Err(other) => Ok(Err(NonlinearityUnknown::Failed(other))),
     }
+}
+
+/// The answer to second order, with the forces of its holds, and the third order.
+pub(super) fn to_second_order(
+    scene: &Scene,
+    system: &LinearSystem,
+    solved: &Solved,
+    progress: &dyn Progress,
+) -> Result<(Equilibrium, Estimated), ModelError> {
+    let Solved { equilibrium: first, pressures } = solved;
+    let forces = second_order_forces(scene, system, solved)?;
+    let second = solution(system, &forces, OF_ANSWER, progress)?;
+    let more = system.reactions(&second, &forces.nodes);
+    let equilibrium = Equilibrium {
+        displacement: sums(&first.displacement, &second.displacement),
+        reactions: sums(&first.reactions, &more),
+        solver: first.solver.clone(),
+        warnings: first.warnings.clone(),
+    };
+    let moved = Moved { displacement: &first.displacement, pressures };
+    let again = Moved { displacement: &second.displacement, pressures: &second.pressures };
+    let forces = series(scene, system).third(moved, again)?;
+    let third = match solution(system, &forces, LOOSE, progress) {
+        Ok(third) => Ok(Nonlinearity::of(scene, third.displacement)),
+        Err(stopped @ ModelError::Solver(SolverError::Stopped)) => return Err(stopped),
+        Err(other) => Err(NonlinearityUnknown::Failed(other)),
+    };
+    Ok((equilibrium, third))
 }
 
 fn second_order(
@@ -103,19 +128,50 @@ fn second_order(
     system: &LinearSystem,
     solved: &Solved,
     progress: &dyn Progress,
-) -> Result<Vec<Vector>, ModelError> {
-    let pressures = system.pressures.as_ref().map(|pressures| &pressures.cells);
-    let series = ForceSeries::new(scene.tissue(), pressures);
+) -> Result<Correction, ModelError> {
+    solution(system, &second_order_forces(scene, system, solved)?, LOOSE, progress)
+}
+
+fn series<'a>(scene: &'a Scene, system: &LinearSystem) -> ForceSeries<'a> {
+    ForceSeries::new(scene.tissue(), system.pressures.as_ref().map(|pressures| &pressures.cells))
+}
+
+fn second_order_forces(
+    scene: &Scene,
+    system: &LinearSystem,
+    solved: &Solved,
+) -> Result<Forces, ModelError> {
     let Solved { equilibrium: Equilibrium { displacement, .. }, pressures } = solved;
-    let forces = series.second(&[Moved { displacement, pressures }], &[[0, 0]])?.remove(0);
+    let moved = Moved { displacement, pressures };
+    Ok(series(scene, system).second(&[moved], &[[0, 0]])?.remove(0))
+}
+
+/// -K0^-1 of forces.
+fn solution(
+    system: &LinearSystem,
+    forces: &Forces,
+    relative_residual: f64,
+    progress: &dyn Progress,
+) -> Result<Correction, ModelError> {
     let residual = Residual {
         forces: forces.nodes.iter().map(|force| -force).collect(),
         volumes: forces.volumes.iter().map(|volume| -volume).collect(),
     };
-    let mut corrections = system.solve_for(&[residual], LOOSE, progress)?;
-    let second_order = corrections.remove(0).displacement;
-    match second_order.iter().flatten().all(|value| value.is_finite()) {
-        true => Ok(second_order),
+    let found = system.solve_for(&[residual], relative_residual, progress)?.remove(0);
+    match found.displacement.iter().flatten().all(|value| value.is_finite()) {
+        true => Ok(found),
         false => Err(SolverError::NotFinite.into()),
+    }
+}
+
+fn sums(some: &[Vector], others: &[Vector]) -> Vec<Vector> {
+    some.iter().zip(others).map(|(one, other)| one + other).collect()
+}
+
+impl Nonlinearity {
+    fn of(scene: &Scene, left_out: Vec<Vector>) -> Self {
+        let landmarks = landmark_displacement(&scene.mesh, &scene.landmarks, &left_out);
+        let landmarks = landmarks.into_iter().map(|(name, (moved, _))| (name, moved)).collect();
+        Nonlinearity { left_out, landmarks }
     }
 }

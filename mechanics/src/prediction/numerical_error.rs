@@ -3,7 +3,8 @@
 use super::method::Method;
 use super::scene::Scene;
 use crate::mesh::{Vector, Warning};
-use crate::model::fem::discretisation_error::Estimate;
+use crate::model::fem::discretisation_error::{DiscretisationError, Estimate};
+use crate::model::fem::finite_strain::NoMeshError;
 use crate::model::fem::linear_system::{LinearSystem, Solved};
 use crate::model::fem::mass_tensor::Iterations;
 use crate::model::problem::ModelError;
@@ -22,6 +23,12 @@ pub struct NumericalError {
     pub is_added: bool,
 }
 
+impl From<DiscretisationError> for NumericalError {
+    fn from(error: DiscretisationError) -> Self {
+        NumericalError { missing: error.missing, is_added: false }
+    }
+}
+
 /// Why there is no estimate.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum NotEstimated {
@@ -29,8 +36,10 @@ pub enum NotEstimated {
     NotAsked,
     #[error("quadratic tetrahedra have no element of higher order to be held against")]
     Quadratic,
-    #[error("it is not estimated at finite strain")]
-    FiniteStrain,
+    #[error("it is not estimated with the nonlinear mass-tensor")]
+    NonlinearMassTensor,
+    #[error(transparent)]
+    AtRest(#[from] NoMeshError),
     #[error("springs have no limit that a finer mesh comes to")]
     Springs,
     #[error("the tissue was brought to rest node by node, and left no matrix to solve with")]
@@ -53,7 +62,7 @@ pub(super) fn estimate(
     let (boundary, loads) = (&scene.boundary, &scene.distributed);
     let estimate = Estimate { tissue: scene.tissue(), system, boundary, loads };
     match estimate.of(solved, progress) {
-        Ok(error) => Ok(Ok(NumericalError { missing: error.missing, is_added: false })),
+        Ok(error) => Ok(Ok(error.into())),
         Err(stopped @ ModelError::Solver(SolverError::Stopped)) => Err(stopped),
         Err(other) => Ok(Err(NotEstimated::Failed(other.to_string()))),
     }
@@ -65,12 +74,12 @@ pub(super) fn reason_for_none(scene: &Scene) -> Option<NotEstimated> {
         return Some(NotEstimated::NotAsked);
     }
     match &scene.settings.method {
-        Method::FemLinear | Method::MassTensorTransverse => None,
+        Method::FemLinear | Method::FemNonlinear | Method::MassTensorTransverse => None,
         Method::MassTensor(own) => match own.iterations {
             Iterations::Fast => None,
             Iterations::Stationary(_) => Some(NotEstimated::NodeByNode),
         },
-        Method::FemNonlinear | Method::MassTensorNonlinear => Some(NotEstimated::FiniteStrain),
+        Method::MassTensorNonlinear => Some(NotEstimated::NonlinearMassTensor),
         Method::MassSpring(_) => Some(NotEstimated::Springs),
         Method::VolumeSpline(_) => Some(NotEstimated::Spline),
         Method::ThicknessWarp(_) => Some(NotEstimated::Warp),
@@ -93,9 +102,7 @@ pub(super) fn warning(
 }
 
 fn large(scene: &Scene, error: &NumericalError) -> Option<Warning> {
-    let nodes = scene.skin.nodes();
-    let mut lengths: Vec<f64> =
-        nodes.iter().map(|&node| error.missing[node as usize].norm()).collect();
+    let mut lengths = scene.skin.lengths(&error.missing);
     lengths.sort_by(f64::total_cmp);
     let mean = lengths.iter().sum::<f64>() / lengths.len().max(1) as f64;
     if mean.is_nan() || mean <= LARGE_MM {

@@ -19,7 +19,7 @@ use crate::model::fem::cell_stiffness::Dilatation;
 use crate::model::fem::discretisation_error::DistributedLoads;
 use crate::model::fem::displacement::Problem;
 use crate::model::fem::edge_nodes::EdgeNodes;
-use crate::model::fem::finite_strain::{Elements, FibreField, FiniteStrain};
+use crate::model::fem::finite_strain::{Elements, FibreField, Finer, FiniteStrain, MeshError};
 use crate::model::fem::linear_system::LinearSystem;
 use crate::model::fem::mass_tensor_nonlinear::MassTensors;
 use crate::model::fem::membrane::Membrane;
@@ -150,7 +150,7 @@ impl Scene {
                 let mut solved = self.solve_cases(&[self.load_case()], progress)?;
                 Ok(solved.remove(0))
             }
-            Method::FemNonlinear => self.solve_at_finite_strain(progress),
+            Method::FemNonlinear => Ok(self.solve_at_finite_strain(false, progress)?.0),
             Method::MassSpring(settings) => {
                 mass_spring::solve(&self.problem(), settings, &self.load_case(), progress)
             }
@@ -170,8 +170,13 @@ impl Scene {
         }
     }
 
-    /// Each material follows its law at finite strain, the neo-Hookean one where none is stated.
-    fn solve_at_finite_strain(&self, progress: &dyn Progress) -> Result<Equilibrium, ModelError> {
+    /// Each material follows its law at finite strain, the neo-Hookean one where none is stated. On request with what the mesh
+    /// leaves out.
+    pub(super) fn solve_at_finite_strain(
+        &self,
+        with_error: bool,
+        progress: &dyn Progress,
+    ) -> Result<(Equilibrium, Option<MeshError>), ModelError> {
         let (laws, fibres): (Vec<Law>, Vec<Option<Fibres>>) = self
             .materials
             .iter()
@@ -193,7 +198,13 @@ impl Scene {
             holds: &self.conditions.holds,
             tolerance: Tolerance { relative_residual, memory_mb },
         };
-        problem.solve(&self.load_case(), progress)
+        let finer = Finer {
+            tissue: self.tissue(),
+            laws: &laws,
+            boundary: &self.boundary,
+            loads: &self.distributed,
+        };
+        problem.solve_and(&self.load_case(), with_error.then_some(&finer), progress)
     }
 
     fn mass_tensors(&self) -> MassTensors<'_> {

@@ -21,6 +21,11 @@ impl Skin {
         self.surface.node_ids.as_deref().unwrap_or_default()
     }
 
+    /// The lengths of vectors of nodes, one for each point of the surface.
+    pub fn lengths(&self, of_nodes: &[Vector]) -> Vec<f64> {
+        self.nodes().iter().map(|&node| of_nodes[node as usize].norm()).collect()
+    }
+
     /// The skin after its nodes have moved.
     pub fn moved(&self, displacement: &[Vector]) -> TriangleSurface {
         let mut moved = self.surface.clone();

@@ -59,11 +59,13 @@ pub(super) fn left(
     let parts = [("skin", &points)].into_iter();
     let named = scene.skin.regions.iter().map(|(name, points)| (name.as_str(), points));
     let around = around_skin_nodes(scene, deformation);
+    let left_out = estimated.as_ref().map(|known| scene.skin.lengths(&known.left_out));
     let estimates = parts.chain(named).filter_map(|(name, points)| {
         let nodes = measured(scene, points, &around);
         let by_rule = || p95(&nodes, |at| at.turned + at.stretched);
-        let estimate = match estimated {
-            Ok(known) => second_order(scene, points, &known.second_order),
+        let estimate = match &left_out {
+            Ok(_) if points.is_empty() => None,
+            Ok(lengths) => Some(p95(points, |point| lengths[*point as usize])),
             Err(_) => (!nodes.is_empty()).then(by_rule),
         };
         estimate.map(|estimate| (estimate, name, nodes))
@@ -87,14 +89,6 @@ pub(super) fn left(
             .with("strain_p95", p95(&nodes, |at| at.strain))
             .with("largest_rotation_deg", largest(deformation).to_degrees()),
     )
-}
-
-/// p95 of the second-order term over points of the skin.
-fn second_order(scene: &Scene, points: &[u32], displacement: &[Vector]) -> Option<f64> {
-    let node_of = |point: &u32| scene.skin.nodes()[*point as usize] as usize;
-    let lengths: Vec<f64> =
-        points.iter().map(|point| displacement[node_of(point)].norm()).collect();
-    (!lengths.is_empty()).then(|| p95(&lengths, |length| *length))
 }
 
 fn largest(deformation: &[CellDeformation]) -> f64 {

@@ -108,6 +108,14 @@ impl Linearity {
     }
 }
 
+/// The rule of thumb for the plan of a scene: nothing is solved.
+pub fn by_rule_of_thumb(scene: &Scene) -> Nonlinearity {
+    let segments: Vec<usize> = (0..scene.segments.len()).collect();
+    let movements: Vec<RigidMovement> =
+        scene.segments.iter().map(|segment| segment.movement).collect();
+    of_scene(scene, &segments, &scene.parts).of(&movements)
+}
+
 /// What the estimate needs, for the segments of these numbers and the parts where only these move.
 pub(super) fn of_scene(scene: &Scene, segments: &[usize], parts: &[ConnectedPart]) -> Linearity {
     let mut holders = parts.iter().flat_map(|part| &part.held).map(|rows| rows.holder);

@@ -13,6 +13,6 @@ mod rigid_numbers;
 mod second_order;
 mod superposition;
 pub use build::{Columns, ResponseError, ResponseOrder, build, build_to, check_order, chosen};
-pub use linearity::{Linearity, Nonlinearity, SampledSecond};
+pub use linearity::{Linearity, Nonlinearity, SampledSecond, by_rule_of_thumb};
 pub use quadratic_form::{BeyondLinear, QuadraticForm};
 pub use superposition::{COLUMNS_PER_SEGMENT, Response, ResponseSegment, coefficients};

@@ -63,6 +63,7 @@ impl Prepared {
             refine: None,
             method: input.spec.method.chosen().name().to_owned(),
             why: input.spec.method.why().to_owned(),
+            auto: self.expectation(input),
             warnings: warnings.map(WarningDocument::from).collect(),
         }
     }

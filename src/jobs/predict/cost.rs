@@ -4,8 +4,8 @@ use super::input::Prepared;
 use crate::jobs::failure::JobError;
 use crate::schema::Limits;
 use crate::schema::methods::{MethodName, time_band};
-use crate::schema::predict::check::TimeBandDocument;
 use crate::schema::predict::refine::RefineBoundDocument;
+use crate::schema::predict::time_band::TimeBandDocument;
 use mechanics::mesh::CellShape;
 use mechanics::prediction::{ElementChoice, Laws, MethodKind, Scene, Unknowns};
 use mechanics::prediction::{ModelError, SolverError};
@@ -116,7 +116,20 @@ pub fn refined_bound(scene: &Scene, asked: u64, limits: &Limits) -> RefineBoundD
     RefineBoundDocument { cells, memory_mb }
 }
 
+/// The memory of a process that solves the same scene at finite strain, in MB.
+pub fn memory_at_finite_strain_mb(scene: &Scene) -> f64 {
+    let bytes = |shape| AT_FINITE_STRAIN * bytes_of_element(shape, scene.element);
+    PROGRAM_MB + scene.mesh.cells.iter().map(|(shape, _)| bytes(shape)).sum::<f64>() / 1e6
+}
+
 impl Prepared {
+    /// Why a slot has no room for finite strain, where it has none.
+    pub fn too_large_at_finite_strain(&self, limits: &Limits) -> Option<String> {
+        let (needed, allowed) = (memory_at_finite_strain_mb(&self.scene), limits.slot_memory_mb);
+        let why = format!("it is expected to need {needed:.0} MB, and {allowed:.0} MB are allowed");
+        (needed > allowed).then_some(why)
+    }
+
     /// Refuses what is expected to need more memory than a slot has.
     pub fn admit(&self, segments: usize, limits: &Limits) -> Result<(), JobError> {
         let (needed_mb, allowed_mb) = (memory_mb(&self.scene, segments), limits.slot_memory_mb);

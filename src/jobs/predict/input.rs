@@ -122,6 +122,13 @@ impl PredictInput {
         let context = PlanContext { frame: case.frame, centre: centre(&case.volume), limits };
         let plan = self.plan.to_plan(&Pointer::root().key("plan"), &context, &mut faults);
         let settings = self.spec.to_settings(limits, &mut faults);
+        for name in self.spec.accept_regions_mm.keys() {
+            if !case.skin_regions.contains_key(name) {
+                let at = Pointer::root().key("spec").key("accept_regions_mm").key(name);
+                let detail = format!("the case has no part of the skin {name:?}");
+                faults.add(&at, ErrorCode::UnknownRegion, detail);
+            }
+        }
         faults.into_result()?;
         Ok(Converted { case, plan, settings, warnings })
     }

@@ -28,9 +28,13 @@ pub fn predict_job(
     clock.check()?;
 
     // 2. The displacement of the tissue.
-    let predicted = match (&input.spec.refine, input.spec.accept_mm) {
+    let predicted = match (&input.spec.refine, input.spec.accepted()) {
         (Some(refine), _) => refined(prepared, refine, &clock, place.limits)?,
-        (None, Some(skin_mm)) => adequately(prepared, skin_mm, &clock)?,
+        (None, Some(accepted)) => {
+            let time_s = clock.left_s();
+            let no_finite_strain = prepared.too_large_at_finite_strain(place.limits);
+            adequately(prepared, Accepted { time_s, no_finite_strain, ..accepted }, &clock)?
+        }
         (None, None) => {
             let prediction =
                 predict(&prepared.scene, &clock).map_err(|error| clock.judge(error))?;
@@ -43,14 +47,13 @@ pub fn predict_job(
 /// By the cheapest model whose estimated error is accepted.
 fn adequately(
     mut prepared: Prepared,
-    skin_mm: f64,
+    accepted: Accepted,
     clock: &Observed,
 ) -> Result<Predicted, JobError> {
-    let accepted = Accepted { skin_mm, time_s: clock.left_s() };
     let stopwatch = || clock.elapsed_s();
     let watched = Watched { stopwatch: &stopwatch, progress: clock };
     let Prepared { case, plan, scene, .. } = &prepared;
-    let adequate = predict_adequately(case, plan, scene, accepted, watched)
+    let adequate = predict_adequately(case, plan, scene, &accepted, watched)
         .map_err(|error| clock.judge(error))?;
     let adequacy = Some(AdequacyDocument::new(&accepted, &adequate));
     prepared.scene = adequate.scene.unwrap_or(prepared.scene);

@@ -3,6 +3,7 @@
 mod check;
 mod comparison;
 mod cost;
+mod expectation;
 mod facing;
 mod input;
 mod job;

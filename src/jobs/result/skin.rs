@@ -30,9 +30,8 @@ impl PredictedSkin {
     pub fn new(skin: &Skin, prediction: &Prediction) -> Self {
         let nodes = skin.nodes().iter();
         let displacement = nodes.map(|&node| prediction.displacement[node as usize]).collect();
-        let numerical_error = prediction.numerical_error.as_ref().ok().map(|error| {
-            skin.nodes().iter().map(|&node| error.missing[node as usize].norm()).collect()
-        });
+        let numerical_error = prediction.numerical_error.as_ref().ok();
+        let numerical_error = numerical_error.map(|error| skin.lengths(&error.missing));
         PredictedSkin { numerical_error, ..Self::of_displacement(skin, displacement) }
     }
 

@@ -6,7 +6,7 @@ use utoipa::ToSchema;
 use super::describe;
 use super::document::MethodDocument;
 use super::measured::{self, MeasuredDocument};
-use super::name::{MethodName, WHY_LINEAR};
+use super::name::{MethodName, WHY_ESTIMATED};
 use crate::schema::code::ErrorCode;
 use crate::schema::wire::fault::{Faults, Pointer};
 use mechanics::optimisation::UNDETERMINED;
@@ -100,7 +100,7 @@ impl MeasuredMethod {
 pub fn available_methods() -> MethodList {
     MethodList {
         methods: MethodKind::ALL.iter().map(|method| MeasuredMethod::of(describe(*method))).collect(),
-        auto: WHY_LINEAR.to_owned(),
+        auto: WHY_ESTIMATED.to_owned(),
         response: ResponseMethod {
             methods: linear(),
             columns_per_segment: COLUMNS_PER_SEGMENT as u32,

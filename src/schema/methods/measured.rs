@@ -6,7 +6,7 @@ use std::sync::OnceLock;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-use crate::schema::predict::check::TimeBandDocument;
+use crate::schema::predict::time_band::TimeBandDocument;
 
 /// The `report.csv` of the study of docs/speed-and-accuracy.md.
 const TABLE: &str = include_str!("measured.csv");

@@ -22,7 +22,7 @@ pub use list::{
 pub use measured::{MeasuredDocument, time_band};
 use msm::MassSpringDocument;
 use mtm::MassTensorDocument;
-pub use name::{ElementName, MethodName, WHY_ASKED, WHY_LINEAR};
+pub use name::{ElementName, MethodName, WHY_ASKED, WHY_ESTIMATED, WHY_LINEAR};
 use thickness_warp::ThicknessWarpDocument;
 
 use crate::schema::code::ErrorCode;

@@ -11,8 +11,11 @@ use utoipa::{PartialSchema, ToSchema};
 use crate::schema::wire::reading::NOT_AVAILABLE;
 use mechanics::prediction::{ElementChoice, MethodKind};
 
-/// Why `auto` is what it is.
-pub const WHY_LINEAR: &str = "auto: fem_linear, until something chooses between models";
+/// What `auto` is where nothing is estimated that could choose between models.
+pub const WHY_LINEAR: &str = "auto: fem_linear, where no estimate chooses between models";
+/// What `auto` chooses from.
+pub const WHY_ESTIMATED: &str = "auto: the cheapest of fem_linear, its second order and fem_nonlinear, corrected for the mesh or \
+    not, whose estimated error of the skin is accepted";
 /// Why a method that was asked for by name is used.
 pub const WHY_ASKED: &str = "asked for by the spec";
 

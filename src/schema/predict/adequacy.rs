@@ -1,18 +1,24 @@
 //! How the cheapest adequate model was chosen.
 
+use std::collections::BTreeMap;
+
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-use mechanics::prediction::{Accepted, Adequate, Considered};
+use mechanics::prediction::{Accepted, Adequate, Considered, MeanErrors};
 
-/// The choice of the method `auto` with an accepted error.
+/// The choice of the method `auto`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct AdequacyDocument {
     /// The mean error over the skin that was accepted, in mm.
     pub accepted_mm: f64,
+    /// The same over parts of the skin.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub accepted_regions_mm: BTreeMap<String, f64>,
     /// Whether the estimate of the model that was taken is within it.
     pub met: bool,
-    /// The model that was taken: `linear`, `corrected` or `finite_strain`.
+    /// The model that was taken: `linear`, `second_order` or `finite_strain`, or one of these with what its mesh leaves out
+    /// added: `corrected`, `second_order_corrected`, `finite_strain_corrected`.
     pub taken: String,
     /// Mean errors over the skin, estimated with the linear answer, in mm: what its mesh leaves out, and what linearity does.
     /// Absent where they are not known.
@@ -22,6 +28,14 @@ pub struct AdequacyDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub linearity_mm: Option<f64>,
+    /// What the answer to second order leaves out, where that was tried.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub third_order_mm: Option<f64>,
+    /// What the mesh leaves out at finite strain, where that was tried.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub mesh_at_rest_mm: Option<f64>,
     /// From the cheapest to the dearest.
     pub rungs: Vec<RungDocument>,
 }
@@ -34,12 +48,16 @@ pub struct RungDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub error_mm: Option<f64>,
-    /// Time it was expected to take, and time it took, in s; `corrected` is the answer of `linear`.
+    /// The same over the parts of the skin that an error is accepted for.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub regions_mm: BTreeMap<String, f64>,
+    /// Time it was expected to take, and time it took, in s, of the estimates of its answer too. A corrected answer is one
+    /// that is there, and takes none of its own.
     pub expected_s: f64,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub spent_s: Option<f64>,
-    /// Why it was out of the question.
+    /// Why it was not tried, or not possible: where the climb ended, and why.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub passed_over: Option<String>,
@@ -49,10 +67,13 @@ impl AdequacyDocument {
     pub fn new(accepted: &Accepted, adequate: &Adequate) -> Self {
         AdequacyDocument {
             accepted_mm: accepted.skin_mm,
+            accepted_regions_mm: accepted.regions_mm.clone(),
             met: adequate.is_met,
             taken: adequate.rung.name().to_owned(),
-            mesh_mm: adequate.errors.mesh_mm,
-            linearity_mm: adequate.errors.linearity_mm,
+            mesh_mm: over_skin(&adequate.errors.mesh),
+            linearity_mm: over_skin(&adequate.errors.linearity),
+            third_order_mm: over_skin(&adequate.errors.third_order),
+            mesh_at_rest_mm: over_skin(&adequate.errors.mesh_at_rest),
             rungs: adequate.considered.iter().map(RungDocument::from).collect(),
         }
     }
@@ -66,17 +87,25 @@ impl AdequacyDocument {
         };
         let verdict = match self.met {
             true => "the cheapest model within",
-            false => "the most accurate one that was possible, short of",
+            false => "as good as any that was possible, short of",
         };
         format!("`{}` with {error} is {verdict} {} mm", self.taken, self.accepted_mm)
     }
+}
+
+fn over_skin(errors: &Option<MeanErrors>) -> Option<f64> {
+    errors.as_ref().map(|errors| errors.skin_mm)
 }
 
 impl From<&Considered> for RungDocument {
     fn from(considered: &Considered) -> Self {
         RungDocument {
             name: considered.rung.name().to_owned(),
-            error_mm: considered.error_mm,
+            error_mm: over_skin(&considered.error),
+            regions_mm: considered
+                .error
+                .as_ref()
+                .map_or_else(BTreeMap::new, |error| error.regions_mm.clone()),
             expected_s: considered.expected_s,
             spent_s: considered.spent_s,
             passed_over: considered.passed_over.clone(),

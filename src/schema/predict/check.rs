@@ -5,7 +5,9 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
+use super::expectation::ExpectationDocument;
 use super::refine::RefineBoundDocument;
+use super::time_band::TimeBandDocument;
 use crate::schema::case::hounsfield::ImagedTissueDocument;
 use crate::schema::wire::warning::WarningDocument;
 
@@ -32,20 +34,14 @@ pub struct CheckDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub refine: Option<RefineBoundDocument>,
-    /// The method that `auto` chooses.
+    /// The method that was asked for, or the one that `auto` begins with.
     pub method: String,
     pub why: String,
+    /// What `auto` is expected to choose; absent where a method is asked for or no estimate can choose.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub auto: Option<ExpectationDocument>,
     pub warnings: Vec<WarningDocument>,
-}
-
-/// From mesh in memory to displacement in memory on one thread of a machine like the one that measured the table of
-/// methods: an order of magnitude, not a promise.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct TimeBandDocument {
-    /// As fast as the best row, time growing with the unknowns.
-    pub low: f64,
-    /// As slow as the worst row, time growing with their power 4/3.
-    pub high: f64,
 }
 
 /// How many nodes are held by what; each node is counted once, by the strongest that holds it.

@@ -1,5 +1,7 @@
 //! The spec of a prediction: what is to be computed, how, and within which budget.
 
+use std::collections::BTreeMap;
+
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use utoipa::ToSchema;
@@ -20,7 +22,7 @@ use crate::schema::wire::canonical;
 use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::limits::Limits;
 use crate::schema::wire::names::check_tags;
-use mechanics::prediction::{ElementChoice, MethodKind, Settings};
+use mechanics::prediction::{Accepted, ElementChoice, MethodKind, Settings};
 
 pub use super::budget::BudgetDocument;
 pub use super::contact::ContactName;
@@ -30,6 +32,9 @@ pub use super::tolerance::ToleranceDocument;
 
 /// The displacement in mm at which colours end where nothing else is said.
 pub const USUAL_RANGE_MM: f64 = 10.0;
+
+/// The mean error over the skin that is accepted where nothing else is said, in mm.
+const USUALLY_ACCEPTED_MM: f64 = 0.1;
 
 /// Ranges of colours that make sense, in mm.
 pub const RANGES_MM: std::ops::RangeInclusive<f64> = 1e-3..=1e3;
@@ -93,7 +98,7 @@ pub struct PredictDocument {
     #[serde(default)]
     pub tolerance: ToleranceDocument,
     /// The mean error over the skin in mm that is accepted, of mesh and model as far as they are estimated. Only with the
-    /// method `auto`, which then takes the cheapest model that meets it within the budget of time; absent, it is linear.
+    /// method `auto`, which takes the cheapest model that is expected to meet it within the budget of time. Default: 0.1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false, minimum = 0.001, maximum = 100.0)]
     pub accept_mm: Option<f64>,
@@ -102,6 +107,9 @@ pub struct PredictDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub refine: Option<RefineDocument>,
+    /// The same over parts of the skin, by the names of `skin_regions` of the case.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub accept_regions_mm: BTreeMap<String, f64>,
     /// Whether the discretisation error of the skin is estimated.
     #[serde(default, skip_serializing_if = "EstimateName::is_usual")]
     pub estimate: EstimateName,
@@ -153,9 +161,7 @@ impl PredictDocument {
         faults.check_range(&budget.key("memory_mb"), memory, 1.0..=limits.memory_mb, "MB");
         check_tags(&self.tags, &at.key("tags"), limits, faults);
         faults.check_range(&at.key("range_mm"), self.range_mm(), RANGES_MM, "mm");
-        if let Some(accepted) = self.accept_mm {
-            self.check_accepted(accepted, &at, faults);
-        }
+        self.check_accepted(&at, faults);
         if let Some(refine) = &self.refine {
             refine.check(&at.key("refine"), limits, faults);
             self.check_refined(&at.key("refine"), faults);
@@ -181,9 +187,31 @@ impl PredictDocument {
         }
     }
 
-    fn check_accepted(&self, accepted: f64, at: &Pointer, faults: &mut Faults) {
+    /// What `auto` is to meet; none for a method that was asked for, and where nothing is estimated that could choose.
+    pub fn accepted(&self) -> Option<Accepted> {
+        let chooses = self.method == MethodName::Auto
+            && self.estimate == EstimateName::Auto
+            && !self.corrected;
+        chooses.then(|| Accepted {
+            skin_mm: self.accept_mm.unwrap_or(USUALLY_ACCEPTED_MM),
+            regions_mm: self.accept_regions_mm.clone(),
+            ..Accepted::default()
+        })
+    }
+
+    fn check_accepted(&self, at: &Pointer, faults: &mut Faults) {
         let place = at.key("accept_mm");
-        faults.check_range(&place, accepted, ACCEPTED_MM, "mm");
+        if let Some(accepted) = self.accept_mm {
+            faults.check_range(&place, accepted, ACCEPTED_MM, "mm");
+        }
+        let regions = at.key("accept_regions_mm");
+        for (name, accepted) in &self.accept_regions_mm {
+            faults.check_range(&regions.key(name), *accepted, ACCEPTED_MM, "mm");
+        }
+        let place = if self.accept_mm.is_some() { place } else { regions };
+        if self.accept_mm.is_none() && self.accept_regions_mm.is_empty() {
+            return;
+        }
         if self.method != MethodName::Auto {
             let detail = format!(
                 "an accepted error chooses the model, and the method is `{}`: leave one of them out",

@@ -5,7 +5,6 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-use mechanics::mesh::Vector;
 use mechanics::prediction::{Nonlinearity, Skin};
 use mechanics::validation::{Statistics, StatisticsError};
 
@@ -47,8 +46,7 @@ impl NonlinearityDocument {
 
 /// The length in mm at each point of the skin.
 pub fn skin_lengths(skin: &Skin, nonlinearity: &Nonlinearity) -> Vec<f64> {
-    let of = |&node: &u32| Vector::norm(&nonlinearity.second_order[node as usize]);
-    skin.nodes().iter().map(of).collect()
+    skin.lengths(&nonlinearity.left_out)
 }
 
 impl EstimateDocument {

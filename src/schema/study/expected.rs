@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use crate::schema::methods::time_band;
-use crate::schema::predict::check::TimeBandDocument;
+use crate::schema::predict::time_band::TimeBandDocument;
 use mechanics::study::{StudyScene, TruthCost, truth_cost};
 
 /// The method whose times those of truths are told from.

@@ -213,7 +213,9 @@ fn the_manifest_is_what_stands_in_the_folder() {
     assert!(solver.relative_residual <= solver.wanted_residual);
     let roles: Vec<&str> = provenance.inputs.iter().map(|input| input.role.as_str()).collect();
     assert_eq!(roles, ["volume", "bone base"]);
-    assert_eq!(provenance.why.unwrap(), "auto: fem_linear, until something chooses between models");
+    let adequacy = read.adequacy.unwrap();
+    assert_eq!(adequacy.accepted_mm, 0.1);
+    assert_eq!(provenance.why.unwrap(), adequacy.why());
 }
 
 #[test]

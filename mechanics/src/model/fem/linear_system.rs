@@ -215,6 +215,30 @@ impl<'a> LinearSystem<'a> {
         Ok(solutions.into_par_iter().map(|mixed| self.correction(mixed)).collect())
     }
 
+    /// What holds exert on tissue that a correction displaces, with internal forces in mN at each node beside those of K.
+    pub fn reactions(&self, correction: &Correction, beside: &[Vector]) -> Vec<Vector> {
+        let constrained = self.constrained();
+        let held = vec![Vector::zeros(); self.holds.len()];
+        let known = constrained
+            .known(&LoadCase { held, forces: beside.iter().map(|force| -force).collect() });
+        let mut total: Vec<[[f64; 1]; 3]> = self
+            .numbering
+            .by_row(&correction.displacement)
+            .iter()
+            .map(|u| [[u.x], [u.y], [u.z]])
+            .collect();
+        for hold in self.holds.iter().filter(|hold| !hold.is_aligned()) {
+            let own = hold.axes().transpose() * correction.displacement[hold.node as usize];
+            total[self.numbering.row(hold.node)] = [[own.x], [own.y], [own.z]];
+        }
+        let mut internal = product_at_holds(&self.stiffness, &total);
+        if let Some(Pressures { coupling, .. }) = &self.pressures {
+            let pressures: Vec<[f64; 1]> = correction.pressures.iter().map(|&p| [p]).collect();
+            coupling.gradient.add_expanded(&pressures, &mut internal);
+        }
+        constrained.reactions(&internal, &known.force)
+    }
+
     fn correction(&self, mixed: MixedSolution) -> Correction {
         let MixedSolution { solution, pressures } = mixed;
         let mut total = vec![[[0.0]; 3]; self.stiffness.matrix.rows()];

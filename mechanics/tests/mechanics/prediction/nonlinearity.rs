@@ -88,7 +88,7 @@ fn measures(mut lengths: Vec<f64>) -> [f64; 2] {
 }
 
 fn left_out(estimated: &Estimated) -> &[Vector] {
-    &estimated.as_ref().unwrap().second_order
+    &estimated.as_ref().unwrap().left_out
 }
 
 /// What is estimated over what Newton changes on the skin, in the mean and at the 95th percentile.
@@ -293,7 +293,7 @@ fn a_landmark_on_the_skin_has_the_estimate_of_its_node() {
     let at = Vector::new(30.0, 30.0, 14.0);
     let node = scene.mesh.nodes.iter().position(|x| (x - at).norm() < 1e-9).unwrap();
     let nonlinearity = prediction.nonlinearity.unwrap();
-    let apart = nonlinearity.landmarks["middle"] - nonlinearity.second_order[node];
+    let apart = nonlinearity.landmarks["middle"] - nonlinearity.left_out[node];
     assert!(apart.norm() < 1e-12 && nonlinearity.landmarks["middle"].norm() > 1e-3);
 }
 

@@ -2,11 +2,11 @@
 
 use nalgebra::Matrix3;
 
-use super::edge_equations::EdgeEquation;
 use super::edge_functions::MAX_EDGES;
 use super::mean_stress;
 use super::points::EnrichedCell;
 use super::simplex::{CornerPressures, Simplex};
+use super::two_level::{AtCorners, EnrichedCells, OfEdges};
 use crate::element::MAX_NODES;
 use crate::mesh::{CellShape, Vector};
 use crate::model::fem::assembly::Tissue;
@@ -24,9 +24,6 @@ pub(super) struct Cells<'a> {
     /// The stress of the mean volume change, for each cell that has one.
     mean_stresses: Vec<Option<Matrix3<f64>>>,
 }
-
-/// Forces on the corners of a cell, and the volumes of its pressures; zero where it has none.
-type AtCorners = ([Vector; MAX_NODES], [f64; 4]);
 
 /// One cell with functions on its edges.
 enum Cell {
@@ -52,38 +49,6 @@ impl<'a> Cells<'a> {
         Cells { tissue, displacement, pressures, numbers, mean_stresses }
     }
 
-    pub fn pressure_numbers(&self, cell: usize) -> &Option<[u32; 4]> {
-        &self.numbers[cell]
-    }
-
-    /// r and D of each edge of a cell.
-    pub fn equations(&self, cell: usize) -> Result<[EdgeEquation; MAX_EDGES], InvertedCell> {
-        let mut moved = [Vector::zeros(); MAX_NODES];
-        let nodes = self.tissue.mesh.cells.nodes(cell);
-        for (own, &node) in moved.iter_mut().zip(nodes) {
-            *own = self.displacement[node as usize];
-        }
-        let moved = &moved[..nodes.len()];
-        Ok(match self.cell(cell)? {
-            Cell::Simplex(simplex) => simplex.equations(moved),
-            Cell::Points(points) => points.equations(moved, &self.mean_stresses[cell]),
-        })
-    }
-
-    /// What coefficients of its edges do to the corners of a cell.
-    pub fn at_corners(
-        &self,
-        cell: usize,
-        of_edges: &[Vector; MAX_EDGES],
-    ) -> Result<AtCorners, InvertedCell> {
-        Ok(match self.cell(cell)? {
-            Cell::Simplex(simplex) => {
-                (simplex.forces(of_edges), simplex.volumes(of_edges).unwrap_or_default())
-            }
-            Cell::Points(points) => (points.forces(of_edges), [0.0; 4]),
-        })
-    }
-
     fn cell(&self, cell: usize) -> Result<Cell, InvertedCell> {
         let (mesh, tensor) = (self.tissue.mesh, self.tissue.tensor(cell));
         let shape = mesh.cells.shape(cell);
@@ -101,5 +66,40 @@ impl<'a> Cells<'a> {
                 EnrichedCell::new(mesh, cell, &tensor, dilatation).map(Cell::Points)
             }
         }
+    }
+}
+
+impl EnrichedCells for Cells<'_> {
+    fn pressure_numbers(&self, cell: usize) -> Option<[u32; 4]> {
+        self.numbers[cell]
+    }
+
+    fn equations(&self, cell: usize, of_edges: &mut OfEdges) -> Result<(), InvertedCell> {
+        let mut moved = [Vector::zeros(); MAX_NODES];
+        let nodes = self.tissue.mesh.cells.nodes(cell);
+        for (own, &node) in moved.iter_mut().zip(nodes) {
+            *own = self.displacement[node as usize];
+        }
+        let moved = &moved[..nodes.len()];
+        match self.cell(cell)? {
+            Cell::Simplex(simplex) => simplex.equations(moved, of_edges),
+            Cell::Points(points) => {
+                *of_edges = points.equations(moved, &self.mean_stresses[cell]);
+            }
+        }
+        Ok(())
+    }
+
+    fn at_corners(
+        &self,
+        cell: usize,
+        of_edges: &[Vector; MAX_EDGES],
+    ) -> Result<AtCorners, InvertedCell> {
+        Ok(match self.cell(cell)? {
+            Cell::Simplex(simplex) => {
+                (simplex.forces(of_edges), simplex.volumes(of_edges).unwrap_or_default())
+            }
+            Cell::Points(points) => (points.forces(of_edges), [0.0; 4]),
+        })
     }
 }

@@ -2,8 +2,11 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use super::edge_equations::EdgeEquations;
+use super::edges::Edges;
+use super::held_edges::HeldEdges;
 use super::points::EnrichedCell;
-use super::{DistributedLoads, EdgeEquation, EdgeEquations, Edges, HeldEdges, MAX_EDGES};
+use super::{DistributedLoads, EdgeEquation, MAX_EDGES};
 use crate::boundary::Hold;
 use crate::element::MAX_NODES;
 use crate::material::LinearElastic;
@@ -49,9 +52,9 @@ fn edge_functions_that_are_solved_exactly_have_the_energy_of_the_error() {
             moved.iter_mut().zip(mesh.corners(number)).for_each(|(u, x)| *u = exact(&x));
             let of_cell: [EdgeEquation; MAX_EDGES] = own.equations(&moved, &None);
             let numbers = edges.of_cell(number);
-            for (a, &edge) in numbers.numbers().iter().enumerate() {
+            for (a, edge) in numbers.numbers().enumerate() {
                 equations.add(edge, &of_cell[a]);
-                for (b, &other) in numbers.numbers().iter().enumerate() {
+                for (b, other) in numbers.numbers().enumerate() {
                     let mut block = whole.fixed_view_mut::<3, 3>(3 * edge, 3 * other);
                     block += own.stiffness(a, b);
                 }

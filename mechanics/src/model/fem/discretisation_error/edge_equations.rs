@@ -8,7 +8,7 @@ use crate::mesh::Vector;
 
 /// D b = r of one edge.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct EdgeEquation {
+pub(in crate::model::fem) struct EdgeEquation {
     pub residual: Vector,
     pub stiffness: Matrix3<f64>,
 }

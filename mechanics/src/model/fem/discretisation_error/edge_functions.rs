@@ -9,22 +9,22 @@ use crate::element::MAX_NODES;
 use crate::mesh::{CellShape, Vector};
 
 /// The most edges a cell has.
-pub(super) const MAX_EDGES: usize = 12;
+pub(in crate::model::fem) const MAX_EDGES: usize = 12;
 
 /// Values and gradients at one point, in the order of the edges of the shape.
-pub(super) struct AtPoint {
+pub(in crate::model::fem) struct AtPoint {
     pub values: [f64; MAX_EDGES],
     pub gradients: [Vector; MAX_EDGES],
 }
 
 /// Values of the shape functions of the corners at a point, and their gradients.
-pub(super) struct Corners<'a> {
+pub(in crate::model::fem) struct Corners<'a> {
     pub values: &'a [f64; MAX_NODES],
     pub gradients: &'a [Vector; MAX_NODES],
 }
 
 /// The functions of all edges at a point inside a cell.
-pub(super) fn at_point(shape: CellShape, corners: &Corners) -> AtPoint {
+pub(in crate::model::fem) fn at_point(shape: CellShape, corners: &Corners) -> AtPoint {
     let mut all = AtPoint { values: [0.0; MAX_EDGES], gradients: [Vector::zeros(); MAX_EDGES] };
     for (number, ends) in shape.edges().iter().enumerate() {
         let &[i, j] = ends;

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::edge_functions::MAX_EDGES;
-use crate::mesh::{CellShape, Vector, VolumeMesh};
+use crate::mesh::{Vector, VolumeMesh};
 use crate::model::dofs::Numbering;
 use crate::model::problem::InvertedCell;
 
@@ -15,27 +15,28 @@ const CHUNK: usize = 512;
 pub(super) struct Edges<'a> {
     mesh: &'a VolumeMesh,
     numbering: &'a Numbering,
+    /// Of each cell, in the order of the layout.
+    of_cells: Vec<CellEdges>,
 }
 
 /// The numbers of the edges of a cell, in the order of its shape.
 #[derive(Clone, Copy)]
 pub(super) struct CellEdges {
-    numbers: [usize; MAX_EDGES],
-    count: usize,
+    numbers: [u32; MAX_EDGES],
+    count: u32,
 }
 
 impl<'a> Edges<'a> {
     pub fn new(mesh: &'a VolumeMesh, numbering: &'a Numbering) -> Self {
-        Edges { mesh, numbering }
+        let mut edges = Edges { mesh, numbering, of_cells: Vec::new() };
+        let order = numbering.layout.clique_order.par_iter();
+        edges.of_cells = order.map(|&cell| edges.of_cell(cell as usize)).collect();
+        edges
     }
 
     /// Above every number of an edge; pairs of nodes that no edge joins have numbers too.
     pub fn count(&self) -> usize {
         self.numbering.pattern.len()
-    }
-
-    pub fn shape(&self, cell: usize) -> CellShape {
-        self.mesh.cells.shape(cell)
     }
 
     /// The number of the edge between two nodes of a cell.
@@ -51,26 +52,30 @@ impl<'a> Edges<'a> {
 
     pub fn of_cell(&self, cell: usize) -> CellEdges {
         let nodes = self.mesh.cells.nodes(cell);
-        let mut edges = CellEdges { numbers: [0; MAX_EDGES], count: 0 };
-        for &[i, j] in self.shape(cell).edges() {
+        let pairs = self.mesh.cells.shape(cell).edges();
+        let mut edges = CellEdges { numbers: [0; MAX_EDGES], count: pairs.len() as u32 };
+        for (number, &[i, j]) in edges.numbers.iter_mut().zip(pairs) {
             // Two nodes of one cell are always coupled.
-            edges.numbers[edges.count] = self.between(nodes[i], nodes[j]).unwrap_or_default();
-            edges.count += 1;
+            *number = self.between(nodes[i], nodes[j]).unwrap_or_default() as u32;
         }
         edges
     }
 
-    /// Computes something of every cell on all threads, and adds it up in the order of the layout.
-    pub fn each_cell<T: Send>(
+    /// Computes something of every cell on all threads, in place of `blank` or of what another cell left there, and adds it up
+    /// in the order of the layout.
+    pub fn each_cell<T: Clone + Send>(
         &self,
-        compute: impl Fn(usize) -> Result<T, InvertedCell> + Sync,
-        mut add: impl FnMut(usize, T),
+        blank: T,
+        compute: impl Fn(usize, &CellEdges, &mut T) -> Result<(), InvertedCell> + Sync,
+        mut add: impl FnMut(usize, &CellEdges, &T),
     ) -> Result<(), InvertedCell> {
-        for chunk in self.numbering.layout.clique_order.chunks(CHUNK) {
-            let computed: Vec<Result<T, InvertedCell>> =
-                chunk.par_iter().map(|&cell| compute(cell as usize)).collect();
-            for (&cell, computed) in chunk.iter().zip(computed) {
-                add(cell as usize, computed?);
+        let order = &self.numbering.layout.clique_order;
+        let mut room = vec![blank; CHUNK.min(order.len())];
+        for (cells, of_cells) in order.chunks(CHUNK).zip(self.of_cells.chunks(CHUNK)) {
+            let places = room.par_iter_mut().zip(cells).zip(of_cells);
+            places.try_for_each(|((place, &cell), edges)| compute(cell as usize, edges, place))?;
+            for ((place, &cell), edges) in room.iter().zip(cells).zip(of_cells) {
+                add(cell as usize, edges, place);
             }
         }
         Ok(())
@@ -78,14 +83,14 @@ impl<'a> Edges<'a> {
 }
 
 impl CellEdges {
-    pub fn numbers(&self) -> &[usize] {
-        &self.numbers[..self.count]
+    pub fn numbers(&self) -> impl Iterator<Item = usize> {
+        self.numbers[..self.count as usize].iter().map(|&edge| edge as usize)
     }
 
     /// The values of these edges among those of all.
     pub fn gather(&self, of_edge: &[Vector]) -> [Vector; MAX_EDGES] {
         let mut own = [Vector::zeros(); MAX_EDGES];
-        own.iter_mut().zip(self.numbers()).for_each(|(own, &edge)| *own = of_edge[edge]);
+        own.iter_mut().zip(self.numbers()).for_each(|(own, edge)| *own = of_edge[edge]);
         own
     }
 }

@@ -10,7 +10,7 @@
 //! marking: Doerfler, A convergent adaptive algorithm for Poisson's equation, SIAM Journal on Numerical Analysis 33, 1996.
 
 use super::edges::Edges;
-use super::{Correction, Estimate};
+use super::{Correction, Estimate, tolerance};
 use crate::mesh::{Vector, VolumeMesh};
 use crate::model::fem::linear_system::{Residual, Solved};
 use crate::model::problem::ModelError;
@@ -66,30 +66,32 @@ impl Estimate<'_> {
     ) -> Result<Vec<f64>, ModelError> {
         progress.phase(Phase::Estimate);
         let mesh = self.tissue.mesh;
-        let edges = Edges::new(mesh, &self.system.numbering);
 
         // 1. b of the answer.
         let cells = self.cells(&solved.equilibrium.displacement, &solved.pressures);
-        let mut equations = self.equations(&edges, &cells)?;
-        self.loads.add_to(&self.tissue, &edges, &mut equations.residual)?;
-        let steps = equations.steps(&self.held_edges(&edges));
+        let answer = self.two_level(&cells);
+        let edges = answer.edges();
+        let mut equations = answer.equations(&edges)?;
+        let steps = answer.steps(&edges, &mut equations)?;
 
         // 2. s of the dual answer.
         let residual = Residual { forces: goal.of_nodes(mesh), volumes: Vec::new() };
-        let dual = self.system.solve_for(&[residual], self.tolerance(), progress)?.remove(0);
+        let relative = tolerance(self.tissue.materials, self.system.pressures.is_some());
+        let dual = self.system.solve_for(&[residual], relative, progress)?.remove(0);
         let Correction { displacement, pressures, .. } = &dual;
-        let mut weights = self.equations(&edges, &self.cells(displacement, pressures))?.residual;
+        let cells = self.cells(displacement, pressures);
+        let mut weights = self.two_level(&cells).equations(&edges)?.residual;
         goal.add_to(mesh, &edges, &mut weights);
 
         // 3. Shares.
         let mut sharing = vec![0_u32; edges.count()];
         let all = 0..mesh.cells.len();
         all.clone().for_each(|cell| {
-            edges.of_cell(cell).numbers().iter().for_each(|&edge| sharing[edge] += 1);
+            edges.of_cell(cell).numbers().for_each(|edge| sharing[edge] += 1);
         });
         let share =
-            |&edge: &usize| steps[edge].dot(&weights[edge]).abs() / f64::from(sharing[edge].max(1));
-        Ok(all.map(|cell| edges.of_cell(cell).numbers().iter().map(share).sum()).collect())
+            |edge: usize| steps[edge].dot(&weights[edge]).abs() / f64::from(sharing[edge].max(1));
+        Ok(all.map(|cell| edges.of_cell(cell).numbers().map(share).sum()).collect())
     }
 }
 

@@ -39,11 +39,13 @@ impl DistributedLoads {
             return Ok(());
         }
         edges.each_cell(
-            |cell| self.weights(tissue, cell),
-            |cell, weights| {
-                for (&edge, weight) in edges.of_cell(cell).numbers().iter().zip(weights) {
-                    forces[edge] += weight;
-                }
+            [Vector::zeros(); MAX_EDGES],
+            |cell, _, weights| {
+                *weights = self.weights(tissue, cell)?;
+                Ok(())
+            },
+            |_, edges, weights| {
+                edges.numbers().zip(weights).for_each(|(edge, weight)| forces[edge] += weight);
             },
         )
     }

@@ -5,49 +5,75 @@
 //! cell, is what the answer means (Hughes, The Finite Element Method, 1987, section 4.4). Hexahedra keep their own: their
 //! patterns are weak, and in thin layers the mean takes away what is left of the pressure's slope.
 
+use std::iter::Sum;
+use std::ops::{AddAssign, Div, Mul};
+
 use nalgebra::Matrix3;
 use rayon::prelude::*;
 
 use super::points::gradient_of;
-use crate::mesh::{CellShape, Vector};
+use crate::mesh::{CellShape, Vector, VolumeMesh};
 use crate::model::fem::assembly::Tissue;
 use crate::model::fem::cell_stiffness::Dilatation;
 use crate::model::reference_cell;
 
-/// A stress in kPa, weighted by the volume in mm³ that it acts in.
+/// Something of a cell, and the volume in mm³ that it counts with.
 #[derive(Clone, Copy)]
-struct Weighted {
-    stress: Matrix3<f64>,
-    volume: f64,
+pub(in crate::model::fem) struct Weighted<T> {
+    pub value: T,
+    pub volume: f64,
 }
 
+/// What can be averaged: a pressure, a stress.
+pub(in crate::model::fem) trait Averaged:
+    Copy + Send + AddAssign + Sum + Mul<f64, Output = Self> + Div<f64, Output = Self>
+{
+}
+
+impl Averaged for f64 {}
+impl Averaged for Matrix3<f64> {}
+
 /// Of the cells around a node that are of one kind of tissue.
-struct AroundNode {
+struct AroundNode<T> {
     kind: u16,
-    sum: Weighted,
+    sum: T,
+    volume: f64,
 }
 
 /// For each wedge that takes volume as a mean the stress of it, smooth within each kind of tissue.
 pub(super) fn smooth(tissue: &Tissue, displacement: &[Vector]) -> Vec<Option<Matrix3<f64>>> {
     let cells = &tissue.mesh.cells;
-    if cells.iter().all(|(shape, _)| shape != CellShape::Wedge6) {
+    if !has_wedges(tissue.mesh) {
         return vec![None; cells.len()];
     }
-    let own: Vec<Option<Weighted>> =
+    let own: Vec<Option<Weighted<Matrix3<f64>>>> =
         (0..cells.len()).into_par_iter().map(|cell| of_cell(tissue, cell, displacement)).collect();
-    let mut around: Vec<Vec<AroundNode>> = Vec::new();
+    smooth_in_wedges(tissue, &own)
+}
+
+pub(in crate::model::fem) fn has_wedges(mesh: &VolumeMesh) -> bool {
+    mesh.cells.iter().any(|(shape, _)| shape == CellShape::Wedge6)
+}
+
+/// The means over the nodes of each wedge of the means around them.
+pub(in crate::model::fem) fn smooth_in_wedges<T: Averaged>(
+    tissue: &Tissue,
+    own: &[Option<Weighted<T>>],
+) -> Vec<Option<T>> {
+    let cells = &tissue.mesh.cells;
+    let mut around: Vec<Vec<AroundNode<T>>> = Vec::new();
     around.resize_with(tissue.mesh.nodes.len(), Vec::new);
     for (cell, own) in own.iter().enumerate() {
-        let Some(Weighted { stress, volume }) = *own else { continue };
-        let kind = tissue.pressure_of_cell[cell];
+        let Some(Weighted { value, volume }) = *own else { continue };
+        let (kind, value) = (tissue.pressure_of_cell[cell], value * volume);
         for &node in cells.nodes(cell) {
-            let sums = &mut around[node as usize];
-            match sums.iter_mut().find(|known| known.kind == kind) {
-                Some(AroundNode { sum, .. }) => {
-                    sum.stress += stress;
-                    sum.volume += volume;
+            let known = &mut around[node as usize];
+            match known.iter_mut().find(|known| known.kind == kind) {
+                Some(known) => {
+                    known.sum += value;
+                    known.volume += volume;
                 }
-                None => sums.push(AroundNode { kind, sum: Weighted { stress, volume } }),
+                None => known.push(AroundNode { kind, sum: value, volume }),
             }
         }
     }
@@ -55,9 +81,9 @@ pub(super) fn smooth(tissue: &Tissue, displacement: &[Vector]) -> Vec<Option<Mat
         let (nodes, kind) = (cells.nodes(cell), tissue.pressure_of_cell[cell]);
         let at_nodes = nodes.iter().filter_map(|&node| {
             let own = around[node as usize].iter().find(|known| known.kind == kind)?;
-            Some(own.sum.stress / own.sum.volume)
+            Some(own.sum / own.volume)
         });
-        at_nodes.sum::<Matrix3<f64>>() / nodes.len() as f64
+        at_nodes.sum::<T>() / nodes.len() as f64
     };
     let is_wedge = |cell: usize| cells.shape(cell) == CellShape::Wedge6;
     own.iter()
@@ -66,7 +92,11 @@ pub(super) fn smooth(tissue: &Tissue, displacement: &[Vector]) -> Vec<Option<Mat
         .collect()
 }
 
-fn of_cell(tissue: &Tissue, cell: usize, displacement: &[Vector]) -> Option<Weighted> {
+fn of_cell(
+    tissue: &Tissue,
+    cell: usize,
+    displacement: &[Vector],
+) -> Option<Weighted<Matrix3<f64>>> {
     let shape = tissue.mesh.cells.shape(cell);
     if (tissue.dilatation)(shape) == Dilatation::Pointwise {
         return None;
@@ -81,5 +111,5 @@ fn of_cell(tissue: &Tissue, cell: usize, displacement: &[Vector]) -> Option<Weig
         volume += physical.volume;
     }
     let (_, of_volume) = tissue.tensor(cell).split_volume();
-    Some(Weighted { stress: of_volume.stress(&gradient), volume })
+    Some(Weighted { value: of_volume.stress(&(gradient / volume)), volume })
 }

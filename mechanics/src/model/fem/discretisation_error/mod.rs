@@ -26,22 +26,23 @@ mod mean_stress;
 mod points;
 mod sheet;
 mod simplex;
+mod two_level;
 
 use super::assembly::Tissue;
-use super::linear_system::{Correction, LinearSystem, Residual, Solved};
+use super::linear_system::{Correction, LinearSystem, Solved};
+use crate::material::LinearElastic;
 use crate::mesh::Vector;
 use crate::mesh::volume::BoundaryFace;
 use crate::model::problem::ModelError;
 use crate::progress::{Phase, Progress};
 use cell::Cells;
-use edge_equations::{EdgeEquation, EdgeEquations};
-use edge_functions::MAX_EDGES;
-use edges::Edges;
-use held_edges::HeldEdges;
-use sheet::Sheet;
 
+pub(super) use edge_equations::EdgeEquation;
+pub(super) use edge_functions::{Corners, MAX_EDGES, at_point};
 pub use indicators::{Goal, marked};
 pub use loads::DistributedLoads;
+pub(super) use mean_stress::{Weighted, has_wedges, smooth_in_wedges};
+pub(super) use two_level::{AtCorners, EnrichedCells, OfEdges, TwoLevel};
 
 /// Relative residual of the solve: the first digit of an estimate is all that it has.
 const LOOSE: f64 = 0.1;
@@ -84,88 +85,48 @@ impl Estimate<'_> {
         progress: &dyn Progress,
     ) -> Result<DiscretisationError, ModelError> {
         progress.phase(Phase::Estimate);
-        let edges = Edges::new(self.tissue.mesh, &self.system.numbering);
+        let pressures = self.system.pressures.as_ref();
         let cells = self.cells(&solved.equilibrium.displacement, &solved.pressures);
-        let (residual, squared_energy_norm) = self.at_corners(&edges, &cells)?;
-        let mut corrections = self.system.solve_for(&[residual], self.tolerance(), progress)?;
+        let two_level = self.two_level(&cells);
+        let (residual, squared_energy_norm) = two_level.at_corners()?;
+        let tolerance = tolerance(self.tissue.materials, pressures.is_some());
+        let mut corrections = self.system.solve_for(&[residual], tolerance, progress)?;
         let correction = corrections.remove(0);
-        let factor = match self.system.pressures {
-            Some(_) => MIXED_FACTOR,
-            None => PLAIN_FACTOR,
-        };
+        let factor = factor(pressures.is_some());
         let missing = correction.displacement.into_iter().map(|e| e * factor).collect();
         let iterations = correction.iterations;
         Ok(DiscretisationError { missing, squared_energy_norm, iterations })
-    }
-
-    fn tolerance(&self) -> f64 {
-        let materials = self.tissue.materials;
-        let moduli = materials.iter().map(|material| material.young_modulus());
-        let (least, most) = moduli.fold((f64::INFINITY, 0.0_f64), |(a, b), e| (a.min(e), b.max(e)));
-        let locks = self.system.pressures.is_none()
-            && materials.iter().any(|material| material.poisson_ratio() > LOCKING);
-        if most > CONTRAST * least || locks { TIGHTER } else { LOOSE }
     }
 
     fn cells<'b>(&'b self, displacement: &'b [Vector], pressures: &'b [f64]) -> Cells<'b> {
         Cells::new(&self.tissue, self.system, displacement, pressures)
     }
 
-    /// The equations of the edges beside an answer; nothing acts on them but the answer.
-    fn equations(&self, edges: &Edges, cells: &Cells) -> Result<EdgeEquations, ModelError> {
-        let mut equations = EdgeEquations::zeros(edges.count());
-        edges.each_cell(
-            |cell| cells.equations(cell),
-            |cell, own: [EdgeEquation; MAX_EDGES]| {
-                let cell = edges.of_cell(cell);
-                cell.numbers().iter().zip(&own).for_each(|(&edge, own)| equations.add(edge, own));
-            },
-        )?;
-        if let Some(sheet) = self.sheet(edges, &equations) {
-            sheet.add_equations(cells.displacement, &mut equations);
+    fn two_level<'b>(&'b self, cells: &'b Cells<'b>) -> TwoLevel<'b, Cells<'b>> {
+        let pressures = self.system.pressures.as_ref();
+        TwoLevel {
+            tissue: &self.tissue,
+            numbering: &self.system.numbering,
+            boundary: self.boundary,
+            holds: self.system.holds,
+            loads: self.loads,
+            displacement: cells.displacement,
+            cells,
+            pressure_count: pressures.map_or(0, |all| all.cells.pressure_count),
         }
-        Ok(equations)
     }
+}
 
-    /// The membrane, if there is one.
-    fn sheet<'b>(&'b self, edges: &'b Edges<'b>, equations: &EdgeEquations) -> Option<Sheet<'b>> {
-        let is_edge = |edge: usize| equations.stiffness[edge][(0, 0)] > 0.0;
-        self.tissue.membrane.map(|skin| Sheet::new(skin, self.tissue.mesh, edges, is_edge))
-    }
+/// The relative residual of the solve, for elements with pressures or without.
+pub(super) fn tolerance(materials: &[LinearElastic], has_pressures: bool) -> f64 {
+    let moduli = materials.iter().map(|material| material.young_modulus());
+    let (least, most) = moduli.fold((f64::INFINITY, 0.0_f64), |(a, b), e| (a.min(e), b.max(e)));
+    let locks =
+        !has_pressures && materials.iter().any(|material| material.poisson_ratio() > LOCKING);
+    if most > CONTRAST * least || locks { TIGHTER } else { LOOSE }
+}
 
-    fn held_edges(&self, edges: &Edges) -> HeldEdges {
-        HeldEdges::new(self.boundary, self.system.holds, self.tissue.mesh.nodes.len(), edges)
-    }
-
-    /// What the edge functions do to the equations of the corners, and their squared energy norm.
-    fn at_corners(&self, edges: &Edges, cells: &Cells) -> Result<(Residual, f64), ModelError> {
-        // 1. The equations of the edges, and b.
-        let mut equations = self.equations(edges, cells)?;
-        let mesh = self.tissue.mesh;
-        self.loads.add_to(&self.tissue, edges, &mut equations.residual)?;
-        let steps = equations.steps(&self.held_edges(edges));
-
-        let squared_energy_norm = equations.work(&steps);
-
-        // 2. K_cb b, and what it is with pressures.
-        let count = self.system.pressures.as_ref().map_or(0, |all| all.cells.pressure_count);
-        let mut residual =
-            Residual { forces: vec![Vector::zeros(); mesh.nodes.len()], volumes: vec![0.0; count] };
-        edges.each_cell(
-            |cell| cells.at_corners(cell, &edges.of_cell(cell).gather(&steps)),
-            |cell, (forces, volumes)| {
-                for (&node, force) in mesh.cells.nodes(cell).iter().zip(forces) {
-                    residual.forces[node as usize] -= force;
-                }
-                let numbered = cells.pressure_numbers(cell).iter().flatten();
-                for (&number, volume) in numbered.zip(volumes) {
-                    residual.volumes[number as usize] -= volume;
-                }
-            },
-        )?;
-        if let Some(sheet) = self.sheet(edges, &equations) {
-            sheet.subtract_forces(&steps, &mut residual.forces);
-        }
-        Ok((residual, squared_energy_norm))
-    }
+/// What e is multiplied by.
+pub(super) fn factor(has_pressures: bool) -> f64 {
+    if has_pressures { MIXED_FACTOR } else { PLAIN_FACTOR }
 }

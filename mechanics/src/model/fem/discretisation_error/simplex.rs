@@ -5,9 +5,9 @@
 
 use nalgebra::Matrix3;
 
-use super::edge_equations::EdgeEquation;
 use super::edge_functions::MAX_EDGES;
 use super::points::gradient_of;
+use super::two_level::OfEdges;
 use crate::element::MAX_NODES;
 use crate::element::tetrahedron10::EDGES;
 use crate::material::ElasticTensor;
@@ -41,30 +41,29 @@ impl Simplex {
         Ok(Simplex { volume, gradients, tensor, pressures })
     }
 
-    /// r and D of each edge where the corners are displaced.
-    pub fn equations(&self, displacement: &[Vector]) -> [EdgeEquation; MAX_EDGES] {
+    /// Writes r and D of each edge where the corners are displaced.
+    pub fn equations(&self, displacement: &[Vector], equations: &mut OfEdges) {
         let g = &self.gradients;
         let stress = self.tensor.stress(&gradient_of(displacement, g)) * self.volume;
-        let mut equations = [EdgeEquation::ZERO; MAX_EDGES];
+        let squares = g.map(|g| g * g.transpose());
         for (equation, [i, j]) in equations.iter_mut().zip(EDGES) {
             equation.residual = -(stress * (g[i] + g[j]));
-            equation.stiffness = self.stiffness(i, j);
+            equation.stiffness = self.stiffness([i, j], [&squares[i], &squares[j]]);
             if let Some(CornerPressures { values: p, .. }) = &self.pressures {
                 let all: f64 = p.iter().sum();
                 equation.residual -=
                     (g[j] * (all + p[i]) + g[i] * (all + p[j])) * (self.volume / 5.0);
             }
         }
-        equations
     }
 
-    /// D of the edge between two corners.
-    fn stiffness(&self, i: usize, j: usize) -> Matrix3<f64> {
+    /// D of the edge between two corners, g g^T of which are given.
+    fn stiffness(&self, [i, j]: [usize; 2], squares: [&Matrix3<f64>; 2]) -> Matrix3<f64> {
         let (gi, gj) = (&self.gradients[i], &self.gradients[j]);
         let weight = 0.8 * self.volume;
         if self.tensor.fibre.is_none() {
             let sum = gi + gj;
-            let g = gi * gi.transpose() + gj * gj.transpose() + sum * sum.transpose();
+            let g = squares[0] + squares[1] + sum * sum.transpose();
             let (lambda, mu) = (self.tensor.lambda * weight, self.tensor.mu * weight);
             return g * (lambda + mu) + Matrix3::from_diagonal_element(mu * g.trace());
         }

@@ -21,10 +21,32 @@ use crate::solver::{Block, SolverError};
 const CHUNK: usize = 128;
 
 /// A point of a cell at rest.
-struct PointAtRest {
-    gradients: Vec<Vector>,
+pub(super) struct PointAtRest {
+    pub gradients: Vec<Vector>,
     /// In mm^3.
-    volume: f64,
+    pub volume: f64,
+}
+
+/// A brick at positions, point by point.
+pub(super) struct BrickAt<'a> {
+    pub at_rest: &'a [PointAtRest],
+    pub points: &'a [Point],
+    pub law: u16,
+    /// c/V of the mean of ln J; 0 where volume is taken at each point.
+    pub of_mean: f64,
+}
+
+impl BrickAt<'_> {
+    /// In mm^3, at rest.
+    pub fn volume(&self) -> f64 {
+        self.at_rest.iter().map(|point| point.volume).sum()
+    }
+
+    /// p = c/V int ln J in kPa.
+    pub fn pressure(&self) -> f64 {
+        let pairs = self.at_rest.iter().zip(self.points);
+        self.of_mean * pairs.map(|(rest, point)| point.log_volume() * rest.volume).sum::<f64>()
+    }
 }
 
 /// A hexahedron or wedge at rest.
@@ -223,6 +245,20 @@ impl DeformedBricks<'_> {
         match numbering.add_cells(matrix, &self.bricks.cliques, progress, of_cell) {
             Ok(true) => Ok(()),
             Ok(false) | Err(InvertedCell { .. }) => Err(SolverError::Stopped),
+        }
+    }
+
+    /// The hexahedron or wedge of a cell of the mesh.
+    pub fn at_cell(&self, cell: usize) -> BrickAt<'_> {
+        let brick = self.bricks.of_cell[cell] as usize;
+        let (own, deformed) = (&self.bricks.bricks[brick], &self.deformed[brick]);
+        let means = self.bricks.means.as_ref();
+        let carried = means.map_or(0.0, |means| means[usize::from(own.law)].carried);
+        BrickAt {
+            at_rest: &own.points,
+            points: &deformed.points,
+            law: own.law,
+            of_mean: carried / own.volume,
         }
     }
 

@@ -40,6 +40,7 @@ struct Hierarchy {
 pub(super) struct Direction {
     pub positions: Vec<Vector>,
     pub pressures: Vec<f64>,
+    pub iterations: usize,
     /// Whether the tangent was positive definite along all that was tried; not seen where there are pressures.
     pub is_convex: bool,
     /// Whether the iterations were enough.
@@ -50,6 +51,8 @@ pub(super) struct Direction {
 pub(super) struct Remaining<'a> {
     /// Movements of the holds and forces that are not balanced yet.
     pub case: &'a LoadCase,
+    /// What is left over of the equations of the pressures, in mm^3.
+    pub volumes: &'a [f64],
     /// Positions of the nodes.
     pub nodes: &'a [Vector],
     /// The relative residual that is wanted.
@@ -97,7 +100,7 @@ impl Directions {
             }
             Some(pressures) => {
                 let coupling = pressures.coupling_at(&|cell| deformed.gradients(cell));
-                let volumes = left_volumes(&known, coupling, &deformed.volumes);
+                let volumes = left_volumes(&known, coupling, remaining.volumes);
                 let right = MixedRightHandSide { forces: known.right_hand_side(&system), volumes };
                 let solver = &hierarchy.solver;
                 let system = MixedSystem { stiffness: &system, coupling, solver };
@@ -112,6 +115,7 @@ impl Directions {
         Ok(Direction {
             positions: constrained.numbering.by_row(&by_node),
             pressures: found.pressures,
+            iterations: found.iterations,
             is_convex: found.is_convex,
             is_met: found.is_met,
         })
@@ -140,10 +144,10 @@ impl Directions {
         let load = constrained.known(&case).right_hand_side(&system);
         let enough = Enough { relative_residual: 1e-6, most_iterations: MOST_INNER };
         // The hierarchy of the last step is that of a tangent near by.
-        let Hierarchy { solver, .. } =
-            self.hierarchy.take().unwrap_or_else(|| self.new_hierarchy());
-        let (multigrid, inner) = (solver.hierarchy(&system), Inner(progress));
+        let hierarchy = self.hierarchy.take().unwrap_or_else(|| self.new_hierarchy());
+        let (multigrid, inner) = (hierarchy.solver.hierarchy(&system), Inner(progress));
         let found = conjugate_gradient::direction(&system, multigrid, &load, enough, &inner)?;
+        self.hierarchy = Some(hierarchy);
         Ok(Some(found.is_convex))
     }
 

@@ -7,8 +7,13 @@
 mod balance;
 mod bricks;
 mod direction;
+mod edge_block;
 mod elements;
+mod enriched;
+mod enriched_brick;
+mod enriched_simplex;
 mod fibres;
+mod mesh_error;
 mod newton;
 mod pressures;
 mod problem;
@@ -32,6 +37,7 @@ use direction::{Directions, Tally};
 pub use elements::Elements;
 use elements::Kept;
 pub use fibres::FibreField;
+pub use mesh_error::{Finer, MeshError, NoMeshError};
 use newton::{Ending, Newton, Question, Rest, Start, Until};
 pub use problem::FiniteStrain;
 use tissue::Tissue;
@@ -64,6 +70,17 @@ impl FiniteStrain<'_> {
         case: &LoadCase,
         progress: &dyn Progress,
     ) -> Result<Equilibrium, ModelError> {
+        let (equilibrium, _) = self.solve_and(case, None, progress)?;
+        Ok(equilibrium)
+    }
+
+    /// Solves a load case for rest, and estimates what its mesh leaves out where it is told what acts between the nodes.
+    pub fn solve_and(
+        &self,
+        case: &LoadCase,
+        finer: Option<&Finer>,
+        progress: &dyn Progress,
+    ) -> Result<(Equilibrium, Option<MeshError>), ModelError> {
         progress.phase(Phase::Assemble);
         self.check_held_cells(case)?;
         let numbering = number(&nodes_of_cells(self.mesh), &self.mesh.nodes, self.holds);
@@ -71,7 +88,10 @@ impl FiniteStrain<'_> {
         let tolerance = self.tolerance;
         let question = Question { constrained: &constrained, case, tolerance, progress };
         let nodes = &self.mesh.nodes;
-        let Rest { positions, forces, report } = self.rest(question)?;
+        let (tissue, mut rest) = self.rest(question)?;
+        let error = finer.map(|finer| finer.of(&tissue, &mut rest, &constrained, progress));
+        let error = error.transpose()?;
+        let Rest { positions, forces, report, .. } = rest;
 
         let places = numbering.layout.place.iter().zip(nodes);
         let reaction = |hold: &Hold| {
@@ -85,11 +105,11 @@ impl FiniteStrain<'_> {
             solver: report,
         };
         check_finite(std::slice::from_ref(&equilibrium))?;
-        Ok(equilibrium)
+        Ok((equilibrium, error))
     }
 
     /// Brings the tissue to rest: near it with a share of the bulk modulus in the cells, then with none, where it bears that.
-    fn rest(&self, question: Question) -> Result<Rest, ModelError> {
+    fn rest<'a>(&'a self, question: Question<'a>) -> Result<(Tissue<'a>, Rest), ModelError> {
         let start = Start {
             x: question.constrained.numbering.by_row(&self.mesh.nodes),
             log_volumes: Vec::new(),
@@ -99,51 +119,52 @@ impl FiniteStrain<'_> {
             tally: Tally::default(),
         };
         let near = match self.with_bulk_in_cells(question, start, true)? {
-            Ending::Rest(rest) => return Ok(rest),
-            Ending::Near(near) | Ending::Jam(near) => near,
+            (tissue, Ending::Rest(rest)) => return Ok((tissue, rest)),
+            (_, Ending::Near(near) | Ending::Jam(near)) => near,
         };
         let until = Until { jammed: true, near: false };
         match self.newton(Kept::NONE, question, near.clone(), until) {
-            Ok(Ending::Rest(rest)) => return Ok(rest),
-            Ok(Ending::Jam(_) | Ending::Near(_)) | Err(ModelError::Standstill { .. }) => {}
+            Ok((tissue, Ending::Rest(rest))) => return Ok((tissue, rest)),
+            Ok((_, Ending::Jam(_) | Ending::Near(_))) | Err(ModelError::Standstill { .. }) => {}
             Err(ModelError::Solver(SolverError::NotConverged { .. })) => {}
             Err(error) => return Err(error),
         }
         match self.with_bulk_in_cells(question, near, false)? {
-            Ending::Rest(rest) => Ok(rest),
-            Ending::Jam(_) | Ending::Near(_) => unreachable!("only rest ends it"),
+            (tissue, Ending::Rest(rest)) => Ok((tissue, rest)),
+            (_, Ending::Jam(_) | Ending::Near(_)) => unreachable!("only rest ends it"),
         }
     }
 
     /// With the usual share in the cells, and with more where that jams.
-    fn with_bulk_in_cells(
-        &self,
-        question: Question,
+    fn with_bulk_in_cells<'a>(
+        &'a self,
+        question: Question<'a>,
         start: Start,
         near: bool,
-    ) -> Result<Ending, ModelError> {
+    ) -> Result<(Tissue<'a>, Ending), ModelError> {
         match self.newton(Kept::FIRST, question, start, Until { jammed: true, near })? {
-            Ending::Jam(reached) => {
+            (_, Ending::Jam(reached)) => {
                 self.newton(Kept::MORE, question, reached, Until { jammed: false, near })
             }
             ended => Ok(ended),
         }
     }
 
-    fn newton(
-        &self,
+    fn newton<'a>(
+        &'a self,
         kept: Kept,
-        question: Question,
+        question: Question<'a>,
         start: Start,
         until: Until,
-    ) -> Result<Ending, ModelError> {
+    ) -> Result<(Tissue<'a>, Ending), ModelError> {
         let tissue = Tissue::new(self, question.constrained.numbering, kept)?;
         let pressures = tissue.pressures(self, kept, self.axes_by_row(question));
         let memory_mb = self.tolerance.memory_mb - tissue.megabytes();
         question.progress.phase(Phase::Solve);
         let directions = Directions::new(pressures, start.tally, memory_mb);
         let until = Until { near: until.near && tissue.bulk_in_cells > 0.0, ..until };
-        Newton::new(&tissue, directions, question, start).solve(until)
+        let ending = Newton::new(&tissue, directions, question, start).solve(until)?;
+        Ok((tissue, ending))
     }
 
     /// The axes of rows that have their own.

@@ -113,9 +113,12 @@ pub(super) enum Ending {
 pub(super) struct Rest {
     /// By row.
     pub positions: Vec<Vector>,
+    pub pressures: Vec<f64>,
     /// Internal forces in mN, by row.
     pub forces: Vec<Vector>,
     pub report: SolveReport,
+    /// What solved the steps.
+    pub directions: Directions,
 }
 
 impl<'a> Newton<'a> {
@@ -161,8 +164,10 @@ impl<'a> Newton<'a> {
             let rests = residual <= wanted || self.balance.unbalanced <= self.rounding.force;
             if self.made >= 1.0 && rests {
                 let report = self.report(&deformed)?;
-                let (positions, forces) = (self.x, deformed.forces);
-                return Ok(Ending::Rest(Rest { positions, forces, report }));
+                let (positions, pressures, forces) = (self.x, self.p, deformed.forces);
+                let directions = self.directions;
+                let rest = Rest { positions, pressures, forces, report, directions };
+                return Ok(Ending::Rest(rest));
             }
             let is_near = self.made >= 1.0 && residual <= NEAR;
             if until.near && is_near && deformed.least_volume() >= ROOMY {
@@ -225,7 +230,8 @@ impl<'a> Newton<'a> {
 
     fn direction(&mut self, deformed: &Deformed, ahead: f64) -> Result<Direction, SolverError> {
         let (case, nodes) = (self.remaining(deformed, ahead), self.positions());
-        let remaining = Remaining { case: &case, nodes: &nodes, relative: self.inner_tolerance() };
+        let (volumes, relative) = (&*deformed.volumes, self.inner_tolerance());
+        let remaining = Remaining { case: &case, volumes, nodes: &nodes, relative };
         let Question { constrained, progress, .. } = self.question;
         self.directions.of(deformed, constrained, &remaining, progress)
     }

@@ -90,6 +90,11 @@ impl Pressures {
         self.coupling.mass.len()
     }
 
+    /// The numbers of the pressures of each tetrahedron that has some, by its number among the simplices.
+    pub fn numbers(&self) -> impl Iterator<Item = (usize, [u32; 4])> {
+        self.cells.iter().map(|cell| cell.simplex as usize).zip(self.numbers.iter().copied())
+    }
+
     pub fn megabytes(&self) -> f64 {
         let cell = size_of::<PressureCell>() + size_of::<[u32; 4]>();
         2.0 * self.coupling.megabytes() + (self.cells.len() * cell) as f64 / 1e6

@@ -203,6 +203,11 @@ impl DeformedSimplices<'_> {
         self.points.par_iter().map(Point::volume).reduce(|| f64::INFINITY, f64::min)
     }
 
+    /// A tetrahedron at rest and its point.
+    pub fn at_cell(&self, simplex: usize) -> (&Simplex, &Point) {
+        (&self.simplices.cells[simplex], &self.points[simplex])
+    }
+
     pub fn log_volume(&self, cell: u32) -> f64 {
         self.points[cell as usize].log_volume()
     }

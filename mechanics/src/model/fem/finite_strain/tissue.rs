@@ -41,8 +41,8 @@ pub(super) struct Tissue<'a> {
 /// Tissue at positions whose points all have a positive volume.
 pub(super) struct Deformed<'a> {
     tissue: &'a Tissue<'a>,
-    simplices: DeformedSimplices<'a>,
-    bricks: DeformedBricks<'a>,
+    pub simplices: DeformedSimplices<'a>,
+    pub bricks: DeformedBricks<'a>,
     /// By row, in mN.
     pub forces: Vec<Vector>,
     /// What the pressures leave of the volumes, in mm^3; none where there are none.
@@ -132,6 +132,11 @@ impl<'a> Tissue<'a> {
         let log_volume = |cell: u32| simplices.log_volume(cell);
         let volumes = pressures.map(|pressures| pressures.residual(p, &log_volume));
         Deformed { tissue: self, forces, volumes: volumes.unwrap_or_default(), simplices, bricks }
+    }
+
+    /// The cell of the mesh of each tetrahedron.
+    pub fn cells_of_simplices(&self) -> impl Iterator<Item = usize> {
+        self.simplices.cells.iter().map(|simplex| simplex.cell as usize)
     }
 
     /// In mN mm, of tissue without pressures.

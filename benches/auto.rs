@@ -1,0 +1,316 @@
+//! The method `auto` over random plans against the truth of a finer mesh at finite strain, as the table of docs/estimates.md:
+//! `cargo bench --bench auto [-- SCENE … --plans N --from N]`.
+//!
+//! Plans are numbered from 0, and a plan of a number is the same each time: 1 to 25 mm in any direction, 0 to 20 degrees about
+//! any axis, accepted errors from .03 to 1 mm. Each is a line: what `auto` took, what it was off by in truth, and which model
+//! would have been the cheapest. The truth is `fem_nonlinear` with every edge halved; plans without one are counted apart. Times
+//! are those of the processor. The summary of each scene comes last.
+
+mod measure;
+
+use std::sync::Arc;
+
+use measure::{face, process};
+use mechanics::boundary::NodeSelection;
+use mechanics::material::LinearElastic;
+use mechanics::mesh::refinement::refine;
+use mechanics::mesh::sample::block;
+use mechanics::mesh::{CellShape, Vector};
+use mechanics::plan::{PlannedSegment, RigidMovement};
+use mechanics::prediction::{
+    Accepted, Case, CaseSegment, Method, Plan, Prediction, Rung, Scene, Settings, Watched, predict,
+    predict_adequately,
+};
+use mechanics::progress::Unobserved;
+use mechanics::study::scenes::half_head;
+
+/// Movements in mm and degrees, and accepted errors in mm.
+const MOVED: [f64; 2] = [1.0, 25.0];
+const TURNED: f64 = 20.0;
+const ACCEPTED: [f64; 2] = [0.03, 1.0];
+
+/// A case, its segment that moves, and its forward direction.
+struct Entry {
+    name: &'static str,
+    case: Case,
+    segment: &'static str,
+    /// About which it turns.
+    pivot: Vector,
+}
+
+/// A plan, and the error that is accepted.
+struct Question {
+    number: usize,
+    plan: Plan,
+    accepted_mm: f64,
+    moved_mm: f64,
+    turned_deg: f64,
+}
+
+/// A model in hindsight: its true mean error over the skin, and its processor time with all that comes before it.
+struct Hindsight {
+    rung: Rung,
+    error_mm: f64,
+    cpu_s: f64,
+}
+
+#[derive(Default)]
+struct Summary {
+    plans: usize,
+    without_truth: usize,
+    called_met: usize,
+    met: usize,
+    /// Called not met, and within what was accepted.
+    overcautious: usize,
+    /// Time over that of the cheapest that would have done.
+    ratios: Vec<f64>,
+}
+
+fn main() {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let number = |name: &str, usual: usize| {
+        let at = arguments.iter().position(|argument| argument == name);
+        at.and_then(|at| arguments.get(at + 1)?.parse().ok()).unwrap_or(usual)
+    };
+    let (plans, from) = (number("--plans", 75), number("--from", 0));
+    let entries = entries();
+    println!(
+        "| scene | plan | mm, degrees | accepted mm | taken | met | told mm | true mm | cheapest | time over it |"
+    );
+    println!("| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |");
+    let mut summaries = Vec::new();
+    for entry in entries.iter().filter(|entry| is_asked(entry.name, &arguments)) {
+        let mut summary = Summary::default();
+        for number in from..from + plans {
+            measure_plan(entry, &question(entry, number), &mut summary);
+        }
+        summaries.push((entry.name, summary));
+    }
+    println!();
+    println!(
+        "| scene | plans | no truth | called met | of these met | not met | of these within | time, median / p90 |"
+    );
+    println!("| --- | --- | --- | --- | --- | --- | --- | --- |");
+    summaries.iter_mut().for_each(|(name, summary)| summary.print(name));
+}
+
+fn is_asked(name: &str, arguments: &[String]) -> bool {
+    let scenes = ["block", "half_head", "subject", "template"];
+    let any = arguments.iter().any(|argument| scenes.contains(&argument.as_str()));
+    !any || arguments.iter().any(|argument| argument == name)
+}
+
+fn measure_plan(entry: &Entry, question: &Question, summary: &mut Summary) {
+    summary.plans += 1;
+    let Question { number, accepted_mm, moved_mm, turned_deg, .. } = question;
+    let of =
+        format!("| {} | {number} | {moved_mm:.1}, {turned_deg:.1} | {accepted_mm:.3}", entry.name);
+    let Some(truth) = truth(entry, question) else {
+        summary.without_truth += 1;
+        return println!("{of} | no truth | | | | | |");
+    };
+    let Ok(scene) = Scene::new(&entry.case, &question.plan, &Settings::default()) else {
+        summary.without_truth += 1;
+        return println!("{of} | refused | | | | | |");
+    };
+    let begin = process::cpu_seconds();
+    let accepted = Accepted { skin_mm: *accepted_mm, time_s: 1e6, ..Accepted::default() };
+    let watched = Watched { stopwatch: &process::cpu_seconds, progress: &Unobserved };
+    let found = predict_adequately(&entry.case, &question.plan, &scene, &accepted, watched)
+        .expect("linear elements have an answer");
+    let cpu_s = process::cpu_seconds() - begin;
+    let off = mean_error(&scene, &found.prediction.displacement, &truth);
+    let hindsight = hindsight(entry, question, &scene, &truth);
+    let adequate = hindsight.iter().filter(|model| model.error_mm <= *accepted_mm);
+    let cheapest = adequate.min_by(|a, b| a.cpu_s.total_cmp(&b.cpu_s));
+    let told = found.considered.iter().find(|other| other.rung == found.rung);
+    let told = told.and_then(|own| Some(own.error.as_ref()?.skin_mm)).unwrap_or(f64::NAN);
+    let ratio = cheapest.map(|model| cpu_s / model.cpu_s);
+    println!(
+        "{of} | {} | {} | {told:.4} | {off:.4} | {} | {} |",
+        found.rung.name(),
+        if found.is_met { "yes" } else { "no" },
+        cheapest.map_or("none", |model| model.rung.name()),
+        ratio.map_or_else(String::new, |ratio| format!("{ratio:.2}")),
+    );
+    summary.called_met += usize::from(found.is_met);
+    summary.met += usize::from(found.is_met && off <= *accepted_mm);
+    summary.overcautious += usize::from(!found.is_met && off <= *accepted_mm);
+    if found.is_met {
+        summary.ratios.extend(ratio);
+    }
+}
+
+/// The skin of the same case with every edge halved, at finite strain.
+fn truth(entry: &Entry, question: &Question) -> Option<Vec<Vector>> {
+    let fine = Case { volume: Arc::new(refine(&entry.case.volume)), ..entry.case.clone() };
+    let found = at_finite_strain(&fine, question, false)?;
+    let scene = Scene::new(&entry.case, &question.plan, &Settings::default()).ok()?;
+    let nodes = scene.skin.nodes().iter();
+    Some(nodes.map(|&node| found.displacement[node as usize]).collect())
+}
+
+fn at_finite_strain(case: &Case, question: &Question, estimate: bool) -> Option<Prediction> {
+    let (method, memory_mb, relative_residual) = (Method::FemNonlinear, 12_000.0, 1e-6);
+    let settings =
+        Settings { method, estimate, memory_mb, relative_residual, ..Settings::default() };
+    let scene = Scene::new(case, &question.plan, &settings).ok()?;
+    predict(&scene, &Unobserved).ok()
+}
+
+/// Every model, from its own solution.
+fn hindsight(
+    entry: &Entry,
+    question: &Question,
+    scene: &Scene,
+    truth: &[Vector],
+) -> Vec<Hindsight> {
+    let begin = process::cpu_seconds();
+    let linear = predict(scene, &Unobserved).expect("it has an answer");
+    let linear_s = process::cpu_seconds() - begin;
+    let begin = process::cpu_seconds();
+    let finite = at_finite_strain(&entry.case, question, true);
+    let finite_s = process::cpu_seconds() - begin;
+    let added = |values: &[Vector], more: &[Vector]| -> Vec<Vector> {
+        values.iter().zip(more).map(|(value, more)| value + more).collect()
+    };
+    let mut models = Vec::new();
+    let mut judge = |rung: Rung, displacement: &[Vector], cpu_s: f64| {
+        let error_mm = mean_error(scene, displacement, truth);
+        models.push(Hindsight { rung, error_mm, cpu_s });
+    };
+    let missing = linear.numerical_error.expect("estimated").missing;
+    let second = added(&linear.displacement, &linear.nonlinearity.expect("estimated").left_out);
+    judge(Rung::Linear, &linear.displacement, linear_s);
+    judge(Rung::Corrected, &added(&linear.displacement, &missing), linear_s);
+    // The second order is there already, loosely.
+    judge(Rung::SecondOrder, &second, 1.5 * linear_s);
+    judge(Rung::SecondOrderCorrected, &added(&second, &missing), 1.5 * linear_s);
+    if let Some(finite) = finite {
+        judge(Rung::FiniteStrain, &finite.displacement, finite_s);
+        if let Ok(error) = &finite.numerical_error {
+            let corrected = added(&finite.displacement, &error.missing);
+            judge(Rung::FiniteStrainCorrected, &corrected, finite_s);
+        }
+    }
+    models
+}
+
+fn mean_error(scene: &Scene, displacement: &[Vector], truth: &[Vector]) -> f64 {
+    let pairs = scene.skin.nodes().iter().zip(truth);
+    let sum: f64 = pairs.map(|(&node, u)| (displacement[node as usize] - u).norm()).sum();
+    sum / truth.len() as f64
+}
+
+impl Summary {
+    fn print(&mut self, name: &str) {
+        self.ratios.sort_by(f64::total_cmp);
+        let at = |share: f64| {
+            let last = self.ratios.len().saturating_sub(1);
+            self.ratios.get((last as f64 * share).round() as usize).copied().unwrap_or(f64::NAN)
+        };
+        let not_met = self.plans - self.without_truth - self.called_met;
+        println!(
+            "| {name} | {} | {} | {} | {} | {not_met} | {} | {:.2} / {:.2} |",
+            self.plans,
+            self.without_truth,
+            self.called_met,
+            self.met,
+            self.overcautious,
+            at(0.5),
+            at(0.9),
+        );
+    }
+}
+
+fn entries() -> Vec<Entry> {
+    let half_head = half_head();
+    let mut entries = vec![
+        Entry {
+            name: "block",
+            case: hard_block(),
+            segment: "patch",
+            pivot: Vector::new(50.0, 50.0, 0.0),
+        },
+        Entry {
+            name: "half_head",
+            pivot: middle(&half_head.case, "mandible"),
+            case: half_head.case,
+            segment: "mandible",
+        },
+    ];
+    for face in face::faces() {
+        let Some(mesh) = face.load() else { continue };
+        let case = face.case(mesh, 0.46);
+        let pivot = middle(&case, face.jaw);
+        entries.push(Entry { name: face.name, case, segment: "jaw", pivot });
+    }
+    entries
+}
+
+/// The hard block of docs/finite-strain.md: a patch of the bottom moves, a ring of 25 mm around it is free.
+fn hard_block() -> Case {
+    let mut mesh = block(Vector::new(100.0, 100.0, 20.0), [20, 20, 4], CellShape::Tet4);
+    let outside = |node: &u32| {
+        let x = &mesh.nodes[*node as usize];
+        let [x, y] = [x.x, x.y].map(|v| (35.0 - v).max(v - 65.0).max(0.0));
+        x.hypot(y)
+    };
+    let bottom = mesh.node_sets["z_min"].clone();
+    let patch = bottom.iter().copied().filter(|node| outside(node) == 0.0).collect();
+    let rest = bottom.iter().copied().filter(|node| outside(node) > 25.0).collect();
+    mesh.node_sets.insert("patch".to_owned(), patch);
+    mesh.node_sets.insert("rest".to_owned(), rest);
+    let set = |name: &str| NodeSelection::NodeSet(name.to_owned());
+    let material = LinearElastic::new(15.0, 0.46, 1.0).expect("within the ranges");
+    Case {
+        skin: Some(set("z_max")),
+        segments: vec![CaseSegment { name: "patch".to_owned(), nodes: set("patch") }],
+        fixed: vec![set("rest")],
+        materials: [("*".to_owned(), material)].into(),
+        volume: Arc::new(mesh),
+        ..Case::default()
+    }
+}
+
+fn middle(case: &Case, set: &str) -> Vector {
+    let nodes = case.volume.node_set(set).expect("the set of the bone");
+    let sum: Vector = nodes.iter().map(|&node| case.volume.nodes[node as usize]).sum();
+    sum / nodes.len() as f64
+}
+
+/// The plan of a number; lengths and angles that are small are as frequent as large ones.
+fn question(entry: &Entry, number: usize) -> Question {
+    let mut numbers = Random(0x9e37_79b9_7f4a_7c15 ^ ((number as u64 + 1) * 0x2545_f491_4f6c_dd1d));
+    let moved_mm = MOVED[0] * (MOVED[1] / MOVED[0]).powf(numbers.next());
+    let turned_deg = TURNED * numbers.next().powi(2) * moved_mm / MOVED[1];
+    let (along, about) = (numbers.direction(), numbers.direction());
+    let angles = about * turned_deg.to_radians();
+    let movement = RigidMovement::about_pivot(angles, entry.pivot, along * moved_mm);
+    let accepted_mm = ACCEPTED[0] * (ACCEPTED[1] / ACCEPTED[0]).powf(numbers.next());
+    let segments = vec![PlannedSegment { name: entry.segment.to_owned(), movement }];
+    let plan = Plan { segments, ..Plan::default() };
+    Question { number, plan, accepted_mm, moved_mm, turned_deg }
+}
+
+/// Marsaglia, Xorshift RNGs, 2003.
+struct Random(u64);
+
+impl Random {
+    /// In [0, 1).
+    fn next(&mut self) -> f64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    fn direction(&mut self) -> Vector {
+        loop {
+            let x = Vector::new(self.next(), self.next(), self.next()) * 2.0 - Vector::repeat(1.0);
+            if x.norm() > 0.1 && x.norm() < 1.0 {
+                return x.normalize();
+            }
+        }
+    }
+}

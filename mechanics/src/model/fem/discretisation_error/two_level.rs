@@ -1,0 +1,125 @@
+//! The two-level step with functions of edges: b of every edge by itself, and what it does to the equations of the corners.
+
+use super::edge_equations::{EdgeEquation, EdgeEquations};
+use super::edge_functions::MAX_EDGES;
+use super::edges::Edges;
+use super::held_edges::HeldEdges;
+use super::loads::DistributedLoads;
+use super::sheet::Sheet;
+use crate::boundary::Hold;
+use crate::element::MAX_NODES;
+use crate::mesh::Vector;
+use crate::mesh::volume::BoundaryFace;
+use crate::model::dofs::Numbering;
+use crate::model::fem::assembly::Tissue;
+use crate::model::fem::linear_system::Residual;
+use crate::model::problem::InvertedCell;
+
+/// Forces on the corners of a cell, and the volumes of its pressures; zero where it has none.
+pub(in crate::model::fem) type AtCorners = ([Vector; MAX_NODES], [f64; 4]);
+
+/// The equations of the edges of a cell; what is beyond its last edge does not count.
+pub(in crate::model::fem) type OfEdges = [EdgeEquation; MAX_EDGES];
+
+/// Cells of an answer with functions on their edges.
+pub(in crate::model::fem) trait EnrichedCells: Sync {
+    /// The numbers of the pressures of its corners, where a cell has any.
+    fn pressure_numbers(&self, cell: usize) -> Option<[u32; 4]>;
+
+    /// Writes r and D of each edge of a cell.
+    fn equations(&self, cell: usize, of_edges: &mut OfEdges) -> Result<(), InvertedCell>;
+
+    /// What coefficients of its edges do to the corners of a cell.
+    fn at_corners(
+        &self,
+        cell: usize,
+        of_edges: &[Vector; MAX_EDGES],
+    ) -> Result<AtCorners, InvertedCell>;
+}
+
+/// An answer, and its cells with functions on their edges.
+pub(in crate::model::fem) struct TwoLevel<'a, C> {
+    pub tissue: &'a Tissue<'a>,
+    pub numbering: &'a Numbering,
+    pub boundary: &'a [BoundaryFace],
+    pub holds: &'a [Hold],
+    pub loads: &'a DistributedLoads,
+    /// Of the nodes, in mm.
+    pub displacement: &'a [Vector],
+    pub cells: &'a C,
+    pub pressure_count: usize,
+}
+
+impl<C: EnrichedCells> TwoLevel<'_, C> {
+    pub(super) fn edges(&self) -> Edges<'_> {
+        Edges::new(self.tissue.mesh, self.numbering)
+    }
+
+    /// The equations of the edges beside the answer; nothing acts on them but the answer.
+    pub(super) fn equations(&self, edges: &Edges) -> Result<EdgeEquations, InvertedCell> {
+        let mut equations = EdgeEquations::zeros(edges.count());
+        edges.each_cell(
+            [EdgeEquation::ZERO; MAX_EDGES],
+            |cell, _, own| self.cells.equations(cell, own),
+            |_, numbers, own| {
+                numbers.numbers().zip(own).for_each(|(edge, own)| equations.add(edge, own));
+            },
+        )?;
+        if let Some(sheet) = self.sheet(edges, &equations) {
+            sheet.add_equations(self.displacement, &mut equations);
+        }
+        Ok(equations)
+    }
+
+    /// b of every edge; what acts between the nodes is added to the equations.
+    pub(super) fn steps(
+        &self,
+        edges: &Edges,
+        equations: &mut EdgeEquations,
+    ) -> Result<Vec<Vector>, InvertedCell> {
+        self.loads.add_to(self.tissue, edges, &mut equations.residual)?;
+        let nodes = self.tissue.mesh.nodes.len();
+        Ok(equations.steps(&HeldEdges::new(self.boundary, self.holds, nodes, edges)))
+    }
+
+    /// The membrane, if there is one.
+    fn sheet<'b>(&'b self, edges: &'b Edges<'b>, equations: &EdgeEquations) -> Option<Sheet<'b>> {
+        let is_edge = |edge: usize| equations.stiffness[edge][(0, 0)] > 0.0;
+        self.tissue.membrane.map(|skin| Sheet::new(skin, self.tissue.mesh, edges, is_edge))
+    }
+
+    /// What the edge functions do to the equations of the corners, and their squared energy norm in mN mm.
+    pub fn at_corners(&self) -> Result<(Residual, f64), InvertedCell> {
+        // 1. The equations of the edges, and b.
+        let (mesh, cells, edges) = (self.tissue.mesh, self.cells, self.edges());
+        let mut equations = self.equations(&edges)?;
+        let steps = self.steps(&edges, &mut equations)?;
+        let squared_energy_norm = equations.work(&steps);
+
+        // 2. K_cb b, and what it is with pressures.
+        let mut residual = Residual {
+            forces: vec![Vector::zeros(); mesh.nodes.len()],
+            volumes: vec![0.0; self.pressure_count],
+        };
+        edges.each_cell(
+            ([Vector::zeros(); MAX_NODES], [0.0; 4]),
+            |cell, numbers, at_corners| {
+                *at_corners = cells.at_corners(cell, &numbers.gather(&steps))?;
+                Ok(())
+            },
+            |cell, _, (forces, volumes)| {
+                for (&node, force) in mesh.cells.nodes(cell).iter().zip(forces) {
+                    residual.forces[node as usize] -= force;
+                }
+                let numbered = cells.pressure_numbers(cell).into_iter().flatten();
+                for (number, volume) in numbered.zip(volumes) {
+                    residual.volumes[number as usize] -= volume;
+                }
+            },
+        )?;
+        if let Some(sheet) = self.sheet(&edges, &equations) {
+            sheet.subtract_forces(&steps, &mut residual.forces);
+        }
+        Ok((residual, squared_energy_norm))
+    }
+}

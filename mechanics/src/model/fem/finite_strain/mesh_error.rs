@@ -1,0 +1,93 @@
+//! Discretisation error of an answer at finite strain: the two-level step of `discretisation_error` at its last tangent.
+
+use super::direction::Remaining;
+use super::enriched::{Enriched, Pressed};
+use super::newton::Rest;
+use super::tissue::Tissue;
+use crate::material::hyperelastic::Law;
+use crate::mesh::Vector;
+use crate::mesh::volume::BoundaryFace;
+use crate::model::dofs::Constrained;
+use crate::model::fem::assembly;
+use crate::model::fem::discretisation_error::{
+    DiscretisationError, DistributedLoads, TwoLevel, factor, tolerance,
+};
+use crate::model::problem::{LoadCase, ModelError};
+use crate::progress::{Phase, Progress};
+
+/// What a finer mesh would see of a problem.
+pub struct Finer<'a> {
+    /// The same tissue as linear elements see it.
+    pub tissue: assembly::Tissue<'a>,
+    pub laws: &'a [Law],
+    /// The faces of the mesh that belong to one cell only.
+    pub boundary: &'a [BoundaryFace],
+    pub loads: &'a DistributedLoads,
+}
+
+/// What the mesh cannot show of an answer, or why that is not known.
+pub type MeshError = Result<DiscretisationError, NoMeshError>;
+
+/// Why there is no estimate.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum NoMeshError {
+    #[error("the state that was found is not stable, and its tangent no matrix to solve with")]
+    Unstable,
+    #[error("the tangent of the answer could not be solved with")]
+    NotSolved,
+}
+
+impl Finer<'_> {
+    pub(super) fn of(
+        &self,
+        tissue: &Tissue,
+        rest: &mut Rest,
+        constrained: &Constrained,
+        progress: &dyn Progress,
+    ) -> Result<MeshError, ModelError> {
+        progress.phase(Phase::Estimate);
+        let Constrained { holds, numbering } = *constrained;
+        let Rest { positions, pressures: values, directions, .. } = rest;
+        let mesh = self.tissue.mesh;
+        let by_node = |row: &u32| positions[*row as usize];
+        let nodes: Vec<Vector> = numbering.layout.place.iter().map(by_node).collect();
+        let displacement: Vec<Vector> =
+            nodes.iter().zip(&mesh.nodes).map(|(x, rest)| x - rest).collect();
+
+        // 1. What the edge functions do to the equations of the corners.
+        let pressures = directions.pressures.as_ref();
+        let deformed = tissue.at(positions, values, pressures);
+        let pressed = Pressed { pressures, values };
+        let two_level = TwoLevel {
+            tissue: &self.tissue,
+            numbering,
+            boundary: self.boundary,
+            holds,
+            loads: self.loads,
+            displacement: &displacement,
+            cells: &Enriched::new(&self.tissue, self.laws, tissue, &deformed, &pressed),
+            pressure_count: values.len(),
+        };
+        let (residual, squared_energy_norm) = two_level.at_corners()?;
+
+        // 2. What that does to the corners, by the last tangent.
+        let has_pressures = pressures.is_some();
+        let case = LoadCase { held: vec![Vector::zeros(); holds.len()], forces: residual.forces };
+        let left: Vec<f64> = residual.volumes.iter().map(|volume| -volume).collect();
+        let relative = tolerance(self.tissue.materials, has_pressures);
+        let remaining = Remaining { case: &case, volumes: &left, nodes: &nodes, relative };
+        let found = directions.of(&deformed, constrained, &remaining, progress)?;
+        if !found.is_convex {
+            return Ok(Err(NoMeshError::Unstable));
+        }
+        if !found.is_met {
+            return Ok(Err(NoMeshError::NotSolved));
+        }
+        let factor = factor(has_pressures);
+        let missing =
+            numbering.layout.place.iter().map(|&row| found.positions[row as usize] * factor);
+        let missing = missing.collect();
+        let iterations = found.iterations;
+        Ok(Ok(DiscretisationError { missing, squared_energy_norm, iterations }))
+    }
+}

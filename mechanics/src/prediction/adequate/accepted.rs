@@ -1,0 +1,75 @@
+//! Mean errors over the skin and its parts, and those that are accepted.
+
+use std::collections::BTreeMap;
+
+use crate::mesh::Vector;
+use crate::prediction::skin::Skin;
+
+/// What the caller accepts.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Accepted {
+    /// The mean error over the skin, in mm.
+    pub skin_mm: f64,
+    /// The same over parts of the skin, by name.
+    pub regions_mm: BTreeMap<String, f64>,
+    /// For all rungs together, in s.
+    pub time_s: f64,
+    /// Why finite strain is out of the question, where it is.
+    pub no_finite_strain: Option<String>,
+}
+
+/// Mean errors in mm over the skin, and over the parts of it that an error is accepted for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MeanErrors {
+    pub skin_mm: f64,
+    pub regions_mm: BTreeMap<String, f64>,
+}
+
+impl MeanErrors {
+    /// Of vectors of nodes.
+    pub(super) fn of(skin: &Skin, accepted: &Accepted, values: &[Vector]) -> Self {
+        let lengths = skin.lengths(values);
+        let asked = skin.regions.iter().filter(|(name, _)| accepted.regions_mm.contains_key(*name));
+        let of_region = |points: &[u32]| {
+            mean(points.iter().map(|&point| lengths[point as usize]).collect::<Vec<_>>().as_slice())
+        };
+        MeanErrors {
+            skin_mm: mean(&lengths),
+            regions_mm: asked.map(|(name, points)| (name.clone(), of_region(points))).collect(),
+        }
+    }
+
+    /// Each of them by a function.
+    pub(super) fn map(&self, change: impl Fn(f64) -> f64) -> Self {
+        let regions = self.regions_mm.iter();
+        MeanErrors {
+            skin_mm: change(self.skin_mm),
+            regions_mm: regions.map(|(name, error)| (name.clone(), change(*error))).collect(),
+        }
+    }
+
+    /// The sums, part by part.
+    pub(super) fn plus(&self, other: &MeanErrors) -> Self {
+        let regions = self.regions_mm.iter();
+        let sum = |(name, error): (&String, &f64)| {
+            (name.clone(), error + other.regions_mm.get(name).copied().unwrap_or(f64::NAN))
+        };
+        MeanErrors { skin_mm: self.skin_mm + other.skin_mm, regions_mm: regions.map(sum).collect() }
+    }
+}
+
+impl Accepted {
+    /// The largest error as a share of the accepted one: at most 1 where all are accepted.
+    pub(super) fn share(&self, errors: Option<&MeanErrors>) -> f64 {
+        let Some(errors) = errors else { return f64::INFINITY };
+        let regions = self.regions_mm.iter().map(|(name, accepted)| {
+            errors.regions_mm.get(name).map_or(f64::INFINITY, |error| error / accepted)
+        });
+        let largest = regions.fold(errors.skin_mm / self.skin_mm, f64::max);
+        if largest.is_nan() { f64::INFINITY } else { largest }
+    }
+}
+
+fn mean(lengths: &[f64]) -> f64 {
+    lengths.iter().sum::<f64>() / lengths.len().max(1) as f64
+}

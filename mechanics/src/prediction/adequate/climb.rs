@@ -1,0 +1,326 @@
+//! The way up the rungs.
+
+use super::accepted::{Accepted, MeanErrors};
+use super::rung::{Considered, Errors, Rung};
+use crate::mesh::{Vector, Warning};
+use crate::model::problem::ModelError;
+use crate::prediction::answer::{self, Answer, Linear};
+use crate::prediction::case::{Case, Plan, Settings};
+use crate::prediction::method::Method;
+use crate::prediction::scene::Scene;
+use crate::prediction::{Prediction, described};
+use crate::progress::Progress;
+use crate::solver::SolverError;
+
+/// Time of the second order and of Newton's method, as multiples of that of the linear answer with its estimates.
+const SECOND_ORDER_TAKES: f64 = 0.7;
+const NEWTON_TAKES: f64 = 10.0;
+
+/// The two, for who plans.
+pub const MAY_TAKE: [f64; 2] = [SECOND_ORDER_TAKES, NEWTON_TAKES];
+
+/// A rung that is not adequate is tried if it is expected to leave at most this share of the error so far, and one is as good as
+/// the best if its error is at most so many times as large.
+const WORTHWHILE: f64 = 0.8;
+
+/// The third order of a plan is about this much times the square of the second over the first.
+const THIRD: f64 = 1.5;
+
+/// A third order above this share of the second is that of a series that does not end soon.
+const TRUSTED: f64 = 0.5;
+
+/// A prediction with the way to it.
+pub struct Adequate {
+    pub prediction: Prediction,
+    /// The scene of the prediction, where it is not that of the linear rung.
+    pub scene: Option<Scene>,
+    pub rung: Rung,
+    pub errors: Errors,
+    pub considered: Vec<Considered>,
+    pub is_met: bool,
+}
+
+/// Progress, and the time in s since some moment.
+#[derive(Clone, Copy)]
+pub struct Watched<'a> {
+    pub stopwatch: &'a dyn Fn() -> f64,
+    pub progress: &'a dyn Progress,
+}
+
+/// Predicts a case under a plan by the cheapest rung whose estimated error is accepted; `linear` is its scene with linear finite
+/// elements, `stopwatch` tells seconds.
+pub fn predict_adequately(
+    case: &Case,
+    plan: &Plan,
+    linear: &Scene,
+    accepted: &Accepted,
+    watched: Watched,
+) -> Result<Adequate, ModelError> {
+    let mut climb = Climb {
+        scene: linear,
+        accepted,
+        watched,
+        begun: (watched.stopwatch)(),
+        linear_s: 0.0,
+        errors: Errors::default(),
+        considered: Vec::new(),
+    };
+    climb.run(case, plan)
+}
+
+/// Answers of the rungs that were tried.
+struct Answers {
+    linear: Answer,
+    second_order: Option<Answer>,
+    finite_strain: Option<(Scene, Answer)>,
+}
+
+struct Climb<'a> {
+    scene: &'a Scene,
+    accepted: &'a Accepted,
+    watched: Watched<'a>,
+    begun: f64,
+    /// What the linear answer took, with its estimates.
+    linear_s: f64,
+    errors: Errors,
+    considered: Vec<Considered>,
+}
+
+enum Failure {
+    /// By the caller, or for want of memory and time.
+    Stopped(ModelError),
+    Refused(String),
+}
+
+impl Climb<'_> {
+    fn run(&mut self, case: &Case, plan: &Plan) -> Result<Adequate, ModelError> {
+        // 1. The linear answer, and what it tells of itself.
+        let Watched { progress, .. } = self.watched;
+        let solved = answer::linear(self.scene, progress)?;
+        let known = match &solved {
+            Linear::Solved(known) => Some(&**known),
+            Linear::Other(_) => None,
+        };
+        if let Some(known) = known {
+            let mesh = known.numerical_error.as_ref().ok();
+            self.errors.mesh = mesh.map(|error| self.means(&error.missing));
+            let linearity = known.nonlinearity.as_ref().ok();
+            self.errors.linearity = linearity.map(|left| self.means(&left.left_out));
+        }
+        self.linear_s = self.elapsed();
+        self.note(Rung::Linear, Some(self.linear_s), self.linear_s);
+
+        // 2. To second order, by the same matrix.
+        let mut second_order = None;
+        if let Some(known) = known
+            && self.may_try(Rung::SecondOrder, self.second_order_expected(known.displacement()))
+        {
+            let begun = self.elapsed();
+            let found = known.to_second_order(self.scene, progress)?;
+            let third = found.nonlinearity.as_ref().ok();
+            self.errors.third_order = third.map(|left| self.means(&left.left_out));
+            if self.is_a_series() {
+                second_order = Some(found);
+                self.note(
+                    Rung::SecondOrder,
+                    Some(self.elapsed() - begun),
+                    self.time_of(Rung::SecondOrder),
+                );
+            } else {
+                self.errors.third_order = None;
+                let why = "its series is not to be trusted for this plan";
+                self.pass_over(Rung::SecondOrder, why.to_owned());
+            }
+        }
+
+        // 3. At finite strain.
+        let mut finite_strain = None;
+        if self.may_try(Rung::FiniteStrain, self.errors.on(Rung::FiniteStrainCorrected)) {
+            let begun = self.elapsed();
+            match at_finite_strain(case, plan, &self.scene.settings, progress) {
+                Ok((scene, found)) => {
+                    let mesh = found.numerical_error.as_ref().ok();
+                    let mesh = mesh.map(|error| self.means(&error.missing));
+                    self.errors.mesh_at_rest = mesh;
+                    finite_strain = Some((scene, found));
+                    let spent = self.elapsed() - begun;
+                    self.note(Rung::FiniteStrain, Some(spent), self.time_of(Rung::FiniteStrain));
+                }
+                Err(Failure::Stopped(error)) => return Err(error),
+                Err(Failure::Refused(why)) => self.pass_over(Rung::FiniteStrain, why),
+            }
+        }
+
+        // 4. The one that does.
+        let linear = match solved {
+            Linear::Solved(known) => known.into_answer(),
+            Linear::Other(answer) => answer,
+        };
+        Ok(self.taken(Answers { linear, second_order, finite_strain }))
+    }
+
+    fn taken(&mut self, answers: Answers) -> Adequate {
+        let rung = self.chosen();
+        let error = self.errors.on(rung);
+        let is_met = self.accepted.share(error.as_ref()) <= 1.0;
+        let is_corrected = rung.is_corrected();
+        let Answers { linear, second_order, finite_strain } = answers;
+        let progress = self.watched.progress;
+        let as_linear = |answer: Answer| {
+            (None, described(self.scene, answer.corrected(is_corrected), progress))
+        };
+        let (scene, mut prediction) = match (rung.solution(), second_order, finite_strain) {
+            (Rung::SecondOrder, Some(answer), _) => as_linear(answer),
+            (Rung::FiniteStrain, _, Some((scene, answer))) => {
+                let prediction = described(&scene, answer.corrected(is_corrected), progress);
+                (Some(scene), prediction)
+            }
+            (_, _, _) => as_linear(linear),
+        };
+        prediction.warnings.extend((!is_met).then(|| not_met(error.as_ref(), self.accepted)));
+        let considered = std::mem::take(&mut self.considered);
+        Adequate { prediction, scene, rung, errors: self.errors.clone(), considered, is_met }
+    }
+
+    fn means(&self, values: &[Vector]) -> MeanErrors {
+        MeanErrors::of(&self.scene.skin, self.accepted, values)
+    }
+
+    fn elapsed(&self) -> f64 {
+        (self.watched.stopwatch)() - self.begun
+    }
+
+    /// How long a rung is expected to take, in s.
+    fn time_of(&self, rung: Rung) -> f64 {
+        match rung.solution() {
+            Rung::SecondOrder | Rung::SecondOrderCorrected => SECOND_ORDER_TAKES * self.linear_s,
+            Rung::FiniteStrain | Rung::FiniteStrainCorrected => NEWTON_TAKES * self.linear_s,
+            Rung::Linear | Rung::Corrected => self.linear_s,
+        }
+    }
+
+    /// Mean errors that the second order is expected to leave, before its third order is known.
+    fn second_order_expected(&self, first_order: &[Vector]) -> Option<MeanErrors> {
+        let first = self.means(first_order).skin_mm;
+        let second = self.errors.linearity.as_ref()?;
+        let share = (THIRD * second.skin_mm / first).min(1.0);
+        let third_order = Some(second.map(|error| error * share));
+        Errors { third_order, ..self.errors.clone() }.on(Rung::SecondOrderCorrected)
+    }
+
+    /// Whether the third order is small beside the second.
+    fn is_a_series(&self) -> bool {
+        match (&self.errors.third_order, &self.errors.linearity) {
+            (Some(third), Some(second)) => third.skin_mm <= TRUSTED * second.skin_mm,
+            (_, _) => false,
+        }
+    }
+
+    /// Whether a rung is worth its time; `expected` is the least error that it may have. Says why it is not.
+    fn may_try(&mut self, rung: Rung, expected: Option<MeanErrors>) -> bool {
+        let share = self.accepted.share(expected.as_ref());
+        let so_far = self.least_share();
+        let left = self.accepted.time_s - self.elapsed();
+        let why = if so_far <= 1.0 {
+            "a cheaper model is adequate".to_owned()
+        } else if expected.is_none() {
+            "its error is not known".to_owned()
+        } else if share > 1.0 && share > WORTHWHILE * so_far {
+            "it is not expected to be clearly better".to_owned()
+        } else if let (Some(why), Rung::FiniteStrain) = (&self.accepted.no_finite_strain, rung) {
+            why.clone()
+        } else if self.time_of(rung) > left {
+            let takes = self.time_of(rung);
+            format!("it is expected to take {takes:.1} s, and {left:.1} s are left")
+        } else {
+            return true;
+        };
+        self.pass_over(rung, why);
+        false
+    }
+
+    /// Notes a solution and its correction.
+    fn note(&mut self, solution: Rung, spent_s: Option<f64>, expected_s: f64) {
+        for rung in Rung::ALL.into_iter().filter(|rung| rung.solution() == solution) {
+            let error = self.errors.on(rung);
+            let unknown = rung.is_corrected() && error.is_none();
+            let passed_over = unknown.then(|| "its error is not known".to_owned());
+            self.considered.push(Considered { rung, error, spent_s, expected_s, passed_over });
+        }
+    }
+
+    fn pass_over(&mut self, solution: Rung, why: String) {
+        let expected_s = self.time_of(solution);
+        for rung in Rung::ALL.into_iter().filter(|rung| rung.solution() == solution) {
+            let (error, passed_over) = (self.errors.on(rung), Some(why.clone()));
+            self.considered.push(Considered {
+                rung,
+                error,
+                spent_s: None,
+                expected_s,
+                passed_over,
+            });
+        }
+    }
+
+    /// The rungs that were tried, with their errors as shares of what is accepted.
+    fn shares(&self) -> impl Iterator<Item = (Rung, f64)> {
+        let tried = self.considered.iter().filter(|rung| rung.passed_over.is_none());
+        tried.map(|considered| (considered.rung, self.accepted.share(considered.error.as_ref())))
+    }
+
+    fn least_share(&self) -> f64 {
+        self.shares().map(|(_, share)| share).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The first rung that is adequate, or else the first that is nearly as good as the best.
+    fn chosen(&self) -> Rung {
+        let least = self.least_share();
+        let enough = if least <= 1.0 { 1.0 } else { least / WORTHWHILE };
+        let found = self.shares().find(|(_, share)| *share <= enough);
+        found.map_or(Rung::Linear, |(rung, _)| rung)
+    }
+}
+
+fn at_finite_strain(
+    case: &Case,
+    plan: &Plan,
+    settings: &Settings,
+    progress: &dyn Progress,
+) -> Result<(Scene, Answer), Failure> {
+    let settings = Settings { method: Method::FemNonlinear, ..settings.clone() };
+    let scene =
+        Scene::new(case, plan, &settings).map_err(|errors| Failure::Refused(errors.to_string()))?;
+    match answer::solve(&scene, progress) {
+        Ok(answer) => Ok((scene, answer)),
+        Err(error @ ModelError::Solver(SolverError::Stopped)) => Err(Failure::Stopped(error)),
+        Err(error) => Err(Failure::Refused(error.to_string())),
+    }
+}
+
+fn not_met(error: Option<&MeanErrors>, accepted: &Accepted) -> Warning {
+    let wanted = accepted.skin_mm;
+    let Some(error) = error else {
+        let detail = "how far the skin is off is not known".to_owned();
+        return Warning::new("tolerance-not-met", detail).with("accepted_mm", wanted);
+    };
+    let skin = error.skin_mm;
+    let detail = match accepted
+        .regions_mm
+        .iter()
+        .find(|(name, accepted)| error.regions_mm.get(*name).is_none_or(|error| error > *accepted))
+    {
+        Some((name, wanted)) if skin <= accepted.skin_mm => {
+            let own = error.regions_mm.get(name).copied().unwrap_or(f64::NAN);
+            format!(
+                "{name:?} is expected to be off by {own:.3} mm in the mean, and {wanted:.3} mm were to be met"
+            )
+        }
+        Some(_) | None => format!(
+            "the skin is expected to be off by {skin:.3} mm in the mean, and {wanted:.3} mm were to be met: no adequate \
+             model fits the mesh, the time and the case"
+        ),
+    };
+    let warning = Warning::new("tolerance-not-met", detail).with("accepted_mm", wanted);
+    warning.with("expected_mm", skin)
+}

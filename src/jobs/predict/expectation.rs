@@ -1,0 +1,83 @@
+//! What `auto` is expected to choose, before anything is solved.
+
+use super::cost::{memory_at_finite_strain_mb, memory_mb, time_s};
+use super::input::{PredictInput, Prepared};
+use crate::schema::predict::expectation::{
+    BandDocument, ExpectationDocument, ExpectedRungDocument, RESTS_ON,
+};
+use crate::schema::predict::time_band::TimeBandDocument;
+use mechanics::prediction::{Accepted, MAY_TAKE, Rung};
+use mechanics::response::by_rule_of_thumb;
+
+/// The rule of thumb is made not to be too small; at most it was so many times too large (`docs/estimates.md`).
+const TOO_LARGE: f64 = 6.0;
+
+/// The third order of a plan is about so many times the square of the second over the movement.
+const THIRD: f64 = 3.0;
+
+impl Prepared {
+    /// The models of `auto` with what each is expected to take; none for a method that was asked for.
+    pub fn expectation(&self, input: &PredictInput) -> Option<ExpectationDocument> {
+        let accepted = input.spec.accepted()?;
+        let rule = by_rule_of_thumb(&self.scene);
+        let linearity_mm = BandDocument { low: rule.estimate / TOO_LARGE, high: rule.estimate };
+        let movement_mm = rule.largest_relative_movement;
+        let model = |error: f64| needed(error, movement_mm, &accepted).name().to_owned();
+        Some(ExpectationDocument {
+            accepted_mm: accepted.skin_mm,
+            movement_mm,
+            rotation_deg: rule.largest_rotation.to_degrees(),
+            linearity_mm,
+            at_least: model(linearity_mm.low),
+            at_most: model(linearity_mm.high),
+            rests_on: RESTS_ON.to_owned(),
+            rungs: self.expected_rungs(input),
+        })
+    }
+
+    fn expected_rungs(&self, input: &PredictInput) -> Vec<ExpectedRungDocument> {
+        let (scene, linear) = (&self.scene, time_s(&self.scene, input.spec.method));
+        let memory = memory_mb(scene, 0);
+        let rung = |(rung, times, memory_mb): (Rung, f64, f64)| ExpectedRungDocument {
+            name: rung.name().to_owned(),
+            time_s: linear.map(|TimeBandDocument { low, high }| TimeBandDocument {
+                low: times * low,
+                high: times * high,
+            }),
+            memory_mb,
+        };
+        let [second_order, newton] = MAY_TAKE;
+        let rungs = [
+            (Rung::Linear, 1.0, memory),
+            (Rung::SecondOrder, second_order, memory),
+            (Rung::FiniteStrain, newton, memory_at_finite_strain_mb(scene)),
+        ];
+        rungs.map(rung).into()
+    }
+}
+
+/// The cheapest model of a plan, as far as linearity tells.
+fn needed(linearity_mm: f64, movement_mm: f64, accepted: &Accepted) -> Rung {
+    let third_order_mm = THIRD * linearity_mm * linearity_mm / movement_mm;
+    if linearity_mm <= accepted.skin_mm {
+        Rung::Linear
+    } else if third_order_mm <= accepted.skin_mm {
+        Rung::SecondOrder
+    } else {
+        Rung::FiniteStrain
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn larger_movements_are_expected_to_need_dearer_models() {
+        let accepted = Accepted { skin_mm: 0.1, ..Accepted::default() };
+        // What was measured on the slab of docs/estimates.md.
+        assert_eq!(needed(0.029, 1.8, &accepted), Rung::Linear);
+        assert_eq!(needed(0.186, 4.5, &accepted), Rung::SecondOrder);
+        assert_eq!(needed(0.725, 9.0, &accepted), Rung::FiniteStrain);
+    }
+}
