@@ -138,7 +138,8 @@ async fn a_wall_goes_with_its_bone_in_predictions_and_responses_alike() {
         "rotation_deg": [0, 6, 0], "pivot_mm": [30, 30, 0]}]});
     let mut means = Vec::new();
     for case in [&case, &stays] {
-        let predict = json!({"kind": "predict", "case": case, "plan": plan});
+        let predict =
+            json!({"kind": "predict", "method": "fem_linear", "case": case, "plan": plan});
         let direct = server.job(&predict).await.expect(StatusCode::OK);
         server.job(&json!({"kind": "response", "case": case})).await.expect(StatusCode::OK);
         let told = apply(&server, case, &plan).await.expect(StatusCode::OK);
@@ -192,7 +193,7 @@ async fn tissue_without_a_free_node_is_answered_by_every_kind_of_job() {
     let target = json!([{"nodes": {"node_set": "skin"}, "displacement_mm": [1, 0, 0]}]);
     let bounds = json!({"jaw": {"translation_mm": [[-5, 5], [0, 0], [0, 0]]}});
     for spec in [
-        json!({"kind": "predict", "case": case, "plan": plan}),
+        json!({"kind": "predict", "method": "fem_linear", "case": case, "plan": plan}),
         json!({"kind": "response", "case": case}),
         json!({"kind": "optimise", "case": case, "targets": target, "bounds": bounds}),
         json!({"kind": "study", "scenes": [{"case": case, "plans": [plan]}], "repeats": 1,
@@ -229,7 +230,7 @@ async fn a_bone_that_moves_along_the_only_wall_is_refused_on_every_way() {
     let problem = checked.problem(422, "nothing-held");
     assert_eq!(problem["errors"][0]["pointer"], "/case/fixed");
     assert!(problem["detail"].as_str().unwrap().starts_with("/case/fixed: "), "{problem}");
-    let predict = json!({"kind": "predict", "case": case, "plan": plan});
+    let predict = json!({"kind": "predict", "method": "fem_linear", "case": case, "plan": plan});
     ask(server.post("/v1/jobs").json(&predict)).await.problem(422, "nothing-held");
 
     // A response knows plans across the wall, and refuses those along it.

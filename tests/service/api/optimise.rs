@@ -46,7 +46,7 @@ async fn a_plan_is_found_from_the_skin_it_makes_and_verified() {
     let (translation, rotation) = ([1.5, -0.7, 2.0], [7.0, -5.0, 11.0]);
     let plan = json!({"segments": [{"name": "bone", "translation_mm": translation,
         "rotation_deg": rotation, "pivot_mm": PIVOT}]});
-    let predict = json!({"kind": "predict", "case": case, "plan": plan});
+    let predict = json!({"kind": "predict", "method": "fem_linear", "case": case, "plan": plan});
     let made = server.job(&predict).await.expect(StatusCode::OK);
     let moved = &made["results"]["statistics"]["landmarks"];
     let target = |(name, _): (String, [f64; 3])| json!({"landmark": name, "displacement_mm": moved[&name], "sigma_mm": 0.5});
@@ -84,8 +84,7 @@ async fn a_plan_is_found_from_the_skin_it_makes_and_verified() {
     }
 
     // The files are those that a prediction of the plan writes.
-    let predict =
-        json!({"kind": "predict", "case": case, "plan": found["plan"], "outputs": ["skin.csv"]});
+    let predict = json!({"kind": "predict", "method": "fem_linear", "case": case, "plan": found["plan"], "outputs": ["skin.csv"]});
     let again = server.job(&predict).await.expect(StatusCode::OK);
     assert_eq!(results["files"][0], again["results"]["files"][0]);
     assert_eq!(results["statistics"], again["results"]["statistics"]);
@@ -155,7 +154,8 @@ async fn a_position_is_reached_and_what_one_point_cannot_decide_is_named() {
         .collect();
     assert_eq!(names, ["skin.vtp", "skin.glb"]);
     assert!(results["provenance"]["solver"]["relative_residual"].as_f64().unwrap() <= 1e-8);
-    let moved = json!({"kind": "predict", "case": case, "plan": found["plan"]});
+    let moved =
+        json!({"kind": "predict", "method": "fem_linear", "case": case, "plan": found["plan"]});
     let solved = server.job(&moved).await.expect(StatusCode::OK);
     let largest = |results: &Value| results["statistics"]["skin"]["nodes"]["max"].as_f64().unwrap();
     assert!((largest(results) - largest(&solved["results"])).abs() < 1e-5);

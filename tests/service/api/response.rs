@@ -73,8 +73,7 @@ async fn a_plan_applied_to_a_response_is_the_prediction_of_that_plan() {
     let server = Server::start();
     let case = case(&server).await;
     let job = built(&server, json!({"kind": "response", "case": case})).await;
-    let mut spec =
-        json!({"kind": "predict", "case": case, "plan": plan(), "outputs": ["skin.csv"]});
+    let mut spec = json!({"kind": "predict", "method": "fem_linear", "case": case, "plan": plan(), "outputs": ["skin.csv"]});
     spec["tolerance"] = json!({"relative_residual": 1e-12});
     let direct = built(&server, spec).await;
     let path = format!("/v1/jobs/{}/results/skin.csv", direct["id"].as_str().unwrap());
@@ -468,7 +467,7 @@ async fn skin_that_passes_through_itself_is_told_by_predictions_and_where_a_resp
         warnings.map(|warning| warning["code"].as_str().unwrap().to_owned()).collect()
     };
     let overlaps = "skin-overlaps".to_owned();
-    let spec = json!({"kind": "predict", "case": case, "plan": past, "outputs": ["skin.csv"]});
+    let spec = json!({"kind": "predict", "method": "fem_linear", "case": case, "plan": past, "outputs": ["skin.csv"]});
     let job = built(&server, spec).await;
     assert!(codes(&job["results"]).contains(&overlaps), "{job}");
 
@@ -565,7 +564,7 @@ async fn an_order_that_a_response_does_not_have_is_refused() {
 async fn a_prediction_tells_what_linear_elasticity_leaves_out_or_why_that_is_not_known() {
     let server = Server::start();
     let case = case(&server).await;
-    let spec = json!({"kind": "predict", "case": case, "plan": plan(), "outputs": ["skin.vtp"]});
+    let spec = json!({"kind": "predict", "method": "fem_linear", "case": case, "plan": plan(), "outputs": ["skin.vtp"]});
     let job = built(&server, spec.clone()).await;
     let left = &job["results"]["nonlinearity_mm"];
     let [mean, p95, max] = ["mean", "p95", "max"].map(|name| left["skin"][name].as_f64().unwrap());
