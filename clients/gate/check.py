@@ -176,6 +176,10 @@ def main() -> None:
         expect("the same in GitLab", gitlab(folder, STUDY=worse, BASELINE_TAG=""), 1)
         expect("and without a baseline there", gitlab(folder, STUDY=worse, BASELINE_TAG="x"), 1)
         broken(folder)
+        of_study = [{"segments": [{"name": "mandible", "translation_mm": [0, step, 0]}]} for step in (1, 2)]
+        case = str((STUDY.parent / "../../../examples/block/case.json").resolve())
+        planned = changed(folder, "planned", scenes=[{"case": case}], plans=of_study)
+        expect("plans of the study over that of a case file", action(folder, study=planned)[0], 0)
         wrong = changed(folder, "wrong", methods=["guesswork"])
         expect("a study that is refused", action(folder, study=wrong)[0], 2)
         expect("a wrong key", action(folder, study=str(STUDY), key="none-of-the-keys")[0], 2)

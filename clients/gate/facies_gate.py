@@ -156,8 +156,9 @@ class Cases:
     def __init__(self, service: Service) -> None:
         self.service = service
 
-    def scene(self, scene: dict, folder: pathlib.Path) -> dict:
-        """The scene of a study with the id of its case in place of the file's path."""
+    def scene(self, scene: dict, folder: pathlib.Path, has_plans: bool) -> dict:
+        """The scene of a study with the id of its case in place of the file's path, and the plan of the file unless the study
+        states plans for its cases."""
         if "case" not in scene:
             raise Stop(REFUSED, f"the scene {json.dumps(scene)[:60]} of the study names no `case`, a file beside the study")
         path = folder / as_type(str, scene["case"], "`case` of a scene of the study")
@@ -171,7 +172,8 @@ class Cases:
                  for name, usual in (("units", "mm"), ("frame", "unspecified"))}
         for document, key in [*mesh_places(case, bones), *mesh_places(plan, bones)]:
             document[key] = self.mesh(path.parent / document[key], units)
-        return {"plans": [plan], "name": path.stem, **scene, "case": self.case(case)}
+        own = {} if has_plans else {"plans": [plan]}
+        return {**own, "name": path.stem, **scene, "case": self.case(case)}
 
     def mesh(self, path: pathlib.Path, units: dict[str, str]) -> str:
         """The id of a mesh. The service knows bytes that it has."""
@@ -259,8 +261,10 @@ def run(arguments: argparse.Namespace) -> int:
     path = pathlib.Path(arguments.study)
     study = read(path)
     cases = Cases(service)
+    # Plans in full are for cases, names for scenes of the program.
+    has_plans = any(isinstance(plan, dict) for plan in as_type(list, study.get("plans", []), f"{path}: /plans"))
     study["scenes"] = [
-        cases.scene(scene, path.parent) if isinstance(scene, dict) else scene
+        cases.scene(scene, path.parent, has_plans) if isinstance(scene, dict) else scene
         for scene in as_type(list, study.get("scenes", []), f"{path}: /scenes")]
     # Before the study is posted: it must not become its own baseline.
     baseline = baseline_of(service, arguments)

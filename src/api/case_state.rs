@@ -9,7 +9,7 @@ use crate::schema::case::meshed::CaseBody;
 use crate::schema::job::{ErrorClass, JobErrorDocument, JobStatus};
 use crate::schema::link::Link;
 use crate::schema::wire::problem::Problem;
-use crate::schema::{CaseDocument, ErrorCode};
+use crate::schema::{CaseDocument, ErrorCode, MaterialDocuments};
 use crate::store::{CaseMeshing, CaseRow};
 
 /// Whether a case can be predicted on.
@@ -99,8 +99,15 @@ fn error_of(meshing: &CaseMeshing) -> ApiResult<JobErrorDocument> {
 /// What a job on a case has of it.
 pub enum CaseOfJob {
     Whole(Box<CaseDocument>),
-    /// The job that makes its mesh.
-    Waits(String),
+    Waits(Awaited),
+}
+
+/// A case whose mesh is being made.
+pub struct Awaited {
+    /// The job that makes the mesh.
+    pub meshing: String,
+    /// As they were posted beside the scan.
+    pub materials: Option<MaterialDocuments>,
 }
 
 /// What a job on this case has of it; refused where there will be no mesh.
@@ -109,7 +116,14 @@ pub fn case_of_job(row: &CaseRow) -> ApiResult<CaseOfJob> {
     let state = state(row, &body);
     match (state, body, &row.meshing) {
         (CaseState::Ready, CaseBody::Whole(case), _) => Ok(CaseOfJob::Whole(case)),
-        (CaseState::Meshing, _, Some(meshing)) => Ok(CaseOfJob::Waits(meshing.job.clone())),
+        (CaseState::Meshing, body, Some(meshing)) => {
+            let meshing = meshing.job.clone();
+            let materials = match body {
+                CaseBody::ToMesh(case) => case.materials,
+                CaseBody::Whole(case) => case.materials,
+            };
+            Ok(CaseOfJob::Waits(Awaited { meshing, materials }))
+        }
         _ => Err(not_ready(row, state)),
     }
 }

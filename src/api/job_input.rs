@@ -41,9 +41,9 @@ async fn of_prediction(service: &Service, mut spec: PredictDocument) -> ApiResul
     let row = require_case(service, spec.case.as_deref().unwrap_or_default()).await?;
     let case = match case_of_job(&row)? {
         CaseOfJob::Whole(case) => *case,
-        CaseOfJob::Waits(meshing) => {
+        CaseOfJob::Waits(awaited) => {
             let plan = plan_of(service, &row.id, &mut spec).await?;
-            return Waiting { case: &row.id, meshing }.prediction(service, plan, spec).await;
+            return Waiting { case: &row.id, awaited }.prediction(service, plan, spec).await;
         }
     };
     let plan = plan_of(service, &row.id, &mut spec).await?;
@@ -108,8 +108,8 @@ async fn of_response(service: &Service, mut spec: ResponseDocument) -> ApiResult
     spec.case.clone_from(&row.id);
     let case = match case_of_job(&row)? {
         CaseOfJob::Whole(case) => *case,
-        CaseOfJob::Waits(meshing) => {
-            return Waiting { case: &row.id, meshing }.response(service, spec).await;
+        CaseOfJob::Waits(awaited) => {
+            return Waiting { case: &row.id, awaited }.response(service, spec).await;
         }
     };
     let (mesh_ids, tags) = (case.mesh_ids(), spec.tags.clone());
@@ -132,8 +132,8 @@ async fn of_optimisation(service: &Service, mut spec: OptimiseDocument) -> ApiRe
     spec.case.clone_from(&row.id);
     let case = match case_of_job(&row)? {
         CaseOfJob::Whole(case) => *case,
-        CaseOfJob::Waits(meshing) => {
-            return Waiting { case: &row.id, meshing }.optimisation(service, spec).await;
+        CaseOfJob::Waits(awaited) => {
+            return Waiting { case: &row.id, awaited }.optimisation(service, spec).await;
         }
     };
     let tags = spec.tags.clone();

@@ -13,15 +13,20 @@ pub fn status_info(row: &JobRow, deduplicated: bool) -> ApiResult<StatusInfo> {
         .ok_or_else(|| ApiError::internal(format!("kind of job `{}`", row.kind)))?;
     let results: Option<ResultDocument> = parsed(row.result.as_deref())?;
     let warnings = results.as_ref().map(|results| results.warnings.clone());
+    let is_running = row.status == JobStatus::Running;
     Ok(StatusInfo {
         id: row.id.clone(),
         kind,
         status: row.status,
-        phase: row.phase.clone().filter(|_| row.status == JobStatus::Running),
+        phase: row.phase.clone().filter(|_| is_running),
         message: message(row),
         progress: u8::try_from(row.progress.clamp(0, 100)).unwrap_or(100),
-        iteration: row.iteration.and_then(|iteration| u64::try_from(iteration).ok()),
-        residual: row.residual,
+        // Where work stands says nothing of what it came to.
+        iteration: row
+            .iteration
+            .filter(|_| is_running)
+            .and_then(|iteration| u64::try_from(iteration).ok()),
+        residual: row.residual.filter(|_| is_running),
         created: time::rfc3339(row.created),
         started: row.started.map(time::rfc3339),
         finished: row.finished.map(time::rfc3339),

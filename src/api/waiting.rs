@@ -5,20 +5,25 @@ use serde_json::{Value, json};
 
 use super::Service;
 use super::accepted::{Accepted, in_spec, require_mesh};
+use super::case_state::Awaited;
 use super::error::{ApiError, ApiResult};
 use super::parameters::id;
 use crate::jobs::{JobInput, OptimiseInput, PredictInput, ResponseInput};
 use crate::schema::case::document::LengthUnit;
+use crate::schema::case::material::{PlacedMaterials, merge_materials};
+use crate::schema::plan::document::PlanContext;
 use crate::schema::wire::canonical::to_value;
 use crate::schema::{
-    CaseDocument, Faults, OptimiseDocument, PlanDocument, PredictDocument, ResponseDocument, hashes,
+    CaseDocument, Faults, OptimiseDocument, PlanDocument, Pointer, PredictDocument,
+    ResponseDocument, hashes,
 };
 use crate::store::NewJob;
+use mechanics::mesh::Frame;
 
-/// A case that waits for its mesh, and the job that makes it.
+/// A case that waits for its mesh.
 pub struct Waiting<'a> {
     pub case: &'a str,
-    pub meshing: String,
+    pub awaited: Awaited,
 }
 
 impl Waiting<'_> {
@@ -28,7 +33,7 @@ impl Waiting<'_> {
         mut plan: PlanDocument,
         spec: PredictDocument,
     ) -> ApiResult<NewJob> {
-        check(service, &spec)?;
+        self.check(service, Some(&plan), &spec)?;
         let mut named: Vec<String> =
             plan.surface_references_mut().into_iter().map(|(_, id)| id.clone()).collect();
         if let Some(compare_to) = &spec.compare_to {
@@ -43,7 +48,7 @@ impl Waiting<'_> {
     }
 
     pub async fn response(self, service: &Service, spec: ResponseDocument) -> ApiResult<NewJob> {
-        check(service, &spec.to_prediction())?;
+        self.check(service, None, &spec.to_prediction())?;
         let mut faults = Faults::default();
         spec.check(&service.limits, &mut faults);
         faults.into_result().map_err(in_spec)?;
@@ -58,11 +63,37 @@ impl Waiting<'_> {
         service: &Service,
         mut spec: OptimiseDocument,
     ) -> ApiResult<NewJob> {
-        check(service, &spec.to_prediction())?;
+        self.check(service, None, &spec.to_prediction())?;
         let named = spec.surfaces_mut().into_iter().map(|id| id.clone()).collect();
         let (asked, tags) = (json!({ "spec": spec.content() }), spec.tags.clone());
         let input = OptimiseInput { job: None, queue_s: None, case: to_come(), spec };
         self.accept(service, &JobInput::Optimise(input), Asked { asked, tags, named }).await
+    }
+
+    /// Checks what needs no mesh, in the places where it stands on a case that has one.
+    fn check(
+        &self,
+        service: &Service,
+        plan: Option<&PlanDocument>,
+        spec: &PredictDocument,
+    ) -> ApiResult<()> {
+        let (limits, at) = (&service.limits, Pointer::root().key("spec"));
+        let mut faults = Faults::default();
+        spec.to_settings(limits, &mut faults);
+        spec.check_element(&mut faults);
+        let own = PlacedMaterials {
+            at: Pointer::root().key("case").key("materials"),
+            materials: self.awaited.materials.as_ref(),
+        };
+        let over = PlacedMaterials { at: at.key("materials"), materials: spec.materials.as_ref() };
+        merge_materials(&own, &over, limits, &mut faults);
+        if let Some(plan) = plan {
+            // Only the mesh knows the frame of the case where the scan does not.
+            let frame = plan.frame.map_or(Frame::Unspecified, Frame::from);
+            let context = PlanContext { frame, centre: None, limits };
+            plan.to_plan(&Pointer::root().key("plan"), &context, &mut faults);
+        }
+        Ok(faults.into_result().map_err(in_spec)?)
     }
 
     async fn accept(self, service: &Service, input: &JobInput, of: Asked) -> ApiResult<NewJob> {
@@ -84,7 +115,7 @@ impl Waiting<'_> {
             study: None,
         };
         let document = without_case(input)?;
-        let waits_for = Some(self.meshing);
+        let waits_for = Some(self.awaited.meshing);
         Ok(NewJob { document, waits_for, ..accepted.with(input)? })
     }
 }
@@ -101,13 +132,6 @@ struct Asked {
 /// Stands for the case until there is one.
 fn to_come() -> CaseDocument {
     CaseDocument::of_volume("", LengthUnit::Mm)
-}
-
-/// Checks what needs no mesh.
-fn check(service: &Service, spec: &PredictDocument) -> ApiResult<()> {
-    let mut faults = Faults::default();
-    spec.to_settings(&service.limits, &mut faults);
-    Ok(faults.into_result().map_err(in_spec)?)
 }
 
 fn without_case(input: &JobInput) -> ApiResult<String> {

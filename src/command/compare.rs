@@ -5,8 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 
 use super::failure::CommandError;
-use super::files::{FileSource, ScaleArguments};
-use super::scene::UnitArgument;
+use super::files::{FileSource, ScaleArguments, UnitArgument};
 use super::screen::{print_files, print_warnings, work_in_sight};
 use crate::jobs::{CompareInput, JobInput, Workplace};
 use crate::schema::compare::document::{

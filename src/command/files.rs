@@ -5,7 +5,7 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 
 use crate::jobs::{MeshSize, MeshSource, SourceError, StoredMesh};
 use crate::schema::CaseDocument;
@@ -19,6 +19,24 @@ pub struct ScaleArguments {
     /// Takes meshes of any size: without it one that measures less than 5 mm or more than 5 m is refused
     #[arg(long)]
     allow_any_scale: bool,
+}
+
+#[derive(Clone, Copy, Debug, Default, ValueEnum)]
+pub enum UnitArgument {
+    #[default]
+    Mm,
+    M,
+    Um,
+}
+
+impl UnitArgument {
+    pub fn unit(self) -> LengthUnit {
+        match self {
+            UnitArgument::Mm => LengthUnit::Mm,
+            UnitArgument::M => LengthUnit::M,
+            UnitArgument::Um => LengthUnit::Um,
+        }
+    }
 }
 
 /// What the meshes of files are in.

@@ -7,7 +7,7 @@ use clap::Args;
 
 use super::documents::{CaseFile, read, write};
 use super::failure::CommandError;
-use super::files::{FileSource, ScaleArguments};
+use super::files::{FileSource, ScaleArguments, UnitArgument};
 use super::screen::{print_files, print_warnings, work_in_sight};
 use super::selection::{BoneArgument, bone};
 use super::watch::Watch;
@@ -19,7 +19,7 @@ use crate::schema::meshing::surfaces::SurfacesDocument;
 use crate::schema::wire::canonical;
 use crate::schema::{
     CaseDocument, ErrorCode, Faults, Limits, MeshingDocument, PlanDocument, Pointer,
-    PredictDocument,
+    PredictDocument, WarningDocument,
 };
 use mechanics::mesh::Frame;
 
@@ -28,6 +28,10 @@ const RESULT: &str = "Result";
 
 const NO_SCAN: &str = "give what is to be meshed: --scan FILE, or --skin FILE and --bone FILE";
 const NO_SKIN: &str = "--bone needs the skin around it: --skin FILE";
+const SKIN_OF_SCAN: &str = "--skin has no meaning with --scan: the skin is found in the scan, and is the node set `skin` of the \
+                            mesh; with --bone it is the file of the skin";
+const UNITS_OF_SCAN: &str =
+    "--units has no meaning with --scan: an image says its own spacing, in mm";
 const TWO_KINDS_OF_BONE: &str =
     "give --bone once as a FILE of all bone, or every time as NAME=FILE for a segment";
 
@@ -35,15 +39,30 @@ const TWO_KINDS_OF_BONE: &str =
 pub struct Arguments {
     #[command(flatten)]
     scan: ScanArguments,
-    /// The surface of the skin in mm, around --bone
+    /// The surface of the skin, around --bone
     #[arg(long, value_name = "FILE", requires = "bone", help_heading = SCAN)]
     skin: Option<String>,
+    /// The unit of length of the surfaces; default mm
+    #[arg(long, help_heading = SCAN)]
+    units: Option<UnitArgument>,
     /// A plan whose osteotomy cuts the bone; without one all bone is fixed
     #[arg(long, value_name = "FILE", help_heading = SCAN)]
     plan: Option<PathBuf>,
     /// The folder for the mesh, its picture and `case.json`
     #[arg(long, visible_alias = "output", value_name = "FOLDER", help_heading = RESULT)]
     out: PathBuf,
+    #[command(flatten)]
+    scale: ScaleArguments,
+}
+
+/// What is said beside a scan or the bone of surfaces.
+pub struct Beside<'a> {
+    pub skin: Option<&'a str>,
+    /// Its osteotomy cuts the bone.
+    pub plan: Option<&'a Path>,
+    /// Of surfaces.
+    pub units: Option<UnitArgument>,
+    pub scale: ScaleArguments,
 }
 
 /// A scan or the bone of surfaces, and how they are meshed.
@@ -52,7 +71,7 @@ pub struct ScanArguments {
     /// A CT in Hounsfield units, to be meshed first
     #[arg(long, value_name = "FILE", group = "meshed", help_heading = SCAN)]
     scan: Option<PathBuf>,
-    /// The surface of all bone in mm, to be meshed first with the skin around it; NAME=FILE, which may be given several
+    /// The surface of all bone, to be meshed first with the skin around it; NAME=FILE, which may be given several
     /// times, for bones that are segments already
     #[arg(long, value_name = "FILE|NAME=FILE", conflicts_with = "scan", group = "meshed", help_heading = SCAN)]
     bone: Vec<String>,
@@ -68,14 +87,17 @@ pub struct ScanArguments {
 pub struct Meshed {
     pub file: CaseFile,
     pub meshes: BTreeMap<String, StoredMesh>,
+    /// What there is to say of the scan and the mesh, which every job on the mesh says too.
+    pub warnings: Vec<WarningDocument>,
 }
 
 /// Meshes, writes the files, and tells what is in them.
 pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
-    let plan = arguments.plan.as_deref();
-    let Meshed { file, .. } =
-        arguments.scan.mesh(arguments.skin.as_deref(), plan, &arguments.out)?;
-    let path = arguments.out.join("case.json");
+    let Arguments { scan, skin, units, plan, out, scale } = arguments;
+    let (skin, plan, units, scale) = (skin.as_deref(), plan.as_deref(), *units, *scale);
+    let Meshed { file, warnings, .. } = scan.mesh(&Beside { skin, plan, units, scale }, out)?;
+    print_warnings(&warnings);
+    let path = out.join("case.json");
     write(&path, format!("{:#}\n", canonical::to_value(&file)))?;
     println!("wrote      {}", path.display());
     Ok(())
@@ -88,16 +110,13 @@ impl ScanArguments {
 
     /// Meshes the scan, or what lies between skin and bone, into a folder and tells what came out: the case with the plan
     /// without its cuts. Paths of meshes lead from the folder.
-    pub fn mesh(
-        &self,
-        skin: Option<&str>,
-        plan: Option<&Path>,
-        out: &Path,
-    ) -> Result<Meshed, CommandError> {
-        let plan = plan.map(read::<PlanDocument>).transpose()?;
-        let (spec, plan) = self.spec(skin, plan)?;
+    pub fn mesh(&self, beside: &Beside, out: &Path) -> Result<Meshed, CommandError> {
+        self.refuse_beside_image(beside)?;
+        let plan = beside.plan.map(read::<PlanDocument>).transpose()?;
+        let (spec, plan) = self.spec(beside.skin, plan)?;
         let limits = Limits::default();
-        let sources = FileSource::new(Path::new(""), LengthUnit::Mm, ScaleArguments::default());
+        let units = beside.units.unwrap_or_default().unit();
+        let sources = FileSource::new(Path::new(""), units, beside.scale);
         let place = Workplace { sources: &sources, limits: &limits, out };
         let input = MeshingInput { job: None, queue_s: None, spec, case: None };
         let _watch = Watch::start(&input.spec.budget);
@@ -106,11 +125,23 @@ impl ScanArguments {
             return Err(CommandError::Usage(NO_SCAN.to_owned()));
         };
         print_result(result, done.result.provenance.timing.total_s);
-        print_warnings(&done.result.warnings);
         print_files(&done.files, out);
         let case = result.case.clone();
         let meshes = in_memory(&case, &done);
-        Ok(Meshed { file: CaseFile { case, plan, spec: PredictDocument::default() }, meshes })
+        let file = CaseFile { case, plan, spec: PredictDocument::default() };
+        Ok(Meshed { file, meshes, warnings: done.result.warnings })
+    }
+
+    /// Refuses what says of surfaces what an image says itself.
+    fn refuse_beside_image(&self, beside: &Beside) -> Result<(), CommandError> {
+        let is_image = self.scan.is_some();
+        let why = match (beside.skin.is_some(), beside.units.is_some()) {
+            _ if !is_image => return Ok(()),
+            (true, _) => SKIN_OF_SCAN,
+            (false, true) => UNITS_OF_SCAN,
+            (false, false) => return Ok(()),
+        };
+        Err(CommandError::Usage(why.to_owned()))
     }
 
     /// The document of the meshing, and the plan without its cuts.
@@ -188,6 +219,7 @@ fn in_memory(case: &CaseDocument, done: &JobOutput) -> BTreeMap<String, StoredMe
             frame: (made.frame != Frame::Unspecified).then_some(made.frame),
             units: Some(LengthUnit::Mm),
             warnings: Vec::new(),
+            told: made.told.clone(),
             sha256: file.sha256.clone(),
         };
         Some((id.clone(), mesh))

@@ -6,10 +6,10 @@ use clap::{Args, ValueEnum};
 
 use super::documents::{Asked, CaseFile, read};
 use super::failure::CommandError;
-use super::files::{FileSource, ScaleArguments};
-use super::mesh::{Meshed, ScanArguments};
+use super::files::{FileSource, ScaleArguments, UnitArgument};
+use super::mesh::{Beside, Meshed, ScanArguments};
 use super::selection::{segment, selection};
-use crate::schema::case::document::{FrameName, LengthUnit, SegmentDocument};
+use crate::schema::case::document::{FrameName, SegmentDocument};
 use crate::schema::case::selection::SelectionDocument;
 use crate::schema::methods::ElementName;
 use crate::schema::{CaseDocument, MaterialDocument, PlanDocument, PredictDocument};
@@ -19,6 +19,14 @@ use mechanics::prediction::ElementChoice;
 const SCENE: &str = "What is predicted";
 const BOUNDARY: &str = "What holds and moves it";
 const TISSUE: &str = "Tissue";
+
+/// Arguments about a mesh that is there, beside what is meshed first.
+const FIXED_BESIDE_SCAN: &str = "--fixed has no meaning where a scan or surfaces are meshed: bone that no cut frees is fixed; \
+                                 `facies mesh` writes a case.json whose `fixed` may be changed";
+const SEGMENT_BESIDE_SCAN: &str = "--segment has no meaning where a scan or surfaces are meshed: segments are those of \
+                                   `osteotomy` in the plan, or of --bone NAME=FILE";
+const FRAME_BESIDE_SCAN: &str = "--frame has no meaning where a scan or surfaces are meshed: the frame is that of their files; \
+                                 state `frame` in the plan where surfaces name none";
 
 /// What is to be predicted.
 #[derive(Debug, Args)]
@@ -41,12 +49,12 @@ pub struct SceneArguments {
     /// are segments without it
     #[arg(long, value_name = "NAME=SET|NAME=ARRAY=VALUE", value_parser = segment, conflicts_with = "case", help_heading = BOUNDARY)]
     segment: Vec<SegmentDocument>,
-    /// The unit of length of the mesh
-    #[arg(long, default_value = "mm", conflicts_with = "case", help_heading = SCENE)]
-    units: UnitArgument,
-    /// The frame of the mesh
-    #[arg(long, default_value = "unspecified", conflicts_with = "case", help_heading = SCENE)]
-    frame: FrameArgument,
+    /// The unit of length of the mesh, or of the surfaces that are meshed; default mm
+    #[arg(long, conflicts_with = "case", help_heading = SCENE)]
+    units: Option<UnitArgument>,
+    /// The frame of the mesh; default unspecified
+    #[arg(long, conflicts_with = "case", help_heading = SCENE)]
+    frame: Option<FrameArgument>,
     /// Young's modulus of all tissue, in kPa; default 15
     #[arg(long, value_name = "KPA", conflicts_with = "case", help_heading = TISSUE)]
     young_modulus_kpa: Option<f64>,
@@ -69,13 +77,6 @@ pub struct PlanArgument {
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
-pub enum UnitArgument {
-    Mm,
-    M,
-    Um,
-}
-
-#[derive(Clone, Copy, Debug, ValueEnum)]
 enum FrameArgument {
     #[value(name = "LPS")]
     Lps,
@@ -92,16 +93,6 @@ enum ElementArgument {
     MeanDilatation,
     Stabilised,
     Quadratic,
-}
-
-impl UnitArgument {
-    pub fn unit(self) -> LengthUnit {
-        match self {
-            UnitArgument::Mm => LengthUnit::Mm,
-            UnitArgument::M => LengthUnit::M,
-            UnitArgument::Um => LengthUnit::Um,
-        }
-    }
 }
 
 impl SceneArguments {
@@ -134,20 +125,39 @@ impl SceneArguments {
             let detail = "give one of --case, --mesh, --scan and --bone: the last two become a mesh and a case";
             return Err(CommandError::Usage(detail.to_owned()));
         }
+        self.refuse_beside_scan()?;
         let folder = out.join("mesh");
-        let Meshed { mut file, meshes } = scan.mesh(self.skin.as_deref(), plan, &folder)?;
+        let (skin, units, scale) = (self.skin.as_deref(), self.units, self.scale);
+        let Meshed { mut file, meshes, .. } =
+            scan.mesh(&Beside { skin, plan, units, scale }, &folder)?;
         file.spec = self.spec();
         let sources = FileSource::new(&folder, file.case.units, self.scale).with(meshes);
         Ok(Asked { file, path: folder.clone(), folder, sources })
     }
 
+    /// Refuses what says of a mesh that is there what a meshing finds.
+    fn refuse_beside_scan(&self) -> Result<(), CommandError> {
+        let given = [
+            (!self.fixed.is_empty(), FIXED_BESIDE_SCAN),
+            (!self.segment.is_empty(), SEGMENT_BESIDE_SCAN),
+            (self.frame.is_some(), FRAME_BESIDE_SCAN),
+        ];
+        let refused: Vec<&str> =
+            given.into_iter().filter(|(is_given, _)| *is_given).map(|(_, why)| why).collect();
+        match refused.is_empty() {
+            true => Ok(()),
+            false => Err(CommandError::Usage(refused.join("; "))),
+        }
+    }
+
     fn documents_of(&self, mesh: &Path, plan: Option<&Path>) -> Result<CaseFile, CommandError> {
         let plan = plan.map(read::<PlanDocument>).transpose()?;
-        let mut case = CaseDocument::of_volume(&mesh.to_string_lossy(), self.units.unit());
+        let mut case =
+            CaseDocument::of_volume(&mesh.to_string_lossy(), self.units.unwrap_or_default().unit());
         case.frame = match self.frame {
-            FrameArgument::Lps => FrameName::Lps,
-            FrameArgument::Ras => FrameName::Ras,
-            FrameArgument::Unspecified => FrameName::Unspecified,
+            Some(FrameArgument::Lps) => FrameName::Lps,
+            Some(FrameArgument::Ras) => FrameName::Ras,
+            Some(FrameArgument::Unspecified) | None => FrameName::Unspecified,
         };
         let skin = self.skin.as_deref().map(selection).transpose();
         case.skin = skin.map_err(CommandError::Usage)?;

@@ -194,17 +194,20 @@ impl Arguments {
         // Paths of arguments lead from here, those of a document from where it lies.
         let of_arguments = !self.case.is_empty();
         let folder = self.spec.as_deref().filter(|_| !of_arguments).and_then(Path::parent);
+        // Plans that the study states stand over those of the files.
+        let has_plans = !spec.plan_documents().is_empty();
         for scene in &mut spec.scenes {
             if let SceneReference::Case(reference) = scene {
                 let path = folder.unwrap_or(Path::new("")).join(&reference.case);
-                cases.insert(reference.case.clone(), read_case(&path, reference)?);
+                let case = read_case(&path, reference, has_plans)?;
+                cases.insert(reference.case.clone(), case);
             }
         }
         for item in &mut spec.items {
             let path = folder.unwrap_or(Path::new("")).join(&item.case);
             let mut reference =
                 CaseReference { case: item.case.clone(), name: None, plans: Vec::new() };
-            let mut case = read_case(&path, &mut reference)?;
+            let mut case = read_case(&path, &mut reference, false)?;
             case.name = case.name.or(reference.name);
             item.plan = item.plan.take().or(reference.plans.pop());
             cases.insert(item.case.clone(), case);
@@ -234,8 +237,13 @@ fn read_report(path: &Path) -> Result<ReportDocument, CommandError> {
         .map_err(|error| CommandError::Usage(format!("{} is no report: {error}", path.display())))
 }
 
-/// A case with mesh paths that lead from here; its plan goes into the reference, which gets the name of the file.
-fn read_case(path: &Path, reference: &mut CaseReference) -> Result<CaseDocument, CommandError> {
+/// A case with mesh paths that lead from here; its plan goes into the reference unless the study has plans, and the name of
+/// the file too.
+fn read_case(
+    path: &Path,
+    reference: &mut CaseReference,
+    has_plans: bool,
+) -> Result<CaseDocument, CommandError> {
     let file: CaseFile = read(path)?;
     file.refuse_spec(OWN_WAYS, path)?;
     let CaseFile { mut case, plan, .. } = file;
@@ -249,7 +257,7 @@ fn read_case(path: &Path, reference: &mut CaseReference) -> Result<CaseDocument,
             lead(id);
         }
     }
-    if reference.plans.is_empty() {
+    if reference.plans.is_empty() && !has_plans {
         reference.plans.push(plan);
     }
     if reference.name.is_none() {

@@ -16,8 +16,6 @@ use crate::worker::process::memory;
 const LOOK: Duration = Duration::from_millis(50);
 /// How long work may go on once its time is used up, as in a slot.
 const GRACE: Duration = Duration::from_secs(10);
-/// The memory of matrix and solver is estimated to within a third, and results stand beside them.
-const ROOM: f64 = 1.5;
 
 /// Looks on until it is dropped.
 pub struct Watch {
@@ -43,7 +41,7 @@ impl Watch {
             wall_s: budget.wall_s,
             until: wall.and_then(|wall| Instant::now().checked_add(wall + GRACE)),
             memory_mb: budget.memory_mb,
-            most_bytes: taken + ROOM * budget.memory_mb * 1e6,
+            most_bytes: taken + memory::ROOM * budget.memory_mb * 1e6,
         };
         let (work_goes_on, heard) = channel();
         std::thread::spawn(move || look_on(&bounds, &heard));

@@ -3,9 +3,9 @@
 use std::path::Path;
 
 use super::source::{MeshSource, StoredShape};
-use crate::schema::Limits;
 use crate::schema::predict::keep::MadeName;
 use crate::schema::predict::result::{FileDocument, ResultDocument};
+use crate::schema::{Limits, WarningDocument};
 use mechanics::mesh::Frame;
 
 /// What a job made.
@@ -27,6 +27,8 @@ pub struct MadeMesh {
     pub name: Option<String>,
     pub shape: StoredShape,
     pub frame: Frame,
+    /// What its meshing has to say, which every job on it says too.
+    pub told: Vec<WarningDocument>,
 }
 
 /// Where a job finds its meshes, what it is allowed, and where its files go.

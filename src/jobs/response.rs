@@ -11,7 +11,7 @@ use crate::jobs::result::folder::ResultFolder;
 use crate::jobs::result::provenance::{
     Origin, add_method, encode_result, mesh_summary, solver_document,
 };
-use crate::jobs::result::warnings::warning_documents;
+use crate::jobs::result::warnings::warnings_after;
 use crate::schema::case::conversion::centre;
 use crate::schema::hashes;
 use crate::schema::predict::document::OutputName;
@@ -138,7 +138,8 @@ pub fn response_job(
     let mut provenance = origin.provenance(&clock);
     let mesh = mesh_summary(&prepared.scene.mesh, &prepared.quality);
     add_method(&mut provenance, input.spec.method, mesh, solver);
-    let warnings = warning_documents(prepared.warnings.iter().chain(&prepared.scene.warnings));
+    let warnings = prepared.warnings.iter().chain(&prepared.scene.warnings);
+    let warnings = warnings_after(&prepared.told, warnings);
     let result = ResultDocument::new(input.job.clone(), &folder.files, provenance, warnings);
     folder.add(OutputName::ResultJson, &encode_result(&result)?)?;
     Ok(JobOutput { result, files: folder.files, meshes: Vec::new() })

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use crate::schema::ErrorCode;
+use crate::schema::WarningDocument;
 use crate::schema::case::document::LengthUnit;
 use mechanics::format::{Mesh, ReadMesh};
 use mechanics::image::ImageVolume;
@@ -26,6 +27,8 @@ pub struct StoredMesh {
     pub units: Option<LengthUnit>,
     /// What the reader had to say.
     pub warnings: Vec<Warning>,
+    /// What the meshing that made it had to say.
+    pub told: Vec<WarningDocument>,
     /// SHA-256 in hexadecimal.
     pub sha256: String,
 }
@@ -63,7 +66,8 @@ impl StoredMesh {
             Mesh::Image(image) => StoredShape::Image(Arc::new(image)),
         };
         let units = units.filter(|_| !matches!(shape, StoredShape::Image(_)));
-        StoredMesh { shape, frame: read.frame, units, warnings: read.warnings, sha256 }
+        let (frame, warnings) = (read.frame, read.warnings);
+        StoredMesh { shape, frame, units, warnings, told: Vec::new(), sha256 }
     }
 
     /// The surface, or the boundary of the volume; an image has none.

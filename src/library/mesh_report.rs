@@ -54,6 +54,7 @@ pub fn mesh_report(read: &ReadMesh) -> MeshReport {
         min_quality: None,
         image: None,
         warnings: warnings.iter().map(WarningDocument::from).collect(),
+        meshing: Vec::new(),
     };
     match &read.mesh {
         Mesh::Volume(volume) => describe(volume, &mut report),

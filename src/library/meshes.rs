@@ -9,6 +9,7 @@ use tokio::runtime::Handle;
 
 use super::cache::MeshCache;
 use crate::jobs::{MeshSource, SourceError, StoredMesh, StoredShape};
+use crate::schema::WarningDocument;
 use crate::schema::case::document::{FrameName, LengthUnit};
 use crate::schema::mesh::MeshDocument;
 use crate::store::{MeshRow, Store, StoreError};
@@ -27,6 +28,9 @@ pub struct MeshCard {
     pub sha256: String,
     pub frame: Option<FrameName>,
     pub units: Option<LengthUnit>,
+    /// What the meshing that made it had to say.
+    #[serde(default)]
+    pub told: Vec<WarningDocument>,
 }
 
 impl MeshCard {
@@ -38,6 +42,7 @@ impl MeshCard {
             sha256: row.sha256,
             frame: document.report.space.or(document.frame),
             units: document.units,
+            told: document.report.meshing,
         })
     }
 
@@ -48,6 +53,7 @@ impl MeshCard {
             frame: self.frame.map(Frame::from),
             units: self.units,
             warnings: Vec::new(),
+            told: self.told,
             sha256: self.sha256,
         }
     }

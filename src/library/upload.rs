@@ -54,6 +54,8 @@ struct Received {
     /// How many bytes, and their hash.
     bytes: u64,
     sha256: String,
+    /// What the meshing that made it had to say.
+    told: Vec<WarningDocument>,
 }
 
 /// Reads and checks an upload. Takes its time: not for an async thread.
@@ -64,7 +66,8 @@ pub fn read_upload(
     standalone: bool,
 ) -> Result<Upload, Problem> {
     let read = format::read(bytes, &ReadLimits::default()).map_err(|error| problem_of(&error))?;
-    understand(Received { read, bytes: bytes.len() as u64, sha256 }, statement, standalone)
+    let received = Received { read, bytes: bytes.len() as u64, sha256, told: Vec::new() };
+    understand(received, statement, standalone)
 }
 
 /// A mesh that a job made, as if somebody had uploaded the file that we write of it.
@@ -79,7 +82,8 @@ pub fn upload_made(mesh: &MadeMesh) -> Result<Upload, Problem> {
         allow_any_scale: true,
     };
     let (bytes, sha256) = (bytes.len() as u64, sha256_hex(&bytes));
-    understand(Received { read, bytes, sha256 }, &statement, false)
+    let told = mesh.told.clone();
+    understand(Received { read, bytes, sha256, told }, &statement, false)
 }
 
 /// What was read as a mesh that can be stored.
@@ -88,7 +92,7 @@ fn understand(
     statement: &Statement,
     standalone: bool,
 ) -> Result<Upload, Problem> {
-    let Received { read, bytes, sha256 } = received;
+    let Received { read, bytes, sha256, told } = received;
     let is_image = matches!(read.mesh, Mesh::Image(_));
     let units = statement.units.filter(|_| !is_image);
     // The frame stated for a form of several parts is that of the case, to which an image is turned.
@@ -100,6 +104,7 @@ fn understand(
         rayon::join(|| mesh_report(&read), || encode_read(&read.mesh, frame));
     let size = MeshSize { diagonal: report.diagonal, units: units.unwrap_or_default() };
     let scale = size.check(statement.allow_any_scale)?;
+    report.meshing = told;
     report.warnings.extend(scale.as_ref().map(WarningDocument::from));
     let id = uuid::Uuid::now_v7().to_string();
     let document = MeshDocument {

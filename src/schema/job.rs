@@ -60,6 +60,7 @@ pub struct StatusInfo {
     /// 0 to 100, never falling.
     #[schema(maximum = 100)]
     pub progress: u8,
+    /// Of what the job solves at this moment; absent once it has ended, as `residual` and `phase`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub iteration: Option<u64>,

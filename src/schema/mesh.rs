@@ -80,6 +80,9 @@ pub struct MeshReport {
     #[schema(nullable = false)]
     pub image: Option<ImageReport>,
     pub warnings: Vec<WarningDocument>,
+    /// Of a volume that a meshing made: what that had to say of the scan or the surfaces. Every job on the mesh says it too.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub meshing: Vec<WarningDocument>,
 }
 
 /// An array of a file that nothing reads.

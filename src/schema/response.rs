@@ -317,7 +317,7 @@ impl ResponseDescription {
             ..PlanDocument::default()
         };
         let centre = self.mesh_centre_mm.into();
-        let context = PlanContext { frame: self.frame.into(), centre, limits };
+        let context = PlanContext { frame: self.frame.into(), centre: Some(centre), limits };
         let planned = segments_only.to_plan(&at, &context, &mut faults).segments;
         for (index, segment) in plan.segments.iter().enumerate() {
             let name = segment.name.trim();

@@ -5,7 +5,7 @@ use std::fs;
 use serde_json::{Value, json};
 
 use crate::program::{facies, path, result, text};
-use crate::samples::{BONE_BALL, SKIN_BALL, ball_ct, ball_stl};
+use crate::samples::{BONE_BALL, SKIN_BALL, SampleBall, ball_ct, ball_stl};
 
 fn plan() -> Value {
     json!({
@@ -72,6 +72,59 @@ fn a_plan_that_moves_what_is_not_cut_is_refused_before_anything_is_meshed() {
     let told = text(&done.stderr);
     assert!(told.contains("/plan/segments/0/name") && told.contains("jaw"), "{told}");
     assert!(!out.exists());
+}
+
+#[test]
+fn what_has_no_meaning_where_a_scan_is_meshed_is_refused_by_name() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = |name: &str| folder.path().join(name);
+    fs::write(file("ct.nrrd"), ball_ct()).unwrap();
+    fs::write(file("plan.json"), plan().to_string()).unwrap();
+    let (scan, plan, out) = (file("ct.nrrd"), file("plan.json"), file("out"));
+    let rest = ["--scan", path(&scan), "--plan", path(&plan), "--out", path(&out)];
+    for (command, argument, value) in [
+        ("predict", "--fixed", "skull"),
+        ("predict", "--segment", "jaw=nosuch"),
+        ("predict", "--skin", "nosuchset"),
+        ("predict", "--frame", "RAS"),
+        ("predict", "--units", "um"),
+        ("mesh", "--skin", "skin.stl"),
+        ("mesh", "--units", "m"),
+    ] {
+        let refused = facies(&[&[command, argument, value], &rest[..]].concat());
+        let told = text(&refused.stderr);
+        assert_eq!(refused.status.code(), Some(2), "{command} {argument}: {told}");
+        assert!(told.contains(&format!("{argument} has no meaning")), "{argument}: {told}");
+        assert!(!out.exists(), "{argument}");
+    }
+}
+
+/// The same ball in m.
+fn in_metres(ball: SampleBall) -> SampleBall {
+    SampleBall { centre: ball.centre.map(|x| x * 1e-3), radius: ball.radius * 1e-3 }
+}
+
+#[test]
+fn surfaces_in_metres_are_meshed_where_the_unit_is_said() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = |name: &str| folder.path().join(name);
+    fs::write(file("skin.stl"), ball_stl(in_metres(SKIN_BALL))).unwrap();
+    fs::write(file("bone.stl"), ball_stl(in_metres(BONE_BALL))).unwrap();
+    let (skin, bone, out) = (file("skin.stl"), file("bone.stl"), file("out"));
+    let asked = ["mesh", "--skin", path(&skin), "--bone", path(&bone), "--tetrahedra", "8000"];
+    let asked = [&asked[..], &["--out", path(&out)]].concat();
+    let refused = facies(&asked);
+    assert_eq!(refused.status.code(), Some(2));
+    let told = text(&refused.stderr);
+    assert!(told.contains("in m it would fit") && told.contains("--allow-any-scale"), "{told}");
+    let done = facies(&[&asked[..], &["--units", "m"]].concat());
+    assert_eq!(done.status.code(), Some(0), "{}", text(&done.stderr));
+    let meshed = result(&out).meshing.unwrap();
+    // Between balls of 50 and 30 mm.
+    assert!((400.0..420.0).contains(&meshed.volume_ml), "{}", meshed.volume_ml);
+    // The advice of the refusal is taken: what comes now is about the tissue and not about the scale.
+    let taken = facies(&[&asked[..], &["--allow-any-scale"]].concat());
+    assert!(!text(&taken.stderr).contains("units-suspect"), "{}", text(&taken.stderr));
 }
 
 #[test]

@@ -163,6 +163,43 @@ fn cases_from_files_have_each_their_own_plan() {
     assert!((moved("far") / moved("near") - 3.0).abs() < 1e-5);
 }
 
+#[test]
+fn plans_of_a_study_stand_over_that_of_a_case_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let plan =
+        |name: &str, x: f64| json!({"segments": [{"name": name, "translation_mm": [x, 0, 0]}]});
+    let case = json!({
+        "case": {
+            "units": "mm",
+            "volume": block().join("block.vtu"),
+            "segments": [{"name": "jaw", "nodes": {"node_set": "mandible"}}],
+            "fixed": [{"node_set": "skull"}],
+            "materials": {"*": {"young_modulus_kpa": 15, "poisson_ratio": 0.46}},
+        },
+        "plan": plan("jaw", 1.0),
+    });
+    fs::write(folder.path().join("case.json"), case.to_string()).unwrap();
+    let spec = |scene: Value| {
+        json!({
+            "scenes": [scene], "plans": [plan("jaw", 1.0), plan("jaw", 2.0)], "repeats": 1,
+            "methods": [{"method": "fem_linear", "label": "fem"}],
+            "truth": {"refine": 1, "element": "mean_dilatation"},
+        })
+    };
+    let (code, told, report) =
+        study(folder.path(), &spec(json!({"case": "case.json"})), &["--level", "0"]);
+    assert_eq!(code, 0, "{told}");
+    let moved: Vec<f64> =
+        report.unwrap().rows.iter().map(|row| row.numbers.as_ref().unwrap().skin_mean_mm).collect();
+    assert_eq!(moved.len(), 2, "{told}");
+    assert!((moved[1] / moved[0] - 2.0).abs() < 1e-5, "{moved:?}");
+
+    let own = json!({"case": "case.json", "plans": [plan("jaw", 1.0)]});
+    let (code, told, _) = study(folder.path(), &spec(own), &["--level", "0"]);
+    assert_eq!(code, 2, "{told}");
+    assert!(told.contains("every case of `scenes` states `plans` of its own"), "{told}");
+}
+
 /// The table of the small study: how far each method is from the truth, in mm (p95), and how that was known before.
 #[test]
 fn the_small_study_has_every_method_and_their_errors_stand_in_order() {

@@ -20,5 +20,12 @@ impl MeshSource for Meshes {
 
 pub fn stored(shape: StoredShape, frame: Option<Frame>) -> StoredMesh {
     let units = (!matches!(shape, StoredShape::Image(_))).then_some(LengthUnit::Mm);
-    StoredMesh { shape, frame, units, warnings: Vec::new(), sha256: format!("sha {frame:?}") }
+    StoredMesh {
+        shape,
+        frame,
+        units,
+        warnings: Vec::new(),
+        told: Vec::new(),
+        sha256: format!("sha {frame:?}"),
+    }
 }

@@ -10,7 +10,7 @@ use crate::jobs::predict::{PredictInput, check};
 use crate::jobs::source::{MeshSource, SourceError, StoredMesh, StoredShape};
 use crate::schema::case::document::LengthUnit;
 use crate::schema::predict::check::CheckDocument;
-use crate::schema::{CaseDocument, ErrorCode, PlanDocument, PredictDocument};
+use crate::schema::{CaseDocument, ErrorCode, PlanDocument, PredictDocument, WarningDocument};
 use mechanics::anatomy::Anatomy;
 use mechanics::mesh::Frame;
 
@@ -30,21 +30,30 @@ impl MeshSource for MadeBeside<'_> {
     }
 }
 
+/// A mesh that was made, its frame, and what there is to say of it.
+pub(super) struct MadeAnatomy<'a> {
+    pub anatomy: &'a Anatomy,
+    pub frame: Frame,
+    pub told: Vec<WarningDocument>,
+}
+
 /// Checks a case as it will be stored; `None` where only a plan can tell what holds it.
 pub(super) fn check_made(
     case: &CaseDocument,
-    anatomy: &Anatomy,
-    frame: Frame,
+    made: &MadeAnatomy,
     place: &Workplace,
 ) -> Result<Option<CheckDocument>, JobError> {
+    let MadeAnatomy { anatomy, frame, told } = made;
     let stored = |shape| StoredMesh {
         shape,
-        frame: Some(frame),
+        frame: Some(*frame),
         units: Some(LengthUnit::Mm),
         warnings: Vec::new(),
+        told: Vec::new(),
         sha256: String::new(),
     };
     let volume = stored(StoredShape::Volume(Arc::new(anatomy.volume.clone())));
+    let volume = StoredMesh { told: told.clone(), ..volume };
     let bones = anatomy.bones.iter().enumerate().map(|(number, bone)| {
         (bone_file(number), stored(StoredShape::Surface(Arc::new(bone.clone()))))
     });

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::case::{bone_file, case_of};
-use super::check::check_made;
+use super::check::{MadeAnatomy, check_made};
 use super::input::{MeshingInput, PreparedMeshing};
 use crate::jobs::clock::Observed;
 use crate::jobs::failure::JobError;
@@ -13,6 +13,7 @@ use crate::jobs::result::pictures::slices_picture;
 use crate::jobs::result::provenance::{Origin, encode_result, mesh_summary};
 use crate::jobs::result::warnings::warning_documents;
 use crate::jobs::source::StoredShape;
+use crate::schema::WarningDocument;
 use crate::schema::meshing::result::MeshingResultDocument;
 use crate::schema::predict::document::OutputName;
 use crate::schema::predict::keep::MadeName;
@@ -52,7 +53,12 @@ pub fn meshing_job(
     let mut found = MeshingResultDocument::new(&anatomy, case);
     if let Some(waiting) = &input.case {
         found.case = waiting.document.complete(found.case);
-        found.check = check_made(&found.case, &anatomy, prepared.frame, place)?;
+        let told = prepared.told(&anatomy);
+        found.check = check_made(
+            &found.case,
+            &MadeAnatomy { anatomy: &anatomy, frame: prepared.frame, told },
+            place,
+        )?;
     }
     clock.check()?;
 
@@ -60,11 +66,12 @@ pub fn meshing_job(
     clock.phase(Phase::Write);
     let made = Made { prepared: &prepared, anatomy: &anatomy, found };
     let (result, files) = made.publish(input, place, &clock)?;
-    Ok(JobOutput { result, files, meshes: meshes_of(anatomy, prepared.frame) })
+    let told = result.warnings.clone();
+    Ok(JobOutput { result, files, meshes: meshes_of(anatomy, prepared.frame, told) })
 }
 
 /// The meshes that the case names: the volume and the segments.
-fn meshes_of(anatomy: Anatomy, frame: Frame) -> Vec<MadeMesh> {
+fn meshes_of(anatomy: Anatomy, frame: Frame, told: Vec<WarningDocument>) -> Vec<MadeMesh> {
     let volume = StoredShape::Volume(Arc::new(anatomy.volume));
     let bones = anatomy.bone.segments.into_iter().zip(anatomy.bones);
     let bones = bones.map(|(segment, surface)| MadeMesh {
@@ -72,9 +79,18 @@ fn meshes_of(anatomy: Anatomy, frame: Frame) -> Vec<MadeMesh> {
         name: Some(segment.name),
         shape: StoredShape::Surface(Arc::new(surface)),
         frame,
+        told: Vec::new(),
     });
-    let volume = MadeMesh { what: MadeName::Volume, name: None, shape: volume, frame };
+    let volume = MadeMesh { what: MadeName::Volume, name: None, shape: volume, frame, told };
     std::iter::once(volume).chain(bones).collect()
+}
+
+impl PreparedMeshing {
+    /// What there is to say of the scan or the surfaces, and of the mesh.
+    fn told(&self, anatomy: &Anatomy) -> Vec<WarningDocument> {
+        let of_meshes = self.meshes.iter().flat_map(|(_, mesh)| &mesh.warnings);
+        warning_documents(of_meshes.chain(&anatomy.warnings))
+    }
 }
 
 /// What a meshing has made, before it is written.
@@ -108,11 +124,9 @@ impl Made<'_> {
         }
         let picture = slices_picture(anatomy, frame)?;
         folder.add_file(SLICES_FILE, OutputName::ClassesSvg.media_type(), picture.as_bytes())?;
-        let of_meshes = prepared.meshes.iter().flat_map(|(_, mesh)| &mesh.warnings);
-        let warnings = of_meshes.chain(&anatomy.warnings);
+        let warnings = prepared.told(anatomy);
         let mut provenance = origin.provenance(clock);
         provenance.mesh = Some(mesh_summary(&anatomy.volume, &quality(&anatomy.volume)));
-        let warnings = warning_documents(warnings);
         let rest = ResultDocument::new(input.job.clone(), &folder.files, provenance, warnings);
         let result = ResultDocument { meshing: Some(found), ..rest };
         folder.add(OutputName::ResultJson, &encode_result(&result)?)?;

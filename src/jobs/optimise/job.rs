@@ -15,7 +15,7 @@ use crate::jobs::result::provenance::{
 };
 use crate::jobs::result::skin::PredictedSkin;
 use crate::jobs::result::tissue::encode_bones;
-use crate::jobs::result::warnings::warning_documents;
+use crate::jobs::result::warnings::warnings_after;
 use crate::schema::OptimiseDocument;
 use crate::schema::optimise::result::OptimisationDocument;
 use crate::schema::predict::document::OutputName;
@@ -188,7 +188,8 @@ impl Found {
         let mut provenance = origin.provenance(clock);
         let mesh = mesh_summary(&scene.mesh, &planned.quality);
         add_method(&mut provenance, input.spec.method, mesh, self.solver);
-        let warnings = warning_documents(planned.warnings.iter().chain(&scene.warnings));
+        let warnings =
+            warnings_after(&planned.told, planned.warnings.iter().chain(&scene.warnings));
         let result = ResultDocument {
             pictures: input.pictures_beside(&folder.files),
             statistics: Some(statistics),

@@ -4,9 +4,10 @@ use super::cost;
 use super::input::{PredictInput, Prepared};
 use crate::jobs::failure::JobError;
 use crate::jobs::result::pictures::classes_picture;
+use crate::jobs::result::warnings::warnings_after;
 use crate::jobs::source::MeshSource;
+use crate::schema::Limits;
 use crate::schema::predict::check::{CheckDocument, ClassCounts, SkinSummary};
-use crate::schema::{Limits, WarningDocument};
 use mechanics::prediction::{NodeClass, Scene};
 
 /// The counts of a check, and the picture on demand: drawing takes longer than counting.
@@ -64,7 +65,7 @@ impl Prepared {
             method: input.spec.method.chosen().name().to_owned(),
             why: input.spec.method.why().to_owned(),
             auto: self.expectation(input),
-            warnings: warnings.map(WarningDocument::from).collect(),
+            warnings: warnings_after(&self.told, warnings),
         }
     }
 

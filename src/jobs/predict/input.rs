@@ -18,7 +18,9 @@ use crate::schema::plan::document::PlanContext;
 use crate::schema::predict::document::OutputName;
 use crate::schema::predict::output::PictureName;
 use crate::schema::predict::result::{FileDocument, InputDocument};
-use crate::schema::{CaseDocument, Faults, Limits, PlanDocument, Pointer, PredictDocument};
+use crate::schema::{
+    CaseDocument, Faults, Limits, PlanDocument, Pointer, PredictDocument, WarningDocument,
+};
 use mechanics::mesh::Warning;
 use mechanics::mesh::quality::{QualityReport, quality};
 use mechanics::prediction::{Case, Plan, Scene, Settings};
@@ -49,6 +51,8 @@ pub struct Prepared {
     pub actual: Option<StoredMesh>,
     /// Of the meshes and of the conversion; those of the scene are in the scene.
     pub warnings: Vec<Warning>,
+    /// What the meshing of the volume had to say.
+    pub told: Vec<WarningDocument>,
 }
 
 /// Documents in the types of the path.
@@ -77,6 +81,7 @@ impl PredictInput {
         let meshes_read = stored.values().chain(&actual);
         let mut warnings: Vec<Warning> =
             meshes_read.flat_map(|mesh| mesh.warnings.iter().cloned()).collect();
+        let told = stored.values().flat_map(|mesh| mesh.told.iter().cloned()).collect();
         warnings.extend(converted.warnings);
         warnings.extend(quality.warnings());
         warnings.extend(looks_elsewhere(converted.case.frame, &scene.skin.surface));
@@ -90,6 +95,7 @@ impl PredictInput {
             contents: stored.iter().map(|(id, mesh)| (id.clone(), mesh.sha256.clone())).collect(),
             actual,
             warnings,
+            told,
         })
     }
 
@@ -119,7 +125,8 @@ impl PredictInput {
         let mut faults = Faults::default();
         let spec_materials = self.spec.materials.as_ref();
         let (case, warnings) = self.case.to_case(meshes, spec_materials, limits, &mut faults);
-        let context = PlanContext { frame: case.frame, centre: centre(&case.volume), limits };
+        let centre = Some(centre(&case.volume));
+        let context = PlanContext { frame: case.frame, centre, limits };
         let plan = self.plan.to_plan(&Pointer::root().key("plan"), &context, &mut faults);
         let settings = self.spec.to_settings(limits, &mut faults);
         for name in self.spec.accept_regions_mm.keys() {
@@ -129,6 +136,7 @@ impl PredictInput {
                 faults.add(&at, ErrorCode::UnknownRegion, detail);
             }
         }
+        self.spec.check_element(&mut faults);
         faults.into_result()?;
         Ok(Converted { case, plan, settings, warnings })
     }

@@ -17,7 +17,7 @@ use crate::jobs::result::provenance::{
 };
 use crate::jobs::result::skin::PredictedSkin;
 use crate::jobs::result::tissue::{encode_bones, encode_volume};
-use crate::jobs::result::warnings::warning_documents;
+use crate::jobs::result::warnings::warnings_after;
 use crate::jobs::source::StoredShape;
 use crate::schema::Triple;
 use crate::schema::compare::result::{ComparisonDocument, StatDocument};
@@ -154,7 +154,13 @@ impl Finished<'_> {
         };
         wanted
             .iter()
-            .map(|&what| MadeMesh { what: what.into(), name: None, shape: shape(what), frame })
+            .map(|&what| MadeMesh {
+                what: what.into(),
+                name: None,
+                shape: shape(what),
+                frame,
+                told: Vec::new(),
+            })
             .collect()
     }
 
@@ -205,7 +211,7 @@ impl Finished<'_> {
             provenance.why = Some(adequacy.why());
         }
         provenance.laws = laws(&self.prepared.case, &self.prepared.scene);
-        let warnings = warning_documents(self.warnings.iter());
+        let warnings = warnings_after(&self.prepared.told, self.warnings.iter());
         ResultDocument {
             pictures: input.pictures_beside(files),
             statistics: Some(self.statistics.clone()),

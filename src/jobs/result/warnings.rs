@@ -5,8 +5,16 @@ use mechanics::mesh::Warning;
 
 /// Warnings as documents, without repeats.
 pub fn warning_documents<'a>(warnings: impl Iterator<Item = &'a Warning>) -> Vec<WarningDocument> {
+    warnings_after(&[], warnings)
+}
+
+/// The same after those that the meshing of a volume told.
+pub fn warnings_after<'a>(
+    told: &[WarningDocument],
+    warnings: impl Iterator<Item = &'a Warning>,
+) -> Vec<WarningDocument> {
     let mut documents: Vec<WarningDocument> = Vec::new();
-    for warning in warnings.map(WarningDocument::from) {
+    for warning in told.iter().cloned().chain(warnings.map(WarningDocument::from)) {
         if !documents.contains(&warning) {
             documents.push(warning);
         }

@@ -38,6 +38,20 @@ const OF_THE_STUDY: [&str; 10] = [
     "tags",
 ];
 
+/// Fields of a `predict` spec that rows do without, and why.
+const NOT_OF_ROWS: [(&str, &str); 4] = [
+    (
+        "accept_mm",
+        "a row is the answer of one model, and an accepted error chooses between models: state `method` and `element`",
+    ),
+    (
+        "corrected",
+        "a row is the answer of a model as it is, without what its mesh is estimated to leave out",
+    ),
+    ("estimate", "a row is measured against the truth of the study, and nothing is estimated"),
+    ("range_mm", "a row has no file with colours"),
+];
+
 impl Documents<'_> {
     /// The variants of all methods, each with a label of its own.
     pub fn variants(&self, faults: &mut Faults) -> Vec<Variant> {
@@ -131,6 +145,12 @@ impl Documents<'_> {
                 let detail = format!(
                     "unknown field `{name}`: it belongs to the study and not to one of its methods"
                 );
+                faults.add(&at.key(name), ErrorCode::UnknownField, detail);
+            }
+        }
+        for (name, why) in NOT_OF_ROWS {
+            if entry.as_object_mut().is_some_and(|members| members.remove(name).is_some()) {
+                let detail = format!("unknown field `{name}`: {why}");
                 faults.add(&at.key(name), ErrorCode::UnknownField, detail);
             }
         }

@@ -55,18 +55,23 @@ pub type MaterialDocuments = BTreeMap<String, MaterialDocument>;
 impl MaterialDocument {
     /// What is given here, and for the rest what `base` gives.
     fn over(&self, base: &MaterialDocument) -> MaterialDocument {
-        // A law with moduli of its own leaves no room for those that it stands over.
-        let has_moduli = self.law.as_ref().is_some_and(LawDocument::has_moduli);
-        let below = |modulus: Option<f64>| modulus.filter(|_| !has_moduli);
         MaterialDocument {
-            young_modulus_kpa: self.young_modulus_kpa.or(below(base.young_modulus_kpa)),
-            poisson_ratio: self.poisson_ratio.or(below(base.poisson_ratio)),
+            young_modulus_kpa: self.young_modulus_kpa.or(base.young_modulus_kpa),
+            poisson_ratio: self.poisson_ratio.or(base.poisson_ratio),
             density_g_per_cm3: self.density_g_per_cm3.or(base.density_g_per_cm3),
             fibre: match (&self.fibre, &base.fibre) {
                 (Some(own), Some(base)) => Some(own.over(base)),
                 (own, base) => own.clone().or(base.clone()),
             },
             law: self.law.clone().or_else(|| base.law.clone()),
+        }
+    }
+
+    /// The same over the default tissue, which nobody stated: a law with moduli of its own takes its place.
+    fn over_default(&self, base: &MaterialDocument) -> MaterialDocument {
+        match self.law.as_ref().is_some_and(LawDocument::has_moduli) {
+            true => self.clone(),
+            false => self.over(base),
         }
     }
 
@@ -145,7 +150,8 @@ impl MaterialDocument {
         for (name, stated, own) in wrong {
             let Some(stated) = stated else { continue };
             let detail = format!(
-                "`{name}` is {stated}, and the law has {own:.6} at rest: they have to agree to 1 %, or leave `{name}` out"
+                "`{name}` is {stated}, and the law has {own:.6} at rest: they have to agree to 1 %. Leave `{name}` out; that \
+                 of a case stands below a law of the spec until the spec states it too"
             );
             faults.add(&at.key(name), ErrorCode::LawMismatch, detail);
             agrees = false;
@@ -228,7 +234,11 @@ pub fn merge_materials(
             let known = merged.get(region).map(|(_, material)| material);
             // Within the case itself an entry stands alone: only a spec leaves fields to what it overrides.
             let below = known.or(base.as_ref()).cloned().unwrap_or_default();
-            merged.insert(region.clone(), (at, material.over(&below)));
+            let material = match case.materials {
+                Some(_) => material.over(&below),
+                None => material.over_default(&below),
+            };
+            merged.insert(region.clone(), (at, material));
         }
     }
     let (mut materials, mut fibres) = (BTreeMap::new(), BTreeMap::new());
@@ -243,7 +253,11 @@ pub fn merge_materials(
 
 fn default_material() -> Warning {
     let (young_modulus, poisson_ratio, density) = DEFAULT_TISSUE;
-    Warning::new("default-material", "the case names no materials; all tissue has the default one")
+    let detail = format!(
+        "the case names no materials; all tissue has the default one: Young's modulus {young_modulus} kPa, Poisson's ratio \
+         {poisson_ratio}"
+    );
+    Warning::new("default-material", detail)
         .with("young_modulus_kpa", young_modulus)
         .with("poisson_ratio", poisson_ratio)
         .with("density_g_per_cm3", density)

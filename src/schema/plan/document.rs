@@ -90,8 +90,8 @@ pub struct PrescribedDocument {
 /// What a plan is checked against.
 pub struct PlanContext<'a> {
     pub frame: Frame,
-    /// The centre of the mesh's bounding box in mm.
-    pub centre: Vector,
+    /// The centre of the mesh's bounding box in mm; `None` where there is no mesh yet.
+    pub centre: Option<Vector>,
     pub limits: &'a Limits,
 }
 

@@ -49,8 +49,8 @@ pub struct MovementDocument {
 pub struct MovementContext<'a> {
     /// True where the plan is written in the other of LPS and RAS than the case.
     pub mirrored_axes: bool,
-    /// The centre of the mesh's bounding box in mm, in the frame of the case.
-    pub centre: Vector,
+    /// The centre of the mesh's bounding box in mm, in the frame of the case; `None` where there is no mesh yet.
+    pub centre: Option<Vector>,
     pub limits: &'a Limits,
 }
 
@@ -77,7 +77,8 @@ impl MovementContext<'_> {
             let detail = format!("turns by {degrees:.3} deg, at most {turn_limit} deg are allowed");
             faults.add(at, ErrorCode::PlanOutOfRange, detail);
         }
-        let distance = movement.displacement(&self.centre).norm();
+        let Some(centre) = self.centre else { return };
+        let distance = movement.displacement(&centre).norm();
         let limit = self.limits.centre_displacement_mm;
         if distance.is_nan() || distance > limit {
             let detail = format!(

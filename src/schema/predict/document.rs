@@ -199,6 +199,29 @@ impl PredictDocument {
         })
     }
 
+    /// Refuses an element that the method does not have.
+    pub fn check_element(&self, faults: &mut Faults) {
+        let (asked, method) = (self.element.choice(), self.method.chosen().properties());
+        if asked == ElementChoice::Auto || method.elements.contains(&asked) {
+            return;
+        }
+        let others = method.elements.iter().filter(|element| **element != ElementChoice::Auto);
+        let others: Vec<String> = others.map(|other| format!("`{}`", other.name())).collect();
+        let detail = match others.is_empty() {
+            true => {
+                format!("{} has no choice of elements: `auto` is what it is made of", method.title)
+            }
+            false => format!(
+                "{} has no element `{}`: there are `auto` and {}",
+                method.title,
+                asked.name(),
+                others.join(", ")
+            ),
+        };
+        let at = Pointer::root().key("spec").key("element");
+        faults.add(&at, ErrorCode::MethodNotAvailable, detail);
+    }
+
     fn check_accepted(&self, at: &Pointer, faults: &mut Faults) {
         let place = at.key("accept_mm");
         if let Some(accepted) = self.accept_mm {

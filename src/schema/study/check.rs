@@ -105,8 +105,17 @@ impl StudyDocument {
             faults.add(&at.key("plans"), ErrorCode::MissingField, detail);
         }
         if let (false, Some((index, _))) = (is_wanted, shared.first()) {
-            let detail = "no case is left for this plan: scenes by name have plans of their own, which are asked \
-                          for by name";
+            let has_cases =
+                self.scenes.iter().any(|scene| matches!(scene, SceneReference::Case(_)));
+            let detail = match has_cases {
+                true => {
+                    "no case is left for this plan: every case of `scenes` states `plans` of its own"
+                }
+                false => {
+                    "no scene is a case that this plan could move: scenes by name have plans of their own, which are asked for \
+                     by name"
+                }
+            };
             faults.add(&at.key("plans").index(*index), ErrorCode::WrongType, detail);
         }
     }

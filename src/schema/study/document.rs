@@ -40,8 +40,8 @@ pub struct StudyDocument {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub scenes: Vec<SceneReference>,
     /// Of a batch, in place of `scenes`, `plans`, `methods`, `elements`, `materials` and `sweep`: `predict` specs without
-    /// `budget`, `outputs`, `compare_to` and `tags`, of which each is a row at each level; `label` is what rows call its way of
-    /// modelling. Items of the same case, plan and materials are one scene.
+    /// `budget`, `outputs`, `keep`, `compare_to`, `tags`, `accept_mm`, `corrected`, `estimate` and `range_mm`, of which each is a row
+    /// at each level; `label` is what rows call its way of modelling. Items of the same case, plan and materials are one scene.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[schema(value_type = Vec<PredictDocument>)]
     pub items: Vec<ItemDocument>,

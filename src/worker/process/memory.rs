@@ -7,6 +7,10 @@ use serde::{Deserialize, Serialize};
 
 use crate::config::Config;
 
+/// How many times its budget a job may take: the memory of matrix and solver is estimated to within a third, and results stand
+/// beside them.
+pub const ROOM: f64 = 1.5;
+
 const MIB: u64 = 1 << 20;
 /// Where the machine does not tell.
 const UNKNOWN_MACHINE: u64 = 4096 * MIB;

@@ -9,6 +9,7 @@ pub mod protocol;
 mod reports;
 pub mod serve;
 mod source;
+mod spent;
 pub mod supervisor;
 
 pub use child::Program;

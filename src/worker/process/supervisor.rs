@@ -5,15 +5,15 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use bytes::Bytes;
-use serde_json::{Value, json};
+use serde_json::Value;
 use tokio::runtime::Handle;
 
 use super::child::{Death, Heard, Process, Program};
 use super::memory::Usage;
 use super::protocol::{Answer, Assignment, Made, Order, Outcome, Question, Report, Settings};
+use super::spent::{MemoryBound, megabytes, out_of_memory, over_time};
 use crate::library::meshes::Library;
 use crate::metrics;
-use crate::schema::ErrorCode;
 use crate::schema::job::ErrorClass;
 use crate::store::{Claim, StoreError};
 use crate::worker::process::attempt::broke_off;
@@ -61,6 +61,7 @@ struct Attempt<'a> {
     stopped: Option<Instant>,
     /// When it should have stopped by itself, and after how many seconds that is.
     budget: Option<(Instant, f64)>,
+    memory: Option<MemoryBound>,
     usage: Option<Usage>,
 }
 
@@ -75,6 +76,8 @@ enum End {
     OverTime {
         wall_s: f64,
     },
+    /// It took more memory than its budget, with the error that says so.
+    OverMemory(Value),
 }
 
 impl SlotWork {
@@ -133,13 +136,13 @@ impl SlotWork {
             End::OverTime { wall_s } => {
                 tracing::warn!("a job did not notice the end of its time; its process is killed");
                 self.died("over-time");
-                Err(Failure::Permanent(json!({
-                    "type": ErrorCode::BudgetExceeded,
-                    "class": ErrorClass::Budget,
-                    "detail": format!("wall ran out: {wall_s} s are allowed"),
-                    "which": "wall",
-                    "allowed_s": wall_s,
-                })))
+                Err(Failure::Permanent(over_time(wall_s)))
+            }
+            End::OverMemory(error) => {
+                tracing::warn!("a job took more memory than its budget; its process is killed");
+                self.died("over-memory");
+                self.deaths = 0;
+                Err(Failure::Permanent(error))
             }
         }
     }
@@ -221,6 +224,7 @@ impl Work for SlotWork {
             progress,
             stopped: None,
             budget: None,
+            memory: MemoryBound::of(&claim.document, process.usage()),
             usage: None,
         };
         let end = attempt.follow();
@@ -287,8 +291,22 @@ impl Attempt<'_> {
         if self.stopped.is_some_and(|stopped| now.duration_since(stopped) > GRACE) {
             return Some(End::Deaf);
         }
+        if let Some(error) = self.over_memory() {
+            return Some(End::OverMemory(error));
+        }
         let (until, wall_s) = self.budget?;
         (now > until).then_some(End::OverTime { wall_s })
+    }
+
+    /// Asks now and then what the process takes.
+    fn over_memory(&mut self) -> Option<Value> {
+        let bound = self.memory.as_mut().filter(|_| self.stopped.is_none())?;
+        if !bound.is_time(LOOK) {
+            return None;
+        }
+        let usage = self.process.usage()?;
+        self.usage = Some(usage);
+        bound.broken(usage)
     }
 
     fn answer(&self, question: Question) {
@@ -362,27 +380,6 @@ fn finished(outcome: Outcome, folder: &Path) -> Result<Finished, Failure> {
             Err(Failure::Permanent(broke_off(ErrorClass::Numerical)))
         }
     }
-}
-
-fn megabytes(bytes: u64) -> f64 {
-    bytes as f64 / 1e6
-}
-
-/// The error of a job that needed more memory than its slot has.
-fn out_of_memory(asked_bytes: u64, limit_bytes: u64, usage: Option<Usage>) -> Value {
-    let (asked_mb, limit_mb) = (megabytes(asked_bytes), megabytes(limit_bytes));
-    let mut error = json!({
-        "type": ErrorCode::OutOfMemory,
-        "class": ErrorClass::Budget,
-        "detail": format!("the job may take {limit_mb:.0} MB, and asked for {asked_mb:.3} MB more than was left"),
-        "which": "memory",
-        "limit_mb": limit_mb,
-        "asked_mb": asked_mb,
-    });
-    if let Some(usage) = usage {
-        error["peak_mb"] = json!(megabytes(usage.peak_bytes));
-    }
-    error
 }
 
 #[cfg(test)]

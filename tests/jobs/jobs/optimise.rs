@@ -24,6 +24,7 @@ impl MeshSource for Block {
             frame: None,
             units: Some(LengthUnit::Mm),
             warnings: Vec::new(),
+            told: Vec::new(),
             sha256: "sha of block".to_owned(),
         })
     }

@@ -35,6 +35,7 @@ fn stored(shape: StoredShape, sha256: &str) -> StoredMesh {
         frame: None,
         units: Some(LengthUnit::Mm),
         warnings: Vec::new(),
+        told: Vec::new(),
         sha256: sha256.to_owned(),
     }
 }

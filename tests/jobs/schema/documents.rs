@@ -26,7 +26,8 @@ pub fn plan(text: &str) -> Result<Plan, Problem> {
 pub fn plan_in(frame: Frame, text: &str) -> Result<Plan, Problem> {
     let document: PlanDocument = parse(text)?;
     let limits = Limits::default();
-    let context = PlanContext { frame, centre: Vector::new(0.0, -50.0, 0.0), limits: &limits };
+    let context =
+        PlanContext { frame, centre: Some(Vector::new(0.0, -50.0, 0.0)), limits: &limits };
     let mut faults = Faults::default();
     let plan = document.to_plan(&Pointer::root().key("plan"), &context, &mut faults);
     faults.into_result().map(|()| plan)

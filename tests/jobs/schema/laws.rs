@@ -165,13 +165,28 @@ fn linear_constants_that_are_not_those_of_the_law_are_refused_with_both_numbers(
 }
 
 #[test]
-fn a_law_of_a_spec_stands_over_that_of_the_case_with_its_moduli() {
+fn a_law_of_a_spec_agrees_with_the_constants_that_the_case_states() {
     let text = with(LINEAR);
-    let spec = r#"{"materials":{"*":{"law":{"kind":"neo_hookean","mu_kpa":5,"lambda_kpa":5}}}}"#;
-    let changed = case_with(&text, spec, None).unwrap().0.materials["*"];
-    assert!((changed.poisson_ratio() - 0.25).abs() < 1e-9);
-    let spec = r#"{"materials":{"*":{"law":{"kind":"saint_venant_kirchhoff"}}}}"#;
-    let changed = case_with(&text, spec, None).unwrap().0.materials["*"];
+    let spec = |members: &str| {
+        let spec = format!(r#"{{"materials":{{"*":{{{members}}}}}}}"#);
+        case_with(&text, &spec, None).map(|(case, _)| case.materials["*"])
+    };
+    let other = r#""law":{"kind":"neo_hookean","mu_kpa":5,"lambda_kpa":5}"#;
+    let places = ["young_modulus_kpa", "poisson_ratio"]
+        .map(|name| ("law-mismatch".to_owned(), format!("/spec/materials/*/{name}")));
+    assert_eq!(refused(spec(other)), (FAILED.to_owned(), places.to_vec()));
+    // What the spec states itself stands over the case.
+    let changed = spec(&format!(r#""young_modulus_kpa":12.5,"poisson_ratio":0.25,{other}"#));
+    assert!((changed.unwrap().poisson_ratio() - 0.25).abs() < 1e-9);
+    let changed = spec(r#""law":{"kind":"saint_venant_kirchhoff"}"#).unwrap();
     assert!((changed.young_modulus() - 15.0).abs() < 1e-9);
     assert!(matches!(changed.stated_law(), Some(Law::SaintVenantKirchhoff(_))));
+}
+
+#[test]
+fn a_law_of_a_spec_takes_the_place_of_the_default_tissue() {
+    let text = r#"{"units":"mm","volume":"v"}"#;
+    let spec = r#"{"materials":{"*":{"law":{"kind":"neo_hookean","mu_kpa":5,"lambda_kpa":5}}}}"#;
+    let changed = case_with(text, spec, None).unwrap().0.materials["*"];
+    assert!((changed.poisson_ratio() - 0.25).abs() < 1e-9);
 }

@@ -69,6 +69,10 @@ async fn what_is_wrong_with_an_item_is_told_with_its_place() {
         (json!([good, good]), "/items/1", "duplicate-name"),
         (json!([with("case", "nobody".into())]), "/items/0/case", "unknown-case"),
         (json!([with("tags", json!(["a"]))]), "/items/0/tags", "unknown-field"),
+        (json!([with("accept_mm", 0.1.into())]), "/items/0/accept_mm", "unknown-field"),
+        (json!([good, with("corrected", true.into())]), "/items/1/corrected", "unknown-field"),
+        (json!([with("estimate", "none".into())]), "/items/0/estimate", "unknown-field"),
+        (json!([with("range_mm", 5.into())]), "/items/0/range_mm", "unknown-field"),
         (json!([with("elment", "plain".into())]), "/items/0/elment", "unknown-field"),
         (json!([with("method", "magic".into())]), "/items/0/method", "unknown-word"),
         (

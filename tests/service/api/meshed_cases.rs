@@ -68,6 +68,8 @@ async fn a_plan_that_is_posted_while_its_case_is_meshed_is_predicted_once_it_has
 
     let predicted = server.ended(&id(&predicted)).await;
     assert_eq!(predicted["status"], "successful", "{predicted}");
+    let progress = ["phase", "iteration", "residual"].map(|name| &predicted[name]);
+    assert_eq!(progress, [&Value::Null; 3], "a job that has ended is nowhere any more");
     let largest = predicted["results"]["statistics"]["skin"]["nodes"]["max"].as_f64().unwrap();
     assert!((2.0..4.0).contains(&largest), "{largest}");
 
@@ -88,6 +90,16 @@ async fn a_plan_that_is_posted_while_its_case_is_meshed_is_predicted_once_it_has
     assert!(ready["check"]["classes"]["joined"]["jaw"].as_u64().unwrap() > 10, "{ready}");
     let listed = ask(server.get("/v1/cases?tag=of%20a%20scan")).await.json();
     assert_eq!(listed["items"][0]["state"], "ready");
+
+    // What the meshing had to say stands on the case and on every answer on it.
+    let told = made["results"]["warnings"].as_array().unwrap();
+    assert!(told.iter().any(|warning| warning["code"] == "no-landmarks"), "{told:?}");
+    for (of, said) in
+        [("case", &ready["check"]["warnings"]), ("prediction", &predicted["results"]["warnings"])]
+    {
+        let said = said.as_array().unwrap();
+        assert!(told.iter().all(|warning| said.contains(warning)), "{of}: {said:?}, not {told:?}");
+    }
 
     // The same plan is the same job, although that was accepted before there was a mesh to tell it by.
     let again = ask(server.post("/v1/jobs").json(&plan_on(&case))).await.expect(StatusCode::OK);
@@ -130,6 +142,33 @@ async fn what_needs_the_mesh_of_a_case_without_one_is_refused_with_the_job_that_
     wrong["tolerance"] = json!({"relative_residual": 2});
     let problem = ask(server.post("/v1/jobs").json(&wrong)).await.problem(422, "validation-failed");
     assert_eq!(problem["errors"][0]["pointer"], "/tolerance/relative_residual", "{problem}");
+
+    let jaw = |members: Value| {
+        let mut segment = json!({"name": "jaw"});
+        segment.as_object_mut().unwrap().extend(members.as_object().unwrap().clone());
+        json!({"plan": {"segments": [segment]}})
+    };
+    let scales = [2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 1];
+    let pressure = json!({"pressure_kpa": 1e30, "faces": {"node_set": "skin"}});
+    for (change, pointer) in [
+        (jaw(json!({"translation_mm": [1e9, 1, 1]})), "/plan/segments/0/translation_mm"),
+        (jaw(json!({"rotation_deg": [170, 0, 0], "pivot_mm": [0, 0, 0]})), "/plan/segments/0"),
+        (jaw(json!({"matrix4x4": scales})), "/plan/segments/0/matrix4x4"),
+        (
+            json!({"plan": {"segments": [plan["segments"][0], plan["segments"][0]]}}),
+            "/plan/segments/1/name",
+        ),
+        (json!({"plan": {"loads": [pressure]}}), "/plan/loads/0/pressure_kpa"),
+        (json!({"materials": {"*": {"poisson_ratio": 0.7}}}), "/materials/*/poisson_ratio"),
+        (json!({"method": "msm", "element": "quadratic"}), "/element"),
+        (json!({"method": "fem_nonlinear", "element": "quadratic"}), "/element"),
+    ] {
+        let mut wrong = plan_on(&case);
+        wrong.as_object_mut().unwrap().extend(change.as_object().unwrap().clone());
+        let answer = ask(server.post("/v1/jobs").json(&wrong)).await;
+        assert_eq!(answer.status, StatusCode::UNPROCESSABLE_ENTITY, "{pointer}: {answer:?}");
+        assert_eq!(answer.json()["errors"][0]["pointer"], pointer, "{answer:?}");
+    }
 
     let waits =
         ask(server.post("/v1/jobs").json(&plan_on(&case))).await.expect(StatusCode::CREATED);

@@ -105,6 +105,22 @@ async fn tissue_slides_on_teeth_that_go_with_their_bone_unless_it_is_told_not_to
 }
 
 #[tokio::test]
+async fn a_meshing_that_takes_more_memory_than_its_budget_is_ended() {
+    let server = Server::start();
+    let mut spec = spec(&scan(&server).await);
+    spec["size"] = json!({"tetrahedra": 300_000});
+    spec["budget"] = json!({"memory_mb": 1});
+    let failed = ended(&server, &spec).await;
+    let error = &failed["error"];
+    assert_eq!(
+        (&failed["status"], &error["type"], &error["which"]),
+        (&json!("failed"), &json!("budget-exceeded"), &json!("memory")),
+        "{failed}"
+    );
+    assert_eq!(error["allowed_mb"], 1.0, "{error}");
+}
+
+#[tokio::test]
 async fn a_region_around_segments_has_fewer_cells_of_the_same_size_and_tells_what_it_leaves_out() {
     let server = Server::start();
     let scan = scan(&server).await;

@@ -424,6 +424,18 @@ fn bad_methods() -> Vec<Row> {
             "/methods/1/plan",
         ),
         (
+            "corrected",
+            method(json!({"method": "fem_linear", "corrected": true})),
+            invalid,
+            "/methods/1/corrected",
+        ),
+        (
+            "an accepted error",
+            method(json!({"label": "a", "accept_mm": 0.02})),
+            invalid,
+            "/methods/1/accept_mm",
+        ),
+        (
             "residual 1",
             method(json!({"method": "fem_linear", "tolerance": {"relative_residual": 1}})),
             invalid,
