@@ -54,6 +54,38 @@ service.upload(b"solid x\n" + b" " * (5 << 20) + b"facet normal 0 0 1\nouter loo
                b"endloop\nendfacet\nendsolid x\n", progress=lambda event: shares.append(event["progress"]))
 assert shares == sorted(shares) and len(shares) == 6 and shares[-1] == 100, shares
 
+# A CT of two balls, cut by a plane: the file is sent, meshed and predicted on.
+grid = np.stack(np.meshgrid(*[np.arange(30) * 4.0 + 2] * 3, indexing="ij"), axis=-1)
+
+
+def ball(centre: list[float], radius: float) -> Any:
+    return np.clip((radius - np.linalg.norm(grid - centre, axis=-1)) / 4 + 0.5, 0, 1)
+
+
+values = (-1000 + 1040 * ball([60, 60, 60], 50) + 1160 * ball([60, 55, 60], 30)).astype("<i2")
+header = ("NRRD0004\ntype: short\ndimension: 3\nspace: left-posterior-superior\nsizes: 30 30 30\n"
+          "space directions: (4,0,0) (0,4,0) (0,0,4)\nendian: little\nencoding: raw\nspace origin: (2,2,2)\n\n")
+osteotomy = {"cuts": [{"name": "middle", "point_mm": [60, 55, 60], "normal": [0, 0, 1]}],
+             "segments": [{"name": "jaw", "below": ["middle"]}]}
+jaw = {"frame": "LPS", "segments": [{"name": "jaw", "translation_mm": [0, -3, 0]}]}
+with tempfile.TemporaryDirectory() as folder:
+    ct = Path(folder, "ct.nrrd")
+    ct.write_bytes(header.encode() + values.tobytes(order="F"))
+    cut = service.predict(ct, jaw | {"osteotomy": osteotomy})
+    largest = np.linalg.norm(cut.displacement_mm, axis=1).max()
+    assert 2 < largest < 4, largest
+    small = {"kind": "mesh", "scan": ct, "frame": "LPS", "osteotomy": osteotomy, "size": {"tetrahedra": 20000}}
+    told = []
+    meshed = service.case({"meshing": small}, progress=told.append)
+    assert [segment["name"] for segment in meshed.document["segments"]] == ["jaw"], meshed.document
+    assert told[0].get("phase") == "upload" and told[-1]["status"] == "successful", told
+    assert service.predict(meshed, jaw).results["statistics"]["skin"]["area"]["max"] > 2
+    try:
+        service.case({"meshing": small | {"thresholds_hu": {"skin": 2000, "bone": 3000}}})
+        sys.exit("a scan without tissue was meshed")
+    except JobFailed as failed:
+        assert failed.code == "no-tissue", failed
+
 soft = {"*": {"young_modulus_kpa": 5, "poisson_ratio": 0.4}}
 with tempfile.TemporaryDirectory() as folder:
     file = json.loads(Path(HEAD).read_text())

@@ -130,6 +130,7 @@ error_codes! {
     WrongMesh 422 "wrong-mesh" REFUSED,
 
     // About what it says of the face.
+    BoneOutsideSkin 422 "bone-outside-skin" REFUSED,
     CutLeavesBridge 422 "cut-leaves-bridge" REFUSED,
     EmptySelection 422 "empty-selection" REFUSED,
     FibreDirectionZero 422 "fibre-direction-zero" REFUSED,

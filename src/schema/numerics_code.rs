@@ -2,6 +2,7 @@
 
 use super::code::ErrorCode;
 use mechanics::anatomy::AnatomyError;
+use mechanics::domain::SurfaceDomainError;
 use mechanics::format::FormatError;
 use mechanics::mesh::SearchError;
 use mechanics::meshing::MeshingError;
@@ -101,13 +102,34 @@ impl From<&ComparisonError> for ErrorCode {
     }
 }
 
+impl From<&SurfaceDomainError> for ErrorCode {
+    fn from(error: &SurfaceDomainError) -> Self {
+        match error {
+            SurfaceDomainError::BoneOutside { .. } => ErrorCode::BoneOutsideSkin,
+            SurfaceDomainError::NoTissue { .. } => ErrorCode::NoTissue,
+            SurfaceDomainError::Coordinate { .. }
+            | SurfaceDomainError::Corner { .. }
+            | SurfaceDomainError::Empty { .. }
+            | SurfaceDomainError::NoInside { .. }
+            | SurfaceDomainError::Incomplete { .. }
+            | SurfaceDomainError::Uncertain { .. }
+            | SurfaceDomainError::Tangled { .. }
+            | SurfaceDomainError::Limit(_) => ErrorCode::NoInside,
+        }
+    }
+}
+
 impl From<&AnatomyError> for ErrorCode {
     fn from(error: &AnatomyError) -> Self {
         match error {
             AnatomyError::Image(_)
             | AnatomyError::NoSkin { .. }
-            | AnatomyError::Meshing(MeshingError::Empty { .. }) => ErrorCode::NoTissue,
-            AnatomyError::Surface(_) => ErrorCode::NoInside,
+            | AnatomyError::Meshing(
+                MeshingError::Empty { .. }
+                | MeshingError::Scattered { .. }
+                | MeshingError::TooFew { .. },
+            ) => ErrorCode::NoTissue,
+            AnatomyError::Surface(error) => error.into(),
             AnatomyError::Bone(_) => ErrorCode::SegmentNotFound,
             AnatomyError::Meshing(MeshingError::TooMany { .. } | MeshingError::TooFine { .. }) => {
                 ErrorCode::MeshLimits

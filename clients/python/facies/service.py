@@ -69,7 +69,8 @@ class Facies:
 
     def case(self, case: File | Document, *, progress: Progress | None = None) -> Case:
         """Stores a case. A file is a `case.json` of the command line, which names meshes by their paths and may say in its
-        `spec` how it is computed; a document names them by their ids, or by `Path`."""
+        `spec` how it is computed; a document names them by their ids, or by `Path`. One with a `meshing` has a scan or
+        surfaces instead, and is waited for until it is meshed; raises `JobFailed` where that fails."""
         spec: Document = {}
         if isinstance(case, dict):
             document = self._with_meshes(case, Path(), Path, progress)
@@ -78,14 +79,23 @@ class Facies:
             document = self._with_meshes(file.get("case", file), Path(case).parent, str, progress)
             spec = {name: value for name, value in file.get("spec", {}).items() if name not in OF_FILES}
         made = self.ask("POST", "/v1/cases", json=document).json()
+        if made.get("state") == "meshing":
+            self._ended(self.ask("GET", f"/v1/jobs/{made['meshing']['job']}").json(), progress)
+            made = self.ask("GET", f"/v1/cases/{made['id']}", headers=WAIT).json()
         return Case(made["id"], made["case"], made.get("check"), spec)
 
     def predict(self, case: Case | File | Document, plan: Document, *, fixed: Sequence[str] = (),
                 skin: str | None = None, frame: str = "LPS", units: str = "mm",
                 progress: Progress | None = None, **spec: Any) -> Prediction:
         """The skin after a plan. A file that is not a `.json` is a volume mesh: `fixed` and `skin` name its node sets,
-        and so do the segments of the plan. `spec` has further members of the job, such as `method`."""
-        if isinstance(case, (str, PathLike)) and Path(case).suffix != ".json":
+        and so do the segments of the plan. With a plan that has an `osteotomy` the file is a scan, whose bone it cuts.
+        `spec` has further members of the job, such as `method`."""
+        if isinstance(case, (str, PathLike)) and "osteotomy" in plan:
+            if fixed or skin:
+                raise TypeError("`fixed` and `skin` go with a volume mesh; those of a scan are found")
+            case = case_of_scan(case, plan)
+            plan = {name: value for name, value in plan.items() if name != "osteotomy"}
+        elif isinstance(case, (str, PathLike)) and Path(case).suffix != ".json":
             case = case_of_mesh(case, plan, fixed, skin) | {"frame": frame, "units": units}
         elif fixed or skin:
             raise TypeError("`fixed` and `skin` go with a volume mesh; a case has its own")
@@ -149,7 +159,10 @@ class Facies:
     def run(self, spec: Document, progress: Progress | None = None) -> Document:
         """The last state of a job of any kind; raises `JobFailed` where it ended without results."""
         waits = WAIT if progress is None else {}
-        job: Document = self.ask("POST", "/v1/jobs", json=spec, headers=waits).json()
+        return self._ended(self.ask("POST", "/v1/jobs", json=spec, headers=waits).json(), progress)
+
+    def _ended(self, job: Document, progress: Progress | None) -> Document:
+        """The last state of a job; raises `JobFailed` where it ended without results."""
         if progress is not None:
             for event in self.events(job["id"]):
                 progress(event)
@@ -191,13 +204,14 @@ class Facies:
         statement = {"units": case.get("units", "mm"), "frame": case.get("frame", "unspecified")}
         bones = {bone["name"] for bone in case.get("bones", [])}
 
-        def known(value: Any, key: str = "") -> Any:
+        def known(value: Any, key: str = "", within: str = "") -> Any:
             if isinstance(value, dict):
-                return {name: known(member, name) for name, member in value.items()}
+                return {name: known(member, name, key) for name, member in value.items()}
             if isinstance(value, list):
                 return [known(member) for member in value]
-            # A selection may name a bone where it names a surface.
-            is_mesh = key in ("volume", "mesh", "image") or (key == "surface" and value not in bones)
+            # A selection may name a bone where it names a surface; `skin` and `bone` are files only as surfaces to mesh.
+            is_mesh = (key in ("volume", "mesh", "image", "scan") or (key == "surface" and value not in bones)
+                       or (within == "surfaces" and key in ("skin", "bone")))
             is_file = is_mesh and isinstance(value, kind)
             return self.upload(folder / Path(value), **statement, progress=progress) if is_file else value
 
@@ -211,6 +225,12 @@ def case_of_mesh(mesh: File, plan: Document, fixed: Sequence[str], skin: str | N
     case: Document = {"volume": Path(mesh), "fixed": [{"node_set": name} for name in fixed],
                       "segments": [{"name": name, "nodes": {"node_set": name}} for name in names]}
     return case if skin is None else case | {"skin": {"node_set": skin}}
+
+
+def case_of_scan(scan: File, plan: Document) -> Document:
+    """A case of a scan whose bone is cut by the osteotomy of a plan, in the frame of the plan."""
+    meshing: Document = {"kind": "mesh", "scan": Path(scan), "osteotomy": plan["osteotomy"]}
+    return {"meshing": meshing | {name: plan[name] for name in ("frame",) if name in plan}}
 
 
 def refusal(answer: httpx.Response) -> Refused:

@@ -51,6 +51,26 @@ assert.deepEqual(sent.at(-1), { phase: "upload", sent_bytes: total_bytes, total_
 assert(sent.every((one, at) => at === 0 || one.sent_bytes > sent[at - 1]!.sent_bytes) && sent.length > 1, "piece by piece");
 await assert.rejects(facies.upload(new Blob(["solid nothing"]), "mm", "LPS", uploading), (refused) => refused instanceof Refused);
 
+// A CT of two balls, cut by a plane: predictions wait until it is meshed.
+const values = new Int16Array(27000);
+const share = (depth: number) => Math.min(Math.max(depth / 4 + 0.5, 0), 1);
+for (let at = 0; at < values.length; at++) {
+  const [x, y, z] = [at % 30, Math.floor(at / 30) % 30, Math.floor(at / 900)].map((index) => 4 * index + 2) as [number, number, number];
+  const bone = 1160 * share(30 - Math.hypot(x - 60, y - 55, z - 60));
+  values[at] = -1000 + 1040 * share(50 - Math.hypot(x - 60, y - 60, z - 60)) + bone;
+}
+const header = "NRRD0004\ntype: short\ndimension: 3\nspace: left-posterior-superior\nsizes: 30 30 30\n"
+  + "space directions: (4,0,0) (0,4,0) (0,0,4)\nendian: little\nencoding: raw\nspace origin: (2,2,2)\n\n";
+const osteotomy = {
+  cuts: [{ name: "middle", point_mm: [60, 55, 60] as [number, number, number], normal: [0, 0, 1] as [number, number, number] }],
+  segments: [{ name: "jaw", below: ["middle"] }],
+};
+const meshing = { kind: "mesh", scan: "ct", frame: "LPS", osteotomy, size: { tetrahedra: 20000 } };
+const scanned = await facies.createCase({ meshing } as Documents["MeshedCaseDocument"], { ct: new Blob([header, values]) });
+const cut = await facies.predict(scanned, { segments: [{ name: "jaw", translation_mm: [0, -3, 0] }] } as Documents["PlanDocument"]);
+const largest = Math.max(...cut.displacement_mm.map(Math.abs));
+assert(largest > 2 && largest < 4, `${largest} mm`);
+
 const unknown = { segments: [{ name: "mandibel", translation_mm: [0, 4, 1] as [number, number, number] }] };
 await assert.rejects(facies.predict(head, unknown), (refused) => refused instanceof Refused
   && refused.code === "unknown-segment" && refused.pointer === "/plan/segments/0/name");

@@ -88,8 +88,9 @@ export class Facies {
     return (await answer.json()).id;
   }
 
-  /** The id of a case that is stored. The document names meshes by their ids, or by the names of `meshes`. */
-  async createCase(document: Documents["CaseDocument"], meshes: Record<string, Blob> = {}): Promise<string> {
+  /** The id of a case that is stored. The document names meshes by their ids, or by the names of `meshes`. One with a
+   * `meshing` is meshed from a scan or surfaces; jobs on it wait. */
+  async createCase(document: Documents["CaseDocument"] | Documents["MeshedCaseDocument"], meshes: Record<string, Blob> = {}): Promise<string> {
     const form = new FormData();
     form.append("case", new Blob([JSON.stringify(document)], { type: "application/json" }));
     for (const [name, mesh] of Object.entries(meshes)) form.append(name, mesh);

@@ -6,6 +6,7 @@
 //! `fixed`, `skin`, and parts of the skin.
 
 mod face;
+pub mod left_out;
 pub mod loose;
 pub mod region;
 mod size;
@@ -23,6 +24,7 @@ use crate::osteotomy::bone_image::BoneImage;
 use crate::osteotomy::classes::{BoneContact, ClassRules, NodeClasses, TissueBoundary, classify};
 use crate::osteotomy::contact::Contact;
 use crate::osteotomy::cut::Cut;
+use crate::osteotomy::label_error::extent;
 use crate::osteotomy::label_surface::label_surface;
 use crate::osteotomy::labelling::{Labelled, label};
 use crate::osteotomy::teeth::{ENAMEL_HU, MUCOSA_MM, Teeth};
@@ -131,6 +133,10 @@ pub fn build(
     }
     let classes = classes(&tissue, &bone, teeth.as_ref(), rules);
     let mut warnings = classes.warnings.clone();
+    warnings.extend(left_out::left_out_of_mesh(&tissue.report));
+    if rules.teeth_slide && teeth.is_none() && !bone.segments.is_empty() {
+        warnings.push(teeth_joined());
+    }
     warnings.extend(touching(&bone));
     warnings.extend(missed(&bone, &rules.osteotomy));
     let face = face::face(&tissue.volume, &skin, rules.frame);
@@ -151,12 +157,21 @@ pub fn build(
 fn missed(bone: &Labelled, osteotomy: &Osteotomy) -> Vec<Warning> {
     let cuts = osteotomy.cuts().iter().enumerate();
     let missed = cuts.filter(|(number, _)| !bone.contacts.iter().any(|c| c.cut == Some(*number)));
+    let bone = extent(bone.labels.bone_box().as_ref());
     let warning = |(_, cut): (usize, &Cut)| {
-        let detail =
-            format!("cut `{}` meets no bone of a segment: is it where it should be?", cut.name);
+        let detail = format!(
+            "cut `{}` meets no bone of a segment: {bone}; is it in the same frame?",
+            cut.name
+        );
         Warning::new("cut-meets-no-bone", detail)
     };
     missed.map(warning).collect()
+}
+
+/// Surfaces do not tell teeth from bone.
+fn teeth_joined() -> Warning {
+    let detail = "surfaces do not tell teeth from bone: tissue is joined to the teeth of segments, and does not slide on them";
+    Warning::new("teeth-joined", detail)
 }
 
 /// A segment that no node of the mesh lies on.

@@ -12,6 +12,9 @@ use crate::osteotomy::labelling::label_given;
 
 /// Volumes that differ by more, as a share, are told: a doubled surface has twice the volume of its body.
 const SAME_VOLUME: f64 = 0.02;
+/// Bone is told of that lies outside the skin with more of it, as a share, and farther, in mm.
+const OUTSIDE: f64 = 0.03;
+const OFF_SKIN_MM: f64 = 2.0;
 /// More of the inside than this is told to be uncertain.
 const CERTAIN: f64 = 1e-3;
 
@@ -35,6 +38,24 @@ pub fn take_as_segments(
     let labelled = label_given(&bone, segments, |voxel| usize::from(deepest[voxel]))?;
     let surfaces = bones.iter().map(|&bone| bone.clone()).collect();
     Ok(PartedBone { labelled, surfaces, teeth: None })
+}
+
+/// Bones of which a part lies outside the skin.
+pub fn outside(domain: &SurfaceDomain) -> Vec<Warning> {
+    let numbered = domain.containments().iter().enumerate();
+    let far = numbered.filter(|(_, by)| by.outside > OUTSIDE && by.farthest > OFF_SKIN_MM);
+    far.map(|(number, by)| {
+        let (name, percent) = (SurfaceName::Bone(number), 100.0 * by.outside);
+        let [x, y, z] = by.centre.into();
+        let detail = format!(
+            "{name}: {percent:.0} % of it lies outside the skin, around ({x:.0}, {y:.0}, {z:.0}) mm and up to {:.1} mm from \
+             it, and holds no tissue there: are both in the same frame?",
+            by.farthest
+        );
+        let warning = Warning::new("bone-outside-skin", detail);
+        warning.with("outside", by.outside).with("farthest_mm", by.farthest)
+    })
+    .collect()
 }
 
 /// What was mended of the surfaces of a body, and what of them could not be: a warning for each that is not whole.

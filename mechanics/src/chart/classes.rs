@@ -43,11 +43,20 @@ const GAP: f64 = 12.0;
 const PANEL_WIDTH: f64 = 300.0;
 const HEAD: f64 = 84.0;
 const SHARPNESS: f64 = 1.5;
-/// Degrees around the head and above it.
-const PANELS: [(&str, f64, f64); 3] = [
-    ("outside, from the front", 0.0, 0.0),
-    ("bone side, from behind", 180.0, 0.0),
-    ("bone side, obliquely", 130.0, 25.0),
+/// A view of the boundary.
+struct View {
+    name: &'static str,
+    /// In degrees, around the head and above it.
+    around: f64,
+    above: f64,
+    /// Without faces of free nodes alone: the skin of a whole head hides bone from all sides.
+    held_alone: bool,
+}
+
+const VIEWS: [View; 3] = [
+    View { name: "all, from the front", around: 0.0, above: 0.0, held_alone: false },
+    View { name: "what is held, from the front", around: 0.0, above: 0.0, held_alone: true },
+    View { name: "what is held, obliquely", around: 50.0, above: 15.0, held_alone: true },
 ];
 const COLUMNS: usize = 3;
 const LINE: f64 = 24.0;
@@ -61,7 +70,8 @@ impl ClassesPicture<'_> {
             .iter()
             .map(|&class| palette.get(class).copied().unwrap_or(colour::FREE))
             .collect();
-        let cameras = PANELS.map(|(_, around, above)| self.outlook.camera(around, above));
+        let held = self.held();
+        let cameras = VIEWS.map(|view| self.outlook.camera(view.around, view.above));
         let extents = cameras.map(|camera| camera.extent(self.points.iter()));
         let widest = extents.iter().map(|e| e.size(0)).fold(1e-9, f64::max);
         let tallest = extents.iter().map(|e| e.size(1)).fold(1e-9, f64::max);
@@ -78,10 +88,11 @@ impl ClassesPicture<'_> {
         let panels: Vec<Panel> = cameras
             .into_iter()
             .zip(&extents)
-            .map(|(camera, extent)| Panel {
+            .zip(&VIEWS)
+            .map(|((camera, extent), view)| Panel {
                 painted: Painted {
                     points: self.points,
-                    triangles: self.triangles,
+                    triangles: if view.held_alone { &held } else { self.triangles },
                     colours: &colours,
                     finish: Finish::Classes,
                 },
@@ -101,12 +112,20 @@ impl ClassesPicture<'_> {
             document.image(place, png);
             let middle = [place.x + PANEL_WIDTH / 2.0, HEAD - 10.0];
             let style = Style::of(13.0).bold().middle();
-            document.text(middle, PANEL_WIDTH, style, PANELS[panel].0);
+            document.text(middle, PANEL_WIDTH, style, VIEWS[panel].name);
         }
         self.write_legend(&mut document, HEAD + panel_height + 30.0, &palette);
         let frame = format!("Nodes of the whole mesh, coordinates in frame {}.", self.frame);
         document.text([MARGIN, height - 10.0], room, Style::of(11.0).faint(), &frame);
         Ok(document.finish(self.title))
+    }
+
+    /// The triangles with a node that something holds.
+    fn held(&self) -> Vec<[u32; 3]> {
+        let is_free =
+            |class: usize| self.classes.get(class).is_none_or(|c| c.kind == ClassKind::Free);
+        let is_held = |point: &u32| !is_free(self.class_of[*point as usize]);
+        self.triangles.iter().filter(|corners| corners.iter().any(is_held)).copied().collect()
     }
 
     /// A colour for each class; segments beyond the fifth begin again at the first colour.
@@ -186,7 +205,10 @@ mod tests {
         palette.sort_unstable();
         palette.dedup();
         assert_eq!(palette.len(), 6);
-        let svg = picture.to_svg().unwrap();
+        // A face of free nodes alone hides what lies behind it.
+        let covered = ClassesPicture { triangles: &[[0, 1, 2], [2, 2, 2]], ..picture };
+        assert_eq!(covered.held(), [[0, 1, 2]]);
+        let svg = covered.to_svg().unwrap();
         assert_eq!(svg.matches("data:image/png;base64,").count(), 3);
         for words in ["joined to maxilla &amp;", "12\u{202f}345 nodes", ">0 nodes<", "frame RAS"] {
             assert!(svg.contains(words), "{words}");

@@ -16,6 +16,8 @@ use crate::mesh::Vector;
 const SAMPLES: usize = 1 << 14;
 /// Winding numbers below this are outside whatever the level is.
 const OUTSIDE: f64 = 0.2;
+/// Points of the inside that are kept, at most.
+const MOST_INSIDE: usize = 2048;
 /// Fewer points inside are no body.
 const FEWEST: usize = 8;
 /// A level above this is a whole surface's.
@@ -51,8 +53,15 @@ pub struct Assessment {
 /// What a point of the box sees.
 #[derive(Clone, Copy)]
 struct Sample {
+    point: Vector,
     winding: f64,
     is_clear: bool,
+}
+
+/// The assessment of a surface, with points spread evenly over its inside.
+pub(super) struct Assessed {
+    pub assessment: Assessment,
+    pub inside: Vec<Vector>,
 }
 
 /// `None` where the surface has no inside.
@@ -60,25 +69,28 @@ pub(super) fn assess(
     mended: &Mended,
     tree: &TriangleTree,
     cells: &WindingCells,
-) -> Option<Assessment> {
+) -> Option<Assessed> {
     let samples = samples(tree, cells);
     let level = level(&samples)?;
     let uncertain = uncertain(&samples, level);
-    let inside = samples.iter().filter(|sample| sample.winding > 0.5 * level).count();
+    let inside = samples.iter().filter(|sample| sample.winding > 0.5 * level);
+    let inside: Vec<Vector> = inside.map(|sample| sample.point).collect();
     let (low, high) = tree.bounds();
     let box_volume = (high - low).product();
     let middle = (low + high) * 0.5;
     let six_volumes = tree.facets().iter().map(|facet| facet.corners.volume_with(&middle));
-    Some(Assessment {
+    let assessment = Assessment {
         triangles: tree.facets().len(),
         mending: mended.mending,
         open_edges: mended.open_edges,
         pieces: mended.pieces,
         level,
         uncertain,
-        volume: box_volume * inside as f64 / SAMPLES as f64,
+        volume: box_volume * inside.len() as f64 / SAMPLES as f64,
         volume_of_triangles: six_volumes.sum::<f64>() / 6.0,
-    })
+    };
+    let apart = inside.len().div_ceil(MOST_INSIDE).max(1);
+    Some(Assessed { assessment, inside: inside.into_iter().step_by(apart).collect() })
 }
 
 /// How much of what is not outside is uncertain.
@@ -122,6 +134,7 @@ fn samples(tree: &TriangleTree, cells: &WindingCells) -> Vec<Sample> {
             let part = Vector::new(part(0), part(1), part(2));
             let point = low + (high - low).component_mul(&part);
             Sample {
+                point,
                 winding: cells.winding(tree, &point),
                 is_clear: !tree.has_within(&point, clearance),
             }

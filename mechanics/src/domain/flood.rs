@@ -50,6 +50,19 @@ pub(super) fn flood(
 
 /// The largest set of voxels that hang together and for which `counts` holds, the first of equal ones.
 pub(super) fn largest_piece(size: Size, counts: impl Fn(usize) -> bool) -> Vec<bool> {
+    let (piece_of, sizes) = pieces(size, counts);
+    let most = sizes.iter().copied().max().unwrap_or(0);
+    let largest = sizes.iter().position(|&size| size == most).map_or(u32::MAX, |n| n as u32);
+    piece_of.iter().map(|&piece| piece != u32::MAX && piece == largest).collect()
+}
+
+/// In voxels, the sets that hang together and for which `counts` holds.
+pub(super) fn piece_sizes(size: Size, counts: impl Fn(usize) -> bool) -> Vec<usize> {
+    pieces(size, counts).1
+}
+
+/// The set of each voxel, `u32::MAX` for none, and how many voxels each has.
+fn pieces(size: Size, counts: impl Fn(usize) -> bool) -> (Vec<u32>, Vec<usize>) {
     let mut piece_of = vec![u32::MAX; size.iter().product()];
     let mut sizes: Vec<usize> = Vec::new();
     let mut waiting = Vec::new();
@@ -71,9 +84,7 @@ pub(super) fn largest_piece(size: Size, counts: impl Fn(usize) -> bool) -> Vec<b
             }
         }
     }
-    let most = sizes.iter().copied().max().unwrap_or(0);
-    let largest = sizes.iter().position(|&size| size == most).map_or(u32::MAX, |n| n as u32);
-    piece_of.iter().map(|&piece| piece != u32::MAX && piece == largest).collect()
+    (piece_of, sizes)
 }
 
 /// Gives every voxel for which `passes` holds the mark of the nearest marked one, by steps from voxel to voxel. Where two

@@ -8,6 +8,7 @@
 use rayon::prelude::*;
 
 use super::compartments::{Compartment, Division, compartments};
+use super::left_out::{LeftOut, left_out};
 use super::limit::{Limit, LimitError, Limits};
 use super::nearest_boundary::{Reach, Slope, Slopes, nearest};
 use super::thickness::{Level, Surroundings, surroundings};
@@ -62,6 +63,10 @@ pub enum ImageDomainError {
     NoTissue { skin: f64, bone: f64, low: f64, high: f64 },
     #[error("all {voxels} voxels of soft tissue are enclosed by bone or air")]
     Enclosed { voxels: usize },
+    #[error(
+        "the image holds {pieces} pieces of tissue and bone with {all:.1} ml together, and the largest is {kept:.1} ml: this is no scan of one body"
+    )]
+    Scattered { pieces: usize, all: f64, kept: f64 },
     #[error(transparent)]
     Image(#[from] ImageError),
     #[error(transparent)]
@@ -83,6 +88,7 @@ pub struct ImageDomain {
     thickness: Vec<f32>,
     airway: Vec<bool>,
     bounds: (Vector, Vector),
+    left_out: LeftOut,
     /// The longest step to a neighbouring voxel, in mm.
     step: f64,
 }
@@ -124,6 +130,13 @@ impl ImageDomain {
         };
         let all = compartments(&values, &division);
         let tissue = tissue_box(&all, size).ok_or_else(|| nothing(image, &values, options))?;
+        let has_body = |voxel: usize| f64::from(values[voxel]) >= skin;
+        let left_out = left_out(image, &all, has_body);
+        if left_out.is_most() {
+            let LeftOut { pieces, all, kept, .. } = left_out;
+            let (pieces, all) = (pieces + 1, all + kept);
+            return Err(ImageDomainError::Scattered { pieces, all, kept });
+        }
         let scale = bone - skin;
         let [skin_values, bone_values] = channels(values, &all, options);
         let skin_level = Level { values: &skin_values, level: skin };
@@ -133,7 +146,7 @@ impl ImageDomain {
         let spline = CubicSpline::new(size, [skin_values, bone_values]);
         let mut limits = Limits::new(&options.limits)?;
         let to_index = *image.to_index();
-        border_planes(image, &mut limits);
+        limits.push_border(image);
         Ok(ImageDomain {
             ranges: SplineRanges::new(&spline),
             spline,
@@ -146,8 +159,14 @@ impl ImageDomain {
             thickness,
             airway,
             bounds: world_box(image, tissue),
+            left_out,
             step: spacing.iter().copied().fold(0.0, f64::max),
         })
+    }
+
+    /// What hangs together with the body nowhere, and was taken for air.
+    pub fn left_out(&self) -> &LeftOut {
+        &self.left_out
     }
 
     /// In voxels.
@@ -370,14 +389,4 @@ fn world_box(image: &ImageVolume, [first, last]: [[usize; 3]; 2]) -> (Vector, Ve
         image.centre(index)
     };
     (1..8).map(corner).fold((corner(0), corner(0)), |(low, high), x| (low.inf(&x), high.sup(&x)))
-}
-
-/// The faces of the box through the outermost voxel centres.
-fn border_planes(image: &ImageVolume, limits: &mut Limits) {
-    let last = image.size().map(|size| size - 1);
-    for axis in 0..3 {
-        let normal: Vector = image.to_index().row(axis).transpose().normalize();
-        limits.push_plane(image.centre([0; 3]), normal);
-        limits.push_plane(image.centre(last), -normal);
-    }
 }

@@ -1,5 +1,6 @@
 //! Where a body is cut off on purpose: half-spaces and a region of interest.
 
+use crate::image::ImageVolume;
 use crate::mesh::Vector;
 
 /// A ball, in mm.
@@ -73,9 +74,14 @@ impl Limits {
         Ok(all)
     }
 
-    /// The same with another half-space; its normal has length 1.
-    pub(crate) fn push_plane(&mut self, point: Vector, normal: Vector) {
-        self.planes.push(Plane { point, normal });
+    /// The faces of the box through the outermost voxel centres.
+    pub(super) fn push_border(&mut self, image: &ImageVolume) {
+        let last = image.size().map(|size| size - 1);
+        for axis in 0..3 {
+            let normal: Vector = image.to_index().row(axis).transpose().normalize();
+            self.planes.push(Plane { point: image.centre([0; 3]), normal });
+            self.planes.push(Plane { point: image.centre(last), normal: -normal });
+        }
     }
 
     /// The least of the signed distances to the limits; infinite without any. It changes by at most 1 mm for each mm.

@@ -1,6 +1,8 @@
 //! A closed surface, however damaged, that tells its inside: a tree of its triangles with the cells of its winding number.
 
-use super::assessment::{Assessment, assess};
+use rayon::prelude::*;
+
+use super::assessment::{Assessed, Assessment, assess};
 use super::mending::mend;
 use super::surface_error::{SurfaceDomainError, SurfaceName};
 use super::triangle_tree::TriangleTree;
@@ -32,6 +34,8 @@ pub(super) struct Shell {
     cells: WindingCells,
     /// Winding number above which a point is inside.
     threshold: f64,
+    /// Points spread evenly over its inside.
+    pub(super) inside: Vec<Vector>,
 }
 
 impl Shell {
@@ -49,7 +53,7 @@ impl Shell {
         }
         let open_edges = mended.open_edges;
         let cells = WindingCells::new(&tree);
-        let Some(assessment) = assess(&mended, &tree, &cells) else {
+        let Some(Assessed { assessment, inside }) = assess(&mended, &tree, &cells) else {
             return Err(SurfaceDomainError::NoInside { surface: name, triangles, open_edges });
         };
         let Assessment { level, uncertain, pieces, .. } = assessment;
@@ -66,12 +70,24 @@ impl Shell {
             });
         }
         let threshold = 0.5 * level;
-        Ok((Shell { tree, cells, threshold }, assessment))
+        Ok((Shell { tree, cells, threshold, inside }, assessment))
     }
 
     /// Positive inside, at most 1 in size.
     pub(super) fn value(&self, point: &Vector) -> f64 {
         (self.cells.winding(&self.tree, point) - self.threshold).clamp(-1.0, 1.0)
+    }
+
+    /// The share of its inside for which something holds.
+    pub(super) fn share(&self, holds: impl Fn(&Vector) -> bool + Sync) -> f64 {
+        let count = self.inside.par_iter().filter(|point| holds(point)).count();
+        count as f64 / self.inside.len().max(1) as f64
+    }
+
+    /// From a point to its nearest triangle, in mm.
+    pub(super) fn distance(&self, point: &Vector) -> f64 {
+        let nearest = self.tree.nearest(point, |_| true);
+        nearest.map_or(f64::INFINITY, |nearest| nearest.distance)
     }
 
     /// On which side all of a ball lies, where that is certain: no triangle meets it, and the winding number at its centre is

@@ -6,6 +6,7 @@
 
 use super::airway_map::AirwayMap;
 use super::assessment::Assessment;
+use super::containment::{Containment, contained};
 use super::cut_ends::cut_ends;
 use super::limit::{Limit, Limits};
 use super::shell::{Shell, Side};
@@ -27,6 +28,7 @@ pub struct SurfaceDomain {
     airways: AirwayMap,
     limits: Limits,
     assessments: Vec<Assessment>,
+    containments: Vec<Containment>,
 }
 
 impl SurfaceDomain {
@@ -45,16 +47,22 @@ impl SurfaceDomain {
             shells.push(shell);
             assessments.push(of_bone);
         }
+        let containments = contained(&skin, &shells)?;
         let bounds = skin.tree.bounds();
         let ends = cut_ends(skin.tree.facets(), bounds);
         let airways = AirwayMap::new(bounds, ends.faces, |point| skin.value(point) > 0.0);
         let cut = ends.triangles;
-        Ok(SurfaceDomain { skin, bones: shells, cut, airways, limits, assessments })
+        Ok(SurfaceDomain { skin, bones: shells, cut, airways, limits, assessments, containments })
     }
 
     /// What was found and mended: the skin's, then those of the bones.
     pub fn assessments(&self) -> &[Assessment] {
         &self.assessments
+    }
+
+    /// How the bones lie by the skin.
+    pub fn containments(&self) -> &[Containment] {
+        &self.containments
     }
 
     /// How many triangles of the skin lie on flat ends of the scan.

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use super::limit::LimitError;
+use crate::mesh::Vector;
 
 /// Which of the surfaces of a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,6 +50,22 @@ pub enum SurfaceDomainError {
         "{surface}: its triangles have {times:.0} times the area of its box; more than 20 times is no surface of a body"
     )]
     Tangled { surface: SurfaceName, times: f64 },
+    #[error(
+        "{surface}: {percent:.0} % of it lies outside the skin, the nearest of it {nearest:.0} mm from it: the skin reaches from {} to {} mm, this bone from {} to {}; are both in the same frame and unit?",
+        place(&skin.0), place(&skin.1), place(&bone.0), place(&bone.1)
+    )]
+    BoneOutside {
+        surface: SurfaceName,
+        percent: f64,
+        nearest: f64,
+        skin: (Vector, Vector),
+        bone: (Vector, Vector),
+    },
+    #[error(
+        "{percent:.1} % of the inside of the skin is bone, which leaves no tissue{}",
+        if *exchanged { "; bone reaches around the skin on all sides: were the two exchanged?" } else { "" }
+    )]
+    NoTissue { percent: f64, exchanged: bool },
     #[error(transparent)]
     Limit(#[from] LimitError),
 }
@@ -63,8 +80,13 @@ impl SurfaceDomainError {
             | SurfaceDomainError::NoInside { surface, .. }
             | SurfaceDomainError::Incomplete { surface, .. }
             | SurfaceDomainError::Uncertain { surface, .. }
-            | SurfaceDomainError::Tangled { surface, .. } => Some(*surface),
-            SurfaceDomainError::Limit(_) => None,
+            | SurfaceDomainError::Tangled { surface, .. }
+            | SurfaceDomainError::BoneOutside { surface, .. } => Some(*surface),
+            SurfaceDomainError::NoTissue { .. } | SurfaceDomainError::Limit(_) => None,
         }
     }
+}
+
+fn place(at: &Vector) -> String {
+    format!("({:.0}, {:.0}, {:.0})", at.x, at.y, at.z)
 }

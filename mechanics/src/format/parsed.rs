@@ -7,6 +7,7 @@ use super::error::{FormatError, Offenders};
 use super::limits::ReadLimits;
 use super::surface_cleaning::clean;
 use super::{Mesh, MeshFormat, ReadMesh};
+use crate::mesh::duplicate_cells::duplicate_cells;
 use crate::mesh::orientation::CellJacobian;
 use crate::mesh::{
     CellShape, Cells, Frame, TriangleSurface, ValuesOf, Vector, VolumeMesh, Warning,
@@ -199,6 +200,7 @@ impl Parsed {
         for shape in [CellShape::Tet4, CellShape::Hex8, CellShape::Wedge6] {
             orient(&mut mesh, shape, warnings)?;
         }
+        warnings.extend(duplicate_cells(&mesh));
         let referenced = mesh.cells.iter().flat_map(|(_, nodes)| nodes);
         self.warn_of_unreferenced(mesh.nodes.len(), referenced);
         Ok(mesh)

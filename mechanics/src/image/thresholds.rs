@@ -106,7 +106,9 @@ impl Thresholds {
         let air_mode = histogram.mode(AIR)?;
         let soft_mode = histogram.mode(SOFT)?;
         let fat_mode = histogram.mode(FAT);
-        let skin = histogram.otsu([air_mode, soft_mode])?;
+        // Values of two kinds alone have nothing between their modes.
+        let between = f64::midpoint(air_mode, soft_mode);
+        let skin = histogram.otsu([air_mode, soft_mode]).unwrap_or(between);
         let bone = histogram.otsu([soft_mode, BONE_END]).unwrap_or(soft_mode);
         let bone = bone.max(soft_mode + ABOVE_SOFT);
         Some(Thresholds { air_mode, fat_mode, soft_mode, skin, bone })

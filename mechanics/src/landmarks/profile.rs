@@ -20,6 +20,9 @@ const LARGEST_GAP: f64 = 6.0;
 /// The tip of a nose is no higher above its base, in mm.
 const HIGHEST_TIP: f64 = 30.0;
 
+/// The tip of a nose is no farther in front of its base, in mm.
+const LONGEST_NOSE: f64 = 40.0;
+
 /// Why a skin has no landmarks.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ProfileError {
@@ -34,6 +37,10 @@ pub enum ProfileError {
         "the foremost point lies {above_mm:.0} mm above the base of the nose, 30 at most are a nose: is the face covered?"
     )]
     NoNose { above_mm: f64 },
+    #[error(
+        "the foremost point lies {behind_mm:.0} mm before the base of the nose, 40 at most are a nose"
+    )]
+    NoBase { behind_mm: f64 },
     #[error("the skin has a gap of {mm:.0} mm on the mid-plane of the face")]
     Gap { mm: f64 },
 }
@@ -109,6 +116,10 @@ impl Profile {
                 let above_mm = pronasale.height - subnasale.height;
                 if above_mm > HIGHEST_TIP {
                     return Err(ProfileError::NoNose { above_mm });
+                }
+                let behind_mm = pronasale.advance - subnasale.advance;
+                if behind_mm > LONGEST_NOSE {
+                    return Err(ProfileError::NoBase { behind_mm });
                 }
                 self.check_gaps(pogonion.height..=pronasale.height)?;
                 Ok(ProfileLandmarks { pogonion, sublabiale, subnasale, pronasale })

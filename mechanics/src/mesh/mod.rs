@@ -7,6 +7,7 @@ pub mod closest_point;
 pub mod connectivity;
 pub mod crossing;
 pub mod disjoint_sets;
+pub mod duplicate_cells;
 mod face_shape;
 pub mod frame;
 pub mod half_head;

@@ -14,11 +14,19 @@ pub enum MeshingError {
     )]
     Bounds { low: Vector, high: Vector },
     #[error(
-        "no tissue was found between {} and {} with cells of {size} mm",
+        "no tissue was found between {} and {} with cells of {size:.2} mm",
         place(low),
         place(high)
     )]
     Empty { low: Vector, high: Vector, size: f64 },
+    #[error(
+        "the tissue is in {pieces} pieces with {all:.1} ml together, of which the largest has {kept:.1} ml: it holds together nowhere"
+    )]
+    Scattered { pieces: usize, all: f64, kept: f64 },
+    #[error(
+        "{made} tetrahedra came of the {target} that were asked for: nearly all tissue is thinner than its cells of {finest:.2} mm"
+    )]
+    TooFew { made: usize, target: usize, finest: f64 },
     #[error(
         "about {estimated} tetrahedra or more would be needed, and at most {allowed} are allowed; \
          the finest cells are {finest} mm"

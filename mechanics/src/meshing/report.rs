@@ -53,6 +53,14 @@ pub struct MeshingReport {
     pub sheets_lost: Vec<Gap>,
 }
 
+impl MeshingReport {
+    /// Of all pieces that were left out, in mm³.
+    pub fn dropped_volume(&self) -> f64 {
+        // The sum of no numbers is -0.
+        self.dropped.iter().map(|piece| piece.volume).sum::<f64>() + 0.0
+    }
+}
+
 /// Angles are counted in so many classes of their cosine: a hundredth of a degree at 20 degrees and above.
 const CLASSES: usize = 40_000;
 

@@ -10,6 +10,7 @@ use super::gaps::{self, Thin};
 use super::grid::Grid;
 use super::lattice::Lattice;
 use super::octree::Leaves;
+use super::pieces::Piece;
 use super::pinches::Pinched;
 use super::refine::Refinement;
 use super::report::{Angles, MeshingReport};
@@ -24,6 +25,10 @@ use crate::progress::{Phase, Progress};
 
 /// Stages that progress tells of.
 const STAGES: usize = 8;
+/// A piece that is less than this share of all tissue is refused.
+const LEAST_KEPT: f64 = 1.0 / 3.0;
+/// Less than one in so many of the cells that were asked for is refused.
+const FEWEST_OF_TARGET: usize = 4;
 
 /// Soft tissue as it comes out of a mesher.
 #[derive(Clone, Debug, PartialEq)]
@@ -69,6 +74,8 @@ pub fn mesh(
     watch.stage()?;
     let edges_cut = edge_copies::part(&mut draft);
     let dropped = if settings.keep_pieces { Vec::new() } else { pieces::drop_small(&mut draft) };
+    refuse_remnant(&draft, &dropped)?;
+    refuse_too_few(&draft, settings, size.finest)?;
     watch.stage()?;
     let raw_angles = Angles::of(&draft);
     let mut climb = Climb::new(&mut draft, domain);
@@ -101,6 +108,30 @@ pub fn mesh(
     };
     watch.end();
     Ok(finished(draft, report))
+}
+
+/// Refuses the largest piece of tissue that holds together nowhere, as in an image of noise.
+fn refuse_remnant(draft: &Draft, dropped: &[Piece]) -> Result<(), MeshingError> {
+    let ml = |mm3: f64| mm3 / 1000.0;
+    let kept = ml(draft.tetrahedra.iter().map(|tet| draft.volume(tet)).sum());
+    let all = kept + ml(dropped.iter().map(|piece| piece.volume).sum());
+    match kept < LEAST_KEPT * all {
+        true => Err(MeshingError::Scattered { pieces: dropped.len() + 1, all, kept }),
+        false => Ok(()),
+    }
+}
+
+/// Refuses a small part of the cells that were asked for, which is what is left where cells are larger than tissue is thick.
+fn refuse_too_few(
+    draft: &Draft,
+    settings: &MeshingSettings,
+    finest: f64,
+) -> Result<(), MeshingError> {
+    let (made, target) = (draft.tetrahedra.len(), settings.target.unwrap_or(0));
+    match made < target / FEWEST_OF_TARGET {
+        true => Err(MeshingError::TooFew { made, target, finest }),
+        false => Ok(()),
+    }
 }
 
 /// Fills the body with the cells of a warped lattice.

@@ -114,6 +114,13 @@ impl BoneLabels {
         best
     }
 
+    /// The lowest and the highest centres of voxels of bone, in mm.
+    pub fn bone_box(&self) -> Option<(Vector, Vector)> {
+        let bone = (0..self.labels.len()).filter(|&voxel| self.labels[voxel] != NO_BONE);
+        let places = bone.map(|voxel| self.centre_of(voxel)).map(|place| (place, place));
+        places.reduce(|(low, high), (a, b)| (low.inf(&a), high.sup(&b)))
+    }
+
     /// The centre of a voxel by its number, in mm.
     pub fn centre_of(&self, voxel: usize) -> Vector {
         let [nx, ny, _] = self.size;

@@ -1,12 +1,17 @@
 //! Why the bone of a scan holds no such segments.
 
+use crate::mesh::Vector;
+
 /// Why a scan cannot be parted as asked.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum LabelError {
     #[error("no bone lies on the sides of segment `{segment}`")]
     NoBone { segment: String },
-    #[error("seed {seed} of segment `{segment}` has no bone of its sides within 10 mm")]
-    SeedOffBone { segment: String, seed: usize },
+    #[error(
+        "seed {seed} of segment `{segment}` has no bone of its sides within 10 mm of {}: {}{}",
+        place(at), extent(bone.as_ref()), hint(at, bone.as_ref())
+    )]
+    SeedOffBone { segment: String, seed: usize, at: Vector, bone: Option<(Vector, Vector)> },
     #[error("seed {seed} of segment `{segment}` is on the other side of cut `{cut}`")]
     SeedAcross { segment: String, seed: usize, cut: String },
     #[error("segments `{one}` and `{other}` have a seed at the same place")]
@@ -15,4 +20,23 @@ pub enum LabelError {
         "the largest piece on the sides of segment `{segment}` is that of `{other}` too: give it a seed"
     )]
     NeedsSeed { segment: String, other: String },
+}
+
+/// Where bone lies.
+pub(crate) fn extent(bone: Option<&(Vector, Vector)>) -> String {
+    bone.map_or("there is no bone".to_owned(), |(low, high)| {
+        format!("bone reaches from {} to {} mm", place(low), place(high))
+    })
+}
+
+fn place(at: &Vector) -> String {
+    format!("({:.0}, {:.0}, {:.0})", at.x, at.y, at.z)
+}
+
+/// A place beyond all bone is mostly one of another frame.
+fn hint(at: &Vector, bone: Option<&(Vector, Vector)>) -> &'static str {
+    match bone.is_none_or(|(low, high)| at.sup(low).inf(high) == *at) {
+        true => "",
+        false => "; is the osteotomy in the frame of the bone?",
+    }
 }

@@ -27,7 +27,14 @@ pub(super) fn markers(
         };
         for (number, seed) in rule.seeds.iter().enumerate() {
             let place = Seed { segment, number, at: *seed };
-            markers.push(Marker { segment, voxel: place.voxel(osteotomy, grid, counts)? });
+            let voxel = place.voxel(osteotomy, grid, counts)?;
+            let voxel = voxel.ok_or_else(|| LabelError::SeedOffBone {
+                segment: rule.name.clone(),
+                seed: number,
+                at: *seed,
+                bone: labels.bone_box(),
+            });
+            markers.push(Marker { segment, voxel: voxel? });
         }
         if rule.seeds.is_empty() {
             let largest = Pieces::new(osteotomy, grid, counts).largest();
@@ -89,12 +96,12 @@ impl Seed {
         osteotomy: &Osteotomy,
         grid: &Grid<'_>,
         counts: impl Fn(usize) -> bool,
-    ) -> Result<usize, LabelError> {
+    ) -> Result<Option<usize>, LabelError> {
         let rule = &osteotomy.segments()[self.segment];
-        let (segment, seed) = (rule.name.clone(), self.number);
         for side in &rule.sides {
             let cut = &osteotomy.cuts()[side.cut];
             if !cut.leaves(&self.at, side.side) {
+                let (segment, seed) = (rule.name.clone(), self.number);
                 let cut = cut.name.clone();
                 return Err(LabelError::SeedAcross { segment, seed, cut });
             }
@@ -106,6 +113,6 @@ impl Seed {
                 best = Some((distance, voxel));
             }
         }
-        best.map(|(_, voxel)| voxel).ok_or(LabelError::SeedOffBone { segment, seed })
+        Ok(best.map(|(_, voxel)| voxel))
     }
 }

@@ -134,3 +134,24 @@ fn what_was_mended_is_told_by_name_and_number_and_a_whole_surface_is_not() {
     let warnings = told(&inverted, &whole);
     assert_eq!(warnings[0].detail, "skin: all of it was inside out");
 }
+
+#[test]
+fn a_second_skin_that_is_not_meshed_and_teeth_that_do_not_slide_are_told() {
+    let mut skin = skin();
+    let other = ball(27.0, Vector::x() * 120.0);
+    let first = skin.points.len() as u32;
+    skin.points.extend(other.points);
+    skin.triangles.extend(other.triangles.iter().map(|corners| corners.map(|c| c + first)));
+    let bone = ball(BONE, Vector::zeros());
+    let domain = SurfaceDomain::new(&skin, &[&bone], &[]).unwrap();
+    let parted = take_as_segments(&domain, &[&bone], &named(&["jaw"])).unwrap();
+    let meshing = MeshingSettings { size: SizeField::uniform(6.0), ..MeshingSettings::default() };
+    let rules = AnatomyRules { meshing, teeth_slide: true, ..AnatomyRules::default() };
+    let made = build(&domain, parted, &rules, &Unobserved).unwrap();
+    let codes: Vec<&str> = made.warnings.iter().map(|warning| warning.code).collect();
+    assert_eq!(codes, ["tissue-left-out", "teeth-joined", "no-landmarks"], "{:?}", made.warnings);
+    let left = &made.warnings[0];
+    let ml = left.numbers.iter().find(|(name, _)| *name == "volume_ml").unwrap().1;
+    assert!((ml / (volume(27.0) / 1000.0) - 1.0).abs() < 0.04, "{left:?}");
+    assert!(left.detail.contains("(120, "), "{left:?}");
+}

@@ -121,3 +121,11 @@ fn a_gap_in_the_face_is_told_and_the_back_of_the_head_is_no_face() {
     let found = landmarks(&skin).unwrap_err();
     assert!(matches!(found, ProfileError::Gap { mm } if mm > 6.0), "{found:?}");
 }
+
+#[test]
+fn what_stands_far_before_the_base_of_its_nose_is_no_face() {
+    let trunk = [[0.0, 60.0, 7.0, 9.0], BUMPS[1], BUMPS[2]];
+    let found = landmarks(&head(0.0, &trunk)).unwrap_err();
+    let ProfileError::NoBase { behind_mm } = found else { panic!("{found:?}") };
+    assert!((40.0..62.0).contains(&behind_mm), "{behind_mm}");
+}

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::jobs::failure::JobError;
 use crate::schema::meshing::surfaces::SurfacesDocument;
 use crate::schema::{ErrorCode, Pointer, Problem};
-use mechanics::anatomy::surfaces::{mended, part_by_cuts, take_as_segments};
+use mechanics::anatomy::surfaces::{mended, outside, part_by_cuts, take_as_segments};
 use mechanics::anatomy::{AnatomyRules, PartedBone};
 use mechanics::domain::{Domain, SurfaceDomain, SurfaceDomainError, SurfaceName};
 use mechanics::image::ImageVolume;
@@ -43,7 +43,7 @@ impl Surfaces {
             None => take_as_segments(&domain, &bones, &rules.osteotomy),
         };
         let bone = parted.map_err(JobError::Anatomy)?;
-        let warnings = mended(&domain);
+        let warnings = mended(&domain).into_iter().chain(outside(&domain)).collect();
         Ok(PartedBody { domain: Box::new(domain), bone, warnings })
     }
 
@@ -58,6 +58,6 @@ impl Surfaces {
                 bones.get(number).map_or(at, |(place, _)| place.clone())
             }
         };
-        Problem::at(&at, ErrorCode::NoInside, error.to_string()).into()
+        Problem::at(&at, ErrorCode::from(error), error.to_string()).into()
     }
 }

@@ -6,6 +6,7 @@ use crate::jobs::clock::Observed;
 use crate::jobs::failure::JobError;
 use crate::schema::osteotomy::conversion::{refuse_bridges, unfound};
 use crate::schema::{Faults, Pointer};
+use mechanics::anatomy::left_out::left_out_of_scan;
 use mechanics::anatomy::loose::{loose_bone, without_loose};
 use mechanics::anatomy::region::around_segments;
 use mechanics::anatomy::{Anatomy, AnatomyError, build, part_bone};
@@ -46,6 +47,7 @@ impl PreparedMeshing {
         let tissue = without_loose(scan, &bone.labelled, &options);
         let domain = ImageDomain::new(&tissue.map_err(ImageDomainError::from)?, &options)?;
         let mut warnings = report.findings;
+        warnings.extend(left_out_of_scan(domain.left_out(), &warnings));
         warnings.extend(loose_bone(&bone.labelled));
         warnings.extend(cut_off(&domain, &options)?);
         Ok(PartedBody { domain: Box::new(domain), bone, warnings })

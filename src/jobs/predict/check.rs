@@ -73,7 +73,10 @@ impl Prepared {
     pub fn classes_picture(&self) -> Result<String, JobError> {
         let counts = class_counts(&self.scene);
         let joined: u64 = counts.joined.values().sum();
-        let title = format!("What holds the tissue: {joined} joined, {} fixed nodes", counts.fixed);
+        let (fixed, sliding) = (counts.fixed, counts.sliding);
+        let title = format!(
+            "What holds the tissue: {joined} joined, {fixed} fixed, {sliding} sliding nodes"
+        );
         Ok(classes_picture(&self.scene, self.case.frame, &title)?)
     }
 }

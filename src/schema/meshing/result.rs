@@ -96,7 +96,7 @@ impl MeshingResultDocument {
             free_beside_cuts: anatomy.classes.in_band as u64,
             gaps_closed: report.gaps_closed.iter().map(GapDocument::from).collect(),
             sheets_lost: report.sheets_lost.iter().map(GapDocument::from).collect(),
-            dropped_ml: report.dropped.iter().map(|piece| piece.volume).sum::<f64>() / MM3_IN_ML,
+            dropped_ml: report.dropped_volume() / MM3_IN_ML,
             case,
             check: None,
         }

@@ -107,7 +107,7 @@ pub fn unfound(error: &LabelError, osteotomy: &Osteotomy, at: &Pointer) -> Probl
     };
     let place = match error {
         LabelError::NoBone { segment } => named(segment),
-        LabelError::SeedOffBone { segment, seed }
+        LabelError::SeedOffBone { segment, seed, .. }
         | LabelError::SeedAcross { segment, seed, .. } => {
             named(segment).key("seeds_mm").index(*seed)
         }

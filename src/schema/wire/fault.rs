@@ -13,12 +13,14 @@ const REPORTED_FAULTS: usize = 50;
 /// Codes that name a whole problem when nothing else is wrong with a document.
 const CATALOGUE: &[ErrorCode] = &[
     ErrorCode::AlignmentFailed,
+    ErrorCode::BoneOutsideSkin,
     ErrorCode::EmptySelection,
     ErrorCode::FrameConflict,
     ErrorCode::MethodMismatch,
     ErrorCode::MethodNotAvailable,
     ErrorCode::MissingMaterial,
     ErrorCode::NoInside,
+    ErrorCode::NoTissue,
     ErrorCode::NotInResponse,
     ErrorCode::NotLinear,
     ErrorCode::NothingHeld,

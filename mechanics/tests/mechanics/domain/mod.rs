@@ -1,7 +1,9 @@
 //! Bodies to mesh, against closed forms.
 
+mod containment;
 mod damage;
 mod image;
+mod left_out;
 mod surface;
 
 use mechanics::mesh::{TriangleSurface, Vector};

@@ -313,3 +313,13 @@ fn a_hexahedron_with_a_dented_corner_is_kept_with_a_warning() {
     let read = read_default(ascii_vtu(&points, &[(12, &nodes)], "").as_bytes());
     assert_eq!(warning_codes(&read), ["dented-cells"]);
 }
+
+#[test]
+fn a_cell_that_stands_twice_is_told() {
+    let points = [[0.0; 3], [9.0, 0.0, 0.0], [0.0, 9.0, 0.0], [0.0, 0.0, 9.0], [9.0, 9.0, 9.0]];
+    let once: [(u8, &[u32]); 2] = [(10, &[0, 1, 2, 3]), (10, &[1, 2, 3, 4])];
+    let twice: [(u8, &[u32]); 3] = [once[0], once[1], (10, &[1, 2, 0, 3])];
+    let read = |cells: &[(u8, &[u32])]| read_default(ascii_vtu(&points, cells, "").as_bytes());
+    assert_eq!(warning_codes(&read(&once)), [""; 0]);
+    assert_eq!(warning_codes(&read(&twice)), ["duplicate-cells"]);
+}

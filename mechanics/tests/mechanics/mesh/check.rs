@@ -2,6 +2,7 @@
 
 use mechanics::mesh::check::{MeshReport, several_components, units_suspect};
 use mechanics::mesh::connectivity::Faces;
+use mechanics::mesh::duplicate_cells::duplicate_cells;
 use mechanics::mesh::{CellShape, TriangleSurface, Vector, sample};
 
 use crate::samples::{closed_surface, mixed_mesh};
@@ -54,6 +55,21 @@ fn open_nonmanifold_and_separate_parts_are_counted() {
     assert_eq!((report.components, report.largest_components.clone()), (2, vec![4, 2]));
     assert_eq!((report.unreferenced_nodes, report.duplicate_nodes), (1, 0));
     assert_eq!(report.volume_mm3, None);
+}
+
+#[test]
+fn cells_that_stand_twice_are_told_with_the_first_of_them() {
+    let mut mesh = mixed_mesh();
+    assert_eq!(duplicate_cells(&mesh), None);
+    let (shape, first) = mesh.cells.iter().next().map(|(s, nodes)| (s, nodes.to_vec())).unwrap();
+    // Other cells at the same two lowest nodes are no copies; the same nodes in another order are.
+    let turned: Vec<u32> = [&first[1..3], &first[..1], &first[3..]].concat();
+    let count = mesh.cells.len();
+    mesh.cells.push(shape, &turned);
+    mesh.cells.push(shape, &first);
+    let told = duplicate_cells(&mesh).unwrap();
+    assert_eq!(told.code, "duplicate-cells");
+    assert_eq!(told.numbers, [("count", 2.0), ("first_cell", count as f64)]);
 }
 
 #[test]

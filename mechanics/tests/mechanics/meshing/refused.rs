@@ -7,7 +7,7 @@ use mechanics::mesh::Vector;
 use mechanics::meshing::{MeshingError, MeshingSettings, SizeField, mesh};
 use mechanics::progress::{Phase, Progress, Unobserved};
 
-use super::domains::{Body, ball, shell};
+use super::domains::{Body, ball, balls, shell};
 use super::uniform;
 
 fn refusal(domain: &dyn Domain, settings: &MeshingSettings) -> MeshingError {
@@ -132,4 +132,31 @@ fn cancelling_ends_at_any_question() {
         let ended = mesh(&ball(20.0), &uniform(4.0), &stop_at(question));
         assert_eq!(ended.unwrap_err(), MeshingError::Cancelled);
     }
+}
+
+#[test]
+fn tissue_of_which_a_small_part_would_be_kept_is_refused() {
+    let ball = |x: f64| (Vector::x() * x, 12.0);
+    let four = balls(vec![ball(-60.0), ball(-20.0), ball(20.0), ball(60.0)]);
+    let refused = refusal(&four, &uniform(4.0));
+    let MeshingError::Scattered { pieces: 4, all, kept } = refused else { panic!("{refused}") };
+    assert!((all / kept - 4.0).abs() < 0.1, "{refused}");
+    // Noise: tissue and none change within a fraction of a cell.
+    let noise = Body::skin(40.0, |x| {
+        let waves = (x * 37.0).map(f64::sin);
+        (40.0 - x.norm()).min(0.01 * (waves.sum() - 1.3))
+    });
+    let refused = refusal(&noise, &MeshingSettings { target: Some(5000), ..uniform(4.0) });
+    println!("{refused}");
+    let is_none = matches!(
+        refused,
+        MeshingError::Scattered { .. } | MeshingError::TooFew { target: 5000, .. }
+    );
+    assert!(is_none, "{refused}");
+}
+
+#[test]
+fn where_nothing_is_dropped_the_volume_of_that_is_no_negative_zero() {
+    let made = mesh(&ball(20.0), &uniform(4.0), &Unobserved).unwrap();
+    assert_eq!(made.report.dropped_volume().to_bits(), 0.0_f64.to_bits());
 }

@@ -1,7 +1,7 @@
 //! What is said of a scan, each finding alone.
 
 use mechanics::image::{ImageVolume, Placement, ScanReport, Voxels, scan_report};
-use mechanics::mesh::{Frame, Warning};
+use mechanics::mesh::{Frame, Vector, Warning};
 
 use super::head::{Made, PLAIN, made};
 use super::image;
@@ -119,4 +119,17 @@ fn a_report_is_the_same_in_ras_and_with_turned_axes() {
             );
         }
     }
+}
+
+#[test]
+fn values_of_air_and_tissue_alone_without_any_between_are_hounsfield_units() {
+    let made = image([40, 40, 40], [4.0; 3], |at| match (at - Vector::repeat(80.0)).norm() {
+        r if r < 40.0 => 700.0,
+        r if r < 70.0 => 40.0,
+        _ => -1000.0,
+    });
+    let report = scan_report(&made, Frame::Lps);
+    assert!(!codes(&report).contains(&"no-hounsfield"), "{report:?}");
+    let thresholds = report.thresholds.unwrap();
+    assert!((-900.0..0.0).contains(&thresholds.skin) && thresholds.bone < 700.0, "{thresholds:?}");
 }
