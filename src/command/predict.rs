@@ -12,7 +12,7 @@ use super::watch::Watch;
 use crate::jobs::{JobInput, Workplace, check};
 use crate::schema::Limits;
 use crate::schema::predict::check::CheckDocument;
-use crate::schema::predict::document::{EstimateName, OutputName};
+use crate::schema::predict::document::{ContactName, EstimateName, OutputName};
 use crate::schema::predict::result::ResultDocument;
 
 /// What is kept goes to the meshes of a tenant.
@@ -40,6 +40,9 @@ pub struct Arguments {
     /// Refine the mesh until the estimated mean error over the skin is within so many mm
     #[arg(long, value_name = "MM", conflicts_with = "accept", help_heading = "Result")]
     refine: Option<f64>,
+    /// What keeps tissue from passing through itself and bone: none, sliding, unilateral or auto
+    #[arg(long, value_name = "KIND", value_parser = contact, help_heading = "Result")]
+    contact: Option<ContactName>,
     /// Do not estimate the error of the mesh
     #[arg(long, conflicts_with_all = ["corrected", "refine"], help_heading = "Result")]
     no_estimate: bool,
@@ -61,6 +64,7 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
     if let Some(accept_mm) = arguments.refine {
         asked.file.spec.refine_to(accept_mm);
     }
+    asked.file.spec.contact = arguments.contact.unwrap_or(asked.file.spec.contact);
     if arguments.no_estimate {
         asked.file.spec.estimate = EstimateName::None;
     }
@@ -86,6 +90,11 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
     print_files(&done.files, &arguments.out);
     println!("wrote      {}", documents.display());
     Ok(())
+}
+
+/// By the words of documents.
+fn contact(word: &str) -> Result<ContactName, String> {
+    serde_json::from_value(word.into()).map_err(|error| error.to_string())
 }
 
 /// What a person at a terminal looks at.
@@ -125,6 +134,12 @@ fn print_result(result: &ResultDocument, before: &CheckDocument) {
         );
     }
     print_error_of_mesh(result);
+    if let Some(contact) = &result.contact {
+        println!(
+            "contact      {:.1} mm2, largest pressure {:.2} kPa, {} passes",
+            contact.area_mm2, contact.largest_pressure_kpa, contact.passes
+        );
+    }
     if let Some(adequacy) = &result.adequacy {
         println!("model        {}", adequacy.why());
     }

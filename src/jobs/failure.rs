@@ -168,6 +168,9 @@ fn no_equilibrium(error: &ModelError) -> Value {
         ModelError::Standstill { made, steps, least_det_f } => {
             json!({ "movement_share": made, "steps": steps, "least_det_f": least_det_f })
         }
+        ModelError::ContactUnsettled { passes, moved_mm } => {
+            json!({ "passes": passes, "moved_mm": moved_mm })
+        }
         ModelError::Folded { cell, det_f } => json!({ "element": cell, "det_f": det_f }),
         ModelError::Solver(error) => no_solution(error),
     }

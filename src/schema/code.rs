@@ -185,6 +185,7 @@ error_codes! {
     MatrixSingular 422 "matrix-singular" REFUSED,
     MeshingFailed 422 "meshing-failed" REFUSED,
     NoBone 422 "no-bone" REFUSED,
+    ContactUnsettled 422 "contact-unsettled" REFUSED,
     NoEquilibrium 422 "no-equilibrium" REFUSED,
     NoPlanFound 422 "no-plan-found" REFUSED,
     NotFinite 422 "not-finite" REFUSED,

@@ -46,6 +46,7 @@ impl From<&ModelError> for ErrorCode {
             ModelError::StepAboveLimit { .. } => ErrorCode::StepAboveLimit,
             ModelError::NoBone => ErrorCode::NoBone,
             ModelError::Standstill { .. } => ErrorCode::NoEquilibrium,
+            ModelError::ContactUnsettled { .. } => ErrorCode::ContactUnsettled,
             ModelError::Folded { .. } => ErrorCode::TissueFolded,
         }
     }
@@ -184,6 +185,7 @@ mod tests {
             ModelError::StepAboveLimit { step_s: 2.0, limit_s: 1.0 },
             ModelError::NoBone,
             ModelError::Standstill { made: 0.5, steps: 9, least_det_f: 0.1 },
+            ModelError::ContactUnsettled { passes: 30, moved_mm: 1.0 },
             ModelError::Folded { cell: 1, det_f: -1.0 },
         ] {
             assert_eq!(ErrorCode::from(&error).name(), error.code(), "{error}");

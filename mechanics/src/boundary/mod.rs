@@ -2,6 +2,7 @@
 
 pub mod carried;
 pub mod conditions;
+pub mod contact;
 pub mod freedom;
 pub mod hold;
 pub mod midpoint;

@@ -114,6 +114,16 @@ impl SurfaceSearch {
         self.closest_of(point, f64::INFINITY, counts)
     }
 
+    /// The nearest point of those triangles for which `counts` holds, if it is less than `limit` mm away.
+    pub fn nearer_where(
+        &self,
+        point: &Vector,
+        limit: f64,
+        counts: impl Fn(usize) -> bool,
+    ) -> Option<ClosestPoint> {
+        self.closest_of(point, limit, counts)
+    }
+
     fn closest_of(
         &self,
         point: &Vector,

@@ -40,6 +40,11 @@ pub enum ModelError {
          and the most pressed cell has {:.2} % of its volume", 100.0 * made, 100.0 * least_det_f
     )]
     Standstill { made: f64, steps: usize, least_det_f: f64 },
+    #[error(
+        "contact does not settle: after {passes} passes what presses still changes with every solution, and the answer moves \
+         by {moved_mm:.2} mm where closest points are looked for again"
+    )]
+    ContactUnsettled { passes: usize, moved_mm: f64 },
     /// Before anything is solved.
     #[error(
         "cell {cell} is turned inside out by its held nodes alone, det F {det_f:.3}: these movements fold the tissue between bones"
@@ -56,6 +61,7 @@ impl ModelError {
             ModelError::StepAboveLimit { .. } => "step-above-limit",
             ModelError::NoBone => "no-bone",
             ModelError::Standstill { .. } => "no-equilibrium",
+            ModelError::ContactUnsettled { .. } => "contact-unsettled",
             ModelError::Folded { .. } => "tissue-folded",
         }
     }

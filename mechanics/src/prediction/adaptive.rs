@@ -181,8 +181,12 @@ impl<'a> Step<'a> {
             Some(reason) => Err(reason),
             None => nonlinearity::estimate(scene, &system, &solved, progress)?,
         };
-        let answer =
-            Answer { equilibrium: solved.equilibrium, numerical_error: Ok(error), nonlinearity };
+        let answer = Answer {
+            equilibrium: solved.equilibrium,
+            numerical_error: Ok(error),
+            nonlinearity,
+            contact: None,
+        };
         Ok(answer.corrected(scene.settings.corrected))
     }
 

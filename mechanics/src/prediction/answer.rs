@@ -1,5 +1,6 @@
 //! The answer of a scene: its equilibrium, what the mesh leaves out of it, and what linearity does.
 
+use super::contact::{Touch, touch};
 use super::method::MethodKind;
 use super::nonlinearity::{self, Estimated, NonlinearityUnknown};
 use super::numerical_error::{self, NotEstimated, NumericalError};
@@ -15,6 +16,8 @@ pub(super) struct Answer {
     pub equilibrium: Equilibrium,
     pub numerical_error: Result<NumericalError, NotEstimated>,
     pub nonlinearity: Estimated,
+    /// What touches.
+    pub contact: Option<Touch>,
 }
 
 /// What was solved of a scene, with linear elements of first order or otherwise.
@@ -48,8 +51,8 @@ pub(super) fn linear<'a>(
     let of_linearity = nonlinearity::reason_for_none(scene);
     let without = |of_mesh, of_linearity| -> Result<Linear, ModelError> {
         let (numerical_error, nonlinearity) = (Err(of_mesh), Err(of_linearity));
-        let equilibrium = scene.solve(progress)?;
-        Ok(Linear::Other(Answer { equilibrium, numerical_error, nonlinearity }))
+        let (equilibrium, contact) = equilibrium(scene, progress)?;
+        Ok(Linear::Other(Answer { equilibrium, numerical_error, nonlinearity, contact }))
     };
     if let (Some(of_mesh), Some(of_linearity)) = (&of_mesh, &of_linearity) {
         return without(of_mesh.clone(), of_linearity.clone());
@@ -59,12 +62,21 @@ pub(super) fn linear<'a>(
     {
         let (equilibrium, numerical_error) = at_finite_strain(scene, progress)?;
         let nonlinearity = Err(of_linearity.clone());
-        return Ok(Linear::Other(Answer { equilibrium, numerical_error, nonlinearity }));
+        let contact = None;
+        return Ok(Linear::Other(Answer { equilibrium, numerical_error, nonlinearity, contact }));
     }
     let Some(system) = scene.assemble(progress)? else {
         return without(NotEstimated::Quadratic, NonlinearityUnknown::Quadratic);
     };
     let solved = system.solve(&[scene.load_case()], progress)?.remove(0);
+    if let Some((solved, contact)) = touch(scene, &system, &solved, progress)? {
+        return Ok(Linear::Other(Answer {
+            equilibrium: solved.equilibrium,
+            numerical_error: Err(of_mesh.unwrap_or(NotEstimated::Contact)),
+            nonlinearity: Err(of_linearity.unwrap_or(NonlinearityUnknown::Contact)),
+            contact: Some(contact),
+        }));
+    }
     let numerical_error = match of_mesh {
         Some(reason) => Err(reason),
         None => numerical_error::estimate(scene, &system, &solved, progress)?,
@@ -75,6 +87,23 @@ pub(super) fn linear<'a>(
     };
     let answer = LinearAnswer { system, solved, numerical_error, nonlinearity };
     Ok(Linear::Solved(Box::new(answer)))
+}
+
+/// The equilibrium of a scene by its method, and what touches, without estimates.
+pub fn equilibrium(
+    scene: &Scene,
+    progress: &dyn Progress,
+) -> Result<(Equilibrium, Option<Touch>), ModelError> {
+    if !scene.settings.contact.is_unilateral() {
+        return Ok((scene.solve(progress)?, None));
+    }
+    // Quadratic elements and methods of other kinds are refused before.
+    let Some(system) = scene.assemble(progress)? else { return Ok((scene.solve(progress)?, None)) };
+    let solved = system.solve(&[scene.load_case()], progress)?.remove(0);
+    Ok(match touch(scene, &system, &solved, progress)? {
+        Some((solved, contact)) => (solved.equilibrium, Some(contact)),
+        None => (solved.equilibrium, None),
+    })
 }
 
 /// At finite strain the last tangent is at hand.
@@ -97,6 +126,7 @@ impl LinearAnswer<'_> {
             equilibrium: self.solved.equilibrium,
             numerical_error: self.numerical_error,
             nonlinearity: self.nonlinearity,
+            contact: None,
         }
     }
 
@@ -108,7 +138,8 @@ impl LinearAnswer<'_> {
     ) -> Result<Answer, ModelError> {
         let (equilibrium, nonlinearity) =
             nonlinearity::to_second_order(scene, &self.system, &self.solved, progress)?;
-        Ok(Answer { equilibrium, numerical_error: self.numerical_error.clone(), nonlinearity })
+        let numerical_error = self.numerical_error.clone();
+        Ok(Answer { equilibrium, numerical_error, nonlinearity, contact: None })
     }
 }
 

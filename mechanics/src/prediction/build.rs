@@ -73,7 +73,7 @@ impl Scene {
             settings: settings.clone(),
             warnings: Vec::new(),
         };
-        check.method(&settings.method, plan);
+        check.method(settings, plan);
         check.problems.give_up_if_any()?;
         check.add_loads(plan, &mut scene);
 

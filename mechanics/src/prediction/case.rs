@@ -131,13 +131,38 @@ pub enum Load {
     },
 }
 
+/// What keeps tissue from passing through what it touches.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ContactKind {
+    /// Nothing: sliding nodes go free.
+    None,
+    /// Sliding nodes are held across their walls.
+    #[default]
+    Sliding,
+    /// The same, and no part of the boundary passes through another one.
+    Unilateral,
+    /// `Unilateral` where a gap closes, which is told; `Sliding` elsewhere.
+    Auto,
+}
+
+impl ContactKind {
+    /// Whether sliding nodes are held.
+    pub fn holds_sliding(self) -> bool {
+        self != ContactKind::None
+    }
+
+    /// Whether parts of the boundary are kept from passing through each other.
+    pub fn is_unilateral(self) -> bool {
+        matches!(self, ContactKind::Unilateral | ContactKind::Auto)
+    }
+}
+
 /// How the numbers are to be found.
 #[derive(Clone, Debug)]
 pub struct Settings {
     pub method: Method,
     pub element: ElementChoice,
-    /// False lets sliding nodes go free.
-    pub sliding: bool,
+    pub contact: ContactKind,
     /// |f - K u| / |f_D| of the free rows at which the solver may stop; in [1e-14, 1e-2].
     pub relative_residual: f64,
     /// What matrix and solver may take, in MB.
@@ -155,7 +180,7 @@ impl Default for Settings {
         Settings {
             method: Method::FemLinear,
             element: ElementChoice::Auto,
-            sliding: true,
+            contact: ContactKind::Sliding,
             relative_residual: 1e-8,
             memory_mb: 4000.0,
             membrane: None,

@@ -5,7 +5,6 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 use super::case::{Case, Load, Plan, RegionNames, Settings};
 use super::element_choice::ElementChoice;
 use super::error_code::SceneErrorCode;
-use super::method::Method;
 use super::problem::Problems;
 use super::scene::Scene;
 use super::skin::{self, Skin};
@@ -201,8 +200,19 @@ impl<'a> Check<'a> {
     }
 
     /// Refuses what a method would have to ignore in silence.
-    pub(super) fn method(&mut self, method: &Method, plan: &Plan) {
-        let method = method.properties();
+    pub(super) fn method(&mut self, settings: &Settings, plan: &Plan) {
+        let method = settings.method.properties();
+        let is_quadratic = settings.element == ElementChoice::Quadratic;
+        if settings.contact.is_unilateral() && (!method.knows_contact || is_quadratic) {
+            let who = match is_quadratic {
+                true => "quadratic elements know",
+                false => &format!("{} knows", method.title),
+            };
+            let detail = format!(
+                "{who} no contact that opens and closes: `fem_linear` does, with any element but `quadratic`"
+            );
+            self.problems.add("/spec/contact", SceneErrorCode::MethodNotAvailable, detail);
+        }
         if !method.knows_loads && !plan.loads.is_empty() {
             let detail = format!("{} follows bone and knows no forces", method.name);
             self.problems.add("/plan/loads", SceneErrorCode::MethodNotAvailable, detail);

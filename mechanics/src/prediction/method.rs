@@ -96,6 +96,8 @@ pub struct MethodProperties {
     pub knows_membrane: bool,
     /// Whether forces may act.
     pub knows_loads: bool,
+    /// Whether tissue may be kept from passing through what it touches.
+    pub knows_contact: bool,
 }
 
 const FEM_LINEAR: MethodProperties = MethodProperties {
@@ -112,6 +114,7 @@ const FEM_LINEAR: MethodProperties = MethodProperties {
     expects_fibres: false,
     knows_membrane: true,
     knows_loads: true,
+    knows_contact: true,
 };
 
 const FEM_NONLINEAR: MethodProperties = MethodProperties {
@@ -133,6 +136,7 @@ const FEM_NONLINEAR: MethodProperties = MethodProperties {
     expects_fibres: false,
     knows_membrane: false,
     knows_loads: true,
+    knows_contact: false,
 };
 
 const MASS_TENSOR: MethodProperties = MethodProperties {
@@ -150,6 +154,7 @@ const MASS_TENSOR: MethodProperties = MethodProperties {
     expects_fibres: false,
     knows_membrane: true,
     knows_loads: true,
+    knows_contact: false,
 };
 
 const MASS_TENSOR_TRANSVERSE: MethodProperties = MethodProperties {
@@ -166,6 +171,7 @@ const MASS_TENSOR_TRANSVERSE: MethodProperties = MethodProperties {
     expects_fibres: true,
     knows_membrane: true,
     knows_loads: true,
+    knows_contact: true,
 };
 
 const MASS_TENSOR_NONLINEAR: MethodProperties = MethodProperties {
@@ -182,6 +188,7 @@ const MASS_TENSOR_NONLINEAR: MethodProperties = MethodProperties {
     expects_fibres: false,
     knows_membrane: false,
     knows_loads: true,
+    knows_contact: false,
 };
 
 const MASS_SPRING: MethodProperties = MethodProperties {
@@ -198,6 +205,7 @@ const MASS_SPRING: MethodProperties = MethodProperties {
     expects_fibres: false,
     knows_membrane: false,
     knows_loads: true,
+    knows_contact: false,
 };
 
 const VOLUME_SPLINE: MethodProperties = MethodProperties {
@@ -214,6 +222,7 @@ const VOLUME_SPLINE: MethodProperties = MethodProperties {
     expects_fibres: false,
     knows_membrane: false,
     knows_loads: true,
+    knows_contact: false,
 };
 
 const THICKNESS_WARP: MethodProperties = MethodProperties {
@@ -230,6 +239,7 @@ const THICKNESS_WARP: MethodProperties = MethodProperties {
     expects_fibres: false,
     knows_membrane: false,
     knows_loads: false,
+    knows_contact: false,
 };
 
 impl MethodKind {

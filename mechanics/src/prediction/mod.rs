@@ -6,6 +6,7 @@ mod answer;
 mod build;
 pub mod case;
 mod check;
+mod contact;
 mod cut;
 mod element_choice;
 mod error_code;
@@ -38,9 +39,10 @@ mod walls;
 use std::collections::BTreeMap;
 
 pub use case::{
-    Bone, Case, CaseSegment, FibreDirection, Hounsfield, Load, Mixing, Plan, Prescribed,
-    RegionNames, Settings, SkinMembrane, Sliding, SlidingNormal, TissueWindow,
+    Bone, Case, CaseSegment, ContactKind, FibreDirection, Hounsfield, Load, Mixing, Plan,
+    Prescribed, RegionNames, Settings, SkinMembrane, Sliding, SlidingNormal, TissueWindow,
 };
+pub use contact::{ContactPair, Touch};
 pub use element_choice::ElementChoice;
 pub use error_code::SceneErrorCode;
 pub use imaged_tissue::{ImagedTissue, TissueShare};
@@ -63,6 +65,7 @@ pub use adequate::{
     Accepted, Adequate, Considered, Errors, MAY_TAKE, MeanErrors, Rung, Watched, predict_adequately,
 };
 use answer::Answer;
+pub use answer::equilibrium;
 
 pub use crate::boundary::NodeClass;
 use crate::mesh::{Vector, Warning};
@@ -94,6 +97,8 @@ pub struct Prediction {
     pub numerical_error: Result<NumericalError, NotEstimated>,
     /// The same at each landmark, in mm; empty where it is not known.
     pub landmarks_missing: BTreeMap<String, Vector>,
+    /// How tissue presses on what it touches, where anything does.
+    pub contact: Option<Touch>,
     pub solver: SolveReport,
     /// The elements used, e.g. `hex8 mean dilatation`.
     pub elements: Vec<String>,
@@ -109,7 +114,7 @@ pub fn predict(scene: &Scene, progress: &dyn Progress) -> Result<Prediction, Mod
 
 /// What an answer says of the tissue and to a reader.
 fn described(scene: &Scene, answer: Answer, progress: &dyn Progress) -> Prediction {
-    let Answer { equilibrium, numerical_error, nonlinearity } = answer;
+    let Answer { equilibrium, numerical_error, nonlinearity, contact } = answer;
 
     // 1. What it does to the tissue and to the landmarks.
     progress.phase(Phase::Surface);
@@ -122,6 +127,7 @@ fn described(scene: &Scene, answer: Answer, progress: &dyn Progress) -> Predicti
     let is_told = scene.warnings.iter().any(|warning| warning.code == NOTHING_MOVES);
     warnings.extend((scene.is_at_rest() && !is_told).then(nothing_moves));
     warnings.extend(equilibrium.warnings.iter().cloned());
+    warnings.extend(contact.iter().flat_map(|touch| touch.warnings(scene)));
     warnings.extend(inverted_cells(&deformation));
     warnings.extend(small_strain::left(scene, &deformation, &nonlinearity));
     warnings.extend(exponential_tissue::warnings(scene, &equilibrium.displacement));
@@ -142,6 +148,7 @@ fn described(scene: &Scene, answer: Answer, progress: &dyn Progress) -> Predicti
             .map(|all| all.into_iter().map(|(name, (missing, _))| (name, missing)).collect())
             .unwrap_or_default(),
         numerical_error,
+        contact,
         solver: equilibrium.solver,
         elements: scene.elements(),
         displacement: equilibrium.displacement,

@@ -50,6 +50,8 @@ pub enum NonlinearityUnknown {
         "a wall turns with segment {segment:?}, and small strain holds its nodes across the wall as it lay before"
     )]
     TurnedWall { segment: String },
+    #[error("it is not estimated where tissue presses on what it touches")]
+    Contact,
     #[error("the loose solution of the second order failed: {0}")]
     Failed(ModelError),
 }

@@ -48,6 +48,8 @@ pub enum NotEstimated {
     Spline,
     #[error("a warp solves no equation")]
     Warp,
+    #[error("it is not estimated where tissue presses on what it touches")]
+    Contact,
     #[error("{0}")]
     Failed(String),
 }

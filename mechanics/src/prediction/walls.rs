@@ -49,7 +49,7 @@ impl Check<'_> {
         let entries = self.case.sliding.iter().enumerate();
         let carriers: Vec<Option<u32>> =
             entries.map(|(index, entry)| self.carrier(index, entry)).collect();
-        if !settings.sliding {
+        if !settings.contact.holds_sliding() {
             return;
         }
         let entries = self.case.sliding.iter().enumerate().zip(carriers);

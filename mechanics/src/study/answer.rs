@@ -10,7 +10,9 @@ use super::deadline::Deadline;
 use crate::mesh::Vector;
 use crate::model::fem::strain::deformations;
 use crate::model::problem::{Equilibrium, ModelError};
-use crate::prediction::{Case, Plan, Scene, SceneErrorCode, SceneErrors, Settings, inverted_cells};
+use crate::prediction::{
+    Case, Plan, Scene, SceneErrorCode, SceneErrors, Settings, equilibrium, inverted_cells,
+};
 use crate::progress::Progress;
 use crate::solver::SolverError;
 
@@ -107,7 +109,7 @@ pub(super) fn solve(
     progress: &dyn Progress,
 ) -> Result<(Scene, Equilibrium), NoAnswer> {
     let scene = Scene::new(case, plan, settings)?;
-    let equilibrium = scene.solve(progress)?;
+    let (equilibrium, _) = equilibrium(&scene, progress)?;
     Ok((scene, equilibrium))
 }
 

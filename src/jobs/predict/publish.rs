@@ -219,6 +219,7 @@ impl Finished<'_> {
             nonlinearity_unknown: self.nonlinearity.as_ref().err().cloned(),
             comparison: self.comparison.clone(),
             optimisation: self.optimisation.clone(),
+            contact: self.prediction.contact.as_ref().map(Into::into),
             adequacy: self.adequacy.clone(),
             refinement: self.refinement.clone(),
             numerical_error_mm: self.numerical_error.clone(),

@@ -9,6 +9,32 @@ use mechanics::format::{
 use mechanics::mesh::{Frame, TriangleSurface, Vector};
 use mechanics::prediction::{Prediction, Skin};
 
+/// The gap in mm of a node that faces nothing near.
+const NOTHING_FACED: f64 = 1000.0;
+
+/// Contact at the points of a skin or the nodes of a mesh: pressure in kPa, gap in mm.
+pub struct ContactArrays {
+    pub pressure: Vec<f64>,
+    pub gap: Vec<f64>,
+}
+
+impl ContactArrays {
+    /// At some nodes of the mesh.
+    pub fn new(prediction: &Prediction, nodes: impl Iterator<Item = u32> + Clone) -> Option<Self> {
+        let touch = prediction.contact.as_ref()?;
+        let gap = |node: u32| touch.contact.gaps.get(&node).copied().unwrap_or(NOTHING_FACED);
+        Some(ContactArrays {
+            pressure: nodes.clone().map(|node| touch.pressure[node as usize]).collect(),
+            gap: nodes.map(gap).collect(),
+        })
+    }
+
+    pub fn arrays(&self) -> [NamedValues<'_>; 2] {
+        let named = |name, values| NamedValues { name, values: ArrayValues::Reals(values) };
+        [named("contact_pressure_kpa", &self.pressure), named("contact_gap_mm", &self.gap)]
+    }
+}
+
 /// The skin after the movement, one entry for each of its points.
 pub struct PredictedSkin {
     /// Moved points, in mm.
@@ -22,6 +48,8 @@ pub struct PredictedSkin {
     pub nonlinearity: Option<Vec<f64>>,
     /// What the mesh leaves out, in mm, where it is estimated.
     pub numerical_error: Option<Vec<f64>>,
+    /// Where anything presses.
+    pub contact: Option<ContactArrays>,
     /// The displacement in mm at which colours end: the same for every plan, so that plans can be held side by side.
     pub range_mm: f64,
 }
@@ -32,7 +60,8 @@ impl PredictedSkin {
         let displacement = nodes.map(|&node| prediction.displacement[node as usize]).collect();
         let numerical_error = prediction.numerical_error.as_ref().ok();
         let numerical_error = numerical_error.map(|error| skin.lengths(&error.missing));
-        PredictedSkin { numerical_error, ..Self::of_displacement(skin, displacement) }
+        let contact = ContactArrays::new(prediction, skin.nodes().iter().copied());
+        PredictedSkin { numerical_error, contact, ..Self::of_displacement(skin, displacement) }
     }
 
     /// The skin with one displacement in mm for each of its points.
@@ -48,6 +77,7 @@ impl PredictedSkin {
             signed_distance: None,
             nonlinearity: None,
             numerical_error: None,
+            contact: None,
             range_mm: USUAL_RANGE_MM,
         }
     }
@@ -85,6 +115,9 @@ impl PredictedSkin {
         {
             let values = ArrayValues::Reals(nonlinearity);
             output.point_arrays.push(NamedValues { name: "nonlinearity_mm", values });
+        }
+        if let Some(contact) = self.contact.as_ref().filter(|_| name == OutputName::SkinVtp) {
+            output.point_arrays.extend(contact.arrays());
         }
         if matches!(name, OutputName::SkinGlb | OutputName::SkinPly) {
             output.colours = Some(&colours);

@@ -1,5 +1,6 @@
 //! The moved tissue and the moved bones as files.
 
+use super::skin::ContactArrays;
 use mechanics::format::vtk::{vtp, vtu};
 use mechanics::format::{
     ArrayValues, NamedValues, SurfaceOutput, VolumeInLps, VolumeOutput, WriteError,
@@ -60,6 +61,8 @@ pub fn encode_volume(
     if let Some(error) = &error {
         point_arrays.push(named("numerical_error_mm", ArrayValues::Reals(error)));
     }
+    let contact = ContactArrays::new(prediction, 0..mesh.nodes.len() as u32);
+    point_arrays.extend(contact.iter().flat_map(ContactArrays::arrays));
     vtu::write(&VolumeOutput {
         mesh,
         positions: &positions,

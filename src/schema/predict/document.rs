@@ -178,7 +178,7 @@ impl PredictDocument {
         Settings {
             method: methods::to_method(self.method, &self.own_settings(), &at, faults),
             element: self.element.choice(),
-            sliding: self.contact == ContactName::Sliding,
+            contact: self.contact.into(),
             relative_residual: residual,
             memory_mb: memory.min(limits.slot_memory_mb),
             membrane,
@@ -191,7 +191,8 @@ impl PredictDocument {
     pub fn accepted(&self) -> Option<Accepted> {
         let chooses = self.method == MethodName::Auto
             && self.estimate == EstimateName::Auto
-            && !self.corrected;
+            && !self.corrected
+            && !self.contact.presses();
         chooses.then(|| Accepted {
             skin_mm: self.accept_mm.unwrap_or(USUALLY_ACCEPTED_MM),
             regions_mm: self.accept_regions_mm.clone(),
@@ -242,6 +243,10 @@ impl PredictDocument {
             );
             faults.add(&place, ErrorCode::MethodMismatch, detail);
         }
+        if self.contact.presses() {
+            let detail = "contact is part of linear elements only, among which no model is chosen: leave out one of the two";
+            faults.add(&place, ErrorCode::OneOf, detail);
+        }
         if self.corrected || self.estimate == EstimateName::None {
             let detail = "a model is chosen by its estimated errors, and corrected where that does: leave out `corrected` and \
                           `estimate`";
@@ -264,6 +269,10 @@ impl PredictDocument {
         if self.element.choice() == ElementChoice::Quadratic {
             let detail =
                 "meshes are refined for elements of first order: leave out `element` or `refine`";
+            faults.add(at, ErrorCode::OneOf, detail);
+        }
+        if self.contact.presses() {
+            let detail = "the error of a mesh is not estimated where tissue presses: leave out `contact` or `refine`";
             faults.add(at, ErrorCode::OneOf, detail);
         }
         if self.accept_mm.is_some() || self.estimate == EstimateName::None {

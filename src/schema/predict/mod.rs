@@ -10,6 +10,7 @@ pub mod expectation;
 pub mod keep;
 pub mod nonlinearity;
 pub mod output;
+pub mod pressing;
 pub mod refine;
 pub mod result;
 pub mod time_band;

@@ -9,6 +9,7 @@ use super::adequacy::AdequacyDocument;
 use super::keep::KeptMeshDocument;
 use super::nonlinearity::NonlinearityDocument;
 use super::output::PictureName;
+use super::pressing::ContactDocument;
 use super::refine::RefinementDocument;
 use crate::schema::Triple;
 use crate::schema::case::document::{FrameName, LengthUnit};
@@ -62,6 +63,10 @@ pub struct ResultDocument {
     /// The meshes that the spec asked to keep.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub kept: Vec<KeptMeshDocument>,
+    /// What presses on what; absent where nothing does or contact was not asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub contact: Option<ContactDocument>,
     /// How the model was chosen, where an accepted error was stated.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
@@ -112,6 +117,7 @@ impl ResultDocument {
             meshing: None,
             pictures: Vec::new(),
             kept: Vec::new(),
+            contact: None,
             adequacy: None,
             refinement: None,
             numerical_error_mm: None,

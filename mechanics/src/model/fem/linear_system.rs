@@ -12,7 +12,9 @@ use crate::mesh::Vector;
 use crate::model::dofs::{Constrained, Known, Numbering, product_at_holds};
 use crate::model::problem::{Equilibrium, LoadCase, ModelError};
 use crate::progress::{Phase, Progress};
+use crate::solver::lanes::Lanes;
 use crate::solver::mixed_system::{Coupling, MixedRightHandSide, MixedSolution, MixedSystem};
+use crate::solver::preconditioned::Preconditioned;
 use crate::solver::{Solver, SolverError, System, Tolerance, Unknowns, mixed};
 
 /// K, for tetrahedra with pressures B and C beside it, and what was made to solve with them.
@@ -166,8 +168,7 @@ impl<'a> LinearSystem<'a> {
         // 3. Displacement and reactions, back along the axes of the coordinates.
         let solved = |(known, mixed): (Known, MixedSolution)| {
             let total = known.total(&mixed.solution.unknowns);
-            let mut internal = product_at_holds(stiffness, &total);
-            coupling.gradient.add_expanded(&mixed.pressures, &mut internal);
+            let internal = self.internal_at_holds(&total, &mixed.pressures);
             let equilibrium = Equilibrium {
                 displacement: constrained.displacement(&total),
                 reactions: constrained.reactions(&internal, &known.force),
@@ -261,7 +262,26 @@ impl<'a> LinearSystem<'a> {
         }
     }
 
-    fn constrained(&self) -> Constrained<'_> {
+    /// The matrix with what approximates its inverse.
+    pub(super) fn preconditioned(&self) -> Preconditioned<'_> {
+        let coupling = self.pressures.as_ref().map(|pressures| &pressures.coupling);
+        Preconditioned::new(&self.stiffness, coupling, &self.solver)
+    }
+
+    /// Internal forces of displacements and pressures by row, where something is held.
+    pub(super) fn internal_at_holds(
+        &self,
+        total: &[Lanes<f64, 3, 1>],
+        pressures: &[[f64; 1]],
+    ) -> Vec<Lanes<f64, 3, 1>> {
+        let mut internal = product_at_holds(&self.stiffness, total);
+        if let Some(own) = &self.pressures {
+            own.coupling.gradient.add_expanded(pressures, &mut internal);
+        }
+        internal
+    }
+
+    pub(super) fn constrained(&self) -> Constrained<'_> {
         Constrained { holds: self.holds, numbering: &self.numbering }
     }
 }

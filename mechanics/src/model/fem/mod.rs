@@ -2,6 +2,7 @@
 
 pub mod assembly;
 pub mod cell_stiffness;
+pub mod contact;
 pub mod discretisation_error;
 pub mod displacement;
 pub mod displacement_pressure;

@@ -4,6 +4,7 @@ mod adaptive;
 mod adequate;
 mod closed_form;
 mod conditions;
+mod contact;
 pub mod elements;
 mod fibres;
 mod jump;

@@ -1,0 +1,138 @@
+//! Which rows press: the passes of the primal-dual active set over equations that stay as they are.
+
+use crate::progress::Progress;
+use crate::solver::SolverError;
+use crate::solver::constrained::{Equations, Found, Point, Wanted};
+
+/// Passes after which no set is expected to repeat.
+const MOST_PASSES: usize = 30;
+
+/// A row that has changed this often presses until the end.
+const MOST_FLIPS: usize = 3;
+
+/// Relative residual of passes before the set is known.
+const ON_THE_WAY: f64 = 1e-3;
+
+/// Gaps and pressing forces below this part of the largest movement and force are rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// Which rows press, and what is known of them from passes before.
+#[derive(Clone, Debug, Default)]
+pub struct ActiveSet {
+    /// For each row.
+    pub presses: Vec<bool>,
+    flips: Vec<usize>,
+}
+
+/// A set that repeats.
+pub struct Settled {
+    pub point: Point,
+    /// The rows that press, in the order of the multipliers.
+    pub rows: Vec<usize>,
+    pub passes: usize,
+    /// Passes that changed the set.
+    pub changes: usize,
+    /// Rows that were kept because they had changed too often.
+    pub kept: usize,
+    pub iterations: usize,
+    pub relative_residual: f64,
+    /// False where passes ended before it did.
+    pub repeats: bool,
+}
+
+/// Gaps without contact, and how well contact is to be met.
+pub(super) struct Task<'a> {
+    /// For each row, in mm.
+    pub gaps: &'a [f64],
+    /// The largest movement, in mm.
+    pub movement: f64,
+    pub relative_residual: f64,
+    pub progress: &'a dyn Progress,
+}
+
+impl ActiveSet {
+    /// The rows whose gap is closed where nothing presses.
+    pub fn of_gaps(gaps: &[f64], movement: f64) -> Self {
+        let presses = gaps.iter().map(|gap| *gap < -ROUNDING * movement).collect();
+        ActiveSet { presses, flips: vec![0; gaps.len()] }
+    }
+
+    /// Passes until the set repeats. What presses is added to an answer whose gaps are given.
+    pub(super) fn settle(
+        &mut self,
+        equations: &mut Equations,
+        task: &Task,
+        start: Point,
+    ) -> Result<Settled, SolverError> {
+        let mut settled = Settled {
+            point: start,
+            rows: Vec::new(),
+            passes: 0,
+            changes: 0,
+            kept: 0,
+            iterations: 0,
+            relative_residual: 0.0,
+            repeats: false,
+        };
+        let mut multiplier_of = vec![0.0; self.presses.len()];
+        let mut wanted = ON_THE_WAY.max(task.relative_residual);
+        while settled.passes < MOST_PASSES {
+            settled.passes += 1;
+            let rows: Vec<usize> =
+                (0..self.presses.len()).filter(|&row| self.presses[row]).collect();
+            let values: Vec<f64> = rows.iter().map(|&row| -task.gaps[row]).collect();
+            let multipliers = rows.iter().map(|&row| multiplier_of[row]).collect();
+            let start = Point { x: std::mem::take(&mut settled.point.x), multipliers };
+            let asked = Wanted { rows: &rows, values: &values, relative_residual: wanted };
+            let found = equations.solve(&asked, start, task.progress)?;
+            multiplier_of.fill(0.0);
+            rows.iter().zip(&found.point.multipliers).for_each(|(&row, m)| multiplier_of[row] = *m);
+            settled.iterations += found.iterations;
+            settled.relative_residual = found.relative_residual;
+            let changed = self.classify(equations, task, &rows, &found);
+            settled.point = found.point;
+            settled.rows = rows;
+            if changed > 0 {
+                settled.changes += 1;
+            } else if wanted > task.relative_residual {
+                wanted = task.relative_residual;
+            } else {
+                settled.kept = self.flips.iter().filter(|flips| **flips >= MOST_FLIPS).count();
+                settled.repeats = true;
+                return Ok(settled);
+            }
+        }
+        Ok(settled)
+    }
+
+    /// Rows that pull are let go, and rows whose gap is below 0 press; how many these are.
+    fn classify(
+        &mut self,
+        equations: &Equations,
+        task: &Task,
+        rows: &[usize],
+        found: &Found,
+    ) -> usize {
+        let largest = found.point.multipliers.iter().fold(0.0_f64, |most, m| most.max(m.abs()));
+        let mut pulls = vec![false; self.presses.len()];
+        for (&row, multiplier) in rows.iter().zip(&found.point.multipliers) {
+            pulls[row] = *multiplier < -ROUNDING * largest;
+        }
+        let mut changed = 0;
+        for row in 0..self.presses.len() {
+            let is_closed = || {
+                task.gaps[row] + equations.value(row, &found.point.x) < -ROUNDING * task.movement
+            };
+            let presses = match self.presses[row] {
+                true => !pulls[row] || self.flips[row] >= MOST_FLIPS,
+                false => is_closed(),
+            };
+            if presses != self.presses[row] {
+                self.presses[row] = presses;
+                self.flips[row] += 1;
+                changed += 1;
+            }
+        }
+        changed
+    }
+}

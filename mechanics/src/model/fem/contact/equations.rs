@@ -1,0 +1,40 @@
+//! Rows of contact as equations of the free unknowns.
+
+use std::collections::BTreeMap;
+
+use crate::boundary::Hold;
+use crate::boundary::contact::ContactRow;
+use crate::model::dofs::{Numbering, partly_held};
+use crate::solver::PartlyHeld;
+use crate::solver::preconditioned::Equation;
+
+/// Free unknowns by node.
+pub(super) struct FreeUnknowns<'a> {
+    numbering: &'a Numbering,
+    partly_held: BTreeMap<usize, PartlyHeld>,
+}
+
+impl<'a> FreeUnknowns<'a> {
+    pub fn new(holds: &[Hold], numbering: &'a Numbering) -> Self {
+        let partly = partly_held(holds, numbering);
+        let partly_held = partly.into_iter().map(|partly| (partly.row, partly)).collect();
+        FreeUnknowns { numbering, partly_held }
+    }
+
+    /// What a row takes of free unknowns, along the axes of their nodes; nothing where both sides are held.
+    pub fn equation(&self, row: &ContactRow) -> Equation {
+        let mut equation = Equation::new();
+        for (node, along) in &row.terms {
+            let place = self.numbering.row(*node);
+            if place >= self.numbering.layout.free {
+                continue;
+            }
+            let partly = self.partly_held.get(&place);
+            let own = partly.map_or(*along, |partly| partly.axes.transpose() * along);
+            let is_free = |k: usize| partly.is_none_or(|partly| !partly.held[k]);
+            let free = (0..3).filter(|&k| is_free(k) && own[k] != 0.0);
+            equation.extend(free.map(|k| ((3 * place + k) as u32, own[k])));
+        }
+        equation
+    }
+}

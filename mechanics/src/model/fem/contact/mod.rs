@@ -1,0 +1,11 @@
+//! Unilateral contact without friction, in linear elasticity: gaps g >= 0, pressing forces m >= 0, m g = 0.
+//!
+//! Primal-dual active set (Hintermueller, Ito, Kunisch, SIAM J. Optim. 13, 2003): the rows that press are equations,
+//! K u = f + G^T m with g = 0, and the others are left out; a row presses in the next pass where m - c g > 0, whatever c is,
+//! because one of both is 0. The equations are met under the matrix and the hierarchy that are there (`solver::constrained`).
+
+mod active_set;
+mod equations;
+mod pressing;
+
+pub use pressing::{Contact, ContactProblem, InContact, Pressed};

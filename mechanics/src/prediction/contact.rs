@@ -1,0 +1,174 @@
+//! Contact in a prediction: what presses on what, where, and how hard.
+
+use std::collections::BTreeMap;
+
+use super::case::ContactKind;
+use super::scene::Scene;
+use crate::boundary::NodeClass;
+use crate::boundary::contact::FacingSurfaces;
+use crate::mesh::Warning;
+use crate::model::fem::contact::{Contact, ContactProblem, InContact, Pressed};
+use crate::model::fem::linear_system::{LinearSystem, Solved};
+use crate::model::problem::ModelError;
+use crate::progress::{Phase, Progress};
+
+/// Closest points that still moved by more than this in the last round, in mm, are told.
+const MOVED_MM: f64 = 1e-6;
+
+/// Contact of an answer.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Touch {
+    pub contact: Contact,
+    /// For each node, in kPa; 0 where nothing presses.
+    pub pressure: Vec<f64>,
+    pub pairs: Vec<ContactPair>,
+}
+
+/// Two parts of the boundary that press on each other.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ContactPair {
+    /// Names of segments, regions of the skin, `fixed`, `skin` or `inner`.
+    pub between: [String; 2],
+    /// In mm²: of the nodes that press, on the side that has more.
+    pub area: f64,
+    /// In kPa.
+    pub largest_pressure: f64,
+    /// What one side exerts on the other one, in mN.
+    pub force: f64,
+    pub nodes: usize,
+}
+
+/// The answer in which what touches presses; none where nothing does or contact is not asked for.
+pub(super) fn touch(
+    scene: &Scene,
+    system: &LinearSystem,
+    free: &Solved,
+    progress: &dyn Progress,
+) -> Result<Option<(Solved, Touch)>, ModelError> {
+    if !scene.settings.contact.is_unilateral() {
+        return Ok(None);
+    }
+    progress.phase(Phase::Contact);
+    let surfaces = FacingSurfaces::new(&scene.mesh, &scene.boundary, &scene.conditions.holds);
+    let relative_residual = scene.settings.relative_residual;
+    let problem = ContactProblem { system, free, surfaces: &surfaces, relative_residual };
+    let found = problem.solve(progress)?;
+    Ok(found.map(|InContact { solved, contact }| {
+        let touch = Touch::new(scene, &surfaces.areas(&contact.forces), contact);
+        (solved, touch)
+    }))
+}
+
+impl Touch {
+    fn new(scene: &Scene, areas: &BTreeMap<u32, f64>, contact: Contact) -> Self {
+        let mut pressure = vec![0.0; scene.mesh.nodes.len()];
+        for (node, area) in areas.iter().filter(|(_, area)| **area > 0.0) {
+            pressure[*node as usize] = contact.forces[*node as usize].norm() / area;
+        }
+        let pairs = pairs(scene, areas, &contact, &pressure);
+        Touch { contact, pressure, pairs }
+    }
+
+    /// The largest gap below 0, in mm and positive.
+    pub fn largest_penetration(&self) -> f64 {
+        self.contact.gaps.values().fold(0.0, |most, gap| most.max(-gap))
+    }
+
+    pub fn largest_pressure(&self) -> f64 {
+        self.pressure.iter().copied().fold(0.0, f64::max)
+    }
+
+    /// In mm².
+    pub fn area(&self) -> f64 {
+        self.pairs.iter().map(|pair| pair.area).sum()
+    }
+
+    /// What a reader must know.
+    pub(super) fn warnings(&self, scene: &Scene) -> Vec<Warning> {
+        let mut warnings = Vec::new();
+        let Contact { pressed, kept, rounds, last_moved_mm, .. } = &self.contact;
+        if scene.settings.contact == ContactKind::Auto {
+            let detail =
+                format!("gaps close: tissue presses on what it touches at {} nodes", pressed.len());
+            let warning =
+                Warning::new("contact-closed", detail).with("nodes", pressed.len() as f64);
+            warnings.push(warning.with("area_mm2", self.area()));
+        }
+        if *kept > 0 {
+            let detail = format!(
+                "{kept} points of contact did not settle between pressing and not, and were kept closed: there contact may pull"
+            );
+            warnings.push(Warning::new("contact-chatter", detail).with("points", *kept as f64));
+        }
+        if *last_moved_mm > MOVED_MM {
+            let detail = format!(
+                "closest points of contact still move the answer by {last_moved_mm:.1e} mm when they are looked for the {rounds}th time"
+            );
+            warnings
+                .push(Warning::new("contact-points-move", detail).with("moved_mm", *last_moved_mm));
+        }
+        warnings
+    }
+}
+
+/// The parts of the boundary by name that press on each other.
+fn pairs(
+    scene: &Scene,
+    areas: &BTreeMap<u32, f64>,
+    contact: &Contact,
+    pressure: &[f64],
+) -> Vec<ContactPair> {
+    let names = names(scene);
+    let mut sides: BTreeMap<[&str; 2], [Side; 2]> = BTreeMap::new();
+    for Pressed { row, force } in &contact.pressed {
+        let corners = row.terms.iter().skip(1);
+        let nearest = corners.max_by(|(_, a), (_, b)| a.norm().total_cmp(&b.norm()));
+        let Some((other, _)) = nearest else { continue };
+        let (own, other) = (names[row.node as usize].as_str(), names[*other as usize].as_str());
+        let between = [own.min(other), own.max(other)];
+        let side = &mut sides.entry(between).or_default()[usize::from(own > other)];
+        side.area += areas.get(&row.node).copied().unwrap_or_default();
+        side.largest_pressure = side.largest_pressure.max(pressure[row.node as usize]);
+        side.force += force;
+        side.nodes += 1;
+    }
+    let pair = |(between, [one, other]): ([&str; 2], [Side; 2])| ContactPair {
+        // Where both sides have one name their nodes are counted together.
+        area: match between[0] == between[1] {
+            true => 0.5 * one.area,
+            false => one.area.max(other.area),
+        },
+        between: between.map(str::to_owned),
+        largest_pressure: one.largest_pressure.max(other.largest_pressure),
+        force: one.force + other.force,
+        nodes: one.nodes + other.nodes,
+    };
+    sides.into_iter().map(pair).collect()
+}
+
+/// The nodes of one side that press.
+#[derive(Default)]
+struct Side {
+    area: f64,
+    largest_pressure: f64,
+    force: f64,
+    nodes: usize,
+}
+
+/// What each node of the mesh is called as a part of the boundary.
+fn names(scene: &Scene) -> Vec<String> {
+    let mut names = vec!["inner".to_owned(); scene.mesh.nodes.len()];
+    let skin = scene.skin.nodes();
+    skin.iter().for_each(|&node| names[node as usize] = "skin".to_owned());
+    for (region, points) in &scene.skin.regions {
+        points.iter().for_each(|&point| names[skin[point as usize] as usize].clone_from(region));
+    }
+    for (name, class) in names.iter_mut().zip(&scene.conditions.classes) {
+        match class {
+            NodeClass::Joined(segment) => name.clone_from(&scene.segments[*segment as usize].name),
+            NodeClass::Fixed => "fixed".clone_into(name),
+            NodeClass::Prescribed | NodeClass::Sliding | NodeClass::Free => {}
+        }
+    }
+    names
+}

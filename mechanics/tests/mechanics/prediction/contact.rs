@@ -1,0 +1,197 @@
+//! Contact that opens and closes: closed forms, and who refuses it.
+
+use mechanics::mesh::sample::block;
+use mechanics::mesh::{CellShape, Vector, VolumeMesh};
+use mechanics::plan::{PlannedSegment, RigidMovement};
+use mechanics::prediction::{
+    Case, CaseSegment, ContactKind, Plan, Prescribed, Scene, SceneErrorCode, Settings, Touch,
+};
+
+use crate::scenes::{case_of, hold, material, set, solve};
+
+fn unilateral() -> Settings {
+    Settings { contact: ContactKind::Unilateral, relative_residual: 1e-10, ..Settings::default() }
+}
+
+/// Meshes side by side, with the node sets of each under a name of its own: `bar/x_min`, and `bar` for all of it.
+fn together(parts: &[(&str, VolumeMesh)]) -> VolumeMesh {
+    let mut all = VolumeMesh::default();
+    for (name, part) in parts {
+        let first = all.nodes.len() as u32;
+        all.nodes.extend(&part.nodes);
+        for (shape, nodes) in part.cells.iter() {
+            let nodes: Vec<u32> = nodes.iter().map(|node| first + node).collect();
+            all.cells.push(shape, &nodes);
+        }
+        let whole = (first..all.nodes.len() as u32).collect();
+        all.node_sets.insert((*name).to_owned(), whole);
+        for (set, nodes) in &part.node_sets {
+            let nodes = nodes.iter().map(|node| first + node).collect();
+            all.node_sets.insert(format!("{name}/{set}"), nodes);
+        }
+    }
+    all
+}
+
+fn at(mut mesh: VolumeMesh, place: [f64; 3]) -> VolumeMesh {
+    mesh.nodes.iter_mut().for_each(|node| *node += Vector::from(place));
+    mesh
+}
+
+/// A bar of 20 mm and 100 mm² with a rigid block half a millimetre from its end.
+fn bar(shape: CellShape) -> Case {
+    let bar = block(Vector::new(20.0, 10.0, 10.0), [6, 3, 3], shape);
+    let stop = at(block(Vector::new(4.0, 14.0, 14.0), [1, 4, 4], shape), [20.5, -2.0, -2.0]);
+    let mesh = together(&[("bar", bar), ("stop", stop)]);
+    Case {
+        fixed: vec![set("stop")],
+        skin: Some(set("bar")),
+        allow_unfixed: true,
+        ..case_of(mesh, material(15.0, 0.0))
+    }
+}
+
+fn pushed(by: f64) -> Plan {
+    let push = hold("bar/x_min", [Some(by), Some(0.0), Some(0.0)]);
+    Plan { prescribed: vec![push], ..Plan::default() }
+}
+
+#[test]
+fn a_method_without_contact_is_refused_by_name() {
+    use mechanics::model::mass_spring::{MassSpringSettings, Search};
+    use mechanics::model::spline::VolumeSpline;
+    use mechanics::prediction::Method;
+    let springs = MassSpringSettings { search: Search::Newton, most_iterations: 500 };
+    let case = bar(CellShape::Tet4);
+    for method in [Method::MassSpring(springs), Method::VolumeSpline(VolumeSpline::default())] {
+        for contact in [ContactKind::Unilateral, ContactKind::Auto] {
+            let settings = Settings { method: method.clone(), contact, ..Settings::default() };
+            let Err(errors) = Scene::new(&case, &pushed(1.0), &settings) else {
+                panic!("{method:?}")
+            };
+            let said = errors.0.iter().find(|error| error.pointer == "/spec/contact").unwrap();
+            assert_eq!(said.code, SceneErrorCode::MethodNotAvailable);
+            assert!(said.detail.contains("`fem_linear`"), "{said}");
+        }
+    }
+}
+
+/// Places from 0, evenly up to `fine_to` and then each cell longer than the last.
+fn graded(fine_to: f64, fine: f64, growth: f64, end: f64) -> Vec<f64> {
+    let mut places: Vec<f64> =
+        (0..=(fine_to / fine).round() as usize).map(|i| i as f64 * fine).collect();
+    let mut step = fine;
+    while *places.last().unwrap() < end {
+        step *= growth;
+        places.push(places.last().unwrap() + step);
+    }
+    places
+}
+
+/// A block with nodes at the products of places.
+fn at_places(x: &[f64], y: &[f64], z: &[f64]) -> VolumeMesh {
+    let cells = [x.len() - 1, y.len() - 1, z.len() - 1];
+    let size = Vector::from(cells.map(|cells| cells as f64));
+    let mut mesh = block(size, cells, CellShape::Hex8);
+    let place = |places: &[f64], at: f64| places[at.round() as usize];
+    for node in &mut mesh.nodes {
+        *node = Vector::new(place(x, node.x), place(y, node.y), place(z, node.z));
+    }
+    mesh
+}
+
+/// Displacement in mm of a half space below z = 0 under a force in mN down at the origin (Boussinesq 1885; Johnson, Contact
+/// Mechanics, equations 3.18).
+fn boussinesq(force: f64, young: f64, nu: f64, x: &Vector) -> Vector {
+    let shear = young / (2.0 * (1.0 + nu));
+    let (r, depth) = (x.norm(), -x.z);
+    let factor = force / (4.0 * std::f64::consts::PI * shear);
+    let across = factor * (depth / r.powi(3) - (1.0 - 2.0 * nu) / (r * (r + depth)));
+    let down = factor * (depth * depth / r.powi(3) + 2.0 * (1.0 - nu) / r);
+    Vector::new(across * x.x, across * x.y, -down)
+}
+
+/// A rigid ball of 10 mm pressed .386519 mm into a half space: 20 mN, a = 1.96601 mm, p0 = 2.470589 kPa (Hertz 1882). Small
+/// strain is off by the order of (a / R)^2 / 2 = 2 %.
+#[test]
+fn a_ball_presses_on_a_half_space_as_hertz_says() {
+    const RADIUS: f64 = 10.0;
+    let fine = graded(2.75, 0.25, 1.28, 25.0);
+    let depth: Vec<f64> = fine.iter().rev().map(|z| -z).collect();
+    let half_space = at_places(&fine, &fine, &depth);
+    let ball: Vec<f64> = (0..=28).map(|i| 0.125 * f64::from(i)).collect();
+    let mut ball = at_places(&ball, &ball, &[0.0, 1.0]);
+    for node in &mut ball.nodes {
+        let down = (RADIUS * RADIUS - node.x * node.x - node.y * node.y).sqrt();
+        node.z += RADIUS - down;
+    }
+    let mut mesh = together(&[("half", half_space), ("ball", ball)]);
+    let (force, young, nu) = (20.0, 15.0, 0.49);
+    let outer = |node: &Vector| {
+        if node.norm() > 20.0 { boussinesq(force, young, nu, node) } else { Vector::zeros() }
+    };
+    mesh.node_vectors.insert("outer".to_owned(), mesh.nodes.iter().map(outer).collect());
+    let far: Vec<u32> = ["half/x_max", "half/y_max", "half/z_min"]
+        .iter()
+        .flat_map(|set| mesh.node_sets[*set].clone())
+        .collect();
+    let mut far = far;
+    far.sort_unstable();
+    far.dedup();
+    mesh.node_sets.insert("far".to_owned(), far.clone());
+    let without_far = |set: &str| -> Vec<u32> {
+        let nodes = mesh.node_sets[set].iter().copied();
+        nodes.filter(|node| far.binary_search(node).is_err()).collect()
+    };
+    let (x, y) = (without_far("half/x_min"), without_far("half/y_min"));
+    mesh.node_sets.insert("x_plane".to_owned(), x);
+    mesh.node_sets.insert("y_plane".to_owned(), y);
+    let top = mesh.node_sets["half/z_max"].clone();
+    let case = Case {
+        segments: vec![CaseSegment { name: "ball".to_owned(), nodes: set("ball") }],
+        skin: Some(set("half/z_max")),
+        ..case_of(mesh, material(young, nu))
+    };
+    let down = Vector::new(0.0, 0.0, -0.386519);
+    let movement = RigidMovement::about_pivot(Vector::zeros(), Vector::zeros(), down);
+    let plan = Plan {
+        segments: vec![PlannedSegment { name: "ball".to_owned(), movement }],
+        prescribed: vec![
+            Prescribed::FromArray { nodes: set("far"), array: "outer".to_owned() },
+            hold("x_plane", [Some(0.0), None, None]),
+            hold("y_plane", [None, Some(0.0), None]),
+        ],
+        ..Plan::default()
+    };
+    let found = solve(&case, &plan, &unilateral());
+    let touch = found.contact.as_ref().unwrap();
+    let pressed = -4.0 * force_of(touch);
+    let nodes = &case.volume.nodes;
+    let mut profile: Vec<(f64, f64)> = top
+        .iter()
+        .filter(|&&node| touch.pressure[node as usize] > 0.0)
+        .map(|&node| (nodes[node as usize].xy().norm(), touch.pressure[node as usize]))
+        .collect();
+    profile.sort_by(|one, other| one.0.total_cmp(&other.0));
+    // p^2 = p0^2 (1 - r^2 / a^2), by least squares within .8 a.
+    let inner: Vec<(f64, f64)> =
+        profile.iter().filter(|(r, _)| *r < 1.6).map(|(r, p)| (r * r, p * p)).collect();
+    let count = inner.len() as f64;
+    let (mx, my) = (
+        inner.iter().map(|p| p.0).sum::<f64>() / count,
+        inner.iter().map(|p| p.1).sum::<f64>() / count,
+    );
+    let slope = inner.iter().map(|(x, y)| (x - mx) * (y - my)).sum::<f64>()
+        / inner.iter().map(|(x, _)| (x - mx).powi(2)).sum::<f64>();
+    let p0 = (my - slope * mx).sqrt();
+    let a = p0 / (-slope).sqrt();
+    assert!((pressed / force - 1.0).abs() < 0.03, "{pressed}");
+    assert!((p0 / 2.470589 - 1.0).abs() < 0.03, "{p0}");
+    assert!((a / 1.96601 - 1.0).abs() < 0.03, "{a}");
+    assert!(touch.contact.changes <= 8, "{}", touch.contact.changes);
+}
+
+/// The force along z on the nodes that are not held.
+fn force_of(touch: &Touch) -> f64 {
+    touch.contact.pressed.iter().map(|pressed| pressed.force * pressed.row.terms[0].1.z).sum()
+}

@@ -1,0 +1,66 @@
+//! Contact in a result: what presses on what, and how its solution went.
+
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+use mechanics::prediction::{ContactPair, Touch};
+
+/// How tissue presses on what it touches.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct ContactDocument {
+    /// In mm², of all pairs.
+    pub area_mm2: f64,
+    pub largest_pressure_kpa: f64,
+    /// How deep a node is left behind what it faces, deeper than at rest; 0 but for rounding.
+    pub largest_penetration_mm: f64,
+    pub pairs: Vec<ContactPairDocument>,
+    /// Solutions for a set of pressing points, how many of them changed the set, and how often closest points were looked for.
+    pub passes: u64,
+    pub set_changes: u64,
+    pub rounds: u64,
+    /// How far the answer moved in the last round.
+    pub last_moved_mm: f64,
+    pub iterations: u64,
+}
+
+/// Two parts of the boundary that press on each other.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct ContactPairDocument {
+    /// Two names, of segments and of `skin_regions`; `fixed`, `skin` and `inner` for the rest.
+    pub between: Vec<String>,
+    /// Points that press.
+    pub nodes: u64,
+    pub area_mm2: f64,
+    pub largest_pressure_kpa: f64,
+    /// The sum of what presses, across the surfaces.
+    pub force_mn: f64,
+}
+
+impl From<&Touch> for ContactDocument {
+    fn from(touch: &Touch) -> Self {
+        let contact = &touch.contact;
+        ContactDocument {
+            area_mm2: touch.area(),
+            largest_pressure_kpa: touch.largest_pressure(),
+            largest_penetration_mm: touch.largest_penetration(),
+            pairs: touch.pairs.iter().map(Into::into).collect(),
+            passes: contact.passes as u64,
+            set_changes: contact.changes as u64,
+            rounds: contact.rounds as u64,
+            last_moved_mm: contact.last_moved_mm,
+            iterations: contact.iterations as u64,
+        }
+    }
+}
+
+impl From<&ContactPair> for ContactPairDocument {
+    fn from(pair: &ContactPair) -> Self {
+        ContactPairDocument {
+            between: pair.between.to_vec(),
+            nodes: pair.nodes as u64,
+            area_mm2: pair.area,
+            largest_pressure_kpa: pair.largest_pressure,
+            force_mn: pair.force,
+        }
+    }
+}
