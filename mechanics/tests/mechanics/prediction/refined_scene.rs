@@ -24,12 +24,13 @@ fn everything() -> (Case, Plan) {
     let jaw = where_(&|x| x.z == 0.0 && x.x <= 2.0);
     let wall = where_(&|x| x.z == 0.0 && x.x >= 4.0);
     let pressed = where_(&|x| x.y == 0.0 && x.z > 0.0 && x.x < 6.0);
+    let near = where_(&|x| x.z == 2.0 && x.x <= 2.0);
     mesh.node_sets.extend([("jaw".to_owned(), jaw), ("wall".to_owned(), wall)]);
-    mesh.node_sets.insert("pressed".to_owned(), pressed);
+    mesh.node_sets.extend([("pressed".to_owned(), pressed), ("near".to_owned(), near)]);
     mesh.cell_labels.insert("layer".into(), (0..mesh.cells.len() as i64).map(|c| c % 2).collect());
     let case = Case {
         skin: Some(set("z_max")),
-        skin_regions: BTreeMap::from([("left".to_owned(), set("x_min"))]),
+        skin_regions: BTreeMap::from([("near".to_owned(), set("near"))]),
         segments: vec![CaseSegment { name: "jaw".to_owned(), nodes: set("jaw") }],
         fixed: vec![set("x_max")],
         sliding: vec![Sliding {
@@ -137,8 +138,10 @@ fn loads_skin_and_tissue_of_a_finer_scene_are_those_of_the_first() {
     assert_eq!(pushed, y_max, "{force}");
     assert!((finer.skin.surface.area() - scene.skin.surface.area()).abs() < 1e-12);
     assert!(finer.skin.surface.triangles.len() > 2 * scene.skin.surface.triangles.len());
-    let left = finer.skin.regions["left"].iter().map(|&p| finer.skin.surface.points[p as usize]);
-    assert!(left.clone().all(|x| x.x == 0.0 && x.z == 2.0) && left.count() > 3);
+    let place = |&point: &u32| finer.skin.surface.points[point as usize];
+    let near: Vec<Vector> = finer.skin.regions["near"].iter().map(place).collect();
+    let all = finer.mesh.nodes.iter().filter(|x| x.z == 2.0 && x.x <= 2.0).count();
+    assert!(near.iter().all(|x| x.x <= 2.0) && near.len() == all && all > 6, "{}", near.len());
 }
 
 #[test]
