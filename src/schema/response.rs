@@ -27,9 +27,7 @@ use mechanics::mesh::ignored::listed;
 use mechanics::mesh::{Frame, Vector};
 use mechanics::plan::RigidMovement;
 use mechanics::plan::doubt::{MovedSegment, beyond_face, nothing_moves, suspect_units};
-use mechanics::prediction::{
-    GoesAlong, NORMAL_TURNED_AT_SECOND_ORDER_DEG, NORMAL_TURNED_DEG, goes_along, normal_turned,
-};
+use mechanics::prediction::{GoesAlong, goes_along, normal_turned};
 use mechanics::response::linearity::LINEAR_RANGE_MM;
 use mechanics::response::{
     Columns, Linearity, ResponseError, ResponseOrder, ResponseSegment, SampledSecond,
@@ -364,14 +362,9 @@ impl ResponseDescription {
     /// What a reader of the skin of a plan must know of the plan.
     pub fn warnings(&self, movements: &[RigidMovement]) -> Vec<WarningDocument> {
         let still = movements.iter().all(|movement| *movement == RigidMovement::default());
-        let turned =
-            self.segments.iter().zip(movements).filter(|(segment, _)| segment.carries_wall);
-        let limit = match self.second_order {
-            Some(_) => NORMAL_TURNED_AT_SECOND_ORDER_DEG,
-            None => NORMAL_TURNED_DEG,
-        };
-        let turned =
-            turned.filter_map(|(segment, movement)| normal_turned(&segment.name, movement, limit));
+        let order = if self.second_order.is_some() { 2 } else { 1 };
+        let carriers = self.segments.iter().zip(movements).filter(|(of, _)| of.carries_wall);
+        let turned = carriers.filter_map(|(of, movement)| normal_turned(&of.name, movement, order));
         let warnings = still.then(nothing_moves).into_iter();
         let warnings = warnings.chain(suspect_units(&self.moved(movements))).chain(turned);
         let warnings = warnings.chain(self.goes_along(movements).told);

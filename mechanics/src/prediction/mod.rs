@@ -58,7 +58,7 @@ pub use skin::Skin;
 pub use skin_overlap::{SKIN_OVERLAPS, skin_overlap};
 pub use stated::{StatedCondition, StatedHold};
 pub use unheld::{GoesAlong, NOTHING_HELD, goes_along};
-pub use walls::{NORMAL_TURNED_AT_SECOND_ORDER_DEG, NORMAL_TURNED_DEG, normal_turned};
+pub use walls::normal_turned;
 
 pub use adaptive::{Adapted, AdaptiveError, Level, Stop, Wanted, predict_adaptively};
 pub use adequate::{

@@ -11,7 +11,6 @@ use super::method::Method;
 use super::scene::Scene;
 use super::skin::landmark_displacement;
 use super::walls::turned_at_second_order;
-use crate::material::LinearElastic;
 use crate::mesh::Vector;
 use crate::model::fem::force_series::{ForceSeries, Forces, Moved};
 use crate::model::fem::linear_system::{Correction, LinearSystem, Residual, Solved};
@@ -66,8 +65,7 @@ pub(super) fn reason_for_none(scene: &Scene) -> Option<NonlinearityUnknown> {
     }
     match scene.settings.method {
         Method::FemLinear | Method::MassTensorTransverse => {
-            let pulls = scene.materials.iter().any(LinearElastic::has_pulling_fibres);
-            if pulls {
+            if scene.has_pulling_fibres() {
                 return Some(NonlinearityUnknown::PullingFibres);
             }
             let turned = turned_at_second_order(scene);

@@ -119,6 +119,11 @@ impl Scene {
         self.mesh.cells.iter().any(|(shape, _)| shape == CellShape::Tet4)
     }
 
+    /// Whether some tissue has fibres that only pull, of which no second order is known.
+    pub fn has_pulling_fibres(&self) -> bool {
+        self.materials.iter().any(LinearElastic::has_pulling_fibres)
+    }
+
     /// Whether displacement is linear along every edge.
     pub(super) fn is_first_order(&self) -> bool {
         self.tetrahedron() != Tetrahedron::Quadratic

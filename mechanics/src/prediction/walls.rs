@@ -18,10 +18,10 @@ use crate::mesh::{Vector, Warning};
 use crate::plan::{PlannedSegment, RigidMovement};
 
 /// Above this turn of a segment, in degrees, small strain is told to keep the normals of its walls.
-pub const NORMAL_TURNED_DEG: f64 = 5.0;
+const NORMAL_TURNED_DEG: f64 = 5.0;
 
 /// Above this turn the second order is not known: across a wall it is that of the normal that turns.
-pub const NORMAL_TURNED_AT_SECOND_ORDER_DEG: f64 = 0.1;
+const NORMAL_TURNED_AT_SECOND_ORDER_DEG: f64 = 0.1;
 
 /// A bone that goes across a wall by less than this, in mm, slides along it.
 const ACROSS_MM: f64 = 1e-6;
@@ -282,7 +282,7 @@ pub(super) fn turned_normals(scene: &Scene) -> Vec<Warning> {
     segments
         .filter_map(|(number, segment)| {
             let nodes = scene.conditions.carried_by(number);
-            let warning = normal_turned(&segment.name, &segment.movement, NORMAL_TURNED_DEG)?;
+            let warning = normal_turned(&segment.name, &segment.movement, 1)?;
             (nodes > 0).then(|| warning.with("nodes", nodes as f64))
         })
         .collect()
@@ -299,8 +299,9 @@ pub(super) fn turned_at_second_order(scene: &Scene) -> Option<String> {
     Some(turned.1.name.clone())
 }
 
-/// The warning of a segment that carries a wall and turns by more than that many degrees.
-pub fn normal_turned(name: &str, movement: &RigidMovement, limit_deg: f64) -> Option<Warning> {
+/// The warning of a segment that carries a wall and turns by more than an answer of first or second order bears.
+pub fn normal_turned(name: &str, movement: &RigidMovement, order: u8) -> Option<Warning> {
+    let limit_deg = if order > 1 { NORMAL_TURNED_AT_SECOND_ORDER_DEG } else { NORMAL_TURNED_DEG };
     let degrees = movement.angle().to_degrees();
     let detail = format!(
         "segment {name:?} carries a wall and turns by {degrees:.1} degrees, and small strain holds its nodes across \

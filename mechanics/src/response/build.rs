@@ -10,7 +10,6 @@ use super::rigid_numbers::SAMPLES;
 use super::second_order::Solutions;
 use super::{COLUMNS_PER_SEGMENT, Response, ResponseSegment, superposition};
 use crate::boundary::{ConnectedPart, Hold, NodeClass};
-use crate::material::LinearElastic;
 use crate::mesh::Vector;
 use crate::mesh::ignored::listed;
 use crate::model::fem::force_series::ForceSeries;
@@ -127,16 +126,11 @@ pub fn chosen(scene: &Scene, names: &[String]) -> Result<Vec<usize>, ResponseErr
 
 /// Refuses an order that the elements of a scene, or its tissue, do not have.
 pub fn check_order(scene: &Scene, order: ResponseOrder) -> Result<(), ResponseError> {
-    let has_none = scene.element == ElementChoice::Quadratic || pulls(scene);
+    let has_none = scene.element == ElementChoice::Quadratic || scene.has_pulling_fibres();
     match order == ResponseOrder::Second && has_none {
         true => Err(ResponseError::NoSecondOrder),
         false => Ok(()),
     }
-}
-
-/// Whether some tissue has fibres that only pull, of which no second order is known.
-fn pulls(scene: &Scene) -> bool {
-    scene.materials.iter().any(LinearElastic::has_pulling_fibres)
 }
 
 /// The parts of a scene where only these segments may move, by their place in the list.
@@ -251,7 +245,7 @@ fn solve(
     let series = ForceSeries::new(scene.tissue(), pressures);
     let skin = scene.skin.nodes();
     let solutions = Solutions { series, system: &system, columns: &columns, skin };
-    let sampled = match pulls(scene) {
+    let sampled = match scene.has_pulling_fibres() {
         true => Vec::new(),
         false => solutions.second_of_each(progress)?,
     };

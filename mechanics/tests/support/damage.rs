@@ -317,6 +317,8 @@ fn name(error: &SurfaceDomainError) -> String {
         SurfaceDomainError::Incomplete { .. } => "incomplete",
         SurfaceDomainError::Uncertain { .. } => "uncertain",
         SurfaceDomainError::Tangled { .. } => "tangled",
+        SurfaceDomainError::BoneOutside { .. } => "bone outside",
+        SurfaceDomainError::NoTissue { .. } => "no tissue",
         SurfaceDomainError::Limit(_) => "limit",
     };
     name.to_owned()

@@ -39,7 +39,7 @@ fn face_moves(face: &Face, element: &str) -> Result<[f64; 2], Missing> {
     let (plan, out) = (folder.path().join("plan.json"), folder.path().join("out"));
     let files = ["predict", "--mesh", path(&mesh), "--plan", path(&plan), "--out", path(&out)];
     let sets = ["--fixed", face.fixed, "--skin", "outer_skin", "--element", element];
-    let tissue = ["--young-modulus-kpa", "15", "--poisson-ratio", "0.45"];
+    let tissue = ["--method", "fem_linear", "--young-modulus-kpa", "15", "--poisson-ratio", "0.45"];
     let done = facies(&[&files[..], &sets[..], &tissue[..]].concat());
     assert_eq!(done.status.code(), Some(0), "{}", text(&done.stderr));
     let skin = result(&out).statistics.unwrap().skin.nodes;

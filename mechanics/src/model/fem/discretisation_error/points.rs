@@ -98,11 +98,11 @@ impl EnrichedCell {
     /// of them do a third of what they do together; without it they overshoot the more the larger lambda is. It counts with
     /// the shear modulus in place of lambda.
     fn share_of_mean(&self) -> f64 {
-        match (self.shape, self.points.last()) {
-            (CellShape::Wedge6, Some((_, of_volume))) if self.points.len() > self.pointwise() => {
-                (self.points[0].1.mu / of_volume.lambda).min(1.0)
-            }
-            _ => 1.0,
+        let [.., (_, of_volume)] = &self.points[..] else { return 1.0 };
+        let has_mean = self.points.len() > self.pointwise();
+        match self.shape {
+            CellShape::Wedge6 if has_mean => (self.points[0].1.mu / of_volume.lambda).min(1.0),
+            CellShape::Tet4 | CellShape::Hex8 | CellShape::Wedge6 => 1.0,
         }
     }
 
