@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use serde::de::DeserializeOwned;
 
 use super::failure::CommandError;
 use super::mesh::ScanArguments;
@@ -11,6 +12,7 @@ use super::screen::{print_check, print_files, print_warnings, work_in_sight};
 use super::watch::Watch;
 use crate::jobs::{JobInput, Workplace, check};
 use crate::schema::Limits;
+use crate::schema::methods::MethodName;
 use crate::schema::predict::check::CheckDocument;
 use crate::schema::predict::document::{ContactName, EstimateName, OutputName};
 use crate::schema::predict::result::ResultDocument;
@@ -31,6 +33,9 @@ pub struct Arguments {
     plan: PlanArgument,
     #[command(flatten)]
     scan: ScanArguments,
+    /// The way of modelling soft tissue [default: auto, the cheapest that is expected to be near enough]
+    #[arg(long, value_name = "NAME", value_parser = word::<MethodName>, help_heading = "Tissue")]
+    method: Option<MethodName>,
     /// Add what the mesh leaves out, as far as that is estimated, to the displacement
     #[arg(long, help_heading = "Result")]
     corrected: bool,
@@ -41,7 +46,7 @@ pub struct Arguments {
     #[arg(long, value_name = "MM", conflicts_with = "accept", help_heading = "Result")]
     refine: Option<f64>,
     /// What keeps tissue from passing through itself and bone: none, sliding, unilateral or auto
-    #[arg(long, value_name = "KIND", value_parser = contact, help_heading = "Result")]
+    #[arg(long, value_name = "KIND", value_parser = word::<ContactName>, help_heading = "Result")]
     contact: Option<ContactName>,
     /// Do not estimate the error of the mesh
     #[arg(long, conflicts_with_all = ["corrected", "refine"], help_heading = "Result")]
@@ -59,6 +64,7 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
         false => arguments.scene.documents(plan)?,
     };
     asked.file.spec.outputs.get_or_insert_with(usual_outputs);
+    asked.file.spec.method = arguments.method.unwrap_or(asked.file.spec.method);
     asked.file.spec.corrected |= arguments.corrected;
     asked.file.spec.accept_mm = arguments.accept.or(asked.file.spec.accept_mm);
     if let Some(accept_mm) = arguments.refine {
@@ -93,7 +99,7 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
 }
 
 /// By the words of documents.
-fn contact(word: &str) -> Result<ContactName, String> {
+fn word<T: DeserializeOwned>(word: &str) -> Result<T, String> {
     serde_json::from_value(word.into()).map_err(|error| error.to_string())
 }
 
