@@ -1,7 +1,6 @@
 //! Numerics on what is not part of the project: real meshes, surfaces and images, and files of other programs.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on panics")]
 
-mod contact;
 mod files;
 mod interop;
 mod needs;
@@ -17,7 +16,6 @@ use support::{samples, scenes};
 
 fn main() -> ExitCode {
     support::external::run([
-        contact::trials(),
         files::trials(),
         interop::trials(),
         needs::trials(),

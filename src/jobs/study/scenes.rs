@@ -39,11 +39,16 @@ const OF_THE_STUDY: [&str; 10] = [
 ];
 
 /// Fields of a `predict` spec that rows do without, and why.
-const NOT_OF_ROWS: [(&str, &str); 4] = [
+const NOT_OF_ROWS: [(&str, &str); 6] = [
     (
         "accept_mm",
         "a row is the answer of one model, and an accepted error chooses between models: state `method` and `element`",
     ),
+    (
+        "accept_regions_mm",
+        "a row is the answer of one model, and an accepted error chooses between models: state `method` and `element`",
+    ),
+    ("refine", "a row is the answer on the mesh of its level: state `levels`"),
     (
         "corrected",
         "a row is the answer of a model as it is, without what its mesh is estimated to leave out",

@@ -125,7 +125,7 @@ fn vectors_of_cells_are_kept_with_their_cells_and_are_zero_where_they_were_not_f
         7 7 7 0 1 -2 nan 0 0</DataArray></CellData>";
     let cells: [(u8, &[u32]); 3] = [(5, &[0, 1, 2]), (10, &[0, 1, 2, 3]), (10, &[0, 1, 2, 3])];
     let read = read_default(ascii_vtu(&TETRAHEDRON, &cells, more).as_bytes());
-    assert_eq!(warning_codes(&read), ["cells-skipped", "array-nonfinite"]);
+    assert_eq!(warning_codes(&read), ["cells-skipped", "array-nonfinite", "duplicate-cells"]);
     assert_eq!(read.ignored.names(), Vec::<String>::new());
     let fibres = &volume(read).cell_vectors["fibre"];
     assert_eq!(*fibres, [Vector::new(0.0, 1.0, -2.0), Vector::zeros()]);

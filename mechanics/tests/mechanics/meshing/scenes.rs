@@ -1,10 +1,11 @@
 //! What is promised of meshes, held against many bodies that touch themselves at random.
 
 use mechanics::mesh::Vector;
-use mechanics::meshing::{MeshingSettings, RegionShape, SizeField, SizeRegion};
+use mechanics::meshing::{MeshingError, MeshingSettings, RegionShape, SizeField, SizeRegion, mesh};
+use mechanics::progress::Unobserved;
 
 use super::domains::{Body, Slit, balls, slit_ball};
-use super::{assert_sound, meshed, uniform};
+use super::{assert_sound, uniform};
 
 /// Source: Steele, Lea, Flood, Fast splittable pseudorandom number generators, OOPSLA 2014.
 struct Random(u64);
@@ -48,7 +49,7 @@ fn scene(seed: u64) -> Body {
 #[test]
 fn meshes_of_random_balls_holes_and_gaps_are_sound() {
     let mut worst = [180.0_f64; 2];
-    let mut pinches = 0;
+    let (mut pinches, mut refused) = (0, 0);
     for seed in 0..42 {
         let body = scene(seed);
         let fine = SizeRegion {
@@ -58,12 +59,19 @@ fn meshes_of_random_balls_holes_and_gaps_are_sound() {
         let graded = SizeField { coarsest: 5.0, regions: vec![fine], ..SizeField::uniform(1.0) };
         let graded = MeshingSettings { size: graded, ..MeshingSettings::default() };
         for (kind, settings) in [uniform(1.9), graded].into_iter().enumerate() {
-            let tissue = meshed(&body, &settings);
+            let tissue = match mesh(&body, &settings, &Unobserved) {
+                // Of many balls the largest may be less than a third of all.
+                Err(MeshingError::Scattered { .. }) => {
+                    refused += 1;
+                    continue;
+                }
+                meshed => meshed.unwrap(),
+            };
             let angles = assert_sound(&tissue);
             worst[kind] = worst[kind].min(angles[0]).min(180.0 - angles[1]);
             pinches += tissue.report.copies + tissue.report.stepped_back + tissue.report.edges_cut;
         }
     }
-    assert!(pinches > 5, "{pinches}");
+    assert!(pinches > 5 && refused < 20, "{pinches} {refused}");
     assert!(worst[0] >= 12.0 && worst[1] >= 10.0, "{worst:?}");
 }

@@ -1,4 +1,4 @@
-//! Contact that opens and closes: closed forms, blocks whose meshes do not match, and what its equations ask of it.
+//! Contact that opens and closes: closed forms, blocks whose meshes do not match, and who refuses it.
 
 use mechanics::mesh::sample::block;
 use mechanics::mesh::{CellShape, Vector, VolumeMesh};
@@ -103,10 +103,10 @@ fn met(found: &Prediction, nodes: &[u32], wanted: f64) -> Met {
     }
 }
 
-/// Two blocks, three cells to two, pressed together by a tenth: the pressure is the same everywhere (Taylor, Papadopoulos
-/// 1991).
+/// Two blocks, three cells to two, pressed together by a tenth (Taylor, Papadopoulos 1991): points held against triangles
+/// do not pass the patch test, in which the pressure is the same everywhere. docs/contact.md says by how much they fail it.
 #[test]
-fn blocks_with_meshes_that_do_not_match_press_evenly() {
+fn blocks_with_meshes_that_do_not_match_keep_apart_and_press_within_two_fifths_of_evenly() {
     let lower = block(Vector::new(12.0, 12.0, 6.0), [3, 3, 2], CellShape::Hex8);
     let upper =
         at(block(Vector::new(12.0, 12.0, 6.0), [2, 2, 2], CellShape::Hex8), [0.0, 0.0, 6.0]);
@@ -124,24 +124,12 @@ fn blocks_with_meshes_that_do_not_match_press_evenly() {
     let found = solve(&case, &plan, &unilateral());
     for (side, nodes) in [("lower", one), ("upper", other)] {
         let met = met(&found, &nodes, 1.5);
-        println!(
-            "{side}: pressure {:.2e}, penetration {:.2e}, pull {:.2e}",
-            met.pressure, met.penetration, met.pull
-        );
+        assert!(met.penetration < 1e-12 && met.pull <= 0.0, "{side}: {}", met.penetration);
+        assert!(met.pressure < 0.4, "{side}: {}", met.pressure);
     }
-    let touch = found.contact.as_ref().unwrap();
-    println!(
-        "passes {} changes {} rounds {} last {:.2e} kept {}",
-        touch.contact.passes,
-        touch.contact.changes,
-        touch.contact.rounds,
-        touch.contact.last_moved_mm,
-        touch.contact.kept
-    );
-    println!("{:?}", touch.pairs);
     let u = |node: usize| -0.1 * case.volume.nodes[node].z;
     let off = (0..case.volume.nodes.len()).map(|n| (found.displacement[n].z - u(n)).abs());
-    println!("displacement off by {:.2e}", off.fold(0.0, f64::max));
+    assert!(off.fold(0.0, f64::max) < 0.07);
 }
 
 #[test]
@@ -162,14 +150,6 @@ fn a_method_without_contact_is_refused_by_name() {
             assert!(said.detail.contains("`fem_linear`"), "{said}");
         }
     }
-}
-
-#[path = "../../external/contact.rs"]
-mod lips;
-#[test]
-#[ignore]
-fn tmp_faces() {
-    lips::lips_of_real_faces_do_not_pass_through_each_other_when_the_jaw_is_raised().unwrap();
 }
 
 /// Places from 0, evenly up to `fine_to` and then each cell longer than the last.
@@ -262,7 +242,6 @@ fn a_ball_presses_on_a_half_space_as_hertz_says() {
     let found = solve(&case, &plan, &unilateral());
     let touch = found.contact.as_ref().unwrap();
     let pressed = -4.0 * force_of(touch);
-    let total: f64 = touch.pairs.iter().map(|pair| pair.force).sum::<f64>() * 4.0;
     let nodes = &case.volume.nodes;
     let mut profile: Vec<(f64, f64)> = top
         .iter()
@@ -270,27 +249,7 @@ fn a_ball_presses_on_a_half_space_as_hertz_says() {
         .map(|&node| (nodes[node as usize].xy().norm(), touch.pressure[node as usize]))
         .collect();
     profile.sort_by(|one, other| one.0.total_cmp(&other.0));
-    let radius = (touch.area() * 4.0 / std::f64::consts::PI).sqrt();
-    println!(
-        "force {pressed:.4} {total:.4} mN, radius by area {radius:.4}, farthest {:?}, {} nodes",
-        profile.last(),
-        profile.len()
-    );
-    for (r, p) in profile.iter().step_by(8) {
-        println!(
-            "  r {r:.3}: {p:.4} kPa, Hertz {:.4}",
-            2.470589 * (1.0 - (r / 1.96601).powi(2)).max(0.0).sqrt()
-        );
-    }
-    println!(
-        "passes {} changes {} rounds {} kept {} its {}",
-        touch.contact.passes,
-        touch.contact.changes,
-        touch.contact.rounds,
-        touch.contact.kept,
-        touch.contact.iterations
-    );
-    // p is the slope of the pressure over r^2, by least squares within .8 a: p^2 = p0^2 (1 - r^2 / a^2).
+    // p^2 = p0^2 (1 - r^2 / a^2), by least squares within .8 a.
     let inner: Vec<(f64, f64)> =
         profile.iter().filter(|(r, _)| *r < 1.6).map(|(r, p)| (r * r, p * p)).collect();
     let count = inner.len() as f64;
@@ -302,7 +261,6 @@ fn a_ball_presses_on_a_half_space_as_hertz_says() {
         / inner.iter().map(|(x, _)| (x - mx).powi(2)).sum::<f64>();
     let p0 = (my - slope * mx).sqrt();
     let a = p0 / (-slope).sqrt();
-    println!("p0 {p0:.4} (2.470589), a {a:.4} (1.96601)");
     assert!((pressed / force - 1.0).abs() < 0.03, "{pressed}");
     assert!((p0 / 2.470589 - 1.0).abs() < 0.03, "{p0}");
     assert!((a / 1.96601 - 1.0).abs() < 0.03, "{a}");

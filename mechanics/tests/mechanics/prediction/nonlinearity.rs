@@ -154,7 +154,7 @@ fn the_estimate_is_that_of_the_law_that_is_stated() {
         told.push(lengths.fold(0.0, f64::max));
     }
     // They are not one another's.
-    assert!(told[1] > 1.2 * told[0] && told[2] > 1.2 * told[0], "{told:?}");
+    assert!(told[1] > 1.2 * told[0] && told[2] > 1.1 * told[0], "{told:?}");
 }
 
 #[test]

@@ -300,17 +300,16 @@ fn of_a_tiny_movement_finite_strain_is_estimated_as_linear_elements_are() {
     pulled.fixed = vec![set("x_min")];
     pulled.segments = vec![CaseSegment { name: "patch".to_owned(), nodes: set("x_max") }];
     let (plain, stabilised) = (ElementChoice::Plain, ElementChoice::Stabilised);
-    // Plain elements above a Poisson ratio of 0.495 are solved to 0.01 in place of 0.1, which lets few digits of the two differ.
-    // Those that share their volume leave a part of the bulk modulus to the cells at finite strain, and none in linear elements.
+    // Without pressures the loose solution is one to 0.01 above a Poisson ratio of 0.495, in place of 0.1: few digits of the two differ.
     let near =
         |case: Case| Case { materials: [("*".to_owned(), material(15.0, 0.497))].into(), ..case };
     for (case, element, most) in [
         (near(slab().case), plain, 0.1),
         (near(slab_hex().case), plain, 0.1),
         (near(pulled.clone()), plain, 0.1),
-        (slab().case, stabilised, 0.4),
-        (slab_hex().case, ElementChoice::MeanDilatation, 0.4),
-        (pulled, ElementChoice::MeanDilatation, 0.4),
+        (slab().case, stabilised, 0.1),
+        (near(slab_hex().case), ElementChoice::MeanDilatation, 0.2),
+        (near(pulled), ElementChoice::MeanDilatation, 0.2),
     ] {
         let finite = moved_at_finite_strain(element, 1e-4, &case);
         let linear = Settings { method: Method::FemLinear, ..finite.settings.clone() };
