@@ -2,7 +2,7 @@
 //!
 //! Every quadrilateral is cut along the diagonal that leaves the smallest of the tetrahedra on its two sides largest, as a
 //! share of their cells. Cut along diagonals from their lowest nodes, without middles, the warped cells of the two faces have
-//! tetrahedra that are inside out; cut so they have none.
+//! tetrahedra that are inside out; whether this leaves some too is for the caller to ask.
 
 use std::collections::BTreeMap;
 

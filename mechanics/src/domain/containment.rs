@@ -66,8 +66,8 @@ fn refusal(number: usize, skin: &Shell, bone: &Shell, outside: f64) -> SurfaceDo
         surface: SurfaceName::Bone(number),
         percent: 100.0 * outside,
         nearest: distances.reduce(|| f64::INFINITY, f64::min),
-        skin: skin.tree.bounds(),
-        bone: bone.tree.bounds(),
+        skin: Box::new(skin.tree.bounds()),
+        bone: Box::new(bone.tree.bounds()),
     }
 }
 

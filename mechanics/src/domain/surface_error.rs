@@ -58,8 +58,9 @@ pub enum SurfaceDomainError {
         surface: SurfaceName,
         percent: f64,
         nearest: f64,
-        skin: (Vector, Vector),
-        bone: (Vector, Vector),
+        /// The boxes of the skin and of this bone.
+        skin: Box<(Vector, Vector)>,
+        bone: Box<(Vector, Vector)>,
     },
     #[error(
         "{percent:.1} % of the inside of the skin is bone, which leaves no tissue{}",

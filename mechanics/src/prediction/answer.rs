@@ -23,7 +23,7 @@ pub(super) struct Answer {
 /// What was solved of a scene, with linear elements of first order or otherwise.
 pub(super) enum Linear<'a> {
     Solved(Box<LinearAnswer<'a>>),
-    Other(Answer),
+    Other(Box<Answer>),
 }
 
 /// An answer of linear elements of first order, with the matrix that it was solved with.
@@ -38,7 +38,7 @@ pub(super) struct LinearAnswer<'a> {
 pub(super) fn solve(scene: &Scene, progress: &dyn Progress) -> Result<Answer, ModelError> {
     Ok(match linear(scene, progress)? {
         Linear::Solved(answer) => answer.into_answer(),
-        Linear::Other(answer) => answer,
+        Linear::Other(answer) => *answer,
     })
 }
 
@@ -52,7 +52,7 @@ pub(super) fn linear<'a>(
     let without = |of_mesh, of_linearity| -> Result<Linear, ModelError> {
         let (numerical_error, nonlinearity) = (Err(of_mesh), Err(of_linearity));
         let (equilibrium, contact) = equilibrium(scene, progress)?;
-        Ok(Linear::Other(Answer { equilibrium, numerical_error, nonlinearity, contact }))
+        Ok(other(Answer { equilibrium, numerical_error, nonlinearity, contact }))
     };
     if let (Some(of_mesh), Some(of_linearity)) = (&of_mesh, &of_linearity) {
         return without(of_mesh.clone(), of_linearity.clone());
@@ -63,14 +63,14 @@ pub(super) fn linear<'a>(
         let (equilibrium, numerical_error) = at_finite_strain(scene, progress)?;
         let nonlinearity = Err(of_linearity.clone());
         let contact = None;
-        return Ok(Linear::Other(Answer { equilibrium, numerical_error, nonlinearity, contact }));
+        return Ok(other(Answer { equilibrium, numerical_error, nonlinearity, contact }));
     }
     let Some(system) = scene.assemble(progress)? else {
         return without(NotEstimated::Quadratic, NonlinearityUnknown::Quadratic);
     };
     let solved = system.solve(&[scene.load_case()], progress)?.remove(0);
     if let Some((solved, contact)) = touch(scene, &system, &solved, progress)? {
-        return Ok(Linear::Other(Answer {
+        return Ok(other(Answer {
             equilibrium: solved.equilibrium,
             numerical_error: Err(of_mesh.unwrap_or(NotEstimated::Contact)),
             nonlinearity: Err(of_linearity.unwrap_or(NonlinearityUnknown::Contact)),
@@ -87,6 +87,10 @@ pub(super) fn linear<'a>(
     };
     let answer = LinearAnswer { system, solved, numerical_error, nonlinearity };
     Ok(Linear::Solved(Box::new(answer)))
+}
+
+fn other<'a>(answer: Answer) -> Linear<'a> {
+    Linear::Other(Box::new(answer))
 }
 
 /// The equilibrium of a scene by its method, and what touches, without estimates.

@@ -152,7 +152,10 @@ async fn what_needs_the_mesh_of_a_case_without_one_is_refused_with_the_job_that_
     let pressure = json!({"pressure_kpa": 1e30, "faces": {"node_set": "skin"}});
     for (change, pointer) in [
         (jaw(json!({"translation_mm": [1e9, 1, 1]})), "/plan/segments/0/translation_mm"),
-        (jaw(json!({"rotation_deg": [170, 0, 0], "pivot_mm": [0, 0, 0]})), "/plan/segments/0"),
+        (
+            jaw(json!({"rotation_deg": [170, 0, 0], "pivot_mm": [0, 0, 0]})),
+            "/plan/segments/0/rotation_deg",
+        ),
         (jaw(json!({"matrix4x4": scales})), "/plan/segments/0/matrix4x4"),
         (
             json!({"plan": {"segments": [plan["segments"][0], plan["segments"][0]]}}),

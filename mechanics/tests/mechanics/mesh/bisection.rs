@@ -33,7 +33,7 @@ fn refine_at_random(bisection: &mut Bisection, passes: usize) {
     for pass in 0..passes {
         let picked = |_: &usize| {
             seed = seed * 48_271 % 2_147_483_647;
-            seed % 7 == 0
+            seed.is_multiple_of(7)
         };
         let cells: Vec<usize> = (0..bisection.cell_count()).filter(picked).collect();
         bisection.refine(&cells, 1 + (pass % 3) as u8);

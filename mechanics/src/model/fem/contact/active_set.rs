@@ -119,12 +119,12 @@ impl ActiveSet {
             pulls[row] = *multiplier < -ROUNDING * largest;
         }
         let mut changed = 0;
-        for row in 0..self.presses.len() {
+        for (row, &pulls) in pulls.iter().enumerate() {
             let is_closed = || {
                 task.gaps[row] + equations.value(row, &found.point.x) < -ROUNDING * task.movement
             };
             let presses = match self.presses[row] {
-                true => !pulls[row] || self.flips[row] >= MOST_FLIPS,
+                true => !pulls || self.flips[row] >= MOST_FLIPS,
                 false => is_closed(),
             };
             if presses != self.presses[row] {

@@ -119,18 +119,18 @@ impl FiniteStrain<'_> {
             tally: Tally::default(),
         };
         let near = match self.with_bulk_in_cells(question, start, true)? {
-            (tissue, Ending::Rest(rest)) => return Ok((tissue, rest)),
+            (tissue, Ending::Rest(rest)) => return Ok((tissue, *rest)),
             (_, Ending::Near(near) | Ending::Jam(near)) => near,
         };
         let until = Until { jammed: true, near: false };
         match self.newton(Kept::NONE, question, near.clone(), until) {
-            Ok((tissue, Ending::Rest(rest))) => return Ok((tissue, rest)),
+            Ok((tissue, Ending::Rest(rest))) => return Ok((tissue, *rest)),
             Ok((_, Ending::Jam(_) | Ending::Near(_))) | Err(ModelError::Standstill { .. }) => {}
             Err(ModelError::Solver(SolverError::NotConverged { .. })) => {}
             Err(error) => return Err(error),
         }
         match self.with_bulk_in_cells(question, near, false)? {
-            (tissue, Ending::Rest(rest)) => Ok((tissue, rest)),
+            (tissue, Ending::Rest(rest)) => Ok((tissue, *rest)),
             (_, Ending::Jam(_) | Ending::Near(_)) => unreachable!("only rest ends it"),
         }
     }

@@ -102,7 +102,7 @@ pub(super) struct Newton<'a> {
 
 /// How Newton's method ended.
 pub(super) enum Ending {
-    Rest(Rest),
+    Rest(Box<Rest>),
     /// More of the bulk modulus has to stay in the cells.
     Jam(Start),
     /// All of it may be shared.
@@ -167,7 +167,7 @@ impl<'a> Newton<'a> {
                 let (positions, pressures, forces) = (self.x, self.p, deformed.forces);
                 let directions = self.directions;
                 let rest = Rest { positions, pressures, forces, report, directions };
-                return Ok(Ending::Rest(rest));
+                return Ok(Ending::Rest(Box::new(rest)));
             }
             let is_near = self.made >= 1.0 && residual <= NEAR;
             if until.near && is_near && deformed.least_volume() >= ROOMY {
