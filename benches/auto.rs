@@ -281,7 +281,8 @@ fn middle(case: &Case, set: &str) -> Vector {
 
 /// The plan of a number; lengths and angles that are small are as frequent as large ones.
 fn question(entry: &Entry, number: usize) -> Question {
-    let mut numbers = Random(0x9e37_79b9_7f4a_7c15 ^ ((number as u64 + 1) * 0x2545_f491_4f6c_dd1d));
+    let seed = (number as u64 + 1).wrapping_mul(0x2545_f491_4f6c_dd1d);
+    let mut numbers = Random(0x9e37_79b9_7f4a_7c15 ^ seed);
     let moved_mm = MOVED[0] * (MOVED[1] / MOVED[0]).powf(numbers.next());
     let turned_deg = TURNED * numbers.next().powi(2) * moved_mm / MOVED[1];
     let (along, about) = (numbers.direction(), numbers.direction());
