@@ -14,8 +14,7 @@ use measure::{face, process};
 use mechanics::boundary::NodeSelection;
 use mechanics::material::LinearElastic;
 use mechanics::mesh::refinement::refine;
-use mechanics::mesh::sample::block;
-use mechanics::mesh::{CellShape, Vector};
+use mechanics::mesh::{Vector, sample};
 use mechanics::plan::{PlannedSegment, RigidMovement};
 use mechanics::prediction::{
     Accepted, Case, CaseSegment, Method, Plan, Prediction, Rung, Scene, Settings, Watched, predict,
@@ -248,19 +247,8 @@ fn entries() -> Vec<Entry> {
     entries
 }
 
-/// The hard block of docs/finite-strain.md: a patch of the bottom moves, a ring of 25 mm around it is free.
 fn hard_block() -> Case {
-    let mut mesh = block(Vector::new(100.0, 100.0, 20.0), [20, 20, 4], CellShape::Tet4);
-    let outside = |node: &u32| {
-        let x = &mesh.nodes[*node as usize];
-        let [x, y] = [x.x, x.y].map(|v| (35.0 - v).max(v - 65.0).max(0.0));
-        x.hypot(y)
-    };
-    let bottom = mesh.node_sets["z_min"].clone();
-    let patch = bottom.iter().copied().filter(|node| outside(node) == 0.0).collect();
-    let rest = bottom.iter().copied().filter(|node| outside(node) > 25.0).collect();
-    mesh.node_sets.insert("patch".to_owned(), patch);
-    mesh.node_sets.insert("rest".to_owned(), rest);
+    let mesh = sample::hard_block([20, 20, 4]);
     let set = |name: &str| NodeSelection::NodeSet(name.to_owned());
     let material = LinearElastic::new(15.0, 0.46, 1.0).expect("within the ranges");
     Case {

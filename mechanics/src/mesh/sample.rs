@@ -1,4 +1,4 @@
-//! Meshes made in code, for tests, benches and the demo: a block and the octant of a thick sphere.
+//! Meshes made in code, for tests, benches and the demo: blocks and the octant of a thick sphere.
 //!
 //! Both are a sheet of quadrilaterals repeated in layers. A tetrahedral cell is cut so that every
 //! face is cut from its lowest node number: neighbours agree without looking at each other, and on
@@ -191,6 +191,23 @@ impl NodeSets {
             }
         }
     }
+}
+
+/// The hard block of docs/finite-strain.md in tetrahedra: 100 x 100 x 20 mm, at whose bottom `patch` is 30 x 30 mm to be
+/// moved and `rest` what lies more than 25 mm from it; the ring between is free.
+pub fn hard_block(cells: [usize; 3]) -> VolumeMesh {
+    let mut mesh = block(Vector::new(100.0, 100.0, 20.0), cells, CellShape::Tet4);
+    let outside = |node: &u32| {
+        let x = &mesh.nodes[*node as usize];
+        let [x, y] = [x.x, x.y].map(|v| (35.0 - v).max(v - 65.0).max(0.0));
+        x.hypot(y)
+    };
+    let bottom = mesh.node_sets["z_min"].clone();
+    let patch = bottom.iter().copied().filter(|node| outside(node) == 0.0).collect();
+    let rest = bottom.iter().copied().filter(|node| outside(node) > 25.0).collect();
+    mesh.node_sets.insert("patch".to_owned(), patch);
+    mesh.node_sets.insert("rest".to_owned(), rest);
+    mesh
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@ use mechanics::material::hyperelastic::{
     Fibres, Fung, Law, NeoHookean, SaintVenantKirchhoff, Volumetric,
 };
 use mechanics::mesh::half_head::half_head;
-use mechanics::mesh::sample::block;
+use mechanics::mesh::sample::{self, block};
 use mechanics::mesh::{CellShape, Vector};
 use mechanics::plan::RigidMovement;
 use mechanics::prediction::{
@@ -186,19 +186,8 @@ fn what_is_left_out_of_fibres_that_only_pull_is_not_known() {
     assert_eq!(refused, ResponseError::NoSecondOrder);
 }
 
-/// The hard block of NONLINEAR: a patch of the bottom moves, the bottom around it is free for 25 mm.
 fn hard_block() -> Case {
-    let mut mesh = block(Vector::new(100.0, 100.0, 20.0), [20, 20, 4], CellShape::Tet4);
-    let outside = |node: &u32| {
-        let x = &mesh.nodes[*node as usize];
-        let [x, y] = [x.x, x.y].map(|v| (35.0 - v).max(v - 65.0).max(0.0));
-        x.hypot(y)
-    };
-    let bottom = mesh.node_sets["z_min"].clone();
-    let patch = bottom.iter().copied().filter(|node| outside(node) == 0.0).collect();
-    let rest = bottom.iter().copied().filter(|node| outside(node) > 25.0).collect();
-    mesh.node_sets.insert("patch".to_owned(), patch);
-    mesh.node_sets.insert("rest".to_owned(), rest);
+    let mesh = sample::hard_block([20, 20, 4]);
     Case {
         skin: Some(set("z_max")),
         segments: vec![CaseSegment { name: "patch".to_owned(), nodes: set("patch") }],
