@@ -99,9 +99,16 @@ fn plan() -> Value {
     })
 }
 
-/// The job document of the prediction of a case.
+/// The job document of the prediction of a case. The demo holds two meshes against each other: one model on both.
 pub fn prediction_of(case: &str, files: &[&str]) -> Value {
-    json!({"kind": "predict", "case": case, "plan": plan(), "outputs": files, "tags": ["demo"]})
+    json!({
+        "kind": "predict",
+        "case": case,
+        "method": "fem_linear",
+        "plan": plan(),
+        "outputs": files,
+        "tags": ["demo"],
+    })
 }
 
 /// The job document that compares a predicted skin with the mesh of another.
