@@ -1,19 +1,23 @@
 //! Contact in a prediction: what presses on what, where, and how hard.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::case::ContactKind;
 use super::scene::Scene;
+use super::skin_overlap::{Deepest, deepest_overlap};
 use crate::boundary::NodeClass;
 use crate::boundary::contact::FacingSurfaces;
-use crate::mesh::Warning;
+use crate::mesh::{Vector, Warning};
 use crate::model::fem::contact::{Contact, ContactProblem, InContact, Pressed};
 use crate::model::fem::linear_system::{LinearSystem, Solved};
 use crate::model::problem::ModelError;
 use crate::progress::{Phase, Progress};
 
+/// Parts of the boundary that lie in each other deeper than this, in mm, are told.
+const DEEP_MM: f64 = 0.05;
+
 /// Closest points that still moved by more than this in the last round, in mm, are told.
-const MOVED_MM: f64 = 1e-6;
+const MOVED_MM: f64 = 1e-3;
 
 /// Contact of an answer.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,6 +26,8 @@ pub struct Touch {
     /// For each node, in kPa; 0 where nothing presses.
     pub pressure: Vec<f64>,
     pub pairs: Vec<ContactPair>,
+    /// Where the boundary lies in itself, as at the corners of a mouth, whose edges no node is held against.
+    pub overlap: Option<Deepest>,
 }
 
 /// Two parts of the boundary that press on each other.
@@ -29,7 +35,7 @@ pub struct Touch {
 pub struct ContactPair {
     /// Names of segments, regions of the skin, `fixed`, `skin` or `inner`.
     pub between: [String; 2],
-    /// In mm²: of the nodes that press, on the side that has more.
+    /// In mm²: of the nodes that are pressed, on the side that has less.
     pub area: f64,
     /// In kPa.
     pub largest_pressure: f64,
@@ -54,7 +60,11 @@ pub(super) fn touch(
     let problem = ContactProblem { system, free, surfaces: &surfaces, relative_residual };
     let found = problem.solve(progress)?;
     Ok(found.map(|InContact { solved, contact }| {
-        let touch = Touch::new(scene, &surfaces.areas(&contact.forces), contact);
+        let mut touch = Touch::new(scene, &surfaces.areas(&contact.forces), contact);
+        let nothing = vec![Vector::zeros(); scene.mesh.nodes.len()];
+        let at_rest = deepest_overlap(&surfaces.after(&nothing)).map_or(0.0, |at| at.depth);
+        touch.overlap = deepest_overlap(&surfaces.after(&solved.equilibrium.displacement))
+            .filter(|deepest| deepest.depth > at_rest + DEEP_MM);
         (solved, touch)
     }))
 }
@@ -66,12 +76,13 @@ impl Touch {
             pressure[*node as usize] = contact.forces[*node as usize].norm() / area;
         }
         let pairs = pairs(scene, areas, &contact, &pressure);
-        Touch { contact, pressure, pairs }
+        Touch { contact, pressure, pairs, overlap: None }
     }
 
-    /// The largest gap below 0, in mm and positive.
+    /// The largest gap below 0, or how deep parts lie in each other, in mm and positive.
     pub fn largest_penetration(&self) -> f64 {
-        self.contact.gaps.values().fold(0.0, |most, gap| most.max(-gap))
+        let overlap = self.overlap.as_ref().map_or(0.0, |deepest| deepest.depth);
+        self.contact.gaps.values().fold(overlap, |most, gap| most.max(-gap))
     }
 
     pub fn largest_pressure(&self) -> f64 {
@@ -100,6 +111,13 @@ impl Touch {
             );
             warnings.push(Warning::new("contact-chatter", detail).with("points", *kept as f64));
         }
+        if let Some(Deepest { depth, at }) = &self.overlap {
+            let detail = format!(
+                "contact leaves parts of the boundary in each other, {depth:.2} mm deep: it holds nodes against triangles, not edges against edges"
+            );
+            let warning = Warning::new("contact-overlap", detail).with("depth_mm", *depth);
+            warnings.push(warning.with("x_mm", at.x).with("y_mm", at.y).with("z_mm", at.z));
+        }
         if *last_moved_mm > MOVED_MM {
             let detail = format!(
                 "closest points of contact still move the answer by {last_moved_mm:.1e} mm when they are looked for the {rounds}th time"
@@ -126,33 +144,41 @@ fn pairs(
         let Some((other, _)) = nearest else { continue };
         let (own, other) = (names[row.node as usize].as_str(), names[*other as usize].as_str());
         let between = [own.min(other), own.max(other)];
-        let side = &mut sides.entry(between).or_default()[usize::from(own > other)];
-        side.area += areas.get(&row.node).copied().unwrap_or_default();
-        side.largest_pressure = side.largest_pressure.max(pressure[row.node as usize]);
-        side.force += force;
-        side.nodes += 1;
+        let of_pair = sides.entry(between).or_default();
+        let own = usize::from(own > other);
+        of_pair[own].force += force;
+        for (place, (node, _)) in row.terms.iter().enumerate() {
+            of_pair[if place == 0 { own } else { 1 - own }].nodes.insert(*node);
+        }
     }
-    let pair = |(between, [one, other]): ([&str; 2], [Side; 2])| ContactPair {
-        // Where both sides have one name their nodes are counted together.
-        area: match between[0] == between[1] {
-            true => 0.5 * one.area,
-            false => one.area.max(other.area),
-        },
-        between: between.map(str::to_owned),
-        largest_pressure: one.largest_pressure.max(other.largest_pressure),
-        force: one.force + other.force,
-        nodes: one.nodes + other.nodes,
+    let pair = |(between, [one, other]): ([&str; 2], [Side; 2])| {
+        let is_one = between[0] == between[1];
+        let nodes: BTreeSet<u32> = one.nodes.union(&other.nodes).copied().collect();
+        let area = |nodes: &BTreeSet<u32>| -> f64 {
+            nodes.iter().map(|node| areas.get(node).copied().unwrap_or_default()).sum()
+        };
+        ContactPair {
+            area: if is_one {
+                0.5 * area(&nodes)
+            } else {
+                area(&one.nodes).min(area(&other.nodes))
+            },
+            between: between.map(str::to_owned),
+            largest_pressure: nodes.iter().map(|&node| pressure[node as usize]).fold(0.0, f64::max),
+            force: one.force + other.force,
+            nodes: nodes.len(),
+        }
     };
     sides.into_iter().map(pair).collect()
 }
 
-/// The nodes of one side that press.
+/// What one side of a pair takes part with.
 #[derive(Default)]
 struct Side {
-    area: f64,
-    largest_pressure: f64,
+    /// Those that press or are pressed.
+    nodes: BTreeSet<u32>,
+    /// In mN, of what its nodes are held against.
     force: f64,
-    nodes: usize,
 }
 
 /// What each node of the mesh is called as a part of the boundary.

@@ -19,10 +19,17 @@ pub const SKIN_OVERLAPS: &str = "skin-overlaps";
 /// Points of which the depth is taken, evenly chosen.
 const MEASURED_POINTS: usize = 1000;
 
-/// The point that lies deepest, in mm.
-struct Deepest {
-    depth: f64,
-    at: Vector,
+/// The point that lies deepest behind what is not its own.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Deepest {
+    /// In mm.
+    pub depth: f64,
+    pub at: Vector,
+}
+
+/// The deepest point of a surface that passes through itself. Its points have to be finite.
+pub(super) fn deepest_overlap(surface: &TriangleSurface) -> Option<Deepest> {
+    deepest(surface, &self_crossings(surface, |_| true).pairs)
 }
 
 /// A warning that counts the triangles of a moved skin that cross and did not cross at rest. The points of the moved

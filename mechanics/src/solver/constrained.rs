@@ -23,7 +23,7 @@ const MOST_RESTARTS: usize = 8;
 
 /// Equations with what was made of them.
 pub struct Equations<'a> {
-    matrix: &'a Preconditioned<'a>,
+    matrix: Preconditioned<'a>,
     rows: Vec<Equation>,
     /// Z of each equation, once it was needed.
     columns: Vec<Option<Vec<f32>>>,
@@ -61,9 +61,16 @@ struct Direction {
 }
 
 impl<'a> Equations<'a> {
-    pub fn new(matrix: &'a Preconditioned<'a>, rows: Vec<Equation>) -> Self {
+    pub fn new(matrix: Preconditioned<'a>, rows: Vec<Equation>) -> Self {
         let columns = rows.iter().map(|_| None).collect();
         Equations { matrix, rows, columns }
+    }
+
+    /// Puts other equations in the place of these, of which some are the same as before: `same` has their numbers of before.
+    pub fn replace(&mut self, rows: Vec<Equation>, same: &[Option<usize>]) {
+        let mut before = std::mem::take(&mut self.columns);
+        self.columns = same.iter().map(|old| old.and_then(|old| before[old].take())).collect();
+        self.rows = rows;
     }
 
     /// G x of one equation.
@@ -207,7 +214,7 @@ impl Run<'_, '_> {
 
     /// The residual answered within the equations, across the products of earlier directions.
     fn direction(&self, kept: &[Direction]) -> Option<Direction> {
-        let (rows, matrix) = (self.wanted.rows, self.equations.matrix);
+        let (rows, matrix) = (self.wanted.rows, &self.equations.matrix);
         let mut change = matrix.precondition(&self.r);
         let left: Vec<f64> = rows.iter().map(|&row| self.equations.value(row, &change)).collect();
         let n = self.independent.solve(&left);

@@ -6,16 +6,18 @@ use std::time::{Duration, Instant};
 
 use mechanics::boundary::{NodeSelection, connected_parts};
 use mechanics::mesh::connectivity::Faces;
-use mechanics::mesh::crossing::self_crossings;
+use mechanics::mesh::crossing::{cross, self_crossings};
 use mechanics::mesh::jacobian::scaled_jacobian;
 use mechanics::mesh::quality::quality;
 use mechanics::mesh::{CellShape, Vector, VolumeMesh, Warning};
+use mechanics::model::fem::contact::Contact;
 use mechanics::model::fem::force_series::{ForceSeries, Moved};
 use mechanics::model::fem::linear_system::Residual;
 use mechanics::model::spline::VolumeSpline;
 use mechanics::plan::{PlannedSegment, RigidMovement};
 use mechanics::prediction::{
-    Bone, Case, CaseSegment, Method, Plan, Scene, Settings, goes_along, predict, skin_overlap,
+    Bone, Case, CaseSegment, ContactKind, Method, Plan, Scene, Settings, goes_along, predict,
+    skin_overlap,
 };
 use mechanics::progress::Unobserved;
 use mechanics::response::{ResponseOrder, build, build_to};
@@ -30,6 +32,7 @@ trials! {
     a_real_face_moves_much_as_finite_elements_say
     the_sum_of_columns_is_the_direct_solution_on_the_face_like_shell
     a_jaw_raised_into_the_lips_of_a_real_face_is_told
+    lips_of_real_faces_press_on_each_other_with_contact
     the_second_order_of_a_face_like_shell_is_stored_to_a_thousandth_of_a_millimetre
     the_search_for_crossings_takes_little_of_a_prediction
     swapped_sets_and_the_inside_of_a_real_face_are_told
@@ -99,6 +102,48 @@ fn a_jaw_raised_into_the_lips_of_a_real_face_is_told() -> Result<(), Missing> {
         // Those that crossed at rest do so no longer.
         assert_eq!((numbers["pairs"], numbers["pairs_at_rest"]), (wanted as f64, 6.0));
         assert!(numbers["depth_mm"] > 0.1 && numbers["depth_mm"] < by, "{by} mm: {numbers:?}");
+    }
+    Ok(())
+}
+
+/// The template with its jaw and its skull.
+fn template() -> Result<Case, Missing> {
+    let segments = vec![CaseSegment { name: "jaw".to_owned(), nodes: set("mandible_fixed") }];
+    Ok(Case {
+        skin: Some(set("outer_skin")),
+        segments,
+        fixed: vec![set("skull_nose_fixed")],
+        ..case_of(shared_mesh("face/template_face.vtu")?, material(15.0, 0.45))
+    })
+}
+
+/// Of the pairs that cross without contact (25, 71 and 49 of the subject, 61, 112 and 61 of the template) those at the
+/// corners of the mouth are left, where edges cross edges.
+fn lips_of_real_faces_press_on_each_other_with_contact() -> Result<(), Missing> {
+    for (name, case, most) in
+        [("subject", subject()?, [2, 0, 0]), ("template", template()?, [0, 20, 30])]
+    {
+        for (by, most) in [4.0, 8.0, 15.0].into_iter().zip(most) {
+            let settings = Settings { contact: ContactKind::Unilateral, ..Settings::default() };
+            let scene = Scene::new(&case, &raised(by), &settings).unwrap();
+            let begun = Instant::now();
+            let found = predict(&scene, &Unobserved).unwrap();
+            let took = begun.elapsed();
+            let moved = scene.skin.moved(&found.displacement);
+            let rest = &scene.skin.surface;
+            let new = self_crossings(&moved, |pair| !cross(rest, pair)).count;
+            let touch = found.contact.as_ref().unwrap();
+            let Contact { pressed, rounds, passes, iterations, last_moved_mm, .. } = &touch.contact;
+            println!(
+                "{name} {by} mm: {took:?}, {new} new crossings, {} press, {rounds} rounds, {passes} passes, {iterations} iterations, moved {last_moved_mm:.1e}, overlap {:?}, {:.1} mm2, {:.2} kPa",
+                pressed.len(),
+                touch.overlap,
+                touch.area(),
+                touch.largest_pressure()
+            );
+            assert!(new <= most, "{name} {by} mm: {new}");
+            assert!(*last_moved_mm < 0.1, "{name} {by} mm: {last_moved_mm}");
+        }
     }
     Ok(())
 }

@@ -11,7 +11,7 @@ pub struct ContactDocument {
     /// In mm², of all pairs.
     pub area_mm2: f64,
     pub largest_pressure_kpa: f64,
-    /// How deep a node is left behind what it faces, deeper than at rest; 0 but for rounding.
+    /// How deep a part of the boundary is left behind what it faces, deeper than at rest: 0 but for rounding, or more at edges.
     pub largest_penetration_mm: f64,
     pub pairs: Vec<ContactPairDocument>,
     /// Solutions for a set of pressing points, how many of them changed the set, and how often closest points were looked for.
@@ -28,7 +28,7 @@ pub struct ContactDocument {
 pub struct ContactPairDocument {
     /// Two names, of segments and of `skin_regions`; `fixed`, `skin` and `inner` for the rest.
     pub between: Vec<String>,
-    /// Points that press.
+    /// Nodes that are pressed, on both sides.
     pub nodes: u64,
     pub area_mm2: f64,
     pub largest_pressure_kpa: f64,

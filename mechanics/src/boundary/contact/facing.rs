@@ -1,36 +1,43 @@
-//! Points of the boundary that face each other through air: the closest ones with opposing normals.
+//! Points of the boundary that face each other: where the line along both normals meets the other side.
 //!
-//! Every node of the boundary that may move is held against the triangles of other parts of it. The normal is the mean of those of both
-//! sides; where one side is held as a whole it is that of this side, which moves as a rigid body. Two points face each other
-//! where each lies in front of the other at rest: the two sides of one fold of tissue do not, nor do neighbours on a surface
-//! that bulges. Points that lie in each other at rest, as those of scanned lips do, start with no gap.
+//! Every node of the boundary that may move is held against the triangle of the boundary that is nearest among those that it
+//! faces: the line through the node along the mean normal of both sides meets it, and some of the node's own triangles oppose
+//! it. So the gap is the distance to a point in front of or behind the node, and not to one beside it. Normals are means of
+//! triangles of about one direction: an edge of a block has those of its faces. Where one side is held as a whole the normal
+//! is that of its triangle, which moves as a rigid body. Points in front face each other through air. Points that lie in each
+//! other do where they lay in front of each other at rest, or are not two sides of one fold of tissue. Points that lie in
+//! each other at rest, as those of scanned lips do, start with no gap.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use rayon::prelude::*;
 
+use super::line::{Meeting, meeting};
+use super::moved_boundary::{Boundary, MovedBoundary};
 use super::row::ContactRow;
 use crate::boundary::Hold;
 use crate::mesh::volume::BoundaryFace;
-use crate::mesh::{ClosestPoint, SurfaceSearch, TriangleSurface, Vector, VolumeMesh};
+use crate::mesh::{TriangleSurface, Vector, VolumeMesh};
 
-/// The cosine of normals that oppose each other is below this.
-const OPPOSED: f64 = -0.3;
-
-/// Points that lie in each other at rest are at most this part of the edges of their triangle deep.
+/// Points that lie in each other without having been in front are at most this part of their edges deep.
 const DEEPEST: f64 = 0.5;
 
 /// Points this many edges of tissue apart, or fewer, do not lie in each other: they are two sides of one fold.
 const FOLD: usize = 4;
 
+/// Nodes that move by more than this part of the largest movement move much.
+const MUCH: f64 = 0.5;
+
 /// The boundary of a mesh as a surface that may touch itself.
 pub struct FacingSurfaces<'a> {
     mesh: &'a VolumeMesh,
-    /// With `node_ids`.
-    rest: TriangleSurface,
+    boundary: Boundary,
+    /// Unit normals of points at rest.
     rest_normals: Vec<Vector>,
     /// For each point, whether its node is held in every direction.
     is_held: Vec<bool>,
+    /// Of each face for each of its nodes: an equal part of its area, along its normal, in mm².
+    shares: Vec<(u32, Vector)>,
     /// The cells around each node.
     around: Vec<Vec<u32>>,
     /// For each point, how far it is looked for what it faces, in mm: the longest edge around it.
@@ -39,11 +46,12 @@ pub struct FacingSurfaces<'a> {
     at_rest: Vec<f64>,
 }
 
-/// The boundary after a displacement.
-struct Moved {
-    surface: TriangleSurface,
-    normals: Vec<Vector>,
-    search: SurfaceSearch,
+/// A point of a triangle that a node faces.
+struct Faced {
+    triangle: usize,
+    weights: [f64; 3],
+    /// Out of the triangle.
+    normal: Vector,
 }
 
 impl<'a> FacingSurfaces<'a> {
@@ -59,121 +67,145 @@ impl<'a> FacingSurfaces<'a> {
             mesh,
             rest_normals: rest.point_normals(),
             is_held: nodes.iter().map(|&node| held[node as usize]).collect(),
+            shares: shares(mesh, boundary),
             around: cells_around(mesh),
             reach: longest_edges(&rest),
             at_rest: vec![0.0; rest.points.len()],
-            rest,
+            boundary: Boundary::new(rest),
         };
         surfaces.at_rest = surfaces.depths_at_rest();
         surfaces
     }
 
-    /// For each node the area in mm² that a force on it presses on: a third of the triangles around it, seen along the force.
+    /// For each node the area in mm² that a force on it presses on: its share of the faces around it, seen along the force.
     pub fn areas(&self, forces: &[Vector]) -> BTreeMap<u32, f64> {
-        let nodes = self.nodes();
         let mut areas = BTreeMap::new();
-        for (triangle, corners) in self.rest.triangles.iter().enumerate() {
-            let third = self.rest.area_vector(triangle) / 3.0;
-            for node in corners.map(|corner| nodes[corner as usize]) {
-                if let Some(along) = forces[node as usize].try_normalize(f64::MIN_POSITIVE) {
-                    *areas.entry(node).or_default() += (-third.dot(&along)).max(0.0);
-                }
+        for (node, share) in &self.shares {
+            if let Some(along) = forces[*node as usize].try_normalize(f64::MIN_POSITIVE) {
+                *areas.entry(*node).or_default() += (-share.dot(&along)).max(0.0);
             }
         }
         areas
     }
 
-    /// The rows of the points that face another near by after a displacement, linear about it.
+    /// The largest movement, and the median of the longest edges around nodes that move much, in mm.
+    pub fn movement_and_edge(&self, displacement: &[Vector]) -> (f64, f64) {
+        let movements = || self.nodes().iter().map(|&node| displacement[node as usize].norm());
+        let largest = movements().fold(0.0, f64::max);
+        let much = movements().zip(&self.reach).filter(|(movement, _)| *movement >= MUCH * largest);
+        let mut edges: Vec<f64> = much.map(|(_, edge)| *edge).collect();
+        edges.sort_by(f64::total_cmp);
+        (largest, edges.get(edges.len() / 2).copied().unwrap_or(f64::INFINITY))
+    }
+
+    /// The boundary after a displacement.
+    pub fn after(&self, displacement: &[Vector]) -> TriangleSurface {
+        self.boundary.after(displacement)
+    }
+
+    /// The rows of the points that face another near by after a displacement, linear about it, by node.
     pub fn rows(&self, displacement: &[Vector]) -> Vec<ContactRow> {
-        let Some(moved) = self.moved(displacement) else { return Vec::new() };
-        let points = (0..self.rest.points.len() as u32).into_par_iter();
+        let Some(moved) = self.boundary.moved(displacement) else { return Vec::new() };
+        let points = (0..self.is_held.len() as u32).into_par_iter();
         points.filter_map(|point| self.row(&moved, point)).collect()
     }
 
     fn nodes(&self) -> &[u32] {
-        self.rest.node_ids.as_deref().unwrap_or_default()
+        self.boundary.rest.node_ids.as_deref().unwrap_or_default()
     }
 
-    fn moved(&self, displacement: &[Vector]) -> Option<Moved> {
-        let mut surface = self.rest.clone();
-        for (point, &node) in surface.points.iter_mut().zip(self.nodes()) {
-            *point += displacement[node as usize];
+    fn row(&self, moved: &MovedBoundary, point: u32) -> Option<ContactRow> {
+        let Faced { triangle, weights, normal } = self.faced(moved, point)?;
+        let (rest, nodes) = (&self.boundary.rest, self.nodes());
+        let node = nodes[point as usize];
+        let mut terms = vec![(node, normal)];
+        let mut gap = normal.dot(&rest.points[point as usize]) - self.at_rest[point as usize];
+        let corners = rest.triangles[triangle].iter();
+        for (&corner, weight) in corners.zip(weights).filter(|(_, weight)| *weight > 0.0) {
+            terms.push((nodes[corner as usize], -weight * normal));
+            gap -= weight * normal.dot(&rest.points[corner as usize]);
         }
-        let search = SurfaceSearch::new(&surface).ok()?;
-        Some(Moved { normals: surface.point_normals(), search, surface })
+        Some(ContactRow { node, terms, gap })
     }
 
-    fn row(&self, moved: &Moved, point: u32) -> Option<ContactRow> {
+    /// What a point faces: first along its own normal or across a triangle, then along the mean of both normals.
+    fn faced(&self, moved: &MovedBoundary, point: u32) -> Option<Faced> {
         if self.is_held[point as usize] {
             return None;
         }
+        let (at, reach) = (moved.surface.points[point as usize], self.reach[point as usize]);
+        let first = |triangle: usize| self.first(moved, point, triangle);
+        let nearest =
+            moved.search.nearer_where(&at, reach, |triangle| first(triangle).is_some())?;
+        let normal = self.normal(moved, point, nearest.triangle, &first(nearest.triangle)?)?;
+        let along = |triangle: usize, normal: &Vector| {
+            let found = meeting(&moved.surface.corners(triangle), &at, &-normal)?;
+            self.may_face(moved, point, triangle, found.ahead).then_some(found)
+        };
+        let nearest = moved.search.nearer_where(&at, reach, |t| along(t, &normal).is_some())?;
+        let triangle = nearest.triangle;
+        let weights = along(triangle, &normal)?.weights;
+        let better = self.normal(moved, point, triangle, &weights)?;
+        Some(match along(triangle, &better) {
+            Some(found) => Faced { triangle, weights: found.weights, normal: better },
+            None => Faced { triangle, weights, normal },
+        })
+    }
+
+    /// The weights of the point of a triangle that a point faces along its own normal, or across the triangle.
+    fn first(&self, moved: &MovedBoundary, point: u32, triangle: usize) -> Option<[f64; 3]> {
+        let own = self.boundary.own_normal(moved, point, triangle)?;
         let at = moved.surface.points[point as usize];
-        let faces = |triangle: usize| self.faces(moved, point, triangle);
-        let closest = moved.search.nearer_where(&at, self.reach[point as usize], faces)?;
-        if moved.search.is_on_open_border(&closest) {
-            return None;
-        }
-        let normal = self.normal(moved, point, &closest)?;
-        let corners = self.rest.triangles[closest.triangle];
-        let nodes = self.nodes();
-        let mut terms = vec![(nodes[point as usize], normal)];
-        let mut gap = normal.dot(&self.rest.points[point as usize]) - self.at_rest[point as usize];
-        for (&corner, weight) in corners.iter().zip(closest.barycentric).filter(|(_, w)| *w > 0.0) {
-            terms.push((nodes[corner as usize], -weight * normal));
-            gap -= weight * normal.dot(&self.rest.points[corner as usize]);
-        }
-        Some(ContactRow { node: nodes[point as usize], terms, gap })
+        let corners = moved.surface.corners(triangle);
+        let across = || meeting(&corners, &at, &-moved.flats[triangle]);
+        let Meeting { weights, ahead } = meeting(&corners, &at, &own).or_else(across)?;
+        self.may_face(moved, point, triangle, ahead).then_some(weights)
     }
 
     /// The mean of the normals of both sides, out of the triangle.
-    fn normal(&self, moved: &Moved, point: u32, closest: &ClosestPoint) -> Option<Vector> {
-        let corners = self.rest.triangles[closest.triangle];
-        let is_rigid = corners.iter().all(|&corner| self.is_held[corner as usize]);
-        let own = -moved.normals[point as usize];
-        let of_corners = corners.iter().zip(closest.barycentric);
-        let other: Vector = of_corners.map(|(&c, w)| moved.normals[c as usize] * w).sum();
-        let flat = moved.surface.area_vector(closest.triangle);
-        match is_rigid {
-            true => flat.try_normalize(f64::MIN_POSITIVE),
-            false => (own + other.try_normalize(0.0)?).try_normalize(f64::MIN_POSITIVE),
+    fn normal(
+        &self,
+        moved: &MovedBoundary,
+        point: u32,
+        triangle: usize,
+        weights: &[f64; 3],
+    ) -> Option<Vector> {
+        let corners = self.boundary.rest.triangles[triangle];
+        if corners.iter().all(|&corner| self.is_held[corner as usize]) {
+            return Some(moved.flats[triangle]);
         }
+        let own = self.boundary.own_normal(moved, point, triangle)?;
+        let other = self.boundary.normal_at(moved, triangle, weights)?;
+        (other - own).try_normalize(f64::MIN_POSITIVE)
     }
 
-    /// Whether a triangle is one that a point may not pass.
-    fn faces(&self, moved: &Moved, point: u32, triangle: usize) -> bool {
-        let corners = self.rest.triangles[triangle];
-        if corners.contains(&point) {
+    /// Whether a triangle that lies so far ahead of a point, in mm, is one that it may not pass.
+    fn may_face(&self, moved: &MovedBoundary, point: u32, triangle: usize, ahead: f64) -> bool {
+        if self.boundary.rest.triangles[triangle].contains(&point) {
             return false;
         }
-        let normal = moved.surface.area_vector(triangle);
-        let opposes = normal.dot(&moved.normals[point as usize]) < OPPOSED * normal.norm();
-        opposes && self.in_front_at_rest(point, triangle)
+        let is_behind = || {
+            self.was_in_front(point, triangle)
+                || -ahead <= DEEPEST * self.reach[point as usize]
+                    && !self.is_of_one_fold(point, triangle)
+        };
+        self.boundary.own_normal(moved, point, triangle).is_some() && (ahead >= 0.0 || is_behind())
     }
 
-    fn in_front_at_rest(&self, point: u32, triangle: usize) -> bool {
-        let [a, b, c] = self.rest.corners(triangle);
-        let normal = self.rest.area_vector(triangle);
-        let Some(normal) = normal.try_normalize(f64::MIN_POSITIVE) else { return false };
-        let at = self.rest.points[point as usize];
+    /// Whether a point and a triangle lay in front of each other at rest.
+    fn was_in_front(&self, point: u32, triangle: usize) -> bool {
+        let rest = &self.boundary.rest;
+        let corners = rest.corners(triangle);
+        let at = rest.points[point as usize];
         let own = self.rest_normals[point as usize];
-        let before = normal.dot(&(at - a));
-        let ahead =
-            [a, b, c].map(|corner| own.dot(&(corner - at))).into_iter().fold(f64::MIN, f64::max);
-        if before > 0.0 && ahead > 0.0 {
-            return true;
-        }
-        let longest = (b - a).norm().max((c - b).norm()).max((a - c).norm());
-        let deepest = -DEEPEST * longest;
-        let nearest =
-            [a, b, c].map(|corner| (corner - at).norm()).into_iter().fold(f64::MAX, f64::min);
-        let is_near = before > deepest && ahead > deepest && nearest <= longest;
-        is_near && !self.is_of_one_fold(point, triangle)
+        rest.area_vector(triangle).dot(&(at - corners[0])) > 0.0
+            && corners.iter().any(|corner| own.dot(&(corner - at)) > 0.0)
     }
 
     /// Whether few cells of tissue lead from a point to a triangle.
     fn is_of_one_fold(&self, point: u32, triangle: usize) -> bool {
         let nodes = self.nodes();
-        let corners = self.rest.triangles[triangle].map(|corner| nodes[corner as usize]);
+        let corners = self.boundary.rest.triangles[triangle].map(|corner| nodes[corner as usize]);
         let first = nodes[point as usize];
         let mut seen = BTreeSet::from([first]);
         let mut ring = vec![first];
@@ -200,6 +232,16 @@ impl<'a> FacingSurfaces<'a> {
         }
         depths
     }
+}
+
+fn shares(mesh: &VolumeMesh, boundary: &[BoundaryFace]) -> Vec<(u32, Vector)> {
+    let of_face = |face: &BoundaryFace| {
+        let at = |node: u32| mesh.nodes[node as usize];
+        let area = |[a, b, c]: [u32; 3]| 0.5 * (at(b) - at(a)).cross(&(at(c) - at(a)));
+        let share = face.triangles().map(area).sum::<Vector>() / face.nodes().len() as f64;
+        face.nodes().iter().map(|&node| (node, share)).collect::<Vec<_>>()
+    };
+    boundary.iter().flat_map(of_face).collect()
 }
 
 fn cells_around(mesh: &VolumeMesh) -> Vec<Vec<u32>> {

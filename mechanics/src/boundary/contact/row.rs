@@ -2,6 +2,15 @@
 
 use crate::mesh::Vector;
 
+/// Rows whose gaps differ by less than this, in mm, say the same
+const SAME_MM: f64 = 1e-3;
+
+/// where the cosine of their normals is above this, 2.6 degrees.
+const SAME_NORMAL: f64 = 0.999;
+
+/// Rows with a gap above this, in mm, are not expected to close.
+const FAR_MM: f64 = 0.05;
+
 /// g(u) = gap + sum c_a . u_a >= 0, with a pressing force along c_a at each node a (Signorini 1959; node to surface).
 #[derive(Clone, Debug, PartialEq)]
 pub struct ContactRow {
@@ -16,7 +25,27 @@ pub struct ContactRow {
 impl ContactRow {
     /// g after a displacement, in mm.
     pub fn gap_after(&self, displacement: &[Vector]) -> f64 {
+        self.gap_after_part(displacement, 1.0)
+    }
+
+    /// g after a part of a displacement, in mm.
+    pub fn gap_after_part(&self, displacement: &[Vector], part: f64) -> f64 {
         let moved = self.terms.iter().map(|(node, along)| along.dot(&displacement[*node as usize]));
-        self.gap + moved.sum::<f64>()
+        self.gap + part * moved.sum::<f64>()
+    }
+
+    /// Whether another row of the same node says the same after a displacement.
+    pub fn agrees(&self, other: &ContactRow, displacement: &[Vector]) -> bool {
+        let apart = self.gap_after(displacement) - other.gap_after(displacement);
+        apart.abs() < SAME_MM && self.normal().dot(&other.normal()) > SAME_NORMAL
+    }
+
+    /// Whether the gap is closed or nearly so after a displacement.
+    pub fn is_near(&self, displacement: &[Vector]) -> bool {
+        self.gap_after(displacement) < FAR_MM
+    }
+
+    fn normal(&self) -> Vector {
+        self.terms.first().map(|(_, along)| *along).unwrap_or_default()
     }
 }

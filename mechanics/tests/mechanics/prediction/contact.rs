@@ -106,7 +106,7 @@ fn met(found: &Prediction, nodes: &[u32], wanted: f64) -> Met {
 /// Two blocks, three cells to two, pressed together by a tenth (Taylor, Papadopoulos 1991): points held against triangles
 /// do not pass the patch test, in which the pressure is the same everywhere. docs/contact.md says by how much they fail it.
 #[test]
-fn blocks_with_meshes_that_do_not_match_keep_apart_and_press_within_two_fifths_of_evenly() {
+fn blocks_with_meshes_that_do_not_match_keep_apart_and_press_within_a_ninth_of_evenly() {
     let lower = block(Vector::new(12.0, 12.0, 6.0), [3, 3, 2], CellShape::Hex8);
     let upper =
         at(block(Vector::new(12.0, 12.0, 6.0), [2, 2, 2], CellShape::Hex8), [0.0, 0.0, 6.0]);
@@ -125,11 +125,61 @@ fn blocks_with_meshes_that_do_not_match_keep_apart_and_press_within_two_fifths_o
     for (side, nodes) in [("lower", one), ("upper", other)] {
         let met = met(&found, &nodes, 1.5);
         assert!(met.penetration < 1e-12 && met.pull <= 0.0, "{side}: {}", met.penetration);
-        assert!(met.pressure < 0.4, "{side}: {}", met.pressure);
+        assert!(met.pressure < 0.11, "{side}: {}", met.pressure);
     }
     let u = |node: usize| -0.1 * case.volume.nodes[node].z;
     let off = (0..case.volume.nodes.len()).map(|n| (found.displacement[n].z - u(n)).abs());
-    assert!(off.fold(0.0, f64::max) < 0.07);
+    assert!(off.fold(0.0, f64::max) < 0.075);
+}
+
+/// A C of tissue: two jaws of 20 mm with a slit of 5 mm and 30 mm depth between them, the lower one raised.
+fn jaws(size: f64) -> Case {
+    let cells = [40.0, 10.0, 45.0].map(|length| (length / size) as usize);
+    let whole = block(Vector::new(40.0, 10.0, 45.0), cells, CellShape::Hex8);
+    let mut mesh = VolumeMesh { nodes: whole.nodes.clone(), ..VolumeMesh::default() };
+    for (cell, (shape, nodes)) in whole.cells.iter().enumerate() {
+        let centre = whole.corners(cell).sum::<Vector>() / nodes.len() as f64;
+        if !(centre.x > 10.0 && (20.0..25.0).contains(&centre.z)) {
+            mesh.cells.push(shape, nodes);
+        }
+    }
+    for name in ["z_min", "z_max"] {
+        mesh.node_sets.insert(name.to_owned(), whole.node_sets[name].clone());
+    }
+    Case {
+        segments: vec![CaseSegment { name: "jaw".to_owned(), nodes: set("z_min") }],
+        fixed: vec![set("z_max")],
+        ..case_of(mesh, material(15.0, 0.3))
+    }
+}
+
+fn raised(by: f64) -> Plan {
+    let up = Vector::new(0.0, 0.0, by);
+    let movement = RigidMovement::about_pivot(Vector::zeros(), Vector::zeros(), up);
+    let segments = vec![PlannedSegment { name: "jaw".to_owned(), movement }];
+    Plan { segments, ..Plan::default() }
+}
+
+#[test]
+fn jaws_that_close_by_twice_their_slit_and_four_times_their_cells_press_and_do_not_pass() {
+    for size in [2.5, 1.25] {
+        let case = jaws(size);
+        let found = solve(&case, &raised(10.0), &unilateral());
+        let touch = found.contact.as_ref().unwrap();
+        assert!(touch.overlap.is_none() && touch.largest_penetration() < 1e-8, "{touch:?}");
+        // In front, near the hinge the slit stays open.
+        assert!(touch.area() > 230.0 && touch.area() < 300.0, "{}", touch.area());
+        let forces = touch.contact.pressed.iter().map(|pressed| pressed.force);
+        assert!(forces.fold(f64::INFINITY, f64::min) > -1e-6);
+        let slit = |z: f64| {
+            let at = |node: &Vector| node.x > 39.9 && (node.z - z).abs() < 0.01;
+            let nodes = case.volume.nodes.iter().zip(&found.displacement);
+            nodes.filter(|(node, _)| at(node)).map(|(_, u)| z + u.z).fold(0.0, f64::max)
+        };
+        assert!(slit(25.0) - slit(20.0) > -1e-6, "{} {}", slit(25.0), slit(20.0));
+    }
+    let open = solve(&jaws(2.5), &raised(1.0), &unilateral());
+    assert!(open.contact.is_none());
 }
 
 #[test]

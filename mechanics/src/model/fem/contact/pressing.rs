@@ -1,5 +1,5 @@
-//! An answer of linear elasticity in which nothing passes through what it faces: closest points, the set that presses, and
-//! closest points again until they stay.
+//! An answer of linear elasticity in which nothing passes through what it faces: closest points and the set that presses, along
+//! the movement in steps, and at its end until closest points stay.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -11,19 +11,23 @@ use crate::model::fem::linear_system::{LinearSystem, Solved};
 use crate::model::problem::{Equilibrium, LoadCase, ModelError};
 use crate::progress::Progress;
 use crate::solver::constrained::{Equations, Point};
-use crate::solver::preconditioned::Preconditioned;
 
-/// Closest points that move the answer less than this, in mm, are those of the answer.
-const STAY_MM: f64 = 1e-6;
+/// Gaps below 0 by less than this, in mm, are closed.
+const CLOSED_MM: f64 = 1e-6;
 
 /// Beyond this, in mm, an answer is none.
 const UNSETTLED_MM: f64 = 0.1;
 
-/// How often closest points are looked for again.
-const MOST_ROUNDS: usize = 12;
+/// How often closest points are looked for again at the end of the movement.
+const MOST_ROUNDS: usize = 15;
 
-/// Where the answer moves by more than this part of its last movement, closest points are those half the way.
-const SLOW: f64 = 0.5;
+/// What moves goes by at most this part of its longest edges in a step; the second where the first does not settle.
+const STEPS: [f64; 2] = [0.5, 0.125];
+
+const MOST_STEPS: usize = 100;
+
+/// Relative residual on the way, and where closest points may still change.
+const ON_THE_WAY: f64 = 1e-3;
 
 /// A linear system, its answer without contact, and what may touch.
 pub struct ContactProblem<'a> {
@@ -54,7 +58,7 @@ pub struct Contact {
     pub changes: usize,
     /// Rows that press because they changed too often.
     pub kept: usize,
-    /// How often closest points were looked for, and how far they moved the last time, in mm.
+    /// How often closest points were looked for, and how far they moved the answer the last time, in mm.
     pub rounds: usize,
     pub last_moved_mm: f64,
     pub iterations: usize,
@@ -70,79 +74,233 @@ pub struct InContact {
 impl ContactProblem<'_> {
     /// The answer with contact; none where nothing touches.
     pub fn solve(&self, progress: &dyn Progress) -> Result<Option<InContact>, ModelError> {
-        let free = &self.free.equilibrium.displacement;
-        let Some(mut rows) = self.closing_rows(free) else { return Ok(None) };
-        let matrix = self.system.preconditioned();
-        let mut tried =
-            Tried { looked_from: vec![Vector::zeros(); free.len()], ..Tried::default() };
-        let mut last = self.round(&matrix, rows, &mut tried, progress)?;
-        while last.contact.last_moved_mm >= STAY_MM && tried.rounds < MOST_ROUNDS {
-            let displacement = &last.solved.equilibrium.displacement;
-            let share = if tried.is_slow() { 0.5 } else { 1.0 };
-            let places = tried.looked_from.iter_mut().zip(displacement);
-            places.for_each(|(from, u)| *from += (u - *from) * share);
-            rows = self.rows(&tried.looked_from);
-            last = self.round(&matrix, rows, &mut tried, progress)?;
-        }
-        match last.contact.last_moved_mm > UNSETTLED_MM {
-            true => {
-                let (passes, moved_mm) = (tried.passes, last.contact.last_moved_mm);
-                Err(ModelError::ContactUnsettled { passes, moved_mm })
-            }
-            false => Ok(Some(last)),
+        match self.solve_in_steps(STEPS[0], progress) {
+            Err(ModelError::ContactUnsettled { .. }) => self.solve_in_steps(STEPS[1], progress),
+            other => other,
         }
     }
 
-    /// The rows at rest, or where these stay open those of the answer without contact; none where all stay open.
-    fn closing_rows(&self, free: &[Vector]) -> Option<Vec<ContactRow>> {
-        let closes = |row: &ContactRow| row.gap_after(free) < -STAY_MM;
-        let at_rest = self.rows(&vec![Vector::zeros(); free.len()]);
-        if at_rest.iter().any(closes) {
-            return Some(at_rest);
-        }
-        let moved = self.rows(free);
-        moved.iter().any(closes).then_some(moved)
-    }
-
-    /// The set that presses, for rows that stay as they are, and the answer with it.
-    fn round(
+    fn solve_in_steps(
         &self,
-        matrix: &Preconditioned,
-        rows: Vec<ContactRow>,
-        tried: &mut Tried,
+        step: f64,
         progress: &dyn Progress,
-    ) -> Result<InContact, ModelError> {
-        let free = &self.free.equilibrium.displacement;
-        let movement = free.iter().map(Vector::norm).fold(0.0, f64::max);
-        let gaps: Vec<f64> = rows.iter().map(|row| row.gap_after(free)).collect();
-        let unknowns = FreeUnknowns::new(self.system.holds, &self.system.numbering);
-        let equations = rows.iter().map(|row| unknowns.equation(row)).collect();
-        let mut equations = Equations::new(matrix, equations);
-        let mut set = ActiveSet::of_gaps(&gaps, movement);
-        if tried.rounds > 0 {
-            set.presses = rows.iter().map(|row| tried.pressing.contains(&row.node)).collect();
+    ) -> Result<Option<InContact>, ModelError> {
+        let mut rounds = Rounds::new(self);
+        let steps = self.steps(step);
+        for step in 1..=steps {
+            rounds.share = step as f64 / steps as f64;
+            rounds.look();
+            if rounds.touches() {
+                rounds.settle(ON_THE_WAY, progress)?;
+            } else {
+                rounds.displacement = self.free_part(rounds.share);
+            }
         }
-        let relative_residual = self.relative_residual;
+        if !rounds.has_touched() {
+            rounds.look();
+            if !rounds.touches() {
+                return Ok(None);
+            }
+            rounds.settle(ON_THE_WAY, progress)?;
+        }
+        let mut last_moved_mm = 0.0;
+        for _ in 0..MOST_ROUNDS {
+            last_moved_mm = match rounds.look() {
+                0 => 0.0,
+                _ => rounds.settle(ON_THE_WAY, progress)?,
+            };
+            if last_moved_mm == 0.0 {
+                break;
+            }
+        }
+        if last_moved_mm > UNSETTLED_MM {
+            let passes = rounds.passes;
+            return Err(ModelError::ContactUnsettled { passes, moved_mm: last_moved_mm });
+        }
+        rounds.settle(self.relative_residual, progress)?;
+        Ok(Some(rounds.answer(last_moved_mm)))
+    }
+
+    fn free(&self) -> &[Vector] {
+        &self.free.equilibrium.displacement
+    }
+
+    fn free_part(&self, share: f64) -> Vec<Vector> {
+        self.free().iter().map(|u| u * share).collect()
+    }
+
+    /// The number of steps in which what moves much goes by a part of its edges.
+    fn steps(&self, part: f64) -> usize {
+        let (movement, edge) = self.surfaces.movement_and_edge(self.free());
+        ((movement / (part * edge)).ceil() as usize).clamp(1, MOST_STEPS)
+    }
+}
+
+/// What is known of contact while its points are looked for.
+struct Rounds<'a> {
+    problem: &'a ContactProblem<'a>,
+    unknowns: FreeUnknowns<'a>,
+    /// Those of `rows`.
+    equations: Equations<'a>,
+    rows: Vec<ContactRow>,
+    /// Nodes whose rows press.
+    pressing: BTreeSet<u32>,
+    /// The part of the movement that is done.
+    share: f64,
+    displacement: Vec<Vector>,
+    /// What contact adds to the answer without it, and the multipliers of the rows that press.
+    added: Point,
+    active: Vec<usize>,
+    passes: usize,
+    changes: usize,
+    kept: usize,
+    iterations: usize,
+    rounds: usize,
+    relative_residual: f64,
+}
+
+impl<'a> Rounds<'a> {
+    fn new(problem: &'a ContactProblem<'a>) -> Self {
+        let system = problem.system;
+        Rounds {
+            problem,
+            unknowns: FreeUnknowns::new(system.holds, &system.numbering),
+            equations: Equations::new(system.preconditioned(), Vec::new()),
+            rows: Vec::new(),
+            pressing: BTreeSet::new(),
+            share: 0.0,
+            displacement: vec![Vector::zeros(); problem.free().len()],
+            added: Point::default(),
+            active: Vec::new(),
+            passes: 0,
+            changes: 0,
+            kept: 0,
+            iterations: 0,
+            rounds: 0,
+            relative_residual: 0.0,
+        }
+    }
+
+    /// Looks for closest points with the answer so far; how many rows say something new.
+    fn look(&mut self) -> usize {
+        let before: BTreeMap<u32, usize> =
+            self.rows.iter().enumerate().map(|(place, row)| (row.node, place)).collect();
+        let mut rows = self.problem.surfaces.rows(&self.displacement);
+        rows.retain(|row| !self.unknowns.equation(row).is_empty());
+        let mut same = vec![None; rows.len()];
+        let mut new = 0;
+        for (row, same) in rows.iter_mut().zip(&mut same) {
+            let old = before.get(&row.node).copied();
+            match old.filter(|&old| self.rows[old].agrees(row, &self.displacement)) {
+                Some(old) => {
+                    *row = self.rows[old].clone();
+                    *same = Some(old);
+                }
+                None => {
+                    let counts =
+                        row.is_near(&self.displacement) || self.pressing.contains(&row.node);
+                    new += usize::from(counts);
+                }
+            }
+        }
+        let lost = before.keys().filter(|&node| self.pressing.contains(node));
+        new +=
+            lost.filter(|&&node| rows.binary_search_by_key(&node, |row| row.node).is_err()).count();
+        let equations = rows.iter().map(|row| self.unknowns.equation(row)).collect();
+        self.equations.replace(equations, &same);
+        self.rows = rows;
+        new
+    }
+
+    fn has_touched(&self) -> bool {
+        self.rounds > 0
+    }
+
+    /// Whether anything touches or has touched.
+    fn touches(&self) -> bool {
+        let free = self.problem.free();
+        let closes = |row: &ContactRow| row.gap_after_part(free, self.share) < -CLOSED_MM;
+        self.has_touched() || self.rows.iter().any(closes)
+    }
+
+    /// The set that presses, for rows that stay as they are, and the answer with it; how far the answer moved, in mm.
+    fn settle(
+        &mut self,
+        relative_residual: f64,
+        progress: &dyn Progress,
+    ) -> Result<f64, ModelError> {
+        let free = self.problem.free();
+        let movement = self.share * free.iter().map(Vector::norm).fold(0.0, f64::max);
+        let gaps: Vec<f64> =
+            self.rows.iter().map(|row| row.gap_after_part(free, self.share)).collect();
+        let mut set = ActiveSet::of_gaps(&gaps, movement);
+        if self.has_touched() {
+            set.presses = self.rows.iter().map(|row| self.pressing.contains(&row.node)).collect();
+        }
         let task = Task { gaps: &gaps, movement, relative_residual, progress };
-        let start = Point { x: std::mem::take(&mut tried.x), multipliers: Vec::new() };
-        let settled = set.settle(&mut equations, &task, start)?;
-        tried.count(&settled);
+        let start = Point { x: std::mem::take(&mut self.added.x), multipliers: Vec::new() };
+        let settled = set.settle(&mut self.equations, &task, start)?;
+        self.count(&settled);
         if !settled.repeats {
-            let (passes, moved_mm) = (tried.passes, f64::INFINITY);
+            let (passes, moved_mm) = (self.passes, f64::INFINITY);
             return Err(ModelError::ContactUnsettled { passes, moved_mm });
         }
-        let Settled { point, rows: active, kept, relative_residual, .. } = settled;
-        let forces = self.forces(&rows, &active, &point.multipliers);
-        let solved = self.moved(&point, &forces);
-        let displacement = &solved.equilibrium.displacement;
-        tried.moves_to(displacement);
-        let pressed = active.iter().zip(&point.multipliers);
+        let Settled { point, rows: active, .. } = settled;
+        (self.added, self.active) = (point, active);
+        self.pressing = self.active.iter().map(|&row| self.rows[row].node).collect();
+        let displacement = self.moved();
+        let pairs = self.displacement.iter().zip(&displacement);
+        let moved_mm = pairs.map(|(one, other)| (one - other).norm()).fold(0.0, f64::max);
+        self.displacement = displacement;
+        Ok(moved_mm)
+    }
+
+    fn count(&mut self, settled: &Settled) {
+        self.rounds += 1;
+        self.passes += settled.passes;
+        self.changes += settled.changes;
+        self.kept = settled.kept;
+        self.iterations += settled.iterations;
+        self.relative_residual = settled.relative_residual;
+    }
+
+    /// What presses on each node.
+    fn forces(&self) -> Vec<Vector> {
+        let mut forces = vec![Vector::zeros(); self.displacement.len()];
+        for (&row, force) in self.active.iter().zip(&self.added.multipliers) {
+            for (node, along) in &self.rows[row].terms {
+                forces[*node as usize] += along * *force;
+            }
+        }
+        forces
+    }
+
+    /// Displacements by row that contact adds.
+    fn added_by_row(&self) -> Vec<[[f64; 1]; 3]> {
+        let stiffness = &self.problem.system.stiffness;
+        let mut total = vec![[[0.0]; 3]; stiffness.matrix.rows()];
+        let (u, _) = self.added.x.split_at(3 * stiffness.layout.free);
+        total.iter_mut().zip(u.as_chunks::<3>().0).for_each(|(total, u)| *total = *u);
+        total
+    }
+
+    /// The part of the answer without contact, and what contact adds to it.
+    fn moved(&self) -> Vec<Vector> {
+        let added = self.problem.system.constrained().displacement(&self.added_by_row());
+        let free = self.problem.free().iter();
+        free.zip(added).map(|(free, added)| free * self.share + added).collect()
+    }
+
+    /// At the end of the movement.
+    fn answer(self, last_moved_mm: f64) -> InContact {
+        let forces = self.forces();
+        let solved = self.solved(&forces);
+        let pressed = self.active.iter().zip(&self.added.multipliers);
         let pressed: Vec<Pressed> =
-            pressed.map(|(&row, &force)| Pressed { row: rows[row].clone(), force }).collect();
-        tried.pressing = pressed.iter().map(|pressed| pressed.row.node).collect();
-        tried.x = point.x;
-        let gaps = rows.iter().map(|row| (row.node, row.gap_after(displacement))).collect();
-        let Tried { passes, changes, iterations, rounds, last_moved_mm, .. } = *tried;
+            pressed.map(|(&row, &force)| Pressed { row: self.rows[row].clone(), force }).collect();
+        let gaps =
+            self.rows.iter().map(|row| (row.node, row.gap_after(&self.displacement))).collect();
+        let Rounds { passes, changes, kept, iterations, rounds, relative_residual, .. } = self;
         let contact = Contact {
             pressed,
             gaps,
@@ -155,91 +313,27 @@ impl ContactProblem<'_> {
             iterations,
             relative_residual,
         };
-        Ok(InContact { solved, contact })
+        InContact { solved, contact }
     }
 
-    /// The rows that take of a free unknown.
-    fn rows(&self, displacement: &[Vector]) -> Vec<ContactRow> {
-        let unknowns = FreeUnknowns::new(self.system.holds, &self.system.numbering);
-        let mut rows = self.surfaces.rows(displacement);
-        rows.retain(|row| !unknowns.equation(row).is_empty());
-        rows
-    }
-
-    /// What presses on each node.
-    fn forces(&self, rows: &[ContactRow], active: &[usize], multipliers: &[f64]) -> Vec<Vector> {
-        let mut forces = vec![Vector::zeros(); self.free.equilibrium.displacement.len()];
-        for (&row, force) in active.iter().zip(multipliers) {
-            for (node, along) in &rows[row].terms {
-                forces[*node as usize] += along * *force;
-            }
-        }
-        forces
-    }
-
-    /// The answer without contact, and what contact adds to it.
-    fn moved(&self, added: &Point, forces: &[Vector]) -> Solved {
-        let system = self.system;
-        let rows = system.stiffness.matrix.rows();
-        let mut total = vec![[[0.0]; 3]; rows];
-        let (u, p) = added.x.split_at(3 * system.stiffness.layout.free);
-        total.iter_mut().zip(u.as_chunks::<3>().0).for_each(|(total, u)| *total = *u);
+    fn solved(&self, forces: &[Vector]) -> Solved {
+        let ContactProblem { system, free, .. } = self.problem;
+        let (_, p) = self.added.x.split_at(3 * system.stiffness.layout.free);
         let constrained = system.constrained();
         let held = vec![Vector::zeros(); system.holds.len()];
         let known = constrained.known(&LoadCase { held, forces: forces.to_vec() });
-        let internal = system.internal_at_holds(&total, p);
+        let internal = system.internal_at_holds(&self.added_by_row(), p);
         let reactions = constrained.reactions(&internal, &known.force);
-        let Solved { equilibrium: free, pressures } = self.free;
-        let sum = |one: &[Vector], other: &[Vector]| -> Vec<Vector> {
-            one.iter().zip(other).map(|(one, other)| one + other).collect()
-        };
+        let Solved { equilibrium: free, pressures } = free;
+        let sum = |(one, other): (&Vector, &Vector)| one + other;
         Solved {
             equilibrium: Equilibrium {
-                displacement: sum(&free.displacement, &constrained.displacement(&total)),
-                reactions: sum(&free.reactions, &reactions),
+                displacement: self.displacement.clone(),
+                reactions: free.reactions.iter().zip(&reactions).map(sum).collect(),
                 solver: free.solver.clone(),
                 warnings: free.warnings.clone(),
             },
             pressures: pressures.iter().zip(p).map(|(free, [added])| free + added).collect(),
         }
-    }
-}
-
-/// What rounds so far have found.
-#[derive(Default)]
-struct Tried {
-    /// The displacement at which closest points were looked for.
-    looked_from: Vec<Vector>,
-    displacement: Vec<Vector>,
-    /// What contact adds.
-    x: Vec<[f64; 1]>,
-    pressing: BTreeSet<u32>,
-    passes: usize,
-    changes: usize,
-    iterations: usize,
-    rounds: usize,
-    /// In mm; infinite before there are two answers.
-    last_moved_mm: f64,
-    before_mm: f64,
-}
-
-impl Tried {
-    fn count(&mut self, settled: &Settled) {
-        self.rounds += 1;
-        self.passes += settled.passes;
-        self.changes += settled.changes;
-        self.iterations += settled.iterations;
-    }
-
-    fn moves_to(&mut self, displacement: &[Vector]) {
-        let pairs = self.displacement.iter().zip(displacement);
-        let farthest = pairs.map(|(one, other)| (one - other).norm()).fold(0.0, f64::max);
-        self.before_mm = self.last_moved_mm;
-        self.last_moved_mm = if self.displacement.is_empty() { f64::INFINITY } else { farthest };
-        self.displacement = displacement.to_vec();
-    }
-
-    fn is_slow(&self) -> bool {
-        self.rounds > 2 && self.last_moved_mm > SLOW * self.before_mm
     }
 }
