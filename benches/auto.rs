@@ -195,10 +195,13 @@ fn hindsight(
     models
 }
 
+/// Over the skin that moves in truth by more than a tenth of what moves farthest.
 fn mean_error(scene: &Scene, displacement: &[Vector], truth: &[Vector]) -> f64 {
-    let pairs = scene.skin.nodes().iter().zip(truth);
-    let sum: f64 = pairs.map(|(&node, u)| (displacement[node as usize] - u).norm()).sum();
-    sum / truth.len() as f64
+    let least = 0.1 * truth.iter().map(Vector::norm).fold(0.0, f64::max);
+    let pairs = scene.skin.nodes().iter().zip(truth).filter(|(_, u)| u.norm() >= least);
+    let errors: Vec<f64> =
+        pairs.map(|(&node, u)| (displacement[node as usize] - u).norm()).collect();
+    errors.iter().sum::<f64>() / errors.len().max(1) as f64
 }
 
 impl Summary {

@@ -92,9 +92,12 @@ impl Args for Arguments {
                 .long(setting.name)
                 .help_heading(heading(setting.name))
                 .value_name("VALUE")
-                .allow_hyphen_values(true)
                 .help(format!("{} [env: {}]{default}", setting.about, setting.variable()));
-            command.arg(argument)
+            // `--ask-for-keys` alone is `--ask-for-keys true`.
+            command.arg(match setting.default {
+                "true" | "false" => argument.num_args(0..=1).default_missing_value("true"),
+                _ => argument.allow_hyphen_values(true),
+            })
         })
     }
 
@@ -117,5 +120,23 @@ impl FromArgMatches for Arguments {
     fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
         *self = Self::from_arg_matches(matches)?;
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_switch_without_a_value_is_on_and_takes_no_flag_for_one() {
+        let read = |words: &[&str]| {
+            let command = Arguments::augment_args(Command::new("serve").no_binary_name(true));
+            let matches = command.try_get_matches_from(words).expect("read");
+            Arguments::from_arg_matches(&matches).expect("read").flags
+        };
+        let given = read(&["--ask-for-keys", "--admin-bind", "127.0.0.1:9"]);
+        assert_eq!(given["ask-for-keys"], "true");
+        assert_eq!(given["admin-bind"], "127.0.0.1:9");
+        assert_eq!(read(&["--ask-for-keys", "false"])["ask-for-keys"], "false");
     }
 }

@@ -36,6 +36,32 @@ fn a_response_is_built_without_a_server() {
 }
 
 #[test]
+fn a_folder_holds_the_files_of_one_answer_and_the_plan_that_it_answers() {
+    let out = tempfile::tempdir().unwrap();
+    let own = out.path().join("notes.txt");
+    fs::write(&own, "mine").unwrap();
+    let file = out.path().join("mine.json");
+    let moved = |by: f64, outputs: &[&str]| {
+        let read = fs::read(block().join("case.json")).unwrap();
+        let mut documents: Value = serde_json::from_slice(&read).unwrap();
+        documents["case"]["volume"] = json!(path(&block().join("block.vtu")));
+        documents["case"]["bones"] = json!([]);
+        documents["plan"]["segments"][0]["translation_mm"] = json!([0, 0, by]);
+        documents["spec"]["outputs"] = json!(outputs);
+        fs::write(&file, documents.to_string()).unwrap();
+        let done = facies(&["predict", "--case", path(&file), "--out", path(out.path())]);
+        assert_eq!(done.status.code(), Some(0), "{}", text(&done.stderr));
+        result(out.path()).provenance.plan.unwrap().segments[0].clone()
+    };
+    let first = moved(1.0, &["skin.vtp", "skin.csv"]);
+    assert!(out.path().join("skin.csv").is_file());
+    let second = moved(2.0, &["skin.vtp"]);
+    assert!(first != second, "{second:?}");
+    assert!(out.path().join("skin.vtp").is_file() && !out.path().join("skin.csv").exists());
+    assert!(own.is_file() && file.is_file());
+}
+
+#[test]
 fn a_plan_that_was_found_without_a_server_is_one_that_predict_takes() {
     let folder = tempfile::tempdir().unwrap();
     let targets = json!({

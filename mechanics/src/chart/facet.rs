@@ -6,6 +6,9 @@
 use super::Vector;
 use super::colour::{BACK, Rgb, to_linear};
 
+/// Of the colour of a class, where it is seen from its back.
+const DARKENED: f64 = 0.7;
+
 /// How colours and light meet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Finish {
@@ -88,14 +91,13 @@ impl<'a> Facet<'a> {
 
     /// The colour before light falls on it.
     fn albedo(&self, weights: [f64; 3], finish: Finish) -> Vector {
-        if self.twice_area > 0.0 {
-            return linear(BACK);
-        }
+        let is_back = self.twice_area > 0.0;
         if finish != Finish::Classes {
-            return self.mix(weights, |corner| corner.albedo);
+            return if is_back { linear(BACK) } else { self.mix(weights, |corner| corner.albedo) };
         }
+        // What is held is mostly seen from its back.
         let nearest = (1..3).fold(0, |best, k| if weights[k] > weights[best] { k } else { best });
-        self.corners[nearest].albedo
+        self.corners[nearest].albedo * if is_back { DARKENED } else { 1.0 }
     }
 
     /// Light towards the viewer: a key light from the upper left, a fill light from the right.

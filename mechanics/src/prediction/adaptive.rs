@@ -32,6 +32,19 @@ const MEMORY_MARGIN: f64 = 1.15;
 /// Time for a mesh of more cells grows by this power of their number.
 const TIME_GROWTH: f64 = 1.1;
 
+/// The warning where what linearity leaves out is above what is accepted of the mesh.
+fn more_is_left_out(scene: &Scene, prediction: &Prediction, wanted: &Wanted) -> Option<Warning> {
+    let lengths = scene.skin.lengths(&prediction.nonlinearity.as_ref().ok()?.left_out);
+    let mean = lengths.iter().sum::<f64>() / lengths.len().max(1) as f64;
+    let accepted = wanted.skin_mm;
+    let detail = format!(
+        "the mesh is refined to {accepted:.3} mm, and linearity leaves out {mean:.3} mm in the mean over the skin: a finer mesh of \
+         linear elements is not adequate"
+    );
+    let warning = Warning::new("tolerance-not-met", detail).with("accepted_mm", accepted);
+    (mean > accepted).then(|| warning.with("expected_mm", mean))
+}
+
 /// What is accepted, and what it may take.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Wanted {
@@ -297,6 +310,7 @@ pub fn predict_adaptively(
         Finest { bisection, scene: on_it, displacement }
     });
     prediction.warnings.extend((stop != Stop::Met).then(|| not_met(&limits, &levels, stop)));
+    prediction.warnings.extend(more_is_left_out(scene, &prediction, wanted));
     Ok(Adapted { prediction, finest, levels, stop })
 }
 

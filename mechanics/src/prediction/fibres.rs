@@ -195,11 +195,14 @@ impl Check<'_> {
     }
 }
 
+/// The code of the warning that a method has no fibres.
+pub(super) const FIBRES_IGNORED: &str = "fibres-ignored";
+
 fn fibres_ignored(regions: usize) -> Warning {
     let detail = format!(
         "{regions} regions have fibres, which this method does not know: they are as stiff along as across"
     );
-    Warning::new("fibres-ignored", detail).with("regions", regions as f64)
+    Warning::new(FIBRES_IGNORED, detail).with("regions", regions as f64)
 }
 
 /// Gives cells their directions; the first that has none, and how many there are.

@@ -71,7 +71,6 @@ pub use crate::boundary::NodeClass;
 use crate::mesh::{Vector, Warning};
 use crate::model::fem::strain::{CellDeformation, deformations};
 pub use crate::model::problem::{InvertedCell, ModelError};
-use crate::plan::doubt::{NOTHING_MOVES, nothing_moves};
 use crate::progress::{Phase, Progress};
 pub use crate::solver::{NewtonReport, SolveReport, SolverError};
 
@@ -124,8 +123,7 @@ fn described(scene: &Scene, answer: Answer, progress: &dyn Progress) -> Predicti
 
     // 2. What a reader must know.
     let mut warnings = scene.warnings.clone();
-    let is_told = scene.warnings.iter().any(|warning| warning.code == NOTHING_MOVES);
-    warnings.extend((scene.is_at_rest() && !is_told).then(nothing_moves));
+    warnings.extend(scene.nothing_moves());
     warnings.extend(equilibrium.warnings.iter().cloned());
     warnings.extend(contact.iter().flat_map(|touch| touch.warnings(scene)));
     warnings.extend(inverted_cells(&deformation));

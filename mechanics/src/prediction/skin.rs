@@ -6,6 +6,9 @@ use crate::boundary::NodeClass;
 use crate::mesh::volume::BoundaryFace;
 use crate::mesh::{SurfaceSearch, TriangleSurface, Vector, VolumeMesh, Warning};
 
+/// Skin moves where it goes by more than this part of what moves farthest.
+const MOVING: f64 = 0.1;
+
 /// Skin as triangles, and its named parts.
 #[derive(Clone, Debug)]
 pub struct Skin {
@@ -24,6 +27,15 @@ impl Skin {
     /// The lengths of vectors of nodes, one for each point of the surface.
     pub fn lengths(&self, of_nodes: &[Vector]) -> Vec<f64> {
         self.nodes().iter().map(|&node| of_nodes[node as usize].norm()).collect()
+    }
+
+    /// The points that move by more than a tenth of what moves farthest; all where nothing moves. What the scalp and the neck
+    /// are not off by says nothing of a face.
+    pub fn moving_points(&self, displacement: &[Vector]) -> Vec<u32> {
+        let lengths = self.lengths(displacement);
+        let least = MOVING * lengths.iter().copied().fold(0.0, f64::max);
+        let points = (0_u32..).zip(&lengths).filter(|(_, length)| **length >= least);
+        points.map(|(point, _)| point).collect()
     }
 
     /// The skin after its nodes have moved.

@@ -145,6 +145,7 @@ impl Bench<'_> {
             .iter()
             .chain(&equilibrium.warnings)
             .chain(&inverted_cells(&deformation))
+            .chain(&scene.nothing_moves())
             .map(|warning| warning.code.to_owned())
             .collect();
         warnings.sort_unstable();

@@ -206,6 +206,8 @@ impl Finished<'_> {
         let solver = solver_document(&self.prediction.solver, &self.prediction.elements);
         let mesh = mesh_summary(&self.prepared.scene.mesh, &self.prepared.quality);
         add_method(&mut provenance, input.spec.method, mesh, solver);
+        provenance.plan = Some(input.plan.clone());
+        provenance.plan_id = input.spec.plan_id.clone();
         if let Some(adequacy) = &self.adequacy {
             provenance.method = Some(self.method().name().to_owned());
             provenance.why = Some(adequacy.why());

@@ -1,11 +1,28 @@
 //! The folder of a result: each file with its size and hash.
 
+use std::io::ErrorKind;
 use std::path::Path;
 
 use crate::jobs::failure::JobError;
 use crate::schema::predict::document::OutputName;
 use crate::schema::predict::result::FileDocument;
 use crate::schema::wire::canonical;
+
+/// The manifest of a result.
+const MANIFEST: &str = "result.json";
+
+/// The files that the manifest in a folder names, and itself.
+fn earlier(folder: &Path) -> Vec<String> {
+    let manifest = std::fs::read(folder.join(MANIFEST)).unwrap_or_default();
+    let Ok(result) = serde_json::from_slice::<serde_json::Value>(&manifest) else {
+        return Vec::new();
+    };
+    let files = result.get("files").and_then(|files| files.as_array()).into_iter().flatten();
+    let names = files.filter_map(|file| file.get("name")?.as_str());
+    // A name with a folder in it is none of ours.
+    let own = names.filter(|name| Path::new(name).components().count() == 1 && *name != "..");
+    std::iter::once(MANIFEST).chain(own).map(str::to_owned).collect()
+}
 
 /// Writes files and keeps the list of them.
 pub struct ResultFolder<'a> {
@@ -14,10 +31,17 @@ pub struct ResultFolder<'a> {
 }
 
 impl<'a> ResultFolder<'a> {
-    /// Makes the folder if it is not there.
+    /// Makes the folder if it is not there, and removes the files of a result that it holds: they would look like this one's.
     pub fn open(folder: &'a Path) -> Result<Self, JobError> {
         let failed = |source| JobError::Write { file: folder.display().to_string(), source };
         std::fs::create_dir_all(folder).map_err(failed)?;
+        for file in earlier(folder) {
+            let file = folder.join(file);
+            match std::fs::remove_file(&file) {
+                Err(error) if error.kind() != ErrorKind::NotFound => return Err(failed(error)),
+                Ok(()) | Err(_) => {}
+            }
+        }
         Ok(ResultFolder { folder, files: Vec::new() })
     }
 

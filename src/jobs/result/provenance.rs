@@ -33,6 +33,8 @@ impl Origin {
             engine: EngineDocument::this(),
             spec_hash: self.spec_hash.clone(),
             inputs: self.inputs.clone(),
+            plan: None,
+            plan_id: None,
             method: None,
             why: None,
             solver: None,

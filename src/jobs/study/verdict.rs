@@ -5,8 +5,9 @@ use std::collections::BTreeMap;
 use crate::schema::study::document::{ThresholdsDocument, TolerancesDocument};
 use crate::schema::study::report::{
     NumbersDocument, OutcomeName, ReportDocument, RowDocument, RowStatus, RowVerdict,
-    RulesDocument, VerdictDocument,
+    RulesDocument, StudySceneDocument, VerdictDocument,
 };
+use mechanics::plan::doubt::NOTHING_MOVES;
 
 /// Differences that are none, whatever the ratios say: errors in mm to which solutions agree, iterations by which the
 /// rounding of another processor's factorisation may change their number, and the jitter of clocks in s.
@@ -74,6 +75,10 @@ fn judge_row(
         (RowStatus::Solved, Some(numbers)) => numbers,
         _ => return failed(row, before, rules),
     };
+    if row.warnings.iter().any(|code| code == NOTHING_MOVES) {
+        let why = "its plan moves nothing, and every method answers that without error".to_owned();
+        return (RowVerdict::Failed, vec![why]);
+    }
     let mut reasons = Vec::new();
     if let Some(thresholds) = &rules.thresholds {
         reasons.extend(above(row, numbers, thresholds));
@@ -159,12 +164,34 @@ impl Growth {
     /// The sentence where it grew by more than is allowed; without a ratio it is not judged.
     fn beyond(&self, now: f64, before: f64, ratio: Option<f64>) -> Option<String> {
         let Growth { name, unit, digits, slack } = *self;
+        if ratio.is_some() && !before.is_finite() {
+            return Some(format!("{name} of the baseline is no number"));
+        }
         let ratio = ratio.filter(|ratio| now > before * ratio && now > before + slack)?;
         let times = now / before;
         Some(format!(
             "{name} {now:.digits$}{unit} is {times:.2} times the {before:.digits$}{unit} of the baseline, {ratio} are allowed"
         ))
     }
+}
+
+/// Scenes of one name that are not the same in the baseline: their rows answer other questions.
+fn other_questions(report: &ReportDocument, earlier: &ReportDocument) -> Vec<String> {
+    let of = |scene: &StudySceneDocument| {
+        let StudySceneDocument { nodes, cells, truth, .. } = scene;
+        format!("{nodes} nodes, {cells} cells and the truth {truth:?}")
+    };
+    let pair = |scene: &StudySceneDocument| {
+        let before = earlier.scenes.iter().find(|other| other.name == scene.name)?;
+        let words = format!(
+            "the scene {:?} has {}, and in the baseline {}: their rows cannot be compared",
+            scene.name,
+            of(scene),
+            of(before)
+        );
+        (of(scene) != of(before)).then_some(words)
+    };
+    report.scenes.iter().filter_map(pair).collect()
 }
 
 fn whole(
@@ -194,9 +221,12 @@ fn whole(
     tell(OutcomeName::Incomplete, lost > 0 && common > 0, words);
     match baseline {
         Baseline::Missing(why) => tell(OutcomeName::NoBaseline, true, why.clone()),
-        Baseline::Report(_) => {
+        Baseline::Report(earlier) => {
             let words = "the baseline has no row in common with this study".to_owned();
             tell(OutcomeName::NoBaseline, common == 0, words);
+            for words in other_questions(report, earlier) {
+                tell(OutcomeName::Incomplete, true, words);
+            }
         }
         Baseline::NotAsked => {}
     }

@@ -97,8 +97,8 @@ pub struct PredictDocument {
     pub contact: ContactName,
     #[serde(default)]
     pub tolerance: ToleranceDocument,
-    /// The mean error over the skin in mm that is accepted, of mesh and model as far as they are estimated. Only with the
-    /// method `auto`, which takes the cheapest model that is expected to meet it within the budget of time. Default: 0.1.
+    /// The mean error in mm that is accepted over the skin that moves (by more than a tenth of what moves farthest), of mesh
+    /// and model as far as they are estimated. Only with the method `auto`, which takes the cheapest model that is expected to meet it within the budget of time. Default: 0.1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false, minimum = 0.001, maximum = 100.0)]
     pub accept_mm: Option<f64>,
@@ -192,7 +192,7 @@ impl PredictDocument {
         let chooses = self.method == MethodName::Auto
             && self.estimate == EstimateName::Auto
             && !self.corrected
-            && !self.contact.presses();
+            && self.contact != ContactName::Unilateral;
         chooses.then(|| Accepted {
             skin_mm: self.accept_mm.unwrap_or(USUALLY_ACCEPTED_MM),
             regions_mm: self.accept_regions_mm.clone(),
@@ -243,7 +243,7 @@ impl PredictDocument {
             );
             faults.add(&place, ErrorCode::MethodMismatch, detail);
         }
-        if self.contact.presses() {
+        if self.contact == ContactName::Unilateral {
             let detail = "contact is part of linear elements only, among which no model is chosen: leave out one of the two";
             faults.add(&place, ErrorCode::OneOf, detail);
         }

@@ -18,6 +18,7 @@ use crate::schema::case::law::LawDocument;
 use crate::schema::compare::result::{ComparisonDocument, StatDocument};
 use crate::schema::meshing::result::MeshingResultDocument;
 use crate::schema::optimise::result::OptimisationDocument;
+use crate::schema::plan::document::PlanDocument;
 use crate::schema::study::report::StudySummaryDocument;
 use crate::schema::wire::warning::WarningDocument;
 use mechanics::material::hyperelastic::{Fibres, Hyperelastic};
@@ -210,6 +211,13 @@ pub struct ProvenanceDocument {
     /// SHA-256 over everything that decides the numbers.
     pub spec_hash: String,
     pub inputs: Vec<InputDocument>,
+    /// What was predicted: the plan as it was then, and the stored plan that it came from.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub plan: Option<PlanDocument>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub plan_id: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub method: Option<String>,

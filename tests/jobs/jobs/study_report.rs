@@ -194,6 +194,42 @@ fn a_baseline_that_says_nothing_of_these_rows_is_none_and_lost_rows_are_told() {
     assert_eq!(codes.map(OutcomeName::exit_code), [0, 1, 4, 5]);
 }
 
+#[test]
+fn a_plan_that_moves_nothing_passes_no_gate() {
+    let mut row = solved("fem", 0, [1.0, 0.0]);
+    row["warnings"] = json!(["nothing-moves"]);
+    let report = judged(&[row], usual(), &Baseline::NotAsked);
+    assert_eq!(report.verdict.outcome, OutcomeName::Worse);
+    assert!(report.rows[0].reasons[0].contains("moves nothing"), "{:?}", report.rows[0].reasons);
+}
+
+#[test]
+fn a_baseline_of_another_mesh_or_truth_or_without_numbers_is_told() {
+    let rows = [solved("fem", 0, [1.0, 0.1])];
+    let of = |nodes: u64, truth: &str| {
+        let mut report = report(&rows, usual());
+        let scene = json!({
+            "name": "slab", "nodes": nodes, "cells": 80, "skin_nodes": 25, "truth": truth, "truth_s": 0.1,
+        });
+        report.scenes = vec![serde_json::from_value(scene).unwrap()];
+        report
+    };
+    let against = |before: &ReportDocument| {
+        let mut now = of(100, "refined");
+        judge(&mut now, &Baseline::Report(before));
+        now.verdict
+    };
+    assert_eq!(against(&of(100, "refined")).outcome, OutcomeName::Pass);
+    for other in [of(125, "refined"), of(100, "quadratic")] {
+        let verdict = against(&other);
+        assert_eq!(verdict.outcome, OutcomeName::Incomplete);
+        assert!(verdict.reasons[0].contains("\"slab\" has 100 nodes"), "{:?}", verdict.reasons);
+    }
+    let mut damaged = of(100, "refined");
+    damaged.rows[0].numbers.as_mut().unwrap().p95_mm = f64::NAN;
+    assert_eq!(against(&damaged).outcome, OutcomeName::Worse);
+}
+
 /// Elements of a JUnit file with their attributes and the number of children that mark a case as not passed.
 fn suites(text: &str) -> Vec<(String, Vec<(String, String)>)> {
     use quick_xml::events::Event;

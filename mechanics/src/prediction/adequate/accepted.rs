@@ -1,4 +1,4 @@
-//! Mean errors over the skin and its parts, and those that are accepted.
+//! Mean errors over the skin that a plan moves and over its parts, and those that are accepted.
 
 use std::collections::BTreeMap;
 
@@ -8,7 +8,7 @@ use crate::prediction::skin::Skin;
 /// What the caller accepts.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Accepted {
-    /// The mean error over the skin, in mm.
+    /// The mean error over the skin that moves (`moving_points`), in mm.
     pub skin_mm: f64,
     /// The same over parts of the skin, by name.
     pub regions_mm: BTreeMap<String, f64>,
@@ -18,7 +18,7 @@ pub struct Accepted {
     pub no_finite_strain: Option<String>,
 }
 
-/// Mean errors in mm over the skin, and over the parts of it that an error is accepted for.
+/// Mean errors in mm over the skin that moves, and over the parts of it that an error is accepted for.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeanErrors {
     pub skin_mm: f64,
@@ -26,16 +26,17 @@ pub struct MeanErrors {
 }
 
 impl MeanErrors {
-    /// Of vectors of nodes.
-    pub(super) fn of(skin: &Skin, accepted: &Accepted, values: &[Vector]) -> Self {
+    /// Of vectors of nodes, with the points of the skin that move.
+    pub(super) fn of(skin: &Skin, moving: &[u32], accepted: &Accepted, values: &[Vector]) -> Self {
         let lengths = skin.lengths(values);
         let asked = skin.regions.iter().filter(|(name, _)| accepted.regions_mm.contains_key(*name));
-        let of_region = |points: &[u32]| {
-            mean(points.iter().map(|&point| lengths[point as usize]).collect::<Vec<_>>().as_slice())
+        let over = |points: &[u32]| {
+            let sum: f64 = points.iter().map(|&point| lengths[point as usize]).sum();
+            sum / points.len().max(1) as f64
         };
         MeanErrors {
-            skin_mm: mean(&lengths),
-            regions_mm: asked.map(|(name, points)| (name.clone(), of_region(points))).collect(),
+            skin_mm: over(moving),
+            regions_mm: asked.map(|(name, points)| (name.clone(), over(points))).collect(),
         }
     }
 
@@ -68,8 +69,4 @@ impl Accepted {
         let largest = regions.fold(errors.skin_mm / self.skin_mm, f64::max);
         if largest.is_nan() { f64::INFINITY } else { largest }
     }
-}
-
-fn mean(lengths: &[f64]) -> f64 {
-    lengths.iter().sum::<f64>() / lengths.len().max(1) as f64
 }

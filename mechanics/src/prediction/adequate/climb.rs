@@ -6,6 +6,7 @@ use crate::mesh::{Vector, Warning};
 use crate::model::problem::ModelError;
 use crate::prediction::answer::{self, Answer, Linear};
 use crate::prediction::case::{Case, Plan, Settings};
+use crate::prediction::fibres::FIBRES_IGNORED;
 use crate::prediction::method::Method;
 use crate::prediction::scene::Scene;
 use crate::prediction::{Prediction, described};
@@ -62,6 +63,7 @@ pub fn predict_adequately(
         watched,
         begun: (watched.stopwatch)(),
         linear_s: 0.0,
+        moving: (0..linear.skin.nodes().len() as u32).collect(),
         errors: Errors::default(),
         considered: Vec::new(),
     };
@@ -82,6 +84,8 @@ struct Climb<'a> {
     begun: f64,
     /// What the linear answer took, with its estimates.
     linear_s: f64,
+    /// Points of the skin that the linear answer moves.
+    moving: Vec<u32>,
     errors: Errors,
     considered: Vec<Considered>,
 }
@@ -102,6 +106,7 @@ impl Climb<'_> {
             Linear::Other(_) => None,
         };
         if let Some(known) = known {
+            self.moving = self.scene.skin.moving_points(known.displacement());
             let mesh = known.numerical_error.as_ref().ok();
             self.errors.mesh = mesh.map(|error| self.means(&error.missing));
             let linearity = known.nonlinearity.as_ref().ok();
@@ -183,7 +188,7 @@ impl Climb<'_> {
     }
 
     fn means(&self, values: &[Vector]) -> MeanErrors {
-        MeanErrors::of(&self.scene.skin, self.accepted, values)
+        MeanErrors::of(&self.scene.skin, &self.moving, self.accepted, values)
     }
 
     fn elapsed(&self) -> f64 {
@@ -291,6 +296,10 @@ fn at_finite_strain(
     let settings = Settings { method: Method::FemNonlinear, ..settings.clone() };
     let scene =
         Scene::new(case, plan, &settings).map_err(|errors| Failure::Refused(errors.to_string()))?;
+    if scene.warnings.iter().any(|warning| warning.code == FIBRES_IGNORED) {
+        let why = "at finite strain fibres only pull, and those of this tissue also push";
+        return Err(Failure::Refused(why.to_owned()));
+    }
     match answer::solve(&scene, progress) {
         Ok(answer) => Ok((scene, answer)),
         Err(error @ ModelError::Solver(SolverError::Stopped)) => Err(Failure::Stopped(error)),
@@ -317,7 +326,7 @@ fn not_met(error: Option<&MeanErrors>, accepted: &Accepted) -> Warning {
             )
         }
         Some(_) | None => format!(
-            "the skin is expected to be off by {skin:.3} mm in the mean, and {wanted:.3} mm were to be met: no adequate \
+            "the skin that moves is expected to be off by {skin:.3} mm in the mean, and {wanted:.3} mm were to be met: no adequate \
              model fits the mesh, the time and the case"
         ),
     };

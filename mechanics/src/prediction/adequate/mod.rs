@@ -2,7 +2,7 @@
 //!
 //! The rungs are linear finite elements; their answer to second order (`nonlinearity`); and the same elements at finite strain;
 //! each as it is and with what its mesh leaves out added (`numerical_error`). With e_m of the mesh, e_l of what linearity
-//! leaves out and e_3 of what the second order does, all means over the skin or a part of it, an answer is expected to be off by
+//! leaves out and e_3 of what the second order does, all means over the skin that moves or a part of it, an answer is expected to be off by
 //! e_m + e_l, e_m + e_3 or e_m, a corrected one by .8 e_m in place of e_m (docs/estimates.md: what adding an estimate left). A
 //! rung is tried while none below is adequate, if its own expected error is accepted or clearly smaller, and if the time for it
 //! is there. The cheapest one within what is accepted is taken; where there is none, the cheapest that is nearly as good as the

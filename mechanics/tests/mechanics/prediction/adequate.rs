@@ -1,11 +1,11 @@
 //! The cheapest adequate model: what is taken, what is called met, and what is said where nothing is adequate.
 
-use mechanics::material::{PlaneStress, Sheet};
+use mechanics::material::{Fibre, FibreLaw, PlaneStress, Sheet};
 use mechanics::mesh::refinement::refine;
 use mechanics::mesh::{CellShape, Vector};
 use mechanics::prediction::{
-    Accepted, Adequate, Case, ElementChoice, MeanErrors, Method, Plan, Prediction, Rung, Scene,
-    Settings, SkinMembrane, Watched, predict, predict_adequately,
+    Accepted, Adequate, Case, ContactKind, ElementChoice, FibreDirection, MeanErrors, Method, Plan,
+    Prediction, Rung, Scene, Settings, SkinMembrane, Watched, predict, predict_adequately,
 };
 use mechanics::progress::{Progress, Unobserved};
 
@@ -29,7 +29,7 @@ fn within(skin_mm: f64) -> Accepted {
     Accepted { skin_mm, time_s: 1e6, ..Accepted::default() }
 }
 
-/// The mean over the skin of the distance to Newton's answer of stabilised elements on a mesh of which every edge is halved.
+/// The mean over the skin that moves of the distance to Newton's answer of stabilised elements on a mesh of which every edge is halved.
 fn true_error(case: &Case, plan: &Plan, displacement: &[Vector]) -> f64 {
     let fine = Case { volume: refine(&case.volume).into(), ..case.clone() };
     let settings = Settings { method: Method::FemNonlinear, ..Settings::default() };
@@ -37,8 +37,12 @@ fn true_error(case: &Case, plan: &Plan, displacement: &[Vector]) -> f64 {
     let truth = predict(&scene, &Unobserved).unwrap().displacement;
     let coarse = Scene::new(case, plan, &Settings::default()).unwrap();
     let nodes = coarse.skin.nodes();
-    let apart = |&node: &u32| (truth[node as usize] - displacement[node as usize]).norm();
-    nodes.iter().map(apart).sum::<f64>() / nodes.len() as f64
+    let apart = |point: u32| {
+        let node = nodes[point as usize] as usize;
+        (truth[node] - displacement[node]).norm()
+    };
+    let moving = coarse.skin.moving_points(displacement);
+    moving.iter().map(|&point| apart(point)).sum::<f64>() / moving.len() as f64
 }
 
 #[test]
@@ -105,6 +109,52 @@ fn tissue_that_finite_strain_does_not_know_is_answered_without_it() {
     let settings = Settings { membrane, ..Settings::default() };
     let found = adequate(&case, &plan, &settings, within(0.05));
     assert!(!found.is_met && found.rung.solution() != Rung::FiniteStrain);
+}
+
+/// Finite strain has fibres that pull, not those of linear elasticity, and would answer as if there were none.
+#[test]
+fn tissue_with_fibres_that_also_push_is_answered_with_them() {
+    let mut case = slab(CellShape::Tet4, 0.45);
+    let fibre = Fibre { young_modulus: 600.0, shear_modulus: None, law: FibreLaw::Engineering };
+    for tissue in case.materials.values_mut() {
+        *tissue = tissue.clone().with_fibre(&fibre).unwrap();
+    }
+    case.fibres.insert("*".to_owned(), FibreDirection::Uniform(Vector::x()));
+    let plan = plan_of(&case, &movements(1.0));
+    let found = adequate(&case, &plan, &Settings::default(), within(0.05));
+    assert!(!found.is_met && found.rung.solution() != Rung::FiniteStrain, "{:?}", found.rung);
+    let refused = found.considered.iter().find(|other| other.rung == Rung::FiniteStrain).unwrap();
+    assert!(refused.passed_over.as_ref().is_some_and(|why| why.contains("also push")));
+}
+
+/// A scalp that stays does not make a face adequate.
+#[test]
+fn the_error_is_meant_over_the_skin_that_moves() {
+    let case = slab(CellShape::Tet4, 0.45);
+    let plan = plan_of(&case, &movements(0.1));
+    let scene = Scene::new(&case, &plan, &Settings::default()).unwrap();
+    let found = adequate(&case, &plan, &Settings::default(), within(100.0));
+    let lengths = scene.skin.lengths(&found.prediction.displacement);
+    let least = 0.1 * lengths.iter().copied().fold(0.0, f64::max);
+    let missing = scene.skin.lengths(&found.prediction.numerical_error.unwrap().missing);
+    let pairs = lengths.iter().zip(&missing).filter(|(length, _)| **length >= least);
+    let moving: Vec<f64> = pairs.map(|(_, missing)| *missing).collect();
+    assert!(moving.len() < lengths.len(), "some of the skin stays");
+    let mean = moving.iter().sum::<f64>() / moving.len() as f64;
+    let told = found.errors.mesh.unwrap().skin_mm;
+    assert!((told / mean - 1.0).abs() < 1e-12, "{told} {mean}");
+}
+
+#[test]
+fn contact_that_may_close_and_stays_open_leaves_the_choice_of_a_model() {
+    let case = slab(CellShape::Tet4, 0.45);
+    let plan = plan_of(&case, &movements(0.3));
+    let settings = Settings { contact: ContactKind::Auto, ..Settings::default() };
+    let [open, none] = [&settings, &Settings::default()]
+        .map(|settings| adequate(&case, &plan, settings, within(0.2)));
+    assert_eq!(open.errors.mesh, none.errors.mesh);
+    assert!(open.rung > Rung::Linear || none.rung == Rung::Linear, "{:?}", open.rung);
+    assert!(open.considered.len() == none.considered.len());
 }
 
 #[test]
