@@ -6,7 +6,7 @@ export default defineConfig({
   build: {
     target: "es2022",
     modulePreload: false,
-    reportCompressedSize: true,
+    chunkSizeWarningLimit: 700,
     rollupOptions: {
       output: {
         entryFileNames: "assets/page.js",

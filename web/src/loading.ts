@@ -35,41 +35,50 @@ export async function addBones(service: Service, opened: Opened, scene: Scene): 
   }));
 }
 
-/** The skin at rest and the columns that move it. */
-export interface LoadedResponse {
-  description: Documents["ResponseDescription"];
+type Description = Documents["ResponseDescription"];
+
+/** The skin at rest, in the order of its nodes. */
+export interface RestingSkin {
+  description: Description;
   rest: Shape;
+}
+/** The same with the columns that move it. */
+export interface LoadedResponse extends RestingSkin {
   columns: Columns;
 }
 
 const OCTETS = { Accept: "application/octet-stream" };
 const NOT_THERE = ["response-not-built", "response-stale"];
 
-export async function loadResponse(service: Service, id: string): Promise<LoadedResponse> {
+/** The skin of a case with a response, which is built where there is none; `into` shows how far that is. */
+export async function restingSkin(app: App, id: string, into: HTMLElement): Promise<RestingSkin> {
   const path = `/v1/cases/${id}/response`;
-  const description = await service.get<Documents["ResponseDescription"]>(path);
-  const job = `job=${description.job}`;
-  const bytes = async (query: string, headers: Record<string, string>) =>
-    (await service.ask("GET", `${path}?${query}`, undefined, headers)).arrayBuffer();
-  const [linear, glb, second] = await Promise.all([
-    bytes(job, OCTETS), bytes(job, { Accept: "model/gltf-binary" }),
-    description.second_order === undefined ? undefined : bytes(`${job}&order=2`, OCTETS),
-  ]);
-  const { points_mm, triangles } = readGlb(glb);
-  const columns: Columns = { segments: description.segments.length, linear: new Float32Array(linear) };
-  if (second !== undefined) columns.second = { columns: new Int16Array(second), scale_mm: description.second_order!.scale_mm };
-  return { description, rest: { points_mm, triangles }, columns };
+  const description = await described(app, id, into);
+  const glb = await app.service.ask("GET", `${path}?job=${description.job}`, undefined, { Accept: "model/gltf-binary" });
+  const { points_mm, triangles } = readGlb(await glb.arrayBuffer());
+  return { description, rest: { points_mm, triangles } };
 }
 
-/** The response of a case, which is built where there is none; `line` tells how far that is. */
-export async function responseOf(app: App, id: string, into: HTMLElement): Promise<LoadedResponse> {
+async function described(app: App, id: string, into: HTMLElement): Promise<Description> {
+  const path = `/v1/cases/${id}/response`;
+  const built = await app.service.get<Documents["JobList"]>(`/v1/jobs?kind=response&status=successful&case=${id}&limit=1`);
   try {
-    return await loadResponse(app.service, id);
+    if (built.items.length > 0) return await app.service.get<Description>(path);
   } catch (error) {
     if (!(error instanceof Refused) || !NOT_THERE.includes(error.code)) throw error;
   }
   await buildResponse(app, id, 1, into);
-  return loadResponse(app.service, id);
+  return app.service.get<Description>(path);
+}
+
+export async function responseOf(app: App, id: string, into: HTMLElement): Promise<LoadedResponse> {
+  const { description, rest } = await restingSkin(app, id, into);
+  const path = `/v1/cases/${id}/response?job=${description.job}`;
+  const bytes = async (query: string) => (await app.service.ask("GET", path + query, undefined, OCTETS)).arrayBuffer();
+  const [linear, second] = await Promise.all([bytes(""), description.second_order === undefined ? undefined : bytes("&order=2")]);
+  const columns: Columns = { segments: description.segments.length, linear: new Float32Array(linear) };
+  if (second !== undefined) columns.second = { columns: new Int16Array(second), scale_mm: description.second_order!.scale_mm };
+  return { description, rest, columns };
 }
 
 export async function buildResponse(app: App, id: string, order: 1 | 2, into: HTMLElement): Promise<void> {

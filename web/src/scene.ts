@@ -51,7 +51,7 @@ export class Scene {
   private readonly marks = new Group();
   private readonly skinMaterial = new MeshStandardMaterial({ color: SKIN, roughness: 0.58, side: DoubleSide });
   /** Half of a map's colour is lit and half shines by itself, so that it is read off the legend also where there is shade. */
-  private readonly mapMaterial = new MeshStandardMaterial({ roughness: 1, side: DoubleSide, color: 0x8a8a8a, emissive: 0x757575 });
+  private readonly mapMaterial = new MeshStandardMaterial({ roughness: 1, side: DoubleSide, color: 0xbdbdbd, emissive: 0xb0b0b0 });
   private readonly depth = new MeshBasicMaterial({ colorWrite: false, side: DoubleSide });
   private skin: Mesh | undefined;
   private prepass: Mesh | undefined;
@@ -327,9 +327,9 @@ export class Scene {
       light.position.set(...place);
       this.camera.add(light, light.target);
     };
-    lamp(1.8, [-0.9, 1.3, 1.1]);
+    lamp(1.6, [-0.9, 1.3, 1.1]);
     lamp(0.8, [1.4, 0.2, 0.8]);
-    this.graph.add(new HemisphereLight(0xffffff, 0xb9a79c, 1.15));
+    this.graph.add(new HemisphereLight(0xffffff, 0xc9b8ad, 1.45));
   }
 
   private setBands(scheme: Scheme): void {

@@ -53,7 +53,7 @@ function checked({ words }: App, check: Documents["CheckDocument"]): Fact[] {
   ];
 }
 
-function meshFacts({ words }: App, { report, format, units, frame }: Documents["MeshSummaryDocument"] | Documents["MeshDocument"]): Fact[] {
+function meshFacts({ words }: App, { report, format, units, frame }: Documents["MeshDocument"]): Fact[] {
   const quality: Fact[] = report.min_quality === undefined || report.min_quality === null ? [] : [[words.quality, figure(report.min_quality, 3)]];
   const sets: Fact[] = Object.entries(report.node_sets ?? {}).map(([name, count]) => [name, String(count)]);
   return [[`${report.kind} · ${format}`, `${units} · ${frame}`], [words.nodes, report.nodes.toLocaleString()], ...quality, ...sets];

@@ -1,5 +1,5 @@
 // A predicted skin against a real one: what was registered, distances on the skin, and their shares.
-import type { Documents, Job } from "../api.js";
+import { readGlb, type Documents, type Job } from "../api.js";
 import { ProgressLine, refusal, type App, type Leave } from "../app.js";
 import { button, choice, make, select } from "../dom.js";
 import { when } from "../figures.js";
@@ -20,6 +20,11 @@ export async function comparePage(app: App): Promise<Leave> {
   const predictions = jobs.filter(({ kind }) => kind === "predict" || kind === "optimise");
   bench.section(words.comparison, make("p", {}, words.compareWhy),
     predictions.length === 0 ? make("p", { className: "warned" }, words.noPredictions) : form(app, opened, bench, predictions));
+  const chosen = predictions.find(({ id }) => id === route.state.get("job")) ?? predictions[0];
+  if (chosen?.results?.files.some(({ name }) => name === "skin.glb")) {
+    bench.scene.showSkin(readGlb(await service.file(chosen.id, "skin.glb")));
+    bench.start();
+  }
   const before = jobs.find(({ id }) => id === route.state.get("comparison"));
   if (before !== undefined) await show(app, bench, before);
   return () => bench.leave();

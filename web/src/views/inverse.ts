@@ -3,7 +3,7 @@ import type { Documents, Triple } from "../api.js";
 import { refusal, type App, type Leave } from "../app.js";
 import { button, choice, make, select } from "../dom.js";
 import { inAxes, inWords, movement, still, TRANSLATIONS, type FrameName, type MotionName } from "../frame.js";
-import { openCase, responseOf, type LoadedResponse, type Opened } from "../loading.js";
+import { openCase, restingSkin, type Opened, type RestingSkin } from "../loading.js";
 import { address } from "../route.js";
 import { Workbench } from "../workbench.js";
 import { crumbs } from "./crumbs.js";
@@ -26,10 +26,11 @@ export async function inversePage(app: App): Promise<Leave> {
   const opened = await openCase(app.service, app.route.path[1]!);
   const bench = new Workbench(app, crumbs(app.words, opened.id, opened.name, "inverse"));
   bench.scene.orient(opened.frame);
-  const wait = make("div", {});
+  const wait = make("div", { className: "wait" }, make("p", { className: "loading" }, app.words.loading));
   bench.panel.append(wait);
   try {
-    const loaded = await responseOf(app, opened.id, wait);
+    const loaded = await restingSkin(app, opened.id, wait);
+    wait.remove();
     bench.scene.showSkin(loaded.rest);
     bench.offer([]);
     bench.start();
@@ -46,7 +47,7 @@ class Inverse {
   private readonly list = make("div", {});
   private readonly said = make("div", { role: "status" });
 
-  constructor(private readonly app: App, private readonly opened: Opened, private readonly bench: Workbench, private readonly loaded: LoadedResponse) {
+  constructor(private readonly app: App, private readonly opened: Opened, private readonly bench: Workbench, private readonly loaded: RestingSkin) {
     const held = { forward: STARTING_BOUND_MM, up: STARTING_BOUND_MM, left: 0, pitch: 0, roll: 0, yaw: 0 };
     this.bounds = Object.fromEntries(loaded.description.segments.map(({ name }) => [name, { ...held }]));
   }
@@ -96,12 +97,15 @@ class Inverse {
     });
   }
 
-  /** The target of the landmark that is nearest to a point within 8 mm, or one of the point; points are no targets of the service. */
-  private nearTarget(at_mm: Triple): Target {
+  /** The target of the landmark that is nearest to a point: the service takes landmarks and sets of nodes, no single points. */
+  private nearTarget(at_mm: Triple): Target | undefined {
     const marks = Object.entries(this.opened.document.landmarks ?? {}) as [string, Triple][];
     const away = (place: Triple) => Math.hypot(...place.map((value, axis) => value - at_mm[axis]!));
     const nearest = marks.reduce<[string, Triple] | undefined>((best, mark) => (best === undefined || away(mark[1]) < away(best[1]) ? mark : best), undefined);
-    if (nearest === undefined) throw new Error("a case without landmarks");
+    if (nearest === undefined) {
+      this.said.textContent = this.app.words.noLandmarks;
+      return undefined;
+    }
     const known = this.targets.find(({ landmark }) => landmark === nearest[0]);
     if (known !== undefined) return known;
     const target: Target = { label: nearest[0], landmark: nearest[0], at_mm: nearest[1], by: [0, 0, null], sigma_mm: 1 };

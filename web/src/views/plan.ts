@@ -85,7 +85,7 @@ class Planning {
 
   private async load(): Promise<void> {
     const { app, opened, bench } = this;
-    const wait = make("div");
+    const wait = make("div", { className: "wait" }, make("p", { className: "loading" }, app.words.loading));
     bench.panel.append(wait);
     this.loaded = await responseOf(app, opened.id, wait);
     wait.remove();

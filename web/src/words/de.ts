@@ -59,7 +59,7 @@ export const de: Words = {
   targets: "Ziele", target: "Ziel", addLandmark: "Landmarke dazu", dragPoint: "Punkte der Haut ziehen", sigma: "σ mm", bounds: "Wie weit Segmente dürfen",
   find: "Plan suchen", found: "Was gefunden wurde", left_: "übrig", standardError: "± Standardfehler", notDetermined: "Durch die Ziele nicht bestimmt",
   atBound: "an der Grenze", openPlan: "Als Plan öffnen", noTargets: "Noch keine Ziele.", emptyFree: "leer: frei", movement: "Bewegung", from: "von", to: "bis",
-  dragHint: "An einem Punkt der Haut ziehen. Sonst dreht sich der Kopf.", pulling: "Ziehen", turning: "Drehen",
+  dragHint: "Gezogen wird an der nächsten Landmarke.", noLandmarks: "Dieser Fall hat keine Landmarken, an denen zu ziehen wäre.", pulling: "Ziehen", turning: "Drehen",
 
   compareWhy: "Die vorhergesagte Haut gegen eine wirkliche halten, nach der Operation.", actual: "Wirkliche Haut (VTP, STL oder PLY)", align: "Zuerst registrieren", alignIcp: "mit ICP", alignNone: "nein",
   compareNow: "Vergleichen", shares: "Anteil innerhalb", histogram: "Abstände", registration: "Registrierung", turned: "gedreht", shifted: "verschoben", residual: "rms",

@@ -57,7 +57,7 @@ export const en = {
   targets: "Targets", target: "Target", addLandmark: "Add a landmark", dragPoint: "Drag points of the skin", sigma: "σ mm", bounds: "How far segments may move",
   find: "Find the plan", found: "What was found", left_: "left over", standardError: "± standard error", notDetermined: "Not determined by the targets",
   atBound: "stopped by its bound", openPlan: "Open as plan", noTargets: "No targets yet.", emptyFree: "empty: free", movement: "Movement", from: "from", to: "to",
-  dragHint: "Pull on a point of the skin. The rest of the page turns the head while nothing is pulled.", pulling: "Pull", turning: "Turn",
+  dragHint: "A pull moves the landmark that is nearest.", noLandmarks: "This case has no landmarks to pull.", pulling: "Pull", turning: "Turn",
 
   compareWhy: "Hold the predicted skin against a real one, after the operation.", actual: "Real skin (VTP, STL or PLY)", align: "Register first", alignIcp: "by ICP", alignNone: "no",
   compareNow: "Compare", shares: "Share within", histogram: "Distances", registration: "Registration", turned: "turned", shifted: "shifted", residual: "rms",
