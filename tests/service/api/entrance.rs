@@ -37,7 +37,8 @@ async fn the_page_runs_files_of_the_program_alone() {
     let page = ask(server.get("/").header("accept", "text/html")).await;
     let text = String::from_utf8(page.bytes.clone()).unwrap();
     let named = |name: &str| -> Vec<String> {
-        let after = text.split(&format!("{name}=\"/assets/")).skip(1);
+        let begin = format!("{name}=\"/assets/");
+        let after = text.split(&begin).skip(1);
         after.map(|rest| rest.split('"').next().unwrap().to_owned()).collect()
     };
     let [scripts, others] = [named("src"), named("href")];

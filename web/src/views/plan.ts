@@ -1,7 +1,7 @@
 // Planning: segments move by sliders, and the skin follows within a frame.
 import type { Documents, Triple } from "../api.js";
 import { announce, refusal, warnings, type App, type Leave } from "../app.js";
-import { button, make, select } from "../dom.js";
+import { button, make, save, select } from "../dom.js";
 import { movement, still, type Motion, type MotionName } from "../frame.js";
 import { addBones, buildResponse, openCase, responseOf, type LoadedResponse, type Opened } from "../loading.js";
 import { matrix } from "../matrix.js";
@@ -65,7 +65,7 @@ class Planning {
     bench.section(words.plan,
       opened.frame === "unspecified" && make("p", { className: "warned" }, words.unspecifiedFrame),
       make("div", { className: "row" }, this.undoButton, this.redoButton, button(words.reset, () => this.set(atRest(this.names)))),
-      this.segments, this.told, this.checked, this.order);
+      this.told, this.checked, this.order, this.segments);
     this.drawSegments();
     bench.section(words.predict, this.prediction());
     const saved = bench.section(words.savedPlans);
@@ -235,7 +235,17 @@ class Planning {
         ({ id }) => { location.hash = address(["job", id], { p: written(this.plan) }); },
         (error: unknown) => { predict.disabled = false; said.replaceChildren(refusal(error, words)); });
     }, { className: "primary" });
-    return make("div", {}, select(words.method, models, this.model, (value) => { this.model = value; }), predict, said);
+    const glb = button(words.glb, () => void this.saveGlb().catch((error: unknown) => said.replaceChildren(refusal(error, words))));
+    return make("div", { className: "stack" }, select(words.method, models, this.model, (value) => { this.model = value; }),
+      make("div", { className: "row" }, predict, glb), said);
+  }
+
+  /** The moved skin as the service writes it, with where it comes from and what it is not. */
+  private async saveGlb(): Promise<void> {
+    const path = `/v1/cases/${this.opened.id}/response/apply?job=${this.loaded.description.job}`;
+    const body = JSON.stringify({ plan: planDocument(this.plan, this.pivots, this.opened.frame) });
+    const answer = await this.app.service.ask("POST", path, body, { "Content-Type": "application/json", Accept: "model/gltf-binary" });
+    save(await answer.blob(), "skin.glb");
   }
 
   /** The skin of another plan as an overlay, and how far it is from this one. */

@@ -9,6 +9,7 @@ import { matrix } from "../matrix.js";
 import { fromDocument, read, written, type Plan, type Pivots } from "../plan.js";
 import { address, note } from "../route.js";
 import type { Shape } from "../scene.js";
+import { readVtp } from "../vtp.js";
 import { mm, signed } from "../figures.js";
 import { Workbench, type SkinMap } from "../workbench.js";
 import { crumbs } from "./crumbs.js";
@@ -96,7 +97,8 @@ class Result {
     this.bench.scene.orient(this.opened.frame);
     this.bench.scene.showSkin(this.before);
     this.bench.scene.moveSkin(this.displacement_mm);
-    this.bench.offer(this.maps());
+    const left = await this.leftOut();
+    this.bench.offer(this.maps(left));
     this.draw();
     this.bench.start();
     await this.bones();
@@ -110,7 +112,14 @@ class Result {
     return this.job.results!;
   }
 
-  private maps(): SkinMap[] {
+  /** What the model leaves out at each node, which files of skin have and GLB has not. */
+  private async leftOut(): Promise<Float32Array | undefined> {
+    if (!this.results.files.some(({ name }) => name === "skin.vtp")) return undefined;
+    const { values } = await readVtp(await this.app.service.file(this.job.id, "skin.vtp"));
+    return values.nonlinearity_mm;
+  }
+
+  private maps(leftOut: Float32Array | undefined): SkinMap[] {
     const { words } = this.app;
     const { _DISPLACEMENT_MAGNITUDE_MM, _NUMERICAL_ERROR_MM, _SIGNED_DISTANCE_MM } = this.after.values;
     const maps: SkinMap[] = [];
@@ -119,6 +128,9 @@ class Result {
     }
     if (_NUMERICAL_ERROR_MM !== undefined) {
       maps.push({ name: "error", label: words.numericalError, scheme: "length", range_mm: 1, values: () => _NUMERICAL_ERROR_MM });
+    }
+    if (leftOut !== undefined) {
+      maps.push({ name: "model", label: words.leftOutMap, scheme: "length", range_mm: 1, values: () => leftOut });
     }
     if (_SIGNED_DISTANCE_MM !== undefined) {
       maps.push({ name: "distance", label: words.signedDistance, scheme: "signed", range_mm: 2, values: () => _SIGNED_DISTANCE_MM });

@@ -57,8 +57,9 @@ function byReference(document: unknown, files: File[]): Record<string, Blob> {
   const text = JSON.stringify(document);
   const references = [...text.matchAll(/"((?:[^"\\]|\\.)*)"/g)].map(([, reference]) => reference!);
   return Object.fromEntries(files.map((file) => {
-    const reference = references.find((one) => one === file.name || one.endsWith(`/${file.name}`) || one === stem(file.name));
-    return [reference ?? file.name, file];
+    // A segment may be called as the file of its bone is, without the ending.
+    const whole = references.find((one) => one === file.name || one.endsWith(`/${file.name}`));
+    return [whole ?? references.find((one) => one === stem(file.name)) ?? file.name, file];
   }));
 }
 

@@ -45,7 +45,7 @@ export const de: Words = {
   difference: "Gegen diesen Plan", compareWith: "Vergleichen", moved: "von Hand bewegt",
 
   look: "Haut", solid: "deckend", through: "durchsichtig", hidden: "verborgen", map: "Farben", plain: "Haut",
-  displacement: "Verschiebung", secondOrder: "zweite Ordnung", numericalError: "Fehler des Netzes", signedDistance: "Abstand mit Vorzeichen",
+  displacement: "Verschiebung", secondOrder: "zweite Ordnung", numericalError: "Fehler des Netzes", signedDistance: "Abstand mit Vorzeichen", leftOutMap: "vom Modell weggelassen",
   range: "Bereich", views: "Ansichten", view: { "1": "Vorn", "2": "Profil rechts", "3": "Profil links", "4": "Schräg rechts", "5": "Schräg links", "6": "Von unten" },
   picture: "Bild sichern", glb: "GLB sichern", headLabel: "Kopf in drei Dimensionen. Tasten 1 bis 6 wählen eine Ansicht, Pfeiltasten drehen ihn.",
   probe: "Messen: auf die Haut klicken.", landmarks: "Landmarken", regions: "Bereiche", landmark: "Landmarke", region: "Bereich",

@@ -43,7 +43,7 @@ export const en = {
   difference: "Against this plan", compareWith: "Compare", moved: "moved by hand",
 
   look: "Skin", solid: "solid", through: "see-through", hidden: "hidden", map: "Colours", plain: "skin",
-  displacement: "displacement", secondOrder: "second order", numericalError: "error of the mesh", signedDistance: "signed distance",
+  displacement: "displacement", secondOrder: "second order", numericalError: "error of the mesh", signedDistance: "signed distance", leftOutMap: "left out by the model",
   range: "Range", views: "Views", view: { "1": "Front", "2": "Right profile", "3": "Left profile", "4": "Right oblique", "5": "Left oblique", "6": "From below" } as Record<string, string>,
   picture: "Save picture", glb: "Save GLB", headLabel: "Head in three dimensions. Keys 1 to 6 choose a view, arrow keys turn it.",
   probe: "Probe: click the skin to measure it.", landmarks: "Landmarks", regions: "Regions", landmark: "Landmark", region: "Region",

@@ -139,3 +139,27 @@ test("a triangle is cut where it crosses the plane", () => {
   assert.deepEqual(pieces, [[0, 0, 0, 0, 1, 0]]);
   assert.deepEqual(section([1, 0, 0, 2, 0, 0, 1, 2, 0], [0, 1, 2], 0, 0), []);
 });
+
+test("a step of a slider is summed in far less than a frame takes", (context) => {
+  const count = 14_000;
+  const chance = numbers(1000);
+  const filled = <T extends Float32Array | Int16Array>(array: T, scale: number): T => {
+    for (let at = 0; at < array.length; at += 1) array[at] = scale * chance[at % chance.length]!;
+    return array;
+  };
+  const columns = filled(new Float32Array(24 * 3 * count), 1);
+  const pairColumns = { columns: filled(new Int16Array(pairs * 3 * count), 60000), scale_mm: second.scale_mm };
+  const median_ms = (of: SkinSum) => {
+    const took = Array.from({ length: 15 }, (_, step) => {
+      const begin = process.cpuUsage();
+      of.move(1, twelve("mandible", 1).map((value) => value * (1 + step / 10)));
+      const { user, system } = process.cpuUsage(begin);
+      return (user + system) / 1000;
+    });
+    return took.sort((a, b) => a - b)[7]!;
+  };
+  const turning = [new SkinSum({ segments: 2, linear: columns }), new SkinSum({ segments: 2, linear: columns, second: pairColumns })];
+  const took = turning.map((one) => { one.move(0, twelve("maxilla", 0)); return median_ms(one); });
+  context.diagnostic(`${count} nodes, two segments turning, processor time of a step: linear ${took[0]!.toFixed(1)} ms, second order ${took[1]!.toFixed(1)} ms`);
+  assert(took[0]! < 16 && took[1]! < 60, `${took}`);
+});
