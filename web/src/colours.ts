@@ -1,7 +1,7 @@
 // Colours of maps: they grow darker with the value, so that they survive printing and colour blindness, and what does not move
 // stays light.
 //
-// Yellow to blue for lengths and orange to blue for signed distances, with a light grey between (schemes that C. Brewer, colorbrewer2.org,
+// Yellow to blue for lengths and orange to blue for signed distances, with light greys between (schemes that C. Brewer, colorbrewer2.org,
 // marks as safe for colour blindness and print). Maps are in bands, so that a colour is a number between two lines of the legend.
 
 export type Rgb = [number, number, number];
@@ -11,8 +11,10 @@ export type Scheme = "length" | "signed";
 const LENGTH: Rgb[] = [
   [247, 241, 226], [250, 236, 174], [214, 226, 146], [152, 208, 158], [92, 186, 178], [49, 156, 188], [33, 119, 174], [36, 82, 150], [30, 50, 112], [14, 24, 66],
 ];
+/** The two in the middle are nearly one: a distance of nothing has no side. */
 const SIGNED: Rgb[] = [
-  [5, 48, 97], [33, 102, 172], [67, 147, 195], [146, 197, 222], [242, 242, 242], [253, 200, 134], [241, 148, 60], [196, 91, 12], [127, 48, 4],
+  [5, 48, 97], [33, 102, 172], [67, 147, 195], [146, 197, 222], [230, 235, 238],
+  [240, 236, 230], [253, 200, 134], [241, 148, 60], [196, 91, 12], [127, 48, 4],
 ];
 const SCHEMES: Record<Scheme, Rgb[]> = { length: LENGTH, signed: SIGNED };
 export const BANDS = 10;

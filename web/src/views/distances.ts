@@ -44,7 +44,7 @@ export function histogram(words: Words, distances: Float32Array): SVGElement {
     drawing.append(bar);
   });
   for (const value of [-3, -2, -1, 0, 1, 2, 3]) {
-    const text = element("text", { x: String(120 + value * 38), y: "90", "font-size": "9", "text-anchor": "middle", fill: "#222" });
+    const text = element("text", { x: String(value === 3 ? 238 : 120 + value * 38), y: "90", "font-size": "9", "text-anchor": value === 3 ? "end" : "middle", fill: "#222" });
     text.textContent = value === 3 ? "3 mm" : String(value);
     drawing.append(text);
   }
