@@ -1,6 +1,6 @@
 // A plan in a surgeon's words, with what was done before and what was taken back.
 import type { Documents, Triple } from "../../clients/typescript/src/facies.js";
-import { MOTIONS, isStill, motion, movement, still, type FrameName, type Motion } from "./frame.js";
+import { MOTIONS, ROTATIONS, isStill, motion, movement, still, type FrameName, type Motion } from "./frame.js";
 
 /** Movements by the names of segments. */
 export type Plan = Record<string, Motion>;
@@ -39,10 +39,20 @@ export function fromDocument(stored: Documents["PlanDocument"], pivots: Pivots, 
   return plan;
 }
 
-/** As it stands in an address: the six numbers of each segment that moves. */
-export function written(plan: Plan): string {
+/** As it stands in an address: the six numbers of each segment that moves, then the point about which it turns. */
+export function written(plan: Plan, pivots: Pivots): string {
   const moved = Object.entries(plan).filter(([, one]) => !isStill(one));
-  return moved.map(([name, one]) => [encodeURIComponent(name), ...MOTIONS.map((word) => one[word])].join(",")).join(";");
+  const about = (name: string, one: Motion) =>
+    (ROTATIONS.some((word) => one[word] !== 0) ? (pivots[name] ?? []).map((value) => Number(value.toFixed(3))) : []);
+  return moved.map(([name, one]) =>
+    [encodeURIComponent(name), ...MOTIONS.map((word) => one[word]), ...about(name, one)].join(",")).join(";");
+}
+
+/** The points about which segments turn, as far as `written` wrote them. */
+export function readPivots(text: string): Pivots {
+  const parts = text.split(";").map((part) => part.split(","));
+  const stated = parts.map(([name = "", ...numbers]) => [safely(name), numbers.slice(MOTIONS.length).map(Number)] as const);
+  return Object.fromEntries(stated.filter(([, point]) => point.length === 3 && point.every(Number.isFinite)) as [string, Triple][]);
 }
 
 /** What `written` wrote; segments that are not there and numbers that are none are left out. */

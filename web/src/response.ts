@@ -2,7 +2,8 @@
 //
 // u = sum over k of a_k C_k + sum over k <= l of a_k a_l scale_p S_p, a being the twelve numbers of each segment one after the
 // other: rows of R - I, each followed by its component of t, the displacement of the segment's centre (docs/clients.md). What
-// only one segment changes is kept for the others, so that a slider costs the columns of its own segment.
+// only one segment changes is kept for the others, so that a slider costs the columns of its own segment: the pairs of a segment that
+// moves with one that stays are summed over the latter once, sum over k of a_k (sum over l of a_l scale_p S_p).
 import type { Triple } from "../../clients/typescript/src/facies.js";
 import { rotation } from "./frame.js";
 
@@ -60,6 +61,8 @@ export class SkinSum {
   private readonly linear: Float32Array[];
   /** By the segments of a pair, the lower first. */
   private readonly pairs = new Map<string, Float32Array>();
+  /** Sums over the second of two segments, twelve columns each, while it stays. */
+  private readonly halves = new Map<string, Float32Array>();
 
   constructor(private readonly columns: Columns) {
     const { segments, linear, second } = columns;
@@ -81,7 +84,9 @@ export class SkinSum {
     const own = this.of(segment).filter((k) => this.factors[k] !== 0);
     sum(this.linear[segment]!, columns.linear, own.map((k) => ({ factor: this.factors[k]!, first: k * length })));
     for (let other = 0; other < columns.segments; other += 1) {
-      this.pair(Math.min(segment, other), Math.max(segment, other));
+      this.halves.delete(`${other} ${segment}`);
+      if (other === segment) this.own(segment);
+      else this.cross(segment, other);
     }
     this.total();
   }
@@ -91,20 +96,45 @@ export class SkinSum {
     return Array.from({ length: PER_SEGMENT }, (_, at) => PER_SEGMENT * segment + at);
   }
 
-  private pair(s: number, t: number): void {
-    const { columns: { second }, displacement_mm: { length }, factors } = this;
-    const into = this.pairs.get(`${s} ${t}`);
+  /** The pairs of a segment with itself. */
+  private own(segment: number): void {
+    const { columns: { second }, factors } = this;
+    const into = this.pairs.get(`${segment} ${segment}`);
     if (second === undefined || into === undefined) return;
-    const terms: Term[] = [];
-    for (const k of this.of(s)) {
-      for (const l of this.of(t)) {
-        const product = k <= l ? factors[k]! * factors[l]! : 0;
-        if (product === 0) continue;
-        const p = place(k, l, factors.length);
-        terms.push({ factor: product * second.scale_mm[p]!, first: p * length });
-      }
-    }
-    sum(into, second.columns, terms);
+    const columns = this.of(segment);
+    const terms = columns.flatMap((k) => columns.filter((l) => k <= l).map((l) => this.term(k, l, factors[k]! * factors[l]!)));
+    sum(into, second.columns, terms.filter(({ factor }) => factor !== 0));
+  }
+
+  /** The pairs of a segment that moves with one that stays. */
+  private cross(moving: number, staying: number): void {
+    const { factors, displacement_mm: { length } } = this;
+    const into = this.pairs.get(`${Math.min(moving, staying)} ${Math.max(moving, staying)}`);
+    if (into === undefined) return;
+    const half = this.half(moving, staying);
+    const terms = this.of(moving).map((k, at) => ({ factor: factors[k]!, first: at * length }));
+    sum(into, half, terms.filter(({ factor }) => factor !== 0));
+  }
+
+  private half(moving: number, staying: number): Float32Array {
+    const { columns: { second }, factors, displacement_mm: { length }, halves } = this;
+    const key = `${moving} ${staying}`;
+    const known = halves.get(key);
+    if (known !== undefined || second === undefined) return known ?? new Float32Array();
+    const made = new Float32Array(PER_SEGMENT * length);
+    const others = this.of(staying).filter((l) => factors[l] !== 0);
+    this.of(moving).forEach((k, at) => {
+      const terms = others.map((l) => this.term(k, l, factors[l]!));
+      sum(made.subarray(at * length, (at + 1) * length), second.columns, terms);
+    });
+    halves.set(key, made);
+    return made;
+  }
+
+  /** What the column of a pair is multiplied with, and where it begins. */
+  private term(k: number, l: number, factor: number): Term {
+    const p = place(Math.min(k, l), Math.max(k, l), this.factors.length);
+    return { factor: factor * this.columns.second!.scale_mm[p]!, first: p * this.displacement_mm.length };
   }
 
   private total(): void {

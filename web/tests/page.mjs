@@ -338,7 +338,7 @@ await check("a case without a response gets one when it is planned on", async ()
   await page.getByRole("link", { name: "Plan a movement" }).click();
   await planned(page);
   await slide(page, "mandible", "forward", 4);
-  await page.getByText(/The skin moves [1-4]\.\d\d mm at most/).waitFor();
+  await page.locator(".told", { hasText: /The skin moves [1-4]\.\d\d mm at most/ }).waitFor();
 });
 
 await check("jobs are listed, and studies", async () => {

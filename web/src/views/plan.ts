@@ -5,7 +5,7 @@ import { button, make, save, select } from "../dom.js";
 import { movement, still, type Motion, type MotionName } from "../frame.js";
 import { addBones, buildResponse, openCase, responseOf, type LoadedResponse, type Opened } from "../loading.js";
 import { matrix } from "../matrix.js";
-import { atRest, document as planDocument, History, read, written, type Pivots, type Plan } from "../plan.js";
+import { atRest, document as planDocument, History, read, readPivots, written, type Pivots, type Plan } from "../plan.js";
 import { coefficients, lengths, SkinSum } from "../response.js";
 import { address, note } from "../route.js";
 import { mm } from "../figures.js";
@@ -90,7 +90,8 @@ class Planning {
     this.loaded = await responseOf(app, opened.id, wait);
     wait.remove();
     this.sum = new SkinSum(this.loaded.columns);
-    this.pivots = Object.fromEntries(this.loaded.description.segments.map(({ name, centre_mm }) => [name, centre_mm as Triple]));
+    const centres = this.loaded.description.segments.map(({ name, centre_mm }) => [name, centre_mm as Triple] as const);
+    this.pivots = { ...Object.fromEntries(centres), ...readPivots(app.route.state.get("p") ?? "") };
     bench.scene.showSkin(this.loaded.rest);
     const { words } = app;
     bench.offer([
@@ -128,11 +129,13 @@ class Planning {
       const control = movements(words, name, this.opened.frame, this.plan[name]!,
         (word, value) => this.moving(name, word, value), () => this.moved());
       this.controls.set(name, control);
-      const centre = this.pivots[name]!;
-      const about = select(words.turnsAbout, [["", words.itsCentre], ...landmarks.map(([mark]) => [mark, mark] as const)], "", (mark) => {
+      const centre = this.loaded.description.segments[at]!.centre_mm as Triple;
+      const [chosen = ""] = landmarks.find(([, place]) => place.every((value, axis) => Math.abs(value - this.pivots[name]![axis]!) < 1e-3)) ?? [];
+      const about = select(words.turnsAbout, [["", words.itsCentre], ...landmarks.map(([mark]) => [mark, mark] as const)], chosen, (mark) => {
         this.pivots[name] = mark === "" ? centre : landmarks.find(([called]) => called === mark)![1] as Triple;
         this.moveOne(name);
         this.after();
+        note({ p: written(this.plan, this.pivots) });
       });
       return make("details", { className: "segment", open: open === null ? at < 2 : open === name },
         make("summary", {}, name), control.element, about);
@@ -140,16 +143,19 @@ class Planning {
   }
 
   private moving(name: string, word: MotionName, value: number): void {
+    const begin = performance.now();
     const motion: Motion = { ...(this.plan[name] ?? still()), [word]: value };
     this.plan = { ...this.plan, [name]: motion };
     this.moveOne(name);
     this.after();
+    // For whoever wants to know what a step of a slider takes.
+    performance.measure("slider", { start: begin });
   }
 
   /** A slider was let go. */
   private moved(): void {
     this.history.note(this.plan);
-    note({ p: written(this.plan) });
+    note({ p: written(this.plan, this.pivots) });
     this.drawSteps();
     announce(this.told.textContent ?? "");
   }
@@ -176,7 +182,6 @@ class Planning {
 
   /** One segment and the skin with it. */
   private moveOne(name: string, draw = true): void {
-    performance.mark("slider");
     const motion = this.plan[name] ?? still();
     const pivot_mm = this.pivots[name]!;
     const at = this.names.indexOf(name);
@@ -184,7 +189,6 @@ class Planning {
     this.sum.move(at, coefficients({ ...movement(motion, this.opened.frame), pivot_mm, centre_mm }));
     this.bench.scene.moveBone(name, matrix(motion, pivot_mm, this.opened.frame));
     if (draw) this.bench.scene.moveSkin(this.sum.displacement_mm);
-    performance.measure("slider", "slider");
   }
 
   private after(): void {
@@ -232,7 +236,7 @@ class Planning {
         outputs: ["skin.vtp", "skin.glb"], ...(this.model === "auto" ? {} : { method: this.model }),
       };
       service.post<Documents["StatusInfo"]>("/v1/jobs", spec).then(
-        ({ id }) => { location.hash = address(["job", id], { p: written(this.plan) }); },
+        ({ id }) => { location.hash = address(["job", id], { p: written(this.plan, this.pivots) }); },
         (error: unknown) => { predict.disabled = false; said.replaceChildren(refusal(error, words)); });
     }, { className: "primary" });
     const glb = button(words.glb, () => void this.saveGlb().catch((error: unknown) => said.replaceChildren(refusal(error, words))));

@@ -6,7 +6,7 @@ import { button, choice, make, save, table } from "../dom.js";
 import { inWords, still } from "../frame.js";
 import { addBones, openCase, type Opened } from "../loading.js";
 import { matrix } from "../matrix.js";
-import { fromDocument, read, written, type Plan, type Pivots } from "../plan.js";
+import { fromDocument, read, readPivots, written, type Plan, type Pivots } from "../plan.js";
 import { address, note } from "../route.js";
 import type { Shape } from "../scene.js";
 import { readVtp } from "../vtp.js";
@@ -81,7 +81,8 @@ class Result {
   private after!: Surface;
   private displacement_mm!: Float32Array;
   private before!: Shape;
-  private plan: Plan = {};
+  private plan: Plan | undefined;
+  private pivots: Pivots = {};
   private share = 1;
 
   constructor(private readonly app: App, private readonly job: Job) {}
@@ -97,6 +98,7 @@ class Result {
     this.bench.scene.orient(this.opened.frame);
     this.bench.scene.showSkin(this.before);
     this.bench.scene.moveSkin(this.displacement_mm);
+    this.knowPlan();
     const left = await this.leftOut();
     this.bench.offer(this.maps(left));
     this.draw();
@@ -228,28 +230,32 @@ class Result {
     });
   }
 
+  /** The plan, from what was found or from the address; it stays unknown where neither says it. */
+  private knowPlan(): void {
+    const { state } = this.app.route;
+    const found = this.results.optimisation?.plan;
+    const names = (this.opened.document.segments ?? []).map(({ name }) => name);
+    const parts = (found?.segments ?? []) as { name: string; pivot_mm?: Triple }[];
+    const origins = Object.fromEntries(names.map((name) => [name, [0, 0, 0] as Triple]));
+    this.pivots = found === undefined ? readPivots(state.get("p") ?? "")
+      : { ...origins, ...Object.fromEntries(parts.map(({ name, pivot_mm = [0, 0, 0] as Triple }) => [name, pivot_mm])) };
+    this.plan = found === undefined ? (state.has("p") ? read(state.get("p")!, names) : undefined)
+      : fromDocument(found, this.pivots, this.opened.frame);
+    if (this.plan === undefined) return;
+    const inAddress = written(this.plan, this.pivots);
+    state.set("p", inAddress);
+    note({ p: inAddress });
+  }
+
   private async bones(): Promise<void> {
     const { app, opened, bench } = this;
-    const stated = app.route.state.get("p");
-    const found = this.results.optimisation?.plan;
-    if (stated === null && found === undefined) return;
-    const names = (opened.document.segments ?? []).map(({ name }) => name);
-    const { pivots } = this;
-    this.plan = (found === undefined ? undefined : fromDocument(found, pivots, opened.frame)) ?? read(stated ?? "", names);
-    if (stated === null) note({ p: written(this.plan) });
+    if (this.plan === undefined) return;
     await addBones(app.service, opened, bench.scene);
     this.moveBones();
   }
 
-  /** The points about which segments turn, as far as the plan that was found says so; else bones are shown without turning about them. */
-  private get pivots(): Pivots {
-    const stated = (this.results.optimisation?.plan.segments ?? []) as { name: string; pivot_mm?: Triple }[];
-    const all = (this.opened.document.segments ?? []).map(({ name }) => [name, [0, 0, 0] as Triple] as const);
-    return { ...Object.fromEntries(all), ...Object.fromEntries(stated.map(({ name, pivot_mm }) => [name, pivot_mm ?? [0, 0, 0] as Triple])) };
-  }
-
   private moveBones(): void {
-    for (const [name, motion] of Object.entries(this.plan)) {
+    for (const [name, motion] of Object.entries(this.plan ?? {})) {
       const part = Object.fromEntries(Object.entries(motion).map(([word, value]) => [word, this.share * value]));
       this.bench.scene.moveBone(name, matrix({ ...still(), ...part }, this.pivots[name] ?? [0, 0, 0], this.opened.frame));
     }

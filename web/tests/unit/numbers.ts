@@ -5,7 +5,7 @@ import { Response, type Documents, type Triple } from "../../../clients/typescri
 import { bands, share, ticks } from "../../src/colours.js";
 import { inAxes, inWords, motion, movement, rotation, still } from "../../src/frame.js";
 import { section } from "../../src/outline.js";
-import { atRest, document, fromDocument, History, read, written } from "../../src/plan.js";
+import { atRest, document, fromDocument, History, read, readPivots, written } from "../../src/plan.js";
 import { readPly } from "../../src/ply.js";
 import { coefficients, SkinSum } from "../../src/response.js";
 
@@ -92,7 +92,10 @@ test("words and numbers of a plan are the same plan", () => {
 
 test("a plan is read from an address as it was written, and nothing else is", () => {
   const words = { ...atRest(["left jaw;2", "b"]), "left jaw;2": { ...still(), forward: -1.5, yaw: 2 } };
-  assert.deepEqual(read(written(words), ["left jaw;2", "b"]), words);
+  const pivots = { "left jaw;2": [1.5, -2, 3] as Triple, b: [0, 0, 0] as Triple };
+  assert.deepEqual(read(written(words, pivots), ["left jaw;2", "b"]), words);
+  assert.deepEqual(readPivots(written(words, pivots)), { "left jaw;2": [1.5, -2, 3] });
+  assert.deepEqual(readPivots("a,1,0,0,0,0,0;b,0,0,0,1,0,0,x,1,2"), {});
   assert.deepEqual(read("nobody,1,2;b,x,NaN,%", ["b"]), atRest(["b"]));
 });
 
