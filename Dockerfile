@@ -13,6 +13,7 @@ COPY docs/errors.md docs/errors.md
 COPY mechanics mechanics
 COPY benches benches
 COPY migrations migrations
+COPY web/dist web/dist
 RUN --mount=type=cache,target=/usr/local/cargo/registry --mount=type=cache,target=/build/target \
     cargo build --release --locked && cp target/release/facies /usr/local/bin/facies
 

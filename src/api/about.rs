@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use axum::Extension;
 use axum::http::{HeaderMap, StatusCode, header};
-use axum::response::{Html, IntoResponse, Response};
+use axum::response::Response;
 use serde::Serialize;
 use utoipa::ToSchema;
 use utoipa_axum::routes;
@@ -66,8 +66,7 @@ async fn entrance(headers: HeaderMap) -> ApiResult {
     if preferred(&headers, &["application/json", "text/html"])? == 0 {
         return Ok(with_header(first_answer(), header::VARY, "Accept"));
     }
-    let page = include_str!("entrance.html").replace("{version}", env!("CARGO_PKG_VERSION"));
-    Ok(with_header(Html(page).into_response(), header::VARY, "Accept"))
+    Ok(with_header(super::page::page(), header::VARY, "Accept"))
 }
 
 /// The version of the interface that there is, and the addresses in it.

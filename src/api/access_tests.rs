@@ -18,6 +18,7 @@ use crate::store::Store;
 /// Every route: its scope, and whether it is noted in the audit log.
 const SERVICE: &str = "
     GET     /                                   open
+    GET     /assets/{file}                      open
     GET     /clients                            open
     GET     /clients/{file}                     open
     GET     /docs                               open

@@ -1,5 +1,5 @@
-//! Headers that tell browsers what an answer may do: nothing, but for the pages of the documentation and of the clients,
-//! which run their own scripts (W3C Content Security Policy 3).
+//! Headers that tell browsers what an answer may do: nothing, but for the pages of the documentation, of the clients and
+//! for planners, which run their own scripts (W3C Content Security Policy 3).
 
 use axum::extract::Request;
 use axum::http::{HeaderName, HeaderValue, header};
@@ -12,6 +12,11 @@ const NOTHING: &str = "default-src 'none'; style-src 'unsafe-inline'; base-uri '
 /// Scripts, styles and pictures of this service, which ask this service only.
 const OWN: &str = "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; \
      img-src 'self' data:; connect-src 'self'; base-uri 'none'; form-action 'none'; \
+     frame-ancestors 'none'";
+
+/// What the page for planners does: no style within its markup either; its pictures may be made in the browser.
+const PLANNER: &str = "default-src 'none'; script-src 'self'; style-src 'self'; \
+     img-src 'self' data: blob:; connect-src 'self'; base-uri 'none'; form-action 'none'; \
      frame-ancestors 'none'";
 
 /// The headers of every answer.
@@ -36,6 +41,12 @@ pub async fn of_pages(request: Request, next: Next) -> Response {
 /// An answer that may run scripts of this service.
 pub fn as_page(mut response: Response) -> Response {
     set_once(&mut response, header::CONTENT_SECURITY_POLICY, OWN);
+    response
+}
+
+/// The page for planners and its files.
+pub fn as_planner(mut response: Response) -> Response {
+    set_once(&mut response, header::CONTENT_SECURITY_POLICY, PLANNER);
     response
 }
 

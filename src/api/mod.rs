@@ -39,6 +39,7 @@ mod openapi_types;
 mod origins;
 mod pace;
 mod packages;
+mod page;
 mod paging;
 mod parameters;
 mod plans;

@@ -8,7 +8,7 @@ use utoipa_axum::routes;
 
 use super::error::{ApiError, ApiResult};
 use super::headers::as_page;
-use super::parameters::ClientFile;
+use super::parameters::ServedFile;
 use super::resources::Resources;
 use super::{Service, conditional};
 use crate::schema::ErrorCode;
@@ -51,7 +51,7 @@ async fn clients(service: Service) -> ApiResult {
         (status = 404, description = "there is no such file, or the service has no clients"),
     )
 )]
-async fn client(service: Service, ClientFile(name): ClientFile, headers: HeaderMap) -> ApiResult {
+async fn client(service: Service, ServedFile(name): ServedFile, headers: HeaderMap) -> ApiResult {
     let (folder, wanted) = (folder(&service)?, name.clone());
     let content = tokio::task::spawn_blocking(move || content(&folder, &wanted)).await;
     let content = content.map_err(ApiError::internal)?.map_err(ApiError::internal)?;

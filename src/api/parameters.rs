@@ -75,14 +75,14 @@ impl<S: Send + Sync> FromRequestParts<S> for PlanPath {
     }
 }
 
-/// The name of a file of the clients.
-pub struct ClientFile(pub String);
+/// The name of a file of the clients or of the page.
+pub struct ServedFile(pub String);
 
-impl<S: Send + Sync> FromRequestParts<S> for ClientFile {
+impl<S: Send + Sync> FromRequestParts<S> for ServedFile {
     type Rejection = ApiError;
 
     async fn from_request_parts(parts: &mut Parts, state: &S) -> ApiResult<Self> {
-        Ok(ClientFile(path_texts(parts, state).await?.pop().unwrap_or_default()))
+        Ok(ServedFile(path_texts(parts, state).await?.pop().unwrap_or_default()))
     }
 }
 

@@ -12,6 +12,7 @@ pub(super) fn resources() -> Resources {
         .merge(super::about::router())
         .merge(super::error_page::router())
         .merge(super::packages::router())
+        .merge(super::page::router())
         .merge(super::meshes::router())
         .merge(super::cases::router())
         .merge(super::plans::router())

@@ -98,6 +98,7 @@ async fn beside_the_service(
     let done = show(arguments, client).await;
     if let (true, Ok(jobs)) = (arguments.serve, &done) {
         println!("\nlistening on http://{} (stop with Ctrl-C)", client.address);
+        println!("  {:<20}http://{}{}", "plan it yourself", client.address, jobs[0].page());
         println!("  {:<20}http://{}/docs", "the API", client.address);
         for job in jobs {
             println!("  {:<20}http://{}{}", job.name, client.address, job.path());
@@ -161,6 +162,8 @@ fn setting(name: &str, data: &Path) -> Option<String> {
 struct Done {
     name: String,
     id: String,
+    /// The case that it is about.
+    case: String,
     /// From the start of the encoding to the answer about the meshes.
     upload_s: f64,
     results: Value,
@@ -169,6 +172,11 @@ struct Done {
 impl Done {
     fn path(&self) -> String {
         format!("/v1/jobs/{}", self.id)
+    }
+
+    /// Where the page plans on the case.
+    fn page(&self) -> String {
+        format!("/#/case/{}/plan", self.case)
     }
 
     fn file(&self, name: &str) -> String {
@@ -236,7 +244,8 @@ async fn run_job(
     let results = client.get(&format!("/v1/jobs/{id}/results")).await?;
     let known = if known { ", known from an earlier run" } else { "" };
     println!("{name}: {:.1} s{known}", bar.elapsed().as_secs_f64());
-    Ok(Done { name: name.to_owned(), id, upload_s: 0.0, results })
+    let case = text(&state, "GET /v1/jobs/{id}", "case")?;
+    Ok(Done { name: name.to_owned(), id, case, upload_s: 0.0, results })
 }
 
 fn doing(state: &Value) -> String {

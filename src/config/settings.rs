@@ -63,7 +63,7 @@ pub const SETTINGS: &[Setting] = &[
     setting(
         "api-key",
         "",
-        "a key that allows everything to the tenant `default`, sent as `Authorization: Bearer KEY`; 16 to 255 visible characters; with it every request needs a key but those to /healthz, /readyz, the documentation and /clients",
+        "a key that allows everything to the tenant `default`, sent as `Authorization: Bearer KEY`; 16 to 255 visible characters; with it every request needs a key but those to /healthz, /readyz, the page, the documentation and /clients",
     ),
     setting(
         "ask-for-keys",

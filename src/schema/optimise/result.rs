@@ -19,7 +19,7 @@ pub struct OptimisationDocument {
     /// What is left of each target, in their order.
     pub targets: Vec<TargetResidualDocument>,
     /// The parameters that are free, that is, not at a bound, and that the targets determine.
-    pub parameters: Vec<ParameterDocument>,
+    pub parameters: Vec<FreeParameterDocument>,
     /// Of each of them, in mm or degrees, if the targets have independent errors of `sigma_mm`.
     pub standard_error: Vec<f64>,
     /// Of each two of them, in mm and degrees.
@@ -55,7 +55,7 @@ pub struct TargetResidualDocument {
 
 /// One of the six numbers of a segment.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct ParameterDocument {
+pub struct FreeParameterDocument {
     pub segment: String,
     pub name: ParameterName,
     /// In mm or degrees.
@@ -183,9 +183,9 @@ impl Named<'_> {
         (self.segments[parameter.segment].name.clone(), NAMES[parameter.number])
     }
 
-    fn parameter(&self, parameter: Parameter) -> ParameterDocument {
+    fn parameter(&self, parameter: Parameter) -> FreeParameterDocument {
         let (segment, name) = self.name(parameter);
-        ParameterDocument { segment, name, value: self.value(parameter) }
+        FreeParameterDocument { segment, name, value: self.value(parameter) }
     }
 
     fn at_bound(&self, (parameter, bound): (Parameter, Bound)) -> AtBoundDocument {

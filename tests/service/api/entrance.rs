@@ -32,6 +32,37 @@ async fn the_root_leads_on() {
 }
 
 #[tokio::test]
+async fn the_page_runs_files_of_the_program_alone() {
+    let server = Server::start();
+    let page = ask(server.get("/").header("accept", "text/html")).await;
+    let text = String::from_utf8(page.bytes.clone()).unwrap();
+    let named = |name: &str| -> Vec<String> {
+        let begin = format!("{name}=\"/assets/");
+        let after = text.split(&begin).skip(1);
+        after.map(|rest| rest.split('"').next().unwrap().to_owned()).collect()
+    };
+    let [scripts, others] = [named("src"), named("href")];
+    assert!(scripts.contains(&"page.js".to_owned()) && others.len() >= 2, "{text}");
+    for (name, kind) in [("page.js", "text/javascript"), ("three.js", "text/javascript")]
+        .into_iter()
+        .chain([("index.css", "text/css"), ("icon.svg", "image/svg+xml")])
+    {
+        let path = format!("/assets/{name}");
+        let file = ask(server.get(&path)).await;
+        assert_eq!(file.status, StatusCode::OK, "{name}");
+        assert!(file.header("content-type").starts_with(kind), "{name}");
+        let known = server.get(&path).header("if-none-match", file.header("etag"));
+        assert_eq!(ask(known).await.status, StatusCode::NOT_MODIFIED, "{name}");
+        assert_eq!(file.header("content-security-policy"), page.header("content-security-policy"));
+    }
+    let policy = page.header("content-security-policy");
+    assert!(policy.contains("script-src 'self';") && policy.contains("style-src 'self';"));
+    assert!(!policy.contains("unsafe") && !policy.contains("http"), "{policy}");
+    assert!(!text.contains("<style") && !text.contains("style=") && !text.contains("<script>"));
+    ask(server.get("/assets/none.js")).await.problem(404, "not-found");
+}
+
+#[tokio::test]
 async fn no_answer_lets_a_browser_run_anything_but_the_documentation() {
     let hospital = Hospital::open();
     let key = hospital.key("a", &["read", "write", "run"]).await;

@@ -1,0 +1,95 @@
+// The service that this page came from: every call is noted, so that a person can repeat it.
+import { Facies, type Documents } from "../../clients/typescript/src/facies.js";
+
+export { FaciesError, JobFailed, Refused, readGlb, type Documents, type Surface, type Triple } from "../../clients/typescript/src/facies.js";
+
+export type Case = Documents["CaseView"];
+export type Job = Documents["StatusInfo"];
+export type Warning = Documents["WarningDocument"];
+/** A case that has its mesh. */
+export type CaseDocument = Documents["CaseDocument"];
+
+/** The key lives as long as the tab. */
+const KEY = "facies-key";
+const MOST_CALLS = 50;
+
+export interface Call {
+  method: string;
+  path: string;
+  headers: Record<string, string>;
+  body: BodyInit | undefined;
+}
+
+export class Service extends Facies {
+  readonly calls: Call[] = [];
+  /** Called after each call. */
+  noted: () => void = () => {};
+
+  constructor() {
+    super(location.origin, sessionStorage.getItem(KEY) ?? undefined);
+  }
+
+  static keep(key: string): void {
+    sessionStorage.setItem(KEY, key);
+  }
+
+  static forget(): void {
+    sessionStorage.removeItem(KEY);
+  }
+
+  static get hasKey(): boolean {
+    return sessionStorage.getItem(KEY) !== null;
+  }
+
+  override ask(method: string, path: string, body?: BodyInit, headers: Record<string, string> = {}): Promise<Response> {
+    this.note({ method, path, body, headers });
+    return super.ask(method, path, body, headers);
+  }
+
+  override events(job: string): ReturnType<Facies["events"]> {
+    this.note({ method: "GET", path: `/v1/jobs/${job}/events`, headers: { Accept: "text/event-stream" }, body: undefined });
+    return super.events(job);
+  }
+
+  async get<Document>(path: string): Promise<Document> {
+    return (await this.ask("GET", path, undefined, { Accept: "application/json" })).json() as Promise<Document>;
+  }
+
+  async post<Document>(path: string, document: unknown): Promise<Document> {
+    const headers = { "Content-Type": "application/json", Accept: "application/json" };
+    return (await this.ask("POST", path, JSON.stringify(document), headers)).json() as Promise<Document>;
+  }
+
+  /** All items of a list, a page after the other. */
+  async list<Item>(path: string, most = 200): Promise<Item[]> {
+    const items: Item[] = [];
+    let cursor = "";
+    do {
+      const next: string = cursor === "" ? "" : `&cursor=${encodeURIComponent(cursor)}`;
+      const page = await this.get<{ items: Item[]; next?: string }>(`${path}${path.includes("?") ? "&" : "?"}limit=50${next}`);
+      items.push(...page.items);
+      cursor = page.next ?? "";
+    } while (cursor !== "" && items.length < most);
+    return items;
+  }
+
+  private note(call: Call): void {
+    this.calls.unshift(call);
+    this.calls.length = Math.min(this.calls.length, MOST_CALLS);
+    this.noted();
+  }
+}
+
+const quoted = (text: string) => `'${text.replaceAll("'", `'\\''`)}'`;
+
+/** A call as a person types it; the key is that of the variable FACIES_API_KEY. */
+export function asCurl({ method, path, headers, body }: Call): string {
+  const parts = ["curl -sS"];
+  if (method !== "GET" && !(method === "POST" && body !== undefined)) parts.push(`-X ${method}`);
+  for (const [name, value] of Object.entries(headers)) parts.push(`-H ${quoted(`${name}: ${value}`)}`);
+  if (Service.hasKey) parts.push('-H "Authorization: Bearer $FACIES_API_KEY"');
+  if (typeof body === "string") parts.push(`-d ${quoted(body)}`);
+  if (body instanceof FormData) parts.push(...[...body.keys()].map((name) => `-F ${quoted(`${name}=@${name === "case" ? "case.json;type=application/json" : name}`)}`));
+  if (body instanceof Blob) parts.push("--data-binary @FILE");
+  return [...parts, quoted(location.origin + path)].join(" ");
+}

@@ -1,0 +1,93 @@
+// The documents, bones and response of a case, as the page shows them.
+import { Refused, type Case, type CaseDocument, type Documents, type Service, readGlb } from "./api.js";
+import { ProgressLine, type App } from "./app.js";
+import type { FrameName } from "./frame.js";
+import { inFrame, readPly } from "./ply.js";
+import type { Columns } from "./response.js";
+import type { Scene, Shape } from "./scene.js";
+
+export interface Opened {
+  id: string;
+  view: Case;
+  document: CaseDocument;
+  frame: FrameName;
+  name: string;
+}
+
+export async function openCase(service: Service, id: string): Promise<Opened> {
+  const view = await service.get<Case>(`/v1/cases/${id}`);
+  const document = view.case as CaseDocument;
+  return { id, view, document, frame: document.frame ?? "unspecified", name: document.name ?? id.slice(0, 8) };
+}
+
+/** A surface that the service has, as it lies in the frame of the case. */
+export async function meshOf(service: Service, id: string, frame: FrameName): Promise<Shape> {
+  const answer = await service.ask("GET", `/v1/meshes/${id}/content?format=ply`);
+  const surface = readPly(await answer.arrayBuffer());
+  return { points_mm: inFrame(surface, frame), triangles: surface.triangles };
+}
+
+/** Adds the bones of a case to a scene as they come. */
+export async function addBones(service: Service, opened: Opened, scene: Scene): Promise<void> {
+  const moving = new Set((opened.document.segments ?? []).map(({ name }) => name));
+  await Promise.all((opened.document.bones ?? []).map(async ({ name, mesh }) => {
+    scene.addBone(name, await meshOf(service, mesh, opened.frame), moving.has(name));
+  }));
+}
+
+type Description = Documents["ResponseDescription"];
+
+/** The skin at rest, in the order of its nodes. */
+export interface RestingSkin {
+  description: Description;
+  rest: Shape;
+}
+/** The same with the columns that move it. */
+export interface LoadedResponse extends RestingSkin {
+  columns: Columns;
+}
+
+const OCTETS = { Accept: "application/octet-stream" };
+const NOT_THERE = ["response-not-built", "response-stale"];
+
+/** The skin of a case with a response, which is built where there is none; `into` shows how far that is. */
+export async function restingSkin(app: App, id: string, into: HTMLElement): Promise<RestingSkin> {
+  const path = `/v1/cases/${id}/response`;
+  const description = await described(app, id, into);
+  const glb = await app.service.ask("GET", `${path}?job=${description.job}`, undefined, { Accept: "model/gltf-binary" });
+  const { points_mm, triangles } = readGlb(await glb.arrayBuffer());
+  return { description, rest: { points_mm, triangles } };
+}
+
+async function described(app: App, id: string, into: HTMLElement): Promise<Description> {
+  const path = `/v1/cases/${id}/response`;
+  const built = await app.service.get<Documents["JobList"]>(`/v1/jobs?kind=response&status=successful&case=${id}&limit=1`);
+  try {
+    if (built.items.length > 0) return await app.service.get<Description>(path);
+  } catch (error) {
+    if (!(error instanceof Refused) || !NOT_THERE.includes(error.code)) throw error;
+  }
+  await buildResponse(app, id, 1, into);
+  return app.service.get<Description>(path);
+}
+
+export async function responseOf(app: App, id: string, into: HTMLElement): Promise<LoadedResponse> {
+  const { description, rest } = await restingSkin(app, id, into);
+  const path = `/v1/cases/${id}/response?job=${description.job}`;
+  const bytes = async (query: string) => (await app.service.ask("GET", path + query, undefined, OCTETS)).arrayBuffer();
+  const [linear, second] = await Promise.all([bytes(""), description.second_order === undefined ? undefined : bytes("&order=2")]);
+  const columns: Columns = { segments: description.segments.length, linear: new Float32Array(linear) };
+  if (second !== undefined) columns.second = { columns: new Int16Array(second), scale_mm: description.second_order!.scale_mm };
+  return { description, rest, columns };
+}
+
+export async function buildResponse(app: App, id: string, order: 1 | 2, into: HTMLElement): Promise<void> {
+  const line = new ProgressLine(app.words.building);
+  into.append(line.element);
+  const job = { kind: "response" as const, case: id, ...(order === 2 ? { order } : {}) };
+  try {
+    await app.service.run(job as Documents["JobDocument"], (event) => line.tell(event));
+  } finally {
+    line.element.remove();
+  }
+}

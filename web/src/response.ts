@@ -1,0 +1,161 @@
+// The skin of a plan as a sum of response columns, at the rate of frames.
+//
+// u = sum over k of a_k C_k + sum over k <= l of a_k a_l scale_p S_p, a being the twelve numbers of each segment one after the
+// other: rows of R - I, each followed by its component of t, the displacement of the segment's centre (docs/clients.md). What
+// only one segment changes is kept for the others, so that a slider costs the columns of its own segment: the pairs of a segment that
+// moves with one that stays are summed over the latter once, sum over k of a_k (sum over l of a_l scale_p S_p).
+import type { Triple } from "../../clients/typescript/src/facies.js";
+import { rotation } from "./frame.js";
+
+export const PER_SEGMENT = 12;
+
+/** The columns as the service hands them over: [column][node][xyz] in mm, of second order in units of `scale_mm`. */
+export interface Columns {
+  segments: number;
+  linear: Float32Array;
+  second?: { columns: Int16Array; scale_mm: number[] };
+}
+
+/** A movement x' = R (x - pivot) + pivot + translation of a segment with its centre. */
+export interface SegmentMovement {
+  translation_mm: Triple;
+  rotation_deg: Triple;
+  pivot_mm: Triple;
+  centre_mm: Triple;
+}
+
+/** What the twelve columns of a segment are multiplied with. */
+export function coefficients({ translation_mm, rotation_deg, pivot_mm, centre_mm }: SegmentMovement): number[] {
+  return rotation(rotation_deg).flatMap((row, i) => {
+    const turn = row.map((value, j) => value - (i === j ? 1 : 0));
+    const arm = turn.reduce((sum, value, j) => sum + value * (centre_mm[j]! - pivot_mm[j]!), translation_mm[i]!);
+    return [...turn, arm];
+  });
+}
+
+/** A factor and the column that it multiplies. */
+interface Term {
+  factor: number;
+  first: number;
+}
+
+/** Writes the sum of factors times columns, four columns a pass. */
+function sum(into: Float32Array, columns: Float32Array | Int16Array, terms: Term[]): void {
+  into.fill(0);
+  for (let at = 0; at < terms.length; at += 4) {
+    const [a, b, c, d] = [0, 1, 2, 3].map((next) => terms[at + next] ?? { factor: 0, first: 0 }) as [Term, Term, Term, Term];
+    for (let n = 0; n < into.length; n += 1) {
+      into[n]! += a.factor * columns[a.first + n]! + b.factor * columns[b.first + n]!
+        + c.factor * columns[c.first + n]! + d.factor * columns[d.first + n]!;
+    }
+  }
+}
+
+/** The displacement of the skin, kept up to date as segments move. */
+export class SkinSum {
+  /** xyz for each node in mm; the same array at every change. */
+  readonly displacement_mm: Float32Array;
+  /** What the second order adds, likewise; absent of a response of order 1. */
+  readonly second_mm: Float32Array | undefined;
+  private readonly factors: number[];
+  private readonly linear: Float32Array[];
+  /** By the segments of a pair, the lower first. */
+  private readonly pairs = new Map<string, Float32Array>();
+  /** Sums over the second of two segments, twelve columns each, while it stays. */
+  private readonly halves = new Map<string, Float32Array>();
+
+  constructor(private readonly columns: Columns) {
+    const { segments, linear, second } = columns;
+    this.factors = new Array<number>(PER_SEGMENT * segments).fill(0);
+    const numbers = segments === 0 ? 0 : linear.length / this.factors.length;
+    this.displacement_mm = new Float32Array(numbers);
+    this.linear = Array.from({ length: segments }, () => new Float32Array(numbers));
+    if (second === undefined) return;
+    this.second_mm = new Float32Array(numbers);
+    for (let s = 0; s < segments; s += 1) {
+      for (let t = s; t < segments; t += 1) this.pairs.set(`${s} ${t}`, new Float32Array(numbers));
+    }
+  }
+
+  /** Moves one segment; the others stay as they are. */
+  move(segment: number, twelve: number[]): void {
+    twelve.forEach((factor, at) => { this.factors[PER_SEGMENT * segment + at] = factor; });
+    const { columns, displacement_mm: { length } } = this;
+    const own = this.of(segment).filter((k) => this.factors[k] !== 0);
+    sum(this.linear[segment]!, columns.linear, own.map((k) => ({ factor: this.factors[k]!, first: k * length })));
+    for (let other = 0; other < columns.segments; other += 1) {
+      this.halves.delete(`${other} ${segment}`);
+      if (other === segment) this.own(segment);
+      else this.cross(segment, other);
+    }
+    this.total();
+  }
+
+  /** The columns of a segment. */
+  private of(segment: number): number[] {
+    return Array.from({ length: PER_SEGMENT }, (_, at) => PER_SEGMENT * segment + at);
+  }
+
+  /** The pairs of a segment with itself. */
+  private own(segment: number): void {
+    const { columns: { second }, factors } = this;
+    const into = this.pairs.get(`${segment} ${segment}`);
+    if (second === undefined || into === undefined) return;
+    const columns = this.of(segment);
+    const terms = columns.flatMap((k) => columns.filter((l) => k <= l).map((l) => this.term(k, l, factors[k]! * factors[l]!)));
+    sum(into, second.columns, terms.filter(({ factor }) => factor !== 0));
+  }
+
+  /** The pairs of a segment that moves with one that stays. */
+  private cross(moving: number, staying: number): void {
+    const { factors, displacement_mm: { length } } = this;
+    const into = this.pairs.get(`${Math.min(moving, staying)} ${Math.max(moving, staying)}`);
+    if (into === undefined) return;
+    const half = this.half(moving, staying);
+    const terms = this.of(moving).map((k, at) => ({ factor: factors[k]!, first: at * length }));
+    sum(into, half, terms.filter(({ factor }) => factor !== 0));
+  }
+
+  private half(moving: number, staying: number): Float32Array {
+    const { columns: { second }, factors, displacement_mm: { length }, halves } = this;
+    const key = `${moving} ${staying}`;
+    const known = halves.get(key);
+    if (known !== undefined || second === undefined) return known ?? new Float32Array();
+    const made = new Float32Array(PER_SEGMENT * length);
+    const others = this.of(staying).filter((l) => factors[l] !== 0);
+    this.of(moving).forEach((k, at) => {
+      const terms = others.map((l) => this.term(k, l, factors[l]!));
+      sum(made.subarray(at * length, (at + 1) * length), second.columns, terms);
+    });
+    halves.set(key, made);
+    return made;
+  }
+
+  /** What the column of a pair is multiplied with, and where it begins. */
+  private term(k: number, l: number, factor: number): Term {
+    const p = place(Math.min(k, l), Math.max(k, l), this.factors.length);
+    return { factor: factor * this.columns.second!.scale_mm[p]!, first: p * this.displacement_mm.length };
+  }
+
+  private total(): void {
+    const { displacement_mm, second_mm } = this;
+    if (second_mm !== undefined) add(second_mm, [...this.pairs.values()]);
+    add(displacement_mm, second_mm === undefined ? this.linear : [...this.linear, second_mm]);
+  }
+}
+
+/** The place of a pair k <= l of n in the order (0,0), (0,1), ..., (0,n-1), (1,1), ... */
+function place(k: number, l: number, n: number): number {
+  return k * n - (k * (k - 1)) / 2 + (l - k);
+}
+
+function add(into: Float32Array, parts: Float32Array[]): void {
+  into.fill(0);
+  for (const part of parts) for (let n = 0; n < into.length; n += 1) into[n]! += part[n]!;
+}
+
+/** The length of each vector of xyz. */
+export function lengths(vectors: Float32Array): Float32Array {
+  return Float32Array.from({ length: vectors.length / 3 }, (_, node) =>
+    Math.hypot(vectors[3 * node]!, vectors[3 * node + 1]!, vectors[3 * node + 2]!));
+}

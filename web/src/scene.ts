@@ -1,0 +1,375 @@
+// The head in three dimensions: skin, bones and marks, drawn when something has changed.
+//
+// Everything is kept in mm in the frame of the case; one group turns that so that x is the patient's left, y up and z to the front.
+// The camera is orthographic: what is seen has one scale everywhere, and a profile is a true profile.
+import {
+  BufferAttribute, BufferGeometry, DataTexture, DirectionalLight, DoubleSide, Group, HemisphereLight, LineBasicMaterial,
+  LineSegments, Matrix4, Mesh, MeshBasicMaterial, MeshStandardMaterial, NearestFilter, OrthographicCamera, Raycaster, SRGBColorSpace,
+  Scene as Graph, SphereGeometry, Vector2, Vector3, WebGLRenderer, type Material,
+} from "three";
+import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+import type { Triple } from "./api.js";
+import { BANDS, bands, share, type Scheme } from "./colours.js";
+import { drawn, type FrameName } from "./frame.js";
+import { normals } from "./normals.js";
+
+export interface Shape {
+  points_mm: Float32Array;
+  triangles: Uint32Array;
+}
+export interface Hit {
+  node: number;
+  point_mm: Triple;
+}
+interface Span {
+  middle: number;
+  reach: number;
+}
+export type SkinLook = "solid" | "through" | "hidden";
+
+/** Where the camera stands, seen from the head: patient's left, up, front. */
+export const VIEWS: Record<string, Triple> = {
+  "1": [0, 0, 1], "2": [-1, 0, 0], "3": [1, 0, 0], "4": [-0.7, 0.05, 0.72], "5": [0.7, 0.05, 0.72], "6": [0, -0.75, 0.66],
+};
+const SKIN = 0xe9b9a1;
+const BONE = 0xefe6d2;
+const MOVING_BONE = 0xd8c48f;
+const MARK_MM = 1.4;
+/** Around the head there is a little room, above all for what stands over it. */
+const ROOM = 1.2;
+const KEY_TURN = Math.PI / 24;
+
+export class Scene {
+  readonly canvas: HTMLCanvasElement;
+  private readonly renderer: WebGLRenderer;
+  private readonly graph = new Graph();
+  private readonly head = new Group();
+  private readonly camera = new OrthographicCamera();
+  private readonly controls: OrbitControls;
+  private readonly watcher: ResizeObserver;
+  private readonly bones = new Map<string, Mesh>();
+  private readonly marks = new Group();
+  private readonly skinMaterial = new MeshStandardMaterial({ color: SKIN, roughness: 0.58, side: DoubleSide });
+  /** Half of a map's colour is lit and half shines by itself, so that it is read off the legend also where there is shade. */
+  private readonly mapMaterial = new MeshStandardMaterial({ roughness: 1, side: DoubleSide, color: 0xbdbdbd, emissive: 0xb0b0b0 });
+  private readonly depth = new MeshBasicMaterial({ colorWrite: false, side: DoubleSide });
+  private skin: Mesh | undefined;
+  private prepass: Mesh | undefined;
+  private ghost: Mesh | undefined;
+  private rest: Shape = { points_mm: new Float32Array(), triangles: new Uint32Array() };
+  private centre = new Vector3();
+  private radius = 100;
+  private reach = { across: 100, tall: 100 };
+  private waiting = false;
+
+  constructor(private readonly host: HTMLElement, label: string) {
+    this.renderer = new WebGLRenderer({ antialias: true, preserveDrawingBuffer: true, alpha: true });
+    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+    this.canvas = this.renderer.domElement;
+    this.canvas.tabIndex = 0;
+    this.canvas.setAttribute("role", "img");
+    this.canvas.setAttribute("aria-label", label);
+    host.prepend(this.canvas);
+    this.lights();
+    this.graph.add(this.head, this.camera);
+    this.head.add(this.marks);
+    this.controls = new OrbitControls(this.camera, this.canvas);
+    this.controls.enableDamping = false;
+    this.controls.addEventListener("change", () => this.draw());
+    this.watcher = new ResizeObserver(() => this.resize());
+    this.watcher.observe(host);
+    // For tests, and for whoever wants the numbers that are drawn.
+    Object.assign(host, { scene: this });
+  }
+
+  /** The axes of the case as they are drawn. */
+  orient(frame: FrameName): void {
+    const [a, b, c] = drawn(frame);
+    this.head.matrixAutoUpdate = false;
+    this.head.matrix.set(...a, 0, ...b, 0, ...c, 0, 0, 0, 0, 1);
+    this.head.updateMatrixWorld(true);
+  }
+
+  showSkin(rest: Shape): void {
+    this.rest = rest;
+    for (const old of [this.skin, this.prepass]) if (old !== undefined) this.drop(old);
+    const geometry = geometryOf(rest);
+    geometry.setAttribute("uv", new BufferAttribute(new Float32Array((rest.points_mm.length / 3) * 2), 2));
+    this.skin = new Mesh(geometry, this.skinMaterial);
+    this.skin.renderOrder = 2;
+    this.prepass = new Mesh(geometry, this.depth);
+    this.prepass.renderOrder = 1;
+    this.head.add(this.prepass, this.skin);
+    geometry.computeBoundingSphere();
+    const sphere = geometry.boundingSphere!;
+    this.centre = sphere.center.clone().applyMatrix4(this.head.matrix);
+    this.radius = sphere.radius;
+    this.draw();
+  }
+
+  /** The skin so far from rest: xyz for each node, in mm. */
+  moveSkin(displacement_mm: Float32Array): void {
+    if (this.skin === undefined) return;
+    const { position, normal } = this.skin.geometry.attributes as { position: BufferAttribute; normal: BufferAttribute };
+    const into = position.array as Float32Array;
+    const from = this.rest.points_mm;
+    for (let at = 0; at < into.length; at += 1) into[at] = from[at]! + displacement_mm[at]!;
+    normals(into, this.rest.triangles, normal.array as Float32Array);
+    position.needsUpdate = true;
+    normal.needsUpdate = true;
+    this.draw();
+  }
+
+  /** Where the nodes of the skin are drawn: xyz in mm in the frame of the case. */
+  get skinPositions_mm(): Float32Array {
+    return this.skin === undefined ? new Float32Array() : this.skin.geometry.attributes.position!.array as Float32Array;
+  }
+
+  /** Colours the skin by values at its nodes, or not. */
+  paint(values?: ArrayLike<number>, range_mm = 1, scheme: Scheme = "length"): void {
+    if (this.skin === undefined) return;
+    this.skin.material = values === undefined ? this.skinMaterial : this.mapMaterial;
+    if (values !== undefined) {
+      this.setBands(scheme);
+      const uv = this.skin.geometry.attributes.uv as BufferAttribute;
+      // A texture has no bands beyond its ends.
+      for (let node = 0; node < uv.count; node += 1) {
+        uv.setXY(node, Math.min(Math.max(share(values[node]!, range_mm, scheme), 0.001), 0.999), 0.5);
+      }
+      uv.needsUpdate = true;
+    }
+    this.draw();
+  }
+
+  look(look: SkinLook): void {
+    for (const material of [this.skinMaterial, this.mapMaterial]) {
+      material.transparent = look === "through";
+      material.opacity = look === "through" ? 0.42 : 1;
+    }
+    for (const mesh of [this.skin, this.prepass]) if (mesh !== undefined) mesh.visible = look !== "hidden";
+    this.draw();
+  }
+
+  /** Another state of the skin as a light shell over it, or none. */
+  overlay(shape: Shape | undefined, colour = 0x3d6fb4): void {
+    if (this.ghost !== undefined) this.drop(this.ghost);
+    this.ghost = undefined;
+    if (shape !== undefined) {
+      const material = new MeshStandardMaterial({ color: colour, transparent: true, opacity: 0.35, side: DoubleSide, depthWrite: false });
+      this.ghost = new Mesh(geometryOf(shape), material);
+      this.ghost.renderOrder = 3;
+      this.head.add(this.ghost);
+    }
+    this.draw();
+  }
+
+  addBone(name: string, shape: Shape, moves: boolean): void {
+    const material = new MeshStandardMaterial({ color: moves ? MOVING_BONE : BONE, roughness: 0.7, side: DoubleSide });
+    const bone = new Mesh(geometryOf(shape), material);
+    bone.matrixAutoUpdate = false;
+    this.bones.set(name, bone);
+    this.head.add(bone);
+    this.draw();
+  }
+
+  /** A movement as a row-major 4x4 matrix in the frame of the case. */
+  moveBone(name: string, matrix: number[]): void {
+    const bone = this.bones.get(name);
+    if (bone === undefined) return;
+    bone.matrix.copy(new Matrix4().fromArray(matrix).transpose());
+    bone.matrixWorldNeedsUpdate = true;
+    this.draw();
+  }
+
+  showBones(shown: boolean): void {
+    for (const bone of this.bones.values()) bone.visible = shown;
+    this.draw();
+  }
+
+  /** Points in the frame of the case; lines lead to where they are to be. */
+  mark(points: { at_mm: Triple; colour: number; to_mm?: Triple }[]): void {
+    for (const child of [...this.marks.children]) this.drop(child as Mesh, this.marks);
+    for (const { at_mm, colour, to_mm } of points) {
+      const ball = new Mesh(new SphereGeometry(MARK_MM, 16, 12), new MeshBasicMaterial({ color: colour, depthTest: false }));
+      ball.position.set(...at_mm);
+      ball.renderOrder = 5;
+      this.marks.add(ball);
+      if (to_mm === undefined) continue;
+      const line = new BufferGeometry().setFromPoints([new Vector3(...at_mm), new Vector3(...to_mm)]);
+      const drawnLine = new LineSegments(line, new LineBasicMaterial({ color: colour, depthTest: false }));
+      drawnLine.renderOrder = 5;
+      this.marks.add(drawnLine);
+    }
+    this.draw();
+  }
+
+  /** A standard view by its key. */
+  view(key: string): void {
+    const from = VIEWS[key];
+    if (from === undefined) return;
+    this.camera.zoom = 1;
+    this.camera.up.set(0, 1, 0);
+    this.controls.target.copy(this.fit(new Vector3(...from).normalize()));
+    this.camera.position.copy(this.controls.target).addScaledVector(new Vector3(...from).normalize(), 4 * this.radius);
+    this.resize();
+    this.controls.update();
+    this.draw();
+  }
+
+  /** The middle of what is seen from a direction, and how far it reaches to either side and up and down. */
+  private fit(from: Vector3): Vector3 {
+    const right = new Vector3(0, 1, 0).cross(from).normalize();
+    const up = from.clone().cross(right);
+    const axes = [right, up].map((axis) => axis.clone().transformDirection(this.head.matrix.clone().transpose()));
+    const points = this.rest.points_mm;
+    const spans = axes.map(({ x, y, z }) => {
+      let [low, high] = [Infinity, -Infinity];
+      for (let at = 0; at < points.length; at += 3) {
+        const along = points[at]! * x + points[at + 1]! * y + points[at + 2]! * z;
+        low = Math.min(low, along);
+        high = Math.max(high, along);
+      }
+      return { middle: (low + high) / 2, reach: (high - low) / 2 };
+    }) as [Span, Span];
+    this.reach = { across: spans[0].reach, tall: spans[1].reach };
+    const depth = this.centre.dot(from);
+    return new Vector3().addScaledVector(right, spans[0].middle).addScaledVector(up, spans[1].middle).addScaledVector(from, depth);
+  }
+
+  /** Arrow keys turn the head, plus and minus come nearer and go away. */
+  turnByKey(event: KeyboardEvent): void {
+    const turns: Record<string, [number, number]> = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
+    const [about, over] = turns[event.key] ?? [0, 0];
+    const nearer = { "+": 1.1, "-": 1 / 1.1 }[event.key] ?? 1;
+    if (about === 0 && over === 0 && nearer === 1) return;
+    event.preventDefault();
+    const arm = this.camera.position.clone().sub(this.controls.target);
+    const side = new Vector3(0, 1, 0).cross(arm).normalize();
+    arm.applyAxisAngle(new Vector3(0, 1, 0), about * KEY_TURN).applyAxisAngle(side, over * KEY_TURN);
+    this.camera.position.copy(this.controls.target).add(arm);
+    this.camera.zoom *= nearer;
+    this.camera.updateProjectionMatrix();
+    this.controls.update();
+    this.draw();
+  }
+
+  /** The node of the skin under the pointer. */
+  pick(event: PointerEvent | MouseEvent): Hit | undefined {
+    if (this.skin === undefined || !this.skin.visible) return undefined;
+    const ray = this.ray(event);
+    const [hit] = ray.intersectObject(this.skin, false);
+    if (hit?.face === undefined || hit.face === null) return undefined;
+    const point = this.head.worldToLocal(hit.point.clone());
+    const at = this.skinPositions_mm;
+    const away = (node: number) => point.distanceTo(new Vector3(at[3 * node], at[3 * node + 1], at[3 * node + 2]));
+    const node = [hit.face.a, hit.face.b, hit.face.c].reduce((nearest, next) => (away(next) < away(nearest) ? next : nearest));
+    return { node, point_mm: point.toArray() };
+  }
+
+  /** Where the pointer is in the plane through a point that faces the viewer. */
+  drag(event: PointerEvent, through_mm: Triple): Triple {
+    const { ray } = this.ray(event);
+    const point = this.head.localToWorld(new Vector3(...through_mm));
+    const along = point.sub(ray.origin).dot(ray.direction);
+    return this.head.worldToLocal(ray.origin.clone().addScaledVector(ray.direction, along)).toArray();
+  }
+
+  turnable(on: boolean): void {
+    this.controls.enabled = on;
+  }
+
+  /** Pixels of a millimetre, for a scale beside the picture. */
+  get pixelsPerMm(): number {
+    return (this.canvas.clientHeight * this.camera.zoom) / (this.camera.top - this.camera.bottom);
+  }
+
+  draw(): void {
+    if (this.waiting) return;
+    this.waiting = true;
+    requestAnimationFrame(() => {
+      this.waiting = false;
+      this.renderer.render(this.graph, this.camera);
+    });
+  }
+
+  /** At once, for a picture. */
+  drawNow(): HTMLCanvasElement {
+    this.renderer.render(this.graph, this.camera);
+    return this.canvas;
+  }
+
+  leave(): void {
+    this.watcher.disconnect();
+    this.controls.dispose();
+    this.graph.traverse((object) => {
+      if (!(object instanceof Mesh)) return;
+      object.geometry.dispose();
+      (object.material as Material).dispose();
+    });
+    this.mapMaterial.map?.dispose();
+    this.renderer.dispose();
+    this.renderer.forceContextLoss();
+    this.canvas.remove();
+  }
+
+  private ray(event: PointerEvent | MouseEvent): Raycaster {
+    const box = this.canvas.getBoundingClientRect();
+    const place = new Vector2((2 * (event.clientX - box.left)) / box.width - 1, 1 - (2 * (event.clientY - box.top)) / box.height);
+    const ray = new Raycaster();
+    ray.setFromCamera(place, this.camera);
+    return ray;
+  }
+
+  /** From above and a little aside, with the viewer. */
+  private lights(): void {
+    const lamp = (strength: number, place: Triple) => {
+      const light = new DirectionalLight(0xffffff, strength);
+      light.position.set(...place);
+      this.camera.add(light, light.target);
+    };
+    lamp(1.6, [-0.9, 1.3, 1.1]);
+    lamp(0.8, [1.4, 0.2, 0.8]);
+    this.graph.add(new HemisphereLight(0xffffff, 0xc9b8ad, 1.45));
+  }
+
+  private setBands(scheme: Scheme): void {
+    const texels = new Uint8Array(bands(scheme).flatMap((colour) => [...colour, 255]));
+    const texture = new DataTexture(texels, BANDS, 1);
+    texture.colorSpace = SRGBColorSpace;
+    texture.minFilter = NearestFilter;
+    texture.magFilter = NearestFilter;
+    texture.needsUpdate = true;
+    this.mapMaterial.map?.dispose();
+    this.mapMaterial.map = texture;
+    this.mapMaterial.emissiveMap = texture;
+    this.mapMaterial.needsUpdate = true;
+  }
+
+  private resize(): void {
+    const { clientWidth: width, clientHeight: height } = this.host;
+    if (width === 0 || height === 0) return;
+    this.renderer.setSize(width, height, false);
+    const tall = ROOM * Math.max(this.reach.tall, (this.reach.across * height) / width);
+    const across = (tall * width) / height;
+    Object.assign(this.camera, { left: -across, right: across, top: tall, bottom: -tall, near: 0.1, far: 10 * this.radius });
+    this.camera.updateProjectionMatrix();
+    this.draw();
+  }
+
+  private drop(mesh: Mesh | LineSegments, from: Group = this.head): void {
+    from.remove(mesh);
+    mesh.geometry.dispose();
+    const kept: unknown[] = [this.skinMaterial, this.mapMaterial, this.depth];
+    if (!kept.includes(mesh.material)) (mesh.material as Material).dispose();
+  }
+}
+
+function geometryOf({ points_mm, triangles }: Shape): BufferGeometry {
+  const geometry = new BufferGeometry();
+  const normal = new Float32Array(points_mm.length);
+  normals(points_mm, triangles, normal);
+  geometry.setIndex(new BufferAttribute(triangles, 1));
+  geometry.setAttribute("position", new BufferAttribute(points_mm.slice(), 3));
+  geometry.setAttribute("normal", new BufferAttribute(normal, 3));
+  return geometry;
+}

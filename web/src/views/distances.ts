@@ -1,0 +1,58 @@
+// How far a predicted skin is from a real one.
+import type { Documents } from "../api.js";
+import type { App } from "../app.js";
+import { make, table } from "../dom.js";
+import { mm } from "../figures.js";
+import type { Words } from "../words/en.js";
+
+const percent = (share: number) => `${(100 * share).toFixed(1)} %`;
+
+export function comparisonFacts({ words }: App, comparison: Documents["ComparisonDocument"]): HTMLElement {
+  const row = (name: string, one: Documents["DistanceDocument"]) => [name, mm(one.mean), mm(one.p95), mm(one.max),
+    percent(one.share_below_1_mm), percent(one.share_below_2_mm), percent(one.share_below_3_mm)];
+  const regions = Object.entries(comparison.regions ?? {}).map(([name, region]) => row(name, region.both));
+  const { method, rotation_deg, displacement_mm, rms_mm } = comparison.alignment;
+  const registered = method === "none" ? words.alignNone
+    : `${method}, ${words.turned} ${rotation_deg.toFixed(2)}°, ${words.shifted} ${mm(Math.hypot(...displacement_mm))} mm`
+      + (rms_mm === undefined || rms_mm === null ? "" : `, ${words.residual} ${mm(rms_mm)} mm`);
+  return make("div", {},
+    make("div", { className: "scroll" }, table(words.histogram, ["", words.mean, words.p95, words.max, "< 1 mm", "< 2 mm", "< 3 mm"],
+      [row(words.whole, comparison.both), ...regions])),
+    make("p", {}, `${words.registration}: ${registered}`));
+}
+
+const SVG = "http://www.w3.org/2000/svg";
+const REACH_MM = 3;
+const BARS = 24;
+
+/** How many nodes lie how far inside or outside, from -3 to 3 mm; those beyond stand in the last bars. */
+export function histogram(words: Words, distances: Float32Array): SVGElement {
+  const counts = new Array<number>(BARS).fill(0);
+  for (const value of distances) {
+    const bar = Math.floor(((Math.min(Math.max(value, -REACH_MM), REACH_MM * 0.9999) + REACH_MM) / (2 * REACH_MM)) * BARS);
+    counts[bar]! += 1;
+  }
+  const most = Math.max(...counts);
+  const drawing = element("svg", { viewBox: "0 0 240 96", role: "img", "aria-label": words.histogram, class: "drawing" });
+  counts.forEach((count, at) => {
+    const height = (70 * count) / most;
+    const bar = element("rect", { x: String(at * 10 + 1), y: String(76 - height), width: "8", height: String(height), fill: "#0b5c7a" });
+    const title = element("title", {});
+    const from = -REACH_MM + (2 * REACH_MM * at) / BARS;
+    title.textContent = `${from.toFixed(2)} … ${(from + (2 * REACH_MM) / BARS).toFixed(2)} mm: ${count}`;
+    bar.append(title);
+    drawing.append(bar);
+  });
+  for (const value of [-3, -2, -1, 0, 1, 2, 3]) {
+    const text = element("text", { x: String(value === 3 ? 238 : 120 + value * 38), y: "90", "font-size": "9", "text-anchor": value === 3 ? "end" : "middle", fill: "#222" });
+    text.textContent = value === 3 ? "3 mm" : String(value);
+    drawing.append(text);
+  }
+  return drawing;
+}
+
+function element(name: string, attributes: Record<string, string>): SVGElement {
+  const made = document.createElementNS(SVG, name);
+  for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, value);
+  return made;
+}

@@ -1,0 +1,22 @@
+// What inverse planning found, with what is uncertain about it.
+import type { Documents, Job } from "../api.js";
+import type { App } from "../app.js";
+import { make, table } from "../dom.js";
+import type { Opened } from "../loading.js";
+import { address } from "../route.js";
+import { mm } from "../figures.js";
+
+type Found = Documents["OptimisationDocument"];
+
+export function foundFacts({ words, route }: App, job: Job, opened: Opened, found: Found): HTMLElement {
+  const numbers = found.parameters.map(({ segment, name, value }, at) =>
+    [`${segment} ${name}`, value.toFixed(2), found.standard_error[at]!.toFixed(2)]);
+  const stopped = found.at_bound.map(({ segment, name, value }) => [`${segment} ${name}`, value.toFixed(2), words.atBound]);
+  const targets = found.targets.map(({ residual_mm, largest_mm, points }, at) => [`${words.target} ${at + 1} (${points})`, mm(residual_mm), mm(largest_mm)]);
+  const loose = found.undetermined.map((parts) => make("li", {}, parts.map(({ segment, name, part }) => `${part.toFixed(2)} ${segment} ${name}`).join(" + ")));
+  return make("div", {},
+    make("div", { className: "scroll" }, table(words.movement, ["", "mm, °", words.standardError], [...numbers, ...stopped])),
+    make("div", { className: "scroll" }, table(words.targets, ["", `${words.left_} mm`, words.max], targets)),
+    loose.length > 0 && make("div", { className: "warned" }, words.notDetermined, make("ul", {}, ...loose)),
+    make("a", { className: "button primary", href: address(["case", opened.id, "plan"], { p: route.state.get("p") ?? undefined }), data: { job: job.id } }, words.openPlan));
+}

@@ -1,0 +1,175 @@
+// Planning backwards: where the skin is wanted is dragged or stated, and the service finds the movement that comes nearest.
+import type { Documents, Triple } from "../api.js";
+import { refusal, type App, type Leave } from "../app.js";
+import { button, choice, make, select } from "../dom.js";
+import { inAxes, inWords, movement, still, TRANSLATIONS, type FrameName, type MotionName } from "../frame.js";
+import { openCase, restingSkin, type Opened, type RestingSkin } from "../loading.js";
+import { address } from "../route.js";
+import { Workbench } from "../workbench.js";
+import { crumbs } from "./crumbs.js";
+
+/** Where a point is wanted: forward, up and left of where it is, in mm; null is free. */
+interface Target {
+  label: string;
+  landmark?: string;
+  at_mm: Triple;
+  by: [number | null, number | null, number | null];
+  sigma_mm: number;
+}
+/** How far a segment may go to either side along or about each word; 0 holds it. */
+type Bounds = Record<string, Record<MotionName, number>>;
+
+const COLOUR = 0xb5461d;
+const STARTING_BOUND_MM = 10;
+
+export async function inversePage(app: App): Promise<Leave> {
+  const opened = await openCase(app.service, app.route.path[1]!);
+  const bench = new Workbench(app, crumbs(app.words, opened.id, opened.name, "inverse"));
+  bench.scene.orient(opened.frame);
+  const wait = make("div", { className: "wait" }, make("p", { className: "loading" }, app.words.loading));
+  bench.panel.append(wait);
+  try {
+    const loaded = await restingSkin(app, opened.id, wait);
+    wait.remove();
+    bench.scene.showSkin(loaded.rest);
+    bench.offer([]);
+    bench.start();
+    new Inverse(app, opened, bench, loaded).start();
+  } catch (error) {
+    bench.panel.append(refusal(error, app.words));
+  }
+  return () => bench.leave();
+}
+
+class Inverse {
+  private readonly targets: Target[] = [];
+  private readonly bounds: Bounds;
+  private readonly list = make("div", {});
+  private readonly said = make("div", { role: "status" });
+
+  constructor(private readonly app: App, private readonly opened: Opened, private readonly bench: Workbench, private readonly loaded: RestingSkin) {
+    const held = { forward: STARTING_BOUND_MM, up: STARTING_BOUND_MM, left: 0, pitch: 0, roll: 0, yaw: 0 };
+    this.bounds = Object.fromEntries(loaded.description.segments.map(({ name }) => [name, { ...held }]));
+  }
+
+  start(): void {
+    const { app: { words }, bench, opened } = this;
+    const marks = Object.keys(opened.document.landmarks ?? {});
+    const add = select(words.addLandmark, [["", "–"], ...marks.map((mark) => [mark, mark] as const)], "", (mark) => {
+      if (mark !== "") this.add({ label: mark, landmark: mark, at_mm: opened.document.landmarks![mark] as Triple, by: [0, 0, null], sigma_mm: 1 });
+    });
+    const pulling = choice(words.dragPoint, [["turn", words.turning], ["pull", words.pulling]] as const, "turn",
+      (value) => bench.scene.turnable(value === "turn"));
+    bench.section(words.targets, make("p", {}, words.inverseWhy), pulling, make("p", { className: "fine" }, words.dragHint), add, this.list);
+    bench.section(words.bounds, ...Object.keys(this.bounds).map((name) => this.boundsOf(name)));
+    bench.section(words.find, button(words.find, () => void this.find(), { className: "primary" }), this.said);
+    this.draw();
+    this.dragging(pulling);
+  }
+
+  private add(target: Target): void {
+    this.targets.push(target);
+    this.draw();
+  }
+
+  /** Pulling at the skin makes a target where it was let go. */
+  private dragging(mode: HTMLElement): void {
+    const { canvas } = this.bench.scene;
+    let pulled: Target | undefined;
+    canvas.addEventListener("pointerdown", (event) => {
+      if (mode.querySelector<HTMLInputElement>("input:checked")?.value !== "pull") return;
+      const hit = this.bench.scene.pick(event);
+      if (hit === undefined) return;
+      canvas.setPointerCapture(event.pointerId);
+      const at_mm = [0, 1, 2].map((axis) => this.loaded.rest.points_mm[3 * hit.node + axis]!) as Triple;
+      pulled = this.nearTarget(at_mm);
+    });
+    canvas.addEventListener("pointermove", (event) => {
+      if (pulled === undefined) return;
+      const to = this.bench.scene.drag(event, pulled.at_mm);
+      pulled.by = inWords(to.map((value, axis) => value - pulled!.at_mm[axis]!) as Triple, this.opened.frame)
+        .map((value) => Number(value.toFixed(1))) as Triple;
+      this.marks();
+    });
+    canvas.addEventListener("pointerup", () => {
+      if (pulled !== undefined) this.draw();
+      pulled = undefined;
+    });
+  }
+
+  /** The target of the landmark that is nearest to a point: the service takes landmarks and sets of nodes, no single points. */
+  private nearTarget(at_mm: Triple): Target | undefined {
+    const marks = Object.entries(this.opened.document.landmarks ?? {}) as [string, Triple][];
+    const away = (place: Triple) => Math.hypot(...place.map((value, axis) => value - at_mm[axis]!));
+    const nearest = marks.reduce<[string, Triple] | undefined>((best, mark) => (best === undefined || away(mark[1]) < away(best[1]) ? mark : best), undefined);
+    if (nearest === undefined) {
+      this.said.textContent = this.app.words.noLandmarks;
+      return undefined;
+    }
+    const known = this.targets.find(({ landmark }) => landmark === nearest[0]);
+    if (known !== undefined) return known;
+    const target: Target = { label: nearest[0], landmark: nearest[0], at_mm: nearest[1], by: [0, 0, null], sigma_mm: 1 };
+    this.targets.push(target);
+    return target;
+  }
+
+  private draw(): void {
+    const { words } = this.app;
+    const row = (target: Target, at: number) => {
+      const number = (word: number) => {
+        const label = words[TRANSLATIONS[word]!];
+        const input = make("input", { type: "number", step: "0.1", placeholder: words.emptyFree, value: target.by[word] === null ? "" : String(target.by[word]), aria: { label: `${target.label} ${label} mm` } });
+        input.addEventListener("input", () => { target.by[word] = input.value === "" ? null : input.valueAsNumber; this.marks(); });
+        return make("label", { className: "field" }, make("span", {}, label), input);
+      };
+      return make("fieldset", { className: "target" }, make("legend", {}, target.label), number(0), number(1), number(2),
+        button(words.remove, () => { this.targets.splice(at, 1); this.draw(); }));
+    };
+    this.list.replaceChildren(...(this.targets.length === 0 ? [make("p", { className: "fine" }, words.noTargets)] : this.targets.map(row)));
+    this.marks();
+  }
+
+  private marks(): void {
+    const { frame } = this.opened;
+    this.bench.scene.mark(this.targets.map(({ at_mm, by }) => {
+      const moved = inAxes(by.map((value) => value ?? 0) as Triple, frame);
+      return { at_mm, colour: COLOUR, to_mm: at_mm.map((value, axis) => value + moved[axis]!) as Triple };
+    }));
+  }
+
+  private boundsOf(name: string): HTMLElement {
+    const { words } = this.app;
+    const bound = this.bounds[name]!;
+    const fields = (Object.keys(bound) as MotionName[]).map((word) => {
+      const input = make("input", { type: "number", min: "0", step: "0.5", value: String(bound[word]), aria: { label: `${name} ${words[word]} ±` } });
+      input.addEventListener("input", () => { bound[word] = Number.isFinite(input.valueAsNumber) ? Math.abs(input.valueAsNumber) : 0; });
+      return make("label", { className: "field" }, make("span", {}, `${words[word]} ±`), input);
+    });
+    return make("details", { className: "segment", open: true }, make("summary", {}, name), make("div", { className: "bounds" }, ...fields));
+  }
+
+  private async find(): Promise<void> {
+    const { app: { service, words }, opened } = this;
+    try {
+      const job = await service.post<Documents["StatusInfo"]>("/v1/jobs", this.spec(opened.frame));
+      location.hash = address(["job", job.id]);
+    } catch (error) {
+      this.said.replaceChildren(refusal(error, words));
+    }
+  }
+
+  private spec(frame: FrameName): object {
+    const targets = this.targets.map(({ landmark, by, sigma_mm }) => ({ landmark, displacement_mm: inAxes(by, frame), sigma_mm }));
+    const bounds = Object.fromEntries(this.loaded.description.segments.map(({ name, centre_mm }) => [name, interval(this.bounds[name]!, centre_mm as Triple, frame)]));
+    return { kind: "optimise", case: this.opened.id, targets, bounds, outputs: ["skin.vtp", "skin.glb"] };
+  }
+}
+
+
+/** How far a segment may go, as the service takes it. */
+function interval(bound: Record<MotionName, number>, centre_mm: Triple, frame: FrameName): object {
+  const { translation_mm, rotation_deg } = movement({ ...still(), ...bound }, frame);
+  const ends = (value: number) => [-Math.abs(value), Math.abs(value)];
+  const turns = rotation_deg.some((value) => value !== 0);
+  return { translation_mm: translation_mm.map(ends), ...(turns ? { rotation_deg: rotation_deg.map(ends), pivot_mm: centre_mm } : {}) };
+}

@@ -1,0 +1,66 @@
+// Lists of jobs and of studies.
+import type { Documents, Job } from "../api.js";
+import { refusal, type App, type Leave } from "../app.js";
+import { button, make, table } from "../dom.js";
+import { address } from "../route.js";
+import { mm, when } from "../figures.js";
+
+/** Jobs under way are looked at again after so long, in ms. */
+const AGAIN = 2000;
+const WORKING = ["accepted", "running"];
+
+export async function jobs(app: App): Promise<Leave> {
+  const { service, words, stage } = app;
+  let left = false;
+  let timer: ReturnType<typeof setTimeout> | undefined;
+  const said = make("div", {});
+  const body = make("tbody", {});
+  const row = (job: Job) => {
+    const cancel = button(words.cancel, () => { service.ask("DELETE", `/v1/jobs/${job.id}`).then(draw).catch((error: unknown) => said.replaceChildren(refusal(error, words))); });
+    const working = WORKING.includes(job.status);
+    const bar = make("progress", { max: 100, value: job.progress, ariaLabel: `${job.kind} ${words.progress}` });
+    return make("tr", {}, make("th", { scope: "row" }, make("a", { href: address(["job", job.id]) }, job.kind)),
+      make("td", {}, job.status), make("td", {}, working ? bar : job.error?.type ?? ""),
+      make("td", {}, when(job.created)), make("td", {}, working ? cancel : ""));
+  };
+  const draw = async () => {
+    const list = await service.list<Job>("/v1/jobs", 100);
+    if (left) return;
+    body.replaceChildren(...list.map(row));
+    if (list.length === 0) said.replaceChildren(make("p", {}, words.noJobs));
+    clearTimeout(timer);
+    if (list.some((job) => WORKING.includes(job.status))) timer = setTimeout(() => void draw().catch(() => {}), AGAIN);
+  };
+  await draw();
+  const head = [words.kind, words.status, words.progress, words.created, ""].map((text) => make("th", { scope: "col" }, text));
+  stage.replaceChildren(make("h1", {}, words.jobs), said, make("div", { className: "scroll card" },
+    make("table", {}, make("thead", {}, make("tr", {}, ...head)), body)));
+  return () => { left = true; clearTimeout(timer); };
+}
+
+export async function studies(app: App): Promise<Leave> {
+  const { service, words, stage } = app;
+  const list = await service.list<Job>("/v1/jobs?kind=study", 50);
+  const shown = make("div", {});
+  const open = (job: Job) => void report(app, job, shown).catch((error: unknown) => shown.replaceChildren(refusal(error, words)));
+  const row = (job: Job) => make("li", { className: "card" },
+    make("h2", {}, when(job.created)),
+    make("p", {}, `${job.status}${job.results?.study === undefined ? "" : ` · ${words.verdict}: ${job.results.study.verdict.outcome}`}`),
+    ...(job.status === "successful" ? [button(words.report, () => open(job))] : []));
+  stage.replaceChildren(make("h1", {}, words.studies),
+    list.length === 0 ? make("p", {}, words.noStudies) : make("ul", { className: "cards" }, ...list.map(row)), shown);
+  return () => {};
+}
+
+/** The chart of a study with the rows behind its marks. */
+async function report({ service, words }: App, job: Job, into: HTMLElement): Promise<void> {
+  const path = `/v1/jobs/${job.id}/report`;
+  const chart = await (await service.ask("GET", `${path}?format=svg`)).blob();
+  const { rows, verdict } = await service.get<Documents["ReportDocument"]>(path);
+  const cells = rows.map((row) => [row.label, row.scene, row.wall_s?.toPrecision(2) ?? "–",
+    row.p95_mm === undefined || row.p95_mm === null ? "–" : mm(row.p95_mm), row.status]);
+  into.replaceChildren(
+    make("img", { className: "drawing", src: URL.createObjectURL(chart), alt: words.chart }),
+    ...verdict.reasons.map((reason) => make("p", { className: "warned" }, reason)),
+    make("div", { className: "scroll" }, table(words.rows, [words.variant, words.scene, words.wall, words.p95mm, words.state], cells)));
+}

@@ -1,0 +1,280 @@
+// Planning: segments move by sliders, and the skin follows within a frame.
+import type { Documents, Triple } from "../api.js";
+import { announce, refusal, warnings, type App, type Leave } from "../app.js";
+import { button, make, save, select } from "../dom.js";
+import { movement, still, type Motion, type MotionName } from "../frame.js";
+import { addBones, buildResponse, openCase, responseOf, type LoadedResponse, type Opened } from "../loading.js";
+import { matrix } from "../matrix.js";
+import { atRest, document as planDocument, History, read, readPivots, written, type Pivots, type Plan } from "../plan.js";
+import { coefficients, lengths, SkinSum } from "../response.js";
+import { address, note } from "../route.js";
+import { mm } from "../figures.js";
+import { Workbench } from "../workbench.js";
+import { crumbs } from "./crumbs.js";
+import { movements, told, type Movements } from "./movements.js";
+import { savedPlans } from "./plans.js";
+
+/** The service is asked what is left out once nothing has moved for so long, in ms. */
+const IDLE = 350;
+/** A slider may differ from the service by so much, in mm: f32 columns, and their sum in another order. */
+const AGREED_MM = 1e-4;
+
+export async function planPage(app: App): Promise<Leave> {
+  const opened = await openCase(app.service, app.route.path[1]!);
+  const bench = new Workbench(app, crumbs(app.words, opened.id, opened.name, "plan"));
+  bench.scene.orient(opened.frame);
+  try {
+    await new Planning(app, opened, bench).start();
+  } catch (error) {
+    bench.panel.append(refusal(error, app.words));
+    if (isKeyAsked(error)) { bench.leave(); throw error; }
+  }
+  return () => bench.leave();
+}
+
+const isKeyAsked = (error: unknown) => (error as { problem?: { status?: number } }).problem?.status === 401;
+
+class Planning {
+  private loaded!: LoadedResponse;
+  private sum!: SkinSum;
+  private plan: Plan = {};
+  private pivots: Pivots = {};
+  private history!: History<Plan>;
+  private readonly controls = new Map<string, Movements>();
+  private readonly undoButton = button("", () => this.step("undo"), { className: "icon" });
+  private readonly redoButton = button("", () => this.step("redo"), { className: "icon" });
+  private readonly told = make("div", { className: "told", role: "status" });
+  private readonly checked = make("div", { className: "told fine" });
+  private readonly order = make("div", { className: "row" });
+  private readonly segments = make("div", {});
+  private asking: ReturnType<typeof setTimeout> | undefined;
+  private asked = 0;
+  private model = "auto";
+
+  constructor(private readonly app: App, private readonly opened: Opened, private readonly bench: Workbench) {}
+
+  async start(): Promise<void> {
+    const { app, opened, bench } = this;
+    const { words } = app;
+    const bones = addBones(app.service, opened, bench.scene);
+    await this.load();
+    this.plan = read(app.route.state.get("p") ?? "", this.names);
+    this.history = new History(this.plan);
+    this.undoButton.textContent = `↶ ${words.undo}`;
+    this.redoButton.textContent = `↷ ${words.redo}`;
+    bench.section(words.plan,
+      opened.frame === "unspecified" && make("p", { className: "warned" }, words.unspecifiedFrame),
+      make("div", { className: "row" }, this.undoButton, this.redoButton, button(words.reset, () => this.set(atRest(this.names)))),
+      this.told, this.checked, this.order, this.segments);
+    this.drawSegments();
+    bench.section(words.predict, this.prediction());
+    const saved = bench.section(words.savedPlans);
+    saved.append(await savedPlans(app, opened, {
+      now: () => planDocument(this.plan, this.pivots, opened.frame), pivots: () => this.pivots,
+      load: (plan) => this.set(plan), called: (plan) => told(plan, words), compare: (plan) => this.differenceTo(plan),
+    }));
+    bench.start();
+    bench.canvasKeys((event) => this.pressed(event));
+    await bones;
+    this.moveAll();
+  }
+
+  private get names(): string[] {
+    return this.loaded.description.segments.map(({ name }) => name);
+  }
+
+  private async load(): Promise<void> {
+    const { app, opened, bench } = this;
+    const wait = make("div", { className: "wait" }, make("p", { className: "loading" }, app.words.loading));
+    bench.panel.append(wait);
+    this.loaded = await responseOf(app, opened.id, wait);
+    wait.remove();
+    this.sum = new SkinSum(this.loaded.columns);
+    const centres = this.loaded.description.segments.map(({ name, centre_mm }) => [name, centre_mm as Triple] as const);
+    this.pivots = { ...Object.fromEntries(centres), ...readPivots(app.route.state.get("p") ?? "") };
+    bench.scene.showSkin(this.loaded.rest);
+    const { words } = app;
+    bench.offer([
+      { name: "displacement", label: words.displacement, scheme: "length", range_mm: 10, values: () => lengths(this.sum.displacement_mm) },
+      ...(this.sum.second_mm === undefined ? [] : [
+        { name: "second", label: words.secondOrder, scheme: "length" as const, range_mm: 1, values: () => lengths(this.sum.second_mm!) }]),
+    ]);
+    this.drawOrder();
+  }
+
+  private drawOrder(): void {
+    const { words } = this.app;
+    const second = this.loaded.columns.second !== undefined;
+    this.order.replaceChildren(make("span", { className: "badge" }, second ? words.order2 : words.order1),
+      second ? "" : button(words.second, () => void this.addSecond(), { title: words.secondWhy }));
+  }
+
+  private async addSecond(): Promise<void> {
+    try {
+      await buildResponse(this.app, this.opened.id, 2, this.order);
+      const pivots = this.pivots;
+      await this.load();
+      this.pivots = pivots;
+      this.moveAll();
+    } catch (error) {
+      this.order.append(refusal(error, this.app.words));
+    }
+  }
+
+  private drawSegments(): void {
+    const { words } = this.app;
+    const landmarks = Object.entries(this.opened.document.landmarks ?? {});
+    const open = this.app.route.state.get("segment");
+    this.segments.replaceChildren(...this.names.map((name, at) => {
+      const control = movements(words, name, this.opened.frame, this.plan[name]!,
+        (word, value) => this.moving(name, word, value), () => this.moved());
+      this.controls.set(name, control);
+      const centre = this.loaded.description.segments[at]!.centre_mm as Triple;
+      const [chosen = ""] = landmarks.find(([, place]) => place.every((value, axis) => Math.abs(value - this.pivots[name]![axis]!) < 1e-3)) ?? [];
+      const about = select(words.turnsAbout, [["", words.itsCentre], ...landmarks.map(([mark]) => [mark, mark] as const)], chosen, (mark) => {
+        this.pivots[name] = mark === "" ? centre : landmarks.find(([called]) => called === mark)![1] as Triple;
+        this.moveOne(name);
+        this.after();
+        note({ p: written(this.plan, this.pivots) });
+      });
+      return make("details", { className: "segment", open: open === null ? at < 2 : open === name },
+        make("summary", {}, name), control.element, about);
+    }));
+  }
+
+  private moving(name: string, word: MotionName, value: number): void {
+    const begin = performance.now();
+    const motion: Motion = { ...(this.plan[name] ?? still()), [word]: value };
+    this.plan = { ...this.plan, [name]: motion };
+    this.moveOne(name);
+    this.after();
+    // For whoever wants to know what a step of a slider takes.
+    performance.measure("slider", { start: begin });
+  }
+
+  /** A slider was let go. */
+  private moved(): void {
+    this.history.note(this.plan);
+    note({ p: written(this.plan, this.pivots) });
+    this.drawSteps();
+    announce(this.told.textContent ?? "");
+  }
+
+  private set(plan: Plan): void {
+    this.plan = plan;
+    for (const [name, control] of this.controls) control.show(plan[name] ?? still());
+    this.moveAll();
+    this.moved();
+  }
+
+  private step(which: "undo" | "redo"): void {
+    const plan = this.history[which]();
+    if (plan === undefined) return;
+    this.set(plan);
+  }
+
+  private moveAll(): void {
+    for (const name of this.names) this.moveOne(name, false);
+    this.bench.scene.moveSkin(this.sum.displacement_mm);
+    this.after();
+    this.drawSteps();
+  }
+
+  /** One segment and the skin with it. */
+  private moveOne(name: string, draw = true): void {
+    const motion = this.plan[name] ?? still();
+    const pivot_mm = this.pivots[name]!;
+    const at = this.names.indexOf(name);
+    const centre_mm = this.loaded.description.segments[at]!.centre_mm as Triple;
+    this.sum.move(at, coefficients({ ...movement(motion, this.opened.frame), pivot_mm, centre_mm }));
+    this.bench.scene.moveBone(name, matrix(motion, pivot_mm, this.opened.frame));
+    if (draw) this.bench.scene.moveSkin(this.sum.displacement_mm);
+  }
+
+  private after(): void {
+    const { words } = this.app;
+    const most = lengths(this.sum.displacement_mm).reduce((largest, one) => Math.max(largest, one), 0);
+    this.told.textContent = `${words.movesMost} ${mm(most)} mm ${words.atMost}`;
+    this.bench.repaint();
+    this.bench.caption.textContent = `${this.opened.name} · ${told(this.plan, words)}`;
+    clearTimeout(this.asking);
+    this.asking = setTimeout(() => void this.ask(), IDLE);
+  }
+
+  /** What the answer leaves out, and that the service says the same. */
+  private async ask(): Promise<void> {
+    const { service, words } = this.app;
+    const turn = (this.asked += 1);
+    const here = this.sum.displacement_mm.slice();
+    const plan = planDocument(this.plan, this.pivots, this.opened.frame);
+    try {
+      const path = `/v1/cases/${this.opened.id}/response/apply?job=${this.loaded.description.job}`;
+      const answer = await service.post<Documents["AppliedDocument"]>(path, { plan });
+      if (turn !== this.asked) return;
+      const apart = here.reduce((most, value, at) => Math.max(most, Math.abs(value - answer.displacement_mm[Math.floor(at / 3)]![at % 3]!)), 0);
+      const agrees = apart <= AGREED_MM;
+      this.checked.replaceChildren(
+        make("p", { className: answer.within_linear_range ? "" : "warned" },
+          answer.within_linear_range ? words.leftOut(mm(answer.nonlinearity_estimate_mm)) : words.outside),
+        answer.second_order_mm === undefined || answer.second_order_mm === null ? "" : make("p", {}, words.secondAdds(mm(answer.second_order_mm))),
+        make("p", { className: agrees ? "" : "warned" }, (agrees ? words.agrees : words.disagrees)(apart.toExponential(0))),
+        answer.warnings.length === 0 ? "" : warnings(answer.warnings, words));
+      this.checked.dataset.apart = String(apart);
+    } catch (error) {
+      if (turn === this.asked) this.checked.replaceChildren(refusal(error, words));
+    }
+  }
+
+  private prediction(): HTMLElement {
+    const { words, service } = this.app;
+    const models = [["auto", words.auto], ["fem_linear", "fem_linear"], ["fem_nonlinear", "fem_nonlinear"]] as const;
+    const said = make("div");
+    const predict = button(words.predict, () => {
+      predict.disabled = true;
+      const spec = {
+        kind: "predict", case: this.opened.id, plan: planDocument(this.plan, this.pivots, this.opened.frame),
+        outputs: ["skin.vtp", "skin.glb"], ...(this.model === "auto" ? {} : { method: this.model }),
+      };
+      service.post<Documents["StatusInfo"]>("/v1/jobs", spec).then(
+        ({ id }) => { location.hash = address(["job", id], { p: written(this.plan, this.pivots) }); },
+        (error: unknown) => { predict.disabled = false; said.replaceChildren(refusal(error, words)); });
+    }, { className: "primary" });
+    const glb = button(words.glb, () => void this.saveGlb().catch((error: unknown) => said.replaceChildren(refusal(error, words))));
+    return make("div", { className: "stack" }, select(words.method, models, this.model, (value) => { this.model = value; }),
+      make("div", { className: "row" }, predict, glb), said);
+  }
+
+  /** The moved skin as the service writes it, with where it comes from and what it is not. */
+  private async saveGlb(): Promise<void> {
+    const path = `/v1/cases/${this.opened.id}/response/apply?job=${this.loaded.description.job}`;
+    const body = JSON.stringify({ plan: planDocument(this.plan, this.pivots, this.opened.frame) });
+    const answer = await this.app.service.ask("POST", path, body, { "Content-Type": "application/json", Accept: "model/gltf-binary" });
+    save(await answer.blob(), "skin.glb");
+  }
+
+  /** The skin of another plan as an overlay, and how far it is from this one. */
+  private differenceTo(plan: Plan | undefined): string {
+    if (plan === undefined) { this.bench.scene.overlay(undefined); return ""; }
+    const other = new SkinSum(this.loaded.columns);
+    this.names.forEach((name, at) => {
+      const centre_mm = this.loaded.description.segments[at]!.centre_mm as Triple;
+      other.move(at, coefficients({ ...movement(plan[name] ?? still(), this.opened.frame), pivot_mm: this.pivots[name]!, centre_mm }));
+    });
+    const { rest } = this.loaded;
+    this.bench.scene.overlay({ ...rest, points_mm: rest.points_mm.map((value, at) => value + other.displacement_mm[at]!) });
+    const apart = lengths(other.displacement_mm.map((value, at) => value - this.sum.displacement_mm[at]!));
+    const mean = apart.reduce((sum, value) => sum + value, 0) / apart.length;
+    return `${this.app.words.difference}: ${this.app.words.mean} ${mm(mean)} mm, ${this.app.words.max} ${mm(Math.max(...apart))} mm`;
+  }
+
+  private drawSteps(): void {
+    this.undoButton.disabled = !this.history.canUndo;
+    this.redoButton.disabled = !this.history.canRedo;
+  }
+
+  private pressed(event: KeyboardEvent): void {
+    if (!(event.ctrlKey || event.metaKey) || event.key.toLowerCase() !== "z") return;
+    event.preventDefault();
+    this.step(event.shiftKey ? "redo" : "undo");
+  }
+}

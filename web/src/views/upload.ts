@@ -1,0 +1,99 @@
+// A case from files: a mesh alone with roles for its sets, or a mesh with the document that says what it means.
+import type { Documents } from "../api.js";
+import { ProgressLine, refusal, type App } from "../app.js";
+import { button, make, select } from "../dom.js";
+import { address } from "../route.js";
+import { guess, documentOf, type Role, type SetRoles } from "../roles.js";
+
+const ROLES: Role[] = ["none", "skin", "region", "segment", "fixed", "sliding"];
+const SURFACES = /\.(vtp|stl|ply)$/i;
+
+const stem = (name: string) => name.replace(/\.[^.]+(\.gz)?$/, "");
+
+export function uploadForm(app: App): HTMLElement {
+  const { words } = app;
+  const said = make("div", { role: "status" });
+  const next = make("div");
+  const files = make("input", { type: "file", multiple: true, className: "hidden", aria: { label: words.chooseFiles }, data: { files: "" } });
+  const take = (list: FileList | null | undefined) => {
+    if (list === null || list === undefined || list.length === 0) return;
+    said.replaceChildren();
+    next.replaceChildren();
+    taken(app, [...list], said, next).catch((error: unknown) => said.replaceChildren(refusal(error, words)));
+  };
+  files.addEventListener("change", () => { take(files.files); files.value = ""; });
+  const drop = make("section", { className: "card drop" }, make("h2", {}, words.addCase), make("p", {}, words.dropHere),
+    files, button(words.chooseFiles, () => files.click()), make("p", { className: "fine" }, words.fileHint), said, next);
+  drop.addEventListener("dragover", (event) => { event.preventDefault(); drop.classList.add("over"); });
+  drop.addEventListener("dragleave", () => drop.classList.remove("over"));
+  drop.addEventListener("drop", (event) => {
+    event.preventDefault();
+    drop.classList.remove("over");
+    take(event.dataTransfer?.files);
+  });
+  return drop;
+}
+
+/** Files with a document are sent as they are; a mesh alone is looked at first. */
+async function taken(app: App, files: File[], said: HTMLElement, next: HTMLElement): Promise<void> {
+  const document = files.find(({ name }) => name.endsWith(".json"));
+  const meshes = files.filter((file) => file !== document);
+  if (document !== undefined) {
+    const stated = JSON.parse(await document.text()) as { case?: unknown };
+    await send(app, (stated.case ?? stated) as Documents["CaseDocument"], byReference(stated.case ?? stated, meshes), said);
+    return;
+  }
+  const volume = meshes.find(({ name }) => !SURFACES.test(name)) ?? meshes[0]!;
+  const line = new ProgressLine(app.words.sending);
+  said.replaceChildren(line.element);
+  const id = await app.service.upload(volume, "mm", "unspecified", (upload) => line.tell({ status: "", ...upload }));
+  const mesh = await app.service.get<Documents["MeshDocument"]>(`/v1/meshes/${id}`);
+  said.replaceChildren();
+  next.replaceChildren(editor(app, mesh, volume.name, meshes.filter((file) => file !== volume)));
+}
+
+/** Files by the names that the document has for them: `face.vtu`, a path that ends so, or `face`. */
+function byReference(document: unknown, files: File[]): Record<string, Blob> {
+  const text = JSON.stringify(document);
+  const references = [...text.matchAll(/"((?:[^"\\]|\\.)*)"/g)].map(([, reference]) => reference!);
+  return Object.fromEntries(files.map((file) => {
+    // A segment may be called as the file of its bone is, without the ending.
+    const whole = references.find((one) => one === file.name || one.endsWith(`/${file.name}`));
+    return [whole ?? references.find((one) => one === stem(file.name)) ?? file.name, file];
+  }));
+}
+
+async function send(app: App, document: unknown, meshes: Record<string, Blob>, said: HTMLElement): Promise<void> {
+  said.replaceChildren(make("p", {}, app.words.sending));
+  const id = await app.service.createCase(document as Documents["CaseDocument"], meshes);
+  location.hash = address(["case", id]);
+}
+
+/** What each set of a mesh is, beside the document that says so. */
+function editor(app: App, mesh: Documents["MeshDocument"], name: string, bones: File[]): HTMLElement {
+  const { words } = app;
+  const sets = Object.entries(mesh.report.node_sets ?? {});
+  const roles: SetRoles = Object.fromEntries(sets.map(([set]) => [set, guess(set)]));
+  const settings = { name: stem(name), frame: (mesh.report.space ?? "LPS") as string, units: "mm", mesh: mesh.id };
+  const text = make("textarea", { spellcheck: false, aria: { label: words.document } });
+  const found = make("div", { role: "status" });
+  const write = () => { text.value = JSON.stringify(documentOf(settings, roles, bones.map((file) => stem(file.name))), null, 2); };
+  const rows = sets.map(([set, count]) => make("li", {}, make("span", { className: "name" }, `${set} · ${count} ${words.nodes}`),
+    select(set, ROLES.map((role) => [role, words.role[role]] as const), roles[set]!, (role) => { roles[set] = role as Role; write(); })));
+  const parts = () => Object.fromEntries(bones.map((file) => [stem(file.name), file]));
+  const post = button(words.sendCase, () => {
+    try {
+      send(app, JSON.parse(text.value), parts(), found).catch((error: unknown) => found.replaceChildren(refusal(error, words)));
+    } catch (error) {
+      found.replaceChildren(refusal(error, words));
+    }
+  }, { className: "primary" });
+  write();
+  return make("div", { className: "split" },
+    make("div", {}, make("h3", {}, words.sets), make("p", { className: "fine" }, words.setsHint),
+      make("div", { className: "row" },
+        select(words.frame, [["LPS", "LPS"], ["RAS", "RAS"], ["unspecified", "–"]], settings.frame, (value) => { settings.frame = value; write(); }),
+        select(words.units, [["mm", "mm"], ["m", "m"], ["um", "µm"]], settings.units, (value) => { settings.units = value; write(); })),
+      make("ul", { className: "plans" }, ...rows)),
+    make("div", {}, make("h3", {}, words.document), text, make("p", { className: "fine" }, words.documentHint), post, found));
+}

@@ -1,0 +1,177 @@
+// A head beside its controls: standard views, looks, colours with their legend, pictures.
+import type { App } from "./app.js";
+import { bands, BANDS, css, ticks, type Scheme } from "./colours.js";
+import { button, choice, make, save, select } from "./dom.js";
+import { figure } from "./figures.js";
+import { note } from "./route.js";
+import { Scene, VIEWS, type SkinLook } from "./scene.js";
+
+/** A map that may colour the skin. */
+export interface SkinMap {
+  name: string;
+  label: string;
+  scheme: Scheme;
+  /** The range that is chosen unless the address says otherwise, in mm: the same for every plan. */
+  range_mm: number;
+  /** The value of each node of the skin. */
+  values: () => ArrayLike<number> | undefined;
+}
+
+const RANGES = [0.5, 1, 2, 5, 10, 20];
+const SHOWN = "map";
+
+export class Workbench {
+  readonly scene: Scene;
+  private readonly viewport = make("div", { className: "viewport" });
+  private readonly screen = make("div", { className: "screen" });
+  readonly panel = make("div", { className: "panel" });
+  /** Over the head, below: what it is about. */
+  readonly caption = make("p", { className: "caption" });
+  private readonly legend = make("figure", { className: "legend", hidden: true });
+  private readonly colours = make("div", { className: "row" });
+  private maps: SkinMap[] = [];
+  private map: SkinMap | undefined;
+  private range_mm = 10;
+  private readonly keys = (event: KeyboardEvent) => this.pressed(event);
+
+  constructor(private readonly app: App, crumbs: HTMLElement) {
+    const { words } = app;
+    this.scene = new Scene(this.screen, words.headLabel);
+    this.screen.append(this.legend, this.caption);
+    this.viewport.append(this.tools(), this.screen);
+    app.stage.replaceChildren(make("div", { className: "bench" }, crumbs, this.viewport, this.panel));
+    app.stage.classList.add("wide");
+    addEventListener("keydown", this.keys);
+  }
+
+  /** Further keys of a view. */
+  canvasKeys(pressed: (event: KeyboardEvent) => void): void {
+    this.app.stage.addEventListener("keydown", pressed);
+  }
+
+  /** A part of the panel under a heading. */
+  section(title: string, ...children: (Node | string | undefined | false)[]): HTMLElement {
+    const section = make("section", {}, make("h2", {}, title), ...children);
+    this.panel.append(section);
+    return section;
+  }
+
+  /** Turns to the view of the address. */
+  start(): void {
+    const { state } = this.app.route;
+    this.scene.view(state.get("view") ?? "4");
+    this.setLook((state.get("look") ?? "solid") as SkinLook);
+  }
+
+  offer(maps: SkinMap[]): void {
+    const { words, route } = this.app;
+    this.maps = maps;
+    const wanted = new URLSearchParams(location.hash.split("?")[1] ?? "").get(SHOWN) ?? route.state.get(SHOWN) ?? "";
+    const options = [["", words.plain] as const, ...maps.map(({ name, label }) => [name, label] as const)];
+    this.colours.replaceChildren(select(words.map, options, wanted, (name) => this.choose(name)));
+    this.choose(wanted);
+  }
+
+  /** Colours the skin anew, after its values have changed. */
+  repaint(): void {
+    this.scene.paint(this.map?.values(), this.range_mm, this.map?.scheme);
+  }
+
+  leave(): void {
+    removeEventListener("keydown", this.keys);
+    this.app.stage.classList.remove("wide");
+    this.scene.leave();
+  }
+
+  private choose(name: string): void {
+    this.map = this.maps.find((map) => map.name === name);
+    const stated = Number(new URLSearchParams(location.hash.split("?")[1] ?? "").get("range"));
+    this.setRange(this.map?.name === this.app.route.state.get(SHOWN) && RANGES.includes(stated) ? stated : this.map?.range_mm ?? 10);
+    note({ [SHOWN]: name });
+  }
+
+  private setRange(range_mm: number): void {
+    this.range_mm = range_mm;
+    note({ range: this.map === undefined || range_mm === this.map.range_mm ? undefined : String(range_mm) });
+    this.repaint();
+    this.drawLegend();
+  }
+
+  private drawLegend(): void {
+    const { map, legend, app: { words } } = this;
+    legend.hidden = map === undefined;
+    if (map === undefined) return;
+    const swatches = bands(map.scheme).map((colour) => {
+      const swatch = make("span");
+      swatch.style.backgroundColor = css(colour);
+      return swatch;
+    });
+    const numbers = ticks(this.range_mm, map.scheme).filter((_, at) => at % 2 === 0).map((value) => make("span", {}, figure(value)));
+    legend.replaceChildren(
+      make("figcaption", {}, `${map.label}, mm`),
+      make("div", { className: "bands", aria: { hidden: "true" } }, ...swatches),
+      make("div", { className: "ticks" }, ...numbers),
+      select(words.range, RANGES.map((range) => [String(range), `${range} mm`] as const), String(this.range_mm),
+        (value) => this.setRange(Number(value))));
+  }
+
+  private tools(): HTMLElement {
+    const { words } = this.app;
+    const views = Object.keys(VIEWS).map((key) =>
+      button(key, () => this.setView(key), { title: words.view[key]!, aria: { label: `${key}: ${words.view[key]}`, keyshortcuts: key } }));
+    const look = choice(words.look, [["solid", words.solid], ["through", words.through], ["hidden", words.hidden]] as const,
+      (this.app.route.state.get("look") ?? "solid") as SkinLook, (value) => this.setLook(value));
+    return make("div", { className: "tools" },
+      make("div", { className: "row views", role: "group", aria: { label: words.views } }, ...views), look, this.colours,
+      button(words.picture, () => void this.picture()));
+  }
+
+  private setView(key: string): void {
+    this.scene.view(key);
+    note({ view: key });
+  }
+
+  private setLook(look: SkinLook): void {
+    this.scene.look(look);
+    note({ look: look === "solid" ? undefined : look });
+  }
+
+  private pressed(event: KeyboardEvent): void {
+    const typing = event.target instanceof HTMLInputElement && event.target.type !== "range" && event.target.type !== "radio";
+    const elsewhere = typing || event.target instanceof HTMLTextAreaElement || event.target instanceof HTMLSelectElement;
+    if (elsewhere || event.ctrlKey || event.metaKey || event.altKey) return;
+    if (VIEWS[event.key] !== undefined) this.setView(event.key);
+    else if (event.target === this.scene.canvas) this.scene.turnByKey(event);
+  }
+
+  /** What is seen, with its legend, what it is and what it is not. */
+  private async picture(): Promise<void> {
+    const drawn = this.scene.drawNow();
+    const canvas = make("canvas", { width: drawn.width, height: drawn.height + 90 });
+    const pen = canvas.getContext("2d")!;
+    pen.fillStyle = "#ffffff";
+    pen.fillRect(0, 0, canvas.width, canvas.height);
+    pen.drawImage(drawn, 0, 0);
+    if (this.map !== undefined) this.legendInto(pen, drawn.height);
+    pen.fillStyle = "#222222";
+    pen.font = "20px sans-serif";
+    pen.fillText(this.caption.textContent ?? "", 16, drawn.height + 50, canvas.width - 32);
+    pen.fillText(`facies · ${new Date().toISOString()} · ${location.hash.split("?")[0]} · ${this.app.words.notice}`, 16, drawn.height + 78, canvas.width - 32);
+    const content = await new Promise<Blob | null>((resolve) => canvas.toBlob(resolve, "image/png"));
+    if (content !== null) save(content, "facies.png");
+  }
+
+  private legendInto(pen: CanvasRenderingContext2D, bottom: number): void {
+    const { map } = this;
+    if (map === undefined) return;
+    const [left, width, height] = [16, 36, 20];
+    bands(map.scheme).forEach((colour, at) => {
+      pen.fillStyle = css(colour);
+      pen.fillRect(left + at * width, bottom - 60, width, height);
+    });
+    pen.fillStyle = "#222222";
+    pen.font = "18px sans-serif";
+    ticks(this.range_mm, map.scheme).forEach((value, at) => { if (at % 2 === 0) pen.fillText(figure(value), left + at * width, bottom - 18); });
+    pen.fillText(`${map.label}, mm`, left + (BANDS + 1) * width, bottom - 44);
+  }
+}
