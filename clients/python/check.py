@@ -4,6 +4,7 @@ import json
 import os
 import sys
 import tempfile
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -34,7 +35,36 @@ assert len(response.node_ids) == len(response.rest.points_mm) == response.column
 assert np.abs(response.rest.points_mm - prediction.rest_mm).max() < 1e-3, "vertices stand in the order of the nodes"
 here = response.displacement_mm({"mandible": rigid(**MOVEMENT)})
 there = service.apply(response, PLAN)
-assert np.abs(here - there).max() < 1e-4, np.abs(here - there).max()
+apart = np.abs(here - there.displacement_mm).max()
+assert apart < 1e-4, apart
+assert there.within_linear_range and there.nonlinearity_estimate_mm > 0 and there.warnings == [], there
+far = service.apply(response, {"segments": [{"name": "mandible", "translation_mm": [0, -30, 0]}]})
+assert not far.within_linear_range and far.document["not_measured"] == ["skin-overlaps"], far
+assert [warning["code"] for warning in far.warnings] == ["outside-linear-range"] and "mm" in far.warnings[0]["detail"], far
+
+
+def refused_here(deed: Callable[[], object], said: str) -> None:
+    """What the service would refuse, or what is no number, is no displacement here either."""
+    try:
+        deed()
+    except ValueError as error:
+        assert said in str(error), error
+        return
+    sys.exit(f"let through: {said}")
+
+
+try:
+    service.apply(response, {"segments": [{"name": "mandible", "rotation_deg": [5, 0, 0]}]})
+    sys.exit("a rotation about nothing was let through")
+except Refused as refused:
+    refused_here(lambda: rigid(rotation_deg=[5, 0, 0]), refused.errors[0]["detail"])
+wrong: Any
+for wrong in (["1", 0, 0], [0, float("nan"), 0], [1, 0], 1, "123", [True, 0, 0]):
+    refused_here(lambda: rigid(translation_mm=wrong), f"`translation_mm`: {wrong!r} ")
+refused_here(lambda: rigid(rotation_deg=[0, 0, float("inf")], pivot_mm=[0, 0, 0]), "`rotation_deg`: ")
+mirror, transposed = np.diag([-1, 1, 1, 1]), rigid([1, 0, 0]).T
+for wrong in ({"translation_mm": [1, 0, 0]}, np.eye(3), np.full((4, 4), np.nan), mirror, transposed, 2 * np.eye(4)):
+    refused_here(lambda: response.displacement_mm({"mandible": wrong}), "`mandible`: ")
 assert np.abs(here - prediction.displacement_mm).max() < 1e-3, "the response says what the prediction says"
 
 found = service.optimise(head, [{"nodes": {"node_set": "chin"}, "displacement_mm": [None, 4, None]}],
@@ -112,4 +142,4 @@ try:
     sys.exit("a job ended within a millisecond")
 except JobFailed as failed:
     assert failed.code == "budget-exceeded", failed
-print(f"{len(lengths)} vertices, {len(events)} events, {np.abs(here - there).max():.1e} mm from the answer of apply")
+print(f"{len(lengths)} vertices, {len(events)} events, {apart:.1e} mm from the answer of apply")

@@ -12,9 +12,9 @@ Documents are dictionaries as docs/case.md shows them. `facies_client` beside th
 
 from .errors import FaciesError, JobFailed, Refused
 from .response import Response, rigid
-from .results import Case, Comparison, Optimisation, Prediction
+from .results import Applied, Case, Comparison, Optimisation, Prediction
 from .service import Facies
 from .surface import Surface
 
-__all__ = ["Case", "Comparison", "Facies", "FaciesError", "JobFailed", "Optimisation", "Prediction",
+__all__ = ["Applied", "Case", "Comparison", "Facies", "FaciesError", "JobFailed", "Optimisation", "Prediction",
            "Refused", "Response", "Surface", "rigid"]

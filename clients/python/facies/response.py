@@ -9,6 +9,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from math import isfinite
+from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -17,17 +19,40 @@ from numpy.typing import ArrayLike, NDArray
 from .surface import Surface
 
 
+def finite(what: str, value: object, shape: tuple[int, ...]) -> NDArray[np.float64]:
+    """Finite numbers in a shape. numpy alone reads text as numbers, and one number as three."""
+    entries = np.asarray(value, dtype=object)
+    are_numbers = all(isinstance(entry, Real) and not isinstance(entry, bool) and isfinite(entry) for entry in entries.flat)
+    if entries.shape != shape or not are_numbers:
+        raise ValueError(f"`{what}`: {value!r} is not {'x'.join(map(str, shape))} finite numbers")
+    return entries.astype(np.float64)
+
+
 def rigid(translation_mm: ArrayLike = (0, 0, 0), rotation_deg: ArrayLike = (0, 0, 0),
-          pivot_mm: ArrayLike = (0, 0, 0)) -> NDArray[np.float64]:
-    """The 4x4 matrix of a movement of a plan: rotations about x, then y, then z, through the pivot, then the translation."""
-    a, b, c = np.radians(np.asarray(rotation_deg, dtype=np.float64))
+          pivot_mm: ArrayLike | None = None) -> NDArray[np.float64]:
+    """The 4x4 matrix of a movement of a plan: rotations about x, then y, then z, through the pivot, then the translation.
+    Raises `ValueError` where a rotation has no pivot, or something is not three finite numbers."""
+    degrees, translation = finite("rotation_deg", rotation_deg, (3,)), finite("translation_mm", translation_mm, (3,))
+    if pivot_mm is None and degrees.any():
+        raise ValueError("`pivot_mm` is required where a rotation is not 0")
+    pivot = finite("pivot_mm", (0, 0, 0) if pivot_mm is None else pivot_mm, (3,))
+    a, b, c = np.radians(degrees)
     about_x = np.array([[1, 0, 0], [0, np.cos(a), -np.sin(a)], [0, np.sin(a), np.cos(a)]])
     about_y = np.array([[np.cos(b), 0, np.sin(b)], [0, 1, 0], [-np.sin(b), 0, np.cos(b)]])
     about_z = np.array([[np.cos(c), -np.sin(c), 0], [np.sin(c), np.cos(c), 0], [0, 0, 1]])
-    pivot = np.asarray(pivot_mm, dtype=np.float64)
     matrix = np.eye(4)
     matrix[:3, :3] = about_z @ about_y @ about_x
-    matrix[:3, 3] = np.asarray(translation_mm, dtype=np.float64) + pivot - matrix[:3, :3] @ pivot
+    matrix[:3, 3] = translation + pivot - matrix[:3, :3] @ pivot
+    return matrix
+
+
+def checked(name: str, movement: ArrayLike) -> NDArray[np.float64]:
+    """The matrix by which a segment moves, as the service takes `matrix4x4`: rigid to 1e-6, last row 0 0 0 1."""
+    matrix = finite(name, movement, (4, 4))
+    turn = matrix[:3, :3]
+    is_rotation = np.abs(turn.T @ turn - np.eye(3)).max() <= 1e-6 and np.linalg.det(turn) > 0
+    if not is_rotation or (matrix[3] != (0, 0, 0, 1)).any():
+        raise ValueError(f"`{name}`: {movement!r} is not the matrix of a rigid movement, with a last row of 0 0 0 1 (see `rigid`)")
     return matrix
 
 
@@ -50,13 +75,14 @@ class Response:
 
     def displacement_mm(self, movements: Mapping[str, ArrayLike]) -> NDArray[np.float64]:
         """How far each node of the skin goes where segments move by these 4x4 matrices (see `rigid`); others stay.
-        Without asking the service, whose `apply` also refuses plans beyond the limits and estimates what linearity leaves out."""
+        Without asking the service, whose `apply` also refuses plans beyond the limits and estimates what linearity leaves out;
+        raises `ValueError` where a matrix is not that of a rigid movement."""
         segments = {segment["name"]: index for index, segment in enumerate(self.description["segments"])}
         if unknown := sorted(set(movements) - set(segments)):
             raise KeyError(f"the response moves {', '.join(segments)}, not {', '.join(unknown)}")
         coefficients = np.zeros(len(self.columns))
         for name, movement in movements.items():
-            matrix = np.asarray(movement, dtype=np.float64)
+            matrix = checked(name, movement)
             centre = np.array(self.description["segments"][segments[name]]["centre_mm"])
             turn = matrix[:3, :3] - np.eye(3)
             shift = matrix[:3, 3] + turn @ centre

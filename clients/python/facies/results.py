@@ -65,6 +65,31 @@ class Optimisation(Prediction):
 
 
 @dataclass(frozen=True)
+class Applied:
+    """A plan on a response, as the service computes it; `document` has all else that it says of it."""
+
+    displacement_mm: NDArray[np.float32]
+    """A row for each node of the skin, in the order of `node_ids`."""
+    document: dict[str, Any]
+
+    @property
+    def warnings(self) -> list[dict[str, Any]]:
+        """What a reader of these numbers must know, each with its `code`."""
+        warnings: list[dict[str, Any]] = self.document["warnings"]
+        return warnings
+
+    @property
+    def nonlinearity_estimate_mm(self) -> float:
+        """What the displacement leaves out, mean over the skin."""
+        return float(self.document["nonlinearity_estimate_mm"])
+
+    @property
+    def within_linear_range(self) -> bool:
+        """False where that is more than the service takes for small."""
+        return bool(self.document["within_linear_range"])
+
+
+@dataclass(frozen=True)
 class Comparison:
     """Distances between two surfaces; `document` has them in both directions, by region and node by node."""
 

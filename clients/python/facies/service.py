@@ -11,11 +11,10 @@ from typing import Any
 
 import httpx
 import numpy as np
-from numpy.typing import NDArray
 
 from .errors import JobFailed, Refused
 from .response import Response
-from .results import Case, Comparison, Optimisation, Prediction
+from .results import Applied, Case, Comparison, Optimisation, Prediction
 from .sending import Document, File, Progress, Sending
 from .surface import Surface
 
@@ -125,11 +124,12 @@ class Facies:
             second = np.frombuffer(answer.content, "<i2").reshape(description["second_order"]["columns"]["count"], -1, 3)
         return Response(id_, job["id"], description, columns, rest, second)
 
-    def apply(self, response: Response, plan: Document) -> NDArray[np.float32]:
-        """How far each node of the skin goes, in mm, as the service computes it: plans beyond its limits are refused."""
-        answer = self.ask("POST", f"/v1/cases/{response.case}/response/apply", json={"plan": plan},
-                          params={"job": response.job}, headers={"Accept": "application/octet-stream"})
-        return np.frombuffer(answer.content, "<f4").reshape(-1, 3)
+    def apply(self, response: Response, plan: Document) -> Applied:
+        """How far each node of the skin goes as the service computes it, which refuses plans beyond its limits, and what
+        it says of that: warnings, and what linearity leaves out."""
+        said = self.ask("POST", f"/v1/cases/{response.case}/response/apply", json={"plan": plan},
+                        params={"job": response.job}, headers={"Accept": "application/json"}).json()
+        return Applied(np.array(said.pop("displacement_mm"), dtype=np.float32), said)
 
     def optimise(self, case: Case | File | Document, targets: list[Document], bounds: Document, *,
                  progress: Progress | None = None, **spec: Any) -> Optimisation:

@@ -26,8 +26,36 @@ assert.equal(prediction.displacement_mm.length, prediction.skin.points_mm.length
 
 const response = await facies.response(head);
 const here = response.displacement({ mandible: movement });
-const difference = apart(here, await facies.apply(response, plan));
+const there = await facies.apply(response, plan);
+const difference = apart(here, there.displacement_mm);
 assert(difference < 1e-4, `${difference} mm from the answer of apply`);
+assert(there.within_linear_range && there.nonlinearity_estimate_mm > 0, "what linearity leaves out is told");
+assert.deepEqual([there.warnings, there.not_measured], [[], ["skin-overlaps"]]);
+const jawBy = (movement: Movement) => ({ segments: [{ name: "mandible", ...movement }] }) as Documents["PlanDocument"];
+const far = await facies.apply(response, jawBy({ translation_mm: [0, -30, 0] }));
+assert.deepEqual([far.within_linear_range, far.warnings.map(({ code }) => code)], [false, ["outside-linear-range"]]);
+assert(far.warnings[0]!.detail.includes("mm"), "a warning comes with its sentence");
+
+// What the service would refuse, or what is no number, is no displacement here either.
+const withoutPivot = { rotation_deg: [5, 0, 0] } satisfies Movement;
+const words = await facies.apply(response, jawBy(withoutPivot)).catch((refused: Refused) => refused.problem.errors![0]!.detail);
+assert.equal(words, "`pivot_mm` is required where a rotation is not 0");
+const wrong: [unknown, string][] = [
+  [withoutPivot, `/mandible/pivot_mm: ${words}`],
+  [{ translation: [1, 0, 0] }, "/mandible/translation: "],
+  [{ name: "mandible", translation_mm: [1, 0, 0] }, "/mandible/name: "],
+  [{ translation_mm: ["1", 0, 0] }, '/mandible/translation_mm: ["1", 0, 0] '],
+  [{ translation_mm: [0, NaN, 0] }, "/mandible/translation_mm: [0, NaN, 0] "],
+  [{ translation_mm: [0, 0, 0], rotation_deg: [0, 0, Infinity], pivot_mm: [0, 0, 0] }, "/mandible/rotation_deg: "],
+  [{ translation_mm: [1, 0] }, "/mandible/translation_mm: [1, 0] "],
+  [{ translation_mm: 1 }, "/mandible/translation_mm: 1 "],
+  [{ rotation_deg: [5, 0, 0], pivot_mm: null }, "/mandible/pivot_mm: null "],
+  [null, "/mandible: null "],
+];
+for (const [movement, told] of wrong) {
+  assert.throws(() => response.displacement({ mandible: movement as Movement }),
+    (thrown: Error) => thrown instanceof RangeError && thrown.message.startsWith(told), told);
+}
 assert(apart(here, prediction.displacement_mm) < 1e-3, "the response says what the prediction says");
 const before = prediction.skin.points_mm.map((value, at) => value - prediction.displacement_mm[at]!);
 assert(apart(response.rest.points_mm, before) < 1e-3, "vertices stand in the order of the nodes");

@@ -44,6 +44,13 @@ export interface Optimisation extends Prediction {
   plan: Documents["PlanDocument"];
 }
 
+/** A plan on a response as the service computes it, with what it says of that: `warnings`, `within_linear_range`, and
+ * `nonlinearity_estimate_mm`, what the displacement leaves out, mean over the skin. */
+export type Applied = Omit<Documents["AppliedDocument"], "displacement_mm"> & {
+  /** xyz for each node of the skin, in mm. */
+  displacement_mm: Float32Array;
+};
+
 const WAIT = { Prefer: "wait=30" };
 const JSON_TYPE = { "Content-Type": "application/json" };
 const BUSY = [429, 503];
@@ -124,11 +131,13 @@ export class Facies {
     return new PlanResponse(caseId, job.id, description, new Float32Array(columns), readGlb(rest), second);
   }
 
-  /** How far each node of the skin goes, in mm, as the service computes it: plans beyond its limits are refused. */
-  async apply(response: PlanResponse, plan: Documents["PlanDocument"]): Promise<Float32Array> {
+  /** How far each node of the skin goes as the service computes it, which refuses plans beyond its limits, and what it
+   * says of that. */
+  async apply(response: PlanResponse, plan: Documents["PlanDocument"]): Promise<Applied> {
     const path = `/v1/cases/${response.caseId}/response/apply?job=${response.job}`;
     const body = JSON.stringify({ plan });
-    return new Float32Array(await this.bytes("POST", path, body, { ...JSON_TYPE, ...OCTETS }));
+    const said = await this.json("POST", path, body, { ...JSON_TYPE, Accept: "application/json" });
+    return { ...said, displacement_mm: new Float32Array(said.displacement_mm.flat()) };
   }
 
   /** The plan within `bounds` that brings the skin nearest to `targets`. */

@@ -14,8 +14,34 @@ export interface Movement {
   pivot_mm?: Triple;
 }
 
+const MEMBERS = ["translation_mm", "rotation_deg", "pivot_mm"] as const;
 const COLUMNS_PER_SEGMENT = 12;
 const AXES = [0, 1, 2] as const;
+
+/** What a page or a file may hold in the place of three numbers, as one reads it. */
+function shown(value: unknown): string {
+  if (Array.isArray(value)) return `[${value.map(shown).join(", ")}]`;
+  return typeof value === "string" ? JSON.stringify(value) : String(value);
+}
+
+function isTriple(value: unknown): value is Triple {
+  return Array.isArray(value) && value.length === 3 && value.every(Number.isFinite);
+}
+
+/** A movement with all its members, in numbers; what the service would refuse is refused here, by the name of the member. */
+function checked(name: string, movement: Movement): Required<Movement> {
+  const refuse = (member: string, why: string): never => { throw new RangeError(`/${name}${member}: ${why}`); };
+  if (typeof movement !== "object" || movement === null) refuse("", `${shown(movement)} is no movement`);
+  for (const [member, value] of Object.entries(movement)) {
+    if (!MEMBERS.some((known) => known === member)) refuse(`/${member}`, `unknown, there are ${MEMBERS.join(", ")}`);
+    if (value !== undefined && !isTriple(value)) refuse(`/${member}`, `${shown(value)} is not three finite numbers`);
+  }
+  const { translation_mm = [0, 0, 0], rotation_deg = [0, 0, 0], pivot_mm } = movement;
+  if (pivot_mm === undefined && rotation_deg.some((angle) => angle !== 0)) {
+    refuse("/pivot_mm", "`pivot_mm` is required where a rotation is not 0");
+  }
+  return { translation_mm, rotation_deg, pivot_mm: pivot_mm ?? [0, 0, 0] };
+}
 
 /** Rows of Rz Ry Rx. */
 function rotation(degrees: Triple): [Triple, Triple, Triple] {
@@ -50,7 +76,8 @@ export class Response {
   ) {}
 
   /** How far each node of the skin goes, xyz for each in mm, where segments move so and others stay. Without asking
-   * the service, whose `apply` also refuses plans beyond the limits and estimates what linearity leaves out. */
+   * the service, whose `apply` also refuses plans beyond the limits and estimates what linearity leaves out. Throws a
+   * `RangeError` where a rotation has no pivot, a member is unknown, or something is not three finite numbers. */
   displacement(movements: Record<string, Movement>): Float32Array {
     const numbers = this.description.node_ids.length * 3;
     const total = new Float32Array(numbers);
@@ -74,7 +101,7 @@ export class Response {
 
   /** What its twelve columns are multiplied with. */
   private coefficients(name: string, movement: Movement): number[] {
-    const { translation_mm = [0, 0, 0], rotation_deg = [0, 0, 0], pivot_mm = [0, 0, 0] } = movement;
+    const { translation_mm, rotation_deg, pivot_mm } = checked(name, movement);
     const centre = this.description.segments[this.segment(name)]!.centre_mm;
     return rotation(rotation_deg).flatMap((row, i) => {
       const turn = AXES.map((j) => row[j] - (i === j ? 1 : 0));

@@ -71,7 +71,7 @@ function plan(facies: Facies, response: Response): void {
   button.disabled = false;
   button.onclick = () => told(async () => {
     const answer = await facies.apply(response, planOf(movements));
-    const apart = largest(answer.map((value, at) => value - displacement[at]!));
+    const apart = largest(answer.displacement_mm.map((value, at) => value - displacement[at]!));
     say(`The service says the same to ${apart.toExponential(1)} mm`);
   });
   changed();

@@ -26,7 +26,10 @@ async fn a_page_of_an_origin_that_a_setting_names_is_let_in_and_no_other() {
     );
     let read = ask(server.get("/v1/limits").header("origin", OURS)).await;
     assert_eq!(read.header("access-control-allow-origin"), OURS);
-    assert!(read.header("access-control-expose-headers").contains("etag"));
+    let exposed = read.header("access-control-expose-headers");
+    for name in ["etag", "facies-warning", "facies-not-measured"] {
+        assert!(exposed.contains(name), "{name}");
+    }
     assert!(read.header("vary").contains("origin"));
     // Refusals can be read as well.
     let refused = ask(server.get("/v1/nothing").header("origin", OURS)).await;
