@@ -186,7 +186,8 @@ impl ContactProblem<'_> {
         total.iter_mut().zip(u.as_chunks::<3>().0).for_each(|(total, u)| *total = *u);
         let constrained = system.constrained();
         let held = vec![Vector::zeros(); system.holds.len()];
-        let known = constrained.known(&LoadCase { held, forces: forces.to_vec() });
+        let known =
+            constrained.known(&LoadCase { held, forces: forces.to_vec(), ..LoadCase::default() });
         let internal = system.internal_at_holds(&total, p);
         let reactions = constrained.reactions(&internal, &known.force);
         let Solved { equilibrium: free, pressures } = self.free;
