@@ -118,7 +118,8 @@ fn solve(mesh: &VolumeMesh, plan: &Plan) -> (Result<Equilibrium, ModelError>, f6
         tolerance: Tolerance { relative_residual: 1e-6, memory_mb: 16e3 },
     };
     let held = holds.iter().map(|hold| *hold.values()).collect();
-    let case = LoadCase { held, forces: vec![Vector::zeros(); mesh.nodes.len()] };
+    let case =
+        LoadCase { held, forces: vec![Vector::zeros(); mesh.nodes.len()], ..LoadCase::default() };
     let (begun, used) = (Instant::now(), cpu_seconds());
     let found = problem.solve(&case, &Unobserved);
     (found, begun.elapsed().as_secs_f64(), cpu_seconds() - used)

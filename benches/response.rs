@@ -47,6 +47,7 @@ fn made_up() -> Response {
     let segment = |name: &str| ResponseSegment { name: name.to_owned(), centre: Vector::zeros() };
     let wave = |index: usize| (index as f32 * 0.37).sin() * 40.0;
     Response {
+        inner: Vec::new(),
         segments: vec![segment("maxilla"), segment("mandible")],
         nodes: (0..NODES as u32).collect(),
         columns: (0..24 * 3 * NODES).map(wave).collect(),

@@ -237,7 +237,11 @@ fn response_cases(scene: &Scene) -> Vec<LoadCase> {
                     true => of_node(hold.node as usize),
                     false => Vector::zeros(),
                 });
-            cases.push(LoadCase { held: held.collect(), forces: scene.forces.clone() });
+            cases.push(LoadCase {
+                held: held.collect(),
+                forces: scene.forces.clone(),
+                ..LoadCase::default()
+            });
         }
     }
     cases

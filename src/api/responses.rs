@@ -27,7 +27,7 @@ use crate::schema::ErrorCode;
 use crate::schema::applied::{AppliedDocument, ApplyDocument};
 use crate::schema::key::Scope;
 use crate::schema::predict::document::{RANGES_MM, USUAL_RANGE_MM};
-use crate::schema::response::ResponseDescription;
+use crate::schema::response_description::ResponseDescription;
 use crate::schema::wire::strict;
 use mechanics::format::WriteError;
 
@@ -139,7 +139,7 @@ fn refusal(missing: MissingResponse) -> ApiError {
 
 /// The columns of a response, or how to read them. A front end that has both moves the skin without asking
 /// again: u = sum over segments of column 12 s + 4 i + j times (R - I)_ij (j < 3) or t_i (j = 3), with x
-/// measured from the segment's centre.
+/// measured from the segment's centre, and of `inner_columns`, growth and muscles, after these.
 #[utoipa::path(
     get, path = "/v1/cases/{id}/response", operation_id = "show_response", tag = "responses",
     params(("id" = uuid::Uuid, Path, description = "the case"), ResponseParameters),
@@ -201,7 +201,8 @@ async fn rest(service: &Service, found: &FoundResponse, headers: &HeaderMap) -> 
     Ok(with_header(response, HeaderName::from_static("facies-job"), &found.job))
 }
 
-/// The skin after a plan, in milliseconds. Segments that the plan does not name stay where they are. A response of order
+/// The skin after a plan, in milliseconds. Segments that the plan does not name stay where they are; growth and activations
+/// of the plan need their columns in the response. A response of order
 /// 1 is exact within linear elasticity; what that leaves out is estimated from samples of the second order along and about
 /// each axis of each segment (of quadratic tetrahedra by a rule of thumb). A response of order 2 adds the second-order term of finite
 /// strain, tells its mean length, and estimates the third order from samples. Above 0.5 mm the answer carries the
@@ -218,14 +219,14 @@ async fn rest(service: &Service, found: &FoundResponse, headers: &HeaderMap) -> 
                 ("Facies-Max-Mm" = f64, description = "the largest displacement of a skin node"),
                 ("Facies-Largest-Rotation-Deg" = f64, description = "the largest rotation of a segment"),
                 ("Facies-Order" = u8, description = "that of the response: 2 where the second-order term is in the displacement"),
-                ("Facies-Nonlinearity-Estimate-Mm" = f64, description = "what the displacement leaves out: of order 1 the second-order term, of order 2 the third-order term, from samples"),
+                ("Facies-Nonlinearity-Estimate-Mm" = f64, description = "what the displacement leaves out: of order 1 the second-order term, of order 2 the third-order term, from samples; absent where tissue grows or muscles pull"),
                 ("Facies-Within-Linear-Range" = bool, description = "whether that is at most 0.5 mm"),
-                ("Facies-Warning" = Option<String>, description = "the codes of the warnings: outside-linear-range, outside-second-order-range, nothing-moves, plan-units-suspect, sliding-normal-turned, skin-overlaps"),
+                ("Facies-Warning" = Option<String>, description = "the codes of the warnings: outside-linear-range, outside-second-order-range, nonlinearity-unknown, nothing-moves, plan-units-suspect, sliding-normal-turned, skin-overlaps"),
                 ("Facies-Not-Measured" = Option<String>, description = "skin-overlaps, without `check_skin`"),
                 ("Server-Timing" = String, description = "milliseconds to find the response, to add up its columns, to check the skin, and to write the answer"))),
         (status = 404, description = "there is no such case, or no response was built"),
         (status = 409, description = "the case or the program changed since the response was built"),
-        (status = 422, description = "the plan asks for what the response does not know: loads, prescribed displacements, other segments, movements beyond the limits"),
+        (status = 422, description = "the plan asks for what the response does not know: loads, prescribed displacements, other segments, growth and muscles without a column, movements beyond the limits"),
     )
 )]
 async fn apply(
@@ -248,7 +249,7 @@ async fn apply(
     let meant = Meant { case: &id, job: parameters.job.as_deref(), foreseen };
     let found = find(&service, meant).await?;
     let loaded = service.responses.load(&found).await?;
-    let movements = loaded.description.movements(&document.plan, &service.limits)?;
+    let amounts = loaded.description.amounts(&document.plan, &service.limits)?;
     let loading = started.elapsed();
 
     // Numerics keep off the threads that answer; a turn on one that may block costs some 20 µs. No permit is
@@ -256,7 +257,7 @@ async fn apply(
     let job = found.job.clone();
     let computed = tokio::task::spawn_blocking(move || {
         let started = Instant::now();
-        let mut applied = loaded.apply(&movements);
+        let mut applied = loaded.apply(&amounts);
         let applying = started.elapsed();
         if wanted.check_skin {
             loaded.check_skin(&mut applied);
@@ -321,12 +322,13 @@ fn with_summary(response: Response, job: &str, applied: &Applied) -> Response {
         ("facies-max-mm", summary.max_mm.to_string()),
         ("facies-largest-rotation-deg", summary.largest_rotation_deg.to_string()),
         ("facies-order", summary.order.to_string()),
-        ("facies-nonlinearity-estimate-mm", summary.nonlinearity_estimate_mm.to_string()),
         ("facies-within-linear-range", summary.within_linear_range.to_string()),
     ];
     let warnings: Vec<String> =
         applied.warnings.iter().map(|warning| warning.code.clone()).collect();
+    let estimate = summary.nonlinearity_estimate_mm.map(|estimate| estimate.to_string());
     let words = [
+        ("facies-nonlinearity-estimate-mm", estimate.unwrap_or_default()),
         ("facies-warning", warnings.join(", ")),
         ("facies-not-measured", applied.not_measured().join(", ")),
     ];

@@ -16,14 +16,17 @@ use crate::schema::case::conversion::centre;
 use crate::schema::hashes;
 use crate::schema::predict::document::OutputName;
 use crate::schema::predict::result::ResultDocument;
-use crate::schema::response::{ResponseDescription, ResponseOrigin};
+use crate::schema::response_description::{ResponseDescription, ResponseOrigin};
 use crate::schema::second_order::{ColumnsDocument, SecondOrderDocument};
 use crate::schema::wire::canonical;
 use crate::schema::{CaseDocument, Faults, Limits, PlanDocument, ResponseDocument};
 use mechanics::format::SurfaceOutput;
 use mechanics::format::vtk::vtp;
 use mechanics::progress::{Phase, Progress};
-use mechanics::response::{Columns, QuadraticForm, ResponseError, build_to, check_order, chosen};
+use mechanics::response::{
+    Asked, COLUMNS_PER_SEGMENT, Columns, InnerLoad, QuadraticForm, ResponseError, build_of,
+    check_order, chosen,
+};
 
 /// f32 little-endian, [column][node][xyz].
 pub const COLUMNS_FILE: &str = "response.f32";
@@ -52,12 +55,14 @@ pub struct PreparedResponse {
     pub key: String,
     prepared: Prepared,
     segments: usize,
+    inner: Vec<InnerLoad>,
 }
 
 impl PreparedResponse {
     /// Refuses a response that is expected to need more memory than a slot has.
     pub fn admit(&self, limits: &Limits) -> Result<(), JobError> {
-        self.prepared.admit(self.segments, limits)
+        let columns = COLUMNS_PER_SEGMENT * self.segments + self.inner.len();
+        self.prepared.admit(columns, limits)
     }
 }
 
@@ -83,9 +88,11 @@ impl ResponseInput {
         let segments = chosen.map_err(|error| self.judge(error))?.len();
         check_order(&prepared.scene, self.spec.response_order())
             .map_err(|error| self.judge(error))?;
+        let inner = self.spec.inner_loads(&prepared.scene);
+        let inner = inner.map_err(|error| self.judge(error))?;
         let content = |id: &str| prepared.contents.get(id).cloned();
         let key = hashes::response_key(&self.case, &self.spec, &content);
-        Ok(PreparedResponse { key, prepared, segments })
+        Ok(PreparedResponse { key, prepared, segments, inner })
     }
 
     fn judge(&self, error: ResponseError) -> JobError {
@@ -107,12 +114,13 @@ pub fn response_job(
     // 1. Documents and meshes, checked together.
     let checked = input.prepare(place.sources, place.limits)?;
     checked.admit(place.limits)?;
-    let PreparedResponse { key, prepared, .. } = checked;
+    let PreparedResponse { key, prepared, inner, .. } = checked;
     clock.check()?;
 
     // 2. The columns.
     let order = input.spec.response_order();
-    let built = build_to(&prepared.scene, &input.spec.segments, order, &clock);
+    let asked = Asked { segments: &input.spec.segments, order, inner: &inner };
+    let built = build_of(&prepared.scene, &asked, &clock);
     let columns = built.map_err(|error| match error {
         ResponseError::Prediction(error) => clock.judge(error),
         other => input.judge(other),

@@ -9,18 +9,17 @@ use super::cache::{Cache, InMemory};
 use crate::jobs::JobInput;
 use crate::jobs::response::{COLUMNS_FILE, DESCRIPTION_FILE, REST_FILE, SECOND_ORDER_FILE};
 use crate::jobs::result::skin::PredictedSkin;
-use crate::schema::applied::AppliedSummary;
+use crate::schema::applied::{AppliedSummary, LinearPart};
 use crate::schema::hashes;
 use crate::schema::predict::document::{OutputName, USUAL_RANGE_MM};
 use crate::schema::predict::result::NOT_A_DEVICE;
-use crate::schema::response::ResponseDescription;
+use crate::schema::response_description::{PlanAmounts, ResponseDescription};
 use crate::schema::{CaseDocument, WarningDocument};
 use crate::store::{CaseResponses, Store, StoreError};
 use mechanics::format::{self, Mesh, ReadLimits, WriteError};
 use mechanics::mesh::{TriangleSurface, Vector};
-use mechanics::plan::RigidMovement;
 use mechanics::prediction::{Skin, skin_overlap};
-use mechanics::response::{COLUMNS_PER_SEGMENT, Linearity, QuadraticForm, Response};
+use mechanics::response::{Amounts, COLUMNS_PER_SEGMENT, Linearity, QuadraticForm, Response};
 
 /// Jobs whose verdict is remembered; beyond that all are judged anew.
 const MOST_VERDICTS: usize = 10_000;
@@ -68,14 +67,19 @@ struct Stored {
 
 impl LoadedResponse {
     /// One pass over the columns of each order.
-    pub fn apply(&self, movements: &[RigidMovement]) -> Applied {
-        let mut displacement = self.response.apply(movements);
+    pub fn apply(&self, plan: &PlanAmounts) -> Applied {
+        let PlanAmounts { movements, inner } = plan;
+        let mut displacement = self.response.apply_all(&Amounts { movements, inner });
         let segments = &self.response.segments;
         let form = self.second_order.as_ref();
         let beyond = form.map(|form| form.apply(segments, movements, &mut displacement));
-        let summary = AppliedSummary::new(&displacement, &self.linearity.of(movements), beyond);
+        let linear = LinearPart {
+            nonlinearity: self.linearity.of(movements),
+            acts_inside: inner.iter().any(|amount| *amount != 0.0),
+        };
+        let summary = AppliedSummary::new(&displacement, beyond, &linear);
         let mut warnings = summary.warnings();
-        warnings.extend(self.description.warnings(movements));
+        warnings.extend(self.description.warnings(plan));
         Applied { displacement, summary, warnings, skin_checked: false }
     }
 
@@ -296,6 +300,7 @@ fn parsed(stored: &Stored) -> Result<LoadedResponse, StoreError> {
     Ok(LoadedResponse {
         second_order,
         response: Response {
+            inner: description.inner_loads(),
             segments: description.response_segments(),
             nodes: description.node_ids.clone(),
             columns,
@@ -328,7 +333,7 @@ fn second_order_of(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::schema::response::ResponseOrigin;
+    use crate::schema::response_description::ResponseOrigin;
     use crate::schema::second_order::ColumnsDocument;
     use mechanics::response::{Columns, ResponseSegment};
 
@@ -351,6 +356,7 @@ mod tests {
         };
         let columns = Columns {
             segments,
+            inner: Vec::new(),
             nodes,
             values,
             linearity: linearity.clone(),

@@ -49,11 +49,23 @@ pub struct AppliedSummary {
     #[schema(nullable = false)]
     pub second_order_mm: Option<f64>,
     /// What the displacement leaves out, mean over the skin: of order 1 the second-order term, of order
-    /// 2 the third-order term, both estimated from samples.
-    pub nonlinearity_estimate_mm: f64,
+    /// 2 the third-order term, both estimated from samples. Absent where the plan grows tissue or activates muscles, of
+    /// which that is not known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub nonlinearity_estimate_mm: Option<f64>,
     /// Whether the estimate is at most 0.5 mm, and of order 2 at most half of the second-order term where it is above
-    /// 0.1 mm.
+    /// 0.1 mm. False where there is none.
     pub within_linear_range: bool,
+}
+
+/// What linearity is known to leave out of a plan.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LinearPart {
+    /// Of its movements.
+    pub nonlinearity: Nonlinearity,
+    /// Whether tissue grows or muscles pull, of which no more is known.
+    pub acts_inside: bool,
 }
 
 /// Third-order terms above this many mm have to be smaller than this share of the second-order term, or the series is not
@@ -66,12 +78,9 @@ fn first_order() -> u8 {
 }
 
 impl AppliedSummary {
-    /// `beyond` of a response of second order.
-    pub fn new(
-        displacement: &[Vector],
-        nonlinearity: &Nonlinearity,
-        beyond: Option<BeyondLinear>,
-    ) -> Self {
+    /// `beyond` of a response of second order; `nonlinearity` of the movements, told where nothing else acts.
+    pub fn new(displacement: &[Vector], beyond: Option<BeyondLinear>, linear: &LinearPart) -> Self {
+        let LinearPart { nonlinearity, acts_inside } = *linear;
         let squared = displacement.iter().map(Vector::norm_squared).fold(0.0, f64::max);
         let is_near = |beyond: BeyondLinear| {
             beyond.third <= LINEAR_RANGE_MM
@@ -82,8 +91,10 @@ impl AppliedSummary {
             largest_rotation_deg: nonlinearity.largest_rotation.to_degrees(),
             order: if beyond.is_some() { 2 } else { 1 },
             second_order_mm: beyond.map(|beyond| beyond.second),
-            nonlinearity_estimate_mm: beyond.map_or(nonlinearity.estimate, |beyond| beyond.third),
-            within_linear_range: beyond.map_or(nonlinearity.is_within_linear_range(), is_near),
+            nonlinearity_estimate_mm: (!acts_inside)
+                .then(|| beyond.map_or(nonlinearity.estimate, |beyond| beyond.third)),
+            within_linear_range: !acts_inside
+                && beyond.map_or(nonlinearity.is_within_linear_range(), is_near),
         }
     }
 
@@ -93,11 +104,23 @@ impl AppliedSummary {
     /// The same of a response of second order.
     pub const OUTSIDE_SECOND: &'static str = "outside-second-order-range";
 
+    /// The same where nothing estimates how far it is.
+    pub const UNKNOWN: &'static str = "nonlinearity-unknown";
+
     pub fn warnings(&self) -> Vec<WarningDocument> {
         if self.within_linear_range {
             return Vec::new();
         }
-        let estimate = self.nonlinearity_estimate_mm;
+        let Some(estimate) = self.nonlinearity_estimate_mm else {
+            let detail =
+                "what linearity leaves out is not known where tissue grows or muscles pull"
+                    .to_owned();
+            return vec![WarningDocument {
+                code: Self::UNKNOWN.to_owned(),
+                detail,
+                numbers: serde_json::Map::new(),
+            }];
+        };
         let (code, detail) = match self.second_order_mm {
             None => {
                 let detail = format!(

@@ -116,6 +116,7 @@ error_codes! {
     UnknownLabel 422 "unknown-label" REFUSED,
     UnknownLandmark 422 "unknown-landmark" REFUSED,
     UnknownMesh 422 "unknown-mesh" REFUSED,
+    UnknownMuscle 422 "unknown-muscle" REFUSED,
     UnknownPlan 422 "unknown-plan" REFUSED,
     UnknownRegion 422 "unknown-region" REFUSED,
     UnknownScene 422 "unknown-scene" REFUSED,

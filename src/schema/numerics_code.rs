@@ -29,6 +29,7 @@ impl From<SceneErrorCode> for ErrorCode {
             SceneErrorCode::TooManyRegions => ErrorCode::TooManyRegions,
             SceneErrorCode::Underconstrained => ErrorCode::Underconstrained,
             SceneErrorCode::UnknownArray => ErrorCode::UnknownArray,
+            SceneErrorCode::UnknownMuscle => ErrorCode::UnknownMuscle,
             SceneErrorCode::UnknownRegion => ErrorCode::UnknownRegion,
             SceneErrorCode::UnknownSegment => ErrorCode::UnknownSegment,
             SceneErrorCode::UnknownSet => ErrorCode::UnknownSet,

@@ -1,20 +1,12 @@
-//! A plan response: the job that builds it, its description, and what applying a plan to it answers.
-
-use std::collections::BTreeMap;
+//! The job that builds a plan response.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use super::code::ErrorCode;
 use super::methods::{self, ElementName, MethodName};
-use super::response_part::ResponsePartDocument;
-use super::second_order::{ColumnsDocument, LinearityDocument, SecondOrderDocument};
-use super::{CornerPair, Triple, WarningDocument};
-use crate::schema::case::document::FrameName;
 use crate::schema::case::material::{MaterialDocument, MaterialDocuments};
 use crate::schema::case::membrane::MembraneDocument;
-use crate::schema::engine::EngineDocument;
-use crate::schema::plan::document::{PlanContext, PlanDocument};
 use crate::schema::predict::budget::BudgetDocument;
 use crate::schema::predict::document::PredictDocument;
 use crate::schema::predict::tolerance::ToleranceDocument;
@@ -22,16 +14,8 @@ use crate::schema::wire::canonical;
 use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::limits::Limits;
 use crate::schema::wire::problem::Problem;
-use mechanics::boundary::ConnectedPart;
-use mechanics::mesh::ignored::listed;
-use mechanics::mesh::{Frame, Vector};
-use mechanics::plan::RigidMovement;
-use mechanics::plan::doubt::{MovedSegment, beyond_face, nothing_moves, suspect_units};
-use mechanics::prediction::{GoesAlong, goes_along, normal_turned};
-use mechanics::response::linearity::LINEAR_RANGE_MM;
-use mechanics::response::{
-    Columns, Linearity, ResponseError, ResponseOrder, ResponseSegment, SampledSecond,
-};
+use mechanics::prediction::Scene;
+use mechanics::response::{InnerLoad, ResponseError, ResponseOrder, inner_loads};
 
 /// `response`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
@@ -71,6 +55,13 @@ pub struct ResponseDocument {
     /// Names of segments of the case; default: all. The others stay where they are.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub segments: Vec<String>,
+    /// Regions whose growth plans may state, a column each; `*`: that of all tissue. Default: none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub growth: Vec<String>,
+    /// Muscles that plans may activate, a column each. Default: all of the case in order 1, none in order 2.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub muscles: Option<Vec<String>>,
     #[serde(default)]
     pub tolerance: ToleranceDocument,
     #[serde(default)]
@@ -106,6 +97,8 @@ impl ResponseDocument {
         let mut plain = self.clone();
         plain.tags.clear();
         plain.segments.sort_unstable();
+        plain.growth.sort_unstable();
+        plain.muscles.iter_mut().for_each(|names| names.sort_unstable());
         plain.order = plain.order.filter(|order| *order != 1);
         canonical::to_value(&plain)
     }
@@ -118,13 +111,38 @@ impl ResponseDocument {
             let detail = format!("{order} is neither 1 nor 2");
             faults.add(&spec.key("order"), ErrorCode::OutOfRange, detail);
         }
-        let at = spec.key("segments");
-        faults.check_length(&at, self.segments.len(), limits.list_entries as usize);
-        for (index, name) in self.segments.iter().enumerate() {
-            if self.segments[..index].contains(name) {
-                let detail = format!("segment `{name}` is named more than once");
-                faults.add(&at.index(index), ErrorCode::DuplicateName, detail);
+        let muscles = self.muscles.as_deref().unwrap_or_default();
+        let named = [
+            ("segments", "segment", &self.segments[..], limits.list_entries),
+            ("growth", "region", &self.growth, limits.map_entries),
+            ("muscles", "muscle", muscles, limits.map_entries),
+        ];
+        for (member, kind, names, most) in named {
+            let at = spec.key(member);
+            faults.check_length(&at, names.len(), most as usize);
+            for (index, name) in names.iter().enumerate() {
+                if names[..index].contains(name) {
+                    let detail = format!("{kind} `{name}` is named more than once");
+                    faults.add(&at.index(index), ErrorCode::DuplicateName, detail);
+                }
             }
+        }
+    }
+
+    /// The columns of growth and muscles that are asked for of a scene.
+    pub fn inner_loads(&self, scene: &Scene) -> Result<Vec<InnerLoad>, ResponseError> {
+        let usual = match self.response_order() {
+            ResponseOrder::First => scene.muscles.iter().map(|own| own.name.clone()).collect(),
+            ResponseOrder::Second => Vec::new(),
+        };
+        let trimmed = |names: &[String]| -> Vec<String> {
+            names.iter().map(|name| name.trim().to_owned()).collect()
+        };
+        let muscles = self.muscles.as_deref().map_or(usual, trimmed);
+        let loads = inner_loads(scene, &trimmed(&self.growth), &muscles)?;
+        match self.response_order() == ResponseOrder::Second && !loads.is_empty() {
+            true => Err(ResponseError::NoSecondOrderInside),
+            false => Ok(loads),
         }
     }
 
@@ -146,7 +164,18 @@ impl ResponseDocument {
             ResponseError::NothingHeld { .. } => {
                 (root.key("case").key("fixed"), ErrorCode::NothingHeld)
             }
-            ResponseError::NoSecondOrder => {
+            ResponseError::UnknownRegion { name, .. } => {
+                let place = self.growth.iter().position(|other| other.trim() == name);
+                let at = root.key("spec").key("growth").index(place.unwrap_or_default());
+                (at, ErrorCode::UnknownRegion)
+            }
+            ResponseError::UnknownMuscle { name, .. } => {
+                let mut names = self.muscles.iter().flatten();
+                let place = names.position(|other| other.trim() == name);
+                let at = root.key("spec").key("muscles").index(place.unwrap_or_default());
+                (at, ErrorCode::UnknownMuscle)
+            }
+            ResponseError::NoSecondOrder | ResponseError::NoSecondOrderInside => {
                 (root.key("spec").key("order"), ErrorCode::MethodNotAvailable)
             }
             ResponseError::OtherMethod => (root.key("spec").key("method"), ErrorCode::NotLinear),
@@ -158,242 +187,6 @@ impl ResponseDocument {
                 problem.with("count", *count as u64).with("first_node", *first)
             }
             _ => problem,
-        }
-    }
-}
-
-/// What a response knows: how to read its columns, and what applying a plan needs.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct ResponseDescription {
-    /// The job that built it; absent from results of the command line.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
-    pub job: Option<String>,
-    /// SHA-256 over everything that the columns depend on.
-    pub key: String,
-    pub engine: EngineDocument,
-    pub frame: FrameName,
-    /// Column 12 s + 4 i + j of the s-th segment multiplies (R - I)_ij (j < 3) or t_i (j = 3).
-    pub segments: Vec<ResponseSegmentDocument>,
-    /// Segments of the case that stay where they are.
-    pub staying: Vec<String>,
-    /// Nodes of the volume mesh, ascending: the order within a column.
-    pub node_ids: Vec<u32>,
-    pub columns: ColumnsDocument,
-    pub linearity: LinearityDocument,
-    /// Absent of a response of order 1.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
-    pub second_order: Option<SecondOrderDocument>,
-    /// The centre of the bounding box of the mesh, whose displacement is limited.
-    pub mesh_centre_mm: Triple,
-    /// From one corner of that box to the other: no segment goes farther. 0 where it is not known.
-    #[serde(default)]
-    pub mesh_diagonal_mm: f64,
-    /// Whether plans may carry the tissue along as one.
-    #[serde(default)]
-    pub allow_unfixed: bool,
-    /// What hangs together, and what holds it.
-    #[serde(default)]
-    pub parts: Vec<ResponsePartDocument>,
-}
-
-/// A segment that the columns can move: x' = x + (R - I)(x - centre) + t.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct ResponseSegmentDocument {
-    pub name: String,
-    /// From where x is measured: the mean of the segment's nodes.
-    pub centre_mm: Triple,
-    /// The box around the segment's nodes.
-    pub box_mm: CornerPair,
-    /// Whether tissue slides on a wall that the segment carries.
-    #[serde(default)]
-    pub carries_wall: bool,
-}
-
-impl ResponseSegmentDocument {
-    /// The lowest and the highest corner of its box.
-    fn corners(&self) -> [Vector; 2] {
-        let CornerPair([a, b, c, d, e, f]) = self.box_mm;
-        [Vector::new(a, b, c), Vector::new(d, e, f)]
-    }
-}
-
-/// What a response is the answer of.
-pub struct ResponseOrigin {
-    pub job: Option<String>,
-    pub key: String,
-    pub frame: Frame,
-    pub mesh_centre: Vector,
-    pub staying: Vec<String>,
-    pub columns: ColumnsDocument,
-    pub second_order: Option<SecondOrderDocument>,
-}
-
-impl ResponseDescription {
-    pub fn new(columns: &Columns, origin: ResponseOrigin) -> Self {
-        let segments = columns.segments.iter().zip(&columns.linearity.boxes);
-        let segments = segments.zip(&columns.carries_wall);
-        let names: Vec<String> = columns.segments.iter().map(|of| of.name.clone()).collect();
-        let parts = columns.parts.iter().map(|part| ResponsePartDocument::new(part, &names));
-        ResponseDescription {
-            job: origin.job,
-            key: origin.key,
-            engine: EngineDocument::this(),
-            frame: origin.frame.into(),
-            segments: segments
-                .map(|((segment, [low, high]), &carries_wall)| ResponseSegmentDocument {
-                    name: segment.name.clone(),
-                    centre_mm: segment.centre.into(),
-                    box_mm: CornerPair([low.x, low.y, low.z, high.x, high.y, high.z]),
-                    carries_wall,
-                })
-                .collect(),
-            staying: origin.staying,
-            node_ids: columns.nodes.clone(),
-            columns: origin.columns,
-            linearity: LinearityDocument {
-                thickness_mm: columns.linearity.thickness,
-                something_stays: columns.linearity.something_stays,
-                second_order_mm: columns.linearity.sampled.iter().map(|of| of.second).collect(),
-                range_mm: LINEAR_RANGE_MM,
-            },
-            second_order: origin.second_order,
-            mesh_centre_mm: origin.mesh_centre.into(),
-            mesh_diagonal_mm: columns.diagonal,
-            allow_unfixed: columns.allow_unfixed,
-            parts: parts.collect(),
-        }
-    }
-
-    pub fn response_segments(&self) -> Vec<ResponseSegment> {
-        let segments = self.segments.iter();
-        segments
-            .map(|segment| ResponseSegment {
-                name: segment.name.clone(),
-                centre: segment.centre_mm.into(),
-            })
-            .collect()
-    }
-
-    pub fn to_linearity(&self) -> Linearity {
-        Linearity {
-            thickness: self.linearity.thickness_mm,
-            something_stays: self.linearity.something_stays,
-            boxes: self.segments.iter().map(ResponseSegmentDocument::corners).collect(),
-            sampled: { self.segments.iter().zip(&self.linearity.second_order_mm) }
-                .map(|(segment, &second)| SampledSecond {
-                    centre: segment.centre_mm.into(),
-                    second,
-                })
-                .collect(),
-        }
-    }
-
-    /// One movement for each segment of the response; those that the plan does not name stay.
-    /// Pointers start at `/plan`.
-    pub fn movements(
-        &self,
-        plan: &PlanDocument,
-        limits: &Limits,
-    ) -> Result<Vec<RigidMovement>, Problem> {
-        let mut faults = Faults::default();
-        let at = Pointer::root().key("plan");
-        for (name, is_empty) in [
-            ("prescribed", plan.prescribed.is_empty()),
-            ("loads", plan.loads.is_empty()),
-            ("osteotomy", plan.osteotomy.is_none()),
-        ] {
-            if !is_empty {
-                let detail = format!("a response knows movements of segments and no `{name}`");
-                faults.add(&at.key(name), ErrorCode::NotInResponse, detail);
-            }
-        }
-        let segments_only = PlanDocument {
-            segments: plan.segments.clone(),
-            frame: plan.frame,
-            ..PlanDocument::default()
-        };
-        let centre = self.mesh_centre_mm.into();
-        let context = PlanContext { frame: self.frame.into(), centre: Some(centre), limits };
-        let planned = segments_only.to_plan(&at, &context, &mut faults).segments;
-        for (index, segment) in plan.segments.iter().enumerate() {
-            let name = segment.name.trim();
-            let movement = planned.iter().find(|planned| planned.name == name);
-            let moves =
-                movement.is_some_and(|planned| planned.movement != RigidMovement::default());
-            let place = at.key("segments").index(index).key("name");
-            self.check_name(name, moves, &place, &mut faults);
-        }
-        faults.into_result()?;
-        let by_name: BTreeMap<&str, RigidMovement> =
-            planned.iter().map(|segment| (segment.name.as_str(), segment.movement)).collect();
-        let of = |segment: &ResponseSegmentDocument| by_name.get(segment.name.trim()).copied();
-        let movements: Vec<RigidMovement> =
-            self.segments.iter().map(|segment| of(segment).unwrap_or_default()).collect();
-        self.check_whole(&movements, &at)?;
-        Ok(movements)
-    }
-
-    /// Refuses what a prediction of the same plan refuses: segments that leave the face, and a face that goes as one.
-    fn check_whole(&self, movements: &[RigidMovement], at: &Pointer) -> Result<(), Problem> {
-        let beyond = beyond_face(&self.moved(movements), self.mesh_diagonal_mm);
-        if let Some(beyond) = beyond.filter(|_| self.mesh_diagonal_mm > 0.0) {
-            let at = at.key("segments");
-            return Err(Problem::at(&at, ErrorCode::PlanOutOfRange, beyond.to_string()));
-        }
-        match self.goes_along(movements).refused.into_iter().next() {
-            Some(detail) => Err(Problem::at(at, ErrorCode::NothingHeld, detail)),
-            None => Ok(()),
-        }
-    }
-
-    /// The parts that a plan would carry along as one, where that is not allowed.
-    fn goes_along(&self, movements: &[RigidMovement]) -> GoesAlong {
-        if self.allow_unfixed {
-            return GoesAlong::default();
-        }
-        let segments: Vec<String> = self.segments.iter().map(|of| of.name.clone()).collect();
-        let parts: Vec<ConnectedPart> =
-            self.parts.iter().map(|part| part.to_part(&segments)).collect();
-        goes_along(&parts, |segment| movements[segment as usize])
-    }
-
-    /// What a reader of the skin of a plan must know of the plan.
-    pub fn warnings(&self, movements: &[RigidMovement]) -> Vec<WarningDocument> {
-        let still = movements.iter().all(|movement| *movement == RigidMovement::default());
-        let order = if self.second_order.is_some() { 2 } else { 1 };
-        let carriers = self.segments.iter().zip(movements).filter(|(of, _)| of.carries_wall);
-        let turned = carriers.filter_map(|(of, movement)| normal_turned(&of.name, movement, order));
-        let warnings = still.then(nothing_moves).into_iter();
-        let warnings = warnings.chain(suspect_units(&self.moved(movements))).chain(turned);
-        let warnings = warnings.chain(self.goes_along(movements).told);
-        warnings.map(|warning| WarningDocument::from(&warning)).collect()
-    }
-
-    fn moved<'a>(&'a self, movements: &'a [RigidMovement]) -> Vec<MovedSegment<'a>> {
-        let segments = self.segments.iter().zip(movements);
-        segments
-            .map(|(segment, movement)| {
-                let (name, corners) = (segment.name.as_str(), segment.corners());
-                MovedSegment { name, movement, corners }
-            })
-            .collect()
-    }
-
-    fn check_name(&self, name: &str, moves: bool, at: &Pointer, faults: &mut Faults) {
-        let mut known = self.segments.iter().map(|segment| segment.name.trim());
-        if known.any(|known| known == name) {
-            return;
-        }
-        if !self.staying.iter().any(|staying| staying.trim() == name) {
-            let names = listed(self.segments.iter().map(|other| &other.name));
-            let detail = format!("the case has no segment {name:?}; the response moves {names}");
-            faults.add(at, ErrorCode::UnknownSegment, detail);
-        } else if moves {
-            let detail =
-                format!("the response was built without segment {name:?}, which has to stay");
-            faults.add(at, ErrorCode::NotInResponse, detail);
         }
     }
 }

@@ -73,8 +73,10 @@ class Response:
         """Nodes of the volume mesh."""
         return np.array(self.description["node_ids"])
 
-    def displacement_mm(self, movements: Mapping[str, ArrayLike]) -> NDArray[np.float64]:
-        """How far each node of the skin goes where segments move by these 4x4 matrices (see `rigid`); others stay.
+    def displacement_mm(self, movements: Mapping[str, ArrayLike], growth: Mapping[str, float] | None = None,
+                        activations: Mapping[str, float] | None = None) -> NDArray[np.float64]:
+        """How far each node of the skin goes where segments move by these 4x4 matrices (see `rigid`); others stay. `growth`:
+        volume change by region, `activations`: stress in kPa by muscle, of those in `inner_columns` of the description.
         Without asking the service, whose `apply` also refuses plans beyond the limits and estimates what linearity leaves out;
         raises `ValueError` where a matrix is not that of a rigid movement."""
         segments = {segment["name"]: index for index, segment in enumerate(self.description["segments"])}
@@ -88,6 +90,8 @@ class Response:
             shift = matrix[:3, 3] + turn @ centre
             first = 12 * segments[name]
             coefficients[first:first + 12] = np.column_stack([turn, shift]).ravel()
+        for column, amount in self._inner(growth or {}, activations or {}).items():
+            coefficients[column] = amount
         displacement = np.asarray(np.tensordot(coefficients, self.columns, axes=1), dtype=np.float64)
         if self.second_order is not None:
             k, l = np.triu_indices(len(coefficients))
@@ -95,3 +99,17 @@ class Response:
             for pair in np.flatnonzero(factors):
                 displacement += factors[pair] * self.second_order[pair]
         return displacement
+
+    def _inner(self, growth: Mapping[str, float], activations: Mapping[str, float]) -> dict[int, float]:
+        """What the columns of growth and muscles are multiplied by, by their numbers."""
+        columns = self.description.get("inner_columns", [])
+        first = 12 * len(self.description["segments"])
+        numbers = {(column["kind"], column["name"]): first + index for index, column in enumerate(columns)}
+        strain = {region: np.cbrt(1 + change) - 1 for region, change in growth.items()}
+        # A region beside `*` grows by that and by the rest.
+        everywhere = strain.get("*", 0.0)
+        amounts = {("growth", region): own if region == "*" else own - everywhere for region, own in strain.items()}
+        amounts |= {("muscle", muscle): stress for muscle, stress in activations.items()}
+        if unknown := sorted(set(amounts) - set(numbers)):
+            raise KeyError(f"the response has columns of {sorted(numbers)}, not of {unknown}")
+        return {numbers[key]: float(amount) for key, amount in amounts.items()}

@@ -4,12 +4,14 @@ use crate::mesh::{Vector, Warning};
 use crate::solver::{SolveReport, SolverError};
 
 /// One of several things that happen to the same tissue.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct LoadCase {
     /// For each hold its displacement in mm along its held axes, in its frame.
     pub held: Vec<Vector>,
     /// For each node, in mN.
     pub forces: Vec<Vector>,
+    /// For each cell the volume in mm³ that it grows by, of which pressures take no notice; empty where nothing grows.
+    pub grown: Vec<f64>,
 }
 
 /// Nodal displacement in mm, and for each hold the force in mN that it exerts on the tissue.

@@ -6,7 +6,7 @@
 //! segment's movement, which are smooth in its six parameters q, three translations and three angles
 //! (R = Rz Ry Rx about a pivot). So the sum is reduced once to as many rows as there are columns
 //! (`reduction`), and minimised by Levenberg and Marquardt's method with steps that keep to the
-//! bounds (`minimum`, `bounded_step`).
+//! bounds (`minimum`, `bounded_step`). Growth and muscles that are stated stay as they are: their part of u is taken from d.
 //!
 //! With errors of standard deviation sigma, independent for each component of each point, the
 //! covariance of the free parameters is (JᵀJ)⁻¹, J the derivative of (u - d) / sigma at the minimum
@@ -20,6 +20,7 @@ mod reduction;
 mod unknowns;
 use crate::mesh::Vector;
 use crate::plan::RigidMovement;
+use crate::response::Amounts;
 pub use bounded_step::UNDETERMINED;
 pub use certainty::{Certainty, Weight};
 use minimum::minimise;
@@ -73,7 +74,8 @@ pub fn optimise(question: &Question) -> Result<Optimum, OptimisationError> {
 
     // 3. What is left of each target.
     let movements = unknowns.movements(&minimum.unknowns);
-    let skin = question.response.apply(&movements);
+    let amounts = Amounts { movements: &movements, inner: question.inner };
+    let skin = question.response.apply_all(&amounts);
     let residual = |target: &Target| Residual::new(target, &skin);
     Ok(Optimum {
         parameters: unknowns.parameters(&minimum.unknowns),

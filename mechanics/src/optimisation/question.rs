@@ -45,6 +45,8 @@ pub struct Question<'a> {
     /// One for each segment of the response.
     pub bounds: &'a [SegmentBounds],
     pub targets: &'a [Target],
+    /// The amounts of what acts inside, which stay; none of which is nothing.
+    pub inner: &'a [f64],
 }
 
 /// One of the six numbers that move a segment, in the order of `SegmentBounds::intervals`.

@@ -10,6 +10,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::{OptimisationError, Question};
+use crate::response::COLUMNS_PER_SEGMENT;
 
 /// Rows taken at once: a block and the triangle stay in the cache.
 const ROWS: usize = 256;
@@ -29,8 +30,9 @@ pub struct Reduction {
 impl Reduction {
     pub fn new(question: &Question) -> Result<Self, OptimisationError> {
         let response = question.response;
-        let columns: Vec<&[f32]> =
+        let mut columns: Vec<&[f32]> =
             response.columns.chunks_exact(3 * response.nodes.len().max(1)).collect();
+        let held = columns.split_off(COLUMNS_PER_SEGMENT * response.segments.len());
         let width = columns.len() + 1;
         let mut triangle = DMatrix::zeros(0, width);
         let mut block: Vec<f64> = Vec::with_capacity(ROWS * width);
@@ -41,7 +43,11 @@ impl Reduction {
                     let Some(wanted) = wanted else { continue };
                     let sample = |column: &&[f32]| goal.point.sample(column, component);
                     block.extend(columns.iter().map(|column| sample(column) / target.sigma));
-                    block.push(wanted / target.sigma);
+                    let acting = held.iter().zip(question.inner);
+                    let acting: f64 = acting
+                        .map(|(column, amount)| amount * goal.point.sample(column, component))
+                        .sum();
+                    block.push((wanted - acting) / target.sigma);
                     components += 1;
                     if block.len() == ROWS * width {
                         triangle = reduced(&triangle, &block);

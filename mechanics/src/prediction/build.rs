@@ -68,6 +68,7 @@ impl Scene {
             segments,
             forces: vec![Vector::zeros(); case.volume.nodes.len()],
             distributed: DistributedLoads::default(),
+            muscles: Vec::new(),
             landmarks: case.landmarks.clone(),
             allow_unfixed: case.allow_unfixed,
             settings: settings.clone(),
@@ -76,6 +77,8 @@ impl Scene {
         check.method(settings, plan);
         check.problems.give_up_if_any()?;
         check.add_loads(plan, &mut scene);
+        check.muscles(&mut scene);
+        check.add_inner_stress(plan, &mut scene);
 
         // 4. What cannot be solved, and what a reader must know.
         check.support(&scene, &part_of_cell);
@@ -106,6 +109,7 @@ impl Scene {
 
 /// The warning of a plan that says something and moves nothing. An empty one is a case without a plan.
 fn states_rest(plan: &Plan, scene: &Scene) -> Option<Warning> {
-    let says = !(plan.segments.is_empty() && plan.prescribed.is_empty() && plan.loads.is_empty());
+    let moves = !(plan.segments.is_empty() && plan.prescribed.is_empty());
+    let says = moves || plan.states_loads();
     (says && scene.is_at_rest()).then(nothing_moves)
 }

@@ -34,6 +34,8 @@ pub struct Case {
     pub hounsfield: Option<Hounsfield>,
     /// Where the fibres run, by region name or `*`; of use where a material has fibres.
     pub fibres: BTreeMap<String, FibreDirection>,
+    /// Muscles that a plan may activate; names differ.
+    pub muscles: Vec<Muscle>,
 }
 
 /// The course of fibres or of lines of the skin; its sign and its length do not matter.
@@ -97,6 +99,48 @@ pub struct Plan {
     pub segments: Vec<PlannedSegment>,
     pub prescribed: Vec<Prescribed>,
     pub loads: Vec<Load>,
+    pub growth: Vec<Growth>,
+    pub activations: Vec<Activation>,
+}
+
+impl Plan {
+    /// Whether loads, growth or muscles are stated.
+    pub fn states_loads(&self) -> bool {
+        !(self.loads.is_empty() && self.growth.is_empty() && self.activations.is_empty())
+    }
+}
+
+/// Tissue that gains volume or loses it: swelling, weight change, atrophy.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Growth {
+    /// Of the case; `*` stands for every region without an entry of its own.
+    pub region: String,
+    /// As a share of the volume, in [`VOLUME_CHANGE`](super::growth::VOLUME_CHANGE).
+    pub volume_change: f64,
+}
+
+/// A muscle that pulls.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Activation {
+    pub muscle: String,
+    /// Along its fibres, in kPa, in [`PULL`](super::muscle::PULL).
+    pub stress: f64,
+}
+
+/// Tissue that may pull along its fibres.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Muscle {
+    pub name: String,
+    pub course: MuscleCourse,
+}
+
+/// Where a muscle is, and which way it pulls.
+#[derive(Clone, Debug, PartialEq)]
+pub enum MuscleCourse {
+    /// The cells of a region; without fibres of its own along those of the region's material.
+    Region { region: String, fibres: Option<FibreDirection> },
+    /// Around polylines: full at a line, and nothing at the distance `within` in mm.
+    Lines { lines: Vec<Vec<Vector>>, within: f64 },
 }
 
 /// Displacements in mm prescribed at nodes.

@@ -217,6 +217,20 @@ impl<'a> Check<'a> {
             let detail = format!("{} follows bone and knows no forces", method.name);
             self.problems.add("/plan/loads", SceneErrorCode::MethodNotAvailable, detail);
         }
+        let inner = [
+            ("growth", "tissue that grows", plan.growth.is_empty()),
+            ("activations", "muscles that pull", plan.activations.is_empty()),
+        ];
+        for (member, what, _) in inner.into_iter().filter(|(_, _, is_empty)| !is_empty) {
+            if !method.knows_inner_stress {
+                let detail = format!(
+                    "{} knows no {what}: `fem_linear`, `mtm` and `mtm_ti` do",
+                    method.title
+                );
+                let at = format!("/plan/{member}");
+                self.problems.add(at, SceneErrorCode::MethodNotAvailable, detail);
+            }
+        }
     }
 
     pub(super) fn add_loads(&mut self, plan: &Plan, scene: &mut Scene) {

@@ -20,6 +20,7 @@ pub enum SceneErrorCode {
     TooManyRegions,
     Underconstrained,
     UnknownArray,
+    UnknownMuscle,
     UnknownRegion,
     UnknownSegment,
     UnknownSet,
@@ -28,7 +29,7 @@ pub enum SceneErrorCode {
 }
 
 impl SceneErrorCode {
-    pub const ALL: [SceneErrorCode; 22] = [
+    pub const ALL: [SceneErrorCode; 23] = [
         SceneErrorCode::DuplicateSegment,
         SceneErrorCode::EmptySelection,
         SceneErrorCode::FibreDirectionZero,
@@ -46,6 +47,7 @@ impl SceneErrorCode {
         SceneErrorCode::TooManyRegions,
         SceneErrorCode::Underconstrained,
         SceneErrorCode::UnknownArray,
+        SceneErrorCode::UnknownMuscle,
         SceneErrorCode::UnknownRegion,
         SceneErrorCode::UnknownSegment,
         SceneErrorCode::UnknownSet,
@@ -72,6 +74,7 @@ impl SceneErrorCode {
             SceneErrorCode::TooManyRegions => "too-many-regions",
             SceneErrorCode::Underconstrained => "underconstrained",
             SceneErrorCode::UnknownArray => "unknown-array",
+            SceneErrorCode::UnknownMuscle => "unknown-muscle",
             SceneErrorCode::UnknownRegion => "unknown-region",
             SceneErrorCode::UnknownSegment => "unknown-segment",
             SceneErrorCode::UnknownSet => "unknown-set",

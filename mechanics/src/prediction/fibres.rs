@@ -222,7 +222,7 @@ fn directions(
 }
 
 /// Length 1, or nothing where there is no direction.
-fn unit(vector: &Vector) -> Option<Vector> {
+pub(super) fn unit(vector: &Vector) -> Option<Vector> {
     let length = vector.norm();
     (length.is_finite() && length > SHORTEST).then(|| vector / length)
 }

@@ -96,6 +96,8 @@ pub struct MethodProperties {
     pub knows_membrane: bool,
     /// Whether forces may act.
     pub knows_loads: bool,
+    /// Whether tissue may grow, and muscles pull.
+    pub knows_inner_stress: bool,
     /// Whether tissue may be kept from passing through what it touches.
     pub knows_contact: bool,
 }
@@ -114,6 +116,7 @@ const FEM_LINEAR: MethodProperties = MethodProperties {
     expects_fibres: false,
     knows_membrane: true,
     knows_loads: true,
+    knows_inner_stress: true,
     knows_contact: true,
 };
 
@@ -136,6 +139,7 @@ const FEM_NONLINEAR: MethodProperties = MethodProperties {
     expects_fibres: false,
     knows_membrane: false,
     knows_loads: true,
+    knows_inner_stress: false,
     knows_contact: false,
 };
 
@@ -154,6 +158,7 @@ const MASS_TENSOR: MethodProperties = MethodProperties {
     expects_fibres: false,
     knows_membrane: true,
     knows_loads: true,
+    knows_inner_stress: true,
     knows_contact: false,
 };
 
@@ -171,6 +176,7 @@ const MASS_TENSOR_TRANSVERSE: MethodProperties = MethodProperties {
     expects_fibres: true,
     knows_membrane: true,
     knows_loads: true,
+    knows_inner_stress: true,
     knows_contact: true,
 };
 
@@ -188,6 +194,7 @@ const MASS_TENSOR_NONLINEAR: MethodProperties = MethodProperties {
     expects_fibres: false,
     knows_membrane: false,
     knows_loads: true,
+    knows_inner_stress: false,
     knows_contact: false,
 };
 
@@ -205,6 +212,7 @@ const MASS_SPRING: MethodProperties = MethodProperties {
     expects_fibres: false,
     knows_membrane: false,
     knows_loads: true,
+    knows_inner_stress: false,
     knows_contact: false,
 };
 
@@ -222,6 +230,7 @@ const VOLUME_SPLINE: MethodProperties = MethodProperties {
     expects_fibres: false,
     knows_membrane: false,
     knows_loads: true,
+    knows_inner_stress: false,
     knows_contact: false,
 };
 
@@ -239,6 +248,7 @@ const THICKNESS_WARP: MethodProperties = MethodProperties {
     expects_fibres: false,
     knows_membrane: false,
     knows_loads: false,
+    knows_inner_stress: false,
     knows_contact: false,
 };
 

@@ -13,11 +13,14 @@ mod error_code;
 mod exponential_tissue;
 mod far_segment;
 mod fibres;
+mod growth;
 mod held;
 mod hounsfield;
 mod imaged_tissue;
 mod listed;
 mod method;
+mod muscle;
+mod muscle_field;
 mod nonlinearity;
 mod numerical_error;
 mod numerics_revision;
@@ -39,14 +42,18 @@ mod walls;
 use std::collections::BTreeMap;
 
 pub use case::{
-    Bone, Case, CaseSegment, ContactKind, FibreDirection, Hounsfield, Load, Mixing, Plan,
-    Prescribed, RegionNames, Settings, SkinMembrane, Sliding, SlidingNormal, TissueWindow,
+    Activation, Bone, Case, CaseSegment, ContactKind, FibreDirection, Growth, Hounsfield, Load,
+    Mixing, Muscle, MuscleCourse, Plan, Prescribed, RegionNames, Settings, SkinMembrane, Sliding,
+    SlidingNormal, TissueWindow,
 };
 pub use contact::{ContactPair, Touch};
 pub use element_choice::ElementChoice;
 pub use error_code::SceneErrorCode;
+pub use growth::{VOLUME_CHANGE, linear_strain};
 pub use imaged_tissue::{ImagedTissue, TissueShare};
 pub use method::{Laws, Method, MethodKind, MethodProperties, Unknowns};
+pub use muscle::PULL;
+pub use muscle_field::MuscleField;
 pub use nonlinearity::{Estimated, Nonlinearity, NonlinearityUnknown};
 pub use numerical_error::{NotEstimated, NumericalError};
 pub use numerics_revision::NUMERICS_REVISION;

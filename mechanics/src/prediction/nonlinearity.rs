@@ -51,6 +51,8 @@ pub enum NonlinearityUnknown {
     TurnedWall { segment: String },
     #[error("it is not estimated where tissue presses on what it touches")]
     Contact,
+    #[error("no second order is known of tissue that grows, nor of muscles that pull")]
+    InnerStress,
     #[error("the loose solution of the second order failed: {0}")]
     Failed(ModelError),
 }
@@ -65,6 +67,9 @@ pub(super) fn reason_for_none(scene: &Scene) -> Option<NonlinearityUnknown> {
     }
     match scene.settings.method {
         Method::FemLinear | Method::MassTensorTransverse => {
+            if !scene.distributed.inner.is_empty() {
+                return Some(NonlinearityUnknown::InnerStress);
+            }
             if scene.has_pulling_fibres() {
                 return Some(NonlinearityUnknown::PullingFibres);
             }

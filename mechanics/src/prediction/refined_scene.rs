@@ -10,6 +10,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::imaged_tissue::ImagedTissue;
+use super::muscle_field::MuscleField;
 use super::scene::Scene;
 use super::skin::Skin;
 use super::stated::{StatedCondition, StatedHold};
@@ -20,6 +21,7 @@ use crate::mesh::connectivity::Faces;
 use crate::mesh::volume::BoundaryFace;
 use crate::mesh::{Vector, VolumeMesh};
 use crate::model::fem::discretisation_error::DistributedLoads;
+use crate::model::fem::inner_stress::{CellStress, InnerStress};
 use crate::model::fem::loads::{add_face_load, add_gravity};
 use crate::model::fem::membrane::Membrane;
 use crate::model::problem::InvertedCell;
@@ -78,6 +80,7 @@ impl Scene {
             segments: self.segments.clone(),
             forces: finer.forces_at_nodes()?,
             distributed: finer.distributed(),
+            muscles: finer.muscles(),
             landmarks: self.landmarks.clone(),
             allow_unfixed: self.allow_unfixed,
             settings: self.settings.clone(),
@@ -94,13 +97,14 @@ impl Scene {
 /// The forces that stand for loads which act between nodes too, in mN.
 fn consistent(scene: &Scene) -> Result<Vec<Vector>, InvertedCell> {
     let mut forces = vec![Vector::zeros(); scene.mesh.nodes.len()];
-    let DistributedLoads { faces, acceleration } = &scene.distributed;
+    let DistributedLoads { faces, acceleration, inner } = &scene.distributed;
     for (faces, load) in faces {
         add_face_load(&scene.mesh, faces, *load, &mut forces);
     }
     if *acceleration != Vector::zeros() {
         add_gravity(&scene.tissue(), *acceleration, &mut forces)?;
     }
+    scene.add_inner_forces(inner, &mut forces)?;
     Ok(forces)
 }
 
@@ -242,13 +246,32 @@ impl Finer<'_> {
     }
 
     fn distributed(&self) -> DistributedLoads {
-        let DistributedLoads { faces, acceleration } = &self.scene.distributed;
+        let DistributedLoads { faces, acceleration, inner } = &self.scene.distributed;
         let finer = |faces: &Vec<BoundaryFace>| {
             let chosen = self.numbered(faces.iter().map(BoundaryFace::nodes));
             self.parts_of(&chosen).into_iter().map(|(face, _)| face).collect()
         };
         let faces = faces.iter().map(|(faces, load)| (finer(faces), *load)).collect();
-        DistributedLoads { faces, acceleration: *acceleration }
+        let inner = InnerStress {
+            growth: self.carrier.of_cells_if_any(&inner.growth),
+            active: self.carrier.of_cells_if_any(&inner.active),
+        };
+        DistributedLoads { faces, acceleration: *acceleration, inner }
+    }
+
+    fn muscles(&self) -> Vec<MuscleField> {
+        let first: Vec<u32> = (0..self.scene.mesh.cells.len() as u32).collect();
+        let roots = self.carrier.of_cells(&first);
+        let finer = |muscle: &MuscleField| {
+            let of_root: BTreeMap<u32, CellStress> =
+                muscle.cells.iter().map(|own| (own.cell, *own)).collect();
+            let of_cell = |(cell, root): (u32, &u32)| {
+                of_root.get(root).map(|own| CellStress { cell, ..*own })
+            };
+            let cells = (0..).zip(&roots).filter_map(of_cell).collect();
+            MuscleField { name: muscle.name.clone(), cells }
+        };
+        self.scene.muscles.iter().map(finer).collect()
     }
 
     /// The forces that act at nodes alone, in mN; none at new ones.

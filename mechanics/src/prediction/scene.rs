@@ -7,6 +7,7 @@ use super::case::Settings;
 use super::element_choice::ElementChoice;
 use super::imaged_tissue::ImagedTissue;
 use super::method::{Method, MethodKind, Unknowns};
+use super::muscle_field::MuscleField;
 use super::skin::Skin;
 use super::stated::StatedCondition;
 use crate::boundary::{Conditions, ConnectedPart, NodeClass};
@@ -20,12 +21,13 @@ use crate::model::fem::discretisation_error::DistributedLoads;
 use crate::model::fem::displacement::Problem;
 use crate::model::fem::edge_nodes::EdgeNodes;
 use crate::model::fem::finite_strain::{Elements, FibreField, Finer, FiniteStrain, MeshError};
+use crate::model::fem::inner_stress::{Acted, InnerStress};
 use crate::model::fem::linear_system::LinearSystem;
 use crate::model::fem::mass_tensor_nonlinear::MassTensors;
 use crate::model::fem::membrane::Membrane;
 use crate::model::fem::{mass_tensor, quadratic};
 use crate::model::mass_spring::POISSON_RATIO;
-use crate::model::problem::{Equilibrium, LoadCase, ModelError};
+use crate::model::problem::{Equilibrium, InvertedCell, LoadCase, ModelError};
 use crate::model::thickness_warp::Warped;
 use crate::model::{mass_spring, spline};
 use crate::plan::PlannedSegment;
@@ -77,6 +79,8 @@ pub struct Scene {
     pub forces: Vec<Vector>,
     /// What of these acts between nodes too.
     pub distributed: DistributedLoads,
+    /// Those of the case, whether they pull or not.
+    pub muscles: Vec<MuscleField>,
     pub landmarks: BTreeMap<String, Vector>,
     /// Whether a plan may carry the whole tissue away as one.
     pub allow_unfixed: bool,
@@ -138,7 +142,21 @@ impl Scene {
     /// What the plan of this scene does to its tissue.
     pub fn load_case(&self) -> LoadCase {
         let held = self.conditions.holds.iter().map(|hold| *hold.values()).collect();
-        LoadCase { held, forces: self.forces.clone() }
+        // A cell without volume is refused where its matrix is made.
+        let grown = self.distributed.inner.grown_volumes(&self.mesh).unwrap_or_default();
+        LoadCase { held, forces: self.forces.clone(), grown }
+    }
+
+    /// Adds what growth and muscles exert on nodes, in mN.
+    pub fn add_inner_forces(
+        &self,
+        inner: &InnerStress,
+        forces: &mut [Vector],
+    ) -> Result<(), InvertedCell> {
+        let (edges, tissue) = (self.edge_nodes(), self.tissue());
+        let has_pressures = self.tetrahedron() == Tetrahedron::Stabilised;
+        let acted = Acted { tissue: &tissue, has_pressures, edges: edges.as_ref() };
+        inner.add_forces(&acted, forces)
     }
 
     /// Whether nothing is held away from its place and nothing acts.

@@ -40,6 +40,12 @@ const PRESSURE: Usual = Usual { what: "pressure", ..TRACTION };
 /// In mm/ms^2: the earth has 9.81e-3, and 9810 mm/s^2 is no m/s^2.
 const GRAVITY: Usual = Usual { what: "gravity", unit: "mm/ms2", least: 1e-5, most: 0.1 };
 
+/// Of skeletal muscle some 100 to 400 kPa at most (Powell et al. 1984).
+const PULL: Usual = Usual { what: "the stress", unit: "kPa", least: 1e-3, most: 1e3 };
+/// As a size; small strain does not reach farther either.
+const GROWTH: Usual =
+    Usual { what: "the change of volume", unit: "of the volume", least: 1e-4, most: 0.3 };
+
 impl Usual {
     /// A warning where a value that does something is outside.
     fn doubt(&self, value: f64, of: &str) -> Option<Warning> {
@@ -69,7 +75,14 @@ pub(super) fn suspect_constants(scene: &Scene, plan: &Plan) -> Vec<Warning> {
     let link = scene.settings.method.link_stiffness();
     let links = link.into_iter().map(|stiffness| LINK.doubt(stiffness, ""));
     let loads = plan.loads.iter().enumerate().map(|(index, load)| of_load(index, load));
-    materials.chain(sheet).chain(links).chain(loads).flatten().take(MOST).collect()
+    let growth = plan
+        .growth
+        .iter()
+        .map(|own| GROWTH.doubt(own.volume_change.abs(), &format!(" of region {:?}", own.region)));
+    let pulls = plan.activations.iter();
+    let pulls = pulls.map(|own| PULL.doubt(own.stress, &format!(" of muscle {:?}", own.muscle)));
+    let plan = loads.chain(growth).chain(pulls);
+    materials.chain(sheet).chain(links).chain(plan).flatten().take(MOST).collect()
 }
 
 /// The warning of tissues of which one is a thousand times as stiff as another or more.

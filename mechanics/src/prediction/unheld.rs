@@ -94,7 +94,7 @@ impl Check<'_> {
         }
         let still = RigidMovement::default();
         let is_still = segments.iter().all(|segment| segment.movement == still);
-        let acts = !(plan.loads.is_empty() && plan.prescribed.is_empty());
+        let acts = plan.states_loads() || !plan.prescribed.is_empty();
         if is_refused || (is_still && acts) {
             return;
         }

@@ -4,10 +4,13 @@
 //! or u = e_i, j = 3, and zero wherever else a node is held. Sliding nodes are held across their wall and free
 //! along it: at n . u(x) where s carries the wall, at zero where something else does or nothing.
 
+use super::inner_loads::load_case;
 use super::linearity::{self, Linearity, SampledSecond, joined_nodes};
 use super::quadratic_form::{QuadraticForm, pairs};
+use super::response_error::ResponseError;
 use super::rigid_numbers::SAMPLES;
 use super::second_order::Solutions;
+use super::superposition::{Amounts, InnerLoad};
 use super::{COLUMNS_PER_SEGMENT, Response, ResponseSegment, superposition};
 use crate::boundary::{ConnectedPart, Hold, NodeClass};
 use crate::mesh::Vector;
@@ -39,6 +42,8 @@ pub enum ResponseOrder {
 #[derive(Clone, Debug)]
 pub struct Columns {
     pub segments: Vec<ResponseSegment>,
+    /// A column each, after those of the segments.
+    pub inner: Vec<InnerLoad>,
     /// The skin nodes, ascending.
     pub nodes: Vec<u32>,
     /// As in [`Response`], in f64.
@@ -58,38 +63,6 @@ pub struct Columns {
     pub solver: SolveReport,
     /// The elements used.
     pub elements: Vec<String>,
-}
-
-/// Why there is no response.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum ResponseError {
-    #[error("there is no segment that could be moved")]
-    NoSegments,
-    #[error("the case has no segment {name:?}; its segments: {known}")]
-    UnknownSegment { name: String, known: String },
-    #[error(
-        "{count} nodes belong to two segments, the first is node {first}: they cannot follow both"
-    )]
-    SharedNodes { count: usize, first: u32 },
-    #[error(
-        "nothing but segment {name:?} holds the tissue: every plan that moves it would carry the tissue along as one, \
-         without deforming it; name in `fixed` what stays, or allow it with `allow_unfixed`"
-    )]
-    NothingHeld { name: String },
-    #[error("segment {name:?} holds no node")]
-    EmptySegment { name: String },
-    #[error("the scene has prescribed displacements or loads, which a response does not know")]
-    Loaded,
-    #[error(
-        "the second order of a response is not known for quadratic tetrahedra, nor for fibres that only pull"
-    )]
-    NoSecondOrder,
-    #[error(
-        "responses are built with linear finite elements, and the spec asks for another method"
-    )]
-    OtherMethod,
-    #[error(transparent)]
-    Prediction(#[from] ModelError),
 }
 
 /// The numbers of the named segments in the scene, in the order of the scene; all where none is named.
@@ -168,27 +141,55 @@ pub fn build_to(
     order: ResponseOrder,
     progress: &dyn Progress,
 ) -> Result<Columns, ResponseError> {
+    build_of(scene, &Asked { segments: names, order, inner: &[] }, progress)
+}
+
+/// The columns that are asked for.
+#[derive(Clone, Copy)]
+pub struct Asked<'a> {
+    /// Names of segments; all where none is named.
+    pub segments: &'a [String],
+    pub order: ResponseOrder,
+    /// Known to the scene ([`inner_loads`](super::inner_loads())).
+    pub inner: &'a [InnerLoad],
+}
+
+/// The same with columns of what acts inside.
+pub fn build_of(
+    scene: &Scene,
+    asked: &Asked,
+    progress: &dyn Progress,
+) -> Result<Columns, ResponseError> {
     // 1. What is asked.
+    let Asked { segments: names, order, inner } = *asked;
     let chosen = chosen(scene, names)?;
     check_order(scene, order)?;
+    if order == ResponseOrder::Second && !inner.is_empty() {
+        return Err(ResponseError::NoSecondOrderInside);
+    }
     let mut segments = Vec::with_capacity(chosen.len());
     for &number in &chosen {
         segments.push(segment_of(scene, number)?);
     }
-    let columns = COLUMNS_PER_SEGMENT * segments.len();
+    let of_segments = COLUMNS_PER_SEGMENT * segments.len();
+    let columns = of_segments + inner.len();
     check_memory(scene, columns, order)?;
     let zeros = vec![Vector::zeros(); scene.mesh.nodes.len()];
-    let cases: Vec<LoadCase> = (0..columns)
+    let mut cases: Vec<LoadCase> = (0..of_segments)
         .map(|column| {
             let (place, unit) = (column / COLUMNS_PER_SEGMENT, column % COLUMNS_PER_SEGMENT);
             let held = held_values(scene, chosen[place], &segments[place].centre, unit);
-            LoadCase { held, forces: zeros.clone() }
+            LoadCase { held, forces: zeros.clone(), ..LoadCase::default() }
         })
         .collect();
+    for load in inner {
+        cases.push(load_case(scene, load)?);
+    }
 
     // 2. The tissue for each of them.
     let nodes = scene.skin.nodes().to_vec();
-    let Solved { solved, sampled, second_order } = solve(scene, &cases, order, progress)?;
+    let all = Cases { all: &cases, of_segments };
+    let Solved { solved, sampled, second_order } = solve(scene, &all, order, progress)?;
 
     // 3. Its skin.
     progress.phase(Phase::Surface);
@@ -209,6 +210,7 @@ pub fn build_to(
     let [low, high] = scene.mesh.bounds();
     Ok(Columns {
         segments,
+        inner: inner.to_vec(),
         nodes,
         values,
         linearity,
@@ -230,21 +232,28 @@ struct Solved {
     second_order: Option<QuadraticForm>,
 }
 
+/// A load case for each column, those of the segments first.
+struct Cases<'a> {
+    all: &'a [LoadCase],
+    of_segments: usize,
+}
+
 fn solve(
     scene: &Scene,
-    cases: &[LoadCase],
+    cases: &Cases,
     order: ResponseOrder,
     progress: &dyn Progress,
 ) -> Result<Solved, ResponseError> {
     let Some(system) = scene.assemble(progress)? else {
-        let solved = scene.solve_cases(cases, progress)?;
+        let solved = scene.solve_cases(cases.all, progress)?;
         return Ok(Solved { solved, sampled: Vec::new(), second_order: None });
     };
-    let columns = system.solve(cases, progress)?;
+    let columns = system.solve(cases.all, progress)?;
     let pressures = system.pressures.as_ref().map(|pressures| &pressures.cells);
     let series = ForceSeries::new(scene.tissue(), pressures);
     let skin = scene.skin.nodes();
-    let solutions = Solutions { series, system: &system, columns: &columns, skin };
+    let of_segments = &columns[..cases.of_segments];
+    let solutions = Solutions { series, system: &system, columns: of_segments, skin };
     let sampled = match scene.has_pulling_fibres() {
         true => Vec::new(),
         false => solutions.second_of_each(progress)?,
@@ -260,13 +269,19 @@ fn solve(
 impl Columns {
     /// The displacement of each skin node in mm, for one movement of each segment.
     pub fn apply(&self, movements: &[RigidMovement]) -> Vec<Vector> {
-        superposition::apply(&self.segments, movements, &self.values, self.nodes.len())
+        self.apply_all(&Amounts { movements, inner: &[] })
+    }
+
+    /// The same with what acts inside.
+    pub fn apply_all(&self, amounts: &Amounts) -> Vec<Vector> {
+        superposition::apply(&self.segments, amounts, &self.values, self.nodes.len())
     }
 
     /// The columns as they are stored and served.
     pub fn to_response(&self) -> Response {
         Response {
             segments: self.segments.clone(),
+            inner: self.inner.clone(),
             nodes: self.nodes.clone(),
             columns: self.values.iter().map(|&value| value as f32).collect(),
         }

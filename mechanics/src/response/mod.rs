@@ -4,15 +4,21 @@
 //! The tissue is linear too, so the skin is u = sum_k a_k c_k with one solved column c_k for each of
 //! the twelve numbers of each segment: exact for every finite movement (Cotin, Delingette, Ayache
 //! 1999, "pre-calculus"; VERIFICATION V.43). What linearity leaves out is, to second order, a quadratic form in the same
-//! numbers, which is built on request.
+//! numbers, which is built on request. Growth of a region and the pull of a muscle act linearly too: one column each.
 
 pub mod build;
+mod inner_loads;
 pub mod linearity;
 pub mod quadratic_form;
+mod response_error;
 mod rigid_numbers;
 mod second_order;
 mod superposition;
-pub use build::{Columns, ResponseError, ResponseOrder, build, build_to, check_order, chosen};
+pub use build::{Asked, Columns, ResponseOrder, build, build_of, build_to, check_order, chosen};
+pub use inner_loads::inner_loads;
 pub use linearity::{Linearity, Nonlinearity, SampledSecond, by_rule_of_thumb};
 pub use quadratic_form::{BeyondLinear, QuadraticForm};
-pub use superposition::{COLUMNS_PER_SEGMENT, Response, ResponseSegment, coefficients};
+pub use response_error::ResponseError;
+pub use superposition::{
+    Amounts, COLUMNS_PER_SEGMENT, InnerLoad, Response, ResponseSegment, coefficients,
+};

@@ -27,6 +27,7 @@ const TOGETHER: usize = 8;
 pub(super) struct Solutions<'a> {
     pub series: ForceSeries<'a>,
     pub system: &'a LinearSystem<'a>,
+    /// Those of the segments.
     pub columns: &'a [Solved],
     /// Nodes of the skin.
     pub skin: &'a [u32],

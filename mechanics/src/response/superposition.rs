@@ -12,10 +12,19 @@ const STRETCH: usize = 1536;
 /// Columns that are added in one go, so that the sums are read and written once for all of them.
 const TOGETHER: usize = 4;
 
-/// The displacement of each node for one movement of each segment; columns as [column][node][xyz].
+/// What a plan is as a sum of columns: one movement of each segment, and the amounts of what acts inside, none of which is
+/// nothing.
+#[derive(Clone, Copy)]
+pub struct Amounts<'a> {
+    pub movements: &'a [RigidMovement],
+    /// Of each of [`Response::inner`].
+    pub inner: &'a [f64],
+}
+
+/// The displacement of each node; columns as [column][node][xyz], those of the segments first.
 pub fn apply<T: Copy + Into<f64>>(
     segments: &[ResponseSegment],
-    movements: &[RigidMovement],
+    amounts: &Amounts,
     columns: &[T],
     nodes: usize,
 ) -> Vec<Vector> {
@@ -24,8 +33,9 @@ pub fn apply<T: Copy + Into<f64>>(
         return Vec::new();
     }
     // Twelve zeros for a segment that stays: its columns are passed over.
-    let moved = segments.iter().zip(movements);
+    let moved = segments.iter().zip(amounts.movements);
     let factors = moved.flat_map(|(segment, movement)| coefficients(movement, &segment.centre));
+    let factors = factors.chain(amounts.inner.iter().copied());
     let terms: Vec<(f64, &[T])> =
         factors.zip(columns.chunks_exact(length)).filter(|(factor, _)| *factor != 0.0).collect();
     let mut displacement = Vec::with_capacity(nodes);
@@ -69,10 +79,21 @@ pub struct ResponseSegment {
     pub centre: Vector,
 }
 
-/// Skin displacement for a unit of each number of each segment's movement.
+/// What acts inside the tissue, a column each.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum InnerLoad {
+    /// Growth of a region, or of all tissue (`*`); its amount is eps_g, `prediction::linear_strain` of the volume change.
+    Growth(String),
+    /// A muscle; its amount is the stress in kPa.
+    Muscle(String),
+}
+
+/// Skin displacement for a unit of each number of each segment's movement, and of what acts inside.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Response {
     pub segments: Vec<ResponseSegment>,
+    /// A column each, after those of the segments.
+    pub inner: Vec<InnerLoad>,
     /// The skin nodes, ascending.
     pub nodes: Vec<u32>,
     /// [column][node][xyz] in mm; column 12 s + 4 i + j of segment s multiplies (R - I)_ij for j < 3
@@ -93,6 +114,11 @@ pub fn coefficients(movement: &RigidMovement, centre: &Vector) -> [f64; COLUMNS_
 impl Response {
     /// The displacement of each skin node in mm, for one movement of each segment.
     pub fn apply(&self, movements: &[RigidMovement]) -> Vec<Vector> {
-        apply(&self.segments, movements, &self.columns, self.nodes.len())
+        self.apply_all(&Amounts { movements, inner: &[] })
+    }
+
+    /// The same with what acts inside.
+    pub fn apply_all(&self, amounts: &Amounts) -> Vec<Vector> {
+        apply(&self.segments, amounts, &self.columns, self.nodes.len())
     }
 }

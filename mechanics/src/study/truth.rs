@@ -308,7 +308,7 @@ impl Finer<'_> {
 pub(super) fn is_of_segments(plan: &Plan, case: &Case) -> bool {
     let is_of_case = |name: &str| case.segments.iter().any(|segment| segment.name == name);
     plan.prescribed.is_empty()
-        && plan.loads.is_empty()
+        && !plan.states_loads()
         && plan.segments.iter().all(|segment| is_of_case(&segment.name))
 }
 

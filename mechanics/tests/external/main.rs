@@ -3,6 +3,7 @@
 
 mod files;
 mod interop;
+mod muscles;
 mod needs;
 mod predictions;
 mod scans;
@@ -18,6 +19,7 @@ fn main() -> ExitCode {
     support::external::run([
         files::trials(),
         interop::trials(),
+        muscles::trials(),
         needs::trials(),
         predictions::trials(),
         scans::trials(),

@@ -2,18 +2,23 @@
 
 use mechanics::mesh::half_head::half_head;
 use mechanics::mesh::{CellShape, Vector, VolumeMesh, sample};
+use mechanics::optimisation::{Goal, Question, SegmentBounds, SkinPoint, Target, optimise};
 use mechanics::plan::RigidMovement;
 use mechanics::prediction::{
-    Case, CaseSegment, ElementChoice, Load, Method, MethodKind, ModelError, Plan, Prescribed,
-    Scene, Settings, Sliding, SlidingNormal, SolverError,
+    Activation, Case, CaseSegment, ElementChoice, Growth, Load, Method, MethodKind, ModelError,
+    Muscle, MuscleCourse, Plan, Prescribed, Scene, Settings, Sliding, SlidingNormal, SolverError,
+    linear_strain,
 };
 use mechanics::progress::Unobserved;
 use mechanics::response::linearity::LINEAR_RANGE_MM;
-use mechanics::response::{Linearity, ResponseError, build, coefficients};
+use mechanics::response::{
+    Amounts, Asked, Linearity, ResponseError, ResponseOrder, build, build_of, coefficients,
+    inner_loads,
+};
 use mechanics::study::methods;
 
-use crate::scenes::{case_of, material, set};
-use crate::support::responses::{at_rest, columns, differences, direct, movements, tight};
+use crate::scenes::{case_of, material, set, solve};
+use crate::support::responses::{at_rest, columns, differences, direct, movements, plan_of, tight};
 
 fn segment(name: &str) -> CaseSegment {
     CaseSegment { name: name.to_owned(), nodes: set(name) }
@@ -243,4 +248,102 @@ fn two_segments_that_part_are_farther_apart_than_either_moves() {
     assert!((found.largest_relative_movement - 5.0).abs() < 1e-12);
     assert!(found.estimate < LINEAR_RANGE_MM && found.is_within_linear_range());
     assert!(!columns.linearity.of(&[by(-20.0), by(3.0)]).is_within_linear_range());
+}
+
+/// The half head with a muscle around lines on each side, and fat of which there is less.
+fn head_with_muscles() -> Case {
+    let case = head();
+    let [low, high] = case.volume.bounds();
+    let at = |a: f64, b: f64, c: f64| low + (high - low).component_mul(&Vector::new(a, b, c));
+    let line = |x: f64| vec![at(0.5, x, 0.2), at(0.6, x, 0.5), at(0.5, x, 0.8)];
+    let muscle = |name: &str, x: f64| Muscle {
+        name: name.to_owned(),
+        course: MuscleCourse::Lines { lines: vec![line(x)], within: 15.0 },
+    };
+    Case { muscles: vec![muscle("left", 0.1), muscle("right", 0.2)], ..case }
+}
+
+#[test]
+fn growth_and_muscles_add_to_the_sum_of_columns_as_they_do_to_the_direct_solution() {
+    let mut block = block(CellShape::Hex8);
+    let lines = vec![vec![Vector::new(30.0, 5.0, 9.0), Vector::new(50.0, 35.0, 6.0)]];
+    let course = MuscleCourse::Lines { lines, within: 8.0 };
+    block.muscles = vec![Muscle { name: "left".to_owned(), course }];
+    for (case, element) in [
+        (head_with_muscles(), ElementChoice::Auto),
+        (block.clone(), ElementChoice::Auto),
+        (head_with_muscles(), ElementChoice::Plain),
+        (head_with_muscles(), ElementChoice::Quadratic),
+    ] {
+        let settings = Settings { element, ..tight() };
+        let rest = at_rest(&case, &settings);
+        let inner = inner_loads(&rest, &["*".to_owned()], &["left".to_owned()]).unwrap();
+        let asked = Asked { segments: &[], order: ResponseOrder::First, inner: &inner };
+        let columns = build_of(&rest, &asked, &Unobserved).unwrap();
+        let plan = Plan {
+            growth: vec![Growth { region: "*".to_owned(), volume_change: -0.05 }],
+            activations: vec![Activation { muscle: "left".to_owned(), stress: 12.0 }],
+            ..plan_of(&case, &movements())
+        };
+        let exact = solve(&case, &plan, &settings).displacement;
+        let amounts = [linear_strain(-0.05), 12.0];
+        let amounts = Amounts { movements: &movements(), inner: &amounts };
+        let moved = columns.apply_all(&amounts);
+        let stored = columns.to_response().apply_all(&amounts);
+        let without = columns.apply(&movements());
+        let mut apart: f64 = 0.0;
+        for (place, &node) in columns.nodes.iter().enumerate() {
+            let direct = exact[node as usize];
+            assert!((moved[place] - direct).norm() < 1e-7, "{element:?}");
+            assert!((stored[place] - direct).norm() < 1e-4, "{element:?}");
+            apart = apart.max((without[place] - direct).norm());
+        }
+        assert!(apart > 0.05, "{element:?}: growth and muscles move the skin by {apart} mm");
+    }
+}
+
+#[test]
+fn a_response_refuses_regions_and_muscles_that_are_not_there_and_a_second_order_of_them() {
+    let rest = at_rest(&head_with_muscles(), &tight());
+    let refused = |growth: &str, muscle: &str| {
+        inner_loads(&rest, &[growth.to_owned()], &[muscle.to_owned()]).unwrap_err().to_string()
+    };
+    let of_region = refused("fat", "left");
+    assert!(of_region.contains("\"fat\"") && of_region.contains("tissue"), "{of_region}");
+    let of_muscle = refused("tissue", "jaw");
+    assert!(of_muscle.contains("\"jaw\"") && of_muscle.contains("right"), "{of_muscle}");
+    let inner = inner_loads(&rest, &[], &["left".to_owned()]).unwrap();
+    let asked = Asked { segments: &[], order: ResponseOrder::Second, inner: &inner };
+    let refused = build_of(&rest, &asked, &Unobserved).unwrap_err();
+    assert_eq!(refused, ResponseError::NoSecondOrderInside);
+}
+
+#[test]
+fn inverse_planning_finds_the_plan_beside_growth_and_muscles_that_stay() {
+    let case = head_with_muscles();
+    let rest = at_rest(&case, &tight());
+    let inner = inner_loads(&rest, &["*".to_owned()], &["right".to_owned()]).unwrap();
+    let asked = Asked { segments: &[], order: ResponseOrder::First, inner: &inner };
+    let response = build_of(&rest, &asked, &Unobserved).unwrap().to_response();
+    let planted = [Vector::new(1.0, -2.0, 3.0), Vector::new(-0.5, 4.0, 0.0)];
+    let movements = planted
+        .map(|shift| RigidMovement::about_pivot(Vector::zeros(), Vector::zeros(), shift))
+        .to_vec();
+    let held = [linear_strain(0.1), 30.0];
+    let skin = response.apply_all(&Amounts { movements: &movements, inner: &held });
+    let goal = |(place, u): (usize, &Vector)| Goal {
+        point: SkinPoint::node(place as u32),
+        displacement: [Some(u.x), Some(u.y), Some(u.z)],
+    };
+    let goals: Vec<Goal> = skin.iter().enumerate().step_by(11).map(goal).collect();
+    let free = [(-10.0, 10.0), (-10.0, 10.0), (-10.0, 10.0), (0.0, 0.0), (0.0, 0.0), (0.0, 0.0)];
+    let bounds = [(); 2].map(|()| SegmentBounds { intervals: free, pivot: Vector::zeros() });
+    let targets = [Target { goals, sigma: 1.0 }];
+    let question =
+        Question { response: &response, bounds: &bounds, targets: &targets, inner: &held };
+    let optimum = optimise(&question).unwrap();
+    for (found, planted) in optimum.movements.iter().zip(&planted) {
+        assert!((found.translation() - planted).norm() < 1e-6, "{}", found.translation());
+    }
+    assert!(optimum.targets[0].rms < 1e-6, "{}", optimum.targets[0].rms);
 }

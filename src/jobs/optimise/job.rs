@@ -16,15 +16,16 @@ use crate::jobs::result::provenance::{
 use crate::jobs::result::skin::PredictedSkin;
 use crate::jobs::result::tissue::encode_bones;
 use crate::jobs::result::warnings::warnings_after;
-use crate::schema::OptimiseDocument;
 use crate::schema::optimise::result::OptimisationDocument;
 use crate::schema::predict::document::OutputName;
 use crate::schema::predict::result::{ResultDocument, SolverDocument};
 use mechanics::mesh::{Vector, Warning};
-use mechanics::optimisation::{Optimum, Question, optimise};
+use mechanics::optimisation::{Question, optimise};
 use mechanics::prediction::{Prediction, predict};
 use mechanics::progress::{Phase, Progress};
-use mechanics::response::{Columns, Response, ResponseError, build};
+use mechanics::response::{
+    Amounts, Asked, COLUMNS_PER_SEGMENT, ResponseError, ResponseOrder, build_of,
+};
 
 /// A difference between full solution and response that is told, in mm: stored in single precision and
 /// solved to the usual residual they agree to 1e-4 mm.
@@ -50,7 +51,8 @@ pub fn optimise_job(
 
     // 1. Documents and meshes, checked together.
     let prepared = input.prepare(place.sources, place.limits)?;
-    prepared.rest.admit(prepared.moving, place.limits)?;
+    let columns = COLUMNS_PER_SEGMENT * prepared.moving + prepared.inner.len();
+    prepared.rest.admit(columns, place.limits)?;
     clock.check()?;
 
     // 2. What each number of the movements does to the skin, and the plan.
@@ -83,7 +85,10 @@ pub fn optimise_job(
 impl OptimiseInput {
     fn find(&self, prepared: &PreparedOptimisation, clock: &Observed) -> Result<Found, JobError> {
         let scene = &prepared.rest.scene;
-        let columns = build(scene, &self.spec.moving(), clock).map_err(|error| match error {
+        let PreparedOptimisation { inner, amounts, .. } = prepared;
+        let order = ResponseOrder::First;
+        let asked = Asked { segments: &self.spec.moving(), order, inner };
+        let columns = build_of(scene, &asked, clock).map_err(|error| match error {
             ResponseError::Prediction(error) => clock.judge(error),
             other => self.judge(other),
         })?;
@@ -94,10 +99,19 @@ impl OptimiseInput {
             .iter()
             .map(|segment| self.spec.bounds_of(&segment.name).to_bounds())
             .collect();
-        let question =
-            Question { response: &response, bounds: &bounds, targets: &prepared.targets };
+        let question = Question {
+            response: &response,
+            bounds: &bounds,
+            targets: &prepared.targets,
+            inner: amounts,
+        };
         let optimum = optimise(&question)?;
-        Ok(Found::new(&self.spec, &columns, &response, &optimum))
+        let amounts = Amounts { movements: &optimum.movements, inner: amounts };
+        Ok(Found {
+            document: OptimisationDocument::new(&self.spec, &response.segments, &optimum),
+            displacement: response.apply_all(&amounts),
+            solver: solver_document(&columns.solver, &columns.elements),
+        })
     }
 
     /// The prediction of a plan that was found.
@@ -113,19 +127,6 @@ impl OptimiseInput {
 }
 
 impl Found {
-    fn new(
-        spec: &OptimiseDocument,
-        columns: &Columns,
-        response: &Response,
-        optimum: &Optimum,
-    ) -> Self {
-        Found {
-            document: OptimisationDocument::new(spec, &response.segments, optimum),
-            displacement: response.apply(&optimum.movements),
-            solver: solver_document(&columns.solver, &columns.elements),
-        }
-    }
-
     /// The answer with the largest difference between the skin of the full solution and that of the response.
     fn verified(
         &self,

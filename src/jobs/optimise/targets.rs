@@ -6,12 +6,13 @@ use crate::jobs::predict::{PredictInput, Prepared};
 use crate::jobs::source::MeshSource;
 use crate::schema::ErrorCode;
 use crate::schema::hashes;
+use crate::schema::inner_column::{InnerColumnDocument, inner_amounts};
 use crate::schema::optimise::document::TargetDocument;
 use crate::schema::{Faults, Limits, Pointer, Problem};
 use mechanics::mesh::{SurfaceSearch, Warning};
 use mechanics::optimisation::{Goal, SkinPoint, Target};
 use mechanics::prediction::{LANDMARK_FAR, Skin};
-use mechanics::response::{ResponseError, chosen};
+use mechanics::response::{InnerLoad, ResponseError, chosen};
 
 /// Inverse planning whose documents are sound.
 pub struct PreparedOptimisation {
@@ -20,6 +21,9 @@ pub struct PreparedOptimisation {
     pub targets: Vec<Target>,
     /// How many segments move.
     pub moving: usize,
+    /// Growth and muscles that stay, and how much of each.
+    pub inner: Vec<InnerLoad>,
+    pub amounts: Vec<f64>,
     /// Those that only inverse planning has.
     pub warnings: Vec<Warning>,
     pub spec_hash: String,
@@ -45,11 +49,25 @@ impl OptimiseInput {
         let rest = self.at_rest().prepare(sources, limits).map_err(|error| self.in_spec(error))?;
         let moving = chosen(&rest.scene, &self.spec.moving());
         let moving = moving.map_err(|error| self.judge(error))?.len();
+        let inner = self.spec.to_response().inner_loads(&rest.scene);
+        let inner = inner.map_err(|error| self.judge(error))?;
+        let amounts = self.held_amounts(&inner, limits)?;
         let mut warnings = Vec::new();
         let targets = self.targets(&rest, limits, &mut warnings)?;
         let content = |id: &str| rest.contents.get(id).cloned();
         let spec_hash = hashes::optimise_hash(&self.case, &self.spec, &content);
-        Ok(PreparedOptimisation { rest, targets, moving, warnings, spec_hash })
+        Ok(PreparedOptimisation { rest, targets, moving, inner, amounts, warnings, spec_hash })
+    }
+
+    /// How much of each column of growth and muscles stays.
+    fn held_amounts(&self, inner: &[InnerLoad], limits: &Limits) -> Result<Vec<f64>, JobError> {
+        let columns: Vec<InnerColumnDocument> =
+            inner.iter().map(InnerColumnDocument::new).collect();
+        let mut faults = Faults::default();
+        let spec = Pointer::root().key("spec");
+        let amounts = inner_amounts(&columns, &self.spec.held(), &spec, limits, &mut faults);
+        faults.into_result()?;
+        Ok(amounts)
     }
 
     /// The ids of all meshes that the job reads.
@@ -90,8 +108,23 @@ impl OptimiseInput {
     pub(super) fn judge(&self, error: ResponseError) -> JobError {
         match error {
             ResponseError::Prediction(error) => error.into(),
-            refused => JobError::Refused(self.spec.to_response().refusal(&refused)),
+            refused => {
+                JobError::Refused(self.in_optimise(self.spec.to_response().refusal(&refused)))
+            }
         }
+    }
+
+    /// The places of the response's spec are places of this one.
+    fn in_optimise(&self, mut problem: Problem) -> Problem {
+        for index in 0..self.spec.growth.len() {
+            let own = format!("/spec/growth/{index}");
+            problem = problem.moved(&own, &format!("{own}/region"));
+        }
+        for index in 0..self.spec.activations.len() {
+            let own = format!("/spec/activations/{index}/muscle");
+            problem = problem.moved(&format!("/spec/muscles/{index}"), &own);
+        }
+        problem
     }
 
     fn targets(

@@ -9,7 +9,6 @@ use crate::schema::predict::time_band::TimeBandDocument;
 use mechanics::mesh::CellShape;
 use mechanics::prediction::{ElementChoice, Laws, MethodKind, Scene, Unknowns};
 use mechanics::prediction::{ModelError, SolverError};
-use mechanics::response::COLUMNS_PER_SEGMENT;
 
 /// The peak of a whole process in MB was measured for blocks of up to 384 000 cells (12, 24 and 40 bricks along each
 /// edge, six tetrahedra a brick), files of the skin and the volume included: some 20 MB for the program, up to 30 more
@@ -35,11 +34,11 @@ const BESIDE_ANOTHER: f64 = 1.5;
 /// columns at the 50 700 nodes of `docs/performance.md` took 254 MB more than one.
 const COLUMN_AT_NODE: f64 = 210.0;
 
-/// The memory of a process that solves a scene, in MB, and of the columns of so many segments. Volume splines check
+/// The memory of a process that solves a scene, in MB, and of so many columns of a response. Volume splines check
 /// the size of their lattice themselves, and are told as their mesh here.
-pub fn memory_mb(scene: &Scene, segments: usize) -> f64 {
+pub fn memory_mb(scene: &Scene, columns: usize) -> f64 {
     let cells: f64 = scene.mesh.cells.iter().map(|(shape, _)| bytes_of_cell(scene, shape)).sum();
-    let columns = (COLUMNS_PER_SEGMENT * segments * scene.mesh.nodes.len()) as f64;
+    let columns = (columns * scene.mesh.nodes.len()) as f64;
     PROGRAM_MB + (cells + columns * COLUMN_AT_NODE) / 1e6
 }
 
@@ -131,8 +130,8 @@ impl Prepared {
     }
 
     /// Refuses what is expected to need more memory than a slot has.
-    pub fn admit(&self, segments: usize, limits: &Limits) -> Result<(), JobError> {
-        let (needed_mb, allowed_mb) = (memory_mb(&self.scene, segments), limits.slot_memory_mb);
+    pub fn admit(&self, columns: usize, limits: &Limits) -> Result<(), JobError> {
+        let (needed_mb, allowed_mb) = (memory_mb(&self.scene, columns), limits.slot_memory_mb);
         match needed_mb > allowed_mb {
             true => Err(ModelError::from(SolverError::OverBudget { needed_mb, allowed_mb }).into()),
             false => Ok(()),

@@ -16,9 +16,14 @@ const TOO_LARGE: f64 = 6.0;
 const THIRD: f64 = 3.0;
 
 impl Prepared {
-    /// The models of `auto` with what each is expected to take; none for a method that was asked for.
+    /// The models of `auto` with what each is expected to take; none for a method that was asked for, nor of growth
+    /// and muscles.
     pub fn expectation(&self, input: &PredictInput) -> Option<ExpectationDocument> {
         let accepted = input.spec.accepted()?;
+        // Movements alone say nothing of tissue that grows and of muscles that pull.
+        if !self.scene.distributed.inner.is_empty() {
+            return None;
+        }
         let rule = by_rule_of_thumb(&self.scene);
         let linearity_mm = BandDocument { low: rule.estimate / TOO_LARGE, high: rule.estimate };
         let movement_mm = rule.largest_relative_movement;

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use super::document::{CaseDocument, FrameName, LengthUnit, NormalDocument};
 use super::material::{MaterialDocuments, Merged, PlacedMaterials, merge_materials};
 use super::meshes::CaseMeshes;
+use super::muscle::to_muscles;
 use crate::schema::code::ErrorCode;
 use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::limits::Limits;
@@ -60,6 +61,7 @@ impl CaseDocument {
             allow_unfixed: self.allow_unfixed,
             sliding: self.to_sliding(&at.key("sliding"), limits, faults),
             hounsfield: self.to_hounsfield(&at.key("hounsfield"), meshes, limits, faults),
+            muscles: to_muscles(&self.muscles, &at.key("muscles"), limits, faults),
             materials,
             fibres,
             volume,

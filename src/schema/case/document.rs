@@ -7,6 +7,7 @@ use utoipa::ToSchema;
 
 use super::hounsfield::HounsfieldDocument;
 use super::material::{MaterialDocument, MaterialDocuments};
+use super::muscle::MuscleDocument;
 use super::selection::SelectionDocument;
 use crate::schema::Triple;
 use crate::schema::wire::fault::Pointer;
@@ -62,6 +63,9 @@ pub struct CaseDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false, value_type = Option<BTreeMap<String, MaterialDocument>>)]
     pub materials: Option<MaterialDocuments>,
+    /// Muscles that plans may activate.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub muscles: Vec<MuscleDocument>,
     /// Materials by what an image shows, over those of the regions.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
@@ -221,6 +225,7 @@ impl CaseDocument {
             allow_unfixed: false,
             sliding: Vec::new(),
             materials: None,
+            muscles: Vec::new(),
             hounsfield: None,
         }
     }

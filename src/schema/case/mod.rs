@@ -10,5 +10,6 @@ pub mod material;
 pub mod membrane;
 pub mod meshed;
 pub mod meshes;
+pub mod muscle;
 mod normal;
 pub mod selection;

@@ -12,7 +12,10 @@ use crate::schema::case::membrane::MembraneDocument;
 use crate::schema::case::selection::SelectionDocument;
 use crate::schema::code::ErrorCode;
 use crate::schema::methods::{self, ElementName, MethodName};
-use crate::schema::plan::document::{PlanDocument, PlanSegmentDocument};
+use crate::schema::plan::document::{
+    ActivationDocument, GrowthDocument, PlanDocument, PlanSegmentDocument,
+};
+use crate::schema::plan::inner::{to_activations, to_growth};
 use crate::schema::plan::movement::FARTHEST_PIVOT_MM;
 use crate::schema::predict::budget::BudgetDocument;
 use crate::schema::predict::document::PredictDocument;
@@ -53,6 +56,12 @@ pub struct OptimiseDocument {
     pub targets: Vec<TargetDocument>,
     /// How far each segment may move, by its name; the others stay where they are.
     pub bounds: BTreeMap<String, BoundsDocument>,
+    /// Growth that stays as it is stated while the plan is looked for, and is part of it.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub growth: Vec<GrowthDocument>,
+    /// Muscles that pull likewise.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub activations: Vec<ActivationDocument>,
     /// Solves the plan that was found as `predict` would, and tells how far the skin is from the answer of the response.
     #[serde(default = "yes")]
     #[schema(default = true)]
@@ -155,6 +164,8 @@ impl OptimiseDocument {
             faults.check_name(&at.key(name), name, limits.name_characters as usize);
             bounds.check(&at.key(name), limits, faults);
         }
+        _ = to_growth(&self.growth, &root.key("growth"), limits, faults);
+        _ = to_activations(&self.activations, &root.key("activations"), limits, faults);
         if !self.bounds.values().any(BoundsDocument::is_free) {
             let detail = "no segment may move: at least one lowest value is below its highest";
             faults.add(&at, ErrorCode::NothingFree, detail);
@@ -190,6 +201,15 @@ impl OptimiseDocument {
         PlanDocument { segments: self.bounds.keys().map(rest).collect(), ..PlanDocument::default() }
     }
 
+    /// A plan of what stays as it is stated.
+    pub fn held(&self) -> PlanDocument {
+        PlanDocument {
+            growth: self.growth.clone(),
+            activations: self.activations.clone(),
+            ..PlanDocument::default()
+        }
+    }
+
     /// The prediction of the plan that is found, with which it shares its checks.
     pub fn to_prediction(&self) -> PredictDocument {
         let shared = self.to_response().to_prediction();
@@ -205,6 +225,10 @@ impl OptimiseDocument {
             materials: self.materials.clone(),
             membrane: self.membrane.clone(),
             segments: self.moving(),
+            growth: self.growth.iter().map(|own| own.region.trim().to_owned()).collect(),
+            muscles: Some(
+                self.activations.iter().map(|own| own.muscle.trim().to_owned()).collect(),
+            ),
             tolerance: self.tolerance,
             budget: self.budget,
             tags: self.tags.clone(),

@@ -176,7 +176,7 @@ impl Named<'_> {
             }
         };
         let segments = self.segments.iter().enumerate().map(segment).collect();
-        PlanDocument { segments, ..PlanDocument::default() }
+        PlanDocument { segments, ..self.spec.held() }
     }
 
     fn name(&self, parameter: Parameter) -> (String, ParameterName) {

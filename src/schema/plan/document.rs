@@ -5,8 +5,8 @@ use std::collections::BTreeSet;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-use super::load;
 use super::movement::{MovementContext, MovementDocument, RotationOrder};
+use super::{inner, load};
 use crate::schema::case::document::FrameName;
 use crate::schema::case::selection::SelectionDocument;
 use crate::schema::code::ErrorCode;
@@ -19,6 +19,7 @@ use mechanics::mesh::{Frame, Vector};
 use mechanics::plan::{PlannedSegment, RigidMovement};
 use mechanics::prediction::{Plan, Prescribed};
 
+pub use super::inner::{ActivationDocument, GrowthDocument};
 pub use super::load::LoadDocument;
 
 /// What moves and what acts; coordinates in `frame`.
@@ -36,6 +37,12 @@ pub struct PlanDocument {
     pub prescribed: Vec<PrescribedDocument>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub loads: Vec<LoadDocument>,
+    /// Regions whose tissue gains or loses volume.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub growth: Vec<GrowthDocument>,
+    /// Muscles that pull.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub activations: Vec<ActivationDocument>,
     /// Cuts through the bone of a scan, for a case that is made from one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
@@ -128,6 +135,7 @@ impl PlanDocument {
                 "the case has a mesh with its segments, and no scan whose bone could be cut";
             faults.add(&at.key("osteotomy"), ErrorCode::NoScan, detail);
         }
+        let limits = context.limits;
         let context = MovementContext {
             mirrored_axes: self.mirrored_axes(at, context.frame, faults),
             centre: context.centre,
@@ -137,6 +145,13 @@ impl PlanDocument {
             segments: self.to_segments(&at.key("segments"), &context, faults),
             prescribed: self.to_prescribed(&at.key("prescribed"), &context, faults),
             loads: load::to_loads(&self.loads, &at.key("loads"), &context, faults),
+            growth: inner::to_growth(&self.growth, &at.key("growth"), limits, faults),
+            activations: inner::to_activations(
+                &self.activations,
+                &at.key("activations"),
+                limits,
+                faults,
+            ),
         }
     }
 

@@ -1,5 +1,6 @@
-//! The plan document, its movements and loads.
+//! The plan document, its movements and loads, growth and muscles.
 
 pub mod document;
+pub mod inner;
 pub mod load;
 pub mod movement;

@@ -24,6 +24,7 @@ mod keep;
 mod meshed_cases;
 mod meshes;
 mod meshing;
+mod muscles;
 mod openapi;
 mod optimise;
 mod origins;

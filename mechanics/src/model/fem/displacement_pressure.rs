@@ -78,6 +78,11 @@ pub(super) fn beside_pressure(tensor: ElasticTensor) -> ElasticTensor {
     ElasticTensor { lambda, ..tensor }
 }
 
+/// Whether a cell has pressures, where tetrahedra carry any.
+pub(super) fn carries_pressure(shape: CellShape, tensor: &ElasticTensor) -> bool {
+    shape == CellShape::Tet4 && tensor.pressure_part().lambda > 0.0
+}
+
 /// Tetrahedra that have pressures, one for each corner.
 pub struct PressureCells {
     pub cells: Vec<u32>,
@@ -102,7 +107,7 @@ impl PressureCells {
         for &cell in &numbering.layout.clique_order {
             let (cell, shape) = (cell as usize, tissue.mesh.cells.shape(cell as usize));
             let kind = kinds[&tissue.pressure_of_cell[cell]];
-            if shape == CellShape::Tet4 && tissue.tensor(cell).pressure_part().lambda > 0.0 {
+            if carries_pressure(shape, &tissue.tensor(cell)) {
                 cells_of_kind.entry(kind).or_default().push(cell as u32);
             }
         }

@@ -34,7 +34,18 @@ pub struct Pressures {
     pub cells: PressureCells,
 }
 
-/// An equilibrium and the pressures p = lambda div u in kPa that belong to it; none without pressures.
+impl Pressures {
+    /// Adds int N_a 3 eps_g dV of each pressure: a quarter of what a cell grows by at each of its corners.
+    fn add_grown(&self, grown: &[f64], volumes: &mut [[f64; 1]]) {
+        for (&cell, numbers) in self.cells.cells.iter().zip(&self.cells.pressures) {
+            let Some(grown) = grown.get(cell as usize) else { return };
+            numbers.iter().for_each(|&number| volumes[number as usize][0] += grown / 4.0);
+        }
+    }
+}
+
+/// An equilibrium and the pressures p = lambda div u in kPa that belong to it, of tissue that grows p = lambda (div u - 3 eps_g);
+/// none without pressures.
 pub struct Solved {
     pub equilibrium: Equilibrium,
     pub pressures: Vec<f64>,
@@ -64,7 +75,7 @@ impl Problem<'_> {
     /// Solves for equilibrium without pressures.
     pub fn solve(&self, progress: &dyn Progress) -> Result<Equilibrium, ModelError> {
         let held = self.holds.iter().map(|hold| *hold.values()).collect();
-        let case = LoadCase { held, forces: self.forces.to_vec() };
+        let case = LoadCase { held, forces: self.forces.to_vec(), ..LoadCase::default() };
         let mut equilibria = self.solve_cases(&[case], progress)?;
         Ok(equilibria.remove(0))
     }
@@ -130,7 +141,7 @@ impl<'a> LinearSystem<'a> {
         cases: &[LoadCase],
         progress: &dyn Progress,
     ) -> Result<Vec<Solved>, ModelError> {
-        let Some(Pressures { coupling, .. }) = &self.pressures else {
+        let Some(pressures) = &self.pressures else {
             let solve = |system: &System, sides: &[Unknowns]| {
                 self.solver.solve(system, sides, &self.tolerance, progress)
             };
@@ -139,27 +150,30 @@ impl<'a> LinearSystem<'a> {
             let without = |equilibrium| Solved { equilibrium, pressures: Vec::new() };
             return Ok(solved.into_iter().map(without).collect());
         };
-        self.solve_mixed(coupling, cases, progress)
+        self.solve_mixed(pressures, cases, progress)
     }
 
     /// Displacements and pressures for each load case.
     fn solve_mixed(
         &self,
-        coupling: &Coupling,
+        pressures: &Pressures,
         cases: &[LoadCase],
         progress: &dyn Progress,
     ) -> Result<Vec<Solved>, ModelError> {
+        let coupling = &pressures.coupling;
         // 1. What is known, and what it leaves to the free unknowns.
         progress.phase(Phase::Solve);
         let (constrained, stiffness) = (self.constrained(), &self.stiffness);
         let known: Vec<Known> = cases.par_iter().map(|case| constrained.known(case)).collect();
-        let side = |known: &Known| {
+        let side = |(known, case): (&Known, &LoadCase)| {
             let mut volumes = vec![[0.0]; coupling.mass.len()];
             coupling.divergence.contract(&known.displacement, &mut volumes);
             volumes.iter_mut().for_each(|[volume]| *volume = -*volume);
+            pressures.add_grown(&case.grown, &mut volumes);
             MixedRightHandSide { forces: known.right_hand_side(stiffness), volumes }
         };
-        let right_hand_sides: Vec<MixedRightHandSide> = known.par_iter().map(side).collect();
+        let right_hand_sides: Vec<MixedRightHandSide> =
+            known.par_iter().zip(cases).map(side).collect();
 
         // 2. The free displacements and the pressures.
         let system = MixedSystem { stiffness, coupling, solver: &self.solver };
@@ -220,8 +234,11 @@ impl<'a> LinearSystem<'a> {
     pub fn reactions(&self, correction: &Correction, beside: &[Vector]) -> Vec<Vector> {
         let constrained = self.constrained();
         let held = vec![Vector::zeros(); self.holds.len()];
-        let known = constrained
-            .known(&LoadCase { held, forces: beside.iter().map(|force| -force).collect() });
+        let known = constrained.known(&LoadCase {
+            held,
+            forces: beside.iter().map(|force| -force).collect(),
+            ..LoadCase::default()
+        });
         let mut total: Vec<[[f64; 1]; 3]> = self
             .numbering
             .by_row(&correction.displacement)

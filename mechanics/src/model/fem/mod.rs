@@ -9,6 +9,7 @@ pub mod displacement_pressure;
 pub mod edge_nodes;
 pub mod finite_strain;
 pub mod force_series;
+pub mod inner_stress;
 pub mod linear_system;
 pub mod loads;
 pub mod mass_tensor;

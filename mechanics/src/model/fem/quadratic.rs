@@ -53,6 +53,7 @@ pub fn solve_cases(
         .map(|case| LoadCase {
             held: values(case, problem.holds, &holds, &parents),
             forces: forces(case),
+            ..LoadCase::default()
         })
         .collect();
     let constrained = Constrained { holds: &holds, numbering: &numbering };

@@ -164,8 +164,11 @@ impl Newton<'_> {
         let Problem { holds, tolerance, .. } = self.problem;
         let matrix = self.network.springs.tangent(positions, sideways, self.constrained.numbering);
         let system = self.constrained.system(matrix, positions);
-        let case =
-            LoadCase { held: vec![Vector::zeros(); holds.len()], forces: unbalanced.to_vec() };
+        let case = LoadCase {
+            held: vec![Vector::zeros(); holds.len()],
+            forces: unbalanced.to_vec(),
+            ..LoadCase::default()
+        };
         let known = self.constrained.known(&case);
         let [least, most] = INNER;
         let relative_residual =

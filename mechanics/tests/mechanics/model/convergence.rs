@@ -68,7 +68,7 @@ type Solve<'a> = &'a dyn Fn(&Problem) -> Vec<Vector>;
 
 fn load_case(problem: &Problem) -> LoadCase {
     let held = problem.holds.iter().map(|hold| *hold.values()).collect();
-    LoadCase { held, forces: problem.forces.to_vec() }
+    LoadCase { held, forces: problem.forces.to_vec(), ..LoadCase::default() }
 }
 
 fn l2_error_of(

@@ -53,7 +53,8 @@ fn rest_of(
         tolerance: Tolerance { relative_residual: 1e-7, memory_mb: 1000.0 },
     };
     let held = holds.iter().map(|hold| *hold.values()).collect();
-    problem.solve(&LoadCase { held, forces: vec![Vector::zeros(); mesh.nodes.len()] }, progress)
+    let forces = vec![Vector::zeros(); mesh.nodes.len()];
+    problem.solve(&LoadCase { held, forces, ..LoadCase::default() }, progress)
 }
 
 /// Holds the nodes that something is said of.

@@ -70,7 +70,8 @@ fn newton_forces(mesh: &VolumeMesh, law: &Law, displacement: &[Vector]) -> Vec<V
         tolerance: TOLERANCE,
     };
     let held = displacement.to_vec();
-    let case = LoadCase { held, forces: vec![Vector::zeros(); mesh.nodes.len()] };
+    let case =
+        LoadCase { held, forces: vec![Vector::zeros(); mesh.nodes.len()], ..LoadCase::default() };
     problem.solve(&case, &Unobserved).unwrap().reactions
 }
 

@@ -17,7 +17,7 @@ const SURGERY: [[f64; 6]; 2] =
     [[4.0, -6.0, 1.5, 7.0, -5.0, 11.0], [-1.0, -3.0, 2.0, -4.0, 2.0, 3.0]];
 
 fn found(response: &Response, bounds: &[SegmentBounds], targets: &[Target]) -> Optimum {
-    let optimum = optimise(&Question { response, bounds, targets }).unwrap();
+    let optimum = optimise(&Question { response, bounds, targets, inner: &[] }).unwrap();
     check(&optimum, bounds);
     optimum
 }
@@ -278,7 +278,7 @@ fn a_question_without_an_answer_is_refused() {
     let response = response(&skin());
     let wanted = every_node(&skin(), 1.0);
     let ask = |response: &Response, bounds: &[SegmentBounds], targets: &[Target]| {
-        optimise(&Question { response, bounds, targets }).unwrap_err()
+        optimise(&Question { response, bounds, targets, inner: &[] }).unwrap_err()
     };
     let free = bounds(25.0, 30.0);
     let held = bounds(0.0, 0.0);
@@ -305,7 +305,8 @@ fn targets_far_from_any_skin_have_a_nearest_plan_or_say_that_it_was_not_found() 
             let wanted: Vec<Vector> =
                 (0..points).map(|_| Vector::from_fn(|_, _| 60.0 * random.normal())).collect();
             let (bounds, targets) = (bounds(25.0, 90.0), [every_node(&wanted, 1.0)]);
-            let question = Question { response: &response, bounds: &bounds, targets: &targets };
+            let question =
+                Question { response: &response, bounds: &bounds, targets: &targets, inner: &[] };
             match optimise(&question) {
                 Ok(found) => {
                     check(&found, &bounds);

@@ -63,7 +63,7 @@ pub fn response(skin: &[Vector]) -> Response {
         centre: centre.into(),
     };
     let segments = ["mandible", "maxilla"].into_iter().zip(CENTRES).map(segment).collect();
-    Response { segments, nodes: (0..skin.len() as u32).collect(), columns }
+    Response { segments, inner: Vec::new(), nodes: (0..skin.len() as u32).collect(), columns }
 }
 
 pub fn movement(segment: usize, q: &[f64; 6]) -> RigidMovement {

@@ -70,6 +70,7 @@ impl Field {
                 })
                 .collect(),
             forces: scene.forces.clone(),
+            ..LoadCase::default()
         };
         let loads = [
             load(&|_| SHIFT),

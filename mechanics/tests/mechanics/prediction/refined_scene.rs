@@ -7,8 +7,8 @@ use mechanics::mesh::bisection::{Bisection, HALVES_EVERY_EDGE};
 use mechanics::mesh::{CellShape, Vector, sample::block};
 use mechanics::plan::{PlannedSegment, RigidMovement};
 use mechanics::prediction::{
-    Case, CaseSegment, Load, NodeClass, Plan, Prescribed, Scene, Settings, Sliding, SlidingNormal,
-    predict,
+    Activation, Case, CaseSegment, FibreDirection, Growth, Load, Muscle, MuscleCourse, NodeClass,
+    Plan, Prescribed, RegionNames, Scene, Settings, Sliding, SlidingNormal, predict,
 };
 use mechanics::progress::Unobserved;
 
@@ -30,6 +30,14 @@ fn everything() -> (Case, Plan) {
     mesh.cell_labels.insert("layer".into(), (0..mesh.cells.len() as i64).map(|c| c % 2).collect());
     let case = Case {
         skin: Some(set("z_max")),
+        regions: Some(RegionNames { array: "layer".to_owned(), names: BTreeMap::new() }),
+        muscles: vec![Muscle {
+            name: "biceps".to_owned(),
+            course: MuscleCourse::Region {
+                region: "1".to_owned(),
+                fibres: Some(FibreDirection::Uniform(Vector::new(1.0, 2.0, 0.5))),
+            },
+        }],
         skin_regions: BTreeMap::from([("near".to_owned(), set("near"))]),
         segments: vec![CaseSegment { name: "jaw".to_owned(), nodes: set("jaw") }],
         fixed: vec![set("x_max")],
@@ -50,6 +58,7 @@ fn everything() -> (Case, Plan) {
             Load::Traction { faces: set("z_max"), traction: Vector::new(0.5, 0.0, 0.25) },
             Load::Force { nodes: set("y_max"), force: Vector::new(0.0, 2.0, 0.0) },
         ],
+        ..Plan::default()
     };
     (case, plan)
 }
@@ -122,6 +131,29 @@ fn new_nodes_are_held_where_what_holds_them_goes() {
         }
     }
     assert!(met.iter().all(|&count| count > 3), "{met:?}");
+}
+
+#[test]
+fn growth_and_muscles_act_on_finer_cells_as_on_those_that_they_are_cut_from() {
+    let (case, _) = everything();
+    let plan = Plan {
+        growth: vec![Growth { region: "0".to_owned(), volume_change: 0.01 }],
+        activations: vec![Activation { muscle: "biceps".to_owned(), stress: 0.5 }],
+        ..Plan::default()
+    };
+    let scene = Scene::new(&case, &plan, &Settings::default()).unwrap();
+    let (_, finer) = refined(&scene, 2);
+    let anew = Case { volume: finer.mesh.clone(), ..case };
+    let anew = Scene::new(&anew, &plan, &Settings::default()).unwrap();
+    let largest = anew.forces.iter().map(|force| force.norm()).fold(0.0, f64::max);
+    assert!(largest > 0.01, "{largest}");
+    for (own, other) in finer.forces.iter().zip(&anew.forces) {
+        // Rounding only.
+        assert!((own - other).norm() < 1e-13, "{own} {other}");
+    }
+    assert_eq!(finer.load_case().grown, anew.load_case().grown);
+    assert_eq!(finer.distributed.inner, anew.distributed.inner);
+    assert_eq!(finer.muscles, anew.muscles);
 }
 
 #[test]

@@ -77,6 +77,7 @@ fn quadratic_slab(h: f64, nu: f64) -> SkinPoints {
     let case = LoadCase {
         held: holds.iter().map(|hold| *hold.values()).collect(),
         forces: vec![Vector::zeros(); mesh.nodes.len()],
+        ..LoadCase::default()
     };
     let tolerance = Tolerance { relative_residual: 1e-8, memory_mb: 4000.0 };
     let problem = Problem { tissue, holds: &holds, forces: &case.forces, tolerance };

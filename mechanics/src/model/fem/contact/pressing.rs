@@ -321,7 +321,8 @@ impl<'a> Rounds<'a> {
         let (_, p) = self.added.x.split_at(3 * system.stiffness.layout.free);
         let constrained = system.constrained();
         let held = vec![Vector::zeros(); system.holds.len()];
-        let known = constrained.known(&LoadCase { held, forces: forces.to_vec() });
+        let known =
+            constrained.known(&LoadCase { held, forces: forces.to_vec(), ..LoadCase::default() });
         let internal = system.internal_at_holds(&self.added_by_row(), p);
         let reactions = constrained.reactions(&internal, &known.force);
         let Solved { equilibrium: free, pressures } = free;

@@ -25,6 +25,14 @@ pub(super) struct Cells<'a> {
     mean_stresses: Vec<Option<Matrix3<f64>>>,
 }
 
+/// Displacements in mm and pressures in kPa, and eps_g of each cell of tissue that grows.
+#[derive(Clone, Copy)]
+pub(super) struct Answered<'a> {
+    pub displacement: &'a [Vector],
+    pub pressures: &'a [f64],
+    pub growth: &'a [f64],
+}
+
 /// One cell with functions on its edges.
 enum Cell {
     Simplex(Simplex),
@@ -35,8 +43,7 @@ impl<'a> Cells<'a> {
     pub fn new(
         tissue: &'a Tissue<'a>,
         system: &LinearSystem,
-        displacement: &'a [Vector],
-        pressures: &'a [f64],
+        Answered { displacement, pressures, growth }: Answered<'a>,
     ) -> Self {
         let mut numbers = vec![None; tissue.mesh.cells.len()];
         if let Some(all) = &system.pressures {
@@ -45,7 +52,7 @@ impl<'a> Cells<'a> {
                 numbers[cell as usize] = Some(*own);
             }
         }
-        let mean_stresses = mean_stress::smooth(tissue, displacement);
+        let mean_stresses = mean_stress::smooth(tissue, displacement, growth);
         Cells { tissue, displacement, pressures, numbers, mean_stresses }
     }
 

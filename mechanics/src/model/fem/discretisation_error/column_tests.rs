@@ -62,7 +62,7 @@ fn edge_functions_that_are_solved_exactly_have_the_energy_of_the_error() {
         }
         let acceleration = Vector::z() * 9.81e-3;
         let loads = DistributedLoads { acceleration, ..DistributedLoads::default() };
-        loads.add_to(&tissue, &edges, &mut equations.residual).unwrap();
+        loads.add_to(&tissue, &edges, &|_| false, &mut equations.residual).unwrap();
         let faces = mesh.boundary_faces();
         let held = HeldEdges::new(&faces, &holds, mesh.nodes.len(), &edges);
         let steps = equations.steps(&held);

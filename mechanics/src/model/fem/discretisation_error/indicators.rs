@@ -9,6 +9,7 @@
 //! Source: Becker, Rannacher, An optimal control approach to a posteriori error estimation, Acta Numerica 10, 2001, section 4;
 //! marking: Doerfler, A convergent adaptive algorithm for Poisson's equation, SIAM Journal on Numerical Analysis 33, 1996.
 
+use super::cell::Answered;
 use super::edges::Edges;
 use super::{Correction, Estimate, tolerance};
 use crate::mesh::{Vector, VolumeMesh};
@@ -68,7 +69,7 @@ impl Estimate<'_> {
         let mesh = self.tissue.mesh;
 
         // 1. b of the answer.
-        let cells = self.cells(&solved.equilibrium.displacement, &solved.pressures);
+        let cells = self.cells(self.answered(solved));
         let answer = self.two_level(&cells);
         let edges = answer.edges();
         let mut equations = answer.equations(&edges)?;
@@ -79,7 +80,7 @@ impl Estimate<'_> {
         let relative = tolerance(self.tissue.materials, self.system.pressures.is_some());
         let dual = self.system.solve_for(&[residual], relative, progress)?.remove(0);
         let Correction { displacement, pressures, .. } = &dual;
-        let cells = self.cells(displacement, pressures);
+        let cells = self.cells(Answered { displacement, pressures, growth: &[] });
         let mut weights = self.two_level(&cells).equations(&edges)?.residual;
         goal.add_to(mesh, &edges, &mut weights);
 

@@ -1,11 +1,12 @@
-//! What acts on the functions of edges: gravity, and tractions and pressures of faces. Forces at nodes do not, because these
-//! functions are zero there.
+//! What acts on the functions of edges: gravity, tractions and pressures of faces, growth and muscles. Forces at nodes do not,
+//! because these functions are zero there.
 
 use super::edge_functions::{Corners, MAX_EDGES, at_point};
 use super::edges::Edges;
 use crate::mesh::volume::BoundaryFace;
 use crate::mesh::{CellShape, Vector};
 use crate::model::fem::assembly::Tissue;
+use crate::model::fem::inner_stress::InnerStress;
 use crate::model::fem::loads::{FaceLoad, on_face_edges};
 use crate::model::problem::InvertedCell;
 use crate::model::reference_cell;
@@ -16,6 +17,8 @@ pub struct DistributedLoads {
     pub faces: Vec<(Vec<BoundaryFace>, FaceLoad)>,
     /// In mm/ms².
     pub acceleration: Vector,
+    /// Growth and muscles that pull.
+    pub inner: InnerStress,
 }
 
 impl DistributedLoads {
@@ -24,6 +27,7 @@ impl DistributedLoads {
         &self,
         tissue: &Tissue,
         edges: &Edges,
+        has_pressure: &(dyn Fn(usize) -> bool + Sync),
         forces: &mut [Vector],
     ) -> Result<(), InvertedCell> {
         for (faces, load) in &self.faces {
@@ -35,13 +39,13 @@ impl DistributedLoads {
                 }
             }
         }
-        if self.acceleration == Vector::zeros() {
+        if self.acceleration == Vector::zeros() && self.inner.is_empty() {
             return Ok(());
         }
         edges.each_cell(
             [Vector::zeros(); MAX_EDGES],
             |cell, _, weights| {
-                *weights = self.weights(tissue, cell)?;
+                *weights = self.weights(tissue, cell, has_pressure(cell))?;
                 Ok(())
             },
             |_, edges, weights| {
@@ -50,23 +54,35 @@ impl DistributedLoads {
         )
     }
 
-    /// int phi rho g dV of each edge of a cell; V/5 on a tetrahedron.
-    fn weights(&self, tissue: &Tissue, cell: usize) -> Result<[Vector; MAX_EDGES], InvertedCell> {
+    /// int phi rho g dV - int S0 grad phi dV of each edge of a cell, int phi dV = V/5 on a tetrahedron.
+    fn weights(
+        &self,
+        tissue: &Tissue,
+        cell: usize,
+        has_pressure: bool,
+    ) -> Result<[Vector; MAX_EDGES], InvertedCell> {
         let shape = tissue.mesh.cells.shape(cell);
         let corners: Vec<Vector> = tissue.mesh.corners(cell).collect();
         let density = tissue.materials[tissue.material_of_cell[cell] as usize].density();
+        let inner = self.inner.stress(tissue, cell, has_pressure).unwrap_or_default();
         let mut volumes = [0.0; MAX_EDGES];
+        let mut slopes = [Vector::zeros(); MAX_EDGES];
         for point in &reference_cell(shape).points {
             let physical = point.at(&corners).ok_or(InvertedCell { cell })?;
             let (values, gradients) = (&point.values, &physical.gradients);
-            let of_edges = at_point(shape, &Corners { values, gradients }).values;
-            for (volume, value) in volumes.iter_mut().zip(of_edges) {
+            let of_edges = at_point(shape, &Corners { values, gradients });
+            for (slope, gradient) in slopes.iter_mut().zip(of_edges.gradients) {
+                *slope += gradient * physical.volume;
+            }
+            for (volume, value) in volumes.iter_mut().zip(of_edges.values) {
                 *volume += match shape {
                     CellShape::Tet4 => 0.2 * physical.volume,
                     CellShape::Hex8 | CellShape::Wedge6 => value * physical.volume,
                 };
             }
         }
-        Ok(volumes.map(|volume| self.acceleration * (density * volume)))
+        Ok(std::array::from_fn(|edge| {
+            self.acceleration * (density * volumes[edge]) - inner * slopes[edge]
+        }))
     }
 }

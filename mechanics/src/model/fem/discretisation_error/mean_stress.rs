@@ -41,14 +41,33 @@ struct AroundNode<T> {
 }
 
 /// For each wedge that takes volume as a mean the stress of it, smooth within each kind of tissue.
-pub(super) fn smooth(tissue: &Tissue, displacement: &[Vector]) -> Vec<Option<Matrix3<f64>>> {
+/// What a cell has grown by, `growth`, is not stress of it, and jumps where it likes: it is left out of the mean.
+pub(super) fn smooth(
+    tissue: &Tissue,
+    displacement: &[Vector],
+    growth: &[f64],
+) -> Vec<Option<Matrix3<f64>>> {
     let cells = &tissue.mesh.cells;
     if !has_wedges(tissue.mesh) {
         return vec![None; cells.len()];
     }
     let own: Vec<Option<Weighted<Matrix3<f64>>>> =
         (0..cells.len()).into_par_iter().map(|cell| of_cell(tissue, cell, displacement)).collect();
-    smooth_in_wedges(tissue, &own)
+    let of_growth = |cell: usize| {
+        let strain = growth.get(cell).copied().unwrap_or_default();
+        let (_, of_volume) = tissue.tensor(cell).split_volume();
+        of_volume.stress(&Matrix3::from_diagonal_element(strain))
+    };
+    if growth.is_empty() {
+        return smooth_in_wedges(tissue, &own);
+    }
+    let elastic = own
+        .iter()
+        .enumerate()
+        .map(|(cell, own)| own.map(|own| Weighted { value: own.value - of_growth(cell), ..own }));
+    let smooth = smooth_in_wedges(tissue, &elastic.collect::<Vec<_>>());
+    let whole = smooth.into_iter().enumerate();
+    whole.map(|(cell, mean)| mean.map(|mean| mean + of_growth(cell))).collect()
 }
 
 pub(in crate::model::fem) fn has_wedges(mesh: &VolumeMesh) -> bool {

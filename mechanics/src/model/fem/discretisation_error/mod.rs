@@ -35,7 +35,7 @@ use crate::mesh::Vector;
 use crate::mesh::volume::BoundaryFace;
 use crate::model::problem::ModelError;
 use crate::progress::{Phase, Progress};
-use cell::Cells;
+use cell::{Answered, Cells};
 
 pub(super) use edge_equations::EdgeEquation;
 pub(super) use edge_functions::{Corners, MAX_EDGES, at_point};
@@ -86,7 +86,7 @@ impl Estimate<'_> {
     ) -> Result<DiscretisationError, ModelError> {
         progress.phase(Phase::Estimate);
         let pressures = self.system.pressures.as_ref();
-        let cells = self.cells(&solved.equilibrium.displacement, &solved.pressures);
+        let cells = self.cells(self.answered(solved));
         let two_level = self.two_level(&cells);
         let (residual, squared_energy_norm) = two_level.at_corners()?;
         let tolerance = tolerance(self.tissue.materials, pressures.is_some());
@@ -98,8 +98,14 @@ impl Estimate<'_> {
         Ok(DiscretisationError { missing, squared_energy_norm, iterations })
     }
 
-    fn cells<'b>(&'b self, displacement: &'b [Vector], pressures: &'b [f64]) -> Cells<'b> {
-        Cells::new(&self.tissue, self.system, displacement, pressures)
+    fn answered<'b>(&'b self, solved: &'b Solved) -> Answered<'b> {
+        let Solved { equilibrium, pressures } = solved;
+        let growth = &self.loads.inner.growth;
+        Answered { displacement: &equilibrium.displacement, pressures, growth }
+    }
+
+    fn cells<'b>(&'b self, answered: Answered<'b>) -> Cells<'b> {
+        Cells::new(&self.tissue, self.system, answered)
     }
 
     fn two_level<'b>(&'b self, cells: &'b Cells<'b>) -> TwoLevel<'b, Cells<'b>> {

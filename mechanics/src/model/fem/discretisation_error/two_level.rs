@@ -77,7 +77,8 @@ impl<C: EnrichedCells> TwoLevel<'_, C> {
         edges: &Edges,
         equations: &mut EdgeEquations,
     ) -> Result<Vec<Vector>, InvertedCell> {
-        self.loads.add_to(self.tissue, edges, &mut equations.residual)?;
+        let has_pressure = |cell: usize| self.cells.pressure_numbers(cell).is_some();
+        self.loads.add_to(self.tissue, edges, &has_pressure, &mut equations.residual)?;
         let nodes = self.tissue.mesh.nodes.len();
         Ok(equations.steps(&HeldEdges::new(self.boundary, self.holds, nodes, edges)))
     }

@@ -140,7 +140,11 @@ impl Directions {
             number - 0.5
         };
         let forces = nodes.iter().map(|_| Vector::new(next(), next(), next())).collect();
-        let case = LoadCase { held: vec![Vector::zeros(); constrained.holds.len()], forces };
+        let case = LoadCase {
+            held: vec![Vector::zeros(); constrained.holds.len()],
+            forces,
+            ..LoadCase::default()
+        };
         let load = constrained.known(&case).right_hand_side(&system);
         let enough = Enough { relative_residual: 1e-6, most_iterations: MOST_INNER };
         // The hierarchy of the last step is that of a tangent near by.

@@ -72,7 +72,11 @@ impl Finer<'_> {
 
         // 2. What that does to the corners, by the last tangent.
         let has_pressures = pressures.is_some();
-        let case = LoadCase { held: vec![Vector::zeros(); holds.len()], forces: residual.forces };
+        let case = LoadCase {
+            held: vec![Vector::zeros(); holds.len()],
+            forces: residual.forces,
+            ..LoadCase::default()
+        };
         let left: Vec<f64> = residual.volumes.iter().map(|volume| -volume).collect();
         let relative = tolerance(self.tissue.materials, has_pressures);
         let remaining = Remaining { case: &case, volumes: &left, nodes: &nodes, relative };

@@ -267,7 +267,7 @@ impl<'a> Newton<'a> {
             .iter()
             .enumerate()
             .map(|(node, acting)| acting * share.min(1.0) - deformed.forces[row(node as u32)]);
-        LoadCase { held: held.collect(), forces: forces.collect() }
+        LoadCase { held: held.collect(), forces: forces.collect(), ..LoadCase::default() }
     }
 
     /// The longest part of a step with bones at rest that lets the energy fall.

@@ -177,7 +177,7 @@ impl Search<'_> {
         });
         let pairs = self.case.forces.iter().zip(&at.forces);
         let forces = pairs.map(|(acting, internal)| acting * share - internal);
-        LoadCase { held: held.collect(), forces: forces.collect() }
+        LoadCase { held: held.collect(), forces: forces.collect(), ..LoadCase::default() }
     }
 
     /// Whether nothing has to be moved any more for a share of the movement.

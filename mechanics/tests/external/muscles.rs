@@ -1,0 +1,146 @@
+//! Muscles of a real face along its published fibres: which way each moves the mouth, and how far for each kPa.
+
+use std::collections::BTreeMap;
+
+use mechanics::boundary::NodeSelection;
+use mechanics::mesh::Vector;
+use mechanics::prediction::{
+    Activation, Case, CaseSegment, Muscle, MuscleCourse, Plan, Scene, Settings, predict,
+};
+use mechanics::progress::Unobserved;
+use mechanics::response::{Amounts, Asked, ResponseOrder, build_of, inner_loads};
+
+use crate::samples::{read_default, volume};
+use crate::scenes::{case_of, material, set};
+use crate::support::external::{Missing, shared_data, trials};
+
+trials! {
+    muscles_of_the_subject_move_its_mouth_as_their_names_say
+    muscles_of_the_template_move_its_mouth_as_their_names_say
+}
+
+/// Polylines by muscle and side, each fibre one line.
+fn fibres(face: &str) -> Result<BTreeMap<String, Vec<Vec<Vector>>>, Missing> {
+    let path = shared_data(&format!("face/{face}_face_muscle_fibres.csv"))?;
+    let text = std::fs::read_to_string(path).unwrap();
+    let mut lines: BTreeMap<(String, String), Vec<Vector>> = BTreeMap::new();
+    for row in text.lines().skip(1) {
+        let fields: Vec<&str> = row.split(',').collect();
+        let number = |field: usize| fields[field].parse::<f64>().unwrap();
+        let key = (format!("{}_{}", fields[0], fields[1]), fields[2].to_owned());
+        lines.entry(key).or_default().push(Vector::new(number(4), number(5), number(6)));
+    }
+    let mut muscles: BTreeMap<String, Vec<Vec<Vector>>> = BTreeMap::new();
+    for ((muscle, _), line) in lines {
+        muscles.entry(muscle).or_default().push(line);
+    }
+    Ok(muscles)
+}
+
+/// A face, and which way it looks.
+struct Face {
+    case: Case,
+    fibres: BTreeMap<String, Vec<Vec<Vector>>>,
+    /// From the middle to the left side.
+    left: Vector,
+}
+
+fn face(name: &str, jaw: &str, skull: &str, left: Vector) -> Result<Face, Missing> {
+    let bytes = std::fs::read(shared_data(&format!("face/{name}_face.vtu"))?).unwrap();
+    let fibres = fibres(name)?;
+    let muscle = |(name, lines): (&String, &Vec<Vec<Vector>>)| Muscle {
+        name: name.clone(),
+        course: MuscleCourse::Lines { lines: lines.clone(), within: 6.0 },
+    };
+    let case = Case {
+        skin: Some(set("outer_skin")),
+        segments: vec![CaseSegment { name: "jaw".to_owned(), nodes: set(jaw) }],
+        fixed: vec![set(skull)],
+        muscles: fibres.iter().map(muscle).collect(),
+        ..case_of(volume(read_default(&bytes)), material(15.0, 0.49))
+    };
+    Ok(Face { case, fibres, left })
+}
+
+impl Face {
+    /// The skin node nearest to a place.
+    fn skin_at(&self, place: Vector) -> u32 {
+        let NodeSelection::NodeSet(skin) = self.case.skin.clone().unwrap() else { panic!("a set") };
+        let nodes = self.case.volume.node_set(&skin).unwrap();
+        let far = |node: &u32| (self.case.volume.nodes[*node as usize] - place).norm();
+        *nodes.iter().min_by(|a, b| far(a).total_cmp(&far(b))).unwrap()
+    }
+
+    /// The corner of the mouth on the left, and the middle of both lips: ends of the fibres of the orbicularis oris.
+    fn mouth(&self) -> [u32; 3] {
+        let [upper, lower] = &self.fibres["OOM_left"][..] else { panic!("two fibres") };
+        let ends = [upper[upper.len() - 1], upper[0], lower[lower.len() - 1]];
+        ends.map(|place| self.skin_at(place))
+    }
+
+    /// The displacement of the skin in mm where both sides of a muscle pull with 1 kPa.
+    fn pulled(&self, muscle: &str) -> Vec<Vector> {
+        let both = ["left", "right"]
+            .map(|side| Activation { muscle: format!("{muscle}_{side}"), stress: 1.0 });
+        let plan = Plan { activations: both.to_vec(), ..Plan::default() };
+        let scene = Scene::new(&self.case, &plan, &Settings::default()).unwrap();
+        predict(&scene, &Unobserved).unwrap().displacement
+    }
+
+    fn moves_as_named(&self) {
+        let [corner, upper, lower] = self.mouth().map(|node| node as usize);
+        let up = Vector::z();
+        let mut moved: BTreeMap<&str, [f64; 3]> = BTreeMap::new();
+        for muscle in ["ZYG", "DAO", "RIS", "LAO", "DLI", "OOM", "OOP"] {
+            let u = self.pulled(muscle);
+            let (outward, upward) = (u[corner].dot(&self.left), u[corner].dot(&up));
+            let closing = (u[lower] - u[upper]).dot(&up);
+            println!(
+                "{muscle:4} um for each kPa: corner out {:.2}, up {:.2}, lips closer {:.2}, most {:.2}",
+                1e3 * outward,
+                1e3 * upward,
+                1e3 * closing,
+                1e3 * u.iter().map(|u| u.norm()).fold(0.0, f64::max)
+            );
+            moved.insert(muscle, [outward, upward, closing]);
+        }
+        let [outward, upward, _] = moved["ZYG"];
+        assert!(outward > 0.0 && upward > 0.0, "zygomaticus: out {outward}, up {upward}");
+        let [_, upward, _] = moved["DAO"];
+        assert!(upward < 0.0, "depressor anguli oris: up {upward}");
+        let [outward, _, _] = moved["RIS"];
+        assert!(outward > 0.0, "risorius: out {outward}");
+        let [_, upward, _] = moved["LAO"];
+        assert!(upward > 0.0, "levator anguli oris: up {upward}");
+        let [outward, _, closing] = moved["OOM"];
+        assert!(closing > 0.0 && outward < 0.0, "orbicularis: closer {closing}, out {outward}");
+        let [_, _, closing] = moved["DLI"];
+        assert!(closing < 0.0, "depressor labii inferioris: closer {closing}");
+        self.response_smiles();
+    }
+
+    /// A smile as a sum of columns is the smile of the full solution.
+    fn response_smiles(&self) {
+        let rest = Scene::new(&self.case, &Plan::default(), &Settings::default()).unwrap();
+        let names = ["ZYG_left", "ZYG_right"].map(str::to_owned);
+        let inner = inner_loads(&rest, &[], &names).unwrap();
+        let asked = Asked { segments: &[], order: ResponseOrder::First, inner: &inner };
+        let columns = build_of(&rest, &asked, &Unobserved).unwrap().to_response();
+        let still = [mechanics::plan::RigidMovement::default()];
+        let smile = columns.apply_all(&Amounts { movements: &still, inner: &[1.0, 1.0] });
+        let direct = self.pulled("ZYG");
+        for (&node, sum) in columns.nodes.iter().zip(&smile) {
+            assert!((direct[node as usize] - sum).norm() < 1e-6);
+        }
+    }
+}
+
+fn muscles_of_the_subject_move_its_mouth_as_their_names_say() -> Result<(), Missing> {
+    face("subject", "jaw_attached", "skull_fixed_orig", -Vector::y())?.moves_as_named();
+    Ok(())
+}
+
+fn muscles_of_the_template_move_its_mouth_as_their_names_say() -> Result<(), Missing> {
+    face("template", "mandible_fixed", "skull_nose_fixed", -Vector::x())?.moves_as_named();
+    Ok(())
+}

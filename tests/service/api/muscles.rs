@@ -1,0 +1,185 @@
+//! Growth and muscles over HTTP: in predictions, in responses, in inverse plans, and refused where they are not known.
+
+use reqwest::StatusCode;
+use serde_json::{Value, json};
+
+use crate::helpers::{Answer, SMALL, Server, ask};
+
+/// A block on two bones with a muscle under its skin.
+async fn case(server: &Server) -> String {
+    let mut case = SMALL.case();
+    case["skin"] = json!({"node_set": "z_max"});
+    case["segments"] = json!([{"name": "left", "nodes": {"node_set": "x_min"}}]);
+    case["fixed"] = json!([{"node_set": "z_min"}]);
+    case["muscles"] = json!([
+        {"name": "strap", "lines_mm": [[[10, 30, 25], [50, 30, 25]]], "within_mm": 15},
+        {"name": "slab", "region": "tissue", "direction": [0, 1, 0]},
+    ]);
+    let answer = ask(server.post("/v1/cases").multipart(SMALL.form(&case))).await;
+    answer.expect(StatusCode::CREATED)["id"].as_str().unwrap().to_owned()
+}
+
+fn plan() -> Value {
+    json!({
+        "segments": [{"name": "left", "translation_mm": [0, 2, 1]}],
+        "growth": [{"region": "*", "volume_change": -0.05}],
+        "activations": [{"muscle": "strap", "stress_kpa": 5}],
+    })
+}
+
+async fn done(server: &Server, spec: &Value) -> Value {
+    let job = server.job(spec).await.expect(StatusCode::OK);
+    assert_eq!(job["status"], "successful", "{job}");
+    job
+}
+
+async fn apply(server: &Server, case: &str, plan: &Value) -> Answer {
+    let path = format!("/v1/cases/{case}/response/apply");
+    ask(server.post(&path).json(&json!({"plan": plan}))).await
+}
+
+/// The displacement of the skin of a prediction, by node.
+async fn skin(server: &Server, job: &Value) -> Vec<[f64; 3]> {
+    let path = format!("/v1/jobs/{}/results/skin.csv", job["id"].as_str().unwrap());
+    let text = String::from_utf8(ask(server.get(&path)).await.bytes).unwrap();
+    let mut lines = text.lines();
+    let head: Vec<&str> = lines.next().unwrap().split(',').collect();
+    let axes = ["ux_mm", "uy_mm", "uz_mm"]
+        .map(|name| head.iter().position(|other| *other == name).unwrap());
+    let row = |line: &str| {
+        let cells: Vec<&str> = line.split(',').collect();
+        axes.map(|axis| cells[axis].parse().unwrap())
+    };
+    lines.map(row).collect()
+}
+
+fn largest_difference(one: &[[f64; 3]], other: &[[f64; 3]]) -> f64 {
+    let values = one.as_flattened().iter().zip(other.as_flattened());
+    values.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+}
+
+#[tokio::test]
+async fn growth_and_activations_are_predicted_and_applied_alike() {
+    let server = Server::start();
+    let case = case(&server).await;
+    let spec = json!({"kind": "predict", "case": case, "plan": plan(), "outputs": ["skin.csv"],
+        "method": "fem_linear", "tolerance": {"relative_residual": 1e-12}});
+    let predicted = done(&server, &spec).await;
+    let results = &predicted["results"];
+    assert!(results["nonlinearity_mm"].is_null(), "{results}");
+    let why = results["nonlinearity_unknown"].as_str().unwrap();
+    assert!(why.contains("grows") && why.contains("muscles"), "{why}");
+    assert!(!results["numerical_error_mm"].is_null(), "{results}");
+    let exact = skin(&server, &predicted).await;
+
+    let built = done(&server, &json!({"kind": "response", "case": case, "growth": ["*"]})).await;
+    let description = ask(server.get(&format!("/v1/cases/{case}/response"))).await;
+    let description = description.expect(StatusCode::OK);
+    assert_eq!(
+        description["inner_columns"],
+        json!([
+            {"kind": "growth", "name": "*"},
+            {"kind": "muscle", "name": "strap"},
+            {"kind": "muscle", "name": "slab"},
+        ])
+    );
+    assert_eq!((&description["columns"]["count"], &description["job"]), (&json!(15), &built["id"]));
+    let answer = apply(&server, &case, &plan()).await;
+    let applied = answer.expect(StatusCode::OK);
+    let moved: Vec<[f64; 3]> = serde_json::from_value(applied["displacement_mm"].clone()).unwrap();
+    assert!(largest_difference(&moved, &exact) < 1e-4);
+    assert!(applied.get("nonlinearity_estimate_mm").is_none(), "{applied}");
+    assert_eq!(applied["within_linear_range"], false);
+    assert_eq!(applied["warnings"][0]["code"], "nonlinearity-unknown");
+
+    // Without them the skin is another, and its estimate is there.
+    let alone = json!({"segments": plan()["segments"]});
+    let applied = apply(&server, &case, &alone).await.expect(StatusCode::OK);
+    let moved: Vec<[f64; 3]> = serde_json::from_value(applied["displacement_mm"].clone()).unwrap();
+    assert!(largest_difference(&moved, &exact) > 0.05);
+    assert!(applied["nonlinearity_estimate_mm"].as_f64().is_some());
+}
+
+#[tokio::test]
+async fn an_inverse_plan_holds_growth_and_activations_and_gives_them_back() {
+    let server = Server::start();
+    let case = case(&server).await;
+    let spec = json!({"kind": "optimise", "case": case,
+        "growth": plan()["growth"], "activations": plan()["activations"],
+        "targets": [{"nodes": {"node_set": "z_max"}, "displacement_mm": [0, 0.5, 0.2]}],
+        "bounds": {"left": {"translation_mm": [[-5, 5], [-5, 5], [-5, 5]]}}});
+    let job = done(&server, &spec).await;
+    let found = &job["results"]["optimisation"];
+    assert_eq!(found["plan"]["growth"], plan()["growth"]);
+    assert_eq!(found["plan"]["activations"], plan()["activations"]);
+    // The full solution of that plan has growth and the muscle too.
+    assert!(found["verified_difference_mm"].as_f64().unwrap() < 1e-4, "{found}");
+    let mut without = spec.clone();
+    without["growth"] = json!([]);
+    without["activations"] = json!([]);
+    let other = done(&server, &without).await;
+    let other = &other["results"]["optimisation"]["plan"]["segments"];
+    assert_ne!(&found["plan"]["segments"], other, "what is held changes the plan that is found");
+}
+
+#[tokio::test]
+async fn what_is_not_known_of_growth_and_muscles_is_refused_with_its_place() {
+    let server = Server::start();
+    let case = case(&server).await;
+    let predict = |plan: Value, method: &str| json!({"kind": "predict", "case": case, "plan": plan, "method": method});
+    let growing = |region: &str, change: f64| json!({"growth": [{"region": region, "volume_change": change}]});
+    let pulling = |muscle: &str, stress: f64| json!({"activations": [{"muscle": muscle, "stress_kpa": stress}]});
+    let linear = "fem_linear";
+    for (spec, code, pointer) in [
+        (predict(growing("fat", 0.1), linear), "unknown-region", "/plan/growth/0/region"),
+        (predict(growing("*", -0.6), linear), "out-of-range", "/plan/growth/0/volume_change"),
+        (predict(pulling("jaw", 1.0), linear), "unknown-muscle", "/plan/activations/0/muscle"),
+        (predict(pulling("strap", -1.0), linear), "out-of-range", "/plan/activations/0/stress_kpa"),
+        (predict(growing("*", 0.1), "fem_nonlinear"), "method-not-available", "/plan/growth"),
+        (predict(pulling("strap", 1.0), "dvs"), "method-not-available", "/plan/activations"),
+        (
+            json!({"kind": "response", "case": case, "growth": ["fat"]}),
+            "unknown-region",
+            "/spec/growth/0",
+        ),
+        (
+            json!({"kind": "response", "case": case, "muscles": ["jaw"]}),
+            "unknown-muscle",
+            "/spec/muscles/0",
+        ),
+        (
+            json!({"kind": "response", "case": case, "order": 2, "muscles": ["strap"]}),
+            "method-not-available",
+            "/spec/order",
+        ),
+    ] {
+        let answer = server.job(&spec).await;
+        let problem = answer.problem(422, code);
+        assert_eq!(problem["errors"][0]["pointer"], pointer, "{spec}: {problem}");
+    }
+    // A response without a column of it.
+    done(&server, &json!({"kind": "response", "case": case, "muscles": ["slab"]})).await;
+    for (plan, pointer) in [
+        (growing("*", 0.1), "/plan/growth/0/region"),
+        (pulling("strap", 1.0), "/plan/activations/0/muscle"),
+    ] {
+        let problem = apply(&server, &case, &plan).await.problem(422, "not-in-response");
+        assert_eq!(problem["errors"][0]["pointer"], pointer, "{problem}");
+    }
+}
+
+#[tokio::test]
+async fn auto_stays_with_linear_elasticity_and_says_why_no_other_model_was_taken() {
+    let server = Server::start();
+    let case = case(&server).await;
+    let spec = json!({"kind": "predict", "case": case, "plan": plan(), "method": "auto", "accept_mm": 0.001});
+    let job = done(&server, &spec).await;
+    let results = &job["results"];
+    assert_eq!(results["adequacy"]["taken"], "linear", "{results}");
+    let finite_strain = &results["adequacy"]["rungs"][4];
+    assert_eq!(finite_strain["name"], "finite_strain");
+    assert!(finite_strain.to_string().contains("passed_over"), "{finite_strain}");
+    assert!(results["nonlinearity_mm"].is_null(), "{results}");
+    let warnings = results["warnings"].as_array().unwrap();
+    assert!(warnings.iter().any(|told| told["code"] == "tolerance-not-met"), "{results}");
+}
