@@ -1,7 +1,32 @@
 // What `Facies` promises, against a service: arrays that agree with each other, progress, exceptions with codes.
 import { strict as assert } from "node:assert";
 import { readFile } from "node:fs/promises";
-import { Facies, JobFailed, Refused, type Documents, type Movement, type Upload } from "./facies.js";
+import { directions, meaning, type Direction } from "./directions.js";
+import { Facies, JobFailed, Refused, Response, type Documents, type Movement, type Upload } from "./facies.js";
+
+// Sliders go where their words say, with no service: how far a point 50 mm before the centre of a segment, or left of it, goes.
+function moved(frame: "LPS" | "RAS", { member, axis, sign }: Direction, place: "front" | "left"): { forward: number; left: number; up: number } {
+  const towards = frame === "LPS" ? { front: [0, -1, 0], left: [1, 0, 0] } : { front: [0, 1, 0], left: [-1, 0, 0] };
+  const columns = new Float32Array(36);
+  for (const i of [0, 1, 2]) {
+    towards[place].forEach((share, j) => { columns[3 * (4 * i + j) + i] = 50 * share; });
+    columns[3 * (4 * i + 3) + i] = 1;
+  }
+  const description = { node_ids: [0], segments: [{ name: "jaw", centre_mm: [0, 0, 0] }] } as never;
+  const movement: Movement = { pivot_mm: [0, 0, 0], [member]: [0, 1, 2].map((at) => (at === axis ? 2 * sign : 0)) };
+  const by = new Response("", "", description, columns, {} as never).displacement({ jaw: movement });
+  const along = (way: number[]) => way.reduce((sum, share, at) => sum + share * by[at]!, 0);
+  return { forward: along(towards.front), left: along(towards.left), up: by[2]! };
+}
+for (const frame of ["LPS", "RAS"] as const) {
+  const of = new Map(directions(frame).map((direction) => [direction.words[1], direction]));
+  const goes = (word: string, place: "front" | "left" = "front") => moved(frame, of.get(word)!, place);
+  assert.equal(of.size, 6);
+  assert(goes("forward").forward === 2 && goes("up").up === 2 && goes("to the left").left === 2, frame);
+  assert(goes("front up").up > 1 && goes("left side down", "left").up < -1 && goes("front to the left").left > 1, frame);
+}
+assert.equal(meaning(directions("LPS")[0]!, -4), "4 mm back");
+assert.equal(meaning(directions("unspecified")[3]!, 4), "4° about +x");
 
 const folder = "examples/head/";
 const blob = async (name: string) => new Blob([await readFile(folder + name)]);

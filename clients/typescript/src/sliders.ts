@@ -1,9 +1,10 @@
-// A page with sliders on the columns of a response: segments move, and the skin follows within a frame.
-import { Facies, type Documents, type Movement, type Response, type Triple } from "./facies.js";
-import { View } from "./view.js";
+// A page with sliders on the columns of a response: segments move, the skin follows within a frame, and the service is asked what
+// that leaves out.
+import { directions, meaning, type Direction } from "./directions.js";
+import { Facies, type Applied, type Documents, type Movement, type Response, type Triple } from "./facies.js";
+import { COLOURS, RANGE_MM, View } from "./view.js";
 
 const MOST = { translation_mm: 10, rotation_deg: 10 } as const;
-const AXES = ["x", "y", "z"] as const;
 type Moved = { translation_mm: Triple; rotation_deg: Triple; pivot_mm: Triple };
 
 const find = <T extends Element>(selector: string) => document.querySelector<T>(selector)!;
@@ -14,26 +15,45 @@ const say = (text: string) => { find("#said").textContent = text; };
 field("case").value = new URLSearchParams(location.search).get("case") ?? "";
 field("address").value = location.origin.startsWith("http") ? location.origin : "http://127.0.0.1:8080";
 
-/** A slider for each number of a movement; `changed` is called when one is moved. */
-function sliders(name: string, moved: Moved, changed: () => void): HTMLFieldSetElement {
+/** A slider for one number of a movement. */
+function slider(direction: Direction, moved: Moved): HTMLLabelElement {
+  const { member, axis, sign, words: [low, high] } = direction;
+  const limits = { type: "range", min: `${-MOST[member]}`, max: `${MOST[member]}`, step: "0.1", value: "0" };
+  const input = Object.assign(document.createElement("input"), limits);
+  const shown = Object.assign(document.createElement("output"), { value: meaning(direction, 0) });
+  const label = document.createElement("label");
+  label.append(`${low} / ${high}`, shown, input);
+  // Before what the whole group does.
+  input.addEventListener("input", () => {
+    moved[member][axis] = sign * input.valueAsNumber;
+    shown.value = meaning(direction, input.valueAsNumber);
+  });
+  return label;
+}
+
+/** The sliders of a segment. */
+function sliders(name: string, moved: Moved, all: Direction[]): HTMLFieldSetElement {
   const group = document.createElement("fieldset");
-  group.append(Object.assign(document.createElement("legend"), { textContent: name }));
-  for (const kind of ["translation_mm", "rotation_deg"] as const) {
-    AXES.forEach((axis, at) => {
-      const limits = { type: "range", min: `${-MOST[kind]}`, max: `${MOST[kind]}`, step: "0.1", value: "0" };
-      const slider = Object.assign(document.createElement("input"), limits);
-      const shown = Object.assign(document.createElement("output"), { value: "0" });
-      const label = document.createElement("label");
-      label.append(`${kind} ${axis}`, shown, slider);
-      slider.addEventListener("input", () => {
-        moved[kind][at] = slider.valueAsNumber;
-        shown.value = slider.value;
-        changed();
-      });
-      group.append(label);
-    });
-  }
+  const legend = Object.assign(document.createElement("legend"), { textContent: name });
+  group.append(legend, ...all.map((direction) => slider(direction, moved)));
   return group;
+}
+
+/** Which colour is how many mm. */
+function showLegend(): void {
+  const colour = (rgb: readonly number[]) => `rgb(${rgb.map((share) => `${100 * share}%`).join(" ")})`;
+  find<HTMLElement>("#legend .ramp").style.background = `linear-gradient(to right, ${COLOURS.map(colour).join(", ")})`;
+  find("#legend .words :last-child").textContent = `moves ${RANGE_MM} mm or more`;
+  find<HTMLElement>("#legend").hidden = false;
+}
+
+/** What the service says of a plan: what linearity leaves out, and its warnings. */
+function showEstimate(applied?: Applied): void {
+  const shown = find<HTMLElement>("#estimate");
+  const warnings = applied?.warnings.map(({ code, detail }) => `\n${code}: ${detail}`) ?? [];
+  shown.classList.toggle("doubtful", warnings.length > 0 || applied?.within_linear_range === false);
+  shown.textContent = applied === undefined ? ""
+    : `Linearity leaves out about ${applied.nonlinearity_estimate_mm.toFixed(2)} mm, mean over the skin.${warnings.join("")}`;
 }
 
 /** The movements of the sliders as a plan of the service. */
@@ -54,7 +74,11 @@ function plan(facies: Facies, response: Response): void {
   const view = new View(find<HTMLCanvasElement>("canvas"), response.rest);
   const movements: Record<string, Moved> = {};
   let displacement = response.displacement(movements);
+  // Answers to plans that were left meanwhile are passed over.
+  let moves = 0;
   const changed = () => {
+    moves += 1;
+    showEstimate();
     const started = performance.now();
     displacement = response.displacement(movements);
     view.show(displacement);
@@ -62,19 +86,27 @@ function plan(facies: Facies, response: Response): void {
     say(`The skin moves ${largest(displacement).toFixed(2)} mm at most; ${took.toFixed(1)} ms`);
     find<HTMLTextAreaElement>("#plan").value = JSON.stringify(planOf(movements), null, 1);
   };
-  const groups = response.description.segments.map(({ name, centre_mm }) => {
+  const asked = () => told(async () => {
+    const of = moves;
+    const applied = largest(displacement) > 0 ? await facies.apply(response, planOf(movements)) : undefined;
+    if (of === moves) showEstimate(applied);
+  });
+  const all = directions(response.description.frame);
+  const build = () => find("#segments").replaceChildren(...response.description.segments.map(({ name, centre_mm }) => {
     movements[name] = { translation_mm: [0, 0, 0], rotation_deg: [0, 0, 0], pivot_mm: centre_mm as Triple };
-    return sliders(name, movements[name], changed);
-  });
-  find("#segments").replaceChildren(...groups);
-  const button = form.elements.namedItem("apply") as HTMLButtonElement;
-  button.disabled = false;
-  button.onclick = () => told(async () => {
-    const answer = await facies.apply(response, planOf(movements));
-    const apart = largest(answer.displacement_mm.map((value, at) => value - displacement[at]!));
-    say(`The service says the same to ${apart.toExponential(1)} mm`);
-  });
-  changed();
+    return sliders(name, movements[name], all);
+  }));
+  const segments = find<HTMLElement>("#segments");
+  segments.oninput = changed;
+  segments.onchange = () => void asked();
+  const reset = form.elements.namedItem("reset") as HTMLButtonElement;
+  reset.disabled = false;
+  reset.onclick = () => {
+    build();
+    changed();
+  };
+  showLegend();
+  reset.click();
 }
 
 /** Does something, and says what went wrong. */

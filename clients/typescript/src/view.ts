@@ -2,7 +2,9 @@
 import type { Surface } from "./surface.js";
 
 /** The displacement at which colours end, in mm, as in the files of the service. */
-const RANGE_MM = 10;
+export const RANGE_MM = 10;
+/** Red, green and blue of skin that stays, and of skin that moves so far; between them linearly. */
+export const COLOURS = [[0.92, 0.78, 0.68], [0.75, 0.1, 0.15]] as const;
 const RADIANS_PER_PIXEL = 0.01;
 
 const VERTEX = `#version 300 es
@@ -28,7 +30,7 @@ out vec4 colour;
 void main() {
   vec3 normal = normalize(cross(dFdx(place), dFdy(place)));
   float light = 0.25 + 0.75 * abs(normal.z);
-  vec3 moved = mix(vec3(0.92, 0.78, 0.68), vec3(0.75, 0.1, 0.15), clamp(length_mm / range_mm, 0.0, 1.0));
+  vec3 moved = mix(vec3(${COLOURS[0]}), vec3(${COLOURS[1]}), clamp(length_mm / range_mm, 0.0, 1.0));
   colour = vec4(moved * light, 1.0);
 }`;
 
