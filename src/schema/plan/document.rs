@@ -182,7 +182,10 @@ impl PlanDocument {
             return false;
         }
         if plan_frame == Frame::Unspecified || case_frame == Frame::Unspecified {
-            let detail = format!("the plan is in frame {plan_frame} and the case in {case_frame}");
+            let detail = format!(
+                "the plan is in frame {plan_frame} and the case in {case_frame}: state the `frame` of the one that has none (of a mesh on \
+                 the command line, `--frame LPS`)"
+            );
             faults.add(&at.key("frame"), ErrorCode::FrameConflict, detail);
         }
         true
