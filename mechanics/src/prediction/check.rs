@@ -233,7 +233,14 @@ impl<'a> Check<'a> {
         }
     }
 
-    pub(super) fn add_loads(&mut self, plan: &Plan, scene: &mut Scene) {
+    /// Loads, muscles and growth.
+    pub(super) fn add_what_acts(&mut self, plan: &Plan, scene: &mut Scene) {
+        self.add_loads(plan, scene);
+        self.muscles(scene);
+        self.add_inner_stress(plan, scene);
+    }
+
+    fn add_loads(&mut self, plan: &Plan, scene: &mut Scene) {
         if plan.loads.is_empty() {
             return;
         }
@@ -249,14 +256,14 @@ impl<'a> Check<'a> {
                 Load::Force { nodes, force } => {
                     let nodes = self.select(nodes, &format!("{pointer}/nodes"));
                     nodes.iter().for_each(|&node| forces[node as usize] += force);
-                    scene.warnings.extend(load_on_held(&nodes, &scene.conditions.holds, &pointer));
+                    self.warnings.extend(load_on_held(&nodes, &scene.conditions.holds, &pointer));
                 }
                 Load::Traction { faces, traction } => {
                     let faces = self.loaded_faces(faces, &pointer);
                     let load = FaceLoad::Traction(*traction);
                     let nodes: Vec<u32> =
                         faces.iter().flat_map(BoundaryFace::nodes).copied().collect();
-                    scene.warnings.extend(load_on_held(&nodes, &scene.conditions.holds, &pointer));
+                    self.warnings.extend(load_on_held(&nodes, &scene.conditions.holds, &pointer));
                     self.face_load(&faces, load, edges, &mut forces);
                     scene.distributed.faces.push((faces, load));
                 }
@@ -265,7 +272,7 @@ impl<'a> Check<'a> {
                     let load = FaceLoad::Pressure(*pressure);
                     let nodes: Vec<u32> =
                         faces.iter().flat_map(BoundaryFace::nodes).copied().collect();
-                    scene.warnings.extend(load_on_held(&nodes, &scene.conditions.holds, &pointer));
+                    self.warnings.extend(load_on_held(&nodes, &scene.conditions.holds, &pointer));
                     self.face_load(&faces, load, edges, &mut forces);
                     scene.distributed.faces.push((faces, load));
                 }
