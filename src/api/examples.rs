@@ -126,6 +126,14 @@ fn predictions_and_plans() -> Vec<(&'static str, Value)> {
             }),
         ),
         (
+            "reproduce",
+            json!({
+                "kind": "reproduce", "before": {"mesh": BONE}, "after": {"mesh": BONE},
+                "base": {"mask": {"box_mm": [-200, -200, -200, 200, 200, 200]}},
+                "segments": [{"name": "mandible", "before": {"mesh": BONE}}],
+            }),
+        ),
+        (
             "mesh from a scan",
             json!({
                 "kind": "mesh",

@@ -219,6 +219,7 @@ fn in_memory(case: &CaseDocument, done: &JobOutput) -> BTreeMap<String, StoredMe
         let file = done.files.iter().find(|file| file.name == *id)?;
         let mesh = StoredMesh {
             shape: made.shape.clone(),
+            of_points: Default::default(),
             frame: (made.frame != Frame::Unspecified).then_some(made.frame),
             units: Some(LengthUnit::Mm),
             warnings: Vec::new(),
