@@ -140,17 +140,17 @@ async fn what_is_not_known_of_growth_and_muscles_is_refused_with_its_place() {
         (
             json!({"kind": "response", "case": case, "growth": ["fat"]}),
             "unknown-region",
-            "/spec/growth/0",
+            "/growth/0",
         ),
         (
             json!({"kind": "response", "case": case, "muscles": ["jaw"]}),
             "unknown-muscle",
-            "/spec/muscles/0",
+            "/muscles/0",
         ),
         (
             json!({"kind": "response", "case": case, "order": 2, "muscles": ["strap"]}),
             "method-not-available",
-            "/spec/order",
+            "/order",
         ),
     ] {
         let answer = server.job(&spec).await;
