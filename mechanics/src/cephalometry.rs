@@ -97,10 +97,10 @@ pub const MEASURES: [Measure; 18] = [
         l.angle("columella", "subnasale", "labrale_superius")
     }),
     skin("upper_lip_from_e_line", Unit::Millimetres, "Ricketts 1957, without sign", |l| {
-        l.from_line("labrale_superius", "pronasale", "pogonion")
+        l.distance_from_line("labrale_superius", "pronasale", "pogonion")
     }),
     skin("lower_lip_from_e_line", Unit::Millimetres, "Ricketts 1957, without sign", |l| {
-        l.from_line("labrale_inferius", "pronasale", "pogonion")
+        l.distance_from_line("labrale_inferius", "pronasale", "pogonion")
     }),
 ];
 
@@ -174,7 +174,7 @@ impl Landmarks<'_> {
         Some(a.cross(&b).norm().atan2(a.dot(&b)).to_degrees())
     }
 
-    fn from_line(&self, point: &str, from: &str, to: &str) -> Option<f64> {
+    fn distance_from_line(&self, point: &str, from: &str, to: &str) -> Option<f64> {
         let along = self.direction(from, to)?;
         Some((self.at(point)? - self.at(from)?).cross(&along).norm())
     }

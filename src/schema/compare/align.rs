@@ -57,7 +57,7 @@ pub struct AlignDocument {
 #[serde(untagged)]
 pub enum AlignReference {
     Method(AlignMethod),
-    Document(AlignDocument),
+    Document(Box<AlignDocument>),
 }
 
 pub(super) fn align<'de, D: Deserializer<'de>>(deserializer: D) -> Result<AlignDocument, D::Error> {
