@@ -218,7 +218,8 @@ fn print_result(result: &ResultDocument) {
             row.median,
             row.p95,
             row.max,
-            100.0 * row.share_below_1_mm
+            // No minus before nothing.
+            100.0 * row.share_below_1_mm.max(0.0) + 0.0
         );
     }
     if let Some(node_wise) = &comparison.node_wise {

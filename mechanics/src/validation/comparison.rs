@@ -131,6 +131,8 @@ pub fn compare(
 
     // 5. Whether this is the scan that is meant.
     let distances = measured.statistics()?;
+    warnings.extend(suspicion::facing_inwards(&pair));
+    warnings.extend(suspicion::apart(&alignment, &distances));
     warnings.extend(suspicion::another_person(&alignment, &distances));
     warnings.extend(suspicion::before_operation(&moved, &aligned_actual)?);
     Ok(Comparison {

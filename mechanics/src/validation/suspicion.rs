@@ -2,7 +2,7 @@
 //! the operation fits where nothing was moved yet.
 
 use super::alignment::{Alignment, AlignmentReport};
-use super::both_ways::BothDirections;
+use super::both_ways::{BothDirections, Pair};
 use super::error::ComparisonError;
 use super::region::MovedSurface;
 use crate::mesh::{SurfaceSearch, TriangleSurface, Vector, Warning, area_sampling};
@@ -19,6 +19,9 @@ const MOVED: f64 = 1.0;
 
 /// Before the operation the scan has to lie so much nearer to the skin at rest than to the prediction.
 const MUCH_NEARER: f64 = 0.25;
+
+/// In mm: surfaces of one head that lie in one frame are not so far apart.
+const APART: f64 = 20.0;
 
 /// Points where the plan moves the skin; fewer say nothing.
 const POINTS: usize = 2000;
@@ -48,6 +51,35 @@ pub(super) fn another_person(
         return Some(warning.with("median_mm", median).with("rms_mm", rms));
     }
     None
+}
+
+/// A warning where surfaces that were not fitted to each other lie apart: another frame, or another unit.
+pub(super) fn apart(report: &AlignmentReport, distances: &BothDirections) -> Option<Warning> {
+    let median = distances.both.unsigned.median;
+    let detail = format!(
+        "half of the surfaces is more than {median:.0} mm apart: are they in one frame, and is `align` meant to be `none`?"
+    );
+    let warning = Warning::new("surfaces-apart", detail).with("median_mm", median);
+    (report.rms.is_none() && median > APART).then_some(warning)
+}
+
+/// A warning where one of the surfaces faces inwards: signs of distances are then wrong in one of the directions.
+pub(super) fn facing_inwards(pair: &Pair) -> Option<Warning> {
+    let normals = pair.prediction.point_normals();
+    let step = normals.len().div_ceil(POINTS).max(1);
+    let opposed = |(point, normal): (&Vector, &Vector)| {
+        let closest = pair.actual_search.closest(point);
+        pair.actual.area_vector(closest.triangle).dot(normal) < 0.0
+    };
+    let looked: Vec<bool> =
+        pair.prediction.points.iter().zip(&normals).step_by(step).map(opposed).collect();
+    let share = looked.iter().filter(|is| **is).count() as f64 / looked.len().max(1) as f64;
+    let detail = format!(
+        "at {:.0} % of the prediction the actual surface faces the other way: the triangles of one of them are turned inwards, and signed \
+         distances have the wrong sign in one direction",
+        share * 100.0
+    );
+    (share > 0.5).then(|| Warning::new("surfaces-opposed", detail).with("share", share))
 }
 
 /// A warning where the actual surface is the skin before the plan rather than after it.

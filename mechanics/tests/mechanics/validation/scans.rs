@@ -55,6 +55,22 @@ fn a_known_matrix_moves_the_actual_surface_and_nothing_else_does() {
 }
 
 #[test]
+fn a_surface_that_faces_inwards_and_one_of_another_frame_are_told() {
+    let prediction = head(4);
+    let larger = map(&prediction, |point| point * 1.03);
+    let mut turned = larger.clone();
+    turned.triangles.iter_mut().for_each(|corners| corners.swap(1, 2));
+    let far = map(&prediction, |point| point + Vector::new(0.0, 400.0, 0.0));
+    let told = |actual: &TriangleSurface| {
+        let found = compared(&prediction, actual, &ComparisonSettings::default()).warnings;
+        ["surfaces-opposed", "surfaces-apart"].map(|code| codes(&found).contains(&code))
+    };
+    assert_eq!(told(&larger), [false, false]);
+    assert_eq!(told(&turned), [true, false]);
+    assert!(told(&far)[1]);
+}
+
+#[test]
 fn bone_decides_where_the_skin_goes_and_the_operation_is_left() {
     let scan_frame = movement([12.0, -7.0, 20.0], [30.0, 15.0, -25.0]);
     let at_rest = head(5);
