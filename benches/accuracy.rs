@@ -28,7 +28,7 @@ fn elastic(young_modulus: f64, poisson_ratio: f64) -> LinearElastic {
     LinearElastic::new(young_modulus, poisson_ratio, 1.0).expect("within the ranges")
 }
 
-/// V.7: u = A r + B / r² with 3 K A = 4 mu B / b³ and u(a) = d.
+/// docs/verification.md#v7: u = A r + B / r² with 3 K A = 4 mu B / b³ and u(a) = d.
 fn thick_sphere() {
     println!(
         "Thick sphere, inner radius 60 mm displaced by 2 mm, outer radius 72 mm, cells of 3 mm: outer displacement, mm\n"

@@ -25,7 +25,7 @@ use mechanics::study::methods;
 /// The scenes and levels of a study that names none.
 const USUAL_SCENES: [&str; 3] = ["sphere", "slab", "half_head"];
 const USUAL_LEVELS: [u32; 2] = [0, 1];
-/// Of the small one: the movement and the tissue of VERIFICATION V.29.
+/// Of the small one: the movement and the tissue of the slab, docs/verification.md#v29.
 const SMALL_SCENE: &str = "slab";
 const SMALL_PLAN: &str = "patch 4,0,8 mm";
 const SMALL_TISSUE: (f64, f64) = (15.0, 0.46);
@@ -266,7 +266,7 @@ fn read_case(
     Ok(case)
 }
 
-/// The slab of V.29 at two levels.
+/// The slab of docs/verification.md#v29 at two levels.
 fn small() -> StudyDocument {
     let (young_modulus_kpa, poisson_ratio) = SMALL_TISSUE;
     let tissue = MaterialDocument {

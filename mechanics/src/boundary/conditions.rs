@@ -1,5 +1,5 @@
 //! What every node is held to: prescribed, joined to a segment, fixed, sliding or free
-//! (METHODS row 5; precedence at a node: prescribed component, joined, fixed, sliding, free).
+//! (docs/methods.md#boundary-conditions; precedence at a node: prescribed component, joined, fixed, sliding, free).
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,4 @@
-//! Held neighbours that part: where a plan tears the tissue at an osteotomy (V.27).
+//! Held neighbours that part: where a plan tears the tissue at an osteotomy (docs/verification.md#v27).
 
 use super::hold::Hold;
 use crate::mesh::{Vector, VolumeMesh, Warning};

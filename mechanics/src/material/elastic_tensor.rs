@@ -8,7 +8,8 @@
 //!           + dlam [ (a.g_k) g_j a^T + (a.g_j) a g_k^T ] + beta (a.g_j)(a.g_k) a a^T
 //!           + dmu [ (a.g_k) a g_j^T + (a.g_j) g_k a^T + (g_j.g_k) a a^T + (a.g_j)(a.g_k) I ]
 //!
-//! Source: METHODS A2 and A3; paper 002, eq. 33, in its corrected form, has beta = -(dlam + 2 dmu).
+//! Source: Spencer 1984; Kim et al. 2012, eq. 33, in its corrected form (docs/methods.md#fibres), has
+//! beta = -(dlam + 2 dmu).
 
 use nalgebra::{Matrix3, Vector3};
 

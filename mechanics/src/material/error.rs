@@ -21,7 +21,7 @@ pub enum MaterialError {
         "the shear modulus along the fibre is {0} kPa, and has to be at least 1e-9 and at most 1e9 kPa"
     )]
     FibreShear(f64),
-    #[error("the law of paper 002 takes its shear modulus from E and nu, and no other one")]
+    #[error("the law of Kim et al. 2012 takes its shear modulus from E and nu, and no other one")]
     ShearOfPaper002,
     #[error(
         "Young's modulus is {along} kPa along the fibre and {across} kPa across, and along it has to be above \
@@ -29,7 +29,7 @@ pub enum MaterialError {
     )]
     FibreTooSoft { along: f64, across: f64, least: f64 },
     #[error(
-        "the law of paper 002 is not positive definite for E_f/E_t = {ratio:.4} and nu = {poisson_ratio}: its \
+        "the law of Kim et al. 2012 is not positive definite for E_f/E_t = {ratio:.4} and nu = {poisson_ratio}: its \
          smallest eigenvalue is {eigenvalue:.4} kPa, and E_f/E_t has to be below (1-nu)/(2 nu^2) = {limit:.4}"
     )]
     NotPositiveDefinite { ratio: f64, poisson_ratio: f64, eigenvalue: f64, limit: f64 },

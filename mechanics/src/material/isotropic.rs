@@ -1,6 +1,6 @@
 //! The two constants of isotropic linear elasticity.
 
-/// Young's modulus E in kPa and Poisson's ratio nu, and the moduli that follow from them (METHODS A2).
+/// Young's modulus E in kPa and Poisson's ratio nu, and the moduli that follow from them (docs/methods.md#linear-elasticity).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Isotropic {
     pub young_modulus: f64,

@@ -9,7 +9,7 @@ use super::transversely_isotropic::{Fibre, TransverselyIsotropic};
 /// Linear elastic tissue at small strain: isotropic, or with fibres of one direction at each point.
 ///
 /// sigma = lambda tr(eps) I + 2 mu eps, with lambda = E nu / ((1 + nu)(1 - 2 nu)) and
-/// mu = E / (2 (1 + nu)); METHODS A2. With fibres these constants are those across them. At finite strain it is neo-Hookean
+/// mu = E / (2 (1 + nu)). With fibres these constants are those across them. At finite strain it is neo-Hookean
 /// with these constants, unless a law is stated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LinearElastic {

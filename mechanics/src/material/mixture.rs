@@ -1,7 +1,7 @@
 //! A point that is several tissues at once, each to its share.
 //!
 //! C = sum_i f_i C_i with sum_i f_i = 1: for isotropic tissue K = sum f_i K_i and mu = sum f_i mu_i, so
-//! E = 9 K mu / (3 K + mu) and nu = (3 K - 2 mu) / (6 K + 2 mu); METHODS row 35. All parts are strained alike
+//! E = 9 K mu / (3 K + mu) and nu = (3 K - 2 mu) / (6 K + 2 mu) (docs/methods.md#tissue-from-images). All parts are strained alike
 //! (Voigt), which makes the stiffest mixture that the shares allow. Density is that of the shares too.
 //!
 //! Source: the equivalent property of Kim et al. 2012 (Mass tensor), stated there for the shares of points;

@@ -6,8 +6,8 @@
 //!   mu = C66, lambda = C22 - 2 C66, dlam = C12 - lambda, dmu = 0, beta = C11 - C22 - 2 dlam.
 //!
 //! Source: Timoshenko, Goodier, Theory of Elasticity, 3rd ed., 1970, section 7; orthotropic: Jones, Mechanics of
-//! Composite Materials, 2nd ed., 1999, section 2.4. Skin as such a sheet, stiffer along Langer's lines: paper 001
-//! (METHODS rows 37, 38).
+//! Composite Materials, 2nd ed., 1999, section 2.4. Skin as such a sheet, stiffer along Langer's lines: Zachow et
+//! al. 2006, section 4.2 (docs/methods.md#membrane).
 
 use super::elastic_tensor::{AlongFibre, ElasticTensor, FibreModuli};
 use super::error::is_modulus;

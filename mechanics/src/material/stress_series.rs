@@ -6,7 +6,7 @@
 //!   second: -mu (H^T)^2 + tau2 I - tau1 H^T
 //!   third:  mu (H^T)^3 + tau3 I - tau2 H^T + tau1 (H^T)^2
 //!   ln J = tr H - tr H^2 / 2 + tr H^3 / 3 - ...
-//! (F^-T = I - H^T + (H^T)^2 - ...; the law is METHODS A8, `hyperelastic::neo_hookean`). What fibres add to the
+//! (F^-T = I - H^T + (H^T)^2 - ...; the law is `hyperelastic::neo_hookean`). What fibres add to the
 //! stiffness is taken as a quadratic energy of Green's strain, so that turning strains nothing: P = F C:E,
 //! E = (H + H^T + H^T H) / 2. The first orders are those of linear elasticity.
 

@@ -1,6 +1,6 @@
 //! Tissue with one fibre direction: stiffness E_f along it, E_t across, nu, and a shear modulus.
 //!
-//! Engineering constants (METHODS A4; paper 004 gives E_f and E_t of muscle), fibre along axis 1:
+//! Engineering constants (docs/methods.md#fibres; Chabanas et al. 2003 give E_f and E_t of muscle), fibre along axis 1:
 //!   S11 = 1/E_f, S12 = S13 = -nu/E_f, S22 = S33 = 1/E_t, S23 = -nu_tt/E_t, C44 = C55 = G_ft,
 //!   nu_tt = 1 - (1 - nu) E_t/E_f.
 //! With this nu_tt pressure changes the volume alone, S 1 = 1/(3K) 1 with K = E_f / (3 (1 - 2 nu)), so that
@@ -9,8 +9,8 @@
 //!   beta = q - 4 dmu, dlam = -q/3, lambda = K - 2/3 mu + q/9.
 //! Positive definite for 0 <= nu < 1/2 where E_f > E_t (1 - nu) / 2, and isotropic for E_f = E_t.
 //!
-//! Paper 002 (eq. 33, corrected in METHODS A3) has lambda, mu of E_t and nu, and lambda_a, mu_a of E_f and
-//! the same nu: dlam = lambda_a - lambda, dmu = mu_a - mu, beta = -(dlam + 2 dmu). Its moduli along and across
+//! Kim et al. 2012 (eq. 33, corrected: docs/methods.md#fibres) have lambda, mu of E_t and nu, and lambda_a, mu_a of
+//! E_f and the same nu: dlam = lambda_a - lambda, dmu = mu_a - mu, beta = -(dlam + 2 dmu). Its moduli along and across
 //! are not E_f and E_t, and from E_f/E_t = (1 - nu) / (2 nu^2) on its energy has no lowest value.
 
 use super::elastic_tensor::{AlongFibre, ElasticTensor, FibreModuli};
@@ -21,10 +21,10 @@ use nalgebra::Vector3;
 /// How moduli along and across the fibre become a stiffness.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum FibreLaw {
-    /// METHODS A4.
+    /// Moduli along and across that a block pulled along and across shows.
     #[default]
     Engineering,
-    /// METHODS A3.
+    /// Lamé constants from each modulus with one nu: the law of Kim et al. 2012, corrected.
     Paper002,
 }
 
@@ -33,7 +33,7 @@ pub enum FibreLaw {
 pub struct Fibre {
     /// E_f in kPa, in [1e-9, 1e9].
     pub young_modulus: f64,
-    /// G_ft in kPa, in [1e-9, 1e9]; absent: E_t / (2 (1 + nu)). Paper 002's law has none of its own.
+    /// G_ft in kPa, in [1e-9, 1e9]; absent: E_t / (2 (1 + nu)). The law of Kim et al. 2012 has none.
     pub shear_modulus: Option<f64>,
     pub law: FibreLaw,
 }
@@ -94,7 +94,7 @@ impl TransverselyIsotropic {
     }
 }
 
-/// E_f/E_t from which on the law of paper 002 is indefinite.
+/// E_f/E_t from which on the law of Kim et al. 2012 is indefinite.
 fn limit(nu: f64) -> f64 {
     (1.0 - nu) / (2.0 * nu * nu)
 }

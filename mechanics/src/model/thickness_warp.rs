@@ -1,5 +1,5 @@
-//! Thickness-preserving warp: tissue rides on the nearest bone. Paper 000 calls it the conventional method
-//! (its section on conventional planning; METHODS row 12, V.36).
+//! Thickness-preserving warp: tissue rides on the nearest bone. Ulusoy et al. 2010 call it the conventional
+//! method (docs/methods.md#thickness-warp, docs/verification.md#v36).
 //!
 //! b = the point of the bone under the tissue that is nearest to x, T = the movement of the bone there
 //! u(x) = T(x) - x, so that |T(x) - T(b)| = |x - b|: every point keeps its distance to its bone.

@@ -1,4 +1,4 @@
-//! Rigid movements x' = R x + t, right-handed and active (METHODS row 7).
+//! Rigid movements x' = R x + t, right-handed and active (docs/methods.md#boundary-conditions).
 
 use nalgebra::{Matrix3, Rotation3};
 

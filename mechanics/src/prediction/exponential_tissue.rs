@@ -1,4 +1,4 @@
-//! Warnings of exponential laws at large stretch, read from the answer (REMAINING 2.1 and 2.10).
+//! Warnings of exponential laws at large stretch, read from the answer (docs/methods.md#hyperelastic-laws).
 //!
 //! Beyond an exponent of 30 an exponential goes on as a parabola: tissue that reaches it is softer than its law. And where tissue
 //! stiffens by orders of magnitude its bulk modulus, which does not, no longer keeps its volume.

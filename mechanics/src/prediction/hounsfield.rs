@@ -2,7 +2,7 @@
 //!
 //! `mean`: a cell is the tissue whose window its mean lies in (Zachow et al. 2006, section 3.5).
 //! `fraction`: a cell is the mixture C = sum_t f_t C_t of the tissues in whose windows its sample points lie
-//! (METHODS row 35); points in no window count as the region of the cell.
+//! (docs/methods.md#tissue-from-images); points in no window count as the region of the cell.
 //! A cell of which a sample point lies outside the image, or that is in no window, keeps the material of its
 //! region. Shares are rounded to steps that leave no more mixtures than numbers for them.
 

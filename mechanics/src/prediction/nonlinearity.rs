@@ -2,7 +2,7 @@
 //!
 //! u2 = -K0^-1 N2(u1, u1), with N2 of `model::fem::force_series`, the matrix and the hierarchy that u1 was solved with, and
 //! nothing moved where it is held: a held node is already where a finite movement takes it. One evaluation of forces and
-//! one loose solution (NONLINEAR, sections 4 and 7: |u2| is .96 to 1.16 of the true error from .5 to 27 mm).
+//! one loose solution (docs/estimates.md#nonlinearity has |u2| beside the true error, from .5 to 25 mm).
 //! u1 + u2 is the answer to second order; what that leaves out is told by u3 = -K0^-1 [2 N2(u1, u2) + N3(u1, u1, u1)].
 
 use std::collections::BTreeMap;

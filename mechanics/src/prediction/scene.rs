@@ -35,7 +35,8 @@ use crate::plan::doubt::{NOTHING_MOVES, nothing_moves};
 use crate::progress::Progress;
 use crate::solver::Tolerance;
 
-/// Poisson's ratio above which elements without mean dilatation are known to lock (VERIFICATION V.4, V.29).
+/// Poisson's ratio above which elements without mean dilatation are known to lock (docs/verification.md#v4,
+/// docs/verification.md#v29).
 const LOCKING: f64 = 0.45;
 
 /// What a tetrahedron is taken as.

@@ -13,11 +13,11 @@
 //! stretches; over the length l that is a displacement. A layer on a bone that turns by theta is squeezed along
 //! the bone by 1 - cos theta, so that its skin lies too high by l (1 - cos theta) / (1 - nu), at most twice. With
 //! 0.9 for the stretching e is not below the difference between linear and finite elasticity in a swelling thick
-//! sphere up to 25 mm (VERIFICATION V.8) nor below its mean on the slab of V.29, 1.5 to 13.4 mm
+//! sphere up to 25 mm (docs/verification.md#v8) nor below its mean on the slab (docs/verification.md#v29), 1.5 to 13.4 mm
 //! along, across and pulled back; it is at most 5 times these. An order of magnitude, not a bound.
 //!
-//! Never of single cells: their strain at the edge of a bone grows without limit as cells shrink (LADDER,
-//! pitfalls).
+//! Never of single cells: their strain at the edge of a bone grows without limit as cells shrink
+//! (docs/methods.md#error-estimates).
 
 use rayon::prelude::*;
 

@@ -31,7 +31,7 @@ const DENSITY: Usual = Usual { what: "density", unit: "g/cm3", least: 0.1, most:
 const SHEET_MODULUS: Usual = Usual { what: "Young's modulus of the membrane", ..MODULUS };
 const SHEET_THICKNESS: Usual =
     Usual { what: "the thickness of the membrane", unit: "mm", least: 0.05, most: 10.0 };
-/// Paper 000 names 12 to 750 N/m, which are mN/mm.
+/// Ulusoy et al. 2010 name 12 to 750 N/m, which are mN/mm.
 const LINK: Usual = Usual { what: "the stiffness of a link", unit: "N/m", least: 0.1, most: 1e5 };
 /// Per node: a bite exerts up to 1e6 mN on all of a jaw.
 const FORCE: Usual = Usual { what: "the force at a node", unit: "mN", least: 1e-6, most: 1e5 };

@@ -13,7 +13,7 @@
 //!
 //! The first term is the second order of elasticity in the displacement gradient d / h. Its factor is set so
 //! that e is not below the mean difference of the skin between linear and neo-Hookean tissue in twelve
-//! computations on a slab of 12 mm (VERIFICATION V.29: d 1.5 to 13.4 mm along, across and pulled
+//! computations on a slab of 12 mm (docs/verification.md#v29: d 1.5 to 13.4 mm along, across and pulled
 //! back, mean difference 0.013 to 1.46 mm); at most 4.4 times it, for movements along the skin. The
 //! second term is the artefact of small strain under rotation: tissue that turns with its bone is strained by
 //! cos theta - 1 in each direction across the axis, and its free side by nu / (1 - nu) times that along

@@ -3,7 +3,7 @@
 //! A segment moves by u(x) = (R - I) x + t, x from its centre: linear in the twelve numbers of R - I and t.
 //! The tissue is linear too, so the skin is u = sum_k a_k c_k with one solved column c_k for each of
 //! the twelve numbers of each segment: exact for every finite movement (Cotin, Delingette, Ayache
-//! 1999, "pre-calculus"; VERIFICATION V.43). What linearity leaves out is, to second order, a quadratic form in the same
+//! 1999, "pre-calculus"; docs/verification.md#v43). What linearity leaves out is, to second order, a quadratic form in the same
 //! numbers, which is built on request. Growth of a region and the pull of a muscle act linearly too: one column each.
 
 pub mod build;

@@ -1,8 +1,8 @@
 //! Stationary iterations on the blocks of the diagonal: how the mass-tensor model is brought to rest.
 //!
 //! Block Jacobi: x <- x + omega D^-1 (f - K x), D the blocks of the diagonal. With omega = 1 it is eq. 32 of
-//! paper 002; it converges only where lambda_max(D^-1 K) < 2, which meshes of tetrahedra exceed from
-//! nu = 0 on (METHODS A6). Any omega below 2 / lambda_max converges.
+//! Kim et al. 2012; it converges only where lambda_max(D^-1 K) < 2, which meshes of tetrahedra exceed from
+//! nu = 0 on (docs/verification.md#v14). Any omega below 2 / lambda_max converges.
 //! Block Gauss-Seidel: x_i <- K_ii^-1 (f_i - sum_{j<i} K_ij x_j - sum_{j>i} K_ij x_j_old) converges for every
 //! positive definite K. The parts of the layout are its colours: they couple only with the separator, which
 //! is swept after them, so that any number of threads gives the bits of one sequential sweep.

@@ -1,4 +1,5 @@
-//! Mesh convergence of the skin (METHODS row 41; paper 003 chose its mesh where a change was below 0.3 %).
+//! Mesh convergence of the skin (Zhang et al. 2016 chose a mesh where a change was below 0.3 %;
+//! docs/methods.md#studies).
 //!
 //! Of a quantity m on three meshes, each with half the cell size of the one before:
 //!

@@ -15,7 +15,7 @@ const OWN_ITERATIONS_RESIDUAL: f64 = 1e-5;
 /// Sweeps after which the papers' own iterations are given up.
 const OWN_ITERATIONS: usize = 50_000;
 
-/// Links of the lattice in mN/mm, which is N/m (paper 000).
+/// Links of the lattice in mN/mm, which is N/m (Ulusoy et al. 2010).
 const PAPER_STIFFNESS: f64 = 80.0;
 
 /// All that answer the question of the truths, which are linear, each with its usual settings: finite strain is compared

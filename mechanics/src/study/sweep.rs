@@ -1,5 +1,5 @@
-//! Sweeps over the constants of regions (METHODS row 17; paper 001 varies nu and E of muscle and of the
-//! tissue around it): every combination as materials of a study, and the best of them.
+//! Sweeps over the constants of regions (Zachow et al. 2006 vary nu and E of muscle and of the
+//! tissue around it; docs/methods.md#studies): every combination as materials of a study, and the best of them.
 
 use std::collections::BTreeMap;
 

@@ -4,7 +4,7 @@
 //! w_i of A. Pooled: (∫_A d(x, B) + ∫_B d(x, A)) / (|A| + |B|), so the samples of both directions in
 //! one set. Hausdorff: the largest distance at any sample or vertex; pooled, the larger of both.
 //!
-//! Source of the pooled measure: METHODS A18, and Aspert, Santa-Cruz, Ebrahimi, MESH: measuring errors
+//! Source of the pooled measure: Zachow et al. 2006, section 3.2, and Aspert, Santa-Cruz, Ebrahimi, MESH: measuring errors
 //! between surfaces using the Hausdorff distance, IEEE International Conference on Multimedia (2002).
 
 use rayon::prelude::*;

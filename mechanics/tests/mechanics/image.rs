@@ -1,4 +1,4 @@
-//! V.37 and METHODS rows 16 and 35: cells take their material from an image.
+//! Cells take their material from an image: docs/verification.md#v37, docs/methods.md#tissue-from-images.
 
 use std::sync::Arc;
 
@@ -202,7 +202,7 @@ fn a_cell_across_a_step_is_one_tissue_by_its_mean_and_a_mixture_by_its_shares() 
 
     let fraction = scene(Mixing::Fraction);
     let share = fraction.imaged.as_ref().unwrap().tissues[0].1.volume_share;
-    // METHODS row 35 allows three times as much.
+    // Within the inverse root of the count of points.
     assert!((share - 10.0 / 16.0).abs() < 1.0 / 64.0_f64.sqrt(), "{share}");
     for &entry in &fraction.material_of_cell {
         let mixed = &fraction.materials[entry as usize];

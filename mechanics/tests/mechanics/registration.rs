@@ -1,4 +1,4 @@
-//! Rigid movements from pairs of points and from surfaces (VERIFICATION V.30, V.31).
+//! Rigid movements from pairs of points and from surfaces (docs/verification.md#v30, docs/verification.md#v31).
 
 use mechanics::mesh::{TriangleSurface, Vector};
 use mechanics::progress::Unobserved;

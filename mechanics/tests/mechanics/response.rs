@@ -160,7 +160,7 @@ fn what_no_response_can_follow_is_refused_with_its_numbers() {
 #[test]
 fn the_rule_of_thumb_covers_what_was_measured_on_the_slab() {
     // Mean distance of the skin between linear and neo-Hookean tissue on a slab of 12 mm, by an independent
-    // program (VERIFICATION V.29): lifted and pushed, pushed along, pulled back.
+    // program (docs/verification.md#v29): lifted and pushed, pushed along, pulled back.
     let measured = [
         (Vector::new(4.0, 0.0, 8.0), [(0.25, 0.048), (0.5, 0.186), (1.0, 0.697), (1.5, 1.464)]),
         (Vector::x(), [(2.0, 0.013), (4.0, 0.052), (8.0, 0.181), (12.0, 0.415)]),

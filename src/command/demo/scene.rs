@@ -44,7 +44,7 @@ fn bone_part(bone: &str) -> String {
     format!("bone_{bone}")
 }
 
-/// Young's moduli are those of Zachow et al., Linear elastic tissue model, 2006, Table 1: skin from
+/// Young's moduli are those of Zachow et al. 2006 (docs/methods.md#papers), table 1: skin from
 /// Holzapfel (0.1 to 2 MPa), fat from Krouskop and Ophir; muscle and the tissue around it are the
 /// optimum that the paper found in section 3 (above 300 kPa at ν 0.43 to 0.45, below 50 kPa at
 /// 0.44 to 0.47), with ν where plain tetrahedra do not lock.

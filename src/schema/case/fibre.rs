@@ -22,7 +22,7 @@ pub struct FibreDocument {
     #[schema(nullable = false, minimum = 1e-9, maximum = 1e9)]
     pub young_modulus_kpa: Option<f64>,
     /// Between the fibre and what lies across it; in [1e-9, 1e9]. Default E / (2 (1 + nu)) of the material. The
-    /// law of paper 002 has none.
+    /// law of Kim et al. 2012 has none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false, minimum = 1e-9, maximum = 1e9)]
     pub shear_modulus_kpa: Option<f64>,
@@ -55,7 +55,8 @@ pub enum FibreLawName {
     /// Moduli along and across are what a strip pulled along and across shows.
     #[default]
     Engineering,
-    /// Lamé constants from each modulus with the same Poisson's ratio nu; only where the ratio of moduli along
+    /// Lamé constants from each modulus with the same Poisson's ratio nu (Kim et al. 2012, eq. 33, corrected:
+    /// docs/methods.md#fibres); only where the ratio of moduli along
     /// and across is below (1 - nu) / (2 nu^2).
     #[serde(rename = "paper_002")]
     Paper002,

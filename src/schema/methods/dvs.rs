@@ -13,7 +13,7 @@ use mechanics::model::spline::{Stiffness, VolumeSpline};
 /// The most steps between rest and `duration_s`.
 const MOST_STEPS: f64 = 1e6;
 
-/// Defaults of the lattice in N/m and N s/m, from paper 000.
+/// Defaults of the lattice in N/m and N s/m (Ulusoy et al. 2010; docs/methods.md#volume-spline).
 const LINK_STIFFNESS: f64 = 80.0;
 const LINK_DAMPING: f64 = 1.0;
 

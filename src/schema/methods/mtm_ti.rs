@@ -10,7 +10,7 @@ pub(super) fn description() -> Description {
             "the force of a node is a sum over its neighbours of a tensor times their displacement, V g_j.C.g_k: \
                 the plain finite element, node by node; both give the same numbers",
             "tissue is stiffer along the fibre of a cell than across it, by the law that its material names; \
-                paper 002 prints this tensor with another factor and without one of its terms, which is not \
+                Kim et al. 2012 print this tensor with another factor and without one of its terms, which is not \
                 what is solved",
             "strain is small, as with fem_linear; plain tetrahedra lock above a Poisson ratio of 0.45, with a \
                 warning",

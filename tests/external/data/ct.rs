@@ -97,7 +97,7 @@ fn a_real_ct_gives_a_prediction_its_materials() -> Result<(), Missing> {
     let volume = stored(StoredShape::Volume(head_in_the_ct().into()), None);
     let image = stored(StoredShape::Image(image.into()), frame);
     let sources = Meshes([("head".to_owned(), volume), ("ct".to_owned(), image)].into());
-    // METHODS row 16: muscle in embedding tissue.
+    // Muscle in embedding tissue (docs/methods.md#tissue-from-images).
     let mut case = json!({
         "units": "mm", "frame": "LPS", "volume": "head", "skin": {"node_set": "skin"},
         "segments": [{"name": "bone", "nodes": {"node_set": "mandible"}}],

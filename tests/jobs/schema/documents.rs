@@ -1,4 +1,4 @@
-//! The JSON documents: what is refused, where, and what becomes of what is accepted (BAD_INPUTS B).
+//! The JSON documents: what is refused, where, and what becomes of what is accepted.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -89,7 +89,6 @@ pub fn one(code: &str, error: &str, pointer: &str) -> (String, Vec<(String, Stri
     (code.to_owned(), vec![(error.to_owned(), pointer.to_owned())])
 }
 
-// Row 58.
 #[test]
 fn constants_outside_their_ranges_are_refused() {
     for (field, value) in [
@@ -106,7 +105,6 @@ fn constants_outside_their_ranges_are_refused() {
     }
 }
 
-// Row 59.
 #[test]
 fn a_material_for_a_region_that_is_not_there_is_refused() {
     let text = r#"{"units":"mm","volume":"v","regions":{"array":"band","names":{"1":"stiff"}},
@@ -115,7 +113,6 @@ fn a_material_for_a_region_that_is_not_there_is_refused() {
     assert_eq!(refused(case(text)), wanted);
 }
 
-// Row 60.
 #[test]
 fn muscle_activation_is_not_a_field_yet() {
     let text = r#"{"segments":[],"muscle_activation":{"masseter_l":1.5}}"#;
@@ -123,7 +120,6 @@ fn muscle_activation_is_not_a_field_yet() {
     assert_eq!(refused(plan(text)), wanted);
 }
 
-// Row 61.
 #[test]
 fn tolerances_and_budgets_outside_their_ranges_are_refused() {
     for (spec, place) in [
@@ -140,7 +136,6 @@ fn tolerances_and_budgets_outside_their_ranges_are_refused() {
     assert_eq!(refused(settings(r#"{"steps":1e9}"#)), steps);
 }
 
-// Row 62.
 #[test]
 fn outputs_are_known_names_only() {
     for name in ["../../x", "skin.fbx", "/etc/passwd"] {

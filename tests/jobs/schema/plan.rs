@@ -1,4 +1,4 @@
-//! Plans as documents: movements that are no movements, too large, twice, or in another frame (BAD_INPUTS B).
+//! Plans as documents: movements that are no movements, too large, twice, or in another frame.
 
 use mechanics::mesh::{Frame, Vector};
 use mechanics::prediction::{Load, Prescribed};
@@ -9,7 +9,6 @@ fn matrix_plan(entries: [f64; 16]) -> String {
     format!(r#"{{"segments":[{{"name":"jaw","matrix4x4":{entries:?}}}]}}"#)
 }
 
-// Row 50.
 #[test]
 fn a_matrix_that_scales_shears_or_mirrors_is_not_rigid() {
     let identity = [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0];
@@ -23,7 +22,6 @@ fn a_matrix_that_scales_shears_or_mirrors_is_not_rigid() {
     }
 }
 
-// Row 50: the deviation is told.
 #[test]
 fn a_matrix_that_is_not_rigid_is_told_its_deviation() {
     let stretched =
@@ -32,7 +30,6 @@ fn a_matrix_that_is_not_rigid_is_told_its_deviation() {
     assert!(problem.detail.contains("2.001e-3"), "{}", problem.detail);
 }
 
-// Row 51.
 #[test]
 fn movements_beyond_the_published_limits_are_out_of_range() {
     let at = "/plan/segments/0";
@@ -51,7 +48,7 @@ fn movements_beyond_the_published_limits_are_out_of_range() {
     }
 }
 
-// Row 51, through many small steps.
+// Through many small steps.
 #[test]
 fn a_sequence_may_not_go_where_one_movement_may_not() {
     let step = r#"{"translation_mm":[90,0,0]}"#;
@@ -60,7 +57,7 @@ fn a_sequence_may_not_go_where_one_movement_may_not() {
     assert_eq!(refused(plan(&text)), one(out, out, "/plan/segments/0"));
 }
 
-// Row 53: a segment without a movement is no movement by accident.
+// A segment without a movement is no movement by accident.
 #[test]
 fn a_segment_gives_exactly_one_form_of_movement() {
     for movement in [
@@ -82,7 +79,6 @@ fn a_rotation_needs_its_pivot() {
     assert!(plan(r#"{"segments":[{"name":"jaw","rotation_deg":[0,0,0]}]}"#).is_ok());
 }
 
-// Row 55.
 #[test]
 fn the_same_segment_twice_is_refused() {
     let text = r#"{"segments":[{"name":"jaw","translation_mm":[0,0,0]},{"name":" jaw ","translation_mm":[1,0,0]}]}"#;
@@ -90,7 +86,6 @@ fn the_same_segment_twice_is_refused() {
     assert_eq!(refused(plan(text)), wanted);
 }
 
-// Row 56.
 #[test]
 fn the_identity_in_every_form_displaces_by_exactly_nothing() {
     for movement in [

@@ -1,4 +1,4 @@
-//! Documents that are no JSON, or not the JSON that is asked for: each refused with its place (BAD_INPUTS B).
+//! Documents that are no JSON, or not the JSON that is asked for: each refused with its place.
 
 use facies::schema::wire::strict;
 use facies::schema::{Limits, PlanDocument};
@@ -6,7 +6,6 @@ use mechanics::prediction::Prescribed;
 
 use crate::schema::documents::{one, plan, refused, settings};
 
-// Row 52.
 #[test]
 fn what_is_not_a_number_is_refused_with_its_place() {
     for value in ["NaN", "Infinity", "1e999", "-1e999"] {
@@ -49,7 +48,6 @@ fn null_is_a_value_only_where_a_component_may_stay_free() {
     assert_eq!(*displacement, [Some(1.0), None, Some(0.0)]);
 }
 
-// Row 53.
 #[test]
 fn every_misspelt_field_is_named() {
     let text = r#"{"segments":[{"name":"jaw","translation":[0,5,0]},{"name":"chin","tranlation_mm":[0,1,0]}]}"#;
@@ -60,7 +58,6 @@ fn every_misspelt_field_is_named() {
     assert_eq!(errors, wanted);
 }
 
-// Row 54.
 #[test]
 fn a_repeated_key_is_refused_in_objects_and_in_maps() {
     let in_object = r#"{"segments":[{"name":"jaw","name":"chin","translation_mm":[0,0,0]}]}"#;
@@ -79,7 +76,6 @@ fn pointers_escape_what_stands_in_names() {
     assert_eq!(refused(settings(text)), one("validation-failed", "unknown-field", place));
 }
 
-// Row 75.
 #[test]
 fn what_is_not_json_is_refused_with_line_and_column() {
     let deep = format!("{}{}", "[".repeat(100_000), "]".repeat(100_000));

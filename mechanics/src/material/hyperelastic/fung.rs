@@ -1,4 +1,4 @@
-//! Fung's law, exponential in shape and alike in all directions (Fung 1967; paper 002, table 1; METHODS A8).
+//! Fung's law, exponential in shape and alike in all directions (Fung 1967; docs/methods.md#hyperelastic-laws).
 
 use super::exponential::exponential;
 use super::isochoric::{OfShape, split};

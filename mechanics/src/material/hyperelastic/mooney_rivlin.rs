@@ -1,4 +1,4 @@
-//! Mooney-Rivlin as a polynomial of second degree (METHODS A8; REMAINING 2.8).
+//! Mooney-Rivlin as a polynomial of second degree (docs/methods.md#hyperelastic-laws).
 
 use super::isochoric::{OfShape, split};
 use super::volumetric::Volumetric;

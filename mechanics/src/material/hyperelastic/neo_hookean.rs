@@ -4,7 +4,8 @@ use super::isochoric::{OfShape, split};
 use super::volumetric::Volumetric;
 use super::{Derivatives, Invariants};
 
-/// W = mu/2 (I1 - 3) - mu ln J + lambda/2 ln^2 J, in kPa (METHODS A8; paper 002, table 1, with its constant mended).
+/// W = mu/2 (I1 - 3) - mu ln J + lambda/2 ln^2 J, in kPa (Kim et al. 2012, table 1, with its constant corrected:
+/// docs/methods.md#corrections).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NeoHookean {
     pub lambda: f64,

@@ -1,4 +1,4 @@
-//! Ogden's law, a sum of powers of the principal stretches (Ogden 1972; paper 002, table 1; METHODS A8).
+//! Ogden's law, a sum of powers of the principal stretches (Ogden 1972; docs/methods.md#hyperelastic-laws).
 
 use super::Derivatives;
 use super::volumetric::Volumetric;

@@ -5,7 +5,7 @@
 //!   d2I1 = 2 (g_a . g_b) I,
 //!   d2I2 = 2 (2 k_a k_b^T - k_b k_a^T + (I1 g_a . g_b - k_a . k_b) I - (g_a . g_b) B),
 //!   d2J = J (h_a h_b^T - h_b h_a^T)
-//! (NONLINEAR, section 1, written for any W). The force on node a is V P g_a, the block of nodes a and b
+//! For any W the force on node a is V P g_a, the block of nodes a and b
 //! V (sum_i W_i d2I_i + sum_ij W_ij dI_i dI_j^T).
 
 use nalgebra::{Matrix3, Vector3};

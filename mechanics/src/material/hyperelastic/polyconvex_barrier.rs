@@ -1,4 +1,5 @@
-//! Ogden's compressible law with a logarithmic barrier, in its polyconvex form (paper 001, section 4.1; METHODS A9; Ciarlet 1988).
+//! Ogden's compressible law with a logarithmic barrier, in its polyconvex form (Ciarlet 1988; Zachow et al.
+//! 2006, section 4.1; docs/methods.md#hyperelastic-laws).
 //!
 //! It agrees with Saint Venant-Kirchhoff to second order at rest, and no finite energy turns tissue inside out.
 

@@ -5,7 +5,7 @@
 //!   (g_a . S g_b) I + sum_ij A_ij (n_i . g_a)(n_j . g_b) t_i t_j^T
 //!     + sum_(i != j) T_ij [ (n_j . g_a)(n_j . g_b) t_i t_i^T + (n_j . g_a)(n_i . g_b) t_i t_j^T ],
 //! A_ij = 2 dS_i / d(l_j^2), T_ij = (S_i - S_j) / (l_i^2 - l_j^2), whose limit for equal stretches is (A_ii - A_ij) / 2
-//! (Ogden 1984, section 6.1.4; REMAINING 3.3).
+//! (Ogden 1984, section 6.1.4; docs/methods.md#hyperelastic-laws).
 
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 

@@ -1,5 +1,5 @@
 //! The elastic part of Rubin and Bodner's law of facial tissue, exponential in shape and volume at once (Rubin, Bodner 2002;
-//! paper 003, equations 1 to 5, mended: METHODS A10).
+//! Zhang et al. 2016, equations 1 to 5, corrected: docs/methods.md#corrections).
 
 use super::exponential::exponential;
 use super::{Derivatives, Invariants};

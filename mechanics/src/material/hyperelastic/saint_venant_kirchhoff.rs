@@ -1,4 +1,4 @@
-//! Saint Venant-Kirchhoff: W = lambda/2 (tr E)^2 + mu tr E^2, E = (C - I)/2 (paper 002, table 1; paper 001, section 4.1).
+//! Saint Venant-Kirchhoff: W = lambda/2 (tr E)^2 + mu tr E^2, E = (C - I)/2 (docs/methods.md#hyperelastic-laws).
 //!
 //! Tissue that is pressed to less than .577 of its length gives way: never chosen unasked.
 

@@ -1,4 +1,4 @@
-//! Veronda and Westmann's law of skin, exponential in shape (Veronda, Westmann 1970; paper 002, table 1; METHODS A8).
+//! Veronda and Westmann's law of skin, exponential in shape (Veronda, Westmann 1970; docs/methods.md#hyperelastic-laws).
 
 use super::exponential::exponential;
 use super::isochoric::{OfShape, split};

@@ -3,7 +3,7 @@
 /// How the energy grows with the volume; K is the bulk modulus in kPa.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Volumetric {
-    /// K/4 (J^2 - 1 - 2 ln J): convex in J, and without bound at J = 0 (METHODS A8).
+    /// K/4 (J^2 - 1 - 2 ln J): convex in J, and without bound at J = 0.
     Barrier(f64),
     /// K/2 ln^2 J.
     Logarithmic(f64),

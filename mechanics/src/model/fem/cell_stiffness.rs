@@ -1,8 +1,8 @@
 //! Stiffness of one linear elastic cell, in 3x3 blocks for each pair of its nodes.
 //!
 //! Full integration: K_jk = sum_q V_q g_j.C.g_k, isotropic
-//! K_jk = sum_q V_q [ lambda g_j g_k^T + mu g_k g_j^T + mu (g_j . g_k) I ], METHODS A2; with fibres A3, A4
-//! (`material::elastic_tensor`).
+//! K_jk = sum_q V_q [ lambda g_j g_k^T + mu g_k g_j^T + mu (g_j . g_k) I ] (docs/methods.md#linear-elasticity);
+//! with fibres: `material::elastic_tensor`.
 //!
 //! Mean dilatation (B-bar; Hughes 1980; Simo, Taylor, Pister 1985): the volume change of each point is
 //! replaced by its mean over the cell, eps -> dev eps + 1/3 (1/V sum_q V_q div u) 1, so that with

@@ -1,4 +1,4 @@
-//! Linear elastic finite elements at small strain (METHODS A2, A13; paper 001, eq. 1-4).
+//! Linear elastic finite elements at small strain (Zachow et al. 2006, eq. 1-4; docs/methods.md#linear-elasticity).
 //!
 //! K u = f with u given at held nodes: K_ff u_f = f_f - K_fb u_b. Nodes that slide are written in a
 //! frame whose first axis is their normal, so that every condition holds single unknowns.

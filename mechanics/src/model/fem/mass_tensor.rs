@@ -1,4 +1,4 @@
-//! The mass-tensor model (METHODS A2, A6; paper 002, section 1.4.3).
+//! The mass-tensor model (Cotin, Delingette, Ayache 2000; Kim et al. 2012, section 1.4.3; docs/methods.md#mass-tensor).
 //!
 //! The force on node j is f_j = K_jj u_j + sum_k K_jk u_k, with the tensors of each tetrahedron
 //! K_jk = V [ lambda g_j g_k^T + mu g_k g_j^T + mu (g_j . g_k) I ]. These are the stiffness matrix of plain

@@ -8,8 +8,8 @@
 //! displacement as the face below them; four triangles of three nodes would have another one between nodes, and
 //! lose an order. Three points in the middles of the sides integrate them exactly.
 //!
-//! Source: Zienkiewicz, Taylor, The Finite Element Method, 5th ed., vol. 1, chapter 4; skin as a membrane: paper
-//! 001 (METHODS rows 37, 38). The sheet weighs nothing.
+//! Source: Zienkiewicz, Taylor, The Finite Element Method, 5th ed., vol. 1, chapter 4; skin as a membrane:
+//! Zachow et al. 2006, section 4.2 (docs/methods.md#membrane). The sheet weighs nothing.
 
 use nalgebra::Matrix3;
 

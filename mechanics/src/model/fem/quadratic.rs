@@ -1,8 +1,8 @@
 //! Quadratic displacement on tetrahedra with straight edges: ten nodes a cell, the six new ones in the
 //! middle of its edges. Converges one order faster than linear tetrahedra and does not lock at nu up to
-//! about 0.499 (VERIFICATION V.4, V.29).
+//! about 0.499 (docs/verification.md#v4, docs/verification.md#v29).
 //!
-//! K_jk = sum_q V/4 g_j.C.g_k, METHODS A2, with fibres A3 and A4.
+//! K_jk = sum_q V/4 g_j.C.g_k (docs/methods.md#linear-elasticity), with fibres as in `material::elastic_tensor`.
 //! An edge node is held where its edge lies on a boundary face all of whose nodes are held: see
 //! `boundary::midpoint`.
 

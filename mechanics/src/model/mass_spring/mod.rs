@@ -1,5 +1,5 @@
-//! The mass-spring model: nodes joined by springs along the edges of tetrahedra (METHODS A5; paper 002,
-//! section 1.4.1, eq. 2-4).
+//! The mass-spring model: nodes joined by springs along the edges of tetrahedra (Kim et al. 2012, section
+//! 1.4.1, eq. 2-4; docs/methods.md#mass-springs).
 //!
 //! At rest the forces of the springs, for whatever turn and stretch, balance those that act:
 //! sum_j k_ij (|d| - L) d / |d| + f_i = 0, d = p_j - p_i. There are no masses: only rest is asked for.

@@ -1,7 +1,7 @@
 //! Springs on the edges of tetrahedra: stiffness, energy, forces and tangent.
 //!
 //! k = sum_e E_e V_e / L^2 over the tetrahedra e around an edge of length L (Van Gelder, Approximate simulation
-//! of elastic membranes by triangulated spring meshes, Journal of Graphics Tools 3, 1998; paper 002, eq. 4)
+//! of elastic membranes by triangulated spring meshes, Journal of Graphics Tools 3, 1998; Kim et al. 2012, eq. 4)
 //! W = sum k/2 (l - L)^2            l = |d|, d = p_j - p_i, n = d / l
 //! dW/dp_j = k (l - L) n = -dW/dp_i
 //! d2W/dp_j dp_j = k [ n n^T + g (I - n n^T) ],  g = 1 - L / l, negative in a spring that is pressed

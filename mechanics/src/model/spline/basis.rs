@@ -9,7 +9,7 @@
 //! identity: sum_i N_i(u) xi_i = u.
 //!
 //! Source: de Boor, A Practical Guide to Splines, revised ed., 2001, chapters IX and X; the basis N of
-//! paper 000, eq. 1.
+//! Ulusoy et al. 2010, eq. 1.
 
 /// The highest degree.
 pub const MOST_DEGREE: usize = 3;
@@ -135,7 +135,7 @@ impl Basis {
 mod tests {
     use super::*;
 
-    /// V.20: clamped cubic with 5 functions and the inner knot 0.5, clamped quadratic with 4, at 0.3.
+    /// docs/verification.md#v20: clamped cubic with 5 functions and the inner knot 0.5, clamped quadratic with 4, at 0.3.
     #[test]
     fn the_functions_are_those_of_the_recursion() {
         let cubic = Basis::clamped(3, 2, [0.0, 1.0]);

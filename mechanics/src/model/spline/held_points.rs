@@ -5,7 +5,7 @@
 //! energy w/2 (e_k . u(x) - v_k)^2; the system stays positive definite, and sliding holds the normal alone.
 //! With w far above the stiffness of the tissue that is the least squares fit to all holds. A spline is smooth,
 //! though, and what follows the edge of a bone to the last node has no freedom left beside it: on the slab of
-//! V.29, whose bone moves 8.9 mm, control points 6 mm apart err by 0.9 mm at the skin where they are fitted,
+//! docs/verification.md#v29, whose bone moves 8.9 mm, control points 6 mm apart err by 0.9 mm at the skin where they are fitted,
 //! and by 0.13 mm where they miss held nodes by 0.1 mm in the mean. The weight is therefore the user's, and what
 //! is left at held nodes is told. The springs' forces w (v_k - e_k . u) e_k are the reactions.
 

@@ -1,6 +1,6 @@
 //! A lattice of control points over a box around the tissue, and where the tissue lies in it.
 //!
-//! S(u, v, w) = sum_mnp C_mnp N_m(u) N_n(v) N_p(w)   (paper 000, eq. 1)
+//! S(u, v, w) = sum_mnp C_mnp N_m(u) N_n(v) N_p(w)   (Ulusoy et al. 2010, eq. 1)
 //!
 //! u, v, w are lengths in mm along the axes of the box: the principal axes of the tissue's volume, so that
 //! a turned scene has the turned box. At rest C_mnp are the Greville points, for which S(x) = x; what is

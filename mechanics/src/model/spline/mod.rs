@@ -1,5 +1,5 @@
 //! Dynamic volume spline: soft tissue as a volume of B-splines whose control points have mass, damping and
-//! stiffness (paper 000; METHODS A7).
+//! stiffness (Ulusoy et al. 2010; docs/methods.md#volume-spline).
 //!
 //! M d'' + D d' + K d = f over the displacements d of control points, either in time to rest or at rest at
 //! once: K d = f. `lattice` says where control points are, `stiffness` what holds them together,
@@ -52,7 +52,7 @@ pub enum Stiffness {
     Lattice(f64),
 }
 
-/// Relaxes with 1/80 s, which is the damping over the stiffness of paper 000, in ms.
+/// Relaxes with 1/80 s, which is the damping over the stiffness of Ulusoy et al. 2010, in ms.
 pub const RELAXATION: f64 = 12.5;
 
 /// Multiplications of a factorisation that takes up to about half a minute.

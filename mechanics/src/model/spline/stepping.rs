@@ -1,4 +1,4 @@
-//! M d'' + D d' + K d = f in time, to rest (METHODS A7; paper 000, eq. 2).
+//! M d'' + D d' + K d = f in time, to rest (Ulusoy et al. 2010, eq. 2; docs/methods.md#volume-spline).
 //!
 //! D = d_M M + d_K K. What is solved for in each step is the increment of d; v = d'.
 //!

@@ -1,7 +1,7 @@
 //! Stiffness and mass of a volume spline, over control points.
 //!
-//! Galerkin: K_jk = int lambda g_j g_k^T + mu g_k g_j^T + mu (g_j . g_k) I dV with g_j = grad N_j (METHODS
-//! A2, A7 b), and M_jk = int rho N_j N_k dV I, summed over the points of the mesh's cells, so that shape and
+//! Galerkin: K_jk = int lambda g_j g_k^T + mu g_k g_j^T + mu (g_j . g_k) I dV with g_j = grad N_j (docs/methods.md#volume-spline),
+//! and M_jk = int rho N_j N_k dV I, summed over the points of the mesh's cells, so that shape and
 //! regions of the tissue count and the box around it does not.
 //!
 //! A span that holds little tissue leaves its functions next to no stiffness. What the tissue does not say
@@ -11,7 +11,7 @@
 //! own error. After the ghost penalty of Burman, Comptes Rendus Mathématique 348 (2010), p. 1217, with
 //! the highest derivative itself in place of its jumps.
 //!
-//! Lattice, as in paper 000 (METHODS A7 a): links of k_s between neighbouring control points, each component
+//! Lattice, as in Ulusoy et al. 2010: links of k_s between neighbouring control points, each component
 //! alone, and equal masses that add up to the tissue's. Turning the lattice stretches links as well as
 //! moving them apart does: the energy of a rotation by theta is told.
 

@@ -1,4 +1,4 @@
-//! The slab of VERIFICATION V.29: 60 x 30 x 12 mm of tissue, half of a scene that mirrors at y = 0. Its base carries
+//! The slab of docs/verification.md#v29: 60 x 30 x 12 mm of tissue, half of a scene that mirrors at y = 0. Its base carries
 //! a patch that moves and a frame that stays; what lies between is free, and the top is skin.
 //!
 //! Level 0 has cells of 6 mm, each cut into six tetrahedra (or left whole, in `slab_hex`).
@@ -76,7 +76,7 @@ fn slab_of(shape: CellShape, truth: Truth) -> StudyScene {
     StudyScene { name: "slab".to_owned(), case, plans: plans(), materials: tissues.into(), truth }
 }
 
-/// The movement of V.29 first, (4, 0, 8) mm; then lengths along it, and turns about y, which mirror too.
+/// The movement of docs/verification.md#v29 first, (4, 0, 8) mm; then lengths along it, and turns about y, which mirror too.
 fn plans() -> Vec<(String, Plan)> {
     let along = Vector::new(4.0, 0.0, 8.0);
     let (_, whole) = shift("patch", along.norm(), along);

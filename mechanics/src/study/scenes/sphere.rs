@@ -1,4 +1,4 @@
-//! The octant of a thick sphere whose inner wall moves outwards (VERIFICATION V.7), with its closed form.
+//! The octant of a thick sphere whose inner wall moves outwards (docs/verification.md#v7), with its closed form.
 //!
 //! u = (A r + B / r^2) e_r        3 K A - 4 mu B / b^3 = 0 at the free wall r = b        A a + B / a^2 = d at r = a
 //!

@@ -38,9 +38,9 @@ fn fibre_ratio() -> Axis {
 fn fibre_ratio_of_paper() -> Axis {
     Axis {
         name: "fibre_ratio_paper_002",
-        title: "Fibres, paper 002",
+        title: "Fibres, Kim et al.",
         unit: "E along / E across",
-        scene: "the same with the stiffness that paper 002 prints",
+        scene: "the same with the stiffness of Kim et al. 2012",
         reference: FINER,
         bound_mm: TENTH_OF_MOVEMENT,
         values: numbers(&[0.2, 0.5, 1.0, 1.2, 1.5, 2.0, 3.0, 10.0]),

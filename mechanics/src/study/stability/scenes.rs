@@ -14,7 +14,7 @@ use crate::prediction::{
     SlidingNormal,
 };
 
-/// Soft tissue where nothing else is asked: kPa and Poisson's ratio, g/cm³ (METHODS, part B).
+/// Soft tissue where nothing else is asked: kPa and Poisson's ratio, g/cm³.
 pub const YOUNG_MODULUS: f64 = 15.0;
 pub const POISSON_RATIO: f64 = 0.43;
 
@@ -144,7 +144,7 @@ pub fn around_ball(material: LinearElastic, shape: CellShape) -> Case {
     }
 }
 
-/// The thick sphere of VERIFICATION V.7, radii 60 and 72 mm: an octant between planes of symmetry, its inner
+/// The thick sphere of docs/verification.md#v7, radii 60 and 72 mm: an octant between planes of symmetry, its inner
 /// wall pushed outwards by `by` mm.
 pub fn swelling(by: f64, material: LinearElastic, shape: CellShape) -> (Case, Plan) {
     let mut mesh = octant(shape);

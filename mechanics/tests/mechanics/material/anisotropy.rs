@@ -1,4 +1,5 @@
-//! V.15, V.16 and the gates of laws with fibres; what scenes of such tissue do is in `fibres`.
+//! docs/verification.md#v15, docs/verification.md#v16 and the gates of laws with fibres; what scenes of such tissue do is
+//! in `fibres`.
 
 use mechanics::material::{Fibre, FibreLaw, LinearElastic, MaterialError};
 use mechanics::mesh::sample::block;
@@ -62,7 +63,7 @@ impl Numbers {
 }
 
 /// Stiffness of a strain (xx, yy, zz, yz, xz, xy; shear as angles) with the fibre along x, from the meaning of
-/// the constants: METHODS A3 and, inverted, A4.
+/// the constants (docs/methods.md#fibres): the law of Kim et al. 2012 and, inverted, engineering constants.
 fn constants((along, across, nu, law): Stated) -> Matrix6<f64> {
     let mut c = Matrix6::zeros();
     match law {
@@ -146,7 +147,7 @@ fn the_block_of_two_nodes_is_the_tensor_contracted_with_their_gradients() {
     }
 }
 
-/// Eq. 33 of paper 002 as it is printed: 1/144 for 1/36 before the fibre's part, one term of which is missing.
+/// Eq. 33 of Kim et al. 2012 as it is printed: 1/144 for 1/36 before the fibre's part, one term of which is missing.
 fn printed(stated: Stated, a: &Vector, corners: &[Vector; 4]) -> Vec<Matrix3<f64>> {
     let (along, across, nu, _) = stated;
     let (f, t) = (material(along, nu), material(across, nu));
@@ -168,7 +169,7 @@ fn printed(stated: Stated, a: &Vector, corners: &[Vector; 4]) -> Vec<Matrix3<f64
 }
 
 #[test]
-fn the_mass_tensor_as_paper_002_prints_it_is_another_and_is_not_used() {
+fn the_mass_tensor_as_it_is_printed_is_another_and_is_not_used() {
     let mut numbers = Numbers(2);
     let mut differences: Vec<f64> = (0..400)
         .map(|_| {

@@ -1,5 +1,6 @@
-//! Hyperelastic laws against closed forms of incompressible tissue (VERIFICATION V.17), printed values of compressible tissue
-//! (V.18, V.19) and of Rubin and Bodner's law (REMAINING T1), and what every law has to leave alone.
+//! Hyperelastic laws against closed forms of incompressible tissue (docs/verification.md#v17), printed values of
+//! compressible tissue (docs/verification.md#v18, docs/verification.md#v19) and of Rubin and Bodner's law
+//! (docs/verification.md#printed-values), and what every law has to leave alone.
 
 use mechanics::material::LinearElastic;
 use mechanics::material::hyperelastic::point::{Along, Point};

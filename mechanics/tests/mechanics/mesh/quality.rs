@@ -9,7 +9,7 @@ fn from_lexicographic(corners: [[f64; 3]; 8]) -> Vec<Vector> {
     [0, 1, 3, 2, 4, 5, 7, 6].map(|place| Vector::from(corners[place])).to_vec()
 }
 
-/// VERIFICATION V.28: positive at every corner, folded inside.
+/// docs/verification.md#v28: positive at every corner, folded inside.
 fn folded_hexahedron() -> Vec<Vector> {
     from_lexicographic([
         [0.7, -0.6, -0.2],

@@ -1,4 +1,4 @@
-//! V.3: the order in which the error falls with the cell size, against a manufactured solution.
+//! docs/verification.md#v3: the order in which the error falls with the cell size, against a manufactured solution.
 
 use std::f64::consts::PI;
 

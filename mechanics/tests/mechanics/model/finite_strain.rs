@@ -173,7 +173,7 @@ fn pull_a_bar(shape: CellShape, element: ElementChoice) {
         hold("x_max", [Some(5.0), None, None]),
     ];
     let pulled = solve(&case, &Plan { prescribed, ..Plan::default() }, &nonlinear_of(element));
-    // REMAINING, table T2: 5.359007 kPa and a lateral stretch of .827750 at 1.5, on 16 mm^2.
+    // docs/verification.md#printed-values: 5.359007 kPa and a lateral stretch of .827750 at 1.5, on 16 mm^2.
     let force = pulled.condition_reactions.iter().find(|one| one.pointer == "/plan/prescribed/3");
     let force = force.unwrap().force.x;
     assert!((force - 16.0 * 5.359007).abs() < 1e-4, "{shape:?} {element:?}: {force}");
@@ -182,7 +182,7 @@ fn pull_a_bar(shape: CellShape, element: ElementChoice) {
 }
 
 /// 100 x 100 x 20 mm, a patch of its bottom moved by 26.9 mm and turned by 15 degrees times a share, with a free ring
-/// around it, of 25 mm for block B and of none for block A of NONLINEAR.
+/// around it, of 25 mm for block B and of none for block A of docs/verification.md#hard-block.
 const RING: f64 = 25.0;
 
 fn hard_block(cells: [usize; 3], share: f64, ring_mm: f64) -> (VolumeMesh, Vec<Hold>) {

@@ -1,4 +1,5 @@
-//! V.12, V.13: what springs on the edges of tetrahedra are on average, and how they come to rest.
+//! Springs on the edges of tetrahedra: what they are on average (docs/verification.md#v12, docs/verification.md#v13), and how
+//! they come to rest.
 
 use mechanics::mesh::sample::block;
 use mechanics::mesh::{CellShape, Cells, Vector, VolumeMesh};

@@ -1,4 +1,4 @@
-//! V.14: the mass-tensor model is plain linear tetrahedra, and how its own iterations fare.
+//! docs/verification.md#v14: the mass-tensor model is plain linear tetrahedra, and how its own iterations fare.
 
 use mechanics::mesh::sample::block;
 use mechanics::mesh::{CellShape, Vector, VolumeMesh};
@@ -223,8 +223,8 @@ fn mass_tensor(iterations: Iterations) -> Settings {
     Settings { method, relative_residual: 1e-13, ..Settings::default() }
 }
 
-/// 1/(36 V) [lambda m_j m_k^T + mu m_k m_j^T + mu (m_j . m_k) I], m = 6 V grad N: the tensor as paper 002
-/// writes it in eq. 29, from area vectors.
+/// 1/(36 V) [lambda m_j m_k^T + mu m_k m_j^T + mu (m_j . m_k) I], m = 6 V grad N: the tensor as Kim et al.
+/// 2012 write it in eq. 29, from area vectors.
 fn tensors(mesh: &VolumeMesh, cell: usize, lambda: f64, mu: f64) -> Vec<Matrix3<f64>> {
     let x: Vec<Vector> = mesh.corners(cell).collect();
     // Area vectors: twice the face across from each corner, towards the corner.

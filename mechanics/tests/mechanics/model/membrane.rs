@@ -1,4 +1,4 @@
-//! V.11 and rows 37, 38: the skin as a membrane, alone and on every element.
+//! docs/verification.md#v11: the skin as a membrane, alone and on every element.
 
 use mechanics::material::{PlaneStress, Sheet, SheetError};
 use mechanics::mesh::sample::block;

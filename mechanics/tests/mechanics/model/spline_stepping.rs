@@ -1,4 +1,4 @@
-//! V.21, V.22: the dynamic volume spline in time.
+//! docs/verification.md#v21, docs/verification.md#v22: the dynamic volume spline in time.
 
 use std::sync::Arc;
 

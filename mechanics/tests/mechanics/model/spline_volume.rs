@@ -1,4 +1,4 @@
-//! V.20, V.23, V.46 and more: the dynamic volume spline at rest.
+//! docs/verification.md#v20, docs/verification.md#v23, docs/verification.md#v46 and more: the dynamic volume spline at rest.
 
 use std::sync::Arc;
 

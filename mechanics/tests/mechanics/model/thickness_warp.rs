@@ -1,4 +1,4 @@
-//! V.36: the warp that keeps thickness.
+//! docs/verification.md#v36: the warp that keeps thickness.
 
 use mechanics::mesh::{CellShape, Vector, VolumeMesh, sample};
 use mechanics::model::spline::VolumeSpline;

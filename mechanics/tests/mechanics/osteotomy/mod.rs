@@ -1,4 +1,4 @@
-//! METHODS rows 5 and 6: cuts part bone, and nodes of the tissue go with the bone behind them.
+//! Cuts part bone, and nodes of the tissue go with the bone behind them (docs/methods.md#cuts).
 
 mod classes;
 mod label_surfaces;

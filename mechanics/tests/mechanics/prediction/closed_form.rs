@@ -1,4 +1,4 @@
-//! V.7, V.9, V.10: answers known in closed form.
+//! Answers known in closed form: docs/verification.md#v7, docs/verification.md#v9, docs/verification.md#v10.
 
 use std::collections::BTreeMap;
 

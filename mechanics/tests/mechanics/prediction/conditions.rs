@@ -1,4 +1,5 @@
-//! V.27, V.35, V.45, V.46: what holds nodes, what is refused, and what must not depend on the observer.
+//! What holds nodes, what is refused, and what must not depend on the observer: docs/verification.md#v27,
+//! docs/verification.md#v35, docs/verification.md#v45, docs/verification.md#v46.
 
 use mechanics::mesh::sample::block;
 use mechanics::mesh::{CellShape, Vector};

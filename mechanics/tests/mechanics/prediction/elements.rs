@@ -1,4 +1,5 @@
-//! V.4, V.7, V.29 and more: elements that do not lock, against closed forms and published numbers.
+//! Elements that do not lock, against closed forms and published numbers: docs/verification.md#v4,
+//! docs/verification.md#v7, docs/verification.md#v29 and more.
 
 use std::collections::BTreeMap;
 

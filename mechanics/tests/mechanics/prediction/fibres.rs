@@ -132,7 +132,7 @@ fn pressure_and_mean_dilatation_do_not_lock_where_plain_cells_with_fibres_do() {
     assert!(mean_hex < plain_hex / 2.0, "{mean_hex} {plain_hex}");
 }
 
-/// Forces of the corrected mass-tensor in the words of paper 002: A_jk = K_jk + 1/(36 V) { … } of area vectors m.
+/// Forces of the corrected mass-tensor as Kim et al. 2012 write them, eq. 33: A_jk = K_jk + 1/(36 V) { … } of area vectors m.
 fn mass_tensor_forces(scene: &Scene, (along, across, nu, _): Stated, u: &[Vector]) -> Vec<Vector> {
     let (f, t) = (material(along, nu), material(across, nu));
     let (lambda, mu) = (t.lambda(), t.shear_modulus());

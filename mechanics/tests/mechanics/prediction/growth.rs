@@ -62,7 +62,7 @@ fn largest_reaction(answer: &Prediction) -> f64 {
 
 #[test]
 fn free_tissue_keeps_its_shape_and_has_no_stress_in_every_element() {
-    // g .9 gives .9654893846 of each length (REMAINING 3.9).
+    // g .9 gives .9654893846 of each length (docs/verification.md#growth).
     let strain = linear_strain(-0.1);
     assert!((1.0 + strain - 0.965_489_384_6).abs() < 1e-10);
     for (shape, element) in ELEMENTS {
@@ -129,7 +129,7 @@ fn a_layer_held_at_its_sides_thins_and_a_confined_one_is_pressed_by_the_closed_f
     for (shape, element) in ELEMENTS {
         let settings = Settings { element, ..exact() };
         let case = case_of(distorted(shape), material(15.0, 0.46));
-        // g .98: eps_zz -.0181462 and .186434 kPa; g .9: 6.47074 kPa where nothing yields (REMAINING 3.9).
+        // g .98: eps_zz -.0181462 and .186434 kPa; g .9: 6.47074 kPa where nothing yields (docs/verification.md#growth).
         let growth = growing("tissue", -0.02);
         let plan = Plan { prescribed: sides(None), growth, ..Plan::default() };
         let answer = solve(&case, &plan, &settings);
@@ -151,7 +151,7 @@ fn a_layer_held_at_its_sides_thins_and_a_confined_one_is_pressed_by_the_closed_f
 
 #[test]
 fn the_slab_loses_what_other_codes_say() {
-    // REMAINING 3.9, by mean-dilatation hexahedra of 3 mm.
+    // docs/verification.md#growth, by mean-dilatation hexahedra of 3 mm.
     for (loss, expected) in [(0.02, 0.192), (0.05, 0.485), (0.10, 0.987)] {
         let (case, _) = slab(3.0, 0.46);
         let prescribed = vec![

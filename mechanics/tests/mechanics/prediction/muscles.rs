@@ -54,7 +54,7 @@ fn arched(shape: CellShape, halved: usize) -> Case {
 
 #[test]
 fn a_free_block_shortens_along_its_fibres_by_the_closed_form_in_every_element() {
-    // T 10, E_f 110, nu .49: eps_x -.0909091 and eps_y .0445455 (REMAINING 3.6).
+    // T 10, E_f 110, nu .49: eps_x -.0909091 and eps_y .0445455 (docs/verification.md#muscles).
     for stuff in [material(110.0, 0.49), fibred(MUSCLE).unwrap()] {
         for (shape, element) in ELEMENTS {
             let mut mesh = block(Vector::new(6.0, 4.0, 2.0), [6, 4, 2], shape);
@@ -98,7 +98,7 @@ fn a_muscle_that_cannot_shorten_pulls_with_stress_times_area() {
             ..case_of(mesh, material(15.0, 0.46))
         };
         let settings = Settings { element, ..exact() };
-        // T A, 1000 mN on 100 mm² (REMAINING 3.6), drawn inwards at each end: nothing moves.
+        // T A, 1000 mN on 100 mm² (docs/verification.md#muscles), drawn inwards at each end: nothing moves.
         let scene = Scene::new(&case, &pulling("biceps", 10.0), &settings).unwrap();
         let edges = scene.edge_nodes().map(|edges| edges.positions(&scene.mesh));
         let places = edges.unwrap_or_else(|| scene.mesh.nodes.clone());

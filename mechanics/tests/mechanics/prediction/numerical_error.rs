@@ -155,7 +155,7 @@ fn membranes_fibres_and_distributed_loads_are_part_of_the_estimate() {
     Question { halved: 1, ..plain(&scene.case, &loaded) }.assert_effective("weight and pressure");
 }
 
-/// A column of hexahedra under its own weight, downwards along +z (REMAINING, 3.10).
+/// A column of hexahedra under its own weight, downwards along +z (docs/verification.md#column).
 fn column(cells: usize) -> (Scene, DiscretisationError) {
     let mesh = block(Vector::new(10.0, 10.0, 100.0), [1, 1, cells], CellShape::Hex8);
     let tissue = mechanics::material::LinearElastic::new(15.0, 0.0, 1.04).unwrap();

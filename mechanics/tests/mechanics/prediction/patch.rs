@@ -1,4 +1,4 @@
-//! V.1, V.2: affine fields and rigid movements.
+//! docs/verification.md#v1, docs/verification.md#v2: affine fields and rigid movements.
 
 use mechanics::boundary::Hold;
 use mechanics::mesh::sample::block;

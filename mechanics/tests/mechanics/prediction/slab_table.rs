@@ -1,5 +1,5 @@
-//! V.29: the slab's table of element errors, cell by cell of the table. Rows of 1.5 mm are those of `cargo bench --bench
-//! elements`: their matrices take too long without optimisation.
+//! The slab's table of element errors, cell by cell: docs/verification.md#v29. Rows of 1.5 mm are those of `cargo bench
+//! --bench elements`: their matrices take too long without optimisation.
 
 use std::collections::BTreeMap;
 

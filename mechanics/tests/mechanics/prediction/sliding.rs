@@ -1,4 +1,4 @@
-//! V.24, V.25: bilateral sliding without friction, for every element and the mass-tensor.
+//! docs/verification.md#v24, docs/verification.md#v25: bilateral sliding without friction, for every element and the mass-tensor.
 
 use mechanics::boundary::NodeSelection;
 use mechanics::mesh::sample::block;

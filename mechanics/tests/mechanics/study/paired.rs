@@ -1,4 +1,4 @@
-//! Wilcoxon's signed rank test and the comparison of variants (VERIFICATION V.40, V.44).
+//! Wilcoxon's signed rank test and the comparison of variants (docs/verification.md#v40, docs/verification.md#v44).
 
 use mechanics::study::paired::{Equality, PairedError, SignedRank, ZeroRule, signed_rank};
 use mechanics::study::pairwise::{Measure, compare_variants, many_comparisons};
@@ -20,13 +20,13 @@ fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
 
-/// Mean distance to the postoperative skin in mm of six patients: Ulusoy et al., OOOOE 110 (2010), table I.
+/// Mean distance to the postoperative skin in mm of six patients: Ulusoy et al. 2010, table I.
 mod volume_spline {
     pub const SPLINE: [f64; 6] = [1.1, 1.3, 1.2, 1.3, 4.6, 1.3];
     pub const CONVENTIONAL: [f64; 6] = [3.1, 3.1, 1.4, 1.3, 4.9, 1.1];
 }
 
-/// Four patients, homogeneous or with muscles, fixed or sliding: Kim et al., MICCAI 2012 / CMBBE, table 3.
+/// Four patients, homogeneous or with muscles, fixed or sliding: Kim et al. 2012, table 3.
 mod mass_tensor {
     pub const MEAN: [[f64; 4]; 4] = [
         [2.50, 3.25, 2.03, 3.23],
@@ -48,8 +48,8 @@ mod mass_tensor {
     ];
 }
 
-/// Eleven patients, three models, and the largest movement of bone: the paper on an improved Rubin-Bodner
-/// model, table 1.
+/// Eleven patients, three models, and the largest movement of bone: Zhang et al. 2016, table 1
+/// (docs/methods.md#papers has all three).
 mod rubin_bodner {
     pub const MOVED: [f64; 11] = [
         11.6847, 6.1581, 7.3624, 7.2343, 8.3622, 10.5866, 13.4578, 7.3898, 10.5032, 6.1608, 13.6617,

@@ -1,5 +1,5 @@
-//! Where methods fail (V.45, V.46), and the map of it: an error with its place and numbers, a bound on the
-//! answer, never a NaN and never silence.
+//! Where methods fail (docs/verification.md#v45, docs/verification.md#v46), and the map of it: an error with its place and
+//! numbers, a bound on the answer, never a NaN and never silence.
 
 use std::sync::Arc;
 use std::time::Instant;

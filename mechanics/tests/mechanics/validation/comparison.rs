@@ -1,4 +1,4 @@
-//! Comparisons of whole surfaces (VERIFICATION V.39), aligned and not.
+//! Comparisons of whole surfaces (docs/verification.md#v39), aligned and not.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,4 @@
-//! Nearest points, statistics and distances between surfaces (VERIFICATION V.39).
+//! Nearest points, statistics and distances between surfaces (docs/verification.md#v39).
 
 use mechanics::mesh::closest_point::Feature;
 use mechanics::mesh::{SearchError, SurfaceSearch, TriangleSurface, Vector, area_sampling};

@@ -3,7 +3,7 @@
 //! Of W the part c/2 ln^2 J is replaced by a pressure that several points share, with c = lambda - kappa and lambda that of
 //! the law at rest:
 //! * stabilised tetrahedra: p is linear and continuous, Pi = int W - c/2 ln^2 J + p ln J - p^2 / (2c) - (p - Pi p)^2 / (2 mu)
-//!   (NONLINEAR, section 2: the perturbed Lagrangian of `displacement_pressure`);
+//!   (the perturbed Lagrangian of `displacement_pressure`, docs/methods.md#newton);
 //! * hexahedra and wedges with mean dilatation: p = c/V int ln J, one for each cell.
 //!
 //! The share kappa of the bulk modulus that stays in each point keeps single cells from collapsing on the way; near rest it goes into

@@ -1,7 +1,7 @@
 //! Finite elements at finite strain: cells of any hyperelastic law, brought to rest by Newton's method.
 //!
 //! At rest the internal forces f_a = sum_cells V P(F) g_a balance those that act, F = sum_a x_a g_a^T, P = dW/dF. What is held
-//! and what acts is advanced in the same steps that bring the tissue to rest (NONLINEAR, section 1). Tetrahedra with pressures
+//! and what acts is advanced in the same steps that bring the tissue to rest (docs/methods.md#newton). Tetrahedra with pressures
 //! and cells with mean dilatation do not lock (`elements`).
 
 mod balance;

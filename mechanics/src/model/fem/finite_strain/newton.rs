@@ -1,4 +1,4 @@
-//! Newton's method that moves the bones and brings the tissue to rest in the same steps (NONLINEAR, section 1).
+//! Newton's method that moves the bones and brings the tissue to rest in the same steps (docs/methods.md#newton).
 //!
 //! At x, with the share s of the movement made: K d_f = -f_f - K_fb d_b with d_b on the rest of the way, then x <- x + t d,
 //! s <- s + t ds, t the longest step in which every cell keeps a share of its volume; pressures p <- p + t d_p alike. Once

@@ -1,6 +1,6 @@
 //! Pressures of stabilised tetrahedra: their numbers, their equations and the matrices that tie them to displacements.
 //!
-//! r_a = sum_cells V/4 ln J - (C p)_a, C = M/c + (M - Mbar)/mu, dr_a/du_b = V/4 h_b with h = F^-T g (NONLINEAR, section 2).
+//! r_a = sum_cells V/4 ln J - (C p)_a, C = M/c + (M - Mbar)/mu, dr_a/du_b = V/4 h_b with h = F^-T g (docs/methods.md#newton).
 
 use std::collections::BTreeMap;
 

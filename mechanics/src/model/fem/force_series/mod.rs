@@ -9,7 +9,7 @@
 //! (`cell_stiffness`, `displacement_pressure`). A law that is stated adds what sets it apart from neo-Hookean tissue
 //! (`material::law_series`). The membrane has its plane stiffness of Green's strain.
 //! The term of a solution that follows from them is u2 = -K0^-1 N2(u1, u1) with nothing moved where it is held, and
-//! u3 = -K0^-1 [2 N2(u1, u2) + N3(u1, u1, u1)] (NONLINEAR, sections 4 and 7). Where tissue slides it keeps the normals
+//! u3 = -K0^-1 [2 N2(u1, u2) + N3(u1, u1, u1)] (docs/estimates.md#nonlinearity). Where tissue slides it keeps the normals
 //! that it has at rest, to every order.
 
 mod cell;

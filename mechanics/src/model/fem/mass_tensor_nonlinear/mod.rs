@@ -1,5 +1,5 @@
 //! The nonlinear mass-tensor model: tetrahedra of Saint Venant-Kirchhoff tissue whose force is a cubic polynomial of
-//! displacements (paper 002, section 3.3; [`tensors`]).
+//! displacements (Kim et al. 2012, section 3.3; docs/methods.md#nonlinear-mass-tensor; [`tensors`]).
 
 mod rest;
 mod tensors;

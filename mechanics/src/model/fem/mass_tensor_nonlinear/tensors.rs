@@ -6,7 +6,7 @@
 //!   K_ab = V [ lambda g_a g_b^T + mu g_b g_a^T + mu G_ab I ],
 //!   C_abc = V/2 [ lambda G_ab g_c + mu (G_ca g_b + G_cb g_a) ],
 //!   D_abcd = V/8 [ lambda G_ab G_cd + mu (G_ac G_bd + G_ad G_bc) ]
-//! (paper 002, section 3.3; Picinbono, Delingette, Ayache 2003, with their indices on differences of displacement, which
+//! (Kim et al. 2012, section 3.3; Picinbono, Delingette, Ayache 2003, with their indices on differences of displacement, which
 //! leaves 3 corners of 4). Force and tangent are its derivatives.
 
 use nalgebra::Matrix3;
