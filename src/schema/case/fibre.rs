@@ -1,4 +1,4 @@
-//! What runs in one direction: fibres of a material, lines of the skin.
+//! Directions of anisotropy: fibres of a material, lines of the skin.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
