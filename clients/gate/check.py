@@ -8,13 +8,18 @@ import json
 import os
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
 import time
+import types
 import xml.etree.ElementTree
+from unittest import mock
 
 import yaml
+
+import facies_gate
 
 HERE = pathlib.Path(__file__).resolve().parent
 CLIENTS = HERE.parent
@@ -85,6 +90,33 @@ def changed(folder: pathlib.Path, name: str, **members: object) -> str:
     return str(path)
 
 
+def documented(folder: pathlib.Path) -> None:
+    """The study and the pipelines of docs/clients.md as they stand there, on the first day and of a branch."""
+    text = (CLIENTS.parent / "docs" / "clients.md").read_text()
+    place = folder / "validation"
+    shutil.copytree(CLIENTS.parent / "examples" / "head", place / "head")
+    (place / "study.json").write_text(re.findall(r"```json\n(.*?)```", text, re.DOTALL)[0])
+    github, ours = [yaml.safe_load(block) for block in re.findall(r"```yaml\n(.*?)```", text, re.DOTALL)]
+    inputs = {name.replace("-", "_"): value.replace("${{ github.ref_name }}", "a-branch")
+              for name, value in github[0]["with"].items() if name not in ("address", "key")}
+    expect("the documented action on the first day", action(folder, **inputs)[0], 0)
+    expect("and on the second", action(folder, **inputs)[0], 0)
+    variables = {**ours["validation"]["variables"], "BASELINE_TAG": "another trunk"}
+    expect("the documented job of GitLab on the first day", gitlab(folder, **variables), 0)
+
+
+def silence() -> None:
+    """While one row is solved for long, a line each minute."""
+    job = {"id": "1", "status": "running", "progress": 5, "phase": "solve"}
+    polls = iter([job] * 10 + [{**job, "status": "successful"}])
+    service = types.SimpleNamespace(document=lambda *_, **__: next(polls))
+    seconds = iter(range(0, 1000, 20))
+    lines: list[str] = []
+    with mock.patch.multiple(facies_gate, say=lines.append, time=types.SimpleNamespace(monotonic=lambda: next(seconds))):
+        facies_gate.finished(service, job, 900.0)
+    expect("lines in 220 s of one row", len(lines), 4)
+
+
 def red_stays_red(folder: pathlib.Path) -> None:
     """A study that is worse than its baseline does not become the baseline, however often it is run."""
     def of_element(element: str) -> str:
@@ -147,6 +179,8 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         report = folder / "facies-report.xml"
+        silence()
+        documented(folder)
         code, first = action(folder, study=str(STUDY), tag="main")
         expect("a study without a baseline", (code, first["outcome"]), (0, "pass"))
         expect("failures in its test results", failures(report), 0)
@@ -173,6 +207,12 @@ def main() -> None:
         worse = changed(folder, "worse", thresholds={"p95_mm": 1e-9})
         expect("rows above a threshold", action(folder, study=worse)[0], 1)
         expect("with failures in the test results", failures(report) > 0, True)
+        told = told_by(folder, worse)
+        lines = re.findall("^worse: slab, patch 2 mm, fem_linear plain, nu 0.46, level 0: p95 error .* is above the threshold ", told, re.MULTILINE)
+        expect("and in what is printed", len(lines), 1)
+        row = {"scene": "s", "plan": "p", "label": "l", "material": "m", "level": 0, "reasons": ["r"]}
+        expect("of the first rows", facies_gate.worse([{**row, "verdict": verdict} for verdict in ["pass", "worse", "failed"] * 20])[18:],
+               ["worse: s, p, l, m, level 0: r", "failed: s, p, l, m, level 0: r", "and 20 more rows, which the report has"])
         expect("the same in GitLab", gitlab(folder, STUDY=worse, BASELINE_TAG=""), 1)
         expect("and without a baseline there", gitlab(folder, STUDY=worse, BASELINE_TAG="x"), 1)
         broken(folder)

@@ -34,6 +34,8 @@ EXIT_CODES = {"pass": 0, "worse": 1, "incomplete": 4, "no-baseline": 5}
 FAILED, REFUSED, OUT_OF_REACH = 1, 2, 3
 # No job has this id: a baseline that is asked for and not there is the service's to judge.
 NO_JOB = "00000000-0000-7000-8000-000000000000"
+# Rows whose reasons are printed, and the longest silence while a study is solved.
+LINES, SILENCE_S = 20, 60.0
 # Of the spec of a case file: what names the job and its files. All else decides numbers, and a study states that itself.
 OF_FILES = ("kind", "case", "outputs", "range_mm", "keep", "tags")
 
@@ -220,15 +222,20 @@ def no_study(arguments: argparse.Namespace) -> str:
 
 
 def finished(service: Service, job: dict, seconds: float) -> dict:
-    """The job once it has ended; where it is meanwhile is printed when it changes."""
-    until = time.monotonic() + seconds
-    told = ""
+    """The job once it has ended; where it is meanwhile is printed when it changes, and after a minute of silence."""
+    begun = time.monotonic()
+    told, told_at = "", begun
     while job["status"] in ("accepted", "running"):
-        if time.monotonic() > until:
+        now = time.monotonic()
+        if now > begun + seconds:
             raise Stop(OUT_OF_REACH, f"job {job['id']} is {job['status']} after {seconds:.0f} s")
-        told, before = progress(job), told
-        if told != before:
-            say(told)
+        where = progress(job)
+        if where != told:
+            say(where)
+            told, told_at = where, now
+        elif now >= told_at + SILENCE_S:
+            say(f"{where}, after {now - begun:.0f} s")
+            told_at = now
         job = service.document("GET", f"/v1/jobs/{job['id']}", Prefer="wait=5")
     return job
 
@@ -247,6 +254,15 @@ def expected(truth: dict) -> str:
     takes = f", {time_s['low']:.0f} to {time_s['high']:.0f} s on one thread" if time_s else ""
     return (f"the truth of {truth['scene']} is solved on {truth['meshes']} meshes, {truth['solves']} times each, "
             f"the finest with {truth['cells']} cells{takes}")
+
+
+def worse(rows: list[dict]) -> list[str]:
+    """Why rows are no pass, in a line each, of the first ones."""
+    bad = [row for row in rows if row["verdict"] in ("worse", "failed")]
+    lines = [f"{row['verdict']}: {row['scene']}, {row['plan']}, {row['label']}, {row['material']}, level {row['level']}: "
+             f"{'; '.join(row.get('reasons', []))}" for row in bad[:LINES]]
+    more = len(bad) - len(lines)
+    return [*lines, f"and {more} more rows, which the report has"] if more else lines
 
 
 def say(words: str) -> None:
@@ -296,6 +312,8 @@ def run(arguments: argparse.Namespace) -> int:
         say(f"rows are those of study {rows_of.get('job')}, solved {rows_of['created']}, judged anew")
     for skipped in found.get("skipped", []):
         say(f"{skipped['label']} does not apply to {skipped['scene']}: {skipped['reason']}")
+    for line in worse(found["rows"]):
+        say(line)
     for reason in verdict["reasons"]:
         say(reason.replace(f"job {NO_JOB} is no study that has ended well", no_study(arguments)))
     say(f"{verdict['rows']} rows, {verdict['worse']} worse; outcome {verdict['outcome']}")

@@ -39,6 +39,7 @@
 
 pub mod anatomy;
 pub mod boundary;
+pub mod cephalometry;
 pub mod chart;
 pub mod domain;
 pub mod element;

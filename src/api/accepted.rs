@@ -10,7 +10,7 @@ use super::parameters::id;
 use crate::jobs::{JobError, JobInput, MeshSource, SourceError};
 use crate::schema::predict::result::EngineDocument;
 use crate::schema::study::expected::TruthCostDocument;
-use crate::schema::{ErrorCode, Faults, Limits, Pointer, Problem};
+use crate::schema::{ErrorCode, Faults, Limits, Pointer, PredictDocument, Problem};
 use crate::store::NewJob;
 
 /// Jobs that may wait at the same time.
@@ -119,4 +119,20 @@ pub fn refusal(error: JobError) -> ApiError {
             problem.into()
         }
     }
+}
+
+/// The meshes that a prediction is compared with have to be there.
+pub(super) async fn require_compared(
+    service: &Service,
+    spec: &PredictDocument,
+) -> ApiResult<Vec<String>> {
+    let mut named = Vec::new();
+    if let Some(mut compare_to) = spec.compare_to.clone() {
+        let at = Pointer::root().key("compare_to");
+        for (at, mesh) in compare_to.mesh_references_mut(&at) {
+            require_mesh(service, at.as_str(), mesh).await?;
+            named.push(mesh.clone());
+        }
+    }
+    Ok(named)
 }

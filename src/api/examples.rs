@@ -98,11 +98,10 @@ fn loads() -> Value {
 
 /// One of each kind of job, and what is asked for most besides.
 fn jobs() -> Vec<(&'static str, Value)> {
-    [predictions_and_plans(), studies()].concat()
+    [predictions(), meshings(), responses_and_plans(), studies()].concat()
 }
 
-fn predictions_and_plans() -> Vec<(&'static str, Value)> {
-    let bounds = json!({"translation_mm": [[-10, 10], [0, 0], [-5, 5]]});
+fn predictions() -> Vec<(&'static str, Value)> {
     vec![
         (
             "predict",
@@ -125,6 +124,19 @@ fn predictions_and_plans() -> Vec<(&'static str, Value)> {
                 "kind": "compare", "prediction": {"job": JOB}, "actual": {"mesh": BONE}, "align": {"method": "none"},
             }),
         ),
+        (
+            "reproduce",
+            json!({
+                "kind": "reproduce", "before": {"mesh": BONE}, "after": {"mesh": BONE},
+                "base": {"mask": {"box_mm": [-200, -200, -200, 200, 200, 200]}},
+                "segments": [{"name": "mandible", "before": {"mesh": BONE}}],
+            }),
+        ),
+    ]
+}
+
+fn meshings() -> Vec<(&'static str, Value)> {
+    vec![
         (
             "mesh from a scan",
             json!({
@@ -149,6 +161,12 @@ fn predictions_and_plans() -> Vec<(&'static str, Value)> {
                 "size": {"tetrahedra": 20_000},
             }),
         ),
+    ]
+}
+
+fn responses_and_plans() -> Vec<(&'static str, Value)> {
+    let bounds = json!({"translation_mm": [[-10, 10], [0, 0], [-5, 5]]});
+    vec![
         ("response", json!({"kind": "response", "case": CASE, "segments": ["mandible"]})),
         (
             "optimise",

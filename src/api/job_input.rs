@@ -3,24 +3,29 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::Service;
-use super::accepted::{Accepted, AcceptedStudy, fault, in_spec, prepared, require_mesh};
+use super::accepted::{
+    Accepted, AcceptedStudy, fault, in_spec, prepared, require_compared, require_mesh,
+};
 use super::case_state::{CaseOfJob, case_of_job, whole};
+use super::cohort_input::of_cohort;
 use super::error::{ApiError, ApiResult};
 use super::parameters::id;
 use super::report;
 use super::waiting::Waiting;
 use crate::jobs::{
-    CompareInput, JobInput, MeshSource, MeshingInput, OptimiseInput, PredictInput, ResponseInput,
-    StudyInput,
+    CompareInput, JobInput, MeshSource, MeshingInput, OptimiseInput, PredictInput, ReproduceInput,
+    ResponseInput, StudyInput,
 };
 use crate::schema::ErrorCode;
+use crate::schema::compare::document::CompareToDocument;
+use crate::schema::hashes::reproduce_hash;
 use crate::schema::job::JobStatus;
 use crate::schema::job_document::JobDocument;
 use crate::schema::study::document::SceneReference;
 use crate::schema::study::expected::truth_costs;
 use crate::schema::{
     CompareDocument, Faults, Limits, MeshingDocument, OptimiseDocument, PlanDocument, Pointer,
-    PredictDocument, ReportDocument, ResponseDocument, StudyDocument,
+    PredictDocument, ReportDocument, ReproduceDocument, ResponseDocument, StudyDocument,
 };
 use crate::store::{CaseRow, NewJob};
 
@@ -31,6 +36,8 @@ pub async fn of(service: &Service, document: JobDocument) -> ApiResult<NewJob> {
         JobDocument::Compare(spec) => of_comparison(service, spec).await,
         JobDocument::Response(spec) => of_response(service, spec).await,
         JobDocument::Optimise(spec) => of_optimisation(service, spec).await,
+        JobDocument::Reproduce(spec) => of_reproduction(service, spec).await,
+        JobDocument::Cohort(spec) => of_cohort(service, spec).await,
         JobDocument::Mesh(spec) => of_meshing(service, spec).await,
         JobDocument::Study(spec) => of_study(service, spec).await,
     }
@@ -49,9 +56,7 @@ async fn of_prediction(service: &Service, mut spec: PredictDocument) -> ApiResul
     let plan = plan_of(service, &row.id, &mut spec).await?;
     let input = PredictInput { job: None, queue_s: None, case, plan, spec };
     let mesh_ids = mesh_ids(&input);
-    if let Some(compare_to) = &input.spec.compare_to {
-        require_mesh(service, "/compare_to/actual/mesh", &compare_to.actual.mesh).await?;
-    }
+    require_compared(service, &input.spec).await?;
     let tags = input.spec.tags.clone();
     let prepare = |input: &PredictInput, sources: &dyn MeshSource, limits: &Limits| {
         let prepared = input.prepare(sources, limits)?;
@@ -75,15 +80,11 @@ async fn of_comparison(service: &Service, spec: CompareDocument) -> ApiResult<Ne
     let mut faults = Faults::default();
     spec.check(&service.limits, &mut faults);
     faults.into_result().map_err(in_spec)?;
-    let mut mesh_ids = vec![spec.actual.mesh.clone()];
+    let mut mesh_ids = Vec::new();
     let mut contents = BTreeMap::new();
     let mut case_id = None;
-    contents.insert(
-        spec.actual.mesh.clone(),
-        require_mesh(service, "/actual/mesh", &spec.actual.mesh).await?,
-    );
-    if let Some(mesh) = &spec.prediction.mesh {
-        contents.insert(mesh.clone(), require_mesh(service, "/prediction/mesh", mesh).await?);
+    for (at, mesh) in spec.clone().mesh_references_mut() {
+        contents.insert(mesh.clone(), require_mesh(service, at.as_str(), mesh).await?);
         mesh_ids.push(mesh.clone());
     }
     if let Some(job) = &spec.prediction.job {
@@ -149,6 +150,22 @@ async fn of_optimisation(service: &Service, mut spec: OptimiseDocument) -> ApiRe
     let new =
         Accepted { case_id, shared_cases: Vec::new(), spec_hash, tags, mesh_ids, study: None };
     new.with(&JobInput::Optimise(input))
+}
+
+/// The reproduction of an operation from bone that is there.
+async fn of_reproduction(service: &Service, spec: ReproduceDocument) -> ApiResult<NewJob> {
+    let mut faults = Faults::default();
+    spec.check(&service.limits, &mut faults);
+    faults.into_result().map_err(in_spec)?;
+    let mut contents = BTreeMap::new();
+    for (at, mesh) in spec.clone().mesh_references_mut() {
+        contents.insert(mesh.clone(), require_mesh(service, at.as_str(), mesh).await?);
+    }
+    let spec_hash = reproduce_hash(&spec, &|id| contents.get(id).cloned());
+    let (tags, mesh_ids) = (spec.tags.clone(), contents.into_keys().collect());
+    let input = JobInput::Reproduce(ReproduceInput { job: None, queue_s: None, spec });
+    let (case_id, shared_cases, study) = (None, Vec::new(), None);
+    Accepted { case_id, shared_cases, spec_hash, tags, mesh_ids, study }.with(&input)
 }
 
 /// A meshing: its scan or its surfaces, checked.
@@ -293,7 +310,7 @@ pub(super) fn mesh_ids(input: &PredictInput) -> Vec<String> {
             ids.push(id.clone());
         }
     }
-    ids.extend(input.spec.compare_to.iter().map(|compare_to| compare_to.actual.mesh.clone()));
+    ids.extend(input.spec.compare_to.iter().flat_map(CompareToDocument::mesh_ids));
     ids
 }
 

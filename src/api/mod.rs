@@ -13,6 +13,7 @@ mod case_draft;
 mod case_state;
 mod cases;
 mod client;
+mod cohort_input;
 mod conditional;
 pub mod connections;
 mod deeds;

@@ -4,7 +4,7 @@
 use serde_json::{Value, json};
 
 use super::Service;
-use super::accepted::{Accepted, in_spec, require_mesh};
+use super::accepted::{Accepted, in_spec, require_compared};
 use super::case_state::Awaited;
 use super::error::{ApiError, ApiResult};
 use super::parameters::id;
@@ -36,11 +36,7 @@ impl Waiting<'_> {
         self.check(service, Some(&plan), &spec)?;
         let mut named: Vec<String> =
             plan.surface_references_mut().into_iter().map(|(_, id)| id.clone()).collect();
-        if let Some(compare_to) = &spec.compare_to {
-            let mesh = &compare_to.actual.mesh;
-            require_mesh(service, "/compare_to/actual/mesh", mesh).await?;
-            named.push(mesh.clone());
-        }
+        named.extend(require_compared(service, &spec).await?);
         let asked = json!({ "plan": to_value(&plan), "spec": spec.content() });
         let (case, tags) = (to_come(), spec.tags.clone());
         let input = PredictInput { job: None, queue_s: None, case, plan, spec };

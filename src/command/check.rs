@@ -1,6 +1,6 @@
 //! `facies check`: what a case and a plan mean, without solving.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 
@@ -10,6 +10,7 @@ use super::scene::{PlanArgument, SceneArguments};
 use super::screen::print_check;
 use crate::jobs::check;
 use crate::schema::Limits;
+use crate::schema::predict::planned::MovementReportDocument;
 use crate::schema::wire::canonical;
 
 #[derive(Debug, Args)]
@@ -33,7 +34,25 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
         write(&out.join("check.json"), format!("{document:#}\n"))?;
         write(&out.join("classes.svg"), &report.picture()?)?;
         println!("wrote      {}", out.join("check.json").display());
+        for movement in &report.document.movements {
+            write_movement(movement, out)?;
+        }
         println!("wrote      {}", out.join("classes.svg").display());
+    }
+    Ok(())
+}
+
+/// The movement of a segment as files for navigation.
+fn write_movement(movement: &MovementReportDocument, out: &Path) -> Result<(), CommandError> {
+    // A name may hold what leads to another folder.
+    let is_plain = |letter: char| letter.is_alphanumeric() || "-_ ".contains(letter);
+    let plain = |letter: char| if is_plain(letter) { letter } else { '_' };
+    let name: String = movement.segment.chars().map(plain).collect();
+    let mut files = vec![(format!("{name}.txt"), &movement.matrix_text)];
+    files.extend(movement.itk_transform.iter().map(|text| (format!("{name}.tfm"), text)));
+    for (file, text) in files {
+        write(&out.join(&file), text)?;
+        println!("wrote      {}", out.join(&file).display());
     }
     Ok(())
 }

@@ -1,11 +1,13 @@
 //! `facies compare`: distances between a predicted and an actual surface.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
+use serde_json::{Value, json};
 
+use super::documents::read;
 use super::failure::CommandError;
-use super::files::{FileSource, ScaleArguments, UnitArgument};
+use super::files::{FileSource, ScaleArguments, UnitArgument, relative};
 use super::screen::{print_files, print_warnings, work_in_sight};
 use crate::jobs::{CompareInput, JobInput, Workplace};
 use crate::schema::compare::document::{
@@ -13,7 +15,8 @@ use crate::schema::compare::document::{
     PlaceDocument, SurfaceReference,
 };
 use crate::schema::predict::result::ResultDocument;
-use crate::schema::{CornerPair, Limits, Sphere};
+use crate::schema::wire::strict;
+use crate::schema::{CornerPair, Limits, Matrix4x4, Sphere};
 
 /// Groups of the arguments in the help.
 const WHAT: &str = "What is compared";
@@ -23,17 +26,39 @@ const MEASURED: &str = "How it is measured";
 #[derive(Debug, Args)]
 pub struct Arguments {
     /// The predicted surface, or a volume mesh whose boundary it is
-    #[arg(long, help_heading = WHAT, value_name = "FILE")]
-    prediction: PathBuf,
+    #[arg(long, help_heading = WHAT, value_name = "FILE", required_unless_present = "spec")]
+    prediction: Option<PathBuf>,
     /// The actual surface
-    #[arg(long, help_heading = WHAT, value_name = "FILE")]
-    actual: PathBuf,
+    #[arg(long, help_heading = WHAT, value_name = "FILE", required_unless_present = "spec")]
+    actual: Option<PathBuf>,
+    /// A comparison as it is posted, with paths from its folder in place of ids: regions, landmarks, histograms and
+    /// all ways of aligning. `--prediction` and `--actual` stand for its own
+    #[arg(
+        long, help_heading = WHAT, value_name = "FILE",
+        conflicts_with_all = ["align", "mask_sphere_mm", "mask_box_mm", "align_fixed", "align_moving", "matrix4x4", "samples_per_mm2", "node_wise"]
+    )]
+    spec: Option<PathBuf>,
     /// The folder for the result
     #[arg(long, visible_alias = "output", value_name = "FOLDER", help_heading = "Result")]
     out: PathBuf,
     /// Whether the actual surface is moved rigidly onto the prediction first
     #[arg(long, help_heading = ALIGNED, default_value = "none")]
     align: AlignArgument,
+    /// With `surfaces`: bone that lies as the prediction does
+    #[arg(long, help_heading = ALIGNED, value_name = "FILE")]
+    align_fixed: Option<PathBuf>,
+    /// With `surfaces`: the same bone as it lies beside the actual surface
+    #[arg(long, help_heading = ALIGNED, value_name = "FILE")]
+    align_moving: Option<PathBuf>,
+    /// With `matrix`: the movement of the actual surface, row by row in mm
+    #[arg(
+        long, help_heading = ALIGNED,
+        value_name = "16 NUMBERS",
+        value_delimiter = ',',
+        num_args = 1,
+        allow_hyphen_values = true
+    )]
+    matrix4x4: Vec<f64>,
     /// Only this sphere decides the alignment: x,y,z,r
     #[arg(
         long, help_heading = ALIGNED,
@@ -69,7 +94,9 @@ pub struct Arguments {
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum AlignArgument {
     None,
+    Matrix,
     Icp,
+    Surfaces,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -94,21 +121,55 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
 
 impl Arguments {
     fn document(&self) -> Result<CompareDocument, CommandError> {
+        match &self.spec {
+            Some(path) => self.document_in(path),
+            None => self.document_of_arguments(),
+        }
+    }
+
+    /// The document in a file, whose paths lead from its folder.
+    fn document_in(&self, path: &Path) -> Result<CompareDocument, CommandError> {
+        let mut value: Value = read(path)?;
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let given = [("prediction", &self.prediction), ("actual", &self.actual)];
+        for (name, file) in given {
+            let (Some(members), Some(file)) = (value.as_object_mut(), file) else { continue };
+            members.insert(name.to_owned(), json!({ "mesh": relative(file, folder) }));
+        }
+        let refused = |problem| CommandError::Document { path: path.to_owned(), problem };
+        let mut spec: CompareDocument = strict::from_value(value).map_err(refused)?;
+        for (_, id) in spec.mesh_references_mut() {
+            *id = folder.join(&*id).to_string_lossy().into_owned();
+        }
+        Ok(spec)
+    }
+
+    fn document_of_arguments(&self) -> Result<CompareDocument, CommandError> {
         let text = |path: &PathBuf| path.to_string_lossy().into_owned();
+        let mesh =
+            |path: &Option<PathBuf>| path.as_ref().map(|path| MeshReference { mesh: text(path) });
         Ok(CompareDocument {
             kind: CompareKind::Compare,
-            prediction: SurfaceReference { job: None, mesh: Some(text(&self.prediction)) },
-            actual: MeshReference { mesh: text(&self.actual) },
+            prediction: SurfaceReference { job: None, mesh: self.prediction.as_ref().map(text) },
+            actual: MeshReference { mesh: self.actual.as_ref().map(text).unwrap_or_default() },
             align: AlignDocument {
                 method: match self.align {
                     AlignArgument::None => AlignMethod::None,
+                    AlignArgument::Matrix => AlignMethod::Matrix,
                     AlignArgument::Icp => AlignMethod::Icp,
+                    AlignArgument::Surfaces => AlignMethod::Surfaces,
                 },
+                matrix4x4: numbers(&self.matrix4x4, "--matrix4x4")?.map(Matrix4x4),
                 landmarks: Default::default(),
+                fixed: mesh(&self.align_fixed),
+                moving: mesh(&self.align_moving),
+                start: None,
                 mask: self.mask()?,
                 report_unaligned: true,
             },
             regions: Default::default(),
+            landmarks: Default::default(),
+            histogram_edges_mm: Vec::new(),
             samples_per_mm2: self.samples_per_mm2,
             node_wise: match self.node_wise {
                 NodeWiseArgument::Auto => NodeWise::Auto,
@@ -157,7 +218,8 @@ fn print_result(result: &ResultDocument) {
             row.median,
             row.p95,
             row.max,
-            100.0 * row.share_below_1_mm
+            // No minus before nothing.
+            100.0 * row.share_below_1_mm.max(0.0) + 0.0
         );
     }
     if let Some(node_wise) = &comparison.node_wise {
@@ -166,6 +228,33 @@ fn print_result(result: &ResultDocument) {
             "node by node   {:>7.3} {:>6.3} {:>6.3} {:>7.3} {:>6.3} {:>6.3}",
             nodes.mean, nodes.sd, nodes.rms, nodes.median, nodes.p95, nodes.max
         );
+    }
+    if let Some(warped) = &comparison.tps_cp {
+        let nodes = &warped.nodes;
+        println!(
+            "spline, point  {:>7.3} {:>6.3} {:>6.3} {:>7.3} {:>6.3} {:>6.3}",
+            nodes.mean, nodes.sd, nodes.rms, nodes.median, nodes.p95, nodes.max
+        );
+    }
+    for (name, region) in &comparison.regions {
+        let both = &region.both;
+        println!(
+            "{name:<14} {:>7.3} {:>6.3} {:>6.3} {:>7.3} {:>6.3} {:>6.3}  {:>6.1} %",
+            both.mean,
+            both.sd,
+            both.rms,
+            both.median,
+            both.p95,
+            both.max,
+            100.0 * both.share_below_1_mm
+        );
+    }
+    for (name, error) in &comparison.landmark_errors {
+        println!("landmark {name:<20} {:>7.3} mm", error.distance_mm);
+    }
+    if let Some(share) = comparison.alignment.share_above_1_mm {
+        let rms = comparison.alignment.rms_mm.unwrap_or_default();
+        println!("aligned to {rms:.3} mm rms, {:.1} % of it above 1 mm", 100.0 * share);
     }
     print_warnings(&result.warnings);
 }

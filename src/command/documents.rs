@@ -134,7 +134,10 @@ impl CaseFile {
             }
         }
         if let Some(compare_to) = &mut self.spec.compare_to {
-            lead(&mut compare_to.actual.mesh);
+            compare_to
+                .mesh_references_mut(&Pointer::root())
+                .into_iter()
+                .for_each(|(_, id)| lead(id));
         }
         write(&path, format!("{:#}\n", canonical::to_value(&self)))?;
         Ok(path)

@@ -183,8 +183,11 @@ fn check_segments(plan: &PlanDocument, spec: &MeshingDocument) -> Result<(), Com
     let mut faults = Faults::default();
     for (number, segment) in plan.segments.iter().enumerate() {
         if !known.contains(&segment.name.trim()) {
-            let detail =
-                format!("there is no segment {:?}; there are: {}", segment.name, known.join(", "));
+            let there = match known.is_empty() {
+                true => "no segments, because the plan has no `osteotomy` that cuts them and no bones are given".to_owned(),
+                false => known.join(", "),
+            };
+            let detail = format!("there is no segment {:?}; there are: {there}", segment.name);
             faults.add(&at.index(number).key("name"), ErrorCode::UnknownSegment, detail);
         }
     }
@@ -216,6 +219,7 @@ fn in_memory(case: &CaseDocument, done: &JobOutput) -> BTreeMap<String, StoredMe
         let file = done.files.iter().find(|file| file.name == *id)?;
         let mesh = StoredMesh {
             shape: made.shape.clone(),
+            of_points: Default::default(),
             frame: (made.frame != Frame::Unspecified).then_some(made.frame),
             units: Some(LengthUnit::Mm),
             warnings: Vec::new(),

@@ -2,6 +2,7 @@
 
 pub mod admin;
 pub mod check;
+pub mod cohort;
 pub mod compare;
 pub mod config;
 pub mod demo;
@@ -14,6 +15,7 @@ pub mod migrate;
 pub mod openapi;
 pub mod optimise;
 pub mod predict;
+pub mod reproduce;
 pub mod response;
 mod scene;
 mod screen;
@@ -54,8 +56,12 @@ enum Command {
     Response(response::Arguments),
     /// Find the plan that brings the skin nearest to where it is wanted
     Optimise(optimise::Arguments),
+    /// Find what an operation did from bone before and after it; write it as a plan
+    Reproduce(reproduce::Arguments),
     /// Measure the distances between two surfaces
     Compare(compare::Arguments),
+    /// Hold methods against each other over comparisons with the scans of several patients
+    Cohort(cohort::Arguments),
     /// Hold methods against each other: how long each takes, how far it is from the truth
     Study(study::Arguments),
     /// Tell what a case and a plan mean, without solving
@@ -83,7 +89,18 @@ enum Command {
 const GROUPS: [(&str, &[&str]); 2] = [
     (
         "Predict and plan",
-        &["demo", "mesh", "check", "predict", "response", "optimise", "compare", "study"],
+        &[
+            "demo",
+            "mesh",
+            "check",
+            "predict",
+            "response",
+            "optimise",
+            "reproduce",
+            "compare",
+            "cohort",
+            "study",
+        ],
     ),
     ("Serve", &["serve", "worker", "migrate", "admin", "config", "health", "openapi"]),
 ];
@@ -121,7 +138,9 @@ pub fn run(facies: &Facies) -> ExitCode {
         Command::Predict(arguments) => predict::run(arguments),
         Command::Response(arguments) => response::run(arguments),
         Command::Optimise(arguments) => optimise::run(arguments),
+        Command::Reproduce(arguments) => reproduce::run(arguments),
         Command::Compare(arguments) => compare::run(arguments),
+        Command::Cohort(arguments) => cohort::run(arguments),
         Command::Study(arguments) => study::run(arguments),
         Command::Check(arguments) => check::run(arguments),
         Command::Serve(arguments) => serve::run(arguments).map_err(CommandError::from),

@@ -120,6 +120,11 @@ pub fn print_check(check: &CheckDocument) {
     if let Some(auto) = &check.auto {
         print_expectation(auto);
     }
+    for measure in &check.cephalometry {
+        let planned = measure.planned.map(|planned| format!(" -> {planned:.2}"));
+        let planned = planned.unwrap_or_default();
+        println!("measure    {} {:.2}{planned} {}", measure.name, measure.before, measure.unit);
+    }
     print_warnings(&check.warnings);
 }
 

@@ -27,6 +27,8 @@ impl Finished {
             JobInput::Optimise(input) => input.prediction(&result.optimisation?),
             JobInput::Compare(_)
             | JobInput::Response(_)
+            | JobInput::Reproduce(_)
+            | JobInput::Cohort(_)
             | JobInput::Study(_)
             | JobInput::Meshing(_) => return None,
         };

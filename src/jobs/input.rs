@@ -2,10 +2,12 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::cohort::CohortInput;
 use super::compare::CompareInput;
 use super::meshing::MeshingInput;
 use super::optimise::OptimiseInput;
 use super::predict::PredictInput;
+use super::reproduce::ReproduceInput;
 use super::response::ResponseInput;
 use super::study::StudyInput;
 use crate::schema::job_document::JobKind;
@@ -20,6 +22,8 @@ pub enum JobInput {
     Compare(CompareInput),
     Response(ResponseInput),
     Optimise(OptimiseInput),
+    Reproduce(ReproduceInput),
+    Cohort(CohortInput),
     Meshing(MeshingInput),
     Study(StudyInput),
 }
@@ -31,6 +35,8 @@ impl JobInput {
             JobInput::Compare(_) => JobKind::Compare,
             JobInput::Response(_) => JobKind::Response,
             JobInput::Optimise(_) => JobKind::Optimise,
+            JobInput::Reproduce(_) => JobKind::Reproduce,
+            JobInput::Cohort(_) => JobKind::Cohort,
             JobInput::Meshing(_) => JobKind::Mesh,
             JobInput::Study(input) => match input.spec.kind {
                 StudyKind::Study => JobKind::Study,
@@ -47,6 +53,8 @@ impl JobInput {
             JobInput::Compare(input) => (input.job, input.queue_s) = (job, queue_s),
             JobInput::Response(input) => (input.job, input.queue_s) = (job, queue_s),
             JobInput::Optimise(input) => (input.job, input.queue_s) = (job, queue_s),
+            JobInput::Reproduce(input) => (input.job, input.queue_s) = (job, queue_s),
+            JobInput::Cohort(input) => (input.job, input.queue_s) = (job, queue_s),
             JobInput::Meshing(input) => (input.job, input.queue_s) = (job, queue_s),
             JobInput::Study(input) => (input.job, input.queue_s) = (job, queue_s),
         }

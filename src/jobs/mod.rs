@@ -1,6 +1,7 @@
 //! Jobs, from document to result files: one path for the service and for the command line.
 
 mod clock;
+mod cohort;
 mod compare;
 mod drawing;
 mod failure;
@@ -10,6 +11,7 @@ mod meshing;
 mod optimise;
 mod output;
 mod predict;
+mod reproduce;
 pub mod response;
 pub mod result;
 mod run;
@@ -17,6 +19,7 @@ mod scale;
 mod source;
 pub mod study;
 
+pub use cohort::CohortInput;
 pub use compare::CompareInput;
 pub use drawing::Finished;
 pub use failure::JobError;
@@ -25,6 +28,7 @@ pub use meshing::{MeshingInput, WaitingCase};
 pub use optimise::OptimiseInput;
 pub use output::{JobOutput, MadeMesh, Workplace};
 pub use predict::{CheckReport, PredictInput, check};
+pub use reproduce::ReproduceInput;
 pub use response::ResponseInput;
 pub use run::work;
 pub use scale::MeshSize;

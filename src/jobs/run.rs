@@ -1,5 +1,6 @@
 //! Dispatch of jobs: the one function from a job document to result files.
 
+use super::cohort::cohort_job;
 use super::compare::compare_job;
 use super::failure::JobError;
 use super::input::JobInput;
@@ -7,6 +8,7 @@ use super::meshing::meshing_job;
 use super::optimise::optimise_job;
 use super::output::{JobOutput, Workplace};
 use super::predict::predict_job;
+use super::reproduce::reproduce_job;
 use super::response::response_job;
 use super::study::study_job;
 use mechanics::progress::Progress;
@@ -22,6 +24,8 @@ pub fn work(
         JobInput::Compare(input) => compare_job(input, place, progress),
         JobInput::Response(input) => response_job(input, place, progress),
         JobInput::Optimise(input) => optimise_job(input, place, progress),
+        JobInput::Reproduce(input) => reproduce_job(input, place, progress),
+        JobInput::Cohort(input) => cohort_job(input, place, progress),
         JobInput::Meshing(input) => meshing_job(input, place, progress),
         JobInput::Study(input) => study_job(input, place, progress),
     }

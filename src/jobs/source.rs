@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::schema::ErrorCode;
 use crate::schema::WarningDocument;
 use crate::schema::case::document::LengthUnit;
-use mechanics::format::{Mesh, ReadMesh};
+use mechanics::format::{Mesh, ReadMesh, SurfaceArrays};
 use mechanics::image::ImageVolume;
 use mechanics::mesh::{Frame, TriangleSurface, VolumeMesh, Warning};
 
@@ -21,6 +21,8 @@ pub trait MeshSource {
 #[derive(Clone, Debug)]
 pub struct StoredMesh {
     pub shape: StoredShape,
+    /// Of a surface that was just read; a stored mesh does not keep them.
+    pub of_points: Arc<SurfaceArrays>,
     /// The frame that a mark in the file names.
     pub frame: Option<Frame>,
     /// The unit stated when it was uploaded, which must be that of a case that uses it.
@@ -67,7 +69,8 @@ impl StoredMesh {
         };
         let units = units.filter(|_| !matches!(shape, StoredShape::Image(_)));
         let (frame, warnings) = (read.frame, read.warnings);
-        StoredMesh { shape, frame, units, warnings, told: Vec::new(), sha256 }
+        let of_points = Arc::new(read.of_points);
+        StoredMesh { shape, of_points, frame, units, warnings, told: Vec::new(), sha256 }
     }
 
     /// The surface, or the boundary of the volume; an image has none.

@@ -50,6 +50,7 @@ impl MeshCard {
     pub fn with(self, shape: StoredShape) -> StoredMesh {
         StoredMesh {
             shape,
+            of_points: Arc::default(),
             frame: self.frame.map(Frame::from),
             units: self.units,
             warnings: Vec::new(),

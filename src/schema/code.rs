@@ -175,6 +175,7 @@ error_codes! {
     // About two surfaces that are compared.
     AlignmentFailed 422 "alignment-failed" REFUSED,
     EmptyRegion 422 "empty-region" REFUSED,
+    NoDisplacement 422 "no-displacement" REFUSED,
     NotCorresponding 422 "not-corresponding" REFUSED,
     TooManySamples 422 "too-many-samples" REFUSED,
 

@@ -1,13 +1,18 @@
 //! The hash of each kind of job and the key of a response: the same work has the same hash, whoever asks for it.
 
+use std::collections::BTreeMap;
+
 use serde_json::{Value, json};
 
 use super::case::document::CaseDocument;
+use super::cohort::document::CohortDocument;
 use super::compare::document::CompareDocument;
+use super::compare::result::ComparisonDocument;
 use super::meshing::document::MeshingDocument;
 use super::optimise::document::OptimiseDocument;
 use super::plan::document::PlanDocument;
 use super::predict::document::PredictDocument;
+use super::reproduce::document::ReproduceDocument;
 use super::response::ResponseDocument;
 use super::study::document::StudyDocument;
 use super::wire::canonical::{hash, to_value};
@@ -32,7 +37,9 @@ pub fn predict_hash(
         replace(id, content_of);
     }
     if let Some(compare_to) = &mut spec.compare_to {
-        replace(&mut compare_to.actual.mesh, content_of);
+        for (_, id) in compare_to.mesh_references_mut(&Pointer::root()) {
+            replace(id, content_of);
+        }
     }
     hash(json!({
         "case": to_value(&case),
@@ -113,6 +120,35 @@ pub fn compare_hash(spec: &CompareDocument, content_of: &dyn Fn(&str) -> Option<
         replace(id, content_of);
     }
     replace(&mut spec.actual.mesh, content_of);
+    for (_, id) in spec.align.surfaces_mut(&Pointer::root()) {
+        replace(id, content_of);
+    }
+    hash(json!({ "spec": to_value(&spec) }))
+}
+
+/// The hash of a reproduction: contents of meshes in place of their ids, tags left out.
+pub fn reproduce_hash(
+    spec: &ReproduceDocument,
+    content_of: &dyn Fn(&str) -> Option<String>,
+) -> String {
+    let mut spec = spec.clone();
+    spec.tags.clear();
+    for (_, id) in spec.mesh_references_mut() {
+        replace(id, content_of);
+    }
+    hash(json!({ "spec": to_value(&spec) }))
+}
+
+/// The hash of a cohort: what the comparisons found in place of their ids, tags left out.
+pub fn cohort_hash(
+    spec: &CohortDocument,
+    comparisons: &BTreeMap<String, ComparisonDocument>,
+) -> String {
+    let mut spec = spec.clone();
+    spec.tags.clear();
+    for job in spec.groups.values_mut().flatten() {
+        *job = hash(json!({ "comparison": comparisons.get(job).map(to_value) }));
+    }
     hash(json!({ "spec": to_value(&spec) }))
 }
 
@@ -152,6 +188,7 @@ pub fn response_key(
     case.name = None;
     case.tags.clear();
     case.landmarks.clear();
+    case.bone_landmarks.clear();
     case.skin_regions.clear();
     for (_, id) in case.mesh_references_mut() {
         replace(id, content_of);

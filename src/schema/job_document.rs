@@ -7,10 +7,12 @@ use serde_json::Value;
 use utoipa::ToSchema;
 
 use crate::schema::code::ErrorCode;
+use crate::schema::cohort::document::CohortDocument;
 use crate::schema::compare::document::CompareDocument;
 use crate::schema::meshing::document::MeshingDocument;
 use crate::schema::optimise::document::OptimiseDocument;
 use crate::schema::predict::document::PredictDocument;
+use crate::schema::reproduce::document::ReproduceDocument;
 use crate::schema::response::ResponseDocument;
 use crate::schema::study::document::StudyDocument;
 use crate::schema::wire::fault::{Faults, Pointer};
@@ -61,6 +63,8 @@ job_kinds! {
     Compare, "compare", CompareDocument, 0, false;
     Response, "response", ResponseDocument, 0, false;
     Optimise, "optimise", OptimiseDocument, 0, false;
+    Reproduce, "reproduce", ReproduceDocument, 0, false;
+    Cohort, "cohort", CohortDocument, 0, false;
     Mesh, "mesh", MeshingDocument, 0, false;
     Study, "study", StudyDocument, 1, true;
     Batch, "batch", StudyDocument, 1, true;
@@ -130,6 +134,8 @@ pub enum JobDocument {
     Compare(CompareDocument),
     Response(ResponseDocument),
     Optimise(OptimiseDocument),
+    Reproduce(ReproduceDocument),
+    Cohort(CohortDocument),
     Mesh(MeshingDocument),
     Study(StudyDocument),
 }
@@ -143,6 +149,8 @@ impl JobDocument {
             JobDocument::Compare(_)
             | JobDocument::Response(_)
             | JobDocument::Optimise(_)
+            | JobDocument::Reproduce(_)
+            | JobDocument::Cohort(_)
             | JobDocument::Study(_) => false,
         }
     }
@@ -160,6 +168,8 @@ impl JobDocument {
             JobKind::Compare => strict::from_value(value).map(JobDocument::Compare),
             JobKind::Response => strict::from_value(value).map(JobDocument::Response),
             JobKind::Optimise => strict::from_value(value).map(JobDocument::Optimise),
+            JobKind::Reproduce => strict::from_value(value).map(JobDocument::Reproduce),
+            JobKind::Cohort => strict::from_value(value).map(JobDocument::Cohort),
             JobKind::Mesh => strict::from_value(value).map(JobDocument::Mesh),
             JobKind::Study | JobKind::Batch => strict::from_value(value).map(JobDocument::Study),
         }

@@ -96,6 +96,7 @@ impl From<&ComparisonError> for ErrorCode {
                 ErrorCode::AlignmentFailed
             }
             ComparisonError::EmptyRegion { .. } => ErrorCode::EmptyRegion,
+            ComparisonError::NoDisplacement { .. } => ErrorCode::NoDisplacement,
             ComparisonError::NotCorresponding { .. } => ErrorCode::NotCorresponding,
             ComparisonError::TooManySamples { .. } => ErrorCode::TooManySamples,
             ComparisonError::Statistics(_) => ErrorCode::MeshDegenerate,
@@ -225,6 +226,7 @@ mod tests {
             ComparisonError::Alignment(AlignmentError::EmptyMask),
             ComparisonError::LandmarkOutside { which, pair: 0, distance: 1.0 },
             ComparisonError::EmptyRegion { name: String::new() },
+            ComparisonError::NoDisplacement { region: String::new() },
             ComparisonError::NotCorresponding { prediction: 1, actual: 2 },
             ComparisonError::TooManySamples { samples: 2.0, allowed: 1.0 },
             ComparisonError::Statistics(StatisticsError::Empty),

@@ -300,6 +300,23 @@ fn alignment_takes_back_a_rigid_movement() {
     let aligned = compare("icp");
     assert!(aligned.both.max < 1e-6, "{}", aligned.both.max);
     assert!((aligned.unaligned.unwrap().both.mean - 2.0).abs() < 1e-12);
+    // A file says what arguments do not, with paths from its own folder.
+    let spec = r#"{"kind":"compare","prediction":{"mesh":"lifted.stl"},"actual":{"mesh":"lifted.stl"},
+        "align":{"method":"matrix","matrix4x4":[1,0,0,0,0,1,0,0,0,0,1,-2,0,0,0,1]},"histogram_edges_mm":[0,1]}"#;
+    let (file, out) = (folder.path().join("spec.json"), folder.path().join("by file"));
+    fs::write(&file, spec).unwrap();
+    let done = facies(&[
+        "compare",
+        "--spec",
+        path(&file),
+        "--prediction",
+        path(&plate),
+        "--out",
+        path(&out),
+    ]);
+    assert_eq!(done.status.code(), Some(0), "{}", text(&done.stderr));
+    let by_file = result(&out).comparison.unwrap();
+    assert!(by_file.both.max < 1e-12 && by_file.histogram.unwrap().unsigned.shares == [1.0]);
 }
 
 /// A block of 40 x 20 x 10 mm with its documents.

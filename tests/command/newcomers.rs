@@ -255,8 +255,22 @@ fn the_help_lists_every_command_once_in_its_group_and_arguments_in_theirs() {
         assert!(help.contains(heading), "{help}");
     }
     let commands = [
-        "demo", "check", "predict", "response", "optimise", "compare", "study", "serve", "worker",
-        "migrate", "admin", "config", "health", "openapi",
+        "demo",
+        "check",
+        "predict",
+        "response",
+        "optimise",
+        "reproduce",
+        "compare",
+        "cohort",
+        "study",
+        "serve",
+        "worker",
+        "migrate",
+        "admin",
+        "config",
+        "health",
+        "openapi",
     ];
     for command in commands {
         let lines = help.lines().filter(|line| line.starts_with(&format!("  {command} ")));

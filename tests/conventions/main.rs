@@ -13,7 +13,7 @@ use std::path::Path;
 use source::{Crate, Module, rust_files};
 
 /// Modules of the numerics, and those that each may use.
-const MECHANICS: [(&str, &[&str]); 23] = [
+const MECHANICS: [(&str, &[&str]); 24] = [
     ("rows", &[]),
     ("progress", &[]),
     ("mesh", &["rows"]),
@@ -25,6 +25,7 @@ const MECHANICS: [(&str, &[&str]); 23] = [
     ("domain", &["mesh", "image"]),
     ("meshing", &["mesh", "domain", "progress", "rows"]),
     ("landmarks", &["mesh"]),
+    ("cephalometry", &["mesh"]),
     ("osteotomy", &["mesh", "image", "domain"]),
     ("anatomy", &["mesh", "image", "domain", "meshing", "osteotomy", "landmarks", "progress"]),
     ("plan", &["mesh"]),

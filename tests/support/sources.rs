@@ -22,6 +22,7 @@ pub fn stored(shape: StoredShape, frame: Option<Frame>) -> StoredMesh {
     let units = (!matches!(shape, StoredShape::Image(_))).then_some(LengthUnit::Mm);
     StoredMesh {
         shape,
+        of_points: Default::default(),
         frame,
         units,
         warnings: Vec::new(),

@@ -28,15 +28,20 @@ export function button(text: string, clicked: () => void, attributes: Attributes
   return element;
 }
 
+/** What may be wider than its place, to be scrolled by keys too. */
+export function scrolling(label: string, ...children: Child[]): HTMLElement {
+  return make("div", { className: "scroll", tabIndex: 0, role: "region", aria: { label } }, ...children);
+}
+
 /** A table with a head; numbers stand to the right. */
-export function table(caption: string, head: string[], rows: (string | number)[][]): HTMLTableElement {
+export function table(caption: string, head: string[], rows: (string | number)[][]): HTMLElement {
   const cell = (value: string | number, at: number) => (at === 0
     ? make("th", { scope: "row" }, String(value))
     : make("td", {}, String(value)));
-  return make("table", {},
+  return scrolling(caption, make("table", {},
     make("caption", {}, caption),
     make("thead", {}, make("tr", {}, ...head.map((text) => make("th", { scope: "col" }, text)))),
-    make("tbody", {}, ...rows.map((row) => make("tr", {}, ...row.map(cell)))));
+    make("tbody", {}, ...rows.map((row) => make("tr", {}, ...row.map(cell))))));
 }
 
 /** A choice of one of several, as buttons side by side. */

@@ -5,6 +5,8 @@
 //! different values is a label array. Real arrays of three components are vectors. The rest is ignored,
 //! and the mesh says which and why.
 
+use std::collections::BTreeMap;
+
 use super::error::FormatError;
 use super::limits::ReadLimits;
 use super::scalar::Scalar;
@@ -14,8 +16,19 @@ use crate::mesh::{IgnoredArrays, TriangleSurface, ValuesOf, Vector, VolumeMesh, 
 /// have: reports list them.
 const FULL_LABEL_ARRAYS: u64 = 16;
 
-const OF_A_SURFACE: &str =
-    "belongs to a surface, of which only the integer point array `node_id` is read";
+const OF_A_SURFACE: &str = "belongs to a surface, of whose arrays a stored mesh keeps only the integer point array `node_id`";
+
+/// The point array of a predicted surface that says how far each point was moved, in mm.
+pub const DISPLACEMENT: &str = "displacement_mm";
+
+/// What the file of a surface says of its points beside where they are. Comparisons read it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SurfaceArrays {
+    /// How far each point was moved, in mm: the vectors [`DISPLACEMENT`].
+    pub displacement: Option<Vec<Vector>>,
+    /// Ascending points by the names of arrays `set_NAME`.
+    pub sets: BTreeMap<String, Vec<u32>>,
+}
 
 /// The values of an array, one or three for each point or cell.
 #[derive(Clone, Debug, PartialEq)]
@@ -102,9 +115,11 @@ impl Arrays {
         ignored
     }
 
-    /// Moves every array of a surface to its place: only `node_id` has one.
-    pub fn move_to_surface(&mut self, surface: &mut TriangleSurface) {
+    /// Moves every array of a surface to its place: of its own it has only `node_id`.
+    pub fn move_to_surface(&mut self, surface: &mut TriangleSurface) -> SurfaceArrays {
+        let mut beside = SurfaceArrays::default();
         for array in self.points.drain(..) {
+            beside.note(&array);
             let node_ids = match array.values {
                 Values::Integers(values) if array.name.trim() == "node_id" => as_nodes(&values),
                 _ => None,
@@ -117,6 +132,7 @@ impl Arrays {
         for array in self.cells.drain(..) {
             self.ignored.add(ValuesOf::Cells, &array.name, OF_A_SURFACE.to_owned());
         }
+        beside
     }
 
     /// Moves every array of a volume mesh to its place.
@@ -227,6 +243,24 @@ impl Arrays {
     }
 }
 
+impl SurfaceArrays {
+    fn note(&mut self, array: &NamedArray) {
+        let name = array.name.trim();
+        match &array.values {
+            Values::Vectors(vectors) if name == DISPLACEMENT => {
+                let is_whole = vectors.iter().all(|vector| is_finite(*vector));
+                self.displacement = is_whole.then(|| vectors.clone());
+            }
+            Values::Integers(values) => {
+                if let Some(set) = set_name(name, "set_") {
+                    self.sets.insert(set.to_owned(), members(values));
+                }
+            }
+            Values::Vectors(_) => {}
+        }
+    }
+}
+
 pub(super) fn is_finite(vector: Vector) -> bool {
     vector.iter().all(|component| component.is_finite())
 }
@@ -278,7 +312,7 @@ pub(super) fn checked_name(name: &str, limits: &ReadLimits) -> Result<String, Fo
 
 /// Adds a set or an array under a name that must not be taken.
 pub(super) fn insert<T>(
-    named: &mut std::collections::BTreeMap<String, T>,
+    named: &mut BTreeMap<String, T>,
     name: String,
     values: T,
 ) -> Result<(), FormatError> {

@@ -1,5 +1,6 @@
 //! The formats that are read, and what a file becomes.
 
+use super::arrays::SurfaceArrays;
 use crate::image::ImageVolume;
 use crate::mesh::{Frame, IgnoredArrays, TriangleSurface, VolumeMesh, Warning};
 
@@ -71,5 +72,7 @@ pub struct ReadMesh {
     pub frame: Option<Frame>,
     /// Arrays that nothing reads; a volume mesh keeps them as well.
     pub ignored: IgnoredArrays,
+    /// Of a surface; nothing of others.
+    pub of_points: SurfaceArrays,
     pub warnings: Vec<Warning>,
 }

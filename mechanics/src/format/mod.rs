@@ -30,6 +30,7 @@ pub mod stl;
 mod surface_cleaning;
 mod voxels;
 pub mod vtk;
+pub use arrays::{DISPLACEMENT, SurfaceArrays};
 pub use error::{FormatError, Member, Place};
 pub use file::{Mesh, MeshFormat, ReadMesh};
 pub use limits::ReadLimits;

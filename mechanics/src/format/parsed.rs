@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::arrays::{Arrays, checked_name, insert, is_finite};
+use super::arrays::{Arrays, SurfaceArrays, checked_name, insert, is_finite};
 use super::error::{FormatError, Offenders};
 use super::limits::ReadLimits;
 use super::surface_cleaning::clean;
@@ -86,8 +86,9 @@ impl Parsed {
         self.check_coordinates()?;
         self.check_indices()?;
         self.warn_of_cut_polygons();
+        let mut of_points = SurfaceArrays::default();
         let mesh = if self.cells.is_empty() {
-            Mesh::Surface(self.take_surface()?)
+            Mesh::Surface(self.take_surface(&mut of_points)?)
         } else {
             Mesh::Volume(self.take_volume(limits)?)
         };
@@ -95,7 +96,8 @@ impl Parsed {
             Mesh::Volume(volume) => volume.ignored.clone(),
             Mesh::Surface(_) | Mesh::Image(_) => self.arrays.take_ignored(limits),
         };
-        Ok(ReadMesh { format, mesh, frame: self.frame, ignored, warnings: self.warnings })
+        let (frame, warnings) = (self.frame, self.warnings);
+        Ok(ReadMesh { format, mesh, frame, ignored, of_points, warnings })
     }
 
     fn empty(&self) -> FormatError {
@@ -164,13 +166,16 @@ impl Parsed {
         }
     }
 
-    fn take_surface(&mut self) -> Result<TriangleSurface, FormatError> {
+    fn take_surface(
+        &mut self,
+        of_points: &mut SurfaceArrays,
+    ) -> Result<TriangleSurface, FormatError> {
         let mut surface = TriangleSurface {
             points: std::mem::take(&mut self.points),
             triangles: std::mem::take(&mut self.triangles),
             node_ids: None,
         };
-        self.arrays.move_to_surface(&mut surface);
+        *of_points = self.arrays.move_to_surface(&mut surface);
         for (name, _) in self.node_sets.drain(..) {
             self.arrays.ignore_of_surface(ValuesOf::Points, &name);
         }

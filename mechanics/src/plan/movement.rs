@@ -1,6 +1,6 @@
 //! Rigid movements x' = R x + t, right-handed and active (docs/methods.md#boundary-conditions).
 
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, Rotation3};
 
 use crate::mesh::Vector;
 
@@ -15,6 +15,13 @@ const RIGID_TOLERANCE: f64 = 1e-6;
 pub struct RigidMovement {
     rotation: Matrix3<f64>,
     translation: Vector,
+}
+
+/// What a movement is restricted to: a direction, or the plane across one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Restriction {
+    Axis(Vector),
+    Plane(Vector),
 }
 
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -75,6 +82,23 @@ impl RigidMovement {
 
     pub fn rotation(&self) -> &Matrix3<f64> {
         &self.rotation
+    }
+
+    /// What an axis or a plane leaves of a movement about `pivot`: the shift along it, and the turn about the axis or
+    /// about the normal of the plane.
+    pub fn restricted(&self, pivot: &Vector, to: Restriction) -> RigidMovement {
+        let direction = match to {
+            Restriction::Axis(direction) | Restriction::Plane(direction) => direction.normalize(),
+        };
+        let shift = self.displacement(pivot);
+        let along = direction * shift.dot(&direction);
+        let shift = match to {
+            Restriction::Axis(_) => along,
+            Restriction::Plane(_) => shift - along,
+        };
+        let turn = Rotation3::from_matrix_unchecked(self.rotation).scaled_axis();
+        let turn = Rotation3::new(direction * turn.dot(&direction));
+        RigidMovement::about_centre(*turn.matrix(), pivot, shift)
     }
 
     /// The displacement of the origin, in mm.
@@ -191,6 +215,26 @@ mod tests {
             Err(MovementError::NotOrthonormal { .. })
         ));
         assert!(matches!(RigidMovement::new(mirrored, zero), Err(MovementError::Mirrors { .. })));
+    }
+
+    #[test]
+    fn a_restricted_movement_keeps_the_shift_and_the_turn_that_are_left_to_it() {
+        let pivot = Vector::new(3.0, 40.0, -50.0);
+        let direction = Vector::new(0.0, 3.0, 4.0);
+        let unit = direction / 5.0;
+        let along = sample().restricted(&pivot, Restriction::Axis(direction));
+        let shift = along.displacement(&pivot);
+        assert!((shift - unit * Vector::new(1.5, -0.7, 5.0).dot(&unit)).norm() < 1e-12);
+        // What lies on the axis slides along it.
+        assert!(along.displacement(&(pivot + unit * 30.0)).cross(&unit).norm() < 1e-12);
+        let within = sample().restricted(&pivot, Restriction::Plane(direction));
+        assert!(within.displacement(&pivot).dot(&unit).abs() < 1e-12);
+        // And every point stays in its plane.
+        assert!(within.displacement(&Vector::new(70.0, -9.0, 12.0)).dot(&unit).abs() < 1e-12);
+        assert!(along.angle() > 0.01 && (along.angle() - within.angle()).abs() < 1e-12);
+        // What moves so already is left as it is.
+        let again = along.restricted(&pivot, Restriction::Axis(direction));
+        assert!((again.rotation - along.rotation).amax() < 1e-12);
     }
 
     #[test]

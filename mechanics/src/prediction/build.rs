@@ -76,9 +76,7 @@ impl Scene {
         };
         check.method(settings, plan);
         check.problems.give_up_if_any()?;
-        check.add_loads(plan, &mut scene);
-        check.muscles(&mut scene);
-        check.add_inner_stress(plan, &mut scene);
+        check.add_what_acts(plan, &mut scene);
 
         // 4. What cannot be solved, and what a reader must know.
         check.support(&scene, &part_of_cell);

@@ -1,6 +1,6 @@
 //! The checks that turn a stated case and plan into a scene: tissue, skin, loads, support.
 
-use std::collections::{BTreeMap, HashMap, HashSet};
+use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
 use super::case::{Case, Load, Plan, RegionNames, Settings};
 use super::element_choice::ElementChoice;
@@ -11,7 +11,7 @@ use super::skin::{self, Skin};
 use super::stated::StatedCondition;
 use crate::boundary::conditions::combine;
 use crate::boundary::support::loose_parts;
-use crate::boundary::{Conditions, HeldNodes, NodeClass, NodeSelection, Selector};
+use crate::boundary::{Conditions, HeldNodes, Hold, NodeClass, NodeSelection, Selector};
 use crate::material::LinearElastic;
 use crate::mesh::ignored::listed;
 use crate::mesh::volume::BoundaryFace;
@@ -233,7 +233,14 @@ impl<'a> Check<'a> {
         }
     }
 
-    pub(super) fn add_loads(&mut self, plan: &Plan, scene: &mut Scene) {
+    /// Loads, muscles and growth.
+    pub(super) fn add_what_acts(&mut self, plan: &Plan, scene: &mut Scene) {
+        self.add_loads(plan, scene);
+        self.muscles(scene);
+        self.add_inner_stress(plan, scene);
+    }
+
+    fn add_loads(&mut self, plan: &Plan, scene: &mut Scene) {
         if plan.loads.is_empty() {
             return;
         }
@@ -247,19 +254,25 @@ impl<'a> Check<'a> {
             let pointer = format!("/plan/loads/{index}");
             match load {
                 Load::Force { nodes, force } => {
-                    for node in self.select(nodes, &format!("{pointer}/nodes")) {
-                        forces[node as usize] += force;
-                    }
+                    let nodes = self.select(nodes, &format!("{pointer}/nodes"));
+                    nodes.iter().for_each(|&node| forces[node as usize] += force);
+                    self.warnings.extend(load_on_held(&nodes, &scene.conditions.holds, &pointer));
                 }
                 Load::Traction { faces, traction } => {
                     let faces = self.loaded_faces(faces, &pointer);
                     let load = FaceLoad::Traction(*traction);
+                    let nodes: Vec<u32> =
+                        faces.iter().flat_map(BoundaryFace::nodes).copied().collect();
+                    self.warnings.extend(load_on_held(&nodes, &scene.conditions.holds, &pointer));
                     self.face_load(&faces, load, edges, &mut forces);
                     scene.distributed.faces.push((faces, load));
                 }
                 Load::Pressure { faces, pressure } => {
                     let faces = self.loaded_faces(faces, &pointer);
                     let load = FaceLoad::Pressure(*pressure);
+                    let nodes: Vec<u32> =
+                        faces.iter().flat_map(BoundaryFace::nodes).copied().collect();
+                    self.warnings.extend(load_on_held(&nodes, &scene.conditions.holds, &pointer));
                     self.face_load(&faces, load, edges, &mut forces);
                     scene.distributed.faces.push((faces, load));
                 }
@@ -321,6 +334,15 @@ impl<'a> Check<'a> {
             self.problems.add("/case", SceneErrorCode::Underconstrained, detail);
         }
     }
+}
+
+/// The warning of a load all of whose nodes are held, so that it moves nothing.
+fn load_on_held(nodes: &[u32], holds: &[Hold], pointer: &str) -> Option<Warning> {
+    let held: BTreeSet<u32> =
+        holds.iter().filter(|hold| hold.count() == 3).map(|hold| hold.node).collect();
+    let all = !nodes.is_empty() && nodes.iter().all(|node| held.contains(node));
+    let detail = format!("the load at {pointer} acts on held nodes alone: it moves nothing");
+    all.then(|| Warning::new("load-on-held", detail).with("nodes", nodes.len() as f64))
 }
 
 /// Region names in the order of the values, and the region of each value: values that share a name

@@ -19,7 +19,7 @@
 use nalgebra::{Matrix6, Rotation3, Vector6};
 use rayon::prelude::*;
 
-use super::{AlignmentError, Place, RigidTransform};
+use super::{AlignmentError, Place, RigidTransform, Start};
 use crate::mesh::closest_point::Feature;
 use crate::mesh::{SurfaceSearch, TriangleSurface, Vector, area_sampling};
 use crate::progress::Progress;
@@ -51,6 +51,9 @@ const LIMIT_BY_MEDIAN: f64 = 9.0 * 1.4826 * 1.4826;
 /// In mm: points nearer than this have no direction between them.
 const SAME_PLACE: f64 = 1e-6;
 
+/// In mm: what is left beyond this does not fit.
+pub const FAR: f64 = 1.0;
+
 /// Damping relative to the mean stiffness: where it starts, and where no step is left.
 const FIRST_DAMPING: f64 = 1e-3;
 const LAST_DAMPING: f64 = 1e6;
@@ -60,6 +63,7 @@ const LAST_DAMPING: f64 = 1e6;
 pub struct IterativeClosestPoint {
     /// Only the part of the fixed surface in it decides.
     pub mask: Option<Place>,
+    pub start: Start,
     /// The iteration ends when the mean squared distance changes by less than this share.
     pub relative_change: f64,
     pub max_iterations: usize,
@@ -67,7 +71,8 @@ pub struct IterativeClosestPoint {
 
 impl Default for IterativeClosestPoint {
     fn default() -> Self {
-        IterativeClosestPoint { mask: None, relative_change: 1e-6, max_iterations: 200 }
+        let start = Start::AsItLies;
+        IterativeClosestPoint { mask: None, start, relative_change: 1e-6, max_iterations: 200 }
     }
 }
 
@@ -81,6 +86,8 @@ pub struct SurfaceAlignment {
     /// Points of the fixed surface, and how many of them counted in the end.
     pub points: usize,
     pub pairs: usize,
+    /// Share of the points with something opposite that are left more than [`FAR`] from it, 0 to 1.
+    pub share_far: f64,
 }
 
 /// A point of the fixed surface, and the closest one of the moving surface as it lies.
@@ -108,7 +115,7 @@ pub(super) struct Ended {
 }
 
 impl IterativeClosestPoint {
-    /// Moves `moving` onto `fixed`. Surfaces whose boxes do not touch start with their middles together.
+    /// Moves `moving` onto `fixed`.
     pub fn align(
         &self,
         fixed: &TriangleSurface,
@@ -116,7 +123,7 @@ impl IterativeClosestPoint {
         progress: &dyn Progress,
     ) -> Result<SurfaceAlignment, AlignmentError> {
         let search = SurfaceSearch::new(moving)?;
-        let start = starting_transform(fixed, moving);
+        let start = self.start.transform(fixed, moving, &search);
         let coarse = StopRule {
             relative_change: COARSE_CHANGE,
             max_iterations: COARSE_ITERATIONS.min(self.max_iterations),
@@ -195,6 +202,11 @@ impl State {
         sum + limit * (self.points - self.pairs.len()) as f64
     }
 
+    fn share_far(&self) -> f64 {
+        let far = self.pairs.iter().filter(|pair| pair.squared_distance > FAR * FAR).count();
+        far as f64 / self.pairs.len().max(1) as f64
+    }
+
     /// How many pairs count, and their mean squared distance.
     fn mean(&self, limit: f64) -> Result<(usize, f64), AlignmentError> {
         let pairs = self.counting(limit).count();
@@ -223,7 +235,9 @@ pub(super) fn iterate(
         let has_converged = is_still || damping > LAST_DAMPING || mean <= rounding * rounding;
         if has_converged || iterations >= stop.max_iterations {
             let (transform, rms, points) = (state.transform, mean.sqrt(), points.len());
-            let alignment = SurfaceAlignment { transform, iterations, rms, points, pairs };
+            let share_far = state.share_far();
+            let alignment =
+                SurfaceAlignment { transform, iterations, rms, points, pairs, share_far };
             return Ok(Ended { alignment, change, has_converged });
         }
         if progress.is_cancelled() {
@@ -315,16 +329,4 @@ fn middle_and_radius(points: &[Vector]) -> (Vector, f64) {
     let middle = points[0] + offsets.sum::<Vector>() / count;
     let squares = points.iter().map(|point| (point - middle).norm_squared());
     (middle, (squares.sum::<f64>() / count).sqrt().max(f64::MIN_POSITIVE))
-}
-
-/// None, or where the boxes around the surfaces do not touch, the shift that joins their middles.
-fn starting_transform(fixed: &TriangleSurface, moving: &TriangleSurface) -> RigidTransform {
-    let [(low, high), (moving_low, moving_high)] = [fixed, moving].map(TriangleSurface::bounds);
-    let touches =
-        (0..3).all(|axis| low[axis] <= moving_high[axis] && moving_low[axis] <= high[axis]);
-    let mut start = RigidTransform::identity();
-    if !touches {
-        start.translation = (low + high - moving_low - moving_high) * 0.5;
-    }
-    start
 }

@@ -2,12 +2,17 @@
 
 pub mod closest_point;
 pub mod mirror;
+pub mod performed;
 mod place;
 mod rigid;
+mod start;
+pub mod thin_plate_spline;
 
 pub use closest_point::{IterativeClosestPoint, SurfaceAlignment};
 pub use place::Place;
 pub use rigid::{PointAlignment, RigidTransform, align_points, align_weighted_points};
+pub use start::Start;
+pub use thin_plate_spline::ThinPlateSpline;
 
 use crate::mesh::SearchError;
 
@@ -30,6 +35,12 @@ pub enum AlignmentError {
         "pair {pair} has a coordinate or a weight that is not a finite number, or a negative weight"
     )]
     NotFinite { pair: usize },
+    #[error("{points} landmarks do not determine a map of space, {needed} are needed")]
+    FewLandmarks { points: usize, needed: usize },
+    #[error(
+        "the landmarks lie in a plane or nearly so: they are {thickness:.3e} mm thick and {length:.3e} mm long"
+    )]
+    Coplanar { thickness: f64, length: f64 },
     #[error("no part of the fixed surface lies in the mask")]
     EmptyMask,
     #[error("only {pairs} of {points} points of the fixed surface lie opposite the moving one")]

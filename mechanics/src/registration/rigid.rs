@@ -60,6 +60,14 @@ impl RigidTransform {
         twice_sine.norm().atan2(r.trace() - 1.0)
     }
 
+    /// Of a row-major matrix that is known to be rigid.
+    pub fn from_matrix4(entries: &[f64; 16]) -> Self {
+        RigidTransform {
+            rotation: Matrix3::from_fn(|row, column| entries[4 * row + column]),
+            translation: Vector::new(entries[3], entries[7], entries[11]),
+        }
+    }
+
     /// Row-major, with last row 0 0 0 1.
     pub fn matrix4(&self) -> [f64; 16] {
         let (r, t) = (&self.rotation, &self.translation);

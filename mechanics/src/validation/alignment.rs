@@ -1,10 +1,13 @@
-//! The actual surface onto the prediction: not at all, by landmarks, or by iterative closest point.
+//! The actual surface onto the prediction: not at all, as somebody else found, by landmarks, or by iterative closest
+//! point of itself or of bone that was scanned with it.
 
 use super::error::ComparisonError;
 use crate::mesh::{TriangleSurface, Vector, Warning};
 use crate::progress::Progress;
 use crate::registration::mirror::{MirrorCheck, check_mirror};
-use crate::registration::{IterativeClosestPoint, Place, RigidTransform, align_points};
+use crate::registration::{
+    IterativeClosestPoint, Place, RigidTransform, Start, SurfaceAlignment, align_points,
+};
 
 /// A landmark may lie outside the box around its surface by this share of the box's diagonal.
 const MARGIN: f64 = 0.1;
@@ -13,20 +16,41 @@ const MARGIN: f64 = 0.1;
 #[derive(Clone, Debug, PartialEq)]
 pub enum Alignment {
     None,
+    /// The movement of the actual surface is known.
+    Matrix(RigidTransform),
     Landmarks(Vec<LandmarkPair>),
     /// Only the part of the prediction in the mask decides.
     ClosestPoint {
         mask: Option<Place>,
     },
+    /// Other surfaces decide, such as bone of both scans; the actual surface goes along.
+    Surfaces(Box<BoneSurfaces>),
+}
+
+/// Surfaces that were scanned with those that are compared.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BoneSurfaces {
+    /// In the frame of the prediction.
+    pub fixed: TriangleSurface,
+    /// In the frame of the actual surface.
+    pub moving: TriangleSurface,
+    /// Only the part of the fixed one in it decides.
+    pub mask: Option<Place>,
+    pub start: Start,
 }
 
 impl Alignment {
+    pub(super) const ICP: &'static str = "icp";
+    pub(super) const SURFACES: &'static str = "surfaces";
+
     /// The word of the documents.
     pub fn name(&self) -> &'static str {
         match self {
             Alignment::None => "none",
+            Alignment::Matrix(_) => "matrix",
             Alignment::Landmarks(_) => "landmarks",
-            Alignment::ClosestPoint { .. } => "icp",
+            Alignment::ClosestPoint { .. } => Alignment::ICP,
+            Alignment::Surfaces(_) => Alignment::SURFACES,
         }
     }
 }
@@ -53,8 +77,18 @@ pub struct AlignmentReport {
     pub rms: Option<f64>,
     /// How many pairs decided.
     pub pairs: usize,
+    /// Of what decided, the share that is left more than 1 mm away, 0 to 1; of iterative closest point only.
+    pub share_far: Option<f64>,
     /// What landmarks would leave if they were mirrored as well, in mm.
     mirrored_rms: Option<f64>,
+}
+
+impl AlignmentReport {
+    fn decided_by(&mut self, found: &SurfaceAlignment) {
+        (self.transform, self.rms) = (found.transform, Some(found.rms));
+        (self.iterations, self.pairs) = (found.iterations, found.pairs);
+        self.share_far = Some(found.share_far);
+    }
 }
 
 pub(super) fn align(
@@ -71,10 +105,12 @@ pub(super) fn align(
         iterations: 0,
         rms: None,
         pairs: 0,
+        share_far: None,
         mirrored_rms: None,
     };
     match alignment {
         Alignment::None => return Ok(report),
+        Alignment::Matrix(transform) => report.transform = *transform,
         Alignment::Landmarks(pairs) => {
             let (to, from): (Vec<Vector>, Vec<Vector>) =
                 pairs.iter().map(|pair| (pair.prediction, pair.actual)).unzip();
@@ -86,9 +122,12 @@ pub(super) fn align(
         }
         Alignment::ClosestPoint { mask } => {
             let method = IterativeClosestPoint { mask: *mask, ..IterativeClosestPoint::default() };
-            let found = method.align(prediction, actual, progress)?;
-            (report.transform, report.rms) = (found.transform, Some(found.rms));
-            (report.iterations, report.pairs) = (found.iterations, found.pairs);
+            report.decided_by(&method.align(prediction, actual, progress)?);
+        }
+        Alignment::Surfaces(bones) => {
+            let (mask, start) = (bones.mask, bones.start);
+            let method = IterativeClosestPoint { mask, start, ..IterativeClosestPoint::default() };
+            report.decided_by(&method.align(&bones.fixed, &bones.moving, progress)?);
         }
     }
     let middle = middle_of_box(actual);
@@ -106,12 +145,15 @@ pub(super) fn mirror_warning(
 ) -> Option<Warning> {
     let landmarks = report.rms.zip(report.mirrored_rms);
     let landmarks = landmarks.map(|(rms, mirrored_rms)| MirrorCheck { rms, mirrored_rms });
-    let mask = match alignment {
-        Alignment::ClosestPoint { mask } => mask.as_ref(),
-        Alignment::None | Alignment::Landmarks(_) => None,
+    let (fixed, moving, mask) = match alignment {
+        Alignment::ClosestPoint { mask } => (prediction, actual, mask.as_ref()),
+        Alignment::Surfaces(bones) => (&bones.fixed, &bones.moving, bones.mask.as_ref()),
+        Alignment::None | Alignment::Matrix(_) | Alignment::Landmarks(_) => {
+            (prediction, actual, None)
+        }
     };
     // Surfaces that cannot be aligned are no reason to fail where nobody asked for it.
-    let surfaces = || check_mirror(prediction, actual, mask, &report.transform).ok();
+    let surfaces = || check_mirror(fixed, moving, mask, &report.transform).ok();
     let check = landmarks.filter(MirrorCheck::looks_mirrored).or_else(surfaces)?;
     check.looks_mirrored().then(|| {
         let detail = format!(

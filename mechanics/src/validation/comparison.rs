@@ -3,20 +3,21 @@
 //! The prediction stays where it is, in the frame of the case, and so do regions and masks; the actual
 //! surface is what an alignment moves.
 
-use super::alignment::{Alignment, AlignmentReport, align, mirror_warning};
-use super::correspondence::corresponding_points;
-use super::distance::{
-    Direction, DistanceError, DistanceStatistics, Distances, Measured, signed_distances,
-};
-use super::error::ComparisonError;
-use super::statistics::{Statistics, StatisticsError};
-use crate::mesh::{SurfaceSearch, TriangleSurface, Warning};
-use crate::progress::Progress;
-use crate::registration::Place;
 use std::collections::BTreeMap;
 
-/// Below this share a scan covers only a part of the prediction, and the reader is told.
-const WHOLE: f64 = 0.95;
+use super::alignment::{Alignment, AlignmentReport, LandmarkPair, align, mirror_warning};
+use super::both_ways::{BothDirections, Coverage, Pair};
+use super::correspondence::corresponding_points;
+use super::distance::signed_distances;
+use super::error::ComparisonError;
+use super::histogram::{Histograms, histograms};
+use super::landmark_errors::{LandmarkError, landmark_errors};
+use super::region::{MovedSurface, Region, region_statistics};
+use super::statistics::Statistics;
+use super::suspicion;
+use super::warped::{WarpedStatistics, warped};
+use crate::mesh::{TriangleSurface, Vector, Warning};
+use crate::progress::Progress;
 
 /// What is compared and how.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,10 +25,16 @@ pub struct ComparisonSettings {
     pub alignment: Alignment,
     /// Measures before the alignment too.
     pub report_unaligned: bool,
-    /// Named parts of space in the frame of the prediction.
-    pub regions: BTreeMap<String, Place>,
+    /// Named parts in the frame of the prediction.
+    pub regions: BTreeMap<String, Region>,
     pub samples_per_mm2: f64,
     pub node_wise: NodeWise,
+    /// The same places on both surfaces, the actual ones before the alignment.
+    pub landmarks: BTreeMap<String, LandmarkPair>,
+    /// Ascending edges of the bins of histograms, in mm; none are made without.
+    pub histogram_edges: Vec<f64>,
+    /// How far each point of the prediction was moved, in mm, where that is known.
+    pub displacement: Option<Vec<Vector>>,
 }
 
 impl Default for ComparisonSettings {
@@ -38,6 +45,9 @@ impl Default for ComparisonSettings {
             regions: BTreeMap::new(),
             samples_per_mm2: 1.0,
             node_wise: NodeWise::Auto,
+            landmarks: BTreeMap::new(),
+            histogram_edges: Vec::new(),
+            displacement: None,
         }
     }
 }
@@ -50,27 +60,6 @@ pub enum NodeWise {
     /// The comparison fails where they do not.
     On,
     Off,
-}
-
-/// Distances from the prediction, from the actual surface, and of both pooled.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BothDirections {
-    pub to_actual: DistanceStatistics,
-    pub to_prediction: DistanceStatistics,
-    pub both: DistanceStatistics,
-}
-
-/// How much of each surface has the other opposite, and distances of that part alone.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Coverage {
-    /// Share of the prediction's area whose closest point is not on an open border of the actual surface.
-    pub of_prediction: f64,
-    /// Share of the actual surface's area, the other way round.
-    pub of_actual: f64,
-    /// From the covered part of the prediction; absent where all or nothing is covered.
-    pub to_actual: Option<DistanceStatistics>,
-    /// From the covered part of the actual surface; absent where all or nothing is covered.
-    pub to_prediction: Option<DistanceStatistics>,
 }
 
 /// Distances between corresponding points in mm.
@@ -92,6 +81,10 @@ pub struct Comparison {
     pub alignment: AlignmentReport,
     pub coverage: Coverage,
     pub node_wise: Option<NodeWiseStatistics>,
+    /// By thin-plate spline and closest point; absent where the landmarks do not allow it.
+    pub warped: Option<WarpedStatistics>,
+    pub landmark_errors: BTreeMap<String, LandmarkError>,
+    pub histograms: Option<Histograms>,
     /// At each point of the prediction; positive where it lies outside the actual surface.
     pub signed_distance: Vec<f64>,
     /// The actual surface where the alignment put it.
@@ -127,16 +120,31 @@ pub fn compare(
     let measured = pair.measure(density, progress)?;
 
     // 4. By region, where both are there, and point by point.
-    let regions = region_statistics(&measured, &settings.regions, &mut warnings)?;
+    let moved =
+        MovedSurface { surface: prediction, displacement: settings.displacement.as_deref() };
+    let regions = region_statistics(moved, &measured, &settings.regions, &mut warnings)?;
     let coverage = measured.coverage(&mut warnings)?;
     let node_wise = node_wise(prediction, &aligned_actual, settings.node_wise)?;
+    let transform = &alignment.transform;
+    let landmarks = landmark_errors(&settings.landmarks, transform);
+    let warped = warped(&pair, &settings.landmarks, transform, &mut warnings)?;
+
+    // 5. Whether this is the scan that is meant.
+    let distances = measured.statistics()?;
+    warnings.extend(suspicion::facing_inwards(&pair));
+    warnings.extend(suspicion::apart(&alignment, &distances));
+    warnings.extend(suspicion::another_person(&alignment, &distances));
+    warnings.extend(suspicion::before_operation(&moved, &aligned_actual)?);
     Ok(Comparison {
-        distances: measured.statistics()?,
+        distances,
         unaligned,
         regions,
         alignment,
         coverage,
         node_wise,
+        warped,
+        landmark_errors: landmarks,
+        histograms: histograms(&measured, &settings.histogram_edges),
         signed_distance: signed_distances(&prediction.points, &pair.actual_search),
         aligned_actual,
         warnings,
@@ -149,111 +157,6 @@ fn moved(surface: &TriangleSurface, alignment: &AlignmentReport) -> TriangleSurf
         *point = alignment.transform.apply(point);
     }
     moved
-}
-
-/// Two surfaces ready to be measured from each other.
-struct Pair<'a> {
-    prediction: &'a TriangleSurface,
-    actual: &'a TriangleSurface,
-    prediction_search: SurfaceSearch,
-    actual_search: SurfaceSearch,
-}
-
-impl<'a> Pair<'a> {
-    fn new(
-        prediction: &'a TriangleSurface,
-        actual: &'a TriangleSurface,
-    ) -> Result<Self, ComparisonError> {
-        let search = |which: &'static str, surface: &TriangleSurface| {
-            SurfaceSearch::new(surface).map_err(|source| ComparisonError::Surface { which, source })
-        };
-        Ok(Pair {
-            prediction,
-            actual,
-            prediction_search: search("predicted", prediction)?,
-            actual_search: search("actual", actual)?,
-        })
-    }
-
-    fn measure(
-        &self,
-        density: f64,
-        progress: &dyn Progress,
-    ) -> Result<MeasuredPair, DistanceError> {
-        let to_actual = Direction::ToActual(&self.actual_search);
-        let to_prediction = Direction::ToPrediction(&self.prediction_search);
-        Ok(MeasuredPair {
-            to_actual: Distances::measure(self.prediction, to_actual, density, progress)?,
-            to_prediction: Distances::measure(self.actual, to_prediction, density, progress)?,
-        })
-    }
-}
-
-struct MeasuredPair {
-    to_actual: Distances,
-    to_prediction: Distances,
-}
-
-impl MeasuredPair {
-    fn statistics(&self) -> Result<BothDirections, StatisticsError> {
-        Ok(BothDirections {
-            to_actual: self.to_actual.statistics()?,
-            to_prediction: self.to_prediction.statistics()?,
-            both: self.to_actual.pooled(&self.to_prediction).statistics()?,
-        })
-    }
-
-    fn part(&self, belongs: impl Fn(&Measured) -> bool) -> MeasuredPair {
-        MeasuredPair {
-            to_actual: self.to_actual.part(&belongs),
-            to_prediction: self.to_prediction.part(&belongs),
-        }
-    }
-
-    fn coverage(&self, warnings: &mut Vec<Warning>) -> Result<Coverage, StatisticsError> {
-        let covered = self.part(|measured| !measured.is_beyond_border);
-        let of_part = |share: f64, part: &Distances| match share {
-            share if share > 0.0 && share < 1.0 => part.statistics().map(Some),
-            _ => Ok(None),
-        };
-        let of_prediction = self.to_actual.covered_share();
-        let of_actual = self.to_prediction.covered_share();
-        if of_prediction < WHOLE {
-            let percent = of_prediction * 100.0;
-            let detail = format!(
-                "the actual surface covers {percent:.1} % of the prediction: the rest is measured to its border"
-            );
-            warnings.push(Warning::new("partial-coverage", detail).with("share", of_prediction));
-        }
-        Ok(Coverage {
-            of_prediction,
-            of_actual,
-            to_actual: of_part(of_prediction, &covered.to_actual)?,
-            to_prediction: of_part(of_actual, &covered.to_prediction)?,
-        })
-    }
-}
-
-/// A region without any of the prediction is a mistake; one that the scan does not reach is left out.
-fn region_statistics(
-    measured: &MeasuredPair,
-    regions: &BTreeMap<String, Place>,
-    warnings: &mut Vec<Warning>,
-) -> Result<BTreeMap<String, BothDirections>, ComparisonError> {
-    let mut statistics = BTreeMap::new();
-    for (name, place) in regions {
-        let part = measured.part(|measured| place.holds(&measured.point));
-        if !part.to_actual.has_area() {
-            return Err(ComparisonError::EmptyRegion { name: name.clone() });
-        }
-        if part.to_prediction.has_area() {
-            statistics.insert(name.clone(), part.statistics()?);
-        } else {
-            let detail = format!("region `{name}` holds no part of the actual surface");
-            warnings.push(Warning::new("empty-region", detail));
-        }
-    }
-    Ok(statistics)
 }
 
 fn node_wise(

@@ -10,7 +10,8 @@
 use rayon::prelude::*;
 
 use super::statistics::{Statistics, StatisticsError};
-use crate::mesh::{SurfaceSearch, TriangleSurface, Vector, area_sampling};
+use crate::mesh::area_sampling::{self, AreaSample};
+use crate::mesh::{SurfaceSearch, TriangleSurface, Vector};
 use crate::progress::Progress;
 
 /// More samples of one surface are refused.
@@ -23,6 +24,8 @@ const POINTS_AT_A_TIME: usize = 1 << 16;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measured {
     pub point: Vector,
+    /// The triangle of the prediction that it lies on or is nearest to.
+    pub triangle: u32,
     /// The area that it stands for in mm²; zero for a vertex, which counts for the largest distance only.
     pub area: f64,
     pub distance: f64,
@@ -91,18 +94,16 @@ impl Distances {
     ) -> Result<Self, DistanceError> {
         require_possible(from, samples_per_mm2)?;
         let samples = area_sampling::every_triangle(from, samples_per_mm2);
-        let mut places: Vec<(Vector, f64)> =
-            samples.into_iter().map(|sample| (sample.point, sample.area)).collect();
-        places.extend(used_points(from).map(|point| (point, 0.0)));
+        let mut places = samples;
+        places.extend(used_points(from));
         let mut measured = Vec::with_capacity(places.len());
         for places in places.chunks(POINTS_AT_A_TIME) {
             if progress.is_cancelled() {
                 return Err(DistanceError::Cancelled);
             }
             // In the order of the places, whatever the number of threads.
-            measured.par_extend(
-                places.par_iter().with_min_len(256).map(|&(point, area)| measure(point, area, to)),
-            );
+            measured
+                .par_extend(places.par_iter().with_min_len(256).map(|place| measure(place, to)));
         }
         Ok(Distances { measured })
     }
@@ -156,11 +157,12 @@ pub fn signed_distances(points: &[Vector], to: &SurfaceSearch) -> Vec<f64> {
     points
         .par_iter()
         .with_min_len(256)
-        .map(|&point| measure(point, 0.0, Direction::ToActual(to)).signed)
+        .map(|&point| AreaSample { point, triangle: 0, area: 0.0 })
+        .map(|place| measure(&place, Direction::ToActual(to)).signed)
         .collect()
 }
 
-fn measure(point: Vector, area: f64, to: Direction) -> Measured {
+fn measure(&AreaSample { point, triangle, area }: &AreaSample, to: Direction) -> Measured {
     let (search, sign) = match to {
         Direction::ToActual(search) => (search, 1.0),
         // Where the actual surface is outside, the prediction is inside.
@@ -170,6 +172,10 @@ fn measure(point: Vector, area: f64, to: Direction) -> Measured {
     let outside = search.signed_distance(&point, &closest);
     Measured {
         point,
+        triangle: match to {
+            Direction::ToActual(_) => triangle,
+            Direction::ToPrediction(_) => closest.triangle as u32,
+        },
         area,
         distance: closest.distance,
         // Adding zero turns -0 into 0.
@@ -178,11 +184,13 @@ fn measure(point: Vector, area: f64, to: Direction) -> Measured {
     }
 }
 
-/// The points that triangles use, in their order.
-fn used_points(surface: &TriangleSurface) -> impl Iterator<Item = Vector> + '_ {
-    let mut is_used = vec![false; surface.points.len()];
-    for &point in surface.triangles.iter().flatten() {
-        is_used[point as usize] = true;
+/// The points that triangles use, in their order, each with the last of these.
+fn used_points(surface: &TriangleSurface) -> impl Iterator<Item = AreaSample> + '_ {
+    let mut used_by = vec![None; surface.points.len()];
+    for (triangle, corners) in surface.triangles.iter().enumerate() {
+        corners.iter().for_each(|&point| used_by[point as usize] = Some(triangle as u32));
     }
-    surface.points.iter().zip(is_used).filter(|(_, is_used)| *is_used).map(|(point, _)| *point)
+    let points = surface.points.iter().zip(used_by);
+    points
+        .filter_map(|(&point, triangle)| Some(AreaSample { point, triangle: triangle?, area: 0.0 }))
 }

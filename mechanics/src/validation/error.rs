@@ -19,6 +19,10 @@ pub enum ComparisonError {
     #[error("region `{name}` holds no part of the prediction")]
     EmptyRegion { name: String },
     #[error(
+        "region `{region}` is where the skin moved, and the prediction has no point array `displacement_mm`"
+    )]
+    NoDisplacement { region: String },
+    #[error(
         "the surfaces do not correspond: {prediction} and {actual} points, neither node numbers nor triangles agree"
     )]
     NotCorresponding { prediction: usize, actual: usize },
@@ -45,6 +49,7 @@ impl ComparisonError {
                 "alignment-failed"
             }
             ComparisonError::EmptyRegion { .. } => "empty-region",
+            ComparisonError::NoDisplacement { .. } => "no-displacement",
             ComparisonError::NotCorresponding { .. } => "not-corresponding",
             ComparisonError::TooManySamples { .. } => "too-many-samples",
             ComparisonError::Statistics(_) => "mesh-degenerate",

@@ -1,15 +1,26 @@
 //! Prediction against a postoperative scan: distances, statistics, alignment.
 
 pub mod alignment;
+pub mod both_ways;
 pub mod comparison;
 mod correspondence;
 pub mod distance;
 mod error;
+pub mod histogram;
+mod landmark_errors;
 pub mod penetration;
+mod region;
 pub mod statistics;
+mod suspicion;
+mod warped;
 
-pub use alignment::{Alignment, AlignmentReport, LandmarkPair};
+pub use alignment::{Alignment, AlignmentReport, BoneSurfaces, LandmarkPair};
+pub use both_ways::{BothDirections, Coverage};
 pub use comparison::{Comparison, ComparisonSettings, NodeWise, compare};
 pub use distance::{DistanceStatistics, Distances};
 pub use error::ComparisonError;
+pub use histogram::{Histogram, Histograms};
+pub use landmark_errors::LandmarkError;
+pub use region::Region;
 pub use statistics::{Statistics, StatisticsError};
+pub use warped::WarpedStatistics;

@@ -14,7 +14,10 @@ pub struct Statistics {
     pub mean: f64,
     pub sd: f64,
     pub rms: f64,
+    pub min: f64,
+    pub p25: f64,
     pub median: f64,
+    pub p75: f64,
     pub p90: f64,
     pub p95: f64,
     pub p99: f64,
@@ -53,9 +56,11 @@ impl Statistics {
         let rms = mean_of(&|x| x * x).sqrt();
         let mut order: Vec<usize> = (0..values.len()).filter(|&i| weights[i] > 0.0).collect();
         order.sort_unstable_by(|&a, &b| values[a].total_cmp(&values[b]).then(a.cmp(&b)));
-        let [median, p90, p95, p99, max] =
-            percentiles(values, weights, &order, [0.5, 0.9, 0.95, 0.99, 1.0].map(|p| p * total));
-        Ok(Statistics { count: values.len(), mean, sd, rms, median, p90, p95, p99, max })
+        let shares = [0.0, 0.25, 0.5, 0.75, 0.9, 0.95, 0.99, 1.0].map(|share| share * total);
+        let [min, p25, median, p75, p90, p95, p99, max] =
+            percentiles(values, weights, &order, shares);
+        let count = values.len();
+        Ok(Statistics { count, mean, sd, rms, min, p25, median, p75, p90, p95, p99, max })
     }
 }
 

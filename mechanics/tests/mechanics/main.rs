@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod anatomy;
+mod cephalometry;
 mod domain;
 mod format;
 mod golden;
@@ -22,6 +23,7 @@ mod solver;
 mod study;
 #[path = "../support/mod.rs"]
 mod support;
+mod transform_text;
 mod validation;
 
 use support::{domains, samples, scenes, surfaces};

@@ -3,9 +3,10 @@
 use mechanics::mesh::{TriangleSurface, Vector};
 use mechanics::progress::Unobserved;
 use mechanics::registration::mirror::check_mirror;
+use mechanics::registration::performed::{BoneBefore, align_base, performed};
 use mechanics::registration::{
-    AlignmentError, IterativeClosestPoint, Place, RigidTransform, align_points,
-    align_weighted_points,
+    AlignmentError, IterativeClosestPoint, Place, RigidTransform, Start, ThinPlateSpline,
+    align_points, align_weighted_points,
 };
 
 use crate::scenes::StopsAfter;
@@ -239,4 +240,138 @@ fn a_mirrored_scan_looks_mirrored_and_a_moved_one_does_not() {
     // A sphere is its own mirror image.
     let ball = sphere(70.0, Vector::zeros(), 4);
     assert!(!check_mirror(&ball, &ball, None, &start).unwrap().looks_mirrored());
+}
+
+/// METHODS A16: five landmarks of which one is moved across and one along.
+fn bent_landmarks() -> (Vec<Vector>, Vec<Vector>) {
+    let ten = 10.0;
+    let from = [[0.0; 3], [ten, 0.0, 0.0], [0.0, ten, 0.0], [0.0, 0.0, ten], [ten; 3]];
+    let from: Vec<Vector> = from.into_iter().map(Vector::from).collect();
+    let mut to = from.clone();
+    (to[1].y, to[4].x) = (0.5, 11.0);
+    (from, to)
+}
+
+fn assert_at(found: Vector, wanted: [f64; 3]) {
+    assert!((found - Vector::from(wanted)).amax() < 1e-9, "{found} instead of {wanted:?}");
+}
+
+#[test]
+fn a_thin_plate_spline_has_the_numbers_of_another_program() {
+    let (from, to) = bent_landmarks();
+    let spline = ThinPlateSpline::new(&from, &to, 0.0).unwrap();
+    for (place, target) in from.iter().zip(&to) {
+        assert!((spline.apply(place) - target).amax() < 1e-12);
+    }
+    let (a, b) = (0.039_433_756_7, 0.019_716_878_4);
+    let x: Vec<f64> = spline.weights().iter().map(|weight| weight.x).collect();
+    for (found, wanted) in x.iter().zip([-a, b, b, b, -b]) {
+        assert!((found - wanted).abs() < 1e-9, "{x:?}");
+    }
+    assert!(spline.weights().iter().all(|w| (w.y + 0.5 * w.x).abs() < 1e-12 && w.z.abs() < 1e-12));
+    assert_at(spline.apply(&Vector::new(5.0, 5.0, 5.0)), [5.298_248_199_1, 5.100_875_900_5, 5.0]);
+    assert_at(spline.apply(&Vector::new(2.0, 3.0, 4.0)), [2.113_723_967_5, 3.043_138_016_2, 4.0]);
+    assert_at(
+        spline.apply(&Vector::new(20.0, -5.0, 3.0)),
+        [20.359_045_756_6, -4.179_522_878_3, 3.0],
+    );
+}
+
+#[test]
+fn smoothing_a_thin_plate_spline_lowers_its_energy_and_misses_landmarks() {
+    let (from, to) = bent_landmarks();
+    let spline = |smoothing: f64| ThinPlateSpline::new(&from, &to, smoothing).unwrap();
+    let rms = |spline: &ThinPlateSpline| {
+        let missed = from.iter().zip(&to).map(|(a, b)| (spline.apply(a) - b).norm_squared());
+        (missed.sum::<f64>() / from.len() as f64).sqrt()
+    };
+    let smooth = spline(1.0);
+    assert_at(smooth.apply(&Vector::new(5.0, 5.0, 5.0)), [5.300_189_928_5, 5.099_905_035_7, 5.0]);
+    assert!((rms(&smooth) - 0.024_085).abs() < 1e-6, "{}", rms(&smooth));
+    assert!((spline(0.0).bending_energy() - 0.0246).abs() < 5e-5);
+    assert!((smooth.bending_energy() - 0.0184).abs() < 5e-5);
+    // Nothing but the affine map is left in the end.
+    let affine = spline(1e9);
+    assert!((rms(&affine) - 0.176_78).abs() < 1e-5 && affine.bending_energy() < 1e-12);
+}
+
+#[test]
+fn four_landmarks_make_an_affine_map_and_landmarks_in_a_plane_none() {
+    let (from, to) = bent_landmarks();
+    let affine = ThinPlateSpline::new(&from[..4], &to[..4], 0.0).unwrap();
+    assert!(affine.weights().iter().all(|weight| weight.amax() < 1e-12));
+    let flat: Vec<Vector> = from.iter().map(|p| Vector::new(p.x, p.y, 1.0)).collect();
+    let error = ThinPlateSpline::new(&flat, &to, 0.0).unwrap_err();
+    assert!(matches!(error, AlignmentError::Coplanar { .. }), "{error}");
+    let error = ThinPlateSpline::new(&from[..3], &to[..3], 0.0).unwrap_err();
+    assert_eq!(error, AlignmentError::FewLandmarks { points: 3, needed: 4 });
+}
+
+/// Bone of which the lower front was cut off, on triangles of a given fineness.
+struct Skull {
+    base: TriangleSurface,
+    jaw: TriangleSurface,
+}
+
+fn skull(levels: usize) -> Skull {
+    let whole = head(levels);
+    let is_jaw = |t: &[u32; 3]| {
+        let middle = t.iter().map(|&corner| whole.points[corner as usize]).sum::<Vector>() / 3.0;
+        middle.z < -25.0 && middle.y < 10.0
+    };
+    let part = |belongs: bool| {
+        let mut part = whole.clone();
+        part.triangles.retain(|t| is_jaw(t) == belongs);
+        part
+    };
+    Skull { base: part(false), jaw: part(true) }
+}
+
+fn joined(a: &TriangleSurface, b: &TriangleSurface) -> TriangleSurface {
+    let offset = a.points.len() as u32;
+    let shifted = b.triangles.iter().map(|corners| corners.map(|corner| corner + offset));
+    TriangleSurface {
+        points: [a.points.as_slice(), &b.points].concat(),
+        triangles: a.triangles.iter().copied().chain(shifted).collect(),
+        node_ids: None,
+    }
+}
+
+#[test]
+fn a_planted_operation_comes_back_from_bone_before_and_after_it() {
+    let before = skull(6);
+    let scan = movement([6.0, -4.0, 9.0], [12.0, -8.0, 5.0]);
+    let pivot = Vector::new(0.0, -40.0, -60.0);
+    for (degrees, shift) in
+        [([0.0, 0.0, 0.0], [0.0, -5.0, 1.0]), ([3.0, -1.0, 2.0], [1.0, 4.0, -2.0])]
+    {
+        let turn = movement(degrees, [0.0; 3]).rotation;
+        let planted = RigidTransform::about(&pivot, turn, Vector::from(shift));
+        // After the operation: other triangles, holes, and another place in the scanner.
+        let later = skull(5);
+        let jaw = map(&later.jaw, |point| planted.apply(point));
+        let mut after = map(&joined(&later.base, &jaw), |point| scan.inverse().apply(point));
+        after.triangles.retain(|t| t[1] % 41 != 0);
+        // Nothing was done above the ears.
+        let mask = Some(Place::Box {
+            lower: Vector::new(-200.0, -200.0, 10.0),
+            upper: Vector::repeat(200.0),
+        });
+        let base = BoneBefore {
+            surface: &joined(&before.base, &before.jaw),
+            mask,
+            start: Start::AsItLies,
+        };
+        let base = align_base(&base, &after, &Unobserved).unwrap();
+        let (angle, shift) = difference(&base.transform, &scan, &Vector::zeros());
+        assert!(angle < 0.02 && shift < 0.03, "{angle} degrees, {shift} mm");
+        assert!(base.rms < 0.05 && base.share_far < 0.001, "{base:?}");
+
+        let segment = BoneBefore { surface: &before.jaw, mask: None, start: Start::AsItLies };
+        let found = performed(&segment, &after, &base.transform, &Unobserved).unwrap();
+        let (angle, shift) = difference(&found.movement, &planted, &found.centre);
+        assert!(angle < 0.05 && shift < 0.05, "{angle} degrees, {shift} mm, {found:?}");
+        assert!(found.fit.rms < 0.05 && found.fit.share_far < 0.05, "{found:?}");
+        assert!((found.centre.z + 60.0).abs() < 15.0, "{}", found.centre);
+    }
 }

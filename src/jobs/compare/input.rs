@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::meshes::ComparedMeshes;
 use super::surfaces::admit;
 use crate::jobs::failure::JobError;
 use crate::jobs::fetch::{fetch, found};
@@ -20,13 +21,11 @@ pub struct CompareInput {
 }
 
 impl CompareInput {
-    /// The hash of everything that decides the numbers, from the hashes of both surfaces.
-    pub fn spec_hash(&self, prediction: &str, actual: &str) -> String {
-        let actual_id = &self.spec.actual.mesh;
-        let content = |id: &str| match id == actual_id {
-            true => Some(actual.to_owned()),
-            false => Some(prediction.to_owned()),
-        };
+    /// The hash of everything that decides the numbers, from the hashes of all surfaces.
+    pub fn spec_hash(&self, prediction: &str, meshes: &ComparedMeshes) -> String {
+        let spec = self.spec.to_compare_to();
+        let content =
+            |id: &str| meshes.content_of(&spec, id).or_else(|| Some(prediction.to_owned()));
         hashes::compare_hash(&self.spec, &content)
     }
 

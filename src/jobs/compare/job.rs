@@ -1,10 +1,11 @@
 //! The job of a comparison.
 
 use super::input::CompareInput;
+use super::meshes::ComparedMeshes;
 use super::surfaces::{Compared, Pair};
 use crate::jobs::clock::Observed;
 use crate::jobs::failure::JobError;
-use crate::jobs::fetch::{fetch, no_surface};
+use crate::jobs::fetch::no_surface;
 use crate::jobs::output::{JobOutput, Workplace};
 use crate::jobs::result::folder::ResultFolder;
 use crate::jobs::result::provenance::{Origin, encode_result};
@@ -34,8 +35,8 @@ pub fn compare_job(
     faults.into_result()?;
     let at = Pointer::root().key("spec");
     let prediction = input.fetch_prediction(place.sources, &at.key("prediction"))?;
-    let actual_id = &input.spec.actual.mesh;
-    let actual = fetch(place.sources, actual_id, &at.key("actual").key("mesh"))?;
+    let spec = input.spec.to_compare_to();
+    let meshes = ComparedMeshes::fetch(&spec, place.sources, &at)?;
     clock.check()?;
 
     // 2. Distances.
@@ -43,20 +44,28 @@ pub fn compare_job(
     let wrong = || no_surface(&at.key("prediction"));
     let surface = prediction.surface_in_mm().ok_or_else(wrong)?;
     let frame = prediction.frame;
-    let pair = Pair { prediction: &surface, prediction_frame: frame, actual: &actual, at };
-    let compared = pair.compare(&input.spec.to_compare_to(), &clock)?;
+    let pair = Pair {
+        prediction: &surface,
+        prediction_frame: frame,
+        displacement: prediction.of_points.displacement.as_deref(),
+        skin_regions: &prediction.of_points.sets,
+        meshes: &meshes,
+        at,
+    };
+    let compared = pair.compare(&spec, &clock)?;
 
     // 3. Files.
     clock.phase(Phase::Write);
     let origin = Origin {
-        spec_hash: input.spec_hash(&prediction.sha256, &actual.sha256),
-        inputs: vec![prediction.to_input("prediction"), actual.to_input("actual")],
+        spec_hash: input.spec_hash(&prediction.sha256, &meshes),
+        inputs: [vec![prediction.to_input("prediction")], meshes.to_inputs()].concat(),
         frame: frame.unwrap_or_default(),
         queue_s: input.queue_s,
     };
     let mut folder = ResultFolder::open(place.out)?;
     folder.add(OutputName::SkinVtp, &encode_distances(&surface, &compared, origin.frame)?)?;
-    let warnings = prediction.warnings.iter().chain(&actual.warnings).chain(&compared.warnings);
+    let warnings =
+        prediction.warnings.iter().chain(&meshes.actual.warnings).chain(&compared.warnings);
     let provenance = origin.provenance(&clock);
     let result = ResultDocument {
         comparison: Some(compared.document.clone()),

@@ -2,8 +2,10 @@
 
 mod input;
 mod job;
+mod meshes;
 mod surfaces;
 
 pub use input::CompareInput;
 pub use job::compare_job;
-pub use surfaces::{Compared, Pair, admit};
+pub use meshes::{ComparedMeshes, surface_of};
+pub use surfaces::{Compared, Pair, admit, by_landmarks, place_of};

@@ -1,20 +1,25 @@
 //! Comparison of two surfaces.
 
+use std::collections::BTreeMap;
+
+use super::meshes::{ComparedMeshes, surface_of};
 use crate::jobs::clock::Observed;
 use crate::jobs::failure::JobError;
 use crate::jobs::fetch::no_surface;
 use crate::jobs::source::StoredMesh;
 use crate::schema::code::ErrorCode;
 use crate::schema::compare::document::{
-    AlignDocument, AlignMethod, CompareToDocument, NodeWise as NodeWiseName, PlaceDocument,
+    AlignDocument, AlignMethod, CompareToDocument, ComparedRegionDocument, LandmarkDocument,
+    NodeWise as NodeWiseName, PlaceDocument, StartName,
 };
 use crate::schema::compare::result::ComparisonDocument;
-use crate::schema::{Pointer, Problem};
+use crate::schema::{Matrix4x4, Pointer, Problem};
 use mechanics::mesh::{Frame, TriangleSurface, Vector, Warning};
-use mechanics::registration::Place;
+use mechanics::registration::{Place, RigidTransform, Start, align_points};
 use mechanics::validation::distance::require_possible;
 use mechanics::validation::{
-    Alignment, Comparison, ComparisonError, ComparisonSettings, LandmarkPair, NodeWise, compare,
+    Alignment, BoneSurfaces, Comparison, ComparisonError, ComparisonSettings, LandmarkPair,
+    NodeWise, Region, compare,
 };
 
 /// What a comparison found.
@@ -29,7 +34,11 @@ pub struct Compared {
 pub struct Pair<'a> {
     pub prediction: &'a TriangleSurface,
     pub prediction_frame: Option<Frame>,
-    pub actual: &'a StoredMesh,
+    /// How far each point of the prediction was moved, in mm, where that is known.
+    pub displacement: Option<&'a [Vector]>,
+    /// Named parts of the prediction as its points.
+    pub skin_regions: &'a BTreeMap<String, Vec<u32>>,
+    pub meshes: &'a ComparedMeshes,
     pub at: Pointer,
 }
 
@@ -39,10 +48,9 @@ impl Pair<'_> {
         spec: &CompareToDocument,
         clock: &Observed,
     ) -> Result<Compared, JobError> {
-        self.check_frames()?;
-        let settings = settings(spec);
-        let wrong = || no_surface(&self.at.key("actual").key("mesh"));
-        let actual = self.actual.surface_in_mm().ok_or_else(wrong)?;
+        self.meshes.check_frames(self.prediction_frame, &self.at)?;
+        let settings = self.settings(spec)?;
+        let actual = surface_of(&self.meshes.actual, &self.at.key("actual").key("mesh"))?;
         let comparison = compare(self.prediction, &actual, &settings, clock)
             .map_err(|error| self.judge(error, clock))?;
         let Comparison { signed_distance, warnings, .. } = &comparison;
@@ -53,17 +61,75 @@ impl Pair<'_> {
         })
     }
 
-    /// Surfaces in different frames cannot be compared.
-    fn check_frames(&self) -> Result<(), JobError> {
-        match (self.prediction_frame, self.actual.frame) {
-            (Some(prediction), Some(actual)) if prediction != actual => {
-                let detail =
-                    format!("the prediction is in frame {prediction}, the actual in {actual}");
-                let at = self.at.key("actual").key("mesh");
-                Err(Problem::at(&at, ErrorCode::FrameConflict, detail).into())
-            }
-            _ => Ok(()),
+    /// The settings of a spec that was checked.
+    fn settings(&self, spec: &CompareToDocument) -> Result<ComparisonSettings, JobError> {
+        let mut regions = BTreeMap::new();
+        for (name, region) in &spec.regions {
+            let at = self.at.key("regions").key(name);
+            regions.insert(name.clone(), self.region(region, &at)?);
         }
+        let landmarks = spec.landmarks.iter();
+        Ok(ComparisonSettings {
+            alignment: self.alignment(&spec.align)?,
+            report_unaligned: spec.align.report_unaligned,
+            regions,
+            samples_per_mm2: spec.samples_per_mm2,
+            node_wise: match spec.node_wise {
+                NodeWiseName::Auto => NodeWise::Auto,
+                NodeWiseName::On => NodeWise::On,
+                NodeWiseName::Off => NodeWise::Off,
+            },
+            landmarks: landmarks.map(|(name, pair)| (name.clone(), landmark_pair(pair))).collect(),
+            histogram_edges: spec.histogram_edges_mm.clone(),
+            displacement: self.displacement.map(<[Vector]>::to_vec),
+        })
+    }
+
+    fn region(&self, region: &ComparedRegionDocument, at: &Pointer) -> Result<Region, JobError> {
+        if let Some(length) = region.moved_by_more_than_mm {
+            return Ok(Region::MovedByMoreThan(length));
+        }
+        if let Some(place) = place_of(&region.place()) {
+            return Ok(Region::Place(place));
+        }
+        let name = region.skin_region.as_deref().unwrap_or_default();
+        let points = self.skin_regions.get(name).ok_or_else(|| {
+            let known: Vec<&str> = self.skin_regions.keys().map(String::as_str).collect();
+            let detail = format!(
+                "the prediction has no part of the skin {name:?}; it has {}",
+                if known.is_empty() { "none".to_owned() } else { known.join(", ") }
+            );
+            Problem::at(&at.key("skin_region"), ErrorCode::UnknownRegion, detail)
+        })?;
+        Ok(Region::Points(points.clone()))
+    }
+
+    fn alignment(&self, align: &AlignDocument) -> Result<Alignment, JobError> {
+        let mask = align.mask.as_ref().and_then(place_of);
+        let pairs =
+            || -> Vec<LandmarkPair> { align.landmarks.values().map(landmark_pair).collect() };
+        Ok(match align.method {
+            AlignMethod::None => Alignment::None,
+            AlignMethod::Matrix => Alignment::Matrix(transform_of(align)),
+            AlignMethod::Icp => Alignment::ClosestPoint { mask },
+            AlignMethod::Landmarks => Alignment::Landmarks(pairs()),
+            AlignMethod::Surfaces => {
+                let start = match align.start.unwrap_or_default() {
+                    StartName::None => Start::AsItLies,
+                    StartName::Boxes => Start::Boxes,
+                    StartName::Inertia => Start::Inertia,
+                    StartName::Landmarks => Start::Known(by_landmarks(&pairs())?),
+                };
+                let at = self.at.key("align");
+                let surface = |mesh: &Option<StoredMesh>, name: &str| {
+                    let at = at.key(name).key("mesh");
+                    mesh.as_ref().map_or_else(|| Err(no_surface(&at)), |m| surface_of(m, &at))
+                };
+                let fixed = surface(&self.meshes.fixed, "fixed")?;
+                let moving = surface(&self.meshes.moving, "moving")?;
+                Alignment::Surfaces(Box::new(BoneSurfaces { fixed, moving, mask, start }))
+            }
+        })
     }
 
     fn judge(&self, error: ComparisonError, clock: &Observed) -> JobError {
@@ -73,6 +139,9 @@ impl Pair<'_> {
                 return JobError::Alignment(error.to_string());
             }
             ComparisonError::EmptyRegion { name } => self.at.key("regions").key(name),
+            ComparisonError::NoDisplacement { region } => {
+                self.at.key("regions").key(region).key("moved_by_more_than_mm")
+            }
             ComparisonError::NotCorresponding { .. } => self.at.key("node_wise"),
             ComparisonError::TooManySamples { .. } => self.at.key("samples_per_mm2"),
             ComparisonError::Surface { .. } | ComparisonError::Statistics(_) => self.at.clone(),
@@ -92,41 +161,26 @@ pub fn admit(surface: &StoredMesh, samples_per_mm2: f64, at: &Pointer) -> Result
     })
 }
 
-/// The settings of a spec that was checked.
-fn settings(spec: &CompareToDocument) -> ComparisonSettings {
-    let regions = spec.regions.iter();
-    ComparisonSettings {
-        alignment: alignment(&spec.align),
-        report_unaligned: spec.align.report_unaligned,
-        regions: regions
-            .filter_map(|(name, region)| Some((name.clone(), place(region)?)))
-            .collect(),
-        samples_per_mm2: spec.samples_per_mm2,
-        node_wise: match spec.node_wise {
-            NodeWiseName::Auto => NodeWise::Auto,
-            NodeWiseName::On => NodeWise::On,
-            NodeWiseName::Off => NodeWise::Off,
-        },
-    }
+fn landmark_pair(landmark: &LandmarkDocument) -> LandmarkPair {
+    LandmarkPair { prediction: landmark.prediction_mm.into(), actual: landmark.actual_mm.into() }
 }
 
-fn alignment(align: &AlignDocument) -> Alignment {
-    match align.method {
-        AlignMethod::None => Alignment::None,
-        AlignMethod::Icp => Alignment::ClosestPoint { mask: align.mask.as_ref().and_then(place) },
-        AlignMethod::Landmarks => {
-            let pairs = align.landmarks.values();
-            let pair =
-                |landmark: &crate::schema::compare::document::LandmarkDocument| LandmarkPair {
-                    prediction: landmark.prediction_mm.into(),
-                    actual: landmark.actual_mm.into(),
-                };
-            Alignment::Landmarks(pairs.map(pair).collect())
-        }
-    }
+/// The movement that landmarks of both surfaces state.
+pub fn by_landmarks(pairs: &[LandmarkPair]) -> Result<RigidTransform, JobError> {
+    let (to, from): (Vec<Vector>, Vec<Vector>) =
+        pairs.iter().map(|pair| (pair.prediction, pair.actual)).unzip();
+    let found = align_points(&from, &to);
+    found.map(|found| found.transform).map_err(|error| JobError::Alignment(error.to_string()))
 }
 
-fn place(document: &PlaceDocument) -> Option<Place> {
+/// The matrix of a document that was checked.
+fn transform_of(align: &AlignDocument) -> RigidTransform {
+    let Matrix4x4(matrix) = align.matrix4x4.unwrap_or_default();
+    RigidTransform::from_matrix4(&matrix)
+}
+
+/// The part of space of a document that was checked.
+pub fn place_of(document: &PlaceDocument) -> Option<Place> {
     if let Some(sphere) = document.sphere_mm {
         let [x, y, z, radius] = sphere.0;
         return Some(Place::Sphere { centre: Vector::new(x, y, z), radius });

@@ -46,6 +46,7 @@ pub(super) fn check_made(
     let MadeAnatomy { anatomy, frame, told } = made;
     let stored = |shape| StoredMesh {
         shape,
+        of_points: Default::default(),
         frame: Some(*frame),
         units: Some(LengthUnit::Mm),
         warnings: Vec::new(),

@@ -2,12 +2,15 @@
 
 use super::cost;
 use super::input::{PredictInput, Prepared};
+use super::overlap::{Collision, collisions};
+use super::planned::{measures, movements, swapped_sides};
 use crate::jobs::failure::JobError;
 use crate::jobs::result::pictures::classes_picture;
 use crate::jobs::result::warnings::warnings_after;
 use crate::jobs::source::MeshSource;
 use crate::schema::Limits;
 use crate::schema::predict::check::{CheckDocument, ClassCounts, SkinSummary};
+use mechanics::mesh::Warning;
 use mechanics::prediction::{NodeClass, Scene};
 
 /// The counts of a check, and the picture on demand: drawing takes longer than counting.
@@ -42,7 +45,10 @@ impl Prepared {
         let skin = &scene.skin;
         let nodes = scene.mesh.nodes.len();
         let held: usize = scene.conditions.holds.iter().map(|hold| hold.count()).sum();
-        let warnings = self.warnings.iter().chain(&scene.warnings);
+        let collisions = collisions(&self.case, scene);
+        let mut of_plan: Vec<Warning> = collisions.iter().filter_map(Collision::warning).collect();
+        of_plan.extend(swapped_sides(&input.case, self.case.frame));
+        let warnings = self.warnings.iter().chain(&scene.warnings).chain(&of_plan);
         CheckDocument {
             nodes: nodes as u64,
             cells: scene.mesh.cells.len() as u64,
@@ -65,6 +71,9 @@ impl Prepared {
             method: input.spec.method.chosen().name().to_owned(),
             why: input.spec.method.why().to_owned(),
             auto: self.expectation(input),
+            movements: movements(scene, self.case.frame),
+            collisions: collisions.iter().map(Collision::document).collect(),
+            cephalometry: measures(&input.case, &self.case, scene, None),
             warnings: warnings_after(&self.told, warnings),
         }
     }

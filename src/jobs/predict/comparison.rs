@@ -15,12 +15,19 @@ pub fn compare_skin(
     skin: &PredictedSkin,
     clock: &Observed,
 ) -> Result<Option<Compared>, JobError> {
-    let (Some(spec), Some(actual)) = (&input.spec.compare_to, &prepared.actual) else {
+    let (Some(spec), Some(meshes)) = (&input.spec.compare_to, &prepared.compared) else {
         return Ok(None);
     };
     let at = Pointer::root().key("spec").key("compare_to");
     let frame = prepared.case.frame;
     let stated = (frame != Frame::Unspecified).then_some(frame);
-    let pair = Pair { prediction: &skin.surface, prediction_frame: stated, actual, at };
+    let pair = Pair {
+        prediction: &skin.surface,
+        prediction_frame: stated,
+        displacement: Some(&skin.displacement),
+        skin_regions: &prepared.scene.skin.regions,
+        meshes,
+        at,
+    };
     pair.compare(spec, clock).map(Some)
 }

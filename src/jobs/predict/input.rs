@@ -6,11 +6,11 @@ use serde::{Deserialize, Serialize};
 
 use super::facing::looks_elsewhere;
 use super::refinable::check_refinable;
-use crate::jobs::compare::admit;
+use crate::jobs::compare::{ComparedMeshes, admit};
 use crate::jobs::failure::JobError;
-use crate::jobs::fetch::fetch;
 use crate::jobs::source::{MeshSource, SourceError, StoredMesh, StoredShape};
 use crate::schema::ErrorCode;
+use crate::schema::case::bone_landmark::check_bone_landmarks;
 use crate::schema::case::conversion::centre;
 use crate::schema::case::document::{CaseMeshes, NamedMesh};
 use crate::schema::hashes;
@@ -48,7 +48,7 @@ pub struct Prepared {
     /// The SHA-256 of each mesh of the case by its id.
     pub contents: BTreeMap<String, String>,
     /// The surface that the skin is to be compared with.
-    pub actual: Option<StoredMesh>,
+    pub compared: Option<ComparedMeshes>,
     /// Of the meshes and of the conversion; those of the scene are in the scene.
     pub warnings: Vec<Warning>,
     /// What the meshing of the volume had to say.
@@ -68,7 +68,7 @@ impl PredictInput {
     /// pointers start at `/case`, `/plan` and `/spec`.
     pub fn prepare(&self, sources: &dyn MeshSource, limits: &Limits) -> Result<Prepared, JobError> {
         let stored = self.fetch(sources)?;
-        let actual = self.fetch_actual(sources)?;
+        let compared = self.fetch_compared(sources)?;
         let meshes = self.case_meshes(&stored)?;
         let converted = self.convert(&meshes, limits)?;
         let Converted { case, plan, settings, .. } = &converted;
@@ -78,7 +78,7 @@ impl PredictInput {
         if let Some(refine) = &self.spec.refine {
             check_refinable(refine, &scene)?;
         }
-        let meshes_read = stored.values().chain(&actual);
+        let meshes_read = stored.values().chain(compared.iter().map(|meshes| &meshes.actual));
         let mut warnings: Vec<Warning> =
             meshes_read.flat_map(|mesh| mesh.warnings.iter().cloned()).collect();
         let told = stored.values().flat_map(|mesh| mesh.told.iter().cloned()).collect();
@@ -90,10 +90,10 @@ impl PredictInput {
             plan: converted.plan,
             scene,
             quality,
-            spec_hash: self.spec_hash(&stored, actual.as_ref()),
-            inputs: self.inputs(&stored, actual.as_ref()),
+            spec_hash: self.spec_hash(&stored, compared.as_ref()),
+            inputs: self.inputs(&stored, compared.as_ref()),
             contents: stored.iter().map(|(id, mesh)| (id.clone(), mesh.sha256.clone())).collect(),
-            actual,
+            compared,
             warnings,
             told,
         })
@@ -125,6 +125,8 @@ impl PredictInput {
         let mut faults = Faults::default();
         let spec_materials = self.spec.materials.as_ref();
         let (case, warnings) = self.case.to_case(meshes, spec_materials, limits, &mut faults);
+        let segments = self.case.segments.iter().map(|segment| segment.name.trim()).collect();
+        check_bone_landmarks(&self.case.bone_landmarks, &segments, limits, &mut faults);
         let centre = Some(centre(&case.volume));
         let context = PlanContext { frame: case.frame, centre, limits };
         let plan = self.plan.to_plan(&Pointer::root().key("plan"), &context, &mut faults);
@@ -209,26 +211,25 @@ impl PredictInput {
         Ok(CaseMeshes { volume: volume.ok_or_else(missing)?, surfaces, image })
     }
 
-    fn fetch_actual(&self, sources: &dyn MeshSource) -> Result<Option<StoredMesh>, JobError> {
+    fn fetch_compared(&self, sources: &dyn MeshSource) -> Result<Option<ComparedMeshes>, JobError> {
         let Some(compare_to) = &self.spec.compare_to else {
             return Ok(None);
         };
         let at = Pointer::from_text("/spec/compare_to");
-        let actual = fetch(sources, &compare_to.actual.mesh, &at.key("actual").key("mesh"))?;
-        admit(&actual, compare_to.samples_per_mm2, &at)?;
-        Ok(Some(actual))
+        let compared = ComparedMeshes::fetch(compare_to, sources, &at)?;
+        admit(&compared.actual, compare_to.samples_per_mm2, &at)?;
+        Ok(Some(compared))
     }
 
     /// The hash of everything that decides the numbers.
     fn spec_hash(
         &self,
         stored: &BTreeMap<String, StoredMesh>,
-        actual: Option<&StoredMesh>,
+        compared: Option<&ComparedMeshes>,
     ) -> String {
-        let actual_id = self.spec.compare_to.as_ref().map(|spec| spec.actual.mesh.as_str());
         let content = |id: &str| {
-            let compared = actual.filter(|_| actual_id == Some(id));
-            stored.get(id).or(compared).map(|mesh| mesh.sha256.clone())
+            let compared = || compared?.content_of(self.spec.compare_to.as_ref()?, id);
+            stored.get(id).map(|mesh| mesh.sha256.clone()).or_else(compared)
         };
         hashes::predict_hash(&self.case, &self.plan, &self.spec, &content)
     }
@@ -236,7 +237,7 @@ impl PredictInput {
     fn inputs(
         &self,
         stored: &BTreeMap<String, StoredMesh>,
-        actual: Option<&StoredMesh>,
+        compared: Option<&ComparedMeshes>,
     ) -> Vec<InputDocument> {
         let role = |id: &str| {
             if *id == self.case.volume {
@@ -251,7 +252,7 @@ impl PredictInput {
         let mut inputs: Vec<InputDocument> =
             stored.iter().map(|(id, mesh)| mesh.to_input(&role(id))).collect();
         inputs.sort_by(|a, b| b.role.cmp(&a.role));
-        inputs.extend(actual.map(|mesh| mesh.to_input("actual")));
+        inputs.extend(compared.into_iter().flat_map(ComparedMeshes::to_inputs));
         inputs
     }
 }

@@ -8,6 +8,7 @@ mod facing;
 mod input;
 mod job;
 mod overlap;
+mod planned;
 mod publish;
 mod refinable;
 

@@ -1,9 +1,10 @@
 //! Overlap of surfaces under a plan: warned of, since nothing in the model stops it.
 
+use crate::schema::predict::planned::{CollisionDocument, OverlapDocument};
 use mechanics::mesh::{SurfaceSearch, TriangleSurface, Vector, Warning};
 use mechanics::plan::RigidMovement;
 use mechanics::prediction::{Bone, Case, Prediction, Scene};
-use mechanics::validation::penetration::{Side, reach};
+use mechanics::validation::penetration::{Side, overlap, reach};
 
 /// A plan has to push this much deeper than the scan had it, in mm: surfaces of one scan touch.
 const NOTICEABLE: f64 = 0.1;
@@ -23,36 +24,57 @@ struct Depth {
     after: f64,
 }
 
-/// A warning for each pair of bones that a plan pushes into each other, and for each bone that it
-/// pushes through the predicted skin.
-pub fn overlaps(case: &Case, scene: &Scene, prediction: &Prediction) -> Vec<Warning> {
+/// The bones that reach into each other, of those that the plan moves against each other.
+pub fn collisions(case: &Case, scene: &Scene) -> Vec<Collision> {
     let bones = planned_bones(case, scene);
-    if bones.is_empty() {
-        return Vec::new();
-    }
-    let mut warnings = Vec::new();
+    let mut found = Vec::new();
     for (number, bone) in bones.iter().enumerate() {
         for other in bones[number + 1..].iter().filter(|other| other.movement != bone.movement) {
-            let detail = format!(
-                "the plan pushes bones {:?} and {:?} into each other",
-                bone.name, other.name
-            );
-            let (there, back) = (bone.reach_into(other), other.reach_into(bone));
-            let deepest =
-                Depth { before: there.before.max(back.before), after: there.after.max(back.after) };
-            warnings.extend(deepest.warning("bones-overlap", detail));
+            found.extend(bone.collision(other));
         }
     }
+    found
+}
+
+/// A warning for each bone that the plan pushes through the predicted skin.
+pub fn through_skin(case: &Case, scene: &Scene, prediction: &Prediction) -> Vec<Warning> {
+    let bones = planned_bones(case, scene);
     let skin = &scene.skin;
     let moved = SurfaceSearch::new(&skin.moved(&prediction.displacement));
-    if let (Ok(before), Ok(after)) = (SurfaceSearch::new(&skin.surface), moved) {
-        for bone in &bones {
-            let detail = format!("bone {:?} comes through the predicted skin", bone.name);
-            let depth = bone.through(&before, &after);
-            warnings.extend(depth.warning("bone-through-skin", detail));
+    let (Ok(before), Ok(after)) = (SurfaceSearch::new(&skin.surface), moved) else {
+        return Vec::new();
+    };
+    let warning = |bone: &PlannedBone| {
+        let detail = format!("bone {:?} comes through the predicted skin", bone.name);
+        bone.through(&before, &after).warning("bone-through-skin", detail)
+    };
+    bones.iter().filter_map(warning).collect()
+}
+
+/// Two bones that reach into each other after the plan.
+pub struct Collision {
+    bones: [String; 2],
+    depth: Depth,
+    /// Both where the plan takes them.
+    placed: [TriangleSurface; 2],
+}
+
+impl Collision {
+    /// Where the plan pushes them deeper than the scan had them.
+    pub fn warning(&self) -> Option<Warning> {
+        let [one, other] = &self.bones;
+        let detail = format!("the plan pushes bones {one:?} and {other:?} into each other");
+        self.depth.warning("bones-overlap", detail)
+    }
+
+    pub fn document(&self) -> CollisionDocument {
+        CollisionDocument {
+            bones: self.bones.clone(),
+            depth_mm: self.depth.after,
+            depth_before_mm: self.depth.before,
+            overlap: overlap(&self.placed[0], &self.placed[1]).as_ref().map(OverlapDocument::from),
         }
     }
-    warnings
 }
 
 /// The bones of the case; one without any area touches nothing and is left out.
@@ -68,6 +90,21 @@ fn planned_bones<'a>(case: &'a Case, scene: &Scene) -> Vec<PlannedBone<'a>> {
 }
 
 impl PlannedBone<'_> {
+    fn collision(&self, other: &PlannedBone) -> Option<Collision> {
+        let (there, back) = (self.reach_into(other), other.reach_into(self));
+        let depth =
+            Depth { before: there.before.max(back.before), after: there.after.max(back.after) };
+        if depth.after <= 0.0 {
+            return None;
+        }
+        let placed = |bone: &PlannedBone| TriangleSurface {
+            points: bone.moved_by(&bone.movement),
+            ..bone.surface.clone()
+        };
+        let bones = [self.name.to_owned(), other.name.to_owned()];
+        Some(Collision { bones, depth, placed: [placed(self), placed(other)] })
+    }
+
     /// How deep this bone reaches into another one. Only the movement of one against the other counts,
     /// so the other stays where its search was prepared.
     fn reach_into(&self, other: &PlannedBone) -> Depth {

@@ -6,7 +6,8 @@ use std::sync::Arc;
 
 use super::comparison::compare_skin;
 use super::input::{PredictInput, Prepared};
-use super::overlap::overlaps;
+use super::overlap::{Collision, collisions, through_skin};
+use super::planned::{measures, swapped_sides};
 use crate::jobs::clock::Observed;
 use crate::jobs::failure::JobError;
 use crate::jobs::output::{JobOutput, MadeMesh};
@@ -84,7 +85,10 @@ impl Predicted {
         let compared = compare_skin(input, &prepared, &skin, clock)?;
         let mut warnings = prepared.warnings.clone();
         warnings.extend(prediction.warnings.iter().cloned());
-        warnings.extend(overlaps(&prepared.case, &prepared.scene, &prediction));
+        let (case, scene) = (&prepared.case, &prepared.scene);
+        warnings.extend(collisions(case, scene).iter().filter_map(Collision::warning));
+        warnings.extend(through_skin(case, scene, &prediction));
+        warnings.extend(swapped_sides(&input.case, case.frame));
         if let Some(compared) = &compared {
             skin.signed_distance = Some(compared.signed_distance.clone());
             warnings.extend(compared.warnings.iter().cloned());
@@ -231,6 +235,12 @@ impl Finished<'_> {
                 .as_ref()
                 .err()
                 .map(|why| why.to_string()),
+            cephalometry: measures(
+                &input.case,
+                &self.prepared.case,
+                &self.prepared.scene,
+                Some(&self.prediction.landmarks),
+            ),
             reaction_mn: triples(&self.prediction.reactions),
             reactions: self.prediction.condition_reactions.iter().map(Into::into).collect(),
             ..ResultDocument::new(input.job.clone(), files, provenance, warnings)

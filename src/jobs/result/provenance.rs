@@ -156,10 +156,14 @@ pub fn manifest_bytes(manifest: &Value) -> Vec<u8> {
 /// What may be null in a result: estimates that are not known.
 const UNKNOWN: [&str; 2] = ["/numerical_error_mm", "/nonlinearity_mm"];
 
+/// What a client stated, where null says that a direction is left free.
+const STATED: &str = "/provenance/plan";
+
 /// The place of the first null that does not belong into a result.
 pub(in crate::jobs) fn first_null(value: &Value, at: String) -> Option<String> {
     match value {
         Value::Null if !UNKNOWN.contains(&at.as_str()) => Some(at),
+        Value::Object(_) if at == STATED => None,
         Value::Array(entries) => {
             let mut entries = entries.iter().enumerate();
             entries.find_map(|(index, entry)| first_null(entry, format!("{at}/{index}")))

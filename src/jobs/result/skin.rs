@@ -50,6 +50,8 @@ pub struct PredictedSkin {
     pub numerical_error: Option<Vec<f64>>,
     /// Where anything presses.
     pub contact: Option<ContactArrays>,
+    /// Named parts as arrays `set_NAME`, 1 where a point belongs to one.
+    pub sets: Vec<(String, Vec<i64>)>,
     /// The displacement in mm at which colours end: the same for every plan, so that plans can be held side by side.
     pub range_mm: f64,
 }
@@ -78,6 +80,7 @@ impl PredictedSkin {
             nonlinearity: None,
             numerical_error: None,
             contact: None,
+            sets: skin.regions.iter().map(|(name, points)| set(name, points, skin)).collect(),
             range_mm: USUAL_RANGE_MM,
         }
     }
@@ -119,6 +122,10 @@ impl PredictedSkin {
         if let Some(contact) = self.contact.as_ref().filter(|_| name == OutputName::SkinVtp) {
             output.point_arrays.extend(contact.arrays());
         }
+        for (set, belongs) in self.sets.iter().filter(|_| name == OutputName::SkinVtp) {
+            let values = ArrayValues::Integers(belongs);
+            output.point_arrays.push(NamedValues { name: set, values });
+        }
         if matches!(name, OutputName::SkinGlb | OutputName::SkinPly) {
             output.colours = Some(&colours);
             let array = "displacement_magnitude_mm";
@@ -138,4 +145,11 @@ impl PredictedSkin {
     fn colours(&self) -> Vec<Rgb> {
         self.magnitude.iter().map(|length| sequential(length / self.range_mm)).collect()
     }
+}
+
+/// A part of the skin as an array, by the name that a reader takes for a set.
+fn set(name: &str, points: &[u32], skin: &Skin) -> (String, Vec<i64>) {
+    let mut belongs = vec![0; skin.surface.points.len()];
+    points.iter().for_each(|&point| belongs[point as usize] = 1);
+    (format!("set_{name}"), belongs)
 }

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
+use super::bone_landmark::BoneLandmarkOfCaseDocument;
 use super::hounsfield::HounsfieldDocument;
 use super::material::{MaterialDocument, MaterialDocuments};
 use super::muscle::MuscleDocument;
@@ -39,6 +40,9 @@ pub struct CaseDocument {
     /// Named points in mm; they move with the tissue around them.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub landmarks: BTreeMap<String, Triple>,
+    /// Named points of bone, for cephalometric measures; each goes with its segment.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub bone_landmarks: BTreeMap<String, BoneLandmarkOfCaseDocument>,
     /// Absent: one region named `tissue`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
@@ -217,6 +221,7 @@ impl CaseDocument {
             volume: volume.to_owned(),
             bones: Vec::new(),
             landmarks: BTreeMap::new(),
+            bone_landmarks: BTreeMap::new(),
             regions: None,
             skin: None,
             skin_regions: BTreeMap::new(),

@@ -5,23 +5,12 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
+use super::measures::{
+    HistogramsDocument, LandmarkErrorDocument, WarpedDocument, landmark_statistics,
+};
+pub use super::statistics::StatDocument;
 use crate::schema::{Matrix4x4, Triple};
-use mechanics::validation::comparison::BothDirections;
-use mechanics::validation::{AlignmentReport, Comparison, DistanceStatistics, Statistics};
-
-/// Statistics of lengths in mm. A percentile is the smallest value whose cumulative weight reaches it.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct StatDocument {
-    pub count: u64,
-    pub mean: f64,
-    pub sd: f64,
-    pub rms: f64,
-    pub median: f64,
-    pub p90: f64,
-    pub p95: f64,
-    pub p99: f64,
-    pub max: f64,
-}
+use mechanics::validation::{AlignmentReport, BothDirections, Comparison, DistanceStatistics};
 
 /// Statistics of unsigned distances in mm, weighted by area, and of the signed ones.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -30,7 +19,13 @@ pub struct DistanceDocument {
     pub mean: f64,
     pub sd: f64,
     pub rms: f64,
+    #[serde(default)]
+    pub min: f64,
+    #[serde(default)]
+    pub p25: f64,
     pub median: f64,
+    #[serde(default)]
+    pub p75: f64,
     pub p90: f64,
     pub p95: f64,
     pub p99: f64,
@@ -71,13 +66,28 @@ pub struct ComparisonDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub node_wise: Option<NodeWiseDocument>,
+    /// Distances by thin-plate spline and closest point; absent without landmarks that determine a spline.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub tps_cp: Option<WarpedDocument>,
+    /// By the names of `landmarks`.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub landmark_errors: BTreeMap<String, LandmarkErrorDocument>,
+    /// Of these distances; absent without landmarks.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub landmark_statistics: Option<StatDocument>,
+    /// Absent without `histogram_edges_mm`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub histogram: Option<HistogramsDocument>,
     pub samples_per_mm2: f64,
 }
 
 /// The rigid movement that took the actual surface onto the prediction.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct AlignmentDocument {
-    /// `none`, `landmarks` or `icp`.
+    /// `none`, `matrix`, `landmarks`, `icp` or `surfaces`.
     pub method: String,
     /// Row-major; x' = R x + t in mm.
     pub matrix4x4: Matrix4x4,
@@ -91,6 +101,10 @@ pub struct AlignmentDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub rms_mm: Option<f64>,
+    /// Of what decided, the share that is left more than 1 mm from its partner, 0 to 1; of `icp` and `surfaces`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub share_above_1_mm: Option<f64>,
 }
 
 /// How much of each surface has the other opposite, 0 to 1, and distances of that part alone.
@@ -117,23 +131,28 @@ pub struct NodeWiseDocument {
     pub area: StatDocument,
 }
 
-impl From<&Statistics> for StatDocument {
-    fn from(statistics: &Statistics) -> Self {
-        let Statistics { count, mean, sd, rms, median, p90, p95, p99, max } = *statistics;
-        StatDocument { count: count as u64, mean, sd, rms, median, p90, p95, p99, max }
+impl DistanceDocument {
+    /// The statistics of the unsigned distances alone.
+    pub fn to_stat(self) -> StatDocument {
+        let DistanceDocument { count, mean, sd, rms, min, p25, median, p75, p90, p95, .. } = self;
+        let DistanceDocument { p99, max, .. } = self;
+        StatDocument { count, mean, sd, rms, min, p25, median, p75, p90, p95, p99, max }
     }
 }
 
 impl From<&DistanceStatistics> for DistanceDocument {
     fn from(statistics: &DistanceStatistics) -> Self {
-        let StatDocument { count, mean, sd, rms, median, p90, p95, p99, max } =
+        let StatDocument { count, mean, sd, rms, min, p25, median, p75, p90, p95, p99, max } =
             StatDocument::from(&statistics.unsigned);
         DistanceDocument {
             count,
             mean,
             sd,
             rms,
+            min,
+            p25,
             median,
+            p75,
             p90,
             p95,
             p99,
@@ -176,6 +195,7 @@ impl From<&AlignmentReport> for AlignmentDocument {
             iterations: report.iterations as u64,
             pairs: report.pairs as u64,
             rms_mm: report.rms,
+            share_above_1_mm: report.share_far,
         }
     }
 }
@@ -203,6 +223,14 @@ impl ComparisonDocument {
                 nodes: StatDocument::from(&node_wise.nodes),
                 area: StatDocument::from(&node_wise.area),
             }),
+            tps_cp: comparison.warped.as_ref().map(WarpedDocument::from),
+            landmark_errors: comparison
+                .landmark_errors
+                .iter()
+                .map(|(name, error)| (name.clone(), error.into()))
+                .collect(),
+            landmark_statistics: landmark_statistics(comparison),
+            histogram: comparison.histograms.as_ref().map(HistogramsDocument::from),
             samples_per_mm2,
         }
     }

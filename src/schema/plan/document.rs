@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-use super::movement::{MovementContext, MovementDocument, RotationOrder};
+use super::movement::{MovementContext, MovementDocument, RestrictionDocument, RotationOrder};
 use super::{inner, load};
 use crate::schema::case::document::FrameName;
 use crate::schema::case::selection::SelectionDocument;
@@ -73,6 +73,10 @@ pub struct PlanSegmentDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub matrix4x4: Option<Matrix4x4>,
+    /// Of a movement by `translation_mm` and `rotation_deg`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub restrict_to: Option<RestrictionDocument>,
     /// Applied one after the other, the first entry first, all in the fixed frame.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
@@ -182,7 +186,10 @@ impl PlanDocument {
             return false;
         }
         if plan_frame == Frame::Unspecified || case_frame == Frame::Unspecified {
-            let detail = format!("the plan is in frame {plan_frame} and the case in {case_frame}");
+            let detail = format!(
+                "the plan is in frame {plan_frame} and the case in {case_frame}: state the `frame` of the one that has none (of a mesh on \
+                 the command line, `--frame LPS`)"
+            );
             faults.add(&at.key("frame"), ErrorCode::FrameConflict, detail);
         }
         true
@@ -241,6 +248,7 @@ impl PlanSegmentDocument {
             rotation_order: self.rotation_order,
             pivot_mm: self.pivot_mm,
             matrix4x4: self.matrix4x4,
+            restrict_to: self.restrict_to,
         };
         let forms = [single.has_pivot_form(), self.matrix4x4.is_some(), self.sequence.is_some()];
         let given = forms.into_iter().filter(|&form| form).count();

@@ -8,10 +8,14 @@ use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::limits::Limits;
 use crate::schema::{Matrix4x4, Triple};
 use mechanics::mesh::Vector;
-use mechanics::plan::RigidMovement;
+use mechanics::plan::{Restriction, RigidMovement};
 
 /// Farthest coordinate of a pivot: beyond any scanner's origin in use.
 pub const FARTHEST_PIVOT_MM: f64 = 1e8;
+
+/// Lengths of a direction whose square is a number.
+const SHORTEST_DIRECTION: f64 = 1e-6;
+const LONGEST_DIRECTION: f64 = 1e6;
 
 /// The order in which the three rotations act.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
@@ -43,6 +47,45 @@ pub struct MovementDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub matrix4x4: Option<Matrix4x4>,
+    /// Of a movement by `translation_mm` and `rotation_deg`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub restrict_to: Option<RestrictionDocument>,
+}
+
+/// What a movement is restricted to: exactly one of an axis and a plane. Of the movement that is stated remain the shift
+/// along it and the turn about the axis or about the plane's normal, at the pivot.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RestrictionDocument {
+    /// A direction of any length.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub axis: Option<Triple>,
+    /// A direction of any length.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub plane_normal: Option<Triple>,
+}
+
+impl RestrictionDocument {
+    fn to_restriction(self, at: &Pointer, faults: &mut Faults) -> Option<Restriction> {
+        let given = usize::from(self.axis.is_some()) + usize::from(self.plane_normal.is_some());
+        if !faults.check_one_of(at, given, "`axis`, `plane_normal`") {
+            return None;
+        }
+        let direction = Vector::from(self.axis.or(self.plane_normal)?);
+        if !(SHORTEST_DIRECTION..=LONGEST_DIRECTION).contains(&direction.norm()) {
+            let name = if self.axis.is_some() { "axis" } else { "plane_normal" };
+            let detail = "a direction is between 1e-6 and 1e6 long";
+            faults.add(&at.key(name), ErrorCode::OutOfRange, detail);
+            return None;
+        }
+        Some(match self.axis {
+            Some(_) => Restriction::Axis(direction),
+            None => Restriction::Plane(direction),
+        })
+    }
 }
 
 /// What a plan's coordinates are measured against.
@@ -96,6 +139,7 @@ impl MovementDocument {
             || self.rotation_deg.is_some()
             || self.rotation_order.is_some()
             || self.pivot_mm.is_some()
+            || self.restrict_to.is_some()
     }
 
     /// The movement in the frame of the case; `None` where faults were added.
@@ -150,7 +194,14 @@ impl MovementDocument {
         let inside = within_limits(at, translation, degrees, limits, faults);
         let known = !turns || self.pivot_mm.is_some();
         let angles = degrees.map(f64::to_radians);
-        (inside && known).then(|| RigidMovement::about_pivot(angles, pivot, translation))
+        let restriction =
+            self.restrict_to.map(|to| to.to_restriction(&at.key("restrict_to"), faults));
+        if !inside || !known || restriction == Some(None) {
+            return None;
+        }
+        let movement = RigidMovement::about_pivot(angles, pivot, translation);
+        let restricted = restriction.flatten().map(|to| movement.restricted(&pivot, to));
+        Some(restricted.unwrap_or(movement))
     }
 }
 

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use super::expectation::ExpectationDocument;
+use super::planned::{CollisionDocument, MeasureDocument, MovementReportDocument};
 use super::refine::RefineBoundDocument;
 use super::time_band::TimeBandDocument;
 use crate::schema::case::hounsfield::ImagedTissueDocument;
@@ -41,6 +42,15 @@ pub struct CheckDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub auto: Option<ExpectationDocument>,
+    /// Segments that the plan moves, for navigation.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub movements: Vec<MovementReportDocument>,
+    /// Bones that the plan moves into each other.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub collisions: Vec<CollisionDocument>,
+    /// Measures of the head before and as planned, of the landmarks that the case states.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub cephalometry: Vec<MeasureDocument>,
     pub warnings: Vec<WarningDocument>,
 }
 

@@ -10,6 +10,7 @@ pub mod expectation;
 pub mod keep;
 pub mod nonlinearity;
 pub mod output;
+pub mod planned;
 pub mod pressing;
 pub mod refine;
 pub mod result;

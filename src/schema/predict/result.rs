@@ -9,16 +9,19 @@ use super::adequacy::AdequacyDocument;
 use super::keep::KeptMeshDocument;
 use super::nonlinearity::NonlinearityDocument;
 use super::output::PictureName;
+use super::planned::MeasureDocument;
 use super::pressing::ContactDocument;
 use super::refine::RefinementDocument;
 use crate::schema::Triple;
 use crate::schema::case::document::{FrameName, LengthUnit};
 use crate::schema::case::hounsfield::ImagedTissueDocument;
 use crate::schema::case::law::LawDocument;
+use crate::schema::cohort::result::CohortResultDocument;
 use crate::schema::compare::result::{ComparisonDocument, StatDocument};
 use crate::schema::meshing::result::MeshingResultDocument;
 use crate::schema::optimise::result::OptimisationDocument;
 use crate::schema::plan::document::PlanDocument;
+use crate::schema::reproduce::result::ReproductionDocument;
 use crate::schema::study::report::StudySummaryDocument;
 use crate::schema::wire::warning::WarningDocument;
 use mechanics::material::hyperelastic::{Fibres, Hyperelastic};
@@ -61,9 +64,20 @@ pub struct ResultDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub meshing: Option<MeshingResultDocument>,
+    /// What an operation did, of a job that reproduces one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub reproduction: Option<ReproductionDocument>,
+    /// Methods against each other over subjects, of a job of kind `cohort`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub cohort: Option<CohortResultDocument>,
     /// The meshes that the spec asked to keep.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub kept: Vec<KeptMeshDocument>,
+    /// Measures of the head before, as planned and as predicted, of the landmarks that the case states.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub cephalometry: Vec<MeasureDocument>,
     /// What presses on what; absent where nothing does or contact was not asked for.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
@@ -116,8 +130,11 @@ impl ResultDocument {
             optimisation: None,
             study: None,
             meshing: None,
+            reproduction: None,
+            cohort: None,
             pictures: Vec::new(),
             kept: Vec::new(),
+            cephalometry: Vec::new(),
             contact: None,
             adequacy: None,
             refinement: None,

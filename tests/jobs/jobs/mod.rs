@@ -1,8 +1,11 @@
 //! Jobs without a server: from documents to result files.
 
+mod cohort;
+mod comparisons;
 mod failures;
 mod image;
 mod optimise;
+mod planning;
 mod refined;
 mod results;
 mod study_report;

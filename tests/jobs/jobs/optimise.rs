@@ -21,6 +21,7 @@ impl MeshSource for Block {
         let mesh = sample::block(Vector::new(60.0, 60.0, 30.0), [4, 4, 3], CellShape::Hex8);
         Ok(StoredMesh {
             shape: StoredShape::Volume(mesh.into()),
+            of_points: Default::default(),
             frame: None,
             units: Some(LengthUnit::Mm),
             warnings: Vec::new(),

@@ -32,6 +32,7 @@ impl MeshSource for Meshes {
 fn stored(shape: StoredShape, sha256: &str) -> StoredMesh {
     StoredMesh {
         shape,
+        of_points: Default::default(),
         frame: None,
         units: Some(LengthUnit::Mm),
         warnings: Vec::new(),

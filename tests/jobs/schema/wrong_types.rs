@@ -186,15 +186,18 @@ fn what_was_expected_and_what_was_found_are_told() {
         )
     };
     for (member, told) in [
-        (r#""align":"ipc""#, r#"unknown word `ipc`, expected one of `none`, `landmarks`, `icp`"#),
+        (
+            r#""align":"ipc""#,
+            r#"unknown word `ipc`, expected one of `none`, `matrix`, `landmarks`, `icp`, `surfaces`"#,
+        ),
         (r#""align":["icp"]"#, "expected a name or an object, found an array"),
         (
             r#""align":{"method":"IPC"}"#,
-            r#"unknown word `IPC`, expected one of `none`, `landmarks`, `icp`"#,
+            r#"unknown word `IPC`, expected one of `none`, `matrix`, `landmarks`, `icp`, `surfaces`"#,
         ),
         (
             r#""align":{"method":{"icp":{}}}"#,
-            "expected a string, one of `none`, `landmarks`, `icp`, found an object",
+            "expected a string, one of `none`, `matrix`, `landmarks`, `icp`, `surfaces`, found an object",
         ),
         (r#""align":{"report_unaligned":1}"#, "expected true or false, found the number 1"),
         (r#""align":{"mask":{"sphere_mm":[1,2]}}"#, "expected an array of 4, found an array of 2"),

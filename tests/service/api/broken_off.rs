@@ -112,6 +112,9 @@ async fn a_body_that_says_nothing_of_use_is_answered_without_waiting_and_noted_w
 async fn the_second_leaves(hospital: &Hospital, key: &str, plans: &str) -> bool {
     let post =
         |x: usize| tokio::spawn(ask(hospital.server.post(plans).bearer_auth(key).json(&plan(x))));
+    // An answer may be here before its request is over there.
+    until("nothing is under way", async || (hospital.metric(UNDER_WAY).await == 0.0).then_some(()))
+        .await;
     let writer = locked(&hospital.server).await;
     let first = post(1);
     let under_way = async |most: f64| {

@@ -239,6 +239,17 @@ async fn a_prediction_is_compared_with_another_surface() {
     assert!(both.is_object(), "{compared}");
     let text = both.to_string();
     assert!(text.contains("hausdorff"), "{text}");
+    // Comparisons of several subjects make a cohort; what compared nothing does not.
+    let cohort = |ids: &Value| json!({"kind": "cohort", "groups": {"a": [ids], "b": [ids]}});
+    let held = server.job(&cohort(&compared["id"])).await.expect(StatusCode::OK);
+    let group = &held["results"]["cohort"]["groups"][0];
+    assert_eq!(group["rows"][0]["distances"]["mean"], both["both"]["mean"], "{held}");
+    assert_eq!(held["results"]["cohort"]["pairs"][0]["differing"], 0, "{held}");
+    for (wrong, code) in [(&job["id"], "no-such-output"), (&actual["id"], "unknown-job")] {
+        let problem = server.job(&cohort(wrong)).await.problem(422, "validation-failed");
+        let told = &problem["errors"][0];
+        assert_eq!((&told["pointer"], &told["code"]), (&json!("/groups/a/0"), &json!(code)));
+    }
     let in_use =
         ask(server.delete(&format!("/v1/meshes/{}", actual["id"].as_str().unwrap()))).await;
     in_use.problem(409, "conflict-in-use");

@@ -15,8 +15,8 @@ export function foundFacts({ words, route }: App, job: Job, opened: Opened, foun
   const targets = found.targets.map(({ residual_mm, largest_mm, points }, at) => [`${words.target} ${at + 1} (${points})`, mm(residual_mm), mm(largest_mm)]);
   const loose = found.undetermined.map((parts) => make("li", {}, parts.map(({ segment, name, part }) => `${part.toFixed(2)} ${segment} ${name}`).join(" + ")));
   return make("div", {},
-    make("div", { className: "scroll" }, table(words.movement, ["", "mm, °", words.standardError], [...numbers, ...stopped])),
-    make("div", { className: "scroll" }, table(words.targets, ["", `${words.left_} mm`, words.max], targets)),
+    table(words.movement, ["", "mm, °", words.standardError], [...numbers, ...stopped]),
+    table(words.targets, ["", `${words.left_} mm`, words.max], targets),
     loose.length > 0 && make("div", { className: "warned" }, words.notDetermined, make("ul", {}, ...loose)),
     make("a", { className: "button primary", href: address(["case", opened.id, "plan"], { p: route.state.get("p") ?? undefined }), data: { job: job.id } }, words.openPlan));
 }

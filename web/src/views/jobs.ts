@@ -1,7 +1,7 @@
 // Lists of jobs and of studies.
 import type { Documents, Job } from "../api.js";
 import { refusal, type App, type Leave } from "../app.js";
-import { button, make, table } from "../dom.js";
+import { button, make, scrolling, table } from "../dom.js";
 import { address } from "../route.js";
 import { mm, when } from "../figures.js";
 
@@ -33,8 +33,8 @@ export async function jobs(app: App): Promise<Leave> {
   };
   await draw();
   const head = [words.kind, words.status, words.progress, words.created, ""].map((text) => make("th", { scope: "col" }, text));
-  stage.replaceChildren(make("h1", {}, words.jobs), said, make("div", { className: "scroll card" },
-    make("table", {}, make("thead", {}, make("tr", {}, ...head)), body)));
+  stage.replaceChildren(make("h1", {}, words.jobs), said, make("div", { className: "card" },
+    scrolling(words.jobs, make("table", {}, make("thead", {}, make("tr", {}, ...head)), body))));
   return () => { left = true; clearTimeout(timer); };
 }
 
@@ -62,5 +62,5 @@ async function report({ service, words }: App, job: Job, into: HTMLElement): Pro
   into.replaceChildren(
     make("img", { className: "drawing", src: URL.createObjectURL(chart), alt: words.chart }),
     ...verdict.reasons.map((reason) => make("p", { className: "warned" }, reason)),
-    make("div", { className: "scroll" }, table(words.rows, [words.variant, words.scene, words.wall, words.p95mm, words.state], cells)));
+    table(words.rows, [words.variant, words.scene, words.wall, words.p95mm, words.state], cells));
 }

@@ -213,9 +213,10 @@ class Planning {
       if (turn !== this.asked) return;
       const apart = here.reduce((most, value, at) => Math.max(most, Math.abs(value - answer.displacement_mm[Math.floor(at / 3)]![at % 3]!)), 0);
       const agrees = apart <= AGREED_MM;
+      const left = answer.nonlinearity_estimate_mm;
+      const within = answer.within_linear_range && left !== undefined;
       this.checked.replaceChildren(
-        make("p", { className: answer.within_linear_range ? "" : "warned" },
-          answer.within_linear_range ? words.leftOut(mm(answer.nonlinearity_estimate_mm)) : words.outside),
+        make("p", { className: within ? "" : "warned" }, within ? words.leftOut(mm(left)) : words.outside),
         answer.second_order_mm === undefined || answer.second_order_mm === null ? "" : make("p", {}, words.secondAdds(mm(answer.second_order_mm))),
         make("p", { className: agrees ? "" : "warned" }, (agrees ? words.agrees : words.disagrees)(apart.toExponential(0))),
         answer.warnings.length === 0 ? "" : warnings(answer.warnings, words));

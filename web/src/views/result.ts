@@ -147,9 +147,9 @@ class Result {
     if (results.optimisation !== undefined) bench.section(words.found, foundFacts(this.app, this.job, this.opened, results.optimisation));
     if (results.comparison !== undefined) bench.section(words.comparison, comparisonFacts(this.app, results.comparison));
     bench.section(words.warnings, warnings(this.job.warnings, words));
-    bench.section(words.regions, make("div", { className: "scroll" }, this.regions()));
+    bench.section(words.regions, this.regions());
     if (Object.keys(results.statistics?.landmarks ?? {}).length > 0) {
-      bench.section(words.landmarks, make("div", { className: "scroll" }, this.landmarks()));
+      bench.section(words.landmarks, this.landmarks());
     }
     bench.section(words.profile, profile(words, this.opened.frame, this.before, this.after), make("p", { className: "fine" }, words.profileHint));
     bench.section(words.provenance, this.provenance());
@@ -185,7 +185,7 @@ class Result {
     const row = (name: string, region: Documents["DisplacementDocument"] | undefined, error?: { mean: number } | null, model?: { mean: number } | null) =>
       [name, ...(region === undefined ? ["–", "–", "–"] : [region.area.mean, region.area.p95, region.area.max].map(mm)), numbers(error), numbers(model)];
     const rows = Object.entries(statistics?.regions ?? {}).map(([name, region]) => row(name, region, errors?.regions?.[name], nonlinear?.regions?.[name]));
-    return table("mm", [words.region, words.mean, words.p95, words.max, words.error, words.nonlinear],
+    return table(`${words.displacement}, mm`, [words.region, words.mean, words.p95, words.max, words.error, words.nonlinear],
       [row(words.whole, statistics?.skin, errors, nonlinear?.skin), ...rows]);
   }
 
@@ -196,7 +196,7 @@ class Result {
       const error = errors?.landmarks?.[name];
       return [name, ...inWords(moved as Triple, this.opened.frame).map((value) => signed(value)), error === undefined ? "–" : mm(error)];
     });
-    return table("mm", [words.landmark, words.forward, words.up, words.left, words.error], rows);
+    return table(`${words.displacement}, mm`, [words.landmark, words.forward, words.up, words.left, words.error], rows);
   }
 
   private provenance(): HTMLElement {

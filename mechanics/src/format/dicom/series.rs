@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use super::slice::{Part, Plane, Slice};
 use super::stack::{Layer, Stack};
 use super::{FORMAT, bad};
+use crate::format::arrays::SurfaceArrays;
 use crate::format::error::FormatError;
 use crate::format::limits::ReadLimits;
 use crate::format::voxels::{Rescale, VoxelBuilder};
@@ -51,6 +52,7 @@ pub(in crate::format) fn assemble(
         mesh: Mesh::Image(image),
         frame: Some(Frame::Lps),
         ignored: IgnoredArrays::default(),
+        of_points: SurfaceArrays::default(),
         warnings,
     })
 }

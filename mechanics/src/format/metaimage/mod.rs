@@ -6,6 +6,7 @@ mod header;
 
 use flate2::read::ZlibDecoder;
 
+use super::arrays::SurfaceArrays;
 use super::cursor::Cursor;
 use super::error::FormatError;
 use super::limits::ReadLimits;
@@ -60,6 +61,7 @@ fn read_voxels(
         mesh: Mesh::Image(image),
         frame: Some(Frame::Lps),
         ignored: IgnoredArrays::default(),
+        of_points: SurfaceArrays::default(),
         warnings: header.warning.into_iter().chain(trailing(followed_by)).collect(),
     })
 }

@@ -12,6 +12,7 @@ use std::io::Read;
 
 use flate2::read::MultiGzDecoder;
 
+use super::arrays::SurfaceArrays;
 use super::cursor::Cursor;
 use super::error::FormatError;
 use super::limits::ReadLimits;
@@ -77,6 +78,7 @@ fn read_stream(
         mesh: Mesh::Image(image.with_label_names(names)),
         frame: Some(Frame::Ras),
         ignored: IgnoredArrays::default(),
+        of_points: SurfaceArrays::default(),
         warnings: header.warnings.into_iter().chain(trailing(decoded.followed_by)).collect(),
     })
 }

@@ -12,6 +12,7 @@ use flate2::Compression;
 use flate2::read::MultiGzDecoder;
 use flate2::write::GzEncoder;
 
+use super::arrays::SurfaceArrays;
 use super::cursor::Cursor;
 use super::error::FormatError;
 use super::limits::ReadLimits;
@@ -45,6 +46,7 @@ pub(super) fn read(bytes: &[u8], limits: &ReadLimits) -> Result<ReadMesh, Format
         mesh: Mesh::Image(image.with_label_names(header.label_names)),
         frame: header.frame,
         ignored: IgnoredArrays::default(),
+        of_points: SurfaceArrays::default(),
         warnings,
     })
 }

@@ -117,7 +117,7 @@ fn tissue_with_fibres_that_also_push_is_answered_with_them() {
     let mut case = slab(CellShape::Tet4, 0.45);
     let fibre = Fibre { young_modulus: 600.0, shear_modulus: None, law: FibreLaw::Engineering };
     for tissue in case.materials.values_mut() {
-        *tissue = tissue.clone().with_fibre(&fibre).unwrap();
+        *tissue = tissue.with_fibre(&fibre).unwrap();
     }
     case.fibres.insert("*".to_owned(), FibreDirection::Uniform(Vector::x()));
     let plan = plan_of(&case, &movements(1.0));

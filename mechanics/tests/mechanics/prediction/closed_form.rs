@@ -122,6 +122,24 @@ fn tractions_and_pressures_and_gravity_balance_with_the_reactions() {
 }
 
 #[test]
+fn a_load_on_held_nodes_alone_is_told() {
+    let mesh = block(Vector::new(4.0, 5.0, 6.0), [2, 2, 3], CellShape::Hex8);
+    let mut case = case_of(mesh, material(15.0, 0.3));
+    case.fixed.push(set("z_min"));
+    let told = |load: Load| {
+        let plan = Plan { loads: vec![load], ..Plan::default() };
+        let warnings = solve(&case, &plan, &Settings::default()).warnings;
+        warnings.iter().any(|warning| warning.code == "load-on-held")
+    };
+    for (side, wanted) in [("z_min", true), ("z_max", false), ("x_min", false)] {
+        let force = Vector::new(0.0, 0.0, 5.0);
+        assert_eq!(told(Load::Force { nodes: set(side), force }), wanted, "{side}");
+        assert_eq!(told(Load::Traction { faces: set(side), traction: force }), wanted, "{side}");
+        assert_eq!(told(Load::Pressure { faces: set(side), pressure: 1.0 }), wanted, "{side}");
+    }
+}
+
+#[test]
 fn a_bar_under_its_own_weight_shortens_by_half_of_what_its_weight_on_top_would_do() {
     let mesh = block(Vector::new(3.0, 3.0, 30.0), [1, 1, 10], CellShape::Hex8);
     let density = 1.04;

@@ -6,7 +6,8 @@ use mechanics::mesh::{TriangleSurface, Vector};
 use mechanics::progress::Unobserved;
 use mechanics::registration::{Place, RigidTransform};
 use mechanics::validation::{
-    Alignment, Comparison, ComparisonError, ComparisonSettings, LandmarkPair, NodeWise, compare,
+    Alignment, Comparison, ComparisonError, ComparisonSettings, LandmarkPair, NodeWise, Region,
+    compare,
 };
 
 use crate::scenes::StopsAfter;
@@ -166,13 +167,16 @@ fn regions_measure_their_part_and_an_empty_one_is_refused() {
     let prediction = sphere(70.0, Vector::zeros(), 4);
     // The upper half has grown by 3 mm.
     let actual = map(&prediction, |p| if p.z > 0.0 { p * (73.0 / 70.0) } else { *p });
-    let top = Place::Sphere { centre: Vector::new(0.0, 0.0, 75.0), radius: 30.0 };
+    let top = Region::Place(Place::Sphere { centre: Vector::new(0.0, 0.0, 75.0), radius: 30.0 });
     let bottom = Place::Box {
         lower: Vector::new(-80.0, -80.0, -80.0),
         upper: Vector::new(80.0, 80.0, -20.0),
     };
     let mut settings = ComparisonSettings {
-        regions: BTreeMap::from([("top".to_owned(), top), ("bottom".to_owned(), bottom)]),
+        regions: BTreeMap::from([
+            ("top".to_owned(), top),
+            ("bottom".to_owned(), Region::Place(bottom)),
+        ]),
         ..ComparisonSettings::default()
     };
     let found = compare(&prediction, &actual, &settings, &Unobserved).unwrap();
@@ -181,7 +185,7 @@ fn regions_measure_their_part_and_an_empty_one_is_refused() {
     assert!(found.regions["top"].to_actual.area < found.distances.to_actual.area);
 
     let nowhere = Place::Sphere { centre: Vector::repeat(500.0), radius: 1.0 };
-    settings.regions.insert("nose".to_owned(), nowhere);
+    settings.regions.insert("nose".to_owned(), Region::Place(nowhere));
     let error = compare(&prediction, &actual, &settings, &Unobserved).unwrap_err();
     assert_eq!(error, ComparisonError::EmptyRegion { name: "nose".to_owned() });
     assert_eq!(error.code(), "empty-region");
@@ -195,7 +199,7 @@ fn a_region_that_the_scan_does_not_reach_is_left_out_with_a_warning() {
         upper: Vector::repeat(60.0),
     };
     let settings = ComparisonSettings {
-        regions: BTreeMap::from([("edge".to_owned(), edge)]),
+        regions: BTreeMap::from([("edge".to_owned(), Region::Place(edge))]),
         ..ComparisonSettings::default()
     };
     let found = compare(&prediction, &actual, &settings, &Unobserved).unwrap();

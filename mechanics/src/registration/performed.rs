@@ -1,0 +1,81 @@
+//! The movements of bone that an operation performed, from bone before and after it.
+//!
+//! T takes the scan after the operation to the one before it by bone that nothing was done to, and S_k takes it to
+//! where segment k lay before. So the segment went from x to T S_k⁻¹ x, in the frame before the operation.
+//! Both by iterative closest point with a mask and a limit on what counts, since cuts, plates and grown bone have no
+//! partner. Source: METHODS row 42 and paper 002 section 2.6 (each segment by itself, after the skull base).
+
+use super::closest_point::SurfaceAlignment;
+use super::{AlignmentError, IterativeClosestPoint, Place, RigidTransform, Start};
+use crate::mesh::{TriangleSurface, Vector};
+use crate::progress::Progress;
+
+/// Bone before the operation that decides, and where its search starts.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BoneBefore<'a> {
+    pub surface: &'a TriangleSurface,
+    /// Only the part in it decides.
+    pub mask: Option<Place>,
+    /// Takes the scan after the operation to this bone.
+    pub start: Start,
+}
+
+/// What a segment did.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Performed {
+    /// x' = R x + t in the frame before the operation, in mm.
+    pub movement: RigidTransform,
+    /// How well the segment before the operation lies on the bone after it.
+    pub fit: SurfaceAlignment,
+    /// Of the segment before the operation, in mm.
+    pub centre: Vector,
+}
+
+/// The scan after the operation onto the one before it, by bone that nothing was done to.
+pub fn align_base(
+    base: &BoneBefore,
+    after: &TriangleSurface,
+    progress: &dyn Progress,
+) -> Result<SurfaceAlignment, AlignmentError> {
+    fit(base, after, progress)
+}
+
+/// The movement of one segment. A start as the surfaces lie is that of the base.
+pub fn performed(
+    segment: &BoneBefore,
+    after: &TriangleSurface,
+    base: &RigidTransform,
+    progress: &dyn Progress,
+) -> Result<Performed, AlignmentError> {
+    let start = match segment.start {
+        Start::AsItLies => Start::Known(*base),
+        other => other,
+    };
+    let fit = fit(&BoneBefore { start, ..segment.clone() }, after, progress)?;
+    let movement = fit.transform.inverse().then(base);
+    Ok(Performed { movement, fit, centre: centre(segment) })
+}
+
+fn fit(
+    bone: &BoneBefore,
+    after: &TriangleSurface,
+    progress: &dyn Progress,
+) -> Result<SurfaceAlignment, AlignmentError> {
+    let (mask, start) = (bone.mask, bone.start);
+    let method = IterativeClosestPoint { mask, start, ..IterativeClosestPoint::default() };
+    method.align(bone.surface, after, progress)
+}
+
+/// The middle of the triangles in the mask, by their areas.
+fn centre(bone: &BoneBefore) -> Vector {
+    let (mut sum, mut area) = (Vector::zeros(), 0.0);
+    for triangle in 0..bone.surface.triangles.len() {
+        let [a, b, c] = bone.surface.corners(triangle);
+        let middle = (a + b + c) / 3.0;
+        if bone.mask.is_none_or(|mask| mask.holds(&middle)) {
+            let weight = bone.surface.area_vector(triangle).norm();
+            (sum, area) = (sum + middle * weight, area + weight);
+        }
+    }
+    if area > 0.0 { sum / area } else { sum }
+}

@@ -1,0 +1,109 @@
+//! Thin-plate splines in space: the smoothest map that takes some landmarks to others.
+//!
+//! f(x) = b + A x + Σ w_i |x - x_i|,   Σ w_i = 0,   Σ w_i x_iᵀ = 0
+//!
+//! In three dimensions the kernel is the distance itself (METHODS A16). It is conditionally negative
+//! definite, so that the bending energy is -wᵀ K w and smoothing solves with K - λ I; K + λ I would raise
+//! the energy. With four landmarks w is 0 and the map is affine.
+//! Source: Duchon, Lecture Notes in Mathematics 571 (1977) 85; Bookstein, IEEE Transactions on Pattern
+//! Analysis and Machine Intelligence 11 (1989) 567.
+
+use nalgebra::{DMatrix, Matrix3, Matrix3xX};
+
+use super::AlignmentError;
+use crate::mesh::Vector;
+
+/// Landmarks of fewer do not determine an affine map.
+pub const FEWEST: usize = 4;
+
+/// Landmarks that are thinner than this share of their length lie in a plane.
+const SMALLEST_THICKNESS: f64 = 1e-6;
+
+/// A map of space, in mm.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ThinPlateSpline {
+    centres: Vec<Vector>,
+    weights: Vec<Vector>,
+    matrix: Matrix3<f64>,
+    shift: Vector,
+}
+
+impl ThinPlateSpline {
+    /// The spline that takes `from` to `to`, smoothed by λ = `smoothing` in mm; 0 meets every landmark.
+    pub fn new(from: &[Vector], to: &[Vector], smoothing: f64) -> Result<Self, AlignmentError> {
+        check(from, to)?;
+        let count = from.len();
+        // Relative to one of them, so that points far from the origin keep their digits.
+        let origin = from[0];
+        let local: Vec<Vector> = from.iter().map(|point| point - origin).collect();
+        let mut matrix = DMatrix::zeros(count + 4, count + 4);
+        let mut right = DMatrix::zeros(count + 4, 3);
+        for (row, at) in local.iter().enumerate() {
+            for (column, other) in local.iter().enumerate() {
+                matrix[(row, column)] = (at - other).norm();
+            }
+            matrix[(row, row)] -= smoothing;
+            let polynomial = [1.0, at.x, at.y, at.z];
+            for (place, value) in polynomial.into_iter().enumerate() {
+                matrix[(row, count + place)] = value;
+                matrix[(count + place, row)] = value;
+            }
+            for axis in 0..3 {
+                right[(row, axis)] = to[row][axis];
+            }
+        }
+        let singular = AlignmentError::Coplanar { thickness: 0.0, length: 0.0 };
+        let solution = matrix.full_piv_lu().solve(&right).ok_or(singular)?;
+        let row = |row: usize| Vector::from_fn(|axis, _| solution[(row, axis)]);
+        let matrix = Matrix3::from_fn(|axis, column| solution[(count + 1 + column, axis)]);
+        let weights = (0..count).map(row).collect();
+        let shift = row(count) - matrix * origin;
+        Ok(ThinPlateSpline { centres: from.to_vec(), weights, matrix, shift })
+    }
+
+    pub fn apply(&self, point: &Vector) -> Vector {
+        let bent = self.centres.iter().zip(&self.weights);
+        let bent: Vector = bent.map(|(centre, weight)| weight * (point - centre).norm()).sum();
+        self.shift + self.matrix * point + bent
+    }
+
+    /// The w of each landmark; 0 where the map is affine.
+    pub fn weights(&self) -> &[Vector] {
+        &self.weights
+    }
+
+    /// -wᵀ K w over the three coordinates: 0 where the map is affine.
+    pub fn bending_energy(&self) -> f64 {
+        let mut energy = 0.0;
+        for (one, own) in self.centres.iter().zip(&self.weights) {
+            for (other, theirs) in self.centres.iter().zip(&self.weights) {
+                energy -= own.dot(theirs) * (one - other).norm();
+            }
+        }
+        energy
+    }
+}
+
+fn check(from: &[Vector], to: &[Vector]) -> Result<(), AlignmentError> {
+    if from.len() != to.len() {
+        return Err(AlignmentError::NotPaired { from: from.len(), to: to.len() });
+    }
+    let is_bad = |point: &Vector| point.iter().any(|x| x.is_nan() || x.abs() >= 1e100);
+    if let Some(pair) = from.iter().zip(to).position(|(a, b)| is_bad(a) || is_bad(b)) {
+        return Err(AlignmentError::NotFinite { pair });
+    }
+    if from.len() < FEWEST {
+        return Err(AlignmentError::FewLandmarks { points: from.len(), needed: FEWEST });
+    }
+    let mut offsets = Matrix3xX::zeros(from.len());
+    let middle = from.iter().sum::<Vector>() / from.len() as f64;
+    for (column, point) in from.iter().enumerate() {
+        offsets.set_column(column, &(point - middle));
+    }
+    let spreads = offsets.singular_values() / (from.len() as f64).sqrt();
+    let (length, thickness) = (spreads[0], spreads[2]);
+    if thickness <= SMALLEST_THICKNESS * length {
+        return Err(AlignmentError::Coplanar { thickness, length });
+    }
+    Ok(())
+}

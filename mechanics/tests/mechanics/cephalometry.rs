@@ -1,0 +1,129 @@
+//! Measures of a head by its landmarks, with the numbers of REMAINING 3.7, which another program computed.
+
+use std::collections::BTreeMap;
+
+use mechanics::cephalometry::{Landmarks, MEASURES};
+use mechanics::mesh::{Frame, Vector};
+
+type Named = BTreeMap<String, Vector>;
+
+/// In LPS, mm.
+fn example() -> Named {
+    let points = [
+        ("S", [0.0, 20.0, 60.0]),
+        ("N", [0.0, -48.0, 70.0]),
+        ("A", [0.0, -52.0, 18.0]),
+        ("B", [0.0, -46.0, -28.0]),
+        ("Me", [0.0, -38.0, -52.0]),
+        ("Go_L", [45.0, 18.0, -24.0]),
+        ("Go_R", [-45.0, 18.0, -24.0]),
+        ("Po_L", [55.0, 38.0, 38.0]),
+        ("Po_R", [-55.0, 38.0, 38.0]),
+        ("Or_L", [35.0, -38.0, 36.0]),
+        ("Or_R", [-35.0, -38.0, 36.0]),
+        ("ANS", [0.0, -54.0, 22.0]),
+        ("U1", [0.0, -57.0, -6.0]),
+        ("L1", [0.0, -53.0, -5.0]),
+        ("Oc", [0.0, -10.0, -4.0]),
+    ];
+    points.into_iter().map(|(name, at)| (name.to_owned(), Vector::from(at))).collect()
+}
+
+fn measure(name: &str, landmarks: &Named) -> Option<f64> {
+    MEASURES.iter().find(|measure| measure.name == name).unwrap().of(&Landmarks(landmarks))
+}
+
+fn assert_measures(landmarks: &Named, wanted: &[(&str, f64)]) {
+    for (name, wanted) in wanted {
+        let found = measure(name, landmarks).unwrap();
+        assert!((found - wanted).abs() < 1e-8, "{name}: {found} instead of {wanted}");
+    }
+}
+
+const EXAMPLE: [(&str, f64); 13] = [
+    ("sna", 86.032_819_231_0),
+    ("snb", 80.464_974_548_1),
+    ("anb", 5.567_844_682_9),
+    ("fma", 25.057_615_418_3),
+    ("sn_to_frankfort", 9.873_321_882_8),
+    ("wits", 4.038_898_079_4),
+    ("overjet", 4.024_922_359_5),
+    ("overbite", 0.894_427_191_0),
+    ("overjet_occlusal", 4.038_898_079_4),
+    ("overbite_occlusal", 0.829_036_974_2),
+    ("upper_face_height", 48.373_546_489_8),
+    ("lower_face_height", 75.709_972_923_0),
+    ("lower_face_share", 0.618_499_294_6),
+];
+
+#[test]
+fn the_measures_of_the_example_are_those_of_another_program() {
+    assert_measures(&example(), &EXAMPLE);
+    let up = Landmarks(&example()).head().unwrap().up;
+    assert!((up - Vector::new(0.0, -0.026_306_68, 0.999_653_92)).amax() < 1e-8, "{up}");
+}
+
+#[test]
+fn a_mandible_four_millimetres_forward_changes_what_hangs_on_it() {
+    let mut planned = example();
+    for name in ["B", "Me", "L1", "Go_L", "Go_R"] {
+        planned.get_mut(name).unwrap().y -= 4.0;
+    }
+    assert_measures(&planned, &[("snb", 82.803_253_203_9), ("anb", 3.229_566_027_1)]);
+    // Along Frankfort, which is not quite along y.
+    let [before, after] = [example(), planned].map(|l| measure("overjet", &l).unwrap());
+    assert!((before - after - 4.0 * 0.999_653_92).abs() < 1e-7);
+}
+
+#[test]
+fn the_measures_do_not_depend_on_where_the_head_lies_or_how_it_is_turned() {
+    let turn = nalgebra::Rotation3::from_euler_angles(0.4, -0.7, 1.9);
+    let moved: Named = example()
+        .into_iter()
+        .map(|(name, at)| (name, turn * at + Vector::new(300.0, -20.0, 7.0)))
+        .collect();
+    assert_measures(&moved, &EXAMPLE);
+    // And in RAS they are the same.
+    let ras: Named =
+        example().into_iter().map(|(n, at)| (n, Vector::new(-at.x, -at.y, at.z))).collect();
+    assert_measures(&ras, &EXAMPLE);
+    assert!(Landmarks(&ras).swapped_sides(Frame::Ras).is_empty());
+}
+
+#[test]
+fn a_lower_jaw_in_front_has_a_negative_anb() {
+    let mut third = example();
+    third.get_mut("B").unwrap().y -= 15.0;
+    let anb = measure("anb", &third).unwrap();
+    assert!((-4.0..-2.0).contains(&anb), "{anb}");
+}
+
+#[test]
+fn swapped_sides_are_told_with_how_far() {
+    let mut swapped = example();
+    assert!(Landmarks(&swapped).swapped_sides(Frame::Lps).is_empty());
+    let [left, right] = ["Po_L", "Po_R"].map(|name| swapped[name]);
+    swapped.insert("Po_L".to_owned(), right);
+    swapped.insert("Po_R".to_owned(), left);
+    let found = Landmarks(&swapped).swapped_sides(Frame::Lps);
+    assert_eq!((found.len(), found[0].by, found[0].left.as_str()), (1, 110.0, "Po_L"));
+    assert!(Landmarks(&swapped).swapped_sides(Frame::Unspecified).is_empty());
+}
+
+#[test]
+fn what_lacks_a_landmark_is_left_out_and_the_rest_is_told() {
+    let mut few = example();
+    few.remove("Or_L");
+    assert_eq!(measure("overjet", &few), None);
+    assert!((measure("sna", &few).unwrap() - 86.032_819_231).abs() < 1e-8);
+    assert_eq!(measure("facial_convexity", &few), None);
+    let profile = [
+        ("glabella", [0.0, -50.0, 60.0]),
+        ("subnasale", [0.0, -60.0, 10.0]),
+        ("pogonion", [0.0, -50.0, -40.0]),
+    ];
+    few.extend(profile.map(|(name, at)| (name.to_owned(), Vector::from(at))));
+    // Both halves lean by atan(10/50).
+    let wanted = 2.0 * (0.2_f64).atan().to_degrees();
+    assert!((measure("facial_convexity", &few).unwrap() - wanted).abs() < 1e-9);
+}

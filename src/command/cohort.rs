@@ -1,0 +1,84 @@
+//! `facies cohort`: methods against each other over comparisons of the same subjects.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use super::documents::read;
+use super::failure::CommandError;
+use super::files::{FileSource, ScaleArguments};
+use super::screen::{print_files, work_in_sight};
+use crate::jobs::{CohortInput, JobInput, Workplace};
+use crate::schema::case::document::LengthUnit;
+use crate::schema::cohort::result::CohortResultDocument;
+use crate::schema::predict::result::ResultDocument;
+use crate::schema::{CohortDocument, Limits};
+
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// A cohort as it is posted, with folders of results, from its own folder, in place of ids
+    #[arg(long, value_name = "FILE", help_heading = "What is compared")]
+    spec: PathBuf,
+    /// The folder for the result
+    #[arg(long, visible_alias = "output", value_name = "FOLDER", help_heading = "Result")]
+    out: PathBuf,
+}
+
+/// Reads the comparisons, and prints the table and the tests.
+pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
+    let spec: CohortDocument = read(&arguments.spec)?;
+    let folder = arguments.spec.parent().unwrap_or(Path::new(""));
+    let mut comparisons = BTreeMap::new();
+    for (_, job) in spec.jobs() {
+        let path = folder.join(job).join("result.json");
+        let bytes = std::fs::read(&path)
+            .map_err(|source| CommandError::Read { path: path.clone(), source })?;
+        let result: ResultDocument = serde_json::from_slice(&bytes)
+            .map_err(|error| CommandError::Usage(format!("{}: {error}", path.display())))?;
+        comparisons.extend(result.comparison.map(|comparison| (job.clone(), comparison)));
+    }
+    let limits = Limits::default();
+    let sources = FileSource::new(&PathBuf::new(), LengthUnit::Mm, ScaleArguments::default());
+    let input = JobInput::Cohort(CohortInput { job: None, queue_s: None, spec, comparisons });
+    let place = Workplace { sources: &sources, limits: &limits, out: &arguments.out };
+    let done = work_in_sight(&input, &place)?;
+    if let Some(cohort) = &done.result.cohort {
+        print_cohort(cohort);
+    }
+    print_files(&done.files, &arguments.out);
+    Ok(())
+}
+
+fn print_cohort(cohort: &CohortResultDocument) {
+    println!("distance in mm                    mean     sd    p90    p95    max");
+    for group in &cohort.groups {
+        for row in &group.rows {
+            let d = &row.distances;
+            println!(
+                "{:<14} {:<14} {:>7.3} {:>6.3} {:>6.3} {:>6.3} {:>6.3}",
+                group.name, row.subject, d.mean, d.sd, d.p90, d.p95, d.max
+            );
+        }
+    }
+    for group in &cohort.groups {
+        let over = &group.over_subjects;
+        println!(
+            "{:<14} box {:.3} {:.3} {:.3} {:.3} {:.3}, mean {:.3} +- {:.3}",
+            group.name, over.min, over.p25, over.median, over.p75, over.max, over.mean, over.sd
+        );
+    }
+    for pair in &cohort.pairs {
+        let p = pair.p.map_or_else(|| "no p".to_owned(), |p| format!("p {p:.4}"));
+        println!(
+            "{} against {}: {:.3} mm, W {} and {}, {p} (at least {:.4} with {} subjects)",
+            pair.first,
+            pair.second,
+            pair.median_difference_mm,
+            pair.w_first_larger,
+            pair.w_second_larger,
+            pair.smallest_p,
+            pair.differing
+        );
+    }
+}

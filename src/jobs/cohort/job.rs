@@ -1,0 +1,118 @@
+//! The job of a cohort.
+
+use super::input::CohortInput;
+use crate::jobs::clock::Observed;
+use crate::jobs::failure::JobError;
+use crate::jobs::output::{JobOutput, Workplace};
+use crate::jobs::result::folder::ResultFolder;
+use crate::jobs::result::provenance::{Origin, encode_result};
+use crate::schema::cohort::result::{
+    CohortGroupDocument, CohortPairDocument, CohortResultDocument, CohortRowDocument,
+};
+use crate::schema::compare::result::StatDocument;
+use crate::schema::predict::document::OutputName;
+use crate::schema::predict::result::ResultDocument;
+use crate::schema::{ErrorCode, Faults, Pointer};
+use mechanics::mesh::Frame;
+use mechanics::progress::{Phase, Progress};
+use mechanics::study::paired::{Equality, ZeroRule, signed_rank};
+use mechanics::validation::{Statistics, StatisticsError};
+
+/// Time a cohort may take, in seconds.
+const WALL_S: f64 = 60.0;
+
+/// Differences in mm that are none: what solving to the usual residual leaves open, a hundred times.
+const EQUAL_WITHIN_MM: f64 = 1e-4;
+
+/// Makes the table, the boxes and the tests.
+pub fn cohort_job(
+    input: &CohortInput,
+    place: &Workplace,
+    progress: &dyn Progress,
+) -> Result<JobOutput, JobError> {
+    let clock = Observed::start(progress, WALL_S);
+    let mut faults = Faults::default();
+    input.spec.check(place.limits, &mut faults);
+    faults.into_result()?;
+
+    clock.phase(Phase::Compare);
+    let groups = groups(input)?;
+    let pairs = pairs(input, &groups)?;
+    let (distance, statistic) = (input.spec.distance, input.spec.statistic);
+    let cohort = CohortResultDocument { distance, statistic, groups, pairs };
+
+    clock.phase(Phase::Write);
+    let origin = Origin {
+        spec_hash: input.spec_hash(),
+        inputs: Vec::new(),
+        frame: Frame::Unspecified,
+        queue_s: input.queue_s,
+    };
+    let mut folder = ResultFolder::open(place.out)?;
+    let provenance = origin.provenance(&clock);
+    let result = ResultDocument {
+        cohort: Some(cohort),
+        ..ResultDocument::new(input.job.clone(), &folder.files, provenance, Vec::new())
+    };
+    folder.add(OutputName::ResultJson, &encode_result(&result)?)?;
+    Ok(JobOutput { result, files: folder.files, meshes: Vec::new() })
+}
+
+fn groups(input: &CohortInput) -> Result<Vec<CohortGroupDocument>, JobError> {
+    let spec = &input.spec;
+    let mut faults = Faults::default();
+    let mut groups = Vec::new();
+    for (name, jobs) in &spec.groups {
+        let mut rows = Vec::new();
+        for (index, job) in jobs.iter().enumerate() {
+            let subject = spec.subjects.get(index).cloned();
+            let subject = subject.unwrap_or_else(|| (index + 1).to_string());
+            match input.comparisons.get(job).and_then(|comparison| spec.row(comparison)) {
+                Some(distances) => rows.push(CohortRowDocument { subject, distances }),
+                None => {
+                    let at = Pointer::root().key("spec").key("groups").key(name).index(index);
+                    let detail = "this comparison has no such distances";
+                    faults.add(&at, ErrorCode::NoSuchOutput, detail);
+                }
+            }
+        }
+        let values: Vec<f64> = rows.iter().map(|row| spec.statistic.of(&row.distances)).collect();
+        let over_subjects = match Statistics::plain(&values) {
+            Err(StatisticsError::Empty) => StatDocument::default(),
+            found => StatDocument::from(&found?),
+        };
+        groups.push(CohortGroupDocument { name: name.clone(), rows, over_subjects });
+    }
+    faults.into_result()?;
+    Ok(groups)
+}
+
+fn pairs(
+    input: &CohortInput,
+    groups: &[CohortGroupDocument],
+) -> Result<Vec<CohortPairDocument>, JobError> {
+    let values = |group: &CohortGroupDocument| -> Vec<f64> {
+        group.rows.iter().map(|row| input.spec.statistic.of(&row.distances)).collect()
+    };
+    let mut pairs = Vec::new();
+    for (index, first) in groups.iter().enumerate() {
+        for second in &groups[index + 1..] {
+            let (a, b) = (values(first), values(second));
+            let differences: Vec<f64> = a.iter().zip(&b).map(|(a, b)| a - b).collect();
+            let equality = Equality { within: EQUAL_WITHIN_MM, zeros: ZeroRule::Wilcox };
+            let test = signed_rank(&a, &b, equality).ok();
+            pairs.push(CohortPairDocument {
+                first: first.name.clone(),
+                second: second.name.clone(),
+                median_difference_mm: Statistics::plain(&differences)?.median,
+                differing: test.map_or(0, |test| test.differing as u64),
+                w_first_larger: test.map_or(0.0, |test| test.positive),
+                w_second_larger: test.map_or(0.0, |test| test.negative),
+                p: test.map(|test| test.two_sided_p),
+                is_exact: test.is_none_or(|test| test.exact),
+                smallest_p: test.map_or(1.0, |test| test.smallest_p),
+            });
+        }
+    }
+    Ok(pairs)
+}

@@ -1,0 +1,7 @@
+//! Cohorts: comparisons of the same subjects by several methods.
+
+mod input;
+mod job;
+
+pub use input::CohortInput;
+pub use job::cohort_job;

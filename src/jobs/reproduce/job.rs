@@ -1,0 +1,278 @@
+//! The job of a reproduction.
+
+use std::collections::BTreeMap;
+
+use super::input::ReproduceInput;
+use crate::jobs::clock::Observed;
+use crate::jobs::compare::{by_landmarks, place_of, surface_of};
+use crate::jobs::failure::JobError;
+use crate::jobs::output::{JobOutput, Workplace};
+use crate::jobs::result::folder::ResultFolder;
+use crate::jobs::result::provenance::{Origin, encode_result};
+use crate::jobs::result::warnings::warning_documents;
+use crate::jobs::source::StoredMesh;
+use crate::schema::case::document::FrameName;
+use crate::schema::compare::document::StartName;
+use crate::schema::plan::document::{PlanContext, PlanSegmentDocument};
+use crate::schema::predict::document::OutputName;
+use crate::schema::predict::result::ResultDocument;
+use crate::schema::reproduce::document::{BoneLandmarkDocument, ReproducedSegmentDocument};
+use crate::schema::reproduce::result::{
+    BaseFitDocument, DeviationDocument, FitDocument, PerformedDocument, ReproductionDocument,
+};
+use crate::schema::{Faults, Limits, Matrix4x4, PlanDocument, Pointer};
+use mechanics::mesh::{Frame, TriangleSurface, Vector, Warning};
+use mechanics::plan::{PlannedSegment, RigidMovement};
+use mechanics::progress::{Phase, Progress};
+use mechanics::registration::mirror::check_mirror;
+use mechanics::registration::performed::{BoneBefore, Performed, align_base, performed};
+use mechanics::registration::{AlignmentError, RigidTransform, Start, SurfaceAlignment};
+use mechanics::validation::LandmarkPair;
+
+/// Time a reproduction may take, in seconds.
+const WALL_S: f64 = 600.0;
+
+/// Bone that was not operated on fits to 0.1 to 0.25 mm, 0.5 % of it beyond 1 mm (paper 001 section 3.2).
+const MISFIT: f64 = 0.25;
+
+/// Below this angle in radians a turn has no axis.
+const NO_TURN: f64 = 1e-9;
+
+/// Finds what an operation did, as a job.
+pub fn reproduce_job(
+    input: &ReproduceInput,
+    place: &Workplace,
+    progress: &dyn Progress,
+) -> Result<JobOutput, JobError> {
+    let clock = Observed::start(progress, WALL_S);
+
+    // 1. Documents and surfaces.
+    let mut faults = Faults::default();
+    input.spec.check(place.limits, &mut faults);
+    faults.into_result()?;
+    let stored = input.fetch(place.sources)?;
+    let frame = stored.get(&input.spec.before.mesh).and_then(|mesh| mesh.frame);
+    let planned = planned(input, frame.unwrap_or_default(), place.limits)?;
+    clock.check()?;
+
+    // 2. Bone onto bone.
+    clock.phase(Phase::Compare);
+    let scene = Scans { input, stored: &stored, planned: &planned, clock: &clock };
+    let (reproduction, warnings) = scene.reproduce(frame)?;
+
+    // 3. Files.
+    clock.phase(Phase::Write);
+    let origin = Origin {
+        spec_hash: input.spec_hash(&stored),
+        inputs: inputs(input, &stored),
+        frame: frame.unwrap_or_default(),
+        queue_s: input.queue_s,
+    };
+    let mut folder = ResultFolder::open(place.out)?;
+    let told = stored.values().flat_map(|mesh| &mesh.warnings).chain(&warnings);
+    let result = ResultDocument {
+        reproduction: Some(reproduction),
+        ..ResultDocument::new(
+            input.job.clone(),
+            &folder.files,
+            origin.provenance(&clock),
+            warning_documents(told),
+        )
+    };
+    folder.add(OutputName::ResultJson, &encode_result(&result)?)?;
+    Ok(JobOutput { result, files: folder.files, meshes: Vec::new() })
+}
+
+/// The movements that had been planned, in the frame before the operation.
+fn planned(
+    input: &ReproduceInput,
+    frame: Frame,
+    limits: &Limits,
+) -> Result<Vec<PlannedSegment>, JobError> {
+    let Some(plan) = &input.spec.planned else { return Ok(Vec::new()) };
+    let mut faults = Faults::default();
+    let at = Pointer::root().key("spec").key("planned");
+    let plan = plan.to_plan(&at, &PlanContext { frame, centre: None, limits }, &mut faults);
+    faults.into_result()?;
+    Ok(plan.segments)
+}
+
+fn inputs(
+    input: &ReproduceInput,
+    stored: &BTreeMap<String, StoredMesh>,
+) -> Vec<crate::schema::predict::result::InputDocument> {
+    let mut spec = input.spec.clone();
+    let named = spec.mesh_references_mut().into_iter();
+    let role =
+        |at: &Pointer| at.as_str().trim_start_matches('/').trim_end_matches("/mesh").to_owned();
+    named.filter_map(|(at, id)| Some(stored.get(id.as_str())?.to_input(&role(&at)))).collect()
+}
+
+/// Bone of both scans.
+struct Scans<'a> {
+    input: &'a ReproduceInput,
+    stored: &'a BTreeMap<String, StoredMesh>,
+    planned: &'a [PlannedSegment],
+    clock: &'a Observed<'a>,
+}
+
+impl Scans<'_> {
+    fn reproduce(
+        &self,
+        frame: Option<Frame>,
+    ) -> Result<(ReproductionDocument, Vec<Warning>), JobError> {
+        let spec = &self.input.spec;
+        let at = Pointer::root().key("spec");
+        let before = self.surface(&spec.before.mesh, &at.key("before"))?;
+        let after = self.surface(&spec.after.mesh, &at.key("after"))?;
+        let start = start(spec.base.start, &spec.base.landmarks)?;
+        let mask = spec.base.mask.as_ref().and_then(place_of);
+        let bone = BoneBefore { surface: &before, mask, start };
+        let base = align_base(&bone, &after, self.clock).map_err(|error| self.failed(&error))?;
+        let mut warnings = base_warnings(&bone, &after, &base);
+        let mut segments = Vec::new();
+        for (index, segment) in spec.segments.iter().enumerate() {
+            let at = at.key("segments").index(index);
+            let own = match &segment.before {
+                Some(own) => self.surface(&own.mesh, &at.key("before"))?,
+                None => before.clone(),
+            };
+            let later = match &segment.after {
+                Some(own) => self.surface(&own.mesh, &at.key("after"))?,
+                None => after.clone(),
+            };
+            let bone = BoneBefore {
+                surface: &own,
+                mask: segment.mask.as_ref().and_then(place_of),
+                start: self::start(segment.start, &segment.landmarks)?,
+            };
+            let found = performed(&bone, &later, &base.transform, self.clock)
+                .map_err(|error| self.failed(&error))?;
+            warnings.extend(misfit(segment, &found));
+            segments.push(self.document(segment, &found));
+        }
+        let plan = PlanDocument {
+            segments: segments.iter().map(plan_segment).collect(),
+            frame: frame.map(FrameName::from),
+            ..PlanDocument::default()
+        };
+        let matrix4x4 = Matrix4x4(base.transform.matrix4());
+        let base = BaseFitDocument { matrix4x4, fit: FitDocument::from(&base) };
+        Ok((ReproductionDocument { plan, base, segments }, warnings))
+    }
+
+    fn surface(&self, id: &str, at: &Pointer) -> Result<TriangleSurface, JobError> {
+        let missing = || crate::jobs::fetch::no_surface(&at.key("mesh"));
+        surface_of(self.stored.get(id).ok_or_else(missing)?, &at.key("mesh"))
+    }
+
+    fn document(
+        &self,
+        segment: &ReproducedSegmentDocument,
+        found: &Performed,
+    ) -> PerformedDocument {
+        let (movement, centre) = (&found.movement, &found.centre);
+        let name = segment.name.trim().to_owned();
+        let plan = self.planned.iter().find(|planned| planned.name == name);
+        PerformedDocument {
+            matrix4x4: Matrix4x4(movement.matrix4()),
+            rotation_deg: movement.angle().to_degrees(),
+            axis: axis(movement).into(),
+            centre_mm: (*centre).into(),
+            displacement_mm: (movement.apply(centre) - centre).into(),
+            fit: FitDocument::from(&found.fit),
+            from_planned: plan.map(|plan| deviation(found, &plan.movement)),
+            name,
+        }
+    }
+
+    fn failed(&self, error: &AlignmentError) -> JobError {
+        match error {
+            AlignmentError::Cancelled { .. } => self.clock.stopped(),
+            other => JobError::Alignment(other.to_string()),
+        }
+    }
+}
+
+fn start(
+    name: StartName,
+    landmarks: &BTreeMap<String, BoneLandmarkDocument>,
+) -> Result<Start, JobError> {
+    let pair = |landmark: &BoneLandmarkDocument| LandmarkPair {
+        prediction: landmark.before_mm.into(),
+        actual: landmark.after_mm.into(),
+    };
+    Ok(match name {
+        StartName::None => Start::AsItLies,
+        StartName::Boxes => Start::Boxes,
+        StartName::Inertia => Start::Inertia,
+        StartName::Landmarks => {
+            Start::Known(by_landmarks(&landmarks.values().map(pair).collect::<Vec<_>>())?)
+        }
+    })
+}
+
+/// The direction about which a movement turns, right-handed.
+fn axis(movement: &RigidTransform) -> Vector {
+    let r = &movement.rotation;
+    let twice_sine =
+        Vector::new(r[(2, 1)] - r[(1, 2)], r[(0, 2)] - r[(2, 0)], r[(1, 0)] - r[(0, 1)]);
+    twice_sine.try_normalize(NO_TURN).unwrap_or_else(Vector::zeros)
+}
+
+fn deviation(found: &Performed, planned: &RigidMovement) -> DeviationDocument {
+    let planned =
+        RigidTransform { rotation: *planned.rotation(), translation: planned.translation() };
+    let beyond = planned.inverse().then(&found.movement);
+    let shift = found.movement.apply(&found.centre) - planned.apply(&found.centre);
+    DeviationDocument { rotation_deg: beyond.angle().to_degrees(), displacement_mm: shift.into() }
+}
+
+fn plan_segment(segment: &PerformedDocument) -> PlanSegmentDocument {
+    PlanSegmentDocument {
+        name: segment.name.clone(),
+        matrix4x4: Some(segment.matrix4x4),
+        ..PlanSegmentDocument::default()
+    }
+}
+
+/// Doubts that both scans are of one person, the right way round.
+fn base_warnings(
+    bone: &BoneBefore,
+    after: &TriangleSurface,
+    found: &SurfaceAlignment,
+) -> Vec<Warning> {
+    let mut warnings = Vec::new();
+    if found.share_far > MISFIT {
+        let detail = format!(
+            "{:.0} % of the base is left more than 1 mm from the bone after the operation, rms {:.2} mm: is it somebody else's, or was the base moved?",
+            100.0 * found.share_far,
+            found.rms
+        );
+        let warning = Warning::new("another-person-suspect", detail);
+        warnings.push(warning.with("share_above_1_mm", found.share_far).with("rms_mm", found.rms));
+    }
+    let mirrored = check_mirror(bone.surface, after, bone.mask.as_ref(), &found.transform).ok();
+    if let Some(check) = mirrored.filter(|check| check.looks_mirrored()) {
+        let detail = format!(
+            "a mirror image of the bone after the operation fits to {:.2} mm, itself only to {:.2} mm",
+            check.mirrored_rms, check.rms
+        );
+        let warning = Warning::new("mirrored?", detail).with("rms_mm", check.rms);
+        warnings.push(warning.with("mirrored_rms_mm", check.mirrored_rms));
+    }
+    warnings
+}
+
+fn misfit(segment: &ReproducedSegmentDocument, found: &Performed) -> Option<Warning> {
+    let share = found.fit.share_far;
+    (share > MISFIT).then(|| {
+        let detail = format!(
+            "{:.0} % of segment `{}` is left more than 1 mm from the bone after the operation: its movement is not to be trusted without landmarks to start from",
+            100.0 * share,
+            segment.name.trim()
+        );
+        let warning = Warning::new("segment-misfit", detail);
+        warning.with("share_above_1_mm", share).with("rms_mm", found.fit.rms)
+    })
+}

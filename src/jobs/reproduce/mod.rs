@@ -1,0 +1,7 @@
+//! Reproductions: the movements that an operation performed.
+
+mod input;
+mod job;
+
+pub use input::ReproduceInput;
+pub use job::reproduce_job;

@@ -1,0 +1,49 @@
+//! Landmarks of bone.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+use crate::schema::Triple;
+use crate::schema::code::ErrorCode;
+use crate::schema::wire::fault::{Faults, Pointer};
+use crate::schema::wire::limits::Limits;
+
+/// Beyond any scanner's origin in use.
+const FARTHEST_MM: f64 = 1e8;
+
+/// A named point of bone, which goes with its segment.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct BoneLandmarkOfCaseDocument {
+    pub position_mm: Triple,
+    /// The segment of the case that carries it; absent: it stays.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub segment: Option<String>,
+}
+
+/// Adds what is wrong with the landmarks of bone of a case with these segments.
+pub fn check_bone_landmarks(
+    landmarks: &BTreeMap<String, BoneLandmarkOfCaseDocument>,
+    segments: &BTreeSet<&str>,
+    limits: &Limits,
+    faults: &mut Faults,
+) {
+    let at = Pointer::root().key("case").key("bone_landmarks");
+    faults.check_length(&at, landmarks.len(), limits.map_entries as usize);
+    for (name, landmark) in landmarks {
+        let at = at.key(name);
+        faults.check_name(&at, name, limits.name_characters as usize);
+        for (axis, &coordinate) in landmark.position_mm.0.iter().enumerate() {
+            let place = at.key("position_mm").index(axis);
+            faults.check_range(&place, coordinate, -FARTHEST_MM..=FARTHEST_MM, "mm");
+        }
+        let segment = landmark.segment.as_deref().map(str::trim);
+        if let Some(unknown) = segment.filter(|segment| !segments.contains(segment)) {
+            let detail = format!("the case has no segment `{unknown}`");
+            faults.add(&at.key("segment"), ErrorCode::UnknownSegment, detail);
+        }
+    }
+}

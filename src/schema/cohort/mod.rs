@@ -1,0 +1,4 @@
+//! The spec of a cohort and its result.
+
+pub mod document;
+pub mod result;

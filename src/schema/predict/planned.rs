@@ -1,0 +1,127 @@
+//! What a plan means for bone, before anything is predicted: movements for navigation, collisions, measures of the head.
+
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+use crate::schema::{Matrix4x4, Triple};
+use mechanics::cephalometry::{Measure, Tissue};
+use mechanics::mesh::Frame;
+use mechanics::plan::{PlannedSegment, RigidMovement};
+use mechanics::validation::penetration::Overlap;
+
+/// A segment that moves. Every text gives the same bits when it is read again.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct MovementReportDocument {
+    pub segment: String,
+    /// Moves bone, in the frame of the case: row-major, x' = R x + t in mm.
+    pub matrix4x4: Matrix4x4,
+    pub rotation_deg: f64,
+    /// The same as four lines of text.
+    pub matrix_text: String,
+    /// An ITK transform file, `.tfm`: in LPS, and as files of ITK do it with the inverse, which resamples. Absent where
+    /// the case states no frame.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub itk_transform: Option<String>,
+}
+
+/// Two bones of which the plan moves one against the other, and that reach into each other.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct CollisionDocument {
+    pub bones: [String; 2],
+    /// How deep, after the plan and before it; below 0.1 mm more than before there is no warning.
+    pub depth_mm: f64,
+    pub depth_before_mm: f64,
+    /// Of what both have in common after the plan, where both are closed; some percent of error.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub overlap: Option<OverlapDocument>,
+}
+
+/// What two bones have in common.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct OverlapDocument {
+    pub volume_mm3: f64,
+    /// Its middle, with the second bone where the plan takes it.
+    pub middle_mm: Triple,
+    pub radius_mm: f64,
+}
+
+/// `bone` or `skin`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum TissueName {
+    Bone,
+    Skin,
+}
+
+/// A cephalometric measure; one whose landmarks are not all there is left out.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct MeasureDocument {
+    pub name: String,
+    /// `deg`, `mm` or `1`.
+    pub unit: String,
+    /// Whether landmarks of bone or of skin make it.
+    pub tissue: TissueName,
+    /// Who defined it.
+    pub source: String,
+    pub before: f64,
+    /// Of bone, where the plan takes it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub planned: Option<f64>,
+    /// Of skin, where it is predicted.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub predicted: Option<f64>,
+}
+
+impl MovementReportDocument {
+    /// `None` of a segment that stays.
+    pub fn new(segment: &PlannedSegment, frame: Frame) -> Option<Self> {
+        let movement = &segment.movement;
+        if *movement == RigidMovement::default() {
+            return None;
+        }
+        let comment = format!("segment {}", segment.name);
+        Some(MovementReportDocument {
+            segment: segment.name.clone(),
+            matrix4x4: Matrix4x4(movement.matrix4()),
+            rotation_deg: movement.angle().to_degrees(),
+            matrix_text: movement.to_matrix_text(&format!("{comment}, frame {frame}")),
+            itk_transform: match frame {
+                Frame::Lps => Some(movement.to_itk_text(&comment)),
+                Frame::Ras => Some(movement.between_lps_and_ras().to_itk_text(&comment)),
+                Frame::Unspecified => None,
+            },
+        })
+    }
+}
+
+impl From<&Overlap> for OverlapDocument {
+    fn from(overlap: &Overlap) -> Self {
+        OverlapDocument {
+            volume_mm3: overlap.volume,
+            middle_mm: overlap.middle.into(),
+            radius_mm: overlap.radius,
+        }
+    }
+}
+
+impl MeasureDocument {
+    pub fn new(measure: &Measure, before: f64, after: Option<f64>) -> Self {
+        let (tissue, planned, predicted) = match measure.tissue {
+            Tissue::Bone => (TissueName::Bone, after, None),
+            Tissue::Skin => (TissueName::Skin, None, after),
+        };
+        MeasureDocument {
+            name: measure.name.to_owned(),
+            unit: measure.unit.name().to_owned(),
+            tissue,
+            source: measure.source.to_owned(),
+            before,
+            planned,
+            predicted,
+        }
+    }
+}

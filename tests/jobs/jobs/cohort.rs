@@ -1,0 +1,136 @@
+//! Methods over a cohort of twins: the table, the boxes and the test that a paper shows.
+
+use std::collections::BTreeMap;
+
+use facies::jobs::{CohortInput, CompareInput, JobInput, StoredMesh, StoredShape, Workplace, work};
+use facies::schema::Limits;
+use facies::schema::cohort::result::CohortResultDocument;
+use facies::schema::compare::result::ComparisonDocument;
+use mechanics::mesh::sample::block;
+use mechanics::mesh::{CellShape, TriangleSurface, Vector};
+use mechanics::progress::Unobserved;
+use serde_json::{Value, json};
+
+use crate::sources::{Meshes, stored};
+
+const TWINS: usize = 10;
+
+/// The top of a block, lifted by so many mm.
+fn skin(lifted: f64) -> StoredMesh {
+    let mesh = block(Vector::new(60.0, 40.0, 20.0), [12, 8, 4], CellShape::Hex8);
+    let mut skin: TriangleSurface = mesh.surface_of(&mesh.boundary_faces());
+    let points = skin.points.clone();
+    skin.triangles.retain(|t| t.iter().all(|&corner| points[corner as usize].z > 19.9));
+    skin.points.iter_mut().for_each(|point| point.z += lifted);
+    StoredMesh { frame: None, ..stored(StoredShape::Surface(skin.into()), None) }
+}
+
+/// What a method found of a twin, whose scan lies at 0.
+fn comparison(error: f64) -> ComparisonDocument {
+    let sources = Meshes(BTreeMap::from([
+        ("predicted".to_owned(), skin(error)),
+        ("scan".to_owned(), skin(0.0)),
+    ]));
+    let spec = json!({"prediction": {"mesh": "predicted"}, "actual": {"mesh": "scan"},
+        "regions": {"left": {"box_mm": [-1, -1, -1, 30, 41, 41]}}});
+    let spec = serde_json::from_value(spec).unwrap();
+    let input = JobInput::Compare(CompareInput { job: None, queue_s: None, spec });
+    let out = tempfile::tempdir().unwrap();
+    let place = Workplace { sources: &sources, limits: &Limits::default(), out: out.path() };
+    work(&input, &place, &Unobserved).unwrap().result.comparison.unwrap()
+}
+
+fn cohort(
+    spec: Value,
+    comparisons: &BTreeMap<String, ComparisonDocument>,
+) -> Result<CohortResultDocument, String> {
+    let spec = serde_json::from_value(spec).unwrap();
+    let comparisons = comparisons.clone();
+    let input = JobInput::Cohort(CohortInput { job: None, queue_s: None, spec, comparisons });
+    let out = tempfile::tempdir().unwrap();
+    let sources = Meshes(BTreeMap::new());
+    let place = Workplace { sources: &sources, limits: &Limits::default(), out: out.path() };
+    let done = work(&input, &place, &Unobserved).map_err(|error| format!("{error:?}"))?;
+    Ok(done.result.cohort.unwrap())
+}
+
+fn ids(method: &str) -> Vec<String> {
+    (0..TWINS).map(|twin| format!("{method} {twin}")).collect()
+}
+
+/// Twin i is missed by .5 + .05 i mm by one method, and by (i + 1) / 50 mm less by the other, but for the last two.
+fn twins() -> BTreeMap<String, ComparisonDocument> {
+    let mut comparisons = BTreeMap::new();
+    for twin in 0..TWINS {
+        let error = 0.5 + 0.05 * twin as f64;
+        let better = if twin < 8 { -0.02 } else { 0.02 } * (twin + 1) as f64;
+        comparisons.insert(format!("mtm {twin}"), comparison(error));
+        comparisons.insert(format!("fibres {twin}"), comparison(error + better));
+    }
+    comparisons
+}
+
+#[test]
+fn ten_twins_give_a_table_boxes_and_an_exact_test() {
+    let groups = json!({"mtm": ids("mtm"), "fibres": ids("fibres")});
+    let found = cohort(json!({"groups": groups, "statistic": "mean"}), &twins()).unwrap();
+    // One row for each subject, with mean, sd, p90 and p95: the shape of paper 002's Table 3.
+    let [fibres, mtm] = &found.groups[..] else { panic!("{:?}", found.groups) };
+    assert_eq!((fibres.name.as_str(), mtm.name.as_str(), mtm.rows.len()), ("fibres", "mtm", TWINS));
+    for (twin, row) in mtm.rows.iter().enumerate() {
+        let error = 0.5 + 0.05 * twin as f64;
+        assert_eq!(row.subject, (twin + 1).to_string());
+        for value in [row.distances.mean, row.distances.p90, row.distances.p95] {
+            assert!((value - error).abs() < 1e-9, "{row:?}");
+        }
+        assert!(row.distances.sd < 1e-6, "{row:?}");
+    }
+    let over = &mtm.over_subjects;
+    for (value, wanted) in
+        [(over.min, 0.5), (over.p25, 0.6), (over.median, 0.7), (over.p75, 0.85), (over.max, 0.95)]
+    {
+        assert!((value - wanted).abs() < 1e-9, "{over:?}");
+    }
+    // Ranks 9 and 10 speak for mtm: W 36 and 19. Of 1024 signs 406 give a sum of 19 or less on one side.
+    let [pair] = &found.pairs[..] else { panic!("{:?}", found.pairs) };
+    assert_eq!((pair.first.as_str(), pair.second.as_str()), ("fibres", "mtm"));
+    assert_eq!((pair.w_first_larger, pair.w_second_larger, pair.differing), (19.0, 36.0, 10));
+    let below = (0..1024_u32).filter(|signs| {
+        (0..10).filter(|rank| signs >> rank & 1 == 1).map(|rank| rank + 1).sum::<u32>() <= 19
+    });
+    let exact = 2.0 * below.count() as f64 / 1024.0;
+    assert!((pair.p.unwrap() - exact).abs() < 1e-12 && pair.is_exact, "{pair:?} {exact}");
+    assert_eq!(pair.smallest_p, 2.0 / 1024.0);
+    assert!((pair.median_difference_mm + 0.08).abs() < 0.021, "{pair:?}");
+}
+
+#[test]
+fn a_cohort_of_equals_has_no_p_and_five_subjects_cannot_reach_a_twentieth() {
+    let comparisons = twins();
+    let same = json!({"groups": {"a": ids("mtm"), "b": ids("mtm")}});
+    let found = cohort(same, &comparisons).unwrap();
+    assert_eq!((found.pairs[0].p, found.pairs[0].differing), (None, 0));
+    let five =
+        json!({"groups": {"a": &ids("mtm")[..5], "b": &ids("fibres")[..5]}, "region": "left"});
+    let found = cohort(five, &comparisons).unwrap();
+    assert_eq!((found.pairs[0].p, found.pairs[0].smallest_p), (Some(0.0625), 0.0625));
+}
+
+#[test]
+fn a_cohort_says_which_comparison_does_not_serve() {
+    let comparisons = twins();
+    for (spec, at) in [
+        (json!({"groups": {}}), "/spec/groups"),
+        (json!({"groups": {"a": ["mtm 0"], "b": []}}), "/spec/groups/b"),
+        (json!({"groups": {"a": ["mtm 0"]}, "subjects": ["x", "y"]}), "/spec/subjects"),
+        (json!({"groups": {"a": ["mtm 0"]}, "distance": "tps_cp"}), "/spec/groups/a/0"),
+        (json!({"groups": {"a": ["mtm 0"]}, "region": "lips"}), "/spec/groups/a/0"),
+        (
+            json!({"groups": {"a": ["mtm 0"]}, "distance": "node_wise", "region": "left"}),
+            "/spec/region",
+        ),
+    ] {
+        let refused = cohort(spec.clone(), &comparisons).unwrap_err();
+        assert!(refused.contains(at), "{spec}: {refused}");
+    }
+}

@@ -1,0 +1,237 @@
+//! Plans before anything is predicted, and plans of operations that were performed.
+
+use std::collections::BTreeMap;
+
+use facies::jobs::{
+    JobInput, PredictInput, ReproduceInput, StoredMesh, StoredShape, Workplace, check, work,
+};
+use facies::schema::predict::check::CheckDocument;
+use facies::schema::reproduce::result::ReproductionDocument;
+use facies::schema::{Limits, Matrix4x4};
+use mechanics::mesh::sample::block;
+use mechanics::mesh::{CellShape, Frame, TriangleSurface, Vector};
+use mechanics::plan::RigidMovement;
+use mechanics::progress::Unobserved;
+use serde_json::{Value, json};
+
+use crate::sources::{Meshes, stored};
+
+fn brick(size: [f64; 3], cells: [usize; 3], corner: [f64; 3]) -> TriangleSurface {
+    let mesh = block(Vector::from(size), cells, CellShape::Hex8);
+    let mut surface = mesh.surface_of(&mesh.boundary_faces());
+    surface.node_ids = None;
+    surface.points.iter_mut().for_each(|point| *point += Vector::from(corner));
+    surface
+}
+
+/// Bone without any symmetry, from what is a brick.
+fn shaped(mut bone: TriangleSurface) -> TriangleSurface {
+    for point in &mut bone.points {
+        let (x, y) = (point.x, point.y);
+        point.z += 4.0 * (x / 9.0).sin() + 3.0 * (y / 7.0).cos();
+        point.x += 0.1 * y + 2.0 * (y / 5.0).sin();
+    }
+    bone
+}
+
+fn moved(surface: &TriangleSurface, by: &RigidMovement) -> TriangleSurface {
+    let points = surface.points.iter().map(|point| by.apply(point)).collect();
+    TriangleSurface { points, ..surface.clone() }
+}
+
+fn joined(a: &TriangleSurface, b: &TriangleSurface) -> TriangleSurface {
+    let offset = a.points.len() as u32;
+    let shifted = b.triangles.iter().map(|corners| corners.map(|corner| corner + offset));
+    TriangleSurface {
+        points: [a.points.as_slice(), &b.points].concat(),
+        triangles: a.triangles.iter().copied().chain(shifted).collect(),
+        node_ids: None,
+    }
+}
+
+fn surface(shape: TriangleSurface) -> StoredMesh {
+    StoredMesh { frame: None, ..stored(StoredShape::Surface(shape.into()), None) }
+}
+
+fn reproduced(sources: &Meshes, spec: Value) -> Result<ReproductionDocument, String> {
+    let folder = tempfile::tempdir().unwrap();
+    let spec = serde_json::from_value(spec).unwrap();
+    let input = JobInput::Reproduce(ReproduceInput { job: None, queue_s: None, spec });
+    let place = Workplace { sources, limits: &Limits::default(), out: folder.path() };
+    let done = work(&input, &place, &Unobserved).map_err(|error| format!("{error:?}"))?;
+    Ok(done.result.reproduction.unwrap())
+}
+
+#[test]
+fn a_performed_operation_becomes_a_plan_and_is_held_against_what_was_planned() {
+    let base = shaped(brick([60.0, 40.0, 15.0], [30, 20, 8], [0.0; 3]));
+    let jaw = shaped(brick([40.0, 20.0, 10.0], [20, 10, 5], [5.0, 0.0, -25.0]));
+    let turn = Vector::new(0.0, 0.03, 0.02);
+    let done = RigidMovement::about_pivot(
+        turn,
+        Vector::new(20.0, 10.0, -20.0),
+        Vector::new(3.0, -1.0, 0.5),
+    );
+    let scan = RigidMovement::about_pivot(
+        Vector::new(0.05, 0.1, -0.05),
+        Vector::zeros(),
+        Vector::new(9.0, 4.0, -6.0),
+    );
+    let after = moved(&joined(&base, &moved(&jaw, &done)), &scan.inverse());
+    let sources = Meshes(BTreeMap::from([
+        ("before".to_owned(), surface(joined(&base, &jaw))),
+        ("after".to_owned(), surface(after)),
+        ("jaw".to_owned(), surface(jaw)),
+    ]));
+    let mut spec = json!({
+        "kind": "reproduce", "before": {"mesh": "before"}, "after": {"mesh": "after"},
+        "base": {"mask": {"box_mm": [-50, -50, -8, 150, 100, 60]}},
+        "segments": [{"name": "jaw", "before": {"mesh": "jaw"}}],
+        "planned": {"segments": [{"name": "jaw", "translation_mm": [3, 0, 0]}]}
+    });
+    let found = reproduced(&sources, spec.clone()).unwrap();
+    let Matrix4x4(matrix) = found.segments[0].matrix4x4;
+    for (found, wanted) in matrix.iter().zip(done.matrix4()) {
+        assert!((found - wanted).abs() < 1e-3, "{matrix:?} instead of {:?}", done.matrix4());
+    }
+    assert_eq!(found.plan.segments[0].matrix4x4, Some(Matrix4x4(matrix)));
+    assert!(found.base.fit.rms_mm < 1e-3 && found.base.fit.share_above_1_mm < 0.01);
+    assert!(found.segments[0].fit.share_above_1_mm < 0.01);
+    let beyond = found.segments[0].from_planned.unwrap();
+    assert!((beyond.rotation_deg - done.angle().to_degrees()).abs() < 0.01, "{beyond:?}");
+    assert!((beyond.displacement_mm.0[1] + 1.0).abs() < 0.5, "{beyond:?}");
+
+    // The mistakes that a client makes, each at its place.
+    for (change, at) in [
+        (json!({"segments": []}), "/spec/segments"),
+        (json!({"segments": [{"name": "jaw"}]}), "/spec/segments/0"),
+        (
+            json!({"segments": [{"name": "jaw", "before": {"mesh": "none"}}]}),
+            "/spec/segments/0/before/mesh",
+        ),
+        (json!({"base": {"start": "landmarks"}}), "/spec/base/landmarks"),
+        (
+            json!({"segments": [{"name": "jaw", "before": {"mesh": "jaw"}, "start": "boxes"}]}),
+            "/spec/segments/0/start",
+        ),
+    ] {
+        let mut wrong = spec.clone();
+        wrong.as_object_mut().unwrap().extend(change.as_object().unwrap().clone());
+        let refused = reproduced(&sources, wrong).unwrap_err();
+        assert!(refused.contains(at), "{change}: {refused}");
+    }
+    // The scans the wrong way round undo the operation.
+    spec["before"]["mesh"] = "after".into();
+    spec["after"]["mesh"] = "before".into();
+    spec["base"] = json!({});
+    spec["segments"] = json!([{"name": "jaw", "before": {"mesh": "jaw"}}]);
+    assert!(reproduced(&sources, spec).is_ok());
+}
+
+/// Two bones of 10 mm cubes 2 mm apart, of which the right one moves, under a block of tissue.
+fn checked(case: Value, plan: Value) -> CheckDocument {
+    let volume = block(Vector::new(80.0, 60.0, 40.0), [8, 6, 4], CellShape::Hex8);
+    let sources = Meshes(BTreeMap::from([
+        (
+            "block".to_owned(),
+            StoredMesh {
+                frame: None,
+                ..stored(StoredShape::Volume(volume.into()), Some(Frame::Lps))
+            },
+        ),
+        ("left".to_owned(), surface(brick([10.0; 3], [2, 2, 2], [20.0, 20.0, 20.0]))),
+        ("right".to_owned(), surface(brick([10.0; 3], [2, 2, 2], [32.0, 20.0, 20.0]))),
+    ]));
+    let mut whole = json!({
+        "units": "mm", "frame": "LPS", "volume": "block", "fixed": [{"node_set": "x_min"}],
+        "segments": [{"name": "right", "nodes": {"node_set": "x_max"}}],
+        "bones": [{"name": "left", "mesh": "left"}, {"name": "right", "mesh": "right"}],
+        "materials": {"*": {"young_modulus_kpa": 15, "poisson_ratio": 0.4}}
+    });
+    whole.as_object_mut().unwrap().extend(case.as_object().unwrap().clone());
+    let input = PredictInput {
+        job: None,
+        queue_s: None,
+        case: serde_json::from_value(whole).unwrap(),
+        plan: serde_json::from_value(plan).unwrap(),
+        spec: serde_json::from_value(json!({})).unwrap(),
+    };
+    check(&input, &sources, &Limits::default()).unwrap().document
+}
+
+#[test]
+fn a_check_names_bones_that_a_plan_moves_into_each_other_before_anything_is_solved() {
+    let by = |x: f64| json!({"segments": [{"name": "right", "translation_mm": [x, 2, 2]}]});
+    let found = checked(json!({}), by(-5.0));
+    let [collision] = &found.collisions[..] else { panic!("{:?}", found.collisions) };
+    assert!((collision.depth_mm - 3.0).abs() < 1e-9 && collision.depth_before_mm == 0.0);
+    let overlap = collision.overlap.unwrap();
+    // A block of 3 x 8 x 8 mm.
+    assert!((overlap.volume_mm3 - 192.0).abs() < 10.0, "{overlap:?}");
+    assert!((overlap.middle_mm.0[0] - 28.5).abs() < 0.5, "{overlap:?}");
+    let codes: Vec<&str> = found.warnings.iter().map(|warning| warning.code.as_str()).collect();
+    assert!(codes.contains(&"bones-overlap"), "{codes:?}");
+    let apart = checked(json!({}), by(-1.5));
+    assert!(apart.collisions.is_empty());
+    assert!(apart.warnings.iter().all(|warning| warning.code != "bones-overlap"));
+}
+
+#[test]
+fn a_check_tells_movements_for_navigation_that_read_again_are_equal_to_the_bit() {
+    let plan = json!({"segments": [{"name": "right", "translation_mm": [1, 0.3, -0.2],
+        "rotation_deg": [0, 3, 0], "pivot_mm": [70, 30, 20], "restrict_to": {"plane_normal": [0, 1, 0]}}]});
+    let found = checked(json!({}), plan.clone());
+    let [movement] = &found.movements[..] else { panic!("{:?}", found.movements) };
+    let Matrix4x4(matrix) = movement.matrix4x4;
+    let text = RigidMovement::from_matrix_text(&movement.matrix_text).unwrap();
+    assert_eq!(text.matrix4().map(f64::to_bits), matrix.map(f64::to_bits));
+    // The plane leaves nothing along y, and the turn about it.
+    assert!((matrix[7]).abs() < 1e-12 && (movement.rotation_deg - 3.0).abs() < 1e-9);
+    let itk = RigidMovement::from_itk_text(movement.itk_transform.as_ref().unwrap()).unwrap();
+    let at = Vector::new(70.0, 30.0, 20.0);
+    assert!((itk.apply(&at) - at - Vector::new(1.0, 0.0, -0.2)).norm() < 1e-12);
+    // The file is in LPS whatever the case is in.
+    let ras = checked(json!({"frame": "RAS"}), plan);
+    let in_lps =
+        RigidMovement::from_itk_text(ras.movements[0].itk_transform.as_ref().unwrap()).unwrap();
+    let Matrix4x4(in_ras) = ras.movements[0].matrix4x4;
+    assert!((in_lps.matrix4()[3] + in_ras[3]).abs() < 1e-12);
+    let unstated = checked(
+        json!({"frame": "unspecified"}),
+        json!({"segments": [{"name": "right", "translation_mm": [1, 0, 0]}]}),
+    );
+    assert_eq!(unstated.movements[0].itk_transform, None);
+}
+
+#[test]
+fn a_check_measures_the_head_before_and_as_planned() {
+    let at = |x: f64, y: f64, z: f64| json!({"position_mm": [x, y, z]});
+    let on_right = |x: f64, y: f64, z: f64| json!({"position_mm": [x, y, z], "segment": "right"});
+    let landmarks = json!({
+        "S": at(0.0, 20.0, 60.0), "N": at(0.0, -48.0, 70.0), "A": at(0.0, -52.0, 18.0),
+        "B": on_right(0.0, -46.0, -28.0), "Me": on_right(0.0, -38.0, -52.0),
+        "Go_L": on_right(45.0, 18.0, -24.0), "Go_R": on_right(-45.0, 18.0, -24.0),
+        "Po_L": at(55.0, 38.0, 38.0), "Po_R": at(-55.0, 38.0, 38.0),
+        "Or_L": at(35.0, -38.0, 36.0), "Or_R": at(-35.0, -38.0, 36.0),
+        "U1": at(0.0, -57.0, -6.0), "L1": on_right(0.0, -53.0, -5.0)
+    });
+    let plan = json!({"segments": [{"name": "right", "translation_mm": [0, -4, 0]}]});
+    let found = checked(json!({"bone_landmarks": landmarks}), plan.clone());
+    let measure = |name: &str| found.cephalometry.iter().find(|m| m.name == name).unwrap();
+    // REMAINING 3.7.
+    for (name, before, planned) in [
+        ("sna", 86.032_819_231_0, 86.032_819_231_0),
+        ("snb", 80.464_974_548_1, 82.803_253_203_9),
+        ("anb", 5.567_844_682_9, 3.229_566_027_1),
+        ("overjet", 4.024_922_359_5, 4.024_922_359_5 - 4.0 * 0.999_653_92),
+    ] {
+        assert!((measure(name).before - before).abs() < 1e-8, "{:?}", measure(name));
+        assert!((measure(name).planned.unwrap() - planned).abs() < 1e-7, "{:?}", measure(name));
+        assert_eq!(measure(name).predicted, None);
+    }
+    assert!(found.cephalometry.iter().all(|measure| measure.name != "wits"), "Oc is not there");
+
+    let swapped = json!({"Po_L": at(-55.0, 38.0, 38.0), "Po_R": at(55.0, 38.0, 38.0)});
+    let found = checked(json!({"bone_landmarks": swapped}), plan);
+    assert!(found.warnings.iter().any(|warning| warning.code == "landmarks-swapped"));
+}
