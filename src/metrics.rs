@@ -1,4 +1,4 @@
-//! What the service counts, in the words of Prometheus. Every name stands in this file once.
+//! Metrics of the service, in the words of Prometheus. Every name stands in this file once.
 
 pub mod http;
 

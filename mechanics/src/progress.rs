@@ -1,4 +1,4 @@
-//! How a long computation tells where it is and asks whether to stop.
+//! Progress of a long computation: where it is, and whether it is to stop.
 
 /// What the work is at; the caller takes the time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

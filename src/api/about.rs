@@ -1,4 +1,4 @@
-//! What the service is: where to begin, its limits, its methods, its description.
+//! Description of the service: where to begin, its limits, its methods, its description.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;

@@ -1,4 +1,4 @@
-//! What requests take and which of them are noted: each route says it where it is registered, and nothing is read from
+//! Scope and audit class of each request: each route says it where it is registered, and nothing is read from
 //! the text of a path.
 
 use std::collections::{BTreeMap, HashMap};

@@ -1,4 +1,4 @@
-//! Who calls, on whose behalf, and what the key allows. The seam for tokens of an identity provider: whatever a request
+//! Caller of a request, and what its key allows. The seam for tokens of an identity provider: whatever a request
 //! carries becomes a [`Caller`] here, and nothing behind it asks where that came from.
 
 use std::collections::BTreeSet;

@@ -1,4 +1,4 @@
-//! What surrounds every request: its id, its log line, bounds on its head, the key, and problem bodies.
+//! Middleware of every request: its id, its log line, bounds on its head, the key, and problem bodies.
 
 use std::sync::Arc;
 use std::time::Instant;

@@ -1,4 +1,4 @@
-//! From the body of `POST /v1/jobs` to a job that can be queued: references resolved, everything checked.
+//! Conversion of the body of `POST /v1/jobs` to a job that can be queued: references resolved, everything checked.
 
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -1,4 +1,4 @@
-//! How many requests a client may send in a minute, and headers that tell it how many are left
+//! Rate limit: how many requests a client may send in a minute, and headers that tell it how many are left
 //! (draft-ietf-httpapi-ratelimit-headers-10).
 //!
 //! A bucket holds a minute's worth of requests and fills evenly, so that short bursts pass and long ones

@@ -1,4 +1,4 @@
-//! What goes wrong on the command line, and with which exit code.
+//! Failures of the command line, with their exit codes.
 
 use std::io;
 use std::path::PathBuf;

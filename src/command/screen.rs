@@ -1,4 +1,4 @@
-//! What the commands show: progress for people, tables for everybody.
+//! Output of the commands: progress for people, tables for everybody.
 
 use std::io::{IsTerminal, stderr};
 use std::path::Path;

@@ -1,4 +1,4 @@
-//! Where a deployment keeps its rows and its bytes.
+//! Database and blob store of a deployment.
 
 use std::path::{Path, PathBuf};
 

@@ -1,4 +1,4 @@
-//! Why a job failed, in the words of the API.
+//! Failures of jobs, in the words of the API.
 
 use serde_json::{Map, Value, json};
 

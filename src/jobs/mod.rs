@@ -1,4 +1,4 @@
-//! From a job document to result files: one path for the service and for the command line.
+//! Jobs, from document to result files: one path for the service and for the command line.
 
 mod clock;
 mod cohort;

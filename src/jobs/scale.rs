@@ -1,4 +1,4 @@
-//! Whether a mesh in its unit can be a head or a part of one.
+//! Scale of a mesh: whether it can be a head, or a part of one, in its unit.
 
 use super::source::StoredShape;
 use crate::schema::ErrorCode;

@@ -1,4 +1,4 @@
-//! Where a job finds its meshes: the service keeps them by content, the command line reads files.
+//! Source of the meshes of a job: the service keeps them by content, the command line reads files.
 
 use std::sync::Arc;
 

@@ -1,4 +1,4 @@
-//! What was read, kept in memory by the hash of its stored bytes; the least recently used is given up first (LRU).
+//! Cache of what was read, by the hash of its stored bytes; the least recently used is given up first (LRU).
 
 use std::collections::HashMap;
 

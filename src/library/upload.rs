@@ -1,4 +1,4 @@
-//! From uploaded bytes to a mesh that can be stored: read, checked, reported, and written anew by our own
+//! Conversion of uploaded bytes to a mesh that can be stored: read, checked, reported, and written anew by our own
 //! writer, so that headers and comments, which often name the patient, stay behind.
 
 use bytes::Bytes;

@@ -1,4 +1,4 @@
-//! What is counted of requests. Routes are patterns, so that no id becomes a label.
+//! Metrics of requests. Routes are patterns, so that no id becomes a label.
 
 use std::time::Instant;
 

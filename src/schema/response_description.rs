@@ -1,4 +1,4 @@
-//! What a response knows of itself: how to read its columns, and what applying a plan needs.
+//! Description of a response: how to read its columns, and what applying a plan needs.
 
 use std::collections::BTreeMap;
 

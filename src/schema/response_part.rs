@@ -1,4 +1,4 @@
-//! What holds each connected part of a case, as a response keeps it: enough to tell which plans would carry a part
+//! Boundary conditions of each connected part of a case, as a response keeps it: enough to tell which plans would carry a part
 //! along as one.
 
 use serde::{Deserialize, Serialize};

@@ -1,4 +1,4 @@
-//! Why rows or bytes could not be read or written.
+//! Reasons why rows or bytes could not be read or written.
 
 #[derive(Debug, thiserror::Error)]
 pub enum StoreError {

@@ -1,4 +1,4 @@
-//! Whether rows and bytes fit together, after a restore from a backup or a fault of a disk, and what can be
+//! Consistency check of rows and bytes, after a restore from a backup or a fault of a disk, and what can be
 //! mended.
 
 use std::collections::{BTreeMap, BTreeSet};

@@ -1,4 +1,4 @@
-//! Whether the store can be written: what readiness asks of it.
+//! Writability of the store, for readiness.
 
 use std::time::{Duration, Instant};
 

@@ -1,4 +1,4 @@
-//! What is kept: rows in a database, bytes in blobs. Every query lives here, one file for each table.
+//! Persistent store: rows in a database, bytes in blobs. Every query lives here, one file for each table.
 
 mod accepted;
 mod audit;

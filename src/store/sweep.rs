@@ -1,4 +1,4 @@
-//! What nobody refers to goes: files of attempts that ended without a result, bytes without a row.
+//! Garbage collection of what nobody refers to: files of attempts that ended without a result, bytes without a row.
 
 use std::path::Path;
 use std::time::Duration;

@@ -1,4 +1,4 @@
-//! What remains of what was erased: its id and when, so that a client is told that it is gone and not that it
+//! Tombstones, what remains of what was erased: its id and when, so that a client is told that it is gone and not that it
 //! never was.
 
 use super::database::{Transaction, query};

@@ -1,4 +1,4 @@
-//! From ended spans to the collector: a bounded queue and a thread of its own, so that a collector that is slow, silent
+//! Export of ended spans to the collector: a bounded queue and a thread of its own, so that a collector that is slow, silent
 //! or gone holds nobody up. Spans that do not reach it are counted.
 
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};

@@ -1,4 +1,4 @@
-//! Where cells have to be fine: around the bone that moves.
+//! Sizing field of a mesh: fine cells around the bone that moves.
 
 use crate::mesh::Vector;
 use crate::meshing::{RegionShape, SizeRegion};

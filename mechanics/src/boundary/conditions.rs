@@ -1,4 +1,4 @@
-//! What every node is held to: prescribed, joined to a segment, fixed, sliding or free
+//! Dirichlet boundary conditions of all nodes: prescribed, joined to a segment, fixed, sliding or free
 //! (docs/methods.md#boundary-conditions; precedence at a node: prescribed component, joined, fixed, sliding, free).
 
 use std::collections::BTreeMap;

@@ -1,4 +1,4 @@
-//! What holds the middle of an edge between two held nodes.
+//! Boundary condition of the middle of an edge between two constrained nodes.
 
 use super::hold::Hold;
 

@@ -1,4 +1,4 @@
-//! From a plan and a mesh to what every node is held to.
+//! Boundary conditions of the nodes of a mesh, from case and plan.
 
 pub mod carried;
 pub mod conditions;

@@ -1,4 +1,4 @@
-//! Whether every part of a mesh is held against all six rigid movements.
+//! Support of a mesh: each connected part constrained against all six rigid movements.
 //!
 //! A part is what hangs together by faces. Parts that touch in a node or an edge only can hinge there;
 //! their shared nodes hold a part as far as its neighbour is held itself.

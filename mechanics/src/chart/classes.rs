@@ -1,4 +1,4 @@
-//! What holds the boundary of the tissue, before anything is solved: wrong sets are the commonest mistake.
+//! Picture of the boundary conditions, before anything is solved: wrong sets are the commonest mistake.
 
 use super::Vector;
 use super::colour::{self, Rgb};

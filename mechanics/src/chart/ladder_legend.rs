@@ -1,4 +1,4 @@
-//! What the marks of a chart of speed and accuracy stand for.
+//! Legend of a chart of speed and accuracy.
 
 use super::svg::{Document, Paint, Style};
 use super::symbol::Symbol;

@@ -1,4 +1,4 @@
-//! From where a face is looked at.
+//! Camera of a picture: the direction from which a face is seen.
 
 use super::Vector;
 

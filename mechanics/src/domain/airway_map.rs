@@ -1,4 +1,4 @@
-//! Which air around a body given by its surfaces is that of an airway, on a grid of some millimetres.
+//! Map of airways: which air around a body given by its surfaces is that of an airway, on a grid of some millimetres.
 
 use rayon::prelude::*;
 

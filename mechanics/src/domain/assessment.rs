@@ -1,4 +1,4 @@
-//! How certain a surface is of its inside.
+//! Assessment of a surface: how certain its inside is.
 //!
 //! The winding number of a sound surface is 1 inside and 0 outside. Holes, missing triangles and triangles of the other side
 //! leave values in between. The median over the inside is the surface's level: where half of the triangles are

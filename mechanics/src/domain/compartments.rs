@@ -1,4 +1,4 @@
-//! What each voxel of a head belongs to: outer air, airways, soft tissue, bone, and what bone encloses.
+//! Compartments of a head, voxel by voxel: outer air, airways, soft tissue, bone, and what bone encloses.
 //!
 //! Thresholds alone call the brain soft tissue, the wall of a sinus a sheet of soft tissue (partial volume between bone and
 //! air), and the throat skin. Compartments tell them apart by distance: a passage narrower than a given width is closed.

@@ -1,4 +1,4 @@
-//! How triangles hang together over their edges: patches that agree on a side, pieces, and open edges.
+//! Connectivity of triangles over their edges: patches that agree on a side, pieces, and open edges.
 
 use super::triangle::Corners;
 use crate::mesh::disjoint_sets::DisjointSets;

@@ -1,4 +1,4 @@
-//! What is done to a damaged surface before it bounds a body: triangles welded, thrown away and turned, each counted.
+//! Repair of a damaged surface before it bounds a body: triangles welded, thrown away and turned, each counted.
 //!
 //! Turning has three steps. Triangles that share an edge with one other each are made to agree; a patch that so hangs
 //! together then goes by the larger part of its area. A patch that the rest of the surface sees from

@@ -1,4 +1,4 @@
-//! What the arrays of a file mean: node sets, cell sets, labels and vectors.
+//! Meaning of the arrays of a file: node sets, cell sets, labels and vectors.
 //!
 //! A point array `set_NAME` is the node set NAME and a cell array `elset_NAME` the cell set NAME,
 //! where non-zero means in. Every other integer array with at most [`ReadLimits::label_values`]

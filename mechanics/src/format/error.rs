@@ -1,4 +1,4 @@
-//! What can be wrong with the bytes of a mesh.
+//! Errors in the bytes of a mesh.
 
 use std::fmt;
 

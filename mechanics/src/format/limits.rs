@@ -1,4 +1,4 @@
-//! How large a mesh may be, checked before memory is taken.
+//! Limits on the size of a mesh, checked before memory is taken.
 
 use super::error::FormatError;
 

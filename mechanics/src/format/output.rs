@@ -1,4 +1,4 @@
-//! What the writers are given, and why they may refuse it.
+//! Input of the writers, and why they may refuse it.
 
 use crate::mesh::{Frame, TriangleSurface, Vector, VolumeMesh};
 

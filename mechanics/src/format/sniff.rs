@@ -1,4 +1,4 @@
-//! Which format the bytes are, by what stands in them.
+//! Detection of the format of a file from its bytes.
 
 use super::cursor::find;
 use super::file::MeshFormat;

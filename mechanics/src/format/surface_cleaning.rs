@@ -1,4 +1,4 @@
-//! What scanned and exported surfaces usually bring: flat triangles, doubled ones, and triangles
+//! Cleaning of scanned and exported surfaces: flat triangles, doubled ones, and triangles
 //! that disagree about inside and outside.
 
 use super::error::FormatError;

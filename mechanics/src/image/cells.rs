@@ -1,4 +1,4 @@
-//! What an image says about each cell of a mesh: its mean, and how much of it lies in which window.
+//! Image values of each cell of a mesh: its mean, and how much of it lies in which window.
 
 use rayon::prelude::*;
 

@@ -1,4 +1,4 @@
-//! Where cells are sampled: the same points in every cell of a shape, in coordinates of the cell.
+//! Sampling points of cells: the same in every cell of a shape, in coordinates of the cell.
 //!
 //! Generators are the R sequence u_k = frac(1/2 + k (1/g, 1/g², 1/g³)), g the positive root of x⁴ = x + 1,
 //! which fills the cube with low discrepancy (Roberts, The Unreasonable Effectiveness of Quasirandom

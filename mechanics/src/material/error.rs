@@ -1,4 +1,4 @@
-//! What is wrong with the constants of a material.
+//! Errors in the constants of a material.
 
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum MaterialError {

@@ -1,4 +1,4 @@
-//! What a hyperelastic law adds, at second and third order about rest, to the stress of neo-Hookean tissue with its moduli.
+//! Second and third order about rest that a hyperelastic law adds to the stress of neo-Hookean tissue with its moduli.
 //!
 //! P_law(I + H) - P_nh(I + H) = D2(H, H) + D3(H, H, H) + ... has no first order. The terms are taken by differences along H, which
 //! serves every law alike; for laws that have a third derivative at rest, which fibres that only pull have not.

@@ -1,4 +1,4 @@
-//! What tissue does: the constants of a material point. Knows no mesh.
+//! Constitutive laws and their constants at a material point. Knows no mesh.
 
 pub mod elastic_tensor;
 mod error;

@@ -1,4 +1,4 @@
-//! Which cells share a face.
+//! Neighbours of cells across their faces.
 
 use rayon::prelude::*;
 

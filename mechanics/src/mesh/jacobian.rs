@@ -1,4 +1,4 @@
-//! Is the Jacobian of a cell positive everywhere inside it, and not only at its corners?
+//! Validity of a cell: a Jacobian that is positive everywhere inside it, and not only at its corners.
 //!
 //! x(r) maps the unit cell (cube, triangle times line, tetrahedron) to the cell, J = det ∂x/∂r.
 //! For a hexahedron J is quadratic in each coordinate: 27 Bézier coefficients. Their minimum bounds J

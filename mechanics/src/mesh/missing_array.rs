@@ -1,4 +1,4 @@
-//! Why a mesh has no array and no node set of a name.
+//! Reasons why a mesh has no array and no node set of a name.
 
 use std::collections::BTreeSet;
 

@@ -1,4 +1,4 @@
-//! What was scanned: volume meshes of soft tissue and triangle surfaces, node positions in mm.
+//! Meshes: volume meshes of soft tissue and triangle surfaces, node positions in mm.
 
 pub mod area_sampling;
 pub mod bisection;

@@ -1,4 +1,4 @@
-//! Whether a cell is the right way round: determinants of its Jacobian at corners and Gauss points.
+//! Orientation of a cell: determinants of its Jacobian at corners and Gauss points.
 //!
 //! J(ξ) = Σ x_a ⊗ ∇N_a(ξ)        positive det J where stiffness is integrated = a usable cell
 //!

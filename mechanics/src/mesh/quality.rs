@@ -1,4 +1,4 @@
-//! How good the cells of a volume mesh are: volumes, dihedral angles, scaled Jacobians, folds.
+//! Quality of the cells of a volume mesh: volumes, dihedral angles, scaled Jacobians, folds.
 
 use std::ops::Range;
 

@@ -1,4 +1,4 @@
-//! What a triangle surface looks like around its edges and corners: normals there, and open borders.
+//! Topology of a triangle surface around its edges and corners: normals there, and open borders.
 //!
 //! Points at exactly the same place count as one, so that a triangle soup (STL) has neighbours too.
 

@@ -1,4 +1,4 @@
-//! What every way of modelling takes and gives: load cases in, equilibria out.
+//! Input and output of every model: load cases in, equilibria out.
 
 use crate::mesh::{Vector, Warning};
 use crate::solver::{SolveReport, SolverError};

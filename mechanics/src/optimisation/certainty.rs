@@ -1,4 +1,4 @@
-//! How certain the free parameters are: (JᵀJ)⁻¹ of those that the targets determine.
+//! Covariance of the free parameters: (JᵀJ)⁻¹ of those that the targets determine.
 //!
 //! Where JᵀJ is singular, a parameter has a finite variance only if no undetermined combination
 //! contains it; its variance is then that of the pseudo-inverse (Searle, Linear Models, 1971,

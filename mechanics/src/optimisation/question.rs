@@ -1,4 +1,4 @@
-//! What inverse planning is asked: segments and their bounds, targets on the skin, and why there may be no plan.
+//! Input of inverse planning: segments and their bounds, targets on the skin, and why there may be no plan.
 
 use crate::mesh::Vector;
 use crate::response::Response;

@@ -1,4 +1,4 @@
-//! Why the bone of a scan holds no such segments.
+//! Reasons why the bone of a scan holds no such segments.
 
 use crate::mesh::Vector;
 

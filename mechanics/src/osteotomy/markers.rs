@@ -1,4 +1,4 @@
-//! Where segments grow from: the bone at their seeds, or the brightest voxel of the largest piece on their sides.
+//! Markers from which segments grow: the bone at their seeds, or the brightest voxel of the largest piece on their sides.
 
 use super::bone_image::BoneImage;
 use super::bone_labels::BoneLabels;

@@ -1,4 +1,4 @@
-//! What a surgeon cuts and what comes loose: cuts, and the segments as sides of them.
+//! Definition of an osteotomy: cuts, and the segments as sides of them.
 
 use std::collections::BTreeSet;
 

@@ -1,4 +1,4 @@
-//! What the surgeon decided: which bone segments move, and how.
+//! Surgical plans: which bone segments move, and how.
 
 pub mod doubt;
 pub mod movement;

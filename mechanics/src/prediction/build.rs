@@ -1,4 +1,4 @@
-//! From a stated case and plan to a checked scene.
+//! Construction of a checked scene from a stated case and plan.
 
 use super::case::{Case, Plan, Settings};
 use super::check::Check;

@@ -1,4 +1,4 @@
-//! What goes into a prediction, as stated by a client: unchecked names, checked values.
+//! Input of a prediction, as stated by a client: unchecked names, checked values.
 
 use super::element_choice::ElementChoice;
 use super::method::Method;

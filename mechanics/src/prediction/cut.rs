@@ -1,4 +1,4 @@
-//! Where a mesh is cut without a gap: boundary nodes at exactly the place of another one.
+//! Cuts of a mesh without a gap: boundary nodes at exactly the place of another one.
 //!
 //! Two meshes that were joined without merging their nodes look whole and come apart when they are moved. Lips
 //! that touch are cut on purpose: hence a warning and no refusal.

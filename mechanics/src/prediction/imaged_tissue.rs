@@ -1,4 +1,4 @@
-//! What an image shows of the cells of a mesh.
+//! Tissue of the cells of a mesh from an image.
 
 /// What an image shows of a mesh.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,4 +1,4 @@
-//! What linear elasticity leaves out of an answer, node by node: the second-order term of the equilibrium at finite strain.
+//! Nonlinearity of an answer, node by node: the second-order term of the equilibrium at finite strain.
 //!
 //! u2 = -K0^-1 N2(u1, u1), with N2 of `model::fem::force_series`, the matrix and the hierarchy that u1 was solved with, and
 //! nothing moved where it is held: a held node is already where a finite movement takes it. One evaluation of forces and

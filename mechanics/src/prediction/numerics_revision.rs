@@ -1,4 +1,4 @@
-//! Which numbers this program finds, so that a result of another build is not taken for one of this build.
+//! Revision of the numerics, so that a result of another build is not taken for one of this build.
 
 /// Part of the hash of every job and of the key of every response, beside the version of the package.
 ///

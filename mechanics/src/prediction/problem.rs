@@ -1,4 +1,4 @@
-//! Everything that is wrong with a case and a plan, with the place of each.
+//! Errors in a case and a plan, all of them, with the place of each.
 
 use super::error_code::SceneErrorCode;
 use crate::boundary::SelectionError;

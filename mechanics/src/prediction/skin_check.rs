@@ -1,4 +1,4 @@
-//! Whether what is called skin is skin: not held, not facing the bone, without the rims where tissue was cut.
+//! Check of the skin: not held, not facing the bone, without the rims where tissue was cut.
 //!
 //! Displacements of such places are part of every statistic of the skin, and mean nothing there.
 

@@ -1,4 +1,4 @@
-//! Whether an answer at small strain has left where small strain holds.
+//! Validity of small strain for an answer.
 //!
 //! Where the second-order term is known (`nonlinearity`), e is the 95th percentile of its length over the skin, and over
 //! each part of the skin that has a name: a thin lip must not hide in a large cheek. Where it is not, of quadratic

@@ -1,4 +1,4 @@
-//! Does one surface look like the mirror image of the other?
+//! Detection of mirror images: whether one surface looks like the mirrored other one.
 //!
 //! A scan exported with one axis reversed is a face still, and aligns with a plausible error. So the
 //! moving surface is also mirrored at each of its three principal planes and aligned from there; the

@@ -1,4 +1,4 @@
-//! One shape onto another: rigid movement from pairs of points, and iterative closest point.
+//! Registration of one shape onto another: rigid movement from pairs of points, and iterative closest point.
 
 pub mod closest_point;
 pub mod mirror;

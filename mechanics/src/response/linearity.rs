@@ -1,4 +1,4 @@
-//! What a linear response leaves out, estimated from the movements of its segments.
+//! Linearity estimate of a response: what it leaves out, from the movements of its segments.
 //!
 //! Where elements have a second order, it is sampled: q_j, the mean length on the skin of the second-order term for a unit
 //! of translation along and of rotation about each axis of each segment, and e = sum_j alpha_j^2 q_j for the numbers

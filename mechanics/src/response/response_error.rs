@@ -1,4 +1,4 @@
-//! Why a scene has no plan response, or not the one that is asked for.
+//! Reasons why a scene has no plan response, or not the one that is asked for.
 
 use crate::model::problem::ModelError;
 

@@ -1,4 +1,4 @@
-//! One row: a scene made and solved, timed on one thread.
+//! One row of a study: a scene made and solved, timed on one thread.
 //!
 //! Timed is the way from mesh in memory to displacement in memory: classes of nodes, assembly, setup of the
 //! solver, solution. Whatever is found out about the answer afterwards is not.

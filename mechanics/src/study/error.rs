@@ -1,4 +1,4 @@
-//! How far the skin of an answer is from the true one.
+//! Error of an answer: the distance of its skin from the true one.
 //!
 //! Node-wise e_i = |u_i - u*_i| at the skin nodes of level 0, which refined meshes keep; closest point
 //! e_i = min_{y in S*} |x_i + u_i - y|, S* the skin of level 0 moved by u*. Node i weighs a third of the area of its

@@ -1,4 +1,4 @@
-//! Why a study has no report at all.
+//! Reasons why a study has no report at all.
 
 /// Why there is no report at all; whatever goes wrong in a row is told there.
 #[derive(Debug, thiserror::Error)]

@@ -1,4 +1,4 @@
-//! Which points no other beats both in time and in error.
+//! Pareto front: the points that no other beats both in time and in error.
 //!
 //! a dominates b where t_a <= t_b and e_a <= e_b, and one of the two is less.
 

@@ -1,4 +1,4 @@
-//! What a study finds: one row for each method, mesh level, material, plan and scene.
+//! Report of a study: one row for each method, mesh level, material, plan and scene.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,4 @@
-//! What is held for true in a scene, at the skin nodes of level 0.
+//! Reference solution of a scene, at the skin nodes of level 0.
 //!
 //! A refined truth is linear finite elements on a finer mesh. It is linear in the movements of segments, so
 //! that twelve load cases a segment serve every plan that is made of movements (`response`).

@@ -1,4 +1,4 @@
-//! What a study runs: scenes with plans and a truth, crossed with methods, materials and mesh levels.
+//! Variants of a study: scenes with plans and a truth, crossed with methods, materials and mesh levels.
 
 use std::collections::{BTreeMap, BTreeSet};
 

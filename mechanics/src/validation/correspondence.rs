@@ -1,4 +1,4 @@
-//! Which point of one surface is which of the other, where files say so.
+//! Point correspondence of two surfaces, where files state it.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,4 @@
-//! Why two surfaces could not be compared.
+//! Reasons why two surfaces could not be compared.
 
 use super::distance::DistanceError;
 use super::statistics::StatisticsError;

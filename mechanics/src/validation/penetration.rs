@@ -1,4 +1,4 @@
-//! How deep a plan pushes surfaces into each other: bone into bone, bone through skin.
+//! Penetration depth of surfaces under a plan: bone into bone, bone through skin.
 
 use rayon::prelude::*;
 

@@ -1,4 +1,4 @@
-//! What the demo posts: the half head as a case, the plan, and the jobs.
+//! Documents of the demo: the half head as a case, the plan, and the jobs.
 
 use serde_json::{Value, json};
 

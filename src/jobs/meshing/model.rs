@@ -1,4 +1,4 @@
-//! From a prepared meshing to the model of its tissue.
+//! Construction of the model of the tissue from a prepared meshing.
 
 use super::body::{Body, PartedBody};
 use super::input::PreparedMeshing;

@@ -1,4 +1,4 @@
-//! What a case and a plan mean, before anything is solved.
+//! Check of a case and a plan, before anything is solved.
 
 use super::cost;
 use super::input::{PredictInput, Prepared};

@@ -1,4 +1,4 @@
-//! What a prediction is expected to take, before it is solved.
+//! Expected cost of a prediction, before it is solved.
 
 use super::input::Prepared;
 use crate::jobs::failure::JobError;

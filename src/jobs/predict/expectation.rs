@@ -1,4 +1,4 @@
-//! What `auto` is expected to choose, before anything is solved.
+//! Expected choice of `auto`, before anything is solved.
 
 use super::cost::{memory_at_finite_strain_mb, memory_mb, time_s};
 use super::input::{PredictInput, Prepared};

@@ -1,4 +1,4 @@
-//! Whether a face looks where its frame says that faces look.
+//! Orientation of a face: whether it looks where its frame says that faces look.
 
 use mechanics::chart::{Outlook, clear_front};
 use mechanics::mesh::{Frame, TriangleSurface, Vector, Warning};

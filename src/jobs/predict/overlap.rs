@@ -1,4 +1,4 @@
-//! What a plan pushes into what: warned of, since nothing in the model stops it.
+//! Overlap of surfaces under a plan: warned of, since nothing in the model stops it.
 
 use crate::schema::predict::planned::{CollisionDocument, OverlapDocument};
 use mechanics::mesh::{SurfaceSearch, TriangleSurface, Vector, Warning};

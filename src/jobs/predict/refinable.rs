@@ -1,4 +1,4 @@
-//! What can be said against refining a mesh before anything is solved.
+//! Reasons against refining a mesh, before anything is solved.
 
 use crate::jobs::failure::JobError;
 use crate::schema::predict::refine::RefineDocument;

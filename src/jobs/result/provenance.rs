@@ -1,4 +1,4 @@
-//! Where the numbers of a result come from.
+//! Provenance of the numbers of a result.
 
 use std::collections::BTreeMap;
 

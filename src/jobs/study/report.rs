@@ -1,4 +1,4 @@
-//! What a study found as the document that clients read.
+//! Report of a study as the document that clients read.
 
 use crate::jobs::failure::JobError;
 use crate::jobs::result::provenance::first_null;

@@ -1,4 +1,4 @@
-//! What a study holds for true, as its documents say it.
+//! Reference solution of a study, as its documents state it.
 
 use super::documents::{Documents, spec_at};
 use crate::jobs::failure::JobError;

@@ -1,4 +1,4 @@
-//! Whether a study may pass: its rows against thresholds, and against the same rows of an earlier study.
+//! Verdict on a study: its rows against thresholds, and against the same rows of an earlier study.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,4 @@
-//! What runs in one direction: fibres of a material, lines of the skin.
+//! Directions of anisotropy: fibres of a material, lines of the skin.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
@@ -42,7 +42,7 @@ pub struct FibreDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false, minimum = 1e-6, maximum = 1e3)]
     pub k2: Option<f64>,
-    /// Default `engineering`.
+    /// Default `engineering`; `paper_002` is the law of Kim et al. 2012.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub law: Option<FibreLawName>,

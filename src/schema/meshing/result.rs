@@ -1,4 +1,4 @@
-//! What is said of a mesh that was made.
+//! Result of a meshing.
 
 use std::collections::BTreeMap;
 

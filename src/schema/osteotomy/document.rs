@@ -1,4 +1,4 @@
-//! Where bone of a scan is cut, and which pieces come loose.
+//! Osteotomies: where bone of a scan is cut, and which pieces come loose.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;

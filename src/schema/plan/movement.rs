@@ -1,4 +1,4 @@
-//! How a segment moves: a rotation and a translation, a matrix, or a sequence of these.
+//! Movement of a segment: a rotation and a translation, a matrix, or a sequence of these.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;

@@ -1,4 +1,4 @@
-//! How the cheapest adequate model was chosen.
+//! Choice of the cheapest adequate model.
 
 use std::collections::BTreeMap;
 

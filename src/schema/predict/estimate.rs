@@ -1,4 +1,4 @@
-//! Whether errors of the mesh are estimated.
+//! Setting that errors of the mesh are estimated, or not.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;

@@ -1,4 +1,4 @@
-//! What the method `auto` is expected to choose, and what that costs.
+//! Expected choice of the method `auto`, and its cost.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;

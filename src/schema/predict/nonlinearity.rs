@@ -1,4 +1,4 @@
-//! What linear elasticity leaves out of a prediction, as its result tells it.
+//! Nonlinearity of a prediction: what linear elasticity leaves out, as its result tells it.
 
 use std::collections::BTreeMap;
 

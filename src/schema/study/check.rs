@@ -1,4 +1,4 @@
-//! What can be wrong with the spec of a study before any scene is made.
+//! Errors in the spec of a study, before any scene is made.
 
 use std::collections::BTreeSet;
 

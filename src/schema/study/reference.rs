@@ -1,4 +1,4 @@
-//! What a study is about: scenes and plans, by name or in full.
+//! Subjects of a study: scenes and plans, by name or in full.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;

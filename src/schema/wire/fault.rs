@@ -1,4 +1,4 @@
-//! What is wrong with a document, all of it, each with the place.
+//! Errors in a document, all of them, each with its place.
 
 use std::ops::RangeInclusive;
 

@@ -1,4 +1,4 @@
-//! What all documents share: strict reading, faults with their place, limits, canonical JSON.
+//! Common parts of all documents: strict reading, faults with their place, limits, canonical JSON.
 
 pub mod canonical;
 pub mod date;

@@ -1,4 +1,4 @@
-//! What an error of the database means to those who met it.
+//! Meaning of an error of the database to those who met it.
 
 use super::{postgres, sqlite};
 

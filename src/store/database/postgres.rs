@@ -1,4 +1,4 @@
-//! What is PostgreSQL's own: its limits of time, its clock, its codes.
+//! Particulars of PostgreSQL: its limits of time, its clock, its codes.
 
 use std::borrow::Cow;
 use std::time::Duration;

@@ -1,4 +1,4 @@
-//! What is SQLite's own: its file, its one writer, its clock, its codes.
+//! Particulars of SQLite: its file, its one writer, its clock, its codes.
 
 use std::borrow::Cow;
 use std::path::Path;

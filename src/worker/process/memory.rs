@@ -1,4 +1,4 @@
-//! How much memory there is, how much a process takes, and the bound that a slot puts on itself.
+//! Memory of the machine and of a process, and the bound that a slot puts on itself.
 
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! What a worker and the process of its slot tell each other: frames over standard input and output.
+//! Protocol between a worker and the process of its slot: frames over standard input and output.
 //!
 //! A frame is its length in eight bytes, little-endian, and a message in JSON. [`Answer::Bytes`] is followed by
 //! one more frame, which holds the bytes of a blob as they are.

@@ -1,4 +1,4 @@
-//! Where a line meets a triangle.
+//! Intersection of a line and a triangle.
 
 use crate::mesh::Vector;
 

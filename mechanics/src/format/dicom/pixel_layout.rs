@@ -1,4 +1,4 @@
-//! What the attributes of a slice say of its pixels.
+//! Pixel layout of a slice, from its attributes.
 
 use super::bad;
 use crate::format::error::FormatError;

@@ -1,4 +1,4 @@
-//! Where a NIfTI image stands in RAS: by its rows (sform) or by its quaternion (qform).
+//! Position and orientation of a NIfTI image in RAS: by its rows (sform) or by its quaternion (qform).
 
 use nalgebra::Matrix3;
 

@@ -1,4 +1,4 @@
-//! What is wrong with a NIfTI file, with its byte.
+//! Errors in a NIfTI file, with their byte.
 
 use crate::format::error::{FormatError, Place};
 

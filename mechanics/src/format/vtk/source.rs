@@ -1,4 +1,4 @@
-//! Where the bytes of a VTK XML array come from: the file itself, or base64 text in it.
+//! Sources of the bytes of a VTK XML array: the file itself, or base64 text in it.
 
 use std::borrow::Cow;
 

@@ -1,4 +1,4 @@
-//! Where the head reaches the border of the image.
+//! Field of view: where the head reaches the border of the image.
 
 use super::head::Head;
 use crate::mesh::Warning;

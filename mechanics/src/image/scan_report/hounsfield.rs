@@ -1,4 +1,4 @@
-//! Whether the values are Hounsfield units.
+//! Check that the values of a scan are Hounsfield units.
 
 use crate::image::thresholds::Thresholds;
 use crate::image::volume::ImageVolume;

@@ -1,4 +1,4 @@
-//! Whether the lower jaw hangs together with the skull above the threshold of bone.
+//! Contact of the jaws: whether the lower jaw hangs together with the skull above the threshold of bone.
 
 use super::head::Head;
 use crate::image::mask::Mask;

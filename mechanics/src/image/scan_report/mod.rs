@@ -1,4 +1,4 @@
-//! What a technician should know about a scan before anything is made of it.
+//! Report on a scan before anything is made of it, for the technician who made it.
 
 mod field_of_view;
 mod head;

@@ -1,4 +1,4 @@
-//! Whether the lips are apart on the midline.
+//! Lips of a scan: whether they are apart on the midline.
 
 use super::head::Head;
 use crate::mesh::Warning;

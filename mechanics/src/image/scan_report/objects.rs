@@ -1,4 +1,4 @@
-//! What lies beside the head: table, head rest, bandages and tubes that stand off the skin.
+//! Objects beside the head: table, head rest, bandages and tubes that stand off the skin.
 
 use super::head::Head;
 use crate::image::pieces::{Connection, Pieces};

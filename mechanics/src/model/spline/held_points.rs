@@ -1,4 +1,4 @@
-//! What holds the tissue, as springs between a volume spline and where its points have to be.
+//! Boundary conditions of the tissue, as springs between a volume spline and where its points have to be.
 //!
 //! Bone is not a control point: a held node lies somewhere in a span, and a spline with fewer control points
 //! than there are held nodes cannot pass through all of them. Each hold e_k . u(x) = v_k therefore has the

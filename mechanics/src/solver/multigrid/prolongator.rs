@@ -1,4 +1,4 @@
-//! From rigid movements of aggregates to the unknowns of their rows, and back.
+//! Prolongation from rigid movements of aggregates to the unknowns of their rows, and restriction back.
 //!
 //! P_iI = w_iI [ I | R(x_i - c_I) ]: scalar weights that add up to one in each row, times the exact rigid
 //! movement of aggregate I about its centre. Only the weights are stored; arms come from positions.

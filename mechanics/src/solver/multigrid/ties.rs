@@ -1,4 +1,4 @@
-//! How strongly rows are tied to each other: a scalar picture of a block matrix.
+//! Strength of connection between rows: a scalar picture of a block matrix.
 
 use nalgebra::Matrix3;
 

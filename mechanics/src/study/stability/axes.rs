@@ -1,4 +1,4 @@
-//! What is turned up for every method; what only some have is in `own_axes`.
+//! Axes of the map of failures that every method has; what only some have is in `own_axes`.
 
 use super::axis::FINER;
 use super::axis::RING;

@@ -1,4 +1,4 @@
-//! What the axes of the map of failures share: scenes, truths and the values they go through.
+//! Common parts of the axes of the map of failures: scenes, truths and the values they go through.
 
 use super::scenes::{POISSON_RATIO, YOUNG_MODULUS, halved, layer, on_bone, tissue};
 use super::{Probe, Refusal, Truth, Variant};

@@ -1,4 +1,4 @@
-//! Where methods fail: each axis turns one thing up until an answer can no longer be right, and each probe says
+//! Map of failures: each axis turns one thing up until an answer can no longer be right, and each probe says
 //! what the method did about it.
 //!
 //! A probe is judged by the 95th percentile of |u - u*| over the skin, by area, against a bound stated for its

@@ -1,4 +1,4 @@
-//! What only some methods have: fibres, and the time that a spline takes to come to rest. The others get no probe.
+//! Axes that only some methods have: fibres, and the time that a spline takes to come to rest. The others get no probe.
 
 use std::collections::BTreeMap;
 

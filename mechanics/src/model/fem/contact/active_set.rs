@@ -1,4 +1,4 @@
-//! Which rows press: the passes of the primal-dual active set over equations that stay as they are.
+//! Primal-dual active set: the passes that find which rows press, over equations that stay as they are.
 
 use crate::progress::Progress;
 use crate::solver::SolverError;

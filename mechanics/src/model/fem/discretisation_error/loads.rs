@@ -1,4 +1,4 @@
-//! What acts on the functions of edges: gravity, tractions and pressures of faces, growth and muscles. Forces at nodes do not,
+//! Loads on the functions of edges: gravity, tractions and pressures of faces, growth and muscles. Forces at nodes do not,
 //! because these functions are zero there.
 
 use super::edge_functions::{Corners, MAX_EDGES, at_point};

@@ -1,4 +1,4 @@
-//! How far tissue may go along a step before a cell loses too much of its volume.
+//! Step length: how far tissue may go along a step before a cell loses too much of its volume.
 
 use nalgebra::Matrix3;
 

@@ -1,4 +1,4 @@
-//! One cell: its points at rest, how states strain it, and the second and third order of its forces.
+//! Force series of one cell: its points at rest, how states strain it, and the second and third order of its forces.
 
 use nalgebra::Matrix3;
 

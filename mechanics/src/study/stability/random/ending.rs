@@ -1,4 +1,4 @@
-//! How a random scene ends, and what an answer has to be.
+//! Ending of a random scene, and what an answer has to be.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
