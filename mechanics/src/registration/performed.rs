@@ -3,7 +3,8 @@
 //! T takes the scan after the operation to the one before it by bone that nothing was done to, and S_k takes it to
 //! where segment k lay before. So the segment went from x to T S_k⁻¹ x, in the frame before the operation.
 //! Both by iterative closest point with a mask and a limit on what counts, since cuts, plates and grown bone have no
-//! partner. Source: METHODS row 42 and paper 002 section 2.6 (each segment by itself, after the skull base).
+//! partner. Source: Kim et al. 2012, section 2.6: each segment by itself, after the skull base
+//! (docs/methods.md#registration).
 
 use super::closest_point::SurfaceAlignment;
 use super::{AlignmentError, IterativeClosestPoint, Place, RigidTransform, Start};

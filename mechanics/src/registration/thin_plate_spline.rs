@@ -2,7 +2,7 @@
 //!
 //! f(x) = b + A x + Σ w_i |x - x_i|,   Σ w_i = 0,   Σ w_i x_iᵀ = 0
 //!
-//! In three dimensions the kernel is the distance itself (METHODS A16). It is conditionally negative
+//! In three dimensions the kernel is the distance itself. It is conditionally negative
 //! definite, so that the bending energy is -wᵀ K w and smoothing solves with K - λ I; K + λ I would raise
 //! the energy. With four landmarks w is 0 and the map is affine.
 //! Source: Duchon, Lecture Notes in Mathematics 571 (1977) 85; Bookstein, IEEE Transactions on Pattern

@@ -8,7 +8,7 @@ use super::region::MovedSurface;
 use crate::mesh::{SurfaceSearch, TriangleSurface, Vector, Warning, area_sampling};
 use crate::registration::closest_point::FAR;
 
-/// Bone that nothing was done to fits to 0.1 to 0.25 mm, 0.5 % of it beyond 1 mm (paper 001 section 3.2).
+/// Bone that nothing was done to fits to 0.1 to 0.25 mm, 0.5 % of it beyond 1 mm (Zachow et al. 2006, section 3.2).
 const BONE_SHARE: f64 = 0.25;
 
 /// In mm: predictions of the field are 0.6 to 1.2 mm off in the mean.

@@ -3,7 +3,7 @@
 //! The predicted surface P is warped by the spline that takes its landmarks to those of the actual surface Q,
 //! P' = f(P). The partner of a point P_i is the point c_i of Q that is closest to P'_i, and the error is
 //! |P_i - c_i|: measured from where P_i was predicted, to what the landmarks say it has become.
-//! Source: METHODS A17, after paper 002 section 2.6.
+//! Source: Kim et al. 2012, section 2.6 (docs/methods.md#distances-and-statistics).
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,4 @@
-//! Measures of a head by its landmarks, with the numbers of REMAINING 3.7, which another program computed.
+//! Measures of a head by its landmarks, with numbers that another program computed: docs/verification.md#cephalometry.
 
 use std::collections::BTreeMap;
 

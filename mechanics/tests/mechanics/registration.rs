@@ -242,7 +242,7 @@ fn a_mirrored_scan_looks_mirrored_and_a_moved_one_does_not() {
     assert!(!check_mirror(&ball, &ball, None, &start).unwrap().looks_mirrored());
 }
 
-/// METHODS A16: five landmarks of which one is moved across and one along.
+/// docs/verification.md#thin-plate-spline: five landmarks of which one is moved across and one along.
 fn bent_landmarks() -> (Vec<Vector>, Vec<Vector>) {
     let ten = 10.0;
     let from = [[0.0; 3], [ten, 0.0, 0.0], [0.0, ten, 0.0], [0.0, 0.0, ten], [ten; 3]];

@@ -32,7 +32,7 @@ use mechanics::validation::LandmarkPair;
 /// Time a reproduction may take, in seconds.
 const WALL_S: f64 = 600.0;
 
-/// Bone that was not operated on fits to 0.1 to 0.25 mm, 0.5 % of it beyond 1 mm (paper 001 section 3.2).
+/// Bone that was not operated on fits to 0.1 to 0.25 mm, 0.5 % of it beyond 1 mm (Zachow et al. 2006, section 3.2).
 const MISFIT: f64 = 0.25;
 
 /// Below this angle in radians a turn has no axis.

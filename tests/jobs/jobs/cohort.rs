@@ -74,7 +74,7 @@ fn twins() -> BTreeMap<String, ComparisonDocument> {
 fn ten_twins_give_a_table_boxes_and_an_exact_test() {
     let groups = json!({"mtm": ids("mtm"), "fibres": ids("fibres")});
     let found = cohort(json!({"groups": groups, "statistic": "mean"}), &twins()).unwrap();
-    // One row for each subject, with mean, sd, p90 and p95: the shape of paper 002's Table 3.
+    // One row for each subject, with mean, sd, p90 and p95: the shape of table 3 of Kim et al. 2012.
     let [fibres, mtm] = &found.groups[..] else { panic!("{:?}", found.groups) };
     assert_eq!((fibres.name.as_str(), mtm.name.as_str(), mtm.rows.len()), ("fibres", "mtm", TWINS));
     for (twin, row) in mtm.rows.iter().enumerate() {

@@ -218,7 +218,7 @@ fn a_check_measures_the_head_before_and_as_planned() {
     let plan = json!({"segments": [{"name": "right", "translation_mm": [0, -4, 0]}]});
     let found = checked(json!({"bone_landmarks": landmarks}), plan.clone());
     let measure = |name: &str| found.cephalometry.iter().find(|m| m.name == name).unwrap();
-    // REMAINING 3.7.
+    // docs/verification.md#cephalometry.
     for (name, before, planned) in [
         ("sna", 86.032_819_231_0, 86.032_819_231_0),
         ("snb", 80.464_974_548_1, 82.803_253_203_9),

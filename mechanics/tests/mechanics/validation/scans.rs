@@ -187,7 +187,7 @@ fn landmarks_tell_a_turned_sphere_which_closest_points_cannot() {
     assert!(found.distances.both.unsigned.mean < 0.01);
     let (warped, node_wise) = (found.warped.unwrap(), found.node_wise.unwrap());
     assert_eq!((warped.landmarks, warped.is_affine), (5, false));
-    // REMAINING 3.2: chords of 2 degrees, by area; 1 % for the mesh.
+    // docs/verification.md#turned-sphere: chords of 2 degrees, by area; 1 % for the mesh.
     for statistics in [warped.area, node_wise.area] {
         for (value, wanted) in [
             (statistics.mean, 1.918_99),
@@ -295,7 +295,7 @@ fn two_spheres_that_overlap_have_a_lens_in_common() {
     let one = sphere(10.0, Vector::zeros(), 5);
     let other = sphere(10.0, Vector::new(15.0, 0.0, 0.0), 5);
     let found = overlap(&one, &other).unwrap();
-    // REMAINING 3.7; flat triangles of 0.4 mm lie up to 0.002 mm inside, and samples know no border.
+    // docs/verification.md#cuts; flat triangles of 0.4 mm lie up to 0.002 mm inside, and samples know no border.
     assert_near(found.depth, 5.0, 0.01);
     assert_near(found.volume, 359.974_158, 0.01 * 359.974_158);
     assert_near(found.radius, 6.614_378, 0.15);
