@@ -11,6 +11,8 @@ pub const SCAN: &str = "0199d3a0-0000-7000-8000-000000000006";
 const SKIN: &str = "0199d3a0-0000-7000-8000-000000000007";
 const SKULL: &str = "0199d3a0-0000-7000-8000-000000000008";
 pub const JOB: &str = "0199d3a0-0000-7000-8000-000000000005";
+/// Of a job that compared.
+const COMPARISON: &str = "0199d3a0-0000-7000-8000-000000000009";
 
 /// Writes examples beside the schema of every JSON body of the operations.
 pub fn add(paths: &mut Value) {
@@ -123,6 +125,10 @@ fn predictions() -> Vec<(&'static str, Value)> {
             json!({
                 "kind": "compare", "prediction": {"job": JOB}, "actual": {"mesh": BONE}, "align": {"method": "none"},
             }),
+        ),
+        (
+            "cohort",
+            json!({"kind": "cohort", "groups": {"fem_linear": [COMPARISON], "mtm": [COMPARISON]}, "subjects": ["first"]}),
         ),
         (
             "reproduce",

@@ -125,14 +125,14 @@ async fn the_service_takes_every_example_as_it_stands_but_for_ids() {
         let request = server.post(&format!("/v1/cases/{case}/check")).json(&body);
         assert_eq!(ask(request).await.status, StatusCode::OK, "{name}");
     }
-    let mut job = String::new();
+    let [mut job, mut comparison] = [String::new(), String::new()];
     let balls = balls(&server).await;
-    // The comparison is of a job that has ended.
+    // The comparison is of a job that has ended, the cohort of one that has compared.
     let mut jobs = examples("create_job");
-    jobs.sort_by_key(|(name, _)| name != "predict");
+    jobs.sort_by_key(|(name, _)| (name != "predict", name != "compare"));
     for (name, body) in jobs {
         let (case_id, plan_id, job_id) = (id(3), id(4), id(5));
-        let (skin_id, skull_id) = (id(7), id(8));
+        let (skin_id, skull_id, comparison_id) = (id(7), id(8), id(9));
         let ids = [
             (&case_id, &case),
             (&plan_id, &plan),
@@ -140,6 +140,7 @@ async fn the_service_takes_every_example_as_it_stands_but_for_ids() {
             (&scan_id, &scan),
             (&skin_id, &balls[0]),
             (&skull_id, &balls[1]),
+            (&comparison_id, &comparison),
         ];
         let ids: Vec<(&str, &str)> =
             ids.iter().map(|(from, to)| (from.as_str(), to.as_str())).chain(meshes).collect();
@@ -147,6 +148,9 @@ async fn the_service_takes_every_example_as_it_stands_but_for_ids() {
         assert!(answer.status.is_success(), "{name}: {}", answer.json());
         let ended = server.ended(answer.json()["id"].as_str().unwrap()).await;
         assert_eq!(ended["status"], "successful", "{name}: {ended}");
+        if name == "compare" {
+            comparison = ended["id"].as_str().unwrap().to_owned();
+        }
         if job.is_empty() {
             job = ended["id"].as_str().unwrap().to_owned();
         }
