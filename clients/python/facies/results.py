@@ -79,9 +79,10 @@ class Applied:
         return warnings
 
     @property
-    def nonlinearity_estimate_mm(self) -> float:
-        """What the displacement leaves out, mean over the skin."""
-        return float(self.document["nonlinearity_estimate_mm"])
+    def nonlinearity_estimate_mm(self) -> float | None:
+        """What the displacement leaves out, mean over the skin; None where that is not known, as with growth and muscles."""
+        estimate: float | None = self.document.get("nonlinearity_estimate_mm")
+        return estimate
 
     @property
     def within_linear_range(self) -> bool:

@@ -52,8 +52,9 @@ function showEstimate(applied?: Applied): void {
   const shown = find<HTMLElement>("#estimate");
   const warnings = applied?.warnings.map(({ code, detail }) => `\n${code}: ${detail}`) ?? [];
   shown.classList.toggle("doubtful", warnings.length > 0 || applied?.within_linear_range === false);
-  shown.textContent = applied === undefined ? ""
-    : `Linearity leaves out about ${applied.nonlinearity_estimate_mm.toFixed(2)} mm, mean over the skin.${warnings.join("")}`;
+  const left = applied?.nonlinearity_estimate_mm;
+  const said = left === undefined ? "What linearity leaves out is not known." : `Linearity leaves out about ${left.toFixed(2)} mm, mean over the skin.`;
+  shown.textContent = applied === undefined ? "" : `${said}${warnings.join("")}`;
 }
 
 /** The movements of the sliders as a plan of the service. */
