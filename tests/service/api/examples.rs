@@ -100,6 +100,13 @@ async fn planned(server: &Server, case: &str) -> String {
     plan
 }
 
+async fn checked(server: &Server, case: &str) {
+    for (name, body) in examples("check_case") {
+        let request = server.post(&format!("/v1/cases/{case}/check")).json(&body);
+        assert_eq!(ask(request).await.status, StatusCode::OK, "{name}");
+    }
+}
+
 #[tokio::test]
 async fn the_service_takes_every_example_as_it_stands_but_for_ids() {
     let server = Server::start();
@@ -121,18 +128,15 @@ async fn the_service_takes_every_example_as_it_stands_but_for_ids() {
     }
     let case = cases[0].clone();
     let plan = planned(&server, &case).await;
-    for (name, body) in examples("check_case") {
-        let request = server.post(&format!("/v1/cases/{case}/check")).json(&body);
-        assert_eq!(ask(request).await.status, StatusCode::OK, "{name}");
-    }
+    checked(&server, &case).await;
     let [mut job, mut comparison] = [String::new(), String::new()];
     let balls = balls(&server).await;
     // The comparison is of a job that has ended, the cohort of one that has compared.
     let mut jobs = examples("create_job");
     jobs.sort_by_key(|(name, _)| (name != "predict", name != "compare"));
     for (name, body) in jobs {
-        let (case_id, plan_id, job_id) = (id(3), id(4), id(5));
-        let (skin_id, skull_id, comparison_id) = (id(7), id(8), id(9));
+        let [case_id, plan_id, job_id, skin_id, skull_id, comparison_id] =
+            [3, 4, 5, 7, 8, 9].map(id);
         let ids = [
             (&case_id, &case),
             (&plan_id, &plan),
