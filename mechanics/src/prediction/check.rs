@@ -252,30 +252,15 @@ impl<'a> Check<'a> {
         let edges = edges.as_ref();
         for (index, load) in plan.loads.iter().enumerate() {
             let pointer = format!("/plan/loads/{index}");
-            match load {
+            let (faces, load) = match load {
                 Load::Force { nodes, force } => {
                     let nodes = self.select(nodes, &format!("{pointer}/nodes"));
                     nodes.iter().for_each(|&node| forces[node as usize] += force);
                     self.warnings.extend(load_on_held(&nodes, &scene.conditions.holds, &pointer));
+                    continue;
                 }
-                Load::Traction { faces, traction } => {
-                    let faces = self.loaded_faces(faces, &pointer);
-                    let load = FaceLoad::Traction(*traction);
-                    let nodes: Vec<u32> =
-                        faces.iter().flat_map(BoundaryFace::nodes).copied().collect();
-                    self.warnings.extend(load_on_held(&nodes, &scene.conditions.holds, &pointer));
-                    self.face_load(&faces, load, edges, &mut forces);
-                    scene.distributed.faces.push((faces, load));
-                }
-                Load::Pressure { faces, pressure } => {
-                    let faces = self.loaded_faces(faces, &pointer);
-                    let load = FaceLoad::Pressure(*pressure);
-                    let nodes: Vec<u32> =
-                        faces.iter().flat_map(BoundaryFace::nodes).copied().collect();
-                    self.warnings.extend(load_on_held(&nodes, &scene.conditions.holds, &pointer));
-                    self.face_load(&faces, load, edges, &mut forces);
-                    scene.distributed.faces.push((faces, load));
-                }
+                Load::Traction { faces, traction } => (faces, FaceLoad::Traction(*traction)),
+                Load::Pressure { faces, pressure } => (faces, FaceLoad::Pressure(*pressure)),
                 Load::Gravity { acceleration } => {
                     scene.distributed.acceleration += acceleration;
                     let tissue = scene.tissue();
@@ -290,8 +275,14 @@ impl<'a> Check<'a> {
                             error.to_string(),
                         );
                     }
+                    continue;
                 }
-            }
+            };
+            let faces = self.loaded_faces(faces, &pointer);
+            let nodes: Vec<u32> = faces.iter().flat_map(BoundaryFace::nodes).copied().collect();
+            self.warnings.extend(load_on_held(&nodes, &scene.conditions.holds, &pointer));
+            self.face_load(&faces, load, edges, &mut forces);
+            scene.distributed.faces.push((faces, load));
         }
         scene.forces = forces;
     }

@@ -7,7 +7,7 @@ use super::scene::Scene;
 use super::skin_overlap::{Deepest, deepest_overlap};
 use crate::boundary::NodeClass;
 use crate::boundary::contact::FacingSurfaces;
-use crate::mesh::{Vector, Warning};
+use crate::mesh::Warning;
 use crate::model::fem::contact::{Contact, ContactProblem, InContact, Pressed};
 use crate::model::fem::linear_system::{LinearSystem, Solved};
 use crate::model::problem::ModelError;
@@ -61,8 +61,7 @@ pub(super) fn touch(
     let found = problem.solve(progress)?;
     Ok(found.map(|InContact { solved, contact }| {
         let mut touch = Touch::new(scene, &surfaces.areas(&contact.forces), contact);
-        let nothing = vec![Vector::zeros(); scene.mesh.nodes.len()];
-        let at_rest = deepest_overlap(&surfaces.after(&nothing)).map_or(0.0, |at| at.depth);
+        let at_rest = deepest_overlap(surfaces.rest()).map_or(0.0, |at| at.depth);
         touch.overlap = deepest_overlap(&surfaces.after(&solved.equilibrium.displacement))
             .filter(|deepest| deepest.depth > at_rest + DEEP_MM);
         (solved, touch)

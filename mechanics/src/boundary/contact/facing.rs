@@ -98,6 +98,10 @@ impl<'a> FacingSurfaces<'a> {
         (largest, edges.get(edges.len() / 2).copied().unwrap_or(f64::INFINITY))
     }
 
+    pub fn rest(&self) -> &TriangleSurface {
+        &self.boundary.rest
+    }
+
     /// The boundary after a displacement.
     pub fn after(&self, displacement: &[Vector]) -> TriangleSurface {
         self.boundary.after(displacement)
