@@ -6,7 +6,8 @@
 //! checks all of it and says everything that is wrong; [`prediction::predict`] lets the model make its equations of
 //! [element]s, the [solver] solve them, and tells what the displacement does to the tissue. [`response`] and
 //! [`optimisation`] turn many plans on one case around, [`registration`] and [`validation`] hold a prediction
-//! against what was scanned afterwards, [`study`] methods against each other, and [`chart`] draws. Nothing here reads
+//! against what was scanned afterwards, [`study`] methods against each other, [`learning`] learns from operated cases, and
+//! [`chart`] draws. Nothing here reads
 //! a file, a clock or the environment: [`progress`] is how the caller hears and stops.
 //!
 //! A block of tissue on a jaw that moves forward by 2 mm:
@@ -41,11 +42,14 @@ pub mod anatomy;
 pub mod boundary;
 pub mod cephalometry;
 pub mod chart;
+pub mod conformation;
 pub mod domain;
+mod draws;
 pub mod element;
 pub mod format;
 pub mod image;
 pub mod landmarks;
+pub mod learning;
 pub mod material;
 pub mod mesh;
 pub mod meshing;
@@ -56,6 +60,7 @@ pub mod plan;
 pub mod prediction;
 pub mod progress;
 pub mod registration;
+pub mod repair;
 pub mod response;
 pub mod rows;
 pub mod solver;

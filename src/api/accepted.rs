@@ -8,10 +8,11 @@ use super::Service;
 use super::error::{ApiError, ApiResult};
 use super::parameters::id;
 use crate::jobs::{JobError, JobInput, MeshSource, SourceError};
+use crate::schema::job::JobStatus;
 use crate::schema::predict::result::EngineDocument;
 use crate::schema::study::expected::TruthCostDocument;
 use crate::schema::{ErrorCode, Faults, Limits, Pointer, PredictDocument, Problem};
-use crate::store::NewJob;
+use crate::store::{JobRow, NewJob};
 
 /// Jobs that may wait at the same time.
 pub(super) const LONGEST_QUEUE: i64 = 10_000;
@@ -37,6 +38,20 @@ pub(super) async fn prepared<I: Send + 'static, T: Send + 'static>(
         })
         .await?;
     Ok((input, found.map_err(|error| refusal(error).map_problem(in_spec))?))
+}
+
+/// A job that a document names, which has to have ended well.
+pub(super) async fn successful_job(service: &Service, at: &str, job: &str) -> ApiResult<JobRow> {
+    let row = match id(job) {
+        Some(id) => service.store.job(&id).await?,
+        None => None,
+    };
+    let row = row.ok_or_else(|| fault(at, ErrorCode::UnknownJob, "there is no such job"))?;
+    if row.status != JobStatus::Successful {
+        let detail = format!("the job is {}, and has to be successful", row.status.name());
+        return Err(fault(at, ErrorCode::ResultNotReady, &detail));
+    }
+    Ok(row)
 }
 
 /// What is known of a job when it is accepted, beside its document.

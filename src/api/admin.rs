@@ -5,13 +5,15 @@ use std::net::SocketAddr;
 use std::sync::Arc;
 use std::time::Duration;
 
-use axum::extract::{MatchedPath, Path, Query, Request, State};
+use axum::Router;
+use axum::extract::{MatchedPath, Path, Request, State};
 use axum::handler::Handler;
-use axum::http::{Method, StatusCode, header};
+use axum::http::{HeaderMap, Method, StatusCode, header};
 use axum::middleware::{Next, from_fn_with_state};
 use axum::response::{IntoResponse, Response};
 use axum::routing::{MethodFilter, on};
-use axum::{Json, Router};
+use bytes::Bytes;
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use tokio::net::TcpListener;
 
@@ -28,9 +30,11 @@ use super::parameters::Parameters;
 use super::{body, connections, json, keys, time};
 use crate::config::{Config, Secret};
 use crate::metrics;
+use crate::schema::Limits;
 use crate::schema::key::{
     KeyDocument, RETENTION_DAYS, RotationDocument, Scope, TENANT_NAMES, is_key_id, is_tenant,
 };
+use crate::schema::wire::strict;
 use crate::store::{Chain, Deed, LostRow, Store, TenantRow};
 use crate::worker::process::memory::usage;
 
@@ -188,11 +192,20 @@ async fn noted(store: &Store, deed: Deed, request: Request, next: Next) -> Respo
     }
 }
 
+/// A document, read as those of clients are, so that what is wrong with it is told with its place.
+fn document<T: DeserializeOwned>(headers: &HeaderMap, body: &Bytes) -> ApiResult<T> {
+    body::require_json(headers)?;
+    Ok(strict::parse(body, &Limits::default())?)
+}
+
 /// What was counted, with the queue as it is at this moment.
 async fn counted(State(office): State<Office>) -> Response {
     match office.store.queue().await {
         Ok(queue) => metrics::queue(queue.waiting, queue.running, queue.oldest_ms),
-        Err(error) => tracing::warn!(%error, "the queue was not counted"),
+        Err(error) if !office.store.is_closing() => {
+            tracing::warn!(%error, "the queue was not counted");
+        }
+        Err(_) => {}
     }
     if let Some(usage) = usage("self") {
         metrics::process_memory(usage.now_bytes);
@@ -249,8 +262,10 @@ async fn tenants(
 async fn set_tenant(
     State(office): State<Office>,
     Path(tenant): Path<String>,
-    Json(wanted): Json<TenantDocument>,
+    headers: HeaderMap,
+    body: Bytes,
 ) -> ApiResult {
+    let wanted: TenantDocument = document(&headers, &body)?;
     if wanted.retention_days.is_some_and(|days| !RETENTION_DAYS.contains(&days)) {
         let detail = "retention_days has to be 1 to 36500";
         return Err(ApiError::invalid_parameter("retention_days", detail));
@@ -270,8 +285,10 @@ async fn list_keys(
 async fn create_key(
     State(office): State<Office>,
     Path(tenant): Path<String>,
-    Json(wanted): Json<KeyDocument>,
+    headers: HeaderMap,
+    body: Bytes,
 ) -> ApiResult {
+    let wanted: KeyDocument = document(&headers, &body)?;
     wanted.check()?;
     Ok(keys::shown(office.of(&tenant)?.make_key(&wanted).await?))
 }
@@ -286,8 +303,10 @@ async fn revoke_key(
 async fn rotate_key(
     State(office): State<Office>,
     Path((tenant, id)): Path<(String, String)>,
-    Json(rotation): Json<RotationDocument>,
+    headers: HeaderMap,
+    body: Bytes,
 ) -> ApiResult {
+    let rotation: RotationDocument = document(&headers, &body)?;
     keys::rotated(&office.of(&tenant)?, key_id(&id)?, rotation).await
 }
 
@@ -297,7 +316,7 @@ fn key_id(text: &str) -> ApiResult<&str> {
 
 async fn list_audit(
     State(office): State<Office>,
-    Query(parameters): Query<AuditParameters>,
+    Parameters(parameters): Parameters<AuditParameters>,
 ) -> ApiResult {
     audit::page(&office.store, "", &parameters).await
 }

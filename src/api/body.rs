@@ -104,13 +104,16 @@ pub fn unsupported(found: &str, accepted: &'static str) -> ApiError {
 
 /// The whole JSON body.
 pub async fn json(service: &Service, request: Request) -> ApiResult<Bytes> {
-    const JSON: &str = "application/json";
-    let kind = content_type(request.headers());
-    if kind != JSON {
-        return Err(unsupported(&kind, JSON));
-    }
+    require_json(request.headers())?;
     let most = usize::try_from(service.limits.json_bytes).unwrap_or(usize::MAX);
     whole(service, request, most).await?.into_bytes().await
+}
+
+/// Refuses a body that does not call itself JSON.
+pub fn require_json(headers: &HeaderMap) -> ApiResult<()> {
+    const JSON: &str = "application/json";
+    let kind = content_type(headers);
+    if kind == JSON { Ok(()) } else { Err(unsupported(&kind, JSON)) }
 }
 
 /// The document in a part of a form, as long as that of a body may be.

@@ -352,7 +352,7 @@ async fn check(service: Service, Id(id): Id, request: Request) -> ApiResult {
 /// What decides a picture, as a hash: meshes never change, and those of a case stay as long as it does. `None` where others
 /// are asked for, which may be gone when the same is asked again.
 fn question(input: &PredictInput) -> ApiResult<Option<String>> {
-    let of_case = job_input::mesh_ids(input) == input.case.mesh_ids();
+    let of_case = input.mesh_ids() == input.case.mesh_ids();
     let text = serde_json::to_vec(input).map_err(ApiError::internal)?;
     Ok(of_case.then(|| sha256_hex(&text)))
 }

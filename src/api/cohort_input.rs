@@ -3,12 +3,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::Service;
-use super::accepted::{Accepted, fault, in_spec};
+use super::accepted::{Accepted, fault, in_spec, successful_job};
 use super::error::{ApiError, ApiResult};
-use super::parameters::id;
 use crate::jobs::{CohortInput, JobInput};
-use crate::schema::compare::result::ComparisonDocument;
-use crate::schema::job::JobStatus;
 use crate::schema::predict::result::ResultDocument;
 use crate::schema::{CohortDocument, ErrorCode, Faults};
 use crate::store::NewJob;
@@ -21,14 +18,17 @@ pub async fn of_cohort(service: &Service, spec: CohortDocument) -> ApiResult<New
     let mut faults = Faults::default();
     spec.check(&service.limits, &mut faults);
     faults.into_result().map_err(in_spec)?;
-    let mut comparisons = BTreeMap::new();
+    let (comparisons, actuals) = (BTreeMap::new(), BTreeMap::new());
+    let mut input = CohortInput { job: None, queue_s: None, spec, comparisons, actuals };
     let mut owners = BTreeSet::new();
+    let spec = input.spec.clone();
     for (at, job) in spec.jobs() {
-        comparisons.insert(job.clone(), comparison(service, at.as_str(), job).await?);
+        if !input.take(job, result_of(service, at.as_str(), job).await?) {
+            return Err(compared_nothing(at.as_str()));
+        }
         owners.extend(service.store.cases_of_job(job).await?);
     }
-    let tags = spec.tags.clone();
-    let input = CohortInput { job: None, queue_s: None, spec, comparisons };
+    let tags = spec.tags;
     let spec_hash = input.spec_hash();
     let owners: Vec<String> = owners.into_iter().collect();
     let (case_id, shared_cases) = match owners.as_slice() {
@@ -40,20 +40,17 @@ pub async fn of_cohort(service: &Service, spec: CohortDocument) -> ApiResult<New
     new.with(&JobInput::Cohort(input))
 }
 
-/// What a job found that compared.
-async fn comparison(service: &Service, at: &str, job: &str) -> ApiResult<ComparisonDocument> {
-    let row = match id(job) {
-        Some(id) => service.store.job(&id).await?,
-        None => None,
-    };
-    let row = row.ok_or_else(|| fault(at, ErrorCode::UnknownJob, "there is no such job"))?;
-    if row.status != JobStatus::Successful {
-        let detail = format!("the job is {}, and has to be successful", row.status.name());
-        return Err(fault(at, ErrorCode::ResultNotReady, &detail));
-    }
-    let missing = || fault(at, ErrorCode::NoSuchOutput, "the job compared nothing");
-    let file = service.store.job_file(&row.id, RESULT).await?.ok_or_else(missing)?;
+fn compared_nothing(at: &str) -> ApiError {
+    let detail =
+        "the job compared nothing: name jobs of kind `compare`, or predictions with `compare_to`";
+    fault(at, ErrorCode::NoSuchOutput, detail)
+}
+
+/// What a job found.
+async fn result_of(service: &Service, at: &str, job: &str) -> ApiResult<ResultDocument> {
+    let row = successful_job(service, at, job).await?;
+    let file = service.store.job_file(&row.id, RESULT).await?;
+    let file = file.ok_or_else(|| compared_nothing(at))?;
     let bytes = service.store.read_blob(&file.blob).await?;
-    let result: ResultDocument = serde_json::from_slice(&bytes).map_err(ApiError::internal)?;
-    result.comparison.ok_or_else(missing)
+    serde_json::from_slice(&bytes).map_err(ApiError::internal)
 }

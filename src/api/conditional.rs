@@ -42,6 +42,14 @@ pub fn require_match(headers: &HeaderMap, current: &str) -> ApiResult<()> {
     Err(other_version(current))
 }
 
+/// Lets a change pass that names no version, or the one it is meant for.
+pub fn allow_match(headers: &HeaderMap, current: &str) -> ApiResult<()> {
+    match headers.contains_key(header::IF_MATCH) {
+        true => require_match(headers, current),
+        false => Ok(()),
+    }
+}
+
 /// The refusal of a change that was meant for another version than this.
 pub fn other_version(current: &str) -> ApiError {
     let quoted = format!("\"{current}\"");
@@ -178,6 +186,14 @@ mod tests {
         assert!(!passes("3"));
         let missing = require_match(&HeaderMap::new(), "3").unwrap_err();
         assert_eq!(missing.problem.code, ErrorCode::PreconditionRequired);
+    }
+
+    #[test]
+    fn a_change_that_needs_no_version_is_held_to_the_one_that_it_names() {
+        assert!(allow_match(&HeaderMap::new(), "3").is_ok());
+        assert!(allow_match(&with(header::IF_MATCH, "\"3\""), "3").is_ok());
+        let refused = allow_match(&with(header::IF_MATCH, "\"2\""), "3").unwrap_err();
+        assert_eq!(refused.problem.code, ErrorCode::PreconditionFailed);
     }
 
     #[test]

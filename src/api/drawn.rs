@@ -1,4 +1,4 @@
-//! Pictures of predictions, drawn when they are first asked for and kept in memory like those of checks.
+//! Pictures and reports of jobs, drawn when they are first asked for and kept in memory like those of checks.
 
 use std::collections::BTreeMap;
 
@@ -9,68 +9,118 @@ use tokio::runtime::Handle;
 
 use super::error::{ApiError, ApiResult};
 use super::parameters::no_such_job;
+use super::report::stored_report;
 use super::{Service, accepted, conditional, guard};
 use crate::jobs::{Finished, JobInput};
 use crate::schema::predict::output::PictureName;
-use crate::schema::{ErrorCode, Limits};
+use crate::schema::wire::problem::Problem;
+use crate::schema::{ErrorCode, Language, Limits};
 use crate::store::JobRow;
+use mechanics::mesh::ignored::listed;
 
-/// A picture of a job that is none of its files.
+/// What is asked for: a picture or a report, and in which language its words are.
+#[derive(Clone, Copy)]
+struct Wanted {
+    picture: PictureName,
+    language: Language,
+}
+
+impl Wanted {
+    /// Under which name it is kept; pictures have one language.
+    fn kept_as(self) -> String {
+        let name = self.picture.output().file_name();
+        match PictureName::REPORTS.contains(&self.picture) {
+            true => format!("{name} {}", self.language.tag()),
+            false => name.to_owned(),
+        }
+    }
+}
+
+/// A picture or report of a job that is none of its files, in the language that is asked for, else in one that the client
+/// likes.
 pub async fn picture(
     service: &Service,
     job: &JobRow,
     name: &str,
+    language: Option<Language>,
     headers: &HeaderMap,
 ) -> ApiResult {
     let named = |picture: &PictureName| picture.output().file_name() == name;
-    let picture = PictureName::ALL.into_iter().find(named).ok_or_else(no_such_output)?;
+    let Some(picture) = PictureName::ALL.into_iter().find(named) else {
+        return Err(no_such_output(job, name));
+    };
     let media_type = picture.output().media_type();
-    guard::check_accept(headers, media_type)?;
-    let svg = match service.pictures.get(&job.id, name) {
-        Some(svg) => svg,
-        None => drawn(service, job, picture).await?,
+    guard::check_accept(headers, media_type.split(';').next().unwrap_or_default())?;
+    let liked = headers.get(header::ACCEPT_LANGUAGE).and_then(|value| value.to_str().ok());
+    let language = language.unwrap_or_else(|| Language::accepted(liked.unwrap_or_default()));
+    let wanted = Wanted { picture, language };
+    let bytes = match service.pictures.get(&job.id, &wanted.kept_as()) {
+        Some(bytes) => bytes,
+        None => drawn(service, job, wanted).await?,
     };
     let disposition = format!("attachment; filename=\"{name}\"");
     let told = [
         (header::CONTENT_TYPE, media_type),
         (header::CACHE_CONTROL, "private, no-cache"),
         (header::CONTENT_DISPOSITION, &disposition),
+        (header::VARY, "Accept-Language"),
     ];
-    conditional::document(headers, (told, svg).into_response()).await
+    conditional::document(headers, (told, bytes).into_response()).await
 }
 
-async fn drawn(service: &Service, job: &JobRow, picture: PictureName) -> ApiResult<Bytes> {
-    let finished = finished(service, job).await?.ok_or_else(no_such_output)?;
+async fn drawn(service: &Service, job: &JobRow, wanted: Wanted) -> ApiResult<Bytes> {
+    let Wanted { picture, language } = wanted;
     let name = picture.output().file_name();
-    if let Some(source) = picture.drawn_from().map(|source| source.file_name())
+    let finished = finished(service, job).await?.filter(|finished| finished.has(picture));
+    let finished = finished.ok_or_else(|| no_such_output(job, name))?;
+    if finished.has_skin()
+        && let Some(source) = picture.drawn_from().map(|source| source.file_name())
         && service.store.job_file(&job.id, source).await?.is_none()
     {
-        let detail = format!("{name} is drawn from {source}, which the job did not write");
+        let detail = format!(
+            "{name} is drawn from {source}, which the job did not write: state it in `outputs` of the spec and post the job again"
+        );
         return Err(ApiError::new(ErrorCode::NoSuchOutput, detail));
     }
     let sources = service.library.source(Handle::current(), BTreeMap::new());
     let limits: Limits = (*service.limits).clone();
     let turn = service.check_turn().await?;
-    let svg = turn.compute(move || finished.draw(picture, &sources, &limits)).await?;
-    let svg = Bytes::from(svg.map_err(accepted::refusal)?);
-    service.pictures.keep_of_job(&job.id, job.case_id.as_deref(), name, svg.clone());
+    let draw = move || finished.draw(picture, language, &sources, &limits);
+    let bytes = Bytes::from(turn.compute(draw).await?.map_err(accepted::refusal)?);
+    let (case, kept_as) = (job.case_id.as_deref(), wanted.kept_as());
+    service.pictures.keep_of_job(&job.id, case, &kept_as, bytes.clone());
     // Whoever erased it meanwhile found nothing to give up.
     if service.store.job_status(&job.id).await?.is_none() {
         service.pictures.forget(&job.id);
         return Err(no_such_job());
     }
-    Ok(svg)
+    Ok(bytes)
 }
 
-/// What the job predicted, if it did.
+/// What the job found, if there is something to draw.
 async fn finished(service: &Service, job: &JobRow) -> ApiResult<Option<Finished>> {
     let document = service.store.job_document(&job.id).await?.ok_or_else(no_such_job)?;
     let input: JobInput = serde_json::from_str(&document).map_err(ApiError::internal)?;
     let result = job.result.as_deref().unwrap_or("null");
     let result = serde_json::from_str(result).map_err(ApiError::internal)?;
-    Ok(Finished::of_job(&job.id, input, result))
+    let study = stored_report(service, &job.id).await?.map(|(_, report)| report);
+    Ok(Finished::of_job(&job.id, input, result, study))
 }
 
-fn no_such_output() -> ApiError {
-    ApiError::new(ErrorCode::NoSuchOutput, "the job has no file of this name")
+/// With what there is, and how to get more.
+fn no_such_output(job: &JobRow, name: &str) -> ApiError {
+    let result = job.result.as_deref().unwrap_or("null");
+    let result: serde_json::Value = serde_json::from_str(result).unwrap_or_default();
+    let names = |list: &str| -> Vec<String> {
+        let entries = result.get(list).and_then(|entries| entries.as_array()).into_iter().flatten();
+        let named = entries.filter_map(|entry| entry.get("name").unwrap_or(entry).as_str());
+        named.map(str::to_owned).collect()
+    };
+    let there: Vec<String> = names("files").into_iter().chain(names("pictures")).collect();
+    let detail = format!(
+        "the job has no file {name:?}; it has: {}. Others are written where `outputs` of the spec names them",
+        listed(there.iter())
+    );
+    let problem = Problem::new(ErrorCode::NoSuchOutput, detail);
+    problem.with("files", there).into()
 }

@@ -130,12 +130,22 @@ fn predictions() -> Vec<(&'static str, Value)> {
             "cohort",
             json!({"kind": "cohort", "groups": {"fem_linear": [COMPARISON], "mtm": [COMPARISON]}, "subjects": ["first"]}),
         ),
+        ("learn", json!({"kind": "learn", "virtual": {"patients": 3, "fineness": 1}})),
         (
             "reproduce",
             json!({
                 "kind": "reproduce", "before": {"mesh": BONE}, "after": {"mesh": BONE},
                 "base": {"mask": {"box_mm": [-200, -200, -200, 200, 200, 200]}},
                 "segments": [{"name": "mandible", "before": {"mesh": BONE}}],
+            }),
+        ),
+        (
+            "conform",
+            json!({
+                "kind": "conform",
+                "template": {"mesh": VOLUME, "skin": "skin", "segments": {"mandible": "mandible"}, "fixed": "skull"},
+                "patient": {"skin": SKIN, "bone": SKULL},
+                "landmarks": {"pogonion": {"template_mm": [0, -80, 10], "patient_mm": [3, -92, 14]}},
             }),
         ),
     ]

@@ -4,28 +4,29 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::Service;
 use super::accepted::{
-    Accepted, AcceptedStudy, fault, in_spec, prepared, require_compared, require_mesh,
+    Accepted, AcceptedStudy, fault, in_spec, prepared, require_compared, require_mesh, successful_job,
 };
 use super::case_state::{CaseOfJob, case_of_job, whole};
 use super::cohort_input::of_cohort;
 use super::error::{ApiError, ApiResult};
+use super::learn_input::{learned_from, of_learning};
 use super::parameters::id;
 use super::report;
 use super::waiting::Waiting;
 use crate::jobs::{
-    CompareInput, JobInput, MeshSource, MeshingInput, OptimiseInput, PredictInput, ReproduceInput,
-    ResponseInput, StudyInput,
+    CompareInput, ConformInput, JobInput, MeshSource, MeshingInput, OptimiseInput, PredictInput,
+    ReproduceInput, ResponseInput, StudyInput,
 };
 use crate::schema::ErrorCode;
-use crate::schema::compare::document::CompareToDocument;
 use crate::schema::hashes::reproduce_hash;
 use crate::schema::job::JobStatus;
 use crate::schema::job_document::JobDocument;
 use crate::schema::study::document::SceneReference;
 use crate::schema::study::expected::truth_costs;
 use crate::schema::{
-    CompareDocument, Faults, Limits, MeshingDocument, OptimiseDocument, PlanDocument, Pointer,
-    PredictDocument, ReportDocument, ReproduceDocument, ResponseDocument, StudyDocument,
+    CompareDocument, ConformDocument, Faults, Limits, MeshingDocument, OptimiseDocument,
+    PlanDocument, Pointer, PredictDocument, ReportDocument, ReproduceDocument, ResponseDocument,
+    StudyDocument,
 };
 use crate::store::{CaseRow, NewJob};
 
@@ -38,6 +39,8 @@ pub async fn of(service: &Service, document: JobDocument) -> ApiResult<NewJob> {
         JobDocument::Optimise(spec) => of_optimisation(service, spec).await,
         JobDocument::Reproduce(spec) => of_reproduction(service, spec).await,
         JobDocument::Cohort(spec) => of_cohort(service, spec).await,
+        JobDocument::Learn(spec) => of_learning(service, spec).await,
+        JobDocument::Conform(spec) => of_conformation(service, spec).await,
         JobDocument::Mesh(spec) => of_meshing(service, spec).await,
         JobDocument::Study(spec) => of_study(service, spec).await,
     }
@@ -49,14 +52,23 @@ async fn of_prediction(service: &Service, mut spec: PredictDocument) -> ApiResul
     let case = match case_of_job(&row)? {
         CaseOfJob::Whole(case) => *case,
         CaseOfJob::Waits(awaited) => {
+            if spec.correction.is_some() {
+                let detail =
+                    "a case that waits for its mesh takes no correction: ask again when it has one";
+                return Err(fault("/correction", ErrorCode::MethodNotAvailable, detail));
+            }
             let plan = plan_of(service, &row.id, &mut spec).await?;
             return Waiting { case: &row.id, awaited }.prediction(service, plan, spec).await;
         }
     };
     let plan = plan_of(service, &row.id, &mut spec).await?;
     let input = PredictInput { job: None, queue_s: None, case, plan, spec };
-    let mesh_ids = mesh_ids(&input);
+    let mesh_ids = input.mesh_ids();
     require_compared(service, &input.spec).await?;
+    let shared_cases = match &input.spec.correction {
+        Some(correction) => learned_from(service, &correction.model, &row.id).await?,
+        None => Vec::new(),
+    };
     let tags = input.spec.tags.clone();
     let prepare = |input: &PredictInput, sources: &dyn MeshSource, limits: &Limits| {
         let prepared = input.prepare(sources, limits)?;
@@ -64,14 +76,8 @@ async fn of_prediction(service: &Service, mut spec: PredictDocument) -> ApiResul
         Ok(prepared.spec_hash)
     };
     let (input, spec_hash) = prepared(service, input, prepare).await?;
-    let new = Accepted {
-        case_id: Some(row.id),
-        shared_cases: Vec::new(),
-        spec_hash,
-        tags,
-        mesh_ids,
-        study: None,
-    };
+    let new =
+        Accepted { case_id: Some(row.id), shared_cases, spec_hash, tags, mesh_ids, study: None };
     new.with(&JobInput::Predict(input))
 }
 
@@ -168,6 +174,24 @@ async fn of_reproduction(service: &Service, spec: ReproduceDocument) -> ApiResul
     Accepted { case_id, shared_cases, spec_hash, tags, mesh_ids, study }.with(&input)
 }
 
+/// A conformation: its template and surfaces, checked.
+async fn of_conformation(service: &Service, mut spec: ConformDocument) -> ApiResult<NewJob> {
+    let mut mesh_ids = Vec::new();
+    for (at, id) in spec.mesh_references_mut() {
+        require_mesh(service, at.as_str(), id).await?;
+        mesh_ids.push(id.clone());
+    }
+    let tags = spec.tags.clone();
+    let input = ConformInput { job: None, queue_s: None, spec };
+    let prepare = |input: &ConformInput, sources: &dyn MeshSource, limits: &Limits| {
+        Ok(input.prepare(sources, limits)?.spec_hash)
+    };
+    let (input, spec_hash) = prepared(service, input, prepare).await?;
+    let (case_id, shared_cases, study) = (None, Vec::new(), None);
+    let new = Accepted { case_id, shared_cases, spec_hash, tags, mesh_ids, study };
+    new.with(&JobInput::Conform(input))
+}
+
 /// A meshing: its scan or its surfaces, checked.
 async fn of_meshing(service: &Service, mut spec: MeshingDocument) -> ApiResult<NewJob> {
     let mut mesh_ids = Vec::new();
@@ -256,7 +280,13 @@ async fn baseline(service: &Service, job: &str) -> ApiResult<(ReportDocument, Ve
         return Err(fault(AT, ErrorCode::UnknownJob, "there is no such job"));
     }
     let found = report::stored_report(service, &id).await?;
-    let missing = || fault(AT, ErrorCode::NoSuchOutput, "the job is no study that has ended well");
+    let missing = || {
+        fault(
+            AT,
+            ErrorCode::NoSuchOutput,
+            "the job is no study that has ended well: name one of kind `study` or `batch` whose status is `successful`, or leave `baseline` out",
+        )
+    };
     Ok((found.ok_or_else(missing)?.1, service.store.cases_of_job(&id).await?))
 }
 
@@ -295,23 +325,15 @@ async fn stored_plan(
         Some(id) => service.store.plan(case, &id).await?,
         None => None,
     };
-    let unknown = || fault("/plan_id", ErrorCode::UnknownPlan, "the case has no such plan");
+    let unknown = || {
+        fault(
+            "/plan_id",
+            ErrorCode::UnknownPlan,
+            "the case has no such plan: GET /v1/cases/{id}/plans lists those it has",
+        )
+    };
     let found = found.ok_or_else(unknown)?;
     serde_json::from_str(&found.document).map(Some).map_err(ApiError::internal)
-}
-
-/// Every mesh that a prediction reads.
-pub(super) fn mesh_ids(input: &PredictInput) -> Vec<String> {
-    let mut ids = input.case.mesh_ids();
-    let is_bone = |id: &str| input.case.bones.iter().any(|bone| bone.name == id);
-    let mut plan = input.plan.clone();
-    for (_, id) in plan.surface_references_mut() {
-        if !is_bone(id) {
-            ids.push(id.clone());
-        }
-    }
-    ids.extend(input.spec.compare_to.iter().flat_map(CompareToDocument::mesh_ids));
-    ids
 }
 
 /// A case that has to be there.
@@ -320,7 +342,13 @@ async fn require_case(service: &Service, case: &str) -> ApiResult<CaseRow> {
         Some(id) => service.store.case(&id).await?,
         None => None,
     };
-    row.ok_or_else(|| fault("/case", ErrorCode::UnknownCase, "there is no such case"))
+    row.ok_or_else(|| {
+        fault(
+            "/case",
+            ErrorCode::UnknownCase,
+            "there is no such case: GET /v1/cases lists those there are",
+        )
+    })
 }
 
 /// The hash of the skin that a job predicted, and the job's case.
@@ -329,17 +357,14 @@ async fn predicted_skin(
     at: &str,
     job: &str,
 ) -> ApiResult<(String, Option<String>)> {
-    let row = match id(job) {
-        Some(id) => service.store.job(&id).await?,
-        None => None,
-    };
-    let row = row.ok_or_else(|| fault(at, ErrorCode::UnknownJob, "there is no such job"))?;
-    if row.status != JobStatus::Successful {
-        let detail = format!("the job is {}, and has to be successful", row.status.name());
-        return Err(fault(at, ErrorCode::ResultNotReady, &detail));
-    }
+    let row = successful_job(service, at, job).await?;
     let skin = service.store.job_file(&row.id, "skin.vtp").await?;
-    let skin =
-        skin.ok_or_else(|| fault(at, ErrorCode::NoSuchOutput, "the job wrote no skin.vtp"))?;
+    let skin = skin.ok_or_else(|| {
+        fault(
+            at,
+            ErrorCode::NoSuchOutput,
+            "the job wrote no skin.vtp: name a prediction whose `outputs` have it",
+        )
+    })?;
     Ok((skin.blob, row.case_id))
 }

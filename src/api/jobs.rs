@@ -19,6 +19,7 @@ use super::resources::Resources;
 
 use crate::schema::job_change::JobChangeDocument;
 use crate::schema::key::Scope;
+use crate::schema::wire::canonical::sha256_hex;
 use crate::schema::wire::strict;
 use crate::schema::{ErrorCode, Faults, Pointer};
 
@@ -183,13 +184,24 @@ async fn show(service: Service, Id(id): Id, headers: HeaderMap) -> ApiResult {
 
 /// Changes the tags of a job, whatever its state. Tags to `add` are put on it and tags to `remove` are taken off, and all
 /// others stay; what is so already is no mistake. So changes of several clients do not overwrite each other, and need no
-/// If-Match.
+/// If-Match; one that is sent has to name the state of the job as it is.
 #[utoipa::path(
-    patch, path = "/v1/jobs/{id}", operation_id = "change_job", tag = "jobs", params(("id" = uuid::Uuid, Path, description = "the job")),
+    patch, path = "/v1/jobs/{id}", operation_id = "change_job", tag = "jobs",
+    params(
+        ("id" = uuid::Uuid, Path, description = "the job"),
+        ("If-Match" = Option<String>, Header, description = "the state that is meant, or *"),
+    ),
     request_body = JobChangeDocument,
-    responses((status = 200, description = "changed", body = StatusInfo, headers(("ETag" = String, description = "the hash of this state"))))
+    responses(
+        (status = 200, description = "changed", body = StatusInfo, headers(("ETag" = String, description = "the hash of this state"))),
+        (status = 412, description = "it is in another state"),
+    )
 )]
 async fn change(service: Service, Id(id): Id, request: Request) -> ApiResult {
+    if request.headers().contains_key(header::IF_MATCH) {
+        let job = service.store.job(&id).await?.ok_or_else(no_such_job)?;
+        conditional::allow_match(request.headers(), &state_tag(&job)?)?;
+    }
     let bytes = body::json(&service, request).await?;
     let change: JobChangeDocument = strict::parse(&bytes, &service.limits)?;
     let mut faults = Faults::default();
@@ -199,6 +211,12 @@ async fn change(service: Service, Id(id): Id, request: Request) -> ApiResult {
     let job = service.store.job(&id).await?.ok_or_else(no_such_job)?;
     let answer = answer(StatusCode::OK, &job, false, None)?;
     conditional::document(&HeaderMap::new(), answer).await
+}
+
+/// The hash of the state of a job, as a look at it tells.
+fn state_tag(job: &JobRow) -> ApiResult<String> {
+    let state = serde_json::to_vec(&status_info(job, false)?).map_err(ApiError::internal)?;
+    Ok(sha256_hex(&state))
 }
 
 /// Puts tags on a job and takes others off it.

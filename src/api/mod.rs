@@ -34,6 +34,7 @@ mod job_input;
 mod job_view;
 mod jobs;
 mod keys;
+mod learn_input;
 mod meshes;
 mod openapi;
 mod openapi_types;

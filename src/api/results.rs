@@ -1,14 +1,17 @@
 //! Results: the manifest of a job and its files.
 
 use axum::http::{HeaderMap, StatusCode};
+use serde::Deserialize;
+use utoipa::IntoParams;
 use utoipa_axum::routes;
 
 use super::download::Opened;
 use super::error::{ApiError, ApiResult};
-use super::parameters::{FileName, Id};
+use super::parameters::{FileName, Id, Parameters};
 use super::prefer::successful;
 use super::resources::Resources;
 use super::{Service, conditional, drawn, guard, json};
+use crate::schema::Language;
 use crate::schema::key::Scope;
 use crate::schema::predict::result::ResultDocument;
 
@@ -38,13 +41,23 @@ async fn manifest(service: Service, Id(id): Id, headers: HeaderMap) -> ApiResult
     conditional::document(&headers, json(StatusCode::OK, &result)).await
 }
 
-/// One file of the results, or one of its pictures, which is drawn when it is first asked for.
+#[derive(Deserialize, IntoParams)]
+#[serde(deny_unknown_fields)]
+#[into_params(parameter_in = Query)]
+struct FileParameters {
+    /// The language of a report that is drawn. Default: what the header Accept-Language likes best, else `en`.
+    #[param(inline)]
+    lang: Option<Language>,
+}
+
+/// One file of the results, or one of its pictures or its report, which is drawn when it is first asked for.
 #[utoipa::path(
     get, path = "/v1/jobs/{id}/results/{file}", operation_id = "download_result", tag = "jobs",
     params(
         ("id" = uuid::Uuid, Path, description = "the job"),
-        ("file" = String, Path, description = "its name in the manifest, e.g. skin.vtp or displacement.svg"),
+        ("file" = String, Path, description = "its name in the manifest, e.g. skin.vtp or report.html"),
         ("Prefer" = Option<String>, Header, description = "wait=n: wait at most n seconds for the end"),
+        FileParameters
     ),
     responses(
         (status = 200, description = "the file, of the media type that the manifest says", content((Vec<u8> = "*/*"))),
@@ -55,10 +68,15 @@ async fn manifest(service: Service, Id(id): Id, headers: HeaderMap) -> ApiResult
         (status = 422, description = "the job failed or was dismissed"),
     )
 )]
-async fn file(service: Service, FileName { job, name }: FileName, headers: HeaderMap) -> ApiResult {
+async fn file(
+    service: Service,
+    FileName { job, name }: FileName,
+    Parameters(FileParameters { lang }): Parameters<FileParameters>,
+    headers: HeaderMap,
+) -> ApiResult {
     let found = successful(&service, &job, &headers).await?;
     let Some(row) = service.store.job_file(&job, &name).await? else {
-        return drawn::picture(&service, &found, &name, &headers).await;
+        return drawn::picture(&service, &found, &name, lang, &headers).await;
     };
     guard::check_accept(&headers, row.media_type.split(';').next().unwrap_or_default())?;
     if conditional::is_known(&headers, &row.blob) {

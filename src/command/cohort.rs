@@ -8,7 +8,7 @@ use clap::Args;
 use super::documents::read;
 use super::failure::CommandError;
 use super::files::{FileSource, ScaleArguments};
-use super::screen::{print_files, work_in_sight};
+use super::screen::{print_files, print_warnings, work_in_sight};
 use crate::jobs::{CohortInput, JobInput, Workplace};
 use crate::schema::case::document::LengthUnit;
 use crate::schema::cohort::result::CohortResultDocument;
@@ -29,23 +29,26 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let spec: CohortDocument = read(&arguments.spec)?;
     let folder = arguments.spec.parent().unwrap_or(Path::new(""));
-    let mut comparisons = BTreeMap::new();
+    let (comparisons, actuals) = (BTreeMap::new(), BTreeMap::new());
+    let mut input = CohortInput { job: None, queue_s: None, spec, comparisons, actuals };
+    let spec = input.spec.clone();
     for (_, job) in spec.jobs() {
         let path = folder.join(job).join("result.json");
         let bytes = std::fs::read(&path)
             .map_err(|source| CommandError::Read { path: path.clone(), source })?;
         let result: ResultDocument = serde_json::from_slice(&bytes)
             .map_err(|error| CommandError::Usage(format!("{}: {error}", path.display())))?;
-        comparisons.extend(result.comparison.map(|comparison| (job.clone(), comparison)));
+        input.take(job, result);
     }
     let limits = Limits::default();
     let sources = FileSource::new(&PathBuf::new(), LengthUnit::Mm, ScaleArguments::default());
-    let input = JobInput::Cohort(CohortInput { job: None, queue_s: None, spec, comparisons });
+    let input = JobInput::Cohort(input);
     let place = Workplace { sources: &sources, limits: &limits, out: &arguments.out };
     let done = work_in_sight(&input, &place)?;
     if let Some(cohort) = &done.result.cohort {
         print_cohort(cohort);
     }
+    print_warnings(&done.result.warnings);
     print_files(&done.files, &arguments.out);
     Ok(())
 }

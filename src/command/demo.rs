@@ -33,6 +33,9 @@ pub struct Arguments {
     /// Folder for the results
     #[arg(long, visible_alias = "output", value_name = "DIR", default_value = "facies-demo")]
     out: PathBuf,
+    /// Address of the service, such as 127.0.0.1:8080 [default: a free port of this machine]
+    #[arg(long, value_name = "ADDRESS", env = "FACIES_BIND")]
+    bind: Option<String>,
     /// Folder of the service's database and files [default: OUT/service]
     #[arg(long, value_name = "DIR")]
     data: Option<PathBuf>,
@@ -80,12 +83,13 @@ pub fn run(arguments: &Arguments) -> Result<(), DemoError> {
     done
 }
 
-/// Starts the service on a free port of this machine, runs the demo, and ends the service.
+/// Starts the service, on a free port of this machine where no address is given, runs the demo, and ends the service.
 async fn beside_the_service(
     arguments: &Arguments,
 ) -> Result<(Workers, Result<(), DemoError>), DemoError> {
     let data = arguments.data.clone().unwrap_or_else(|| arguments.out.join("service"));
-    let config = Config::new(|name| setting(name, &data)).map_err(ServeError::from)?;
+    let config = Config::new(|name| setting(name, arguments.bind.as_deref(), &data))
+        .map_err(ServeError::from)?;
     telemetry::start(&config.log).map_err(ServeError::from)?;
     let server = Server::start(config).await?;
     let client = Client { address: server.address };
@@ -143,9 +147,9 @@ async fn show(arguments: &Arguments, client: Client) -> Result<[Done; 3], DemoEr
 }
 
 /// The settings of the service in the demo; the others keep their defaults.
-fn setting(name: &str, data: &Path) -> Option<String> {
+fn setting(name: &str, bind: Option<&str>, data: &Path) -> Option<String> {
     match name {
-        "bind" => Some("127.0.0.1:0".to_owned()),
+        "bind" => Some(bind.unwrap_or("127.0.0.1:0").to_owned()),
         "data" => Some(data.display().to_string()),
         // One job at a time gets all processors.
         "threads-per-job" => {

@@ -19,7 +19,7 @@ pub const FAILED: u8 = 1;
 /// Wrong use, or documents and meshes that are refused.
 const REFUSED: u8 = 2;
 /// Disks, memory, other programs.
-const INFRASTRUCTURE: u8 = 3;
+pub const INFRASTRUCTURE: u8 = 3;
 /// A wrong setting (sysexits.h, EX_CONFIG).
 const CONFIGURATION: u8 = 78;
 

@@ -10,6 +10,7 @@ use clap::{Args, ValueEnum};
 use crate::jobs::{MeshSize, MeshSource, SourceError, StoredMesh};
 use crate::schema::CaseDocument;
 use crate::schema::case::document::LengthUnit;
+use crate::schema::learn::model::MODEL_FILE;
 use crate::schema::wire::canonical;
 use mechanics::format::{self, ReadLimits};
 
@@ -118,6 +119,11 @@ impl MeshSource for FileSource {
         })?;
         read.insert(id.to_owned(), stored.clone());
         Ok(stored)
+    }
+
+    fn model(&self, job: &str) -> Result<Vec<u8>, SourceError> {
+        let path = self.folder.join(job).join(MODEL_FILE);
+        std::fs::read(path).map_err(|_| SourceError::Unknown { id: job.to_owned() })
     }
 
     fn predicted_skin(&self, job: &str) -> Result<StoredMesh, SourceError> {

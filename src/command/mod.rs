@@ -5,11 +5,14 @@ pub mod check;
 pub mod cohort;
 pub mod compare;
 pub mod config;
+pub mod conform;
 pub mod demo;
 mod documents;
+pub mod face;
 mod failure;
 mod files;
 pub mod health;
+pub mod learn;
 pub mod mesh;
 pub mod migrate;
 pub mod openapi;
@@ -48,6 +51,8 @@ pub struct Facies {
 enum Command {
     /// Predict a face that the program makes itself, and say how good the numbers are
     Demo(demo::Arguments),
+    /// Write a generic face that the program makes itself, with its muscles, as a case to start from
+    Face(face::Arguments),
     /// Make a volume mesh of the soft tissue in a CT, with the segments that a plan cuts
     Mesh(mesh::Arguments),
     /// Predict the skin after a plan; write it with its statistics into a folder
@@ -58,10 +63,14 @@ enum Command {
     Optimise(optimise::Arguments),
     /// Find what an operation did from bone before and after it; write it as a plan
     Reproduce(reproduce::Arguments),
+    /// Bring a template mesh to a patient; write the mesh and its case
+    Conform(conform::Arguments),
     /// Measure the distances between two surfaces
     Compare(compare::Arguments),
     /// Hold methods against each other over comparisons with the scans of several patients
     Cohort(cohort::Arguments),
+    /// Learn from operated cases what predictions miss, and say whether that helps
+    Learn(learn::Arguments),
     /// Hold methods against each other: how long each takes, how far it is from the truth
     Study(study::Arguments),
     /// Tell what a case and a plan mean, without solving
@@ -91,14 +100,17 @@ const GROUPS: [(&str, &[&str]); 2] = [
         "Predict and plan",
         &[
             "demo",
+            "face",
             "mesh",
             "check",
             "predict",
             "response",
             "optimise",
             "reproduce",
+            "conform",
             "compare",
             "cohort",
+            "learn",
             "study",
         ],
     ),
@@ -130,17 +142,32 @@ fn help_template(command: &clap::Command) -> String {
     )
 }
 
+/// A write beyond the limit on the size of files (RLIMIT_FSIZE) is an error of that write, and not the end of the process:
+/// whoever listens to the signal is not ended by it. What listens stays when the runtime that it needs is gone.
+fn outlive_limits_of_files() -> std::io::Result<()> {
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
+    let _inside = runtime.enter();
+    serve::outlive_limits_of_files()
+}
+
 /// Runs the command and says what went wrong, one line for each mistake.
 pub fn run(facies: &Facies) -> ExitCode {
+    if let Err(error) = outlive_limits_of_files() {
+        eprintln!("error: the signal of files that grow too large is not listened to: {error}");
+        return ExitCode::from(failure::INFRASTRUCTURE);
+    }
     let result = match &facies.command {
         Command::Demo(arguments) => demo::run(arguments).map_err(CommandError::from),
+        Command::Face(arguments) => face::run(arguments),
         Command::Mesh(arguments) => mesh::run(arguments),
         Command::Predict(arguments) => predict::run(arguments),
         Command::Response(arguments) => response::run(arguments),
         Command::Optimise(arguments) => optimise::run(arguments),
         Command::Reproduce(arguments) => reproduce::run(arguments),
+        Command::Conform(arguments) => conform::run(arguments),
         Command::Compare(arguments) => compare::run(arguments),
         Command::Cohort(arguments) => cohort::run(arguments),
+        Command::Learn(arguments) => learn::run(arguments),
         Command::Study(arguments) => study::run(arguments),
         Command::Check(arguments) => check::run(arguments),
         Command::Serve(arguments) => serve::run(arguments).map_err(CommandError::from),

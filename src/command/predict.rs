@@ -111,6 +111,8 @@ fn usual_outputs() -> Vec<OutputName> {
         OutputName::BonesVtp,
         OutputName::ClassesSvg,
         OutputName::DisplacementSvg,
+        OutputName::ReportHtml,
+        OutputName::ReportPdf,
     ]
 }
 

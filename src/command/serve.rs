@@ -173,7 +173,7 @@ pub async fn open(config: &Config) -> Result<Store, ServeError> {
 
 /// A write beyond the limit on the size of files (RLIMIT_FSIZE) is an error of that write, as one on a full disk is, and
 /// not the end of the process: whoever listens to the signal is not ended by it.
-fn outlive_limits_of_files() -> std::io::Result<()> {
+pub fn outlive_limits_of_files() -> std::io::Result<()> {
     use tokio::signal::unix::{SignalKind, signal};
     signal(SignalKind::from_raw(rustix::process::Signal::XFSZ.as_raw())).map(drop)
 }
@@ -235,8 +235,7 @@ async fn keep_swept(store: &Store) -> Result<(), StoreError> {
     }
     let store = store.clone();
     tokio::spawn(async move {
-        loop {
-            tokio::time::sleep(SWEEP_EVERY).await;
+        while store.is_open_after(SWEEP_EVERY).await {
             sweep(&store).await;
         }
     });
@@ -254,11 +253,14 @@ async fn sweep_at_start(store: &Store) -> Result<(), StoreError> {
 fn keep_wiped(store: &Store) {
     let store = store.clone();
     tokio::spawn(async move {
-        loop {
-            if let Err(error) = store.wipe().await {
-                tracing::warn!(%error, "what was erased is in the log of the database still");
+        while store.is_open_after(WIPE_EVERY).await {
+            match store.wipe().await {
+                // Who closed it meanwhile wipes it last.
+                Err(error) if !store.is_closing() => {
+                    tracing::warn!(%error, "what was erased is in the log of the database still");
+                }
+                _ => {}
             }
-            tokio::time::sleep(WIPE_EVERY).await;
         }
     });
 }
@@ -267,11 +269,14 @@ fn keep_wiped(store: &Store) {
 fn keep_chained(store: &Store) {
     let store = store.clone();
     tokio::spawn(async move {
-        loop {
-            if let Err(error) = chain(&store).await {
-                tracing::warn!(%error, "the audit log is not up to date");
+        while store.is_open_after(CHAIN_EVERY).await {
+            match chain(&store).await {
+                // What was done last is taken into it by the next start.
+                Err(error) if !store.is_closing() => {
+                    tracing::warn!(%error, "the audit log is not up to date");
+                }
+                _ => {}
             }
-            tokio::time::sleep(CHAIN_EVERY).await;
         }
     });
 }

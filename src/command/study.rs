@@ -12,6 +12,7 @@ use super::screen::{print_files, print_warnings, work_in_sight};
 use super::stability;
 use super::stability_random;
 use super::sweep::{self, Sweep};
+use crate::jobs::study::ALL_METHODS;
 use crate::jobs::study::files::REPORT_JSON;
 use crate::jobs::{JobInput, StudyInput, Workplace};
 use crate::schema::study::document::{
@@ -111,6 +112,9 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
         input.earlier = Some(Box::new(read_report(file)?));
         eprintln!("rows       kept in {}", file.display());
     } else {
+        for told in prepared.warnings.iter().filter(|warning| warning.code == ALL_METHODS) {
+            eprintln!("expected   {}", told.detail);
+        }
         for cost in truth_costs(&prepared.study.scenes) {
             eprintln!("expected   {}", cost.sentence());
         }

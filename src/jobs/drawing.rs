@@ -1,54 +1,118 @@
-//! The pictures of a prediction that has ended, drawn from what it was made of and the skin that it wrote.
+//! The pictures and reports of a job that has ended, drawn from what it was made of and what it wrote.
 
 use std::sync::Arc;
 
+use super::compare::CompareInput;
 use super::failure::JobError;
 use super::input::JobInput;
 use super::predict::{PredictInput, Prepared};
+use super::report::{
+    PredictionFacts, Report, ReportForm, StudyFacts, prediction_report, study_report,
+};
 use super::result::pictures::displacement_picture;
 use super::source::{MeshSource, SourceError};
-use crate::schema::Limits;
+use super::study::chart_drawing;
 use crate::schema::predict::output::PictureName;
 use crate::schema::predict::result::{ResultDocument, StatisticsDocument};
+use crate::schema::{Language, Limits, ReportDocument};
 use mechanics::mesh::TriangleSurface;
 
-/// A prediction that has ended.
+/// A job that has ended well and has something to show.
 pub struct Finished {
     job: String,
-    input: PredictInput,
-    statistics: StatisticsDocument,
+    result: ResultDocument,
+    made_of: MadeOf,
+}
+
+enum MadeOf {
+    Prediction(Box<PredictInput>, Box<StatisticsDocument>),
+    Comparison(Box<CompareInput>),
+    Study(Box<ReportDocument>),
 }
 
 impl Finished {
-    /// What a job predicted, if it did.
-    pub fn of_job(job: &str, input: JobInput, result: ResultDocument) -> Option<Finished> {
-        let input = match input {
-            JobInput::Predict(input) => input,
-            JobInput::Optimise(input) => input.prediction(&result.optimisation?),
-            JobInput::Compare(_)
-            | JobInput::Response(_)
+    /// What a job found, if there is a picture or a report of it; `study` is the report of a study.
+    pub fn of_job(
+        job: &str,
+        input: JobInput,
+        result: ResultDocument,
+        study: Option<ReportDocument>,
+    ) -> Option<Finished> {
+        let statistics = result.statistics.clone().map(Box::new);
+        let made_of = match input {
+            JobInput::Predict(input) => MadeOf::Prediction(Box::new(input), statistics?),
+            JobInput::Optimise(input) => {
+                let input = input.prediction(result.optimisation.as_ref()?);
+                MadeOf::Prediction(Box::new(input), statistics?)
+            }
+            JobInput::Compare(input) => MadeOf::Comparison(Box::new(input)),
+            JobInput::Study(_) => MadeOf::Study(Box::new(study?)),
+            JobInput::Response(_)
             | JobInput::Reproduce(_)
             | JobInput::Cohort(_)
-            | JobInput::Study(_)
+            | JobInput::Learn(_)
+            | JobInput::Conform(_)
             | JobInput::Meshing(_) => return None,
         };
-        Some(Finished { job: job.to_owned(), input, statistics: result.statistics? })
+        Some(Finished { job: job.to_owned(), result, made_of })
     }
 
-    /// An SVG, the same as the job would have written.
+    /// Whether there is such a picture of a job of its kind.
+    pub fn has(&self, picture: PictureName) -> bool {
+        self.has_skin() || PictureName::REPORTS.contains(&picture)
+    }
+
+    /// Whether pictures need the skin that the job wrote.
+    pub fn has_skin(&self) -> bool {
+        matches!(self.made_of, MadeOf::Prediction(..))
+    }
+
+    /// The bytes of a picture or a report. An SVG is the same as the job would have written.
     pub fn draw(
         &self,
         picture: PictureName,
+        language: Language,
         sources: &dyn MeshSource,
         limits: &Limits,
-    ) -> Result<String, JobError> {
-        let prepared = self.input.prepare(sources, limits)?;
-        match picture {
-            PictureName::Classes => prepared.classes_picture(),
-            PictureName::Displacement => {
-                let moved = self.skin(&prepared, sources)?;
-                let (frame, numbers) = (prepared.case.frame, &self.statistics.skin.nodes);
-                Ok(displacement_picture(&prepared.scene, &moved, frame, numbers)?)
+    ) -> Result<Vec<u8>, JobError> {
+        if let Some(form) = ReportForm::of(picture.output()) {
+            return Ok(self.report(language, sources, limits)?.written(form));
+        }
+        let MadeOf::Prediction(input, statistics) = &self.made_of else { return Ok(Vec::new()) };
+        let prepared = input.prepare(sources, limits)?;
+        if picture == PictureName::Classes {
+            return Ok(prepared.classes_picture()?.into_bytes());
+        }
+        let moved = self.skin(&prepared, sources)?;
+        let (frame, numbers) = (prepared.case.frame, &statistics.skin.nodes);
+        Ok(displacement_picture(&prepared.scene, &moved, frame, numbers)?.into_bytes())
+    }
+
+    fn report(
+        &self,
+        language: Language,
+        sources: &dyn MeshSource,
+        limits: &Limits,
+    ) -> Result<Report, JobError> {
+        let result = &self.result;
+        match &self.made_of {
+            MadeOf::Prediction(input, _) => {
+                let prepared = input.prepare(sources, limits)?;
+                let facts = PredictionFacts {
+                    case: &input.case,
+                    plan: &input.plan,
+                    scene: &prepared.scene,
+                    frame: prepared.case.frame,
+                    after: &*self.skin(&prepared, sources)?,
+                    range_mm: input.spec.range_mm(),
+                    result,
+                };
+                Ok(prediction_report(&facts, language)?)
+            }
+            MadeOf::Comparison(input) => input.report(result, language, sources, limits),
+            MadeOf::Study(report) => {
+                let facts = StudyFacts { report, chart: chart_drawing(report, None), result };
+                Ok(study_report(facts, language))
             }
         }
     }

@@ -4,6 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use super::cohort::CohortInput;
 use super::compare::CompareInput;
+use super::conform::ConformInput;
+use super::learn::LearnInput;
 use super::meshing::MeshingInput;
 use super::optimise::OptimiseInput;
 use super::predict::PredictInput;
@@ -24,6 +26,8 @@ pub enum JobInput {
     Optimise(OptimiseInput),
     Reproduce(ReproduceInput),
     Cohort(CohortInput),
+    Learn(LearnInput),
+    Conform(ConformInput),
     Meshing(MeshingInput),
     Study(StudyInput),
 }
@@ -37,6 +41,8 @@ impl JobInput {
             JobInput::Optimise(_) => JobKind::Optimise,
             JobInput::Reproduce(_) => JobKind::Reproduce,
             JobInput::Cohort(_) => JobKind::Cohort,
+            JobInput::Learn(_) => JobKind::Learn,
+            JobInput::Conform(_) => JobKind::Conform,
             JobInput::Meshing(_) => JobKind::Mesh,
             JobInput::Study(input) => match input.spec.kind {
                 StudyKind::Study => JobKind::Study,
@@ -55,6 +61,8 @@ impl JobInput {
             JobInput::Optimise(input) => (input.job, input.queue_s) = (job, queue_s),
             JobInput::Reproduce(input) => (input.job, input.queue_s) = (job, queue_s),
             JobInput::Cohort(input) => (input.job, input.queue_s) = (job, queue_s),
+            JobInput::Learn(input) => (input.job, input.queue_s) = (job, queue_s),
+            JobInput::Conform(input) => (input.job, input.queue_s) = (job, queue_s),
             JobInput::Meshing(input) => (input.job, input.queue_s) = (job, queue_s),
             JobInput::Study(input) => (input.job, input.queue_s) = (job, queue_s),
         }

@@ -139,7 +139,7 @@ pub fn response_job(
     let mut folder = ResultFolder::open(place.out)?;
     write_columns(&origin, input, &prepared, &columns, &mut folder)?;
     let mut rest = SurfaceOutput::plain(&prepared.scene.skin.surface, origin.frame);
-    rest.field_data = origin.field_data(input.spec.method, &solver);
+    rest.field_data = origin.field_data(input.spec.method, None, &solver);
     folder.add_file(REST_FILE, OutputName::SkinVtp.media_type(), &vtp::write(&rest)?)?;
 
     // 4. The manifest.

@@ -2,8 +2,10 @@
 
 use super::cohort::cohort_job;
 use super::compare::compare_job;
+use super::conform::conform_job;
 use super::failure::JobError;
 use super::input::JobInput;
+use super::learn::learn_job;
 use super::meshing::meshing_job;
 use super::optimise::optimise_job;
 use super::output::{JobOutput, Workplace};
@@ -26,6 +28,8 @@ pub fn work(
         JobInput::Optimise(input) => optimise_job(input, place, progress),
         JobInput::Reproduce(input) => reproduce_job(input, place, progress),
         JobInput::Cohort(input) => cohort_job(input, place, progress),
+        JobInput::Learn(input) => learn_job(input, place, progress),
+        JobInput::Conform(input) => conform_job(input, place, progress),
         JobInput::Meshing(input) => meshing_job(input, place, progress),
         JobInput::Study(input) => study_job(input, place, progress),
     }

@@ -15,6 +15,11 @@ pub trait MeshSource {
 
     /// The predicted skin of an earlier job, in mm.
     fn predicted_skin(&self, job: &str) -> Result<StoredMesh, SourceError>;
+
+    /// The bytes of what an earlier job learned; a source without jobs has none.
+    fn model(&self, job: &str) -> Result<Vec<u8>, SourceError> {
+        Err(SourceError::Unknown { id: job.to_owned() })
+    }
 }
 
 /// A parsed mesh and the hash of the bytes it came from.

@@ -11,6 +11,7 @@ use super::cache::MeshCache;
 use crate::jobs::{MeshSource, SourceError, StoredMesh, StoredShape};
 use crate::schema::WarningDocument;
 use crate::schema::case::document::{FrameName, LengthUnit};
+use crate::schema::learn::model::MODEL_FILE;
 use crate::schema::mesh::MeshDocument;
 use crate::store::{MeshRow, Store, StoreError};
 use mechanics::format::{self, FormatError, ReadLimits, ReadMesh};
@@ -129,6 +130,16 @@ impl Library {
         Ok(self.store.job_file(job, PREDICTED_SKIN).await?.map(|file| file.blob))
     }
 
+    /// The blob of what a job learned; `None` where the job has none.
+    pub async fn model_blob(&self, job: &str) -> Result<Option<String>, StoreError> {
+        Ok(self.store.job_file(job, MODEL_FILE).await?.map(|file| file.blob))
+    }
+
+    async fn model(&self, job: &str) -> Result<Option<Vec<u8>>, StoreError> {
+        let Some(blob) = self.model_blob(job).await? else { return Ok(None) };
+        Ok(Some(self.bytes(&blob).await?.to_vec()))
+    }
+
     /// The bytes of a blob, compared with their hash.
     pub async fn bytes(&self, blob: &str) -> Result<bytes::Bytes, StoreError> {
         self.store.read_blob(blob).await
@@ -168,15 +179,16 @@ impl MeshSource for LibrarySource {
         found(id, self.runtime.block_on(self.library.get(id)))
     }
 
+    fn model(&self, job: &str) -> Result<Vec<u8>, SourceError> {
+        found(job, self.runtime.block_on(self.library.model(job)))
+    }
+
     fn predicted_skin(&self, job: &str) -> Result<StoredMesh, SourceError> {
         found(job, self.runtime.block_on(self.library.predicted_skin(job)))
     }
 }
 
-fn found(
-    id: &str,
-    mesh: Result<Option<StoredMesh>, StoreError>,
-) -> Result<StoredMesh, SourceError> {
+fn found<T>(id: &str, mesh: Result<Option<T>, StoreError>) -> Result<T, SourceError> {
     match mesh {
         Ok(Some(mesh)) => Ok(mesh),
         Ok(None) => Err(SourceError::Unknown { id: id.to_owned() }),

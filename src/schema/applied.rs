@@ -44,12 +44,12 @@ pub struct AppliedSummary {
     /// That of the response: 2 where the displacement has the second-order term in it.
     #[serde(default = "first_order")]
     pub order: u8,
-    /// Of order 2: the mean length over the skin of the second-order term, which is what order 1 leaves out.
+    /// Of order 2: the mean length over the skin that moves of the second-order term, which is what order 1 leaves out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub second_order_mm: Option<f64>,
-    /// What the displacement leaves out, mean over the skin: of order 1 the second-order term, of order
-    /// 2 the third-order term, both estimated from samples. Absent where the plan grows tissue or activates muscles, of
+    /// What the displacement leaves out, mean over the skin that moves (by more than a tenth of what moves farthest): of order 1 the
+    /// second-order term, of order 2 the third-order term, both estimated from samples. Absent where the plan grows tissue or activates muscles, of
     /// which that is not known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]

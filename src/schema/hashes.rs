@@ -8,6 +8,7 @@ use super::case::document::CaseDocument;
 use super::cohort::document::CohortDocument;
 use super::compare::document::CompareDocument;
 use super::compare::result::ComparisonDocument;
+use super::conform::document::ConformDocument;
 use super::meshing::document::MeshingDocument;
 use super::optimise::document::OptimiseDocument;
 use super::plan::document::PlanDocument;
@@ -139,6 +140,16 @@ pub fn reproduce_hash(
     hash(json!({ "spec": to_value(&spec) }))
 }
 
+/// The hash of a conformation: contents of meshes in place of their ids, tags left out.
+pub fn conform_hash(spec: &ConformDocument, content_of: &dyn Fn(&str) -> Option<String>) -> String {
+    let mut spec = spec.clone();
+    spec.tags.clear();
+    for (_, id) in spec.mesh_references_mut() {
+        replace(id, content_of);
+    }
+    hash(json!({ "spec": to_value(&spec) }))
+}
+
 /// The hash of a cohort: what the comparisons found in place of their ids, tags left out.
 pub fn cohort_hash(
     spec: &CohortDocument,
@@ -212,6 +223,6 @@ mod tests {
     fn every_hash_of_a_job_and_the_key_of_a_response_are_made_in_one_place() {
         let code = include_str!("hashes.rs").split("#[cfg(test)]").next().unwrap_or_default();
         let made = code.matches("hash(json!(").count();
-        assert_eq!((made, code.matches("sha256_hex(").count()), (11, 0));
+        assert_eq!((made, code.matches("sha256_hex(").count()), (12, 0));
     }
 }

@@ -9,6 +9,8 @@ use utoipa::ToSchema;
 use crate::schema::code::ErrorCode;
 use crate::schema::cohort::document::CohortDocument;
 use crate::schema::compare::document::CompareDocument;
+use crate::schema::conform::document::ConformDocument;
+use crate::schema::learn::document::LearnDocument;
 use crate::schema::meshing::document::MeshingDocument;
 use crate::schema::optimise::document::OptimiseDocument;
 use crate::schema::predict::document::PredictDocument;
@@ -65,6 +67,8 @@ job_kinds! {
     Optimise, "optimise", OptimiseDocument, 0, false;
     Reproduce, "reproduce", ReproduceDocument, 0, false;
     Cohort, "cohort", CohortDocument, 0, false;
+    Learn, "learn", LearnDocument, 1, false;
+    Conform, "conform", ConformDocument, 0, false;
     Mesh, "mesh", MeshingDocument, 0, false;
     Study, "study", StudyDocument, 1, true;
     Batch, "batch", StudyDocument, 1, true;
@@ -136,6 +140,8 @@ pub enum JobDocument {
     Optimise(OptimiseDocument),
     Reproduce(ReproduceDocument),
     Cohort(CohortDocument),
+    Learn(LearnDocument),
+    Conform(ConformDocument),
     Mesh(MeshingDocument),
     Study(StudyDocument),
 }
@@ -144,13 +150,14 @@ impl JobDocument {
     /// Whether it leaves meshes behind that others may use.
     pub fn keeps_meshes(&self) -> bool {
         match self {
-            JobDocument::Mesh(_) => true,
+            JobDocument::Mesh(_) | JobDocument::Conform(_) => true,
             JobDocument::Predict(document) => !document.keep.is_empty(),
             JobDocument::Compare(_)
             | JobDocument::Response(_)
             | JobDocument::Optimise(_)
             | JobDocument::Reproduce(_)
             | JobDocument::Cohort(_)
+            | JobDocument::Learn(_)
             | JobDocument::Study(_) => false,
         }
     }
@@ -170,6 +177,8 @@ impl JobDocument {
             JobKind::Optimise => strict::from_value(value).map(JobDocument::Optimise),
             JobKind::Reproduce => strict::from_value(value).map(JobDocument::Reproduce),
             JobKind::Cohort => strict::from_value(value).map(JobDocument::Cohort),
+            JobKind::Learn => strict::from_value(value).map(JobDocument::Learn),
+            JobKind::Conform => strict::from_value(value).map(JobDocument::Conform),
             JobKind::Mesh => strict::from_value(value).map(JobDocument::Mesh),
             JobKind::Study | JobKind::Batch => strict::from_value(value).map(JobDocument::Study),
         }

@@ -13,8 +13,8 @@ use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Instant;
-use tokio::sync::Mutex;
+use std::time::{Duration, Instant};
+use tokio::sync::{Mutex, watch};
 
 /// Keys in force that a tenant may have where no setting says otherwise.
 const MOST_KEYS: i64 = 100;
@@ -48,6 +48,8 @@ pub struct Store {
     pub(super) most_waiting: usize,
     pub(super) open_deeds: OpenDeeds,
     pub(super) notes: Notes,
+    /// Whether nothing is begun any more.
+    pub(super) closing: Arc<watch::Sender<bool>>,
     pub(super) _lock: Arc<File>,
 }
 
@@ -81,6 +83,7 @@ impl Store {
             most_waiting: MOST_WAITING,
             notes: Notes::of(open_deeds.clone()),
             open_deeds,
+            closing: Arc::new(watch::Sender::new(false)),
             _lock: Arc::new(lock),
         })
     }
@@ -193,8 +196,22 @@ impl Store {
         wiped
     }
 
+    /// Ends what goes on beside requests, and closes the database.
     pub async fn close(&self) {
+        self.closing.send_replace(true);
         self.database.close().await;
+    }
+
+    /// Whether it is closed or about to be.
+    pub fn is_closing(&self) -> bool {
+        *self.closing.borrow()
+    }
+
+    /// Waits for so long; false as soon as the store is closed, for what goes on again and again.
+    pub async fn is_open_after(&self, pause: Duration) -> bool {
+        let mut closing = self.closing.subscribe();
+        let closed = closing.wait_for(|closing| *closing);
+        tokio::time::timeout(pause, closed).await.is_err()
     }
 }
 
@@ -211,4 +228,23 @@ fn address(places: &Places) -> Result<Address, StoreError> {
             Address::server(address.reveal(), *connections)?
         }
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[tokio::test(flavor = "multi_thread")]
+    async fn what_goes_on_again_and_again_ends_as_soon_as_the_store_is_closed() {
+        let folder = tempfile::tempdir().unwrap();
+        let store = Store::open(folder.path()).await.unwrap();
+        assert!(store.is_open_after(Duration::from_millis(1)).await && !store.is_closing());
+        let hour = Duration::from_secs(3600);
+        let other = store.clone();
+        let again = tokio::spawn(async move { other.is_open_after(hour).await });
+        store.close().await;
+        let ended = tokio::time::timeout(Duration::from_secs(60), again).await;
+        assert!(!ended.unwrap().unwrap() && store.is_closing());
+        assert!(!store.is_open_after(hour).await, "nor does it begin again");
+    }
 }

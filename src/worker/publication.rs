@@ -67,9 +67,11 @@ impl Publication {
     fn manifest(&self, kept: &[KeptMeshDocument]) -> Result<Value, StoreError> {
         let mut manifest: Value = serde_json::from_str(&self.result).map_err(unreadable)?;
         manifest["kept"] = to_value(&kept);
-        // A case that a meshing proposes names its mesh as clients do.
-        if let Some(case) = manifest.pointer_mut("/meshing/case") {
-            name_meshes(case, kept);
+        // A case that a meshing or a conformation proposes names its mesh as clients do.
+        for place in ["/meshing/case", "/conformation/case"] {
+            if let Some(case) = manifest.pointer_mut(place) {
+                name_meshes(case, kept);
+            }
         }
         Ok(manifest)
     }

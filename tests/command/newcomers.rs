@@ -36,6 +36,22 @@ fn a_response_is_built_without_a_server() {
 }
 
 #[test]
+fn a_file_larger_than_the_limit_on_files_is_an_error_that_names_it() {
+    let out = tempfile::tempdir().unwrap();
+    let case = block().join("case.json");
+    let program = env!("CARGO_BIN_EXE_facies");
+    let arguments = ["--fsize=2000", program, "predict", "--case", path(&case), "--out"];
+    let mut limited = std::process::Command::new("prlimit");
+    let done = limited.args(arguments).arg(out.path()).output().unwrap();
+    // SIGXFSZ would have left no code.
+    assert_eq!(done.status.code(), Some(3), "{:?} {}", done.status, text(&done.stderr));
+    let errors = text(&done.stderr);
+    let errors: Vec<&str> = errors.lines().filter(|line| line.starts_with("error: ")).collect();
+    let [error] = &errors[..] else { panic!("{errors:?}") };
+    assert!(error.contains("skin.vtp") && error.contains("too large"), "{error}");
+}
+
+#[test]
 fn a_folder_holds_the_files_of_one_answer_and_the_plan_that_it_answers() {
     let out = tempfile::tempdir().unwrap();
     let own = out.path().join("notes.txt");
@@ -263,6 +279,7 @@ fn the_help_lists_every_command_once_in_its_group_and_arguments_in_theirs() {
         "reproduce",
         "compare",
         "cohort",
+        "learn",
         "study",
         "serve",
         "worker",

@@ -13,9 +13,10 @@ use std::path::Path;
 use source::{Crate, Module, rust_files};
 
 /// Modules of the numerics, and those that each may use.
-const MECHANICS: [(&str, &[&str]); 24] = [
+const MECHANICS: [(&str, &[&str]); 28] = [
     ("rows", &[]),
     ("progress", &[]),
+    ("draws", &[]),
     ("mesh", &["rows"]),
     ("material", &[]),
     ("element", &[]),
@@ -30,6 +31,8 @@ const MECHANICS: [(&str, &[&str]); 24] = [
     ("anatomy", &["mesh", "image", "domain", "meshing", "osteotomy", "landmarks", "progress"]),
     ("plan", &["mesh"]),
     ("registration", &["mesh", "progress"]),
+    ("repair", &["mesh", "progress", "rows"]),
+    ("conformation", &["mesh", "registration", "progress"]),
     ("format", &["mesh", "image"]),
     ("validation", &["mesh", "registration", "progress"]),
     ("boundary", &["mesh", "plan"]),
@@ -52,6 +55,20 @@ const MECHANICS: [(&str, &[&str]); 24] = [
             "prediction",
             "response",
             "validation",
+            "progress",
+        ],
+    ),
+    (
+        "learning",
+        &[
+            "mesh",
+            "plan",
+            "boundary",
+            "material",
+            "model",
+            "prediction",
+            "validation",
+            "study",
             "progress",
         ],
     ),

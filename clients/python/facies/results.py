@@ -80,7 +80,7 @@ class Applied:
 
     @property
     def nonlinearity_estimate_mm(self) -> float | None:
-        """What the displacement leaves out, mean over the skin; None where that is not known, as with growth and muscles."""
+        """What the displacement leaves out, mean over the skin that moves; None where that is not known, as with growth and muscles."""
         estimate: float | None = self.document.get("nonlinearity_estimate_mm")
         return estimate
 

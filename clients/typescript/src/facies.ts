@@ -45,7 +45,7 @@ export interface Optimisation extends Prediction {
 }
 
 /** A plan on a response as the service computes it, with what it says of that: `warnings`, `within_linear_range`, and
- * `nonlinearity_estimate_mm`, what the displacement leaves out, mean over the skin. */
+ * `nonlinearity_estimate_mm`, what the displacement leaves out, mean over the skin that moves. */
 export type Applied = Omit<Documents["AppliedDocument"], "displacement_mm"> & {
   /** xyz for each node of the skin, in mm. */
   displacement_mm: Float32Array;

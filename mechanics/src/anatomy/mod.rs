@@ -137,6 +137,7 @@ pub fn build(
     if rules.teeth_slide && teeth.is_none() && !bone.segments.is_empty() {
         warnings.push(teeth_joined());
     }
+    warnings.extend(bone.segments.is_empty().then(uncut));
     warnings.extend(touching(&bone));
     warnings.extend(missed(&bone, &rules.osteotomy));
     let face = face::face(&tissue.volume, &skin, rules.frame);
@@ -166,6 +167,13 @@ fn missed(bone: &Labelled, osteotomy: &Osteotomy) -> Vec<Warning> {
         Warning::new("cut-meets-no-bone", detail)
     };
     missed.map(warning).collect()
+}
+
+/// Bone of which nothing can be moved.
+fn uncut() -> Warning {
+    let detail = "no cuts and no segments were given: all bone stays, and no plan can move any of it; state the cuts and segments of \
+                  `osteotomy`, or bones as `surfaces.bones`, and mesh again";
+    Warning::new("no-cuts", detail)
 }
 
 /// Surfaces do not tell teeth from bone.

@@ -1,6 +1,6 @@
 //! Words beside marks: where there is room, near their mark, and never over each other.
 
-use super::svg::{Place, Style, estimated_width};
+use super::drawing::{Place, Style, estimated_width};
 
 /// What is taken already.
 pub struct Taken {

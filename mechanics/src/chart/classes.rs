@@ -2,9 +2,10 @@
 
 use super::Vector;
 use super::colour::{self, Rgb};
+use super::drawing::{Document, Place, Style};
 use super::facet::Finish;
 use super::raster::{Painted, Panel, PngError, Shot, draw_all};
-use super::svg::{Document, Place, Style};
+use super::svg::svg;
 use super::view::Outlook;
 
 /// What holds a node.
@@ -117,7 +118,7 @@ impl ClassesPicture<'_> {
         self.write_legend(&mut document, HEAD + panel_height + 30.0, &palette);
         let frame = format!("Nodes of the whole mesh, coordinates in frame {}.", self.frame);
         document.text([MARGIN, height - 10.0], room, Style::of(11.0).faint(), &frame);
-        Ok(document.finish(self.title))
+        Ok(svg(&document, self.title))
     }
 
     /// The triangles with a node that something holds.

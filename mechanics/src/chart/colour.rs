@@ -22,6 +22,21 @@ const SEQUENCE: [Rgb; 7] = [
     [79, 18, 123],
 ];
 
+/// Blue to orange, with light greys between, which colour blindness and print leave apart. Source: C. Brewer,
+/// colorbrewer2.org (RdBu and PuOr, its warm half); as the page has it.
+const SIGNED: [Rgb; 10] = [
+    [5, 48, 97],
+    [33, 102, 172],
+    [67, 147, 195],
+    [146, 197, 222],
+    [230, 235, 238],
+    [240, 236, 230],
+    [253, 200, 134],
+    [241, 148, 60],
+    [196, 91, 12],
+    [127, 48, 4],
+];
+
 /// Okabe and Ito, Color universal design, 2008: those that stand for segments, in order.
 pub const SEGMENTS: [Rgb; 5] =
     [[230, 159, 0], [86, 180, 233], [0, 158, 115], [240, 228, 66], [0, 114, 178]];
@@ -32,14 +47,23 @@ pub const FREE: Rgb = [222, 212, 203];
 
 /// The colour at a fraction of the range; fractions outside [0, 1] get the colour of the nearer end.
 pub fn sequential(fraction: f64) -> Rgb {
-    let steps = (SEQUENCE.len() - 1) as f64;
+    along(&SEQUENCE, fraction)
+}
+
+fn along(stops: &[Rgb], fraction: f64) -> Rgb {
+    let steps = (stops.len() - 1) as f64;
     let place = if fraction.is_nan() { 0.0 } else { fraction.clamp(0.0, 1.0) } * steps;
-    let low = (place.floor() as usize).min(SEQUENCE.len() - 2);
+    let low = (place.floor() as usize).min(stops.len() - 2);
     let share = place - low as f64;
     [0, 1, 2].map(|channel| {
-        let [from, to] = [SEQUENCE[low][channel], SEQUENCE[low + 1][channel]].map(f64::from);
+        let [from, to] = [stops[low][channel], stops[low + 1][channel]].map(f64::from);
         (from + (to - from) * share).round() as u8
     })
+}
+
+/// The colour of a signed value: 0 at minus the range, 1 at the range; a value of nothing is nearly white.
+pub fn signed(fraction: f64) -> Rgb {
+    along(&SIGNED, fraction)
 }
 
 /// The colour as `#rrggbb`.

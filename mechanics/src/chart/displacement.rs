@@ -2,10 +2,11 @@
 
 use super::Vector;
 use super::colour::{self, Rgb, sequential};
+use super::drawing::{Document, Place, Style, wrapped};
 use super::facet::Finish;
 use super::legend::{Scale, round_length};
 use super::raster::{Painted, Panel, PngError, Shot, draw_all};
-use super::svg::{Document, Place, Style, wrapped};
+use super::svg::svg;
 use super::view::{Camera, Outlook};
 
 /// What the picture shows. Points in mm; `before` and `after` correspond one to one.
@@ -68,7 +69,7 @@ impl DisplacementPicture<'_> {
             self.frame
         );
         document.text([MARGIN, y], width, Style::of(11.0).faint(), &frame);
-        Ok(document.finish(self.title))
+        Ok(svg(&document, self.title))
     }
 
     fn write_panels(

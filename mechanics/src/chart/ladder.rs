@@ -3,8 +3,8 @@
 
 use super::axis::{LogAxis, duration, numbers};
 use super::callout::Taken;
+use super::drawing::{Document, Paint, Place, Style, estimated_width, wrapped};
 use super::ladder_legend::Legend;
-use super::svg::{Document, Paint, Place, Style, estimated_width, wrapped};
 use super::symbol::Symbol;
 
 /// What the picture shows.
@@ -67,8 +67,8 @@ const FAILED: &str = "#faeeee";
 const FAILED_INK: &str = "#a3262a";
 
 impl LadderPicture<'_> {
-    /// The picture as one SVG document.
-    pub fn to_svg(&self) -> String {
+    /// The picture without its title, which stands over every form of it.
+    pub fn to_drawing(&self) -> Document {
         let layout = Layout::of(self);
         let mut document = Document::new(WIDTH, layout.height);
         let room = WIDTH - 2.0 * 28.0;
@@ -91,7 +91,7 @@ impl LadderPicture<'_> {
             let y = layout.height - 14.0 - NOTE_LINE * (layout.notes.len() - 1 - line) as f64;
             document.text([28.0, y], room, Style::of(11.5).faint(), words);
         }
-        document.finish(self.title)
+        document
     }
 
     /// Mesh levels that are drawn, ascending.

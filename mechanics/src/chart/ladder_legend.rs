@@ -1,6 +1,6 @@
 //! Legend of a chart of speed and accuracy.
 
-use super::svg::{Document, Paint, Style};
+use super::drawing::{Document, Paint, Style};
 use super::symbol::Symbol;
 
 /// The legend beside the plot.

@@ -21,7 +21,7 @@ fn drawn(marks: &[LadderMark], failures: &[LadderFailure]) -> String {
         failures,
         notes: &notes,
     };
-    picture.to_svg()
+    super::super::svg::svg(&picture.to_drawing(), picture.title)
 }
 
 /// Attributes of every element, read as XML.

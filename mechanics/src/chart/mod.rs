@@ -7,24 +7,32 @@ mod callout;
 mod classes;
 pub mod colour;
 mod displacement;
+pub mod drawing;
 mod facet;
+pub mod helvetica;
 mod ladder;
 mod ladder_legend;
+mod learning;
 mod legend;
+mod path_steps;
+pub mod pdf;
 pub mod raster;
 mod slices;
 mod stability_map;
-mod svg;
+pub mod svg;
 mod symbol;
 pub mod view;
+mod views;
 
 pub use classes::{ClassKind, ClassesPicture, NodeClasses};
 pub use displacement::DisplacementPicture;
 pub use ladder::{LadderFailure, LadderMark, LadderPicture};
+pub use learning::{LearningPicture, LearningSeries};
 pub use raster::{Image, PngError};
 pub use slices::SlicesPicture;
 pub use stability_map::{Mark, StabilityAxis, StabilityMap};
 pub use view::{Outlook, clear_front, front_of};
+pub use views::{ViewRow, ViewValues, ViewsPicture};
 
 /// A position in mm.
 type Vector = nalgebra::Vector3<f64>;

@@ -2,10 +2,11 @@
 
 use super::Vector;
 use super::colour::{self, Rgb, sequential};
+use super::drawing::{Document, Place, Style};
 use super::facet::Finish;
 use super::legend::Scale;
 use super::raster::{Painted, Panel, PngError, Shot, draw_all};
-use super::svg::{Document, Place, Style};
+use super::svg::svg;
 use super::view::{Camera, Extent, Outlook};
 
 /// What the picture shows. Points in mm.
@@ -96,7 +97,7 @@ impl SlicesPicture<'_> {
             self.frame
         );
         document.text([MARGIN, height - 12.0], room, Style::of(11.0).faint(), &foot);
-        Ok(document.finish(self.title))
+        Ok(svg(&document, self.title))
     }
 
     fn corners(&self, cell: [u32; 4]) -> [Vector; 4] {

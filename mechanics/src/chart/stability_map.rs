@@ -1,7 +1,8 @@
 //! What each method does as something is turned up: one row for each method, one panel for each axis, one small
 //! cell for each value. A wrong answer without a warning is what the eye must find first.
 
-use super::svg::{Document, Place, Style, wrapped};
+use super::drawing::{Document, Place, Style, wrapped};
+use super::svg::svg;
 
 /// What a method did.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -74,7 +75,7 @@ impl StabilityMap<'_> {
         for (number, axes) in bands.iter().enumerate() {
             self.draw_band(&mut document, head + legend + band * number as f64, axes);
         }
-        document.finish(self.title)
+        svg(&document, self.title)
     }
 
     /// Axes side by side as far as there is room.

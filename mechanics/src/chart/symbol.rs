@@ -1,6 +1,6 @@
 //! Marks that differ in shape and colour, so that either alone tells them apart.
 
-use super::svg::{Document, Paint};
+use super::drawing::{Document, Paint};
 
 /// Okabe and Ito, Color universal design, 2008, without yellow, which is faint on white; in an order in which
 /// neighbours differ in lightness.

@@ -35,19 +35,19 @@ pub enum SurfaceDomainError {
     #[error("{surface}: none of {triangles} triangles has an area")]
     Empty { surface: SurfaceName, triangles: usize },
     #[error(
-        "{surface}: {triangles} triangles with {open_edges} open edges enclose nothing: no winding number above 0.2"
+        "{surface}: {triangles} triangles with {open_edges} open edges enclose nothing: no winding number above 0.2; a surface has to go around what it bounds, with its triangles facing outwards: close its openings and turn the triangles that face inwards where it was made, or give the scan"
     )]
     NoInside { surface: SurfaceName, triangles: usize, open_edges: usize },
     #[error(
-        "{surface}: the winding number inside is {level:.2} where a whole surface has 1: too much of it is missing or turned ({open_edges} open edges)"
+        "{surface}: the winding number inside is {level:.2} where a whole surface has 1: too much of it is missing or turned ({open_edges} open edges): close its openings, or turn the triangles that face inwards, where it was made"
     )]
     Incomplete { surface: SurfaceName, level: f64, open_edges: usize },
     #[error(
-        "{surface}: {percent:.0} % of the inside is uncertain, with winding numbers between 0.2 and 0.8 ({open_edges} open edges, {pieces} pieces)"
+        "{surface}: {percent:.0} % of the inside is uncertain, with winding numbers between 0.2 and 0.8 ({open_edges} open edges, {pieces} pieces): close its openings and leave out pieces that are no part of it where it was made"
     )]
     Uncertain { surface: SurfaceName, percent: f64, open_edges: usize, pieces: usize },
     #[error(
-        "{surface}: its triangles have {times:.0} times the area of its box; more than 20 times is no surface of a body"
+        "{surface}: its triangles have {times:.0} times the area of its box; more than 20 times is no surface of a body: is it cut into many layers, or does the file hold several bodies? Give its outer surface alone"
     )]
     Tangled { surface: SurfaceName, times: f64 },
     #[error(

@@ -55,27 +55,29 @@ const NOSE: [[f64; 3]; 10] = [
 /// The five points across the tissue at a row and an angle >= 0 from the front, from bone to skin:
 /// deep tissue ends at the second, muscle at the third, fat at the fourth.
 pub(super) fn column(row: f64, angle: f64) -> [Vector; 5] {
-    const STEP: f64 = 1e-3;
     let skin = skin(row, angle);
-    let normal = |surface: fn(f64, f64) -> Vector| {
-        let around = surface(row, angle + STEP) - surface(row, angle - STEP);
-        let upwards = surface(row + STEP, angle) - surface(row - STEP, angle);
-        around.cross(&upwards).normalize()
-    };
     let bone = base(row, angle) + relief(&base(row, angle), &BONE_SHARE)
-        - normal(base) * thickness(row, angle);
-    let across = (normal(self::skin) + normal(base)).normalize();
+        - normal_of(base, row, angle) * thickness(row, angle);
+    let across = (normal_of(self::skin, row, angle) + normal_of(base, row, angle)).normalize();
     let below_skin = skin - across * SKIN;
     let between = |share: f64| bone + (below_skin - bone) * share;
     [bone, between(0.36), between(0.68), below_skin, skin]
 }
 
-fn skin(row: f64, angle: f64) -> Vector {
-    let base = base(row, angle);
-    base + relief(&base, &[1.0; 5])
+/// The outward normal of a surface over rows and angles, by central differences.
+pub(super) fn normal_of(surface: fn(f64, f64) -> Vector, row: f64, angle: f64) -> Vector {
+    const STEP: f64 = 1e-3;
+    let around = surface(row, angle + STEP) - surface(row, angle - STEP);
+    let upwards = surface(row + STEP, angle) - surface(row - STEP, angle);
+    around.cross(&upwards).normalize()
 }
 
-fn base(row: f64, angle: f64) -> Vector {
+fn skin(row: f64, angle: f64) -> Vector {
+    let base = base(row, angle);
+    base + relief(&base, &WHOLE)
+}
+
+pub(super) fn base(row: f64, angle: f64) -> Vector {
     let [height, forward, half_width, taper, squareness, climb, _] = interpolated(&PROFILE, row);
     let (sin, cos) = angle.sin_cos();
     let q = (sin.abs().powf(squareness) + cos.abs().powf(squareness)).powf(1.0 / squareness);
@@ -87,16 +89,28 @@ fn base(row: f64, angle: f64) -> Vector {
 }
 
 /// Tissue over the bone without the relief: more in the cheek, where the fat pad lies.
-fn thickness(row: f64, angle: f64) -> f64 {
+pub(super) fn thickness(row: f64, angle: f64) -> f64 {
     let [.., thickness] = interpolated::<8, 7>(&PROFILE, row);
     thickness + 4.0 * bell(row - 27.0, 8.0) * bell(angle.abs() - 0.85, 0.35)
 }
 
-/// How much of nose, brow and cheek, hollows, lips, and chin the bone takes part in.
-const BONE_SHARE: [f64; 5] = [0.7, 0.75, 0.8, 0.1, 0.55];
+/// How much of each group of bumps and hollows a surface takes part in.
+pub(super) struct Relief {
+    pub nose: f64,
+    /// And the cheek.
+    pub brow: f64,
+    /// Of the eyes.
+    pub hollow: f64,
+    pub lips: f64,
+    pub chin: f64,
+}
+
+const BONE_SHARE: Relief = Relief { nose: 0.7, brow: 0.75, hollow: 0.8, lips: 0.1, chin: 0.55 };
+const WHOLE: Relief = Relief { nose: 1.0, brow: 1.0, hollow: 1.0, lips: 1.0, chin: 1.0 };
 
 /// What stands out of the base at a point of it, by the shares of the five groups.
-fn relief(base: &Vector, [nose, brow, hollow, lips, chin]: &[f64; 5]) -> Vector {
+pub(super) fn relief(base: &Vector, share: &Relief) -> Vector {
+    let Relief { nose, brow, hollow, lips, chin } = share;
     let (x, z) = (base.x.abs(), base.z);
     let ridge = nose_ridge(x, z);
     let forward = nose * (ridge + nose_wings(x, z))
@@ -158,18 +172,21 @@ fn jaw(x: f64, z: f64) -> f64 {
     -3.8 * bell(z + 60.0, 4.2) * bell(x, 17.0) + 4.5 * bell(z + 75.0, 8.5) * bell(x, 15.0)
 }
 
-fn bell(distance: f64, width: f64) -> f64 {
+pub(super) fn bell(distance: f64, width: f64) -> f64 {
     (-0.5 * (distance / width).powi(2)).exp()
 }
 
 /// Near 1 up to about `half_width`, then falling quickly.
-fn flat_bell(distance: f64, half_width: f64) -> f64 {
+pub(super) fn flat_bell(distance: f64, half_width: f64) -> f64 {
     (-(distance / half_width).powi(4)).exp()
 }
 
 /// A table at a value of its first column: cubic Hermite, tangents from the neighbours on both sides
 /// (Catmull, Rom, A class of local interpolating splines, 1974, for uneven knots).
-fn interpolated<const N: usize, const M: usize>(table: &[[f64; N]], at: f64) -> [f64; M] {
+pub(super) fn interpolated<const N: usize, const M: usize>(
+    table: &[[f64; N]],
+    at: f64,
+) -> [f64; M] {
     let last = table.len() - 1;
     let low = table[1..last].iter().filter(|knot| knot[0] <= at).count();
     let [from, to] = [&table[low], &table[low + 1]];

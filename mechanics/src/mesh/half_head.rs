@@ -6,7 +6,7 @@
 use std::collections::BTreeMap;
 
 use super::face_shape::{SIDE_ANGLE, TOP_ROW, column};
-use super::sample::{NodeSets, layers_of};
+use super::sample::{NodeSets, bone_below, layers_of};
 use super::{CellShape, TriangleSurface, Vector, VolumeMesh};
 
 /// The fineness of the demo: 62 208 tetrahedra.
@@ -40,7 +40,7 @@ pub fn half_head(fineness: usize) -> HalfHead {
         ..VolumeMesh::default()
     };
     HalfHead {
-        bones: BONES.into_iter().map(|name| (name, bone_surface(&mesh, name))).collect(),
+        bones: BONES.into_iter().map(|name| (name, bone_below(&mesh, name))).collect(),
         landmarks: grid.landmarks(&mesh.nodes),
         mesh,
     }
@@ -54,8 +54,8 @@ const BONES: [&str; 3] = ["maxilla", "mandible", "skull"];
 
 /// Which bone the tissue is attached to. Between the jaws, 25 mm around the lips, the mucosa is
 /// free, as are cheeks, floor of the mouth and nostrils; without such gaps a plan would tear.
-fn bone_at(row: f64, angle: f64, x: f64) -> Option<&'static str> {
-    let nostrils = x < 11.0 && row < 45.5;
+pub(super) fn bone_at(row: f64, angle: f64, is_near_middle: bool) -> Option<&'static str> {
+    let nostrils = is_near_middle && row < 45.5;
     if (11.9..=22.6).contains(&row) && angle < 1.3 {
         Some("mandible")
     } else if (30.4..=37.6).contains(&row) && angle < 0.62 {
@@ -65,21 +65,6 @@ fn bone_at(row: f64, angle: f64, x: f64) -> Option<&'static str> {
     } else {
         None
     }
-}
-
-/// The faces all of whose nodes are in a set, seen from the tissue.
-fn bone_surface(mesh: &VolumeMesh, name: &str) -> TriangleSurface {
-    let mut attached = vec![false; mesh.nodes.len()];
-    for &node in mesh.node_set(name).unwrap_or_default() {
-        attached[node as usize] = true;
-    }
-    let mut faces = mesh.boundary_faces();
-    faces.retain(|face| face.nodes().iter().all(|&node| attached[node as usize]));
-    let mut surface = mesh.surface_of(&faces);
-    for triangle in &mut surface.triangles {
-        triangle.swap(1, 2);
-    }
-    surface
 }
 
 /// Rows from the neck up, columns from the right side to the left, 0 in the middle.
@@ -158,7 +143,7 @@ impl Grid {
                 let inside = rows.contains(&row_of_profile) && point.x.abs() < half_width;
                 sets.push(name, node, layer == 4 && inside);
             }
-            let bone = bone_at(row_of_profile, self.angle(column).abs(), point.x.abs());
+            let bone = bone_at(row_of_profile, self.angle(column).abs(), point.x.abs() < 11.0);
             for name in BONES {
                 sets.push(name, node, layer == 0 && !rim && bone == Some(name));
             }

@@ -20,6 +20,9 @@ const MAX_PIECES: usize = 4096;
 
 type Coefficients = [f64; 27];
 
+/// One for a tetrahedron, 9 for a wedge, 27 for a hexahedron.
+pub type BezierCoefficients = arrayvec::ArrayVec<f64, 27>;
+
 /// The smallest Jacobian of a cell in mm³ lies between `lower` and `upper`, and `upper` is reached.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JacobianBounds {
@@ -87,6 +90,18 @@ pub fn scaled_jacobian(shape: CellShape, corners: &[Vector]) -> f64 {
     worst * regular
 }
 
+/// Each corner of a hexahedron with the ends of the three edges from it, right-handed in a valid cell.
+pub const HEXAHEDRON_CORNERS: [[usize; 4]; 8] = [
+    [0, 1, 3, 4],
+    [1, 2, 0, 5],
+    [2, 3, 1, 6],
+    [3, 0, 2, 7],
+    [4, 7, 5, 0],
+    [5, 4, 6, 1],
+    [6, 5, 7, 2],
+    [7, 6, 4, 3],
+];
+
 /// For each corner of the cell the three edges from it, right-handed in a valid cell.
 fn corner_edges(
     shape: CellShape,
@@ -95,22 +110,24 @@ fn corner_edges(
     const TETRAHEDRON: [[usize; 4]; 4] = [[0, 1, 2, 3], [1, 2, 0, 3], [2, 0, 1, 3], [3, 2, 1, 0]];
     const WEDGE: [[usize; 4]; 6] =
         [[0, 1, 2, 3], [1, 2, 0, 4], [2, 0, 1, 5], [3, 5, 4, 0], [4, 3, 5, 1], [5, 4, 3, 2]];
-    const HEXAHEDRON: [[usize; 4]; 8] = [
-        [0, 1, 3, 4],
-        [1, 2, 0, 5],
-        [2, 3, 1, 6],
-        [3, 0, 2, 7],
-        [4, 7, 5, 0],
-        [5, 4, 6, 1],
-        [6, 5, 7, 2],
-        [7, 6, 4, 3],
-    ];
     let table: &[[usize; 4]] = match shape {
         CellShape::Tet4 => &TETRAHEDRON,
         CellShape::Wedge6 => &WEDGE,
-        CellShape::Hex8 => &HEXAHEDRON,
+        CellShape::Hex8 => &HEXAHEDRON_CORNERS,
     };
     table.iter().map(|&[from, a, b, c]| [a, b, c].map(|to| corners[to] - corners[from]))
+}
+
+/// Bézier coefficients of J, in mm³: all of them positive prove a cell valid, and each is affine in the place of each
+/// single corner.
+pub fn bezier_coefficients(shape: CellShape, corners: &[Vector]) -> BezierCoefficients {
+    let mut coefficients = BezierCoefficients::new();
+    match shape {
+        CellShape::Tet4 => coefficients.push(tetrahedron_jacobian(corners)),
+        CellShape::Wedge6 => coefficients.extend(wedge_parabolas(corners).into_iter().flatten()),
+        CellShape::Hex8 => coefficients.extend(hexahedron_coefficients(corners)),
+    }
+    coefficients
 }
 
 fn bounds(

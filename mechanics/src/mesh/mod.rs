@@ -10,6 +10,7 @@ pub mod disjoint_sets;
 pub mod duplicate_cells;
 mod face_shape;
 pub mod frame;
+pub mod generic_face;
 pub mod half_head;
 pub mod ignored;
 pub mod jacobian;

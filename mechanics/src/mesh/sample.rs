@@ -9,7 +9,7 @@
 
 use std::collections::BTreeMap;
 
-use super::{CellShape, Cells, Vector, VolumeMesh};
+use super::{CellShape, Cells, TriangleSurface, Vector, VolumeMesh};
 
 /// A block from the origin to `size` (mm) with `cells` cells along each axis; a wedge mesh cuts
 /// each cell into two wedges that stand along z. Node sets: `x_min`, `x_max`, `y_min`, …
@@ -174,6 +174,21 @@ fn push_prism(cells: &mut Cells, nodes: &[Vector], mut triangle: [u32; 3], [low,
         }
         cells.push(CellShape::Tet4, &tetrahedron);
     }
+}
+
+/// The faces all of whose nodes are in a set, as bone has them that is seen from the tissue.
+pub(super) fn bone_below(mesh: &VolumeMesh, name: &str) -> TriangleSurface {
+    let mut attached = vec![false; mesh.nodes.len()];
+    for &node in mesh.node_set(name).unwrap_or_default() {
+        attached[node as usize] = true;
+    }
+    let mut faces = mesh.boundary_faces();
+    faces.retain(|face| face.nodes().iter().all(|&node| attached[node as usize]));
+    let mut surface = mesh.surface_of(&faces);
+    for triangle in &mut surface.triangles {
+        triangle.swap(1, 2);
+    }
+    surface
 }
 
 /// Node sets that are filled in the order of the nodes, and so are ascending.

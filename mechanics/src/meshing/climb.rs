@@ -25,7 +25,7 @@ const COLOURS: u32 = 64;
 /// A mesh whose nodes are moved.
 pub(super) struct Climb<'a> {
     pub draft: &'a mut Draft,
-    domain: &'a dyn Domain,
+    pub domain: &'a dyn Domain,
     of_nodes: Rows<u32>,
     sines: Vec<f64>,
 }

@@ -2,6 +2,7 @@
 
 use super::error::MeshingError;
 use super::lattice::Lattice;
+use super::missed::Edge;
 use super::octree::Leaves;
 use super::watch::Watch;
 use crate::domain::{Coverage, Domain};
@@ -88,20 +89,14 @@ impl Search<'_> {
         edges
     }
 
-    /// The middle of an edge whose ends lie on the other side, if it lies deeper there than a curved surface reaches.
     fn met(&self, from: u32, to: u32) -> Option<Met> {
         let ends_inside = self.lattice.inside[from as usize];
-        let ends = [from, to].map(|node| self.lattice.position(node));
-        let place = (ends[0] + ends[1]) / 2.0;
-        if self.lattice.inside[to as usize] != ends_inside
-            || (self.domain.value(&place) > 0.0) == ends_inside
-        {
+        if self.lattice.inside[to as usize] != ends_inside {
             return None;
         }
-        let [inside, outside] = if ends_inside { [ends[0], place] } else { [place, ends[0]] };
-        let boundary = self.domain.crossing(&inside, &outside).boundary;
-        let depth = (self.domain.projection(&place, boundary) - place).norm();
-        (depth > DEEP * (ends[1] - ends[0]).norm()).then_some(Met { ends_inside, place })
+        let ends = [from, to].map(|node| self.lattice.position(node));
+        let place = Edge { ends, inside: ends_inside }.missed(self.domain, DEEP)?;
+        Some(Met { ends_inside, place })
     }
 }
 

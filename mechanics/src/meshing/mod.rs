@@ -2,9 +2,10 @@
 //!
 //! [`mesh`] is the path: an octree that is as fine as the [size field](SizeField) asks for (`octree`, `refine`), the lattice
 //! of its leaves (`lattice`), the places where that is cut by the boundary (`cuts`), nodes moved onto it (`warp`), places
-//! where tissue touches itself taken apart (`pinches`, `edge_copies`), the cells (`stencils`), and nodes moved to where the
-//! worst of them are better (`climb`). What comes out is held against what is promised of it (`check`): cells of positive
-//! volume, a boundary whose edges lie between two triangles each, one piece.
+//! where tissue touches itself taken apart (`pinches`, `edge_copies`), the cells (`stencils`), nodes moved to where the worst
+//! of them are better (`climb`), and the surface moved to where it encloses the volume of the body (`fitting`). What comes
+//! out is held against what is promised of it (`check`): cells of positive volume, a boundary whose edges lie between two
+//! triangles each, one piece.
 //!
 //! Source: Labelle, Shewchuk, Isosurface stuffing: fast tetrahedral meshes with good dihedral angles, ACM Transactions on
 //! Graphics 26 (2007).
@@ -17,11 +18,13 @@ mod cuts;
 mod draft;
 mod edge_copies;
 mod error;
+mod fitting;
 mod gaps;
 mod grid;
 mod lattice;
 #[cfg(test)]
 mod lattice_tests;
+mod missed;
 mod node_table;
 mod octree;
 mod pieces;

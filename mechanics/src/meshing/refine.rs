@@ -2,6 +2,7 @@
 
 use super::error::MeshingError;
 use super::grid::Grid;
+use super::missed::misses_tissue;
 use super::octree::{Leaves, NONE, Octree, OctreeCell};
 use super::size::SizeField;
 use super::watch::Watch;
@@ -19,6 +20,8 @@ pub(super) struct Refinement<'a> {
     pub size: &'a SizeField,
     /// More tetrahedra are refused.
     pub most: usize,
+    /// Halves cells that would miss thin tissue, down to the finest.
+    pub keeps_thin: bool,
 }
 
 /// What is known of a cell once it has been looked at.
@@ -102,7 +105,13 @@ impl Refinement<'_> {
             return Visit { held, splits: false, wanted: size };
         }
         let wanted = self.wanted(&centre, size, held);
-        Visit { held, splits: size > wanted * (1.0 + 1e-9), wanted }
+        if size > wanted * (1.0 + 1e-9) {
+            return Visit { held, splits: true, wanted };
+        }
+        let splits = self.keeps_thin
+            && held == Coverage::Mixed
+            && misses_tissue(self.domain, &tree.grid, cell);
+        Visit { held, splits, wanted: if splits { size / 2.0 } else { size } }
     }
 
     /// The size asked for at a cell.

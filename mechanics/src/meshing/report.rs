@@ -45,6 +45,8 @@ pub struct MeshingReport {
     pub edges_cut: usize,
     /// Nodes moved to where two boundaries meet.
     pub creased: usize,
+    /// Nodes moved so that as much volume lies on the one side of the boundary as on the other.
+    pub fitted: usize,
     /// Pieces that were left out, the largest first.
     pub dropped: Vec<Piece>,
     /// Gaps in the tissue that are thinner than a cell and have been filled, the largest first.

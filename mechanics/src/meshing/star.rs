@@ -117,6 +117,19 @@ impl<'a> Star<'a> {
         (near && meets && self.worst_at(&place, fair) >= fair).then_some(Move { place, boundaries })
     }
 
+    /// The node moved by a way or by half of it, if cells are good enough there or no worse and the way does not lead through a
+    /// gap or a sheet into what lies behind.
+    pub fn moved_by(&self, way: &Vector, fair: f64) -> Option<Move> {
+        let outwards = way.dot(&self.outward()) > 0.0;
+        let ends = |way: &Vector| (self.domain.value(&(self.here + way * 2.0)) <= 0.0) == outwards;
+        let enough = self.worst.min(fair);
+        let ways = [*way, way * 0.5].into_iter();
+        let good = |way: &Vector| self.worst_at(&(self.here + way), enough) >= enough && ends(way);
+        ways.filter(|way| *way != Vector::zeros())
+            .find(good)
+            .map(|way| self.move_to(self.here + way))
+    }
+
     /// A place a little way into the star, where the worst cell is hardly worse.
     pub fn inwards(&self) -> Option<Move> {
         let way = self.to_middle();

@@ -68,20 +68,22 @@ impl Search<'_> {
             if last.number.abs() < NEAR || scale == last.scale {
                 break;
             }
-            let next = self.trial(scale)?;
+            let next = self.trial(scale, false)?;
             let found = (last.number - next.number) / (next.scale - last.scale);
             slope = found.clamp(SLOPES[0], SLOPES[1]);
             last = next;
             best = if next.number.abs() < best.number.abs() { next } else { best };
         }
-        Ok(best.scale)
+        // Once more with thin tissue kept, which takes longer: by what that adds, cells are coarser.
+        let kept = self.trial(best.scale, true)?;
+        Ok((best.scale + (kept.number - best.number) / slope).min(coarsest))
     }
 
     /// The coarsest scale, from some cells along the longest side on, at which the body has tissue.
     fn first(&self, coarsest: f64) -> Result<Trial, MeshingError> {
         let mut scale = coarsest - FIRST.ln();
         for _ in 0..4 {
-            let trial = self.trial(scale)?;
+            let trial = self.trial(scale, false)?;
             if trial.number > f64::NEG_INFINITY {
                 return Ok(trial);
             }
@@ -91,12 +93,12 @@ impl Search<'_> {
         Err(MeshingError::Empty { low, high, size: self.size.finest * scale.exp() })
     }
 
-    fn trial(&self, scale: f64) -> Result<Trial, MeshingError> {
+    fn trial(&self, scale: f64, keeps_thin: bool) -> Result<Trial, MeshingError> {
         let (low, high) = self.domain.bounds();
         let size = self.size.scaled(scale.exp()).bounded(self.longest());
         // Far more than the target would be a scale gone wrong; it is not followed to its end.
         let most = self.target.saturating_mul(100).max(10_000_000);
-        let refinement = Refinement { domain: self.domain, size: &size, most };
+        let refinement = Refinement { domain: self.domain, size: &size, most, keeps_thin };
         let leaves = refinement.leaves(Grid::new(&low, &high, &size)?, self.watch)?;
         let number = (self.tetrahedra(&leaves)? / self.target as f64).ln();
         Ok(Trial { scale, number })

@@ -18,7 +18,7 @@ use super::settings::MeshingSettings;
 use super::size::SizeField;
 use super::warp::Warp;
 use super::watch::Watch;
-use super::{creases, edge_copies, pieces, pinches, stencils, target};
+use super::{creases, edge_copies, fitting, pieces, pinches, stencils, target};
 use crate::domain::{Boundary, Domain};
 use crate::mesh::{CellShape, VolumeMesh};
 use crate::progress::{Phase, Progress};
@@ -82,6 +82,7 @@ pub fn mesh(
     let creased = creases::sharpen(&mut climb, &watch)?;
     climb.climb(settings.sweeps, &watch)?;
     climb.settle(&watch)?;
+    let fitted = fitting::fit(&mut climb, &watch)?;
     if settings.part_copies {
         climb.part_copies();
     }
@@ -102,6 +103,7 @@ pub fn mesh(
         stepped_back: counts.pinched.stepped_back,
         edges_cut,
         creased,
+        fitted,
         dropped,
         gaps_closed: counts.thin.gaps,
         sheets_lost: counts.thin.sheets,
@@ -143,7 +145,7 @@ fn stuff(
 ) -> Result<(Draft, Counts), MeshingError> {
     let (low, high) = domain.bounds();
     let grid = Grid::new(&low, &high, size)?;
-    let refinement = Refinement { domain, size, most: settings.most_tetrahedra };
+    let refinement = Refinement { domain, size, most: settings.most_tetrahedra, keeps_thin: true };
     let leaves: Leaves = refinement.leaves(grid, watch)?;
     watch.stage()?;
     let lattice = Lattice::new(&leaves, domain, watch)?;

@@ -15,6 +15,7 @@ pub struct LoadCase {
 }
 
 /// Nodal displacement in mm, and for each hold the force in mN that it exerts on the tissue.
+#[derive(Clone)]
 pub struct Equilibrium {
     pub displacement: Vec<Vector>,
     pub reactions: Vec<Vector>,

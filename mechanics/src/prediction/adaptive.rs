@@ -1,8 +1,8 @@
 //! Adaptive refinement: solve, estimate, mark, refine, until the estimated error of the skin is accepted or a bound is met.
 //!
 //! The error that is estimated at the skin nodes of the case (`numerical_error`) is held against what is accepted, over the whole
-//! skin and over parts of it that have a limit of their own. Where it is larger, the goal of the next refinement is that error
-//! itself, made linear: the mean over the skin of the displacement along the direction in which each place is estimated to
+//! skin that moves and over parts of it that have a limit of their own. Where it is larger, the goal of the next refinement is that error
+//! itself, made linear: the mean over that skin of the displacement along the direction in which each place is estimated to
 //! be off, J(v) = int w . v dA with w = sum_g e / (|e| tol_g A_g) over the limits g that are not met. Cells with half of what
 //! the mesh leaves out of it (`discretisation_error::indicators`) are halved three times. Tissue is not made anew: the finer
 //! scene asks the question of the first one (`refined_scene`), and its answer is given at the nodes of the case.
@@ -14,6 +14,7 @@ use super::nonlinearity;
 use super::numerical_error::{self, NotEstimated, NumericalError};
 use super::refined_scene::NotRefined;
 use super::scene::Scene;
+use super::skin::Skin;
 use super::{Prediction, described};
 use crate::mesh::bisection::{Bisection, HALVES_EVERY_EDGE, NotTetrahedra};
 use crate::mesh::{Vector, Warning};
@@ -34,11 +35,11 @@ const TIME_GROWTH: f64 = 1.1;
 
 /// The warning where what linearity leaves out is above what is accepted of the mesh.
 fn more_is_left_out(scene: &Scene, prediction: &Prediction, wanted: &Wanted) -> Option<Warning> {
-    let lengths = scene.skin.lengths(&prediction.nonlinearity.as_ref().ok()?.left_out);
-    let mean = lengths.iter().sum::<f64>() / lengths.len().max(1) as f64;
+    let moving = scene.skin.moving_points(&prediction.displacement);
+    let mean = scene.skin.mean_length(&moving, &prediction.nonlinearity.as_ref().ok()?.left_out);
     let accepted = wanted.skin_mm;
     let detail = format!(
-        "the mesh is refined to {accepted:.3} mm, and linearity leaves out {mean:.3} mm in the mean over the skin: a finer mesh of \
+        "the mesh is refined to {accepted:.3} mm, and linearity leaves out {mean:.3} mm in the mean over the skin that moves: a finer mesh of \
          linear elements is not adequate"
     );
     let warning = Warning::new("tolerance-not-met", detail).with("accepted_mm", accepted);
@@ -48,7 +49,7 @@ fn more_is_left_out(scene: &Scene, prediction: &Prediction, wanted: &Wanted) -> 
 /// What is accepted, and what it may take.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Wanted {
-    /// The mean error over the skin nodes of the case, in mm.
+    /// The mean error over the skin nodes of the case that move (`moving_points`), in mm.
     pub skin_mm: f64,
     /// The same for named parts of the skin.
     pub regions_mm: BTreeMap<String, f64>,
@@ -64,7 +65,7 @@ pub struct Level {
     pub cells: usize,
     pub nodes: usize,
     pub unknowns: usize,
-    /// The estimated error at the skin nodes of the case, in mm.
+    /// The estimated error at the skin nodes of the case that move, in mm.
     pub mean_mm: f64,
     pub p95_mm: f64,
     /// Its mean over each part of the skin that has a limit of its own.
@@ -118,11 +119,12 @@ pub enum AdaptiveError {
     Model(#[from] ModelError),
 }
 
-/// What a limit is about: skin nodes of the case and, on a finer mesh, skin nodes there.
+/// What a limit is about: a part of the skin of the case by its name, or what of it moves.
 struct Limit<'a> {
     name: Option<&'a str>,
     accepted_mm: f64,
-    nodes: Vec<u32>,
+    /// Of the skin of the case.
+    points: Vec<u32>,
 }
 
 impl Stop {
@@ -139,36 +141,27 @@ impl Stop {
 
 impl Wanted {
     fn limits<'a>(&'a self, scene: &Scene) -> Result<Vec<Limit<'a>>, AdaptiveError> {
-        let skin = scene.skin.nodes();
         let mut limits =
-            vec![Limit { name: None, accepted_mm: self.skin_mm, nodes: skin.to_vec() }];
+            vec![Limit { name: None, accepted_mm: self.skin_mm, points: scene.skin.points() }];
         for (name, &accepted_mm) in &self.regions_mm {
             let points = scene.skin.regions.get(name);
             let points = points.ok_or_else(|| AdaptiveError::UnknownRegion(name.clone()))?;
-            let nodes = points.iter().map(|&point| skin[point as usize]).collect();
-            limits.push(Limit { name: Some(name), accepted_mm, nodes });
+            limits.push(Limit { name: Some(name), accepted_mm, points: points.clone() });
         }
         Ok(limits)
     }
 }
 
 impl Limit<'_> {
-    fn mean(&self, missing: &[Vector]) -> f64 {
-        let sum: f64 = self.nodes.iter().map(|&node| missing[node as usize].norm()).sum();
-        sum / self.nodes.len().max(1) as f64
-    }
-
-    /// Skin nodes of a mesh that it is about, and their areas.
-    fn on(&self, scene: &Scene) -> Vec<(u32, f64)> {
+    /// Skin nodes of a mesh that it is about, and their areas, where the nodes of that mesh are displaced so.
+    fn on(&self, scene: &Scene, displacement: &[Vector]) -> Vec<(u32, f64)> {
         let (nodes, areas) = (scene.skin.nodes(), scene.skin.surface.point_areas());
-        let at = |point: usize| (nodes[point], areas[point]);
-        match self.name {
-            None => (0..nodes.len()).map(at).collect(),
-            Some(name) => {
-                let points = scene.skin.regions.get(name).into_iter().flatten();
-                points.map(|&point| at(point as usize)).collect()
-            }
-        }
+        let points = match self.name {
+            None => scene.skin.moving_points(displacement),
+            Some(name) => scene.skin.regions.get(name).cloned().unwrap_or_default(),
+        };
+        let at = |point: u32| (nodes[point as usize], areas[point as usize]);
+        points.into_iter().map(at).collect()
     }
 }
 
@@ -208,7 +201,7 @@ impl<'a> Step<'a> {
         let Scene { mesh, skin, boundary, distributed: loads, .. } = self.scene;
         let mut weights = vec![Vector::zeros(); mesh.nodes.len()];
         for limit in limits {
-            let nodes = limit.on(self.scene);
+            let nodes = limit.on(self.scene, &self.solved.equilibrium.displacement);
             let area: f64 = nodes.iter().map(|(_, area)| area).sum();
             for (node, _) in nodes {
                 let missing = self.error.missing[node as usize];
@@ -244,18 +237,20 @@ impl<'a> Step<'a> {
         Ok(if fits { Ok(finer) } else { Err(Stop::Memory) })
     }
 
-    fn level(&self, limits: &[Limit], spent_s: f64) -> Level {
+    fn level(&self, skin: &Skin, limits: &[Limit], spent_s: f64) -> Level {
         let missing = &self.error.missing;
+        let mean = |limit: &Limit| skin.mean_length(&limit.points, missing);
+        let all = skin.lengths(missing);
         let mut lengths: Vec<f64> =
-            limits[0].nodes.iter().map(|&node| missing[node as usize].norm()).collect();
+            limits[0].points.iter().map(|&point| all[point as usize]).collect();
         lengths.sort_by(f64::total_cmp);
         let p95 = (lengths.len() * 95).div_ceil(100).max(1) - 1;
-        let named = limits.iter().filter_map(|limit| Some((limit.name?, limit.mean(missing))));
+        let named = limits.iter().filter_map(|limit| Some((limit.name?, mean(limit))));
         Level {
             cells: self.scene.mesh.cells.len(),
             nodes: self.scene.mesh.nodes.len(),
             unknowns: self.solved.equilibrium.solver.unknowns,
-            mean_mm: limits[0].mean(missing),
+            mean_mm: mean(&limits[0]),
             p95_mm: lengths.get(p95).copied().unwrap_or_default(),
             regions_mm: named.map(|(name, mean)| (name.to_owned(), mean)).collect(),
             spent_s,
@@ -270,7 +265,7 @@ pub fn predict_adaptively(
     stopwatch: &dyn Fn() -> f64,
     progress: &dyn Progress,
 ) -> Result<Adapted, AdaptiveError> {
-    let limits = wanted.limits(scene)?;
+    let mut limits = wanted.limits(scene)?;
     if let Some(reason) = numerical_error::reason_for_none(scene) {
         return Err(reason.into());
     }
@@ -281,14 +276,17 @@ pub fn predict_adaptively(
     let (answer, stop) = loop {
         let level_begun = stopwatch();
         let step = Step::solve(finest.as_ref().unwrap_or(scene), progress)?;
-        let open: Vec<&Limit> =
-            limits.iter().filter(|own| own.mean(&step.error.missing) > own.accepted_mm).collect();
+        if levels.is_empty() {
+            limits[0].points = scene.skin.moving_points(&step.solved.equilibrium.displacement);
+        }
+        let mean = |limit: &Limit| scene.skin.mean_length(&limit.points, &step.error.missing);
+        let open: Vec<&Limit> = limits.iter().filter(|own| mean(own) > own.accepted_mm).collect();
         let next = match open.is_empty() {
             true => Err(Stop::Met),
             false => step.finer(&bisection, &open, wanted.cells, progress)?,
         };
         let spent_s = stopwatch() - level_begun;
-        levels.push(step.level(&limits, spent_s));
+        levels.push(step.level(&scene.skin, &limits, spent_s));
         let next = next.and_then(|finer| {
             let growth = finer.cell_count() as f64 / bisection.cell_count() as f64;
             let expected_s = spent_s * growth.powf(TIME_GROWTH);
@@ -340,7 +338,7 @@ fn not_met(limits: &[Limit], levels: &[Level], stop: Stop) -> Warning {
     let mean = levels.last().map_or(f64::NAN, |level| level.mean_mm);
     let cells = levels.last().map_or(0, |level| level.cells);
     let detail = format!(
-        "the mesh of {cells} cells leaves out an estimated {mean:.3} mm in the mean over the skin, where {wanted:.3} mm were to be \
+        "the mesh of {cells} cells leaves out an estimated {mean:.3} mm in the mean over the skin that moves, where {wanted:.3} mm were to be \
          met there, or more over a part of it with a limit of its own: {bound} allows no finer one"
     );
     let warning = Warning::new("tolerance-not-met", detail).with("accepted_mm", wanted);

@@ -1,6 +1,6 @@
 //! The answer of a scene: its equilibrium, what the mesh leaves out of it, and what linearity does.
 
-use super::contact::{Touch, touch};
+use super::contact::{Touch, touch, touch_at_finite_strain};
 use super::method::MethodKind;
 use super::nonlinearity::{self, Estimated, NonlinearityUnknown};
 use super::numerical_error::{self, NotEstimated, NumericalError};
@@ -62,16 +62,16 @@ pub(super) fn linear<'a>(
     {
         let (equilibrium, numerical_error) = at_finite_strain(scene, progress)?;
         let nonlinearity = Err(of_linearity.clone());
-        let contact = None;
-        return Ok(other(Answer { equilibrium, numerical_error, nonlinearity, contact }));
+        let free = Answer { equilibrium, numerical_error, nonlinearity, contact: None };
+        return Ok(other(free.touching_at_finite_strain(scene, progress)?));
     }
     let Some(system) = scene.assemble(progress)? else {
         return without(NotEstimated::Quadratic, NonlinearityUnknown::Quadratic);
     };
     let solved = system.solve(&[scene.load_case()], progress)?.remove(0);
-    if let Some((solved, contact)) = touch(scene, &system, &solved, progress)? {
+    if let Some((equilibrium, contact)) = touch(scene, &system, &solved, progress)? {
         return Ok(other(Answer {
-            equilibrium: solved.equilibrium,
+            equilibrium,
             numerical_error: Err(of_mesh.unwrap_or(NotEstimated::Contact)),
             nonlinearity: Err(of_linearity.unwrap_or(NonlinearityUnknown::Contact)),
             contact: Some(contact),
@@ -101,13 +101,16 @@ pub fn equilibrium(
     if !scene.settings.contact.is_unilateral() {
         return Ok((scene.solve(progress)?, None));
     }
+    if scene.settings.method.kind() == MethodKind::FemNonlinear {
+        let free = scene.solve(progress)?;
+        let found = touch_at_finite_strain(scene, &free, progress)?;
+        return Ok(found.map_or((free, None), |(own, contact)| (own, Some(contact))));
+    }
     // Quadratic elements and methods of other kinds are refused before.
     let Some(system) = scene.assemble(progress)? else { return Ok((scene.solve(progress)?, None)) };
     let solved = system.solve(&[scene.load_case()], progress)?.remove(0);
-    Ok(match touch(scene, &system, &solved, progress)? {
-        Some((solved, contact)) => (solved.equilibrium, Some(contact)),
-        None => (solved.equilibrium, None),
-    })
+    let found = touch(scene, &system, &solved, progress)?;
+    Ok(found.map_or((solved.equilibrium, None), |(own, contact)| (own, Some(contact))))
 }
 
 /// At finite strain the last tangent is at hand.
@@ -148,6 +151,24 @@ impl LinearAnswer<'_> {
 }
 
 impl Answer {
+    /// With contact where it closes and is asked for.
+    fn touching_at_finite_strain(
+        self,
+        scene: &Scene,
+        progress: &dyn Progress,
+    ) -> Result<Self, ModelError> {
+        let found = touch_at_finite_strain(scene, &self.equilibrium, progress)?;
+        Ok(match found {
+            Some((equilibrium, contact)) => Answer {
+                equilibrium,
+                numerical_error: self.numerical_error.and(Err(NotEstimated::Contact)),
+                nonlinearity: self.nonlinearity,
+                contact: Some(contact),
+            },
+            None => self,
+        })
+    }
+
     /// Adds what the mesh leaves out to the displacement where that is asked for.
     pub(super) fn corrected(mut self, is_asked: bool) -> Self {
         if let (true, Ok(error)) = (is_asked, &mut self.numerical_error) {

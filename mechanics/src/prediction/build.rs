@@ -9,7 +9,7 @@ use super::problem::SceneErrors;
 use super::scene::Scene;
 use super::skin_check::doubtful_skin;
 use super::stiff_layer;
-use super::suspect_constants::{moduli_apart, suspect_constants};
+use super::suspect_constants::{moduli_apart, no_soft_tissue, suspect_constants};
 use super::walls;
 use crate::boundary::{connected_parts, tearing};
 use crate::mesh::connectivity::Faces;
@@ -98,6 +98,7 @@ impl Scene {
         warnings.extend(states_rest(plan, self));
         warnings.extend(suspect_constants(self, plan));
         warnings.extend(moduli_apart(case, self));
+        warnings.extend(no_soft_tissue(case, self));
         warnings.extend(self.locking());
         warnings.extend(stiff_layer::thin_stiff_layers(self));
         warnings.extend(self.built_in_poisson_ratio());

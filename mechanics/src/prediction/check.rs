@@ -209,7 +209,7 @@ impl<'a> Check<'a> {
                 false => &format!("{} knows", method.title),
             };
             let detail = format!(
-                "{who} no contact that opens and closes: `fem_linear` does, with any element but `quadratic`"
+                "{who} no contact that opens and closes: `fem_linear` does, with any element but `quadratic`, and `fem_nonlinear`"
             );
             self.problems.add("/spec/contact", SceneErrorCode::MethodNotAvailable, detail);
         }

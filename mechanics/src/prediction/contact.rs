@@ -7,10 +7,10 @@ use super::scene::Scene;
 use super::skin_overlap::{Deepest, deepest_overlap};
 use crate::boundary::NodeClass;
 use crate::boundary::contact::FacingSurfaces;
-use crate::mesh::Warning;
+use crate::mesh::{Vector, Warning};
 use crate::model::fem::contact::{Contact, ContactProblem, InContact, Pressed};
 use crate::model::fem::linear_system::{LinearSystem, Solved};
-use crate::model::problem::ModelError;
+use crate::model::problem::{Equilibrium, ModelError};
 use crate::progress::{Phase, Progress};
 
 /// Parts of the boundary that lie in each other deeper than this, in mm, are told.
@@ -44,28 +44,59 @@ pub struct ContactPair {
     pub nodes: usize,
 }
 
-/// The answer in which what touches presses; none where nothing does or contact is not asked for.
+/// The answer of linear elasticity in which what touches presses; none where nothing does or contact is not asked for.
 pub(super) fn touch(
     scene: &Scene,
     system: &LinearSystem,
     free: &Solved,
     progress: &dyn Progress,
-) -> Result<Option<(Solved, Touch)>, ModelError> {
+) -> Result<Option<(Equilibrium, Touch)>, ModelError> {
+    pressed(scene, &free.equilibrium, progress, |surfaces| {
+        let relative_residual = scene.settings.relative_residual;
+        let found = ContactProblem { system, free, surfaces, relative_residual }.solve(progress)?;
+        Ok(found.map(|InContact { solved, contact }| (solved.equilibrium, contact)))
+    })
+}
+
+/// The same at finite strain.
+pub(super) fn touch_at_finite_strain(
+    scene: &Scene,
+    free: &Equilibrium,
+    progress: &dyn Progress,
+) -> Result<Option<(Equilibrium, Touch)>, ModelError> {
+    pressed(scene, free, progress, |surfaces| {
+        scene.at_finite_strain(|problem, _| {
+            problem.solve_in_contact(&scene.load_case(), free, surfaces, progress)
+        })
+    })
+}
+
+/// What a solution with contact says of an answer without; also where nothing presses and parts lie in each other nevertheless.
+fn pressed(
+    scene: &Scene,
+    free: &Equilibrium,
+    progress: &dyn Progress,
+    solve: impl FnOnce(&FacingSurfaces) -> Result<Option<(Equilibrium, Contact)>, ModelError>,
+) -> Result<Option<(Equilibrium, Touch)>, ModelError> {
     if !scene.settings.contact.is_unilateral() {
         return Ok(None);
     }
     progress.phase(Phase::Contact);
     let surfaces = FacingSurfaces::new(&scene.mesh, &scene.boundary, &scene.conditions.holds);
-    let relative_residual = scene.settings.relative_residual;
-    let problem = ContactProblem { system, free, surfaces: &surfaces, relative_residual };
-    let found = problem.solve(progress)?;
-    Ok(found.map(|InContact { solved, contact }| {
-        let mut touch = Touch::new(scene, &surfaces.areas(&contact.forces), contact);
-        let at_rest = deepest_overlap(surfaces.rest()).map_or(0.0, |at| at.depth);
-        touch.overlap = deepest_overlap(&surfaces.after(&solved.equilibrium.displacement))
-            .filter(|deepest| deepest.depth > at_rest + DEEP_MM);
-        (solved, touch)
-    }))
+    let found = solve(&surfaces)?;
+    let nothing =
+        Contact { forces: vec![Vector::zeros(); scene.mesh.nodes.len()], ..Contact::default() };
+    let nothing_presses = found.is_none();
+    let (equilibrium, contact) = found.unwrap_or_else(|| (free.clone(), nothing));
+    let at_rest = deepest_overlap(surfaces.rest()).map_or(0.0, |at| at.depth);
+    let overlap = deepest_overlap(&surfaces.after(&equilibrium.displacement))
+        .filter(|deepest| deepest.depth > at_rest + DEEP_MM);
+    // Bone narrower than the cells of tissue may pass between their nodes.
+    if nothing_presses && overlap.is_none() {
+        return Ok(None);
+    }
+    let touch = Touch::new(scene, &surfaces.areas(&contact.forces), contact);
+    Ok(Some((equilibrium, Touch { overlap, ..touch })))
 }
 
 impl Touch {
@@ -97,7 +128,7 @@ impl Touch {
     pub(super) fn warnings(&self, scene: &Scene) -> Vec<Warning> {
         let mut warnings = Vec::new();
         let Contact { pressed, kept, rounds, last_moved_mm, .. } = &self.contact;
-        if scene.settings.contact == ContactKind::Auto {
+        if scene.settings.contact == ContactKind::Auto && !pressed.is_empty() {
             let detail =
                 format!("gaps close: tissue presses on what it touches at {} nodes", pressed.len());
             let warning =
@@ -112,7 +143,7 @@ impl Touch {
         }
         if let Some(Deepest { depth, at }) = &self.overlap {
             let detail = format!(
-                "contact leaves parts of the boundary in each other, {depth:.2} mm deep: it holds nodes against triangles, not edges against edges"
+                "contact leaves parts of the boundary in each other, {depth:.2} mm deep: it holds nodes of tissue against triangles, not edges against edges, and not nodes of bone that is narrower than the cells of tissue"
             );
             let warning = Warning::new("contact-overlap", detail).with("depth_mm", *depth);
             warnings.push(warning.with("x_mm", at.x).with("y_mm", at.y).with("z_mm", at.z));

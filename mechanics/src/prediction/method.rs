@@ -140,7 +140,7 @@ const FEM_NONLINEAR: MethodProperties = MethodProperties {
     knows_membrane: false,
     knows_loads: true,
     knows_inner_stress: false,
-    knows_contact: false,
+    knows_contact: true,
 };
 
 const MASS_TENSOR: MethodProperties = MethodProperties {

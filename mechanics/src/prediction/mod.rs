@@ -61,7 +61,7 @@ pub use problem::{SceneError, SceneErrors};
 pub use reaction::ConditionReaction;
 pub use refined_scene::NotRefined;
 pub use scene::Scene;
-pub use skin::Skin;
+pub use skin::{Skin, least_moving};
 pub use skin_overlap::{SKIN_OVERLAPS, skin_overlap};
 pub use stated::{StatedCondition, StatedHold};
 pub use unheld::{GoesAlong, NOTHING_HELD, goes_along};
@@ -69,7 +69,8 @@ pub use walls::normal_turned;
 
 pub use adaptive::{Adapted, AdaptiveError, Level, Stop, Wanted, predict_adaptively};
 pub use adequate::{
-    Accepted, Adequate, Considered, Errors, MAY_TAKE, MeanErrors, Rung, Watched, predict_adequately,
+    Accepted, Adequate, Considered, Errors, MeanErrors, NEWTON_MAY_TAKE, Rung, SECOND_ORDER_TAKES,
+    Watched, predict_adequately,
 };
 use answer::Answer;
 pub use answer::equilibrium;

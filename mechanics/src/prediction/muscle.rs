@@ -5,7 +5,7 @@
 //! of the cell. A single line pulls with the force int T w dA = pi r² T / 3, spread smoothly over its width, so that the skin
 //! converges as the mesh is refined, which it would not under forces at single nodes.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::RangeInclusive;
 
 use nalgebra::Matrix3;
@@ -18,6 +18,8 @@ use super::fibres::unit;
 use super::muscle_field::MuscleField;
 use super::scene::Scene;
 use crate::mesh::ignored::listed;
+use crate::mesh::jacobian::signed_volume;
+use crate::mesh::refinement::refine;
 use crate::mesh::{ArrayUse, Vector, VolumeMesh, Warning};
 use crate::model::fem::inner_stress::{CellStress, InnerStress};
 use crate::model::reference_cell;
@@ -27,6 +29,9 @@ pub const PULL: RangeInclusive<f64> = 0.0..=10_000.0;
 
 /// A muscle of so few cells around lines is told.
 const FEW_CELLS: usize = 20;
+
+/// And one that pulls by more than this share otherwise than its lines say.
+const PULL_OFF: f64 = 0.1;
 
 impl Check<'_> {
     /// The muscles of the case.
@@ -61,9 +66,18 @@ impl Check<'_> {
                 }
             }
             MuscleCourse::Lines { lines, within } => {
-                let course = Lines::new(lines, *within);
-                let cells = course.map(|lines| lines.cells(&scene.mesh)).unwrap_or_default();
-                self.few_cells(&muscle.name, cells.len(), pointer);
+                let Some(course) = Lines::new(lines, *within) else {
+                    self.no_tissue_near(&muscle.name, pointer);
+                    return Vec::new();
+                };
+                let cells = course.cells(&scene.mesh);
+                match cells.is_empty() {
+                    true => self.no_tissue_near(&muscle.name, pointer),
+                    false => {
+                        let pull = PullShare::new(&course, &scene.mesh, &cells);
+                        self.warnings.extend(pull.warning(&muscle.name));
+                    }
+                }
                 cells
             }
         }
@@ -122,21 +136,12 @@ impl Check<'_> {
         cells
     }
 
-    /// Refuses lines that no tissue is near, and tells of those near few cells.
-    fn few_cells(&mut self, name: &str, count: usize, pointer: &str) {
-        if count == 0 {
-            let detail = format!(
-                "no cell has a point of its tissue near the lines of muscle {name:?}: are they in mm, in the frame of the case?"
-            );
-            let at = format!("{pointer}/lines_mm");
-            self.problems.add(at, SceneErrorCode::EmptySelection, detail);
-        } else if count < FEW_CELLS {
-            let detail = format!(
-                "only {count} cells have tissue near the lines of muscle {name:?}: its pull is as coarse as they are"
-            );
-            let warning = Warning::new("muscle-few-cells", detail).with("cells", count as f64);
-            self.warnings.push(warning);
-        }
+    fn no_tissue_near(&mut self, name: &str, pointer: &str) {
+        let detail = format!(
+            "no cell has a point of its tissue near the lines of muscle {name:?}: are they in mm, in the frame of the case?"
+        );
+        let at = format!("{pointer}/lines_mm");
+        self.problems.add(at, SceneErrorCode::EmptySelection, detail);
     }
 
     pub(super) fn activate(&mut self, plan: &Plan, scene: &Scene, inner: &mut InnerStress) {
@@ -165,6 +170,46 @@ impl Check<'_> {
             }
         }
     }
+}
+
+/// How much of the pull of lines the cells of a mesh carry: int w dV by their quadrature points over what it is in the same tissue
+/// with every edge halved twice.
+struct PullShare {
+    cells: usize,
+    share: f64,
+}
+
+impl PullShare {
+    fn new(lines: &Lines, mesh: &VolumeMesh, cells: &[CellStress]) -> Self {
+        let near = lines.tissue_near(mesh);
+        let finer = refine(&refine(&near));
+        let exact = pull_of(&finer, &lines.cells(&finer));
+        PullShare { cells: cells.len(), share: pull_of(mesh, cells) / exact }
+    }
+
+    /// Where cells are so few or so coarse that the muscle pulls otherwise than its lines say.
+    fn warning(&self, name: &str) -> Option<Warning> {
+        let PullShare { cells, share } = *self;
+        if cells >= FEW_CELLS && (share - 1.0).abs() <= PULL_OFF {
+            return None;
+        }
+        let detail = format!(
+            "{cells} cells have tissue near the lines of muscle {name:?}, and it pulls with {:.0} % of what lines of its width exert: \
+             its pull is as coarse as they are; finer cells or a larger `within_mm` carry it",
+            100.0 * share
+        );
+        let warning = Warning::new("muscle-few-cells", detail).with("cells", cells as f64);
+        Some(warning.with("pull_share", share))
+    }
+}
+
+/// int w dV in mm^3 of stresses w f (x) f.
+fn pull_of(mesh: &VolumeMesh, cells: &[CellStress]) -> f64 {
+    let of = |own: &CellStress| {
+        let corners: Vec<Vector> = mesh.corners(own.cell as usize).collect();
+        own.stress.trace() * signed_volume(mesh.cells.shape(own.cell as usize), &corners)
+    };
+    cells.iter().map(of).sum()
 }
 
 /// Squared distances that differ by less than this share of the squared reach are equal.
@@ -207,12 +252,38 @@ impl Lines {
         (0..mesh.cells.len()).into_par_iter().filter_map(of_cell).collect()
     }
 
+    /// Whether a cell may have tissue within reach.
+    fn may_reach(&self, corners: &[Vector]) -> bool {
+        let Some(&first) = corners.first() else { return false };
+        let (low, high) = corners.iter().fold((first, first), |(l, h), x| (l.inf(x), h.sup(x)));
+        (0..3).all(|axis| high[axis] >= self.low[axis] && low[axis] <= self.high[axis])
+    }
+
+    /// The cells that may have tissue within reach.
+    fn tissue_near(&self, mesh: &VolumeMesh) -> VolumeMesh {
+        let mut near = VolumeMesh::default();
+        let mut number_of = BTreeMap::new();
+        for (cell, (shape, nodes)) in mesh.cells.iter().enumerate() {
+            let corners: Vec<Vector> = mesh.corners(cell).collect();
+            if !self.may_reach(&corners) {
+                continue;
+            }
+            let numbered = nodes.iter().map(|&node| {
+                *number_of.entry(node).or_insert_with(|| {
+                    near.nodes.push(mesh.nodes[node as usize]);
+                    near.nodes.len() as u32 - 1
+                })
+            });
+            let numbered: Vec<u32> = numbered.collect();
+            near.cells.push(shape, &numbered);
+        }
+        near
+    }
+
     /// The mean over a cell; none where no point of it is within reach.
     fn mean(&self, mesh: &VolumeMesh, cell: usize) -> Option<Matrix3<f64>> {
         let corners: Vec<Vector> = mesh.corners(cell).collect();
-        let first = *corners.first()?;
-        let (low, high) = corners.iter().fold((first, first), |(l, h), x| (l.inf(x), h.sup(x)));
-        if (0..3).any(|axis| high[axis] < self.low[axis] || low[axis] > self.high[axis]) {
+        if !self.may_reach(&corners) {
             return None;
         }
         let (mut sum, mut volume) = (Matrix3::zeros(), 0.0);

@@ -104,9 +104,9 @@ pub(super) fn warning(
 }
 
 fn large(scene: &Scene, error: &NumericalError) -> Option<Warning> {
+    let mean = scene.skin.mean_length(&scene.skin.points(), &error.missing);
     let mut lengths = scene.skin.lengths(&error.missing);
     lengths.sort_by(f64::total_cmp);
-    let mean = lengths.iter().sum::<f64>() / lengths.len().max(1) as f64;
     if mean.is_nan() || mean <= LARGE_MM {
         return None;
     }

@@ -208,6 +208,15 @@ impl Scene {
         with_error: bool,
         progress: &dyn Progress,
     ) -> Result<(Equilibrium, Option<MeshError>), ModelError> {
+        self.at_finite_strain(|problem, laws| {
+            let (tissue, boundary, loads) = (self.tissue(), &self.boundary, &self.distributed);
+            let finer = Finer { tissue, laws, boundary, loads };
+            problem.solve_and(&self.load_case(), with_error.then_some(&finer), progress)
+        })
+    }
+
+    /// The problem of finite strain, for what is done with it.
+    pub(super) fn at_finite_strain<T>(&self, done: impl FnOnce(&FiniteStrain, &[Law]) -> T) -> T {
         let (laws, fibres): (Vec<Law>, Vec<Option<Fibres>>) = self
             .materials
             .iter()
@@ -229,13 +238,7 @@ impl Scene {
             holds: &self.conditions.holds,
             tolerance: Tolerance { relative_residual, memory_mb },
         };
-        let finer = Finer {
-            tissue: self.tissue(),
-            laws: &laws,
-            boundary: &self.boundary,
-            loads: &self.distributed,
-        };
-        problem.solve_and(&self.load_case(), with_error.then_some(&finer), progress)
+        done(&problem, &laws)
     }
 
     fn mass_tensors(&self) -> MassTensors<'_> {

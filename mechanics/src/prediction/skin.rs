@@ -9,6 +9,11 @@ use crate::mesh::{SurfaceSearch, TriangleSurface, Vector, VolumeMesh, Warning};
 /// Skin moves where it goes by more than this part of what moves farthest.
 const MOVING: f64 = 0.1;
 
+/// The length from which on skin moves, of the lengths of all its displacements.
+pub fn least_moving(lengths: impl Iterator<Item = f64>) -> f64 {
+    MOVING * lengths.fold(0.0, f64::max)
+}
+
 /// Skin as triangles, and its named parts.
 #[derive(Clone, Debug)]
 pub struct Skin {
@@ -29,13 +34,25 @@ impl Skin {
         self.nodes().iter().map(|&node| of_nodes[node as usize].norm()).collect()
     }
 
+    /// All points of the surface.
+    pub fn points(&self) -> Vec<u32> {
+        (0..self.nodes().len() as u32).collect()
+    }
+
     /// The points that move by more than a tenth of what moves farthest; all where nothing moves. What the scalp and the neck
     /// are not off by says nothing of a face.
     pub fn moving_points(&self, displacement: &[Vector]) -> Vec<u32> {
         let lengths = self.lengths(displacement);
-        let least = MOVING * lengths.iter().copied().fold(0.0, f64::max);
+        let least = least_moving(lengths.iter().copied());
         let points = (0_u32..).zip(&lengths).filter(|(_, length)| **length >= least);
         points.map(|(point, _)| point).collect()
+    }
+
+    /// The mean length of vectors of nodes over some points of the surface; zero over none.
+    pub fn mean_length(&self, points: &[u32], of_nodes: &[Vector]) -> f64 {
+        let nodes = self.nodes();
+        let length = |&point: &u32| of_nodes[nodes[point as usize] as usize].norm();
+        points.iter().map(length).sum::<f64>() / points.len().max(1) as f64
     }
 
     /// The skin after its nodes have moved.

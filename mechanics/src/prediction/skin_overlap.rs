@@ -9,12 +9,17 @@
 use std::collections::BTreeSet;
 
 use super::skin::Skin;
-use crate::mesh::crossing::{Piercing, TrianglePair, cross, piercings, self_crossings};
+use crate::mesh::crossing::{
+    Piercing, TrianglePair, cross, pass, pass_inside, piercings, self_crossings,
+};
 use crate::mesh::disjoint_sets::DisjointSets;
 use crate::mesh::{SurfaceSearch, TriangleSurface, Vector, Warning};
 
 /// The code of the warning.
 pub const SKIN_OVERLAPS: &str = "skin-overlaps";
+
+/// Triangles that pass through each other by less than this, in mm, lie on each other.
+const TOUCHING_MM: f64 = 1e-5;
 
 /// Points of which the depth is taken, evenly chosen.
 const MEASURED_POINTS: usize = 1000;
@@ -29,19 +34,21 @@ pub struct Deepest {
 
 /// The deepest point of a surface that passes through itself. Its points have to be finite.
 pub(super) fn deepest_overlap(surface: &TriangleSurface) -> Option<Deepest> {
-    deepest(surface, &self_crossings(surface, |_| true).pairs)
+    let passes = |pair: &TrianglePair| pass_inside(surface, pair, TOUCHING_MM);
+    deepest(surface, &self_crossings(surface, passes).pairs)
 }
 
 /// A warning that counts the triangles of a moved skin that cross and did not cross at rest. The points of the moved
 /// skin have to be finite.
 pub fn skin_overlap(skin: &Skin, moved: &TriangleSurface) -> Option<Warning> {
     let rest = &skin.surface;
-    let found = self_crossings(moved, |pair| !cross(rest, pair));
+    let passes = |surface: &TriangleSurface, pair: &TrianglePair| pass(surface, pair, TOUCHING_MM);
+    let found = self_crossings(moved, |pair| !cross(rest, pair) && passes(moved, pair));
     if found.count == 0 && found.untried == 0 {
         return None;
     }
-    let at_rest = self_crossings(rest, |_| true).count;
-    let deepest = deepest(moved, &self_crossings(moved, |_| true).pairs);
+    let at_rest = self_crossings(rest, |pair| passes(rest, pair)).count;
+    let deepest = deepest(moved, &self_crossings(moved, |pair| passes(moved, pair)).pairs);
     let (few, depth) = (
         if found.untried > 0 { "at least " } else { "" },
         deepest.as_ref().map_or_else(String::new, |at| format!(", {:.1} mm deep", at.depth)),
@@ -89,18 +96,18 @@ fn deepest(surface: &TriangleSurface, pairs: &[TrianglePair]) -> Option<Deepest>
     let is_near = |(number, corners): &(u32, &[u32; 3])| {
         crosses.contains(number) || corners.iter().any(|&corner| part_of[corner as usize].is_some())
     };
-    let near = (0_u32..).zip(&surface.triangles).filter(is_near);
-    let triangles = near.map(|(_, corners)| *corners).collect();
-    let near = TriangleSurface { points: surface.points.clone(), triangles, node_ids: None };
-    let search = SurfaceSearch::new(&near).ok()?;
+    let near: Vec<bool> = (0_u32..).zip(&surface.triangles).map(|one| is_near(&one)).collect();
+    let search = SurfaceSearch::new(surface).ok()?;
     let depth = |&point: &u32| {
         let own = part_of[point as usize];
         let is_other = |triangle: usize| {
-            near.triangles[triangle].iter().all(|&corner| part_of[corner as usize] != own)
+            let corners = surface.triangles[triangle];
+            near[triangle] && corners.iter().all(|&corner| part_of[corner as usize] != own)
         };
         let at = surface.points[point as usize];
         let closest = search.closest_where(&at, is_other)?;
-        Some(Deepest { depth: closest.distance, at })
+        let depth = -search.signed_distance(&at, &closest);
+        (depth > 0.0).then_some(Deepest { depth, at })
     };
     let step = inside.len().div_ceil(MEASURED_POINTS).max(1);
     let measured = inside.iter().step_by(step).filter_map(depth);

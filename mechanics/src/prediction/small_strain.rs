@@ -55,7 +55,7 @@ pub(super) fn left(
     if !scene.settings.method.properties().is_small_strain {
         return None;
     }
-    let points: Vec<u32> = (0..scene.skin.nodes().len() as u32).collect();
+    let points = scene.skin.points();
     let parts = [("skin", &points)].into_iter();
     let named = scene.skin.regions.iter().map(|(name, points)| (name.as_str(), points));
     let around = around_skin_nodes(scene, deformation);

@@ -11,6 +11,12 @@ use crate::mesh::{Vector, Warning};
 /// Pa among kPa: fat and muscle are a factor of a hundred apart, fat and skin of a thousand at most.
 const MODULI_APART: f64 = 1e3;
 
+/// Young's modulus of the softest and of the stiffest tissue of a face in kPa: fat has 1 to 3, muscle up to 300, and skin up to
+/// some 1000. A case all of whose tissues are beyond is in another unit.
+const SOFTEST: f64 = 2000.0;
+const STIFFEST: f64 = 0.5;
+const THOUSAND: f64 = 1e3;
+
 /// More of these help nobody.
 const MOST: usize = 20;
 
@@ -28,20 +34,23 @@ const FIBRE_MODULUS: Usual = Usual { what: "Young's modulus along fibres", ..MOD
 const FIBRE_SHEAR: Usual = Usual { what: "the shear modulus along fibres", least: 0.03, ..MODULUS };
 /// 0 is allowed: without gravity or time no density is of use.
 const DENSITY: Usual = Usual { what: "density", unit: "g/cm3", least: 0.1, most: 10.0 };
-const SHEET_MODULUS: Usual = Usual { what: "Young's modulus of the membrane", ..MODULUS };
+/// Skin under tension has 100 to 20 000 kPa.
+const SHEET_MODULUS: Usual =
+    Usual { what: "Young's modulus of the membrane", most: 5e4, ..MODULUS };
 const SHEET_THICKNESS: Usual =
     Usual { what: "the thickness of the membrane", unit: "mm", least: 0.05, most: 10.0 };
 /// Ulusoy et al. 2010 name 12 to 750 N/m, which are mN/mm.
-const LINK: Usual = Usual { what: "the stiffness of a link", unit: "N/m", least: 0.1, most: 1e5 };
+const LINK: Usual = Usual { what: "the stiffness of a link", unit: "N/m", least: 1.0, most: 1e4 };
 /// Per node: a bite exerts up to 1e6 mN on all of a jaw.
 const FORCE: Usual = Usual { what: "the force at a node", unit: "mN", least: 1e-6, most: 1e5 };
-const TRACTION: Usual = Usual { what: "traction", unit: "kPa", least: 1e-6, most: 1e3 };
+/// Tongue and lips exert 1 to 50 kPa.
+const TRACTION: Usual = Usual { what: "traction", unit: "kPa", least: 1e-2, most: 500.0 };
 const PRESSURE: Usual = Usual { what: "pressure", ..TRACTION };
 /// In mm/ms^2: the earth has 9.81e-3, and 9810 mm/s^2 is no m/s^2.
 const GRAVITY: Usual = Usual { what: "gravity", unit: "mm/ms2", least: 1e-5, most: 0.1 };
 
 /// Of skeletal muscle some 100 to 400 kPa at most (Powell et al. 1984).
-const PULL: Usual = Usual { what: "the stress", unit: "kPa", least: 1e-3, most: 1e3 };
+const PULL: Usual = Usual { what: "the stress", unit: "kPa", least: 0.1, most: 1e3 };
 /// As a size; small strain does not reach farther either.
 const GROWTH: Usual =
     Usual { what: "the change of volume", unit: "of the volume", least: 1e-4, most: 0.3 };
@@ -85,8 +94,33 @@ pub(super) fn suspect_constants(scene: &Scene, plan: &Plan) -> Vec<Warning> {
     materials.chain(sheet).chain(links).chain(plan).flatten().take(MOST).collect()
 }
 
-/// The warning of tissues of which one is a thousand times as stiff as another or more.
-pub(super) fn moduli_apart(case: &Case, scene: &Scene) -> Option<Warning> {
+/// The warning of a case whose tissues are all stiffer than skin or softer than fat: a thousand times another unit.
+pub(super) fn no_soft_tissue(case: &Case, scene: &Scene) -> Option<Warning> {
+    let moduli = moduli(case, scene);
+    let ((softest, soft), (stiffest, stiff)) = (moduli.first()?, moduli.last()?);
+    let (value, name, unit, meant) = if *softest > SOFTEST {
+        (*softest, soft, "Pa", softest / THOUSAND)
+    } else if *stiffest < STIFFEST {
+        (*stiffest, stiff, "MPa", stiffest * THOUSAND)
+    } else {
+        return None;
+    };
+    // Beyond that `suspect_constants` tells it.
+    if !(MODULUS.least..=MODULUS.most).contains(&value) {
+        return None;
+    }
+    let end = if value > SOFTEST { "softest" } else { "stiffest" };
+    let detail = format!(
+        "Young's modulus of {name:?}, the {end} tissue of the case, is {value} kPa, and soft tissue has {STIFFEST} to {SOFTEST} kPa: \
+         is it in {unit}, {meant} kPa?"
+    );
+    let warning = Warning::new("constant-suspect", detail).with("value", value);
+    let warning = warning.with("usual_least", STIFFEST).with("usual_most", SOFTEST);
+    Some(warning.with("if_other_unit_kpa", meant))
+}
+
+/// Young's moduli of regions and windows in kPa with their names, rising.
+fn moduli(case: &Case, scene: &Scene) -> Vec<(f64, String)> {
     let regions = scene.regions.iter().zip(&scene.materials);
     let windows = case.hounsfield.iter().flat_map(|image| &image.tissues);
     let windows = windows.map(|window| (&window.name, &window.material));
@@ -94,6 +128,12 @@ pub(super) fn moduli_apart(case: &Case, scene: &Scene) -> Option<Warning> {
         |(name, material): (&String, &LinearElastic)| (material.young_modulus(), name.clone());
     let mut moduli: Vec<(f64, String)> = regions.chain(windows).map(modulus).collect();
     moduli.sort_by(|one, other| one.0.total_cmp(&other.0));
+    moduli
+}
+
+/// The warning of tissues of which one is a thousand times as stiff as another or more.
+pub(super) fn moduli_apart(case: &Case, scene: &Scene) -> Option<Warning> {
+    let moduli = moduli(case, scene);
     let [(softest, soft), .., (stiffest, stiff)] = moduli.as_slice() else { return None };
     let ratio = stiffest / softest;
     let detail = format!(

@@ -54,6 +54,10 @@ const SAME_PLACE: f64 = 1e-6;
 /// In mm: what is left beyond this does not fit.
 pub const FAR: f64 = 1.0;
 
+/// Steps in a row that lower the distances by no more than is asked for, however damped, are the end: near the rounding of
+/// files undamped steps lower nothing, and damped ones by nothing.
+const STILL_STEPS: usize = 4;
+
 /// Damping relative to the mean stiffness: where it starts, and where no step is left.
 const FIRST_DAMPING: f64 = 1e-3;
 const LAST_DAMPING: f64 = 1e6;
@@ -229,9 +233,11 @@ pub(super) fn iterate(
     let mut state = State::new(points, search, start);
     let mut limit = state.limit();
     let (mut iterations, mut steps, mut damping, mut change) = (0, 0, 0.0, f64::INFINITY);
+    let mut still = 0;
     loop {
         let (pairs, mean) = state.mean(limit)?;
         let is_still = change <= stop.relative_change && damping < 1.0;
+        let is_still = is_still || still >= STILL_STEPS;
         let has_converged = is_still || damping > LAST_DAMPING || mean <= rounding * rounding;
         if has_converged || iterations >= stop.max_iterations {
             let (transform, rms, points) = (state.transform, mean.sqrt(), points.len());
@@ -249,6 +255,7 @@ pub(super) fn iterate(
         let next = State::new(points, search, transform);
         if next.cut_sum(limit) <= state.cut_sum(limit) {
             change = (next.mean(limit)?.1 - mean).abs() / mean;
+            still = if change <= stop.relative_change { still + 1 } else { 0 };
             damping = if damping > FIRST_DAMPING { damping * 0.1 } else { 0.0 };
             state = next;
             if steps < SHRINKING_STEPS {

@@ -251,7 +251,7 @@ fn solve(
     let columns = system.solve(cases.all, progress)?;
     let pressures = system.pressures.as_ref().map(|pressures| &pressures.cells);
     let series = ForceSeries::new(scene.tissue(), pressures);
-    let skin = scene.skin.nodes();
+    let skin = &scene.skin;
     let of_segments = &columns[..cases.of_segments];
     let solutions = Solutions { series, system: &system, columns: of_segments, skin };
     let sampled = match scene.has_pulling_fibres() {

@@ -1,9 +1,9 @@
 //! Linearity estimate of a response: what it leaves out, from the movements of its segments.
 //!
-//! Where elements have a second order, it is sampled: q_j, the mean length on the skin of the second-order term for a unit
-//! of translation along and of rotation about each axis of each segment, and e = sum_j alpha_j^2 q_j for the numbers
-//! alpha of a plan. Exact along a sampled direction; what couples directions and segments is left out, and lengths are
-//! added as if all terms pointed the same way. Otherwise, of quadratic tetrahedra, a rule of thumb stands for it:
+//! Where elements have a second order, it is sampled: q_j, the mean length of the second-order term on the skin that moves
+//! (`moving_points`) for a unit of translation along and of rotation about each axis of each segment, and e = sum_j alpha_j^2 q_j
+//! for the numbers alpha of a plan. Exact along a sampled direction; what couples directions and segments is left out, and
+//! lengths are added as if all terms pointed the same way. Otherwise, of quadratic tetrahedra, a rule of thumb stands for it:
 //!
 //! e = 0.15 d^2 / h + 2.7 h (1 - cos theta)
 //!

@@ -4,7 +4,7 @@
 //! two segments. Pair p has one scale s_p, the largest component of U_kl over 32767, and is stored as round(U_kl / s_p): a
 //! node is off by at most a_k a_l s_p / 2 for each pair. Pairs are in the order (0,0), (0,1), ..., (0,n-1), (1,1), ...
 //!
-//! What the second order leaves out is told from samples of the third: for each segment the mean length of u3 on the skin
+//! What the second order leaves out is told from samples of the third: for each segment the mean length of u3 on the skin that moves
 //! for a unit of translation along each axis and of rotation about each axis, tau_j, put together as if the cubic term
 //! were the same in every direction: e3 = (sum_j alpha_j^2 tau_j^(2/3))^(3/2), exact along each sampled direction.
 
@@ -14,6 +14,7 @@ use super::rigid_numbers::{SAMPLES, rigid_numbers};
 use super::superposition::{ResponseSegment, coefficients};
 use crate::mesh::Vector;
 use crate::plan::RigidMovement;
+use crate::prediction::least_moving;
 use crate::solver::vectorised;
 
 /// Numbers that are summed side by side, whole vectors of them.
@@ -38,7 +39,7 @@ pub struct QuadraticForm {
     pub third: Vec<[f64; SAMPLES]>,
 }
 
-/// What a plan has of the second and the third order, as means over the skin in mm.
+/// What a plan has of the second and the third order, as means over the skin that moves, in mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BeyondLinear {
     /// Of |u2|.
@@ -77,7 +78,7 @@ impl QuadraticForm {
         BeyondLinear { second, third: self.third_order(segments, movements) }
     }
 
-    /// Adds u2 to the displacement of each node, and tells its mean length. `numbers` are those of all segments.
+    /// Adds u2 to the displacement of each node, and tells its mean length over those that move. `numbers` are those of all segments.
     fn add(&self, numbers: &[f64], displacement: &mut [Vector]) -> f64 {
         let length = 3 * displacement.len();
         if length == 0 {
@@ -90,21 +91,25 @@ impl QuadraticForm {
             .zip(self.values.chunks_exact(length))
             .filter(|(factor, _)| *factor != 0.0)
             .collect();
-        let stretch = |(place, nodes): (usize, &mut [Vector])| -> f64 {
+        let least = least_moving(displacement.iter().map(Vector::norm));
+        let stretch = |(place, nodes): (usize, &mut [Vector])| -> [f64; 2] {
             let mut sums = [0.0_f32; STRETCH];
             let (begin, count) = (place * STRETCH, 3 * nodes.len());
             add_terms(&terms, begin, &mut sums[..count]);
-            let mut lengths = 0.0;
+            let (mut lengths, mut moving) = (0.0, 0.0);
             for (node, sum) in nodes.iter_mut().zip(sums.chunks_exact(3)) {
                 let second = Vector::new(sum[0].into(), sum[1].into(), sum[2].into());
+                if node.norm() >= least {
+                    (lengths, moving) = (lengths + second.norm(), moving + 1.0);
+                }
                 *node += second;
-                lengths += second.norm();
             }
-            lengths
+            [lengths, moving]
         };
         let stretches = displacement.par_chunks_mut(STRETCH / 3).enumerate();
-        let lengths: Vec<f64> = stretches.map(stretch).collect();
-        lengths.iter().sum::<f64>() / (length / 3) as f64
+        let sums: Vec<[f64; 2]> = stretches.map(stretch).collect();
+        let [lengths, moving] = sums.iter().fold([0.0; 2], |[a, b], [c, d]| [a + c, b + d]);
+        lengths / moving.max(1.0)
     }
 
     /// The estimate of the third order for one movement of each segment.
@@ -183,6 +188,15 @@ mod tests {
         }
         let expected = exact.iter().map(Vector::norm).sum::<f64>() / nodes as f64;
         assert!((mean - expected).abs() < allowed);
+    }
+
+    #[test]
+    fn the_second_order_is_the_mean_over_what_the_first_moves() {
+        let values = vec![100, 0, 0, 300, 0, 0, 900, 0, 0, 0, 0, 0];
+        let form = QuadraticForm { numbers: 1, values, scales: vec![0.01], third: Vec::new() };
+        // Two nodes move, and a tenth of the farthest is the least that counts.
+        let mut displacement = [2.0, 0.2, 0.19, 0.0].map(|length| Vector::y() * length);
+        assert!((form.add(&[1.0], &mut displacement) - 2.0).abs() < 1e-6);
     }
 
     #[test]

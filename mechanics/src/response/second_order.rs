@@ -11,6 +11,7 @@ use crate::mesh::Vector;
 use crate::model::fem::force_series::{ForceSeries, Forces, Moved};
 use crate::model::fem::linear_system::{Correction, LinearSystem, Residual, Solved};
 use crate::model::problem::ModelError;
+use crate::prediction::Skin;
 use crate::progress::Progress;
 use crate::solver::SolverError;
 
@@ -29,8 +30,7 @@ pub(super) struct Solutions<'a> {
     pub system: &'a LinearSystem<'a>,
     /// Those of the segments.
     pub columns: &'a [Solved],
-    /// Nodes of the skin.
-    pub skin: &'a [u32],
+    pub skin: &'a Skin,
 }
 
 /// A displacement and its pressures.
@@ -106,7 +106,7 @@ impl Solutions<'_> {
     }
 
     fn at_skin(&self, displacement: &[Vector]) -> Vec<Vector> {
-        self.skin.iter().map(|&node| displacement[node as usize]).collect()
+        self.skin.nodes().iter().map(|&node| displacement[node as usize]).collect()
     }
 
     fn solved(
@@ -122,7 +122,7 @@ impl Solutions<'_> {
         Ok(solved.into_iter().map(State::from).collect())
     }
 
-    /// The mean length of u3 on the skin for a unit of each sampled direction of a segment.
+    /// The mean length of u3 on the skin that moves for a unit of each sampled direction of a segment.
     fn third_of(
         &self,
         segment: usize,
@@ -134,18 +134,19 @@ impl Solutions<'_> {
         let forces = both.map(|(u, v)| self.series.third(u.as_moved(), v.as_moved()));
         let residuals: Result<Vec<Residual>, ModelError> =
             forces.map(|forces| Ok(resisting(forces?, 1.0))).collect();
-        Ok(self.mean_lengths(&self.solved(residuals?, LOOSE, progress)?))
+        Ok(self.mean_lengths(&first, &self.solved(residuals?, LOOSE, progress)?))
     }
 
-    /// For each segment the mean length of u2 on the skin for a unit of each sampled direction.
+    /// For each segment the mean length of u2 on the skin that moves for a unit of each sampled direction.
     pub fn second_of_each(
         &self,
         progress: &dyn Progress,
     ) -> Result<Vec<[f64; SAMPLES]>, ModelError> {
         let segments = 0..self.columns.len() / COLUMNS_PER_SEGMENT;
         let of = |segment: usize| {
-            let second = self.squares(&self.samples(segment), SAMPLED, progress)?;
-            Ok(self.mean_lengths(&second))
+            let first = self.samples(segment);
+            let second = self.squares(&first, SAMPLED, progress)?;
+            Ok(self.mean_lengths(&first, &second))
         };
         segments.map(of).collect()
     }
@@ -168,10 +169,11 @@ impl Solutions<'_> {
         self.solved(residuals, relative_residual, progress)
     }
 
-    fn mean_lengths(&self, states: &[State]) -> [f64; SAMPLES] {
+    /// The mean length of each of some states over the skin that its direction moves.
+    fn mean_lengths(&self, directions: &[State], states: &[State]) -> [f64; SAMPLES] {
         std::array::from_fn(|direction| {
-            let lengths = self.at_skin(&states[direction].displacement);
-            lengths.iter().map(Vector::norm).sum::<f64>() / lengths.len().max(1) as f64
+            let moving = self.skin.moving_points(&directions[direction].displacement);
+            self.skin.mean_length(&moving, &states[direction].displacement)
         })
     }
 

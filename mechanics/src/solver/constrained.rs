@@ -1,4 +1,4 @@
-//! Linear systems under linear equations: A x = b + G^T m with G x = h, m the multipliers of the equations.
+//! Linear systems under linear equations: A x = G^T m - b with G x = h, m the multipliers of the equations.
 //!
 //! Conjugate residuals (Eisenstat, Elman, Schultz 1983) under a constraint preconditioner: with P the preconditioner of A and
 //! Z = P^-1 G^T, a residual r is answered by z = P^-1 r - Z n, where (G Z) n = G P^-1 r keeps G z = 0 (Keller, Gould, Wathen,
@@ -51,6 +51,8 @@ pub struct Wanted<'a> {
     pub rows: &'a [usize],
     /// h of each.
     pub values: &'a [f64],
+    /// b; nothing where it is 0.
+    pub less: &'a [[f64; 1]],
     pub relative_residual: f64,
 }
 
@@ -83,7 +85,18 @@ impl<'a> Equations<'a> {
         4e-6 * (equations * self.matrix.unknowns()) as f64
     }
 
-    /// Meets some of the equations with b = 0, from a point near by.
+    /// G^T m of the first equations; nothing where there are no multipliers.
+    pub fn forces(&self, multipliers: &[f64]) -> Vec<[f64; 1]> {
+        if multipliers.is_empty() {
+            return Vec::new();
+        }
+        let mut forces = vec![[0.0]; self.matrix.unknowns()];
+        let rows: Vec<usize> = (0..multipliers.len()).collect();
+        add_transposed(self, &rows, multipliers, &mut forces);
+        forces
+    }
+
+    /// Meets some of the equations, from a point near by.
     pub fn solve(
         &mut self,
         wanted: &Wanted,
@@ -173,11 +186,21 @@ impl Run<'_, '_> {
         self.point.multipliers.iter_mut().zip(&change).for_each(|(m, change)| *m += change);
     }
 
-    /// Sets r = G^T m - A x, and returns it relative to G^T m.
-    fn true_residual(&mut self) -> f64 {
+    /// G^T m, and what residuals are relative to: the larger one of its norm and that of b.
+    fn forces(&self) -> (Vec<[f64; 1]>, f64) {
         let mut forces = vec![[0.0]; self.point.x.len()];
         add_transposed(self.equations, self.wanted.rows, &self.point.multipliers, &mut forces);
         let scale = norm(&forces)[0];
+        match self.wanted.less.is_empty() {
+            true => (forces, scale),
+            false => (forces, scale.max(norm(self.wanted.less)[0])),
+        }
+    }
+
+    /// Sets r = G^T m - b - A x, and returns it relative to the forces.
+    fn true_residual(&mut self) -> f64 {
+        let (mut forces, scale) = self.forces();
+        forces.iter_mut().zip(self.wanted.less).for_each(|([force], [less])| *force -= less);
         let product = self.equations.matrix.product(&self.point.x);
         subtract_all(&mut forces, &[([1.0], &product)]);
         self.r = forces;
@@ -186,9 +209,7 @@ impl Run<'_, '_> {
     }
 
     fn iterate(&mut self, progress: &dyn Progress) -> Result<(), SolverError> {
-        let mut forces = vec![[0.0]; self.point.x.len()];
-        add_transposed(self.equations, self.wanted.rows, &self.point.multipliers, &mut forces);
-        let scale = norm(&forces)[0];
+        let (_, scale) = self.forces();
         let mut kept: Vec<Direction> = Vec::new();
         loop {
             let Some(new) = self.direction(&kept) else { return Ok(()) };

@@ -136,6 +136,21 @@ fn what_was_mended_is_told_by_name_and_number_and_a_whole_surface_is_not() {
 }
 
 #[test]
+fn bone_that_nothing_cuts_is_told_because_no_plan_can_move_it() {
+    let (skin, bone) = (skin(), ball(BONE, Vector::zeros()));
+    let domain = SurfaceDomain::new(&skin, &[&bone], &[]).unwrap();
+    let meshing = MeshingSettings { size: SizeField::uniform(8.0), ..MeshingSettings::default() };
+    let rules = AnatomyRules { meshing, teeth_slide: false, ..AnatomyRules::default() };
+    let told = |osteotomy: &Osteotomy| {
+        let made =
+            build(&domain, part_by_cuts(&domain, osteotomy).unwrap(), &rules, &Unobserved).unwrap();
+        made.warnings.iter().filter(|warning| warning.code == "no-cuts").count()
+    };
+    assert_eq!(told(&Osteotomy::default()), 1);
+    assert_eq!(told(&below(CUT)), 0);
+}
+
+#[test]
 fn a_second_skin_that_is_not_meshed_and_teeth_that_do_not_slide_are_told() {
     let mut skin = skin();
     let other = ball(27.0, Vector::x() * 120.0);

@@ -4,6 +4,7 @@
 
 mod anatomy;
 mod cephalometry;
+mod conformation;
 mod domain;
 mod format;
 mod golden;
@@ -17,6 +18,7 @@ mod optimisation;
 mod osteotomy;
 mod prediction;
 mod registration;
+mod repair;
 mod response;
 mod segmentation;
 mod solver;

@@ -135,6 +135,22 @@ fn a_masked_head_is_brought_back_although_a_third_of_it_has_changed() {
 }
 
 #[test]
+fn copies_to_the_rounding_of_files_are_aligned_whatever_the_movement() {
+    let rounded = |point: &Vector| point.map(|coordinate| f64::from(coordinate as f32));
+    let fixed = map(&head(4), rounded);
+    for number in 0..16 {
+        let k = f64::from(number);
+        let degrees = [12.0 - 1.3 * k, 3.0 + 0.7 * k, -6.0 + 0.9 * k];
+        let wanted = movement(degrees, [5.6 - 0.4 * k, 0.3 * k, -2.0 + 0.2 * k]);
+        let moving = map(&fixed, |point| rounded(&wanted.inverse().apply(point)));
+        let found = IterativeClosestPoint::default().align(&fixed, &moving, &Unobserved);
+        let found = found.unwrap_or_else(|error| panic!("{number}: {error}"));
+        let (degrees, shift) = difference(&found.transform, &wanted, &Vector::zeros());
+        assert!(degrees < 1e-3 && shift < 1e-3, "{number}: {degrees} degrees, {shift} mm");
+    }
+}
+
+#[test]
 fn noise_of_a_third_of_a_millimetre_costs_less_than_a_tenth() {
     let wanted = movement([7.0, -5.0, 11.0], [1.5, -0.7, 5.0]);
     let (fixed, moving) = operated_head(&wanted, 0.3);

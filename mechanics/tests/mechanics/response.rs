@@ -250,6 +250,37 @@ fn two_segments_that_part_are_farther_apart_than_either_moves() {
     assert!(!columns.linearity.of(&[by(-20.0), by(3.0)]).is_within_linear_range());
 }
 
+/// A long block whose far end nothing moves.
+fn long_block() -> Case {
+    let mut mesh = sample::block(Vector::new(160.0, 20.0, 10.0), [32, 4, 3], CellShape::Tet4);
+    let (jaw, rest): (Vec<u32>, Vec<u32>) =
+        mesh.node_sets["z_min"].iter().partition(|node| mesh.nodes[**node as usize].x < 11.0);
+    mesh.node_sets.insert("jaw".to_owned(), jaw);
+    mesh.node_sets.insert("rest".to_owned(), rest);
+    Case {
+        skin: Some(set("z_max")),
+        segments: vec![segment("jaw")],
+        fixed: vec![set("rest")],
+        ..case_of(mesh, material(15.0, 0.45))
+    }
+}
+
+#[test]
+fn what_linearity_leaves_out_is_told_of_the_skin_that_moves() {
+    let case = long_block();
+    let movement =
+        RigidMovement::about_pivot(Vector::zeros(), Vector::zeros(), Vector::new(0.0, 0.0, 4.0));
+    let told = columns(&case, &tight()).linearity.of(&[movement]).estimate;
+    let prediction = direct(&case, &[movement], &tight());
+    let left_out = prediction.nonlinearity.unwrap().left_out;
+    let skin = at_rest(&case, &tight()).skin;
+    let moving = skin.moving_points(&prediction.displacement);
+    let mean = skin.mean_length(&moving, &left_out);
+    assert!((told - mean).abs() < 0.15 * mean, "{told} {mean}");
+    let diluted = skin.mean_length(&skin.points(), &left_out);
+    assert!(told > 2.0 * diluted, "{told} {diluted}, {} points", moving.len());
+}
+
 /// The half head with a muscle around lines on each side, and fat of which there is less.
 fn head_with_muscles() -> Case {
     let case = head();

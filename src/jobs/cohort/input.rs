@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use crate::schema::CohortDocument;
 use crate::schema::compare::result::ComparisonDocument;
 use crate::schema::hashes::cohort_hash;
+use crate::schema::predict::result::ResultDocument;
 
 /// A cohort of comparisons.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -18,9 +19,23 @@ pub struct CohortInput {
     pub spec: CohortDocument,
     /// What each job found, by its id.
     pub comparisons: BTreeMap<String, ComparisonDocument>,
+    /// The SHA-256 of the scan that each compared with, by its id: who the patient was.
+    #[serde(default)]
+    pub actuals: BTreeMap<String, String>,
 }
 
 impl CohortInput {
+    /// Takes up what a job found, if it compared.
+    pub fn take(&mut self, job: &str, result: ResultDocument) -> bool {
+        let inputs = result.provenance.inputs.into_iter();
+        let actual = inputs.into_iter().find(|input| input.role == "actual");
+        self.actuals.extend(actual.map(|actual| (job.to_owned(), actual.sha256)));
+        let found = result.comparison.map(|comparison| (job.to_owned(), comparison));
+        let has_compared = found.is_some();
+        self.comparisons.extend(found);
+        has_compared
+    }
+
     /// The hash of everything that decides the numbers.
     pub fn spec_hash(&self) -> String {
         cohort_hash(&self.spec, &self.comparisons)

@@ -1,11 +1,13 @@
 //! The job of a cohort.
 
 use super::input::CohortInput;
+use super::subjects::doubts;
 use crate::jobs::clock::Observed;
 use crate::jobs::failure::JobError;
 use crate::jobs::output::{JobOutput, Workplace};
 use crate::jobs::result::folder::ResultFolder;
 use crate::jobs::result::provenance::{Origin, encode_result};
+use crate::jobs::result::warnings::warning_documents;
 use crate::schema::cohort::result::{
     CohortGroupDocument, CohortPairDocument, CohortResultDocument, CohortRowDocument,
 };
@@ -50,9 +52,10 @@ pub fn cohort_job(
     };
     let mut folder = ResultFolder::open(place.out)?;
     let provenance = origin.provenance(&clock);
+    let warnings = warning_documents(doubts(input).iter());
     let result = ResultDocument {
         cohort: Some(cohort),
-        ..ResultDocument::new(input.job.clone(), &folder.files, provenance, Vec::new())
+        ..ResultDocument::new(input.job.clone(), &folder.files, provenance, warnings)
     };
     folder.add(OutputName::ResultJson, &encode_result(&result)?)?;
     Ok(JobOutput { result, files: folder.files, meshes: Vec::new() })
@@ -71,7 +74,7 @@ fn groups(input: &CohortInput) -> Result<Vec<CohortGroupDocument>, JobError> {
                 Some(distances) => rows.push(CohortRowDocument { subject, distances }),
                 None => {
                     let at = Pointer::root().key("spec").key("groups").key(name).index(index);
-                    let detail = "this comparison has no such distances";
+                    let detail = "this comparison has none of the distances that `distance` asks for; `node_wise` needs surfaces whose nodes correspond";
                     faults.add(&at, ErrorCode::NoSuchOutput, detail);
                 }
             }
@@ -98,21 +101,31 @@ fn pairs(
     for (index, first) in groups.iter().enumerate() {
         for second in &groups[index + 1..] {
             let (a, b) = (values(first), values(second));
-            let differences: Vec<f64> = a.iter().zip(&b).map(|(a, b)| a - b).collect();
-            let equality = Equality { within: EQUAL_WITHIN_MM, zeros: ZeroRule::Wilcox };
-            let test = signed_rank(&a, &b, equality).ok();
-            pairs.push(CohortPairDocument {
-                first: first.name.clone(),
-                second: second.name.clone(),
-                median_difference_mm: Statistics::plain(&differences)?.median,
-                differing: test.map_or(0, |test| test.differing as u64),
-                w_first_larger: test.map_or(0.0, |test| test.positive),
-                w_second_larger: test.map_or(0.0, |test| test.negative),
-                p: test.map(|test| test.two_sided_p),
-                is_exact: test.is_none_or(|test| test.exact),
-                smallest_p: test.map_or(1.0, |test| test.smallest_p),
-            });
+            pairs.push(tested_pair(&first.name, &a, &second.name, &b)?);
         }
     }
     Ok(pairs)
+}
+
+/// Two methods by their numbers for the same subjects.
+pub fn tested_pair(
+    first: &str,
+    a: &[f64],
+    second: &str,
+    b: &[f64],
+) -> Result<CohortPairDocument, JobError> {
+    let differences: Vec<f64> = a.iter().zip(b).map(|(a, b)| a - b).collect();
+    let equality = Equality { within: EQUAL_WITHIN_MM, zeros: ZeroRule::Wilcox };
+    let test = signed_rank(a, b, equality).ok();
+    Ok(CohortPairDocument {
+        first: first.to_owned(),
+        second: second.to_owned(),
+        median_difference_mm: Statistics::plain(&differences)?.median,
+        differing: test.map_or(0, |test| test.differing as u64),
+        w_first_larger: test.map_or(0.0, |test| test.positive),
+        w_second_larger: test.map_or(0.0, |test| test.negative),
+        p: test.map(|test| test.two_sided_p),
+        is_exact: test.is_none_or(|test| test.exact),
+        smallest_p: test.map_or(1.0, |test| test.smallest_p),
+    })
 }

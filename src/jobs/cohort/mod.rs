@@ -2,6 +2,7 @@
 
 mod input;
 mod job;
+mod subjects;
 
 pub use input::CohortInput;
-pub use job::cohort_job;
+pub use job::{cohort_job, tested_pair};

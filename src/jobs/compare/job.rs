@@ -1,5 +1,7 @@
 //! The job of a comparison.
 
+use std::sync::Arc;
+
 use super::input::CompareInput;
 use super::meshes::ComparedMeshes;
 use super::surfaces::{Compared, Pair};
@@ -7,16 +9,19 @@ use crate::jobs::clock::Observed;
 use crate::jobs::failure::JobError;
 use crate::jobs::fetch::no_surface;
 use crate::jobs::output::{JobOutput, Workplace};
+use crate::jobs::report::{ComparisonFacts, Report, comparison_report};
 use crate::jobs::result::folder::ResultFolder;
 use crate::jobs::result::provenance::{Origin, encode_result};
 use crate::jobs::result::warnings::warning_documents;
+use crate::jobs::source::{MeshSource, StoredMesh};
 use crate::schema::predict::document::OutputName;
+use crate::schema::predict::output::PictureName;
 use crate::schema::predict::result::ResultDocument;
-use crate::schema::{Faults, Pointer};
+use crate::schema::{Faults, Language, Limits, Pointer};
 use mechanics::format::vtk::vtp;
 use mechanics::format::{ArrayValues, NamedValues, SurfaceOutput};
 use mechanics::mesh::{Frame, TriangleSurface};
-use mechanics::progress::{Phase, Progress};
+use mechanics::progress::{Phase, Progress, Unobserved};
 
 /// Time a comparison may take, in seconds; a prediction that compares has its own budget.
 const WALL_S: f64 = 600.0;
@@ -29,32 +34,11 @@ pub fn compare_job(
 ) -> Result<JobOutput, JobError> {
     let clock = Observed::start(progress, WALL_S);
 
-    // 1. Documents and surfaces.
-    let mut faults = Faults::default();
-    input.spec.check(place.limits, &mut faults);
-    faults.into_result()?;
-    let at = Pointer::root().key("spec");
-    let prediction = input.fetch_prediction(place.sources, &at.key("prediction"))?;
-    let spec = input.spec.to_compare_to();
-    let meshes = ComparedMeshes::fetch(&spec, place.sources, &at)?;
-    clock.check()?;
+    // 1. Documents, surfaces and distances.
+    let Measured { surface, frame, prediction, meshes, compared } =
+        input.measure(place.sources, place.limits, &clock)?;
 
-    // 2. Distances.
-    clock.phase(Phase::Compare);
-    let wrong = || no_surface(&at.key("prediction"));
-    let surface = prediction.surface_in_mm().ok_or_else(wrong)?;
-    let frame = prediction.frame;
-    let pair = Pair {
-        prediction: &surface,
-        prediction_frame: frame,
-        displacement: prediction.of_points.displacement.as_deref(),
-        skin_regions: &prediction.of_points.sets,
-        meshes: &meshes,
-        at,
-    };
-    let compared = pair.compare(&spec, &clock)?;
-
-    // 3. Files.
+    // 2. Files.
     clock.phase(Phase::Write);
     let origin = Origin {
         spec_hash: input.spec_hash(&prediction.sha256, &meshes),
@@ -69,6 +53,7 @@ pub fn compare_job(
     let provenance = origin.provenance(&clock);
     let result = ResultDocument {
         comparison: Some(compared.document.clone()),
+        pictures: input.job.as_ref().map_or_else(Vec::new, |_| PictureName::REPORTS.to_vec()),
         ..ResultDocument::new(
             input.job.clone(),
             &folder.files,
@@ -78,6 +63,67 @@ pub fn compare_job(
     };
     folder.add(OutputName::ResultJson, &encode_result(&result)?)?;
     Ok(JobOutput { result, files: folder.files, meshes: Vec::new() })
+}
+
+/// A surface that was held against another.
+struct Measured {
+    surface: Arc<TriangleSurface>,
+    frame: Option<Frame>,
+    prediction: StoredMesh,
+    meshes: ComparedMeshes,
+    compared: Compared,
+}
+
+impl CompareInput {
+    fn measure(
+        &self,
+        sources: &dyn MeshSource,
+        limits: &Limits,
+        clock: &Observed,
+    ) -> Result<Measured, JobError> {
+        let mut faults = Faults::default();
+        self.spec.check(limits, &mut faults);
+        faults.into_result()?;
+        let at = Pointer::root().key("spec");
+        let prediction = self.fetch_prediction(sources, &at.key("prediction"))?;
+        let spec = self.spec.to_compare_to();
+        let meshes = ComparedMeshes::fetch(&spec, sources, &at)?;
+        clock.check()?;
+        clock.phase(Phase::Compare);
+        let wrong = || no_surface(&at.key("prediction"));
+        let surface = prediction.surface_in_mm().ok_or_else(wrong)?;
+        let frame = prediction.frame;
+        let pair = Pair {
+            prediction: &surface,
+            prediction_frame: frame,
+            displacement: prediction.of_points.displacement.as_deref(),
+            skin_regions: &prediction.of_points.sets,
+            meshes: &meshes,
+            at,
+        };
+        let compared = pair.compare(&spec, clock)?;
+        Ok(Measured { surface, frame, prediction, meshes, compared })
+    }
+
+    /// The report of a comparison that has ended: its surfaces are measured anew, its numbers are those of its result.
+    pub fn report(
+        &self,
+        result: &ResultDocument,
+        language: Language,
+        sources: &dyn MeshSource,
+        limits: &Limits,
+    ) -> Result<Report, JobError> {
+        let clock = Observed::start(&Unobserved, WALL_S);
+        let Measured { surface, frame, compared, .. } = self.measure(sources, limits, &clock)?;
+        let facts = ComparisonFacts {
+            surface: &surface,
+            signed_distance: &compared.signed_distance,
+            frame: frame.unwrap_or_default(),
+            comparison: result.comparison.as_ref().unwrap_or(&compared.document),
+            result,
+        };
+        Ok(comparison_report(&facts, language)?)
+    }
 }
 
 /// `skin.vtp` of a comparison: the prediction with its distance at each point.

@@ -25,6 +25,10 @@ impl MeshSource for MadeBeside<'_> {
         self.made.get(id).cloned().map_or_else(|| self.stored.mesh(id), Ok)
     }
 
+    fn model(&self, job: &str) -> Result<Vec<u8>, SourceError> {
+        self.stored.model(job)
+    }
+
     fn predicted_skin(&self, job: &str) -> Result<StoredMesh, SourceError> {
         self.stored.predicted_skin(job)
     }

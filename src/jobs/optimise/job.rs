@@ -8,6 +8,7 @@ use crate::jobs::clock::Observed;
 use crate::jobs::failure::JobError;
 use crate::jobs::output::{JobOutput, Workplace};
 use crate::jobs::predict::{PredictInput, Predicted, Prepared, statistics};
+use crate::jobs::report::{PredictionFacts, write_reports};
 use crate::jobs::result::folder::ResultFolder;
 use crate::jobs::result::pictures::displacement_picture;
 use crate::jobs::result::provenance::{
@@ -169,7 +170,7 @@ impl Found {
             frame,
             queue_s: input.queue_s,
         };
-        let field_data = origin.field_data(input.spec.method, &self.solver);
+        let field_data = origin.field_data(input.spec.method, None, &self.solver);
         let mut folder = ResultFolder::open(place.out)?;
         for name in input.files() {
             let bytes = match name {
@@ -191,13 +192,24 @@ impl Found {
         add_method(&mut provenance, input.spec.method, mesh, self.solver);
         let warnings =
             warnings_after(&planned.told, planned.warnings.iter().chain(&scene.warnings));
-        let result = ResultDocument {
-            pictures: input.pictures_beside(&folder.files),
+        let mut result = ResultDocument {
             statistics: Some(statistics),
             optimisation: Some(self.document),
             nonlinearity_unknown: Some(NOT_VERIFIED.to_owned()),
             ..ResultDocument::new(input.job.clone(), &folder.files, provenance, warnings)
         };
+        let facts = PredictionFacts {
+            case: &input.case,
+            plan: &input.plan,
+            scene,
+            frame,
+            after: &skin.surface,
+            range_mm: input.spec.range_mm(),
+            result: &result,
+        };
+        write_reports(&input.files(), &facts, &mut folder)?;
+        result.pictures = input.pictures_beside(&folder.files);
+        result.files.clone_from(&folder.files);
         folder.add(OutputName::ResultJson, &encode_result(&result)?)?;
         Ok(JobOutput { result, files: folder.files, meshes: Vec::new() })
     }

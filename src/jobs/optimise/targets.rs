@@ -1,5 +1,7 @@
 //! Inverse planning: the documents of a job, checked, and its targets as points of the skin.
 
+use std::collections::BTreeMap;
+
 use super::input::OptimiseInput;
 use crate::jobs::failure::JobError;
 use crate::jobs::predict::{PredictInput, Prepared};
@@ -8,8 +10,8 @@ use crate::schema::ErrorCode;
 use crate::schema::hashes;
 use crate::schema::inner_column::{InnerColumnDocument, inner_amounts};
 use crate::schema::optimise::document::TargetDocument;
-use crate::schema::{Faults, Limits, Pointer, Problem};
-use mechanics::mesh::{SurfaceSearch, Warning};
+use crate::schema::{Faults, Limits, Pointer, Problem, Triple};
+use mechanics::mesh::{SurfaceSearch, Vector, Warning};
 use mechanics::optimisation::{Goal, SkinPoint, Target};
 use mechanics::prediction::{LANDMARK_FAR, Skin};
 use mechanics::response::{InnerLoad, ResponseError, chosen};
@@ -145,20 +147,19 @@ impl OptimiseInput {
         let mut targets = Vec::new();
         let mut faults = Faults::default();
         for (index, document) in self.spec.targets.iter().enumerate() {
-            let goals = match &document.landmark {
+            let goals = match place_of(document, &rest.scene.landmarks) {
                 None => node_goals(document, &part_of(index), skin),
-                Some(name) => {
+                Some(Place { at: landmark, name }) => {
                     let search = match &search {
                         Some(search) => search,
                         None => {
                             search.insert(SurfaceSearch::new(&skin.surface).map_err(degenerate)?)
                         }
                     };
-                    let landmark = rest.scene.landmarks.get(name).copied().unwrap_or_default();
                     let closest = search.closest(&landmark);
                     if closest.distance > LANDMARK_FAR {
                         let detail = format!(
-                            "landmark {name:?} takes the displacement of the closest point of the skin"
+                            "{name} takes the displacement of the closest point of the skin"
                         );
                         let warning = Warning::new("landmark-far", detail);
                         warnings.push(warning.with("distance_mm", closest.distance));
@@ -175,6 +176,25 @@ impl OptimiseInput {
         faults.into_result()?;
         Ok(targets)
     }
+}
+
+/// A single place that a target is about, and what it is called.
+struct Place {
+    at: Vector,
+    name: String,
+}
+
+/// `None` of a target of nodes.
+fn place_of(document: &TargetDocument, landmarks: &BTreeMap<String, Vector>) -> Option<Place> {
+    let stated = document.point_mm.map(|Triple([x, y, z])| Place {
+        at: Vector::new(x, y, z),
+        name: format!("point {x} {y} {z}"),
+    });
+    let landmark = document.landmark.as_ref().map(|name| Place {
+        at: landmarks.get(name).copied().unwrap_or_default(),
+        name: format!("landmark {name:?}"),
+    });
+    stated.or(landmark)
 }
 
 /// A goal for each point of a part of the skin.

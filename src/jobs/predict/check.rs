@@ -1,6 +1,7 @@
 //! Check of a case and a plan, before anything is solved.
 
 use super::cost;
+use super::density::default_density;
 use super::input::{PredictInput, Prepared};
 use super::overlap::{Collision, collisions};
 use super::planned::{measures, movements, swapped_sides};
@@ -48,6 +49,7 @@ impl Prepared {
         let collisions = collisions(&self.case, scene);
         let mut of_plan: Vec<Warning> = collisions.iter().filter_map(Collision::warning).collect();
         of_plan.extend(swapped_sides(&input.case, self.case.frame));
+        of_plan.extend(default_density(input));
         let warnings = self.warnings.iter().chain(&scene.warnings).chain(&of_plan);
         CheckDocument {
             nodes: nodes as u64,

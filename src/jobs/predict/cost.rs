@@ -7,7 +7,7 @@ use crate::schema::methods::{MethodName, time_band};
 use crate::schema::predict::refine::RefineBoundDocument;
 use crate::schema::predict::time_band::TimeBandDocument;
 use mechanics::mesh::CellShape;
-use mechanics::prediction::{ElementChoice, Laws, MethodKind, Scene, Unknowns};
+use mechanics::prediction::{ElementChoice, Laws, MethodKind, NEWTON_MAY_TAKE, Scene, Unknowns};
 use mechanics::prediction::{ModelError, SolverError};
 
 /// The peak of a whole process in MB was measured for blocks of up to 384 000 cells (12, 24 and 40 bricks along each
@@ -24,8 +24,6 @@ const QUADRATIC: f64 = 6700.0;
 /// How much more an element takes at finite strain: 1160 to 1600 bytes a tetrahedron, 10 300 a hexahedron and 6100 a wedge
 /// were measured on hard blocks of 109 350 tetrahedra, 18 225 hexahedra and 36 450 wedges (`docs/finite-strain.md`).
 const AT_FINITE_STRAIN: f64 = 2.5;
-/// How many times the time of a linear answer Newton's method takes, at least and at most.
-const STEPS: [f64; 2] = [4.0, 25.0];
 /// A cell that is read, drawn and written, and not assembled.
 const READ_ONLY: f64 = 200.0;
 /// A mesh that is refined is there beside the one before it and the tree of its cells.
@@ -96,13 +94,15 @@ pub fn time_s(scene: &Scene, method: MethodName) -> Option<TimeBandDocument> {
     };
     if is_at_finite_strain(scene) {
         let linear = time_band(MethodKind::FemLinear.name(), unknowns as u64);
-        let [least, most] = STEPS;
-        return linear.map(|TimeBandDocument { low, high }| TimeBandDocument {
-            low: least * low,
-            high: most * high,
-        });
+        return linear.map(at_finite_strain);
     }
     time_band(method.chosen().name(), unknowns as u64)
+}
+
+/// The times of Newton's method, where a linear answer takes such.
+pub fn at_finite_strain(linear: TimeBandDocument) -> TimeBandDocument {
+    let [least, most] = NEWTON_MAY_TAKE;
+    TimeBandDocument { low: least * linear.low, high: most * linear.high }
 }
 
 /// The most cells up to which a scene may be refined, and what these are expected to take: the cells of the spec, or fewer

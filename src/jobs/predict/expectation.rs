@@ -1,12 +1,12 @@
 //! Expected choice of `auto`, before anything is solved.
 
-use super::cost::{memory_at_finite_strain_mb, memory_mb, time_s};
+use super::cost::{at_finite_strain, memory_at_finite_strain_mb, memory_mb, time_s};
 use super::input::{PredictInput, Prepared};
 use crate::schema::predict::expectation::{
     BandDocument, ExpectationDocument, ExpectedRungDocument, RESTS_ON,
 };
 use crate::schema::predict::time_band::TimeBandDocument;
-use mechanics::prediction::{Accepted, MAY_TAKE, Rung};
+use mechanics::prediction::{Accepted, Rung, SECOND_ORDER_TAKES};
 use mechanics::response::by_rule_of_thumb;
 
 /// The rule of thumb is made not to be too small; at most it was so many times too large (`docs/estimates.md`).
@@ -43,17 +43,18 @@ impl Prepared {
     fn expected_rungs(&self, input: &PredictInput) -> Vec<ExpectedRungDocument> {
         let (scene, linear) = (&self.scene, time_s(&self.scene, input.spec.method));
         let memory = memory_mb(scene, 0);
-        let rung = |(rung, times, memory_mb): (Rung, f64, f64)| ExpectedRungDocument {
+        let second_order = linear.map(|TimeBandDocument { low, high }| TimeBandDocument {
+            low: SECOND_ORDER_TAKES * low,
+            high: SECOND_ORDER_TAKES * high,
+        });
+        let newton = linear.map(at_finite_strain);
+        let rung = |(rung, time_s, memory_mb): (Rung, _, f64)| ExpectedRungDocument {
             name: rung.name().to_owned(),
-            time_s: linear.map(|TimeBandDocument { low, high }| TimeBandDocument {
-                low: times * low,
-                high: times * high,
-            }),
+            time_s,
             memory_mb,
         };
-        let [second_order, newton] = MAY_TAKE;
         let rungs = [
-            (Rung::Linear, 1.0, memory),
+            (Rung::Linear, linear, memory),
             (Rung::SecondOrder, second_order, memory),
             (Rung::FiniteStrain, newton, memory_at_finite_strain_mb(scene)),
         ];

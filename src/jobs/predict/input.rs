@@ -13,7 +13,9 @@ use crate::schema::ErrorCode;
 use crate::schema::case::bone_landmark::check_bone_landmarks;
 use crate::schema::case::conversion::centre;
 use crate::schema::case::document::{CaseMeshes, NamedMesh};
+use crate::schema::compare::document::CompareToDocument;
 use crate::schema::hashes;
+use crate::schema::learn::model::ModelDocument;
 use crate::schema::plan::document::PlanContext;
 use crate::schema::predict::document::OutputName;
 use crate::schema::predict::output::PictureName;
@@ -22,6 +24,7 @@ use crate::schema::{
     CaseDocument, Faults, Limits, PlanDocument, Pointer, PredictDocument, WarningDocument,
 };
 use mechanics::mesh::Warning;
+use mechanics::mesh::ignored::listed;
 use mechanics::mesh::quality::{QualityReport, quality};
 use mechanics::prediction::{Case, Plan, Scene, Settings};
 
@@ -49,6 +52,8 @@ pub struct Prepared {
     pub contents: BTreeMap<String, String>,
     /// The surface that the skin is to be compared with.
     pub compared: Option<ComparedMeshes>,
+    /// What the skin is corrected by.
+    pub model: Option<ModelDocument>,
     /// Of the meshes and of the conversion; those of the scene are in the scene.
     pub warnings: Vec<Warning>,
     /// What the meshing of the volume had to say.
@@ -69,6 +74,7 @@ impl PredictInput {
     pub fn prepare(&self, sources: &dyn MeshSource, limits: &Limits) -> Result<Prepared, JobError> {
         let stored = self.fetch(sources)?;
         let compared = self.fetch_compared(sources)?;
+        let model = self.fetch_model(sources)?;
         let meshes = self.case_meshes(&stored)?;
         let converted = self.convert(&meshes, limits)?;
         let Converted { case, plan, settings, .. } = &converted;
@@ -94,9 +100,24 @@ impl PredictInput {
             inputs: self.inputs(&stored, compared.as_ref()),
             contents: stored.iter().map(|(id, mesh)| (id.clone(), mesh.sha256.clone())).collect(),
             compared,
+            model,
             warnings,
             told,
         })
+    }
+
+    /// Every mesh that it reads.
+    pub fn mesh_ids(&self) -> Vec<String> {
+        let mut ids = self.case.mesh_ids();
+        let is_bone = |id: &str| self.case.bones.iter().any(|bone| bone.name == id);
+        let mut plan = self.plan.clone();
+        for (_, id) in plan.surface_references_mut() {
+            if !is_bone(id) {
+                ids.push(id.clone());
+            }
+        }
+        ids.extend(self.spec.compare_to.iter().flat_map(CompareToDocument::mesh_ids));
+        ids
     }
 
     /// The files to write but for `result.json`: those asked for, or skin and moved bones. A case
@@ -134,7 +155,8 @@ impl PredictInput {
         for name in self.spec.accept_regions_mm.keys() {
             if !case.skin_regions.contains_key(name) {
                 let at = Pointer::root().key("spec").key("accept_regions_mm").key(name);
-                let detail = format!("the case has no part of the skin {name:?}");
+                let known = listed(case.skin_regions.keys());
+                let detail = format!("the case has no part of the skin {name:?}; it has: {known}");
                 faults.add(&at, ErrorCode::UnknownRegion, detail);
             }
         }

@@ -2,7 +2,9 @@
 
 mod check;
 mod comparison;
+mod correction;
 mod cost;
+mod density;
 mod expectation;
 mod facing;
 mod input;

@@ -5,12 +5,15 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::comparison::compare_skin;
+use super::correction::{CORRECTED_FILE, Correction, corrected};
+use super::density::default_density;
 use super::input::{PredictInput, Prepared};
 use super::overlap::{Collision, collisions, through_skin};
 use super::planned::{measures, swapped_sides};
 use crate::jobs::clock::Observed;
 use crate::jobs::failure::JobError;
 use crate::jobs::output::{JobOutput, MadeMesh};
+use crate::jobs::report::{PredictionFacts, write_reports};
 use crate::jobs::result::folder::ResultFolder;
 use crate::jobs::result::pictures::displacement_picture;
 use crate::jobs::result::provenance::{
@@ -83,12 +86,15 @@ impl Predicted {
         // 2. Against another surface, if asked.
         clock.phase(Phase::Compare);
         let compared = compare_skin(input, &prepared, &skin, clock)?;
+        let correction = corrected(input, &prepared, &prediction)?;
         let mut warnings = prepared.warnings.clone();
+        warnings.extend(correction.iter().flat_map(|own| own.warnings.iter().cloned()));
         warnings.extend(prediction.warnings.iter().cloned());
         let (case, scene) = (&prepared.case, &prepared.scene);
         warnings.extend(collisions(case, scene).iter().filter_map(Collision::warning));
         warnings.extend(through_skin(case, scene, &prediction));
         warnings.extend(swapped_sides(&input.case, case.frame));
+        warnings.extend(default_density(input));
         if let Some(compared) = &compared {
             skin.signed_distance = Some(compared.signed_distance.clone());
             warnings.extend(compared.warnings.iter().cloned());
@@ -114,10 +120,11 @@ impl Predicted {
             optimisation,
             adequacy,
             refinement,
+            correction,
             warnings,
         };
         let mut folder = ResultFolder::open(out)?;
-        finished.write_files(input, &mut folder)?;
+        finished.write_files(input, clock, &mut folder)?;
 
         // 4. The manifest.
         let result = finished.result(input, clock, &folder.files);
@@ -141,6 +148,7 @@ struct Finished<'a> {
     optimisation: Option<OptimisationDocument>,
     adequacy: Option<AdequacyDocument>,
     refinement: Option<RefinementDocument>,
+    correction: Option<Correction>,
     warnings: Vec<Warning>,
 }
 
@@ -148,6 +156,11 @@ impl Finished<'_> {
     /// The method that was used.
     fn method(&self) -> MethodName {
         MethodName::Named(self.prepared.scene.settings.method.kind())
+    }
+
+    /// The model that `auto` took.
+    fn model(&self) -> Option<&str> {
+        self.adequacy.as_ref().map(|adequacy| adequacy.taken.as_str())
     }
 
     fn kept(&self, wanted: &[KeptName]) -> Vec<MadeMesh> {
@@ -176,9 +189,14 @@ impl Finished<'_> {
         moved
     }
 
-    fn write_files(&self, input: &PredictInput, folder: &mut ResultFolder) -> Result<(), JobError> {
+    fn write_files(
+        &self,
+        input: &PredictInput,
+        clock: &Observed,
+        folder: &mut ResultFolder,
+    ) -> Result<(), JobError> {
         let solver = solver_document(&self.prediction.solver, &self.prediction.elements);
-        let field_data = self.origin.field_data(self.method(), &solver);
+        let field_data = self.origin.field_data(self.method(), self.model(), &solver);
         let scene = &self.prepared.scene;
         let frame = self.origin.frame;
         for name in input.files() {
@@ -197,7 +215,21 @@ impl Finished<'_> {
             };
             folder.add(name, &bytes)?;
         }
-        Ok(())
+        let corrected = self.correction.as_ref().and_then(|own| own.skin.as_ref());
+        if let Some(bytes) = corrected {
+            folder.add_file(CORRECTED_FILE, OutputName::SkinVtp.media_type(), bytes)?;
+        }
+        let result = self.result(input, clock, &folder.files);
+        let facts = PredictionFacts {
+            case: &input.case,
+            plan: &input.plan,
+            scene,
+            frame,
+            after: &self.skin.surface,
+            range_mm: input.spec.range_mm(),
+            result: &result,
+        };
+        write_reports(&input.files(), &facts, folder)
     }
 
     fn result(
@@ -214,6 +246,7 @@ impl Finished<'_> {
         provenance.plan_id = input.spec.plan_id.clone();
         if let Some(adequacy) = &self.adequacy {
             provenance.method = Some(self.method().name().to_owned());
+            provenance.model = Some(adequacy.taken.clone());
             provenance.why = Some(adequacy.why());
         }
         provenance.laws = laws(&self.prepared.case, &self.prepared.scene);
@@ -227,6 +260,7 @@ impl Finished<'_> {
             optimisation: self.optimisation.clone(),
             contact: self.prediction.contact.as_ref().map(Into::into),
             adequacy: self.adequacy.clone(),
+            correction: self.correction.as_ref().map(|own| own.document.clone()),
             refinement: self.refinement.clone(),
             numerical_error_mm: self.numerical_error.clone(),
             numerical_error_unknown: self

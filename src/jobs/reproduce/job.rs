@@ -16,7 +16,9 @@ use crate::schema::compare::document::StartName;
 use crate::schema::plan::document::{PlanContext, PlanSegmentDocument};
 use crate::schema::predict::document::OutputName;
 use crate::schema::predict::result::ResultDocument;
-use crate::schema::reproduce::document::{BoneLandmarkDocument, ReproducedSegmentDocument};
+use crate::schema::reproduce::document::{
+    BoneLandmarkDocument, ReproduceDocument, ReproducedSegmentDocument,
+};
 use crate::schema::reproduce::result::{
     BaseFitDocument, DeviationDocument, FitDocument, PerformedDocument, ReproductionDocument,
 };
@@ -34,6 +36,9 @@ const WALL_S: f64 = 600.0;
 
 /// Bone that was not operated on fits to 0.1 to 0.25 mm, 0.5 % of it beyond 1 mm (Zachow et al. 2006, section 3.2).
 const MISFIT: f64 = 0.25;
+
+/// More of it than that is left where bone was moved.
+const MOVED: f64 = 0.02;
 
 /// Below this angle in radians a turn has no axis.
 const NO_TURN: f64 = 1e-9;
@@ -130,6 +135,7 @@ impl Scans<'_> {
         let bone = BoneBefore { surface: &before, mask, start };
         let base = align_base(&bone, &after, self.clock).map_err(|error| self.failed(&error))?;
         let mut warnings = base_warnings(&bone, &after, &base);
+        warnings.extend(unmasked(spec, &base));
         let mut segments = Vec::new();
         for (index, segment) in spec.segments.iter().enumerate() {
             let at = at.key("segments").index(index);
@@ -262,6 +268,21 @@ fn base_warnings(
         warnings.push(warning.with("mirrored_rms_mm", check.mirrored_rms));
     }
     warnings
+}
+
+/// A base that may hold the bone that was moved: it lies between where both say that the head is.
+fn unmasked(spec: &ReproduceDocument, found: &SurfaceAlignment) -> Option<Warning> {
+    let holds_segments = spec.segments.iter().any(|segment| segment.before.is_none());
+    if spec.base.mask.is_some() || !(holds_segments || found.share_far > MOVED) {
+        return None;
+    }
+    let detail = format!(
+        "the base has no `mask`, so that bone which was moved decides too where the head is: {:.1} % of it is left more than 1 mm from \
+         the bone after the operation. State a `mask` that holds only bone that nothing was done to",
+        100.0 * found.share_far
+    );
+    let warning = Warning::new("base-unmasked", detail);
+    Some(warning.with("share_above_1_mm", found.share_far).with("rms_mm", found.rms))
 }
 
 fn misfit(segment: &ReproducedSegmentDocument, found: &Performed) -> Option<Warning> {

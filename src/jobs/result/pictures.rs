@@ -119,7 +119,7 @@ pub fn slices_picture(anatomy: &Anatomy, frame: Frame) -> Result<String, PngErro
 }
 
 /// From where the face is seen; without a known frame its front is found from its skin.
-fn outlook(frame: Frame, skin: &TriangleSurface) -> Outlook {
+pub fn outlook(frame: Frame, skin: &TriangleSurface) -> Outlook {
     let outlook = match frame {
         Frame::Lps => Outlook::lps(),
         Frame::Ras => Outlook::ras(),

@@ -8,10 +8,12 @@ use crate::jobs::clock::{Observed, now_rfc3339, peak_rss_mb};
 use crate::jobs::failure::{JobError, thinned};
 use crate::schema::case::document::LengthUnit;
 use crate::schema::methods::MethodName;
+use crate::schema::predict::newton::NewtonDocument;
 use crate::schema::predict::result::{
-    EngineDocument, InputDocument, MeshSummaryDocument, NOT_A_DEVICE, NewtonDocument,
-    ProvenanceDocument, ResultDocument, SolverDocument, TissueLawDocument,
+    EngineDocument, InputDocument, MeshSummaryDocument, NOT_A_DEVICE, ProvenanceDocument,
+    ResultDocument, SolverDocument,
 };
+use crate::schema::predict::tissue_law::TissueLawDocument;
 use mechanics::material::LinearElastic;
 use mechanics::material::hyperelastic::{Hyperelastic, Law, SaintVenantKirchhoff};
 use mechanics::mesh::quality::QualityReport;
@@ -36,6 +38,7 @@ impl Origin {
             plan: None,
             plan_id: None,
             method: None,
+            model: None,
             why: None,
             solver: None,
             mesh: None,
@@ -52,8 +55,13 @@ impl Origin {
     }
 
     /// Texts for result files. No times: the same job writes the same bytes.
-    pub fn field_data(&self, method: MethodName, solver: &SolverDocument) -> Vec<(String, String)> {
-        let provenance = json!({
+    pub fn field_data(
+        &self,
+        method: MethodName,
+        model: Option<&str>,
+        solver: &SolverDocument,
+    ) -> Vec<(String, String)> {
+        let mut provenance = json!({
             "engine": EngineDocument::this(),
             "spec_hash": self.spec_hash,
             "inputs": self.inputs,
@@ -63,6 +71,9 @@ impl Origin {
             "units": "mm",
             "statement": NOT_A_DEVICE,
         });
+        if let Some(model) = model {
+            provenance["model"] = model.into();
+        }
         vec![("provenance".to_owned(), provenance.to_string())]
     }
 }

@@ -1,14 +1,21 @@
 //! Charts of a report: one for each scene, and one over all.
 
 use crate::schema::study::report::{ReportDocument, RowDocument, RowStatus};
+use mechanics::chart::drawing::Document;
+use mechanics::chart::svg::svg;
 use mechanics::chart::{LadderFailure, LadderMark, LadderPicture};
 use mechanics::study::pareto;
 
 /// The longest reason that a chart tells; the report has it in full.
 const REASON: usize = 110;
 
-/// The chart of one scene, or of all where none is named.
+/// The chart of one scene, or of all where none is named, as SVG.
 pub fn chart(report: &ReportDocument, scene: Option<&str>) -> String {
+    svg(&chart_drawing(report, scene), &title(report, scene))
+}
+
+/// The same as a drawing.
+pub fn chart_drawing(report: &ReportDocument, scene: Option<&str>) -> Document {
     let rows: Vec<&RowDocument> =
         report.rows.iter().filter(|row| scene.is_none_or(|scene| row.scene == scene)).collect();
     let mut series: Vec<String> = Vec::new();
@@ -38,7 +45,7 @@ pub fn chart(report: &ReportDocument, scene: Option<&str>) -> String {
         failures: &failures,
         notes: &notes(report, scene),
     };
-    picture.to_svg()
+    picture.to_drawing()
 }
 
 fn levels(rows: &[&RowDocument], label: &str) -> Vec<u32> {

@@ -25,6 +25,8 @@ pub(super) struct Scenes {
     pub inputs: Vec<InputDocument>,
     /// The SHA-256 of each mesh and of the skin of the truth's job, by its id.
     pub contents: BTreeMap<String, String>,
+    /// Of each case the SHA-256 of its plans as they were stated, by the name of its scene.
+    pub plans: BTreeMap<String, BTreeMap<String, String>>,
     pub warnings: Vec<Warning>,
 }
 

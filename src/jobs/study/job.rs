@@ -19,6 +19,7 @@ use crate::jobs::result::folder::ResultFolder;
 use crate::jobs::result::provenance::{Origin, encode_result};
 use crate::jobs::result::warnings::warning_documents;
 use crate::schema::predict::document::OutputName;
+use crate::schema::predict::output::PictureName;
 use crate::schema::predict::result::ResultDocument;
 use crate::schema::study::report::ReportDocument;
 use mechanics::mesh::Frame;
@@ -110,6 +111,7 @@ pub fn study_job(
     let provenance = origin.provenance(&clock);
     let result = ResultDocument {
         study: Some(report.summary()),
+        pictures: input.job.as_ref().map_or_else(Vec::new, |_| PictureName::REPORTS.to_vec()),
         ..ResultDocument::new(input.job.clone(), &folder.files, provenance, warnings)
     };
     folder.add(OutputName::ResultJson, &encode_result(&result)?)?;
@@ -127,6 +129,7 @@ fn rows_of(
         job: input.job.clone(),
         spec_hash: prepared.spec_hash.clone(),
         rows_key: prepared.rows_key.clone(),
+        plans: prepared.plans.clone(),
         created: now_rfc3339(),
     };
     if let Some(earlier) = input.rows_of(&prepared.rows_key) {

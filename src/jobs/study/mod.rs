@@ -13,5 +13,7 @@ pub mod stopwatch;
 mod truth;
 pub mod verdict;
 
+pub use chart::chart_drawing;
 pub use input::StudyInput;
 pub use job::study_job;
+pub use prepare::ALL_METHODS;

@@ -1,6 +1,6 @@
 //! Preparation of a study: scenes made, meshes fetched, documents checked.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::batch::Parts;
 use super::documents::Documents;
@@ -16,6 +16,9 @@ use crate::schema::{CaseDocument, Faults, Limits, Pointer, Problem};
 use mechanics::mesh::Warning;
 use mechanics::study::{Study, StudyScene, truth_cost};
 
+/// The code of the warning of a study that names no method.
+pub const ALL_METHODS: &str = "all-methods";
+
 /// A study whose documents are sound.
 pub struct PreparedStudy {
     pub study: Study,
@@ -23,6 +26,8 @@ pub struct PreparedStudy {
     /// The key of its rows.
     pub rows_key: String,
     pub inputs: Vec<InputDocument>,
+    /// As in [`Scenes`](super::documents::Scenes).
+    pub plans: BTreeMap<String, BTreeMap<String, String>>,
     pub warnings: Vec<Warning>,
 }
 
@@ -69,14 +74,31 @@ impl StudyInput {
         let baseline = self.baseline.as_ref().map(canonical::to_value);
         let spec_hash = hashes::study_hash(&cases, &self.spec, baseline.as_ref(), &content);
         let rows_key = hashes::rows_key(&cases, &self.spec, &content);
+        let names_none = self.spec.kind == StudyKind::Study && self.spec.methods.is_none();
+        let mut warnings = scenes.warnings;
+        warnings.extend(names_none.then(|| all_methods(&study)));
         Ok(PreparedStudy {
             study,
             spec_hash,
             rows_key,
             inputs: scenes.inputs,
-            warnings: scenes.warnings,
+            plans: scenes.plans,
+            warnings,
         })
     }
+}
+
+/// What a study that names no method is told: the dearest of them takes minutes where the cheapest takes a second.
+fn all_methods(study: &Study) -> Warning {
+    let methods: BTreeSet<&str> =
+        study.variants.iter().map(|variant| variant.method.as_str()).collect();
+    let (methods, variants, rows) = (methods.len(), study.variants.len(), most_rows(study));
+    let detail = format!(
+        "no method is named, and all {methods} are solved in {variants} variants, {rows} rows at most: `methods` names those that \
+         are wanted, and is much faster with few"
+    );
+    let warning = Warning::new(ALL_METHODS, detail).with("variants", variants as f64);
+    warning.with("rows", rows as f64)
 }
 
 /// How often truths are solved on a mesh with one set of materials.

@@ -1,5 +1,7 @@
 //! Report of a study as the document that clients read.
 
+use std::collections::BTreeMap;
+
 use crate::jobs::failure::JobError;
 use crate::jobs::result::provenance::first_null;
 use crate::schema::predict::result::{EngineDocument, NOT_A_DEVICE};
@@ -20,6 +22,8 @@ pub struct ReportOrigin {
     pub job: Option<String>,
     pub spec_hash: String,
     pub rows_key: String,
+    /// Of each case the SHA-256 of its plans, by the name of its scene.
+    pub plans: BTreeMap<String, BTreeMap<String, String>>,
     /// RFC 3339, UTC.
     pub created: String,
 }
@@ -46,7 +50,7 @@ pub fn report_document(
         created: origin.created,
         verdict: VerdictDocument::default(),
         rules: rules(spec, variants),
-        scenes: report.scenes.iter().map(scene_document).collect(),
+        scenes: report.scenes.iter().map(|scene| scene_document(scene, &origin.plans)).collect(),
         rows,
         skipped: report.skipped.iter().map(skipped_document).collect(),
         comparisons: comparisons.iter().map(comparison_document).collect(),
@@ -116,12 +120,16 @@ fn mark_front(rows: &mut [RowDocument], scene: &str) {
     }
 }
 
-fn scene_document(scene: &SceneReport) -> StudySceneDocument {
+fn scene_document(
+    scene: &SceneReport,
+    plans: &BTreeMap<String, BTreeMap<String, String>>,
+) -> StudySceneDocument {
     StudySceneDocument {
         name: scene.name.clone(),
         nodes: scene.nodes as u64,
         cells: scene.cells as u64,
         skin_nodes: scene.skin_nodes as u64,
+        plans: plans.get(&scene.name).cloned().unwrap_or_default(),
         truth: scene.truth.clone(),
         truth_error_mm: scene.truth_error_mm.map(|[mean, p95]| TruthErrorDocument { mean, p95 }),
         truth_s: scene.truth_s,

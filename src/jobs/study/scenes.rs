@@ -14,7 +14,7 @@ use crate::schema::ErrorCode;
 use crate::schema::case::material::{PlacedMaterials, in_words, merge_materials};
 use crate::schema::methods::{ElementName, MethodName};
 use crate::schema::study::document::{CaseReference, SceneReference};
-use crate::schema::wire::strict;
+use crate::schema::wire::{canonical, strict};
 use crate::schema::{
     CaseDocument, Faults, MaterialDocuments, PlanDocument, Pointer, PredictDocument, Problem,
 };
@@ -241,7 +241,9 @@ impl Documents<'_> {
             scenes.iter().any(|scene| scene.plans.iter().any(|(plan, _)| plan == wanted))
         };
         for (index, name) in self.spec.plan_names().into_iter().filter(|(_, name)| !named(name)) {
-            let detail = format!("no scene by name has a plan called {name:?}");
+            let known =
+                listed(scenes.iter().flat_map(|scene| scene.plans.iter().map(|(plan, _)| plan)));
+            let detail = format!("no scene by name has a plan called {name:?}; there are: {known}");
             faults.add(&spec_at().key("plans").index(index), ErrorCode::UnknownPlan, detail);
         }
     }
@@ -318,6 +320,11 @@ impl Documents<'_> {
             found.inputs.push(skin.to_input("truth"));
             scene.truth = Truth::Known(known_displacement(&skin, &first, &at)?);
         }
+        let stated = (1..).zip(documents).map(|(number, (_, plan))| {
+            let text = canonical::to_value(plan).to_string();
+            (format!("plan {number}"), canonical::sha256_hex(text.as_bytes()))
+        });
+        found.plans.insert(scene.name.clone(), stated.collect());
         found.contents.extend(first.contents.clone());
         found.inputs.extend(first.inputs.iter().cloned());
         found.warnings.extend(first.warnings.iter().cloned());

@@ -191,7 +191,27 @@ fn other_questions(report: &ReportDocument, earlier: &ReportDocument) -> Vec<Str
         );
         (of(scene) != of(before)).then_some(words)
     };
-    report.scenes.iter().filter_map(pair).collect()
+    let scenes = report.scenes.iter().filter_map(pair);
+    scenes.chain(other_plans(report, earlier)).collect()
+}
+
+/// Plans of one name that move a scene otherwise in the baseline.
+fn other_plans(report: &ReportDocument, earlier: &ReportDocument) -> Vec<String> {
+    let of_scene = |scene: &StudySceneDocument| {
+        let before = earlier.scenes.iter().find(|other| other.name == scene.name)?;
+        let is_other = |(name, hash): &(&String, &String)| {
+            before.plans.get(*name).is_some_and(|other| other != *hash)
+        };
+        let names: Vec<&str> =
+            scene.plans.iter().filter(is_other).map(|(name, _)| name.as_str()).collect();
+        let words = format!(
+            "{} of the scene {:?} moves it otherwise than in the baseline: the rows cannot be compared",
+            names.join(", "),
+            scene.name
+        );
+        (!names.is_empty()).then_some(words)
+    };
+    report.scenes.iter().filter_map(of_scene).collect()
 }
 
 fn whole(

@@ -112,6 +112,10 @@ pub struct TargetDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub landmark: Option<String>,
+    /// A place in mm in the frame of the case, at rest; it moves as the point of the skin closest to it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub point_mm: Option<Triple>,
     /// Where it is to be; a component that is null is free.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
@@ -257,8 +261,14 @@ impl OptimiseDocument {
 
 impl TargetDocument {
     fn check(&self, at: &Pointer, case: &CaseDocument, limits: &Limits, faults: &mut Faults) {
-        let given = usize::from(self.nodes.is_some()) + usize::from(self.landmark.is_some());
-        faults.check_one_of(at, given, "`nodes`, `landmark`");
+        let forms = [self.nodes.is_some(), self.landmark.is_some(), self.point_mm.is_some()];
+        let given = forms.into_iter().filter(|&form| form).count();
+        faults.check_one_of(at, given, "`nodes`, `landmark`, `point_mm`");
+        for (axis, value) in self.point_mm.iter().flat_map(|point| point.0.into_iter().enumerate())
+        {
+            let farthest = -FARTHEST_PIVOT_MM..=FARTHEST_PIVOT_MM;
+            faults.check_range(&at.key("point_mm").index(axis), value, farthest, "mm");
+        }
         if let Some(name) = &self.landmark
             && !case.landmarks.contains_key(name)
         {

@@ -87,7 +87,9 @@ impl AdequacyDocument {
         };
         let verdict = match self.met {
             true => "the cheapest model within",
-            false => "as good as any that was possible, short of",
+            false => {
+                "the cheapest whose error is within a quarter of the least that was found, short of"
+            }
         };
         format!("`{}` with {error} is {verdict} {} mm", self.taken, self.accepted_mm)
     }

@@ -15,7 +15,7 @@ pub enum ContactName {
     /// Sliding sets are free.
     None,
     /// As `sliding`, and no part of the boundary of the tissue passes through another one: closed gaps press, without
-    /// friction. Of `fem_linear`.
+    /// friction. Of `fem_linear`, `mtm_ti` and `fem_nonlinear`.
     Unilateral,
     /// `unilateral` where a gap closes, with a warning that says so; `sliding` elsewhere.
     Auto,

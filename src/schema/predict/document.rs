@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use utoipa::ToSchema;
 
+use super::correction::CorrectionDocument;
 use super::keep::KeptName;
 use super::refine::{ACCEPTED_MM, RefineDocument};
 use crate::schema::case::material::{MaterialDocument, MaterialDocuments};
@@ -134,6 +135,11 @@ pub struct PredictDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub compare_to: Option<CompareToDocument>,
+    /// Corrects the skin by what was learned from operated cases, in a file of its own. Only with the method on whose predictions
+    /// the model was learned, and without `accept_mm`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub correction: Option<CorrectionDocument>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub tags: Vec<String>,
 }
@@ -244,7 +250,7 @@ impl PredictDocument {
             faults.add(&place, ErrorCode::MethodMismatch, detail);
         }
         if self.contact == ContactName::Unilateral {
-            let detail = "contact is part of linear elements only, among which no model is chosen: leave out one of the two";
+            let detail = "no model is chosen where tissue presses: leave out one of the two, and name `fem_linear` or `fem_nonlinear`";
             faults.add(&place, ErrorCode::OneOf, detail);
         }
         if self.corrected || self.estimate == EstimateName::None {

@@ -26,39 +26,59 @@ pub enum OutputName {
     ClassesSvg,
     #[serde(rename = "displacement.svg")]
     DisplacementSvg,
+    #[serde(rename = "report.html")]
+    ReportHtml,
+    #[serde(rename = "report.pdf")]
+    ReportPdf,
     #[serde(rename = "result.json")]
     ResultJson,
 }
 
-/// A picture of a prediction, which the service draws when it is first asked for.
+/// A picture or a report, which the service draws when it is first asked for: pictures of predictions, reports of
+/// predictions, comparisons and studies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub enum PictureName {
     #[serde(rename = "classes.svg")]
     Classes,
     #[serde(rename = "displacement.svg")]
     Displacement,
+    #[serde(rename = "report.html")]
+    ReportHtml,
+    #[serde(rename = "report.pdf")]
+    ReportPdf,
 }
 
 impl PictureName {
-    pub const ALL: [PictureName; 2] = [PictureName::Classes, PictureName::Displacement];
+    pub const ALL: [PictureName; 4] = [
+        PictureName::Classes,
+        PictureName::Displacement,
+        PictureName::ReportHtml,
+        PictureName::ReportPdf,
+    ];
+    /// Those of comparisons and studies.
+    pub const REPORTS: [PictureName; 2] = [PictureName::ReportHtml, PictureName::ReportPdf];
 
     /// The file that it is where a spec asks for it.
     pub fn output(self) -> OutputName {
         match self {
             PictureName::Classes => OutputName::ClassesSvg,
             PictureName::Displacement => OutputName::DisplacementSvg,
+            PictureName::ReportHtml => OutputName::ReportHtml,
+            PictureName::ReportPdf => OutputName::ReportPdf,
         }
     }
 
-    /// What it is drawn from beside the input of the job.
+    /// What it is drawn from beside the input of a prediction.
     pub fn drawn_from(self) -> Option<OutputName> {
         match self {
             PictureName::Classes => None,
-            PictureName::Displacement => Some(OutputName::SkinVtp),
+            PictureName::Displacement | PictureName::ReportHtml | PictureName::ReportPdf => {
+                Some(OutputName::SkinVtp)
+            }
         }
     }
 
-    /// Those that can be drawn of a job that has some files, and are not among them.
+    /// Those that can be drawn of a prediction that has some files, and are not among them.
     pub fn beside(has: impl Fn(OutputName) -> bool) -> Vec<PictureName> {
         let is_left =
             |picture: &PictureName| !has(picture.output()) && picture.drawn_from().is_none_or(&has);
@@ -78,6 +98,8 @@ impl OutputName {
             OutputName::BonesVtp => "bones.vtp",
             OutputName::ClassesSvg => "classes.svg",
             OutputName::DisplacementSvg => "displacement.svg",
+            OutputName::ReportHtml => "report.html",
+            OutputName::ReportPdf => "report.pdf",
             OutputName::ResultJson => "result.json",
         }
     }
@@ -92,6 +114,8 @@ impl OutputName {
             OutputName::SkinGlb => "model/gltf-binary",
             OutputName::SkinCsv => "text/csv; charset=utf-8",
             OutputName::ClassesSvg | OutputName::DisplacementSvg => "image/svg+xml",
+            OutputName::ReportHtml => "text/html; charset=utf-8",
+            OutputName::ReportPdf => "application/pdf",
             OutputName::ResultJson => "application/json",
         }
     }

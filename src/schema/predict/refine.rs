@@ -17,7 +17,8 @@ pub const ACCEPTED_MM: std::ops::RangeInclusive<f64> = 1e-3..=1e2;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RefineDocument {
-    /// The mean error over the skin nodes of the case that is accepted, in mm.
+    /// The mean error in mm that is accepted over the skin nodes of the case that move (by more than a tenth of what moves
+    /// farthest).
     #[schema(minimum = 0.001, maximum = 100.0)]
     pub accept_mm: f64,
     /// The same for some of `skin_regions`, by name.
@@ -113,7 +114,7 @@ impl RefinementDocument {
             false => format!("short of (bound: {})", self.stopped),
         };
         format!(
-            "{} meshes, the last of {} cells: an estimated {:.3} mm in the mean over the skin, {verdict} {} mm",
+            "{} meshes, the last of {} cells: an estimated {:.3} mm in the mean over the skin that moves, {verdict} {} mm",
             self.levels.len(),
             last.cells,
             last.mean_mm,

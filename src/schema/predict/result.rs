@@ -6,27 +6,31 @@ use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use super::adequacy::AdequacyDocument;
+use super::correction::CorrectedDocument;
 use super::keep::KeptMeshDocument;
+use super::newton::NewtonDocument;
 use super::nonlinearity::NonlinearityDocument;
 use super::output::PictureName;
 use super::planned::MeasureDocument;
 use super::pressing::ContactDocument;
 use super::refine::RefinementDocument;
+use super::tissue_law::TissueLawDocument;
 use crate::schema::Triple;
 use crate::schema::case::document::{FrameName, LengthUnit};
 use crate::schema::case::hounsfield::ImagedTissueDocument;
-use crate::schema::case::law::LawDocument;
 use crate::schema::cohort::result::CohortResultDocument;
 use crate::schema::compare::result::{ComparisonDocument, StatDocument};
+use crate::schema::conform::result::ConformationDocument;
+use crate::schema::learn::result::LearningDocument;
 use crate::schema::meshing::result::MeshingResultDocument;
 use crate::schema::optimise::result::OptimisationDocument;
 use crate::schema::plan::document::PlanDocument;
 use crate::schema::reproduce::result::ReproductionDocument;
 use crate::schema::study::report::StudySummaryDocument;
 use crate::schema::wire::warning::WarningDocument;
-use mechanics::material::hyperelastic::{Fibres, Hyperelastic};
 use mechanics::prediction::ConditionReaction;
 
+pub use super::timing::TimingDocument;
 pub use crate::schema::engine::EngineDocument;
 
 /// What every result says about its use.
@@ -42,7 +46,7 @@ pub struct ResultDocument {
     pub job: Option<String>,
     /// The files beside this one.
     pub files: Vec<FileDocument>,
-    /// Of a job: pictures that are no files, and are drawn when they are first asked for, as if they were.
+    /// Of a job: pictures and reports that are no files, and are drawn when they are first asked for, as if they were.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub pictures: Vec<PictureName>,
     /// Absent from comparisons.
@@ -68,10 +72,18 @@ pub struct ResultDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub reproduction: Option<ReproductionDocument>,
+    /// A template on a patient, of a job of kind `conform`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub conformation: Option<ConformationDocument>,
     /// Methods against each other over subjects, of a job of kind `cohort`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub cohort: Option<CohortResultDocument>,
+    /// What was learned from operated cases, of a job of kind `learn`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub learning: Option<LearningDocument>,
     /// The meshes that the spec asked to keep.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub kept: Vec<KeptMeshDocument>,
@@ -86,6 +98,10 @@ pub struct ResultDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub adequacy: Option<AdequacyDocument>,
+    /// What a learned model made of the prediction, where a correction was asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub correction: Option<CorrectedDocument>,
     /// How the mesh was refined, where that was asked for. Whatever else the result has stands at the nodes of the case.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
@@ -131,12 +147,15 @@ impl ResultDocument {
             study: None,
             meshing: None,
             reproduction: None,
+            conformation: None,
             cohort: None,
+            learning: None,
             pictures: Vec::new(),
             kept: Vec::new(),
             cephalometry: Vec::new(),
             contact: None,
             adequacy: None,
+            correction: None,
             refinement: None,
             numerical_error_mm: None,
             nonlinearity_mm: None,
@@ -238,6 +257,11 @@ pub struct ProvenanceDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub method: Option<String>,
+    /// Of `auto`, which goes beyond `method`: the model that was taken, as `adequacy.taken`. With `second_order` the numbers are not
+    /// those of `fem_linear` alone.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub model: Option<String>,
     /// Why this method.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
@@ -264,33 +288,6 @@ pub struct ProvenanceDocument {
     /// RFC 3339, UTC.
     pub created: String,
     pub statement: String,
-}
-
-/// What a tissue followed at finite strain.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct TissueLawDocument {
-    pub law: LawDocument,
-    /// Of fibres that only pull; absent where there are none.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
-    pub fibres: Option<PullingFibresDocument>,
-}
-
-/// W = k1/(2 k2) (exp(k2 (I4 - 1)^2) - 1) where fibres are stretched.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct PullingFibresDocument {
-    pub k1_kpa: f64,
-    pub k2: f64,
-}
-
-impl From<&Hyperelastic> for TissueLawDocument {
-    fn from(tissue: &Hyperelastic) -> Self {
-        let fibres = tissue.fibres;
-        TissueLawDocument {
-            law: (&tissue.law).into(),
-            fibres: fibres.map(|Fibres { k1, k2 }| PullingFibresDocument { k1_kpa: k1, k2 }),
-        }
-    }
 }
 
 /// A mesh or an image that went in.
@@ -336,27 +333,6 @@ pub struct SolverDocument {
     pub newton: Option<NewtonDocument>,
 }
 
-/// How tissue at finite strain came to rest.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct NewtonDocument {
-    pub energy_mn_mm: f64,
-    /// The least det F of the points of all cells.
-    pub least_det_f: f64,
-    /// The share of movement and loads that was made before each step, and at rest; at most 200 of them.
-    pub path: Vec<f64>,
-    pub inner_iterations: u64,
-    pub hierarchies: u64,
-    /// Steps along which the tangent was not positive definite: tissue may then rest in another way too.
-    pub indefinite_steps: u64,
-    /// Whether the tangent at rest is positive definite, as far as iterations see; not asked of elements with pressures.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
-    pub is_stable: Option<bool>,
-    /// The bulk modulus that stays in each cell while a pressure carries the rest, as a multiple of the shear modulus; 0
-    /// without pressures.
-    pub bulk_in_cells: f64,
-}
-
 /// The mesh that was computed on.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct MeshSummaryDocument {
@@ -365,27 +341,6 @@ pub struct MeshSummaryDocument {
     /// The smallest scaled Jacobian of a cell; 1 is perfect, below 0 is inverted.
     pub min_quality: f64,
     pub inverted: u64,
-}
-
-/// Wall time of each phase.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct TimingDocument {
-    /// From acceptance to the start; absent from results of the command line.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
-    pub queue_s: Option<f64>,
-    pub validate_s: f64,
-    pub mesh_s: f64,
-    pub assemble_s: f64,
-    pub solve_s: f64,
-    /// Of estimating errors; 0 of results from before there were estimates.
-    #[serde(default)]
-    pub estimate_s: f64,
-    pub contact_s: f64,
-    pub surface_s: f64,
-    pub compare_s: f64,
-    pub write_s: f64,
-    pub total_s: f64,
 }
 
 impl From<&ConditionReaction> for ReactionDocument {

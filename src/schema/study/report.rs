@@ -147,6 +147,10 @@ pub struct StudySceneDocument {
     pub nodes: u64,
     pub cells: u64,
     pub skin_nodes: u64,
+    /// Of a case: the SHA-256 of each of its plans as it was stated, by its name.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    #[schema(required = false)]
+    pub plans: BTreeMap<String, String>,
     pub truth: String,
     /// What the truth itself is off by, mean and p95 over the skin, by extrapolation; absent where it is a formula or
     /// not known.

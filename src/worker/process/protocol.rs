@@ -58,7 +58,7 @@ pub struct Assignment {
 #[serde(rename_all = "snake_case")]
 pub enum Answer {
     Mesh(MeshCard),
-    /// The blob of a predicted skin.
+    /// The blob of a predicted skin, or of a model.
     Skin(String),
     /// The bytes follow.
     Bytes,
@@ -99,6 +99,8 @@ pub enum Question {
     Mesh(String),
     /// The predicted skin of a job.
     Skin(String),
+    /// What a job learned.
+    Model(String),
     Blob(String),
 }
 

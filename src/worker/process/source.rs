@@ -74,6 +74,13 @@ impl MeshSource for SlotSource<'_> {
         }
     }
 
+    fn model(&self, job: &str) -> Result<Vec<u8>, SourceError> {
+        match self.ask(job, Question::Model(job.to_owned()))? {
+            (Answer::Skin(blob), _) => self.ask(job, Question::Blob(blob)).map(|(_, bytes)| bytes),
+            _ => Err(misunderstood(job)),
+        }
+    }
+
     fn predicted_skin(&self, job: &str) -> Result<StoredMesh, SourceError> {
         match self.ask(job, Question::Skin(job.to_owned()))? {
             (Answer::Skin(blob), _) => {

@@ -318,6 +318,9 @@ impl Attempt<'_> {
             Question::Skin(job) => runtime
                 .block_on(library.skin_blob(&job))
                 .map(|blob| blob.map_or(Answer::Unknown, Answer::Skin)),
+            Question::Model(job) => runtime
+                .block_on(library.model_blob(&job))
+                .map(|blob| blob.map_or(Answer::Unknown, Answer::Skin)),
             Question::Blob(blob) => return self.give_blob(runtime.block_on(library.bytes(&blob))),
         };
         self.tell(answer.unwrap_or_else(|error| Answer::Unreadable(error.to_string())));

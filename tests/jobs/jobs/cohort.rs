@@ -46,12 +46,35 @@ fn cohort(
 ) -> Result<CohortResultDocument, String> {
     let spec = serde_json::from_value(spec).unwrap();
     let comparisons = comparisons.clone();
-    let input = JobInput::Cohort(CohortInput { job: None, queue_s: None, spec, comparisons });
+    let actuals = BTreeMap::new();
+    let input = CohortInput { job: None, queue_s: None, spec, comparisons, actuals };
+    let input = JobInput::Cohort(input);
     let out = tempfile::tempdir().unwrap();
     let sources = Meshes(BTreeMap::new());
     let place = Workplace { sources: &sources, limits: &Limits::default(), out: out.path() };
     let done = work(&input, &place, &Unobserved).map_err(|error| format!("{error:?}"))?;
     Ok(done.result.cohort.unwrap())
+}
+
+#[test]
+fn lists_in_another_order_and_a_patient_who_stands_twice_are_told() {
+    let names = ["a 0", "a 1", "b 0", "b 1"];
+    let comparisons: BTreeMap<String, ComparisonDocument> =
+        names.map(|name| (name.to_owned(), comparison(0.5))).into();
+    let told = |groups: Value| -> Vec<String> {
+        let spec = serde_json::from_value(json!({"groups": groups})).unwrap();
+        let actuals = names.map(|name| (name.to_owned(), name[2..].to_owned())).into();
+        let comparisons = comparisons.clone();
+        let input = CohortInput { job: None, queue_s: None, spec, comparisons, actuals };
+        let (out, sources) = (tempfile::tempdir().unwrap(), Meshes(BTreeMap::new()));
+        let place = Workplace { sources: &sources, limits: &Limits::default(), out: out.path() };
+        let done = work(&JobInput::Cohort(input), &place, &Unobserved).unwrap();
+        done.result.warnings.into_iter().map(|warning| warning.code).collect()
+    };
+    assert_eq!(told(json!({"a": ["a 0", "a 1"], "b": ["b 0", "b 1"]})), [""; 0]);
+    assert_eq!(told(json!({"a": ["a 0", "a 1"], "b": ["b 1", "b 0"]})), ["subjects-differ"]);
+    let twice = told(json!({"a": ["a 0", "a 1"], "b": ["b 0", "b 0"]}));
+    assert_eq!(twice, ["subjects-differ", "subject-twice"]);
 }
 
 fn ids(method: &str) -> Vec<String> {

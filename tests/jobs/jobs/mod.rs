@@ -4,6 +4,7 @@ mod cohort;
 mod comparisons;
 mod failures;
 mod image;
+mod learn;
 mod optimise;
 mod planning;
 mod refined;

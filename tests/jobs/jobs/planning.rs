@@ -6,6 +6,7 @@ use facies::jobs::{
     JobInput, PredictInput, ReproduceInput, StoredMesh, StoredShape, Workplace, check, work,
 };
 use facies::schema::predict::check::CheckDocument;
+use facies::schema::predict::result::ResultDocument;
 use facies::schema::reproduce::result::ReproductionDocument;
 use facies::schema::{Limits, Matrix4x4};
 use mechanics::mesh::sample::block;
@@ -54,16 +55,20 @@ fn surface(shape: TriangleSurface) -> StoredMesh {
 }
 
 fn reproduced(sources: &Meshes, spec: Value) -> Result<ReproductionDocument, String> {
+    result_of(sources, spec).map(|result| result.reproduction.unwrap())
+}
+
+fn result_of(sources: &Meshes, spec: Value) -> Result<ResultDocument, String> {
     let folder = tempfile::tempdir().unwrap();
     let spec = serde_json::from_value(spec).unwrap();
     let input = JobInput::Reproduce(ReproduceInput { job: None, queue_s: None, spec });
     let place = Workplace { sources, limits: &Limits::default(), out: folder.path() };
     let done = work(&input, &place, &Unobserved).map_err(|error| format!("{error:?}"))?;
-    Ok(done.result.reproduction.unwrap())
+    Ok(done.result)
 }
 
-#[test]
-fn a_performed_operation_becomes_a_plan_and_is_held_against_what_was_planned() {
+/// A jaw that was moved, scans of it before and after in frames of their own, and the document that asks for the movement.
+fn performed() -> (RigidMovement, Meshes, Value) {
     let base = shaped(brick([60.0, 40.0, 15.0], [30, 20, 8], [0.0; 3]));
     let jaw = shaped(brick([40.0, 20.0, 10.0], [20, 10, 5], [5.0, 0.0, -25.0]));
     let turn = Vector::new(0.0, 0.03, 0.02);
@@ -83,12 +88,30 @@ fn a_performed_operation_becomes_a_plan_and_is_held_against_what_was_planned() {
         ("after".to_owned(), surface(after)),
         ("jaw".to_owned(), surface(jaw)),
     ]));
-    let mut spec = json!({
+    let spec = json!({
         "kind": "reproduce", "before": {"mesh": "before"}, "after": {"mesh": "after"},
         "base": {"mask": {"box_mm": [-50, -50, -8, 150, 100, 60]}},
         "segments": [{"name": "jaw", "before": {"mesh": "jaw"}}],
         "planned": {"segments": [{"name": "jaw", "translation_mm": [3, 0, 0]}]}
     });
+    (done, sources, spec)
+}
+
+#[test]
+fn a_base_that_holds_the_bone_that_was_moved_is_told() {
+    let (_, sources, mut spec) = performed();
+    let told = |spec: &Value| -> Vec<String> {
+        let warnings = result_of(&sources, spec.clone()).unwrap().warnings;
+        warnings.into_iter().map(|warning| warning.code).collect()
+    };
+    assert!(!told(&spec).contains(&"base-unmasked".to_owned()));
+    spec["base"] = json!({});
+    assert!(told(&spec).contains(&"base-unmasked".to_owned()));
+}
+
+#[test]
+fn a_performed_operation_becomes_a_plan_and_is_held_against_what_was_planned() {
+    let (done, sources, mut spec) = performed();
     let found = reproduced(&sources, spec.clone()).unwrap();
     let Matrix4x4(matrix) = found.segments[0].matrix4x4;
     for (found, wanted) in matrix.iter().zip(done.matrix4()) {

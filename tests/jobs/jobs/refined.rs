@@ -34,9 +34,10 @@ fn a_refined_prediction_tells_its_meshes_and_keeps_the_nodes_of_the_case() {
     let refined = predict(CASE, PULL, &spec, out.path()).unwrap().result;
     let told = refined.refinement.unwrap();
     assert!(told.met && told.stopped == "met" && told.levels.len() > 1);
-    assert_eq!(told.levels[0].mean_mm, before);
+    // Means of levels are over the skin that moves, which is off by more than all of it.
+    assert!(told.levels[0].mean_mm > before);
     let last = told.levels.last().unwrap();
-    assert_eq!(refined.numerical_error_mm.unwrap().mean, last.mean_mm);
+    assert!(refined.numerical_error_mm.unwrap().mean < last.mean_mm);
     assert!(last.mean_mm <= 0.5 * before && last.regions_mm["left"] <= 50.0);
     assert_eq!(refined.provenance.solver.unwrap().unknowns, last.unknowns);
     let rows = std::fs::read_to_string(out.path().join("skin.csv")).unwrap().lines().count();

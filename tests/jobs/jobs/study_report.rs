@@ -230,6 +230,29 @@ fn a_baseline_of_another_mesh_or_truth_or_without_numbers_is_told() {
     assert_eq!(against(&damaged).outcome, OutcomeName::Worse);
 }
 
+#[test]
+fn a_baseline_whose_plan_of_the_same_name_moves_otherwise_is_told() {
+    let rows = [solved("fem", 0, [1.0, 0.1])];
+    let of = |plans: Value| {
+        let mut report = report(&rows, usual());
+        let scene = json!({
+            "name": "slab", "nodes": 100, "cells": 80, "skin_nodes": 25, "truth": "refined", "truth_s": 0.1, "plans": plans,
+        });
+        report.scenes = vec![serde_json::from_value(scene).unwrap()];
+        report
+    };
+    let against = |before: Value| {
+        let mut now = of(json!({"plan 1": "a", "plan 2": "b"}));
+        judge(&mut now, &Baseline::Report(&of(before)));
+        now.verdict
+    };
+    assert_eq!(against(json!({"plan 1": "a"})).outcome, OutcomeName::Pass);
+    assert_eq!(against(json!({})).outcome, OutcomeName::Pass, "an earlier version tells none");
+    let verdict = against(json!({"plan 1": "a", "plan 2": "c"}));
+    assert_eq!(verdict.outcome, OutcomeName::Incomplete);
+    assert!(verdict.reasons[0].starts_with("plan 2 of the scene"), "{:?}", verdict.reasons);
+}
+
 /// Elements of a JUnit file with their attributes and the number of children that mark a case as not passed.
 fn suites(text: &str) -> Vec<(String, Vec<(String, String)>)> {
     use quick_xml::events::Event;

@@ -320,11 +320,11 @@ fn an_error_about_the_kind_of_a_job_lists_every_kind() {
     };
     assert_eq!(
         detail("{}"),
-        "missing field `kind`: `predict`, `compare`, `response`, `optimise`, `reproduce`, `cohort`, `mesh`, `study` or `batch`"
+        "missing field `kind`: `predict`, `compare`, `response`, `optimise`, `reproduce`, `cohort`, `learn`, `conform`, `mesh`, `study` or `batch`"
     );
     assert_eq!(
         detail(r#"{"kind":"x"}"#),
-        "`x` is not a kind of job; `predict`, `compare`, `response`, `optimise`, `reproduce`, `cohort`, `mesh`, `study` and `batch` are"
+        "`x` is not a kind of job; `predict`, `compare`, `response`, `optimise`, `reproduce`, `cohort`, `learn`, `conform`, `mesh`, `study` and `batch` are"
     );
 }
 

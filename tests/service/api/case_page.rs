@@ -147,7 +147,8 @@ async fn the_service_takes_every_other_job_of_the_page_on_the_case_document() {
         assert_eq!(ended["status"], "successful", "{heading}: {ended}");
         kinds.insert(job["kind"].as_str().unwrap().to_owned());
     }
-    let wanted = ["compare", "optimise", "reproduce", "response", "study"].map(str::to_owned);
+    let wanted =
+        ["compare", "learn", "optimise", "reproduce", "response", "study"].map(str::to_owned);
     assert_eq!(kinds, wanted.into());
 }
 

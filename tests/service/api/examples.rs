@@ -151,7 +151,9 @@ async fn the_service_takes_every_example_as_it_stands_but_for_ids() {
         let answer = server.job(&with_ids(&body, &ids)).await;
         assert!(answer.status.is_success(), "{name}: {}", answer.json());
         let ended = server.ended(answer.json()["id"].as_str().unwrap()).await;
-        assert_eq!(ended["status"], "successful", "{name}: {ended}");
+        // A block is no face that could be brought to another one.
+        let wanted = if name == "conform" { "failed" } else { "successful" };
+        assert_eq!(ended["status"], wanted, "{name}: {ended}");
         if name == "compare" {
             comparison = ended["id"].as_str().unwrap().to_owned();
         }

@@ -92,7 +92,11 @@ async fn every_file_of_the_manifest_is_served_with_its_hash_and_in_ranges() {
     let result = ask(server.get(&format!("/v1/jobs/{id}/results/result.json"))).await;
     assert_eq!(result.expect(StatusCode::OK)["statistics"], manifest["statistics"]);
     let missing = ask(server.get(&format!("/v1/jobs/{id}/results/skin.obj"))).await;
-    missing.problem(404, "no-such-output");
+    let problem = missing.problem(404, "no-such-output");
+    let detail = problem["detail"].as_str().unwrap();
+    for said in ["skin.obj", "skin.stl", "classes.svg", "`outputs`"] {
+        assert!(detail.contains(said), "{detail}");
+    }
     let picture =
         server.get(&format!("/v1/jobs/{id}/results/skin.stl")).header("accept", "image/png");
     ask(picture).await.problem(406, "not-acceptable");
@@ -146,6 +150,14 @@ async fn tags_of_a_job_are_changed_whatever_its_state() {
         let error = &problem["errors"][0];
         assert_eq!((&error["code"], &error["pointer"]), (&json!(code), &json!(at)));
     }
+    // A change that was meant for another state is not made.
+    let patch = |tag: &str, state: &str| {
+        let change = json!({"tags": {"add": [tag]}});
+        ask(server.request(Method::PATCH, &path).header("if-match", state).json(&change))
+    };
+    let refused = patch("late", "\"0\"").await;
+    let state = refused.problem(412, "precondition-failed")["etag"].as_str().unwrap().to_owned();
+    assert_eq!(ask(server.get(&path)).await.header("etag"), state);
     assert_eq!(ask(server.get(&path)).await.json()["tags"], json!(["b", "main"]));
     let nobody = "/v1/jobs/00000000-0000-7000-8000-000000000000";
     let request = server.request(Method::PATCH, nobody).json(&json!({"tags": {"add": ["x"]}}));

@@ -40,6 +40,31 @@ fn numbers(value: &Value) -> Vec<f64> {
 }
 
 #[tokio::test]
+async fn a_point_of_the_skin_is_as_good_a_target_as_a_landmark_there() {
+    let server = Server::start();
+    let case = case(&server).await;
+    let found = async |points: bool| {
+        let target = |(name, at): (String, [f64; 3])| match points {
+            true => json!({"point_mm": at, "displacement_mm": [1, null, 0.5]}),
+            false => json!({"landmark": name, "displacement_mm": [1, null, 0.5]}),
+        };
+        let targets: Vec<Value> = landmarks().into_iter().map(target).collect();
+        let job = server.job(&spec(&case, json!(targets), bounds(5.0, 0.0))).await;
+        job.expect(StatusCode::OK)["results"]["optimisation"]["plan"].clone()
+    };
+    let (by_points, by_landmarks) = (found(true).await, found(false).await);
+    assert_eq!(by_points, by_landmarks);
+    assert!(by_points["segments"][0]["translation_mm"][0].as_f64().unwrap() > 0.5, "{by_points}");
+    let both = json!([{"point_mm": [0, 10, 8], "landmark": "p0", "displacement_mm": [1, 0, 0]}]);
+    let refused = server.job(&spec(&case, both, bounds(5.0, 0.0))).await;
+    let problem = refused.problem(422, "validation-failed");
+    assert_eq!(
+        (&problem["errors"][0]["pointer"], &problem["errors"][0]["code"]),
+        (&json!("/targets/0"), &json!("one-of"))
+    );
+}
+
+#[tokio::test]
 async fn a_plan_is_found_from_the_skin_it_makes_and_verified() {
     let server = Server::start();
     let case = case(&server).await;

@@ -8,6 +8,7 @@ use serde_json::{Value, json};
 use crate::helpers::{Answer, SMALL, Server, ask, spec};
 
 const PICTURES: [&str; 2] = ["classes.svg", "displacement.svg"];
+const REPORTS: [&str; 2] = ["report.html", "report.pdf"];
 
 fn place(job: &Value, name: &str) -> String {
     format!("/v1/jobs/{}/results/{name}", job["id"].as_str().unwrap())
@@ -26,8 +27,8 @@ async fn a_picture_that_is_asked_for_later_is_the_one_that_the_job_would_have_dr
     with_pictures["outputs"] = json!(["skin.vtp", "classes.svg", "displacement.svg"]);
     let drawn = server.job(&with_pictures).await.expect(StatusCode::OK);
     assert_ne!(plain["id"], drawn["id"]);
-    assert_eq!(plain["results"]["pictures"], json!(PICTURES));
-    assert_eq!(drawn["results"]["pictures"], Value::Null, "they are files");
+    assert_eq!(plain["results"]["pictures"], json!([PICTURES, REPORTS].concat()));
+    assert_eq!(drawn["results"]["pictures"], json!(REPORTS), "the others are files");
     let mut later = Vec::new();
     for name in PICTURES {
         let file = |job: &Value| {

@@ -290,6 +290,14 @@ async fn who_runs_the_service_sees_what_was_done() {
     assert_eq!(json!(all["items"].as_array().unwrap().len()), check["rows"]);
     ask(hospital.admin(Method::POST, "/lost-jobs/nothing/requeue")).await.problem(404, "not-found");
     assert_eq!(ask(hospital.admin(Method::GET, "/lost-jobs")).await.json(), json!([]));
+    // What is wrong with a document is told as clients are told it.
+    let wanted = json!({"label": "test", "scopes": ["read"], "colour": "red"});
+    let refused = ask(hospital.admin(Method::POST, "/tenants/a/keys").json(&wanted)).await;
+    let problem = refused.problem(422, "validation-failed");
+    assert_eq!(problem["errors"][0]["code"], "unknown-field", "{problem}");
+    ask(hospital.admin(Method::PUT, "/tenants/a").body("{}"))
+        .await
+        .problem(415, "unsupported-media-type");
 }
 
 #[tokio::test]

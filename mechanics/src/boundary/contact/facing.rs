@@ -28,6 +28,11 @@ const FOLD: usize = 4;
 /// Nodes that move by more than this part of the largest movement move much.
 const MUCH: f64 = 0.5;
 
+/// Gaps below 0 by less than this, in mm, are closed.
+pub const CLOSED_MM: f64 = 1e-6;
+
+const MOST_STEPS: usize = 100;
+
 /// The boundary of a mesh as a surface that may touch itself.
 pub struct FacingSurfaces<'a> {
     mesh: &'a VolumeMesh,
@@ -89,13 +94,31 @@ impl<'a> FacingSurfaces<'a> {
     }
 
     /// The largest movement, and the median of the longest edges around nodes that move much, in mm.
-    pub fn movement_and_edge(&self, displacement: &[Vector]) -> (f64, f64) {
+    fn movement_and_edge(&self, displacement: &[Vector]) -> (f64, f64) {
         let movements = || self.nodes().iter().map(|&node| displacement[node as usize].norm());
         let largest = movements().fold(0.0, f64::max);
         let much = movements().zip(&self.reach).filter(|(movement, _)| *movement >= MUCH * largest);
         let mut edges: Vec<f64> = much.map(|(_, edge)| *edge).collect();
         edges.sort_by(f64::total_cmp);
         (largest, edges.get(edges.len() / 2).copied().unwrap_or(f64::INFINITY))
+    }
+
+    /// The number of steps in which what moves much goes by a part of its edges.
+    pub fn steps(&self, displacement: &[Vector], part: f64) -> usize {
+        let (movement, edge) = self.movement_and_edge(displacement);
+        ((movement / (part * edge)).ceil() as usize).clamp(1, MOST_STEPS)
+    }
+
+    /// Whether a gap closes along a displacement, in so many steps.
+    pub fn touches(&self, displacement: &[Vector], steps: usize) -> bool {
+        let share = |step: usize| step as f64 / steps as f64;
+        let part = |share: f64| displacement.iter().map(|u| u * share).collect::<Vec<Vector>>();
+        let closes =
+            |row: &ContactRow, share: f64| row.gap_after_part(displacement, share) < -CLOSED_MM;
+        (1..=steps + 1).any(|step| {
+            let rows = self.rows(&part(share(step - 1)));
+            rows.iter().any(|row| closes(row, share(step).min(1.0)))
+        })
     }
 
     pub fn rest(&self) -> &TriangleSurface {

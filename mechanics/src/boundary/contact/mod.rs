@@ -5,5 +5,5 @@ mod line;
 mod moved_boundary;
 mod row;
 
-pub use facing::FacingSurfaces;
+pub use facing::{CLOSED_MM, FacingSurfaces};
 pub use row::ContactRow;

@@ -28,12 +28,8 @@ pub struct MeanErrors {
 impl MeanErrors {
     /// Of vectors of nodes, with the points of the skin that move.
     pub(super) fn of(skin: &Skin, moving: &[u32], accepted: &Accepted, values: &[Vector]) -> Self {
-        let lengths = skin.lengths(values);
         let asked = skin.regions.iter().filter(|(name, _)| accepted.regions_mm.contains_key(*name));
-        let over = |points: &[u32]| {
-            let sum: f64 = points.iter().map(|&point| lengths[point as usize]).sum();
-            sum / points.len().max(1) as f64
-        };
+        let over = |points: &[u32]| skin.mean_length(points, values);
         MeanErrors {
             skin_mm: over(moving),
             regions_mm: asked.map(|(name, points)| (name.clone(), over(points))).collect(),

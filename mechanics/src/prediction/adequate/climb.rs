@@ -1,8 +1,10 @@
 //! The way up the rungs.
 
 use super::accepted::{Accepted, MeanErrors};
+use super::duration::{SECOND_ORDER_TAKES, newton_takes};
 use super::rung::{Considered, Errors, Rung};
 use crate::mesh::{Vector, Warning};
+use crate::model::fem::strain::deformations;
 use crate::model::problem::ModelError;
 use crate::prediction::answer::{self, Answer, Linear};
 use crate::prediction::case::{Case, Plan, Settings};
@@ -12,13 +14,6 @@ use crate::prediction::scene::Scene;
 use crate::prediction::{Prediction, described};
 use crate::progress::Progress;
 use crate::solver::SolverError;
-
-/// Time of the second order and of Newton's method, as multiples of that of the linear answer with its estimates.
-const SECOND_ORDER_TAKES: f64 = 0.7;
-const NEWTON_TAKES: f64 = 10.0;
-
-/// The two, for who plans.
-pub const MAY_TAKE: [f64; 2] = [SECOND_ORDER_TAKES, NEWTON_TAKES];
 
 /// A rung that is not adequate is tried if it is expected to leave at most this share of the error so far, and one is as good as
 /// the best if its error is at most so many times as large.
@@ -63,7 +58,8 @@ pub fn predict_adequately(
         watched,
         begun: (watched.stopwatch)(),
         linear_s: 0.0,
-        moving: (0..linear.skin.nodes().len() as u32).collect(),
+        newton_takes: newton_takes(1.0),
+        moving: linear.skin.points(),
         errors: Errors::default(),
         considered: Vec::new(),
     };
@@ -84,6 +80,8 @@ struct Climb<'a> {
     begun: f64,
     /// What the linear answer took, with its estimates.
     linear_s: f64,
+    /// Newton's method as a multiple of that.
+    newton_takes: f64,
     /// Points of the skin that the linear answer moves.
     moving: Vec<u32>,
     errors: Errors,
@@ -107,6 +105,7 @@ impl Climb<'_> {
         };
         if let Some(known) = known {
             self.moving = self.scene.skin.moving_points(known.displacement());
+            self.newton_takes = newton_takes(least_det_f(self.scene, known.displacement()));
             let mesh = known.numerical_error.as_ref().ok();
             self.errors.mesh = mesh.map(|error| self.means(&error.missing));
             let linearity = known.nonlinearity.as_ref().ok();
@@ -147,9 +146,10 @@ impl Climb<'_> {
                     let mesh = found.numerical_error.as_ref().ok();
                     let mesh = mesh.map(|error| self.means(&error.missing));
                     self.errors.mesh_at_rest = mesh;
-                    finite_strain = Some((scene, found));
                     let spent = self.elapsed() - begun;
                     self.note(Rung::FiniteStrain, Some(spent), self.time_of(Rung::FiniteStrain));
+                    self.refuse_inverted(&scene, &found);
+                    finite_strain = Some((scene, found));
                 }
                 Err(Failure::Stopped(error)) => return Err(error),
                 Err(Failure::Refused(why)) => self.pass_over(Rung::FiniteStrain, why),
@@ -199,7 +199,7 @@ impl Climb<'_> {
     fn time_of(&self, rung: Rung) -> f64 {
         match rung.solution() {
             Rung::SecondOrder | Rung::SecondOrderCorrected => SECOND_ORDER_TAKES * self.linear_s,
-            Rung::FiniteStrain | Rung::FiniteStrainCorrected => NEWTON_TAKES * self.linear_s,
+            Rung::FiniteStrain | Rung::FiniteStrainCorrected => self.newton_takes * self.linear_s,
             Rung::Linear | Rung::Corrected => self.linear_s,
         }
     }
@@ -268,6 +268,21 @@ impl Climb<'_> {
         }
     }
 
+    /// Passes over the corrected answer where what is added turns cells inside out that the answer itself does not.
+    fn refuse_inverted(&mut self, scene: &Scene, found: &Answer) {
+        let Ok(error) = &found.numerical_error else { return };
+        let pairs = found.equilibrium.displacement.iter().zip(&error.missing);
+        let corrected: Vec<Vector> = pairs.map(|(u, missing)| u + missing).collect();
+        if least_det_f(scene, &corrected) > 0.0 {
+            return;
+        }
+        let of_it = |considered: &&mut Considered| considered.rung == Rung::FiniteStrainCorrected;
+        for considered in self.considered.iter_mut().filter(of_it) {
+            let why = "what the mesh is estimated to leave out would turn cells inside out";
+            considered.passed_over = Some(why.to_owned());
+        }
+    }
+
     /// The rungs that were tried, with their errors as shares of what is accepted.
     fn shares(&self) -> impl Iterator<Item = (Rung, f64)> {
         let tried = self.considered.iter().filter(|rung| rung.passed_over.is_none());
@@ -285,6 +300,12 @@ impl Climb<'_> {
         let found = self.shares().find(|(_, share)| *share <= enough);
         found.map_or(Rung::Linear, |(rung, _)| rung)
     }
+}
+
+/// Of the cell that a displacement presses most, or turns inside out.
+fn least_det_f(scene: &Scene, displacement: &[Vector]) -> f64 {
+    let cells = deformations(&scene.mesh, displacement);
+    cells.iter().map(|cell| cell.det_f).fold(f64::INFINITY, f64::min)
 }
 
 fn at_finite_strain(

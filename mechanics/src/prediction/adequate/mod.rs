@@ -10,8 +10,10 @@
 
 mod accepted;
 mod climb;
+mod duration;
 mod rung;
 
 pub use accepted::{Accepted, MeanErrors};
-pub use climb::{Adequate, MAY_TAKE, Watched, predict_adequately};
+pub use climb::{Adequate, Watched, predict_adequately};
+pub use duration::{NEWTON_MAY_TAKE, SECOND_ORDER_TAKES};
 pub use rung::{Considered, Errors, Rung};

@@ -10,16 +10,19 @@ use super::domains::{Body, ball, balls, block, shell, torus};
 use super::{assert_sound, meshed, off_sphere, on_sphere, surface, uniform};
 
 #[test]
-fn the_volume_of_a_ball_converges_with_the_square_of_the_cell() {
-    let exact = 4.0 / 3.0 * PI * 50.0_f64.powi(3);
-    let errors =
-        [10.0, 5.0, 2.5].map(|h| 1.0 - meshed(&ball(50.0), &uniform(h)).report.volume / exact);
-    // Inscribed: always too small, by half the square of a cell over that of the radius at most.
-    assert!(errors.iter().all(|&error| error > 0.0));
-    assert!(errors[0] < 0.5 * 0.2_f64.powi(2), "{errors:?}");
-    for pair in errors.windows(2) {
-        let order = (pair[0] / pair[1]).log2();
-        assert!((1.8..2.2).contains(&order), "{order}");
+fn the_volumes_of_balls_shells_and_rings_are_met_to_a_ten_thousandth() {
+    let ball_of = |radius: f64| 4.0 / 3.0 * PI * radius.powi(3);
+    let bodies = [
+        (ball(50.0), ball_of(50.0)),
+        (shell(30.0, 42.0), ball_of(42.0) - ball_of(30.0)),
+        (torus(30.0, 11.0), 2.0 * PI * PI * 30.0 * 11.0 * 11.0),
+    ];
+    for (body, exact) in bodies {
+        for size in [8.0, 4.0, 2.5] {
+            let off = meshed(&body, &uniform(size)).report.volume / exact - 1.0;
+            // Chords alone lack .2 % at 4 mm of the ball, 1.2 % of the ring.
+            assert!(off.abs() < if size > 5.0 { 3e-4 } else { 1e-4 }, "{size} {off}");
+        }
     }
 }
 
@@ -71,15 +74,16 @@ fn skin_and_bone_of_a_shell_lie_where_they_are_and_all_of_them_is_there() {
     assert_sound(&tissue);
     let boundaries = [(Boundary::Skin, 42.0), (Boundary::Bone, 30.0)];
     for (boundary, radius) in boundaries {
-        assert!(off_sphere(&tissue, boundary, radius) < 1e-6);
+        // Nodes lie as far beyond the boundary as the triangles between them lie within it.
+        assert!(off_sphere(&tissue, boundary, radius) < 0.03 * 4.0);
     }
     assert!(tissue.nodes_on(Boundary::Cut).is_empty());
     let skin = surface(&tissue);
     let search = SurfaceSearch::new(&skin).unwrap();
     for point in boundaries.into_iter().flat_map(|(_, radius)| on_sphere(radius, 2000)) {
-        // A chord as long as the longest edge leaves the sphere by that squared over eight radii.
+        // Less than half of the square of the longest edge over eight radii.
         let distance = search.closest(&point).distance;
-        assert!(distance < 0.1 * 4.0, "{distance}");
+        assert!(distance < 0.025 * 4.0, "{distance}");
     }
 }
 
@@ -89,22 +93,23 @@ fn the_boundaries_of_a_box_are_told_apart() {
     let tissue = meshed(&block(half), &uniform(3.0));
     assert_sound(&tissue);
     type Off = fn(&Vector, &Vector) -> f64;
-    let boundaries: [(Boundary, Off); 3] = [
-        (Boundary::Skin, |half, at| (half - at.abs()).xy().min()),
-        (Boundary::Bone, |half, at| at.z + half.z),
-        (Boundary::Cut, |half, at| half.z - at.z),
+    // Edges between two sides of skin are rounded.
+    let boundaries: [(Boundary, Off, f64); 3] = [
+        (Boundary::Skin, |half, at| (half - at.abs()).xy().min(), 0.05 * 3.0),
+        (Boundary::Bone, |half, at| at.z + half.z, 1e-6),
+        (Boundary::Cut, |half, at| half.z - at.z, 1e-6),
     ];
-    for (boundary, off) in boundaries {
+    for (boundary, off, most) in boundaries {
         let nodes = tissue.nodes_on(boundary);
         assert!(nodes.len() > 100);
         for at in nodes.into_iter().map(|node| tissue.volume.nodes[node as usize]) {
-            assert!(off(&half, &at).abs() < 1e-6, "{boundary:?} {at:?}");
+            assert!(off(&half, &at).abs() < most, "{boundary:?} {at:?}");
         }
     }
     // The edges of bone and cut are kept; those between sides, and corners, are cut off by less than a cell.
     assert!(tissue.report.creased > 50, "{:?}", tissue.report);
     let exact = 8.0 * half.product();
-    assert!((1.0 - tissue.report.volume / exact) < 0.02, "{}", tissue.report.volume / exact);
+    assert!((1.0 - tissue.report.volume / exact).abs() < 5e-3, "{}", tissue.report.volume / exact);
 }
 
 #[test]
@@ -117,7 +122,9 @@ fn balls_more_than_a_cell_apart_stay_two() {
     assert_sound(&one);
     assert!(both.report.dropped.is_empty());
     let [dropped] = one.report.dropped[..] else { panic!("{:?}", one.report.dropped) };
-    assert!((dropped.volume + one.report.volume) / both.report.volume > 0.9999);
+    // What is dropped is measured before its surface encloses what chords cut off.
+    let sum = dropped.volume + one.report.volume;
+    assert!((sum / both.report.volume - 1.0).abs() < 5e-3, "{}", sum / both.report.volume);
     assert!((dropped.centre.norm() - 21.7).abs() < 0.1);
 }
 

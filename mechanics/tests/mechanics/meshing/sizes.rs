@@ -34,7 +34,8 @@ fn cells_are_fine_about_a_place_and_coarse_away_from_it() {
     let tissue = meshed(&ball(40.0), &about(place, 6.0, 1.5, 12.0));
     let angles = assert_sound(&tissue);
     assert!(angles[0] > 10.0, "{angles:?}");
-    assert!(off_sphere(&tissue, Boundary::Skin, 40.0) < 0.2);
+    // Where cells of 12 mm make chords of it.
+    assert!(off_sphere(&tissue, Boundary::Skin, 40.0) < 0.9);
     let near = mean_edge(&tissue, |at| (at - place).norm() < 5.0);
     let far = mean_edge(&tissue, |at| at.x < 0.0);
     assert!(near < 1.6 && far > 5.0, "{near} {far}");

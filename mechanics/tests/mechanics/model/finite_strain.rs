@@ -235,6 +235,28 @@ fn pressures_take_the_hard_block_to_rest_in_as_many_steps_for_every_poisson_rati
     assert!(*most <= 20 && *most <= least + 5, "{steps:?}");
 }
 
+/// A bar of 100 mm, held at its ends, of which one goes by so many mm.
+fn bar(by_mm: f64) -> Equilibrium {
+    let mesh = block(Vector::new(100.0, 10.0, 10.0), [20, 2, 2], CellShape::Tet4);
+    let ends = holds(&mesh, |x| match x.x {
+        x if x < 1e-9 => Some(Vector::zeros()),
+        x if x > 99.9 => Some(Vector::x() * by_mm),
+        _ => None,
+    });
+    rest(&mesh, neo_hookean(0.3), &ends, &Unobserved).unwrap()
+}
+
+#[test]
+fn a_pulled_bar_rests_in_one_way_and_a_pressed_one_that_buckled_may_in_another() {
+    let told = |by_mm: f64| {
+        let moved = bar(by_mm);
+        assert!(moved.solver.newton.unwrap().indefinite_steps > 0, "{by_mm}");
+        moved.warnings.iter().map(|warning| warning.code).collect::<Vec<_>>()
+    };
+    assert_eq!(told(100.0), [""; 0]);
+    assert_eq!(told(-30.0), ["another-equilibrium"]);
+}
+
 #[test]
 fn pressures_take_even_tissue_without_a_free_ring_to_rest() {
     for poisson_ratio in [0.46, 0.4999] {

@@ -70,6 +70,19 @@ fn seven_tenths_of_the_unknowns_where_they_count_come_as_near_within_a_third() {
 }
 
 #[test]
+fn the_error_of_a_level_is_that_of_the_skin_that_moves() {
+    let (case, plan) = scene();
+    let scene = Scene::new(&case, &plan, &Settings::default()).unwrap();
+    let adapted = predict_adaptively(&scene, &wanted(10.0, 1), &|| 0.0, &Unobserved).unwrap();
+    let prediction = predict(&scene, &Unobserved).unwrap();
+    let missing = prediction.numerical_error.unwrap().missing;
+    let moving = scene.skin.moving_points(&prediction.displacement);
+    let mean = |points: &[u32]| scene.skin.mean_length(points, &missing);
+    assert!((adapted.levels[0].mean_mm - mean(&moving)).abs() < 1e-9);
+    assert!(mean(&moving) > 1.01 * mean(&scene.skin.points()), "{} move", moving.len());
+}
+
+#[test]
 fn refinement_goes_on_until_the_estimate_is_accepted() {
     let (case, plan) = scene();
     let coarse = adapted(&case, &plan, &wanted(10.0, 1_000_000)).levels[0].mean_mm;

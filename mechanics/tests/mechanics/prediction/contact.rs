@@ -10,12 +10,12 @@ use mechanics::prediction::{
 
 use crate::scenes::{case_of, hold, material, set, solve};
 
-fn unilateral() -> Settings {
+pub(super) fn unilateral() -> Settings {
     Settings { contact: ContactKind::Unilateral, relative_residual: 1e-10, ..Settings::default() }
 }
 
 /// Meshes side by side, with the node sets of each under a name of its own: `bar/x_min`, and `bar` for all of it.
-fn together(parts: &[(&str, VolumeMesh)]) -> VolumeMesh {
+pub(super) fn together(parts: &[(&str, VolumeMesh)]) -> VolumeMesh {
     let mut all = VolumeMesh::default();
     for (name, part) in parts {
         let first = all.nodes.len() as u32;
@@ -34,17 +34,17 @@ fn together(parts: &[(&str, VolumeMesh)]) -> VolumeMesh {
     all
 }
 
-fn at(mut mesh: VolumeMesh, place: [f64; 3]) -> VolumeMesh {
+pub(super) fn at(mut mesh: VolumeMesh, place: [f64; 3]) -> VolumeMesh {
     mesh.nodes.iter_mut().for_each(|node| *node += Vector::from(place));
     mesh
 }
 
-fn force(found: &Prediction, of: &str) -> Vector {
+pub(super) fn force(found: &Prediction, of: &str) -> Vector {
     found.reactions[of]
 }
 
 /// A bar of 20 mm and 100 mm² with a rigid block half a millimetre from its end.
-fn bar(shape: CellShape) -> Case {
+pub(super) fn bar(shape: CellShape) -> Case {
     let bar = block(Vector::new(20.0, 10.0, 10.0), [6, 3, 3], shape);
     let stop = at(block(Vector::new(4.0, 14.0, 14.0), [1, 4, 4], shape), [20.5, -2.0, -2.0]);
     let mesh = together(&[("bar", bar), ("stop", stop)]);
@@ -56,7 +56,7 @@ fn bar(shape: CellShape) -> Case {
     }
 }
 
-fn pushed(by: f64) -> Plan {
+pub(super) fn pushed(by: f64) -> Plan {
     let push = hold("bar/x_min", [Some(by), Some(0.0), Some(0.0)]);
     Plan { prescribed: vec![push], ..Plan::default() }
 }
@@ -103,16 +103,12 @@ fn met(found: &Prediction, nodes: &[u32], wanted: f64) -> Met {
     }
 }
 
-/// Two blocks, three cells to two, pressed together by a tenth (Taylor, Papadopoulos 1991): points held against triangles
-/// do not pass the patch test, in which the pressure is the same everywhere. docs/contact.md says by how much they fail it.
-#[test]
-fn blocks_with_meshes_that_do_not_match_keep_apart_and_press_within_a_ninth_of_evenly() {
+/// Two blocks, three cells to two, pressed together by a tenth.
+pub(super) fn blocks() -> (Case, Plan) {
     let lower = block(Vector::new(12.0, 12.0, 6.0), [3, 3, 2], CellShape::Hex8);
     let upper =
         at(block(Vector::new(12.0, 12.0, 6.0), [2, 2, 2], CellShape::Hex8), [0.0, 0.0, 6.0]);
     let mesh = together(&[("lower", lower), ("upper", upper)]);
-    let nodes = |name: &str| mesh.node_sets[name].clone();
-    let (one, other) = (nodes("lower/z_max"), nodes("upper/z_min"));
     let case = Case { allow_unfixed: true, ..case_of(mesh, material(15.0, 0.0)) };
     let plan = Plan {
         prescribed: vec![
@@ -121,6 +117,16 @@ fn blocks_with_meshes_that_do_not_match_keep_apart_and_press_within_a_ninth_of_e
         ],
         ..Plan::default()
     };
+    (case, plan)
+}
+
+/// Two blocks, three cells to two, pressed together by a tenth (Taylor, Papadopoulos 1991): points held against triangles
+/// do not pass the patch test, in which the pressure is the same everywhere. docs/contact.md says by how much they fail it.
+#[test]
+fn blocks_with_meshes_that_do_not_match_keep_apart_and_press_within_a_ninth_of_evenly() {
+    let (case, plan) = blocks();
+    let nodes = |name: &str| case.volume.node_sets[name].clone();
+    let (one, other) = (nodes("lower/z_max"), nodes("upper/z_min"));
     let found = solve(&case, &plan, &unilateral());
     for (side, nodes) in [("lower", one), ("upper", other)] {
         let met = met(&found, &nodes, 1.5);
@@ -133,7 +139,7 @@ fn blocks_with_meshes_that_do_not_match_keep_apart_and_press_within_a_ninth_of_e
 }
 
 /// A C of tissue: two jaws of 20 mm with a slit of 5 mm and 30 mm depth between them, the lower one raised.
-fn jaws(size: f64) -> Case {
+pub(super) fn jaws(size: f64) -> Case {
     let cells = [40.0, 10.0, 45.0].map(|length| (length / size) as usize);
     let whole = block(Vector::new(40.0, 10.0, 45.0), cells, CellShape::Hex8);
     let mut mesh = VolumeMesh { nodes: whole.nodes.clone(), ..VolumeMesh::default() };
@@ -153,7 +159,7 @@ fn jaws(size: f64) -> Case {
     }
 }
 
-fn raised(by: f64) -> Plan {
+pub(super) fn raised(by: f64) -> Plan {
     let up = Vector::new(0.0, 0.0, by);
     let movement = RigidMovement::about_pivot(Vector::zeros(), Vector::zeros(), up);
     let segments = vec![PlannedSegment { name: "jaw".to_owned(), movement }];

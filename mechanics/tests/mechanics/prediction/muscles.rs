@@ -322,6 +322,24 @@ fn a_muscle_of_few_cells_is_told() {
 }
 
 #[test]
+fn a_muscle_in_cells_too_coarse_for_its_width_is_told_with_how_much_of_it_pulls() {
+    let told = |cells: [usize; 3], at: f64| {
+        let mesh = block(Vector::new(120.0, 30.0, 30.0), cells, CellShape::Hex8);
+        let line = vec![Vector::new(0.0, at, at), Vector::new(120.0, at, at)];
+        let muscles = vec![around("long", vec![line], 4.5)];
+        let case =
+            Case { fixed: vec![set("x_min")], muscles, ..case_of(mesh, material(15.0, 0.46)) };
+        let scene = Scene::new(&case, &pulling("long", 1.0), &Settings::default()).unwrap();
+        let mut told = scene.warnings.into_iter().filter(|own| own.code == "muscle-few-cells");
+        told.next().map(|own| own.numbers)
+    };
+    // A line through the middle of cells of 10 mm, no point of which is nearer than 3.9 mm: a fraction pulls.
+    let numbers = told([24, 3, 3], 15.0).unwrap();
+    assert!(numbers[0].1 >= 20.0 && numbers[1].1 < 0.5, "{numbers:?}");
+    assert_eq!(told([24, 24, 24], 15.0), None);
+}
+
+#[test]
 fn a_muscle_pulls_in_its_region_only() {
     let mut case = arched(CellShape::Hex8, 0);
     let mut mesh = (*case.volume).clone();

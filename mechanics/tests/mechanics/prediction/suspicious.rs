@@ -104,7 +104,10 @@ fn constants_that_a_wrong_unit_explains_are_told_with_their_numbers() {
     const NONE: [f64; 0] = [];
     let usual = [15.0, 0.45, 1.0];
     assert_eq!(told(usual, vec![], 1.5), NONE);
-    assert_eq!(told([0.1, 0.45, 0.0], vec![], 1.5), NONE, "no density is no mistake");
+    assert_eq!(told([1.0, 0.45, 0.0], vec![], 1.5), NONE, "no density is no mistake");
+    // 15 kPa in Pa; 300 kPa in MPa.
+    assert_eq!(told([15_000.0, 0.45, 1.0], vec![], 1.5), [15_000.0]);
+    assert_eq!(told([0.3, 0.45, 1.0], vec![], 1.5), [0.3]);
     // MPa, Pa; kg/m3 are refused, t/mm3 are not.
     assert_eq!(told([0.015, 0.45, 1.0], vec![], 1.5), [0.015]);
     assert_eq!(told([1.5e7, 0.45, 1e-9], vec![], 1.5), [1.5e7, 1e-9]);
@@ -113,10 +116,11 @@ fn constants_that_a_wrong_unit_explains_are_told_with_their_numbers() {
     let loads = vec![
         Load::Traction { faces: faces(), traction: Vector::z() * 2e3 },
         Load::Pressure { faces: faces(), pressure: -0.5 },
+        Load::Pressure { faces: faces(), pressure: 5e-3 },
         Load::Force { nodes: faces(), force: Vector::x() * 2e5 },
         Load::Gravity { acceleration: Vector::new(0.0, 0.0, -9.81) },
     ];
-    assert_eq!(told(usual, loads, 1.5), [2e3, 2e5, 9.81]);
+    assert_eq!(told(usual, loads, 1.5), [2e3, 5e-3, 2e5, 9.81]);
 }
 
 #[test]

@@ -41,12 +41,14 @@ pub struct Settled {
 }
 
 /// Gaps without contact, and how well contact is to be met.
-pub(super) struct Task<'a> {
+pub(in crate::model::fem) struct Task<'a> {
     /// For each row, in mm.
     pub gaps: &'a [f64],
     /// The largest movement, in mm.
     pub movement: f64,
     pub relative_residual: f64,
+    /// For each row the force in mN with which it pressed when the answer without contact was found; nothing where none did.
+    pub before: &'a [f64],
     pub progress: &'a dyn Progress,
 }
 
@@ -58,7 +60,7 @@ impl ActiveSet {
     }
 
     /// Passes until the set repeats. What presses is added to an answer whose gaps are given.
-    pub(super) fn settle(
+    pub(in crate::model::fem) fn settle(
         &mut self,
         equations: &mut Equations,
         task: &Task,
@@ -74,7 +76,9 @@ impl ActiveSet {
             relative_residual: 0.0,
             repeats: false,
         };
-        let mut multiplier_of = vec![0.0; self.presses.len()];
+        let mut multiplier_of = task.before.to_vec();
+        multiplier_of.resize(self.presses.len(), 0.0);
+        let taken_away = equations.forces(task.before);
         let mut wanted = ON_THE_WAY.max(task.relative_residual);
         while settled.passes < MOST_PASSES {
             settled.passes += 1;
@@ -83,7 +87,12 @@ impl ActiveSet {
             let values: Vec<f64> = rows.iter().map(|&row| -task.gaps[row]).collect();
             let multipliers = rows.iter().map(|&row| multiplier_of[row]).collect();
             let start = Point { x: std::mem::take(&mut settled.point.x), multipliers };
-            let asked = Wanted { rows: &rows, values: &values, relative_residual: wanted };
+            let asked = Wanted {
+                rows: &rows,
+                values: &values,
+                less: &taken_away,
+                relative_residual: wanted,
+            };
             let found = equations.solve(&asked, start, task.progress)?;
             multiplier_of.fill(0.0);
             rows.iter().zip(&found.point.multipliers).for_each(|(&row, m)| multiplier_of[row] = *m);

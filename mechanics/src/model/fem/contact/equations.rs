@@ -9,7 +9,8 @@ use crate::solver::PartlyHeld;
 use crate::solver::preconditioned::Equation;
 
 /// Free unknowns by node.
-pub(super) struct FreeUnknowns<'a> {
+#[derive(Clone)]
+pub(in crate::model::fem) struct FreeUnknowns<'a> {
     numbering: &'a Numbering,
     partly_held: BTreeMap<usize, PartlyHeld>,
 }

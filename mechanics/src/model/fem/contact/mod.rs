@@ -1,4 +1,4 @@
-//! Unilateral contact without friction, in linear elasticity: gaps g >= 0, pressing forces m >= 0, m g = 0.
+//! Unilateral contact without friction, in linear elasticity and for the steps of Newton's method: gaps g >= 0, pressing forces m >= 0, m g = 0.
 //!
 //! Primal-dual active set (Hintermueller, Ito, Kunisch, SIAM J. Optim. 13, 2003): the rows that press are equations,
 //! K u = f + G^T m with g = 0, and the others are left out; a row presses in the next pass where m - c g > 0, whatever c is,
@@ -6,6 +6,10 @@
 
 mod active_set;
 mod equations;
+mod kept_rows;
 mod pressing;
 
+pub(super) use active_set::{ActiveSet, Settled, Task};
+pub(super) use equations::FreeUnknowns;
+pub(super) use kept_rows::KeptRows;
 pub use pressing::{Contact, ContactProblem, InContact, Pressed};

@@ -1,19 +1,17 @@
 //! An answer of linear elasticity in which nothing passes through what it faces: closest points and the set that presses, along
 //! the movement in steps, and at its end until closest points stay.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use super::active_set::{ActiveSet, Settled, Task};
 use super::equations::FreeUnknowns;
-use crate::boundary::contact::{ContactRow, FacingSurfaces};
+use super::kept_rows::{KeptRows, Round};
+use crate::boundary::contact::{CLOSED_MM, ContactRow, FacingSurfaces};
 use crate::mesh::Vector;
 use crate::model::fem::linear_system::{LinearSystem, Solved};
 use crate::model::problem::{Equilibrium, LoadCase, ModelError};
 use crate::progress::Progress;
 use crate::solver::constrained::{Equations, Point};
-
-/// Gaps below 0 by less than this, in mm, are closed.
-const CLOSED_MM: f64 = 1e-6;
 
 /// Beyond this, in mm, an answer is none.
 const UNSETTLED_MM: f64 = 0.1;
@@ -23,8 +21,6 @@ const MOST_ROUNDS: usize = 15;
 
 /// What moves goes by at most this part of its longest edges in a step; the second where the first does not settle.
 const STEPS: [f64; 2] = [0.5, 0.125];
-
-const MOST_STEPS: usize = 100;
 
 /// Relative residual on the way, and where closest points may still change.
 const ON_THE_WAY: f64 = 1e-3;
@@ -46,7 +42,7 @@ pub struct Pressed {
 }
 
 /// How tissue presses on what it touches.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Contact {
     pub pressed: Vec<Pressed>,
     /// For each node that faces another part of the boundary, the gap in mm.
@@ -86,7 +82,7 @@ impl ContactProblem<'_> {
         progress: &dyn Progress,
     ) -> Result<Option<InContact>, ModelError> {
         let mut rounds = Rounds::new(self);
-        let steps = self.steps(step);
+        let steps = self.surfaces.steps(self.free(), step);
         for step in 1..=steps {
             rounds.share = step as f64 / steps as f64;
             rounds.look();
@@ -128,23 +124,15 @@ impl ContactProblem<'_> {
     fn free_part(&self, share: f64) -> Vec<Vector> {
         self.free().iter().map(|u| u * share).collect()
     }
-
-    /// The number of steps in which what moves much goes by a part of its edges.
-    fn steps(&self, part: f64) -> usize {
-        let (movement, edge) = self.surfaces.movement_and_edge(self.free());
-        ((movement / (part * edge)).ceil() as usize).clamp(1, MOST_STEPS)
-    }
 }
 
 /// What is known of contact while its points are looked for.
 struct Rounds<'a> {
     problem: &'a ContactProblem<'a>,
     unknowns: FreeUnknowns<'a>,
-    /// Those of `rows`.
+    /// Those of `kept_rows`.
     equations: Equations<'a>,
-    rows: Vec<ContactRow>,
-    /// Nodes whose rows press.
-    pressing: BTreeSet<u32>,
+    kept_rows: KeptRows,
     /// The part of the movement that is done.
     share: f64,
     displacement: Vec<Vector>,
@@ -166,8 +154,7 @@ impl<'a> Rounds<'a> {
             problem,
             unknowns: FreeUnknowns::new(system.holds, &system.numbering),
             equations: Equations::new(system.preconditioned(), Vec::new()),
-            rows: Vec::new(),
-            pressing: BTreeSet::new(),
+            kept_rows: KeptRows::default(),
             share: 0.0,
             displacement: vec![Vector::zeros(); problem.free().len()],
             added: Point::default(),
@@ -183,32 +170,11 @@ impl<'a> Rounds<'a> {
 
     /// Looks for closest points with the answer so far; how many rows say something new.
     fn look(&mut self) -> usize {
-        let before: BTreeMap<u32, usize> =
-            self.rows.iter().enumerate().map(|(place, row)| (row.node, place)).collect();
-        let mut rows = self.problem.surfaces.rows(&self.displacement);
-        rows.retain(|row| !self.unknowns.equation(row).is_empty());
-        let mut same = vec![None; rows.len()];
-        let mut new = 0;
-        for (row, same) in rows.iter_mut().zip(&mut same) {
-            let old = before.get(&row.node).copied();
-            match old.filter(|&old| self.rows[old].agrees(row, &self.displacement)) {
-                Some(old) => {
-                    *row = self.rows[old].clone();
-                    *same = Some(old);
-                }
-                None => {
-                    let counts =
-                        row.is_near(&self.displacement) || self.pressing.contains(&row.node);
-                    new += usize::from(counts);
-                }
-            }
-        }
-        let lost = before.keys().filter(|&node| self.pressing.contains(node));
-        new +=
-            lost.filter(|&&node| rows.binary_search_by_key(&node, |row| row.node).is_err()).count();
-        let equations = rows.iter().map(|row| self.unknowns.equation(row)).collect();
-        self.equations.replace(equations, &same);
-        self.rows = rows;
+        let mut found = self.problem.surfaces.rows(&self.displacement);
+        found.retain(|row| !self.unknowns.equation(row).is_empty());
+        let Round { same, new } = self.kept_rows.take(found, &self.displacement);
+        let equations = self.kept_rows.rows.iter().map(|row| self.unknowns.equation(row));
+        self.equations.replace(equations.collect(), &same);
         new
     }
 
@@ -220,7 +186,7 @@ impl<'a> Rounds<'a> {
     fn touches(&self) -> bool {
         let free = self.problem.free();
         let closes = |row: &ContactRow| row.gap_after_part(free, self.share) < -CLOSED_MM;
-        self.has_touched() || self.rows.iter().any(closes)
+        self.has_touched() || self.kept_rows.rows.iter().any(closes)
     }
 
     /// The set that presses, for rows that stay as they are, and the answer with it; how far the answer moved, in mm.
@@ -232,12 +198,17 @@ impl<'a> Rounds<'a> {
         let free = self.problem.free();
         let movement = self.share * free.iter().map(Vector::norm).fold(0.0, f64::max);
         let gaps: Vec<f64> =
-            self.rows.iter().map(|row| row.gap_after_part(free, self.share)).collect();
+            self.kept_rows.rows.iter().map(|row| row.gap_after_part(free, self.share)).collect();
         let mut set = ActiveSet::of_gaps(&gaps, movement);
         if self.has_touched() {
-            set.presses = self.rows.iter().map(|row| self.pressing.contains(&row.node)).collect();
+            set.presses = self
+                .kept_rows
+                .rows
+                .iter()
+                .map(|row| self.kept_rows.pressing.contains(&row.node))
+                .collect();
         }
-        let task = Task { gaps: &gaps, movement, relative_residual, progress };
+        let task = Task { gaps: &gaps, movement, relative_residual, before: &[], progress };
         let start = Point { x: std::mem::take(&mut self.added.x), multipliers: Vec::new() };
         let settled = set.settle(&mut self.equations, &task, start)?;
         self.count(&settled);
@@ -247,7 +218,8 @@ impl<'a> Rounds<'a> {
         }
         let Settled { point, rows: active, .. } = settled;
         (self.added, self.active) = (point, active);
-        self.pressing = self.active.iter().map(|&row| self.rows[row].node).collect();
+        self.kept_rows.pressing =
+            self.active.iter().map(|&row| self.kept_rows.rows[row].node).collect();
         let displacement = self.moved();
         let pairs = self.displacement.iter().zip(&displacement);
         let moved_mm = pairs.map(|(one, other)| (one - other).norm()).fold(0.0, f64::max);
@@ -266,13 +238,8 @@ impl<'a> Rounds<'a> {
 
     /// What presses on each node.
     fn forces(&self) -> Vec<Vector> {
-        let mut forces = vec![Vector::zeros(); self.displacement.len()];
-        for (&row, force) in self.active.iter().zip(&self.added.multipliers) {
-            for (node, along) in &self.rows[row].terms {
-                forces[*node as usize] += along * *force;
-            }
-        }
-        forces
+        let pressed = self.active.iter().copied().zip(self.added.multipliers.iter().copied());
+        self.kept_rows.forces(pressed, self.displacement.len())
     }
 
     /// Displacements by row that contact adds.
@@ -296,10 +263,15 @@ impl<'a> Rounds<'a> {
         let forces = self.forces();
         let solved = self.solved(&forces);
         let pressed = self.active.iter().zip(&self.added.multipliers);
-        let pressed: Vec<Pressed> =
-            pressed.map(|(&row, &force)| Pressed { row: self.rows[row].clone(), force }).collect();
-        let gaps =
-            self.rows.iter().map(|row| (row.node, row.gap_after(&self.displacement))).collect();
+        let pressed: Vec<Pressed> = pressed
+            .map(|(&row, &force)| Pressed { row: self.kept_rows.rows[row].clone(), force })
+            .collect();
+        let gaps = self
+            .kept_rows
+            .rows
+            .iter()
+            .map(|row| (row.node, row.gap_after(&self.displacement)))
+            .collect();
         let Rounds { passes, changes, kept, iterations, rounds, relative_residual, .. } = self;
         let contact = Contact {
             pressed,

@@ -2,6 +2,7 @@
 
 use super::pressures::Pressures;
 use super::tissue::Deformed;
+use super::touching::{Ahead, Touching};
 use crate::mesh::Vector;
 use crate::model::dofs::{Constrained, Known};
 use crate::model::problem::LoadCase;
@@ -10,6 +11,7 @@ use crate::solver::conjugate_gradient::{self, Enough};
 use crate::solver::mixed;
 use crate::solver::mixed_system::{Coupling, MixedRightHandSide, MixedSystem};
 use crate::solver::multigrid::Multigrid;
+use crate::solver::preconditioned::Preconditioned;
 use crate::solver::{Solver, SolverError, System, Unknowns};
 
 /// Inner iterations after which a direction is taken as it is, without pressures and with them.
@@ -40,6 +42,8 @@ struct Hierarchy {
 pub(super) struct Direction {
     pub positions: Vec<Vector>,
     pub pressures: Vec<f64>,
+    /// Forces of the rows of contact in mN after the whole step; nothing where nothing presses.
+    pub multipliers: Vec<f64>,
     pub iterations: usize,
     /// Whether the tangent was positive definite along all that was tried; not seen where there are pressures.
     pub is_convex: bool,
@@ -53,10 +57,14 @@ pub(super) struct Remaining<'a> {
     pub case: &'a LoadCase,
     /// What is left over of the equations of the pressures, in mm^3.
     pub volumes: &'a [f64],
-    /// Positions of the nodes.
+    /// Positions and displacements of the nodes.
     pub nodes: &'a [Vector],
+    pub displacement: &'a [Vector],
     /// The relative residual that is wanted.
     pub relative: f64,
+    /// The norm of the forces in mN that nothing balances.
+    pub unbalanced: f64,
+    pub progress: &'a dyn Progress,
 }
 
 /// Solves the systems of the steps, one after the other.
@@ -86,20 +94,24 @@ impl Directions {
         deformed: &Deformed,
         constrained: &Constrained,
         remaining: &Remaining,
-        progress: &dyn Progress,
+        touching: Option<&mut Touching>,
     ) -> Result<Direction, SolverError> {
+        let progress = remaining.progress;
         let system = constrained.system(deformed.tangent(progress)?, remaining.nodes);
         self.check_memory(&system)?;
         let known = constrained.known(remaining.case);
         let mut hierarchy = self.hierarchy();
         let inner = Inner(progress);
-        let found = match &mut self.pressures {
+        let coupling = self
+            .pressures
+            .as_mut()
+            .map(|pressures| pressures.coupling_at(&|cell| deformed.gradients(cell)));
+        let mut found = match coupling {
             None => {
                 let multigrid = hierarchy.solver.hierarchy(&system);
                 alone(&system, multigrid, &known, remaining.relative, &inner)?
             }
-            Some(pressures) => {
-                let coupling = pressures.coupling_at(&|cell| deformed.gradients(cell));
+            Some(coupling) => {
                 let volumes = left_volumes(&known, coupling, remaining.volumes);
                 let right = MixedRightHandSide { forces: known.right_hand_side(&system), volumes };
                 let solver = &hierarchy.solver;
@@ -107,14 +119,33 @@ impl Directions {
                 together(&system, &right, remaining.relative, &inner)?
             }
         };
+        let mut by_node = constrained.displacement(&known.total(&found.unknowns));
+        let mut multipliers = Vec::new();
+        if let Some(touching) = touching {
+            let Remaining { displacement, unbalanced, relative, .. } = *remaining;
+            let displacement: Vec<Vector> =
+                displacement.iter().zip(&by_node).map(|(u, step)| u + step).collect();
+            let ahead =
+                Ahead { displacement: &displacement, unbalanced, relative, progress: &inner };
+            let matrix = Preconditioned::new(&system, coupling, &hierarchy.solver);
+            if let Some(change) = touching.change(matrix, &ahead)? {
+                let (u, p) = change.step.split_at(3 * system.layout.free);
+                let mut total = vec![[[0.0]; 3]; system.matrix.rows()];
+                total.iter_mut().zip(u.as_chunks::<3>().0).for_each(|(total, u)| *total = *u);
+                let added = constrained.displacement(&total);
+                by_node.iter_mut().zip(&added).for_each(|(d, added)| *d += added);
+                found.pressures.iter_mut().zip(p).for_each(|(d, [added])| *d += added);
+                multipliers = change.multipliers;
+            }
+        }
         self.tally.inner += found.iterations;
         self.tally.indefinite += usize::from(!found.is_convex);
         hierarchy.serve(&found);
         self.hierarchy = Some(hierarchy);
-        let by_node = constrained.displacement(&known.total(&found.unknowns));
         Ok(Direction {
             positions: constrained.numbering.by_row(&by_node),
             pressures: found.pressures,
+            multipliers,
             iterations: found.iterations,
             is_convex: found.is_convex,
             is_met: found.is_met,

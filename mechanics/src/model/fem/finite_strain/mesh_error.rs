@@ -2,7 +2,7 @@
 
 use super::direction::Remaining;
 use super::enriched::{Enriched, Pressed};
-use super::newton::Rest;
+use super::newton_state::Rest;
 use super::tissue::Tissue;
 use crate::material::hyperelastic::Law;
 use crate::mesh::Vector;
@@ -79,8 +79,16 @@ impl Finer<'_> {
         };
         let left: Vec<f64> = residual.volumes.iter().map(|volume| -volume).collect();
         let relative = tolerance(self.tissue.materials, has_pressures);
-        let remaining = Remaining { case: &case, volumes: &left, nodes: &nodes, relative };
-        let found = directions.of(&deformed, constrained, &remaining, progress)?;
+        let remaining = Remaining {
+            case: &case,
+            volumes: &left,
+            nodes: &nodes,
+            displacement: &displacement,
+            relative,
+            unbalanced: 0.0,
+            progress,
+        };
+        let found = directions.of(&deformed, constrained, &remaining, None)?;
         if !found.is_convex {
             return Ok(Err(NoMeshError::Unstable));
         }

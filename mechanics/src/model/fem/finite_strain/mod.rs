@@ -4,6 +4,7 @@
 //! and what acts is advanced in the same steps that bring the tissue to rest (docs/methods.md#newton). Tetrahedra with pressures
 //! and cells with mean dilatation do not lock (`elements`).
 
+mod another_rest;
 mod balance;
 mod bricks;
 mod direction;
@@ -15,53 +16,43 @@ mod enriched_simplex;
 mod fibres;
 mod mesh_error;
 mod newton;
+mod newton_state;
 mod pressures;
 mod problem;
 mod simplices;
 mod step_length;
 mod tissue;
+mod touching;
 
 use std::collections::BTreeMap;
 
 use nalgebra::Matrix3;
 
 use crate::boundary::Hold;
-use crate::mesh::{CellShape, Vector, Warning};
+use crate::boundary::contact::FacingSurfaces;
+use crate::mesh::{CellShape, Vector};
 use crate::model::dofs::{Constrained, nodes_of_cells, number};
 use crate::model::fem::cell_stiffness::tetrahedron;
+use crate::model::fem::contact::Contact;
 use crate::model::fem::displacement::check_finite;
 use crate::model::problem::{Equilibrium, LoadCase, ModelError};
 use crate::progress::{Phase, Progress};
-use crate::solver::{NewtonReport, SolverError};
+use crate::solver::SolverError;
+use another_rest::another_rest;
 use direction::{Directions, Tally};
 pub use elements::Elements;
 use elements::Kept;
 pub use fibres::FibreField;
 pub use mesh_error::{Finer, MeshError, NoMeshError};
-use newton::{Ending, Newton, Question, Rest, Start, Until};
+pub use newton::MOST_STEPS;
+use newton::Newton;
+use newton_state::{Ending, Question, Rest, Start, Until};
 pub use problem::FiniteStrain;
 use tissue::Tissue;
+use touching::Touching;
 
-/// Tissue whose tangent was not positive definite on the way may have creased one way or another.
-fn another_rest(newton: &NewtonReport) -> Option<Warning> {
-    let is_unstable = newton.is_stable == Some(false);
-    if newton.indefinite_steps == 0 && !is_unstable {
-        return None;
-    }
-    let state = if is_unstable {
-        "the state that was found is not stable"
-    } else {
-        "one of them was found"
-    };
-    let detail = format!(
-        "along {} of {} steps the tissue was not stable: it may rest in several ways, and {state}",
-        newton.indefinite_steps,
-        newton.path.len().saturating_sub(1)
-    );
-    let warning = Warning::new("another-equilibrium", detail);
-    let warning = warning.with("indefinite_steps", newton.indefinite_steps as f64);
-    Some(warning.with("energy_mn_mm", newton.energy))
-}
+/// What moves goes by at most this part of its longest edges in a step where things touch.
+const STEP: f64 = 0.5;
 
 impl FiniteStrain<'_> {
     /// Solves a load case for rest.
@@ -85,31 +76,75 @@ impl FiniteStrain<'_> {
         self.check_held_cells(case)?;
         let numbering = number(&nodes_of_cells(self.mesh), &self.mesh.nodes, self.holds);
         let constrained = Constrained { holds: self.holds, numbering: &numbering };
-        let tolerance = self.tolerance;
-        let question = Question { constrained: &constrained, case, tolerance, progress };
-        let nodes = &self.mesh.nodes;
-        let (tissue, mut rest) = self.rest(question)?;
+        let question =
+            Question { constrained: &constrained, case, tolerance: self.tolerance, progress };
+        let (tissue, mut rest) = self.rest(question, None)?;
         let error = finer.map(|finer| finer.of(&tissue, &mut rest, &constrained, progress));
         let error = error.transpose()?;
-        let Rest { positions, forces, report, .. } = rest;
+        Ok((self.equilibrium(&question, rest, &case.forces)?, error))
+    }
 
-        let places = numbering.layout.place.iter().zip(nodes);
+    /// The answer in which nothing passes through what it faces, by the answer without contact; none where nothing touches.
+    pub fn solve_in_contact(
+        &self,
+        case: &LoadCase,
+        free: &Equilibrium,
+        surfaces: &FacingSurfaces,
+        progress: &dyn Progress,
+    ) -> Result<Option<(Equilibrium, Contact)>, ModelError> {
+        let steps = surfaces.steps(&free.displacement, STEP);
+        if !surfaces.touches(&free.displacement, steps) {
+            return Ok(None);
+        }
+        let numbering = number(&nodes_of_cells(self.mesh), &self.mesh.nodes, self.holds);
+        let constrained = Constrained { holds: self.holds, numbering: &numbering };
+        let question =
+            Question { constrained: &constrained, case, tolerance: self.tolerance, progress };
+        let touching = Touching::new(surfaces, self.holds, &numbering, 1.0 / steps as f64);
+        let (_, mut rest) = self.rest(question, Some(touching))?;
+        let Some(touching) = rest.touching.take() else { return Ok(None) };
+        let residual = rest.report.relative_residual;
+        let pressing = touching.forces(self.mesh.nodes.len());
+        let acting: Vec<Vector> =
+            case.forces.iter().zip(&pressing).map(|(force, pressing)| force + pressing).collect();
+        let equilibrium = self.equilibrium(&question, rest, &acting)?;
+        let contact = touching.answer(&equilibrium.displacement, residual)?;
+        Ok(contact.map(|contact| (equilibrium, contact)))
+    }
+
+    /// Displacements and reactions of tissue at rest under forces in mN, by node.
+    fn equilibrium(
+        &self,
+        question: &Question,
+        rest: Rest,
+        acting: &[Vector],
+    ) -> Result<Equilibrium, ModelError> {
+        let numbering = question.constrained.numbering;
+        let Rest { positions, forces, report, .. } = rest;
+        let places = numbering.layout.place.iter().zip(&self.mesh.nodes);
         let reaction = |hold: &Hold| {
             let internal = forces[numbering.row(hold.node)];
-            hold.part_along(&(internal - case.forces[hold.node as usize]))
+            hold.part_along(&(internal - acting[hold.node as usize]))
         };
+        let displacement: Vec<Vector> =
+            places.map(|(&row, rest)| positions[row as usize] - rest).collect();
+        let doubt = report.newton.as_ref().and_then(|way| another_rest(self, &displacement, way));
         let equilibrium = Equilibrium {
-            displacement: places.map(|(&row, rest)| positions[row as usize] - rest).collect(),
+            displacement,
             reactions: self.holds.iter().map(reaction).collect(),
-            warnings: report.newton.as_ref().and_then(another_rest).into_iter().collect(),
+            warnings: doubt.into_iter().collect(),
             solver: report,
         };
         check_finite(std::slice::from_ref(&equilibrium))?;
-        Ok((equilibrium, error))
+        Ok(equilibrium)
     }
 
     /// Brings the tissue to rest: near it with a share of the bulk modulus in the cells, then with none, where it bears that.
-    fn rest<'a>(&'a self, question: Question<'a>) -> Result<(Tissue<'a>, Rest), ModelError> {
+    fn rest<'a>(
+        &'a self,
+        question: Question<'a>,
+        touching: Option<Touching<'a>>,
+    ) -> Result<(Tissue<'a>, Rest<'a>), ModelError> {
         let start = Start {
             x: question.constrained.numbering.by_row(&self.mesh.nodes),
             log_volumes: Vec::new(),
@@ -117,6 +152,7 @@ impl FiniteStrain<'_> {
             history: Vec::new(),
             path: Vec::new(),
             tally: Tally::default(),
+            touching,
         };
         let near = match self.with_bulk_in_cells(question, start, true)? {
             (tissue, Ending::Rest(rest)) => return Ok((tissue, *rest)),
@@ -139,9 +175,9 @@ impl FiniteStrain<'_> {
     fn with_bulk_in_cells<'a>(
         &'a self,
         question: Question<'a>,
-        start: Start,
+        start: Start<'a>,
         near: bool,
-    ) -> Result<(Tissue<'a>, Ending), ModelError> {
+    ) -> Result<(Tissue<'a>, Ending<'a>), ModelError> {
         match self.newton(Kept::FIRST, question, start, Until { jammed: true, near })? {
             (_, Ending::Jam(reached)) => {
                 self.newton(Kept::MORE, question, reached, Until { jammed: false, near })
@@ -154,9 +190,9 @@ impl FiniteStrain<'_> {
         &'a self,
         kept: Kept,
         question: Question<'a>,
-        start: Start,
+        start: Start<'a>,
         until: Until,
-    ) -> Result<(Tissue<'a>, Ending), ModelError> {
+    ) -> Result<(Tissue<'a>, Ending<'a>), ModelError> {
         let tissue = Tissue::new(self, question.constrained.numbering, kept)?;
         let pressures = tissue.pressures(self, kept, self.axes_by_row(question));
         let memory_mb = self.tolerance.memory_mb - tissue.megabytes();

@@ -5,13 +5,13 @@
 //! s = 1 the energy has to fall too, where no pressures make of its least a saddle.
 
 use super::balance::Balance;
-use super::direction::{Direction, Directions, Remaining, Tally};
+use super::direction::{Direction, Directions, Remaining};
+use super::newton_state::{Ending, Question, Rest, Start, Until};
 use super::tissue::{Deformed, Rounding, Tissue};
+use super::touching::Touching;
 use crate::mesh::Vector;
-use crate::model::dofs::Constrained;
 use crate::model::problem::{LoadCase, ModelError};
-use crate::progress::Progress;
-use crate::solver::{NewtonReport, SolveReport, SolverError, Tolerance, tell};
+use crate::solver::{NewtonReport, SolveReport, SolverError, tell};
 
 /// The relative residual above which tissue whose tangent was not positive definite is brought nearer to rest before bones go on.
 const OUT_OF_BALANCE: f64 = 0.3;
@@ -23,7 +23,7 @@ const ADVANCING_MIXED: f64 = 0.003;
 const SHARPEST: f64 = 1e-3;
 
 /// Steps after which no rest is expected any more.
-const MOST_STEPS: usize = 150;
+pub const MOST_STEPS: usize = 150;
 
 /// Steps this short, this often one after the other, are a standstill.
 const SHORT: f64 = 0.01;
@@ -45,41 +45,8 @@ const MOST_HALVINGS: usize = 30;
 const NEAR: f64 = 0.01;
 const ROOMY: f64 = 0.2;
 
-/// What ends Newton's method beside rest.
-#[derive(Clone, Copy)]
-pub(super) struct Until {
-    /// Tissue with pressures that goes on in short steps only.
-    pub jammed: bool,
-    /// Tissue near rest none of whose cells is pressed to a small part of its volume.
-    pub near: bool,
-}
-
-/// Where Newton's method begins.
-#[derive(Clone)]
-pub(super) struct Start {
-    /// Positions by row.
-    pub x: Vec<Vector>,
-    /// For each pressure the mean of ln J that it answers to.
-    pub log_volumes: Vec<f64>,
-    /// The share of movement and load that is made.
-    pub made: f64,
-    /// Relative residuals so far.
-    pub history: Vec<f64>,
-    pub path: Vec<f64>,
-    pub tally: Tally,
-}
-
-/// What tissue and bones were asked.
-#[derive(Clone, Copy)]
-pub(super) struct Question<'a> {
-    pub constrained: &'a Constrained<'a>,
-    pub case: &'a LoadCase,
-    pub tolerance: Tolerance,
-    pub progress: &'a dyn Progress,
-}
-
-pub(super) struct Newton<'a> {
-    tissue: &'a Tissue<'a>,
+pub(super) struct Newton<'a, 'b> {
+    tissue: &'b Tissue<'a>,
     question: Question<'a>,
     directions: Directions,
     x: Vec<Vector>,
@@ -87,6 +54,7 @@ pub(super) struct Newton<'a> {
     made: f64,
     /// How much of the movement the next step tries.
     ahead: f64,
+    touching: Option<Touching<'a>>,
     /// Steps in a row that were short, and steps that were rather short in all.
     short: usize,
     jammed: usize,
@@ -100,33 +68,12 @@ pub(super) struct Newton<'a> {
     halved: usize,
 }
 
-/// How Newton's method ended.
-pub(super) enum Ending {
-    Rest(Box<Rest>),
-    /// More of the bulk modulus has to stay in the cells.
-    Jam(Start),
-    /// All of it may be shared.
-    Near(Start),
-}
-
-/// Tissue at rest.
-pub(super) struct Rest {
-    /// By row.
-    pub positions: Vec<Vector>,
-    pub pressures: Vec<f64>,
-    /// Internal forces in mN, by row.
-    pub forces: Vec<Vector>,
-    pub report: SolveReport,
-    /// What solved the steps.
-    pub directions: Directions,
-}
-
-impl<'a> Newton<'a> {
+impl<'a, 'b> Newton<'a, 'b> {
     pub fn new(
-        tissue: &'a Tissue<'a>,
+        tissue: &'b Tissue<'a>,
         directions: Directions,
         question: Question<'a>,
-        start: Start,
+        start: Start<'a>,
     ) -> Self {
         let pressures = directions.pressures.as_ref();
         Newton {
@@ -136,7 +83,8 @@ impl<'a> Newton<'a> {
             p: pressures.map_or_else(Vec::new, |p| p.of_log_volumes(&start.log_volumes)),
             directions,
             made: start.made,
-            ahead: 1.0,
+            ahead: start.touching.as_ref().map_or(1.0, |touching| touching.most_ahead),
+            touching: start.touching,
             short: 0,
             jammed: 0,
             unsettled: false,
@@ -149,24 +97,26 @@ impl<'a> Newton<'a> {
     }
 
     /// Goes on until rest is found or what else ends it, or says why it is not found.
-    pub fn solve(mut self, until: Until) -> Result<Ending, ModelError> {
+    pub fn solve(mut self, until: Until) -> Result<Ending<'a>, ModelError> {
         let Question { constrained, tolerance, progress, .. } = self.question;
         let wanted = tolerance.relative_residual;
         loop {
             let tissue = self.tissue;
             let pressures = self.directions.pressures.as_ref();
             let deformed = tissue.at(&self.x, &self.p, pressures);
+            let contact_rests = self.look();
+            let pressures = self.directions.pressures.as_ref();
             self.balance.measure(&deformed, &self.acting(), constrained, pressures);
             let residual = self.balance.residual;
             self.history.push(residual);
             self.path.push(self.made);
             tell(progress, self.history.len(), residual, wanted)?;
             let rests = residual <= wanted || self.balance.unbalanced <= self.rounding.force;
-            if self.made >= 1.0 && rests {
+            if self.made >= 1.0 && rests && contact_rests {
                 let report = self.report(&deformed)?;
                 let (positions, pressures, forces) = (self.x, self.p, deformed.forces);
-                let directions = self.directions;
-                let rest = Rest { positions, pressures, forces, report, directions };
+                let (directions, touching) = (self.directions, self.touching);
+                let rest = Rest { positions, pressures, forces, report, directions, touching };
                 return Ok(Ending::Rest(Box::new(rest)));
             }
             let is_near = self.made >= 1.0 && residual <= NEAR;
@@ -184,14 +134,14 @@ impl<'a> Newton<'a> {
     }
 
     /// The state reached, which is measured again where it is gone on from.
-    fn reached(mut self) -> Start {
+    fn reached(mut self) -> Start<'a> {
         self.history.pop();
         self.path.pop();
         let pressures = self.directions.pressures.as_ref();
         let log_volumes = pressures.map_or_else(Vec::new, |own| own.log_volumes(&self.p));
         let tally = self.directions.tally;
-        let Newton { x, made, history, path, .. } = self;
-        Start { x, log_volumes, made, history, path, tally }
+        let Newton { x, made, history, path, touching, .. } = self;
+        Start { x, log_volumes, made, history, path, tally, touching }
     }
 
     /// One step: a direction, how far, and the same of the movement of the bones.
@@ -202,16 +152,21 @@ impl<'a> Newton<'a> {
         let direction = self.direction(deformed, ahead)?;
         self.unsettled = !direction.is_convex || (self.unsettled && residual > OUT_OF_BALANCE);
         let longest = self.tissue.longest_step(&self.x, &direction.positions);
+        if let Some(touching) = &mut self.touching {
+            touching.press(direction.multipliers);
+        }
         let taken = match ahead > 0.0 {
             true => longest,
-            false if self.has_pressures() => longest,
+            // The least energy in contact is a saddle, too.
+            false if self.has_pressures() || self.touching.is_some() => longest,
             false => self.falling(deformed, &direction.positions, longest)?,
         };
         self.x.iter_mut().zip(&direction.positions).for_each(|(x, d)| *x += d * taken);
         self.p.iter_mut().zip(&direction.pressures).for_each(|(p, d)| *p += d * taken);
         if ahead > 0.0 {
             self.made = advanced(self.made, taken * ahead);
-            self.ahead = (2.0 * taken * ahead).max(LEAST_AHEAD);
+            let most = self.touching.as_ref().map_or(1.0, |touching| touching.most_ahead);
+            self.ahead = (2.0 * taken * ahead).max(LEAST_AHEAD).min(most);
         }
         self.short = if taken < SHORT { self.short + 1 } else { 0 };
         self.jammed += usize::from(self.has_pressures() && taken < JAMMED);
@@ -230,10 +185,20 @@ impl<'a> Newton<'a> {
 
     fn direction(&mut self, deformed: &Deformed, ahead: f64) -> Result<Direction, SolverError> {
         let (case, nodes) = (self.remaining(deformed, ahead), self.positions());
+        let displacement = self.displacement();
         let (volumes, relative) = (&*deformed.volumes, self.inner_tolerance());
-        let remaining = Remaining { case: &case, volumes, nodes: &nodes, relative };
-        let Question { constrained, progress, .. } = self.question;
-        self.directions.of(deformed, constrained, &remaining, progress)
+        let unbalanced = self.balance.unbalanced;
+        let remaining = Remaining {
+            case: &case,
+            volumes,
+            nodes: &nodes,
+            displacement: &displacement,
+            relative,
+            unbalanced,
+            progress: self.question.progress,
+        };
+        let touching = self.touching.as_mut();
+        self.directions.of(deformed, self.question.constrained, &remaining, touching)
     }
 
     /// Eisenstat, Walker 1996, choice 2, once the bones stand still.
@@ -262,12 +227,11 @@ impl<'a> Newton<'a> {
                 false => 0.0,
             })
         });
-        let forces = case
-            .forces
-            .iter()
-            .enumerate()
-            .map(|(node, acting)| acting * share.min(1.0) - deformed.forces[row(node as u32)]);
-        LoadCase { held: held.collect(), forces: forces.collect(), ..LoadCase::default() }
+        let mut forces = self.acting_on_nodes(share.min(1.0));
+        for (force, &row) in forces.iter_mut().zip(&constrained.numbering.layout.place) {
+            *force -= deformed.forces[row as usize];
+        }
+        LoadCase { held: held.collect(), forces, ..LoadCase::default() }
     }
 
     /// The longest part of a step with bones at rest that lets the energy fall.
@@ -297,9 +261,34 @@ impl<'a> Newton<'a> {
 
     /// What acts so far, by row.
     fn acting(&self) -> Vec<Vector> {
-        let Question { constrained, case, .. } = self.question;
-        let forces: Vec<Vector> = case.forces.iter().map(|f| f * self.made).collect();
-        constrained.numbering.by_row(&forces)
+        self.question.constrained.numbering.by_row(&self.acting_on_nodes(self.made))
+    }
+
+    /// A share of the loads, and what presses, in mN.
+    fn acting_on_nodes(&self, share: f64) -> Vec<Vector> {
+        let loads = &self.question.case.forces;
+        let mut forces: Vec<Vector> = loads.iter().map(|f| f * share).collect();
+        if let Some(touching) = &self.touching {
+            let pressing = touching.forces(forces.len());
+            forces.iter_mut().zip(&pressing).for_each(|(force, pressing)| *force += pressing);
+        }
+        forces
+    }
+
+    /// Looks for what touches; whether contact leaves nothing to do.
+    fn look(&mut self) -> bool {
+        let displacement = self.displacement();
+        let is_made = self.made >= 1.0;
+        let Some(touching) = &mut self.touching else { return true };
+        touching.look(&displacement, is_made);
+        touching.rests(&displacement)
+    }
+
+    /// Of the nodes.
+    fn displacement(&self) -> Vec<Vector> {
+        let rest = &self.tissue.rest;
+        let places = self.question.constrained.numbering.layout.place.iter();
+        places.map(|&row| self.x[row as usize] - rest[row as usize]).collect()
     }
 
     /// Of the nodes.

@@ -1,7 +1,6 @@
 //! The map of failures over random scenes: how each of many ends, counted by method and by law.
 
 mod ending;
-mod numbers;
 mod scene;
 
 use std::collections::BTreeMap;

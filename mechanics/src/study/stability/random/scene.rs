@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use super::numbers::Numbers;
+use crate::draws::Draws;
 use crate::material::hyperelastic::{
     Fibres, Fung, Law, MooneyRivlin, NeoHookean, NeoHookeanIsochoric, Ogden, OgdenTerm,
     PolyconvexBarrier, RubinBodner, SaintVenantKirchhoff, VerondaWestmann, Volumetric,
@@ -37,7 +37,7 @@ pub(super) struct RandomScene {
 
 /// The scene at a place of a seed.
 pub(super) fn scene(seed: u64, place: u64) -> Result<RandomScene, MaterialError> {
-    let mut numbers = Numbers::of(seed, place);
+    let mut numbers = Draws::of(seed, place);
     let (variant, element, shape) = method(&mut numbers);
     let (law, tissue) = tissue(&mut numbers)?;
     let mesh = tissue_block(&mut numbers, shape);
@@ -56,7 +56,7 @@ pub(super) fn scene(seed: u64, place: u64) -> Result<RandomScene, MaterialError>
 }
 
 /// Methods of finite strain half of the time. Iterations that papers give up are left out.
-fn method(numbers: &mut Numbers) -> (Variant, ElementChoice, CellShape) {
+fn method(numbers: &mut Draws) -> (Variant, ElementChoice, CellShape) {
     let finite = |kind: &&MethodKind| kind.properties().laws != Laws::AtRest;
     let wants_finite = !numbers.once_in(2);
     let kinds: Vec<MethodKind> =
@@ -79,7 +79,7 @@ fn method(numbers: &mut Numbers) -> (Variant, ElementChoice, CellShape) {
 }
 
 /// Tissue of moduli that agree with a Poisson ratio from .3 to .4999, and the word for its law.
-fn tissue(numbers: &mut Numbers) -> Result<(&'static str, LinearElastic), MaterialError> {
+fn tissue(numbers: &mut Draws) -> Result<(&'static str, LinearElastic), MaterialError> {
     let young_modulus = numbers.by_factors(1.0, 300.0);
     let poisson_ratio = 0.5 - numbers.by_factors(1e-4, 0.2);
     let linear = LinearElastic::new(young_modulus, poisson_ratio, 1.0)?;
@@ -92,7 +92,7 @@ fn tissue(numbers: &mut Numbers) -> Result<(&'static str, LinearElastic), Materi
     Ok((word, if numbers.once_in(4) { tissue.with_pulling_fibres(fibres) } else { tissue }))
 }
 
-fn law(numbers: &mut Numbers, linear: &LinearElastic) -> (&'static str, Option<Law>) {
+fn law(numbers: &mut Draws, linear: &LinearElastic) -> (&'static str, Option<Law>) {
     let (mu, lambda, bulk) = (linear.shear_modulus(), linear.lambda(), linear.bulk_modulus());
     let volumetric = match numbers.once_in(4) {
         true => Volumetric::Logarithmic(bulk),
@@ -147,7 +147,7 @@ fn law(numbers: &mut Numbers, linear: &LinearElastic) -> (&'static str, Option<L
 }
 
 /// A block of a few cells, 1 to 15 mm thick, with a patch of its bottom for the bone that moves.
-fn tissue_block(numbers: &mut Numbers, shape: CellShape) -> VolumeMesh {
+fn tissue_block(numbers: &mut Draws, shape: CellShape) -> VolumeMesh {
     let across = numbers.whole(3, 6);
     let width = numbers.between(12.0, 45.0);
     let size = Vector::new(width, width, numbers.by_factors(1.0, 15.0));
@@ -184,7 +184,7 @@ fn tissue_block(numbers: &mut Numbers, shape: CellShape) -> VolumeMesh {
 }
 
 /// The patch is the jaw's, what is far from it fixed, and one side slides once in a while.
-fn case(numbers: &mut Numbers, mesh: VolumeMesh, tissue: LinearElastic) -> Case {
+fn case(numbers: &mut Draws, mesh: VolumeMesh, tissue: LinearElastic) -> Case {
     let mut course = direction(numbers);
     if course == Vector::zeros() {
         course = Vector::x();
@@ -208,7 +208,7 @@ fn case(numbers: &mut Numbers, mesh: VolumeMesh, tissue: LinearElastic) -> Case 
 }
 
 /// Up to 25 mm and 45 degrees, small ones as often as large ones.
-fn movement(numbers: &mut Numbers) -> RigidMovement {
+fn movement(numbers: &mut Draws) -> RigidMovement {
     let by = direction(numbers) * numbers.by_factors(0.1, FARTHEST);
     let turned = match numbers.once_in(2) {
         true => direction(numbers) * numbers.by_factors(1.0, MOST_TURNED).to_radians(),
@@ -218,7 +218,7 @@ fn movement(numbers: &mut Numbers) -> RigidMovement {
 }
 
 /// Of length 1.
-fn direction(numbers: &mut Numbers) -> Vector {
+fn direction(numbers: &mut Draws) -> Vector {
     let height = numbers.between(-1.0, 1.0);
     let around = numbers.between(0.0, std::f64::consts::TAU);
     let flat = (1.0 - height * height).sqrt();

@@ -1,13 +1,14 @@
-//! Pseudorandom numbers that are the same on every machine: SplitMix64 (Steele, Lea, Flood 2014).
+//! Pseudorandom draws that are the same on every machine: SplitMix64 (Steele, Lea, Flood 2014).
 
-pub(super) struct Numbers(u64);
+/// A sequence of draws.
+pub struct Draws(u64);
 
-impl Numbers {
+impl Draws {
     /// A sequence of its own for each place of a seed.
     pub fn of(seed: u64, place: u64) -> Self {
-        let mut numbers = Numbers(seed);
-        let start = numbers.next() ^ place.wrapping_mul(0xd134_2543_de82_ef95);
-        Numbers(start)
+        let mut draws = Draws(seed);
+        let start = draws.next() ^ place.wrapping_mul(0xd134_2543_de82_ef95);
+        Draws(start)
     }
 
     fn next(&mut self) -> u64 {
@@ -36,12 +37,28 @@ impl Numbers {
         low + (self.next() % (high - low + 1) as u64) as usize
     }
 
+    /// One of so many.
+    pub fn below(&mut self, count: usize) -> usize {
+        self.whole(0, count.max(1) - 1)
+    }
+
     /// Once in so many times.
     pub fn once_in(&mut self, times: usize) -> bool {
         self.whole(1, times) == 1
     }
 
     pub fn of_list<'a, T>(&mut self, list: &'a [T]) -> Option<&'a T> {
-        (!list.is_empty()).then(|| &list[self.whole(0, list.len() - 1)])
+        (!list.is_empty()).then(|| &list[self.below(list.len())])
+    }
+
+    /// Of mean 0 and standard deviation 1 (Box, Muller 1958).
+    pub fn normal(&mut self) -> f64 {
+        let length = (-2.0 * (1.0 - self.share()).ln()).sqrt();
+        length * (std::f64::consts::TAU * self.share()).cos()
+    }
+
+    /// The same, but within two standard deviations.
+    pub fn usual(&mut self) -> f64 {
+        self.normal().clamp(-2.0, 2.0)
     }
 }

@@ -1,0 +1,23 @@
+//! Conformation of a template mesh to a patient's skin and bone.
+
+mod affine;
+mod carried;
+mod conform;
+mod deformation;
+mod error;
+mod fit;
+mod landmark;
+mod lattice;
+mod matching;
+mod pull;
+mod schedule;
+mod sheet;
+mod start;
+
+pub use affine::Affine;
+pub use carried::carried;
+pub use conform::{Conformation, Patient, Template, conform};
+pub use deformation::Deformation;
+pub use error::{ConformationError, SheetName};
+pub use landmark::Landmark;
+pub use start::Start;

@@ -1,0 +1,200 @@
+//! Learners: what is learned, by which rule, and the weights that the rule gives to the training cases.
+//!
+//! A regression and a deformation model both answer with a mean of the training cases, weighted by what the new one has in
+//! common with them: features there, bone here. What they answer is the displacement itself, or what mechanics missed, which is
+//! added to the mechanical prediction of the new case.
+
+use super::bands::farthest;
+use super::cohort::{Cohort, LearningCase};
+use super::deformation_model::{DeformationModel, Fit};
+use super::features::{Distance, FeatureSpace, Features, Standard};
+use super::pairs::{Pairs, blended, dot};
+use super::regression::{LeaveOneOut, Width, weights};
+
+/// The rule.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Learner {
+    /// General regression neural network.
+    Regression,
+    /// Statistical deformation model.
+    DeformationModel,
+}
+
+/// What is learned.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Target {
+    Displacement,
+    /// Of the displacement to its mechanical prediction.
+    Residual,
+}
+
+/// What is learned and by which rule.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Method {
+    pub learner: Learner,
+    pub target: Target,
+}
+
+impl Method {
+    /// Every method, in the order of tables.
+    pub const ALL: [Method; 4] = [
+        Method { learner: Learner::Regression, target: Target::Displacement },
+        Method { learner: Learner::DeformationModel, target: Target::Displacement },
+        Method { learner: Learner::Regression, target: Target::Residual },
+        Method { learner: Learner::DeformationModel, target: Target::Residual },
+    ];
+
+    /// As tables call it.
+    pub fn name(self) -> &'static str {
+        match (self.learner, self.target) {
+            (Learner::Regression, Target::Displacement) => "GRNN",
+            (Learner::DeformationModel, Target::Displacement) => "SDM",
+            (Learner::Regression, Target::Residual) => "linear + GRNN",
+            (Learner::DeformationModel, Target::Residual) => "linear + SDM",
+        }
+    }
+}
+
+impl Target {
+    /// Of a case from which is learned.
+    pub fn of(self, case: &LearningCase) -> Vec<f64> {
+        match self {
+            Target::Displacement => case.actual.clone(),
+            Target::Residual => {
+                case.actual.iter().zip(&case.predicted).map(|(own, told)| own - told).collect()
+            }
+        }
+    }
+
+    /// The displacement that an answer means for a case.
+    pub fn displacement(self, answer: Vec<f64>, predicted: &[f64]) -> Vec<f64> {
+        match self {
+            Target::Displacement => answer,
+            Target::Residual => {
+                answer.iter().zip(predicted).map(|(own, told)| own + told).collect()
+            }
+        }
+    }
+}
+
+/// The cases of a cohort compared with each other, once for all that is fitted to some of them.
+pub struct Compared<'a> {
+    pub cohort: &'a Cohort,
+    pub target: Target,
+    pub answers: Vec<Vec<f64>>,
+    space: FeatureSpace,
+    bone: Pairs,
+    /// Of answers, from their mean.
+    products: Pairs,
+}
+
+/// A rule fitted to training cases.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fitted {
+    pub standard: Standard,
+    pub rule: Rule,
+    /// The distance from the nearest training case beyond which a case is not of their kind.
+    pub farthest: f64,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub enum Rule {
+    Regression(Width),
+    DeformationModel(DeformationModel),
+}
+
+impl Fitted {
+    /// Of training cases at these distances, whose bone has these scalar products with that of the new case.
+    pub fn weights(&self, distances: &[f64], bone: &[f64]) -> Vec<f64> {
+        match &self.rule {
+            Rule::Regression(width) => weights(distances, width.width),
+            Rule::DeformationModel(model) => model.weights(bone),
+        }
+    }
+}
+
+impl<'a> Compared<'a> {
+    pub fn new(cohort: &'a Cohort, target: Target, distance: Distance) -> Self {
+        let features: Vec<Features> =
+            cohort.cases.iter().map(|case| case.features.clone()).collect();
+        let answers: Vec<Vec<f64>> = cohort.cases.iter().map(|case| target.of(case)).collect();
+        let bone: Vec<&[f64]> = cohort.cases.iter().map(|case| case.bone.as_slice()).collect();
+        let slices: Vec<&[f64]> = answers.iter().map(Vec::as_slice).collect();
+        Compared {
+            cohort,
+            target,
+            space: FeatureSpace::new(&features, distance),
+            bone: Pairs::products(&bone),
+            products: Pairs::centred_products(&slices),
+            answers,
+        }
+    }
+
+    /// A rule fitted to some cases and to nothing else.
+    pub fn fit(&self, learner: Learner, training: &[usize]) -> Fitted {
+        let distances = self.space.distances(training);
+        let (standard, farthest) = (self.space.standard(training), farthest(&distances));
+        let products = self.products.among(training);
+        let rule = match learner {
+            Learner::Regression => {
+                Rule::Regression(LeaveOneOut::new(distances, products).best_width())
+            }
+            Learner::DeformationModel => {
+                let bone = self.bone.among(training);
+                Rule::DeformationModel(DeformationModel::new(&products, &bone, Fit::default()))
+            }
+        };
+        Fitted { standard, rule, farthest }
+    }
+
+    /// The displacement of a case, from training cases among which it need not be.
+    pub fn displacement(&self, fitted: &Fitted, case: usize, training: &[usize]) -> Vec<f64> {
+        let weights =
+            fitted.weights(&self.space.row(case, training), &self.bone.row(case, training));
+        let known: Vec<&[f64]> = training.iter().map(|&own| self.answers[own].as_slice()).collect();
+        self.target.displacement(blended(&weights, &known), &self.cohort.cases[case].predicted)
+    }
+
+    /// How far a case is from the nearest training case.
+    pub fn nearest(&self, case: usize, training: &[usize]) -> f64 {
+        self.space.row(case, training).into_iter().fold(f64::INFINITY, f64::min)
+    }
+
+    /// Each training case predicted from the others; a tuned width stays as it is.
+    pub fn left_out(&self, learner: Learner, training: &[usize]) -> Vec<LeftOut> {
+        let whole = self.fit(learner, training);
+        let of = |(place, &case): (usize, &usize)| {
+            let others = without(training, place);
+            let fitted = match &whole.rule {
+                Rule::Regression(_) => whole.clone(),
+                Rule::DeformationModel(_) => self.fit(learner, &others),
+            };
+            let told = self.displacement(&fitted, case, &others);
+            let actual = &self.cohort.cases[case].actual;
+            let missed = actual.iter().zip(&told).map(|(own, told)| own - told).collect();
+            LeftOut { place, fitted, missed }
+        };
+        training.iter().enumerate().map(of).collect()
+    }
+}
+
+/// A training case that was left out.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LeftOut {
+    /// Among the training cases.
+    pub place: usize,
+    /// To the others.
+    pub fitted: Fitted,
+    /// What was measured less what was predicted from the others.
+    pub missed: Vec<f64>,
+}
+
+/// All but one, by its place.
+pub fn without<T: Copy>(all: &[T], place: usize) -> Vec<T> {
+    [&all[..place], &all[place + 1..]].concat()
+}
+
+/// Scalar products of the bone of a new case with those of training cases.
+pub fn bone_products(bone: &[f64], cases: &[LearningCase]) -> Vec<f64> {
+    cases.iter().map(|case| dot(bone, &case.bone)).collect()
+}

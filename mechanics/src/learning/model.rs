@@ -1,0 +1,114 @@
+//! A learned model: the cases that it learned from, and the corrected prediction of a new one.
+
+use rayon::prelude::*;
+
+use super::bands::band;
+use super::cohort::{Cohort, LearningCase};
+use super::features::{Distance, Features};
+use super::learner::{Compared, Fitted, LeftOut, Method, bone_products, without};
+use super::pairs::blended;
+
+/// What was learned, ready to be asked.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LearnedModel {
+    pub method: Method,
+    pub fitted: Fitted,
+    /// Of the training cases, in their order.
+    pub cases: Vec<LearningCase>,
+    answers: Vec<Vec<f64>>,
+    /// Each of them predicted from the others, of which bands are made.
+    left_out: Vec<LeftOut>,
+}
+
+/// What is known of a case before its operation.
+#[derive(Clone, Copy)]
+pub struct Asked<'a> {
+    pub features: &'a Features,
+    pub bone: &'a [f64],
+    /// How mechanics says that the skin moves.
+    pub predicted: &'a [f64],
+}
+
+/// A displacement of the skin in mm that was learned.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Corrected {
+    pub displacement: Vec<f64>,
+    /// The ends of the band from 10 to 90 % of each number; absent where training cases are too few.
+    pub band: Option<Vec<[f64; 2]>>,
+    /// From the nearest training case, which is this one.
+    pub distance: f64,
+    pub nearest: usize,
+}
+
+/// Why a model says nothing about a case.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum Refusal {
+    #[error(
+        "the case is {distance:.3} from the nearest that the model learned from, {nearest:?}, and 95 % of those are within {farthest:.3} of each other"
+    )]
+    OutOfDistribution { distance: f64, farthest: f64, nearest: String },
+    #[error("{what} has {found} numbers, and {expected} in what the model learned from")]
+    OtherMesh { what: &'static str, found: usize, expected: usize },
+}
+
+impl LearnedModel {
+    /// Learns from all cases of a cohort.
+    pub fn new(cohort: &Cohort, method: Method, distance: Distance) -> Self {
+        let compared = Compared::new(cohort, method.target, distance);
+        let all: Vec<usize> = (0..cohort.len()).collect();
+        LearnedModel {
+            method,
+            fitted: compared.fit(method.learner, &all),
+            cases: cohort.cases.clone(),
+            left_out: compared.left_out(method.learner, &all),
+            answers: compared.answers,
+        }
+    }
+
+    /// The displacement of a case that is of the kind of those that were learned from.
+    pub fn correct(&self, asked: Asked) -> Result<Corrected, Refusal> {
+        self.fits(asked)?;
+        let standard = &self.fitted.standard;
+        let apart = |case: &LearningCase| {
+            standard.of(asked.features.apart(&case.features, standard.distance))
+        };
+        let distances: Vec<f64> = self.cases.iter().map(apart).collect();
+        let nearest = (0..distances.len()).min_by(|&a, &b| distances[a].total_cmp(&distances[b]));
+        let nearest = nearest.unwrap_or_default();
+        let distance = distances[nearest];
+        if distance > self.fitted.farthest {
+            let (farthest, nearest) = (self.fitted.farthest, self.cases[nearest].name.clone());
+            return Err(Refusal::OutOfDistribution { distance, farthest, nearest });
+        }
+        let bone = bone_products(asked.bone, &self.cases);
+        let known: Vec<&[f64]> = self.answers.iter().map(Vec::as_slice).collect();
+        let told = |weights: &[f64], known: &[&[f64]]| {
+            self.method.target.displacement(blended(weights, known), asked.predicted)
+        };
+        let value = |left: &LeftOut| {
+            let [distances, bone] = [&distances, &bone].map(|all| without(all, left.place));
+            let told = told(&left.fitted.weights(&distances, &bone), &without(&known, left.place));
+            told.iter().zip(&left.missed).map(|(told, missed)| told + missed).collect()
+        };
+        let values: Vec<Vec<f64>> = self.left_out.par_iter().map(value).collect();
+        let displacement = told(&self.fitted.weights(&distances, &bone), &known);
+        Ok(Corrected { displacement, band: band(&values), distance, nearest })
+    }
+
+    fn fits(&self, asked: Asked) -> Result<(), Refusal> {
+        let Some(first) = self.cases.first() else { return Ok(()) };
+        let blocks = asked.features.blocks.iter().zip(&first.features.blocks);
+        let pairs = [
+            ("the skin", asked.predicted.len(), first.predicted.len()),
+            ("bone", asked.bone.len(), first.bone.len()),
+            ("the features", asked.features.blocks.len(), first.features.blocks.len()),
+        ];
+        let pairs = pairs.into_iter().chain(blocks.map(|(a, b)| ("a feature", a.len(), b.len())));
+        for (what, found, expected) in pairs {
+            if found != expected {
+                return Err(Refusal::OtherMesh { what, found, expected });
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,177 @@
+//! Leave-one-out and nested leave-one-out of learned predictions.
+//!
+//! Each case is predicted by what was fitted to the others. Plain: the width of a regression is that of all cases, the held-out
+//! one among them, as in Zhang et al. 2016, which flatters. Nested: everything, width and standard, comes from the others alone.
+//! Errors are E = 1/N sum_k |X_k - X'_k| over skin points (their equation 7), and the 95th percentile of the same lengths.
+
+use std::collections::BTreeMap;
+
+use rayon::prelude::*;
+
+use super::bands::band;
+use super::cohort::Cohort;
+use super::features::Distance;
+use super::learner::{Compared, LeftOut, Method, Rule, without};
+use crate::validation::Statistics;
+
+/// Errors of the prediction of one case in mm.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct CaseErrors {
+    pub mean: f64,
+    pub p95: f64,
+    /// Means by region.
+    pub regions: BTreeMap<String, f64>,
+}
+
+/// A way of predicting over all cases: a column of the table.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Column {
+    pub name: String,
+    /// In the order of the cohort.
+    pub cases: Vec<CaseErrors>,
+}
+
+/// A learned method, each case predicted from the others.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Validated {
+    pub method: Method,
+    /// With what was tuned on all cases.
+    pub plain: Column,
+    pub nested: Column,
+    /// Whether a case is farther from the others than 95 % of these are from each other, so that it would be refused.
+    pub is_refused: Vec<bool>,
+    /// From the nearest other case, as a share of the distance beyond which it is refused.
+    pub novelty: Vec<f64>,
+    /// The share of all numbers within their band from 10 to 90 %; absent where cases are too few for one.
+    pub coverage: Option<f64>,
+    /// The nested prediction of each case.
+    pub displacement: Vec<Vec<f64>>,
+}
+
+impl CaseErrors {
+    /// Of a displacement against the measured one.
+    pub fn of(told: &[f64], actual: &[f64], regions: &BTreeMap<String, Vec<u32>>) -> Self {
+        let lengths = lengths(told, actual);
+        let statistics = Statistics::plain(&lengths).ok();
+        let over = |points: &[u32]| {
+            let sum: f64 = points.iter().map(|&point| lengths[point as usize]).sum();
+            sum / points.len().max(1) as f64
+        };
+        CaseErrors {
+            mean: statistics.map_or(0.0, |own| own.mean),
+            p95: statistics.map_or(0.0, |own| own.p95),
+            regions: regions.iter().map(|(name, points)| (name.clone(), over(points))).collect(),
+        }
+    }
+}
+
+/// |X_k - X'_k| of each point.
+pub fn lengths(told: &[f64], actual: &[f64]) -> Vec<f64> {
+    let points = told.chunks_exact(3).zip(actual.chunks_exact(3));
+    points.map(|(a, b)| a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()).collect()
+}
+
+impl Column {
+    /// Of one displacement for each case.
+    pub fn of(name: &str, told: &[Vec<f64>], cohort: &Cohort) -> Self {
+        let cases = told.iter().zip(&cohort.cases);
+        let errors = |(told, case): (&Vec<f64>, &super::cohort::LearningCase)| {
+            CaseErrors::of(told, &case.actual, &cohort.regions)
+        };
+        Column { name: name.to_owned(), cases: cases.map(errors).collect() }
+    }
+
+    /// The mean error of each case.
+    pub fn means(&self) -> Vec<f64> {
+        self.cases.iter().map(|case| case.mean).collect()
+    }
+
+    /// Over the cases.
+    pub fn mean(&self) -> f64 {
+        self.over(|case| case.mean)
+    }
+
+    pub fn p95(&self) -> f64 {
+        self.over(|case| case.p95)
+    }
+
+    /// Absent where there is no such region.
+    pub fn region(&self, name: &str) -> Option<f64> {
+        let known = self.cases.iter().all(|case| case.regions.contains_key(name));
+        known.then(|| self.over(|case| case.regions[name]))
+    }
+
+    fn over(&self, of: impl Fn(&CaseErrors) -> f64) -> f64 {
+        self.cases.iter().map(of).sum::<f64>() / self.cases.len().max(1) as f64
+    }
+}
+
+/// One fold.
+struct Fold {
+    plain: Vec<f64>,
+    nested: Vec<f64>,
+    novelty: f64,
+    coverage: Option<f64>,
+}
+
+/// Predicts each case from the others.
+pub fn validate(cohort: &Cohort, method: Method, distance: Distance) -> Validated {
+    let compared = Compared::new(cohort, method.target, distance);
+    let all: Vec<usize> = (0..cohort.len()).collect();
+    let tuned = compared.fit(method.learner, &all).rule;
+    let folds: Vec<Fold> =
+        all.par_iter().map(|&case| fold(&compared, method, &tuned, case)).collect();
+    let column = |suffix: &str, of: fn(&Fold) -> &Vec<f64>| {
+        let told: Vec<Vec<f64>> = folds.iter().map(|fold| of(fold).clone()).collect();
+        Column::of(&format!("{}{suffix}", method.name()), &told, cohort)
+    };
+    let covered: Option<Vec<f64>> = folds.iter().map(|fold| fold.coverage).collect();
+    Validated {
+        method,
+        plain: column(" (tuned on all)", |fold| &fold.plain),
+        nested: column("", |fold| &fold.nested),
+        is_refused: folds.iter().map(|fold| fold.novelty > 1.0).collect(),
+        novelty: folds.iter().map(|fold| fold.novelty).collect(),
+        coverage: covered.map(|own| own.iter().sum::<f64>() / own.len() as f64),
+        displacement: folds.into_iter().map(|fold| fold.nested).collect(),
+    }
+}
+
+fn fold(compared: &Compared, method: Method, tuned: &Rule, case: usize) -> Fold {
+    let others = compared.cohort.others(case);
+    let fitted = compared.fit(method.learner, &others);
+    let nested = compared.displacement(&fitted, case, &others);
+    let mut flattered = fitted.clone();
+    if let Rule::Regression(_) = tuned {
+        flattered.rule = tuned.clone();
+    }
+    let actual = &compared.cohort.cases[case].actual;
+    Fold {
+        plain: compared.displacement(&flattered, case, &others),
+        novelty: compared.nearest(case, &others) / fitted.farthest.max(f64::MIN_POSITIVE),
+        coverage: band_of(compared, method, case, &others).map(|band| covered(actual, &band)),
+        nested,
+    }
+}
+
+fn band_of(
+    compared: &Compared,
+    method: Method,
+    case: usize,
+    others: &[usize],
+) -> Option<Vec<[f64; 2]>> {
+    let value = |left: LeftOut| {
+        let told = compared.displacement(&left.fitted, case, &without(others, left.place));
+        told.iter().zip(&left.missed).map(|(told, missed)| told + missed).collect()
+    };
+    let values: Vec<Vec<f64>> =
+        compared.left_out(method.learner, others).into_iter().map(value).collect();
+    band(&values)
+}
+
+/// The share of numbers that lie within their band.
+fn covered(actual: &[f64], band: &[[f64; 2]]) -> f64 {
+    let held =
+        actual.iter().zip(band).filter(|(actual, [low, high])| (low..=high).contains(actual));
+    held.count() as f64 / actual.len().max(1) as f64
+}

@@ -1,0 +1,12 @@
+//! Virtual cohorts: operated faces that the program makes itself, with a truth that is richer than the models.
+
+mod face;
+mod noise;
+mod operation;
+mod patient;
+mod report;
+mod tissue;
+
+pub use noise::MAPPING;
+pub use patient::{VirtualError, VirtualPatient};
+pub use report::{ThetaOfClass, VirtualCohort, virtual_cohort};

@@ -1,0 +1,45 @@
+//! Errors of measuring a virtual face: where its template is mapped to, and how scans are registered.
+//!
+//! A mapped node is not where the same point of the tissue is, by a smooth field of Gaussian bells of 20 mm. Pre- and
+//! postoperative faces are mapped separately, so that the errors of both are in every measured displacement: no prediction can
+//! be nearer than that.
+
+use crate::draws::Draws;
+use crate::mesh::Vector;
+use crate::plan::RigidMovement;
+
+/// The mean length of a mapping error at the skin in mm.
+pub const MAPPING: f64 = 0.2;
+
+/// Standard deviations of a registration by components, in mm and degrees.
+const SHIFT: f64 = 0.1;
+const TURN: f64 = 0.1;
+
+const BELLS: usize = 40;
+const WIDTH: f64 = 20.0;
+
+/// A mapping error at each of some points, whose mean length at `skin` is [`MAPPING`].
+pub fn mapping(points: &[Vector], skin: &[u32], draws: &mut Draws) -> Vec<Vector> {
+    let bells: Vec<(Vector, Vector)> = (0..BELLS)
+        .map(|_| {
+            let middle = points[skin[draws.below(skin.len())] as usize];
+            (middle, Vector::from_fn(|_, _| draws.normal()))
+        })
+        .collect();
+    let at = |point: &Vector| -> Vector {
+        let bell =
+            |middle: &Vector| (-(point - middle).norm_squared() / (2.0 * WIDTH * WIDTH)).exp();
+        bells.iter().map(|(middle, amplitude)| amplitude * bell(middle)).sum()
+    };
+    let field: Vec<Vector> = points.iter().map(at).collect();
+    let length = skin.iter().map(|&node| field[node as usize].norm()).sum::<f64>();
+    let factor = MAPPING * skin.len() as f64 / length;
+    field.into_iter().map(|own| own * factor).collect()
+}
+
+/// By what a registration misses, about the middle of the head.
+pub fn registration(draws: &mut Draws) -> RigidMovement {
+    let angles = Vector::from_fn(|_, _| (TURN * draws.normal()).to_radians());
+    let shift = Vector::from_fn(|_, _| SHIFT * draws.normal());
+    RigidMovement::about_pivot(angles, Vector::zeros(), shift)
+}

@@ -1,0 +1,59 @@
+//! Rows of contact over rounds: those that say the same as before stay as they are, so that what slides over an edge does not
+//! flicker.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::boundary::contact::ContactRow;
+use crate::mesh::Vector;
+
+/// The rows of one round, by node.
+#[derive(Clone, Debug, Default)]
+pub(in crate::model::fem) struct KeptRows {
+    pub rows: Vec<ContactRow>,
+    /// Nodes whose rows press.
+    pub pressing: BTreeSet<u32>,
+}
+
+/// What a round found.
+pub(in crate::model::fem) struct Round {
+    /// For each row its number of before, where it stays as it was.
+    pub same: Vec<Option<usize>>,
+    /// Rows that say something new of what presses or nearly does.
+    pub new: usize,
+}
+
+impl KeptRows {
+    /// Takes up the rows found after a displacement.
+    pub fn take(&mut self, mut found: Vec<ContactRow>, displacement: &[Vector]) -> Round {
+        let before: BTreeMap<u32, usize> =
+            self.rows.iter().enumerate().map(|(place, row)| (row.node, place)).collect();
+        let mut round = Round { same: vec![None; found.len()], new: 0 };
+        for (row, same) in found.iter_mut().zip(&mut round.same) {
+            let old = before.get(&row.node).copied();
+            *same = old.filter(|&old| self.rows[old].agrees(row, displacement));
+            match *same {
+                Some(old) => *row = self.rows[old].clone(),
+                None => {
+                    let counts = row.is_near(displacement) || self.pressing.contains(&row.node);
+                    round.new += usize::from(counts);
+                }
+            }
+        }
+        let has = |node: &u32| found.binary_search_by_key(node, |row| row.node).is_ok();
+        let lost = before.keys().filter(|node| self.pressing.contains(node) && !has(node));
+        round.new += lost.count();
+        self.rows = found;
+        round
+    }
+
+    /// What rows with these numbers and forces in mN press on each of so many nodes.
+    pub fn forces(&self, pressed: impl Iterator<Item = (usize, f64)>, nodes: usize) -> Vec<Vector> {
+        let mut forces = vec![Vector::zeros(); nodes];
+        for (row, force) in pressed {
+            for (node, along) in &self.rows[row].terms {
+                forces[*node as usize] += along * force;
+            }
+        }
+        forces
+    }
+}

@@ -1,0 +1,66 @@
+//! States of Newton's method: where it begins, what ends it, and tissue at rest.
+
+use super::direction::{Directions, Tally};
+use super::touching::Touching;
+use crate::mesh::Vector;
+use crate::model::dofs::Constrained;
+use crate::model::problem::LoadCase;
+use crate::progress::Progress;
+use crate::solver::{SolveReport, Tolerance};
+
+/// What ends Newton's method beside rest.
+#[derive(Clone, Copy)]
+pub(super) struct Until {
+    /// Tissue with pressures that goes on in short steps only.
+    pub jammed: bool,
+    /// Tissue near rest none of whose cells is pressed to a small part of its volume.
+    pub near: bool,
+}
+
+/// Where Newton's method begins.
+#[derive(Clone)]
+pub(super) struct Start<'a> {
+    /// Positions by row.
+    pub x: Vec<Vector>,
+    /// For each pressure the mean of ln J that it answers to.
+    pub log_volumes: Vec<f64>,
+    /// The share of movement and load that is made.
+    pub made: f64,
+    /// Relative residuals so far.
+    pub history: Vec<f64>,
+    pub path: Vec<f64>,
+    pub tally: Tally,
+    /// Where contact is to be kept.
+    pub touching: Option<Touching<'a>>,
+}
+
+/// What tissue and bones were asked.
+#[derive(Clone, Copy)]
+pub(super) struct Question<'a> {
+    pub constrained: &'a Constrained<'a>,
+    pub case: &'a LoadCase,
+    pub tolerance: Tolerance,
+    pub progress: &'a dyn Progress,
+}
+
+/// How Newton's method ended.
+pub(super) enum Ending<'a> {
+    Rest(Box<Rest<'a>>),
+    /// More of the bulk modulus has to stay in the cells.
+    Jam(Start<'a>),
+    /// All of it may be shared.
+    Near(Start<'a>),
+}
+
+/// Tissue at rest.
+pub(super) struct Rest<'a> {
+    /// By row.
+    pub positions: Vec<Vector>,
+    pub pressures: Vec<f64>,
+    /// Internal forces in mN, by row.
+    pub forces: Vec<Vector>,
+    pub report: SolveReport,
+    /// What solved the steps.
+    pub directions: Directions,
+    pub touching: Option<Touching<'a>>,
+}

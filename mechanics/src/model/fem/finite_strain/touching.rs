@@ -1,0 +1,219 @@
+//! Contact while Newton's method goes on: which points press, with the forces that they press with, found anew at each tangent
+//! by the active set of `contact`.
+//!
+//! At x with forces G^T m the step d without a change of contact meets K d = f - f_int + G^T m; what presses then follows from
+//! K a = G^T (m' - m), g(x + d + a) >= 0, m' >= 0, m' g = 0, and the step is d + a.
+
+use std::collections::BTreeMap;
+
+use crate::boundary::Hold;
+use crate::boundary::contact::{CLOSED_MM, ContactRow, FacingSurfaces};
+use crate::mesh::Vector;
+use crate::model::dofs::Numbering;
+use crate::model::fem::contact::{
+    ActiveSet, Contact, FreeUnknowns, KeptRows, Pressed, Settled, Task,
+};
+use crate::model::problem::ModelError;
+use crate::progress::Progress;
+use crate::solver::SolverError;
+use crate::solver::constrained::{Equations, Point};
+use crate::solver::preconditioned::Preconditioned;
+
+/// Relative residual of what contact adds to a step.
+const LOOSELY: f64 = 1e-3;
+
+/// Closest points that still move by more than this in the end, in mm, are no answer.
+const UNSETTLED_MM: f64 = 0.1;
+
+/// How often closest points are looked for again once the movement is made.
+const MOST_ROUNDS: usize = 15;
+
+/// What touches, at one state of tissue and bones.
+#[derive(Clone)]
+pub(super) struct Touching<'a> {
+    surfaces: &'a FacingSurfaces<'a>,
+    unknowns: FreeUnknowns<'a>,
+    kept_rows: KeptRows,
+    /// Of each row, in mN.
+    multipliers: Vec<f64>,
+    /// The part of the movement that one step may make.
+    pub most_ahead: f64,
+    /// Rounds after the movement is made.
+    late_rounds: usize,
+    /// Rows that said something new in the last round.
+    new: usize,
+    /// Whether the set that presses repeated at the last step.
+    repeats: bool,
+    passes: usize,
+    changes: usize,
+    kept: usize,
+    rounds: usize,
+    iterations: usize,
+}
+
+/// What contact changes of a step.
+pub(super) struct Change {
+    /// Of unknowns: three for each free row, then the pressures.
+    pub step: Vec<[f64; 1]>,
+    /// Forces of the rows in mN after a whole step.
+    pub multipliers: Vec<f64>,
+}
+
+/// A state that contact is looked for at.
+pub(super) struct Ahead<'a> {
+    /// Displacements after the step without a change of contact, by node.
+    pub displacement: &'a [Vector],
+    /// The norm of the forces in mN that the step is to balance, and the part of it that may be left.
+    pub unbalanced: f64,
+    pub relative: f64,
+    pub progress: &'a dyn Progress,
+}
+
+impl<'a> Touching<'a> {
+    pub fn new(
+        surfaces: &'a FacingSurfaces<'a>,
+        holds: &[Hold],
+        numbering: &'a Numbering,
+        most_ahead: f64,
+    ) -> Self {
+        Touching {
+            surfaces,
+            unknowns: FreeUnknowns::new(holds, numbering),
+            kept_rows: KeptRows::default(),
+            multipliers: Vec::new(),
+            most_ahead,
+            late_rounds: 0,
+            new: 0,
+            repeats: true,
+            passes: 0,
+            changes: 0,
+            kept: 0,
+            rounds: 0,
+            iterations: 0,
+        }
+    }
+
+    /// Looks for what faces what after a displacement; once the movement is made, only so often.
+    pub fn look(&mut self, displacement: &[Vector], is_made: bool) {
+        self.late_rounds += usize::from(is_made);
+        self.new = 0;
+        if self.late_rounds > MOST_ROUNDS {
+            return;
+        }
+        let rows = self.kept_rows.rows.iter().zip(&self.multipliers);
+        let before: BTreeMap<u32, f64> = rows.map(|(row, m)| (row.node, *m)).collect();
+        let mut found = self.surfaces.rows(displacement);
+        found.retain(|row| !self.unknowns.equation(row).is_empty());
+        self.new = self.kept_rows.take(found, displacement).new;
+        let rows = self.kept_rows.rows.iter();
+        self.multipliers =
+            rows.map(|row| before.get(&row.node).copied().unwrap_or_default()).collect();
+    }
+
+    /// Whether nothing of contact is left to do after a displacement.
+    pub fn rests(&self, displacement: &[Vector]) -> bool {
+        let is_met = || self.deepest(displacement) <= CLOSED_MM;
+        self.new == 0 && self.repeats && is_met()
+    }
+
+    /// What presses on each node, in mN.
+    pub fn forces(&self, nodes: usize) -> Vec<Vector> {
+        self.kept_rows.forces(self.multipliers.iter().copied().enumerate(), nodes)
+    }
+
+    /// What presses after a step, and what that changes of it; nothing where nothing presses before and after.
+    pub fn change(
+        &mut self,
+        matrix: Preconditioned,
+        ahead: &Ahead,
+    ) -> Result<Option<Change>, SolverError> {
+        let rows = &self.kept_rows.rows;
+        let gaps: Vec<f64> = rows.iter().map(|row| row.gap_after(ahead.displacement)).collect();
+        let movement = ahead.displacement.iter().map(Vector::norm).fold(0.0, f64::max);
+        let mut set = ActiveSet::of_gaps(&gaps, movement);
+        for (presses, row) in set.presses.iter_mut().zip(rows) {
+            *presses |= self.kept_rows.pressing.contains(&row.node);
+        }
+        self.repeats = true;
+        if set.presses.iter().all(|presses| !presses) {
+            self.kept_rows.pressing.clear();
+            return Ok(None);
+        }
+        let pressing: f64 = self.multipliers.iter().map(|m| m * m).sum::<f64>().sqrt();
+        let relative_residual = match pressing > 0.0 {
+            true => (ahead.relative * ahead.unbalanced / pressing).clamp(1e-12, LOOSELY),
+            false => LOOSELY,
+        };
+        let equations = rows.iter().map(|row| self.unknowns.equation(row)).collect();
+        let mut equations = Equations::new(matrix, equations);
+        let (before, progress) = (&*self.multipliers, ahead.progress);
+        let task = Task { gaps: &gaps, movement, relative_residual, before, progress };
+        let Settled { point, rows: active, passes, changes, kept, iterations, repeats, .. } =
+            set.settle(&mut equations, &task, Point::default())?;
+        self.passes += passes;
+        self.changes += changes;
+        self.iterations += iterations;
+        self.rounds += 1;
+        self.kept = kept;
+        self.repeats = repeats;
+        self.kept_rows.pressing = active.iter().map(|&row| rows[row].node).collect();
+        let mut multipliers = vec![0.0; rows.len()];
+        active.iter().zip(&point.multipliers).for_each(|(&row, m)| multipliers[row] = *m);
+        Ok(Some(Change { step: point.x, multipliers }))
+    }
+
+    /// Takes up the forces of the rows in mN after a step; none where nothing presses.
+    pub fn press(&mut self, mut multipliers: Vec<f64>) {
+        multipliers.resize(self.kept_rows.rows.len(), 0.0);
+        self.multipliers = multipliers;
+    }
+
+    /// How deep points lie behind what they face after a displacement, in mm.
+    pub fn deepest(&self, displacement: &[Vector]) -> f64 {
+        let gaps = self.kept_rows.rows.iter().map(|row| row.gap_after(displacement));
+        gaps.fold(0.0, |most, gap| most.max(-gap))
+    }
+
+    /// What ends without an answer.
+    pub fn unsettled(&self, moved_mm: f64) -> ModelError {
+        ModelError::ContactUnsettled { passes: self.passes, moved_mm }
+    }
+
+    /// The contact of an answer; none where nothing presses.
+    pub fn answer(
+        mut self,
+        displacement: &[Vector],
+        relative_residual: f64,
+    ) -> Result<Option<Contact>, ModelError> {
+        let forces = self.forces(displacement.len());
+        let rows = self.kept_rows.rows.iter().zip(&self.multipliers);
+        let pressed: Vec<Pressed> = rows
+            .filter(|(_, force)| **force != 0.0)
+            .map(|(row, force)| Pressed { row: row.clone(), force: *force })
+            .collect();
+        // Where points were not looked for any more, what a last look finds is what they still move by.
+        self.late_rounds = 0;
+        self.look(displacement, false);
+        let last_moved_mm = self.deepest(displacement);
+        if last_moved_mm > UNSETTLED_MM {
+            return Err(self.unsettled(last_moved_mm));
+        }
+        let of_row = |row: &ContactRow| (row.node, row.gap_after(displacement));
+        let gaps = self.kept_rows.rows.iter().map(of_row).collect();
+        let Touching { passes, changes, kept, rounds, iterations, .. } = self;
+        let touches = !pressed.is_empty();
+        let contact = Contact {
+            pressed,
+            gaps,
+            forces,
+            passes,
+            changes,
+            kept,
+            rounds,
+            last_moved_mm,
+            iterations,
+            relative_residual,
+        };
+        Ok(touches.then_some(contact))
+    }
+}

@@ -1,0 +1,110 @@
+//! Contact at finite strain: closed forms, jaws that close, and what it goes over into.
+
+use std::collections::BTreeMap;
+
+use mechanics::mesh::sample::block;
+use mechanics::mesh::{CellShape, Vector};
+use mechanics::prediction::{Case, CaseSegment, ElementChoice, Method, Settings};
+
+use super::contact::{at, bar, blocks, force, jaws, pushed, raised, together, unilateral};
+use crate::scenes::{case_of, material, set, solve};
+
+fn at_finite_strain() -> Settings {
+    Settings { method: Method::FemNonlinear, ..unilateral() }
+}
+
+/// A bar of neo-Hookean tissue without lateral strain at rest: what is pressed from 20 to 19 mm resists with mu A (1/l - l).
+#[test]
+fn a_bar_at_finite_strain_presses_with_the_force_of_its_law() {
+    let stretch: f64 = 0.95;
+    let resisted = 7.5 * 100.0 * (1.0 / stretch - stretch);
+    for (shape, element) in [
+        (CellShape::Hex8, ElementChoice::Auto),
+        (CellShape::Tet4, ElementChoice::Plain),
+        (CellShape::Tet4, ElementChoice::Stabilised),
+        (CellShape::Wedge6, ElementChoice::Auto),
+    ] {
+        let case = bar(shape);
+        for (by, wanted) in [(0.3, 0.0), (1.5, resisted)] {
+            let found = solve(&case, &pushed(by), &Settings { element, ..at_finite_strain() });
+            let exerted = force(&found, "fixed");
+            let told = format!("{shape:?} {element:?} {by} mm: {exerted:?}");
+            assert!((exerted - Vector::new(-wanted, 0.0, 0.0)).norm() < 1e-5, "{told}");
+            assert!((force(&found, "prescribed").x - wanted).abs() < 1e-5, "{told}");
+            assert_eq!(found.contact.is_some(), wanted > 0.0, "{told}");
+        }
+    }
+}
+
+#[test]
+fn contact_at_finite_strain_goes_over_into_that_of_linear_elasticity() {
+    let case = bar(CellShape::Hex8);
+    let beyond = |press: f64| {
+        let plan = pushed(0.5 + press);
+        let of = |settings: &Settings| force(&solve(&case, &plan, settings), "prescribed").x;
+        (of(&at_finite_strain()) - of(&unilateral())).abs()
+    };
+    let (far, near) = (beyond(0.4), beyond(0.2));
+    // mu A (1/l - l) is E A e (1 + e/2 + ...), with e the part by which the bar is shorter.
+    assert!(near > 0.0 && (far / near - 4.0).abs() < 0.1, "{far} {near}");
+}
+
+#[test]
+fn jaws_at_finite_strain_close_their_slit_and_do_not_pass() {
+    let case = jaws(2.5);
+    let found = solve(&case, &raised(6.0), &at_finite_strain());
+    let touch = found.contact.as_ref().unwrap();
+    assert!(touch.overlap.is_none() && touch.largest_penetration() < 1e-6, "{touch:?}");
+    assert!(touch.area() > 180.0 && touch.area() < 240.0, "{}", touch.area());
+    let forces = touch.contact.pressed.iter().map(|pressed| pressed.force);
+    assert!(forces.fold(f64::INFINITY, f64::min) > 0.0);
+    let free = solve(
+        &case,
+        &raised(6.0),
+        &Settings { method: Method::FemNonlinear, ..Settings::default() },
+    );
+    let passed = free.warnings.iter().find(|warning| warning.code == "skin-overlaps");
+    assert!(passed.is_some_and(|warning| warning.detail.contains("1.3 mm deep")));
+    let open = solve(&case, &raised(1.0), &at_finite_strain());
+    assert!(open.contact.is_none());
+}
+
+/// What holds exert is what tissue exerts on them, contact between its parts or not.
+#[test]
+fn holds_of_tissue_in_contact_at_finite_strain_are_in_balance() {
+    let (case, plan) = blocks();
+    let found = solve(&case, &plan, &at_finite_strain());
+    let sum: Vector = found.condition_reactions.iter().map(|condition| condition.force).sum();
+    assert!(sum.norm() < 1e-6, "{sum}");
+    let touch = found.contact.as_ref().unwrap();
+    // A stretch of .9 all over: mu (1/l - l).
+    let pressed: f64 = touch.pairs.iter().map(|pair| pair.force).sum::<f64>();
+    let wanted = 144.0 * 7.5 * (1.0 / 0.9 - 0.9);
+    assert!((pressed / wanted - 1.0).abs() < 0.02, "{pressed} {wanted}");
+}
+
+/// Bone of 2 mm between nodes of tissue that are 5 mm apart is faced by none of them.
+#[test]
+fn a_blade_that_passes_between_the_nodes_of_tissue_is_told() {
+    let tissue =
+        at(block(Vector::new(60.0, 20.0, 10.0), [12, 4, 2], CellShape::Hex8), [0.0, 0.0, -10.0]);
+    let blade =
+        at(block(Vector::new(2.0, 24.0, 12.0), [1, 8, 4], CellShape::Hex8), [31.5, -2.0, 2.0]);
+    let case = Case {
+        skin: Some(set("tissue/z_max")),
+        segments: vec![CaseSegment { name: "jaw".to_owned(), nodes: set("blade") }],
+        fixed: vec![set("tissue/z_min")],
+        allow_unfixed: true,
+        ..case_of(together(&[("tissue", tissue), ("blade", blade)]), material(15.0, 0.45))
+    };
+    for settings in [unilateral(), at_finite_strain()] {
+        let found = solve(&case, &raised(-6.0), &settings);
+        let told = found.warnings.iter().find(|warning| warning.code == "contact-overlap").unwrap();
+        let numbers: BTreeMap<&str, f64> = told.numbers.iter().copied().collect();
+        assert!((numbers["depth_mm"] - 4.0).abs() < 0.01, "{told:?}");
+        let penetration = found.contact.as_ref().unwrap().largest_penetration();
+        assert!((penetration - 4.0).abs() < 0.01, "{penetration}");
+        let outside = solve(&case, &raised(-1.0), &settings);
+        assert!(outside.contact.is_none());
+    }
+}

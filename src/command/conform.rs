@@ -1,0 +1,79 @@
+//! `facies conform`: a template mesh brought to a patient, with the case that it is ready for.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use super::documents::{read, write};
+use super::failure::CommandError;
+use super::files::{FileSource, ScaleArguments, UnitArgument};
+use super::screen::{print_files, print_warnings, work_in_sight};
+use crate::jobs::{ConformInput, JobInput, Workplace};
+use crate::schema::conform::result::{ConformationDocument, LeftDocument};
+use crate::schema::wire::canonical;
+use crate::schema::{ConformDocument, Limits};
+
+/// The case of the mesh, as `predict` reads it.
+const CASE_FILE: &str = "case.json";
+
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// A conformation as it is posted, with paths from its folder in place of ids
+    #[arg(long, value_name = "FILE", help_heading = "What is conformed")]
+    spec: PathBuf,
+    /// The folder for the mesh, the result and `case.json`
+    #[arg(long, visible_alias = "output", value_name = "FOLDER", help_heading = "Result")]
+    out: PathBuf,
+    /// The unit of length of all meshes
+    #[arg(long, help_heading = "What is conformed", default_value = "mm")]
+    units: UnitArgument,
+    #[command(flatten)]
+    scale: ScaleArguments,
+}
+
+/// Conforms, writes mesh and case, and tells what is left.
+pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
+    let mut spec: ConformDocument = read(&arguments.spec)?;
+    let folder = arguments.spec.parent().unwrap_or(Path::new(""));
+    for (_, id) in spec.mesh_references_mut() {
+        *id = folder.join(&*id).to_string_lossy().into_owned();
+    }
+    let limits = Limits::default();
+    let sources = FileSource::new(&PathBuf::new(), arguments.units.unit(), arguments.scale);
+    let input = JobInput::Conform(ConformInput { job: None, queue_s: None, spec });
+    let place = Workplace { sources: &sources, limits: &limits, out: &arguments.out };
+    let done = work_in_sight(&input, &place)?;
+    if let Some(found) = &done.result.conformation {
+        print_found(found);
+        let case = canonical::to_value(&found.case);
+        let file = serde_json::json!({ "case": case });
+        write(&arguments.out.join(CASE_FILE), format!("{file:#}\n"))?;
+    }
+    print_warnings(&done.result.warnings);
+    print_files(&done.files, &arguments.out);
+    println!("wrote      {}", arguments.out.join(CASE_FILE).display());
+    Ok(())
+}
+
+fn print_found(found: &ConformationDocument) {
+    let told = |name: &str, left: &LeftDocument| {
+        let LeftDocument { mean_mm, rms_mm, p95_mm, max_mm, .. } = left;
+        println!(
+            "{name:<10} left {mean_mm:.2} mm (mean), {rms_mm:.2} (rms), {p95_mm:.2} (95 %), {max_mm:.2} (largest)"
+        );
+    };
+    found.skin.iter().for_each(|left| told("skin", left));
+    found.bone.iter().for_each(|left| told("bone", left));
+    let worst = found.landmarks_mm.iter().max_by(|a, b| a.1.total_cmp(b.1));
+    if let Some((name, left)) = worst {
+        println!("landmarks  {left:.2} mm at most, at {name}");
+    }
+    let bad = found.before_repair.inverted + found.before_repair.undecided;
+    println!(
+        "cells      {bad} of {} not valid, {} after {} nodes were moved by up to {:.2} mm",
+        found.before_repair.cells,
+        found.repair.unproven.len(),
+        found.repair.nodes_moved,
+        found.repair.largest_move_mm
+    );
+}

@@ -1,0 +1,124 @@
+//! `facies learn`: from operated cases, or from virtual ones.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use serde::Deserialize;
+
+use super::documents::read;
+use super::failure::CommandError;
+use super::files::{FileSource, ScaleArguments};
+use super::screen::{print_files, print_warnings, work_in_sight};
+use crate::jobs::{JobInput, LearnInput, LearnedCase, PredictInput, Workplace};
+use crate::schema::case::document::LengthUnit;
+use crate::schema::learn::document::VirtualCohortDocument;
+use crate::schema::learn::result::LearningDocument;
+use crate::schema::{CaseDocument, LearnDocument, Limits, PlanDocument, PredictDocument};
+
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// What is learned as it is posted, with files of predictions (`case`, `plan`, `spec`) and meshes, from its own folder, in
+    /// place of ids
+    #[arg(
+        long,
+        value_name = "FILE",
+        required_unless_present = "patients",
+        help_heading = "What is learned from"
+    )]
+    spec: Option<PathBuf>,
+    /// So many patients that the program makes itself
+    #[arg(
+        long = "virtual",
+        value_name = "PATIENTS",
+        conflicts_with = "spec",
+        help_heading = "What is learned from"
+    )]
+    patients: Option<u32>,
+    /// Of the virtual patients
+    #[arg(long, value_name = "NUMBER", default_value_t = 1, help_heading = "What is learned from")]
+    seed: u64,
+    /// Of the virtual faces: 1728 times its square in tetrahedra
+    #[arg(long, value_name = "NUMBER", default_value_t = 2, help_heading = "What is learned from")]
+    fineness: u32,
+    /// The folder for the model, the picture and the result
+    #[arg(long, visible_alias = "output", value_name = "FOLDER", help_heading = "Result")]
+    out: PathBuf,
+}
+
+/// A prediction as a file.
+#[derive(Deserialize)]
+struct Predicted {
+    case: CaseDocument,
+    #[serde(default)]
+    plan: PlanDocument,
+    #[serde(default)]
+    spec: PredictDocument,
+}
+
+/// Learns, and prints the table.
+pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
+    let (spec, folder) = match (&arguments.spec, arguments.patients) {
+        (Some(path), _) => (read(path)?, path.parent().unwrap_or(Path::new("")).to_owned()),
+        (None, patients) => {
+            let (patients, seed) = (patients.unwrap_or_default(), arguments.seed);
+            let made = VirtualCohortDocument { patients, seed, fineness: arguments.fineness };
+            (LearnDocument { made: Some(made), ..LearnDocument::default() }, PathBuf::new())
+        }
+    };
+    let mut cases = Vec::new();
+    for case in &spec.cases {
+        let Predicted { case, plan, spec } = read(&folder.join(&case.prediction))?;
+        let prediction = PredictInput { job: None, queue_s: None, case, plan, spec };
+        cases.push(LearnedCase { case: None, spec_hash: None, prediction });
+    }
+    let limits = Limits::default();
+    let sources = FileSource::new(&folder, LengthUnit::Mm, ScaleArguments::default());
+    let input = JobInput::Learn(LearnInput { job: None, queue_s: None, spec, cases });
+    let place = Workplace { sources: &sources, limits: &limits, out: &arguments.out };
+    let done = work_in_sight(&input, &place)?;
+    if let Some(found) = &done.result.learning {
+        print_learning(found);
+    }
+    print_warnings(&done.result.warnings);
+    print_files(&done.files, &arguments.out);
+    Ok(())
+}
+
+fn print_learning(found: &LearningDocument) {
+    let regions: Vec<&String> =
+        found.table.first().map(|own| own.regions.keys().collect()).unwrap_or_default();
+    let heads: String = regions.iter().map(|name| format!(" {name:>8}")).collect();
+    println!("{:<30} {:>8} {:>8}{heads}", "error in mm", "mean", "p95");
+    for column in &found.table {
+        let of = |name: &&String| format!(" {:>8.3}", column.regions.get(*name).unwrap_or(&0.0));
+        let regions: String = regions.iter().map(of).collect();
+        println!("{:<30} {:>8.3} {:>8.3}{regions}", column.name, column.mean, column.p95);
+    }
+    for test in &found.tests {
+        let p = test.p.map_or_else(|| "no p".to_owned(), |p| format!("p {p:.4}"));
+        println!(
+            "{} against {}: {:.3} mm, {p} (at least {:.2e})",
+            test.first, test.second, test.median_difference_mm, test.smallest_p
+        );
+    }
+    for own in &found.validation {
+        let coverage = own.coverage.map_or_else(
+            || "no band".to_owned(),
+            |share| format!("{:.1} % in the band of 80 %", 100.0 * share),
+        );
+        let (refused, harmed) = (own.refused.len(), own.harmed.len());
+        println!("{}: {coverage}, {refused} refused, {harmed} harmed", own.method);
+    }
+    for curve in &found.curve {
+        let points: String =
+            curve.points.iter().map(|own| format!(" {}: {:.3}", own.cases, own.error_mm)).collect();
+        println!("{} by cases learned from{points}", curve.method);
+    }
+    for own in &found.thetas {
+        let known = if own.is_determined { "" } else { ", which the data do not determine" };
+        println!(
+            "theta of {}: {:.2}{known} ({:.3} mm, {:.3} over 0.5 to 1.5)",
+            own.class, own.theta, own.error_mm, own.spread_mm
+        );
+    }
+}

@@ -1,0 +1,52 @@
+//! Doubts that the comparisons in one place of a cohort are of one patient, and those of one group of several.
+
+use std::collections::BTreeMap;
+
+use super::input::CohortInput;
+use mechanics::mesh::Warning;
+use mechanics::mesh::ignored::listed;
+
+/// The warnings of a cohort whose pairs are no pairs.
+pub(super) fn doubts(input: &CohortInput) -> Vec<Warning> {
+    differing(input).into_iter().chain(twice(input)).collect()
+}
+
+/// Places in which groups have different scans: a list in another order.
+fn differing(input: &CohortInput) -> Option<Warning> {
+    let most = input.spec.groups.values().map(Vec::len).max().unwrap_or(0);
+    let scans_at = |place: usize| {
+        let jobs = input.spec.groups.values().filter_map(move |jobs| jobs.get(place));
+        jobs.filter_map(|job| input.actuals.get(job))
+    };
+    let differs = |place: &usize| {
+        let mut scans = scans_at(*place);
+        let first = scans.next();
+        scans.any(|other| Some(other) != first)
+    };
+    let places: Vec<usize> = (0..most).filter(differs).collect();
+    let detail = format!(
+        "groups are compared pair by pair, and in {} of {most} places their comparisons are with different scans (place {}): are the \
+         lists in the same order?",
+        places.len(),
+        listed(places.iter().map(|place| (place + 1).to_string()))
+    );
+    let warning = Warning::new("subjects-differ", detail).with("places", places.len() as f64);
+    (!places.is_empty()).then_some(warning)
+}
+
+/// Groups in which one scan stands more than once.
+fn twice(input: &CohortInput) -> Vec<Warning> {
+    let of_group = |(name, jobs): (&String, &Vec<String>)| {
+        let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
+        for job in jobs {
+            let subject = input.actuals.get(job).unwrap_or(job);
+            *counts.entry(subject).or_default() += 1;
+        }
+        let most = counts.into_values().max().unwrap_or(0);
+        let detail = format!(
+            "group {name:?} has {most} comparisons with the same scan: a patient counts once, and the test counts each as another"
+        );
+        (most > 1).then(|| Warning::new("subject-twice", detail).with("times", most as f64))
+    };
+    input.spec.groups.iter().filter_map(of_group).collect()
+}

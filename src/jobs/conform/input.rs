@@ -1,0 +1,139 @@
+//! Input of a conformation.
+
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+
+use crate::jobs::failure::JobError;
+use crate::jobs::fetch::{fetch, no_surface};
+use crate::jobs::source::{MeshSource, StoredMesh, StoredShape};
+use crate::schema::conform::document::ConformDocument;
+use crate::schema::{ErrorCode, Faults, Limits, Pointer, Problem, hashes};
+use mechanics::conformation::Landmark;
+use mechanics::mesh::{Frame, TriangleSurface, VolumeMesh};
+
+/// A conformation.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ConformInput {
+    /// The id of the job; absent on the command line.
+    pub job: Option<String>,
+    /// From acceptance to start.
+    pub queue_s: Option<f64>,
+    pub spec: ConformDocument,
+}
+
+/// A conformation whose documents are sound; lengths in mm.
+pub struct PreparedConformation {
+    /// Each mesh with its role.
+    pub meshes: Vec<(&'static str, StoredMesh)>,
+    pub template: VolumeMesh,
+    pub skin_nodes: Vec<u32>,
+    pub bone_nodes: Vec<u32>,
+    pub skin: Option<Arc<TriangleSurface>>,
+    pub bone: Option<Arc<TriangleSurface>>,
+    pub landmarks: Vec<Landmark>,
+    /// That of the patient.
+    pub frame: Frame,
+    pub spec_hash: String,
+}
+
+impl ConformInput {
+    /// Fetches the meshes and converts the document; pointers start at `/spec`.
+    pub fn prepare(
+        &self,
+        sources: &dyn MeshSource,
+        limits: &Limits,
+    ) -> Result<PreparedConformation, JobError> {
+        let mut faults = Faults::default();
+        self.spec.check(limits, &mut faults);
+        faults.into_result()?;
+        let at = Pointer::root().key("spec");
+        let mut meshes = vec![(
+            "template",
+            fetch(sources, &self.spec.template.mesh, &at.key("template").key("mesh"))?,
+        )];
+        let template = volume_in_mm(&meshes[0].1, &at.key("template").key("mesh"))?;
+        let mut surface = |role, id: &Option<String>| {
+            let Some(id) = id else { return Ok(None) };
+            let at = at.key("patient").key(role);
+            let mesh = fetch(sources, id, &at)?;
+            let surface = mesh.surface_in_mm().ok_or_else(|| no_surface(&at))?;
+            meshes.push((role, mesh));
+            Ok::<_, JobError>(Some(surface))
+        };
+        let skin = surface("skin", &self.spec.patient.skin)?;
+        let bone = surface("bone", &self.spec.patient.bone)?;
+        let frame = one_frame(&meshes[1..], &at)?;
+        let (skin_nodes, bone_nodes) = self.nodes(&template, &at.key("template"))?;
+        let landmarks = self.spec.landmarks.iter().map(|(name, pair)| Landmark {
+            name: name.clone(),
+            template: pair.template_mm.into(),
+            patient: pair.patient_mm.into(),
+        });
+        let content = |id: &str| {
+            let mut spec = self.spec.clone();
+            let places = spec.mesh_references_mut();
+            let number = places.iter().position(|(_, other)| other.as_str() == id)?;
+            Some(meshes[number].1.sha256.clone())
+        };
+        let spec_hash = hashes::conform_hash(&self.spec, &content);
+        let landmarks = landmarks.collect();
+        Ok(PreparedConformation {
+            meshes,
+            template,
+            skin_nodes,
+            bone_nodes,
+            skin,
+            bone,
+            landmarks,
+            frame,
+            spec_hash,
+        })
+    }
+
+    /// The nodes on the skin, and those on bone.
+    fn nodes(&self, template: &VolumeMesh, at: &Pointer) -> Result<(Vec<u32>, Vec<u32>), JobError> {
+        let find = |name: &str, at: &Pointer| {
+            let missing = || {
+                let detail = template.missing_set(name);
+                JobError::from(Problem::at(at, ErrorCode::UnknownSet, detail))
+            };
+            template.node_set(name).ok_or_else(missing)
+        };
+        let spec = &self.spec.template;
+        let skin = find(&spec.skin, &at.key("skin"))?.to_vec();
+        let mut bone = Vec::new();
+        for (segment, set) in &spec.segments {
+            bone.extend(find(set, &at.key("segments").key(segment))?);
+        }
+        if let Some(set) = &spec.fixed {
+            bone.extend(find(set, &at.key("fixed"))?);
+        }
+        bone.sort_unstable();
+        bone.dedup();
+        Ok((skin, bone))
+    }
+}
+
+fn volume_in_mm(stored: &StoredMesh, at: &Pointer) -> Result<VolumeMesh, JobError> {
+    let StoredShape::Volume(volume) = &stored.shape else {
+        let detail = "this is a surface, and a volume mesh is needed";
+        return Err(Problem::at(at, ErrorCode::WrongMesh, detail).into());
+    };
+    let mut volume = (**volume).clone();
+    let scale = stored.units.unwrap_or_default().in_mm();
+    volume.nodes.iter_mut().for_each(|x| *x *= scale);
+    Ok(volume)
+}
+
+fn one_frame(surfaces: &[(&'static str, StoredMesh)], at: &Pointer) -> Result<Frame, JobError> {
+    let mut frames = surfaces.iter().filter_map(|(role, mesh)| Some((role, mesh.frame?)));
+    let Some((first_role, first)) = frames.next() else { return Ok(Frame::default()) };
+    match frames.find(|(_, frame)| *frame != first) {
+        None => Ok(first),
+        Some((role, frame)) => {
+            let detail = format!("the {role} is in frame {frame}, the {first_role} in {first}");
+            Err(Problem::at(&at.key("patient").key(role), ErrorCode::FrameConflict, detail).into())
+        }
+    }
+}

@@ -1,0 +1,199 @@
+//! The job of a conformation: the template brought to the patient, its cells repaired, its files written.
+
+use std::sync::Arc;
+
+use super::input::{ConformInput, PreparedConformation};
+use crate::jobs::clock::Observed;
+use crate::jobs::failure::JobError;
+use crate::jobs::output::{JobOutput, MadeMesh, Workplace};
+use crate::jobs::result::folder::ResultFolder;
+use crate::jobs::result::provenance::{Origin, encode_result, mesh_summary};
+use crate::jobs::result::warnings::warning_documents;
+use crate::jobs::source::StoredShape;
+use crate::schema::case::document::{LengthUnit, SegmentDocument};
+use crate::schema::case::selection::SelectionDocument;
+use crate::schema::conform::document::ConformDocument;
+use crate::schema::conform::result::{
+    CellsDocument, ConformationDocument, LeftDocument, RepairResultDocument,
+};
+use crate::schema::predict::document::OutputName;
+use crate::schema::predict::keep::MadeName;
+use crate::schema::predict::result::ResultDocument;
+use crate::schema::{CaseDocument, ErrorCode, Pointer, Problem};
+use mechanics::conformation::{
+    Conformation, ConformationError, Patient, SheetName, Template, carried, conform,
+};
+use mechanics::format::VolumeOutput;
+use mechanics::format::vtk::vtu;
+use mechanics::mesh::quality::{QualityReport, quality};
+use mechanics::mesh::{Frame, SurfaceSearch, TriangleSurface, VolumeMesh};
+use mechanics::progress::{Phase, Progress};
+use mechanics::repair::{Bounds, RepairReport, repair};
+
+/// Time a conformation may take, in seconds.
+const WALL_S: f64 = 600.0;
+
+/// Brings a template to a patient, as a job.
+pub fn conform_job(
+    input: &ConformInput,
+    place: &Workplace,
+    progress: &dyn Progress,
+) -> Result<JobOutput, JobError> {
+    let clock = Observed::start(progress, WALL_S);
+
+    // 1. Documents and meshes.
+    let prepared = input.prepare(place.sources, place.limits)?;
+    clock.check()?;
+
+    // 2. The template onto the patient, its cells repaired.
+    let found = prepared.conformed(&input.spec, &clock)?;
+    clock.check()?;
+
+    // 3. Files.
+    clock.phase(Phase::Write);
+    let origin = Origin {
+        spec_hash: prepared.spec_hash.clone(),
+        inputs: prepared.meshes.iter().map(|(role, mesh)| mesh.to_input(role)).collect(),
+        frame: prepared.frame,
+        queue_s: input.queue_s,
+    };
+    let mut folder = ResultFolder::open(place.out)?;
+    let volume = vtu::write(&VolumeOutput::plain(&found.mesh, prepared.frame))?;
+    folder.add(OutputName::VolumeVtu, &volume)?;
+    let told = prepared.meshes.iter().flat_map(|(_, mesh)| &mesh.warnings);
+    let warnings = found.after.warnings();
+    let warnings = warning_documents(told.chain(&warnings));
+    let mut provenance = origin.provenance(&clock);
+    provenance.mesh = Some(mesh_summary(&found.mesh, &found.after));
+    let rest = ResultDocument::new(input.job.clone(), &folder.files, provenance, warnings.clone());
+    let conformation = Some(found.document(&input.spec, &prepared));
+    let result = ResultDocument { conformation, ..rest };
+    folder.add(OutputName::ResultJson, &encode_result(&result)?)?;
+    let shape = StoredShape::Volume(Arc::new(found.mesh));
+    let what = MadeName::Volume;
+    let volume = MadeMesh { what, name: None, shape, frame: prepared.frame, told: warnings };
+    Ok(JobOutput { result, files: folder.files, meshes: vec![volume] })
+}
+
+/// A template on a patient.
+struct Conformed {
+    mesh: VolumeMesh,
+    conformation: Conformation,
+    before: QualityReport,
+    after: QualityReport,
+    repaired: RepairReport,
+    /// After the repair, in mm.
+    skin_distances: Vec<f64>,
+    bone_distances: Vec<f64>,
+}
+
+impl PreparedConformation {
+    fn conformed(&self, spec: &ConformDocument, clock: &Observed) -> Result<Conformed, JobError> {
+        let template =
+            Template { mesh: &self.template, skin: &self.skin_nodes, bone: &self.bone_nodes };
+        let patient = Patient {
+            skin: self.skin.as_deref(),
+            bone: self.bone.as_deref(),
+            landmarks: &self.landmarks,
+        };
+        let conformation = conform(&template, &patient, spec.start.into(), clock)
+            .map_err(|error| refused(&error, clock))?;
+        let mut mesh = carried(&self.template, &conformation.deformation);
+        let before = quality(&mesh);
+        let bounds = Bounds::of(&mesh, spec.repair.boundary_mm, spec.repair.inner_mm);
+        let bounds = bounds.along(&mesh, &[&self.skin_nodes, &self.bone_nodes]);
+        let repaired = repair(&mut mesh, &bounds, clock);
+        let after = quality(&mesh);
+        let skin_distances = distances(self.skin.as_deref(), &mesh, &self.skin_nodes)?;
+        let bone_distances = distances(self.bone.as_deref(), &mesh, &self.bone_nodes)?;
+        Ok(Conformed {
+            mesh,
+            conformation,
+            before,
+            after,
+            repaired,
+            skin_distances,
+            bone_distances,
+        })
+    }
+}
+
+/// From nodes to a surface, where there is one, in mm.
+fn distances(
+    surface: Option<&TriangleSurface>,
+    mesh: &VolumeMesh,
+    nodes: &[u32],
+) -> Result<Vec<f64>, JobError> {
+    let Some(surface) = surface else { return Ok(Vec::new()) };
+    let search =
+        SurfaceSearch::new(surface).map_err(|error| JobError::Alignment(error.to_string()))?;
+    let distance = |&node: &u32| search.closest(&mesh.nodes[node as usize]).distance;
+    Ok(nodes.iter().map(distance).collect())
+}
+
+impl Conformed {
+    fn document(
+        &self,
+        spec: &ConformDocument,
+        prepared: &PreparedConformation,
+    ) -> ConformationDocument {
+        let names = prepared.landmarks.iter().map(|landmark| landmark.name.clone());
+        let [partners, points] = self.conformation.partners;
+        ConformationDocument {
+            skin: LeftDocument::of(&self.skin_distances),
+            bone: LeftDocument::of(&self.bone_distances),
+            share_with_partner: (points > 0).then(|| partners as f64 / points as f64),
+            landmarks_mm: names.zip(self.conformation.landmark_distances.iter().copied()).collect(),
+            before_repair: CellsDocument::from(&self.before),
+            after_repair: CellsDocument::from(&self.after),
+            repair: RepairResultDocument::from(&self.repaired),
+            case: case_of(spec, prepared.frame),
+        }
+    }
+}
+
+/// The case of the mesh: its segments, what is fixed, and its skin, all by node sets.
+fn case_of(spec: &ConformDocument, frame: Frame) -> CaseDocument {
+    let volume = OutputName::VolumeVtu.file_name();
+    let mut case = CaseDocument::of_volume(volume, LengthUnit::Mm);
+    case.frame = frame.into();
+    let segments = spec.template.segments.iter();
+    case.segments = segments
+        .map(|(name, set)| SegmentDocument {
+            name: name.clone(),
+            nodes: SelectionDocument::node_set(set),
+        })
+        .collect();
+    case.fixed = spec.template.fixed.iter().map(|set| SelectionDocument::node_set(set)).collect();
+    case.skin = Some(SelectionDocument::node_set(&spec.template.skin));
+    let landmarks = spec.landmarks.iter();
+    case.landmarks = landmarks.map(|(name, pair)| (name.clone(), pair.patient_mm)).collect();
+    case
+}
+
+/// With the place of the spec that it is about.
+fn refused(error: &ConformationError, clock: &Observed) -> JobError {
+    let at = Pointer::root().key("spec");
+    let of_sheet = |sheet: &SheetName| match sheet {
+        SheetName::Skin => "skin",
+        SheetName::Bone => "bone",
+    };
+    let place = match error {
+        ConformationError::Cancelled { .. } => return clock.stopped(),
+        ConformationError::NothingToFit | ConformationError::Scale { .. } => at.key("patient"),
+        ConformationError::NoSheet { sheet: SheetName::Skin, .. } => at.key("template").key("skin"),
+        ConformationError::NoSheet { sheet: SheetName::Bone, .. } => {
+            at.key("template").key("segments")
+        }
+        ConformationError::Surface { sheet, .. } => at.key("patient").key(of_sheet(sheet)),
+        ConformationError::FewPartners { .. }
+        | ConformationError::NoSuchFace { .. }
+        | ConformationError::Stretched { .. } => at.key("patient").key("skin"),
+        ConformationError::Landmarks(_)
+        | ConformationError::FewLandmarks { .. }
+        | ConformationError::Mirrored { .. }
+        | ConformationError::Exchanged { .. }
+        | ConformationError::Unlike { .. } => at.key("landmarks"),
+    };
+    Problem::at(&place, ErrorCode::AlignmentFailed, error.to_string()).into()
+}

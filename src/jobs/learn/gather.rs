@@ -1,0 +1,203 @@
+//! The cohort of a job: its cases predicted once more for their stress, and what was measured of them.
+
+use std::collections::BTreeMap;
+
+use super::input::{LearnInput, LearnedCase};
+use crate::jobs::clock::Observed;
+use crate::jobs::failure::JobError;
+use crate::jobs::fetch::fetch;
+use crate::jobs::output::Workplace;
+use crate::jobs::predict::Prepared;
+use crate::jobs::source::StoredShape;
+use crate::schema::predict::result::InputDocument;
+use crate::schema::{ErrorCode, Pointer, Problem};
+use mechanics::learning::validation::Column;
+use mechanics::learning::virtual_cohort::{ThetaOfClass, VirtualError, virtual_cohort};
+use mechanics::learning::{Cohort, CohortError, LearningCase, measures};
+use mechanics::mesh::{Frame, Vector};
+use mechanics::prediction::{Scene, equilibrium};
+use mechanics::progress::Progress;
+
+/// What is learned from, and the columns of the table that are not learned.
+pub struct Gathered {
+    pub cohort: Cohort,
+    /// The mechanical prediction is among them, called `linear`.
+    pub mechanical: Vec<Column>,
+    pub thetas: Vec<ThetaOfClass>,
+    pub inputs: Vec<InputDocument>,
+    pub frame: Frame,
+}
+
+/// How the table calls the mechanical prediction that is corrected.
+pub const MECHANICAL: &str = "linear";
+
+pub fn gather(
+    input: &LearnInput,
+    place: &Workplace,
+    clock: &Observed,
+) -> Result<Gathered, JobError> {
+    match &input.spec.made {
+        Some(made) => {
+            let (patients, fineness) = (made.patients as usize, made.fineness as usize);
+            let cohort = virtual_cohort(patients, made.seed, fineness, clock);
+            let cohort = cohort.map_err(|error| refused_virtual(error, clock))?;
+            Ok(Gathered {
+                cohort: cohort.cohort,
+                mechanical: cohort.mechanical,
+                thetas: cohort.thetas,
+                inputs: Vec::new(),
+                frame: Frame::Lps,
+            })
+        }
+        None => of_cases(input, place, clock),
+    }
+}
+
+fn refused_virtual(error: VirtualError, clock: &Observed) -> JobError {
+    match error {
+        VirtualError::Model(error) => clock.judge(error),
+        VirtualError::Scene(errors) => JobError::Refused(errors.into()),
+        VirtualError::Cohort(error) => refused(&error),
+        VirtualError::Material(error) => {
+            let at = Pointer::from_text("/spec/virtual");
+            Problem::at(&at, ErrorCode::OutOfRange, error.to_string()).into()
+        }
+    }
+}
+
+/// A cohort from which nothing can be learned.
+fn refused(error: &CohortError) -> JobError {
+    let cases = Pointer::from_text("/spec/cases");
+    let (at, code) = match error {
+        CohortError::TooFew { .. } => (cases, ErrorCode::OutOfRange),
+        CohortError::NamedTwice { second, .. } | CohortError::SamePatient { second, .. } => {
+            (cases.index(*second), ErrorCode::DuplicateName)
+        }
+        CohortError::Length { case, .. } => (cases.index(*case), ErrorCode::NotCorresponding),
+        CohortError::NotFinite { case, .. } => (cases.index(*case), ErrorCode::NotFinite),
+        CohortError::NoSuchPoint { .. } => (cases, ErrorCode::NotCorresponding),
+    };
+    Problem::at(&at, code, error.to_string()).into()
+}
+
+fn of_cases(input: &LearnInput, place: &Workplace, clock: &Observed) -> Result<Gathered, JobError> {
+    let mut first: Option<Prepared> = None;
+    let mut cases = Vec::new();
+    let mut inputs = Vec::new();
+    for (index, member) in input.cases.iter().enumerate() {
+        let at = Pointer::root().key("spec").key("cases").index(index);
+        let prepared = member.prediction.prepare(place.sources, place.limits)?;
+        prepared.admit(0, place.limits)?;
+        corresponds(first.as_ref().unwrap_or(&prepared), &prepared, &at)?;
+        let name = input.spec.name(index);
+        let stated = input.spec.cases.get(index).map(|case| case.actual.as_str());
+        let actual = fetch(place.sources, stated.unwrap_or_default(), &at.key("actual"))?;
+        inputs.push(actual.to_input(&format!("actual {name}")));
+        let after = places(&actual.shape, &prepared.scene, &at.key("actual"))?;
+        if let Some(frame) = actual.frame.filter(|frame| *frame != prepared.case.frame) {
+            let detail = format!(
+                "the mesh is in {frame:?}, and the case in {:?}: distances between them mean nothing",
+                prepared.case.frame
+            );
+            return Err(Problem::at(&at.key("actual"), ErrorCode::FrameConflict, detail).into());
+        }
+        cases.push(learned(name, member, &prepared.scene, &after, clock)?);
+        clock.step(index + 1, input.cases.len());
+        clock.check()?;
+        first.get_or_insert(prepared);
+    }
+    let (regions, frame) = first.map_or((BTreeMap::new(), Frame::Unspecified), |own| {
+        (own.scene.skin.regions.clone(), own.case.frame)
+    });
+    let cohort = Cohort::new(cases, regions).map_err(|error| refused(&error))?;
+    let column = |name: &str, of: &dyn Fn(&LearningCase) -> Vec<f64>| {
+        let told: Vec<Vec<f64>> = cohort.cases.iter().map(of).collect();
+        Column::of(name, &told, &cohort)
+    };
+    let mechanical = vec![
+        column("no movement", &|case| vec![0.0; case.actual.len()]),
+        column(MECHANICAL, &|case| case.predicted.clone()),
+    ];
+    Ok(Gathered { mechanical, cohort, thetas: Vec::new(), inputs, frame })
+}
+
+/// Cases have the same cells, frame, skin and method.
+fn corresponds(first: &Prepared, other: &Prepared, at: &Pointer) -> Result<(), JobError> {
+    let [one, two] = [first, other].map(|own| &own.scene);
+    let conflict =
+        |code, detail: String| Err(Problem::at(&at.key("prediction"), code, detail).into());
+    let [a, b] = [one, two].map(|own| (own.mesh.nodes.len(), own.mesh.cells.len()));
+    if a != b || one.mesh.cells != two.mesh.cells {
+        let detail = format!(
+            "its mesh has {} nodes and {} cells, that of the first case {} and {}, and cells have to be the same: nodes do not correspond",
+            b.0, b.1, a.0, a.1
+        );
+        return conflict(ErrorCode::NotCorresponding, detail);
+    }
+    if one.skin.nodes() != two.skin.nodes() {
+        let [a, b] = [one, two].map(|own| own.skin.nodes().len());
+        let detail = format!(
+            "its skin has {b} nodes and that of the first case {a}, and they have to be the same"
+        );
+        return conflict(ErrorCode::NotCorresponding, detail);
+    }
+    if first.case.frame != other.case.frame {
+        let detail = format!(
+            "its frame is {:?} and that of the first case {:?}",
+            other.case.frame, first.case.frame
+        );
+        return conflict(ErrorCode::FrameConflict, detail);
+    }
+    let [a, b] = [one, two].map(|own| own.settings.method.kind().name());
+    match a == b {
+        true => Ok(()),
+        false => conflict(
+            ErrorCode::MethodMismatch,
+            format!(
+                "it was predicted by {b} and the first case by {a}: what they miss is not the same"
+            ),
+        ),
+    }
+}
+
+/// Where the skin is in a mesh after the operation.
+fn places(shape: &StoredShape, scene: &Scene, at: &Pointer) -> Result<Vec<Vector>, JobError> {
+    let nodes = scene.skin.nodes();
+    let (points, expected): (&[Vector], usize) = match shape {
+        StoredShape::Volume(volume) => (&volume.nodes, scene.mesh.nodes.len()),
+        StoredShape::Surface(surface) => (&surface.points, nodes.len()),
+        StoredShape::Image(_) => (&[], nodes.len()),
+    };
+    if points.len() != expected {
+        let detail = format!(
+            "it has {} points, and {expected} would correspond to the mesh of the case",
+            points.len()
+        );
+        return Err(Problem::at(at, ErrorCode::NotCorresponding, detail).into());
+    }
+    Ok(match shape {
+        StoredShape::Volume(_) => nodes.iter().map(|&node| points[node as usize]).collect(),
+        StoredShape::Surface(_) | StoredShape::Image(_) => points.to_vec(),
+    })
+}
+
+fn learned(
+    name: String,
+    member: &LearnedCase,
+    scene: &Scene,
+    after: &[Vector],
+    clock: &Observed,
+) -> Result<LearningCase, JobError> {
+    let (solved, _) = equilibrium(scene, clock).map_err(|error| clock.judge(error))?;
+    let displacement = &solved.displacement;
+    let before = scene.skin.nodes().iter().map(|&node| scene.mesh.nodes[node as usize]);
+    let moved = after.iter().zip(before).map(|(after, before)| after - before);
+    Ok(LearningCase {
+        name,
+        class: member.prediction.plan.segments.len().to_string(),
+        features: measures::features(scene, displacement),
+        bone: measures::bone(scene, displacement),
+        predicted: measures::skin(scene, displacement),
+        actual: moved.flat_map(|own| [own.x, own.y, own.z]).collect(),
+    })
+}

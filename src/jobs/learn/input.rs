@@ -1,0 +1,46 @@
+//! Input of learning.
+
+use serde::{Deserialize, Serialize};
+use serde_json::json;
+
+use crate::jobs::predict::PredictInput;
+use crate::schema::LearnDocument;
+use crate::schema::wire::canonical::{hash, to_value};
+use mechanics::prediction::MethodKind;
+
+/// Cases to learn from.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LearnInput {
+    /// The id of the job; absent on the command line.
+    pub job: Option<String>,
+    /// From acceptance to start.
+    pub queue_s: Option<f64>,
+    pub spec: LearnDocument,
+    /// One for each case of the spec.
+    pub cases: Vec<LearnedCase>,
+}
+
+/// What was predicted of a case, as its job was asked.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LearnedCase {
+    /// Of the service.
+    pub case: Option<String>,
+    pub spec_hash: Option<String>,
+    pub prediction: PredictInput,
+}
+
+impl LearnInput {
+    /// The method of the predictions; virtual patients are predicted by linear elements.
+    pub fn predicted_by(&self) -> String {
+        let stated = self.cases.first().map(|case| case.prediction.spec.method.chosen().name());
+        stated.unwrap_or(MethodKind::FemLinear.name()).to_owned()
+    }
+
+    /// The hash of everything that decides the numbers, meshes by their ids.
+    pub fn spec_hash(&self) -> String {
+        let mut spec = self.spec.clone();
+        spec.tags.clear();
+        let predictions: Vec<_> = self.cases.iter().map(|case| &case.spec_hash).collect();
+        hash(json!({ "spec": to_value(&spec), "predictions": predictions }))
+    }
+}

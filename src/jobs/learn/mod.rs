@@ -1,0 +1,9 @@
+//! Learning from operated cases: their predictions and what came of them, or virtual patients.
+
+mod chart;
+mod gather;
+mod input;
+mod job;
+
+pub use input::{LearnInput, LearnedCase};
+pub use job::learn_job;

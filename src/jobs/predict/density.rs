@@ -1,0 +1,31 @@
+//! Density of tissue that gravity pulls on, where no material states one.
+
+use std::collections::BTreeSet;
+
+use super::input::PredictInput;
+use mechanics::mesh::Warning;
+use mechanics::mesh::ignored::listed;
+
+/// Of water, in g/cm³: what a material without a density has.
+const DEFAULT: f64 = 1.0;
+
+/// The warning where gravity acts on tissue whose density nobody stated. Of a case without materials another warning tells it.
+pub(super) fn default_density(input: &PredictInput) -> Option<Warning> {
+    if !input.plan.loads.iter().any(|load| load.gravity_m_per_s2.is_some()) {
+        return None;
+    }
+    let materials = [input.case.materials.as_ref(), input.spec.materials.as_ref()];
+    let entries = || materials.into_iter().flatten().flatten();
+    let stated: BTreeSet<&String> = entries()
+        .filter(|(_, material)| material.density_g_per_cm3.is_some())
+        .map(|(name, _)| name)
+        .collect();
+    let without: BTreeSet<&String> =
+        entries().map(|(name, _)| name).filter(|name| !stated.contains(name)).collect();
+    let detail = format!(
+        "gravity pulls on tissue whose density is not stated, and {DEFAULT} g/cm3 is taken: `density_g_per_cm3` of {}",
+        listed(&without)
+    );
+    let warning = Warning::new("default-density", detail).with("density_g_per_cm3", DEFAULT);
+    (!without.is_empty()).then_some(warning)
+}

@@ -1,0 +1,42 @@
+//! The forms in which a report is written.
+
+use super::content::Report;
+use super::html::html;
+use super::pages::pdf;
+use crate::schema::predict::output::OutputName;
+
+/// How a report is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ReportForm {
+    Html,
+    Pdf,
+}
+
+impl ReportForm {
+    /// Of a file that is a report.
+    pub fn of(output: OutputName) -> Option<Self> {
+        match output {
+            OutputName::ReportHtml => Some(ReportForm::Html),
+            OutputName::ReportPdf => Some(ReportForm::Pdf),
+            OutputName::SkinVtp
+            | OutputName::SkinStl
+            | OutputName::SkinPly
+            | OutputName::SkinGlb
+            | OutputName::SkinCsv
+            | OutputName::VolumeVtu
+            | OutputName::BonesVtp
+            | OutputName::ClassesSvg
+            | OutputName::DisplacementSvg
+            | OutputName::ResultJson => None,
+        }
+    }
+}
+
+impl Report {
+    pub fn written(self, form: ReportForm) -> Vec<u8> {
+        match form {
+            ReportForm::Html => html(&self).into_bytes(),
+            ReportForm::Pdf => pdf(self),
+        }
+    }
+}

@@ -1,0 +1,91 @@
+//! A report as one HTML file, which asks for nothing else and prints on A4.
+
+use mechanics::chart::svg::{escaped, svg};
+
+use super::content::{Block, Figure, Report, Section, Table};
+
+/// No scripts, nothing from elsewhere.
+const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; img-src data:";
+
+const STYLE: &str = "
+@page { size: A4; margin: 13mm 14mm; }
+* { box-sizing: border-box; }
+body { font: 10.5pt/1.4 Helvetica, Arial, 'Liberation Sans', sans-serif; color: #22262b; background: #fff;
+  max-width: 190mm; margin: 0 auto; padding: 1rem; overflow-wrap: anywhere; }
+h1 { font-size: 1.7em; margin: 0; } h2 { font-size: 1.15em; margin: 1.1em 0 0.3em; }
+p { margin: 0.3em 0; } .subtitle { color: #4d555e; }
+.notice { border: 1px solid #8a4b00; background: #fff6e9; color: #6b3a00; padding: 0.25em 0.6em; font-weight: bold; }
+figure { margin: 0.5em 0; } figure svg { width: 100%; height: auto; display: block; }
+figcaption { color: #4d555e; font-size: 0.9em; }
+.wide { overflow-x: auto; }
+table { border-collapse: collapse; width: 100%; font-variant-numeric: tabular-nums; font-size: 0.93em; }
+th, td { text-align: right; padding: 0.15em 0.4em; border-bottom: 1px solid #dfe2e6; vertical-align: top; }
+th, td { overflow-wrap: normal; } .facts td { overflow-wrap: anywhere; }
+th:first-child, td:first-child, .facts td { text-align: left; } thead th { border-bottom: 1px solid #6b737d; }
+tbody th { font-weight: normal; } .facts th { width: 26%; color: #4d555e; }
+ul { margin: 0.2em 0; padding-left: 1.3em; }
+@media print { body { font-size: 8.6pt; line-height: 1.3; padding: 0; max-width: none; }
+  .page { break-before: page; } figure, tr { break-inside: avoid; } h2 { break-after: avoid; margin-top: 0.8em; }
+  figure svg { max-height: 198mm; } * { print-color-adjust: exact; -webkit-print-color-adjust: exact; } }
+";
+
+pub fn html(report: &Report) -> String {
+    let [title, subtitle, notice] =
+        [&report.title, &report.subtitle, &report.notice].map(|words| escaped(words));
+    let sections: String = report.sections.iter().map(section).collect();
+    format!(
+        "<!doctype html>\n<html lang=\"{}\">\n<head>\n<meta charset=\"utf-8\">\n<title>{title}</title>\n\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
+         <meta http-equiv=\"Content-Security-Policy\" content=\"{POLICY}\">\n<style>{STYLE}</style>\n</head>\n<body>\n\
+         <header>\n<h1>{title}</h1>\n<p class=\"subtitle\">{subtitle}</p>\n<p class=\"notice\">{notice}</p>\n</header>\n\
+         <main>\n{sections}</main>\n<footer><p class=\"notice\">{notice}</p></footer>\n</body>\n</html>\n",
+        report.language.tag()
+    )
+}
+
+fn section(section: &Section) -> String {
+    let class = if section.on_new_page { " class=\"page\"" } else { "" };
+    let blocks: String = section.blocks.iter().map(block).collect();
+    format!("<section{class}>\n<h2>{}</h2>\n{blocks}</section>\n", escaped(&section.heading))
+}
+
+fn block(block: &Block) -> String {
+    match block {
+        Block::Paragraph(words) => format!("<p>{}</p>\n", escaped(words)),
+        Block::List(entries) => {
+            let entries = entries.iter().map(|words| format!("<li>{}</li>\n", escaped(words)));
+            format!("<ul>\n{}</ul>\n", entries.collect::<String>())
+        }
+        Block::Table(own) => table(own),
+        Block::Figure(Figure { drawing, title, caption }) => format!(
+            "<figure role=\"img\" aria-label=\"{}\">\n{}<figcaption>{}</figcaption>\n</figure>\n",
+            escaped(title),
+            svg(drawing, title),
+            escaped(caption)
+        ),
+    }
+}
+
+fn table(table: &Table) -> String {
+    let cells = |row: &Vec<String>, scope: &str| -> String {
+        let cell = |(column, words): (usize, &String)| {
+            let words = escaped(words);
+            match (scope, column) {
+                ("col", _) => format!("<th scope=\"col\">{words}</th>"),
+                (_, 0) => format!("<th scope=\"row\">{words}</th>"),
+                _ => format!("<td>{words}</td>"),
+            }
+        };
+        row.iter().enumerate().map(cell).collect()
+    };
+    let head = match table.columns.is_empty() {
+        true => String::new(),
+        false => format!("<thead><tr>{}</tr></thead>\n", cells(&table.columns, "col")),
+    };
+    let class = if table.columns.is_empty() { " class=\"facts\"" } else { "" };
+    let rows = table.rows.iter().map(|row| format!("<tr>{}</tr>\n", cells(row, "row")));
+    let rows: String = rows.collect();
+    format!(
+        "<div class=\"wide\" tabindex=\"0\"><table{class}>\n{head}<tbody>\n{rows}</tbody></table></div>\n"
+    )
+}

@@ -1,0 +1,18 @@
+//! Reports of results for people: what was planned, what comes of it, how sure that is and where it comes from.
+
+mod comparison;
+mod content;
+mod directions;
+mod form;
+mod html;
+mod pages;
+mod prediction;
+mod study;
+mod tables;
+mod words;
+
+pub use comparison::{ComparisonFacts, comparison_report};
+pub use content::Report;
+pub use form::ReportForm;
+pub use prediction::{PredictionFacts, prediction_report, write_reports};
+pub use study::{StudyFacts, study_report};

@@ -1,0 +1,110 @@
+//! What all reports tell: warnings, where the numbers come from, and numbers as words.
+
+use mechanics::mesh::Frame;
+
+use super::content::{Block, Report, Section, Table};
+use super::words::{Words, filled, words};
+use crate::schema::predict::result::{ProvenanceDocument, ResultDocument};
+use crate::schema::{Language, WarningDocument};
+
+/// The most rows and entries of a table or list; a report has two pages.
+pub const MOST: usize = 18;
+const MOST_WARNINGS: usize = 8;
+
+/// Lengths in mm: two decimals, three below 0.1.
+pub fn mm(value: f64) -> String {
+    // No minus before nothing.
+    let value = if value.abs() < 5e-4 { 0.0 } else { value };
+    if value.abs() < 0.095 && value != 0.0 { format!("{value:.3}") } else { format!("{value:.2}") }
+}
+
+pub fn number_or_dash(value: Option<f64>) -> String {
+    value.map_or_else(|| "–".to_owned(), mm)
+}
+
+/// With its sign.
+pub fn signed(value: f64) -> String {
+    let text = mm(value);
+    if value >= 5e-4 { format!("+{text}") } else { text }
+}
+
+/// As many rows as there is room for, and how many are left out.
+pub fn shortened(mut rows: Vec<Vec<String>>, most: usize, words: &Words) -> Vec<Vec<String>> {
+    if rows.len() > most {
+        let left = rows.len() - most;
+        rows.truncate(most);
+        rows.push(vec![filled(words.more, &[left.to_string()])]);
+    }
+    rows
+}
+
+pub fn warnings(list: &[WarningDocument], words: &Words) -> Section {
+    if list.is_empty() {
+        let none = Block::Paragraph(words.no_warnings.to_owned());
+        return Section::new(words.warnings, vec![none]);
+    }
+    let told = list.iter().take(MOST_WARNINGS);
+    let mut told: Vec<String> =
+        told.map(|warning| format!("{} ({})", warning.detail, warning.code)).collect();
+    if list.len() > MOST_WARNINGS {
+        told.push(filled(words.more, &[(list.len() - MOST_WARNINGS).to_string()]));
+    }
+    Section::new(words.warnings, vec![Block::List(told)])
+}
+
+/// Versions, hashes, the plan and when it was made.
+pub fn provenance(result: &ResultDocument, words: &Words) -> Section {
+    let ProvenanceDocument { spec_hash, inputs, plan, plan_id, created, .. } = &result.provenance;
+    let mut facts = vec![[words.program.to_owned(), engine_words(result)]];
+    facts.extend(result.job.iter().map(|job| [words.job.to_owned(), job.clone()]));
+    if plan.is_some() {
+        let id = plan_id.clone().unwrap_or_else(|| words.not_stored.to_owned());
+        facts.push([words.plan_id.to_owned(), id]);
+    }
+    let frame = Frame::from(result.provenance.frame);
+    facts.push([words.frame.to_owned(), frame.name().to_owned()]);
+    facts.push([words.made.to_owned(), created.clone()]);
+    facts.push([words.hash.to_owned(), spec_hash.clone()]);
+    for input in inputs.iter().take(MOST) {
+        facts.push([format!("{} {}", words.input, input.role), input.sha256.clone()]);
+    }
+    let rows = facts.into_iter().map(Vec::from).collect();
+    Section::new(words.provenance, vec![Block::Table(Table { columns: Vec::new(), rows })])
+}
+
+fn engine_words(result: &ResultDocument) -> String {
+    let engine = &result.provenance.engine;
+    format!(
+        "{} {}, numerics {}, {}, {}",
+        engine.name, engine.version, engine.numerics, engine.target, engine.profile
+    )
+}
+
+/// A report of a result, which is no medical device.
+pub fn report(language: Language, title: &str, subtitle: String, sections: Vec<Section>) -> Report {
+    let words = words(language);
+    let (title, notice) = (title.to_owned(), words.notice.to_owned());
+    Report { language, title, subtitle, notice, sections }
+}
+
+pub fn texts<const N: usize>(words: [&str; N]) -> Vec<String> {
+    words.map(str::to_owned).to_vec()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_table_that_is_too_long_says_how_much_it_leaves_out() {
+        let rows: Vec<Vec<String>> = (0..21).map(|row| vec![row.to_string()]).collect();
+        let short = shortened(rows, 18, words(Language::En));
+        assert_eq!(short.len(), 19);
+        assert_eq!(short[18], ["and 3 more, in result.json"]);
+    }
+
+    #[test]
+    fn nothing_has_no_sign_and_little_has_its_digits() {
+        assert_eq!([0.0, -1e-9, 0.0123, -2.5].map(signed), ["0.00", "0.00", "+0.012", "-2.50"]);
+    }
+}

@@ -1,0 +1,4 @@
+//! Documents of a conformation: a template mesh brought to a patient.
+
+pub mod document;
+pub mod result;

@@ -1,0 +1,196 @@
+//! The spec of learning: operated cases, or virtual ones, and the rule.
+
+use std::collections::BTreeSet;
+
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+use crate::schema::code::ErrorCode;
+use crate::schema::predict::budget::BudgetDocument;
+use crate::schema::wire::fault::{Faults, Pointer};
+use crate::schema::wire::limits::Limits;
+use crate::schema::wire::names::check_tags;
+use mechanics::learning::cohort::LEAST_CASES;
+use mechanics::learning::{Distance, Learner, Method, Target};
+
+/// Virtual patients that one job may make.
+const MOST_VIRTUAL: f64 = 200.0;
+
+/// `learn`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum LearnKind {
+    #[default]
+    Learn,
+}
+
+/// Learning from operated cases how the skin moves, or what mechanics misses of that, with its validation.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct LearnDocument {
+    #[serde(default)]
+    #[schema(required)]
+    pub kind: LearnKind,
+    /// Exactly one of `cases` and `virtual`. At least 3, each of another patient, all on meshes with the same cells.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub cases: Vec<LearnCaseDocument>,
+    /// Patients that the program makes itself.
+    #[serde(default, rename = "virtual", skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub made: Option<VirtualCohortDocument>,
+    /// What the model is that is kept; all are in the table.
+    #[serde(default)]
+    pub learner: LearnerName,
+    #[serde(default)]
+    pub target: TargetName,
+    #[serde(default)]
+    pub distance: DistanceName,
+    #[serde(default)]
+    pub budget: BudgetDocument,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub tags: Vec<String>,
+}
+
+/// An operated case: what was predicted of it, and what came of it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct LearnCaseDocument {
+    /// The id of a job of kind `predict`, whose case, plan and method are taken.
+    pub prediction: String,
+    /// The id of a mesh after the operation, in the frame of the case: a volume with the nodes of the case's, or a surface with
+    /// the points of its skin, in their order.
+    pub actual: String,
+    /// Absent: its number from 1.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub name: Option<String>,
+}
+
+/// Patients that are the same for the same numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct VirtualCohortDocument {
+    #[schema(minimum = 3, maximum = 200)]
+    pub patients: u32,
+    #[serde(default)]
+    pub seed: u64,
+    /// Of the half head; 1728 n² tetrahedra. Default: 2.
+    #[serde(default = "usual_fineness")]
+    #[schema(default = 2, minimum = 1, maximum = 4)]
+    pub fineness: u32,
+}
+
+fn usual_fineness() -> u32 {
+    2
+}
+
+/// A rule of learning.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum LearnerName {
+    /// General regression neural network.
+    #[default]
+    Regression,
+    /// Statistical deformation model.
+    DeformationModel,
+}
+
+/// What is learned.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum TargetName {
+    /// What mechanics misses, which is added to a prediction.
+    #[default]
+    Residual,
+    /// The displacement itself.
+    Displacement,
+}
+
+/// How far features are apart.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum DistanceName {
+    /// The sum of absolute differences.
+    #[default]
+    L1,
+    /// The Euclidean norm.
+    L2,
+}
+
+impl From<DistanceName> for Distance {
+    fn from(name: DistanceName) -> Distance {
+        match name {
+            DistanceName::L1 => Distance::L1,
+            DistanceName::L2 => Distance::L2,
+        }
+    }
+}
+
+impl LearnDocument {
+    /// The rule whose model is kept.
+    pub fn method(&self) -> Method {
+        let learner = match self.learner {
+            LearnerName::Regression => Learner::Regression,
+            LearnerName::DeformationModel => Learner::DeformationModel,
+        };
+        let target = match self.target {
+            TargetName::Residual => Target::Residual,
+            TargetName::Displacement => Target::Displacement,
+        };
+        Method { learner, target }
+    }
+
+    /// The name of a case.
+    pub fn name(&self, index: usize) -> String {
+        let named = self.cases.get(index).and_then(|case| case.name.clone());
+        named.unwrap_or_else(|| (index + 1).to_string())
+    }
+
+    /// Adds what is wrong with it; pointers start at `/spec`.
+    pub fn check(&self, limits: &Limits, faults: &mut Faults) {
+        let at = Pointer::root().key("spec");
+        check_tags(&self.tags, &at.key("tags"), limits, faults);
+        let wall = at.key("budget").key("wall_s");
+        faults.check_range(&wall, self.budget.wall_s, 1e-3..=limits.wall_s, "s");
+        let given = usize::from(!self.cases.is_empty()) + usize::from(self.made.is_some());
+        faults.check_one_of(&at, given, "`cases`, `virtual`");
+        if let Some(made) = &self.made {
+            let place = at.key("virtual");
+            let (patients, fineness) = (f64::from(made.patients), f64::from(made.fineness));
+            faults.check_range(&place.key("patients"), patients, 3.0..=MOST_VIRTUAL, "patients");
+            faults.check_range(&place.key("fineness"), fineness, 1.0..=4.0, "");
+        }
+        if !self.cases.is_empty() {
+            self.check_cases(&at.key("cases"), limits, faults);
+        }
+    }
+
+    fn check_cases(&self, at: &Pointer, limits: &Limits, faults: &mut Faults) {
+        let count = self.cases.len();
+        faults.check_length(at, count, limits.list_entries as usize);
+        if count < LEAST_CASES {
+            let detail = format!(
+                "{count} cases are too few: with one left out, two are to learn from; at least {LEAST_CASES} are needed"
+            );
+            faults.add(at, ErrorCode::OutOfRange, detail);
+        }
+        let mut seen: [BTreeSet<String>; 3] = Default::default();
+        for (index, case) in self.cases.iter().enumerate() {
+            let place = at.index(index);
+            if let Some(name) = &case.name {
+                faults.check_name(&place.key("name"), name, limits.name_characters as usize);
+            }
+            let name = self.name(index);
+            let members =
+                [("prediction", &case.prediction), ("actual", &case.actual), ("name", &name)];
+            for ((member, value), seen) in members.into_iter().zip(&mut seen) {
+                if !seen.insert(value.clone()) {
+                    let detail = format!(
+                        "{value:?} is there twice: a patient who is learned from and predicted proves nothing"
+                    );
+                    faults.add(&place.key(member), ErrorCode::DuplicateName, detail);
+                }
+            }
+        }
+    }
+}

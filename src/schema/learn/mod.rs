@@ -1,0 +1,5 @@
+//! The spec of what is learned from operated cases, its model and its result.
+
+pub mod document;
+pub mod model;
+pub mod result;

@@ -1,0 +1,74 @@
+//! `model.json`, a learned model as a file: the cases that it learned from in numbers, and where they come from.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+use super::document::LearnDocument;
+use crate::schema::engine::EngineDocument;
+use mechanics::learning::{Cohort, CohortError, Features, LearnedModel, LearningCase};
+use mechanics::mesh::Warning;
+
+/// The name of the file.
+pub const MODEL_FILE: &str = "model.json";
+
+/// A model; displacements in mm, three numbers for each point.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ModelDocument {
+    pub engine: EngineDocument,
+    pub spec: LearnDocument,
+    pub cases: Vec<ModelCaseDocument>,
+    pub regions: BTreeMap<String, Vec<u32>>,
+    /// The method of the predictions that it corrects.
+    pub predicted_by: String,
+    /// Whether the validation found it nearer to the truth than the mechanical prediction alone.
+    pub helps: bool,
+    /// Mean errors of validation in mm: of this model, nested, and of mechanics alone.
+    pub error_mm: f64,
+    pub mechanical_mm: f64,
+}
+
+/// A case with its provenance.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ModelCaseDocument {
+    pub name: String,
+    /// Of the case in the service.
+    pub case: Option<String>,
+    /// The job that predicted it, and the hash of its spec.
+    pub prediction: Option<String>,
+    pub spec_hash: Option<String>,
+    /// Of the mesh after the operation.
+    pub actual_sha256: Option<String>,
+    pub features: Vec<Vec<f64>>,
+    pub bone: Vec<f64>,
+    pub predicted: Vec<f64>,
+    pub actual: Vec<f64>,
+}
+
+impl ModelDocument {
+    /// A model that is worse than what it corrects says so.
+    pub fn warning(&self) -> Option<Warning> {
+        let (learned, mechanical) = (self.error_mm, self.mechanical_mm);
+        let detail = format!(
+            "what was learned misses {learned:.3} mm in the mean where mechanics alone misses {mechanical:.3}: it is not to be used"
+        );
+        let warning = Warning::new("learning-does-not-help", detail)
+            .with("learned_mm", learned)
+            .with("mechanical_mm", mechanical);
+        (!self.helps).then_some(warning)
+    }
+
+    /// The model, fitted to its cases.
+    pub fn to_model(&self) -> Result<LearnedModel, CohortError> {
+        let case = |own: &ModelCaseDocument| LearningCase {
+            name: own.name.clone(),
+            class: String::new(),
+            features: Features { blocks: own.features.clone() },
+            bone: own.bone.clone(),
+            predicted: own.predicted.clone(),
+            actual: own.actual.clone(),
+        };
+        let cohort = Cohort::new(self.cases.iter().map(case).collect(), self.regions.clone())?;
+        Ok(LearnedModel::new(&cohort, self.spec.method(), self.spec.distance.into()))
+    }
+}

@@ -1,0 +1,25 @@
+//! Newton's method at finite strain: how tissue came to rest.
+
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+/// How tissue at finite strain came to rest.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct NewtonDocument {
+    pub energy_mn_mm: f64,
+    /// The least det F of the points of all cells.
+    pub least_det_f: f64,
+    /// The share of movement and loads that was made before each step, and at rest; at most 200 of them.
+    pub path: Vec<f64>,
+    pub inner_iterations: u64,
+    pub hierarchies: u64,
+    /// Steps along which the tangent was not positive definite: tissue may then rest in another way too.
+    pub indefinite_steps: u64,
+    /// Whether the tangent at rest is positive definite, as far as iterations see; not asked of elements with pressures.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub is_stable: Option<bool>,
+    /// The bulk modulus that stays in each cell while a pressure carries the rest, as a multiple of the shear modulus; 0
+    /// without pressures.
+    pub bulk_in_cells: f64,
+}

@@ -1,0 +1,206 @@
+//! Learning without a server: what mechanics misses alike is learned and added, and bad cohorts are named.
+
+use std::collections::BTreeMap;
+
+use facies::jobs::{
+    JobError, JobInput, JobOutput, LearnInput, LearnedCase, MeshSource, PredictInput, SourceError,
+    StoredMesh, StoredShape, Workplace, work,
+};
+use facies::schema::Limits;
+use mechanics::mesh::{CellShape, Vector, VolumeMesh, sample};
+use mechanics::prediction::equilibrium;
+use mechanics::progress::Unobserved;
+use serde_json::{Value, json};
+
+use crate::sources::stored;
+
+/// Meshes, and what was learned.
+struct Sources {
+    meshes: BTreeMap<String, StoredMesh>,
+    model: Vec<u8>,
+}
+
+impl MeshSource for Sources {
+    fn mesh(&self, id: &str) -> Result<StoredMesh, SourceError> {
+        self.meshes.get(id).cloned().ok_or_else(|| SourceError::Unknown { id: id.to_owned() })
+    }
+
+    fn predicted_skin(&self, job: &str) -> Result<StoredMesh, SourceError> {
+        self.mesh(job)
+    }
+
+    fn model(&self, _job: &str) -> Result<Vec<u8>, SourceError> {
+        Ok(self.model.clone())
+    }
+}
+
+fn block(cells: [usize; 3]) -> VolumeMesh {
+    sample::block(Vector::new(60.0, 60.0, 30.0), cells, CellShape::Hex8)
+}
+
+fn volume(mesh: VolumeMesh) -> StoredMesh {
+    StoredMesh { frame: None, ..stored(StoredShape::Volume(mesh.into()), None) }
+}
+
+/// A block whose bone moves by `x` mm along x.
+fn prediction(x: f64, spec: Value) -> PredictInput {
+    let document = json!({
+        "case": {
+            "schema": 1, "units": "mm", "volume": "block",
+            "segments": [{"name": "bone", "nodes": {"node_set": "z_min"}}],
+            "fixed": [{"node_set": "z_max"}],
+        },
+        "plan": {"segments": [{"name": "bone", "translation_mm": [x, 0, 0]}]},
+        "spec": spec, "job": null, "queue_s": null,
+    });
+    serde_json::from_value(document).unwrap()
+}
+
+fn linear() -> Value {
+    json!({"method": "fem_linear"})
+}
+
+/// Four operations, after each of which the tissue lies 0.5 mm higher than mechanics says.
+fn operated() -> (Sources, LearnInput) {
+    let mut meshes = BTreeMap::from([("block".to_owned(), volume(block([4, 4, 2])))]);
+    let mut cases = Vec::new();
+    let mut named = Vec::new();
+    for number in 1..=4 {
+        let prediction = prediction(f64::from(number), linear());
+        let sources = Sources { meshes: meshes.clone(), model: Vec::new() };
+        let scene = prediction.prepare(&sources, &Limits::default()).unwrap().scene;
+        let (solved, _) = equilibrium(&scene, &Unobserved).unwrap();
+        let mut after = block([4, 4, 2]);
+        let moved = after.nodes.iter_mut().zip(&solved.displacement);
+        moved.for_each(|(node, u)| *node += u + Vector::new(0.0, 0.0, 0.5));
+        meshes.insert(format!("after {number}"), volume(after));
+        named.push(
+            json!({"prediction": format!("p {number}"), "actual": format!("after {number}")}),
+        );
+        cases.push(LearnedCase { case: None, spec_hash: None, prediction });
+    }
+    let spec = serde_json::from_value(json!({"cases": named})).unwrap();
+    (Sources { meshes, model: Vec::new() }, LearnInput { job: None, queue_s: None, spec, cases })
+}
+
+fn done(input: JobInput, sources: &Sources) -> Result<(JobOutput, tempfile::TempDir), JobError> {
+    let out = tempfile::tempdir().unwrap();
+    let place = Workplace { sources, limits: &Limits::default(), out: out.path() };
+    work(&input, &place, &Unobserved).map(|done| (done, out))
+}
+
+#[test]
+fn what_mechanics_misses_alike_is_added_to_the_next_prediction() {
+    let (mut sources, input) = operated();
+    let (output, out) = done(JobInput::Learn(input), &sources).unwrap();
+    let found = output.result.learning.unwrap();
+    let error = |name: &str| found.table.iter().find(|own| own.name == name).unwrap().mean;
+    assert!((error("linear") - 0.5).abs() < 1e-6, "{found:?}");
+    assert!(error("linear + GRNN") < 1e-6 && error("linear + SDM") < 1e-6, "{found:?}");
+    assert!(error("GRNN") > 0.1 && found.helps);
+    // Four cases give no less than 1/8.
+    let test = found.tests.iter().find(|test| test.second == "linear + GRNN").unwrap();
+    assert_eq!((test.p, test.smallest_p), (Some(0.125), 0.125));
+    assert!(std::fs::read_to_string(out.path().join("learning.svg")).unwrap().contains("<svg"));
+    sources.model = std::fs::read(out.path().join("model.json")).unwrap();
+
+    let spec = json!({"method": "fem_linear", "correction": {"model": "any"}});
+    let asked = |x: f64| done(JobInput::Predict(prediction(x, spec.clone())), &sources).unwrap();
+    let (output, out) = asked(2.5);
+    let corrected = output.result.correction.unwrap();
+    assert!((corrected.changed_mm.unwrap() - 0.5).abs() < 1e-6, "{corrected:?}");
+    assert!(corrected.helps && corrected.band_mm.is_none() && corrected.refused.is_none());
+    assert!(out.path().join("corrected.vtp").exists() && out.path().join("skin.vtp").exists());
+
+    let (output, out) = asked(12.0);
+    let refused = output.result.correction.unwrap();
+    assert!(refused.refused.is_some() && refused.changed_mm.is_none(), "{refused:?}");
+    assert!(output.result.warnings.iter().any(|own| own.code == "out-of-distribution"));
+    assert!(!out.path().join("corrected.vtp").exists() && out.path().join("skin.vtp").exists());
+}
+
+#[test]
+fn a_model_corrects_what_it_was_learned_on_and_nothing_else() {
+    let (mut sources, input) = operated();
+    let (_, out) = done(JobInput::Learn(input), &sources).unwrap();
+    sources.model = std::fs::read(out.path().join("model.json")).unwrap();
+    let refused = |mut input: PredictInput, sources: &Sources| {
+        input.spec.correction = Some(serde_json::from_value(json!({"model": "any"})).unwrap());
+        first_fault(done(JobInput::Predict(input), sources).map(|_| ()))
+    };
+    let mtm = prediction(2.0, json!({"method": "fem_nonlinear"}));
+    let at = "/spec/correction/model".to_owned();
+    assert_eq!(refused(mtm, &sources), (at.clone(), "method-mismatch".to_owned()));
+    sources.meshes.insert("block".to_owned(), volume(block([3, 4, 2])));
+    let other = prediction(2.0, linear());
+    assert_eq!(refused(other, &sources), (at, "not-corresponding".to_owned()));
+}
+
+fn first_fault(result: Result<(), JobError>) -> (String, String) {
+    match result {
+        Err(JobError::Refused(problem)) => {
+            let error = &problem.errors[0];
+            (error.pointer.to_string(), error.code.name().to_owned())
+        }
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn bad_cohorts_are_named_with_their_place() {
+    let faults = |change: &dyn Fn(&mut LearnInput, &mut Sources)| {
+        let (mut sources, mut input) = operated();
+        change(&mut input, &mut sources);
+        first_fault(done(JobInput::Learn(input), &sources).map(|_| ()))
+    };
+    let told = |at: &str, code: &str| (at.to_owned(), code.to_owned());
+    let few = faults(&|input, _| {
+        input.spec.cases.truncate(1);
+        input.cases.truncate(1);
+    });
+    assert_eq!(few, told("/spec/cases", "out-of-range"));
+    let twice = faults(&|input, _| input.spec.cases[2].actual = "after 1".to_owned());
+    assert_eq!(twice, told("/spec/cases/2/actual", "duplicate-name"));
+    // The same patient under another name is seen by what was measured.
+    let copied = faults(&|input, sources| {
+        sources.meshes.insert("copy".to_owned(), sources.meshes["after 1"].clone());
+        input.spec.cases[3].actual = "copy".to_owned();
+    });
+    assert_eq!(copied, told("/spec/cases/3", "duplicate-name"));
+    let other_mesh = faults(&|input, sources| {
+        sources.meshes.insert("other".to_owned(), volume(block([3, 4, 2])));
+        input.cases[1].prediction.case.volume = "other".to_owned();
+    });
+    assert_eq!(other_mesh, told("/spec/cases/1/prediction", "not-corresponding"));
+    let other_points = faults(&|_, sources| {
+        sources.meshes.insert("after 3".to_owned(), volume(block([3, 4, 2])));
+    });
+    assert_eq!(other_points, told("/spec/cases/2/actual", "not-corresponding"));
+    let frames = faults(&|input, _| {
+        let frame = serde_json::from_value(json!("RAS")).unwrap();
+        input.cases[1].prediction.case.frame = frame;
+    });
+    assert_eq!(frames, told("/spec/cases/1/prediction", "frame-conflict"));
+    let methods = faults(&|input, _| {
+        let spec = json!({"method": "fem_nonlinear"});
+        input.cases[1].prediction.spec = serde_json::from_value(spec).unwrap();
+    });
+    assert_eq!(methods, told("/spec/cases/1/prediction", "method-mismatch"));
+}
+
+#[test]
+fn virtual_patients_are_the_same_for_the_same_seed() {
+    let learned = |seed: u64| {
+        let made = json!({"virtual": {"patients": 4, "seed": seed, "fineness": 1}});
+        let spec = serde_json::from_value(made).unwrap();
+        let input = LearnInput { job: None, queue_s: None, spec, cases: Vec::new() };
+        let none = Sources { meshes: BTreeMap::new(), model: Vec::new() };
+        done(JobInput::Learn(input), &none).unwrap().0.result.learning.unwrap()
+    };
+    let one = learned(1);
+    assert_eq!(one, learned(1));
+    let error = |name: &str| one.table.iter().find(|own| own.name == name).unwrap().mean;
+    // Nobody is nearer than what happened, which mapping and registration hide.
+    assert!(error("what happened") < error("linear") && error("linear") < error("no movement"));
+    assert_ne!(one.table, learned(2).table);
+}
