@@ -1,5 +1,7 @@
 //! Acceptance of jobs: each once, with all that it refers to.
 
+use std::collections::BTreeSet;
+
 use super::database::{Transaction, is_reference, query};
 use super::events::record;
 use super::job_tags::put_on;
@@ -38,7 +40,7 @@ pub struct NewJob {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Enqueued {
     Accepted,
-    /// The same inputs are the job of this id already.
+    /// The same inputs of the same cases are the job of this id already.
     Known(String),
     QueueFull,
     /// The case or a mesh went meanwhile.
@@ -65,7 +67,7 @@ impl Store {
     pub async fn enqueue(&self, job: &NewJob, longest_queue: i64) -> Result<Enqueued, StoreError> {
         let mut transaction = self.database.begin().await?;
         let known = query(KNOWN)
-            .bind(self.own(&job.spec_hash))
+            .bind(self.key(job))
             .bind(self.tenant())
             .fetch_optional(&mut transaction)
             .await?;
@@ -96,10 +98,18 @@ impl Store {
         }
     }
 
+    /// What no two jobs have in common: hash of the inputs and ids of the cases, with which the job is erased.
+    fn key(&self, job: &NewJob) -> String {
+        let cases: BTreeSet<&String> = job.case_id.iter().chain(&job.shared_cases).collect();
+        let mut key: String = cases.into_iter().map(|case| format!("{case} ")).collect();
+        key += &job.spec_hash;
+        self.own(&key)
+    }
+
     /// The job that was accepted in place of this one.
     async fn known(&self, job: &NewJob) -> Result<Enqueued, StoreError> {
         let known = query(KNOWN)
-            .bind(self.own(&job.spec_hash))
+            .bind(self.key(job))
             .bind(self.tenant())
             .fetch_optional(self.database.reader())
             .await?;
@@ -147,7 +157,7 @@ impl Store {
             .bind(job.kind)
             .bind(&job.case_id)
             .bind(&job.document)
-            .bind(self.own(&job.spec_hash))
+            .bind(self.key(job))
             .bind(&job.engine)
             .bind(self.tenant())
             .bind(job.priority)

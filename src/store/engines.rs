@@ -24,7 +24,7 @@ struct Provenance {
     spec_hash: String,
 }
 
-const FOUND: &str = "SELECT tenant, engine, spec_hash FROM jobs WHERE id = $1";
+const FOUND: &str = "SELECT engine, spec_hash FROM jobs WHERE id = $1";
 const NOTE: &str = "UPDATE jobs SET engine = $2, spec_hash = CASE \
        WHEN EXISTS (SELECT 1 FROM jobs AS other WHERE other.spec_hash = $3) THEN spec_hash ELSE $3 END \
      WHERE id = $1";
@@ -38,10 +38,9 @@ pub(super) async fn note_engine(
 ) -> Result<(), sqlx::Error> {
     let Ok(Manifest { provenance }) = serde_json::from_str(manifest) else { return Ok(()) };
     let row = query(FOUND).bind(job).fetch_one(&mut *transaction).await?;
-    let (tenant, accepted): (String, String) = (row.try_get("tenant")?, row.try_get("engine")?);
-    let spec_hash = tenants::own(&tenant, &provenance.spec_hash);
-    let is_same = row.try_get::<String, _>("spec_hash")? == spec_hash;
-    if is_same && !is_another(&accepted, &provenance.engine) {
+    let (accepted, known): (String, String) = (row.try_get("engine")?, row.try_get("spec_hash")?);
+    let spec_hash = tenants::with_plain(&known, &provenance.spec_hash);
+    if known == spec_hash && !is_another(&accepted, &provenance.engine) {
         return Ok(());
     }
     let engine = serde_json::to_string(&provenance.engine)

@@ -124,10 +124,18 @@ pub(super) fn own(tenant: &str, text: &str) -> String {
     }
 }
 
-/// A text as it was before [`own`].
+/// A text without spaces as it was before [`own`], and before what else stands in front of it.
 pub(super) fn plain(text: String) -> String {
     match text.rsplit_once(' ') {
         Some((_, plain)) => plain.to_owned(),
         None => text,
+    }
+}
+
+/// Another text with all that stands in front of the one of [`plain`].
+pub(super) fn with_plain(text: &str, plain: &str) -> String {
+    match text.rsplit_once(' ') {
+        Some((before, _)) => format!("{before} {plain}"),
+        None => plain.to_owned(),
     }
 }

@@ -161,6 +161,27 @@ async fn erasing_a_case_takes_its_jobs_results_and_meshes_along() {
     assert_eq!(files("blobs"), 1, "the mesh that was uploaded by itself stays");
 }
 
+#[tokio::test]
+async fn erasing_a_case_leaves_the_predictions_of_an_equal_one() {
+    let server = Server::start();
+    let (first, second) = (server.case(&SMALL).await, server.case(&SMALL).await);
+    let mut jobs = Vec::new();
+    for case in [&first, &second] {
+        let job = server.job(&spec(case, 1.0)).await.expect(StatusCode::OK);
+        assert_eq!(job["case"], json!(case));
+        jobs.push((job["id"].as_str().unwrap().to_owned(), job["spec_hash"].clone()));
+    }
+    assert_ne!(jobs[0].0, jobs[1].0, "each case has a job of its own");
+    assert_eq!(jobs[0].1, jobs[1].1, "of the same inputs");
+    let again = server.job(&spec(&first, 1.0)).await.expect(StatusCode::OK);
+    assert_eq!(again["id"], json!(jobs[0].0));
+    let path = format!("/v1/cases/{first}");
+    let erased = ask(server.delete(&path).header("if-match", "*")).await;
+    assert_eq!(erased.status, StatusCode::NO_CONTENT);
+    ask(server.get(&format!("/v1/jobs/{}", jobs[0].0))).await.problem(410, "gone");
+    ask(server.get(&format!("/v1/jobs/{}", jobs[1].0))).await.expect(StatusCode::OK);
+}
+
 /// The files below a folder that hold a text.
 fn holding(folder: &Path, text: &str) -> Vec<PathBuf> {
     let entries = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
