@@ -19,7 +19,6 @@ use crate::jobs::{
 };
 use crate::schema::ErrorCode;
 use crate::schema::hashes::reproduce_hash;
-use crate::schema::job::JobStatus;
 use crate::schema::job_document::JobDocument;
 use crate::schema::study::document::SceneReference;
 use crate::schema::study::expected::truth_costs;

@@ -13,6 +13,7 @@ mod failure;
 mod files;
 pub mod health;
 pub mod learn;
+mod limits_of_files;
 pub mod mesh;
 pub mod migrate;
 pub mod openapi;
@@ -142,17 +143,9 @@ fn help_template(command: &clap::Command) -> String {
     )
 }
 
-/// A write beyond the limit on the size of files (RLIMIT_FSIZE) is an error of that write, and not the end of the process:
-/// whoever listens to the signal is not ended by it. What listens stays when the runtime that it needs is gone.
-fn outlive_limits_of_files() -> std::io::Result<()> {
-    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
-    let _inside = runtime.enter();
-    serve::outlive_limits_of_files()
-}
-
 /// Runs the command and says what went wrong, one line for each mistake.
 pub fn run(facies: &Facies) -> ExitCode {
-    if let Err(error) = outlive_limits_of_files() {
+    if let Err(error) = limits_of_files::outlive() {
         eprintln!("error: the signal of files that grow too large is not listened to: {error}");
         return ExitCode::from(failure::INFRASTRUCTURE);
     }

@@ -163,19 +163,11 @@ impl Server {
 pub async fn open(config: &Config) -> Result<Store, ServeError> {
     metrics::start()?;
     traces::start(config.traces.as_deref())?;
-    outlive_limits_of_files()?;
     let store = Store::connect(&config.places).await?.with_most_keys(config.most_keys);
     keep_swept(&store).await?;
     keep_chained(&store);
     keep_wiped(&store);
     Ok(store)
-}
-
-/// A write beyond the limit on the size of files (RLIMIT_FSIZE) is an error of that write, as one on a full disk is, and
-/// not the end of the process: whoever listens to the signal is not ended by it.
-pub fn outlive_limits_of_files() -> std::io::Result<()> {
-    use tokio::signal::unix::{SignalKind, signal};
-    signal(SignalKind::from_raw(rustix::process::Signal::XFSZ.as_raw())).map(drop)
 }
 
 /// Listens for those who run the service, where the settings say so.

@@ -56,6 +56,7 @@ const MECHANICS: [(&str, &[&str]); 28] = [
             "response",
             "validation",
             "progress",
+            "draws",
         ],
     ),
     (
@@ -70,6 +71,7 @@ const MECHANICS: [(&str, &[&str]); 28] = [
             "validation",
             "study",
             "progress",
+            "draws",
         ],
     ),
 ];
