@@ -36,7 +36,7 @@ pub struct Arguments {
     patients: Option<u32>,
     /// Of the virtual patients
     #[arg(long, value_name = "NUMBER", default_value_t = 1, help_heading = "What is learned from")]
-    seed: u64,
+    seed: u32,
     /// Of the virtual faces: 1728 times its square in tetrahedra
     #[arg(long, value_name = "NUMBER", default_value_t = 2, help_heading = "What is learned from")]
     fineness: u32,

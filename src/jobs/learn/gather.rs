@@ -39,7 +39,7 @@ pub fn gather(
     match &input.spec.made {
         Some(made) => {
             let (patients, fineness) = (made.patients as usize, made.fineness as usize);
-            let cohort = virtual_cohort(patients, made.seed, fineness, clock);
+            let cohort = virtual_cohort(patients, u64::from(made.seed), fineness, clock);
             let cohort = cohort.map_err(|error| refused_virtual(error, clock))?;
             Ok(Gathered {
                 cohort: cohort.cohort,

@@ -16,6 +16,9 @@ use mechanics::learning::{Distance, Learner, Method, Target};
 /// Virtual patients that one job may make.
 const MOST_VIRTUAL: f64 = 200.0;
 
+/// What every client's whole numbers hold.
+const MOST_SEED: f64 = 2_147_483_647.0;
+
 /// `learn`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "lowercase")]
@@ -73,7 +76,8 @@ pub struct VirtualCohortDocument {
     #[schema(minimum = 3, maximum = 200)]
     pub patients: u32,
     #[serde(default)]
-    pub seed: u64,
+    #[schema(maximum = 2147483647)]
+    pub seed: u32,
     /// Of the half head; 1728 n² tetrahedra. Default: 2.
     #[serde(default = "usual_fineness")]
     #[schema(default = 2, minimum = 1, maximum = 4)]
@@ -159,6 +163,7 @@ impl LearnDocument {
             let (patients, fineness) = (f64::from(made.patients), f64::from(made.fineness));
             faults.check_range(&place.key("patients"), patients, 3.0..=MOST_VIRTUAL, "patients");
             faults.check_range(&place.key("fineness"), fineness, 1.0..=4.0, "");
+            faults.check_range(&place.key("seed"), f64::from(made.seed), 0.0..=MOST_SEED, "");
         }
         if !self.cases.is_empty() {
             self.check_cases(&at.key("cases"), limits, faults);
