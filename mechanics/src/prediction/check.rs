@@ -224,7 +224,7 @@ impl<'a> Check<'a> {
         for (member, what, _) in inner.into_iter().filter(|(_, _, is_empty)| !is_empty) {
             if !method.knows_inner_stress {
                 let detail = format!(
-                    "{} knows no {what}: `fem_linear`, `mtm` and `mtm_ti` do",
+                    "{} knows no {what}: `fem_linear`, `fem_nonlinear`, `mtm` and `mtm_ti` do",
                     method.title
                 );
                 let at = format!("/plan/{member}");

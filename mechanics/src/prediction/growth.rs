@@ -8,10 +8,12 @@ use std::ops::RangeInclusive;
 use super::case::{Growth, Plan};
 use super::check::Check;
 use super::error_code::SceneErrorCode;
-use super::scene::Scene;
+use super::method::MethodKind;
+use super::scene::{Scene, Tetrahedron};
 use crate::mesh::Vector;
 use crate::mesh::ignored::listed;
-use crate::model::fem::inner_stress::InnerStress;
+use crate::model::fem::inner_stress::{Acted, InnerStress};
+use crate::model::problem::InvertedCell;
 
 /// Shares of its volume that tissue may gain or lose: from half of it to twice of it.
 pub const VOLUME_CHANGE: RangeInclusive<f64> = -0.5..=1.0;
@@ -22,6 +24,21 @@ pub fn linear_strain(volume_change: f64) -> f64 {
 }
 
 impl Scene {
+    /// Adds what growth and muscles exert on nodes, in mN; nothing at finite strain, where cells have them.
+    pub fn add_inner_forces(
+        &self,
+        inner: &InnerStress,
+        forces: &mut [Vector],
+    ) -> Result<(), InvertedCell> {
+        if self.settings.method.kind() == MethodKind::FemNonlinear {
+            return Ok(());
+        }
+        let (edges, tissue) = (self.edge_nodes(), self.tissue());
+        let has_pressures = self.tetrahedron() == Tetrahedron::Stabilised;
+        let acted = Acted { tissue: &tissue, has_pressures, edges: edges.as_ref() };
+        inner.add_forces(&acted, forces)
+    }
+
     /// The growth of a region by the linear strain `strain`; nothing where there is no such region. `*` stands for all.
     pub fn grown(&self, region: &str, strain: f64) -> Option<InnerStress> {
         let mut inner = InnerStress::default();

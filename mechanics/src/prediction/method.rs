@@ -139,7 +139,7 @@ const FEM_NONLINEAR: MethodProperties = MethodProperties {
     expects_fibres: false,
     knows_membrane: false,
     knows_loads: true,
-    knows_inner_stress: false,
+    knows_inner_stress: true,
     knows_contact: true,
 };
 

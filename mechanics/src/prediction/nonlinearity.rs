@@ -51,8 +51,6 @@ pub enum NonlinearityUnknown {
     TurnedWall { segment: String },
     #[error("it is not estimated where tissue presses on what it touches")]
     Contact,
-    #[error("no second order is known of tissue that grows, nor of muscles that pull")]
-    InnerStress,
     #[error("the loose solution of the second order failed: {0}")]
     Failed(ModelError),
 }
@@ -67,9 +65,6 @@ pub(super) fn reason_for_none(scene: &Scene) -> Option<NonlinearityUnknown> {
     }
     match scene.settings.method {
         Method::FemLinear | Method::MassTensorTransverse => {
-            if !scene.distributed.inner.is_empty() {
-                return Some(NonlinearityUnknown::InnerStress);
-            }
             if scene.has_pulling_fibres() {
                 return Some(NonlinearityUnknown::PullingFibres);
             }
@@ -138,7 +133,8 @@ fn second_order(
 }
 
 fn series<'a>(scene: &'a Scene, system: &LinearSystem) -> ForceSeries<'a> {
-    ForceSeries::new(scene.tissue(), system.pressures.as_ref().map(|pressures| &pressures.cells))
+    let pressures = system.pressures.as_ref().map(|pressures| &pressures.cells);
+    ForceSeries::new(scene.tissue(), pressures).with_inner(&scene.distributed.inner)
 }
 
 fn second_order_forces(
@@ -147,8 +143,7 @@ fn second_order_forces(
     solved: &Solved,
 ) -> Result<Forces, ModelError> {
     let Solved { equilibrium: Equilibrium { displacement, .. }, pressures } = solved;
-    let moved = Moved { displacement, pressures };
-    Ok(series(scene, system).second(&[moved], &[[0, 0]])?.remove(0))
+    Ok(series(scene, system).second_along(Moved { displacement, pressures })?)
 }
 
 /// -K0^-1 of forces.

@@ -21,13 +21,13 @@ use crate::model::fem::discretisation_error::DistributedLoads;
 use crate::model::fem::displacement::Problem;
 use crate::model::fem::edge_nodes::EdgeNodes;
 use crate::model::fem::finite_strain::{Elements, FibreField, Finer, FiniteStrain, MeshError};
-use crate::model::fem::inner_stress::{Acted, InnerStress};
+use crate::model::fem::inner_stress::InnerStress;
 use crate::model::fem::linear_system::LinearSystem;
 use crate::model::fem::mass_tensor_nonlinear::MassTensors;
 use crate::model::fem::membrane::Membrane;
 use crate::model::fem::{mass_tensor, quadratic};
 use crate::model::mass_spring::POISSON_RATIO;
-use crate::model::problem::{Equilibrium, InvertedCell, LoadCase, ModelError};
+use crate::model::problem::{Equilibrium, LoadCase, ModelError};
 use crate::model::thickness_warp::Warped;
 use crate::model::{mass_spring, spline};
 use crate::plan::PlannedSegment;
@@ -41,7 +41,7 @@ const LOCKING: f64 = 0.45;
 
 /// What a tetrahedron is taken as.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Tetrahedron {
+pub(super) enum Tetrahedron {
     Plain,
     Stabilised,
     Quadratic,
@@ -113,7 +113,7 @@ impl Scene {
     }
 
     /// What tetrahedra are taken as.
-    fn tetrahedron(&self) -> Tetrahedron {
+    pub(super) fn tetrahedron(&self) -> Tetrahedron {
         match self.element {
             ElementChoice::Plain | ElementChoice::MeanDilatation => Tetrahedron::Plain,
             ElementChoice::Auto | ElementChoice::Stabilised => Tetrahedron::Stabilised,
@@ -148,23 +148,13 @@ impl Scene {
         LoadCase { held, forces: self.forces.clone(), grown }
     }
 
-    /// Adds what growth and muscles exert on nodes, in mN.
-    pub fn add_inner_forces(
-        &self,
-        inner: &InnerStress,
-        forces: &mut [Vector],
-    ) -> Result<(), InvertedCell> {
-        let (edges, tissue) = (self.edge_nodes(), self.tissue());
-        let has_pressures = self.tetrahedron() == Tetrahedron::Stabilised;
-        let acted = Acted { tissue: &tissue, has_pressures, edges: edges.as_ref() };
-        inner.add_forces(&acted, forces)
-    }
-
     /// Whether nothing is held away from its place and nothing acts.
     pub(super) fn is_at_rest(&self) -> bool {
         let moves = |vector: &Vector| *vector != Vector::zeros();
         let holds = &self.conditions.holds;
-        !holds.iter().any(|hold| moves(hold.values())) && !self.forces.iter().any(moves)
+        !holds.iter().any(|hold| moves(hold.values()))
+            && !self.forces.iter().any(moves)
+            && self.distributed.inner.is_zero()
     }
 
     /// The warning that a plan displaces nothing, where it does not and the scene does not say so already.
@@ -209,8 +199,11 @@ impl Scene {
         progress: &dyn Progress,
     ) -> Result<(Equilibrium, Option<MeshError>), ModelError> {
         self.at_finite_strain(|problem, laws| {
-            let (tissue, boundary, loads) = (self.tissue(), &self.boundary, &self.distributed);
-            let finer = Finer { tissue, laws, boundary, loads };
+            let (tissue, boundary) = (self.tissue(), &self.boundary);
+            // What grows and pulls is in the cells already.
+            let loads =
+                DistributedLoads { inner: InnerStress::default(), ..self.distributed.clone() };
+            let finer = Finer { tissue, laws, boundary, loads: &loads };
             problem.solve_and(&self.load_case(), with_error.then_some(&finer), progress)
         })
     }
@@ -235,6 +228,7 @@ impl Scene {
             pressure_of_cell: &self.pressure_of_cell,
             elements,
             fibres: FibreField { of_law: &fibres, of_cell: &self.fibres },
+            inner: Arc::new(self.distributed.inner.clone()),
             holds: &self.conditions.holds,
             tolerance: Tolerance { relative_residual, memory_mb },
         };

@@ -41,6 +41,14 @@ pub struct Point {
     left: Matrix3<f64>,
     fibres: Option<FibresAt>,
     principal: Option<Box<Principal>>,
+    pull: Option<Box<Pull>>,
+}
+
+/// Active stress at a point: its energy S : (C - 1) / 2 and its second Piola-Kirchhoff stress S, in kPa.
+#[derive(Clone, Debug)]
+struct Pull {
+    energy: f64,
+    stress: Matrix3<f64>,
 }
 
 #[derive(Clone, Debug)]
@@ -85,7 +93,18 @@ impl Point {
             f,
             invariants,
             fibres,
+            pull: None,
         }
+    }
+
+    /// The same point with an active second Piola-Kirchhoff stress in kPa beside that of its law.
+    #[inline]
+    pub fn pulled(mut self, stress: Option<&Matrix3<f64>>) -> Point {
+        self.pull = stress.map(|stress| {
+            let strain = self.f.transpose() * self.f - Matrix3::identity();
+            Box::new(Pull { energy: 0.5 * stress.dot(&strain), stress: *stress })
+        });
+        self
     }
 
     /// The same point with a pressure for a part of its bulk modulus.
@@ -109,7 +128,8 @@ impl Point {
     pub fn energy(&self) -> f64 {
         let fibres = self.fibres.as_ref().map_or(0.0, |fibres| fibres.energy);
         let principal = self.principal.as_ref().map_or(0.0, |principal| principal.energy);
-        self.w.energy + fibres + principal
+        let pull = self.pull.as_ref().map_or(0.0, |pull| pull.energy);
+        self.w.energy + fibres + principal + pull
     }
 
     /// det F.
@@ -130,6 +150,9 @@ impl Point {
         }
         if let Some(principal) = &self.principal {
             stress += self.f * principal.second_stress;
+        }
+        if let Some(pull) = &self.pull {
+            stress += self.f * pull.stress;
         }
         stress
     }
@@ -177,6 +200,9 @@ impl Point {
         }
         if let Some(principal) = &self.principal {
             block += principal.block(&a.g, &b.g);
+        }
+        if let Some(pull) = &self.pull {
+            isotropic += a.g.dot(&(pull.stress * b.g));
         }
         for i in 0..3 {
             block[(i, i)] += isotropic;

@@ -56,6 +56,20 @@ impl InnerStress {
         self.growth.is_empty() && self.active.is_empty()
     }
 
+    /// A share of the strain with which it grows and of what pulls.
+    pub fn share(&self, share: f64) -> InnerStress {
+        InnerStress {
+            growth: self.growth.iter().map(|strain| strain * share).collect(),
+            active: self.active.iter().map(|stress| stress * share).collect(),
+        }
+    }
+
+    /// Whether nothing grows and nothing pulls.
+    pub fn is_zero(&self) -> bool {
+        self.growth.iter().all(|strain| *strain == 0.0)
+            && self.active.iter().all(|stress| *stress == Matrix3::zeros())
+    }
+
     /// Adds the linear strain eps_g to each of some cells, of so many.
     pub fn grow(&mut self, count: usize, cells: impl Iterator<Item = usize>, strain: f64) {
         self.growth.resize(count, 0.0);
@@ -70,11 +84,20 @@ impl InnerStress {
         }
     }
 
+    /// eps_g of a cell.
+    pub(super) fn strain(&self, cell: usize) -> f64 {
+        self.growth.get(cell).copied().unwrap_or_default()
+    }
+
+    /// S of a cell in kPa; none where no muscle pulls.
+    pub(super) fn pulls(&self, cell: usize) -> Option<&Matrix3<f64>> {
+        self.active.get(cell).filter(|stress| **stress != Matrix3::zeros())
+    }
+
     /// S0 of a cell in kPa, for a stiffness that resists its strain; none where it is zero.
     fn of_cell(&self, cell: usize, tensor: &ElasticTensor) -> Option<Matrix3<f64>> {
         let active = self.active.get(cell).copied().unwrap_or_default();
-        let strain = self.growth.get(cell).copied().unwrap_or_default();
-        let stress = active - tensor.stress(&Matrix3::from_diagonal_element(strain));
+        let stress = active - tensor.stress(&Matrix3::from_diagonal_element(self.strain(cell)));
         (stress != Matrix3::zeros()).then_some(stress)
     }
 

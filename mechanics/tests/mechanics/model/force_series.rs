@@ -9,6 +9,7 @@ use mechanics::model::fem::assembly::Tissue;
 use mechanics::model::fem::cell_stiffness::Dilatation;
 use mechanics::model::fem::displacement::Problem;
 use mechanics::model::fem::finite_strain::{Elements, FibreField, FiniteStrain};
+use mechanics::model::fem::inner_stress::InnerStress;
 use mechanics::model::fem::force_series::{ForceSeries, Forces, Moved};
 use mechanics::model::fem::membrane::Membrane;
 use mechanics::model::problem::LoadCase;
@@ -66,6 +67,7 @@ fn newton_forces(mesh: &VolumeMesh, law: &Law, displacement: &[Vector]) -> Vec<V
         pressure_of_cell: &vec![0; mesh.cells.len()],
         elements: Elements::PLAIN,
         fibres: FibreField::default(),
+        inner: std::sync::Arc::default(),
         holds: &holds,
         tolerance: TOLERANCE,
     };
@@ -203,7 +205,12 @@ fn pressures_give_the_forces_of_plain_cells_where_the_gradient_is_one() {
     let pressure = materials[0].lambda() * gradient.trace();
     let pressures = vec![pressure; mesh.nodes.len()];
     let mixed =
-        ForceSeries { tissue, pressures_of_cell: corners, pressure_count: mesh.nodes.len() };
+        ForceSeries {
+            tissue,
+            pressures_of_cell: corners,
+            pressure_count: mesh.nodes.len(),
+            inner: InnerStress::default(),
+        };
     let state = Moved { displacement: &u, pressures: &pressures };
     let Forces { nodes, volumes } = mixed.second(&[state], &[[0, 0]]).unwrap().remove(0);
     // The volume that is left over raises the pressure by p2 = lambda times it, which acts as B^T p2.

@@ -10,6 +10,7 @@ pub mod elements;
 mod fibres;
 mod generic_face;
 mod growth;
+mod inner_at_finite_strain;
 mod jump;
 mod moving_walls;
 mod muscles;

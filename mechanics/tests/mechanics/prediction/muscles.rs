@@ -14,7 +14,7 @@ use mechanics::study::methods;
 use crate::material::anisotropy::{ELEMENTS, MUSCLE, fibred, tight};
 use crate::scenes::{case_of, exact, hold, largest_error, material, set, solve};
 
-fn in_region(name: &str, region: &str, along: Vector) -> Muscle {
+pub fn in_region(name: &str, region: &str, along: Vector) -> Muscle {
     let fibres = Some(FibreDirection::Uniform(along));
     let course = MuscleCourse::Region { region: region.to_owned(), fibres };
     Muscle { name: name.to_owned(), course }
@@ -28,7 +28,7 @@ fn pull(muscle: &str, stress: f64) -> Activation {
     Activation { muscle: muscle.to_owned(), stress }
 }
 
-fn pulling(muscle: &str, stress: f64) -> Plan {
+pub fn pulling(muscle: &str, stress: f64) -> Plan {
     Plan { activations: vec![pull(muscle, stress)], ..Plan::default() }
 }
 
@@ -41,7 +41,7 @@ fn arc() -> Vec<Vector> {
     (0..=8).map(point).collect()
 }
 
-fn arched(shape: CellShape, halved: usize) -> Case {
+pub fn arched(shape: CellShape, halved: usize) -> Case {
     let cells = [4, 2, 4].map(|count| count << halved);
     let mesh = block(Vector::new(24.0, 12.0, 24.0), cells, shape);
     Case {
@@ -82,7 +82,11 @@ fn a_free_block_shortens_along_its_fibres_by_the_closed_form_in_every_element() 
             let missing = answer.numerical_error.map(|error| error.missing);
             let largest = missing.iter().flatten().map(|u| u.norm()).fold(0.0, f64::max);
             assert!(largest < 1e-7, "{shape:?} {element:?}: {largest:e}");
-            assert!(answer.nonlinearity.is_err());
+            // Shortened by 9.1 % at small strain, and by less in truth: fibres that are shorter pull less.
+            if let Ok(beyond) = answer.nonlinearity {
+                let far = case.volume.nodes.iter().zip(&beyond.left_out).find(|(x, _)| x.x > 5.9);
+                assert!(far.is_some_and(|(_, u)| u.x > 0.0), "{shape:?} {element:?}");
+            }
         }
     }
 }

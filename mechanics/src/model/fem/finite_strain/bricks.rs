@@ -1,16 +1,20 @@
 //! Hexahedra and wedges at positions, with one volume change for each cell or one for each of its points.
 
+use std::sync::Arc;
+
 use nalgebra::Matrix3;
 use rayon::prelude::*;
 
 use super::elements::Exchange;
 use super::fibres::FibreField;
+use super::inner::Grown;
 use super::problem::FiniteStrain;
 use super::step_length::Volume;
 use crate::material::hyperelastic::Law;
 use crate::material::hyperelastic::point::{Carried, Corner, Point};
 use crate::mesh::{CellShape, Vector, VolumeMesh};
 use crate::model::dofs::Numbering;
+use crate::model::fem::inner_stress::InnerStress;
 use crate::model::problem::InvertedCell;
 use crate::model::reference_cell;
 use crate::progress::Progress;
@@ -20,7 +24,7 @@ use crate::solver::{Block, SolverError};
 /// Cells that one thread takes at a time.
 const CHUNK: usize = 128;
 
-/// A point of a cell at rest.
+/// A point of a cell at rest, as it has grown.
 pub(super) struct PointAtRest {
     pub gradients: Vec<Vector>,
     /// In mm^3.
@@ -62,6 +66,7 @@ struct Brick {
 pub(super) struct Bricks<'a> {
     laws: &'a [Law],
     fibres: FibreField<'a>,
+    inner: Arc<InnerStress>,
     /// For each law the bulk modulus that acts on the mean of a cell; none where volume is taken at each point.
     means: Option<Vec<Exchange>>,
     bricks: Vec<Brick>,
@@ -89,6 +94,7 @@ impl<'a> Bricks<'a> {
         means: Option<Vec<Exchange>>,
     ) -> Result<Self, InvertedCell> {
         let FiniteStrain { mesh, laws, law_of_cell, fibres, .. } = *problem;
+        let inner = Arc::clone(&problem.inner);
         let order = &numbering.layout.clique_order;
         let is_brick =
             |&clique: &usize| mesh.cells.shape(order[clique] as usize) != CellShape::Tet4;
@@ -96,14 +102,15 @@ impl<'a> Bricks<'a> {
         let brick = |&clique: &usize| {
             let cell = order[clique] as usize;
             let rows = numbering.cliques.row(clique).to_vec();
-            Brick::new(mesh, cell, rows, law_of_cell[cell])
+            let brick = Brick::new(mesh, cell, rows, law_of_cell[cell])?;
+            Ok(brick.grown(inner.grown(cell)))
         };
         let bricks = cliques.par_iter().map(brick).collect::<Result<Vec<_>, _>>()?;
         let mut of_cell = vec![u32::MAX; if bricks.is_empty() { 0 } else { order.len() }];
         for (brick, &clique) in cliques.iter().enumerate() {
             of_cell[order[clique] as usize] = brick as u32;
         }
-        Ok(Bricks { laws, fibres, means, bricks, cliques, of_cell })
+        Ok(Bricks { laws, fibres, inner, means, bricks, cliques, of_cell })
     }
 
     pub fn is_empty(&self) -> bool {
@@ -131,7 +138,9 @@ impl<'a> Bricks<'a> {
         let law = &self.laws[usize::from(brick.law)];
         let of_cell = brick.positions(x);
         let fibres = self.fibres.along(brick.law, brick.cell);
-        let point = |at: &PointAtRest| Point::new(law, fibres, at.gradient(&of_cell));
+        let pulls = self.inner.pulls(brick.cell);
+        let point =
+            |at: &PointAtRest| Point::new(law, fibres, at.gradient(&of_cell)).pulled(pulls);
         let points: Vec<Point> = brick.points.iter().map(point).collect();
         let Some(exchange) = self.means.as_ref().map(|means| means[usize::from(brick.law)]) else {
             return DeformedBrick { points, pressure: 0.0 };
@@ -200,6 +209,15 @@ impl Brick {
         let points = reference.points.iter().map(point).collect::<Result<Vec<_>, _>>()?;
         let volume = points.iter().map(|point| point.volume).sum();
         Ok(Brick { rows, points, volume, law, cell })
+    }
+
+    fn grown(mut self, grown: Grown) -> Brick {
+        for point in &mut self.points {
+            point.gradients.iter_mut().for_each(|g| *g = grown.gradient(g));
+            point.volume *= grown.volume;
+        }
+        self.volume *= grown.volume;
+        self
     }
 
     fn positions(&self, x: &[Vector]) -> Vec<Vector> {

@@ -14,6 +14,7 @@ mod enriched;
 mod enriched_brick;
 mod enriched_simplex;
 mod fibres;
+mod inner;
 mod mesh_error;
 mod newton;
 mod newton_state;
@@ -54,7 +55,7 @@ use touching::Touching;
 /// What moves goes by at most this part of its longest edges in a step where things touch.
 const STEP: f64 = 0.5;
 
-impl FiniteStrain<'_> {
+impl<'a> FiniteStrain<'a> {
     /// Solves a load case for rest.
     pub fn solve(
         &self,
@@ -139,9 +140,9 @@ impl FiniteStrain<'_> {
         Ok(equilibrium)
     }
 
-    /// Brings the tissue to rest: near it with a share of the bulk modulus in the cells, then with none, where it bears that.
-    fn rest<'a>(
-        &'a self,
+    /// Brings the tissue to rest: with all that grows and pulls at once, or, where that is too much for one path, by and by.
+    fn rest(
+        &self,
         question: Question<'a>,
         touching: Option<Touching<'a>>,
     ) -> Result<(Tissue<'a>, Rest<'a>), ModelError> {
@@ -154,6 +155,21 @@ impl FiniteStrain<'_> {
             tally: Tally::default(),
             touching,
         };
+        if self.inner.is_zero() {
+            return self.rest_from(question, start);
+        }
+        match self.rest_from(question, start.clone()) {
+            Err(error) if inner::is_too_much(&error) => self.rest_by_and_by(question, start),
+            ended => ended,
+        }
+    }
+
+    /// Near rest with a share of the bulk modulus in the cells, then with none, where the tissue bears that.
+    fn rest_from(
+        &self,
+        question: Question<'a>,
+        start: Start<'a>,
+    ) -> Result<(Tissue<'a>, Rest<'a>), ModelError> {
         let near = match self.with_bulk_in_cells(question, start, true)? {
             (tissue, Ending::Rest(rest)) => return Ok((tissue, *rest)),
             (_, Ending::Near(near) | Ending::Jam(near)) => near,
@@ -172,8 +188,8 @@ impl FiniteStrain<'_> {
     }
 
     /// With the usual share in the cells, and with more where that jams.
-    fn with_bulk_in_cells<'a>(
-        &'a self,
+    fn with_bulk_in_cells(
+        &self,
         question: Question<'a>,
         start: Start<'a>,
         near: bool,
@@ -186,8 +202,8 @@ impl FiniteStrain<'_> {
         }
     }
 
-    fn newton<'a>(
-        &'a self,
+    fn newton(
+        &self,
         kept: Kept,
         question: Question<'a>,
         start: Start<'a>,

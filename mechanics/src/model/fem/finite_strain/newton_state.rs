@@ -64,3 +64,25 @@ pub(super) struct Rest<'a> {
     pub directions: Directions,
     pub touching: Option<Touching<'a>>,
 }
+
+impl<'a> Rest<'a> {
+    /// Where another path begins.
+    pub fn to_start(self) -> Start<'a> {
+        let pressures = self.directions.pressures.as_ref();
+        let log_volumes = pressures.map_or_else(Vec::new, |own| own.log_volumes(&self.pressures));
+        // The state is measured again where it is gone on from.
+        let (mut history, mut path) = (self.report.history, Vec::new());
+        path.extend(self.report.newton.into_iter().flat_map(|newton| newton.path));
+        history.pop();
+        path.pop();
+        Start {
+            x: self.positions,
+            log_volumes,
+            made: 1.0,
+            history,
+            path,
+            tally: self.directions.tally,
+            touching: self.touching,
+        }
+    }
+}

@@ -1,13 +1,17 @@
 //! A problem of finite strain: tissue, its laws and elements, and what holds it.
 
+use std::sync::Arc;
+
 use super::elements::Elements;
 use super::fibres::FibreField;
 use crate::boundary::Hold;
 use crate::material::hyperelastic::Law;
 use crate::mesh::VolumeMesh;
+use crate::model::fem::inner_stress::InnerStress;
 use crate::solver::Tolerance;
 
 /// Hyperelastic tissue, and what holds it.
+#[derive(Clone)]
 pub struct FiniteStrain<'a> {
     pub mesh: &'a VolumeMesh,
     pub laws: &'a [Law],
@@ -17,6 +21,8 @@ pub struct FiniteStrain<'a> {
     pub pressure_of_cell: &'a [u16],
     pub elements: Elements,
     pub fibres: FibreField<'a>,
+    /// Growth and active stress of cells (`super::inner`).
+    pub inner: Arc<InnerStress>,
     pub holds: &'a [Hold],
     pub tolerance: Tolerance,
 }

@@ -1,5 +1,7 @@
 //! Tetrahedra at positions: energy, internal forces, tangent, and how far they may go.
 
+use std::sync::Arc;
+
 use nalgebra::Matrix3;
 use rayon::prelude::*;
 
@@ -11,6 +13,7 @@ use crate::material::hyperelastic::point::{Carried, Point};
 use crate::mesh::{CellShape, Vector};
 use crate::model::dofs::Numbering;
 use crate::model::fem::cell_stiffness::tetrahedron;
+use crate::model::fem::inner_stress::InnerStress;
 use crate::model::problem::InvertedCell;
 use crate::solver::Block;
 use crate::solver::half_matrix::{HalfMatrix, RowChunk};
@@ -18,7 +21,7 @@ use crate::solver::half_matrix::{HalfMatrix, RowChunk};
 /// Cells or rows that one thread takes at a time.
 const CHUNK: usize = 1024;
 
-/// A tetrahedron at rest.
+/// A tetrahedron at rest, as it has grown.
 pub(super) struct Simplex {
     pub rows: [u32; 4],
     pub gradients: [Vector; 4],
@@ -34,6 +37,7 @@ pub(super) struct Simplex {
 pub(super) struct Simplices<'a> {
     laws: &'a [Law],
     fibres: FibreField<'a>,
+    inner: Arc<InnerStress>,
     pub cells: Vec<Simplex>,
     /// For each clique of the numbering its tetrahedron, or `u32::MAX`; empty where all cliques are tetrahedra.
     of_clique: Vec<u32>,
@@ -52,6 +56,7 @@ impl<'a> Simplices<'a> {
         carried: &[f64],
     ) -> Result<Self, InvertedCell> {
         let FiniteStrain { mesh, laws, law_of_cell, fibres, .. } = *problem;
+        let inner = Arc::clone(&problem.inner);
         let order = &numbering.layout.clique_order;
         let is_simplex =
             |&clique: &usize| mesh.cells.shape(order[clique] as usize) == CellShape::Tet4;
@@ -59,6 +64,9 @@ impl<'a> Simplices<'a> {
         let cell = |&clique: &usize| {
             let cell = order[clique] as usize;
             let (volume, gradients) = tetrahedron(mesh, cell)?;
+            let grown = inner.grown(cell);
+            let (volume, gradients) =
+                (volume * grown.volume, gradients.map(|g| grown.gradient(&g)));
             let members = numbering.cliques.row(clique);
             let (rows, law) = (std::array::from_fn(|k| members[k]), law_of_cell[cell]);
             let carried = carried[usize::from(law)];
@@ -72,7 +80,7 @@ impl<'a> Simplices<'a> {
                 of_clique[clique] = simplex as u32;
             }
         }
-        Ok(Simplices { laws, fibres, cells, of_clique })
+        Ok(Simplices { laws, fibres, inner, cells, of_clique })
     }
 
     pub fn megabytes(&self) -> f64 {
@@ -93,6 +101,7 @@ impl<'a> Simplices<'a> {
     fn point(&self, cell: &Simplex, x: &[Vector], pressure: f64) -> Point {
         let fibres = self.fibres.along(cell.law, cell.cell as usize);
         let point = Point::new(&self.laws[usize::from(cell.law)], fibres, cell.gradient(x));
+        let point = point.pulled(self.inner.pulls(cell.cell as usize));
         match cell.carried > 0.0 {
             true => point.carried(Carried { pressure, modulus: cell.carried }),
             false => point,

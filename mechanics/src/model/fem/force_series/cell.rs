@@ -12,6 +12,7 @@ use crate::material::stress_series::{
 use crate::mesh::Vector;
 use crate::model::fem::assembly::Tissue;
 use crate::model::fem::cell_stiffness::Dilatation;
+use crate::model::fem::inner_stress::InnerStress;
 use crate::model::problem::InvertedCell;
 use crate::model::reference_cell;
 
@@ -36,6 +37,9 @@ pub(super) struct Cell {
     mean_gradients: [Vector; MAX_NODES],
     /// What the stated law adds at each point.
     law: Option<LawSeries>,
+    /// eps_g, and S in kPa where a muscle pulls.
+    growth: f64,
+    pull: Option<Matrix3<f64>>,
 }
 
 /// lambda and mu in kPa, and what fibres add to them.
@@ -45,11 +49,13 @@ struct Parts {
     fibres: Option<ElasticTensor>,
 }
 
-/// Gradients and tensions of each state at each point, and the mean gradient of each state.
+/// Gradients and tensions of each state at each point, the mean gradient and the pressure of each state. Where tissue grows
+/// they are those of F_e, and the states the orders of one path.
 pub(super) struct Strained {
     points: usize,
     at: Vec<Stretch>,
     means: Vec<Matrix3<f64>>,
+    pressures: Vec<f64>,
 }
 
 /// Forces of the corners in mN, and the volume in mm^3 that each of four pressures has.
@@ -101,7 +107,12 @@ impl CellTerms {
 
 impl Cell {
     /// `has_pressures` of a tetrahedron whose pressure is an unknown of its own.
-    pub fn new(tissue: &Tissue, cell: usize, has_pressures: bool) -> Result<Self, InvertedCell> {
+    pub fn new(
+        tissue: &Tissue,
+        inner: &InnerStress,
+        cell: usize,
+        has_pressures: bool,
+    ) -> Result<Self, InvertedCell> {
         let shape = tissue.mesh.cells.shape(cell);
         let corners: Vec<Vector> = tissue.mesh.corners(cell).collect();
         let points = reference_cell(shape).points.iter().map(|point| point.at(&corners));
@@ -130,7 +141,8 @@ impl Cell {
         let material = &tissue.materials[usize::from(tissue.material_of_cell[cell])];
         let law = material.stated_law().and_then(LawSeries::of);
         let at_points = at_points.into();
-        Ok(Cell { count, volume, at_points, of_mean, mean_gradients, points, law })
+        let (growth, pull) = (inner.strain(cell), inner.pulls(cell).copied());
+        Ok(Cell { count, volume, at_points, of_mean, mean_gradients, points, law, growth, pull })
     }
 
     pub fn strained(
@@ -139,26 +151,45 @@ impl Cell {
         pressures: Option<&[u32; 4]>,
         states: &[Moved],
     ) -> Strained {
-        let mut strained =
-            Strained { points: self.points.len(), at: Vec::new(), means: Vec::new() };
-        for state in states {
+        let mut strained = Strained {
+            points: self.points.len(),
+            at: Vec::new(),
+            means: Vec::new(),
+            pressures: Vec::new(),
+        };
+        for (order, state) in states.iter().enumerate() {
             let of = |gradients: &[Vector]| -> Matrix3<f64> {
                 let nodes = nodes.iter().zip(gradients);
                 nodes.map(|(&node, g)| state.displacement[node as usize] * g.transpose()).sum()
             };
-            let mean = self.of_mean.as_ref().map_or(Matrix3::zeros(), |_| of(&self.mean_gradients));
+            let mut mean =
+                self.of_mean.as_ref().map_or(Matrix3::zeros(), |_| of(&self.mean_gradients));
+            let before = order.checked_sub(1);
+            if let (true, Some(_)) = (self.growth != 0.0, &self.of_mean) {
+                mean -= self.grown(before.map(|before| &strained.means[before]));
+            }
             let numbers = pressures.into_iter().flatten();
             let pressure =
                 numbers.map(|&number| state.pressures[number as usize]).sum::<f64>() / 4.0;
             let everywhere = pressure + self.mean_lambda() * mean.trace();
             strained.means.push(mean);
-            strained.at.extend(self.points.iter().map(|point| {
-                let gradient = of(&point.gradients[..self.count]);
+            strained.pressures.push(pressure);
+            for (q, point) in self.points.iter().enumerate() {
+                let mut gradient = of(&point.gradients[..self.count]);
+                if self.growth != 0.0 {
+                    let before = before.map(|before| &strained.of(before)[q].gradient);
+                    gradient -= self.grown(before);
+                }
                 let tension = everywhere + self.at_points.lambda * gradient.trace();
-                Stretch { gradient, tension }
-            }));
+                strained.at.push(Stretch { gradient, tension });
+            }
         }
         strained
+    }
+
+    /// What growth takes from a gradient, by that of the order before: F_e = F / (1 + s e) along s.
+    fn grown(&self, before: Option<&Matrix3<f64>>) -> Matrix3<f64> {
+        before.copied().unwrap_or_else(Matrix3::identity) * self.growth
     }
 
     fn mean_lambda(&self) -> f64 {
@@ -201,6 +232,79 @@ impl Cell {
             terms.add_stress(&stress, &self.mean_gradients[..self.count]);
         }
         terms
+    }
+
+    /// C : G of a state at a point, in kPa, with the tension that it has.
+    fn first_stress(&self, at: &Stretch) -> Matrix3<f64> {
+        let Stretch { gradient, tension } = at;
+        let strain = (gradient + gradient.transpose()) * 0.5;
+        let stress = strain * (2.0 * self.at_points.mu) + Matrix3::from_diagonal_element(*tension);
+        match &self.at_points.fibres {
+            Some(fibres) => stress + fibres.stress(&strain),
+            None => stress,
+        }
+    }
+
+    /// Adds to the forces of an order along a path what growth adds beside the gradients of F_e, as multiples of
+    /// C : G of the states; `super` has the derivation.
+    fn add_growth(&self, strained: &Strained, of_states: &[f64], terms: &mut CellTerms) {
+        let growth = self.growth;
+        for (state, factor) in of_states.iter().enumerate() {
+            for (point, at) in self.points.iter().zip(strained.of(state)) {
+                let stress = self.first_stress(at) * (factor * point.volume);
+                terms.add_stress(&stress, &point.gradients[..self.count]);
+            }
+            if let Some(fibres) = self.of_mean.as_ref().and_then(|parts| parts.fibres.as_ref()) {
+                let mean = &strained.means[state];
+                let stress = fibres.stress(&((mean + mean.transpose()) * 0.5));
+                let stress = stress * (factor * self.volume);
+                terms.add_stress(&stress, &self.mean_gradients[..self.count]);
+            }
+        }
+        // What the pressure of the order itself answers to.
+        let last = of_states.len() - 1;
+        let pressed = Matrix3::from_diagonal_element(growth * strained.pressures[last]);
+        for (point, at) in self.points.iter().zip(strained.of(last)) {
+            terms.add_stress(&(pressed * point.volume), &point.gradients[..self.count]);
+            terms.volume -= growth / 4.0 * point.volume * at.gradient.trace();
+        }
+    }
+
+    /// Adds the forces of (1 + s e)^2 (1 + H_e) s S, of the order that `stress` has.
+    fn add_pull(&self, stress: impl Fn(usize) -> Matrix3<f64>, terms: &mut CellTerms) {
+        for (q, point) in self.points.iter().enumerate() {
+            terms.add_stress(&(stress(q) * point.volume), &point.gradients[..self.count]);
+        }
+    }
+
+    /// What growth and muscles add to the second order along a path.
+    pub fn second_of_inner(&self, strained: &Strained, terms: &mut CellTerms) {
+        if self.growth != 0.0 {
+            self.add_growth(strained, &[self.growth], terms);
+        }
+        if let Some(pull) = &self.pull {
+            let twice = Matrix3::from_diagonal_element(2.0 * self.growth);
+            self.add_pull(|q| (strained.of(0)[q].gradient + twice) * pull, terms);
+        }
+    }
+
+    /// What they add to the third.
+    pub fn third_of_inner(&self, strained: &Strained, terms: &mut CellTerms) {
+        let growth = self.growth;
+        if growth != 0.0 {
+            self.add_growth(strained, &[growth * growth, growth], terms);
+            let volume = terms.volume;
+            terms.add(&self.second(strained, [0, 0]), 2.0 * growth);
+            terms.volume = volume;
+        }
+        if let Some(pull) = &self.pull {
+            let stress = |q: usize| {
+                let [first, second] = [0, 1].map(|order| strained.of(order)[q].gradient);
+                let square = Matrix3::from_diagonal_element(growth * growth);
+                (second + first * (2.0 * growth) + square) * pull
+            };
+            self.add_pull(stress, terms);
+        }
     }
 
     /// N3 of the first state.

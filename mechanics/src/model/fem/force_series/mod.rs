@@ -11,6 +11,15 @@
 //! The term of a solution that follows from them is u2 = -K0^-1 N2(u1, u1) with nothing moved where it is held, and
 //! u3 = -K0^-1 [2 N2(u1, u2) + N3(u1, u1, u1)] (docs/estimates.md#nonlinearity). Where tissue slides it keeps the normals
 //! that it has at rest, to every order.
+//!
+//! Growth and muscles (`inner_stress`; at finite strain `finite_strain::inner`) grow with s along the path s u1 + s^2 u2 + ...:
+//! with F_e = F / (1 + s e) and the forces V (1 + s e)^2 [P(F_e) + F_e s S] g of a cell, and with
+//!   G1 = H1 - e I,  G2 = H2 - e G1
+//! the gradients of F_e by order, the second and the third order of the forces have beside those of G
+//!   e C:G1 + (G1 + 2 e) S,
+//!   e C:G2 + e^2 C:G1 + 2 e N2(G1, G1) + (G2 + 2 e G1 + e^2) S,
+//! where a pressure of an order of its own makes e (C:G + p) of e C:G and -e V/4 tr G of a volume. The weight (1 + s e)^3 of the
+//! equations of pressures is left out: it counts where tissue that shares a pressure grows unequally.
 
 mod cell;
 
@@ -18,6 +27,7 @@ use rayon::prelude::*;
 
 use super::assembly::Tissue;
 use super::displacement_pressure::PressureCells;
+use super::inner_stress::InnerStress;
 use crate::mesh::Vector;
 use crate::model::problem::InvertedCell;
 pub use cell::Moved;
@@ -39,12 +49,19 @@ pub struct ForceSeries<'a> {
     pub tissue: Tissue<'a>,
     pub pressures_of_cell: Vec<Option<[u32; 4]>>,
     pub pressure_count: usize,
+    /// What grows and pulls along the path.
+    pub inner: InnerStress,
 }
 
 impl<'a> ForceSeries<'a> {
     /// That of tissue as a linear system sees it, whose tetrahedra may have pressures.
     pub fn new(tissue: Tissue<'a>, pressures: Option<&PressureCells>) -> Self {
-        let mut series = ForceSeries { tissue, pressures_of_cell: Vec::new(), pressure_count: 0 };
+        let mut series = ForceSeries {
+            tissue,
+            pressures_of_cell: Vec::new(),
+            pressure_count: 0,
+            inner: InnerStress::default(),
+        };
         if let Some(pressures) = pressures {
             series.pressure_count = pressures.pressure_count;
             series.pressures_of_cell = vec![None; series.tissue.mesh.cells.len()];
@@ -55,7 +72,27 @@ impl<'a> ForceSeries<'a> {
         series
     }
 
-    /// N2(u, v), bilinear and symmetric, for pairs of states.
+    /// That of tissue of which some grows, and muscles pull.
+    pub fn with_inner(self, inner: &InnerStress) -> Self {
+        ForceSeries { inner: inner.clone(), ..self }
+    }
+
+    /// The second order along s u1: N2(u1, u1), with what grows and pulls.
+    pub fn second_along(&self, first: Moved) -> Result<Forces, InvertedCell> {
+        let of_cell = |cell: &Cell, strained: &Strained| {
+            let mut terms = cell.second(strained, [0, 0]);
+            cell.second_of_inner(strained, &mut terms);
+            vec![terms]
+        };
+        let mut sum = self.sum(&[first], 1, &of_cell)?.remove(0);
+        if let Some(membrane) = self.tissue.membrane {
+            let pair = [first.displacement; 2];
+            membrane.add_second_order(self.tissue.mesh, pair, 1.0, &mut sum.nodes);
+        }
+        Ok(sum)
+    }
+
+    /// N2(u, v), bilinear and symmetric, for pairs of states, of tissue in which nothing grows or pulls.
     pub fn second(
         &self,
         states: &[Moved],
@@ -79,6 +116,7 @@ impl<'a> ForceSeries<'a> {
         let of_cell = |cell: &Cell, strained: &Strained| {
             let (mut all, cross) = (cell.third(strained), cell.second(strained, [0, 1]));
             all.add(&cross, 2.0);
+            cell.third_of_inner(strained, &mut all);
             vec![all]
         };
         let mut sums = self.sum(&[first, second], 1, &of_cell)?;
@@ -105,7 +143,7 @@ impl<'a> ForceSeries<'a> {
         let mut sums = vec![nothing; count];
         let terms = |cell: usize| {
             let pressures = self.pressures(cell);
-            let built = Cell::new(&self.tissue, cell, pressures.is_some())?;
+            let built = Cell::new(&self.tissue, &self.inner, cell, pressures.is_some())?;
             let strained = built.strained(mesh.cells.nodes(cell), pressures.as_ref(), states);
             Ok((pressures, of_cell(&built, &strained)))
         };

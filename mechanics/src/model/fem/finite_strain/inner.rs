@@ -1,0 +1,95 @@
+//! Growth and muscles at finite strain.
+//!
+//! Growth: F = F_e F_g, F_g = (1 + eps_g) 1 (Rodriguez, Hoger, McCulloch 1994). Each cell is that of its grown shape: with the
+//! gradients g / (1 + eps_g) and the volume V (1 + eps_g)^3 at rest every element and every law is that of F_e, and has the
+//! energy int W(F_e) dV_g.
+//!
+//! Muscles: the active stress S of a cell is its second Piola-Kirchhoff stress, with the energy S : (C - 1) / 2 for each unit of
+//! volume, so that P = F S: fibres that are stretched by lambda pull with lambda T on the section that they have at rest, along
+//! where they have turned to, and several muscles in a cell add up. Both are at rest what `model::fem::inner_stress` has.
+//!
+//! All of it acts from the first step on, while bones move. Where Newton's method stands still on that way, bones are moved
+//! first, and what grows and pulls comes by and by, in shares that are halved where one is too much again and doubled where it
+//! is not.
+
+use std::sync::Arc;
+
+use super::newton_state::{Question, Rest, Start};
+use super::problem::FiniteStrain;
+use super::tissue::Tissue;
+use crate::mesh::Vector;
+use crate::model::fem::inner_stress::InnerStress;
+use crate::model::problem::ModelError;
+use crate::solver::{SolverError, Tolerance};
+
+/// The least share of growth and pull that is tried.
+const LEAST_SHARE: f64 = 1.0 / 64.0;
+
+/// Relative residual of the states on the way.
+const ON_THE_WAY: f64 = 1e-3;
+
+/// Whether Newton's method may go on where less grows and pulls.
+pub(super) fn is_too_much(error: &ModelError) -> bool {
+    matches!(
+        error,
+        ModelError::Standstill { .. } | ModelError::Solver(SolverError::NotConverged { .. })
+    )
+}
+
+impl<'a> FiniteStrain<'a> {
+    /// The same tissue in which a share of it grows and pulls.
+    fn with_share(&self, share: f64) -> FiniteStrain<'a> {
+        FiniteStrain { inner: Arc::new(self.inner.share(share)), ..self.clone() }
+    }
+
+    /// Brings bones to where they go, and then growth and muscles to what they are.
+    pub(super) fn rest_by_and_by(
+        &self,
+        question: Question<'a>,
+        start: Start<'a>,
+    ) -> Result<(Tissue<'a>, Rest<'a>), ModelError> {
+        let asked = question.tolerance;
+        let relative_residual = asked.relative_residual.max(ON_THE_WAY);
+        let on_the_way =
+            Question { tolerance: Tolerance { relative_residual, ..asked }, ..question };
+        let (_, rest) = self.with_share(0.0).rest_from(on_the_way, start)?;
+        let (mut reached, mut share, mut ahead) = (rest.to_start(), 0.0, 0.5);
+        loop {
+            let target = f64::min(share + ahead, 1.0);
+            let found = match target < 1.0 {
+                true => self.with_share(target).rest_from(on_the_way, reached.clone()),
+                false => self.rest_from(question, reached.clone()),
+            };
+            match found {
+                Ok(found) if target >= 1.0 => return Ok(found),
+                Ok((_, rest)) => {
+                    (reached, share, ahead) = (rest.to_start(), target, 2.0 * ahead);
+                }
+                Err(error) if is_too_much(&error) && ahead > LEAST_SHARE => ahead *= 0.5,
+                Err(error) => return Err(error),
+            }
+        }
+    }
+}
+
+impl InnerStress {
+    /// By how much a cell is longer where nothing holds it, and by how much larger.
+    pub(super) fn grown(&self, cell: usize) -> Grown {
+        let length = 1.0 + self.strain(cell);
+        Grown { length, volume: length.powi(3) }
+    }
+}
+
+/// Factors of a grown cell; 1 where nothing grows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Grown {
+    pub length: f64,
+    pub volume: f64,
+}
+
+impl Grown {
+    /// The gradient of a shape function of the grown cell.
+    pub fn gradient(&self, gradient: &Vector) -> Vector {
+        gradient / self.length
+    }
+}
