@@ -3,7 +3,7 @@
 // Everything is kept in mm in the frame of the case; one group turns that so that x is the patient's left, y up and z to the front.
 // The camera is orthographic: what is seen has one scale everywhere, and a profile is a true profile.
 import {
-  BufferAttribute, DoubleSide, Group, Matrix4, Mesh, MeshBasicMaterial, MeshStandardMaterial, OrthographicCamera, Raycaster,
+  BufferAttribute, DoubleSide, Group, Matrix4, Mesh, MeshBasicMaterial, MeshLambertMaterial, OrthographicCamera, Raycaster,
   Scene as Graph, Vector2, Vector3, WebGLRenderer, type Material,
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
@@ -13,7 +13,7 @@ import { drawn, type FrameName } from "./frame.js";
 import { geometryOf, seenFrom, type Shape } from "./geometry.js";
 import { Marks, type Mark } from "./marks.js";
 import { normals } from "./normals.js";
-import { lights, setBands } from "./shading.js";
+import { isDrawnBySoftware, lights, setBands } from "./shading.js";
 
 export type { Shape } from "./geometry.js";
 export interface Hit {
@@ -46,9 +46,9 @@ export class Scene {
   /** What a warning speaks of, or the pointer is over. */
   private readonly pointed = new Marks();
   private lit: Mesh | undefined;
-  private readonly skinMaterial = new MeshStandardMaterial({ color: SKIN, roughness: 0.58, side: DoubleSide });
+  private readonly skinMaterial = new MeshLambertMaterial({ color: SKIN, side: DoubleSide });
   /** Half of a map's colour is lit and half shines by itself, so that it is read off the legend also where there is shade. */
-  private readonly mapMaterial = new MeshStandardMaterial({ roughness: 1, side: DoubleSide, color: 0xbdbdbd, emissive: 0xb0b0b0 });
+  private readonly mapMaterial = new MeshLambertMaterial({ side: DoubleSide, color: 0xbdbdbd, emissive: 0xb0b0b0 });
   private readonly depth = new MeshBasicMaterial({ colorWrite: false, side: DoubleSide });
   private skin: Mesh | undefined;
   private prepass: Mesh | undefined;
@@ -62,7 +62,7 @@ export class Scene {
   private waiting = false;
 
   constructor(private readonly host: HTMLElement, label: string) {
-    this.renderer = new WebGLRenderer({ antialias: true, preserveDrawingBuffer: true, alpha: true });
+    this.renderer = new WebGLRenderer({ antialias: !isDrawnBySoftware(), preserveDrawingBuffer: true, alpha: true });
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
     this.canvas = this.renderer.domElement;
     this.canvas.tabIndex = 0;
@@ -98,6 +98,7 @@ export class Scene {
     this.skin.renderOrder = 2;
     this.prepass = new Mesh(geometry, this.depth);
     this.prepass.renderOrder = 1;
+    this.prepass.visible = this.skinMaterial.transparent;
     this.head.add(this.prepass, this.skin);
     geometry.computeBoundingSphere();
     const sphere = geometry.boundingSphere!;
@@ -145,7 +146,9 @@ export class Scene {
       material.transparent = look === "through";
       material.opacity = look === "through" ? 0.42 : 1;
     }
-    for (const mesh of [this.skin, this.prepass]) if (mesh !== undefined) mesh.visible = look !== "hidden";
+    if (this.skin !== undefined) this.skin.visible = look !== "hidden";
+    // Only what is seen through needs to know what lies in front.
+    if (this.prepass !== undefined) this.prepass.visible = look === "through";
     this.draw();
   }
 
@@ -154,7 +157,7 @@ export class Scene {
     if (this.ghost !== undefined) this.drop(this.ghost);
     this.ghost = undefined;
     if (shape !== undefined) {
-      const material = new MeshStandardMaterial({ color: colour, transparent: true, opacity: 0.35, side: DoubleSide, depthWrite: false });
+      const material = new MeshLambertMaterial({ color: colour, transparent: true, opacity: 0.35, side: DoubleSide, depthWrite: false });
       this.ghost = new Mesh(geometryOf(shape), material);
       this.ghost.renderOrder = 3;
       this.head.add(this.ghost);
@@ -175,7 +178,7 @@ export class Scene {
   }
 
   addBone(name: string, shape: Shape, moves: boolean): void {
-    const material = new MeshStandardMaterial({ color: moves ? MOVING_BONE : BONE, roughness: 0.7, side: DoubleSide });
+    const material = new MeshLambertMaterial({ color: moves ? MOVING_BONE : BONE, side: DoubleSide });
     const bone = new Mesh(geometryOf(shape), material);
     bone.matrixAutoUpdate = false;
     this.bones.set(name, bone);
@@ -222,14 +225,14 @@ export class Scene {
   /** A bone in another colour. */
   pointBone(name: string, colour: number): void {
     this.lit = this.bones.get(name);
-    (this.lit?.material as MeshStandardMaterial | undefined)?.emissive.setHex(colour);
+    (this.lit?.material as MeshLambertMaterial | undefined)?.emissive.setHex(colour);
     this.draw();
   }
 
   /** Takes away what was pointed out. */
   unpoint(): void {
     this.pointed.clear();
-    (this.lit?.material as MeshStandardMaterial | undefined)?.emissive.setHex(0);
+    (this.lit?.material as MeshLambertMaterial | undefined)?.emissive.setHex(0);
     this.lit = undefined;
     this.draw();
   }

@@ -168,6 +168,7 @@ export class Workbench {
     pen.font = "20px sans-serif";
     [...this.sides.children].forEach((half, at) => { pen.fillText(half.textContent ?? "", (0.22 + 0.5 * at) * canvas.width, 40); });
     pen.fillText(this.caption.textContent ?? "", 16, drawn.height + 50, canvas.width - 32);
+    pen.font = "16px sans-serif";
     pen.fillText(`facies · ${new Date().toISOString()} · ${location.hash.split("?")[0]}`, 16, drawn.height + 78, canvas.width - 32);
     pen.fillText([this.provenance, this.app.words.notice].filter((part) => part !== "").join(" · "), 16, drawn.height + 106, canvas.width - 32);
     const content = await new Promise<Blob | null>((resolve) => canvas.toBlob(resolve, "image/png"));

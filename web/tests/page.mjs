@@ -350,7 +350,7 @@ await check("sets are named and chosen in the view, and another role is another 
   const old = (await json(`/v1/cases/${/case\/([0-9a-f-]+)/.exec(before)[1]}`)).case;
   const { nose, ...others } = old.skin_regions;
   assert(nose !== undefined && set !== null);
-  assert.deepEqual(made, { ...old, skin_regions: others });
+  assert.deepEqual(made, { ...old, name: `${old.name} · other roles`, skin_regions: others });
   await page.goBack();
   await page.getByRole("heading", { name: "What the check found" }).waitFor();
 });

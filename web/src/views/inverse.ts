@@ -154,10 +154,11 @@ class Inverse {
   private boundsOf(name: string): HTMLElement {
     const { words } = this.app;
     const bound = this.bounds[name]!;
+    const unit = (word: MotionName) => ((TRANSLATIONS as readonly string[]).includes(word) ? "mm" : "°");
     const fields = (Object.keys(bound) as MotionName[]).map((word) => {
-      const input = make("input", { type: "number", min: "0", step: "0.5", value: String(bound[word]), aria: { label: `${name} ${words[word]} ±` } });
+      const input = make("input", { type: "number", min: "0", step: "0.5", value: String(bound[word]), aria: { label: `${name} ${words[word]} ± ${unit(word)}` } });
       input.addEventListener("input", () => { bound[word] = Number.isFinite(input.valueAsNumber) ? Math.abs(input.valueAsNumber) : 0; });
-      return make("label", { className: "field" }, make("span", {}, `${words[word]} ±`), input);
+      return make("label", { className: "field" }, make("span", {}, `${words[word]} ± ${unit(word)}`), input);
     });
     return make("details", { className: "segment", open: true }, make("summary", {}, name), make("div", { className: "bounds" }, ...fields));
   }

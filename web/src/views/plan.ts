@@ -256,8 +256,10 @@ class Planning {
       const answer = await service.post<Documents["AppliedDocument"]>(path, { plan });
       if (turn !== this.asked) return;
       const apart = here.reduce((most, value, at) => Math.max(most, Math.abs(value - answer.displacement_mm[Math.floor(at / 3)]![at % 3]!)), 0);
-      drawTrust(bench.strip, words, appliedLines(words, answer, { apart, most: AGREED_MM }));
-      this.warned.replaceChildren(answer.warnings.length === 0 ? "" : warnings(answer.warnings, words, placesOf(words, this.opened, this.bench.scene, () => ({}))));
+      // Whoever has not moved anything yet knows that.
+      const told = answer.warnings.filter(({ code }) => code !== "nothing-moves");
+      drawTrust(bench.strip, words, appliedLines(words, { ...answer, warnings: told }, { apart, most: AGREED_MM }));
+      this.warned.replaceChildren(told.length === 0 ? "" : warnings(told, words, placesOf(words, this.opened, this.bench.scene, () => ({}))));
       bench.strip.dataset.apart = String(apart);
     } catch (error) {
       if (turn === this.asked) { bench.strip.replaceChildren(); this.warned.replaceChildren(refusal(error, words)); };

@@ -119,7 +119,11 @@ class Sets {
   }
 
   private write(): void {
-    this.text.value = JSON.stringify(withRoles(this.opened.document, this.roles), null, 2);
+    const { opened: { document, name }, app: { words } } = this;
+    const changed = Object.keys(this.roles).some((set) => this.roles[set] !== this.before[set]);
+    const other = withRoles(document, this.roles);
+    // Two cases of one name are not told apart in a list.
+    this.text.value = JSON.stringify(changed ? { ...other, name: `${name} · ${words.otherRoles}` } : other, null, 2);
     for (const [set, row] of this.rows) row.classList.toggle("changed", this.roles[set] !== this.before[set]);
     if (this.chosen !== undefined) this.choose(this.chosen);
   }

@@ -19,7 +19,7 @@ export const de: Words = {
   frame: "Achsen", units: "Einheit", sets: "Knotenmengen",
   setsHint: "Sagen, was jede Menge des Netzes ist. Das Dokument daneben folgt und darf von Hand geändert werden.",
   role: { none: "nichts", fixed: "bleibt", sliding: "gleitet", segment: "bewegt sich als Knochen", skin: "Haut", region: "Teil der Haut" },
-  setsClick: "Auf das Netz zeigen nennt seine Mengen, ein Klick wählt eine; noch ein Klick die nächst größere.", noSet: "in keiner Menge",
+  setsClick: "Auf das Netz zeigen nennt seine Mengen, ein Klick wählt eine; noch ein Klick die nächst größere.", noSet: "in keiner Menge", otherRoles: "andere Rollen",
   setsTooLarge: (nodes) => `Mit ${nodes} Knoten ist das Netz zu groß, um hier seine Mengen zu nennen.`, newCase: "Fall mit diesen Rollen anlegen", reset2: "Wie zuvor",
   newCaseHint: "Was hier geändert wird, wird ein eigener Fall; dieser bleibt mit seinen Plänen und Ergebnissen, wie er ist. Das Dokument lässt sich von Hand ändern.",
   planIt: "Bewegung planen",

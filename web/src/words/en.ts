@@ -17,7 +17,7 @@ export const en = {
   frame: "Frame", units: "Units", sets: "Sets of nodes",
   setsHint: "Say what each set of the mesh is. The document beside follows, and may be changed by hand.",
   role: { none: "nothing", fixed: "stays", sliding: "slides", segment: "moves as a bone", skin: "skin", region: "part of the skin" },
-  setsClick: "Point at the mesh to name its sets, click to choose one; a click again takes the next larger.", noSet: "in no set",
+  setsClick: "Point at the mesh to name its sets, click to choose one; a click again takes the next larger.", noSet: "in no set", otherRoles: "other roles",
   setsTooLarge: (nodes: string) => `With ${nodes} nodes the mesh is too large to name its sets here.`, newCase: "Make a case with these roles", reset2: "As they were",
   newCaseHint: "What is changed here becomes a case of its own; this one stays as it is, with its plans and results. The document may be changed by hand.",
   planIt: "Plan a movement",
@@ -71,7 +71,7 @@ export const en = {
   point: "Point", movesBy: "moves by",
 
   inverseWhy: "Pull a point of the skin to where it should be, or state targets; the service finds the movement that comes nearest.",
-  targets: "Targets", target: "Target", addLandmark: "Add a landmark", dragPoint: "Drag points of the skin", bounds: "How far segments may move",
+  targets: "Targets", target: "Target", addLandmark: "Add a landmark", dragPoint: "Drag points of the skin", bounds: "How far segments may move, to either side",
   find: "Find the plan", found: "What was found", left_: "left over", standardError: "± standard error", notDetermined: "Not determined by the targets",
   atBound: "stopped by its bound", openPlan: "Open as plan", noTargets: "No targets yet.", emptyFree: "free", movement: "Movement",
   dragHint: "Pull: drag any point of the skin. Turn: drag the head.", addPoint: "Add the point in the middle of the view", noSkinThere: "No skin in the middle of the view.", pulling: "Pull", turning: "Turn",
