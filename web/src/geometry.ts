@@ -1,5 +1,6 @@
 // Surfaces as three.js has them, and how far they reach as they are seen.
 import { BufferAttribute, BufferGeometry, Vector3, type Matrix4 } from "three";
+import type { Triple } from "./api.js";
 import { normals } from "./normals.js";
 
 export interface Shape {
@@ -16,6 +17,11 @@ export function geometryOf({ points_mm, triangles }: Shape): BufferGeometry {
   geometry.setAttribute("normal", new BufferAttribute(normal, 3));
   return geometry;
 }
+
+/** Where the camera stands, seen from the head: patient's left, up, front. */
+export const VIEWS: Record<string, Triple> = {
+  "1": [0, 0, 1], "2": [-1, 0, 0], "3": [1, 0, 0], "4": [-0.7, 0.05, 0.72], "5": [0.7, 0.05, 0.72], "6": [0, -0.75, 0.66],
+};
 
 export interface Seen {
   /** The middle of what is seen. */

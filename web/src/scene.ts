@@ -10,7 +10,7 @@ import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import type { Triple } from "./api.js";
 import { share, type Scheme } from "./colours.js";
 import { drawn, type FrameName } from "./frame.js";
-import { geometryOf, seenFrom, type Shape } from "./geometry.js";
+import { geometryOf, seenFrom, VIEWS, type Shape } from "./geometry.js";
 import { Marks, type Mark } from "./marks.js";
 import { normals } from "./normals.js";
 import { isDrawnBySoftware, lights, setBands } from "./shading.js";
@@ -22,10 +22,6 @@ export interface Hit {
 }
 export type SkinLook = "solid" | "through" | "hidden";
 
-/** Where the camera stands, seen from the head: patient's left, up, front. */
-export const VIEWS: Record<string, Triple> = {
-  "1": [0, 0, 1], "2": [-1, 0, 0], "3": [1, 0, 0], "4": [-0.7, 0.05, 0.72], "5": [0.7, 0.05, 0.72], "6": [0, -0.75, 0.66],
-};
 const SKIN = 0xe9b9a1;
 const BONE = 0xefe6d2;
 const MOVING_BONE = 0xd8c48f;
@@ -281,6 +277,13 @@ export class Scene {
     const away = (node: number) => point.distanceTo(new Vector3(at[3 * node], at[3 * node + 1], at[3 * node + 2]));
     const node = [hit.face.a, hit.face.b, hit.face.c].reduce((nearest, next) => (away(next) < away(nearest) ? next : nearest));
     return { node, point_mm: point.toArray() };
+  }
+
+  /** The node of the skin in the middle of the view, or of its right half. */
+  middle(): Hit | undefined {
+    const { left, top, width, height } = this.canvas.getBoundingClientRect();
+    const across = this.twin === undefined ? 0.5 : 0.75;
+    return this.pick(new MouseEvent("click", { clientX: left + across * width, clientY: top + height / 2 }));
   }
 
   /** Where the pointer is in the plane through a point that faces the viewer. */

@@ -32,7 +32,10 @@ export function lights(graph: Scene, camera: Object3D): void {
   graph.add(new HemisphereLight(0xffffff, 0xc9b8ad, 1.45));
 }
 
+/** The colours of a scheme as a material's, unless they are already. */
 export function setBands(material: MeshLambertMaterial, scheme: Scheme): void {
+  if (material.userData.scheme === scheme) return;
+  material.userData.scheme = scheme;
   const texels = new Uint8Array(bands(scheme).flatMap((colour) => [...colour, 255]));
   const texture = new DataTexture(texels, BANDS, 1);
   texture.colorSpace = SRGBColorSpace;

@@ -3,8 +3,9 @@ import type { App } from "./app.js";
 import { bands, BANDS, css, ticks, type Scheme } from "./colours.js";
 import { button, choice, make, save, select } from "./dom.js";
 import { figure } from "./figures.js";
+import { VIEWS } from "./geometry.js";
 import { note } from "./route.js";
-import { Scene, VIEWS, type SkinLook } from "./scene.js";
+import { Scene, type SkinLook } from "./scene.js";
 
 /** A map that may colour the skin. */
 export interface SkinMap {

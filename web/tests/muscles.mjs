@@ -4,7 +4,7 @@ import { execFileSync } from "node:child_process";
 import { mkdtemp, readdir, rm } from "node:fs/promises";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
-import { AGREED_MM, apart, BINARY, check, fits, go, json, opened, pictured, planned, positions, serious, slide } from "./tools.mjs";
+import { AGREED_MM, apart, BINARY, check, ended, fits, go, json, opened, pictured, planned, positions, serious, slide } from "./tools.mjs";
 
 const SMILE = { zygomaticus_major_left: 20, zygomaticus_major_right: 20 };
 let face;
@@ -47,6 +47,7 @@ export async function muscles(page) {
     await field.dispatchEvent("change");
     const activations = Object.entries(SMILE).map(([muscle, stress_kpa]) => ({ muscle, stress_kpa }));
     const plan = { activations, segments: [{ name: "mandible", translation_mm: [0, 5, 0] }] };
+    assert(!(await page.locator("input[type=range][data-inner=zygomaticus_major_right]").isVisible()), "both sides alike have one line");
     const difference = await fromService(page, rest, plan);
     assert(difference < AGREED_MM, `${difference} mm`);
     console.log(`   ${difference.toExponential(1)} mm from the service`);
@@ -69,6 +70,22 @@ export async function muscles(page) {
     await page.getByRole("alert").getByText(/no column of risorius/).waitFor();
     const difference = await fromService(page, rest, { activations: [{ muscle: "zygomaticus_major_left", stress_kpa: 20 }] });
     assert(difference < AGREED_MM, `${difference} mm`);
+    assert(await page.locator("input[type=range][data-inner=zygomaticus_major_right]").isVisible(), "sides that differ have a line each");
+    await page.getByLabel("both sides alike").check();
+    const activations = Object.entries(SMILE).map(([muscle, stress_kpa]) => ({ muscle, stress_kpa }));
+    const alike = await fromService(page, rest, { activations });
+    assert(alike < AGREED_MM, `the right side takes what the left has: ${alike} mm`);
+  });
+
+  await check("tissue grows as the service says, all of it and a layer beside it", async () => {
+    assert.equal((await ended({ kind: "response", case: face, growth: ["*", "fat"], muscles: ["orbicularis_oris"] })).status, "successful");
+    await go(page, `#/case/${face}/plan?growth=*,-0.2&view=1`);
+    await planned(page);
+    await page.locator("input[type=number][data-inner=fat]").fill("10");
+    const plan = { growth: [{ region: "*", volume_change: -0.2 }, { region: "fat", volume_change: 0.1 }] };
+    const difference = await fromService(page, rest, plan);
+    assert(difference < AGREED_MM, `${difference} mm`);
+    await pictured(page, "growth");
   });
 
   await check("muscles at 390 pixels", async () => {

@@ -167,7 +167,12 @@ await check("the probe says how far a point moves", async () => {
   await page.keyboard.press("1");
   const box = await page.locator(".screen canvas").boundingBox();
   await page.mouse.click(box.x + box.width / 2, box.y + 0.72 * box.height);
-  await page.getByText(/Point \d+ moves by \d+\.\d\d mm/).waitFor();
+  const told = page.getByText(/Point \d+ moves by \d+\.\d\d mm/);
+  await told.waitFor();
+  const clicked = await told.textContent();
+  await page.locator(".screen canvas").focus();
+  await page.keyboard.press("Enter");
+  await page.waitForFunction((before) => document.querySelector(".panel .told").textContent !== before, clicked);
   await page.locator(".tools select").selectOption("displacement");
   await pictured(page, "result");
 });
@@ -393,6 +398,30 @@ await check("a job that failed says why, and one without a skin says what it fou
   await page.getByRole("heading", { name: "Response · done" }).waitFor();
   assert.deepEqual(await serious(page), []);
   await fits(page);
+});
+
+await check("results of kinds without a view are told by the names of the service", async () => {
+  const job = { id: "made-up", kind: "learn", status: "successful", message: "", progress: 100, created: "2026-01-01T00:00:00Z", warnings: [], results: {
+    files: [], learning: { method: "regression", helps: true, table: [{ method: "regression", mean_mm: 1.25 }, { method: "none", mean_mm: 1.5 }], width: { chosen_mm: 12 } } } };
+  const told = async (document) => {
+    await page.route("**/v1/jobs/made-up", (route) => route.fulfill({ json: document }));
+    await go(page, "#/cases");
+    await go(page, "#/job/made-up");
+  };
+  await told(job);
+  await page.getByRole("heading", { name: "Learning · done" }).waitFor();
+  assert.deepEqual(await page.locator("table", { hasText: "mean, mm" }).locator("td").allTextContents(), ["1.25", "1.5"]);
+  await page.getByText("chosen, mm").waitFor();
+  await page.unroute("**/v1/jobs/made-up");
+  await told({ ...job, kind: "something-new", results: { files: [], something: { depth_mm: 3 } } });
+  await page.getByRole("heading", { name: "something-new · done" }).waitFor();
+  await page.getByText("depth, mm").waitFor();
+  await page.unroute("**/v1/jobs/made-up");
+  await told({ ...job, kind: "conform", results: { files: [], conformation: { landmarks_mm: { nasion: 0.5 }, case: { units: "mm", volume: "v" } } } });
+  await page.getByRole("button", { name: "Make this case" }).waitFor();
+  await page.getByText("nasion").waitFor();
+  assert.deepEqual(await serious(page), []);
+  await page.unroute("**/v1/jobs/made-up");
 });
 
 await check("a lost connection is told, and taken up again", async () => {

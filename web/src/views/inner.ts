@@ -36,6 +36,9 @@ export function partner(name: string, names: string[]): string | undefined {
   return others.map(([from, to]) => name.replace(from!, to!)).find((other) => names.includes(other));
 }
 
+/** What both sides of a muscle are called together. */
+const sideless = (name: string): string => SIDES.flat().reduce((rest, side) => rest.replace(side, ""), name).replace(/[_ ]+/g, " ").trim();
+
 export const called = (name: string, words: Words): string => (name === "*" ? words.allTissue : name.replaceAll("_", " "));
 
 /** Amounts in a line. */
@@ -48,24 +51,42 @@ export function toldInner(inner: Inner, words: Words): string[] {
 function lines(words: Words, kind: InnerKind, names: string[], together: () => boolean, told: Told) {
   const { unit, factor, slider: [low, high], field: [least, most], step } = SCALES[kind];
   const shown = new Map<string, (value: number) => void>();
+  const values = new Map<string, number>();
   const elements = names.map((name) => {
     const label = called(name, words);
     const aria = { label: `${label}, ${unit}` };
     const slider = make("input", { type: "range", min: String(low), max: String(high), step: String(step), value: "0", aria, data: { inner: name } });
     const field = make("input", { type: "number", min: String(least), max: String(most), step: String(step), value: "0", aria, data: { inner: name } });
-    const show = (value: number) => { slider.value = String(value * factor); field.value = figure(value * factor, 4); };
+    const show = (value: number) => { values.set(name, value); slider.value = String(value * factor); field.value = figure(value * factor, 4); };
     const set = (value: number) => {
       const within = Math.min(Math.max(value, least), most) / factor;
       const other = together() ? partner(name, names) : undefined;
-      for (const one of other === undefined ? [name] : [name, other]) { told.moving(kind, one, within); if (one !== name) shown.get(one)!(within); }
+      for (const one of other === undefined ? [name] : [name, other]) {
+        values.set(one, within);
+        told.moving(kind, one, within);
+        if (one !== name) shown.get(one)!(within);
+      }
     };
     slider.addEventListener("input", () => { field.value = slider.value; set(slider.valueAsNumber); });
     field.addEventListener("input", () => { if (Number.isFinite(field.valueAsNumber)) { slider.value = field.value; set(field.valueAsNumber); } });
     for (const input of [slider, field]) input.addEventListener("change", told.moved);
     shown.set(name, show);
-    return make("div", { className: "movement pull" }, make("span", { className: "word" }, label), slider, field, make("span", { className: "unit" }, unit));
+    const other = partner(name, names);
+    // Both sides alike have one line, that of the first.
+    const second = other !== undefined && names.indexOf(other) < names.indexOf(name);
+    return make("div", { className: `movement pull${second ? " second" : ""}` },
+      make("span", { className: "word" }, make("span", { className: "alone" }, label), make("span", { className: "pair" }, other === undefined ? label : sideless(name))),
+      slider, field, make("span", { className: "unit" }, unit));
   });
-  return { elements, shown };
+  /** The second of each two sides takes the amount of the first. */
+  const alike = () => names.forEach((name, at) => {
+    const other = partner(name, names);
+    const value = values.get(name) ?? 0;
+    if (other === undefined || names.indexOf(other) < at || values.get(other) === value) return;
+    told.moving(kind, other, value);
+    shown.get(other)!(value);
+  });
+  return { elements, shown, alike };
 }
 
 /** Undefined where the response has no such columns. */
@@ -82,7 +103,22 @@ export function innerSliders(words: Words, columns: InnerColumn[], inner: Inner,
       make("p", { className: "fine" }, kind === "muscle" ? words.musclesHint : words.growthHint),
       paired && make("label", { className: "check" }, both, ` ${words.bothSides}`), ...elements);
   }));
-  const show = (given: Inner) => { for (const { kind, shown } of parts) for (const [name, set] of shown) set(given[kind][name] ?? 0); };
+  const arrange = () => element.classList.toggle("together", both.checked);
+  both.addEventListener("change", () => {
+    arrange();
+    if (!both.checked) return;
+    for (const { kind, alike } of parts) if (kind === "muscle") alike();
+    told.moved();
+  });
+  const show = (given: Inner) => {
+    for (const { kind, shown, names } of parts) {
+      for (const [name, set] of shown) set(given[kind][name] ?? 0);
+      const differs = names.some((name) => { const other = partner(name, names); return other !== undefined && given[kind][name] !== given[kind][other]; });
+      // Sides that are not alike are shown as what they are.
+      if (kind === "muscle" && differs) both.checked = false;
+    }
+    arrange();
+  };
   show(inner);
   return { element, show };
 }

@@ -115,9 +115,7 @@ class Inverse {
 
   /** For whoever has no pointer: the point of the skin in the middle of the view. */
   private addMiddle(): void {
-    const { scene } = this.bench;
-    const box = scene.canvas.getBoundingClientRect();
-    const hit = scene.pick(new MouseEvent("click", { clientX: box.left + box.width / 2, clientY: box.top + box.height / 2 }));
+    const hit = this.bench.scene.middle();
     if (hit === undefined) this.said.textContent = this.app.words.noSkinThere;
     else this.targetAt(this.restAt(hit.node));
     this.draw();

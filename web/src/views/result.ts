@@ -8,7 +8,7 @@ import { addBones, openCase, type Opened } from "../loading.js";
 import { matrix } from "../matrix.js";
 import { fromDocument, PLAN_STATE, planState, read, readPivots, written, type Plan, type Pivots } from "../plan.js";
 import { address, note } from "../route.js";
-import type { Shape } from "../scene.js";
+import type { Hit, Shape } from "../scene.js";
 import { readVtp } from "../vtp.js";
 import { mm, signed } from "../figures.js";
 import { Workbench, type SkinMap } from "../workbench.js";
@@ -196,23 +196,27 @@ class Result {
     this.moveBones();
   }
 
-  /** A click on the skin says where it is and how far it moves. */
+  /** A click on the skin, or Enter for the middle of the view, says how far that point moves. */
   private probing(said: HTMLElement): void {
-    const { app: { words }, bench, opened } = this;
+    const { scene } = this.bench;
     let from: [number, number] = [0, 0];
-    bench.scene.canvas.addEventListener("pointerdown", (event) => { from = [event.clientX, event.clientY]; });
-    bench.scene.canvas.addEventListener("pointerup", (event) => {
-      if (Math.hypot(event.clientX - from[0], event.clientY - from[1]) > 4) return;
-      const hit = bench.scene.pick(event);
-      if (hit === undefined) return;
-      const moved = [0, 1, 2].map((axis) => this.displacement_mm[3 * hit.node + axis]!) as Triple;
-      const [forward, up, left] = inWords(moved, opened.frame);
-      const error = this.after.values._NUMERICAL_ERROR_MM?.[hit.node];
-      bench.scene.mark([{ at_mm: hit.point_mm, colour: 0x0b5c7a }]);
-      said.textContent = `${words.point} ${hit.node} ${words.movesBy} ${mm(Math.hypot(...moved))} mm`
-        + ` (${words.forward.toLowerCase()} ${signed(forward)}, ${words.up.toLowerCase()} ${signed(up)}, ${words.left.toLowerCase()} ${signed(left)})`
-        + (error === undefined ? "" : ` ± ${mm(error)}`);
+    scene.canvas.addEventListener("pointerdown", (event) => { from = [event.clientX, event.clientY]; });
+    scene.canvas.addEventListener("pointerup", (event) => {
+      if (Math.hypot(event.clientX - from[0], event.clientY - from[1]) <= 4) this.probe(scene.pick(event), said);
     });
+    scene.canvas.addEventListener("keydown", (event) => { if (event.key === "Enter") this.probe(scene.middle(), said); });
+  }
+
+  private probe(hit: Hit | undefined, said: HTMLElement): void {
+    const { app: { words }, bench, opened } = this;
+    if (hit === undefined) return;
+    const moved = [0, 1, 2].map((axis) => this.displacement_mm[3 * hit.node + axis]!) as Triple;
+    const [forward, up, left] = inWords(moved, opened.frame);
+    const error = this.after.values._NUMERICAL_ERROR_MM?.[hit.node];
+    bench.scene.mark([{ at_mm: hit.point_mm, colour: 0x0b5c7a }]);
+    said.textContent = `${words.point} ${hit.node} ${words.movesBy} ${mm(Math.hypot(...moved))} mm`
+      + ` (${words.forward.toLowerCase()} ${signed(forward)}, ${words.up.toLowerCase()} ${signed(up)}, ${words.left.toLowerCase()} ${signed(left)})`
+      + (error === undefined ? "" : ` ± ${mm(error)}`);
   }
 
   /** The plan, as the result or what was found has it, or from the address; it stays unknown where none says it in six numbers. */

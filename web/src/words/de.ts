@@ -63,7 +63,7 @@ export const de: Words = {
   displacement: "Verschiebung", secondOrder: "Zweite Ordnung", numericalError: "Fehler des Netzes", signedDistance: "Abstand mit Vorzeichen", leftOutMap: "Vom Modell weggelassen",
   range: "Bereich", views: "Ansichten", view: { "1": "Vorn", "2": "Profil rechts", "3": "Profil links", "4": "Schräg rechts", "5": "Schräg links", "6": "Von unten" },
   picture: "Bild sichern", glb: "GLB sichern", headLabel: "Kopf in drei Dimensionen. Tasten 1 bis 6 wählen eine Ansicht, Pfeiltasten drehen ihn.",
-  probe: "Messen: auf die Haut klicken.", landmarks: "Landmarken", regions: "Bereiche", landmark: "Landmarke", region: "Bereich",
+  probe: "Messen: auf die Haut klicken, oder Enter für die Mitte der Ansicht, wenn der Kopf den Fokus hat.", landmarks: "Landmarken", regions: "Bereiche", landmark: "Landmarke", region: "Bereich",
   mean: "Mittel", p95: "p95", max: "max", error: "± Netz", nonlinear: "± Modell", whole: "ganze Haut",
   before: "Vorher", after: "Nachher", beforeAfter: "Vorher und nachher", overlay: "überlagert", profile: "Profil", profileHint: "Umriss in der Mitte des Gesichts: vorher grau, nachher blau.",
   shown: "Zeigen", one: "eine", sides: "nebeneinander", cephalometry: "Kephalometrische Maße", measure: "Maß", planned: "Knochen, geplant", predicted: "Haut, vorhergesagt",

@@ -61,7 +61,7 @@ export const en = {
   displacement: "Displacement", secondOrder: "Second order", numericalError: "Error of the mesh", signedDistance: "Signed distance", leftOutMap: "Left out by the model",
   range: "Range", views: "Views", view: { "1": "Front", "2": "Right profile", "3": "Left profile", "4": "Right oblique", "5": "Left oblique", "6": "From below" } as Record<string, string>,
   picture: "Save picture", glb: "Save GLB", headLabel: "Head in three dimensions. Keys 1 to 6 choose a view, arrow keys turn it.",
-  probe: "Probe: click the skin to measure it.", landmarks: "Landmarks", regions: "Regions", landmark: "Landmark", region: "Region",
+  probe: "Probe: click the skin to measure it, or press Enter with the head in focus for the middle of the view.", landmarks: "Landmarks", regions: "Regions", landmark: "Landmark", region: "Region",
   mean: "mean", p95: "p95", max: "max", error: "± mesh", nonlinear: "± model", whole: "whole skin",
   before: "Before", after: "After", beforeAfter: "Before and after", overlay: "overlaid", profile: "Profile", profileHint: "Outline in the middle of the face: before grey, after blue.",
   shown: "Shown", one: "one", sides: "side by side", cephalometry: "Cephalometric measures", measure: "Measure", planned: "Bone, planned", predicted: "Skin, predicted",
