@@ -1,5 +1,5 @@
 // What every view is handed: the service, the words, and where it may draw.
-import { FaciesError, JobFailed, Refused, type Service } from "./api.js";
+import { FaciesError, JobFailed, Refused, type Service, type Warning } from "./api.js";
 import { button, find, make } from "./dom.js";
 import type { Route } from "./route.js";
 import type { Words } from "./words/en.js";
@@ -36,11 +36,18 @@ export function refusal(error: unknown, words: Words, again?: () => void): HTMLE
     again !== undefined && button(words.tryAgain, again));
 }
 
-/** Warnings in words, each with its code. */
-export function warnings(list: { code: string; detail: string }[] | undefined, words: Words): HTMLElement {
+/** What a warning speaks of, and how it is shown. */
+export interface Place {
+  label: string;
+  show: () => void;
+}
+
+/** Warnings in words, each with its code and what it names in the view. */
+export function warnings(list: Warning[] | undefined, words: Words, places: (warning: Warning) => Place[] = () => []): HTMLElement {
   if (list === undefined || list.length === 0) return make("p", { className: "fine" }, words.noWarnings);
-  return make("ul", { className: "warnings" }, ...list.map(({ code, detail }) =>
-    make("li", {}, detail, " ", make("a", { href: `/errors#${code}`, className: "code" }, code))));
+  return make("ul", { className: "warnings" }, ...list.map((warning) =>
+    make("li", {}, warning.detail, " ", make("a", { href: `/errors#${warning.code}`, className: "code" }, warning.code),
+      ...places(warning).map(({ label, show }) => button(words.showPlace(label), show, { className: "place" })))));
 }
 
 /** A line that tells how far something is, with a way to stop it. */

@@ -33,11 +33,14 @@ export function scrolling(label: string, ...children: Child[]): HTMLElement {
   return make("div", { className: "scroll", tabIndex: 0, role: "region", aria: { label } }, ...children);
 }
 
+export type Cell = string | number | Node;
+
 /** A table with a head; numbers stand to the right. */
-export function table(caption: string, head: string[], rows: (string | number)[][]): HTMLElement {
-  const cell = (value: string | number, at: number) => (at === 0
-    ? make("th", { scope: "row" }, String(value))
-    : make("td", {}, String(value)));
+export function table(caption: string, head: string[], rows: Cell[][]): HTMLElement {
+  const held = (value: Cell) => (value instanceof Node ? value : String(value));
+  const cell = (value: Cell, at: number) => (at === 0
+    ? make("th", { scope: "row" }, held(value))
+    : make("td", {}, held(value)));
   return scrolling(caption, make("table", {},
     make("caption", {}, caption),
     make("thead", {}, make("tr", {}, ...head.map((text) => make("th", { scope: "col" }, text)))),

@@ -1,9 +1,10 @@
 // The documents, bones and response of a case, as the page shows them.
 import { Refused, type Case, type CaseDocument, type Documents, type Service, readGlb } from "./api.js";
 import { ProgressLine, type App } from "./app.js";
+import { readColumns, type Columns } from "./columns.js";
 import type { FrameName } from "./frame.js";
 import { inFrame, readPly } from "./ply.js";
-import type { Columns } from "./response.js";
+import { pointArrays } from "./vtp.js";
 import type { Scene, Shape } from "./scene.js";
 
 export interface Opened {
@@ -20,12 +21,20 @@ export async function openCase(service: Service, id: string): Promise<Opened> {
   return { id, view, document, frame: document.frame ?? "unspecified", name: document.name ?? id.slice(0, 8) };
 }
 
-/** A surface that the service has, as it lies in the frame of the case. */
-export async function meshOf(service: Service, id: string, frame: FrameName): Promise<Shape> {
+/** A surface that the service has, or the boundary of a volume with its nodes, as it lies in the frame of the case. */
+export async function meshOf(service: Service, id: string, frame: FrameName): Promise<Shape & { node_ids?: Uint32Array }> {
   const answer = await service.ask("GET", `/v1/meshes/${id}/content?format=ply`);
-  const surface = readPly(await answer.arrayBuffer());
-  return { points_mm: inFrame(surface, frame), triangles: surface.triangles };
+  const { triangles, node_ids, ...surface } = readPly(await answer.arrayBuffer());
+  return { points_mm: inFrame({ ...surface, triangles }, frame), triangles, ...(node_ids === undefined ? {} : { node_ids }) };
 }
+
+/** For each set of a volume mesh, and each of so many nodes, whether it is in it. */
+export async function setsOf(service: Service, id: string, nodes: Uint32Array): Promise<Record<string, Uint8Array>> {
+  const content = await (await service.ask("GET", `/v1/meshes/${id}/content`)).arrayBuffer();
+  const arrays = await pointArrays(content, (name) => name.startsWith(SET));
+  return Object.fromEntries(Object.entries(arrays).map(([name, inside]) => [name.slice(SET.length), Uint8Array.from(nodes, (node) => inside[node] ?? 0)]));
+}
+const SET = "set_";
 
 /** Adds the bones of a case to a scene as they come. */
 export async function addBones(service: Service, opened: Opened, scene: Scene): Promise<void> {
@@ -76,8 +85,7 @@ export async function responseOf(app: App, id: string, into: HTMLElement): Promi
   const path = `/v1/cases/${id}/response?job=${description.job}`;
   const bytes = async (query: string) => (await app.service.ask("GET", path + query, undefined, OCTETS)).arrayBuffer();
   const [linear, second] = await Promise.all([bytes(""), description.second_order === undefined ? undefined : bytes("&order=2")]);
-  const columns: Columns = { segments: description.segments.length, linear: new Float32Array(linear) };
-  if (second !== undefined) columns.second = { columns: new Int16Array(second), scale_mm: description.second_order!.scale_mm };
+  const columns = readColumns(description, linear, second);
   return { description, rest, columns };
 }
 

@@ -6,6 +6,8 @@ export interface PlySurface {
   /** xyz for each point, in mm. */
   points_mm: Float32Array;
   triangles: Uint32Array;
+  /** Of each point its node in the volume mesh, where the file says it. */
+  node_ids?: Uint32Array;
   /** Which way the axes point, where the file says so. */
   space: string | undefined;
 }
@@ -19,6 +21,8 @@ interface Head {
   vertexBytes: number;
   /** Bytes of a coordinate. */
   coordinate: number;
+  /** Where in a point the number of its node begins. */
+  node: number | undefined;
   space: string | undefined;
 }
 
@@ -32,6 +36,7 @@ function head(text: string): Head {
     throw new Error("no binary PLY file with points");
   }
   return {
+    node: types[3]?.[1] === "int" && types[3]?.[2] === "node_id" ? 3 * coordinate : undefined,
     vertices: count("vertex"), faces: count("face"), vertexBytes, coordinate,
     space: /^comment SPACE=(\w+)$/m.exec(text)?.[1],
   };
@@ -40,7 +45,7 @@ function head(text: string): Head {
 export function readPly(content: ArrayBuffer): PlySurface {
   const start = new TextDecoder("latin1").decode(new Uint8Array(content, 0, Math.min(content.byteLength, 65536)));
   const length = start.indexOf(END) + END.length;
-  const { vertices, faces, vertexBytes, coordinate, space } = head(start.slice(0, length));
+  const { vertices, faces, vertexBytes, coordinate, node, space } = head(start.slice(0, length));
   const view = new DataView(content, length);
   const number = (at: number) => (coordinate === 8 ? view.getFloat64(at, true) : view.getFloat32(at, true));
   const points_mm = Float32Array.from({ length: 3 * vertices }, (_, at) =>
@@ -49,7 +54,8 @@ export function readPly(content: ArrayBuffer): PlySurface {
   const first = vertices * vertexBytes;
   const triangles = Uint32Array.from({ length: 3 * faces }, (_, at) =>
     view.getInt32(first + Math.floor(at / 3) * 13 + 1 + 4 * (at % 3), true));
-  return { points_mm, triangles, space };
+  const node_ids = node === undefined ? undefined : Uint32Array.from({ length: vertices }, (_, at) => view.getInt32(at * vertexBytes + node, true));
+  return { points_mm, triangles, space, ...(node_ids === undefined ? {} : { node_ids }) };
 }
 
 /** The points of a surface in the frame of a case: files are in LPS or in that of the case. */

@@ -3,18 +3,11 @@
 // u = sum over k of a_k C_k + sum over k <= l of a_k a_l scale_p S_p, a being the twelve numbers of each segment one after the
 // other: rows of R - I, each followed by its component of t, the displacement of the segment's centre (docs/clients.md). What
 // only one segment changes is kept for the others, so that a slider costs the columns of its own segment: the pairs of a segment that
-// moves with one that stays are summed over the latter once, sum over k of a_k (sum over l of a_l scale_p S_p).
+// moves with one that stays are summed over the latter once, sum over k of a_k (sum over l of a_l scale_p S_p). Growth and muscles add a
+// column each, behind those of all segments.
 import type { Triple } from "../../clients/typescript/src/facies.js";
+import { PER_SEGMENT, type Columns } from "./columns.js";
 import { rotation } from "./frame.js";
-
-export const PER_SEGMENT = 12;
-
-/** The columns as the service hands them over: [column][node][xyz] in mm, of second order in units of `scale_mm`. */
-export interface Columns {
-  segments: number;
-  linear: Float32Array;
-  second?: { columns: Int16Array; scale_mm: number[] };
-}
 
 /** A movement x' = R (x - pivot) + pivot + translation of a segment with its centre. */
 export interface SegmentMovement {
@@ -59,17 +52,20 @@ export class SkinSum {
   readonly second_mm: Float32Array | undefined;
   private readonly factors: number[];
   private readonly linear: Float32Array[];
+  /** Growth and muscles together. */
+  private readonly inside: Float32Array;
   /** By the segments of a pair, the lower first. */
   private readonly pairs = new Map<string, Float32Array>();
   /** Sums over the second of two segments, twelve columns each, while it stays. */
   private readonly halves = new Map<string, Float32Array>();
 
   constructor(private readonly columns: Columns) {
-    const { segments, linear, second } = columns;
+    const { nodes, segments, second } = columns;
     this.factors = new Array<number>(PER_SEGMENT * segments).fill(0);
-    const numbers = segments === 0 ? 0 : linear.length / this.factors.length;
+    const numbers = 3 * nodes;
     this.displacement_mm = new Float32Array(numbers);
     this.linear = Array.from({ length: segments }, () => new Float32Array(numbers));
+    this.inside = new Float32Array(numbers);
     if (second === undefined) return;
     this.second_mm = new Float32Array(numbers);
     for (let s = 0; s < segments; s += 1) {
@@ -88,6 +84,15 @@ export class SkinSum {
       if (other === segment) this.own(segment);
       else this.cross(segment, other);
     }
+    this.total();
+  }
+
+  /** Growth and muscles, by a factor for each of their columns. */
+  pull(factors: number[]): void {
+    const { columns: { linear, inner }, displacement_mm: { length } } = this;
+    const first = this.factors.length;
+    const terms = inner.map((_, at) => ({ factor: factors[at]!, first: (first + at) * length }));
+    sum(this.inside, linear, terms.filter(({ factor }) => factor !== 0));
     this.total();
   }
 
@@ -138,9 +143,10 @@ export class SkinSum {
   }
 
   private total(): void {
-    const { displacement_mm, second_mm } = this;
+    const { displacement_mm, second_mm, linear, inside, columns } = this;
     if (second_mm !== undefined) add(second_mm, [...this.pairs.values()]);
-    add(displacement_mm, second_mm === undefined ? this.linear : [...this.linear, second_mm]);
+    const inner = columns.inner.length === 0 ? [] : [inside];
+    add(displacement_mm, [...linear, ...inner, ...(second_mm === undefined ? [] : [second_mm])]);
   }
 }
 

@@ -1,5 +1,8 @@
 // What each set of nodes of a mesh is, and the case document that says so.
 
+import type { Documents } from "../../clients/typescript/src/facies.js";
+
+type CaseDocument = Documents["CaseDocument"];
 export type Role = "none" | "skin" | "region" | "segment" | "fixed" | "sliding";
 export type SetRoles = Record<string, Role>;
 
@@ -27,20 +30,60 @@ export function guess(set: string): Role {
 /** Soft tissue of the face, to begin with: Young's modulus 15 kPa, Poisson's ratio 0.45. */
 const TISSUE = { "*": { young_modulus_kpa: 15, poisson_ratio: 0.45 } };
 
+const nodes = (set: string) => ({ node_set: set });
+const having = (roles: SetRoles, role: Role) => Object.keys(roles).filter((set) => roles[set] === role);
+/** One set, or the union of several. */
+const union = (sets: string[]) => (sets.length === 1 ? nodes(sets[0]!) : { any: sets.map(nodes) });
+
 /** The document; a bone is drawn by its surface, whose file is called as it is. */
 export function documentOf({ name, frame, units, mesh }: CaseSettings, roles: SetRoles, bones: string[]): object {
-  const having = (role: Role) => Object.keys(roles).filter((set) => roles[set] === role);
-  const nodes = (set: string) => ({ node_set: set });
-  const [skin] = having("skin");
-  const regions = Object.fromEntries(having("region").map((set) => [set, nodes(set)]));
-  return {
-    name, units, frame, volume: mesh,
-    ...(skin === undefined ? {} : { skin: nodes(skin) }),
-    ...(having("region").length === 0 ? {} : { skin_regions: regions }),
-    ...(bones.length === 0 ? {} : { bones: bones.map((bone) => ({ name: bone, mesh: bone })) }),
-    segments: having("segment").map((set) => ({ name: set, nodes: nodes(set) })),
-    fixed: having("fixed").map(nodes),
-    ...(having("sliding").length === 0 ? {} : { sliding: having("sliding").map((set) => ({ nodes: nodes(set), normal: "surface" })) }),
+  const start = {
+    name, units, frame, volume: mesh, ...(bones.length === 0 ? {} : { bones: bones.map((bone) => ({ name: bone, mesh: bone })) }),
     materials: TISSUE,
   };
+  return withRoles(start as unknown as CaseDocument, roles);
+}
+
+type Selected = { node_set?: string; any?: Selected[] };
+/** The set that a selection is, by its name in the mesh. */
+const setOf = (selection: unknown): string | undefined => (selection as Selected | undefined)?.node_set?.replace(/^set_/, "");
+const setsIn = (selection: unknown): string[] => {
+  const { any } = (selection ?? {}) as Selected;
+  return any === undefined ? [setOf(selection)].filter((set) => set !== undefined) : any.flatMap(setsIn);
+};
+
+/** What a case says that each of these sets is. */
+export function rolesOf(document: CaseDocument, sets: string[]): SetRoles {
+  const parts: [Role, unknown[]][] = [
+    ["segment", (document.segments ?? []).map(({ nodes: held }) => held)], ["fixed", document.fixed ?? []],
+    ["sliding", (document.sliding ?? []).map(({ nodes: held }) => held)], ["skin", [document.skin]], ["region", Object.values(document.skin_regions ?? {})],
+  ];
+  const role = (set: string) => parts.find(([, held]) => held.some((one) => setsIn(one).includes(set)))?.[0];
+  return Object.fromEntries(sets.map((set) => [set, role(set) ?? "none"]));
+}
+
+/** The document with other roles: what it says of sets that keep theirs, and of nodes that are no set, stays as it is. */
+export function withRoles(document: CaseDocument, roles: SetRoles): CaseDocument {
+  const before = rolesOf(document, Object.keys(roles));
+  const changed = (selection: unknown) => setsIn(selection).some((set) => roles[set] !== undefined && roles[set] !== before[set]);
+  const added = (role: Role) => having(roles, role).filter((set) => before[set] !== role);
+  const kept = <One>(list: One[] | undefined, held: (one: One) => unknown) => (list ?? []).filter((one) => !changed(held(one)));
+  const segments = [...kept(document.segments, (one) => one.nodes), ...added("segment").map((set) => ({ name: set, nodes: nodes(set) }))];
+  const names = new Set(segments.map(({ name }) => name));
+  const carried = kept(document.sliding, (one) => one.nodes).map((one) => {
+    const { segment, ...wall } = one;
+    return segment === undefined || segment === null || names.has(segment) ? one : wall;
+  });
+  const sliding = [...carried, ...added("sliding").map((set) => ({ nodes: nodes(set), normal: "surface" }))];
+  const regions = { ...Object.fromEntries(Object.entries(document.skin_regions ?? {}).filter(([, held]) => !changed(held))),
+    ...Object.fromEntries(added("region").map((set) => [set, nodes(set)])) };
+  const skin = having(roles, "skin");
+  const { skin: _, skin_regions: __, sliding: ___, ...rest } = document;
+  const sameSkin = document.skin !== undefined && !changed(document.skin) && added("skin").length === 0;
+  return {
+    ...rest, ...(sameSkin ? { skin: document.skin } : skin.length === 0 ? {} : { skin: union(skin) }),
+    ...(Object.keys(regions).length === 0 ? {} : { skin_regions: regions }), segments,
+    fixed: [...kept(document.fixed, (one) => one), ...added("fixed").map(nodes)],
+    ...(sliding.length === 0 ? {} : { sliding }),
+  } as CaseDocument;
 }

@@ -3,38 +3,28 @@
 // Everything is kept in mm in the frame of the case; one group turns that so that x is the patient's left, y up and z to the front.
 // The camera is orthographic: what is seen has one scale everywhere, and a profile is a true profile.
 import {
-  BufferAttribute, BufferGeometry, DataTexture, DirectionalLight, DoubleSide, Group, HemisphereLight, LineBasicMaterial,
-  LineSegments, Matrix4, Mesh, MeshBasicMaterial, MeshStandardMaterial, NearestFilter, OrthographicCamera, Raycaster, SRGBColorSpace,
-  Scene as Graph, SphereGeometry, Vector2, Vector3, WebGLRenderer, type Material,
+  BufferAttribute, DoubleSide, Group, Matrix4, Mesh, MeshBasicMaterial, MeshLambertMaterial, OrthographicCamera, Raycaster,
+  Scene as Graph, Vector2, Vector3, WebGLRenderer, type Material,
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import type { Triple } from "./api.js";
-import { BANDS, bands, share, type Scheme } from "./colours.js";
+import { share, type Scheme } from "./colours.js";
 import { drawn, type FrameName } from "./frame.js";
+import { geometryOf, seenFrom, VIEWS, type Shape } from "./geometry.js";
+import { Marks, type Mark } from "./marks.js";
 import { normals } from "./normals.js";
+import { isDrawnBySoftware, lights, setBands } from "./shading.js";
 
-export interface Shape {
-  points_mm: Float32Array;
-  triangles: Uint32Array;
-}
+export type { Shape } from "./geometry.js";
 export interface Hit {
   node: number;
   point_mm: Triple;
 }
-interface Span {
-  middle: number;
-  reach: number;
-}
 export type SkinLook = "solid" | "through" | "hidden";
 
-/** Where the camera stands, seen from the head: patient's left, up, front. */
-export const VIEWS: Record<string, Triple> = {
-  "1": [0, 0, 1], "2": [-1, 0, 0], "3": [1, 0, 0], "4": [-0.7, 0.05, 0.72], "5": [0.7, 0.05, 0.72], "6": [0, -0.75, 0.66],
-};
 const SKIN = 0xe9b9a1;
 const BONE = 0xefe6d2;
 const MOVING_BONE = 0xd8c48f;
-const MARK_MM = 1.4;
 /** Around the head there is a little room, above all for what stands over it. */
 const ROOM = 1.2;
 const KEY_TURN = Math.PI / 24;
@@ -48,14 +38,19 @@ export class Scene {
   private readonly controls: OrbitControls;
   private readonly watcher: ResizeObserver;
   private readonly bones = new Map<string, Mesh>();
-  private readonly marks = new Group();
-  private readonly skinMaterial = new MeshStandardMaterial({ color: SKIN, roughness: 0.58, side: DoubleSide });
+  private readonly marks = new Marks();
+  /** What a warning speaks of, or the pointer is over. */
+  private readonly pointed = new Marks();
+  private lit: Mesh | undefined;
+  private readonly skinMaterial = new MeshLambertMaterial({ color: SKIN, side: DoubleSide });
   /** Half of a map's colour is lit and half shines by itself, so that it is read off the legend also where there is shade. */
-  private readonly mapMaterial = new MeshStandardMaterial({ roughness: 1, side: DoubleSide, color: 0xbdbdbd, emissive: 0xb0b0b0 });
+  private readonly mapMaterial = new MeshLambertMaterial({ side: DoubleSide, color: 0xbdbdbd, emissive: 0xb0b0b0 });
   private readonly depth = new MeshBasicMaterial({ colorWrite: false, side: DoubleSide });
   private skin: Mesh | undefined;
   private prepass: Mesh | undefined;
   private ghost: Mesh | undefined;
+  /** The skin of the left half, where there are two. */
+  private twin: Mesh | undefined;
   private rest: Shape = { points_mm: new Float32Array(), triangles: new Uint32Array() };
   private centre = new Vector3();
   private radius = 100;
@@ -63,16 +58,16 @@ export class Scene {
   private waiting = false;
 
   constructor(private readonly host: HTMLElement, label: string) {
-    this.renderer = new WebGLRenderer({ antialias: true, preserveDrawingBuffer: true, alpha: true });
+    this.renderer = new WebGLRenderer({ antialias: !isDrawnBySoftware(), preserveDrawingBuffer: true, alpha: true });
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
     this.canvas = this.renderer.domElement;
     this.canvas.tabIndex = 0;
     this.canvas.setAttribute("role", "img");
     this.canvas.setAttribute("aria-label", label);
     host.prepend(this.canvas);
-    this.lights();
+    lights(this.graph, this.camera);
     this.graph.add(this.head, this.camera);
-    this.head.add(this.marks);
+    this.head.add(this.marks.group, this.pointed.group);
     this.controls = new OrbitControls(this.camera, this.canvas);
     this.controls.enableDamping = false;
     this.controls.addEventListener("change", () => this.draw());
@@ -99,6 +94,7 @@ export class Scene {
     this.skin.renderOrder = 2;
     this.prepass = new Mesh(geometry, this.depth);
     this.prepass.renderOrder = 1;
+    this.prepass.visible = this.skinMaterial.transparent;
     this.head.add(this.prepass, this.skin);
     geometry.computeBoundingSphere();
     const sphere = geometry.boundingSphere!;
@@ -130,7 +126,7 @@ export class Scene {
     if (this.skin === undefined) return;
     this.skin.material = values === undefined ? this.skinMaterial : this.mapMaterial;
     if (values !== undefined) {
-      this.setBands(scheme);
+      setBands(this.mapMaterial, scheme);
       const uv = this.skin.geometry.attributes.uv as BufferAttribute;
       // A texture has no bands beyond its ends.
       for (let node = 0; node < uv.count; node += 1) {
@@ -146,7 +142,9 @@ export class Scene {
       material.transparent = look === "through";
       material.opacity = look === "through" ? 0.42 : 1;
     }
-    for (const mesh of [this.skin, this.prepass]) if (mesh !== undefined) mesh.visible = look !== "hidden";
+    if (this.skin !== undefined) this.skin.visible = look !== "hidden";
+    // Only what is seen through needs to know what lies in front.
+    if (this.prepass !== undefined) this.prepass.visible = look === "through";
     this.draw();
   }
 
@@ -155,7 +153,7 @@ export class Scene {
     if (this.ghost !== undefined) this.drop(this.ghost);
     this.ghost = undefined;
     if (shape !== undefined) {
-      const material = new MeshStandardMaterial({ color: colour, transparent: true, opacity: 0.35, side: DoubleSide, depthWrite: false });
+      const material = new MeshLambertMaterial({ color: colour, transparent: true, opacity: 0.35, side: DoubleSide, depthWrite: false });
       this.ghost = new Mesh(geometryOf(shape), material);
       this.ghost.renderOrder = 3;
       this.head.add(this.ghost);
@@ -163,8 +161,20 @@ export class Scene {
     this.draw();
   }
 
+  /** Another state of the skin in the left half, with bones at rest, seen by the same camera; or the whole view for one. */
+  beside(shape: Shape | undefined): void {
+    if (this.twin !== undefined) this.drop(this.twin);
+    this.twin = shape === undefined ? undefined : new Mesh(geometryOf(shape), this.skinMaterial);
+    if (this.twin !== undefined) {
+      this.twin.visible = false;
+      this.twin.renderOrder = 2;
+      this.head.add(this.twin);
+    }
+    this.resize();
+  }
+
   addBone(name: string, shape: Shape, moves: boolean): void {
-    const material = new MeshStandardMaterial({ color: moves ? MOVING_BONE : BONE, roughness: 0.7, side: DoubleSide });
+    const material = new MeshLambertMaterial({ color: moves ? MOVING_BONE : BONE, side: DoubleSide });
     const bone = new Mesh(geometryOf(shape), material);
     bone.matrixAutoUpdate = false;
     this.bones.set(name, bone);
@@ -187,19 +197,39 @@ export class Scene {
   }
 
   /** Points in the frame of the case; lines lead to where they are to be. */
-  mark(points: { at_mm: Triple; colour: number; to_mm?: Triple }[]): void {
-    for (const child of [...this.marks.children]) this.drop(child as Mesh, this.marks);
-    for (const { at_mm, colour, to_mm } of points) {
-      const ball = new Mesh(new SphereGeometry(MARK_MM, 16, 12), new MeshBasicMaterial({ color: colour, depthTest: false }));
-      ball.position.set(...at_mm);
-      ball.renderOrder = 5;
-      this.marks.add(ball);
-      if (to_mm === undefined) continue;
-      const line = new BufferGeometry().setFromPoints([new Vector3(...at_mm), new Vector3(...to_mm)]);
-      const drawnLine = new LineSegments(line, new LineBasicMaterial({ color: colour, depthTest: false }));
-      drawnLine.renderOrder = 5;
-      this.marks.add(drawnLine);
-    }
+  mark(points: Mark[]): void {
+    this.marks.place(points);
+    this.draw();
+  }
+
+  /** Points out places, beside the marks. */
+  point(points: Mark[]): void {
+    this.pointed.place(points);
+    this.draw();
+  }
+
+  /** Points out nodes of the skin: those whose number is not 0. */
+  pointNodes(chosen: ArrayLike<number>, colour: number): void {
+    this.pointed.dots(this.skinPositions_mm, chosen, colour);
+    this.draw();
+  }
+
+  hasBone(name: string): boolean {
+    return this.bones.has(name);
+  }
+
+  /** A bone in another colour. */
+  pointBone(name: string, colour: number): void {
+    this.lit = this.bones.get(name);
+    (this.lit?.material as MeshLambertMaterial | undefined)?.emissive.setHex(colour);
+    this.draw();
+  }
+
+  /** Takes away what was pointed out. */
+  unpoint(): void {
+    this.pointed.clear();
+    (this.lit?.material as MeshLambertMaterial | undefined)?.emissive.setHex(0);
+    this.lit = undefined;
     this.draw();
   }
 
@@ -209,31 +239,13 @@ export class Scene {
     if (from === undefined) return;
     this.camera.zoom = 1;
     this.camera.up.set(0, 1, 0);
-    this.controls.target.copy(this.fit(new Vector3(...from).normalize()));
+    const { target, reach } = seenFrom(this.rest.points_mm, this.head.matrix, this.centre, new Vector3(...from).normalize());
+    this.reach = reach;
+    this.controls.target.copy(target);
     this.camera.position.copy(this.controls.target).addScaledVector(new Vector3(...from).normalize(), 4 * this.radius);
     this.resize();
     this.controls.update();
     this.draw();
-  }
-
-  /** The middle of what is seen from a direction, and how far it reaches to either side and up and down. */
-  private fit(from: Vector3): Vector3 {
-    const right = new Vector3(0, 1, 0).cross(from).normalize();
-    const up = from.clone().cross(right);
-    const axes = [right, up].map((axis) => axis.clone().transformDirection(this.head.matrix.clone().transpose()));
-    const points = this.rest.points_mm;
-    const spans = axes.map(({ x, y, z }) => {
-      let [low, high] = [Infinity, -Infinity];
-      for (let at = 0; at < points.length; at += 3) {
-        const along = points[at]! * x + points[at + 1]! * y + points[at + 2]! * z;
-        low = Math.min(low, along);
-        high = Math.max(high, along);
-      }
-      return { middle: (low + high) / 2, reach: (high - low) / 2 };
-    }) as [Span, Span];
-    this.reach = { across: spans[0].reach, tall: spans[1].reach };
-    const depth = this.centre.dot(from);
-    return new Vector3().addScaledVector(right, spans[0].middle).addScaledVector(up, spans[1].middle).addScaledVector(from, depth);
   }
 
   /** Arrow keys turn the head, plus and minus come nearer and go away. */
@@ -257,13 +269,21 @@ export class Scene {
   pick(event: PointerEvent | MouseEvent): Hit | undefined {
     if (this.skin === undefined || !this.skin.visible) return undefined;
     const ray = this.ray(event);
-    const [hit] = ray.intersectObject(this.skin, false);
+    const seen = this.twin !== undefined && this.isLeft(event) ? this.twin : this.skin;
+    const [hit] = ray.intersectObject(seen, false);
     if (hit?.face === undefined || hit.face === null) return undefined;
     const point = this.head.worldToLocal(hit.point.clone());
-    const at = this.skinPositions_mm;
+    const at = seen.geometry.attributes.position!.array;
     const away = (node: number) => point.distanceTo(new Vector3(at[3 * node], at[3 * node + 1], at[3 * node + 2]));
     const node = [hit.face.a, hit.face.b, hit.face.c].reduce((nearest, next) => (away(next) < away(nearest) ? next : nearest));
     return { node, point_mm: point.toArray() };
+  }
+
+  /** The node of the skin in the middle of the view, or of its right half. */
+  middle(): Hit | undefined {
+    const { left, top, width, height } = this.canvas.getBoundingClientRect();
+    const across = this.twin === undefined ? 0.5 : 0.75;
+    return this.pick(new MouseEvent("click", { clientX: left + across * width, clientY: top + height / 2 }));
   }
 
   /** Where the pointer is in the plane through a point that faces the viewer. */
@@ -288,13 +308,43 @@ export class Scene {
     this.waiting = true;
     requestAnimationFrame(() => {
       this.waiting = false;
-      this.renderer.render(this.graph, this.camera);
+      this.render();
     });
+  }
+
+  private render(): void {
+    const { renderer, twin, host: { clientWidth: width, clientHeight: height } } = this;
+    renderer.setScissorTest(twin !== undefined);
+    if (twin === undefined) {
+      renderer.setViewport(0, 0, width, height);
+      renderer.render(this.graph, this.camera);
+      return;
+    }
+    for (const half of [0, 1]) {
+      const place = [Math.round((half * width) / 2), 0, Math.round(width / 2), height] as const;
+      renderer.setViewport(...place);
+      renderer.setScissor(...place);
+      if (half === 1) renderer.render(this.graph, this.camera); else this.renderTwin(twin);
+    }
+  }
+
+  /** The left half: the other skin, and bones where they were. */
+  private renderTwin(twin: Mesh): void {
+    const hidden = [this.skin, this.prepass, this.ghost, this.marks.group, this.pointed.group].filter((one) => one?.visible);
+    const moved = [...this.bones.values()].map((bone) => [bone, bone.matrix.clone()] as const);
+    const place = (bone: Mesh, matrix: Matrix4) => { bone.matrix.copy(matrix); bone.matrixWorldNeedsUpdate = true; };
+    twin.visible = this.skin?.visible ?? true;
+    for (const one of hidden) one!.visible = false;
+    for (const [bone] of moved) place(bone, new Matrix4());
+    this.renderer.render(this.graph, this.camera);
+    for (const [bone, matrix] of moved) place(bone, matrix);
+    for (const one of hidden) one!.visible = true;
+    twin.visible = false;
   }
 
   /** At once, for a picture. */
   drawNow(): HTMLCanvasElement {
-    this.renderer.render(this.graph, this.camera);
+    this.render();
     return this.canvas;
   }
 
@@ -312,43 +362,26 @@ export class Scene {
     this.canvas.remove();
   }
 
+  private isLeft(event: MouseEvent): boolean {
+    const box = this.canvas.getBoundingClientRect();
+    return event.clientX < box.left + box.width / 2;
+  }
+
   private ray(event: PointerEvent | MouseEvent): Raycaster {
     const box = this.canvas.getBoundingClientRect();
-    const place = new Vector2((2 * (event.clientX - box.left)) / box.width - 1, 1 - (2 * (event.clientY - box.top)) / box.height);
+    const halves = this.twin === undefined ? 1 : 2;
+    const across = (((event.clientX - box.left) / box.width) * halves) % 1;
+    const place = new Vector2(2 * across - 1, 1 - (2 * (event.clientY - box.top)) / box.height);
     const ray = new Raycaster();
     ray.setFromCamera(place, this.camera);
     return ray;
   }
 
-  /** From above and a little aside, with the viewer. */
-  private lights(): void {
-    const lamp = (strength: number, place: Triple) => {
-      const light = new DirectionalLight(0xffffff, strength);
-      light.position.set(...place);
-      this.camera.add(light, light.target);
-    };
-    lamp(1.6, [-0.9, 1.3, 1.1]);
-    lamp(0.8, [1.4, 0.2, 0.8]);
-    this.graph.add(new HemisphereLight(0xffffff, 0xc9b8ad, 1.45));
-  }
-
-  private setBands(scheme: Scheme): void {
-    const texels = new Uint8Array(bands(scheme).flatMap((colour) => [...colour, 255]));
-    const texture = new DataTexture(texels, BANDS, 1);
-    texture.colorSpace = SRGBColorSpace;
-    texture.minFilter = NearestFilter;
-    texture.magFilter = NearestFilter;
-    texture.needsUpdate = true;
-    this.mapMaterial.map?.dispose();
-    this.mapMaterial.map = texture;
-    this.mapMaterial.emissiveMap = texture;
-    this.mapMaterial.needsUpdate = true;
-  }
-
   private resize(): void {
-    const { clientWidth: width, clientHeight: height } = this.host;
-    if (width === 0 || height === 0) return;
-    this.renderer.setSize(width, height, false);
+    const { clientWidth, clientHeight: height } = this.host;
+    if (clientWidth === 0 || height === 0) return;
+    this.renderer.setSize(clientWidth, height, false);
+    const width = this.twin === undefined ? clientWidth : clientWidth / 2;
     const tall = ROOM * Math.max(this.reach.tall, (this.reach.across * height) / width);
     const across = (tall * width) / height;
     Object.assign(this.camera, { left: -across, right: across, top: tall, bottom: -tall, near: 0.1, far: 10 * this.radius });
@@ -356,20 +389,10 @@ export class Scene {
     this.draw();
   }
 
-  private drop(mesh: Mesh | LineSegments, from: Group = this.head): void {
-    from.remove(mesh);
+  private drop(mesh: Mesh): void {
+    this.head.remove(mesh);
     mesh.geometry.dispose();
     const kept: unknown[] = [this.skinMaterial, this.mapMaterial, this.depth];
     if (!kept.includes(mesh.material)) (mesh.material as Material).dispose();
   }
-}
-
-function geometryOf({ points_mm, triangles }: Shape): BufferGeometry {
-  const geometry = new BufferGeometry();
-  const normal = new Float32Array(points_mm.length);
-  normals(points_mm, triangles, normal);
-  geometry.setIndex(new BufferAttribute(triangles, 1));
-  geometry.setAttribute("position", new BufferAttribute(points_mm.slice(), 3));
-  geometry.setAttribute("normal", new BufferAttribute(normal, 3));
-  return geometry;
 }

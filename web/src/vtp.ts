@@ -60,13 +60,21 @@ function arrays(text: string, part: string): string[] {
 
 const named = (array: string): string => /Name="([^"]*)"/.exec(array)?.[1] ?? "";
 
+/** Values at the points of a volume or a surface by the names of their arrays, of those that are `wanted`. */
+export async function pointArrays(content: ArrayBuffer, wanted: (name: string) => boolean): Promise<Record<string, Float32Array>> {
+  const text = new TextDecoder().decode(content);
+  if (!text.includes('header_type="UInt64"') || !text.includes("vtkZLibDataCompressor")) throw new Error("no VTK file of the service");
+  const values: Record<string, Float32Array> = {};
+  for (const array of arrays(text, "PointData")) if (wanted(named(array))) values[named(array)] = Float32Array.from(await numbers(array));
+  return values;
+}
+
 export async function readVtp(content: ArrayBuffer): Promise<VtpSurface> {
   const text = new TextDecoder().decode(content);
   if (!text.includes('header_type="UInt64"') || !text.includes("vtkZLibDataCompressor")) throw new Error("no VTP file of the service");
   const [points] = arrays(text, "Points");
   const connectivity = arrays(text, "Polys").find((array) => named(array) === "connectivity");
   if (points === undefined || connectivity === undefined) throw new Error("a VTP file without a surface");
-  const values: Record<string, Float32Array> = {};
-  for (const array of arrays(text, "PointData")) values[named(array)] = Float32Array.from(await numbers(array));
+  const values = await pointArrays(content, () => true);
   return { points_mm: Float32Array.from(await numbers(points)), triangles: Uint32Array.from(await numbers(connectivity)), values };
 }

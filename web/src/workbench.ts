@@ -3,8 +3,9 @@ import type { App } from "./app.js";
 import { bands, BANDS, css, ticks, type Scheme } from "./colours.js";
 import { button, choice, make, save, select } from "./dom.js";
 import { figure } from "./figures.js";
+import { VIEWS } from "./geometry.js";
 import { note } from "./route.js";
-import { Scene, VIEWS, type SkinLook } from "./scene.js";
+import { Scene, type SkinLook } from "./scene.js";
 
 /** A map that may colour the skin. */
 export interface SkinMap {
@@ -25,10 +26,15 @@ export class Workbench {
   private readonly viewport = make("div", { className: "viewport" });
   private readonly screen = make("div", { className: "screen" });
   readonly panel = make("div", { className: "panel" });
+  /** Over head and panel: what the answer may be trusted with. */
+  readonly strip = make("div", { className: "strip" });
   /** Over the head, below: what it is about. */
   readonly caption = make("p", { className: "caption" });
   private readonly legend = make("figure", { className: "legend", hidden: true });
   private readonly colours = make("div", { className: "row" });
+  private readonly sides = make("div", { className: "halves", hidden: true });
+  /** Where what is seen comes from, for saved pictures. */
+  provenance = "";
   private maps: SkinMap[] = [];
   private map: SkinMap | undefined;
   private range_mm = 10;
@@ -37,9 +43,9 @@ export class Workbench {
   constructor(private readonly app: App, crumbs: HTMLElement) {
     const { words } = app;
     this.scene = new Scene(this.screen, words.headLabel);
-    this.screen.append(this.legend, this.caption);
+    this.screen.append(this.sides, this.legend, this.caption);
     this.viewport.append(this.tools(), this.screen);
-    app.stage.replaceChildren(make("div", { className: "bench" }, crumbs, this.viewport, this.panel));
+    app.stage.replaceChildren(make("div", { className: "bench" }, crumbs, this.strip, this.viewport, this.panel));
     app.stage.classList.add("wide");
     addEventListener("keydown", this.keys);
   }
@@ -54,6 +60,12 @@ export class Workbench {
     const section = make("section", {}, make("h2", {}, title), ...children);
     this.panel.append(section);
     return section;
+  }
+
+  /** What the left and the right half show, or that there is one. */
+  halves(names: [string, string] | undefined): void {
+    this.sides.hidden = names === undefined;
+    this.sides.replaceChildren(...(names ?? []).map((name) => make("span", {}, name)));
   }
 
   /** Turns to the view of the address. */
@@ -147,7 +159,7 @@ export class Workbench {
   /** What is seen, with its legend, what it is and what it is not. */
   private async picture(): Promise<void> {
     const drawn = this.scene.drawNow();
-    const canvas = make("canvas", { width: drawn.width, height: drawn.height + 90 });
+    const canvas = make("canvas", { width: drawn.width, height: drawn.height + 118 });
     const pen = canvas.getContext("2d")!;
     pen.fillStyle = "#ffffff";
     pen.fillRect(0, 0, canvas.width, canvas.height);
@@ -155,8 +167,11 @@ export class Workbench {
     if (this.map !== undefined) this.legendInto(pen, drawn.height);
     pen.fillStyle = "#222222";
     pen.font = "20px sans-serif";
+    [...this.sides.children].forEach((half, at) => { pen.fillText(half.textContent ?? "", (0.22 + 0.5 * at) * canvas.width, 40); });
     pen.fillText(this.caption.textContent ?? "", 16, drawn.height + 50, canvas.width - 32);
-    pen.fillText(`facies · ${new Date().toISOString()} · ${location.hash.split("?")[0]} · ${this.app.words.notice}`, 16, drawn.height + 78, canvas.width - 32);
+    pen.font = "16px sans-serif";
+    pen.fillText(`facies · ${new Date().toISOString()} · ${location.hash.split("?")[0]}`, 16, drawn.height + 78, canvas.width - 32);
+    pen.fillText([this.provenance, this.app.words.notice].filter((part) => part !== "").join(" · "), 16, drawn.height + 106, canvas.width - 32);
     const content = await new Promise<Blob | null>((resolve) => canvas.toBlob(resolve, "image/png"));
     if (content !== null) save(content, "facies.png");
   }

@@ -1,90 +1,13 @@
 // The page as people use it, in headless Chromium, on the demo of the built program.
 import assert from "node:assert/strict";
-import { readFile, mkdir, writeFile } from "node:fs/promises";
-import { createRequire } from "node:module";
+import { readFile, writeFile } from "node:fs/promises";
 import { join } from "node:path";
-import { fileURLToPath } from "node:url";
-import { chromium } from "playwright-core";
-import { demo, guarded } from "./service.mjs";
-
-const BINARY = process.env.FACIES_BINARY;
-const CHROMIUM = process.env.FACIES_CHROMIUM ?? "/usr/bin/chromium";
-const PICTURES = process.env.FACIES_PICTURES;
-const KEY = "a-key-of-this-one-run";
-const AXE = await readFile(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
-const HEAD = fileURLToPath(new URL("../../examples/head/", import.meta.url));
-const SOFTWARE = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist"];
-/** f32 columns and positions in mm. */
-const AGREED_MM = 1e-4;
-/** For one step, on a machine that does other things too. */
-const DEADLINE_MS = 180_000;
-const WIDE = { width: 1280, height: 800 };
-
-let [passed, failed] = [0, 0];
-async function check(name, deed) {
-  try {
-    await deed();
-    passed += 1;
-    console.log(`ok ${name}`);
-  } catch (error) {
-    failed += 1;
-    console.log(`FAILED ${name}\n${error.stack ?? error}`);
-  }
-}
-
-const service = await demo(BINARY);
-const [, address, plan, caseId] = service.match;
-const browser = await chromium.launch({ executablePath: CHROMIUM, args: SOFTWARE });
-const hosts = new Set();
-const complaints = [];
-
-async function opened(size = WIDE, options = {}) {
-  const context = await browser.newContext({ viewport: size, locale: "en-GB", ...options });
-  context.setDefaultTimeout(DEADLINE_MS);
-  const page = await context.newPage();
-  page.on("request", (request) => { if (/^https?:/.test(request.url())) hosts.add(new URL(request.url()).host); });
-  page.on("console", (message) => { if (message.type() === "error") complaints.push(`${message.text()} ${message.location().url}`); });
-  page.on("pageerror", (error) => complaints.push(String(error)));
-  return page;
-}
-/** A complaint may come later than what it complains about: what a check provokes is told by its words, not by when it came. */
-const excused = [/GPU stall/];
-/** Until the address says so: it is written after a key or a click, and told to this program later still. */
-const addressed = (page, pattern, says = true) => page.waitForFunction(
-  ([source, wanted]) => new RegExp(source).test(decodeURIComponent(location.href)) === wanted, [pattern.source, says]);
-/** Opens a view, until that of before is gone: where only what is behind the # changes, it may still be there when `goto` is done. */
-async function go(page, path) {
-  await page.evaluate(() => document.querySelector("#stage")?.setAttribute("data-before", ""));
-  await page.goto(`${address}/${path}`);
-  await page.locator("#stage:not([data-before])").waitFor({ state: "attached" });
-}
-/** The processor may be busy elsewhere when the first paint is noted. */
-const painted = (page) => page.waitForFunction(() => performance.getEntriesByName("first-contentful-paint")[0]?.startTime)
-  .then((time) => time.jsonValue());
-const positions = (page) => page.evaluate(() => [...document.querySelector(".screen").scene.skinPositions_mm]);
-const planned = async (page) => { await page.locator(".told[data-apart]").waitFor(); };
-const apart = (a, b) => a.reduce((most, value, at) => Math.max(most, Math.abs(value - b[at])), 0);
-const slider = (page, segment, word) => page.locator("details.segment", { hasText: segment }).locator(`input[type=range][data-word=${word}]`);
-async function slide(page, segment, word, value) {
-  await slider(page, segment, word).fill(String(value));
-  await slider(page, segment, word).dispatchEvent("change");
-}
-const json = async (path, body) => {
-  const answer = await fetch(address + path, body === undefined ? {} : { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(body) });
-  assert(answer.ok, `${path}: ${answer.status}`);
-  return answer.json();
-};
-async function serious(page) {
-  await page.evaluate(AXE);
-  const { violations } = await page.evaluate(() => window.axe.run());
-  return violations.filter(({ impact }) => impact === "serious" || impact === "critical")
-    .map(({ id, nodes }) => `${id}: ${nodes.slice(0, 3).map(({ html }) => html).join(" | ")}`);
-}
-async function pictured(page, name) {
-  if (PICTURES === undefined) return;
-  await mkdir(PICTURES, { recursive: true });
-  await page.screenshot({ path: join(PICTURES, `${name}.png`) });
-}
+import { muscles } from "./muscles.mjs";
+import { guarded } from "./service.mjs";
+import {
+  ended, fits, BINARY, PICTURES, KEY, HEAD, AGREED_MM, check, service, browser, hosts, complaints, opened, excused, addressed, go, painted,
+  positions, planned, apart, slider, slide, json, serious, pictured, address, plan, caseId, counted,
+} from "./tools.mjs";
 
 const page = await opened();
 await check("the first thing is the list of cases, and what the program is not", async () => {
@@ -128,8 +51,8 @@ await check("a slider moves the skin as the service does, to 1e-4 mm", async () 
   const difference = apart(answer.displacement_mm.flat(), moved.map((value, at) => value - rest[at]));
   assert(answer.max_mm > 5, "something moves");
   assert(difference < AGREED_MM, `${difference} mm`);
-  await page.waitForFunction(() => Number(document.querySelector(".told[data-apart]").dataset.apart) < 1e-4);
-  await page.getByText("left out: about").waitFor();
+  await page.waitForFunction(() => Number(document.querySelector(".strip[data-apart]").dataset.apart) < 1e-4);
+  await page.locator(".trust", { hasText: "Left out by the model" }).getByText(/about \d\.\d\d mm/).waitFor();
   console.log(`   ${difference.toExponential(1)} mm from the service`);
 });
 
@@ -236,7 +159,7 @@ await check("a prediction is run, and shown before and after", async () => {
   assert.equal(shown, results.statistics.regions.chin.area.mean.toFixed(2));
   const back = await page.locator("table", { hasText: "Landmark" }).locator("tr", { hasText: "pogonion" }).locator("td").first().textContent();
   assert.equal(back, (-results.statistics.landmarks.pogonion[1]).toFixed(2));
-  await page.getByText("large-rotation").waitFor();
+  await page.getByRole("link", { name: "large-rotation" }).waitFor();
   assert.deepEqual(await serious(page), []);
 });
 
@@ -244,9 +167,64 @@ await check("the probe says how far a point moves", async () => {
   await page.keyboard.press("1");
   const box = await page.locator(".screen canvas").boundingBox();
   await page.mouse.click(box.x + box.width / 2, box.y + 0.72 * box.height);
-  await page.getByText(/Point \d+ moves by \d+\.\d\d mm/).waitFor();
+  const told = page.getByText(/Point \d+ moves by \d+\.\d\d mm/);
+  await told.waitFor();
+  const clicked = await told.textContent();
+  await page.locator(".screen canvas").focus();
+  await page.keyboard.press("Enter");
+  await page.waitForFunction((before) => document.querySelector(".panel .told").textContent !== before, clicked);
   await page.locator(".tools select").selectOption("displacement");
   await pictured(page, "result");
+});
+
+await check("before and after stand side by side under one camera", async () => {
+  // In a list of colours keys choose colours.
+  await page.locator(".screen canvas").focus();
+  await page.keyboard.press("3");
+  await page.getByText("side by side").click();
+  await addressed(page, /show=sides/);
+  const { places: halves, pixel_mm } = await page.evaluate(() => {
+    const { scene } = document.querySelector(".screen");
+    const { canvas } = scene;
+    const box = canvas.getBoundingClientRect();
+    const found = [];
+    for (let across = 10; across < box.width / 2; across += 15) {
+      for (let down = 100; down < box.height; down += 30) {
+        const hits = [0, box.width / 2].map((half) => scene.pick(new MouseEvent("click", { clientX: box.left + across + half, clientY: box.top + down })));
+        if (hits.every((hit) => hit !== undefined)) found.push(hits.map(({ point_mm }) => point_mm));
+      }
+    }
+    return { places: found, pixel_mm: 1 / scene.pixelsPerMm };
+  });
+  // Seen from the left: what is at the same place of both halves lies at the same y and z, and before and after differ along x.
+  assert(halves.length > 20, `${halves.length} places of both`);
+  // Events have whole pixels.
+  assert(halves.every(([a, b]) => Math.hypot(a[1] - b[1], a[2] - b[2]) < 1.01 * pixel_mm), "one camera for both");
+  assert(halves.some(([a, b]) => Math.abs(a[0] - b[0]) > 0.05), "two states");
+  assert.deepEqual(await serious(page), []);
+  await pictured(page, "side-by-side");
+  await page.getByText("one", { exact: true }).click();
+  await addressed(page, /show=/, false);
+});
+
+await check("what a result may be trusted with is told, and warnings show what they name", async () => {
+  const { results } = await json(`/v1/jobs/${job}`);
+  const chip = (name) => page.locator(".trust", { hasText: name });
+  await chip("Error of the mesh").getByText(`mean ${results.numerical_error_mm.mean.toFixed(2)} mm`).waitFor();
+  await chip("Left out by the model").getByText(`mean ${results.nonlinearity_mm.skin.mean.toFixed(2)} mm`).waitFor();
+  const named = page.locator(".warnings li", { hasText: "large-rotation" });
+  await named.getByRole("button", { name: /^Show / }).click();
+  const dots = await page.evaluate(() => document.querySelector(".screen").scene.pointed.group.children.length);
+  assert.equal(dots, 1, "what the warning names is marked");
+  await pictured(page, "warning-in-place");
+});
+
+await check("a report is read and saved", async () => {
+  const href = await page.getByRole("link", { name: "Read the report" }).getAttribute("href");
+  const read = await (await fetch(address + href)).text();
+  assert(read.includes("not a medical device"), "an English report");
+  const pdf = Buffer.from(await (await fetch(address + await page.getByRole("link", { name: "Report as PDF" }).getAttribute("href"))).arrayBuffer());
+  assert.equal(pdf.subarray(0, 4).toString(), "%PDF");
 });
 
 await check("a picture is saved with its legend and what it is not", async () => {
@@ -299,6 +277,12 @@ await check("a point of the skin is pulled to where it should be", async () => {
   await page.mouse.up();
   const forward = await page.locator(".target input").first().inputValue();
   assert(Number(forward) > 1, `seen from the left the front is on the left: ${forward}`);
+  await page.getByRole("button", { name: "Find the plan" }).click();
+  await page.getByRole("heading", { name: "What was found" }).waitFor();
+  const found = await page.evaluate(() => /job\/([0-9a-f-]+)/.exec(location.hash)[1]);
+  const { results } = await json(`/v1/jobs/${found}`);
+  const [target] = results.optimisation.targets;
+  assert(target.points === 1 && target.residual_mm < forward / 3, `${forward} mm ${JSON.stringify(target)}`);
 });
 
 await check("a predicted skin is compared with a real one", async () => {
@@ -347,6 +331,35 @@ await check("a case document with its files becomes a case", async () => {
   await pictured(page, "case");
 });
 
+await check("sets are named and chosen in the view, and another role is another case", async () => {
+  await page.getByText("Point at the mesh to name its sets").waitFor();
+  await page.keyboard.press("1");
+  const box = await page.locator(".screen canvas").boundingBox();
+  const [x, y] = [box.x + box.width / 2, box.y + 0.7 * box.height];
+  await page.mouse.move(x, y);
+  await page.locator(".caption", { hasText: /\(skin\)/ }).waitFor();
+  await page.mouse.click(x, y);
+  const chosen = page.locator(".sets li.chosen");
+  await chosen.waitFor();
+  const set = await chosen.getAttribute("data-set");
+  assert.equal(await page.evaluate(() => document.querySelector(".screen").scene.pointed.group.children.length), 1);
+  const before = await page.evaluate(() => location.hash);
+  await page.locator(".sets li[data-set=nose]").getByRole("combobox").selectOption("none");
+  assert.deepEqual(await serious(page), []);
+  await pictured(page, "sets");
+  await page.getByRole("button", { name: "Make a case with these roles" }).click();
+  await page.waitForFunction((old) => location.hash !== old, before);
+  await page.getByText("Point at the mesh to name its sets").waitFor();
+  const id = await page.evaluate(() => /case\/([0-9a-f-]+)/.exec(location.hash)[1]);
+  const made = (await json(`/v1/cases/${id}`)).case;
+  const old = (await json(`/v1/cases/${/case\/([0-9a-f-]+)/.exec(before)[1]}`)).case;
+  const { nose, ...others } = old.skin_regions;
+  assert(nose !== undefined && set !== null);
+  assert.deepEqual(made, { ...old, name: `${old.name} · other roles`, skin_regions: others });
+  await page.goBack();
+  await page.getByRole("heading", { name: "What the check found" }).waitFor();
+});
+
 await check("a case without a response gets one when it is planned on", async () => {
   await page.getByRole("link", { name: "Plan a movement" }).click();
   await planned(page);
@@ -354,9 +367,11 @@ await check("a case without a response gets one when it is planned on", async ()
   await page.locator(".told", { hasText: /The skin moves [1-4]\.\d\d mm at most/ }).waitFor();
 });
 
+await muscles(page);
+
 await check("jobs are listed, and studies", async () => {
   await go(page, `#/jobs`);
-  await page.getByRole("link", { name: "optimise" }).waitFor();
+  await page.getByRole("link", { name: "Plan found backwards" }).first().waitFor();
   assert.deepEqual(await serious(page), []);
   await pictured(page, "jobs");
   await page.getByRole("link", { name: "Studies" }).click();
@@ -368,6 +383,45 @@ await check("a job is cancelled", async () => {
   await go(page, `#/job/${study.id}`);
   await page.getByRole("button", { name: "Cancel" }).click();
   await page.getByText("It was cancelled.").waitFor();
+});
+
+await check("a job that failed says why, and one without a skin says what it found", async () => {
+  const spec = { kind: "predict", case: caseId, plan: { segments: [{ name: "mandible", translation_mm: [0, 6, 0] }] }, method: "fem_linear", budget: { wall_s: 1e-3 } };
+  const failed = await ended(spec);
+  assert.equal(failed.status, "failed", JSON.stringify(failed));
+  await go(page, "#/jobs");
+  await page.locator(".failed").first().getByText(failed.error.detail.slice(0, 30)).waitFor();
+  await go(page, `#/job/${failed.id}`);
+  await page.getByRole("alert").getByText(failed.error.detail.slice(0, 30)).waitFor();
+  const { items } = await json("/v1/jobs?kind=response&status=successful&limit=1");
+  await go(page, `#/job/${items[0].id}`);
+  await page.getByRole("heading", { name: "Response · done" }).waitFor();
+  assert.deepEqual(await serious(page), []);
+  await fits(page);
+});
+
+await check("results of kinds without a view are told by the names of the service", async () => {
+  const job = { id: "made-up", kind: "learn", status: "successful", message: "", progress: 100, created: "2026-01-01T00:00:00Z", warnings: [], results: {
+    files: [], learning: { method: "regression", helps: true, table: [{ method: "regression", mean_mm: 1.25 }, { method: "none", mean_mm: 1.5 }], width: { chosen_mm: 12 } } } };
+  const told = async (document) => {
+    await page.route("**/v1/jobs/made-up", (route) => route.fulfill({ json: document }));
+    await go(page, "#/cases");
+    await go(page, "#/job/made-up");
+  };
+  await told(job);
+  await page.getByRole("heading", { name: "Learning · done" }).waitFor();
+  assert.deepEqual(await page.locator("table", { hasText: "mean, mm" }).locator("td").allTextContents(), ["1.25", "1.5"]);
+  await page.getByText("chosen, mm").waitFor();
+  await page.unroute("**/v1/jobs/made-up");
+  await told({ ...job, kind: "something-new", results: { files: [], something: { depth_mm: 3 } } });
+  await page.getByRole("heading", { name: "something-new · done" }).waitFor();
+  await page.getByText("depth, mm").waitFor();
+  await page.unroute("**/v1/jobs/made-up");
+  await told({ ...job, kind: "conform", results: { files: [], conformation: { landmarks_mm: { nasion: 0.5 }, case: { units: "mm", volume: "v" } } } });
+  await page.getByRole("button", { name: "Make this case" }).waitFor();
+  await page.getByText("nasion").waitFor();
+  assert.deepEqual(await serious(page), []);
+  await page.unroute("**/v1/jobs/made-up");
 });
 
 await check("a lost connection is told, and taken up again", async () => {
@@ -382,20 +436,38 @@ await check("a lost connection is told, and taken up again", async () => {
   await page.getByRole("heading", { name: "Jobs" }).waitFor();
 });
 
+const views = { cases: "#/cases", case: `#/case/${caseId}`, plan: `${plan}?p=mandible,-4,0,0,0,0,0&view=1`, inverse: `#/case/${caseId}/inverse`,
+  compare: `#/case/${caseId}/compare?job=${job}`, result: `#/job/${job}?map=displacement&view=1&show=sides`, jobs: "#/jobs", studies: "#/studies" };
 await check("German and dark, and at 390 pixels nothing is cut off", async () => {
   const small = await opened({ width: 390, height: 844 }, { locale: "de-DE", colorScheme: "dark", reducedMotion: "reduce" });
-  await go(small, `${plan}?p=mandible,-4,0,0,0,0,0&view=1`);
-  await small.getByRole("button", { name: "Ganz vorhersagen" }).waitFor();
-  await planned(small);
-  assert.equal(await small.locator("html").getAttribute("lang"), "de");
-  assert.equal(await small.evaluate(() => document.documentElement.scrollWidth), 390);
-  assert.deepEqual(await serious(small), []);
-  await pictured(small, "plan-390-dark-german");
-  await go(small, `#/job/${job}?map=displacement&view=1`);
-  await small.getByRole("heading", { name: "Vorher und nachher" }).waitFor();
-  assert.equal(await small.evaluate(() => document.documentElement.scrollWidth), 390);
-  await pictured(small, "result-390-dark-german");
+  for (const [name, path] of Object.entries(views)) {
+    await go(small, path);
+    await small.locator(".loading").waitFor({ state: "detached" });
+    if (name === "plan") await planned(small);
+    if (name === "result") await small.getByRole("heading", { name: "Vorher und nachher" }).waitFor();
+    assert.equal(await small.locator("html").getAttribute("lang"), "de");
+    await fits(small);
+    assert.deepEqual(await serious(small), [], name);
+    await pictured(small, `${name}-390-dark-german`);
+  }
+  const moving = await small.evaluate(() => [...document.querySelectorAll("*")].filter((one) => getComputedStyle(one).transitionDuration !== "0s" || getComputedStyle(one).animationName !== "none").length);
+  assert.equal(moving, 0, "nothing moves for whoever asked for that");
   await small.context().close();
+});
+
+await check("each view by keyboard: what can be done is reached with the tab key and has a name", async () => {
+  const wide = await opened();
+  for (const [name, path] of Object.entries(views)) {
+    await go(wide, path);
+    await wide.locator(".loading").waitFor({ state: "detached" });
+    if (name === "plan") await planned(wide);
+    const lost = await wide.evaluate(() => [...document.querySelectorAll("button, a[href], input, select, textarea, summary, canvas")]
+      .filter((one) => one.checkVisibility() && !one.disabled && one.tabIndex < 0).map((one) => one.outerHTML.slice(0, 80)));
+    assert.deepEqual(lost, [], name);
+    assert.deepEqual(await serious(wide), [], name);
+    await pictured(wide, `${name}-1280`);
+  }
+  await wide.context().close();
 });
 
 await check("where keys are asked for the page asks, and keeps the key for the tab only", async () => {
@@ -429,5 +501,5 @@ await check("the browser had nothing to complain about", () => assert.deepEqual(
 
 await browser.close();
 await service.stop();
-console.log(`${passed} passed, ${failed} failed`);
-process.exitCode = failed === 0 ? 0 : 1;
+console.log(`${counted.passed} passed, ${counted.failed} failed`);
+process.exitCode = counted.failed === 0 ? 0 : 1;

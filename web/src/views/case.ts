@@ -7,6 +7,8 @@ import { address } from "../route.js";
 import { figure } from "../figures.js";
 import { Workbench } from "../workbench.js";
 import { crumbs } from "./crumbs.js";
+import { placesOf } from "./places.js";
+import { setsSection } from "./sets.js";
 
 type Fact = [string, string];
 
@@ -19,22 +21,27 @@ export async function casePage(app: App): Promise<Leave> {
   bench.panel.append(make("section", {}, make("a", { className: "button primary", href: address(["case", opened.id, "plan"]) }, words.planIt)));
   const { check } = opened.view;
   if (check !== undefined) bench.section(words.checkFound, facts(checked(app, check)));
-  bench.section(words.warnings, warnings(check?.warnings, words));
+  bench.section(words.warnings, warnings(check?.warnings, words, placesOf(words, opened, bench.scene, () => ({}))));
+  const place = bench.section(words.sets);
   bench.section(words.classes, held(app, opened));
   bench.section(words.meshes, ...(opened.view.meshes ?? []).map((mesh) => facts(meshFacts(app, mesh))));
   bench.section(words.document, make("details", {}, make("summary", {}, "JSON"), make("pre", {}, make("code", {}, JSON.stringify(opened.document, null, 2)))));
   try {
-    await Promise.all([boundary(app, opened, bench), addBones(service, opened, bench.scene)]);
+    const [nodes] = await Promise.all([boundary(app, opened, bench), addBones(service, opened, bench.scene)]);
     bench.start();
+    await setsSection(app, opened, bench, place, nodes);
   } catch (error) {
     bench.panel.prepend(refusal(error, words));
   }
   return () => bench.leave();
 }
 
-async function boundary({ service }: App, { document, frame }: Opened, bench: Workbench): Promise<void> {
-  bench.scene.showSkin(await meshOf(service, document.volume!, frame));
+/** Draws the boundary of the mesh; its nodes, where the file says them. */
+async function boundary({ service }: App, { document, frame }: Opened, bench: Workbench): Promise<Uint32Array | undefined> {
+  const shape = await meshOf(service, document.volume!, frame);
+  bench.scene.showSkin(shape);
   bench.offer([]);
+  return shape.node_ids;
 }
 
 function facts(list: Fact[]): HTMLElement {

@@ -15,7 +15,7 @@ export async function cases(app: App): Promise<Leave> {
     const name = document.name ?? one.id.slice(0, 8);
     return make("li", { className: "card" },
       make("h2", {}, make("a", { href: address(["case", one.id]) }, name)),
-      make("p", { className: "fine" }, `${one.state} · ${when(one.created)}`),
+      make("p", { className: "fine" }, `${words.states[one.state] ?? one.state} · ${when(one.created)}`),
       check !== undefined && make("p", {}, words.size(check.nodes.toLocaleString(), check.cells.toLocaleString())
         + ` · ${(document.segments ?? []).map((segment) => segment.name).join(", ")}`),
       (check?.warnings.length ?? 0) > 0 && make("p", { className: "warned" }, `${words.warnings}: ${check!.warnings.length}`),

@@ -8,6 +8,7 @@ import { note } from "../route.js";
 import { readVtp } from "../vtp.js";
 import { Workbench } from "../workbench.js";
 import { crumbs } from "./crumbs.js";
+import { kindOf } from "./plain.js";
 import { comparisonFacts, histogram } from "./distances.js";
 
 export async function comparePage(app: App): Promise<Leave> {
@@ -50,7 +51,7 @@ function form(app: App, opened: Opened, bench: Workbench, predictions: Job[]): H
       said.replaceChildren();
     })().catch((error: unknown) => said.replaceChildren(refusal(error, words)));
   }, { className: "primary" });
-  const called = (one: Job) => `${one.kind} ${when(one.created)}`;
+  const called = (one: Job) => `${kindOf(words, one.kind)} ${when(one.created)}`;
   return make("div", { className: "stack" },
     select(words.chooseJob, predictions.map((one) => [one.id, called(one)] as const), job, (value) => { job = value; }),
     make("label", { className: "field" }, make("span", {}, words.actual), file),

@@ -16,7 +16,7 @@ export function comparisonFacts({ words }: App, comparison: Documents["Compariso
     : `${method}, ${words.turned} ${rotation_deg.toFixed(2)}°, ${words.shifted} ${mm(Math.hypot(...displacement_mm))} mm`
       + (rms_mm === undefined || rms_mm === null ? "" : `, ${words.residual} ${mm(rms_mm)} mm`);
   return make("div", {},
-    table(words.histogram, ["", words.mean, words.p95, words.max, "< 1 mm", "< 2 mm", "< 3 mm"],
+    table(`${words.histogram}, mm`, ["", words.mean, words.p95, words.max, "< 1 mm", "< 2 mm", "< 3 mm"],
       [row(words.whole, comparison.both), ...regions]),
     make("p", {}, `${words.registration}: ${registered}`));
 }

@@ -3,6 +3,7 @@ import type { Documents, Job } from "../api.js";
 import type { App } from "../app.js";
 import { make, table } from "../dom.js";
 import type { Opened } from "../loading.js";
+import { planState } from "../plan.js";
 import { address } from "../route.js";
 import { mm } from "../figures.js";
 
@@ -18,5 +19,5 @@ export function foundFacts({ words, route }: App, job: Job, opened: Opened, foun
     table(words.movement, ["", "mm, °", words.standardError], [...numbers, ...stopped]),
     table(words.targets, ["", `${words.left_} mm`, words.max], targets),
     loose.length > 0 && make("div", { className: "warned" }, words.notDetermined, make("ul", {}, ...loose)),
-    make("a", { className: "button primary", href: address(["case", opened.id, "plan"], { p: route.state.get("p") ?? undefined }), data: { job: job.id } }, words.openPlan));
+    make("a", { className: "button primary", href: address(["case", opened.id, "plan"], planState(route.state)), data: { job: job.id } }, words.openPlan));
 }

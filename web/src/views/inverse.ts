@@ -11,6 +11,7 @@ import { crumbs } from "./crumbs.js";
 /** Where a point is wanted: forward, up and left of where it is, in mm; null is free. */
 interface Target {
   label: string;
+  /** Of the case; without one it is the point of the skin at `at_mm`. */
   landmark?: string;
   at_mm: Triple;
   by: [number | null, number | null, number | null];
@@ -21,6 +22,8 @@ type Bounds = Record<string, Record<MotionName, number>>;
 
 const COLOUR = 0xb5461d;
 const STARTING_BOUND_MM = 10;
+/** A pull this near to a target takes that. */
+const GRIP_MM = 4;
 
 export async function inversePage(app: App): Promise<Leave> {
   const opened = await openCase(app.service, app.route.path[1]!);
@@ -43,6 +46,8 @@ export async function inversePage(app: App): Promise<Leave> {
 
 class Inverse {
   private readonly targets: Target[] = [];
+  /** How many points of the skin were named. */
+  private points = 0;
   private readonly bounds: Bounds;
   private readonly list = make("div", {});
   private readonly said = make("div", { role: "status" });
@@ -60,7 +65,8 @@ class Inverse {
     });
     const pulling = choice(words.dragPoint, [["turn", words.turning], ["pull", words.pulling]] as const, "turn",
       (value) => bench.scene.turnable(value === "turn"));
-    bench.section(words.targets, make("p", {}, words.inverseWhy), pulling, make("p", { className: "fine" }, words.dragHint), add, this.list);
+    bench.section(words.targets, make("p", {}, words.inverseWhy), pulling, make("p", { className: "fine" }, words.dragHint),
+      make("div", { className: "row" }, add, button(words.addPoint, () => this.addMiddle())), this.list);
     bench.section(words.bounds, ...Object.keys(this.bounds).map((name) => this.boundsOf(name)));
     bench.section(words.find, button(words.find, () => void this.find(), { className: "primary" }), this.said);
     this.draw();
@@ -81,8 +87,7 @@ class Inverse {
       const hit = this.bench.scene.pick(event);
       if (hit === undefined) return;
       canvas.setPointerCapture(event.pointerId);
-      const at_mm = [0, 1, 2].map((axis) => this.loaded.rest.points_mm[3 * hit.node + axis]!) as Triple;
-      pulled = this.nearTarget(at_mm);
+      pulled = this.targetAt(this.restAt(hit.node));
     });
     canvas.addEventListener("pointermove", (event) => {
       if (pulled === undefined) return;
@@ -97,20 +102,27 @@ class Inverse {
     });
   }
 
-  /** The target of the landmark that is nearest to a point: the service takes landmarks and sets of nodes, no single points. */
-  private nearTarget(at_mm: Triple): Target | undefined {
-    const marks = Object.entries(this.opened.document.landmarks ?? {}) as [string, Triple][];
+  /** The target at a point of the skin: one that is there already, or a new one. */
+  private targetAt(at_mm: Triple): Target {
     const away = (place: Triple) => Math.hypot(...place.map((value, axis) => value - at_mm[axis]!));
-    const nearest = marks.reduce<[string, Triple] | undefined>((best, mark) => (best === undefined || away(mark[1]) < away(best[1]) ? mark : best), undefined);
-    if (nearest === undefined) {
-      this.said.textContent = this.app.words.noLandmarks;
-      return undefined;
-    }
-    const known = this.targets.find(({ landmark }) => landmark === nearest[0]);
+    const known = this.targets.find((target) => away(target.at_mm) < GRIP_MM);
     if (known !== undefined) return known;
-    const target: Target = { label: nearest[0], landmark: nearest[0], at_mm: nearest[1], by: [0, 0, null], sigma_mm: 1 };
+    this.points += 1;
+    const target: Target = { label: `${this.app.words.point} ${this.points}`, at_mm, by: [0, 0, null], sigma_mm: 1 };
     this.targets.push(target);
     return target;
+  }
+
+  /** For whoever has no pointer: the point of the skin in the middle of the view. */
+  private addMiddle(): void {
+    const hit = this.bench.scene.middle();
+    if (hit === undefined) this.said.textContent = this.app.words.noSkinThere;
+    else this.targetAt(this.restAt(hit.node));
+    this.draw();
+  }
+
+  private restAt(node: number): Triple {
+    return [0, 1, 2].map((axis) => this.loaded.rest.points_mm[3 * node + axis]!) as Triple;
   }
 
   private draw(): void {
@@ -140,10 +152,11 @@ class Inverse {
   private boundsOf(name: string): HTMLElement {
     const { words } = this.app;
     const bound = this.bounds[name]!;
+    const unit = (word: MotionName) => ((TRANSLATIONS as readonly string[]).includes(word) ? "mm" : "°");
     const fields = (Object.keys(bound) as MotionName[]).map((word) => {
-      const input = make("input", { type: "number", min: "0", step: "0.5", value: String(bound[word]), aria: { label: `${name} ${words[word]} ±` } });
+      const input = make("input", { type: "number", min: "0", step: "0.5", value: String(bound[word]), aria: { label: `${name} ${words[word]} ± ${unit(word)}` } });
       input.addEventListener("input", () => { bound[word] = Number.isFinite(input.valueAsNumber) ? Math.abs(input.valueAsNumber) : 0; });
-      return make("label", { className: "field" }, make("span", {}, `${words[word]} ±`), input);
+      return make("label", { className: "field" }, make("span", {}, `${words[word]} ± ${unit(word)}`), input);
     });
     return make("details", { className: "segment", open: true }, make("summary", {}, name), make("div", { className: "bounds" }, ...fields));
   }
@@ -159,12 +172,11 @@ class Inverse {
   }
 
   private spec(frame: FrameName): object {
-    const targets = this.targets.map(({ landmark, by, sigma_mm }) => ({ landmark, displacement_mm: inAxes(by, frame), sigma_mm }));
+    const targets = this.targets.map(({ landmark, at_mm, by, sigma_mm }) => ({ ...(landmark === undefined ? { point_mm: at_mm } : { landmark }), displacement_mm: inAxes(by, frame), sigma_mm }));
     const bounds = Object.fromEntries(this.loaded.description.segments.map(({ name, centre_mm }) => [name, interval(this.bounds[name]!, centre_mm as Triple, frame)]));
     return { kind: "optimise", case: this.opened.id, targets, bounds, outputs: ["skin.vtp", "skin.glb"] };
   }
 }
-
 
 /** How far a segment may go, as the service takes it. */
 function interval(bound: Record<MotionName, number>, centre_mm: Triple, frame: FrameName): object {

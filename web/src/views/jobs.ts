@@ -1,9 +1,10 @@
 // Lists of jobs and of studies.
-import type { Documents, Job } from "../api.js";
+import type { Case, Documents, Job } from "../api.js";
 import { refusal, type App, type Leave } from "../app.js";
 import { button, make, scrolling, table } from "../dom.js";
 import { address } from "../route.js";
 import { mm, when } from "../figures.js";
+import { kindOf, statusOf } from "./plain.js";
 
 /** Jobs under way are looked at again after so long, in ms. */
 const AGAIN = 2000;
@@ -15,12 +16,14 @@ export async function jobs(app: App): Promise<Leave> {
   let timer: ReturnType<typeof setTimeout> | undefined;
   const said = make("div", {});
   const body = make("tbody", {});
+  const cases = await service.list<Case>("/v1/cases").catch((): Case[] => []);
+  const names = new Map(cases.map(({ id, case: document }) => [id, document.name ?? id.slice(0, 8)]));
   const row = (job: Job) => {
     const cancel = button(words.cancel, () => { service.ask("DELETE", `/v1/jobs/${job.id}`).then(draw).catch((error: unknown) => said.replaceChildren(refusal(error, words))); });
     const working = WORKING.includes(job.status);
-    const bar = make("progress", { max: 100, value: job.progress, ariaLabel: `${job.kind} ${words.progress}` });
-    return make("tr", {}, make("th", { scope: "row" }, make("a", { href: address(["job", job.id]) }, job.kind)),
-      make("td", {}, job.status), make("td", {}, working ? bar : job.error?.type ?? ""),
+    const bar = make("progress", { max: 100, value: job.progress, ariaLabel: `${kindOf(words, job.kind)} ${words.progress}` });
+    return make("tr", {}, make("th", { scope: "row" }, make("a", { href: address(["job", job.id]) }, kindOf(words, job.kind))),
+      make("td", {}, names.get(job.case ?? "") ?? ""), make("td", {}, statusOf(words, job.status)), make("td", { className: "detail" }, working ? bar : failure(job)),
       make("td", {}, when(job.created)), make("td", {}, working ? cancel : ""));
   };
   const draw = async () => {
@@ -32,10 +35,15 @@ export async function jobs(app: App): Promise<Leave> {
     if (list.some((job) => WORKING.includes(job.status))) timer = setTimeout(() => void draw().catch(() => {}), AGAIN);
   };
   await draw();
-  const head = [words.kind, words.status, words.progress, words.created, ""].map((text) => make("th", { scope: "col" }, text));
+  const head = [words.kind, words.overview, words.status, words.progress, words.created, ""].map((text) => make("th", { scope: "col" }, text));
   stage.replaceChildren(make("h1", {}, words.jobs), said, make("div", { className: "card" },
-    scrolling(words.jobs, make("table", {}, make("thead", {}, make("tr", {}, ...head)), body))));
+    scrolling(words.jobs, make("table", { className: "listed" }, make("thead", {}, make("tr", {}, ...head)), body))));
   return () => { left = true; clearTimeout(timer); };
+}
+
+/** Why a job failed, in words. */
+function failure({ error }: Job): HTMLElement | string {
+  return error === undefined || error === null ? "" : make("span", { className: "failed" }, `${error.detail} `, make("a", { href: `/errors#${error.type}`, className: "code" }, error.type));
 }
 
 export async function studies(app: App): Promise<Leave> {
@@ -45,7 +53,7 @@ export async function studies(app: App): Promise<Leave> {
   const open = (job: Job) => void report(app, job, shown).catch((error: unknown) => shown.replaceChildren(refusal(error, words)));
   const row = (job: Job) => make("li", { className: "card" },
     make("h2", {}, when(job.created)),
-    make("p", {}, `${job.status}${job.results?.study === undefined ? "" : ` · ${words.verdict}: ${job.results.study.verdict.outcome}`}`),
+    make("p", {}, `${statusOf(words, job.status)}${job.results?.study === undefined ? "" : ` · ${words.verdict}: ${job.results.study.verdict.outcome}`}`),
     ...(job.status === "successful" ? [button(words.report, () => open(job))] : []));
   stage.replaceChildren(make("h1", {}, words.studies),
     list.length === 0 ? make("p", {}, words.noStudies) : make("ul", { className: "cards" }, ...list.map(row)), shown);

@@ -2,6 +2,7 @@
 import { make } from "../dom.js";
 import { ROTATIONS, TRANSLATIONS, type FrameName, type Motion, type MotionName } from "../frame.js";
 import type { Plan } from "../plan.js";
+import { toldInner } from "./inner.js";
 import type { Words } from "../words/en.js";
 
 const MOST_MM = 15;
@@ -46,10 +47,10 @@ export function movements(
 
 /** A plan in a line. */
 export function told(plan: Plan, words: Words): string {
-  const parts = Object.entries(plan).map(([name, motion]) => {
+  const parts = Object.entries(plan.segments).map(([name, motion]) => {
     const moved = Object.entries(motion).filter(([, value]) => value !== 0);
     const text = moved.map(([word, value]) => `${words[word as MotionName].toLowerCase()} ${Number(value.toFixed(2))}`).join(", ");
     return text === "" ? "" : `${name} ${text}`;
   });
-  return parts.filter((part) => part !== "").join("; ") || "–";
+  return [...parts.filter((part) => part !== ""), ...toldInner(plan.inner, words)].join("; ") || words.atRest;
 }

@@ -5,14 +5,19 @@ import { button, make, save, select } from "../dom.js";
 import { movement, still, type Motion, type MotionName } from "../frame.js";
 import { addBones, buildResponse, openCase, responseOf, type LoadedResponse, type Opened } from "../loading.js";
 import { matrix } from "../matrix.js";
-import { atRest, document as planDocument, History, read, readPivots, written, type Pivots, type Plan } from "../plan.js";
+import { INNER_KINDS, innerFactors, type InnerKind } from "../columns.js";
+import { atRest, document as planDocument, fromDocument, History, planState, read, readPivots, withInner, written, type Pivots, type Plan } from "../plan.js";
 import { coefficients, lengths, SkinSum } from "../response.js";
 import { address, note } from "../route.js";
 import { mm } from "../figures.js";
 import { Workbench } from "../workbench.js";
 import { crumbs } from "./crumbs.js";
+import { innerSliders, type InnerSliders } from "./inner.js";
 import { movements, told, type Movements } from "./movements.js";
 import { savedPlans } from "./plans.js";
+import { placesOf } from "./places.js";
+import { drawTrust } from "./trust.js";
+import { appliedLines } from "./trusted.js";
 
 /** The service is asked what is left out once nothing has moved for so long, in ms. */
 const IDLE = 350;
@@ -37,16 +42,17 @@ const isKeyAsked = (error: unknown) => (error as { problem?: { status?: number }
 class Planning {
   private loaded!: LoadedResponse;
   private sum!: SkinSum;
-  private plan: Plan = {};
+  private plan: Plan = atRest([]);
   private pivots: Pivots = {};
   private history!: History<Plan>;
   private readonly controls = new Map<string, Movements>();
   private readonly undoButton = button("", () => this.step("undo"), { className: "icon" });
   private readonly redoButton = button("", () => this.step("redo"), { className: "icon" });
   private readonly told = make("div", { className: "told", role: "status" });
-  private readonly checked = make("div", { className: "told fine" });
+  private readonly warned = make("div");
   private readonly order = make("div", { className: "row" });
   private readonly segments = make("div", {});
+  private inner: InnerSliders | undefined;
   private asking: ReturnType<typeof setTimeout> | undefined;
   private asked = 0;
   private model = "auto";
@@ -58,20 +64,20 @@ class Planning {
     const { words } = app;
     const bones = addBones(app.service, opened, bench.scene);
     await this.load();
-    this.plan = read(app.route.state.get("p") ?? "", this.names);
+    this.plan = this.known(read(planState(app.route.state), this.names));
     this.history = new History(this.plan);
     this.undoButton.textContent = `↶ ${words.undo}`;
     this.redoButton.textContent = `↷ ${words.redo}`;
     bench.section(words.plan,
       opened.frame === "unspecified" && make("p", { className: "warned" }, words.unspecifiedFrame),
       make("div", { className: "row" }, this.undoButton, this.redoButton, button(words.reset, () => this.set(atRest(this.names)))),
-      this.told, this.checked, this.order, this.segments);
+      this.told, this.warned, this.segments, this.order);
     this.drawSegments();
     bench.section(words.predict, this.prediction());
     const saved = bench.section(words.savedPlans);
     saved.append(await savedPlans(app, opened, {
-      now: () => planDocument(this.plan, this.pivots, opened.frame), pivots: () => this.pivots,
-      load: (plan) => this.set(plan), called: (plan) => told(plan, words), compare: (plan) => this.differenceTo(plan),
+      now: () => planDocument(this.plan, this.pivots, opened.frame), 
+      load: (plan) => this.set(plan), read: (stored) => this.readable(stored), called: (plan) => told(plan, words), compare: (plan) => this.differenceTo(plan),
     }));
     bench.start();
     bench.canvasKeys((event) => this.pressed(event));
@@ -91,7 +97,7 @@ class Planning {
     wait.remove();
     this.sum = new SkinSum(this.loaded.columns);
     const centres = this.loaded.description.segments.map(({ name, centre_mm }) => [name, centre_mm as Triple] as const);
-    this.pivots = { ...Object.fromEntries(centres), ...readPivots(app.route.state.get("p") ?? "") };
+    this.pivots = { ...Object.fromEntries(centres), ...readPivots(planState(app.route.state)) };
     bench.scene.showSkin(this.loaded.rest);
     const { words } = app;
     bench.offer([
@@ -105,8 +111,10 @@ class Planning {
   private drawOrder(): void {
     const { words } = this.app;
     const second = this.loaded.columns.second !== undefined;
+    const inside = this.loaded.columns.inner.length > 0;
     this.order.replaceChildren(make("span", { className: "badge" }, second ? words.order2 : words.order1),
-      second ? "" : button(words.second, () => void this.addSecond(), { title: words.secondWhy }));
+      inside ? make("span", { className: "fine" }, words.secondNotInside)
+        : second ? "" : button(words.second, () => void this.addSecond(), { title: words.secondWhy }));
   }
 
   private async addSecond(): Promise<void> {
@@ -115,6 +123,7 @@ class Planning {
       const pivots = this.pivots;
       await this.load();
       this.pivots = pivots;
+      this.drawSegments();
       this.moveAll();
     } catch (error) {
       this.order.append(refusal(error, this.app.words));
@@ -125,8 +134,10 @@ class Planning {
     const { words } = this.app;
     const landmarks = Object.entries(this.opened.document.landmarks ?? {});
     const open = this.app.route.state.get("segment");
+    this.inner = innerSliders(words, this.loaded.columns.inner, this.plan.inner,
+      { moving: (kind, name, value) => this.pulling(kind, name, value), moved: () => this.moved() });
     this.segments.replaceChildren(...this.names.map((name, at) => {
-      const control = movements(words, name, this.opened.frame, this.plan[name]!,
+      const control = movements(words, name, this.opened.frame, this.plan.segments[name]!,
         (word, value) => this.moving(name, word, value), () => this.moved());
       this.controls.set(name, control);
       const centre = this.loaded.description.segments[at]!.centre_mm as Triple;
@@ -135,17 +146,48 @@ class Planning {
         this.pivots[name] = mark === "" ? centre : landmarks.find(([called]) => called === mark)![1] as Triple;
         this.moveOne(name);
         this.after();
-        note({ p: written(this.plan, this.pivots) });
+        note(written(this.plan, this.pivots));
       });
       return make("details", { className: "segment", open: open === null ? at < 2 : open === name },
         make("summary", {}, name), control.element, about);
-    }));
+    }), ...(this.inner === undefined ? [] : [this.inner.element]));
+  }
+
+  /** Without growth and muscles that the response has no columns of; which these were is said. */
+  private known(plan: Plan): Plan {
+    const missing = this.missing(plan);
+    if (missing.length === 0) return plan;
+    const names = missing.map(([, name]) => name).join(", ");
+    this.bench.panel.prepend(make("div", { className: "refusal", role: "alert" }, this.app.words.notInResponse(names)));
+    return missing.reduce((known, [kind, name]) => withInner(known, kind, name, 0), plan);
+  }
+
+  private missing(plan: Plan): (readonly [InnerKind, string])[] {
+    const { columns } = this.loaded;
+    return INNER_KINDS.flatMap((kind) => Object.keys(plan.inner[kind])
+      .filter((name) => !columns.inner.some((column) => column.kind === kind && column.name === name)).map((name) => [kind, name] as const));
+  }
+
+  /** What the sliders can show of a plan of the service. */
+  private readable(stored: Documents["PlanDocument"]): Plan | undefined {
+    const plan = fromDocument(stored, this.pivots, this.opened.frame);
+    return plan !== undefined && this.missing(plan).length === 0 ? plan : undefined;
+  }
+
+  /** A muscle or growth is at another amount. */
+  private pulling(kind: InnerKind, name: string, value: number): void {
+    const begin = performance.now();
+    this.plan = withInner(this.plan, kind, name, value);
+    this.sum.pull(innerFactors(this.loaded.columns.inner, this.plan.inner));
+    this.bench.scene.moveSkin(this.sum.displacement_mm);
+    this.after();
+    performance.measure("slider", { start: begin });
   }
 
   private moving(name: string, word: MotionName, value: number): void {
     const begin = performance.now();
-    const motion: Motion = { ...(this.plan[name] ?? still()), [word]: value };
-    this.plan = { ...this.plan, [name]: motion };
+    const motion: Motion = { ...(this.plan.segments[name] ?? still()), [word]: value };
+    this.plan = { ...this.plan, segments: { ...this.plan.segments, [name]: motion } };
     this.moveOne(name);
     this.after();
     // For whoever wants to know what a step of a slider takes.
@@ -155,14 +197,15 @@ class Planning {
   /** A slider was let go. */
   private moved(): void {
     this.history.note(this.plan);
-    note({ p: written(this.plan, this.pivots) });
+    note(written(this.plan, this.pivots));
     this.drawSteps();
     announce(this.told.textContent ?? "");
   }
 
   private set(plan: Plan): void {
-    this.plan = plan;
-    for (const [name, control] of this.controls) control.show(plan[name] ?? still());
+    this.plan = this.known(plan);
+    for (const [name, control] of this.controls) control.show(this.plan.segments[name] ?? still());
+    this.inner?.show(this.plan.inner);
     this.moveAll();
     this.moved();
   }
@@ -175,6 +218,7 @@ class Planning {
 
   private moveAll(): void {
     for (const name of this.names) this.moveOne(name, false);
+    this.sum.pull(innerFactors(this.loaded.columns.inner, this.plan.inner));
     this.bench.scene.moveSkin(this.sum.displacement_mm);
     this.after();
     this.drawSteps();
@@ -182,7 +226,7 @@ class Planning {
 
   /** One segment and the skin with it. */
   private moveOne(name: string, draw = true): void {
-    const motion = this.plan[name] ?? still();
+    const motion = this.plan.segments[name] ?? still();
     const pivot_mm = this.pivots[name]!;
     const at = this.names.indexOf(name);
     const centre_mm = this.loaded.description.segments[at]!.centre_mm as Triple;
@@ -203,7 +247,7 @@ class Planning {
 
   /** What the answer leaves out, and that the service says the same. */
   private async ask(): Promise<void> {
-    const { service, words } = this.app;
+    const { app: { service, words }, bench } = this;
     const turn = (this.asked += 1);
     const here = this.sum.displacement_mm.slice();
     const plan = planDocument(this.plan, this.pivots, this.opened.frame);
@@ -212,17 +256,13 @@ class Planning {
       const answer = await service.post<Documents["AppliedDocument"]>(path, { plan });
       if (turn !== this.asked) return;
       const apart = here.reduce((most, value, at) => Math.max(most, Math.abs(value - answer.displacement_mm[Math.floor(at / 3)]![at % 3]!)), 0);
-      const agrees = apart <= AGREED_MM;
-      const left = answer.nonlinearity_estimate_mm;
-      const within = answer.within_linear_range && left !== undefined;
-      this.checked.replaceChildren(
-        make("p", { className: within ? "" : "warned" }, within ? words.leftOut(mm(left)) : words.outside),
-        answer.second_order_mm === undefined || answer.second_order_mm === null ? "" : make("p", {}, words.secondAdds(mm(answer.second_order_mm))),
-        make("p", { className: agrees ? "" : "warned" }, (agrees ? words.agrees : words.disagrees)(apart.toExponential(0))),
-        answer.warnings.length === 0 ? "" : warnings(answer.warnings, words));
-      this.checked.dataset.apart = String(apart);
+      // Whoever has not moved anything yet knows that.
+      const told = answer.warnings.filter(({ code }) => code !== "nothing-moves");
+      drawTrust(bench.strip, words, appliedLines(words, { ...answer, warnings: told }, { apart, most: AGREED_MM }));
+      this.warned.replaceChildren(told.length === 0 ? "" : warnings(told, words, placesOf(words, this.opened, this.bench.scene, () => ({}))));
+      bench.strip.dataset.apart = String(apart);
     } catch (error) {
-      if (turn === this.asked) this.checked.replaceChildren(refusal(error, words));
+      if (turn === this.asked) { bench.strip.replaceChildren(); this.warned.replaceChildren(refusal(error, words)); };
     }
   }
 
@@ -237,7 +277,7 @@ class Planning {
         outputs: ["skin.vtp", "skin.glb"], ...(this.model === "auto" ? {} : { method: this.model }),
       };
       service.post<Documents["StatusInfo"]>("/v1/jobs", spec).then(
-        ({ id }) => { location.hash = address(["job", id], { p: written(this.plan, this.pivots) }); },
+        ({ id }) => { location.hash = address(["job", id], written(this.plan, this.pivots)); },
         (error: unknown) => { predict.disabled = false; said.replaceChildren(refusal(error, words)); });
     }, { className: "primary" });
     const glb = button(words.glb, () => void this.saveGlb().catch((error: unknown) => said.replaceChildren(refusal(error, words))));
@@ -259,8 +299,9 @@ class Planning {
     const other = new SkinSum(this.loaded.columns);
     this.names.forEach((name, at) => {
       const centre_mm = this.loaded.description.segments[at]!.centre_mm as Triple;
-      other.move(at, coefficients({ ...movement(plan[name] ?? still(), this.opened.frame), pivot_mm: this.pivots[name]!, centre_mm }));
+      other.move(at, coefficients({ ...movement(plan.segments[name] ?? still(), this.opened.frame), pivot_mm: this.pivots[name]!, centre_mm }));
     });
+    other.pull(innerFactors(this.loaded.columns.inner, plan.inner));
     const { rest } = this.loaded;
     this.bench.scene.overlay({ ...rest, points_mm: rest.points_mm.map((value, at) => value + other.displacement_mm[at]!) });
     const apart = lengths(other.displacement_mm.map((value, at) => value - this.sum.displacement_mm[at]!));

@@ -4,12 +4,13 @@ import { refusal, type App } from "../app.js";
 import { button, make } from "../dom.js";
 import { when } from "../figures.js";
 import type { Opened } from "../loading.js";
-import { fromDocument, type Pivots, type Plan } from "../plan.js";
+import type { Plan } from "../plan.js";
 
 type Stored = Documents["PlanView"];
 interface Planner {
   now: () => Documents["PlanDocument"];
-  pivots: () => Pivots;
+  /** As far as sliders can show it. */
+  read: (stored: Stored["plan"]) => Plan | undefined;
   load: (plan: Plan) => void;
   /** A plan in a line. */
   called: (plan: Plan) => string;
@@ -28,7 +29,7 @@ export async function savedPlans(app: App, opened: Opened, planner: Planner): Pr
     list.replaceChildren(...(plans.length === 0 ? [make("li", { className: "fine" }, words.noPlans)] : plans.map(row)));
   };
   const row = (stored: Stored) => {
-    const plan = fromDocument(stored.plan, planner.pivots(), opened.frame);
+    const plan = planner.read(stored.plan);
     const remove = () => service.ask("DELETE", `${path}/${stored.id}`, undefined, { "If-Match": "*" }).then(draw, tell);
     const compare = button(words.compareWith, () => {
       const on = compare.getAttribute("aria-pressed") !== "true";

@@ -2,20 +2,28 @@
 import type { Documents, Job, Triple } from "../api.js";
 import { readGlb, type Surface } from "../api.js";
 import { announce, ProgressLine, refusal, warnings, type App, type Leave } from "../app.js";
-import { button, choice, make, save, table } from "../dom.js";
+import { button, choice, make } from "../dom.js";
 import { inWords, still } from "../frame.js";
 import { addBones, openCase, type Opened } from "../loading.js";
 import { matrix } from "../matrix.js";
-import { fromDocument, read, readPivots, written, type Plan, type Pivots } from "../plan.js";
+import { fromDocument, PLAN_STATE, planState, read, readPivots, written, type Plan, type Pivots } from "../plan.js";
 import { address, note } from "../route.js";
-import type { Shape } from "../scene.js";
+import type { Hit, Shape } from "../scene.js";
 import { readVtp } from "../vtp.js";
 import { mm, signed } from "../figures.js";
 import { Workbench, type SkinMap } from "../workbench.js";
 import { crumbs } from "./crumbs.js";
 import { foundFacts } from "./found.js";
 import { comparisonFacts } from "./distances.js";
+import { fileList } from "./files.js";
+import { told } from "./movements.js";
+import { cephalometry, landmarks, provenance, regions, type Shown } from "./numbers.js";
+import { kindOf, plainResult, statusOf } from "./plain.js";
+import { placesOf, type Parts } from "./places.js";
 import { profile } from "./profile.js";
+import { reportLinks } from "./reports.js";
+import { drawTrust } from "./trust.js";
+import { resultLines } from "./trusted.js";
 
 const WORKING = ["accepted", "running"];
 
@@ -26,13 +34,12 @@ export async function resultPage(app: App): Promise<Leave> {
   if (WORKING.includes(job.status)) job = await follow(app, job, () => left);
   if (left) return () => {};
   if (job.status !== "successful") {
-    app.stage.replaceChildren(make("h1", {}, `${job.kind} · ${job.status}`), ended(app, job), backLink(app, job));
+    app.stage.replaceChildren(make("h1", {}, `${kindOf(app.words, job.kind)} · ${statusOf(app.words, job.status)}`), ended(app, job), backLink(app, job));
     return () => {};
   }
   const files = job.results?.files.map(({ name }) => name) ?? [];
   if (!files.includes("skin.glb")) {
-    app.stage.replaceChildren(make("h1", {}, `${job.kind} · ${job.status}`), make("p", {}, app.words.noSkin),
-      ...(job.results?.comparison === undefined ? [] : [comparisonFacts(app, job.results.comparison)]), fileList(app, job));
+    app.stage.replaceChildren(...plainResult(app, job));
     return () => { left = true; };
   }
   const result = new Result(app, job);
@@ -47,7 +54,7 @@ async function follow(app: App, job: Job, left: () => boolean): Promise<Job> {
     text: words.cancel, clicked: () => void service.ask("DELETE", `/v1/jobs/${job.id}`).catch(() => {}),
   });
   line.tell(job);
-  stage.replaceChildren(make("h1", {}, `${job.kind}`), make("div", { className: "card" }, line.element));
+  stage.replaceChildren(make("h1", {}, kindOf(words, job.kind)), make("div", { className: "card" }, line.element));
   announce(words.running);
   for await (const event of service.events(job.id)) {
     if (left() || !line.element.isConnected) break;
@@ -65,14 +72,7 @@ function ended({ words }: App, job: Job): HTMLElement {
 
 function backLink({ words, route }: App, job: Job): HTMLElement {
   const path = job.case === undefined ? ["cases"] : ["case", job.case, "plan"];
-  return make("a", { className: "button", href: address(path, { p: route.state.get("p") ?? undefined }) }, words.backToPlan);
-}
-
-export function fileList({ service, words }: App, job: Job): HTMLElement {
-  const row = ({ name, bytes, media_type }: Documents["FileDocument"]) => make("li", {}, button(name, () => {
-    void service.file(job.id, name).then((content) => save(new Blob([content], { type: media_type }), name));
-  }), make("span", { className: "fine" }, ` ${(bytes / 1024).toFixed(0)} KiB`));
-  return make("section", {}, make("h2", {}, words.files), make("ul", { className: "plans" }, ...(job.results?.files ?? []).map(row)));
+  return make("a", { className: "button", href: address(path, planState(route.state)) }, words.backToPlan);
 }
 
 class Result {
@@ -84,6 +84,7 @@ class Result {
   private plan: Plan | undefined;
   private pivots: Pivots = {};
   private share = 1;
+  private readonly parts: Parts = {};
 
   constructor(private readonly app: App, private readonly job: Job) {}
 
@@ -99,8 +100,9 @@ class Result {
     this.bench.scene.showSkin(this.before);
     this.bench.scene.moveSkin(this.displacement_mm);
     this.knowPlan();
-    const left = await this.leftOut();
-    this.bench.offer(this.maps(left));
+    const values = await this.furtherValues();
+    for (const [name, chosen] of Object.entries(values)) if (name.startsWith("set_")) this.parts[name.slice("set_".length)] = chosen;
+    this.bench.offer(this.maps(values.nonlinearity_mm));
     this.draw();
     this.bench.start();
     await this.bones();
@@ -114,11 +116,10 @@ class Result {
     return this.job.results!;
   }
 
-  /** What the model leaves out at each node, which files of skin have and GLB has not. */
-  private async leftOut(): Promise<Float32Array | undefined> {
-    if (!this.results.files.some(({ name }) => name === "skin.vtp")) return undefined;
-    const { values } = await readVtp(await this.app.service.file(this.job.id, "skin.vtp"));
-    return values.nonlinearity_mm;
+  /** What files of skin have and GLB has not: what the model leaves out at each node, and parts of the skin. */
+  private async furtherValues(): Promise<Record<string, Float32Array>> {
+    if (!this.results.files.some(({ name }) => name === "skin.vtp")) return {};
+    return (await readVtp(await this.app.service.file(this.job.id, "skin.vtp"))).values;
   }
 
   private maps(leftOut: Float32Array | undefined): SkinMap[] {
@@ -141,35 +142,52 @@ class Result {
   }
 
   private draw(): void {
-    const { app: { words }, bench, results } = this;
+    const { app: { words }, bench, results, opened } = this;
     const probe = make("p", { className: "told", role: "status" }, words.probe);
+    const list = this.job.warnings;
+    const places = placesOf(words, opened, bench.scene, () => this.parts);
+    drawTrust(bench.strip, words, resultLines(words, results, list));
     bench.section(words.beforeAfter, this.slider(), probe);
-    if (results.optimisation !== undefined) bench.section(words.found, foundFacts(this.app, this.job, this.opened, results.optimisation));
+    bench.section(words.warnings, warnings(list, words, places));
+    const report = reportLinks(this.app, this.job);
+    if (report !== undefined) bench.section(words.report, report);
+    if (results.optimisation !== undefined) bench.section(words.found, foundFacts(this.app, this.job, opened, results.optimisation));
     if (results.comparison !== undefined) bench.section(words.comparison, comparisonFacts(this.app, results.comparison));
-    bench.section(words.warnings, warnings(this.job.warnings, words));
-    bench.section(words.regions, this.regions());
-    if (Object.keys(results.statistics?.landmarks ?? {}).length > 0) {
-      bench.section(words.landmarks, this.landmarks());
-    }
-    bench.section(words.profile, profile(words, this.opened.frame, this.before, this.after), make("p", { className: "fine" }, words.profileHint));
-    bench.section(words.provenance, this.provenance());
+    const shown: Shown = { words, warnings: list, show: (name) => places({ code: "", detail: name }).find(({ label }) => label === name)?.show };
+    bench.section(words.regions, regions(shown, results));
+    if (Object.keys(results.statistics?.landmarks ?? {}).length > 0) bench.section(words.landmarks, landmarks(shown, results, opened.frame));
+    if ((results.cephalometry ?? []).length > 0) bench.section(words.cephalometry, cephalometry(words, results.cephalometry!));
+    bench.section(words.profile, profile(words, opened.frame, this.before, this.after), make("p", { className: "fine" }, words.profileHint));
+    bench.section(words.provenance, provenance(words, results.provenance ?? undefined));
     bench.panel.append(fileList(this.app, this.job));
-    bench.caption.textContent = `${this.opened.name} · ${results.provenance?.method ?? this.job.kind}`;
+    bench.caption.textContent = [opened.name, this.plan === undefined ? "" : told(this.plan, words), results.provenance?.method ?? this.job.kind].filter((part) => part !== "").join(" · ");
+    bench.provenance = `job ${this.job.id} · ${results.provenance?.engine.version ?? ""} · ${results.provenance?.spec_hash.slice(0, 16) ?? ""}`;
     this.probing(probe);
   }
 
   /** From before, 0, to after, 1. */
   private slider(): HTMLElement {
-    const { app: { words }, bench } = this;
+    const { app: { words, route }, bench } = this;
     const slider = make("input", { type: "range", min: "0", max: "1", step: "0.01", value: "1", aria: { label: words.beforeAfter }, data: { share: "" } });
     slider.addEventListener("input", () => this.show(slider.valueAsNumber));
     const jump = (share: number) => { slider.value = String(share); this.show(share); };
-    const overlay = choice(words.overlay, [["off", "–"], ["on", "✓"]] as const, "off",
-      (value) => bench.scene.overlay(value === "on" ? this.before : undefined));
-    return make("div", {},
-      make("div", { className: "row" }, button(words.before, () => jump(0)), button(words.after, () => jump(1)), overlay), slider,
+    const stated = route.state.get("show") ?? "";
+    const start = (["overlay", "sides"] as const).find((one) => one === stated) ?? "one";
+    const ways = choice(words.shown, [["one", words.one], ["overlay", words.overlay], ["sides", words.sides]] as const, start, (value) => this.beside(value));
+    this.beside(start);
+    return make("div", { className: "stack wide" }, ways,
+      make("div", { className: "row" }, button(words.before, () => jump(0)), button(words.after, () => jump(1))), slider,
       make("div", { className: "row" }, backLink(this.app, this.job),
-        make("a", { className: "button", href: address(["case", this.opened.id, "compare"], { job: this.job.id, p: this.app.route.state.get("p") ?? undefined }) }, words.compareThis)));
+        make("a", { className: "button", href: address(["case", this.opened.id, "compare"], { job: this.job.id, ...planState(this.app.route.state) }) }, words.compareThis)));
+  }
+
+  /** One skin, that of before over it, or both side by side under one camera. */
+  private beside(how: "one" | "overlay" | "sides"): void {
+    const { bench, before, app: { words } } = this;
+    note({ show: how === "one" ? undefined : how });
+    bench.scene.overlay(how === "overlay" ? before : undefined);
+    bench.scene.beside(how === "sides" ? before : undefined);
+    bench.halves(how === "sides" ? [words.before, words.after] : undefined);
   }
 
   private show(share: number): void {
@@ -178,73 +196,44 @@ class Result {
     this.moveBones();
   }
 
-  private regions(): HTMLElement {
-    const { words } = this.app;
-    const { statistics, numerical_error_mm: errors, nonlinearity_mm: nonlinear } = this.results;
-    const numbers = (values?: { mean: number } | null) => (values === undefined || values === null ? "–" : mm(values.mean));
-    const row = (name: string, region: Documents["DisplacementDocument"] | undefined, error?: { mean: number } | null, model?: { mean: number } | null) =>
-      [name, ...(region === undefined ? ["–", "–", "–"] : [region.area.mean, region.area.p95, region.area.max].map(mm)), numbers(error), numbers(model)];
-    const rows = Object.entries(statistics?.regions ?? {}).map(([name, region]) => row(name, region, errors?.regions?.[name], nonlinear?.regions?.[name]));
-    return table(`${words.displacement}, mm`, [words.region, words.mean, words.p95, words.max, words.error, words.nonlinear],
-      [row(words.whole, statistics?.skin, errors, nonlinear?.skin), ...rows]);
-  }
-
-  private landmarks(): HTMLElement {
-    const { words } = this.app;
-    const { statistics, numerical_error_mm: errors } = this.results;
-    const rows = Object.entries(statistics?.landmarks ?? {}).map(([name, moved]) => {
-      const error = errors?.landmarks?.[name];
-      return [name, ...inWords(moved as Triple, this.opened.frame).map((value) => signed(value)), error === undefined ? "–" : mm(error)];
-    });
-    return table(`${words.displacement}, mm`, [words.landmark, words.forward, words.up, words.left, words.error], rows);
-  }
-
-  private provenance(): HTMLElement {
-    const { words } = this.app;
-    const { provenance } = this.results;
-    const facts: [string, string][] = provenance === undefined ? [] : [
-      [words.solvedBy, provenance.method ?? "–"], ["", provenance.why ?? ""],
-      [words.took, `${provenance.timing?.total_s?.toFixed(1) ?? "–"} ${words.seconds}`],
-      [words.nodes, String(provenance.mesh?.nodes ?? "–")], ["facies", provenance.engine.version],
-      ["", provenance.statement ?? words.notice],
-    ];
-    return make("dl", { className: "facts" }, ...facts.filter(([, value]) => value !== "").flatMap(([name, value]) => [make("dt", {}, name), make("dd", {}, value)]));
-  }
-
-  /** A click on the skin says where it is and how far it moves. */
+  /** A click on the skin, or Enter for the middle of the view, says how far that point moves. */
   private probing(said: HTMLElement): void {
-    const { app: { words }, bench, opened } = this;
+    const { scene } = this.bench;
     let from: [number, number] = [0, 0];
-    bench.scene.canvas.addEventListener("pointerdown", (event) => { from = [event.clientX, event.clientY]; });
-    bench.scene.canvas.addEventListener("pointerup", (event) => {
-      if (Math.hypot(event.clientX - from[0], event.clientY - from[1]) > 4) return;
-      const hit = bench.scene.pick(event);
-      if (hit === undefined) return;
-      const moved = [0, 1, 2].map((axis) => this.displacement_mm[3 * hit.node + axis]!) as Triple;
-      const [forward, up, left] = inWords(moved, opened.frame);
-      const error = this.after.values._NUMERICAL_ERROR_MM?.[hit.node];
-      bench.scene.mark([{ at_mm: hit.point_mm, colour: 0x0b5c7a }]);
-      said.textContent = `${words.point} ${hit.node} ${words.movesBy} ${mm(Math.hypot(...moved))} mm`
-        + ` (${words.forward.toLowerCase()} ${signed(forward)}, ${words.up.toLowerCase()} ${signed(up)}, ${words.left.toLowerCase()} ${signed(left)})`
-        + (error === undefined ? "" : ` ± ${mm(error)}`);
+    scene.canvas.addEventListener("pointerdown", (event) => { from = [event.clientX, event.clientY]; });
+    scene.canvas.addEventListener("pointerup", (event) => {
+      if (Math.hypot(event.clientX - from[0], event.clientY - from[1]) <= 4) this.probe(scene.pick(event), said);
     });
+    scene.canvas.addEventListener("keydown", (event) => { if (event.key === "Enter") this.probe(scene.middle(), said); });
   }
 
-  /** The plan, from what was found or from the address; it stays unknown where neither says it. */
+  private probe(hit: Hit | undefined, said: HTMLElement): void {
+    const { app: { words }, bench, opened } = this;
+    if (hit === undefined) return;
+    const moved = [0, 1, 2].map((axis) => this.displacement_mm[3 * hit.node + axis]!) as Triple;
+    const [forward, up, left] = inWords(moved, opened.frame);
+    const error = this.after.values._NUMERICAL_ERROR_MM?.[hit.node];
+    bench.scene.mark([{ at_mm: hit.point_mm, colour: 0x0b5c7a }]);
+    said.textContent = `${words.point} ${hit.node} ${words.movesBy} ${mm(Math.hypot(...moved))} mm`
+      + ` (${words.forward.toLowerCase()} ${signed(forward)}, ${words.up.toLowerCase()} ${signed(up)}, ${words.left.toLowerCase()} ${signed(left)})`
+      + (error === undefined ? "" : ` ± ${mm(error)}`);
+  }
+
+  /** The plan, as the result or what was found has it, or from the address; it stays unknown where none says it in six numbers. */
   private knowPlan(): void {
-    const { state } = this.app.route;
-    const found = this.results.optimisation?.plan;
+    const state = planState(this.app.route.state);
+    const found = this.results.optimisation?.plan ?? this.results.provenance?.plan ?? undefined;
     const names = (this.opened.document.segments ?? []).map(({ name }) => name);
     const parts = (found?.segments ?? []) as { name: string; pivot_mm?: Triple }[];
     const origins = Object.fromEntries(names.map((name) => [name, [0, 0, 0] as Triple]));
-    this.pivots = found === undefined ? readPivots(state.get("p") ?? "")
+    this.pivots = found === undefined ? readPivots(state)
       : { ...origins, ...Object.fromEntries(parts.map(({ name, pivot_mm = [0, 0, 0] as Triple }) => [name, pivot_mm])) };
-    this.plan = found === undefined ? (state.has("p") ? read(state.get("p")!, names) : undefined)
+    this.plan = found === undefined ? (PLAN_STATE.some((name) => state[name] !== undefined) ? read(state, names) : undefined)
       : fromDocument(found, this.pivots, this.opened.frame);
     if (this.plan === undefined) return;
     const inAddress = written(this.plan, this.pivots);
-    state.set("p", inAddress);
-    note({ p: inAddress });
+    for (const name of PLAN_STATE) if (inAddress[name] !== undefined) this.app.route.state.set(name, inAddress[name]);
+    note(inAddress);
   }
 
   private async bones(): Promise<void> {
@@ -255,7 +244,7 @@ class Result {
   }
 
   private moveBones(): void {
-    for (const [name, motion] of Object.entries(this.plan ?? {})) {
+    for (const [name, motion] of Object.entries(this.plan?.segments ?? {})) {
       const part = Object.fromEntries(Object.entries(motion).map(([word, value]) => [word, this.share * value]));
       this.bench.scene.moveBone(name, matrix({ ...still(), ...part }, this.pivots[name] ?? [0, 0, 0], this.opened.frame));
     }

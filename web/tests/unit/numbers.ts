@@ -5,7 +5,7 @@ import { Response, type Documents, type Triple } from "../../../clients/typescri
 import { bands, share, ticks } from "../../src/colours.js";
 import { inAxes, inWords, motion, movement, rotation, still } from "../../src/frame.js";
 import { section } from "../../src/outline.js";
-import { atRest, document, fromDocument, History, read, readPivots, written } from "../../src/plan.js";
+import { atRest, document, fromDocument, History, planState, read, readPivots, written } from "../../src/plan.js";
 import { readPly } from "../../src/ply.js";
 import { coefficients, SkinSum } from "../../src/response.js";
 
@@ -43,7 +43,7 @@ const apart = (a: Float32Array, b: Float32Array) => a.reduce((most, value, at) =
 
 for (const order of [1, 2] as const) {
   test(`a sum of order ${order} that is kept up to date is the client's`, () => {
-    const sum = new SkinSum({ segments: 2, linear, ...(order === 2 ? { second } : {}) });
+    const sum = new SkinSum({ nodes: NODES, segments: 2, inner: [], linear, ...(order === 2 ? { second } : {}) });
     sum.move(0, twelve("maxilla", 0).map((value) => 2 * value));
     sum.move(1, twelve("mandible", 1));
     sum.move(0, twelve("maxilla", 0));
@@ -84,19 +84,33 @@ test("words and numbers of a plan are the same plan", () => {
     const { translation_mm, rotation_deg } = movement(words, frame);
     assert.deepEqual(motion(translation_mm, rotation_deg, frame), words);
     const pivots = { jaw: [1, 2, 3] as Triple, chin: [0, 0, 0] as Triple };
-    const whole = { ...atRest(["jaw", "chin"]), jaw: words };
+    const rest = atRest(["jaw", "chin"]);
+    const whole = { segments: { ...rest.segments, jaw: words }, inner: { growth: { "*": -0.05 }, muscle: { "zygomaticus left": 10 } } };
     assert.deepEqual(fromDocument(document(whole, pivots, frame), pivots, frame), whole);
     assert.equal(fromDocument(document(whole, pivots, frame), { jaw: [9, 9, 9] }, frame), undefined);
   }
 });
 
+test("a plan that does more than sliders show is not taken for one that does less", () => {
+  const pivots = { jaw: [0, 0, 0] as Triple };
+  assert.notEqual(fromDocument({ segments: [] }, pivots, "LPS"), undefined);
+  for (const more of [{ loads: [{}] }, { prescribed: [{}] }, { osteotomy: {} }]) {
+    assert.equal(fromDocument({ segments: [], ...more } as unknown as Documents["PlanDocument"], pivots, "LPS"), undefined, JSON.stringify(more));
+  }
+});
+
 test("a plan is read from an address as it was written, and nothing else is", () => {
-  const words = { ...atRest(["left jaw;2", "b"]), "left jaw;2": { ...still(), forward: -1.5, yaw: 2 } };
+  const names = ["left jaw;2", "b"];
+  const words = atRest(names);
+  words.segments["left jaw;2"] = { ...still(), forward: -1.5, yaw: 2 };
+  words.inner = { growth: { "*": -0.05 }, muscle: { "a, b;c": 12.5 } };
   const pivots = { "left jaw;2": [1.5, -2, 3] as Triple, b: [0, 0, 0] as Triple };
-  assert.deepEqual(read(written(words, pivots), ["left jaw;2", "b"]), words);
+  const state = new URLSearchParams(written(words, pivots) as Record<string, string>);
+  assert.deepEqual(read(planState(state), names), words);
   assert.deepEqual(readPivots(written(words, pivots)), { "left jaw;2": [1.5, -2, 3] });
-  assert.deepEqual(readPivots("a,1,0,0,0,0,0;b,0,0,0,1,0,0,x,1,2"), {});
-  assert.deepEqual(read("nobody,1,2;b,x,NaN,%", ["b"]), atRest(["b"]));
+  const nothing = { growth: undefined, muscle: undefined };
+  assert.deepEqual(readPivots({ p: "a,1,0,0,0,0,0;b,0,0,0,1,0,0,x,1,2", ...nothing }), {});
+  assert.deepEqual(read({ p: "nobody,1,2;b,x,NaN,%", growth: ";x", muscle: "y,Infinity" }, ["b"]), atRest(["b"]));
 });
 
 test("what is taken back can be done again, until something else is done", () => {
@@ -127,6 +141,7 @@ test("a surface is read from binary PLY", () => {
     + "property double z\nproperty int node_id\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n";
   const body = new DataView(new ArrayBuffer(3 * 28 + 13));
   [0, 1, 2].forEach((node) => [0, 1, 2].forEach((axis) => body.setFloat64(28 * node + 8 * axis, 10 * node + axis, true)));
+  body.setInt32(2 * 28 + 24, 7, true);
   body.setUint8(84, 3);
   [2, 1, 0].forEach((node, at) => body.setInt32(85 + 4 * at, node, true));
   const bytes = new Uint8Array([...new TextEncoder().encode(text), ...new Uint8Array(body.buffer)]);
@@ -134,6 +149,7 @@ test("a surface is read from binary PLY", () => {
   assert.deepEqual([...surface.points_mm], [0, 1, 2, 10, 11, 12, 20, 21, 22]);
   assert.deepEqual([...surface.triangles], [2, 1, 0]);
   assert.equal(surface.space, "LPS");
+  assert.deepEqual([...surface.node_ids!], [0, 0, 7]);
   assert.throws(() => readPly(new TextEncoder().encode("solid\nend_header\n").buffer), /no binary PLY/);
 });
 
@@ -151,6 +167,7 @@ test("a step of a slider is summed in far less than a frame takes", (context) =>
     return array;
   };
   const columns = filled(new Float32Array(24 * 3 * count), 1);
+  const size = { nodes: count, segments: 2, inner: [] };
   const pairColumns = { columns: filled(new Int16Array(pairs * 3 * count), 60000), scale_mm: second.scale_mm };
   const median_ms = (of: SkinSum) => {
     const took = Array.from({ length: 15 }, (_, step) => {
@@ -161,7 +178,7 @@ test("a step of a slider is summed in far less than a frame takes", (context) =>
     });
     return took.sort((a, b) => a - b)[7]!;
   };
-  const turning = [new SkinSum({ segments: 2, linear: columns }), new SkinSum({ segments: 2, linear: columns, second: pairColumns })];
+  const turning = [new SkinSum({ ...size, linear: columns }), new SkinSum({ ...size, linear: columns, second: pairColumns })];
   const took = turning.map((one) => { one.move(0, twelve("maxilla", 0)); return median_ms(one); });
   context.diagnostic(`${count} nodes, two segments turning, processor time of a step: linear ${took[0]!.toFixed(1)} ms, second order ${took[1]!.toFixed(1)} ms`);
   assert(took[0]! < 16 && took[1]! < 60, `${took}`);

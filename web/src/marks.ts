@@ -1,0 +1,56 @@
+// Points, lines and dots over the head.
+import {
+  BufferAttribute, BufferGeometry, Group, LineBasicMaterial, LineSegments, Mesh, MeshBasicMaterial, Points, PointsMaterial, SphereGeometry,
+  Vector3, type Material,
+} from "three";
+import type { Triple } from "./api.js";
+
+export interface Mark {
+  at_mm: Triple;
+  colour: number;
+  to_mm?: Triple;
+}
+
+const MARK_MM = 1.4;
+const DOT_PIXELS = 5;
+/** After skin and bone, of which nothing hides them. */
+const LAST = 5;
+
+export class Marks {
+  readonly group = new Group();
+
+  /** Points in the frame of the case in the place of those before; lines lead to where they are to be. */
+  place(points: Mark[]): void {
+    this.clear();
+    for (const { at_mm, colour, to_mm } of points) {
+      const ball = new Mesh(new SphereGeometry(MARK_MM, 16, 12), new MeshBasicMaterial({ color: colour, depthTest: false }));
+      ball.position.set(...at_mm);
+      this.add(ball);
+      if (to_mm === undefined) continue;
+      const line = new BufferGeometry().setFromPoints([new Vector3(...at_mm), new Vector3(...to_mm)]);
+      this.add(new LineSegments(line, new LineBasicMaterial({ color: colour, depthTest: false })));
+    }
+  }
+
+  /** Dots at those of xyz places whose number is not 0. */
+  dots(places_mm: ArrayLike<number>, chosen: ArrayLike<number>, colour: number): void {
+    this.clear();
+    const at = Array.from({ length: chosen.length }, (_, node) => node).filter((node) => chosen[node] !== 0)
+      .flatMap((node) => [places_mm[3 * node]!, places_mm[3 * node + 1]!, places_mm[3 * node + 2]!]);
+    const geometry = new BufferGeometry().setAttribute("position", new BufferAttribute(new Float32Array(at), 3));
+    this.add(new Points(geometry, new PointsMaterial({ color: colour, size: DOT_PIXELS, sizeAttenuation: false, depthTest: false })));
+  }
+
+  clear(): void {
+    for (const child of [...this.group.children] as Mesh[]) {
+      child.geometry.dispose();
+      (child.material as Material).dispose();
+      this.group.remove(child);
+    }
+  }
+
+  private add(mark: Mesh | LineSegments | Points): void {
+    mark.renderOrder = LAST;
+    this.group.add(mark);
+  }
+}

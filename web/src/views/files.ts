@@ -1,0 +1,11 @@
+// The files of a result, to be saved.
+import type { Documents, Job } from "../api.js";
+import type { App } from "../app.js";
+import { button, make, save } from "../dom.js";
+
+export function fileList({ service, words }: App, job: Job): HTMLElement {
+  const row = ({ name, bytes, media_type }: Documents["FileDocument"]) => make("li", {}, button(name, () => {
+    void service.file(job.id, name).then((content) => save(new Blob([content], { type: media_type }), name));
+  }), make("span", { className: "fine" }, ` ${(bytes / 1024).toFixed(0)} KiB`));
+  return make("section", {}, make("h2", {}, words.files), make("ul", { className: "plans" }, ...(job.results?.files ?? []).map(row)));
+}
