@@ -48,6 +48,9 @@ pub struct Arguments {
     /// What keeps tissue from passing through itself and bone: none, sliding, unilateral or auto
     #[arg(long, value_name = "KIND", value_parser = word::<ContactName>, help_heading = "Result")]
     contact: Option<ContactName>,
+    /// Write stress and strain of the tissue to volume.vtu
+    #[arg(long, conflicts_with = "refine", help_heading = "Result")]
+    stress: bool,
     /// Do not estimate the error of the mesh
     #[arg(long, conflicts_with_all = ["corrected", "refine"], help_heading = "Result")]
     no_estimate: bool,
@@ -66,6 +69,9 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
     asked.file.spec.outputs.get_or_insert_with(usual_outputs);
     asked.file.spec.method = arguments.method.unwrap_or(asked.file.spec.method);
     asked.file.spec.corrected |= arguments.corrected;
+    if arguments.stress {
+        asked.file.spec.ask_for_stress();
+    }
     asked.file.spec.accept_mm = arguments.accept.or(asked.file.spec.accept_mm);
     if let Some(accept_mm) = arguments.refine {
         asked.file.spec.refine_to(accept_mm);
@@ -154,6 +160,7 @@ fn print_result(result: &ResultDocument, before: &CheckDocument) {
     if let Some(refinement) = &result.refinement {
         println!("refined      {}", refinement.summary());
     }
+    print_stress(result);
     for (name, reaction) in &result.reaction_mn {
         let [x, y, z] = reaction.0;
         println!("reaction     {name} {x:.1} {y:.1} {z:.1} mN");
@@ -177,6 +184,16 @@ fn print_result(result: &ResultDocument, before: &CheckDocument) {
     );
     let solved: Vec<_> = result.warnings.iter().filter(|w| !before.warnings.contains(w)).collect();
     print_warnings(&solved.into_iter().cloned().collect::<Vec<_>>());
+}
+
+fn print_stress(result: &ResultDocument) {
+    for (region, stress) in result.stress.iter().flat_map(|stress| &stress.regions) {
+        let (mises, pressure) = (&stress.von_mises_kpa, &stress.pressure_kpa);
+        println!(
+            "stress       {region}: Mises {:.3} kPa in the mean, p95 {:.3}, max {:.3}; pressure {:.3} to {:.3} kPa",
+            mises.mean, mises.p95, mises.max, pressure.min, pressure.max
+        );
+    }
 }
 
 fn print_error_of_mesh(result: &ResultDocument) {

@@ -177,16 +177,14 @@ impl Scene {
     pub fn solve(&self, progress: &dyn Progress) -> Result<Equilibrium, ModelError> {
         match &self.settings.method {
             // A mass-tensor is the block of two nodes of a plain tetrahedron.
-            Method::FemLinear | Method::MassTensorTransverse => {
-                let mut solved = self.solve_cases(&[self.load_case()], progress)?;
-                Ok(solved.remove(0))
-            }
+            Method::FemLinear | Method::MassTensorTransverse => self.solve_linear(progress),
             Method::FemNonlinear => Ok(self.solve_at_finite_strain(false, progress)?.0),
             Method::MassSpring(settings) => {
                 mass_spring::solve(&self.problem(), settings, &self.load_case(), progress)
             }
             Method::MassTensor(settings) => {
-                mass_tensor::solve(&self.problem(), settings, &self.load_case(), progress)
+                let own = self.problem();
+                self.with_states(mass_tensor::solve(&own, settings, &self.load_case(), progress)?)
             }
             Method::MassTensorNonlinear => self.mass_tensors().solve(&self.load_case(), progress),
             Method::VolumeSpline(spline) => spline::solve(&self.problem(), spline, progress),
@@ -237,6 +235,7 @@ impl Scene {
             fibres: FibreField { of_law: &fibres, of_cell: &self.fibres },
             holds: &self.conditions.holds,
             tolerance: Tolerance { relative_residual, memory_mb },
+            with_states: self.settings.states,
         };
         done(&problem, &laws)
     }
@@ -253,7 +252,7 @@ impl Scene {
     }
 
     /// Tissue, holds and loads as models see them.
-    fn problem(&self) -> Problem<'_> {
+    pub(super) fn problem(&self) -> Problem<'_> {
         let Settings { relative_residual, memory_mb, .. } = self.settings;
         Problem {
             tissue: self.tissue(),

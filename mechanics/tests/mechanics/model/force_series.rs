@@ -68,6 +68,7 @@ fn newton_forces(mesh: &VolumeMesh, law: &Law, displacement: &[Vector]) -> Vec<V
         fibres: FibreField::default(),
         holds: &holds,
         tolerance: TOLERANCE,
+        with_states: false,
     };
     let held = displacement.to_vec();
     let case =

@@ -19,4 +19,6 @@ pub struct FiniteStrain<'a> {
     pub fibres: FibreField<'a>,
     pub holds: &'a [Hold],
     pub tolerance: Tolerance,
+    /// Whether stress and strain of the cells are wanted.
+    pub with_states: bool,
 }
