@@ -148,19 +148,13 @@ fn print_result(result: &ResultDocument, before: &CheckDocument) {
         );
     }
     print_error_of_mesh(result);
-    if let Some(contact) = &result.contact {
-        println!(
-            "contact      {:.1} mm2, largest pressure {:.2} kPa, {} passes",
-            contact.area_mm2, contact.largest_pressure_kpa, contact.passes
-        );
-    }
+    print_inside(result);
     if let Some(adequacy) = &result.adequacy {
         println!("model        {}", adequacy.why());
     }
     if let Some(refinement) = &result.refinement {
         println!("refined      {}", refinement.summary());
     }
-    print_stress(result);
     for (name, reaction) in &result.reaction_mn {
         let [x, y, z] = reaction.0;
         println!("reaction     {name} {x:.1} {y:.1} {z:.1} mN");
@@ -186,7 +180,14 @@ fn print_result(result: &ResultDocument, before: &CheckDocument) {
     print_warnings(&solved.into_iter().cloned().collect::<Vec<_>>());
 }
 
-fn print_stress(result: &ResultDocument) {
+/// What presses, and stress.
+fn print_inside(result: &ResultDocument) {
+    if let Some(contact) = &result.contact {
+        println!(
+            "contact      {:.1} mm2, largest pressure {:.2} kPa, {} passes",
+            contact.area_mm2, contact.largest_pressure_kpa, contact.passes
+        );
+    }
     for (region, stress) in result.stress.iter().flat_map(|stress| &stress.regions) {
         let (mises, pressure) = (&stress.von_mises_kpa, &stress.pressure_kpa);
         println!(

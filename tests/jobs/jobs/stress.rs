@@ -16,7 +16,7 @@ use super::results::predict;
 fn case(volume: &str, frame: &str) -> Value {
     let wall = |set: &str, normal: [i32; 3]| json!({"nodes": {"node_set": set}, "normal": normal});
     json!({
-        "units": "mm", "volume": volume, "frame": frame, "skin": {"node_set": "z_max"}, "fixed": [{"node_set": "z_max"}],
+        "units": "mm", "volume": volume, "frame": frame, "skin": {"node_set": "y_max"}, "fixed": [{"node_set": "z_max"}],
         "segments": [{"name": "base", "nodes": {"node_set": "z_min"}}],
         "sliding": [wall("x_min", [1, 0, 0]), wall("x_max", [1, 0, 0]), wall("y_min", [0, 1, 0]), wall("y_max", [0, 1, 0])],
         "materials": {"*": {"young_modulus_kpa": 15, "poisson_ratio": 0.4}}
