@@ -116,6 +116,7 @@ fn solve(mesh: &VolumeMesh, plan: &Plan) -> (Result<Equilibrium, ModelError>, f6
         elements: plan.elements,
         holds: &holds,
         tolerance: Tolerance { relative_residual: 1e-6, memory_mb: 16e3 },
+        with_states: false,
     };
     let held = holds.iter().map(|hold| *hold.values()).collect();
     let case =

@@ -15,6 +15,7 @@ use super::guard::preferred;
 use super::resources::Resources;
 use super::{Service, json, with_header};
 use crate::schema::Limits;
+use crate::schema::case::preset::MaterialList;
 use crate::schema::key::Scope;
 use crate::schema::methods::{MethodList, available_methods};
 
@@ -24,6 +25,7 @@ pub struct Description(pub Arc<serde_json::Value>);
 
 pub fn router() -> Resources {
     let router = Resources::new().looks(Scope::Read, routes!(limits));
+    let router = router.looks(Scope::Read, routes!(materials));
     let router = router.looks(Scope::Read, routes!(methods)).open(routes!(description));
     router.open(routes!(versions)).json_only().open(routes!(entrance))
 }
@@ -40,13 +42,14 @@ struct Entrance {
     links: BTreeMap<&'static str, &'static str>,
 }
 
-const LINKS: [(&str, &str); 9] = [
+const LINKS: [(&str, &str); 10] = [
     ("cases", "/v1/cases"),
     ("description", "/openapi.json"),
     ("documentation", "/docs/"),
     ("health", "/healthz"),
     ("jobs", "/v1/jobs"),
     ("limits", "/v1/limits"),
+    ("materials", "/v1/materials"),
     ("meshes", "/v1/meshes"),
     ("methods", "/v1/methods"),
     ("readiness", "/readyz"),
@@ -85,6 +88,12 @@ async fn limits(service: Service) -> Response {
 #[utoipa::path(get, path = "/v1/methods", operation_id = "list_methods", tag = "about", responses((status = 200, description = "the methods", body = MethodList)))]
 async fn methods() -> Response {
     json(StatusCode::OK, &available_methods())
+}
+
+/// The materials of the literature that a material may name, with source, state and what speaks against each.
+#[utoipa::path(get, path = "/v1/materials", operation_id = "list_materials", tag = "about", responses((status = 200, description = "the materials", body = MaterialList)))]
+async fn materials() -> Response {
+    json(StatusCode::OK, &MaterialList::all())
 }
 
 /// This description.

@@ -56,6 +56,7 @@ const SERVICE: &str = "
     DELETE  /v1/keys/{id}                       admin  noted
     POST    /v1/keys/{id}/rotation              admin  noted
     GET     /v1/limits                          read   -
+    GET     /v1/materials                       read   -
     POST    /v1/meshes                          write  noted
     DELETE  /v1/meshes/{id}                     write  noted
     GET     /v1/meshes/{id}                     read   -

@@ -10,7 +10,7 @@ use super::error::{ApiError, ApiResult};
 use super::parameters::id;
 use crate::jobs::{JobInput, OptimiseInput, PredictInput, ResponseInput};
 use crate::schema::case::document::LengthUnit;
-use crate::schema::case::material::{PlacedMaterials, merge_materials};
+use crate::schema::case::merged::{PlacedMaterials, merge_materials};
 use crate::schema::plan::document::PlanContext;
 use crate::schema::wire::canonical::to_value;
 use crate::schema::{

@@ -14,6 +14,7 @@ mod files;
 pub mod health;
 pub mod learn;
 mod limits_of_files;
+pub mod materials;
 pub mod mesh;
 pub mod migrate;
 pub mod openapi;
@@ -74,6 +75,8 @@ enum Command {
     Learn(learn::Arguments),
     /// Hold methods against each other: how long each takes, how far it is from the truth
     Study(study::Arguments),
+    /// List the materials of the literature that a case may name, with their sources
+    Materials(materials::Arguments),
     /// Tell what a case and a plan mean, without solving
     Check(check::Arguments),
     /// Serve the API, with workers in the same process unless there are 0
@@ -113,6 +116,7 @@ const GROUPS: [(&str, &[&str]); 2] = [
             "cohort",
             "learn",
             "study",
+            "materials",
         ],
     ),
     ("Serve", &["serve", "worker", "migrate", "admin", "config", "health", "openapi"]),
@@ -162,6 +166,7 @@ pub fn run(facies: &Facies) -> ExitCode {
         Command::Cohort(arguments) => cohort::run(arguments),
         Command::Learn(arguments) => learn::run(arguments),
         Command::Study(arguments) => study::run(arguments),
+        Command::Materials(arguments) => materials::run(arguments),
         Command::Check(arguments) => check::run(arguments),
         Command::Serve(arguments) => serve::run(arguments).map_err(CommandError::from),
         Command::Slot(arguments) => slot::run(arguments).map_err(CommandError::from),

@@ -48,6 +48,9 @@ pub struct Arguments {
     /// What keeps tissue from passing through itself and bone: none, sliding, unilateral or auto
     #[arg(long, value_name = "KIND", value_parser = word::<ContactName>, help_heading = "Result")]
     contact: Option<ContactName>,
+    /// Write stress and strain of the tissue to volume.vtu
+    #[arg(long, conflicts_with = "refine", help_heading = "Result")]
+    stress: bool,
     /// Do not estimate the error of the mesh
     #[arg(long, conflicts_with_all = ["corrected", "refine"], help_heading = "Result")]
     no_estimate: bool,
@@ -66,6 +69,9 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
     asked.file.spec.outputs.get_or_insert_with(usual_outputs);
     asked.file.spec.method = arguments.method.unwrap_or(asked.file.spec.method);
     asked.file.spec.corrected |= arguments.corrected;
+    if arguments.stress {
+        asked.file.spec.ask_for_stress();
+    }
     asked.file.spec.accept_mm = arguments.accept.or(asked.file.spec.accept_mm);
     if let Some(accept_mm) = arguments.refine {
         asked.file.spec.refine_to(accept_mm);
@@ -142,12 +148,7 @@ fn print_result(result: &ResultDocument, before: &CheckDocument) {
         );
     }
     print_error_of_mesh(result);
-    if let Some(contact) = &result.contact {
-        println!(
-            "contact      {:.1} mm2, largest pressure {:.2} kPa, {} passes",
-            contact.area_mm2, contact.largest_pressure_kpa, contact.passes
-        );
-    }
+    print_inside(result);
     if let Some(adequacy) = &result.adequacy {
         println!("model        {}", adequacy.why());
     }
@@ -177,6 +178,23 @@ fn print_result(result: &ResultDocument, before: &CheckDocument) {
     );
     let solved: Vec<_> = result.warnings.iter().filter(|w| !before.warnings.contains(w)).collect();
     print_warnings(&solved.into_iter().cloned().collect::<Vec<_>>());
+}
+
+/// What presses, and stress.
+fn print_inside(result: &ResultDocument) {
+    if let Some(contact) = &result.contact {
+        println!(
+            "contact      {:.1} mm2, largest pressure {:.2} kPa, {} passes",
+            contact.area_mm2, contact.largest_pressure_kpa, contact.passes
+        );
+    }
+    for (region, stress) in result.stress.iter().flat_map(|stress| &stress.regions) {
+        let (mises, pressure) = (&stress.von_mises_kpa, &stress.pressure_kpa);
+        println!(
+            "stress       {region}: Mises {:.3} kPa in the mean, p95 {:.3}, max {:.3}; pressure {:.3} to {:.3} kPa",
+            mises.mean, mises.p95, mises.max, pressure.min, pressure.max
+        );
+    }
 }
 
 fn print_error_of_mesh(result: &ResultDocument) {

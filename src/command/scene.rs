@@ -10,6 +10,7 @@ use super::files::{FileSource, ScaleArguments, UnitArgument};
 use super::mesh::{Beside, Meshed, ScanArguments};
 use super::selection::{segment, selection};
 use crate::schema::case::document::{FrameName, SegmentDocument};
+use crate::schema::case::preset_name::PresetName;
 use crate::schema::case::selection::SelectionDocument;
 use crate::schema::methods::ElementName;
 use crate::schema::{CaseDocument, MaterialDocument, PlanDocument, PredictDocument};
@@ -55,6 +56,9 @@ pub struct SceneArguments {
     /// The frame of the mesh; default unspecified
     #[arg(long, conflicts_with = "case", help_heading = SCENE)]
     frame: Option<FrameArgument>,
+    /// The material of all tissue by its name in the literature: `facies materials` lists them; moduli beside it stand over its own
+    #[arg(long, value_name = "NAME", value_parser = preset, conflicts_with = "case", help_heading = TISSUE)]
+    preset: Option<PresetName>,
     /// Young's modulus of all tissue, in kPa; default 15
     #[arg(long, value_name = "KPA", conflicts_with = "case", help_heading = TISSUE)]
     young_modulus_kpa: Option<f64>,
@@ -182,10 +186,17 @@ impl SceneArguments {
 
     fn material(&self) -> Option<MaterialDocument> {
         let given = self.young_modulus_kpa.is_some() || self.poisson_ratio.is_some();
-        given.then_some(MaterialDocument {
+        (given || self.preset.is_some()).then_some(MaterialDocument {
+            preset: self.preset,
             young_modulus_kpa: self.young_modulus_kpa,
             poisson_ratio: self.poisson_ratio,
             ..MaterialDocument::default()
         })
     }
+}
+
+fn preset(name: &str) -> Result<PresetName, String> {
+    let found = PresetName::ALL.into_iter().find(|preset| preset.name() == name);
+    let known = PresetName::ALL.map(PresetName::name).join(", ");
+    found.ok_or_else(|| format!("there is no material {name:?}; there are {known}"))
 }

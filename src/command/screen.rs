@@ -123,7 +123,20 @@ pub fn print_check(check: &CheckDocument) {
     for measure in &check.cephalometry {
         let planned = measure.planned.map(|planned| format!(" -> {planned:.2}"));
         let planned = planned.unwrap_or_default();
-        println!("measure    {} {:.2}{planned} {}", measure.name, measure.before, measure.unit);
+        let norm = measure.norm.as_ref().map(|norm| {
+            let z = norm.planned_z.map(|z| format!(" -> {z:+.1}")).unwrap_or_default();
+            format!(", z {:+.1}{z} of {} ({})", norm.before_z, norm.mean, norm.source)
+        });
+        let norm = norm.unwrap_or_default();
+        println!(
+            "measure    {} {:.2}{planned} {}{norm}",
+            measure.name, measure.before, measure.unit
+        );
+    }
+    for own in &check.symmetry {
+        let planned = own.planned.map(|planned| format!(" -> {:.2}", planned.length_mm));
+        let (before, planned) = (own.before.length_mm, planned.unwrap_or_default());
+        println!("symmetry   {} off by {before:.2}{planned} mm", own.landmark);
     }
     print_warnings(&check.warnings);
 }

@@ -7,6 +7,7 @@ mod conform;
 mod drawing;
 mod failure;
 mod fetch;
+mod head;
 mod input;
 mod learn;
 mod meshing;

@@ -77,6 +77,32 @@ fn the_example_runs_and_its_files_are_those_of_its_manifest() {
 }
 
 #[test]
+fn stress_and_a_material_of_the_literature_are_asked_for_by_arguments() {
+    let listed = facies(&["materials"]);
+    assert_eq!(listed.status.code(), Some(0), "{}", text(&listed.stderr));
+    assert!(text(&listed.stdout).contains("Kim, Jürgens, Reyes 2012, table 2"));
+    let json: serde_json::Value =
+        serde_json::from_slice(&facies(&["materials", "--json"]).stdout).unwrap();
+    assert_eq!(json["presets"].as_array().unwrap().len(), 11);
+    let (folder, out) = (plan_folder(FORWARD), tempfile::tempdir().unwrap());
+    let (mesh, plan) = (block().join("block.vtu"), folder.path().join("plan.json"));
+    let asked = ["predict", "--mesh", path(&mesh), "--plan", path(&plan), "--fixed", "skull"];
+    let rest =
+        ["--skin", "skin", "--stress", "--preset", "muscle_zachow_2006", "--out", path(out.path())];
+    let done = facies(&asked.into_iter().chain(rest).collect::<Vec<_>>());
+    assert_eq!(done.status.code(), Some(0), "{}", text(&done.stderr));
+    let shown = text(&done.stdout);
+    assert!(shown.contains("stress       tissue: Mises"), "{shown}");
+    let result = result(out.path());
+    let used = &result.provenance.presets["*"];
+    assert_eq!((used.material.young_modulus_kpa, used.source.year), (Some(300.0), 2006));
+    assert!(result.warnings.iter().any(|warning| warning.code == "preset-doubt"));
+    assert!(result.files.iter().any(|file| file.name == "volume.vtu"));
+    let wrong = facies(&["predict", "--preset", "muscle", "--out", "x"]);
+    assert!(text(&wrong.stderr).contains("there are tissue_chabanas_2003"));
+}
+
+#[test]
 fn what_is_held_is_told_before_anything_is_solved() {
     let case = block().join("case.json");
     let out = tempfile::tempdir().unwrap();

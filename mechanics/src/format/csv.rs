@@ -5,7 +5,7 @@
 
 use std::fmt::Write;
 
-use super::output::{ArrayValues, SurfaceOutput, WriteError};
+use super::output::{ArrayValues, SurfaceOutput, TENSOR_COMPONENTS, WriteError};
 
 const DISPLACEMENT: &str = "displacement_mm";
 
@@ -26,6 +26,7 @@ pub fn write(output: &SurfaceOutput) -> Result<Vec<u8>, WriteError> {
                 ArrayValues::Vectors(values) => {
                     row.extend(values[number].iter().map(digits));
                 }
+                ArrayValues::Tensors(values) => row.extend(values[number].iter().map(digits)),
             }
         }
         put_row(&mut text, row.into_iter());
@@ -48,7 +49,10 @@ fn header(output: &SurfaceOutput) -> Vec<String> {
             ArrayValues::Vectors(_) => {
                 names.extend(["x", "y", "z"].map(|axis| format!("{}_{axis}", array.name)));
             }
-            _ => names.push(array.name.to_string()),
+            ArrayValues::Tensors(_) => {
+                names.extend(TENSOR_COMPONENTS.map(|of| format!("{}_{of}", array.name)));
+            }
+            ArrayValues::Reals(_) | ArrayValues::Integers(_) => names.push(array.name.to_string()),
         }
     }
     names

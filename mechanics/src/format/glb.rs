@@ -61,7 +61,7 @@ impl Attribute {
         Attribute { name: name.to_owned(), kind: "VEC3", values: values.flatten().collect() }
     }
 
-    /// An array of the points; integers have no place in glTF.
+    /// An array of the points; integers and tensors have no place in glTF.
     fn of_array(array: &NamedValues) -> Option<Self> {
         let name = attribute_name(array.name);
         match array.values {
@@ -73,7 +73,7 @@ impl Attribute {
                 let values = values.iter().map(|v| [v.x as f32, v.y as f32, v.z as f32]);
                 Some(Attribute::vectors(&name, values))
             }
-            ArrayValues::Integers(_) => None,
+            ArrayValues::Tensors(_) | ArrayValues::Integers(_) => None,
         }
     }
 }

@@ -30,6 +30,14 @@ impl<'a> VolumeInLps<'a> {
         VolumeInLps { mesh: Cow::Owned(turned), frame: Frame::Lps, is_turned: true }
     }
 
+    /// The components of a symmetric tensor, xx, yy, zz, xy, yz, xz, likewise.
+    pub fn turned_tensor(&self, [xx, yy, zz, xy, yz, xz]: [f64; 6]) -> [f64; 6] {
+        match self.is_turned {
+            true => [xx, yy, zz, xy, 0.0 - yz, 0.0 - xz],
+            false => [xx, yy, zz, xy, yz, xz],
+        }
+    }
+
     /// A vector of the first frame in the one that the mesh is in now.
     pub fn turned(&self, vector: &Vector) -> Vector {
         if self.is_turned { half_turn(vector) } else { *vector }

@@ -9,6 +9,8 @@ use super::arrays::is_finite;
 pub enum ArrayValues<'a> {
     Reals(&'a [f64]),
     Vectors(&'a [Vector]),
+    /// Symmetric tensors: xx, yy, zz, xy, yz, xz, the order of VTK.
+    Tensors(&'a [[f64; 6]]),
     Integers(&'a [i64]),
 }
 
@@ -17,6 +19,7 @@ impl ArrayValues<'_> {
         match self {
             ArrayValues::Reals(values) => values.len(),
             ArrayValues::Vectors(values) => values.len(),
+            ArrayValues::Tensors(values) => values.len(),
             ArrayValues::Integers(values) => values.len(),
         }
     }
@@ -28,6 +31,7 @@ impl ArrayValues<'_> {
     pub(super) fn components(&self) -> usize {
         match self {
             ArrayValues::Vectors(_) => 3,
+            ArrayValues::Tensors(_) => 6,
             ArrayValues::Reals(_) | ArrayValues::Integers(_) => 1,
         }
     }
@@ -36,10 +40,16 @@ impl ArrayValues<'_> {
         match self {
             ArrayValues::Reals(values) => values.iter().filter(|v| !v.is_finite()).count(),
             ArrayValues::Vectors(values) => values.iter().filter(|v| !is_finite(**v)).count(),
+            ArrayValues::Tensors(values) => {
+                values.iter().filter(|tensor| tensor.iter().any(|v| !v.is_finite())).count()
+            }
             ArrayValues::Integers(_) => 0,
         }
     }
 }
+
+/// What the components of a symmetric tensor are called, in their order.
+pub(super) const TENSOR_COMPONENTS: [&str; 6] = ["xx", "yy", "zz", "xy", "yz", "xz"];
 
 /// An array with its name; the unit belongs into the name, as in `displacement_mm`.
 #[derive(Clone, Copy, Debug, PartialEq)]

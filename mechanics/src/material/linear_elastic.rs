@@ -82,6 +82,21 @@ impl LinearElastic {
         LinearElastic { fibre: None, ..self }
     }
 
+    /// The tissue with the fibres of a mixture, whose parts have these shares and one direction of fibres; without where no part
+    /// has any.
+    pub(super) fn with_mixed_fibres(self, parts: &[(f64, LinearElastic)]) -> Self {
+        if parts.iter().all(|(_, part)| part.fibre.is_none()) {
+            return self;
+        }
+        let about = |part: &LinearElastic| {
+            let isotropic = TransverselyIsotropic::isotropic(&part.isotropic);
+            part.fibre.unwrap_or(isotropic)
+        };
+        let parts: Vec<(f64, TransverselyIsotropic)> =
+            parts.iter().map(|(share, part)| (*share, about(part))).collect();
+        LinearElastic { fibre: Some(TransverselyIsotropic::mixture(&parts)), ..self }
+    }
+
     /// Young's modulus along the fibres in kPa, where there are any.
     pub fn fibre_modulus(&self) -> Option<f64> {
         self.fibre.map(|fibre| fibre.young_modulus())

@@ -2,14 +2,16 @@
 //!
 //! C = sum_i f_i C_i with sum_i f_i = 1: for isotropic tissue K = sum f_i K_i and mu = sum f_i mu_i, so
 //! E = 9 K mu / (3 K + mu) and nu = (3 K - 2 mu) / (6 K + 2 mu) (docs/methods.md#tissue-from-images). All parts are strained alike
-//! (Voigt), which makes the stiffest mixture that the shares allow. Density is that of the shares too.
+//! (Voigt), which makes the stiffest mixture that the shares allow. Density is that of the shares too. Of parts with fibres along one
+//! direction lambda, mu, dlam, dmu and beta (`elastic_tensor`) are those of the shares likewise: C is linear in them.
 //!
 //! Source: the equivalent property of Kim et al. 2012 (Mass tensor), stated there for the shares of points;
 //! that the constants are mixed and not E and nu themselves is a choice of ours.
 
 use super::LinearElastic;
 
-/// The mixture of parts with these shares, which sum to 1; there is at least one.
+/// The mixture of parts with these shares, which sum to 1; there is at least one. Fibres, where parts have any, are along one
+/// direction.
 pub fn mixture(parts: &[(f64, LinearElastic)]) -> LinearElastic {
     let mean = |of: fn(&LinearElastic) -> f64| -> f64 {
         parts.iter().map(|(share, part)| share * of(part)).sum()
@@ -21,12 +23,13 @@ pub fn mixture(parts: &[(f64, LinearElastic)]) -> LinearElastic {
     // nu lies between those of the parts, which rounding may overstep; E may be above theirs where they differ in
     // nu, and a law of 1e9 kPa is no tissue any more.
     let largest = parts.iter().map(|(_, part)| part.poisson_ratio()).fold(0.0, f64::max);
-    LinearElastic::new(
+    let across = LinearElastic::new(
         young_modulus.min(1e9),
         poisson_ratio.clamp(0.0, largest),
         mean(LinearElastic::density).clamp(0.0, 100.0),
     )
-    .expect("a mixture of valid tissues lies within the same bounds")
+    .expect("a mixture of valid tissues lies within the same bounds");
+    across.with_mixed_fibres(parts)
 }
 
 #[cfg(test)]
@@ -50,6 +53,28 @@ mod tests {
             close(mixed.bulk_modulus(), linear(LinearElastic::bulk_modulus));
             close(mixed.density(), linear(LinearElastic::density));
         }
+    }
+
+    #[test]
+    fn the_stiffness_of_parts_with_fibres_is_linear_in_the_shares() {
+        use super::super::{Fibre, FibreLaw};
+        use nalgebra::{Matrix3, Vector3};
+        let fibre = Fibre { young_modulus: 110.0, shear_modulus: None, law: FibreLaw::Engineering };
+        let muscle = tissue(6.2, 0.49, 1.04).with_fibre(&fibre).unwrap();
+        let fat = tissue(3.0, 0.46, 0.9);
+        let along = Vector3::new(0.36, 0.48, -0.8);
+        let strain = Matrix3::new(0.1, 0.02, -0.3, 0.02, -0.2, 0.05, -0.3, 0.05, 0.4);
+        for share in [0.0, 0.1, 0.5, 1.0] {
+            let mixed = mixture(&[(1.0 - share, fat), (share, muscle)]);
+            let [a, b] = [fat, muscle].map(|part| part.tensor(&along).stress(&strain));
+            let wanted = a * (1.0 - share) + b * share;
+            let found = mixed.tensor(&along).stress(&strain);
+            assert!((found - wanted).amax() < 1e-11 * wanted.amax(), "{share}: {found} {wanted}");
+            assert!(mixed.tensor(&along).smallest_eigenvalue() > 0.0);
+            let told = (1.0 - share) * 3.0 + share * 110.0;
+            assert!((mixed.fibre_modulus().unwrap() - told).abs() < 1e-12);
+        }
+        assert!(!mixture(&[(0.5, fat), (0.5, fat)]).has_fibre());
     }
 
     #[test]

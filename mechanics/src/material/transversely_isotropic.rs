@@ -77,6 +77,34 @@ impl TransverselyIsotropic {
         Ok(stiffness)
     }
 
+    /// Isotropic tissue, as if it had fibres.
+    pub(super) fn isotropic(tissue: &Isotropic) -> Self {
+        TransverselyIsotropic {
+            young_modulus: tissue.young_modulus,
+            lambda: tissue.lambda(),
+            mu: tissue.shear_modulus(),
+            moduli: FibreModuli::default(),
+        }
+    }
+
+    /// C = sum_i f_i C_i of parts with these shares about one fibre direction, which is positive definite as they are. E_f is that
+    /// of the shares too: what is told of the mixture, and not what a block of it would show.
+    pub(super) fn mixture(parts: &[(f64, TransverselyIsotropic)]) -> Self {
+        let mean = |of: fn(&TransverselyIsotropic) -> f64| -> f64 {
+            parts.iter().map(|(share, part)| share * of(part)).sum()
+        };
+        TransverselyIsotropic {
+            young_modulus: mean(|part| part.young_modulus),
+            lambda: mean(|part| part.lambda),
+            mu: mean(|part| part.mu),
+            moduli: FibreModuli {
+                delta_lambda: mean(|part| part.moduli.delta_lambda),
+                delta_mu: mean(|part| part.moduli.delta_mu),
+                beta: mean(|part| part.moduli.beta),
+            },
+        }
+    }
+
     /// E_f in kPa.
     pub fn young_modulus(&self) -> f64 {
         self.young_modulus

@@ -1,5 +1,6 @@
 //! Ways of modelling: conditions, materials and mesh in, nodal displacement out.
 
+pub mod cell_state;
 pub mod dofs;
 pub mod fem;
 pub mod mass_spring;

@@ -1,5 +1,6 @@
 //! Input and output of every model: load cases in, equilibria out.
 
+use super::cell_state::CellStates;
 use crate::mesh::{Vector, Warning};
 use crate::solver::{SolveReport, SolverError};
 
@@ -20,6 +21,7 @@ pub struct Equilibrium {
     pub displacement: Vec<Vector>,
     pub reactions: Vec<Vector>,
     pub solver: SolveReport,
+    pub states: CellStates,
     /// What a reader must know of this way of modelling and of this answer.
     pub warnings: Vec<Warning>,
 }

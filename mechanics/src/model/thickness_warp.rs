@@ -84,6 +84,7 @@ impl Warped<'_> {
                 self.wanted_residual,
             ),
             warnings: warnings.into_iter().flatten().collect(),
+            states: Default::default(),
         })
     }
 

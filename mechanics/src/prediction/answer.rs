@@ -37,7 +37,7 @@ pub(super) struct LinearAnswer<'a> {
 /// Solves a scene by its method, and estimates what the answer leaves out where that is possible and asked for.
 pub(super) fn solve(scene: &Scene, progress: &dyn Progress) -> Result<Answer, ModelError> {
     Ok(match linear(scene, progress)? {
-        Linear::Solved(answer) => answer.into_answer(),
+        Linear::Solved(answer) => answer.into_answer(scene)?,
         Linear::Other(answer) => *answer,
     })
 }
@@ -110,7 +110,10 @@ pub fn equilibrium(
     let Some(system) = scene.assemble(progress)? else { return Ok((scene.solve(progress)?, None)) };
     let solved = system.solve(&[scene.load_case()], progress)?.remove(0);
     let found = touch(scene, &system, &solved, progress)?;
-    Ok(found.map_or((solved.equilibrium, None), |(own, contact)| (own, Some(contact))))
+    Ok(match found {
+        Some((own, contact)) => (own, Some(contact)),
+        None => (scene.stated(&system, solved)?, None),
+    })
 }
 
 /// At finite strain the last tangent is at hand.
@@ -128,13 +131,13 @@ impl LinearAnswer<'_> {
         &self.solved.equilibrium.displacement
     }
 
-    pub fn into_answer(self) -> Answer {
-        Answer {
-            equilibrium: self.solved.equilibrium,
+    pub fn into_answer(self, scene: &Scene) -> Result<Answer, ModelError> {
+        Ok(Answer {
+            equilibrium: scene.stated(&self.system, self.solved)?,
             numerical_error: self.numerical_error,
             nonlinearity: self.nonlinearity,
             contact: None,
-        }
+        })
     }
 
     /// The answer to second order, with what that leaves out; what the mesh leaves out is that of the first.

@@ -217,6 +217,8 @@ pub struct Settings {
     pub estimate: bool,
     /// Whether what the mesh leaves out, as far as that is estimated, is added to the displacement.
     pub corrected: bool,
+    /// Whether stress and strain of the cells are wanted, of methods that have them.
+    pub states: bool,
 }
 
 impl Default for Settings {
@@ -230,6 +232,7 @@ impl Default for Settings {
             membrane: None,
             estimate: true,
             corrected: false,
+            states: false,
         }
     }
 }

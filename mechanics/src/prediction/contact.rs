@@ -51,11 +51,18 @@ pub(super) fn touch(
     free: &Solved,
     progress: &dyn Progress,
 ) -> Result<Option<(Equilibrium, Touch)>, ModelError> {
-    pressed(scene, &free.equilibrium, progress, |surfaces| {
+    let found = pressed(scene, &free.equilibrium, progress, |surfaces| {
         let relative_residual = scene.settings.relative_residual;
         let found = ContactProblem { system, free, surfaces, relative_residual }.solve(progress)?;
-        Ok(found.map(|InContact { solved, contact }| (solved.equilibrium, contact)))
-    })
+        let Some(InContact { solved, contact }) = found else { return Ok(None) };
+        Ok(Some((scene.stated(system, solved)?, contact)))
+    })?;
+    let Some((mut own, contact)) = found else { return Ok(None) };
+    // Where nothing presses the answer is the one without contact.
+    if own.states.cells.is_empty() {
+        own.states = scene.states_of(system, free)?;
+    }
+    Ok(Some((own, contact)))
 }
 
 /// The same at finite strain.

@@ -1,5 +1,7 @@
 //! The checks of what is stiffer one way than another: fibres of the tissue, the skin as a membrane.
 
+use nalgebra::Matrix3;
+
 use super::case::{Case, FibreDirection, Settings};
 use super::check::Check;
 use super::error_code::SceneErrorCode;
@@ -8,11 +10,14 @@ use super::skin::Skin;
 use crate::material::LinearElastic;
 use crate::material::hyperelastic::Law;
 use crate::mesh::ignored::listed;
-use crate::mesh::{ArrayUse, Vector, Warning};
+use crate::mesh::{ArrayUse, Vector, VolumeMesh, Warning};
 use crate::model::fem::membrane::Membrane;
 
 /// A direction shorter than this, and a line of the skin of which less than this lies in a face, has no angle.
 const SHORTEST: f64 = 1e-6;
+
+/// The second eigenvalue of the fibres of the nodes of a cell, as a share of the first, from which on they run in two ways.
+const TWO_WAYS: f64 = 0.5;
 
 /// Regions by number, and what each is made of.
 pub(super) struct Tissues<'a> {
@@ -109,10 +114,14 @@ impl Check<'_> {
             Some(FibreDirection::Uniform(direction)) => {
                 ("direction", directions(cells, of_cell, |_| *direction))
             }
-            Some(FibreDirection::Array(array)) => match case.volume.cell_vectors.get(array) {
-                Some(vectors) => ("array", directions(cells, of_cell, |cell| vectors[cell])),
+            Some(FibreDirection::Array(array)) => match Course::of(&case.volume, array) {
+                Some(course) => {
+                    self.warnings.extend(course.disagreeing(region, cells));
+                    ("array", directions(cells, of_cell, |cell| course.axis(cell).along))
+                }
                 None => {
                     let detail = case.volume.missing_array(ArrayUse::CellVectors, array);
+                    let detail = format!("{detail}; a point array of 3 components would do too");
                     let at = format!("{pointer}/array");
                     return self.problems.add(at, SceneErrorCode::UnknownArray, detail);
                 }
@@ -225,6 +234,59 @@ fn directions(
 pub(super) fn unit(vector: &Vector) -> Option<Vector> {
     let length = vector.norm();
     (length.is_finite() && length > SHORTEST).then(|| vector / length)
+}
+
+/// The course of fibres in an array of the mesh.
+enum Course<'a> {
+    Cells(&'a [Vector]),
+    /// At the nodes of a mesh (Zachow et al. 2006, section 4.2).
+    Nodes(&'a VolumeMesh, &'a [Vector]),
+}
+
+/// The axis of a cell, of any length, and how nearly those of its nodes have another one: 0 where all agree, 1 where none is
+/// preferred.
+struct Axis {
+    along: Vector,
+    beside: f64,
+}
+
+impl<'a> Course<'a> {
+    /// None where neither cells nor nodes have an array of that name.
+    fn of(mesh: &'a VolumeMesh, array: &str) -> Option<Self> {
+        let of_cells = mesh.cell_vectors.get(array).map(|vectors| Course::Cells(vectors));
+        let of_nodes = mesh.node_vectors.get(array);
+        of_cells.or_else(|| of_nodes.map(|vectors| Course::Nodes(mesh, vectors)))
+    }
+
+    /// Of nodes the leading eigenvector of sum a a^T over those of a cell that have a direction a of length 1.
+    fn axis(&self, cell: usize) -> Axis {
+        let (mesh, vectors) = match self {
+            Course::Cells(vectors) => return Axis { along: vectors[cell], beside: 0.0 },
+            Course::Nodes(mesh, vectors) => (mesh, vectors),
+        };
+        let nodes = mesh.cells.nodes(cell).iter();
+        let units: Vec<Vector> = nodes.filter_map(|&node| unit(&vectors[node as usize])).collect();
+        let Some(first) = units.first() else {
+            return Axis { along: Vector::zeros(), beside: 0.0 };
+        };
+        let modes = units.iter().map(|a| a * a.transpose()).sum::<Matrix3<f64>>().symmetric_eigen();
+        let along = modes.eigenvectors.column(modes.eigenvalues.imax()).into_owned();
+        let mut sizes: [f64; 3] = modes.eigenvalues.into();
+        sizes.sort_by(f64::total_cmp);
+        let along = if along.dot(first) < 0.0 { -along } else { along };
+        Axis { along, beside: sizes[1].max(0.0) / sizes[2] }
+    }
+
+    /// The warning of cells whose nodes have no common direction.
+    fn disagreeing(&self, region: &str, cells: &[usize]) -> Option<Warning> {
+        let count = cells.iter().filter(|&&cell| self.axis(cell).beside > TWO_WAYS).count();
+        let detail = format!(
+            "in {count} of {} cells of region {region:?} the fibres of the nodes run in two ways, and their mean is taken",
+            cells.len()
+        );
+        let warning = Warning::new("fibres-disagree", detail).with("cells", count as f64);
+        (count > 0).then(|| warning.with("of", cells.len() as f64))
+    }
 }
 
 /// The mean of axes, which have no sign.

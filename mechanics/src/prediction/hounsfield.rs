@@ -2,7 +2,7 @@
 //!
 //! `mean`: a cell is the tissue whose window its mean lies in (Zachow et al. 2006, section 3.5).
 //! `fraction`: a cell is the mixture C = sum_t f_t C_t of the tissues in whose windows its sample points lie
-//! (docs/methods.md#tissue-from-images); points in no window count as the region of the cell.
+//! (docs/methods.md#tissue-from-images); points in no window count as the region of the cell, with its fibres.
 //! A cell of which a sample point lies outside the image, or that is in no window, keeps the material of its
 //! region. Shares are rounded to steps that leave no more mixtures than numbers for them.
 
@@ -61,18 +61,18 @@ impl Check<'_> {
         }
     }
 
-    /// A mixture has one bulk and one shear modulus: fibres and laws of finite strain have more.
+    /// Stiffnesses mix, of regions with fibres along these: laws of finite strain and fibres that only pull have more.
     fn can_mix(&mut self, hounsfield: &Hounsfield, materials: &[LinearElastic]) -> bool {
         let windows = hounsfield.tissues.iter().map(|window| &window.material);
         let is_more = |material: &&LinearElastic| {
-            material.has_fibre() || material.has_pulling_fibres() || material.stated_law().is_some()
+            material.has_pulling_fibres() || material.stated_law().is_some()
         };
         let more = materials.iter().chain(windows).filter(is_more).count();
         if hounsfield.mixing == Mixing::Mean || more == 0 {
             return true;
         }
         let detail = format!(
-            "`fraction` mixes linear isotropic tissue, and {more} tissues have fibres or a law of finite strain: `mean` \
+            "`fraction` mixes linear tissue, and {more} tissues have a law of finite strain or fibres that only pull: `mean` \
              leaves them as they are"
         );
         self.problems.add(format!("{PLACE}/mixing"), SceneErrorCode::MethodNotAvailable, detail);

@@ -100,6 +100,8 @@ pub struct MethodProperties {
     pub knows_inner_stress: bool,
     /// Whether tissue may be kept from passing through what it touches.
     pub knows_contact: bool,
+    /// Whether stress and strain of its cells can be given.
+    pub gives_stress: bool,
 }
 
 const FEM_LINEAR: MethodProperties = MethodProperties {
@@ -118,6 +120,7 @@ const FEM_LINEAR: MethodProperties = MethodProperties {
     knows_loads: true,
     knows_inner_stress: true,
     knows_contact: true,
+    gives_stress: true,
 };
 
 const FEM_NONLINEAR: MethodProperties = MethodProperties {
@@ -141,6 +144,7 @@ const FEM_NONLINEAR: MethodProperties = MethodProperties {
     knows_loads: true,
     knows_inner_stress: true,
     knows_contact: true,
+    gives_stress: true,
 };
 
 const MASS_TENSOR: MethodProperties = MethodProperties {
@@ -160,6 +164,7 @@ const MASS_TENSOR: MethodProperties = MethodProperties {
     knows_loads: true,
     knows_inner_stress: true,
     knows_contact: false,
+    gives_stress: true,
 };
 
 const MASS_TENSOR_TRANSVERSE: MethodProperties = MethodProperties {
@@ -178,6 +183,7 @@ const MASS_TENSOR_TRANSVERSE: MethodProperties = MethodProperties {
     knows_loads: true,
     knows_inner_stress: true,
     knows_contact: true,
+    gives_stress: true,
 };
 
 const MASS_TENSOR_NONLINEAR: MethodProperties = MethodProperties {
@@ -196,6 +202,7 @@ const MASS_TENSOR_NONLINEAR: MethodProperties = MethodProperties {
     knows_loads: true,
     knows_inner_stress: false,
     knows_contact: false,
+    gives_stress: false,
 };
 
 const MASS_SPRING: MethodProperties = MethodProperties {
@@ -214,6 +221,7 @@ const MASS_SPRING: MethodProperties = MethodProperties {
     knows_loads: true,
     knows_inner_stress: false,
     knows_contact: false,
+    gives_stress: false,
 };
 
 const VOLUME_SPLINE: MethodProperties = MethodProperties {
@@ -232,6 +240,7 @@ const VOLUME_SPLINE: MethodProperties = MethodProperties {
     knows_loads: true,
     knows_inner_stress: false,
     knows_contact: false,
+    gives_stress: false,
 };
 
 const THICKNESS_WARP: MethodProperties = MethodProperties {
@@ -250,6 +259,7 @@ const THICKNESS_WARP: MethodProperties = MethodProperties {
     knows_loads: false,
     knows_inner_stress: false,
     knows_contact: false,
+    gives_stress: false,
 };
 
 impl MethodKind {

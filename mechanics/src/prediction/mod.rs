@@ -34,6 +34,7 @@ mod skin_check;
 mod skin_overlap;
 mod small_strain;
 mod stated;
+mod states;
 mod stiff_layer;
 mod suspect_constants;
 mod unheld;
@@ -77,6 +78,8 @@ pub use answer::equilibrium;
 
 pub use crate::boundary::NodeClass;
 use crate::mesh::{Vector, Warning};
+pub use crate::model::cell_state::{CellState, CellStates};
+pub use crate::model::fem::linear_states::node_states;
 use crate::model::fem::strain::{CellDeformation, deformations};
 pub use crate::model::problem::{InvertedCell, ModelError};
 use crate::progress::{Phase, Progress};
@@ -92,6 +95,8 @@ pub struct Prediction {
     pub displacement: Vec<Vector>,
     /// For each cell.
     pub deformation: Vec<CellDeformation>,
+    /// Stress and strain of each cell, before anything is `corrected`; empty where they were not asked for or the method has none.
+    pub states: CellStates,
     /// In mN: what each segment, `fixed`, `sliding` and `prescribed` nodes exert on the tissue.
     pub reactions: BTreeMap<String, Vector>,
     /// The same for each condition by itself, in the order of case and plan.
@@ -158,6 +163,7 @@ fn described(scene: &Scene, answer: Answer, progress: &dyn Progress) -> Predicti
         solver: equilibrium.solver,
         elements: scene.elements(),
         displacement: equilibrium.displacement,
+        states: equilibrium.states,
         deformation,
         warnings,
     }

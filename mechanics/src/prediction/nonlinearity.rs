@@ -106,11 +106,15 @@ pub(super) fn to_second_order(
     let forces = second_order_forces(scene, system, solved)?;
     let second = solution(system, &forces, OF_ANSWER, progress)?;
     let more = system.reactions(&second, &forces.nodes);
+    let displacement = sums(&first.displacement, &second.displacement);
+    let both: Vec<f64> = pressures.iter().zip(&second.pressures).map(|(p, q)| p + q).collect();
+    let (states, unknown) = scene.states_at_second_order(system, &displacement, &both);
     let equilibrium = Equilibrium {
-        displacement: sums(&first.displacement, &second.displacement),
+        displacement,
         reactions: sums(&first.reactions, &more),
         solver: first.solver.clone(),
-        warnings: first.warnings.clone(),
+        states,
+        warnings: first.warnings.iter().cloned().chain(unknown).collect(),
     };
     let moved = Moved { displacement: &first.displacement, pressures };
     let again = Moved { displacement: &second.displacement, pressures: &second.pressures };

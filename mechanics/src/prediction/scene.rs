@@ -167,16 +167,14 @@ impl Scene {
     pub fn solve(&self, progress: &dyn Progress) -> Result<Equilibrium, ModelError> {
         match &self.settings.method {
             // A mass-tensor is the block of two nodes of a plain tetrahedron.
-            Method::FemLinear | Method::MassTensorTransverse => {
-                let mut solved = self.solve_cases(&[self.load_case()], progress)?;
-                Ok(solved.remove(0))
-            }
+            Method::FemLinear | Method::MassTensorTransverse => self.solve_linear(progress),
             Method::FemNonlinear => Ok(self.solve_at_finite_strain(false, progress)?.0),
             Method::MassSpring(settings) => {
                 mass_spring::solve(&self.problem(), settings, &self.load_case(), progress)
             }
             Method::MassTensor(settings) => {
-                mass_tensor::solve(&self.problem(), settings, &self.load_case(), progress)
+                let own = self.problem();
+                self.with_states(mass_tensor::solve(&own, settings, &self.load_case(), progress)?)
             }
             Method::MassTensorNonlinear => self.mass_tensors().solve(&self.load_case(), progress),
             Method::VolumeSpline(spline) => spline::solve(&self.problem(), spline, progress),
@@ -231,6 +229,7 @@ impl Scene {
             inner: Arc::new(self.distributed.inner.clone()),
             holds: &self.conditions.holds,
             tolerance: Tolerance { relative_residual, memory_mb },
+            with_states: self.settings.states,
         };
         done(&problem, &laws)
     }
@@ -247,7 +246,7 @@ impl Scene {
     }
 
     /// Tissue, holds and loads as models see them.
-    fn problem(&self) -> Problem<'_> {
+    pub(super) fn problem(&self) -> Problem<'_> {
         let Settings { relative_residual, memory_mb, .. } = self.settings;
         Problem {
             tissue: self.tissue(),

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use mechanics::cephalometry::{Landmarks, MEASURES};
+use mechanics::cephalometry::{Landmarks, MEASURES, MidSagittal, NORMS, z_score};
 use mechanics::mesh::{Frame, Vector};
 
 type Named = BTreeMap<String, Vector>;
@@ -126,4 +126,73 @@ fn what_lacks_a_landmark_is_left_out_and_the_rest_is_told() {
     // Both halves lean by atan(10/50).
     let wanted = 2.0 * (0.2_f64).atan().to_degrees();
     assert!((measure("facial_convexity", &few).unwrap() - wanted).abs() < 1e-9);
+}
+
+/// To the patient's left, up and forwards in mm, of each pair and each landmark of the middle, against the plane of the example.
+fn asymmetry(name: &str, base: &Named, landmarks: &Named) -> [f64; 3] {
+    let (base, own) = (Landmarks(base), Landmarks(landmarks));
+    let plane = MidSagittal::of(&base).unwrap();
+    let symmetric = own.symmetric();
+    let of = symmetric.iter().find(|of| of.name == name).unwrap();
+    let found = plane.asymmetry(of, &own).unwrap();
+    [found.left, found.up, found.forwards]
+}
+
+#[test]
+fn a_symmetric_head_is_told_to_be_symmetric_however_it_lies() {
+    let turn = nalgebra::Rotation3::from_euler_angles(0.4, -0.7, 1.9);
+    let moved: Named = example()
+        .into_iter()
+        .map(|(name, at)| (name, turn * at + Vector::new(300.0, -20.0, 7.0)))
+        .collect();
+    for head in [example(), moved] {
+        let landmarks = Landmarks(&head);
+        let names: Vec<String> = landmarks.symmetric().into_iter().map(|of| of.name).collect();
+        // Oc is no landmark of the middle, and poria, orbitalia and gonia are pairs.
+        let wanted = ["A", "ANS", "B", "Go", "L1", "Me", "N", "Or", "Po", "S", "U1"];
+        assert_eq!(names, wanted);
+        for name in wanted {
+            let off = asymmetry(name, &head, &head);
+            assert!(off.iter().all(|off| off.abs() < 1e-10), "{name}: {off:?}");
+        }
+    }
+}
+
+#[test]
+fn what_is_moved_on_one_side_is_off_by_that() {
+    let base = example();
+    let axes = MidSagittal::of(&Landmarks(&base)).unwrap();
+    assert!((axes.left - Vector::x()).norm() < 1e-12);
+    let mut planned = example();
+    // The left gonion 2 mm to the left, 3 mm up and 1 mm back; the chin 4 mm to the right.
+    *planned.get_mut("Go_L").unwrap() += axes.left * 2.0 + axes.up * 3.0 - axes.forwards;
+    *planned.get_mut("Me").unwrap() -= axes.left * 4.0;
+    for (name, wanted) in [("Go", [2.0, 3.0, -1.0]), ("Me", [-4.0, 0.0, 0.0]), ("Or", [0.0; 3])] {
+        let off = asymmetry(name, &base, &planned);
+        let error = off.iter().zip(wanted).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(error < 1e-10, "{name}: {off:?}");
+    }
+}
+
+#[test]
+fn norms_are_of_measures_that_there_are_and_count_standard_deviations() {
+    for norm in NORMS {
+        assert!(MEASURES.iter().any(|measure| measure.name == norm.measure), "{}", norm.measure);
+        assert!(norm.sd > 0.0 && norm.source.contains("1980"));
+    }
+    assert_eq!(z_score(16.0, 12.0, 4.0), 1.0);
+    assert_eq!(z_score(86.0, 102.0, 8.0), -2.0);
+}
+
+#[test]
+fn proportions_of_the_skin_are_those_of_its_lengths() {
+    let points = [
+        ("glabella", [0.0, -50.0, 60.0]),
+        ("subnasale", [0.0, -50.0, 0.0]),
+        ("stomion_superius", [0.0, -50.0, -20.0]),
+        ("stomion_inferius", [0.0, -50.0, -22.0]),
+        ("menton", [0.0, -50.0, -62.0]),
+    ];
+    let skin: Named = points.into_iter().map(|(name, at)| (name.to_owned(), at.into())).collect();
+    assert_measures(&skin, &[("face_height_ratio", 60.0 / 62.0), ("lip_chin_ratio", 0.5)]);
 }

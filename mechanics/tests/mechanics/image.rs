@@ -217,6 +217,34 @@ fn a_cell_across_a_step_is_one_tissue_by_its_mean_and_a_mixture_by_its_shares() 
 }
 
 #[test]
+fn a_cell_that_is_half_a_region_with_fibres_has_half_of_its_stiffness() {
+    // Bricks of 16 mm: 10 of them are in no window, and of a region with fibres; 6 are muscle without.
+    let mesh = block(Vector::new(60.0, 40.0, 16.0), [3, 2, 1], CellShape::Hex8);
+    let mut asked = hounsfield(step(), Mixing::Fraction);
+    asked.tissues.remove(0);
+    let region = fibred(MUSCLE).unwrap();
+    let mut case = Case { hounsfield: Some(asked), ..case_of(mesh, region) };
+    let along = Vector::new(1.0, 2.0, -2.0) / 3.0;
+    case.fibres.insert("*".to_owned(), FibreDirection::Uniform(along));
+    let scene = Scene::new(&case, &pulled(), &Settings::default()).unwrap();
+    let imaged = scene.imaged.as_ref().unwrap();
+    let share = imaged.region.volume_share;
+    assert!((share - 10.0 / 16.0).abs() < 1.0 / 64.0_f64.sqrt(), "{share}");
+    let strain = nalgebra::Matrix3::new(0.1, 0.02, -0.3, 0.02, -0.2, 0.05, -0.3, 0.05, 0.4);
+    let (_, stiff) = soft_and_stiff();
+    let wanted = region.tensor(&along).stress(&strain) * share
+        + stiff.tensor(&along).stress(&strain) * (1.0 - share);
+    for cell in 0..scene.mesh.cells.len() {
+        assert!((scene.fibres[cell] - along).norm() < 1e-15);
+        let found = scene.tissue().tensor(cell).stress(&strain);
+        assert!((found - wanted).amax() < 1e-10 * wanted.amax(), "{found} {wanted}");
+    }
+    let answer = solve(&case, &pulled(), &Settings::default());
+    assert!(answer.displacement.iter().all(|u| u.norm() < 10.0));
+    assert!(!answer.warnings.iter().any(|warning| warning.code == "fibres-replaced"));
+}
+
+#[test]
 fn cells_beyond_the_image_or_in_no_window_keep_their_region_and_are_counted() {
     let mesh = block(Vector::new(60.0, 40.0, 40.0), [3, 2, 4], CellShape::Hex8);
     let mut asked = hounsfield(step(), Mixing::Mean);

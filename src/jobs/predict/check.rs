@@ -4,7 +4,7 @@ use super::cost;
 use super::density::default_density;
 use super::input::{PredictInput, Prepared};
 use super::overlap::{Collision, collisions};
-use super::planned::{measures, movements, swapped_sides};
+use super::planned::{in_numbers, movements, swapped_sides};
 use crate::jobs::failure::JobError;
 use crate::jobs::result::pictures::classes_picture;
 use crate::jobs::result::warnings::warnings_after;
@@ -51,6 +51,7 @@ impl Prepared {
         of_plan.extend(swapped_sides(&input.case, self.case.frame));
         of_plan.extend(default_density(input));
         let warnings = self.warnings.iter().chain(&scene.warnings).chain(&of_plan);
+        let head = in_numbers(&input.case, &self.case, scene, None);
         CheckDocument {
             nodes: nodes as u64,
             cells: scene.mesh.cells.len() as u64,
@@ -75,7 +76,8 @@ impl Prepared {
             auto: self.expectation(input),
             movements: movements(scene, self.case.frame),
             collisions: collisions.iter().map(Collision::document).collect(),
-            cephalometry: measures(&input.case, &self.case, scene, None),
+            cephalometry: head.measures,
+            symmetry: head.symmetry,
             warnings: warnings_after(&self.told, warnings),
         }
     }

@@ -1,12 +1,12 @@
-//! What a plan means for the landmarks of a head: cephalometric measures before, planned and predicted.
+//! What a plan means for the landmarks of a head: cephalometric measures and symmetry before, planned and predicted.
 
 use std::collections::BTreeMap;
 
+use crate::jobs::head::{Bone, Head, Skin};
 use crate::schema::CaseDocument;
-use crate::schema::predict::planned::{MeasureDocument, MovementReportDocument};
-use mechanics::cephalometry::{Landmarks, MEASURES, Tissue};
+use crate::schema::predict::planned::{MeasureDocument, MovementReportDocument, SymmetryDocument};
+use mechanics::cephalometry::Landmarks;
 use mechanics::mesh::{Frame, Vector, Warning};
-use mechanics::plan::RigidMovement;
 use mechanics::prediction::{Case, Scene};
 
 type Places = BTreeMap<String, Vector>;
@@ -17,56 +17,38 @@ pub fn movements(scene: &Scene, frame: Frame) -> Vec<MovementReportDocument> {
     segments.filter_map(|segment| MovementReportDocument::new(segment, frame)).collect()
 }
 
-/// Every measure whose landmarks are there; `displacement` is that of the landmarks of skin, where it is predicted.
-pub fn measures(
+/// A head in numbers: every measure and every symmetry whose landmarks are there.
+pub struct InNumbers {
+    pub measures: Vec<MeasureDocument>,
+    pub symmetry: Vec<SymmetryDocument>,
+}
+
+/// `displacement` is that of the landmarks of skin, where it is predicted.
+pub fn in_numbers(
     document: &CaseDocument,
     case: &Case,
     scene: &Scene,
     displacement: Option<&Places>,
-) -> Vec<MeasureDocument> {
-    let (bone, planned) = (bone_landmarks(document), planned_landmarks(document, scene));
-    let skin = &case.landmarks;
-    let predicted = displacement.map(|moved| after(skin, moved));
-    let mut found = Vec::new();
-    for measure in &MEASURES {
-        let (before, after) = match measure.tissue {
-            Tissue::Bone => (&bone, Some(&planned)),
-            Tissue::Skin => (skin, predicted.as_ref()),
-        };
-        let after = after.and_then(|landmarks| measure.of(&Landmarks(landmarks)));
-        let before = measure.of(&Landmarks(before));
-        found.extend(before.map(|before| MeasureDocument::new(measure, before, after)));
-    }
-    found
+) -> InNumbers {
+    let landmarks = &document.bone_landmarks;
+    let moved = |segment: &str, at: &Vector| {
+        let number = scene.segment(segment);
+        number.map(|number| scene.segments[number].movement.apply(at))
+    };
+    let bone = Bone::before(landmarks).planned(landmarks, &moved);
+    let predicted = displacement.map(|moved| after(&case.landmarks, moved));
+    let skin = Skin { before: case.landmarks.clone(), predicted };
+    let head = Head { bone, skin, norms: document.norms.clone() };
+    InNumbers { measures: head.measures(), symmetry: head.symmetry() }
 }
 
 /// A warning for each pair of landmarks of bone whose sides look swapped.
 pub fn swapped_sides(document: &CaseDocument, frame: Frame) -> Vec<Warning> {
-    let landmarks = bone_landmarks(document);
+    let landmarks = Bone::before(&document.bone_landmarks).before;
     let swapped = Landmarks(&landmarks).swapped_sides(frame).into_iter();
     swapped
         .map(|swapped| {
             Warning::new("landmarks-swapped", swapped.to_string()).with("by_mm", swapped.by)
-        })
-        .collect()
-}
-
-fn bone_landmarks(document: &CaseDocument) -> Places {
-    let landmarks = document.bone_landmarks.iter();
-    landmarks.map(|(name, own)| (name.clone(), Vector::from(own.position_mm))).collect()
-}
-
-fn planned_landmarks(document: &CaseDocument, scene: &Scene) -> Places {
-    let movement = |name: &str| {
-        let segment = scene.segment(name).map(|number| &scene.segments[number]);
-        segment.map_or_else(RigidMovement::default, |segment| segment.movement)
-    };
-    let landmarks = document.bone_landmarks.iter();
-    landmarks
-        .map(|(name, own)| {
-            let movement = own.segment.as_deref().map(|segment| movement(segment.trim()));
-            let at = Vector::from(own.position_mm);
-            (name.clone(), movement.map_or(at, |movement| movement.apply(&at)))
         })
         .collect()
 }

@@ -9,7 +9,7 @@ use super::correction::{CORRECTED_FILE, Correction, corrected};
 use super::density::default_density;
 use super::input::{PredictInput, Prepared};
 use super::overlap::{Collision, collisions, through_skin};
-use super::planned::{measures, swapped_sides};
+use super::planned::{in_numbers, swapped_sides};
 use crate::jobs::clock::Observed;
 use crate::jobs::failure::JobError;
 use crate::jobs::output::{JobOutput, MadeMesh};
@@ -17,9 +17,10 @@ use crate::jobs::report::{PredictionFacts, write_reports};
 use crate::jobs::result::folder::ResultFolder;
 use crate::jobs::result::pictures::displacement_picture;
 use crate::jobs::result::provenance::{
-    Origin, add_method, encode_result, laws, mesh_summary, solver_document,
+    Origin, add_method, encode_result, laws, mesh_summary, presets, solver_document,
 };
 use crate::jobs::result::skin::PredictedSkin;
+use crate::jobs::result::stress::stress_by_region;
 use crate::jobs::result::tissue::{encode_bones, encode_volume};
 use crate::jobs::result::warnings::warnings_after;
 use crate::jobs::source::StoredShape;
@@ -36,6 +37,7 @@ use crate::schema::predict::result::{
     DisplacementDocument, ErrorLengthsDocument, FileDocument, NumericalErrorDocument,
     ResultDocument, StatisticsDocument,
 };
+use crate::schema::predict::stress::StressDocument;
 use mechanics::mesh::{Vector, VolumeMesh, Warning};
 use mechanics::prediction::{Prediction, Skin};
 use mechanics::progress::{Phase, Progress};
@@ -80,6 +82,7 @@ impl Predicted {
             Err(unknown) => Err(unknown.to_string()),
         };
         let numerical_error = numerical_error(&prepared.scene.skin, &skin, &prediction)?;
+        let stress = stress_by_region(&prepared.scene, &prediction)?;
         statistics.imaged = prepared.scene.imaged.as_ref().map(Into::into);
         clock.check()?;
 
@@ -116,6 +119,7 @@ impl Predicted {
             statistics,
             nonlinearity,
             numerical_error,
+            stress,
             comparison: compared.map(|compared| compared.document),
             optimisation,
             adequacy,
@@ -144,6 +148,7 @@ struct Finished<'a> {
     /// What is left out, or why that is not known.
     nonlinearity: Result<NonlinearityDocument, String>,
     numerical_error: Option<NumericalErrorDocument>,
+    stress: Option<StressDocument>,
     comparison: Option<ComparisonDocument>,
     optimisation: Option<OptimisationDocument>,
     adequacy: Option<AdequacyDocument>,
@@ -250,7 +255,10 @@ impl Finished<'_> {
             provenance.why = Some(adequacy.why());
         }
         provenance.laws = laws(&self.prepared.case, &self.prepared.scene);
+        provenance.presets = presets(&input.case, input.spec.materials.as_ref());
         let warnings = warnings_after(&self.prepared.told, self.warnings.iter());
+        let Prepared { case, scene, .. } = self.prepared;
+        let head = in_numbers(&input.case, case, scene, Some(&self.prediction.landmarks));
         ResultDocument {
             pictures: input.pictures_beside(files),
             statistics: Some(self.statistics.clone()),
@@ -259,6 +267,7 @@ impl Finished<'_> {
             comparison: self.comparison.clone(),
             optimisation: self.optimisation.clone(),
             contact: self.prediction.contact.as_ref().map(Into::into),
+            stress: self.stress.clone(),
             adequacy: self.adequacy.clone(),
             correction: self.correction.as_ref().map(|own| own.document.clone()),
             refinement: self.refinement.clone(),
@@ -269,12 +278,8 @@ impl Finished<'_> {
                 .as_ref()
                 .err()
                 .map(|why| why.to_string()),
-            cephalometry: measures(
-                &input.case,
-                &self.prepared.case,
-                &self.prepared.scene,
-                Some(&self.prediction.landmarks),
-            ),
+            cephalometry: head.measures,
+            symmetry: head.symmetry,
             reaction_mn: triples(&self.prediction.reactions),
             reactions: self.prediction.condition_reactions.iter().map(Into::into).collect(),
             ..ResultDocument::new(input.job.clone(), files, provenance, warnings)

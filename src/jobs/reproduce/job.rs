@@ -6,6 +6,7 @@ use super::input::ReproduceInput;
 use crate::jobs::clock::Observed;
 use crate::jobs::compare::{by_landmarks, place_of, surface_of};
 use crate::jobs::failure::JobError;
+use crate::jobs::head::{Bone, Head, Skin};
 use crate::jobs::output::{JobOutput, Workplace};
 use crate::jobs::result::folder::ResultFolder;
 use crate::jobs::result::provenance::{Origin, encode_result};
@@ -75,7 +76,10 @@ pub fn reproduce_job(
     };
     let mut folder = ResultFolder::open(place.out)?;
     let told = stored.values().flat_map(|mesh| &mesh.warnings).chain(&warnings);
+    let head = head(input, &planned, &reproduction);
     let result = ResultDocument {
+        cephalometry: head.measures(),
+        symmetry: head.symmetry(),
         reproduction: Some(reproduction),
         ..ResultDocument::new(
             input.job.clone(),
@@ -86,6 +90,29 @@ pub fn reproduce_job(
     };
     folder.add(OutputName::ResultJson, &encode_result(&result)?)?;
     Ok(JobOutput { result, files: folder.files, meshes: Vec::new() })
+}
+
+/// The head before the operation, as planned and as it was performed.
+fn head(input: &ReproduceInput, planned: &[PlannedSegment], found: &ReproductionDocument) -> Head {
+    let landmarks = &input.spec.bone_landmarks;
+    let as_planned = |name: &str, at: &Vector| {
+        let segment = planned.iter().find(|segment| segment.name == name)?;
+        Some(segment.movement.apply(at))
+    };
+    let as_performed = |name: &str, at: &Vector| {
+        let segment = found.segments.iter().find(|segment| segment.name == name)?;
+        let m = segment.matrix4x4.0;
+        let row =
+            |k: usize| Vector::new(m[4 * k], m[4 * k + 1], m[4 * k + 2]).dot(at) + m[4 * k + 3];
+        Some(Vector::new(row(0), row(1), row(2)))
+    };
+    let bone = Bone::before(landmarks);
+    let bone = match planned {
+        [] => bone,
+        _ => bone.planned(landmarks, &as_planned),
+    };
+    let bone = bone.performed(landmarks, &as_performed);
+    Head { bone, skin: Skin::default(), norms: input.spec.norms.clone() }
 }
 
 /// The movements that had been planned, in the frame before the operation.

@@ -4,5 +4,6 @@ pub mod folder;
 pub mod pictures;
 pub mod provenance;
 pub mod skin;
+pub mod stress;
 pub mod tissue;
 pub mod warnings;

@@ -6,7 +6,11 @@ use serde_json::{Value, json};
 
 use crate::jobs::clock::{Observed, now_rfc3339, peak_rss_mb};
 use crate::jobs::failure::{JobError, thinned};
-use crate::schema::case::document::LengthUnit;
+use crate::schema::case::document::{CaseDocument, LengthUnit};
+use crate::schema::case::hounsfield::HounsfieldDocument;
+use crate::schema::case::material::MaterialDocuments;
+use crate::schema::case::merged::expanded_materials;
+use crate::schema::case::preset::{UsedPresetDocument, used_presets};
 use crate::schema::methods::MethodName;
 use crate::schema::predict::newton::NewtonDocument;
 use crate::schema::predict::result::{
@@ -43,6 +47,7 @@ impl Origin {
             solver: None,
             mesh: None,
             laws: BTreeMap::new(),
+            presets: BTreeMap::new(),
             threads: rayon::current_num_threads() as u32,
             determinism: "bitwise".to_owned(),
             timing: clock.timing(self.queue_s),
@@ -106,6 +111,16 @@ pub fn laws(case: &Case, scene: &Scene) -> BTreeMap<String, TissueLawDocument> {
     let names = scene.regions.iter().chain(tissues.map(|tissue| &tissue.name)).cloned();
     let of = names.zip(scene.materials.iter().map(followed));
     of.filter_map(|(name, law)| Some((name, (&law?).into()))).collect()
+}
+
+/// The materials of the literature that a case has, with those of a spec over its own.
+pub fn presets(
+    case: &CaseDocument,
+    spec: Option<&MaterialDocuments>,
+) -> BTreeMap<String, UsedPresetDocument> {
+    let regions = expanded_materials(case.materials.as_ref(), spec);
+    let tissues = case.hounsfield.as_ref().map(HounsfieldDocument::expanded).unwrap_or_default();
+    used_presets(regions.iter().chain(&tissues))
 }
 
 /// How provenance names the mesh that was computed on.

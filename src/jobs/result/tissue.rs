@@ -1,6 +1,7 @@
 //! The moved tissue and the moved bones as files.
 
 use super::skin::ContactArrays;
+use super::stress::{StressArrays, strain_measure};
 use mechanics::format::vtk::{vtp, vtu};
 use mechanics::format::{
     ArrayValues, NamedValues, SurfaceOutput, VolumeInLps, VolumeOutput, WriteError,
@@ -45,17 +46,20 @@ pub fn encode_volume(
     ];
     if let Some(imaged) = &imaged {
         field_data.push(("tissue_names".to_owned(), imaged.names.join("\n")));
-        cell_arrays.extend([
-            named("hounsfield_mean", ArrayValues::Reals(&imaged.mean)),
-            named("tissue", ArrayValues::Integers(&imaged.tissue)),
-            named("young_modulus_kpa", ArrayValues::Reals(&imaged.young_modulus)),
-        ]);
+        cell_arrays.extend(imaged.arrays());
     }
     let mut point_arrays = vec![
         named("displacement_mm", ArrayValues::Vectors(&displacement)),
         named("displacement_magnitude_mm", ArrayValues::Reals(&magnitude)),
         named("node_id", ArrayValues::Integers(&node_id)),
     ];
+    let stress = StressArrays::new(scene, prediction, &written);
+    if let Some(stress) = &stress {
+        field_data
+            .push(("strain_measure".to_owned(), strain_measure(prediction).name().to_owned()));
+        cell_arrays.extend(stress.of_cells());
+        point_arrays.extend(stress.of_nodes());
+    }
     let error = prediction.numerical_error.as_ref().ok();
     let error = error.map(|error| error.missing.iter().map(Vector::norm).collect::<Vec<f64>>());
     if let Some(error) = &error {
@@ -91,6 +95,15 @@ impl ImagedArrays {
             tissue: imaged.tissue_of_cell.iter().map(|t| t.map_or(-1, i64::from)).collect(),
             young_modulus: scene.material_of_cell.iter().map(material).collect(),
         }
+    }
+
+    fn arrays(&self) -> [NamedValues<'_>; 3] {
+        let named = |name, values| NamedValues { name, values };
+        [
+            named("hounsfield_mean", ArrayValues::Reals(&self.mean)),
+            named("tissue", ArrayValues::Integers(&self.tissue)),
+            named("young_modulus_kpa", ArrayValues::Reals(&self.young_modulus)),
+        ]
     }
 }
 

@@ -11,7 +11,7 @@ use crate::jobs::failure::JobError;
 use crate::jobs::fetch::found as found_mesh;
 use crate::jobs::predict::{PredictInput, Prepared};
 use crate::schema::ErrorCode;
-use crate::schema::case::material::{PlacedMaterials, in_words, merge_materials};
+use crate::schema::case::merged::{PlacedMaterials, in_words, merge_materials};
 use crate::schema::methods::{ElementName, MethodName};
 use crate::schema::study::document::{CaseReference, SceneReference};
 use crate::schema::wire::{canonical, strict};

@@ -24,15 +24,15 @@ pub struct BoneLandmarkOfCaseDocument {
     pub segment: Option<String>,
 }
 
-/// Adds what is wrong with the landmarks of bone of a case with these segments.
+/// Adds what is wrong with the landmarks of bone at a place, of a document with these segments.
 pub fn check_bone_landmarks(
     landmarks: &BTreeMap<String, BoneLandmarkOfCaseDocument>,
     segments: &BTreeSet<&str>,
+    at: &Pointer,
     limits: &Limits,
     faults: &mut Faults,
 ) {
-    let at = Pointer::root().key("case").key("bone_landmarks");
-    faults.check_length(&at, landmarks.len(), limits.map_entries as usize);
+    faults.check_length(at, landmarks.len(), limits.map_entries as usize);
     for (name, landmark) in landmarks {
         let at = at.key(name);
         faults.check_name(&at, name, limits.name_characters as usize);
@@ -42,7 +42,7 @@ pub fn check_bone_landmarks(
         }
         let segment = landmark.segment.as_deref().map(str::trim);
         if let Some(unknown) = segment.filter(|segment| !segments.contains(segment)) {
-            let detail = format!("the case has no segment `{unknown}`");
+            let detail = format!("there is no segment `{unknown}`");
             faults.add(&at.key("segment"), ErrorCode::UnknownSegment, detail);
         }
     }

@@ -4,7 +4,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use super::document::{CaseDocument, FrameName, LengthUnit, NormalDocument};
-use super::material::{MaterialDocuments, Merged, PlacedMaterials, merge_materials};
+use super::hounsfield::HounsfieldDocument;
+use super::material::MaterialDocuments;
+use super::merged::{Merged, PlacedMaterials, merge_materials};
 use super::meshes::CaseMeshes;
 use super::muscle::to_muscles;
 use crate::schema::code::ErrorCode;
@@ -44,6 +46,7 @@ impl CaseDocument {
         let Merged { materials, fibres, mut warnings } =
             merge_materials(&own, &spec, limits, faults);
         warnings.extend(frame_warning);
+        warnings.extend(self.hounsfield.iter().flat_map(HounsfieldDocument::doubts));
         warnings.extend(unusual_size(&volume, self.units));
         let regions = self.to_regions(&at.key("regions"), faults);
         check_regions(&[own, spec], &regions, &volume, faults);

@@ -9,6 +9,7 @@ use super::bone_landmark::BoneLandmarkOfCaseDocument;
 use super::hounsfield::HounsfieldDocument;
 use super::material::{MaterialDocument, MaterialDocuments};
 use super::muscle::MuscleDocument;
+use super::norm::{NormDocument, NormDocuments};
 use super::selection::SelectionDocument;
 use crate::schema::Triple;
 use crate::schema::wire::fault::Pointer;
@@ -43,6 +44,10 @@ pub struct CaseDocument {
     /// Named points of bone, for cephalometric measures; each goes with its segment.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub bone_landmarks: BTreeMap<String, BoneLandmarkOfCaseDocument>,
+    /// What is usual of cephalometric measures, by their names, in place of what is built in.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    #[schema(value_type = BTreeMap<String, NormDocument>)]
+    pub norms: NormDocuments,
     /// Absent: one region named `tissue`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
@@ -222,6 +227,7 @@ impl CaseDocument {
             bones: Vec::new(),
             landmarks: BTreeMap::new(),
             bone_landmarks: BTreeMap::new(),
+            norms: BTreeMap::new(),
             regions: None,
             skin: None,
             skin_regions: BTreeMap::new(),

@@ -30,7 +30,7 @@ pub struct FibreDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub direction: Option<Triple>,
-    /// A cell array of the volume mesh with 3 components.
+    /// A cell array of the volume mesh with 3 components, or else a point array: cells then have the mean axis of their nodes.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub array: Option<String>,

@@ -6,12 +6,15 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-use super::material::MaterialDocument;
+use super::material::{MaterialDocument, MaterialDocuments};
+use super::preset::expanded;
+use super::preset_name::doubt;
 use crate::schema::code::ErrorCode;
 use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::limits::Limits;
 use crate::schema::wire::names::check_distinct;
 use mechanics::image::{ImageVolume, MOST_SAMPLES, Windows};
+use mechanics::mesh::Warning;
 use mechanics::prediction::{Hounsfield, ImagedTissue, Mixing, TissueShare, TissueWindow};
 
 /// Ends of windows lie within this.
@@ -99,6 +102,17 @@ impl From<&ImagedTissue> for ImagedTissueDocument {
 }
 
 impl HounsfieldDocument {
+    /// What speaks against the presets of its tissues.
+    pub(super) fn doubts(&self) -> impl Iterator<Item = Warning> + '_ {
+        self.tissues.iter().filter_map(|tissue| doubt(&tissue.name, tissue.material.preset))
+    }
+
+    /// The materials of its tissues by name, with presets written out.
+    pub fn expanded(&self) -> MaterialDocuments {
+        let tissues = self.tissues.iter();
+        tissues.map(|tissue| (tissue.name.clone(), expanded(&tissue.material))).collect()
+    }
+
     /// The image with these windows; an image that is not there was refused where it was looked for.
     pub(super) fn to_hounsfield(
         &self,
@@ -141,11 +155,12 @@ impl HounsfieldDocument {
             }
             let name = tissue.name.trim().to_owned();
             let place = at.key("material");
-            if tissue.material.fibre.is_some() {
+            let material = expanded(&tissue.material);
+            if material.fibre.is_some() {
                 let detail = "an image does not show where fibres run: give them to a region";
                 faults.add(&place.key("fibre"), ErrorCode::MethodNotAvailable, detail);
             }
-            let material = tissue.material.to_isotropic(&place, faults);
+            let material = material.to_isotropic(&place, faults);
             tissues.extend(material.map(|material| TissueWindow {
                 name,
                 from_hu,

@@ -7,17 +7,14 @@ use utoipa::ToSchema;
 
 use super::fibre::FibreDocument;
 use super::law::{LawDocument, LawKind};
+use super::preset_name::PresetName;
 use crate::schema::code::ErrorCode;
 use crate::schema::wire::fault::{Faults, Pointer};
-use crate::schema::wire::limits::Limits;
 use mechanics::material::{LinearElastic, MaterialError};
-use mechanics::mesh::Warning;
 use mechanics::prediction::FibreDirection;
 
-/// Serves every region without a material of its own.
-const EVERY_REGION: &str = "*";
 /// Soft tissue where a case says nothing: Young's modulus in kPa, Poisson's ratio, density in g/cm³.
-const DEFAULT_TISSUE: (f64, f64, f64) = (15.0, 0.46, 1.0);
+pub(super) const DEFAULT_TISSUE: (f64, f64, f64) = (15.0, 0.46, 1.0);
 
 /// By how much linear constants may differ from those of a law at rest.
 const AGREEMENT: f64 = 0.01;
@@ -26,6 +23,11 @@ const AGREEMENT: f64 = 0.01;
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MaterialDocument {
+    /// A material of the literature (`GET /v1/materials`): what is stated beside it stands over it, and it stands over what is
+    /// elsewhere, whole.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub preset: Option<PresetName>,
     /// In [1e-9, 1e9].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false, minimum = 1e-9, maximum = 1e9)]
@@ -54,8 +56,9 @@ pub type MaterialDocuments = BTreeMap<String, MaterialDocument>;
 
 impl MaterialDocument {
     /// What is given here, and for the rest what `base` gives.
-    fn over(&self, base: &MaterialDocument) -> MaterialDocument {
+    pub(super) fn over(&self, base: &MaterialDocument) -> MaterialDocument {
         MaterialDocument {
+            preset: self.preset.or(base.preset),
             young_modulus_kpa: self.young_modulus_kpa.or(base.young_modulus_kpa),
             poisson_ratio: self.poisson_ratio.or(base.poisson_ratio),
             density_g_per_cm3: self.density_g_per_cm3.or(base.density_g_per_cm3),
@@ -67,8 +70,22 @@ impl MaterialDocument {
         }
     }
 
+    /// A preset over what else is known of a tissue: of that only the course of fibres is left.
+    pub(super) fn over_course(&self, below: &MaterialDocument) -> MaterialDocument {
+        let course = |fibre: &FibreDocument| FibreDocument {
+            direction: fibre.direction,
+            array: fibre.array.clone(),
+            ..FibreDocument::default()
+        };
+        let fibre = self.fibre.as_ref().map(|own| match &below.fibre {
+            Some(below) => own.over(&course(below)),
+            None => own.clone(),
+        });
+        MaterialDocument { fibre, ..self.clone() }
+    }
+
     /// The same over the default tissue, which nobody stated: a law with moduli of its own takes its place.
-    fn over_default(&self, base: &MaterialDocument) -> MaterialDocument {
+    pub(super) fn over_default(&self, base: &MaterialDocument) -> MaterialDocument {
         match self.law.as_ref().is_some_and(LawDocument::has_moduli) {
             true => self.clone(),
             false => self.over(base),
@@ -76,7 +93,7 @@ impl MaterialDocument {
     }
 
     /// The material and the course of its fibres, if it has any.
-    fn to_material(
+    pub(super) fn to_material(
         &self,
         at: &Pointer,
         faults: &mut Faults,
@@ -181,102 +198,4 @@ impl MaterialDocument {
             }
         }
     }
-}
-
-/// Materials and the place in the documents where they stand.
-pub struct PlacedMaterials<'a> {
-    pub at: Pointer,
-    pub materials: Option<&'a MaterialDocuments>,
-}
-
-/// Materials by region name, the courses of their fibres, and what a reader must know.
-pub struct Merged {
-    pub materials: BTreeMap<String, LinearElastic>,
-    pub fibres: BTreeMap<String, FibreDirection>,
-    pub warnings: Vec<Warning>,
-}
-
-/// The materials of a case with those of a spec over them, field by field.
-/// A region that only the spec names starts from the case's `*`.
-pub fn merge_materials(
-    case: &PlacedMaterials,
-    spec: &PlacedMaterials,
-    limits: &Limits,
-    faults: &mut Faults,
-) -> Merged {
-    let mut merged: BTreeMap<String, (Pointer, MaterialDocument)> = BTreeMap::new();
-    let mut warnings = Vec::new();
-    if case.materials.is_none() {
-        let (young_modulus, poisson_ratio, density) = DEFAULT_TISSUE;
-        let tissue = MaterialDocument {
-            young_modulus_kpa: Some(young_modulus),
-            poisson_ratio: Some(poisson_ratio),
-            density_g_per_cm3: Some(density),
-            ..MaterialDocument::default()
-        };
-        let at = case.at.key(EVERY_REGION);
-        merged.insert(EVERY_REGION.to_owned(), (at, tissue));
-        if !spec.materials.is_some_and(|given| given.contains_key(EVERY_REGION)) {
-            warnings.push(default_material());
-        }
-    }
-    for placed in [case, spec] {
-        let base = merged.get(EVERY_REGION).map(|(_, material)| material.clone());
-        let given = placed.materials;
-        faults.check_length(
-            &placed.at,
-            given.map_or(0, BTreeMap::len),
-            limits.map_entries as usize,
-        );
-        for (region, material) in given.into_iter().flatten() {
-            let at = placed.at.key(region);
-            faults.check_name(&at, region, limits.name_characters as usize);
-            let known = merged.get(region).map(|(_, material)| material);
-            // Within the case itself an entry stands alone: only a spec leaves fields to what it overrides.
-            let below = known.or(base.as_ref()).cloned().unwrap_or_default();
-            let material = match case.materials {
-                Some(_) => material.over(&below),
-                None => material.over_default(&below),
-            };
-            merged.insert(region.clone(), (at, material));
-        }
-    }
-    let (mut materials, mut fibres) = (BTreeMap::new(), BTreeMap::new());
-    for (region, (at, material)) in merged {
-        if let Some((material, course)) = material.to_material(&at, faults) {
-            fibres.extend(course.map(|course| (region.clone(), course)));
-            materials.insert(region, material);
-        }
-    }
-    Merged { materials, fibres, warnings }
-}
-
-fn default_material() -> Warning {
-    let (young_modulus, poisson_ratio, density) = DEFAULT_TISSUE;
-    let detail = format!(
-        "the case names no materials; all tissue has the default one: Young's modulus {young_modulus} kPa, Poisson's ratio \
-         {poisson_ratio}"
-    );
-    Warning::new("default-material", detail)
-        .with("young_modulus_kpa", young_modulus)
-        .with("poisson_ratio", poisson_ratio)
-        .with("density_g_per_cm3", density)
-}
-
-/// What is stated, in words: `muscle E 300 kPa nu 0.44, * nu 0.46`.
-pub fn in_words(document: &MaterialDocuments) -> String {
-    let region = |(name, of): (&String, &MaterialDocument)| {
-        let mut words = if name == "*" { "all".to_owned() } else { name.clone() };
-        if let Some(modulus) = of.young_modulus_kpa {
-            words += &format!(" E {modulus} kPa");
-        }
-        if let Some(ratio) = of.poisson_ratio {
-            words += &format!(" nu {ratio}");
-        }
-        if let Some(law) = &of.law {
-            words += &format!(" {}", law.kind.name());
-        }
-        words
-    };
-    document.iter().map(region).collect::<Vec<_>>().join(", ")
 }

@@ -6,7 +6,9 @@ use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use super::expectation::ExpectationDocument;
-use super::planned::{CollisionDocument, MeasureDocument, MovementReportDocument};
+use super::planned::{
+    CollisionDocument, MeasureDocument, MovementReportDocument, SymmetryDocument,
+};
 use super::refine::RefineBoundDocument;
 use super::time_band::TimeBandDocument;
 use crate::schema::case::hounsfield::ImagedTissueDocument;
@@ -51,6 +53,9 @@ pub struct CheckDocument {
     /// Measures of the head before and as planned, of the landmarks that the case states.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub cephalometry: Vec<MeasureDocument>,
+    /// Pairs of landmarks and landmarks of the middle against the mid-sagittal plane, before and as planned.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub symmetry: Vec<SymmetryDocument>,
     pub warnings: Vec<WarningDocument>,
 }
 

@@ -117,6 +117,10 @@ pub struct PredictDocument {
     /// Adds what the mesh leaves out, as far as that is estimated, to the displacement. Default: false.
     #[serde(default, skip_serializing_if = "is_false")]
     pub corrected: bool,
+    /// Adds stress and strain of cells and nodes to `volume.vtu`, which `outputs` then have to name, and stress by region to the
+    /// result. Default: false.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub stress: bool,
     #[serde(default)]
     pub budget: BudgetDocument,
     /// Default: `skin.vtp` and `skin.glb`; `result.json` is always written.
@@ -168,6 +172,7 @@ impl PredictDocument {
         check_tags(&self.tags, &at.key("tags"), limits, faults);
         faults.check_range(&at.key("range_mm"), self.range_mm(), RANGES_MM, "mm");
         self.check_accepted(&at, faults);
+        self.check_stress(&at.key("stress"), faults);
         if let Some(refine) = &self.refine {
             refine.check(&at.key("refine"), limits, faults);
             self.check_refined(&at.key("refine"), faults);
@@ -190,6 +195,7 @@ impl PredictDocument {
             membrane,
             estimate: self.estimate == EstimateName::Auto,
             corrected: self.corrected,
+            states: self.stress,
         }
     }
 

@@ -16,6 +16,8 @@ pub mod planned;
 pub mod pressing;
 pub mod refine;
 pub mod result;
+pub mod stress;
+mod stress_asked;
 pub mod time_band;
 pub mod timing;
 pub mod tissue_law;

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use crate::schema::{Matrix4x4, Triple};
-use mechanics::cephalometry::{Measure, Tissue};
+use mechanics::cephalometry::Asymmetry;
 use mechanics::mesh::Frame;
 use mechanics::plan::{PlannedSegment, RigidMovement};
 use mechanics::validation::penetration::Overlap;
@@ -65,6 +65,10 @@ pub struct MeasureDocument {
     pub tissue: TissueName,
     /// Who defined it.
     pub source: String,
+    /// What is usual, where it is built in or the case states it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub norm: Option<NormOfMeasureDocument>,
     pub before: f64,
     /// Of bone, where the plan takes it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -74,6 +78,71 @@ pub struct MeasureDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub predicted: Option<f64>,
+    /// Of bone, where an operation took it, of a reproduction.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub performed: Option<f64>,
+}
+
+/// The norm of a measure, and how many standard deviations each value is above its mean.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct NormOfMeasureDocument {
+    pub mean: f64,
+    pub sd: f64,
+    /// Whose norm it is.
+    pub source: String,
+    pub before_z: f64,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub planned_z: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub predicted_z: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub performed_z: Option<f64>,
+}
+
+/// How a landmark of the middle, or a pair, lies to the mid-sagittal plane of the head before the operation.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct SymmetryDocument {
+    /// The landmark, or the pair without what says left or right.
+    pub landmark: String,
+    pub tissue: TissueName,
+    pub before: AsymmetryDocument,
+    /// Of bone, where the plan takes it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub planned: Option<AsymmetryDocument>,
+    /// Of skin, where it is predicted.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub predicted: Option<AsymmetryDocument>,
+    /// Of bone, where an operation took it, of a reproduction.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub performed: Option<AsymmetryDocument>,
+}
+
+/// Of a landmark of the middle: how far it is beside the plane. Of a pair: what lies between the left one, mirrored, and the right one.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct AsymmetryDocument {
+    /// To the patient's left; of a pair twice what its middle is beside the plane.
+    pub left_mm: f64,
+    /// How much higher the left one is; 0 of a landmark of the middle.
+    pub up_mm: f64,
+    /// How much farther in front the left one is; 0 of a landmark of the middle.
+    pub forwards_mm: f64,
+    /// The length of all three.
+    pub length_mm: f64,
+}
+
+impl From<Asymmetry> for AsymmetryDocument {
+    fn from(found: Asymmetry) -> Self {
+        let Asymmetry { left, up, forwards } = found;
+        let length_mm = found.length();
+        AsymmetryDocument { left_mm: left, up_mm: up, forwards_mm: forwards, length_mm }
+    }
 }
 
 impl MovementReportDocument {
@@ -104,24 +173,6 @@ impl From<&Overlap> for OverlapDocument {
             volume_mm3: overlap.volume,
             middle_mm: overlap.middle.into(),
             radius_mm: overlap.radius,
-        }
-    }
-}
-
-impl MeasureDocument {
-    pub fn new(measure: &Measure, before: f64, after: Option<f64>) -> Self {
-        let (tissue, planned, predicted) = match measure.tissue {
-            Tissue::Bone => (TissueName::Bone, after, None),
-            Tissue::Skin => (TissueName::Skin, None, after),
-        };
-        MeasureDocument {
-            name: measure.name.to_owned(),
-            unit: measure.unit.name().to_owned(),
-            tissue,
-            source: measure.source.to_owned(),
-            before,
-            planned,
-            predicted,
         }
     }
 }

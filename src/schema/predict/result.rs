@@ -11,13 +11,15 @@ use super::keep::KeptMeshDocument;
 use super::newton::NewtonDocument;
 use super::nonlinearity::NonlinearityDocument;
 use super::output::PictureName;
-use super::planned::MeasureDocument;
+use super::planned::{MeasureDocument, SymmetryDocument};
 use super::pressing::ContactDocument;
 use super::refine::RefinementDocument;
+use super::stress::StressDocument;
 use super::tissue_law::TissueLawDocument;
 use crate::schema::Triple;
 use crate::schema::case::document::{FrameName, LengthUnit};
 use crate::schema::case::hounsfield::ImagedTissueDocument;
+use crate::schema::case::preset::UsedPresetDocument;
 use crate::schema::cohort::result::CohortResultDocument;
 use crate::schema::compare::result::{ComparisonDocument, StatDocument};
 use crate::schema::conform::result::ConformationDocument;
@@ -90,10 +92,17 @@ pub struct ResultDocument {
     /// Measures of the head before, as planned and as predicted, of the landmarks that the case states.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub cephalometry: Vec<MeasureDocument>,
+    /// Pairs of landmarks and landmarks of the middle against the mid-sagittal plane of the head before the operation.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub symmetry: Vec<SymmetryDocument>,
     /// What presses on what; absent where nothing does or contact was not asked for.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub contact: Option<ContactDocument>,
+    /// Stress in the tissue, where the spec asks for it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub stress: Option<StressDocument>,
     /// How the model was chosen, where an accepted error was stated.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
@@ -153,7 +162,9 @@ impl ResultDocument {
             pictures: Vec::new(),
             kept: Vec::new(),
             cephalometry: Vec::new(),
+            symmetry: Vec::new(),
             contact: None,
+            stress: None,
             adequacy: None,
             correction: None,
             refinement: None,
@@ -275,6 +286,9 @@ pub struct ProvenanceDocument {
     /// Of methods of finite strain: the law of each region, or of each tissue of an image, with its constants.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub laws: BTreeMap<String, TissueLawDocument>,
+    /// Materials of the literature that were used, written out: by region of the case, or tissue of its image.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub presets: BTreeMap<String, UsedPresetDocument>,
     pub threads: u32,
     /// `bitwise`: the same input gives the same bits on any number of threads.
     pub determinism: String,

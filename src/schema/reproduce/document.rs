@@ -7,6 +7,8 @@ use utoipa::ToSchema;
 
 use crate::schema::PlanDocument;
 use crate::schema::Triple;
+use crate::schema::case::bone_landmark::{BoneLandmarkOfCaseDocument, check_bone_landmarks};
+use crate::schema::case::norm::{NormDocument, NormDocuments, check_norms};
 use crate::schema::code::ErrorCode;
 use crate::schema::compare::document::{MeshReference, PlaceDocument, StartName};
 use crate::schema::wire::fault::{Faults, Pointer};
@@ -40,6 +42,13 @@ pub struct ReproduceDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub planned: Option<PlanDocument>,
+    /// Named points of bone before the operation, each with its segment, for cephalometric measures before, planned and performed.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub bone_landmarks: BTreeMap<String, BoneLandmarkOfCaseDocument>,
+    /// What is usual of these measures, by their names, in place of what is built in.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    #[schema(value_type = BTreeMap<String, NormDocument>)]
+    pub norms: NormDocuments,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub tags: Vec<String>,
 }
@@ -109,6 +118,10 @@ impl ReproduceDocument {
         }
         let BaseDocument { start, landmarks, .. } = &self.base;
         Started { start: *start, landmarks }.check(&base, limits, faults);
+        let segments = self.segments.iter().map(|segment| segment.name.trim()).collect();
+        let landmarks = at.key("bone_landmarks");
+        check_bone_landmarks(&self.bone_landmarks, &segments, &landmarks, limits, faults);
+        check_norms(&self.norms, &at.key("norms"), limits, faults);
         let at = at.key("segments");
         faults.check_length(&at, self.segments.len(), limits.list_entries as usize);
         if self.segments.is_empty() {

@@ -105,19 +105,26 @@ fn what_is_wrong_with_windows_is_told_with_its_place() {
 }
 
 #[test]
-fn a_region_with_fibres_is_labelled_and_not_mixed() {
-    let fibred = |mixing: &'static str| {
+fn a_region_with_fibres_is_labelled_and_mixed_and_one_with_a_law_is_labelled_only() {
+    let with = |mixing: &'static str, name: &'static str, value: Value| {
         move |case: &mut Value| {
             case["hounsfield"]["mixing"] = json!(mixing);
-            case["materials"]["*"]["fibre"] =
-                json!({"young_modulus_kpa": 60, "direction": [1, 0, 0]});
+            case["materials"]["*"][name] = value.clone();
         }
     };
+    let fibre = json!({"young_modulus_kpa": 60, "direction": [1, 0, 0]});
+    let law = json!({"kind": "neo_hookean"});
+    let is_sound = |change: &dyn Fn(&mut Value)| {
+        let mut changed = case();
+        change(&mut changed);
+        check(&input(&changed, &json!({})), &meshes(), &Limits::default()).is_ok()
+    };
+    for mixing in ["mean", "fraction"] {
+        assert!(is_sound(&with(mixing, "fibre", fibre.clone())), "{mixing}");
+    }
+    assert!(is_sound(&with("mean", "law", law.clone())));
     let place = "/case/hounsfield/mixing".to_owned();
-    assert_eq!(refused(fibred("fraction")), ("method-not-available".to_owned(), place));
-    let mut labelled = case();
-    fibred("mean")(&mut labelled);
-    assert!(check(&input(&labelled, &json!({})), &meshes(), &Limits::default()).is_ok());
+    assert_eq!(refused(with("fraction", "law", law)), ("method-not-available".to_owned(), place));
 }
 
 #[test]

@@ -9,4 +9,6 @@ mod optimise;
 mod planning;
 mod refined;
 mod results;
+mod stress;
 mod study_report;
+mod twin;

@@ -5,10 +5,11 @@ use std::collections::BTreeMap;
 use facies::jobs::{
     JobInput, PredictInput, ReproduceInput, StoredMesh, StoredShape, Workplace, check, work,
 };
+use facies::schema::case::norm::{NormDocuments, check_norms};
 use facies::schema::predict::check::CheckDocument;
 use facies::schema::predict::result::ResultDocument;
 use facies::schema::reproduce::result::ReproductionDocument;
-use facies::schema::{Limits, Matrix4x4};
+use facies::schema::{Faults, Limits, Matrix4x4, Pointer};
 use mechanics::mesh::sample::block;
 use mechanics::mesh::{CellShape, Frame, TriangleSurface, Vector};
 use mechanics::plan::RigidMovement;
@@ -35,7 +36,7 @@ fn shaped(mut bone: TriangleSurface) -> TriangleSurface {
     bone
 }
 
-fn moved(surface: &TriangleSurface, by: &RigidMovement) -> TriangleSurface {
+pub fn moved(surface: &TriangleSurface, by: &RigidMovement) -> TriangleSurface {
     let points = surface.points.iter().map(|point| by.apply(point)).collect();
     TriangleSurface { points, ..surface.clone() }
 }
@@ -50,15 +51,15 @@ fn joined(a: &TriangleSurface, b: &TriangleSurface) -> TriangleSurface {
     }
 }
 
-fn surface(shape: TriangleSurface) -> StoredMesh {
+pub fn surface(shape: TriangleSurface) -> StoredMesh {
     StoredMesh { frame: None, ..stored(StoredShape::Surface(shape.into()), None) }
 }
 
-fn reproduced(sources: &Meshes, spec: Value) -> Result<ReproductionDocument, String> {
+pub fn reproduced(sources: &Meshes, spec: Value) -> Result<ReproductionDocument, String> {
     result_of(sources, spec).map(|result| result.reproduction.unwrap())
 }
 
-fn result_of(sources: &Meshes, spec: Value) -> Result<ResultDocument, String> {
+pub fn result_of(sources: &Meshes, spec: Value) -> Result<ResultDocument, String> {
     let folder = tempfile::tempdir().unwrap();
     let spec = serde_json::from_value(spec).unwrap();
     let input = JobInput::Reproduce(ReproduceInput { job: None, queue_s: None, spec });
@@ -68,7 +69,7 @@ fn result_of(sources: &Meshes, spec: Value) -> Result<ResultDocument, String> {
 }
 
 /// A jaw that was moved, scans of it before and after in frames of their own, and the document that asks for the movement.
-fn performed() -> (RigidMovement, Meshes, Value) {
+pub fn performed() -> (RigidMovement, Meshes, Value) {
     let base = shaped(brick([60.0, 40.0, 15.0], [30, 20, 8], [0.0; 3]));
     let jaw = shaped(brick([40.0, 20.0, 10.0], [20, 10, 5], [5.0, 0.0, -25.0]));
     let turn = Vector::new(0.0, 0.03, 0.02);
@@ -253,8 +254,62 @@ fn a_check_measures_the_head_before_and_as_planned() {
         assert_eq!(measure(name).predicted, None);
     }
     assert!(found.cephalometry.iter().all(|measure| measure.name != "wits"), "Oc is not there");
+    assert!(measure("sna").norm.is_none(), "no norm of bone is built in");
+    let me = found.symmetry.iter().find(|own| own.landmark == "Me").unwrap();
+    // The head lies 4 mm along its own plane: nothing leaves the middle.
+    assert!(me.before.length_mm < 1e-9 && me.planned.unwrap().length_mm < 1e-9);
 
     let swapped = json!({"Po_L": at(-55.0, 38.0, 38.0), "Po_R": at(55.0, 38.0, 38.0)});
     let found = checked(json!({"bone_landmarks": swapped}), plan);
     assert!(found.warnings.iter().any(|warning| warning.code == "landmarks-swapped"));
+}
+
+#[test]
+fn norms_that_a_case_states_stand_beside_its_measures_and_unknown_ones_are_refused() {
+    let at = |x: f64, y: f64, z: f64| json!({"position_mm": [x, y, z]});
+    let landmarks =
+        json!({"S": at(0.0, 20.0, 60.0), "N": at(0.0, -48.0, 70.0), "A": at(0.0, -52.0, 18.0)});
+    let norms = json!({"sna": {"mean": 82.0, "sd": 2.0, "source": "a clinic"}});
+    let plan = json!({"segments": [{"name": "right", "translation_mm": [0, -4, 0]}]});
+    let found = checked(json!({"bone_landmarks": landmarks, "norms": norms}), plan);
+    let norm = found.cephalometry[0].norm.clone().unwrap();
+    assert_eq!((norm.mean, norm.sd, norm.source.as_str()), (82.0, 2.0, "a clinic"));
+    assert!((norm.before_z - (86.032_819_231 - 82.0) / 2.0).abs() < 1e-8, "{norm:?}");
+    assert_eq!(norm.planned_z, Some(norm.before_z));
+    let mut faults = Faults::default();
+    let stated = json!({"sno": {"mean": 82.0, "sd": 0.0, "source": "a clinic"}});
+    let norms: NormDocuments = serde_json::from_value(stated).unwrap();
+    check_norms(&norms, &Pointer::root().key("norms"), &Limits::default(), &mut faults);
+    let errors = faults.into_result().err().unwrap().errors;
+    let places: Vec<&str> = errors.iter().map(|error| error.pointer.as_str()).collect();
+    assert_eq!(places, ["/norms/sno", "/norms/sno/sd"]);
+}
+
+#[test]
+fn a_reproduction_tells_measures_and_symmetry_as_they_were_performed() {
+    let (done, sources, mut spec) = performed();
+    let at = |place: [f64; 3], segment: &str| match segment {
+        "" => json!({"position_mm": place}),
+        segment => json!({"position_mm": place, "segment": segment}),
+    };
+    spec["bone_landmarks"] = json!({
+        "S": at([0.0, 20.0, 60.0], ""), "N": at([0.0, -48.0, 70.0], ""), "B": at([0.0, -46.0, -28.0], "jaw"),
+        "Me": at([0.0, -38.0, -52.0], "jaw"), "Po_L": at([55.0, 38.0, 38.0], ""), "Po_R": at([-55.0, 38.0, 38.0], ""),
+        "Or_L": at([35.0, -38.0, 36.0], ""), "Or_R": at([-35.0, -38.0, 36.0], "")
+    });
+    let result = result_of(&sources, spec).unwrap();
+    let snb = result.cephalometry.iter().find(|measure| measure.name == "snb").unwrap();
+    let angle = |b: Vector| {
+        let (n, s) = (Vector::new(0.0, -48.0, 70.0), Vector::new(0.0, 20.0, 60.0));
+        let (one, other) = ((s - n).normalize(), (b - n).normalize());
+        one.dot(&other).acos().to_degrees()
+    };
+    let before = Vector::new(0.0, -46.0, -28.0);
+    assert!((snb.before - angle(before)).abs() < 1e-9);
+    assert!((snb.planned.unwrap() - angle(before + Vector::x() * 3.0)).abs() < 1e-9);
+    assert!((snb.performed.unwrap() - angle(done.apply(&before))).abs() < 1e-3);
+    let me = result.symmetry.iter().find(|own| own.landmark == "Me").unwrap();
+    assert!((me.planned.unwrap().left_mm - 3.0).abs() < 1e-9);
+    let moved = done.apply(&Vector::new(0.0, -38.0, -52.0));
+    assert!((me.performed.unwrap().left_mm - moved.x).abs() < 1e-2, "{me:?} {moved}");
 }

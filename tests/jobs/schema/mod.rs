@@ -5,5 +5,6 @@ mod fibres;
 mod laws;
 mod methods;
 mod plan;
+mod presets;
 mod syntax;
 mod wrong_types;

@@ -86,3 +86,22 @@ async fn limits_and_methods_are_told() {
     );
     assert_eq!(methods["optimise"]["undetermined_below"], 1e-5);
 }
+
+#[tokio::test]
+async fn materials_of_the_literature_are_told_with_their_sources() {
+    let server = Server::start();
+    let list = ask(server.get("/v1/materials")).await.expect(StatusCode::OK);
+    let presets = list["presets"].as_array().unwrap();
+    let fat = presets.iter().find(|preset| preset["name"] == "fat_kim_2012").unwrap();
+    assert_eq!(fat["material"]["young_modulus_kpa"], 3.0);
+    assert_eq!(
+        (&fat["source"]["year"], &fat["source"]["place"]),
+        (&2012.into(), &"table 2".into())
+    );
+    let muscle = presets.iter().find(|preset| preset["name"] == "muscle_kim_2012").unwrap();
+    assert!(muscle["doubt"].as_str().unwrap().contains("softer along"));
+    assert_eq!(
+        (list["measured"].as_array().unwrap().len(), &muscle["needs_course"]),
+        (12, &true.into())
+    );
+}

@@ -6,7 +6,7 @@ use super::arrays::{NamedArray, Values};
 use super::cursor::Cursor;
 use super::error::FormatError;
 use super::limits::{ReadLimits, room_for};
-use super::output::{ArrayValues, NamedValues, SurfaceOutput, WriteError};
+use super::output::{ArrayValues, NamedValues, SurfaceOutput, TENSOR_COMPONENTS, WriteError};
 use super::parsed::Parsed;
 use super::scalar::{ByteOrder, Scalar, node_number};
 use crate::mesh::{ValuesOf, Vector};
@@ -205,6 +205,7 @@ pub fn write(output: &SurfaceOutput) -> Result<Vec<u8>, WriteError> {
         for array in &output.point_arrays {
             match array.values {
                 ArrayValues::Vectors(values) => put_reals(&mut bytes, values[number].as_slice()),
+                ArrayValues::Tensors(values) => put_reals(&mut bytes, &values[number]),
                 ArrayValues::Reals(values) => put_reals(&mut bytes, &values[number..=number]),
                 ArrayValues::Integers(values) if fits_32_bits(values) => {
                     bytes.extend((values[number] as i32).to_le_bytes());
@@ -258,6 +259,11 @@ fn header(output: &SurfaceOutput) -> String {
             ArrayValues::Vectors(_) => {
                 for axis in ["x", "y", "z"] {
                     property("double", &format!("{name}_{axis}"));
+                }
+            }
+            ArrayValues::Tensors(_) => {
+                for of in TENSOR_COMPONENTS {
+                    property("double", &format!("{name}_{of}"));
                 }
             }
             ArrayValues::Integers(values) if fits_32_bits(values) => property("int", &name),

@@ -13,7 +13,7 @@ use flate2::Compression;
 use flate2::write::ZlibEncoder;
 use rayon::prelude::*;
 
-use crate::format::output::{ArrayValues, NamedValues};
+use crate::format::output::{ArrayValues, NamedValues, TENSOR_COMPONENTS};
 use crate::mesh::{Frame, Vector};
 
 /// Large blocks compress a little better; readers hold one at a time.
@@ -25,6 +25,7 @@ const LEVEL: u32 = 4;
 /// The numbers of one array. Node numbers stay below 2³¹ by the limits of the readers.
 pub(super) enum Numbers<'a> {
     Vectors(&'a [Vector]),
+    Tensors(&'a [[f64; 6]]),
     Reals(&'a [f64]),
     Integers(&'a [i64]),
     Nodes(&'a [u32]),
@@ -34,7 +35,7 @@ pub(super) enum Numbers<'a> {
 impl Numbers<'_> {
     fn type_name(&self) -> &'static str {
         match self {
-            Numbers::Vectors(_) | Numbers::Reals(_) => "Float64",
+            Numbers::Vectors(_) | Numbers::Tensors(_) | Numbers::Reals(_) => "Float64",
             Numbers::Integers(_) => "Int64",
             Numbers::Nodes(_) => "Int32",
             Numbers::Bytes(_) => "UInt8",
@@ -49,6 +50,9 @@ impl Numbers<'_> {
                     bytes.extend_from_slice(&number.to_le_bytes());
                 }
                 bytes
+            }
+            Numbers::Tensors(values) => {
+                joined(values.as_flattened().iter().map(|value| value.to_le_bytes()))
             }
             Numbers::Reals(values) => joined(values.iter().map(|value| value.to_le_bytes())),
             Numbers::Integers(values) => joined(values.iter().map(|value| value.to_le_bytes())),
@@ -145,6 +149,7 @@ impl VtkFile {
             let numbers = match array.values {
                 ArrayValues::Reals(values) => Numbers::Reals(values),
                 ArrayValues::Vectors(values) => Numbers::Vectors(values),
+                ArrayValues::Tensors(values) => Numbers::Tensors(values),
                 ArrayValues::Integers(values) => Numbers::Integers(values),
             };
             self.array(array.name, array.values.components(), numbers);
@@ -158,8 +163,16 @@ impl VtkFile {
             1 => String::new(),
             several => format!(" NumberOfComponents=\"{several}\""),
         };
+        let of_components = match numbers {
+            Numbers::Tensors(_) => component_names(),
+            Numbers::Vectors(_)
+            | Numbers::Reals(_)
+            | Numbers::Integers(_)
+            | Numbers::Nodes(_)
+            | Numbers::Bytes(_) => String::new(),
+        };
         self.text.push_str(&format!(
-            "<DataArray type=\"{}\" Name=\"{name}\"{components} format=\"binary\">\n",
+            "<DataArray type=\"{}\" Name=\"{name}\"{components}{of_components} format=\"binary\">\n",
             numbers.type_name()
         ));
         let (header, data) = compressed(&numbers.little_endian());
@@ -167,6 +180,12 @@ impl VtkFile {
         STANDARD.encode_string(data, &mut self.text);
         self.text.push_str("\n</DataArray>\n");
     }
+}
+
+/// ` ComponentName0="xx"` and so on, which ParaView shows.
+fn component_names() -> String {
+    let names = TENSOR_COMPONENTS.iter().enumerate();
+    names.map(|(number, name)| format!(" ComponentName{number}=\"{name}\"")).collect()
 }
 
 fn once_more<'a>(

@@ -157,6 +157,21 @@ impl Point {
         stress
     }
 
+    /// Kirchhoff's stress P F^T = J sigma in kPa.
+    pub fn kirchhoff(&self) -> Matrix3<f64> {
+        self.stress() * self.f.transpose()
+    }
+
+    /// F S F^T of a second Piola-Kirchhoff stress S in kPa.
+    pub fn pushed(&self, second: &Matrix3<f64>) -> Matrix3<f64> {
+        self.f * second * self.f.transpose()
+    }
+
+    /// Green's strain E = (F^T F - 1) / 2.
+    pub fn green_strain(&self) -> Matrix3<f64> {
+        (self.f.transpose() * self.f - Matrix3::identity()) * 0.5
+    }
+
     /// For the gradient of a shape function at rest.
     #[inline]
     pub fn corner(&self, g: &Vector3<f64>) -> Corner {

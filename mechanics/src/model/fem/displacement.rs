@@ -76,6 +76,7 @@ pub(super) fn solve_displacement(
             reactions: constrained.reactions(&internal, &known.force),
             solver: solution.report,
             warnings: Vec::new(),
+            states: Default::default(),
         }
     };
     let equilibria: Vec<Equilibrium> =

@@ -137,6 +137,18 @@ impl PressureCells {
     }
 }
 
+impl PressureCells {
+    /// For each of so many cells of the mesh the mean of its pressures, where it has any.
+    pub fn means(&self, pressures: &[f64], cells: usize) -> Vec<Option<f64>> {
+        let mut means = vec![None; cells];
+        for (&cell, numbers) in self.cells.iter().zip(&self.pressures) {
+            let sum: f64 = numbers.iter().map(|&number| pressures[number as usize]).sum();
+            means[cell as usize] = Some(sum / 4.0);
+        }
+        means
+    }
+}
+
 /// One tetrahedron: its volume in mm³, grad N in 1/mm along the axes of its nodes, its moduli in kPa.
 struct CellTerms {
     volume: f64,

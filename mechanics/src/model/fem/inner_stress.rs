@@ -141,12 +141,12 @@ impl InnerStress {
 }
 
 /// The integral of the gradient of the shape function of a node over a cell, in mm².
-struct Slope {
-    node: u32,
-    integral: Vector,
+pub(super) struct Slope {
+    pub node: u32,
+    pub integral: Vector,
 }
 
-fn slopes(
+pub(super) fn slopes(
     mesh: &VolumeMesh,
     cell: usize,
     edges: Option<&EdgeNodes>,
@@ -183,7 +183,7 @@ fn quadratic_slopes(
 }
 
 /// In mm³.
-fn volume(mesh: &VolumeMesh, cell: usize) -> Result<f64, InvertedCell> {
+pub(super) fn volume(mesh: &VolumeMesh, cell: usize) -> Result<f64, InvertedCell> {
     let corners: Vec<Vector> = mesh.corners(cell).collect();
     let points = reference_cell(mesh.cells.shape(cell)).points.iter();
     let volumes = points.map(|point| Some(point.at(&corners)?.volume));

@@ -188,6 +188,7 @@ impl<'a> LinearSystem<'a> {
                 reactions: constrained.reactions(&internal, &known.force),
                 solver: mixed.solution.report,
                 warnings: Vec::new(),
+                states: Default::default(),
             };
             Solved { equilibrium, pressures: mixed.pressures.into_flattened() }
         };

@@ -10,6 +10,8 @@ pub mod edge_nodes;
 pub mod finite_strain;
 pub mod force_series;
 pub mod inner_stress;
+pub mod law_states;
+pub mod linear_states;
 pub mod linear_system;
 pub mod loads;
 pub mod mass_tensor;

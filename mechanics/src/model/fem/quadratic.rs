@@ -30,6 +30,18 @@ pub fn solve_cases(
     cases: &[LoadCase],
     progress: &dyn Progress,
 ) -> Result<Vec<Equilibrium>, ModelError> {
+    let mut equilibria = solve_with_edges(problem, cases, progress)?;
+    let nodes = problem.tissue.mesh.nodes.len();
+    equilibria.iter_mut().for_each(|equilibrium| equilibrium.displacement.truncate(nodes));
+    Ok(equilibria)
+}
+
+/// The same, with the displacements of edge nodes after those of the nodes of the mesh.
+pub fn solve_with_edges(
+    problem: &Problem,
+    cases: &[LoadCase],
+    progress: &dyn Progress,
+) -> Result<Vec<Equilibrium>, ModelError> {
     // 1. The matrix over corners and edge nodes.
     progress.phase(Phase::Assemble);
     let mesh = problem.tissue.mesh;
@@ -63,9 +75,8 @@ pub fn solve_cases(
     };
     let mut equilibria = solve_displacement(&constrained, &system, &cases, progress, &solve)?;
 
-    // 3. Back to the nodes of the mesh.
+    // 3. Back to the holds that were given.
     for equilibrium in &mut equilibria {
-        equilibrium.displacement.truncate(mesh.nodes.len());
         let of_edges = equilibrium.reactions.split_off(problem.holds.len());
         for (force, ends) in of_edges.into_iter().zip(&parents) {
             ends.iter().for_each(|&end| equilibrium.reactions[end] += force * 0.5);

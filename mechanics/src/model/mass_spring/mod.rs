@@ -42,6 +42,7 @@ pub fn solve(
         reactions: network.reactions(&forces),
         solver: found.solver,
         warnings: Vec::new(),
+        states: Default::default(),
     };
     check_finite(std::slice::from_ref(&equilibrium))?;
     Ok(equilibrium)

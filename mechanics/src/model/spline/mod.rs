@@ -279,6 +279,7 @@ impl Assembled<'_> {
             reactions: self.held.reactions(lattice, &missed),
             solver,
             warnings: held_points::warning(&missed).into_iter().collect(),
+            states: Default::default(),
         }
     }
 }

@@ -158,7 +158,7 @@ impl Climb<'_> {
 
         // 4. The one that does.
         let linear = match solved {
-            Linear::Solved(known) => known.into_answer(),
+            Linear::Solved(known) => known.into_answer(self.scene)?,
             Linear::Other(answer) => *answer,
         };
         Ok(self.taken(Answers { linear, second_order, finite_strain }))

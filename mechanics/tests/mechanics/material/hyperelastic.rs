@@ -30,7 +30,7 @@ pub struct Row {
     /// P11 and the stretch across the sheet at .9 and 1.2.
     pub equibiaxial: Vec<[f64; 2]>,
     /// Cauchy s12, s11, s22, s33 at a shear of .6.
-    shear: Vec<f64>,
+    pub shear: Vec<f64>,
 }
 
 /// The printed numbers.

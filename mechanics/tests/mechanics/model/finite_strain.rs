@@ -52,6 +52,7 @@ fn rest_of(
         inner: std::sync::Arc::default(),
         holds,
         tolerance: Tolerance { relative_residual: 1e-7, memory_mb: 1000.0 },
+        with_states: false,
     };
     let held = holds.iter().map(|hold| *hold.values()).collect();
     let forces = vec![Vector::zeros(); mesh.nodes.len()];

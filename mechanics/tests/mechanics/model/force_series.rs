@@ -70,6 +70,7 @@ fn newton_forces(mesh: &VolumeMesh, law: &Law, displacement: &[Vector]) -> Vec<V
         inner: std::sync::Arc::default(),
         holds: &holds,
         tolerance: TOLERANCE,
+        with_states: false,
     };
     let held = displacement.to_vec();
     let case =

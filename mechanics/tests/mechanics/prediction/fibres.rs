@@ -278,3 +278,51 @@ fn the_course_of_a_region_wins_over_that_of_all_regions() {
         assert!((fibre - expected).norm() < 1e-15);
     }
 }
+
+/// The same scene with its fibres at nodes, each with a sign of its own.
+fn at_nodes(shape: CellShape, course: impl Fn(&Vector) -> Vector) -> (Case, Plan) {
+    let (mut case, plan) = bent(fibred(MUSCLE).unwrap(), Vector::x(), shape, Rotation3::identity());
+    let mesh = std::sync::Arc::make_mut(&mut case.volume);
+    let nodes = mesh.nodes.iter().enumerate();
+    let signed =
+        |(number, x): (usize, &Vector)| course(x) * if number % 3 == 0 { -2.0 } else { 1.0 };
+    let vectors = nodes.map(signed).collect();
+    mesh.node_vectors.insert("at nodes".to_owned(), vectors);
+    case.fibres = [("*".to_owned(), FibreDirection::Array("at nodes".to_owned()))].into();
+    (case, plan)
+}
+
+#[test]
+fn fibres_at_nodes_are_the_mean_axes_of_their_cells_whatever_their_signs() {
+    let along = Vector::new(0.6, 0.0, 0.8);
+    for shape in [CellShape::Tet4, CellShape::Hex8, CellShape::Wedge6] {
+        let (case, plan) = at_nodes(shape, |_| along);
+        let scene = Scene::new(&case, &plan, &exact()).unwrap();
+        let labels = &case.volume.cell_labels["layer"];
+        for (fibre, label) in scene.fibres.iter().zip(labels) {
+            let expected = if *label == 1 { 1.0 } else { 0.0 };
+            assert!((fibre.dot(&along).abs() - expected).abs() < 1e-14, "{fibre}");
+        }
+        assert!(!scene.warnings.iter().any(|warning| warning.code == "fibres-disagree"));
+    }
+}
+
+#[test]
+fn cells_whose_nodes_have_fibres_in_two_ways_are_counted() {
+    // Nodes at 4 mm across those at 6 mm: every hexahedron of the lower row of the muscle has four of each.
+    let (case, plan) =
+        at_nodes(CellShape::Hex8, |x| if x.z > 5.1 { Vector::x() } else { Vector::y() });
+    let scene = Scene::new(&case, &plan, &exact()).unwrap();
+    let disagree = scene.warnings.iter().find(|warning| warning.code == "fibres-disagree").unwrap();
+    assert_eq!(disagree.numbers, [("cells", 15.0), ("of", 30.0)]);
+}
+
+#[test]
+fn nodes_without_any_direction_are_refused_as_cells_are() {
+    let (case, plan) = at_nodes(CellShape::Tet4, |_| Vector::zeros());
+    let (code, pointer, _) = refusal(&case, &plan, &exact());
+    assert_eq!(
+        (code, pointer.as_str()),
+        ("fibre-direction-zero", "/case/materials/muscle/fibre/array")
+    );
+}

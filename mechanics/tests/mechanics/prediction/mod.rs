@@ -22,5 +22,6 @@ mod refined_scene;
 mod skin;
 mod slab_table;
 mod sliding;
+mod stress;
 mod suspicious;
 mod unheld;

@@ -305,6 +305,7 @@ impl<'a> Rounds<'a> {
                 reactions: free.reactions.iter().zip(&reactions).map(sum).collect(),
                 solver: free.solver.clone(),
                 warnings: free.warnings.clone(),
+                states: Default::default(),
             },
             pressures: pressures.iter().zip(p).map(|(free, [added])| free + added).collect(),
         }

@@ -21,6 +21,7 @@ mod newton_state;
 mod pressures;
 mod problem;
 mod simplices;
+mod states;
 mod step_length;
 mod tissue;
 mod touching;
@@ -32,6 +33,7 @@ use nalgebra::Matrix3;
 use crate::boundary::Hold;
 use crate::boundary::contact::FacingSurfaces;
 use crate::mesh::{CellShape, Vector};
+use crate::model::cell_state::CellStates;
 use crate::model::dofs::{Constrained, nodes_of_cells, number};
 use crate::model::fem::cell_stiffness::tetrahedron;
 use crate::model::fem::contact::Contact;
@@ -49,6 +51,7 @@ pub use newton::MOST_STEPS;
 use newton::Newton;
 use newton_state::{Ending, Question, Rest, Start, Until};
 pub use problem::FiniteStrain;
+use states::cell_states;
 use tissue::Tissue;
 use touching::Touching;
 
@@ -82,7 +85,7 @@ impl<'a> FiniteStrain<'a> {
         let (tissue, mut rest) = self.rest(question, None)?;
         let error = finer.map(|finer| finer.of(&tissue, &mut rest, &constrained, progress));
         let error = error.transpose()?;
-        Ok((self.equilibrium(&question, rest, &case.forces)?, error))
+        Ok((self.equilibrium(&tissue, &question, rest, &case.forces)?, error))
     }
 
     /// The answer in which nothing passes through what it faces, by the answer without contact; none where nothing touches.
@@ -102,13 +105,13 @@ impl<'a> FiniteStrain<'a> {
         let question =
             Question { constrained: &constrained, case, tolerance: self.tolerance, progress };
         let touching = Touching::new(surfaces, self.holds, &numbering, 1.0 / steps as f64);
-        let (_, mut rest) = self.rest(question, Some(touching))?;
+        let (tissue, mut rest) = self.rest(question, Some(touching))?;
         let Some(touching) = rest.touching.take() else { return Ok(None) };
         let residual = rest.report.relative_residual;
         let pressing = touching.forces(self.mesh.nodes.len());
         let acting: Vec<Vector> =
             case.forces.iter().zip(&pressing).map(|(force, pressing)| force + pressing).collect();
-        let equilibrium = self.equilibrium(&question, rest, &acting)?;
+        let equilibrium = self.equilibrium(&tissue, &question, rest, &acting)?;
         let contact = touching.answer(&equilibrium.displacement, residual)?;
         Ok(contact.map(|contact| (equilibrium, contact)))
     }
@@ -116,12 +119,13 @@ impl<'a> FiniteStrain<'a> {
     /// Displacements and reactions of tissue at rest under forces in mN, by node.
     fn equilibrium(
         &self,
+        tissue: &Tissue,
         question: &Question,
         rest: Rest,
         acting: &[Vector],
     ) -> Result<Equilibrium, ModelError> {
         let numbering = question.constrained.numbering;
-        let Rest { positions, forces, report, .. } = rest;
+        let Rest { positions, pressures, forces, report, directions, .. } = rest;
         let places = numbering.layout.place.iter().zip(&self.mesh.nodes);
         let reaction = |hold: &Hold| {
             let internal = forces[numbering.row(hold.node)];
@@ -130,11 +134,19 @@ impl<'a> FiniteStrain<'a> {
         let displacement: Vec<Vector> =
             places.map(|(&row, rest)| positions[row as usize] - rest).collect();
         let doubt = report.newton.as_ref().and_then(|way| another_rest(self, &displacement, way));
+        let states = match self.with_states {
+            true => {
+                let by = directions.pressures.as_ref();
+                cell_states(self.mesh, &tissue.at(&positions, &pressures, by))
+            }
+            false => CellStates::default(),
+        };
         let equilibrium = Equilibrium {
             displacement,
             reactions: self.holds.iter().map(reaction).collect(),
             warnings: doubt.into_iter().collect(),
             solver: report,
+            states,
         };
         check_finite(std::slice::from_ref(&equilibrium))?;
         Ok(equilibrium)

@@ -25,4 +25,6 @@ pub struct FiniteStrain<'a> {
     pub inner: Arc<InnerStress>,
     pub holds: &'a [Hold],
     pub tolerance: Tolerance,
+    /// Whether stress and strain of the cells are wanted.
+    pub with_states: bool,
 }

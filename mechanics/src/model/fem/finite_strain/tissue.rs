@@ -40,7 +40,7 @@ pub(super) struct Tissue<'a> {
 
 /// Tissue at positions whose points all have a positive volume.
 pub(super) struct Deformed<'a> {
-    tissue: &'a Tissue<'a>,
+    pub tissue: &'a Tissue<'a>,
     pub simplices: DeformedSimplices<'a>,
     pub bricks: DeformedBricks<'a>,
     /// By row, in mN.

@@ -233,7 +233,13 @@ impl Search<'_> {
             steps: parts,
             newton: None,
         };
-        Equilibrium { displacement: at.u, reactions, solver: report, warnings: Vec::new() }
+        Equilibrium {
+            displacement: at.u,
+            reactions,
+            solver: report,
+            states: Default::default(),
+            warnings: Vec::new(),
+        }
     }
 }
 

@@ -3,7 +3,7 @@
 //! Landmarks of bone: S sella, N nasion, A and B subspinale and supramentale, ANS the anterior nasal spine, Me menton,
 //! Go_L and Go_R gonion, Po_L and Po_R porion, Or_L and Or_R orbitale, U1 and L1 the edges of upper and lower central
 //! incisor, Oc a point on the occlusal plane behind U1. Left and right are the patient's. Of skin: glabella, columella,
-//! pronasale, subnasale, labrale_superius, labrale_inferius, pogonion.
+//! pronasale, subnasale, labrale_superius, stomion_superius, stomion_inferius, labrale_inferius, pogonion, menton.
 //!
 //! The Frankfort plane is the one nearest to both poria and both orbitalia in the sense of least squares, its normal n
 //! upwards. Left is the mean of the differences of the pairs, without its part along n, never a single point; forwards
@@ -51,7 +51,7 @@ pub struct Measure {
 pub struct Landmarks<'a>(pub &'a BTreeMap<String, Vector>);
 
 /// Every measure, in the order in which they are told.
-pub const MEASURES: [Measure; 18] = [
+pub const MEASURES: [Measure; 20] = [
     bone("sna", Unit::Degrees, "Riedel 1952", |l| l.angle("S", "N", "A")),
     bone("snb", Unit::Degrees, "Riedel 1952", |l| l.angle("S", "N", "B")),
     // A difference, so that it keeps its sign: positive where the upper jaw is in front.
@@ -102,6 +102,21 @@ pub const MEASURES: [Measure; 18] = [
     skin("lower_lip_from_e_line", Unit::Millimetres, "Ricketts 1957, without sign", |l| {
         l.distance_from_line("labrale_inferius", "pronasale", "pogonion")
     }),
+    skin(
+        "face_height_ratio",
+        Unit::Ratio,
+        "G-Sn to Sn-Me, Legan, Burstone 1980, as lengths",
+        |l| Some(l.length("glabella", "subnasale")? / l.length("subnasale", "menton")?),
+    ),
+    skin(
+        "lip_chin_ratio",
+        Unit::Ratio,
+        "Sn-Sts to Sti-Me, Legan, Burstone 1980, as lengths",
+        |l| {
+            let lip = l.length("subnasale", "stomion_superius")?;
+            Some(lip / l.length("stomion_inferius", "menton")?)
+        },
+    ),
 ];
 
 const fn bone(
@@ -156,7 +171,7 @@ impl fmt::Display for SwappedSides {
 const PAIRS: [[&str; 2]; 3] = [["Po_L", "Po_R"], ["Or_L", "Or_R"], ["Go_L", "Go_R"]];
 
 impl Landmarks<'_> {
-    fn at(&self, name: &str) -> Option<Vector> {
+    pub(super) fn at(&self, name: &str) -> Option<Vector> {
         self.0.get(name).copied()
     }
 

@@ -1,0 +1,132 @@
+//! Symmetry of a head: how pairs of landmarks and landmarks of the middle lie to its mid-sagittal plane.
+//!
+//! The plane goes through the mean of the middles of the pairs Po and Or, which no operation on the jaws moves, and across the mean of
+//! their differences without its part along the normal of the Frankfort plane; never through single points. A pair (l, r) is
+//! symmetric where the mirror image of l is r: what lies between them is
+//!   left = (l - o).n + (r - o).n,   up = (l - r).u,   forwards = (l - r).f
+//! with n to the patient's left, u upwards and f forwards.
+
+use super::measures::Landmarks;
+use crate::mesh::Vector;
+
+/// Landmarks nearer to each other than this, in mm, have no direction.
+const SAME_PLACE: f64 = 1e-6;
+
+const BASE: [[&str; 2]; 2] = [["Po_L", "Po_R"], ["Or_L", "Or_R"]];
+
+/// How names of pairs end.
+const SIDES: [[&str; 2]; 3] = [["_L", "_R"], ["_l", "_r"], ["_left", "_right"]];
+
+/// Landmarks that lie in the middle of a symmetric head.
+const MIDDLE: [&str; 22] = [
+    "S",
+    "N",
+    "A",
+    "B",
+    "Me",
+    "ANS",
+    "U1",
+    "L1",
+    "trichion",
+    "glabella",
+    "nasion",
+    "pronasale",
+    "columella",
+    "subnasale",
+    "labrale_superius",
+    "stomion_superius",
+    "stomion_inferius",
+    "labrale_inferius",
+    "sulcus_mentolabialis",
+    "pogonion",
+    "gnathion",
+    "menton",
+];
+
+/// The plane in the middle of a head.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MidSagittal {
+    /// On the plane, in mm.
+    pub through: Vector,
+    pub left: Vector,
+    pub up: Vector,
+    pub forwards: Vector,
+}
+
+/// What lies between a landmark of the left, mirrored, and that of the right, or between a landmark of the middle and the plane, in mm.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Asymmetry {
+    /// To the left; of a pair twice what its middle is beside the plane.
+    pub left: f64,
+    /// How much higher the left one is; 0 of a landmark of the middle.
+    pub up: f64,
+    /// How much farther in front the left one is; 0 of a landmark of the middle.
+    pub forwards: f64,
+}
+
+impl Asymmetry {
+    /// In mm.
+    pub fn length(&self) -> f64 {
+        Vector::new(self.left, self.up, self.forwards).norm()
+    }
+}
+
+/// A landmark of the middle, or the two of a pair.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Symmetric {
+    /// Of a pair without what says left or right.
+    pub name: String,
+    names: [String; 2],
+}
+
+impl MidSagittal {
+    /// None where poria, orbitalia, N or Me are missing.
+    pub fn of(landmarks: &Landmarks) -> Option<Self> {
+        let up = landmarks.head()?.up;
+        let pair = |names: &[&str; 2]| Some([landmarks.at(names[0])?, landmarks.at(names[1])?]);
+        let pairs: Vec<[Vector; 2]> = BASE.iter().map(pair).collect::<Option<_>>()?;
+        let across: Vector = pairs.iter().map(|[left, right]| left - right).sum();
+        let left = (across - up * across.dot(&up)).try_normalize(SAME_PLACE)?;
+        let middles = pairs.iter().map(|[left, right]| (left + right) * 0.5);
+        let through = middles.sum::<Vector>() / pairs.len() as f64;
+        Some(MidSagittal { through, left, up, forwards: left.cross(&up) })
+    }
+
+    /// None where one of the landmarks is missing.
+    pub fn asymmetry(&self, of: &Symmetric, landmarks: &Landmarks) -> Option<Asymmetry> {
+        let [one, other] = [landmarks.at(&of.names[0])?, landmarks.at(&of.names[1])?];
+        let beside = |at: Vector| (at - self.through).dot(&self.left);
+        let apart = one - other;
+        Some(match of.names[0] == of.names[1] {
+            true => Asymmetry { left: beside(one), up: 0.0, forwards: 0.0 },
+            false => Asymmetry {
+                left: beside(one) + beside(other),
+                up: apart.dot(&self.up),
+                forwards: apart.dot(&self.forwards),
+            },
+        })
+    }
+}
+
+impl Landmarks<'_> {
+    /// The pairs among these landmarks and those of the middle, by name.
+    pub fn symmetric(&self) -> Vec<Symmetric> {
+        let names = self.0.keys();
+        names.filter_map(|name| self.middle(name).or_else(|| self.pair(name))).collect()
+    }
+
+    fn middle(&self, name: &str) -> Option<Symmetric> {
+        let own = name.to_owned();
+        MIDDLE.contains(&name).then(|| Symmetric { name: own.clone(), names: [own.clone(), own] })
+    }
+
+    /// By the name of its left one.
+    fn pair(&self, name: &str) -> Option<Symmetric> {
+        SIDES.iter().find_map(|[left, right]| {
+            let stem = name.strip_suffix(left)?;
+            let other = format!("{stem}{right}");
+            let names = [name.to_owned(), other];
+            self.0.contains_key(&names[1]).then(|| Symmetric { name: stem.to_owned(), names })
+        })
+    }
+}

@@ -1,0 +1,108 @@
+//! Stress and strain of cells by the law that their tissue has at finite strain.
+//!
+//! sigma = P F^T / J; its mean over the deformed cell is (1/v) sum_q V_q P F^T with v = sum_q V_q J. Green's strain
+//! E = (F^T F - 1) / 2, its mean is that over the cell at rest. What a pressure or a mean dilatation carries of the law is
+//! what it carries in the forces: at second order (`force_series`) c ln J of the law is replaced by p, or by c times the mean of ln J, and
+//! linear fibres add F (C_f : E) F^T.
+//!
+//! Source: Holzapfel, Nonlinear solid mechanics, 2000, sections 2.5 and 3.1.
+
+use nalgebra::Matrix3;
+use rayon::prelude::*;
+
+use super::assembly::Tissue;
+use super::cell_stiffness::Dilatation;
+use crate::material::ElasticTensor;
+use crate::material::hyperelastic::point::{Carried, Point};
+use crate::mesh::Vector;
+use crate::model::cell_state::CellState;
+use crate::model::reference_cell;
+
+/// Sums over the points of a cell.
+#[derive(Clone, Copy, Default)]
+pub(super) struct CellSums {
+    /// sum V P F^T.
+    stress: Matrix3<f64>,
+    /// sum V E.
+    strain: Matrix3<f64>,
+    /// At rest and deformed, in mm^3.
+    at_rest: f64,
+    deformed: f64,
+}
+
+impl CellSums {
+    /// Adds a point that stands for so many mm^3 at rest.
+    pub fn add(&mut self, point: &Point, volume: f64) {
+        self.stress += point.kirchhoff() * volume;
+        self.strain += point.green_strain() * volume;
+        self.at_rest += volume;
+        self.deformed += volume * point.volume();
+    }
+
+    pub fn means(self) -> CellState {
+        CellState { stress: self.stress / self.deformed, strain: self.strain / self.at_rest }
+    }
+}
+
+/// The state of every cell of an answer to second order, by the law at its displacement; none of a cell that it turns inside
+/// out. `pressures` are those of `linear_states::Displaced`.
+pub fn at_second_order(
+    tissue: &Tissue,
+    displacement: &[Vector],
+    pressures: &[Option<f64>],
+) -> Vec<Option<CellState>> {
+    let state = |cell: usize| {
+        let pressure = pressures.get(cell).copied().flatten();
+        of_cell(tissue, cell, displacement, pressure)
+    };
+    (0..tissue.mesh.cells.len()).into_par_iter().map(state).collect()
+}
+
+fn of_cell(
+    tissue: &Tissue,
+    cell: usize,
+    displacement: &[Vector],
+    pressure: Option<f64>,
+) -> Option<CellState> {
+    let mesh = tissue.mesh;
+    let (shape, nodes) = (mesh.cells.shape(cell), mesh.cells.nodes(cell));
+    let corners: Vec<Vector> = mesh.corners(cell).collect();
+    let law = tissue.materials[tissue.material_of_cell[cell] as usize].hyperelastic().law;
+    let mut points = Vec::new();
+    for point in &reference_cell(shape).points {
+        let at = point.at(&corners)?;
+        let moved = nodes.iter().zip(&at.gradients);
+        let gradient: Matrix3<f64> =
+            moved.map(|(&node, g)| displacement[node as usize] * g.transpose()).sum();
+        let f = Matrix3::identity() + gradient;
+        if f.determinant() <= 0.0 {
+            return None;
+        }
+        points.push((Point::new(&law, None, f), at.volume));
+    }
+    let tensor = tissue.tensor(cell);
+    let carried = match (pressure, (tissue.dilatation)(shape)) {
+        (Some(pressure), _) => Some(Carried { pressure, modulus: tensor.pressure_part().lambda }),
+        (None, Dilatation::Mean) => Some(of_mean(&points, tensor.split_volume().1.lambda)),
+        (None, Dilatation::Pointwise) => None,
+    };
+    let along_fibres = ElasticTensor { lambda: 0.0, mu: 0.0, ..tensor };
+    let mut sums = CellSums::default();
+    for (point, volume) in points {
+        let fibres = point.pushed(&along_fibres.stress(&point.green_strain()));
+        sums.stress += fibres * volume;
+        let point = match carried {
+            Some(by) => point.carried(by),
+            None => point,
+        };
+        sums.add(&point, volume);
+    }
+    Some(sums.means())
+}
+
+/// c times the mean of ln J.
+fn of_mean(points: &[(Point, f64)], modulus: f64) -> Carried {
+    let volume: f64 = points.iter().map(|(_, volume)| volume).sum();
+    let log: f64 = points.iter().map(|(point, volume)| point.log_volume() * volume).sum();
+    Carried { pressure: modulus * log / volume, modulus }
+}

@@ -1,0 +1,94 @@
+//! Stress and strain of the cells of an answer, where they are asked for.
+
+use super::scene::Scene;
+use crate::mesh::{Vector, Warning};
+use crate::model::cell_state::CellStates;
+use crate::model::fem::law_states::at_second_order;
+use crate::model::fem::linear_states::{Displaced, at_small_strain};
+use crate::model::fem::linear_system::{LinearSystem, Solved};
+use crate::model::fem::quadratic;
+use crate::model::problem::{Equilibrium, InvertedCell, ModelError};
+use crate::progress::Progress;
+
+impl Scene {
+    /// The answer of linear finite elements of any order.
+    pub(super) fn solve_linear(&self, progress: &dyn Progress) -> Result<Equilibrium, ModelError> {
+        if let Some(system) = self.assemble(progress)? {
+            let solved = system.solve(&[self.load_case()], progress)?.remove(0);
+            return Ok(self.stated(&system, solved)?);
+        }
+        let cases = [self.load_case()];
+        let mut answer = quadratic::solve_with_edges(&self.problem(), &cases, progress)?.remove(0);
+        answer.states = self.states(&answer.displacement, &[])?;
+        answer.displacement.truncate(self.mesh.nodes.len());
+        Ok(answer)
+    }
+
+    /// The answer of a linear system, with the states of its cells.
+    pub(super) fn stated(
+        &self,
+        system: &LinearSystem,
+        solved: Solved,
+    ) -> Result<Equilibrium, InvertedCell> {
+        let states = self.states_of(system, &solved)?;
+        Ok(Equilibrium { states, ..solved.equilibrium })
+    }
+
+    /// Those of the answer of a linear system; none where they are not asked for.
+    pub(super) fn states_of(
+        &self,
+        system: &LinearSystem,
+        solved: &Solved,
+    ) -> Result<CellStates, InvertedCell> {
+        let pressures = self.mean_pressures(system, &solved.pressures);
+        self.states(&solved.equilibrium.displacement, &pressures)
+    }
+
+    /// The answer of elements without pressures, with the states of its cells.
+    pub(super) fn with_states(&self, answer: Equilibrium) -> Result<Equilibrium, ModelError> {
+        let states = self.states(&answer.displacement, &[])?;
+        Ok(Equilibrium { states, ..answer })
+    }
+
+    /// Those of an answer to second order, and the warning of cells that have none.
+    pub(super) fn states_at_second_order(
+        &self,
+        system: &LinearSystem,
+        displacement: &[Vector],
+        pressures: &[f64],
+    ) -> (CellStates, Option<Warning>) {
+        if !self.settings.states {
+            return (CellStates::default(), None);
+        }
+        let pressures = self.mean_pressures(system, pressures);
+        let states = at_second_order(&self.tissue(), displacement, &pressures);
+        let unknown = states.iter().filter(|state| state.is_none()).count();
+        let detail = format!(
+            "{unknown} cells are turned inside out, where no law has a stress: stress and strain of these are written as zero"
+        );
+        let warning = Warning::new("stress-unknown", detail).with("cells", unknown as f64);
+        let cells = states.into_iter().map(Option::unwrap_or_default).collect();
+        (CellStates { cells, is_green: true }, (unknown > 0).then_some(warning))
+    }
+
+    fn states(
+        &self,
+        displacement: &[Vector],
+        pressures: &[Option<f64>],
+    ) -> Result<CellStates, InvertedCell> {
+        if !self.settings.states {
+            return Ok(CellStates::default());
+        }
+        let edges = self.edge_nodes();
+        let displaced = Displaced { displacement, edges: edges.as_ref(), pressures };
+        let cells = at_small_strain(&self.tissue(), &self.distributed.inner, &displaced)?;
+        Ok(CellStates { cells, is_green: false })
+    }
+
+    fn mean_pressures(&self, system: &LinearSystem, pressures: &[f64]) -> Vec<Option<f64>> {
+        match &system.pressures {
+            Some(own) if self.settings.states => own.cells.means(pressures, self.mesh.cells.len()),
+            Some(_) | None => Vec::new(),
+        }
+    }
+}
