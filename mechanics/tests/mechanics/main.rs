@@ -5,6 +5,7 @@
 mod anatomy;
 mod cephalometry;
 mod conformation;
+mod conformed_fibres;
 mod domain;
 mod format;
 mod golden;
