@@ -11,6 +11,7 @@ use super::material::{MaterialDocument, MaterialDocuments};
 use super::muscle::MuscleDocument;
 use super::selection::SelectionDocument;
 use crate::schema::Triple;
+use crate::schema::repair::RepairDocument;
 use crate::schema::wire::fault::Pointer;
 use mechanics::mesh::Frame;
 
@@ -74,6 +75,11 @@ pub struct CaseDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub hounsfield: Option<HounsfieldDocument>,
+    /// Moves nodes within bounds until every cell of the volume is proven valid in every point, or named. Absent: the mesh stays
+    /// as it is.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub repair: Option<RepairDocument>,
 }
 
 fn one() -> u32 {
@@ -232,6 +238,7 @@ impl CaseDocument {
             materials: None,
             muscles: Vec::new(),
             hounsfield: None,
+            repair: None,
         }
     }
 

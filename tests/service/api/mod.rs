@@ -32,6 +32,7 @@ mod origins;
 mod pages;
 mod pictures;
 mod plans;
+mod repair;
 mod reports;
 mod response;
 mod study;
