@@ -15,6 +15,7 @@ mod material;
 mod mesh;
 mod meshing;
 mod model;
+mod muscle;
 mod optimisation;
 mod osteotomy;
 mod prediction;
