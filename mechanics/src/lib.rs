@@ -54,6 +54,7 @@ pub mod material;
 pub mod mesh;
 pub mod meshing;
 pub mod model;
+pub mod muscle;
 pub mod optimisation;
 pub mod osteotomy;
 pub mod plan;

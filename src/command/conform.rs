@@ -9,7 +9,7 @@ use super::failure::CommandError;
 use super::files::{FileSource, ScaleArguments, UnitArgument};
 use super::screen::{print_files, print_warnings, work_in_sight};
 use crate::jobs::{ConformInput, JobInput, Workplace};
-use crate::schema::conform::result::{ConformationDocument, LeftDocument};
+use crate::schema::conform::result::{ConformationDocument, LeftDocument, MappedMuscleDocument};
 use crate::schema::wire::canonical;
 use crate::schema::{ConformDocument, Limits};
 
@@ -45,11 +45,16 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let done = work_in_sight(&input, &place)?;
     if let Some(found) = &done.result.conformation {
         print_found(found);
+        print_muscles(&found.muscles);
         let case = canonical::to_value(&found.case);
         let file = serde_json::json!({ "case": case });
         write(&arguments.out.join(CASE_FILE), format!("{file:#}\n"))?;
     }
-    print_warnings(&done.result.warnings);
+    let check = done.result.conformation.iter().filter_map(|found| found.check.as_ref());
+    let of_case = check.flat_map(|check| &check.warnings);
+    let mut warnings = done.result.warnings.clone();
+    warnings.extend(of_case.filter(|own| !done.result.warnings.contains(own)).cloned());
+    print_warnings(&warnings);
     print_files(&done.files, &arguments.out);
     println!("wrote      {}", arguments.out.join(CASE_FILE).display());
     Ok(())
@@ -76,4 +81,24 @@ fn print_found(found: &ConformationDocument) {
         found.repair.nodes_moved,
         found.repair.largest_move_mm
     );
+}
+
+fn print_muscles(muscles: &[MappedMuscleDocument]) {
+    if muscles.is_empty() {
+        return;
+    }
+    let all = |length: fn(&MappedMuscleDocument) -> f64| muscles.iter().map(length).sum::<f64>();
+    println!(
+        "muscles    {}, their lines {:.0} mm long, {:.0} on the template",
+        muscles.len(),
+        all(|muscle| muscle.length_mm),
+        all(|muscle| muscle.template_length_mm)
+    );
+    let beside = muscles.iter().filter_map(|own| Some((&own.name, own.beside_other_map?)));
+    if let Some((name, most)) = beside.max_by(|a, b| a.1.mean_deg.total_cmp(&b.1.mean_deg)) {
+        println!(
+            "           {name}: landmarks and conformation differ most, {:.1} degrees and {:.1} mm in the mean",
+            most.mean_deg, most.mean_mm
+        );
+    }
 }

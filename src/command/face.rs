@@ -13,6 +13,8 @@ use mechanics::format::{SurfaceOutput, VolumeOutput};
 use mechanics::mesh::generic_face::{FaceSettings, GenericFace, LAYERS, Lips, generic_face};
 use mechanics::mesh::{CellShape, Frame, Vector};
 
+const SKIN_REGIONS: [&str; 5] = ["nose", "upper_lip", "lower_lip", "chin", "cheeks"];
+
 /// The finest face, with 505 440 hexahedra.
 const FINEST: u64 = 9;
 
@@ -40,7 +42,7 @@ pub struct Arguments {
     /// Hexahedra, or wedges or tetrahedra that they are cut into
     #[arg(long, value_enum, default_value = "hex8")]
     cells: CellArgument,
-    /// Folder for `case.json` and its meshes
+    /// Folder for `case.json`, its meshes, and `conform.json`, a conformation that waits for the names of a patient's surfaces
     #[arg(long, visible_alias = "output", value_name = "FOLDER")]
     out: PathBuf,
 }
@@ -67,6 +69,7 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
         put(&out.join(format!("{bone}.vtp")), bytes)?;
     }
     put(&out.join("case.json"), format!("{:#}\n", documents(&face)))?;
+    put(&out.join("conform.json"), format!("{:#}\n", conformation(&case(&face))))?;
     let (cells, muscles) = (face.mesh.cells.len(), face.muscles.len());
     println!("{cells} cells, {} landmarks, {muscles} muscles", face.landmarks.len());
     Ok(())
@@ -87,6 +90,31 @@ fn documents(face: &GenericFace) -> Value {
     })
 }
 
+/// The face as the template of a conformation, which lacks the patient's surfaces and, where there are some, landmarks.
+fn conformation(case: &Value) -> Value {
+    let by_name = |name: &&str| ((*name).to_owned(), json!(name));
+    let skin_regions: Map<String, Value> = SKIN_REGIONS.iter().map(by_name).collect();
+    json!({
+        "kind": "conform",
+        "template": {
+            "mesh": case["volume"],
+            "skin": "skin",
+            "segments": {"maxilla": "maxilla", "mandible": "mandible"},
+            "fixed": "skull",
+            "held": ["rim"],
+            "sliding": [
+                {"nodes": "upper_vestibule", "segment": "maxilla"},
+                {"nodes": "lower_vestibule", "segment": "mandible"},
+            ],
+            "skin_regions": skin_regions,
+            "regions": case["regions"],
+            "materials": case["materials"],
+            "muscles": case["muscles"],
+        },
+        "patient": {"skin": "patient_skin.stl", "bone": "patient_bone.stl"},
+    })
+}
+
 /// Tissue has 15 kPa and a Poisson ratio of 0.49, muscle at rest 6.2 kPa: Chabanas et al. 2003 (docs/methods.md#papers), section
 /// 3.4.2, after Fung 1993 and Duck 1990. The mucosa before the teeth slides on them, which the jaws carry.
 fn case(face: &GenericFace) -> Value {
@@ -99,8 +127,7 @@ fn case(face: &GenericFace) -> Value {
         .keys()
         .map(|bone| json!({"name": bone, "mesh": format!("{bone}.vtp")}))
         .collect();
-    let skin_regions: Map<String, Value> =
-        ["nose", "upper_lip", "lower_lip", "chin", "cheeks"].iter().map(by_name).collect();
+    let skin_regions: Map<String, Value> = SKIN_REGIONS.iter().map(by_name).collect();
     let landmarks: Map<String, Value> =
         face.landmarks.iter().map(|(name, point)| (name.clone(), rounded(point))).collect();
     let slides = |nodes: &str, segment: &str| json!({"nodes": set(nodes), "normal": "surface", "segment": segment});

@@ -25,6 +25,7 @@ pub mod optimise;
 pub mod osteotomy;
 pub mod plan;
 pub mod predict;
+pub mod repair;
 pub mod reproduce;
 pub mod response;
 pub mod response_description;

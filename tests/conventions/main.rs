@@ -13,7 +13,7 @@ use std::path::Path;
 use source::{Crate, Module, rust_files};
 
 /// Modules of the numerics, and those that each may use.
-const MECHANICS: [(&str, &[&str]); 28] = [
+const MECHANICS: [(&str, &[&str]); 29] = [
     ("rows", &[]),
     ("progress", &[]),
     ("draws", &[]),
@@ -33,6 +33,7 @@ const MECHANICS: [(&str, &[&str]); 28] = [
     ("registration", &["mesh", "progress"]),
     ("repair", &["mesh", "progress", "rows"]),
     ("conformation", &["mesh", "registration", "progress"]),
+    ("muscle", &["mesh", "image", "domain", "material"]),
     ("format", &["mesh", "image"]),
     ("validation", &["mesh", "registration", "progress"]),
     ("boundary", &["mesh", "plan"]),

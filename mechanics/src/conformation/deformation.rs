@@ -1,6 +1,6 @@
 //! The map from a template to a patient: an affine map, and a free-form deformation after it.
 
-use nalgebra::{Matrix3, Rotation3};
+use nalgebra::Matrix3;
 
 use super::affine::Affine;
 use super::lattice::Field;
@@ -23,11 +23,5 @@ impl Deformation {
     pub fn gradient(&self, point: &Vector) -> Matrix3<f64> {
         let moved = self.affine.apply(point);
         (Matrix3::identity() + self.field.gradient(&moved)) * self.affine.matrix
-    }
-
-    /// A direction turned by the rotation nearest to the gradient, as long as it was.
-    pub fn turned(&self, point: &Vector, direction: &Vector) -> Vector {
-        let gradient = self.gradient(point);
-        Rotation3::from_matrix(&gradient) * direction
     }
 }

@@ -16,6 +16,8 @@ pub enum ConformationError {
     Surface { sheet: SheetName, error: SearchError },
     #[error("the landmarks do not place the template: {0}")]
     Landmarks(AlignmentError),
+    #[error("no thin-plate spline goes through the landmarks: {0}")]
+    Spline(AlignmentError),
     #[error("{landmarks} landmarks do not place the template, {needed} are needed")]
     FewLandmarks { landmarks: usize, needed: usize },
     #[error(

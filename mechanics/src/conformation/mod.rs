@@ -5,6 +5,7 @@ mod carried;
 mod conform;
 mod deformation;
 mod error;
+mod fibres;
 mod fit;
 mod landmark;
 mod lattice;
@@ -13,11 +14,16 @@ mod pull;
 mod schedule;
 mod sheet;
 mod start;
+mod warp;
 
 pub use affine::Affine;
 pub use carried::carried;
 pub use conform::{Conformation, Patient, Template, conform};
 pub use deformation::Deformation;
 pub use error::{ConformationError, SheetName};
+pub use fibres::{
+    FibreDifference, MappedLines, angle_between, cell_axes, fibre_difference, mapped_lines,
+};
 pub use landmark::Landmark;
 pub use start::Start;
+pub use warp::{Warp, spline_of};

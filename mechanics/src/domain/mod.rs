@@ -6,6 +6,7 @@
 mod airway_map;
 pub mod assessment;
 mod bone_depths;
+mod closed;
 mod compartments;
 mod containment;
 mod cut_ends;
@@ -27,6 +28,7 @@ mod winding_cells;
 
 pub use assessment::Assessment;
 pub use bone_depths::BoneDepths;
+pub use closed::ClosedSurface;
 pub use containment::Containment;
 pub use image::{ImageDomain, ImageDomainError, ImageOptions};
 pub use left_out::LeftOut;

@@ -11,14 +11,17 @@ pub enum SurfaceName {
     Skin,
     /// By its place among the bones, from 0.
     Bone(usize),
+    /// By its place among the muscles, from 0.
+    Muscle(usize),
 }
 
 impl fmt::Display for SurfaceName {
-    /// "skin", "bone 1", "bone 2", ...
+    /// "skin", "bone 1", "bone 2", "muscle 1", ...
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             SurfaceName::Skin => formatter.write_str("skin"),
             SurfaceName::Bone(number) => write!(formatter, "bone {}", number + 1),
+            SurfaceName::Muscle(number) => write!(formatter, "muscle {}", number + 1),
         }
     }
 }

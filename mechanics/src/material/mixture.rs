@@ -8,7 +8,39 @@
 //! Source: the equivalent property of Kim et al. 2012 (Mass tensor), stated there for the shares of points;
 //! that the constants are mixed and not E and nu themselves is a choice of ours.
 
-use super::LinearElastic;
+use super::{LinearElastic, MaterialError};
+
+/// The rule by which K and mu of parts become those of a mixture, in the shares of their volume.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Mixing {
+    /// Parts strained alike: the arithmetic mean, the stiffest that shares allow.
+    #[default]
+    Voigt,
+    /// Parts stressed alike: the harmonic mean, the softest.
+    Reuss,
+    /// The geometric mean, between both and bound to no arrangement of the parts.
+    Geometric,
+}
+
+/// The isotropic mixture of parts with these shares, which sum to 1, by a rule; fibres and laws of parts are left out.
+/// Muscle of 790 kPa in a tenth of fat of 3 kPa is 81.7, 3.33 or 5.24 kPa.
+pub fn mixed(parts: &[(f64, LinearElastic)], rule: Mixing) -> Result<LinearElastic, MaterialError> {
+    let mean = |of: fn(&LinearElastic) -> f64| -> f64 {
+        let terms = parts.iter().map(|(share, part)| (share, of(part)));
+        match rule {
+            Mixing::Voigt => terms.map(|(share, value)| share * value).sum(),
+            Mixing::Reuss => 1.0 / terms.map(|(share, value)| share / value).sum::<f64>(),
+            Mixing::Geometric => terms.map(|(share, value)| share * value.ln()).sum::<f64>().exp(),
+        }
+    };
+    let (bulk, shear) = (mean(LinearElastic::bulk_modulus), mean(LinearElastic::shear_modulus));
+    let density = parts.iter().map(|(share, part)| share * part.density()).sum::<f64>();
+    let young_modulus = 9.0 * shear / (3.0 + shear / bulk);
+    let poisson_ratio = (3.0 * bulk - 2.0 * shear) / (6.0 * bulk + 2.0 * shear);
+    // Rounding may leave the range by a last digit.
+    let below_half = 0.5 * (1.0 - f64::EPSILON);
+    LinearElastic::new(young_modulus, poisson_ratio.clamp(0.0, below_half), density.min(100.0))
+}
 
 /// The mixture of parts with these shares, which sum to 1; there is at least one. Fibres, where parts have any, are along one
 /// direction.
@@ -75,6 +107,25 @@ mod tests {
             assert!((mixed.fibre_modulus().unwrap() - told).abs() < 1e-12);
         }
         assert!(!mixture(&[(0.5, fat), (0.5, fat)]).has_fibre());
+    }
+
+    #[test]
+    fn a_tenth_of_muscle_in_fat_is_what_the_rule_makes_of_it() {
+        let parts = [(0.1, tissue(790.0, 0.43, 1.06)), (0.9, tissue(3.0, 0.46, 0.92))];
+        let of = |rule| mixed(&parts, rule).unwrap();
+        let voigt = of(Mixing::Voigt);
+        assert!((voigt.young_modulus() - 81.74).abs() < 0.005, "{}", voigt.young_modulus());
+        assert!((voigt.poisson_ratio() - 0.43166).abs() < 5e-6, "{}", voigt.poisson_ratio());
+        for (rule, known) in [(Mixing::Reuss, 3.33), (Mixing::Geometric, 5.24)] {
+            let found = of(rule).young_modulus();
+            assert!((found - known).abs() < 0.005, "{rule:?}: {found}");
+        }
+        assert!((voigt.young_modulus() - mixture(&parts).young_modulus()).abs() < 1e-12);
+        assert!((voigt.density() - 0.934).abs() < 1e-12);
+        for rule in [Mixing::Voigt, Mixing::Reuss, Mixing::Geometric] {
+            let alone = mixed(&parts[..1].iter().map(|own| (1.0, own.1)).collect::<Vec<_>>(), rule);
+            assert!((alone.unwrap().young_modulus() - 790.0).abs() < 1e-9, "{rule:?}");
+        }
     }
 
     #[test]

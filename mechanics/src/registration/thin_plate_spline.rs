@@ -67,6 +67,19 @@ impl ThinPlateSpline {
         self.shift + self.matrix * point + bent
     }
 
+    /// ∂f/∂x = A + Σ w_i (x - x_i)ᵀ / |x - x_i|. At a landmark itself its own part has no direction and is left out.
+    pub fn gradient(&self, point: &Vector) -> Matrix3<f64> {
+        let mut gradient = self.matrix;
+        for (centre, weight) in self.centres.iter().zip(&self.weights) {
+            let offset = point - centre;
+            let distance = offset.norm();
+            if distance > 0.0 {
+                gradient += weight * offset.transpose() / distance;
+            }
+        }
+        gradient
+    }
+
     /// The w of each landmark; 0 where the map is affine.
     pub fn weights(&self) -> &[Vector] {
         &self.weights

@@ -3,6 +3,7 @@
 
 mod files;
 mod interop;
+mod muscle_mapping;
 mod muscles;
 mod needs;
 mod predictions;
@@ -19,6 +20,7 @@ fn main() -> ExitCode {
     support::external::run([
         files::trials(),
         interop::trials(),
+        muscle_mapping::trials(),
         muscles::trials(),
         needs::trials(),
         predictions::trials(),

@@ -20,7 +20,7 @@ trials! {
 }
 
 /// Polylines by muscle and side, each fibre one line.
-fn fibres(face: &str) -> Result<BTreeMap<String, Vec<Vec<Vector>>>, Missing> {
+pub fn fibres(face: &str) -> Result<BTreeMap<String, Vec<Vec<Vector>>>, Missing> {
     let path = shared_data(&format!("face/{face}_face_muscle_fibres.csv"))?;
     let text = std::fs::read_to_string(path).unwrap();
     let mut lines: BTreeMap<(String, String), Vec<Vector>> = BTreeMap::new();

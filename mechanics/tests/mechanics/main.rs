@@ -5,6 +5,7 @@
 mod anatomy;
 mod cephalometry;
 mod conformation;
+mod conformed_fibres;
 mod domain;
 mod format;
 mod golden;
@@ -14,6 +15,7 @@ mod material;
 mod mesh;
 mod meshing;
 mod model;
+mod muscle;
 mod optimisation;
 mod osteotomy;
 mod prediction;

@@ -6,10 +6,13 @@ use serde::{Deserialize, Serialize};
 
 use crate::jobs::failure::JobError;
 use crate::jobs::fetch::{fetch, no_surface};
+use crate::jobs::predict::PredictInput;
 use crate::jobs::source::{MeshSource, StoredMesh, StoredShape};
-use crate::schema::conform::document::ConformDocument;
-use crate::schema::{ErrorCode, Faults, Limits, Pointer, Problem, hashes};
-use mechanics::conformation::Landmark;
+use crate::schema::conform::document::{ConformDocument, MuscleMapName};
+use crate::schema::{
+    ErrorCode, Faults, Limits, PlanDocument, Pointer, PredictDocument, Problem, hashes,
+};
+use mechanics::conformation::{Landmark, spline_of};
 use mechanics::mesh::{Frame, TriangleSurface, VolumeMesh};
 
 /// A conformation.
@@ -64,12 +67,15 @@ impl ConformInput {
         let skin = surface("skin", &self.spec.patient.skin)?;
         let bone = surface("bone", &self.spec.patient.bone)?;
         let frame = one_frame(&meshes[1..], &at)?;
-        let (skin_nodes, bone_nodes) = self.nodes(&template, &at.key("template"))?;
+        let (skin_nodes, bone_nodes) = self.nodes(&template)?;
+        self.check_template(&meshes[0].1, sources, limits)?;
         let landmarks = self.spec.landmarks.iter().map(|(name, pair)| Landmark {
             name: name.clone(),
             template: pair.template_mm.into(),
             patient: pair.patient_mm.into(),
         });
+        let landmarks: Vec<Landmark> = landmarks.collect();
+        self.check_map_of_muscles(&landmarks)?;
         let content = |id: &str| {
             let mut spec = self.spec.clone();
             let places = spec.mesh_references_mut();
@@ -77,7 +83,6 @@ impl ConformInput {
             Some(meshes[number].1.sha256.clone())
         };
         let spec_hash = hashes::conform_hash(&self.spec, &content);
-        let landmarks = landmarks.collect();
         Ok(PreparedConformation {
             meshes,
             template,
@@ -92,28 +97,75 @@ impl ConformInput {
     }
 
     /// The nodes on the skin, and those on bone.
-    fn nodes(&self, template: &VolumeMesh, at: &Pointer) -> Result<(Vec<u32>, Vec<u32>), JobError> {
-        let find = |name: &str, at: &Pointer| {
-            let missing = || {
-                let detail = template.missing_set(name);
-                JobError::from(Problem::at(at, ErrorCode::UnknownSet, detail))
-            };
-            template.node_set(name).ok_or_else(missing)
-        };
+    fn nodes(&self, template: &VolumeMesh) -> Result<(Vec<u32>, Vec<u32>), JobError> {
         let spec = &self.spec.template;
-        let skin = find(&spec.skin, &at.key("skin"))?.to_vec();
-        let mut bone = Vec::new();
-        for (segment, set) in &spec.segments {
-            bone.extend(find(set, &at.key("segments").key(segment))?);
+        let mut faults = Faults::default();
+        for (at, set) in spec.node_sets() {
+            if template.node_set(set).is_none() {
+                faults.add(&at, ErrorCode::UnknownSet, template.missing_set(set));
+            }
         }
-        if let Some(set) = &spec.fixed {
-            bone.extend(find(set, &at.key("fixed"))?);
-        }
+        faults.into_result()?;
+        let nodes = |set: &String| template.node_set(set).unwrap_or_default();
+        let on_bone = spec.segments.values().chain(&spec.fixed);
+        let mut bone: Vec<u32> = on_bone.flat_map(nodes).copied().collect();
         bone.sort_unstable();
         bone.dedup();
-        Ok((skin, bone))
+        Ok((nodes(&spec.skin).to_vec(), bone))
+    }
+
+    /// Refuses regions, materials, muscles and sliding of which a case of the template's own mesh could not be made.
+    fn check_template(
+        &self,
+        mesh: &StoredMesh,
+        sources: &dyn MeshSource,
+        limits: &Limits,
+    ) -> Result<(), JobError> {
+        let spec = &self.spec.template;
+        if !spec.has_tissue() {
+            return Ok(());
+        }
+        let mut case = spec.case(&spec.mesh, mesh.units.unwrap_or_default());
+        case.frame = mesh.frame.unwrap_or_default().into();
+        let own = PredictInput {
+            job: None,
+            queue_s: None,
+            case,
+            plan: PlanDocument::default(),
+            spec: PredictDocument::default(),
+        };
+        let problem = match own.prepare(sources, limits) {
+            Ok(_) => return Ok(()),
+            Err(JobError::Refused(problem)) => problem,
+            Err(error) => return Err(error),
+        };
+        let mut faults = Faults::default();
+        for error in problem.moved("/case", "/spec/template").errors {
+            let is_ours = |member: &&str| {
+                let rest = error.pointer.strip_prefix(&format!("/spec/template/{member}"));
+                rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('/'))
+            };
+            if OF_TISSUE.iter().any(is_ours) {
+                faults.add(&Pointer::from_text(&error.pointer), error.code, error.detail);
+            }
+        }
+        Ok(faults.into_result()?)
+    }
+
+    /// Refuses muscles that are to go by landmarks which give no map.
+    fn check_map_of_muscles(&self, landmarks: &[Landmark]) -> Result<(), JobError> {
+        match (self.spec.muscles_by, spline_of(landmarks)) {
+            (MuscleMapName::Landmarks, Err(error)) => {
+                let at = Pointer::root().key("spec").key("muscles_by");
+                Err(Problem::at(&at, ErrorCode::AlignmentFailed, error.to_string()).into())
+            }
+            (MuscleMapName::Landmarks, Ok(_)) | (MuscleMapName::Conformation, _) => Ok(()),
+        }
     }
 }
+
+/// The members of a template that a case has under the same names.
+const OF_TISSUE: [&str; 4] = ["regions", "materials", "muscles", "sliding"];
 
 fn volume_in_mm(stored: &StoredMesh, at: &Pointer) -> Result<VolumeMesh, JobError> {
     let StoredShape::Volume(volume) = &stored.shape else {

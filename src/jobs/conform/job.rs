@@ -3,22 +3,24 @@
 use std::sync::Arc;
 
 use super::input::{ConformInput, PreparedConformation};
+use super::tissue::{TissueMaps, case_of};
 use crate::jobs::clock::Observed;
 use crate::jobs::failure::JobError;
 use crate::jobs::output::{JobOutput, MadeMesh, Workplace};
+use crate::jobs::predict::check_made;
 use crate::jobs::result::folder::ResultFolder;
 use crate::jobs::result::provenance::{Origin, encode_result, mesh_summary};
 use crate::jobs::result::warnings::warning_documents;
-use crate::jobs::source::StoredShape;
-use crate::schema::case::document::{LengthUnit, SegmentDocument};
-use crate::schema::case::selection::SelectionDocument;
+use crate::jobs::source::{StoredMesh, StoredShape};
 use crate::schema::conform::document::ConformDocument;
 use crate::schema::conform::result::{
-    CellsDocument, ConformationDocument, LeftDocument, RepairResultDocument,
+    CellsDocument, ConformationDocument, LeftDocument, MappedMuscleDocument,
 };
+use crate::schema::predict::check::CheckDocument;
 use crate::schema::predict::document::OutputName;
 use crate::schema::predict::keep::MadeName;
 use crate::schema::predict::result::ResultDocument;
+use crate::schema::repair::RepairResultDocument;
 use crate::schema::{CaseDocument, ErrorCode, Pointer, Problem};
 use mechanics::conformation::{
     Conformation, ConformationError, Patient, SheetName, Template, carried, conform,
@@ -26,7 +28,7 @@ use mechanics::conformation::{
 use mechanics::format::VolumeOutput;
 use mechanics::format::vtk::vtu;
 use mechanics::mesh::quality::{QualityReport, quality};
-use mechanics::mesh::{Frame, SurfaceSearch, TriangleSurface, VolumeMesh};
+use mechanics::mesh::{SurfaceSearch, TriangleSurface, VolumeMesh, Warning};
 use mechanics::progress::{Phase, Progress};
 use mechanics::repair::{Bounds, RepairReport, repair};
 
@@ -46,10 +48,14 @@ pub fn conform_job(
     clock.check()?;
 
     // 2. The template onto the patient, its cells repaired.
-    let found = prepared.conformed(&input.spec, &clock)?;
+    let mut found = prepared.conformed(&input.spec, &clock)?;
     clock.check()?;
 
-    // 3. Files.
+    // 3. Its muscles and fibres, and the case.
+    let brought = prepared.brought(&mut found, &input.spec, place)?;
+    clock.check()?;
+
+    // 4. Files.
     clock.phase(Phase::Write);
     let origin = Origin {
         spec_hash: prepared.spec_hash.clone(),
@@ -61,12 +67,13 @@ pub fn conform_job(
     let volume = vtu::write(&VolumeOutput::plain(&found.mesh, prepared.frame))?;
     folder.add(OutputName::VolumeVtu, &volume)?;
     let told = prepared.meshes.iter().flat_map(|(_, mesh)| &mesh.warnings);
-    let warnings = found.after.warnings();
+    let warnings = found.after.warnings().into_iter().chain(brought.refused.clone());
+    let warnings: Vec<Warning> = warnings.collect();
     let warnings = warning_documents(told.chain(&warnings));
     let mut provenance = origin.provenance(&clock);
     provenance.mesh = Some(mesh_summary(&found.mesh, &found.after));
     let rest = ResultDocument::new(input.job.clone(), &folder.files, provenance, warnings.clone());
-    let conformation = Some(found.document(&input.spec, &prepared));
+    let conformation = Some(found.document(brought, &prepared));
     let result = ResultDocument { conformation, ..rest };
     folder.add(OutputName::ResultJson, &encode_result(&result)?)?;
     let shape = StoredShape::Volume(Arc::new(found.mesh));
@@ -118,6 +125,42 @@ impl PreparedConformation {
     }
 }
 
+/// The case of a template on a patient, and what its own check says of it.
+struct Brought {
+    case: CaseDocument,
+    muscles: Vec<MappedMuscleDocument>,
+    check: Option<CheckDocument>,
+    refused: Option<Warning>,
+}
+
+impl PreparedConformation {
+    fn brought(
+        &self,
+        found: &mut Conformed,
+        spec: &ConformDocument,
+        place: &Workplace,
+    ) -> Result<Brought, JobError> {
+        let volume = OutputName::VolumeVtu.file_name();
+        let mut case = case_of(spec, volume, self.frame.into());
+        let deformation = &found.conformation.deformation;
+        let maps = TissueMaps::new(self, deformation, spec.muscles_by, place.limits);
+        let muscles = maps.bring(&mut case, &mut found.mesh);
+        let shape = StoredShape::Volume(Arc::new(found.mesh.clone()));
+        let made = [(volume.to_owned(), StoredMesh::made(shape, self.frame))];
+        let (check, refused) = match check_made(&case, made.into(), place) {
+            Ok(check) => (check, None),
+            Err(JobError::Refused(problem)) => (None, Some(refused_case(&problem))),
+            Err(error) => return Err(error),
+        };
+        Ok(Brought { case, muscles, check, refused })
+    }
+}
+
+fn refused_case(problem: &Problem) -> Warning {
+    let detail = format!("the case of the mesh is refused as it stands: {}", problem.detail);
+    Warning::new("made-case-refused", detail)
+}
+
 /// From nodes to a surface, where there is one, in mm.
 fn distances(
     surface: Option<&TriangleSurface>,
@@ -132,11 +175,7 @@ fn distances(
 }
 
 impl Conformed {
-    fn document(
-        &self,
-        spec: &ConformDocument,
-        prepared: &PreparedConformation,
-    ) -> ConformationDocument {
+    fn document(&self, brought: Brought, prepared: &PreparedConformation) -> ConformationDocument {
         let names = prepared.landmarks.iter().map(|landmark| landmark.name.clone());
         let [partners, points] = self.conformation.partners;
         ConformationDocument {
@@ -147,28 +186,11 @@ impl Conformed {
             before_repair: CellsDocument::from(&self.before),
             after_repair: CellsDocument::from(&self.after),
             repair: RepairResultDocument::from(&self.repaired),
-            case: case_of(spec, prepared.frame),
+            muscles: brought.muscles,
+            case: brought.case,
+            check: brought.check,
         }
     }
-}
-
-/// The case of the mesh: its segments, what is fixed, and its skin, all by node sets.
-fn case_of(spec: &ConformDocument, frame: Frame) -> CaseDocument {
-    let volume = OutputName::VolumeVtu.file_name();
-    let mut case = CaseDocument::of_volume(volume, LengthUnit::Mm);
-    case.frame = frame.into();
-    let segments = spec.template.segments.iter();
-    case.segments = segments
-        .map(|(name, set)| SegmentDocument {
-            name: name.clone(),
-            nodes: SelectionDocument::node_set(set),
-        })
-        .collect();
-    case.fixed = spec.template.fixed.iter().map(|set| SelectionDocument::node_set(set)).collect();
-    case.skin = Some(SelectionDocument::node_set(&spec.template.skin));
-    let landmarks = spec.landmarks.iter();
-    case.landmarks = landmarks.map(|(name, pair)| (name.clone(), pair.patient_mm)).collect();
-    case
 }
 
 /// With the place of the spec that it is about.
@@ -190,6 +212,7 @@ fn refused(error: &ConformationError, clock: &Observed) -> JobError {
         | ConformationError::NoSuchFace { .. }
         | ConformationError::Stretched { .. } => at.key("patient").key("skin"),
         ConformationError::Landmarks(_)
+        | ConformationError::Spline(_)
         | ConformationError::FewLandmarks { .. }
         | ConformationError::Mirrored { .. }
         | ConformationError::Exchanged { .. }

@@ -2,6 +2,7 @@
 
 mod input;
 mod job;
+mod tissue;
 
 pub use input::ConformInput;
 pub use job::conform_job;

@@ -51,7 +51,7 @@ impl Surfaces {
     fn refusal(&self, error: &SurfaceDomainError) -> JobError {
         let at = Pointer::root().key("spec").key("surfaces");
         let at = match error.surface() {
-            None => at,
+            None | Some(SurfaceName::Muscle(_)) => at,
             Some(SurfaceName::Skin) => at.key("skin"),
             Some(SurfaceName::Bone(number)) => {
                 let bones = self.document.bones_at(&at);

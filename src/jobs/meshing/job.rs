@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::case::{bone_file, case_of};
-use super::check::{MadeAnatomy, check_made};
+use super::check::{MadeAnatomy, check_anatomy};
 use super::input::{MeshingInput, PreparedMeshing};
 use crate::jobs::clock::Observed;
 use crate::jobs::failure::JobError;
@@ -54,7 +54,7 @@ pub fn meshing_job(
     if let Some(waiting) = &input.case {
         found.case = waiting.document.complete(found.case);
         let told = prepared.told(&anatomy);
-        found.check = check_made(
+        found.check = check_anatomy(
             &found.case,
             &MadeAnatomy { anatomy: &anatomy, frame: prepared.frame, told },
             place,

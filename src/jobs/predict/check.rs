@@ -66,6 +66,7 @@ impl Prepared {
                     .map(|(name, points)| (name.clone(), points.len() as u64))
                     .collect(),
             },
+            repair: self.repair.as_ref().map(Into::into),
             imaged: scene.imaged.as_ref().map(Into::into),
             unknowns: (3 * nodes - held) as u64,
             memory_mb: cost::memory_mb(scene, 0),

@@ -11,7 +11,7 @@ use crate::jobs::failure::JobError;
 use crate::jobs::source::{MeshSource, SourceError, StoredMesh, StoredShape};
 use crate::schema::ErrorCode;
 use crate::schema::case::bone_landmark::check_bone_landmarks;
-use crate::schema::case::conversion::centre;
+use crate::schema::case::conversion::{ConvertedCase, centre};
 use crate::schema::case::document::{CaseMeshes, NamedMesh};
 use crate::schema::case::norm::check_norms;
 use crate::schema::compare::document::CompareToDocument;
@@ -28,6 +28,7 @@ use mechanics::mesh::Warning;
 use mechanics::mesh::ignored::listed;
 use mechanics::mesh::quality::{QualityReport, quality};
 use mechanics::prediction::{Case, Plan, Scene, Settings};
+use mechanics::repair::RepairReport;
 
 /// A prediction: the case and the plan in full beside the spec.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -47,6 +48,8 @@ pub struct Prepared {
     pub plan: Plan,
     pub scene: Scene,
     pub quality: QualityReport,
+    /// Of the volume, where the case asks for one.
+    pub repair: Option<RepairReport>,
     pub spec_hash: String,
     pub inputs: Vec<InputDocument>,
     /// The SHA-256 of each mesh of the case by its id.
@@ -67,6 +70,7 @@ struct Converted {
     plan: Plan,
     settings: Settings,
     warnings: Vec<Warning>,
+    repair: Option<RepairReport>,
 }
 
 impl PredictInput {
@@ -97,6 +101,7 @@ impl PredictInput {
             plan: converted.plan,
             scene,
             quality,
+            repair: converted.repair,
             spec_hash: self.spec_hash(&stored, compared.as_ref()),
             inputs: self.inputs(&stored, compared.as_ref()),
             contents: stored.iter().map(|(id, mesh)| (id.clone(), mesh.sha256.clone())).collect(),
@@ -146,7 +151,8 @@ impl PredictInput {
     fn convert(&self, meshes: &CaseMeshes, limits: &Limits) -> Result<Converted, JobError> {
         let mut faults = Faults::default();
         let spec_materials = self.spec.materials.as_ref();
-        let (case, warnings) = self.case.to_case(meshes, spec_materials, limits, &mut faults);
+        let ConvertedCase { case, warnings, repair } =
+            self.case.to_case(meshes, spec_materials, limits, &mut faults);
         let segments = self.case.segments.iter().map(|segment| segment.name.trim()).collect();
         let at = Pointer::root().key("case");
         let landmarks = at.key("bone_landmarks");
@@ -167,7 +173,7 @@ impl PredictInput {
         }
         self.spec.check_element(&mut faults);
         faults.into_result()?;
-        Ok(Converted { case, plan, settings, warnings })
+        Ok(Converted { case, plan, settings, warnings, repair })
     }
 
     /// The meshes that the case and the plan ask for.

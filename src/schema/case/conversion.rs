@@ -10,6 +10,7 @@ use super::merged::{Merged, PlacedMaterials, merge_materials};
 use super::meshes::CaseMeshes;
 use super::muscle::to_muscles;
 use crate::schema::code::ErrorCode;
+use crate::schema::repair::Mended;
 use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::limits::Limits;
 use crate::schema::wire::names::{check_distinct, check_tags};
@@ -19,11 +20,20 @@ use mechanics::mesh::{Frame, TriangleSurface, Vector, VolumeMesh, Warning};
 use mechanics::prediction::{
     Bone, Case, CaseSegment, Hounsfield, RegionNames, Sliding, SlidingNormal,
 };
+use mechanics::repair::RepairReport;
 
 /// Farthest coordinate of a landmark in mm.
 const FARTHEST_LANDMARK_MM: f64 = 1e8;
 /// Diagonals of the bounding boxes of heads and their parts, in mm.
 const USUAL_DIAGONAL_MM: (f64, f64) = (50.0, 600.0);
+
+/// A case as the path takes it.
+pub struct ConvertedCase {
+    pub case: Case,
+    pub warnings: Vec<Warning>,
+    /// Of its volume, where the document asks for one.
+    pub repair: Option<RepairReport>,
+}
 
 impl CaseDocument {
     /// The case in mm with the materials of a spec over its own. Pointers start at `/case` and `/spec`.
@@ -33,11 +43,14 @@ impl CaseDocument {
         spec_materials: Option<&MaterialDocuments>,
         limits: &Limits,
         faults: &mut Faults,
-    ) -> (Case, Vec<Warning>) {
+    ) -> ConvertedCase {
         let at = Pointer::root().key("case");
         self.check_texts(&at, limits, faults);
         let frame_warning = self.check_frames(&at, meshes, faults);
         let volume = in_mm(&meshes.volume.mesh, self.units);
+        let repair = self.repair.as_ref();
+        let mended = repair.and_then(|own| own.mended(&volume, &at.key("repair"), faults));
+        let volume = mended.as_ref().map_or(volume, |mended| mended.volume.clone());
         let own = PlacedMaterials { at: at.key("materials"), materials: self.materials.as_ref() };
         let spec = PlacedMaterials {
             at: Pointer::root().key("spec").key("materials"),
@@ -48,6 +61,7 @@ impl CaseDocument {
         warnings.extend(frame_warning);
         warnings.extend(self.hounsfield.iter().flat_map(HounsfieldDocument::doubts));
         warnings.extend(unusual_size(&volume, self.units));
+        warnings.extend(mended.as_ref().and_then(Mended::warning));
         let regions = self.to_regions(&at.key("regions"), faults);
         check_regions(&[own, spec], &regions, &volume, faults);
         let (skin, skin_regions) = self.to_skin(&at, limits, faults);
@@ -69,7 +83,7 @@ impl CaseDocument {
             fibres,
             volume,
         };
-        (case, warnings)
+        ConvertedCase { case, warnings, repair: mended.map(|mended| mended.report) }
     }
 
     fn check_texts(&self, at: &Pointer, limits: &Limits, faults: &mut Faults) {

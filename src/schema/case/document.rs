@@ -12,6 +12,7 @@ use super::muscle::MuscleDocument;
 use super::norm::{NormDocument, NormDocuments};
 use super::selection::SelectionDocument;
 use crate::schema::Triple;
+use crate::schema::repair::RepairDocument;
 use crate::schema::wire::fault::Pointer;
 use mechanics::mesh::Frame;
 
@@ -79,6 +80,11 @@ pub struct CaseDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub hounsfield: Option<HounsfieldDocument>,
+    /// Moves nodes within bounds until every cell of the volume is proven valid in every point, or named. Absent: the mesh stays
+    /// as it is.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub repair: Option<RepairDocument>,
 }
 
 fn one() -> u32 {
@@ -238,6 +244,7 @@ impl CaseDocument {
             materials: None,
             muscles: Vec::new(),
             hounsfield: None,
+            repair: None,
         }
     }
 

@@ -13,7 +13,7 @@ use mechanics::mesh::Vector;
 use mechanics::prediction::{Muscle, MuscleCourse};
 
 /// Distances from its lines within which a muscle may pull, in mm.
-const REACH_MM: (f64, f64) = (0.1, 50.0);
+pub const REACH_MM: (f64, f64) = (0.1, 50.0);
 
 /// Farthest coordinate of a point of a line in mm.
 const FARTHEST_MM: f64 = 1e8;
@@ -48,7 +48,7 @@ pub struct MuscleDocument {
 }
 
 /// The usual reach of a muscle around its lines.
-const USUAL_REACH_MM: f64 = 6.0;
+pub const USUAL_REACH_MM: f64 = 6.0;
 
 /// The muscles of a case, with distinct names.
 pub fn to_muscles(

@@ -5,8 +5,10 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
+use super::template::TemplateDocument;
 use crate::schema::Triple;
 use crate::schema::code::ErrorCode;
+use crate::schema::repair::RepairDocument;
 use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::limits::Limits;
 use crate::schema::wire::names::check_tags;
@@ -36,27 +38,13 @@ pub struct ConformDocument {
     pub landmarks: BTreeMap<String, TemplateLandmarkDocument>,
     #[serde(default)]
     pub start: ConformStartName,
+    /// By which map the template's muscles and uniform fibres come to the patient; those in arrays go with the mesh.
+    #[serde(default, skip_serializing_if = "MuscleMapName::is_usual")]
+    pub muscles_by: MuscleMapName,
     #[serde(default)]
     pub repair: RepairDocument,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub tags: Vec<String>,
-}
-
-/// A volume mesh, and which of its nodes lie on what.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
-pub struct TemplateDocument {
-    /// The id of the volume mesh.
-    pub mesh: String,
-    /// The node set of the skin.
-    pub skin: String,
-    /// By the names of segments: the node sets that lie on them.
-    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
-    pub segments: BTreeMap<String, String>,
-    /// The node set on bone that stays.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
-    pub fixed: Option<String>,
 }
 
 /// The surfaces of a patient, in one frame; that of the template may be another.
@@ -95,31 +83,21 @@ pub enum ConformStartName {
     Boxes,
 }
 
-/// How far a repair may move nodes, so that every cell is valid in every point.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
-pub struct RepairDocument {
-    /// Of nodes on the boundary; on skin and bone along the surface only. 0 to 10 mm.
-    #[serde(default = "one")]
-    #[schema(default = 1.0)]
-    pub boundary_mm: f64,
-    /// Of other nodes, 0 to 10 mm.
-    #[serde(default = "three")]
-    #[schema(default = 3.0)]
-    pub inner_mm: f64,
+/// A map that takes muscles from the template to the patient.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum MuscleMapName {
+    /// That of the mesh.
+    #[default]
+    Conformation,
+    /// The thin-plate spline that meets all landmarks, of which it needs four that lie in no plane (Kim et al. 2012).
+    Landmarks,
 }
 
-fn one() -> f64 {
-    1.0
-}
-
-fn three() -> f64 {
-    3.0
-}
-
-impl Default for RepairDocument {
-    fn default() -> Self {
-        RepairDocument { boundary_mm: one(), inner_mm: three() }
+impl MuscleMapName {
+    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for a reference")]
+    fn is_usual(&self) -> bool {
+        *self == MuscleMapName::Conformation
     }
 }
 
@@ -144,14 +122,8 @@ impl ConformDocument {
         for name in self.landmarks.keys() {
             faults.check_name(&place.key(name), name, limits.name_characters as usize);
         }
-        let place = at.key("template").key("segments");
-        for name in self.template.segments.keys() {
-            faults.check_name(&place.key(name), name, limits.name_characters as usize);
-        }
-        let repair = at.key("repair");
-        let RepairDocument { boundary_mm, inner_mm } = self.repair;
-        faults.check_range(&repair.key("boundary_mm"), boundary_mm, 0.0..=10.0, "mm");
-        faults.check_range(&repair.key("inner_mm"), inner_mm, 0.0..=10.0, "mm");
+        self.template.check(&at.key("template"), limits, faults);
+        self.repair.check(&at.key("repair"), faults);
         let has_surface = self.patient.skin.is_some() || self.patient.bone.is_some();
         if !has_surface && self.landmarks.is_empty() {
             let detail = "there is neither a skin nor bone nor a landmark to conform to";

@@ -6,8 +6,10 @@ use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use crate::schema::CaseDocument;
+use crate::schema::predict::check::CheckDocument;
+use crate::schema::repair::RepairResultDocument;
+use mechanics::conformation::FibreDifference;
 use mechanics::mesh::quality::QualityReport;
-use mechanics::repair::RepairReport;
 
 /// A template on a patient, and the case that it is ready for.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -29,8 +31,42 @@ pub struct ConformationDocument {
     pub before_repair: CellsDocument,
     pub after_repair: CellsDocument,
     pub repair: RepairResultDocument,
+    /// Muscles along lines, where the map has taken them.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub muscles: Vec<MappedMuscleDocument>,
     /// A case of the mesh, ready to be stored and predicted on.
     pub case: CaseDocument,
+    /// Of that case as it stands, before any segment moves; absent where only a plan can tell what holds it, or where the case is
+    /// refused, which a warning tells then.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub check: Option<CheckDocument>,
+}
+
+/// The lines of a muscle from the template to the patient.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct MappedMuscleDocument {
+    pub name: String,
+    pub lines: u64,
+    /// Of all its lines together, on the template and on the patient.
+    pub template_length_mm: f64,
+    pub length_mm: f64,
+    /// How many times as wide the tissue across the lines has become; `within_mm` of the case has grown by as much.
+    pub widening: f64,
+    /// How far the other map, by landmarks or the conformation, would have taken the lines from where they are; absent where
+    /// landmarks give none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub beside_other_map: Option<MapDifferenceDocument>,
+}
+
+/// Two maps of the same lines; means by length, angles without sign.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct MapDifferenceDocument {
+    pub mean_deg: f64,
+    pub max_deg: f64,
+    pub mean_mm: f64,
+    pub max_mm: f64,
 }
 
 /// Distances that are left, in mm.
@@ -54,25 +90,6 @@ pub struct CellsDocument {
     pub smallest_scaled_jacobian: f64,
 }
 
-/// What moves of nodes mended.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct RepairResultDocument {
-    pub sweeps: u64,
-    pub nodes_moved: u64,
-    pub mean_move_mm: f64,
-    pub largest_move_mm: f64,
-    /// Every cell that is not proven valid; empty where all are.
-    pub unproven: Vec<UnprovenDocument>,
-}
-
-/// A cell that moves within the bounds did not mend.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct UnprovenDocument {
-    /// From 0.
-    pub cell: u64,
-    pub smallest_jacobian_mm3: f64,
-}
-
 impl LeftDocument {
     /// `None` without distances.
     pub fn of(distances: &[f64]) -> Option<LeftDocument> {
@@ -91,6 +108,17 @@ impl LeftDocument {
     }
 }
 
+impl From<FibreDifference> for MapDifferenceDocument {
+    fn from(difference: FibreDifference) -> Self {
+        MapDifferenceDocument {
+            mean_deg: difference.mean_degrees,
+            max_deg: difference.largest_degrees,
+            mean_mm: difference.mean_mm,
+            max_mm: difference.largest_mm,
+        }
+    }
+}
+
 impl From<&QualityReport> for CellsDocument {
     fn from(report: &QualityReport) -> Self {
         CellsDocument {
@@ -98,22 +126,6 @@ impl From<&QualityReport> for CellsDocument {
             inverted: report.inverted as u64,
             undecided: report.undecided as u64,
             smallest_scaled_jacobian: report.smallest_scaled_jacobian,
-        }
-    }
-}
-
-impl From<&RepairReport> for RepairResultDocument {
-    fn from(report: &RepairReport) -> Self {
-        let unproven = report.unproven.iter().map(|cell| UnprovenDocument {
-            cell: u64::from(cell.cell),
-            smallest_jacobian_mm3: cell.smallest_jacobian,
-        });
-        RepairResultDocument {
-            sweeps: report.sweeps as u64,
-            nodes_moved: report.nodes_moved as u64,
-            mean_move_mm: report.mean_move,
-            largest_move_mm: report.largest_move,
-            unproven: unproven.collect(),
         }
     }
 }

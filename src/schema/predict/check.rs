@@ -12,6 +12,7 @@ use super::planned::{
 use super::refine::RefineBoundDocument;
 use super::time_band::TimeBandDocument;
 use crate::schema::case::hounsfield::ImagedTissueDocument;
+use crate::schema::repair::RepairResultDocument;
 use crate::schema::wire::warning::WarningDocument;
 
 /// Wrong sets are the commonest mistake: these counts show them.
@@ -21,6 +22,10 @@ pub struct CheckDocument {
     pub cells: u64,
     pub classes: ClassCounts,
     pub skin: SkinSummary,
+    /// Of the volume, where the case asks for a repair.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub repair: Option<RepairResultDocument>,
     /// What an image shows of the mesh, where materials come from one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]

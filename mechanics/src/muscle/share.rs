@@ -1,0 +1,37 @@
+//! Shares of cells that lie inside the closed surface of a muscle, by sample points.
+
+use rayon::prelude::*;
+
+use crate::domain::{ClosedSurface, SurfaceDomainError, SurfaceName};
+use crate::image::SamplingRule;
+use crate::mesh::{TriangleSurface, Vector, VolumeMesh};
+
+/// The share of each cell, 0 to 1, inside the closed surface of muscle `number` (from 0), both in mm, by `samples` points in a
+/// cell. The error of a share falls with the number of points; Kim et al. 2012 tell inside from outside by the normal at the
+/// nearest place, which fails at edges and on open meshes, where a winding number does not.
+pub fn shares_inside(
+    mesh: &VolumeMesh,
+    surface: &TriangleSurface,
+    number: usize,
+    samples: usize,
+) -> Result<Vec<f64>, SurfaceDomainError> {
+    let inside = ClosedSurface::new(surface, SurfaceName::Muscle(number))?;
+    let rule = SamplingRule::new(samples);
+    let (low, high) = inside.bounds();
+    let of_cell = |cell: usize| {
+        let corners: Vec<Vector> = mesh.corners(cell).collect();
+        let far = |axis: usize| {
+            corners.iter().all(|x| x[axis] < low[axis])
+                || corners.iter().all(|x| x[axis] > high[axis])
+        };
+        if (0..3).any(far) {
+            return 0.0;
+        }
+        let mut count = 0_usize;
+        rule.for_each(mesh.cells.shape(cell), &corners, |point| {
+            count += usize::from(inside.contains(&point));
+        });
+        count as f64 / rule.count as f64
+    };
+    Ok((0..mesh.cells.len()).into_par_iter().map(of_cell).collect())
+}

@@ -1,0 +1,242 @@
+//! Muscles in cells: axes, shares, boxes and mixtures against numbers that are known.
+
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+use mechanics::conformation::angle_between;
+use mechanics::material::mixture::Mixing;
+use mechanics::material::{Fibre, FibreLaw, LinearElastic};
+use mechanics::mesh::sample::block;
+use mechanics::mesh::{CellShape, TriangleSurface, Vector};
+use mechanics::muscle::axis::mean_axis;
+use mechanics::muscle::equivalent::{MuscleShare, decided_by_rule, equivalent, equivalent_tensor};
+use mechanics::muscle::lines::{MuscleLines, fibre_cells, widened};
+use mechanics::muscle::share::shares_inside;
+use mechanics::muscle::strap::strap_of;
+use nalgebra::Rotation3;
+
+/// A closed tube of rings about a line, its ends closed by fans.
+fn tube(
+    rings: usize,
+    around: usize,
+    at: impl Fn(usize) -> (Vector, [Vector; 2]),
+) -> TriangleSurface {
+    let mut surface = TriangleSurface::default();
+    for ring in 0..rings {
+        let (centre, [u, v]) = at(ring);
+        for k in 0..around {
+            let (sin, cos) = (TAU * k as f64 / around as f64).sin_cos();
+            surface.points.push(centre + u * cos + v * sin);
+        }
+    }
+    let corner = |ring: usize, k: usize| (ring * around + k % around) as u32;
+    for ring in 0..rings - 1 {
+        for k in 0..around {
+            let [a, b] = [corner(ring, k), corner(ring, k + 1)];
+            let [c, d] = [corner(ring + 1, k), corner(ring + 1, k + 1)];
+            surface.triangles.extend([[a, b, d], [a, d, c]]);
+        }
+    }
+    for (ring, is_first) in [(0, true), (rings - 1, false)] {
+        let middle = surface.points.len() as u32;
+        surface.points.push(at(ring).0);
+        for k in 0..around {
+            let [a, b] = [corner(ring, k), corner(ring, k + 1)];
+            surface.triangles.push(if is_first { [middle, b, a] } else { [middle, a, b] });
+        }
+    }
+    surface
+}
+
+fn ball(radius: f64, centre: Vector) -> TriangleSurface {
+    tube(101, 200, |ring| {
+        let (sin, cos) = (PI * (0.01 + 0.98 * ring as f64 / 100.0)).sin_cos();
+        let [u, v] = [Vector::y(), Vector::z()].map(|axis| axis * (radius * sin));
+        (centre - Vector::x() * (radius * cos), [u, v])
+    })
+}
+
+#[test]
+fn shares_of_a_ball_sum_to_its_volume() {
+    let mesh = block(Vector::repeat(30.0), [10; 3], CellShape::Hex8);
+    let centre = Vector::new(15.4, 14.3, 15.9);
+    let shares = shares_inside(&mesh, &ball(10.0, centre), 0, 512).unwrap();
+    let volume = shares.iter().sum::<f64>() * 27.0;
+    assert!((volume / 4188.79 - 1.0).abs() < 5e-3, "{volume} mm3");
+    assert!(shares.iter().any(|share| *share == 1.0) && shares[0] == 0.0);
+    // Of tetrahedra of other sizes too.
+    let mesh = block(Vector::repeat(30.0), [7; 3], CellShape::Tet4);
+    let shares = shares_inside(&mesh, &ball(10.0, centre), 0, 512).unwrap();
+    let volumes = (0..mesh.cells.len()).map(|cell| mesh.cell_volume_of(cell));
+    let volume: f64 = shares.iter().zip(volumes).map(|(share, volume)| share * volume).sum();
+    assert!((volume / 4188.79 - 1.0).abs() < 5e-3, "{volume} mm3");
+    // A cap of a ball is open: it is refused by its name.
+    let mut cap = ball(10.0, centre);
+    cap.triangles.truncate(cap.triangles.len() / 6);
+    let error =
+        shares_inside(&mesh, &cap, 2, 64).err().map_or_else(String::new, |error| error.to_string());
+    assert!(error.starts_with("muscle 3: "), "{error}");
+}
+
+/// Volumes by corners, for cells of flat faces.
+trait CellVolume {
+    fn cell_volume_of(&self, cell: usize) -> f64;
+}
+
+impl CellVolume for mechanics::mesh::VolumeMesh {
+    fn cell_volume_of(&self, cell: usize) -> f64 {
+        let corners: Vec<Vector> = self.corners(cell).collect();
+        let [a, b, c] = [1, 2, 3].map(|corner| corners[corner] - corners[0]);
+        a.cross(&b).dot(&c).abs() / 6.0
+    }
+}
+
+/// A box of 40 x 10 x 5 mm, turned.
+fn strap() -> (TriangleSurface, Vector) {
+    let mesh = block(Vector::new(40.0, 10.0, 5.0), [8, 2, 1], CellShape::Hex8);
+    let mut surface = mesh.surface_of(&mesh.boundary_faces());
+    let turn = Rotation3::new(Vector::new(0.3, -0.7, 1.1));
+    surface.points.iter_mut().for_each(|x| *x = turn * *x);
+    (surface, turn * Vector::x())
+}
+
+#[test]
+fn the_axis_of_a_strap_is_that_of_its_box_wherever_its_vertices_crowd() {
+    let (mut surface, known) = strap();
+    let found = strap_of(&surface, 0).unwrap();
+    assert!(angle_between(&found.boxes[0].axis, &known).to_radians() < 1e-6);
+    assert!(!found.is_broad() && found.broadness < 0.3, "{}", found.broadness);
+    // 400 vertices more in a corner: the first triangle is divided about points ever nearer to one of its own.
+    for _ in 0..400 {
+        let [a, b, c] = surface.triangles[0];
+        let [x, y, z] = [a, b, c].map(|corner| surface.points[corner as usize]);
+        let new = surface.points.len() as u32;
+        surface.points.push(x * 0.98 + y * 0.01 + z * 0.01);
+        surface.triangles[0] = [a, b, new];
+        surface.triangles.extend([[b, c, new], [c, a, new]]);
+    }
+    let crowded = strap_of(&surface, 0).unwrap();
+    assert!(angle_between(&crowded.boxes[0].axis, &known).to_radians() < 1e-6);
+    let mesh = block(Vector::new(40.0, 30.0, 3.0), [4, 3, 1], CellShape::Hex8);
+    let plate = strap_of(&mesh.surface_of(&mesh.boundary_faces()), 0).unwrap();
+    assert!(plate.is_broad(), "{}", plate.broadness);
+    assert_eq!(strap_of(&TriangleSurface::default(), 1), None);
+}
+
+#[test]
+fn boxes_of_a_quarter_arc_err_by_its_angle_over_their_number() {
+    let rings = 241;
+    let at = |ring: usize| {
+        let (sin, cos) = (FRAC_PI_2 * ring as f64 / (rings - 1) as f64).sin_cos();
+        let outwards = Vector::new(cos, sin, 0.0);
+        (outwards * 30.0, [outwards * 0.2, -Vector::z() * 0.2])
+    };
+    let surface = tube(rings, 12, at);
+    for (halvings, most, mean) in [(0, 45.0, 22.5), (1, 22.5, 11.25), (2, 11.25, 5.625)] {
+        let found = strap_of(&surface, halvings).unwrap();
+        assert_eq!(found.boxes.len(), 1 << halvings);
+        let off = |ring: usize| {
+            let (sin, cos) = (FRAC_PI_2 * ring as f64 / (rings - 1) as f64).sin_cos();
+            let axis = found.axis_at(&at(ring).0).unwrap();
+            angle_between(&axis, &Vector::new(-sin, cos, 0.0))
+        };
+        let all: Vec<f64> = (0..rings).map(off).collect();
+        let largest = all.iter().copied().fold(0.0, f64::max);
+        let average = all.iter().sum::<f64>() / rings as f64;
+        assert!((largest - most).abs() < 0.8, "{halvings}: {largest}");
+        assert!((average - mean).abs() < 0.3, "{halvings}: {average}");
+    }
+}
+
+#[test]
+fn a_mean_axis_has_no_sign_and_tells_where_fibres_cross() {
+    let (x, y) = (Vector::x(), Vector::y() * 7.0);
+    let alike = mean_axis([(1.0, x), (2.0, -x * 3.0)]).unwrap();
+    assert!(angle_between(&alike.direction, &x) < 1e-9 && alike.crossing < 1e-12);
+    let apart = mean_axis([(0.8, x), (0.2, y)]).unwrap();
+    assert!((apart.crossing - 0.25).abs() < 1e-12 && !apart.is_crossing());
+    assert!(angle_between(&apart.direction, &x) < 1e-9);
+    assert!(mean_axis([(0.5, x), (0.5, y)]).unwrap().is_crossing());
+    // Of vectors at four nodes that are off by 10 degrees to either side.
+    let off = |degrees: f64| Rotation3::new(Vector::z() * degrees.to_radians()) * x;
+    let nodes = [off(10.0), -off(-10.0), off(-10.0), off(10.0)].map(|axis| (1.0, axis));
+    let mean = mean_axis(nodes).unwrap();
+    assert!(angle_between(&mean.direction, &x) < 1e-9);
+    assert!((mean.crossing - 10_f64.to_radians().tan().powi(2)).abs() < 1e-9, "{}", mean.crossing);
+    assert_eq!(mean_axis([(1.0, Vector::zeros()), (0.0, x), (1.0, x * f64::NAN)]), None);
+}
+
+fn tissue(young_modulus: f64, poisson_ratio: f64) -> LinearElastic {
+    LinearElastic::new(young_modulus, poisson_ratio, 1.0).unwrap()
+}
+
+#[test]
+fn the_tissue_of_a_cell_with_a_tenth_of_muscle_depends_on_the_rule() {
+    let muscle = MuscleShare { share: 0.1, tissue: tissue(790.0, 0.43), axis: Some(Vector::z()) };
+    let fat = tissue(3.0, 0.46);
+    let of = |muscles: &[MuscleShare], rule| equivalent(muscles, fat, rule).unwrap();
+    for (rule, known) in [(Mixing::Voigt, 81.74), (Mixing::Reuss, 3.33), (Mixing::Geometric, 5.24)]
+    {
+        let found = of(&[muscle], rule);
+        assert!((found.tissue.young_modulus() - known).abs() < 0.005, "{rule:?}: {found:?}");
+        assert!((found.rule_ratio - 81.74 / 3.332).abs() < 0.02, "{}", found.rule_ratio);
+        assert!(angle_between(&found.axis.unwrap().direction, &Vector::z()) < 1e-9);
+    }
+    // Two muscles that cross, and none.
+    let other = MuscleShare { axis: Some(Vector::x()), ..muscle };
+    assert!(of(&[muscle, other], Mixing::Voigt).axis.unwrap().is_crossing());
+    let none = of(&[], Mixing::Reuss);
+    assert!((none.tissue.young_modulus() - 3.0).abs() < 1e-9 && none.axis.is_none());
+    // Muscles that overlap fill the cell, and leave nothing to the rest.
+    let whole = MuscleShare { share: 0.9, ..muscle };
+    let full = of(&[whole, MuscleShare { share: 0.6, ..whole }], Mixing::Voigt);
+    assert!((full.tissue.young_modulus() - 790.0).abs() < 1e-6, "{full:?}");
+    assert!((full.rule_ratio - 1.0).abs() < 1e-9);
+    let decided = decided_by_rule([(2.0, 24.5), (6.0, 1.2), (2.0, 3.5)]);
+    assert!((decided - 0.4).abs() < 1e-12);
+    assert_eq!(decided_by_rule([]), 0.0);
+}
+
+#[test]
+fn stiffness_with_fibres_is_linear_in_the_shares() {
+    let fibre = Fibre { young_modulus: 110.0, shear_modulus: None, law: FibreLaw::Engineering };
+    let fibred = tissue(6.2, 0.45).with_fibre(&fibre).unwrap();
+    let axis = Vector::new(1.0, 2.0, -2.0) / 3.0;
+    let muscle = MuscleShare { share: 0.3, tissue: fibred, axis: Some(-axis * 5.0) };
+    let fat = tissue(3.0, 0.46);
+    let mixed = equivalent_tensor(&[muscle], fat);
+    let (own, rest) = (fibred.tensor(&axis), fat.tensor(&axis));
+    let gradient = nalgebra::Matrix3::new(0.1, 0.02, -0.3, 0.2, -0.1, 0.05, 0.0, 0.4, 0.2);
+    let known = own.stress(&gradient) * 0.3 + rest.stress(&gradient) * 0.7;
+    assert!((mixed.stress(&gradient) - known).norm() < 1e-12 * known.norm());
+    assert!(equivalent_tensor(&[], fat).fibre.is_none());
+}
+
+#[test]
+fn cells_near_lines_take_the_tangent_of_the_nearest() {
+    let mesh = block(Vector::new(30.0, 12.0, 12.0), [10, 4, 4], CellShape::Hex8);
+    let strap = |name: &str, from: [f64; 3], to: [f64; 3]| MuscleLines {
+        name: name.to_owned(),
+        lines: vec![vec![from.into(), to.into()]],
+    };
+    // Along x through the middle of the block, and across its end.
+    let muscles = [
+        strap("long", [0.0, 6.0, 6.0], [30.0, 6.0, 6.0]),
+        strap("short", [28.5, 0.0, 6.0], [28.5, 12.0, 6.0]),
+    ];
+    let near = fibre_cells(&mesh, &muscles, &[2.5, 2.5]);
+    // Four cells about the line have their centroids at 1.5 * sqrt 2 mm, in each of ten slices; in the last all eight cells
+    // beside z = 6 lie at 1.5 mm from the line across.
+    let count = |muscle: usize| near.iter().filter(|own| own.muscle == muscle).count();
+    assert_eq!((count(0), count(1), near.len()), (36, 8, 44));
+    assert_eq!(near.iter().filter(|own| own.muscles == 2).count(), 4);
+    for own in &near {
+        let known = [Vector::x(), Vector::y()][own.muscle];
+        assert!(angle_between(&own.axis, &known) < 1e-9 && own.distance <= 2.5, "{own:?}");
+    }
+    // The short one is the nearest of 8 cells: it is looked for as far as cells are large, here 3 mm.
+    let reach = widened(&mesh, &muscles, 2.5);
+    assert!(reach[0] == 2.5 && (reach[1] - 3.0).abs() < 1e-9, "{reach:?}");
+    let degenerate =
+        MuscleLines { name: "point".to_owned(), lines: vec![vec![Vector::zeros(); 2]] };
+    assert!(fibre_cells(&mesh, &[degenerate], &[100.0]).is_empty());
+}

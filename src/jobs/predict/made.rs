@@ -1,0 +1,71 @@
+//! Check of a case whose meshes were just made: what holds its nodes before any segment moves.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use super::check::check;
+use super::input::PredictInput;
+use crate::jobs::failure::JobError;
+use crate::jobs::output::Workplace;
+use crate::jobs::source::{MeshSource, SourceError, StoredMesh, StoredShape};
+use crate::schema::case::document::LengthUnit;
+use crate::schema::predict::check::CheckDocument;
+use crate::schema::{CaseDocument, ErrorCode, PlanDocument, PredictDocument};
+use mechanics::mesh::Frame;
+
+/// Meshes that were made, beside those that are stored.
+struct MadeBeside<'a> {
+    made: BTreeMap<String, StoredMesh>,
+    stored: &'a dyn MeshSource,
+}
+
+impl MeshSource for MadeBeside<'_> {
+    fn mesh(&self, id: &str) -> Result<StoredMesh, SourceError> {
+        self.made.get(id).cloned().map_or_else(|| self.stored.mesh(id), Ok)
+    }
+
+    fn model(&self, job: &str) -> Result<Vec<u8>, SourceError> {
+        self.stored.model(job)
+    }
+
+    fn predicted_skin(&self, job: &str) -> Result<StoredMesh, SourceError> {
+        self.stored.predicted_skin(job)
+    }
+}
+
+impl StoredMesh {
+    /// One in mm that is stored nowhere yet.
+    pub fn made(shape: StoredShape, frame: Frame) -> StoredMesh {
+        StoredMesh {
+            shape,
+            of_points: Arc::default(),
+            frame: Some(frame),
+            units: Some(LengthUnit::Mm),
+            warnings: Vec::new(),
+            told: Vec::new(),
+            sha256: String::new(),
+        }
+    }
+}
+
+/// Checks a case as it will be stored; `made` are its meshes by the names that it has for them. `None` where only a plan can
+/// tell what holds it.
+pub fn check_made(
+    case: &CaseDocument,
+    made: BTreeMap<String, StoredMesh>,
+    place: &Workplace,
+) -> Result<Option<CheckDocument>, JobError> {
+    let sources = MadeBeside { made, stored: place.sources };
+    let input = PredictInput {
+        job: None,
+        queue_s: None,
+        case: case.clone(),
+        plan: PlanDocument::default(),
+        spec: PredictDocument::default(),
+    };
+    match check(&input, &sources, place.limits) {
+        Ok(report) => Ok(Some(report.document)),
+        Err(JobError::Refused(problem)) if problem.is_only(ErrorCode::Underconstrained) => Ok(None),
+        Err(error) => Err(error),
+    }
+}

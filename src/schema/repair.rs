@@ -1,0 +1,154 @@
+//! Repair of distorted cells: how far nodes may go, and what came of it.
+
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+use crate::schema::code::ErrorCode;
+use crate::schema::wire::fault::{Faults, Pointer};
+use mechanics::mesh::quality::quality;
+use mechanics::mesh::{VolumeMesh, Warning};
+use mechanics::progress::Unobserved;
+use mechanics::repair::{Bounds, RepairReport, repair};
+
+/// A mesh with a larger share of cells that are not proven valid has other faults than a few distorted cells.
+const MOST_UNPROVEN: f64 = 0.1;
+/// So many may always be repaired.
+const FEW_UNPROVEN: usize = 100;
+/// Cells that a warning names.
+const NAMED: usize = 10;
+
+/// How far a repair may move nodes, so that every cell is valid in every point.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RepairDocument {
+    /// Of nodes on the boundary, along the surface only; on skin and bone only of a conformation. 0 to 10 mm.
+    #[serde(default = "one")]
+    #[schema(default = 1.0)]
+    pub boundary_mm: f64,
+    /// Of other nodes, 0 to 10 mm.
+    #[serde(default = "three")]
+    #[schema(default = 3.0)]
+    pub inner_mm: f64,
+}
+
+fn one() -> f64 {
+    1.0
+}
+
+fn three() -> f64 {
+    3.0
+}
+
+impl Default for RepairDocument {
+    fn default() -> Self {
+        RepairDocument { boundary_mm: one(), inner_mm: three() }
+    }
+}
+
+/// What moves of nodes mended.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct RepairResultDocument {
+    /// Cells that were not proven valid in every point before.
+    #[serde(default)]
+    #[schema(required)]
+    pub unproven_before: u64,
+    pub sweeps: u64,
+    pub nodes_moved: u64,
+    pub mean_move_mm: f64,
+    pub largest_move_mm: f64,
+    /// Every cell that is not proven valid; empty where all are.
+    pub unproven: Vec<UnprovenDocument>,
+}
+
+/// A cell that moves within the bounds did not mend.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct UnprovenDocument {
+    /// From 0.
+    pub cell: u64,
+    pub smallest_jacobian_mm3: f64,
+}
+
+/// A mesh in mm after a repair, and what that did.
+pub struct Mended {
+    pub volume: Arc<VolumeMesh>,
+    pub report: RepairReport,
+}
+
+impl RepairDocument {
+    pub fn check(&self, at: &Pointer, faults: &mut Faults) -> bool {
+        let boundary = at.key("boundary_mm");
+        let is_right = faults.check_range(&boundary, self.boundary_mm, 0.0..=10.0, "mm");
+        faults.check_range(&at.key("inner_mm"), self.inner_mm, 0.0..=10.0, "mm") && is_right
+    }
+
+    /// A mesh in mm with its cells repaired, its boundary moved along itself only. `None` where faults were added: a mesh of
+    /// which many cells are distorted is refused.
+    pub fn mended(&self, volume: &VolumeMesh, at: &Pointer, faults: &mut Faults) -> Option<Mended> {
+        if !self.check(at, faults) {
+            return None;
+        }
+        let before = quality(volume);
+        let (unproven, cells) = (before.inverted + before.undecided, before.cells);
+        if unproven > FEW_UNPROVEN && unproven as f64 > MOST_UNPROVEN * cells as f64 {
+            let detail = format!(
+                "{unproven} of {cells} cells are not proven valid, and a repair takes {:.0} % of them at most: the mesh has other faults",
+                100.0 * MOST_UNPROVEN
+            );
+            faults.add(at, ErrorCode::MeshInvertedElements, detail);
+            return None;
+        }
+        let mut mesh = volume.clone();
+        let mut boundary: Vec<u32> =
+            mesh.boundary_faces().iter().flat_map(|face| face.nodes().to_vec()).collect();
+        boundary.sort_unstable();
+        boundary.dedup();
+        let bounds = Bounds::of(&mesh, self.boundary_mm, self.inner_mm).along(&mesh, &[&boundary]);
+        let report = repair(&mut mesh, &bounds, &Unobserved);
+        Some(Mended { volume: Arc::new(mesh), report })
+    }
+}
+
+impl Mended {
+    /// What a reader of a result has to know; nothing where all cells were valid.
+    pub fn warning(&self) -> Option<Warning> {
+        let RepairReport { unproven_before, nodes_moved, largest_move, unproven, .. } =
+            &self.report;
+        if *unproven_before == 0 {
+            return None;
+        }
+        let left = match unproven.len() {
+            0 => "every cell is proven valid now".to_owned(),
+            count => {
+                let named = unproven.iter().take(NAMED).map(|own| own.cell.to_string());
+                let named = named.collect::<Vec<_>>().join(", ");
+                format!("{count} stay so, the first of them {named} (from 0)")
+            }
+        };
+        let detail = format!(
+            "{unproven_before} cells were not proven valid; {nodes_moved} nodes were moved by up to {largest_move:.2} mm, and {left}"
+        );
+        let warning = Warning::new("mesh-repaired", detail);
+        let warning = warning.with("unproven_before", *unproven_before as f64);
+        let warning = warning.with("unproven", unproven.len() as f64);
+        Some(warning.with("largest_move_mm", *largest_move))
+    }
+}
+
+impl From<&RepairReport> for RepairResultDocument {
+    fn from(report: &RepairReport) -> Self {
+        let unproven = report.unproven.iter().map(|cell| UnprovenDocument {
+            cell: u64::from(cell.cell),
+            smallest_jacobian_mm3: cell.smallest_jacobian,
+        });
+        RepairResultDocument {
+            unproven_before: report.unproven_before as u64,
+            sweeps: report.sweeps as u64,
+            nodes_moved: report.nodes_moved as u64,
+            mean_move_mm: report.mean_move,
+            largest_move_mm: report.largest_move,
+            unproven: unproven.collect(),
+        }
+    }
+}
