@@ -4,7 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::Service;
 use super::accepted::{
-    Accepted, AcceptedStudy, fault, in_spec, prepared, require_compared, require_mesh, successful_job,
+    Accepted, AcceptedStudy, fault, in_spec, prepared, require_compared, require_mesh,
+    successful_job,
 };
 use super::case_state::{CaseOfJob, case_of_job, whole};
 use super::cohort_input::of_cohort;

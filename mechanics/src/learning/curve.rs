@@ -3,10 +3,10 @@
 use rayon::prelude::*;
 
 use super::cohort::Cohort;
-use crate::draws::Draws;
 use super::features::Distance;
 use super::learner::{Compared, Method};
 use super::validation::CaseErrors;
+use crate::draws::Draws;
 
 /// Numbers of training cases that are tried, as far as there are so many.
 const SIZES: [usize; 8] = [3, 5, 8, 10, 15, 20, 30, 45];

@@ -4,11 +4,11 @@ use std::collections::BTreeMap;
 
 use super::cohort::{Cohort, LearningCase};
 use super::curve::learning_curve;
-use crate::draws::Draws;
 use super::features::{Distance, Features};
 use super::learner::{Learner, Method, Target};
 use super::model::{Asked, LearnedModel, Refusal};
 use super::validation::{Column, validate};
+use crate::draws::Draws;
 use crate::study::paired::{Equality, ZeroRule, signed_rank};
 
 const POINTS: usize = 12;

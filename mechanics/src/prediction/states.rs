@@ -61,7 +61,8 @@ impl Scene {
             return (CellStates::default(), None);
         }
         let pressures = self.mean_pressures(system, pressures);
-        let states = at_second_order(&self.tissue(), displacement, &pressures);
+        let inner = &self.distributed.inner;
+        let states = at_second_order(&self.tissue(), inner, displacement, &pressures);
         let unknown = states.iter().filter(|state| state.is_none()).count();
         let detail = format!(
             "{unknown} cells are turned inside out, where no law has a stress: stress and strain of these are written as zero"

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use facies::schema::case::conversion::ConvertedCase;
 use facies::schema::case::document::{CaseMeshes, NamedMesh};
 use facies::schema::hashes;
 use facies::schema::job_document::{JobDocument, JobKind};
@@ -65,7 +66,8 @@ pub fn case_with(
     let mut faults = Faults::default();
     let meshes = tetrahedron(mark);
     let limits = Limits::default();
-    let (case, warnings) = document.to_case(&meshes, spec.materials.as_ref(), &limits, &mut faults);
+    let converted = document.to_case(&meshes, spec.materials.as_ref(), &limits, &mut faults);
+    let ConvertedCase { case, warnings, .. } = converted;
     faults.into_result().map(|()| (case, warnings.iter().map(|warning| warning.code).collect()))
 }
 

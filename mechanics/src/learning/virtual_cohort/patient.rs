@@ -8,7 +8,6 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::super::cohort::CohortError;
-use crate::draws::Draws;
 use super::super::features::Features;
 use super::super::measures;
 use super::face::face;
@@ -16,6 +15,7 @@ use super::noise::{mapping, registration};
 use super::operation::{OPERATIONS, Operation, TWO};
 use super::tissue::{Tissue, rubin_bodner, supposed, true_tissue};
 use crate::boundary::NodeSelection;
+use crate::draws::Draws;
 use crate::material::MaterialError;
 use crate::mesh::half_head::LAYERS;
 use crate::mesh::{Frame, Vector, VolumeMesh};

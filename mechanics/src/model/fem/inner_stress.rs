@@ -89,6 +89,12 @@ impl InnerStress {
         self.growth.get(cell).copied().unwrap_or_default()
     }
 
+    /// By how much a cell is longer where nothing holds it, and by how much larger.
+    pub(super) fn grown(&self, cell: usize) -> Grown {
+        let length = 1.0 + self.strain(cell);
+        Grown { length, volume: length.powi(3) }
+    }
+
     /// S of a cell in kPa; none where no muscle pulls.
     pub(super) fn pulls(&self, cell: usize) -> Option<&Matrix3<f64>> {
         self.active.get(cell).filter(|stress| **stress != Matrix3::zeros())
@@ -137,6 +143,26 @@ impl InnerStress {
             strain => Ok(3.0 * strain * volume(mesh, cell)?),
         });
         grown.collect()
+    }
+}
+
+/// Factors of a grown cell; 1 where nothing grows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Grown {
+    pub length: f64,
+    pub volume: f64,
+}
+
+impl Grown {
+    /// The gradient of a shape function of the grown cell.
+    pub fn gradient(&self, gradient: &Vector) -> Vector {
+        gradient / self.length
+    }
+
+    /// Green's strain of a deformation F with growth by that of F_e.
+    pub fn green_strain(&self, elastic: &Matrix3<f64>) -> Matrix3<f64> {
+        let square = self.length * self.length;
+        elastic * square + Matrix3::from_diagonal_element(0.5 * (square - 1.0))
     }
 }
 

@@ -3,7 +3,8 @@
 //! sigma = P F^T / J; its mean over the deformed cell is (1/v) sum_q V_q P F^T with v = sum_q V_q J. Green's strain
 //! E = (F^T F - 1) / 2, its mean is that over the cell at rest. What a pressure or a mean dilatation carries of the law is
 //! what it carries in the forces: at second order (`force_series`) c ln J of the law is replaced by p, or by c times the mean of ln J, and
-//! linear fibres add F (C_f : E) F^T.
+//! linear fibres add F (C_f : E) F^T. Where tissue grows and muscles pull, F is F_e of the stress, in the grown cell, and S is one more
+//! second Piola-Kirchhoff stress (`finite_strain::inner`); strain is that of F with its growth.
 //!
 //! Source: Holzapfel, Nonlinear solid mechanics, 2000, sections 2.5 and 3.1.
 
@@ -16,6 +17,7 @@ use crate::material::ElasticTensor;
 use crate::material::hyperelastic::point::{Carried, Point};
 use crate::mesh::Vector;
 use crate::model::cell_state::CellState;
+use crate::model::fem::inner_stress::{Grown, InnerStress};
 use crate::model::reference_cell;
 
 /// Sums over the points of a cell.
@@ -39,8 +41,10 @@ impl CellSums {
         self.deformed += volume * point.volume();
     }
 
-    pub fn means(self) -> CellState {
-        CellState { stress: self.stress / self.deformed, strain: self.strain / self.at_rest }
+    /// Of a cell that has grown by these factors.
+    pub fn means(self, grown: &Grown) -> CellState {
+        let strain = grown.green_strain(&(self.strain / self.at_rest));
+        CellState { stress: self.stress / self.deformed, strain }
     }
 }
 
@@ -48,23 +52,30 @@ impl CellSums {
 /// out. `pressures` are those of `linear_states::Displaced`.
 pub fn at_second_order(
     tissue: &Tissue,
+    inner: &InnerStress,
     displacement: &[Vector],
     pressures: &[Option<f64>],
 ) -> Vec<Option<CellState>> {
     let state = |cell: usize| {
         let pressure = pressures.get(cell).copied().flatten();
-        of_cell(tissue, cell, displacement, pressure)
+        of_cell(tissue, inner, cell, &Answered { displacement, pressure })
     };
     (0..tissue.mesh.cells.len()).into_par_iter().map(state).collect()
 }
 
+/// Displacements of the nodes in mm, and the mean pressure of a cell in kPa where it has one.
+struct Answered<'a> {
+    displacement: &'a [Vector],
+    pressure: Option<f64>,
+}
+
 fn of_cell(
     tissue: &Tissue,
+    inner: &InnerStress,
     cell: usize,
-    displacement: &[Vector],
-    pressure: Option<f64>,
+    &Answered { displacement, pressure }: &Answered,
 ) -> Option<CellState> {
-    let mesh = tissue.mesh;
+    let (mesh, grown) = (tissue.mesh, inner.grown(cell));
     let (shape, nodes) = (mesh.cells.shape(cell), mesh.cells.nodes(cell));
     let corners: Vec<Vector> = mesh.corners(cell).collect();
     let law = tissue.materials[tissue.material_of_cell[cell] as usize].hyperelastic().law;
@@ -74,11 +85,11 @@ fn of_cell(
         let moved = nodes.iter().zip(&at.gradients);
         let gradient: Matrix3<f64> =
             moved.map(|(&node, g)| displacement[node as usize] * g.transpose()).sum();
-        let f = Matrix3::identity() + gradient;
+        let f = (Matrix3::identity() + gradient) / grown.length;
         if f.determinant() <= 0.0 {
             return None;
         }
-        points.push((Point::new(&law, None, f), at.volume));
+        points.push((Point::new(&law, None, f).pulled(inner.pulls(cell)), at.volume));
     }
     let tensor = tissue.tensor(cell);
     let carried = match (pressure, (tissue.dilatation)(shape)) {
@@ -97,7 +108,7 @@ fn of_cell(
         };
         sums.add(&point, volume);
     }
-    Some(sums.means())
+    Some(sums.means(&grown))
 }
 
 /// c times the mean of ln J.

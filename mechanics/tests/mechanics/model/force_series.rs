@@ -9,8 +9,8 @@ use mechanics::model::fem::assembly::Tissue;
 use mechanics::model::fem::cell_stiffness::Dilatation;
 use mechanics::model::fem::displacement::Problem;
 use mechanics::model::fem::finite_strain::{Elements, FibreField, FiniteStrain};
-use mechanics::model::fem::inner_stress::InnerStress;
 use mechanics::model::fem::force_series::{ForceSeries, Forces, Moved};
+use mechanics::model::fem::inner_stress::InnerStress;
 use mechanics::model::fem::membrane::Membrane;
 use mechanics::model::problem::LoadCase;
 use mechanics::progress::Unobserved;
@@ -205,13 +205,12 @@ fn pressures_give_the_forces_of_plain_cells_where_the_gradient_is_one() {
         mesh.cells.iter().map(|(_, nodes)| Some(std::array::from_fn(|k| nodes[k]))).collect();
     let pressure = materials[0].lambda() * gradient.trace();
     let pressures = vec![pressure; mesh.nodes.len()];
-    let mixed =
-        ForceSeries {
-            tissue,
-            pressures_of_cell: corners,
-            pressure_count: mesh.nodes.len(),
-            inner: InnerStress::default(),
-        };
+    let mixed = ForceSeries {
+        tissue,
+        pressures_of_cell: corners,
+        pressure_count: mesh.nodes.len(),
+        inner: InnerStress::default(),
+    };
     let state = Moved { displacement: &u, pressures: &pressures };
     let Forces { nodes, volumes } = mixed.second(&[state], &[[0, 0]]).unwrap().remove(0);
     // The volume that is left over raises the pressure by p2 = lambda times it, which acts as B^T p2.

@@ -5,7 +5,7 @@ use mechanics::mesh::{CellShape, Vector, sample::block};
 use mechanics::prediction::{
     Case, ElementChoice, Method, Plan, Prescribed, Settings, linear_strain,
 };
-use nalgebra::Rotation3;
+use nalgebra::{Matrix3, Rotation3};
 
 use super::growth::{SIZE, distorted, free, growing, largest_reaction, reaction_of};
 use super::muscles::{arched, in_region, pulling};
@@ -23,7 +23,7 @@ const EVERY: [(CellShape, ElementChoice); 6] = [
 
 fn tight(element: ElementChoice) -> Settings {
     let method = Method::FemNonlinear;
-    Settings { method, element, relative_residual: 1e-10, ..Settings::default() }
+    Settings { method, element, relative_residual: 1e-10, states: true, ..Settings::default() }
 }
 
 /// Tissue that nothing holds exerts nothing in the end, against which no residual could be small.
@@ -45,6 +45,12 @@ fn free_tissue_grows_in_shape_without_stress_in_every_element() {
             let missing = answer.numerical_error.unwrap().missing;
             let largest = missing.iter().map(|u| u.norm()).fold(0.0, f64::max);
             assert!(largest < 1e-6, "{shape:?} {element:?} {change}: {largest:e}");
+            // Green's strain has growth in it, stress has not.
+            let green = 0.5 * ((1.0 + strain).powi(2) - 1.0);
+            for state in &answer.states.cells {
+                let off = state.strain - Matrix3::from_diagonal_element(green);
+                assert!(state.stress.amax() < 1e-4 && off.amax() < 1e-5, "{state:?}");
+            }
         }
     }
 }
@@ -84,6 +90,10 @@ fn confined_tissue_presses_by_its_law() {
         let answer = solve(&case_of(mesh, tissue), &plan, &tight(element));
         let pressed = reaction_of(&answer, 1).x / (SIZE.y * SIZE.z);
         assert!((pressed / wanted - 1.0).abs() < 1e-7, "{shape:?} {element:?}: {pressed} {wanted}");
+        for state in &answer.states.cells {
+            let off = state.stress - Matrix3::from_diagonal_element(wanted);
+            assert!(off.amax() < 1e-6 && state.strain.amax() < 1e-7, "{state:?} {wanted}");
+        }
     }
 }
 
@@ -106,10 +116,7 @@ fn shortened(tissue: &LinearElastic, pull: f64) -> [f64; 2] {
         };
         let ([a, c], [b, d]) = (by(0), by(1));
         let det = a * d - b * c;
-        at = [
-            at[0] - (d * here[0] - b * here[1]) / det,
-            at[1] - (a * here[1] - c * here[0]) / det,
-        ];
+        at = [at[0] - (d * here[0] - b * here[1]) / det, at[1] - (a * here[1] - c * here[0]) / det];
     }
     at
 }

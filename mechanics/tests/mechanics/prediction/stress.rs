@@ -7,6 +7,7 @@ use mechanics::mesh::sample::block;
 use mechanics::mesh::{CellShape, Vector, VolumeMesh};
 use mechanics::model::fem::assembly::Tissue;
 use mechanics::model::fem::cell_stiffness::Dilatation;
+use mechanics::model::fem::inner_stress::InnerStress;
 use mechanics::model::fem::law_states::at_second_order;
 use mechanics::model::fem::strain::gradient_at_centre;
 use mechanics::prediction::{
@@ -357,13 +358,22 @@ fn an_answer_to_second_order_has_the_stress_of_its_law_at_its_displacement() {
         let (materials, of_cell) = ([tissue], vec![0; mesh.cells.len()]);
         let own = Tissue::isotropic(&mesh, &materials, &of_cell, dilatation);
         let pressure = (shape == CellShape::Tet4).then(|| lambda * f.determinant().ln());
-        let states = at_second_order(&own, &moved, &vec![pressure; mesh.cells.len()]);
+        let states = at_second_order(
+            &own,
+            &InnerStress::default(),
+            &moved,
+            &vec![pressure; mesh.cells.len()],
+        );
         for state in states {
             let off = (state.unwrap().stress - expected).amax();
             assert!(off < 1e-11, "{shape:?}: {off}");
         }
         let inside_out: Vec<Vector> = mesh.nodes.iter().map(|x| x * -1.5).collect();
-        assert!(at_second_order(&own, &inside_out, &[]).iter().all(Option::is_none));
+        assert!(
+            at_second_order(&own, &InnerStress::default(), &inside_out, &[])
+                .iter()
+                .all(Option::is_none)
+        );
     }
 }
 

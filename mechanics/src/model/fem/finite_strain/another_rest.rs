@@ -59,13 +59,16 @@ fn pressed_share(problem: &FiniteStrain, displacement: &[Vector]) -> f64 {
     let shear_moduli: Vec<f64> = problem.laws.iter().map(|law| law.at_rest().1).collect();
     let energies = |cell: usize| {
         let number = problem.law_of_cell[cell];
+        let grown = problem.inner.grown(cell);
         let f = Matrix3::identity() + gradient_at_centre(problem.mesh, displacement, cell);
+        let f = f / grown.length;
         let along = problem.fibres.along(number, cell);
         let point = Point::new(&problem.laws[usize::from(number)], along, f);
+        let point = point.pulled(problem.inner.pulls(cell));
         let cauchy = point.stress() * f.transpose() / point.volume();
         let least = cauchy.symmetric_eigenvalues().min();
         let corners: Vec<Vector> = problem.mesh.corners(cell).collect();
-        let volume = signed_volume(problem.mesh.cells.shape(cell), &corners);
+        let volume = grown.volume * signed_volume(problem.mesh.cells.shape(cell), &corners);
         let energy = point.energy() * volume;
         let is_pressed = least < -PRESSED * shear_moduli[usize::from(number)];
         [if is_pressed { energy } else { 0.0 }, energy]

@@ -7,14 +7,13 @@ use rayon::prelude::*;
 
 use super::elements::Exchange;
 use super::fibres::FibreField;
-use super::inner::Grown;
 use super::problem::FiniteStrain;
 use super::step_length::Volume;
 use crate::material::hyperelastic::Law;
 use crate::material::hyperelastic::point::{Carried, Corner, Point};
 use crate::mesh::{CellShape, Vector, VolumeMesh};
 use crate::model::dofs::Numbering;
-use crate::model::fem::inner_stress::InnerStress;
+use crate::model::fem::inner_stress::{Grown, InnerStress};
 use crate::model::problem::InvertedCell;
 use crate::model::reference_cell;
 use crate::progress::Progress;
@@ -139,8 +138,7 @@ impl<'a> Bricks<'a> {
         let of_cell = brick.positions(x);
         let fibres = self.fibres.along(brick.law, brick.cell);
         let pulls = self.inner.pulls(brick.cell);
-        let point =
-            |at: &PointAtRest| Point::new(law, fibres, at.gradient(&of_cell)).pulled(pulls);
+        let point = |at: &PointAtRest| Point::new(law, fibres, at.gradient(&of_cell)).pulled(pulls);
         let points: Vec<Point> = brick.points.iter().map(point).collect();
         let Some(exchange) = self.means.as_ref().map(|means| means[usize::from(brick.law)]) else {
             return DeformedBrick { points, pressure: 0.0 };

@@ -17,8 +17,6 @@ use std::sync::Arc;
 use super::newton_state::{Question, Rest, Start};
 use super::problem::FiniteStrain;
 use super::tissue::Tissue;
-use crate::mesh::Vector;
-use crate::model::fem::inner_stress::InnerStress;
 use crate::model::problem::ModelError;
 use crate::solver::{SolverError, Tolerance};
 
@@ -69,27 +67,5 @@ impl<'a> FiniteStrain<'a> {
                 Err(error) => return Err(error),
             }
         }
-    }
-}
-
-impl InnerStress {
-    /// By how much a cell is longer where nothing holds it, and by how much larger.
-    pub(super) fn grown(&self, cell: usize) -> Grown {
-        let length = 1.0 + self.strain(cell);
-        Grown { length, volume: length.powi(3) }
-    }
-}
-
-/// Factors of a grown cell; 1 where nothing grows.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Grown {
-    pub length: f64,
-    pub volume: f64,
-}
-
-impl Grown {
-    /// The gradient of a shape function of the grown cell.
-    pub fn gradient(&self, gradient: &Vector) -> Vector {
-        gradient / self.length
     }
 }

@@ -137,7 +137,7 @@ impl<'a> FiniteStrain<'a> {
         let states = match self.with_states {
             true => {
                 let by = directions.pressures.as_ref();
-                cell_states(self.mesh, &tissue.at(&positions, &pressures, by))
+                cell_states(self.mesh, &self.inner, &tissue.at(&positions, &pressures, by))
             }
             false => CellStates::default(),
         };
