@@ -113,6 +113,7 @@ fn solve(mesh: &VolumeMesh, plan: &Plan) -> (Result<Equilibrium, ModelError>, f6
         law_of_cell: &one,
         pressure_of_cell: &one,
         fibres: FibreField::default(),
+        inner: std::sync::Arc::default(),
         elements: plan.elements,
         holds: &holds,
         tolerance: Tolerance { relative_residual: 1e-6, memory_mb: 16e3 },

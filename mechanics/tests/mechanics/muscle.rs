@@ -62,7 +62,7 @@ fn shares_of_a_ball_sum_to_its_volume() {
     let shares = shares_inside(&mesh, &ball(10.0, centre), 0, 512).unwrap();
     let volume = shares.iter().sum::<f64>() * 27.0;
     assert!((volume / 4188.79 - 1.0).abs() < 5e-3, "{volume} mm3");
-    assert!(shares.iter().any(|share| *share == 1.0) && shares[0] == 0.0);
+    assert!(shares.contains(&1.0) && shares[0] == 0.0);
     // Of tetrahedra of other sizes too.
     let mesh = block(Vector::repeat(30.0), [7; 3], CellShape::Tet4);
     let shares = shares_inside(&mesh, &ball(10.0, centre), 0, 512).unwrap();

@@ -51,7 +51,7 @@ impl<'a> FiniteStrain<'a> {
         let on_the_way =
             Question { tolerance: Tolerance { relative_residual, ..asked }, ..question };
         let (_, rest) = self.with_share(0.0).rest_from(on_the_way, start)?;
-        let (mut reached, mut share, mut ahead) = (rest.to_start(), 0.0, 0.5);
+        let (mut reached, mut share, mut ahead) = (rest.into_start(), 0.0, 0.5);
         loop {
             let target = f64::min(share + ahead, 1.0);
             let found = match target < 1.0 {
@@ -61,7 +61,7 @@ impl<'a> FiniteStrain<'a> {
             match found {
                 Ok(found) if target >= 1.0 => return Ok(found),
                 Ok((_, rest)) => {
-                    (reached, share, ahead) = (rest.to_start(), target, 2.0 * ahead);
+                    (reached, share, ahead) = (rest.into_start(), target, 2.0 * ahead);
                 }
                 Err(error) if is_too_much(&error) && ahead > LEAST_SHARE => ahead *= 0.5,
                 Err(error) => return Err(error),

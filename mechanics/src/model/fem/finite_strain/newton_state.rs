@@ -67,7 +67,7 @@ pub(super) struct Rest<'a> {
 
 impl<'a> Rest<'a> {
     /// Where another path begins.
-    pub fn to_start(self) -> Start<'a> {
+    pub fn into_start(self) -> Start<'a> {
         let pressures = self.directions.pressures.as_ref();
         let log_volumes = pressures.map_or_else(Vec::new, |own| own.log_volumes(&self.pressures));
         // The state is measured again where it is gone on from.
