@@ -40,17 +40,29 @@ export function document({ segments: all, inner }: Plan, pivots: Pivots, frame: 
   } as Documents["PlanDocument"];
 }
 
+/** A point in another frame; LPS and RAS differ in the signs of x and y. */
+function inFrame([x, y, z]: Triple, from: FrameName, to: FrameName): Triple {
+  return from === to || from === "unspecified" || to === "unspecified" ? [x, y, z] : [-x || 0, -y || 0, z];
+}
+
+/** The points about which the segments of a plan of the service turn, in the frame of the case. */
+export function pivotsOf(stored: Documents["PlanDocument"], frame: FrameName): Pivots {
+  const stated = stored.frame ?? frame;
+  const parts = (stored.segments ?? []) as unknown as { name: string; pivot_mm?: Triple }[];
+  return Object.fromEntries(parts.map(({ name, pivot_mm }) => [name, inFrame(pivot_mm ?? [0, 0, 0], stated, frame)]));
+}
+
 /** The words of a plan of the service; undefined where it says more than six numbers of each segment about its pivot, growth and
  * muscles. */
 export function fromDocument(stored: Documents["PlanDocument"], pivots: Pivots, frame: FrameName): Plan | undefined {
   const plan = atRest(Object.keys(pivots));
-  const stated = (stored as { frame?: FrameName }).frame ?? frame;
+  const stated = stored.frame ?? frame;
   const { segments = [], growth = [], activations = [], loads = [], prescribed = [], osteotomy } = stored;
   if (loads.length > 0 || prescribed.length > 0 || (osteotomy ?? undefined) !== undefined) return undefined;
   for (const one of segments as unknown as Record<string, unknown>[]) {
     const name = String(one.name);
     const turned = one.rotation_deg as Triple | undefined;
-    const pivot = (one.pivot_mm ?? [0, 0, 0]) as Triple;
+    const pivot = inFrame((one.pivot_mm ?? [0, 0, 0]) as Triple, stated, frame);
     const turns = turned?.some((angle) => angle !== 0) ?? false;
     const elsewhere = turns && pivot.some((value, at) => Math.abs(value - (pivots[name]?.[at] ?? NaN)) > 1e-6);
     if (plan.segments[name] === undefined || one.sequence !== undefined || one.matrix4x4 !== undefined || elsewhere) return undefined;

@@ -6,7 +6,7 @@ import { button, choice, make } from "../dom.js";
 import { inWords, still } from "../frame.js";
 import { addBones, openCase, type Opened } from "../loading.js";
 import { matrix } from "../matrix.js";
-import { fromDocument, PLAN_STATE, planState, read, readPivots, written, type Plan, type Pivots } from "../plan.js";
+import { fromDocument, PLAN_STATE, pivotsOf, planState, read, readPivots, written, type Plan, type Pivots } from "../plan.js";
 import { address, note } from "../route.js";
 import type { Hit, Shape } from "../scene.js";
 import { readVtp } from "../vtp.js";
@@ -224,10 +224,9 @@ class Result {
     const state = planState(this.app.route.state);
     const found = this.results.optimisation?.plan ?? this.results.provenance?.plan ?? undefined;
     const names = (this.opened.document.segments ?? []).map(({ name }) => name);
-    const parts = (found?.segments ?? []) as { name: string; pivot_mm?: Triple }[];
     const origins = Object.fromEntries(names.map((name) => [name, [0, 0, 0] as Triple]));
     this.pivots = found === undefined ? readPivots(state)
-      : { ...origins, ...Object.fromEntries(parts.map(({ name, pivot_mm = [0, 0, 0] as Triple }) => [name, pivot_mm])) };
+      : { ...origins, ...pivotsOf(found, this.opened.frame) };
     this.plan = found === undefined ? (PLAN_STATE.some((name) => state[name] !== undefined) ? read(state, names) : undefined)
       : fromDocument(found, this.pivots, this.opened.frame);
     if (this.plan === undefined) return;

@@ -54,8 +54,8 @@ export const de: Words = {
   notInResponse: (names) => `Die Antwort dieses Falls hat keine Spalte für ${names}: im Gezeigten weggelassen.`,
   trust: "Wie weit dem zu trauen ist", trusted: { good: "wie es sein soll", heed: "zu beachten", unknown: "nicht bekannt" },
   none: "keine", notKnown: "nicht bekannt", leftOutName: "Vom Modell weggelassen", meanAnd95: (mean, p95) => `Mittel ${mean} mm, p95 ${p95} mm`,
-  leftOutUnknown: "Wo Muskeln ziehen oder Gewebe wächst, schätzt das nichts.", methodOrder1: "linear, aus der Antwort", methodOrder2: "zweite Ordnung, aus der Antwort",
-  errorWithPredict: "„Ganz vorhersagen“ schätzt ihn.", sameAsService: "Gegen den Dienst gehalten", why: "In Worten", nothingOfThat: "große Bewegungen sind darin", finiteStrain: "Bei endlicher Verzerrung gelöst.",
+  leftOutUnknown: "Wo Muskeln ziehen oder Gewebe wächst, schätzt das nichts.", methodOrder1: "lineare Antwort", methodOrder2: "Antwort zweiter Ordnung",
+  errorWithPredict: "„Ganz vorhersagen“ schätzt ihn.", sameAsService: "Dienst", why: "In Worten", nothingOfThat: "große Bewegungen sind darin", finiteStrain: "Bei endlicher Verzerrung gelöst.",
   correctedHere: "Er ist zur Verschiebung addiert.", accepted: "Hingenommener Fehler", met: "eingehalten", notMet: "nicht eingehalten",
   showPlace: (name) => `${name} zeigen`, shownInView: (name) => `${name} ist in der Ansicht markiert.`, thePlace: "die Stelle",
 

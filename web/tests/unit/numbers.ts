@@ -5,7 +5,7 @@ import { Response, type Documents, type Triple } from "../../../clients/typescri
 import { bands, share, ticks } from "../../src/colours.js";
 import { inAxes, inWords, motion, movement, rotation, still } from "../../src/frame.js";
 import { section } from "../../src/outline.js";
-import { atRest, document, fromDocument, History, planState, read, readPivots, written } from "../../src/plan.js";
+import { atRest, document, fromDocument, History, pivotsOf, planState, read, readPivots, written } from "../../src/plan.js";
 import { readPly } from "../../src/ply.js";
 import { coefficients, SkinSum } from "../../src/response.js";
 
@@ -89,6 +89,17 @@ test("words and numbers of a plan are the same plan", () => {
     assert.deepEqual(fromDocument(document(whole, pivots, frame), pivots, frame), whole);
     assert.equal(fromDocument(document(whole, pivots, frame), { jaw: [9, 9, 9] }, frame), undefined);
   }
+});
+
+test("a plan in the other frame turns about the same point", () => {
+  const stated = { frame: "RAS", segments: [{ name: "jaw", translation_mm: [1, 6, 2], rotation_deg: [3, 0, 0], pivot_mm: [4, 5, 6] }] } as unknown as Documents["PlanDocument"];
+  assert.deepEqual(pivotsOf(stated, "LPS"), { jaw: [-4, -5, 6] });
+  const words = fromDocument(stated, { jaw: [-4, -5, 6] }, "LPS");
+  assert.deepEqual(words?.segments.jaw, { ...still(), forward: 6, up: 2, left: -1, pitch: 3 });
+  assert.equal(fromDocument(stated, { jaw: [4, 5, 6] }, "LPS"), undefined);
+  // The same numbers in the frame of the case.
+  assert.deepEqual((document(words!, { jaw: [-4, -5, 6] }, "LPS").segments as object[])[0],
+    { name: "jaw", translation_mm: [-1, -6, 2], rotation_deg: [-3, 0, 0], pivot_mm: [-4, -5, 6] });
 });
 
 test("a plan that does more than sliders show is not taken for one that does less", () => {
