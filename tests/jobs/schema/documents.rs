@@ -65,8 +65,9 @@ pub fn case_with(
     let mut faults = Faults::default();
     let meshes = tetrahedron(mark);
     let limits = Limits::default();
-    let (case, warnings) = document.to_case(&meshes, spec.materials.as_ref(), &limits, &mut faults);
-    faults.into_result().map(|()| (case, warnings.iter().map(|warning| warning.code).collect()))
+    let found = document.to_case(&meshes, spec.materials.as_ref(), &limits, &mut faults);
+    let codes = found.warnings.iter().map(|warning| warning.code).collect();
+    faults.into_result().map(|()| (found.case, codes))
 }
 
 pub fn case(text: &str) -> Result<(mechanics::prediction::Case, Vec<&'static str>), Problem> {
