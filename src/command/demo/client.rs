@@ -3,11 +3,13 @@
 use std::net::SocketAddr;
 
 use axum::body::{Body, to_bytes};
-use axum::http::{Request, StatusCode, header};
+use axum::http::{HeaderName, Request, StatusCode, header};
 use bytes::Bytes;
 use hyper_util::rt::TokioIo;
 use serde_json::Value;
 use tokio::net::TcpStream;
+
+use crate::schema::wire::canonical::sha256_hex;
 
 /// More than any file of the demo.
 const LARGEST_ANSWER: usize = 512 << 20;
@@ -39,7 +41,7 @@ pub struct Part {
 impl Client {
     /// The bytes behind a path.
     pub async fn bytes(&self, path: &str) -> Result<Bytes, ClientError> {
-        self.send("GET", path, "", Body::empty()).await
+        self.send("GET", path, &[], Body::empty()).await
     }
 
     /// The document behind a path.
@@ -50,7 +52,8 @@ impl Client {
     /// Posts a document.
     pub async fn post(&self, path: &str, body: &Value) -> Result<Value, ClientError> {
         let body = Body::from(body.to_string());
-        document(path, &self.send("POST", path, "application/json", body).await?)
+        let headers = [(header::CONTENT_TYPE, "application/json")];
+        document(path, &self.send("POST", path, &headers, body).await?)
     }
 
     /// Posts a file.
@@ -60,22 +63,36 @@ impl Client {
         media_type: &str,
         bytes: Bytes,
     ) -> Result<Value, ClientError> {
-        document(path, &self.send("POST", path, media_type, Body::from(bytes)).await?)
+        let headers = [(header::CONTENT_TYPE, media_type)];
+        document(path, &self.send("POST", path, &headers, Body::from(bytes)).await?)
     }
 
-    /// Posts a form of several parts (RFC 7578).
+    /// Posts a form of several parts (RFC 7578). What an earlier run made of the same parts is found again, unless it was
+    /// erased since.
     pub async fn form(&self, path: &str, parts: &[Part]) -> Result<Value, ClientError> {
         let boundary = format!("facies-{}", uuid::Uuid::now_v7().simple());
-        let body = Body::from(form_body(parts, &boundary));
+        let body = Bytes::from(form_body(parts, &boundary));
         let media_type = format!("multipart/form-data; boundary={boundary}");
-        document(path, &self.send("POST", path, &media_type, body).await?)
+        let hashes: String = parts.iter().map(|part| sha256_hex(&part.bytes)).collect();
+        let key = sha256_hex(hashes.as_bytes());
+        let headers = [
+            (header::CONTENT_TYPE, media_type.as_str()),
+            (HeaderName::from_static("idempotency-key"), key.as_str()),
+        ];
+        let answer = match self.send("POST", path, &headers, body.clone().into()).await {
+            Err(ClientError::Refused { status: StatusCode::GONE, .. }) => {
+                self.send("POST", path, &headers[..1], body.into()).await
+            }
+            answer => answer,
+        };
+        document(path, &answer?)
     }
 
     async fn send(
         &self,
         method: &str,
         path: &str,
-        media_type: &str,
+        headers: &[(HeaderName, &str)],
         body: Body,
     ) -> Result<Bytes, ClientError> {
         let stream = TcpStream::connect(self.address)
@@ -94,8 +111,8 @@ impl Client {
             .method(method)
             .uri(path)
             .header(header::HOST, self.address.to_string());
-        if !media_type.is_empty() {
-            request = request.header(header::CONTENT_TYPE, media_type);
+        for (name, value) in headers {
+            request = request.header(name, *value);
         }
         let request = request.body(body).map_err(|error| ClientError::Answer {
             path: path.into(),

@@ -133,7 +133,7 @@ async fn what_is_not_known_of_growth_and_muscles_is_refused_with_its_place() {
         (predict(growing("*", -0.6), linear), "out-of-range", "/plan/growth/0/volume_change"),
         (predict(pulling("jaw", 1.0), linear), "unknown-muscle", "/plan/activations/0/muscle"),
         (predict(pulling("strap", -1.0), linear), "out-of-range", "/plan/activations/0/stress_kpa"),
-        (predict(growing("*", 0.1), "mtm_nonlinear"), "method-not-available", "/plan/growth"),
+        (predict(growing("*", 0.1), "dvs"), "method-not-available", "/plan/growth"),
         (predict(pulling("strap", 1.0), "dvs"), "method-not-available", "/plan/activations"),
         (
             json!({"kind": "response", "case": case, "growth": ["fat"]}),
@@ -169,17 +169,16 @@ async fn what_is_not_known_of_growth_and_muscles_is_refused_with_its_place() {
 }
 
 #[tokio::test]
-async fn auto_stays_with_linear_elasticity_and_says_why_no_other_model_was_taken() {
+async fn auto_knows_what_linear_elasticity_leaves_out_of_growth_and_muscles() {
     let server = Server::start();
     let case = case(&server).await;
     let spec = json!({"kind": "predict", "case": case, "plan": plan(), "method": "auto", "accept_mm": 0.001});
     let job = done(&server, &spec).await;
     let results = &job["results"];
-    assert_eq!(results["adequacy"]["taken"], "linear", "{results}");
-    let finite_strain = &results["adequacy"]["rungs"][4];
-    assert_eq!(finite_strain["name"], "finite_strain");
-    assert!(finite_strain.to_string().contains("passed_over"), "{finite_strain}");
-    assert!(results["nonlinearity_mm"].is_null(), "{results}");
+    assert_eq!(results["adequacy"]["taken"], "second_order", "{results}");
+    assert!(results["adequacy"]["linearity_mm"].as_f64().is_some_and(|left| left > 0.01));
+    let third_order = &results["adequacy"]["third_order_mm"];
+    assert_eq!(results["nonlinearity_mm"]["skin"]["mean"], *third_order, "{results}");
     let warnings = results["warnings"].as_array().unwrap();
     assert!(warnings.iter().any(|told| told["code"] == "tolerance-not-met"), "{results}");
 }
