@@ -81,9 +81,11 @@ impl AdequacyDocument {
     /// In words.
     pub fn why(&self) -> String {
         let taken = self.rungs.iter().find(|rung| rung.name == self.taken);
-        let error = match taken.and_then(|rung| rung.error_mm) {
-            Some(error) => format!("an expected mean error of {error:.3} mm over the skin"),
-            None => "an error that is not known".to_owned(),
+        let Some(error) = taken.and_then(|rung| rung.error_mm) else {
+            return format!(
+                "`{}` is the best that was found, and how far it is off is not known: it is not said to be within {} mm",
+                self.taken, self.accepted_mm
+            );
         };
         let verdict = match self.met {
             true => "the cheapest model within",
@@ -91,7 +93,10 @@ impl AdequacyDocument {
                 "the cheapest whose error is within a quarter of the least that was found, short of"
             }
         };
-        format!("`{}` with {error} is {verdict} {} mm", self.taken, self.accepted_mm)
+        format!(
+            "`{}` with an expected mean error of {error:.3} mm over the skin is {verdict} {} mm",
+            self.taken, self.accepted_mm
+        )
     }
 }
 

@@ -59,6 +59,7 @@ pub fn predict_adequately(
         begun: (watched.stopwatch)(),
         linear_s: 0.0,
         newton_takes: newton_takes(1.0),
+        in_contact: false,
         moving: linear.skin.points(),
         errors: Errors::default(),
         considered: Vec::new(),
@@ -82,6 +83,8 @@ struct Climb<'a> {
     linear_s: f64,
     /// Newton's method as a multiple of that.
     newton_takes: f64,
+    /// Whether tissue presses on something in the linear answer, of which nothing is estimated then.
+    in_contact: bool,
     /// Points of the skin that the linear answer moves.
     moving: Vec<u32>,
     errors: Errors,
@@ -101,7 +104,10 @@ impl Climb<'_> {
         let solved = answer::linear(self.scene, progress)?;
         let known = match &solved {
             Linear::Solved(known) => Some(&**known),
-            Linear::Other(_) => None,
+            Linear::Other(answer) => {
+                self.in_contact = answer.contact.is_some();
+                None
+            }
         };
         if let Some(known) = known {
             self.moving = self.scene.skin.moving_points(known.displacement());
@@ -228,7 +234,7 @@ impl Climb<'_> {
         let left = self.accepted.time_s - self.elapsed();
         let why = if so_far <= 1.0 {
             "a cheaper model is adequate".to_owned()
-        } else if expected.is_none() {
+        } else if expected.is_none() && !self.in_contact {
             "its error is not known".to_owned()
         } else if share > 1.0 && share > WORTHWHILE * so_far {
             "it is not expected to be clearly better".to_owned()
@@ -293,8 +299,13 @@ impl Climb<'_> {
         self.shares().map(|(_, share)| share).fold(f64::INFINITY, f64::min)
     }
 
-    /// The first rung that is adequate, or else the first that is nearly as good as the best.
+    /// The first rung that is adequate, or else the first that is nearly as good as the best. In contact, where no error is known,
+    /// finite strain where it was tried: linear elements hold nodes against faces that small strain makes too large.
     fn chosen(&self) -> Rung {
+        if self.in_contact {
+            let solved = self.shares().filter(|(rung, _)| !rung.is_corrected());
+            return solved.last().map_or(Rung::Linear, |(rung, _)| rung);
+        }
         let least = self.least_share();
         let enough = if least <= 1.0 { 1.0 } else { least / WORTHWHILE };
         let found = self.shares().find(|(_, share)| *share <= enough);

@@ -9,6 +9,7 @@ use mechanics::prediction::{
 };
 use mechanics::progress::{Progress, Unobserved};
 
+use super::contact::{jaws, raised};
 use super::nonlinearity::{movements, slab};
 use crate::scenes::{StopsAfter, set};
 use crate::support::responses::plan_of;
@@ -155,6 +156,19 @@ fn contact_that_may_close_and_stays_open_leaves_the_choice_of_a_model() {
     assert_eq!(open.errors.mesh, none.errors.mesh);
     assert!(open.rung > Rung::Linear || none.rung == Rung::Linear, "{:?}", open.rung);
     assert!(open.considered.len() == none.considered.len());
+}
+
+#[test]
+fn where_tissue_presses_finite_strain_is_taken_where_there_is_time_and_never_called_adequate() {
+    let (case, plan) = (jaws(2.5), raised(6.0));
+    let settings = Settings { contact: ContactKind::Auto, ..Settings::default() };
+    for (time_s, taken) in [(1e9, Rung::FiniteStrain), (0.0, Rung::Linear)] {
+        let accepted = Accepted { time_s, ..within(100.0) };
+        let found = adequate(&case, &plan, &settings, accepted);
+        assert_eq!((found.rung, found.is_met), (taken, false));
+        let touch = found.prediction.contact.unwrap();
+        assert!(touch.area() > 100.0, "{}", touch.area());
+    }
 }
 
 #[test]
