@@ -34,12 +34,18 @@ export function uploadForm(app: App): HTMLElement {
   return drop;
 }
 
+/** A document of a case, alone or with its plan, or of something else. */
+interface Stated { case?: unknown; volume?: unknown; meshing?: unknown }
+const isCase = (stated: Stated) => stated.case !== undefined || stated.volume !== undefined || stated.meshing !== undefined;
+
 /** Files with a document are sent as they are; a mesh alone is looked at first. */
 async function taken(app: App, files: File[], said: HTMLElement, next: HTMLElement): Promise<void> {
-  const document = files.find(({ name }) => name.endsWith(".json"));
-  const meshes = files.filter((file) => file !== document);
-  if (document !== undefined) {
-    const stated = JSON.parse(await document.text()) as { case?: unknown };
+  const documents = await Promise.all(files.filter(({ name }) => name.endsWith(".json"))
+    .map(async (file) => JSON.parse(await file.text()) as Stated));
+  const meshes = files.filter(({ name }) => !name.endsWith(".json"));
+  // A folder may hold what else to ask of its meshes, as the one of `facies face` does.
+  const stated = documents.find(isCase) ?? documents[0];
+  if (stated !== undefined) {
     await send(app, (stated.case ?? stated) as Documents["CaseDocument"], byReference(stated.case ?? stated, meshes), said);
     return;
   }
