@@ -154,8 +154,7 @@ impl LearnDocument {
     pub fn check(&self, limits: &Limits, faults: &mut Faults) {
         let at = Pointer::root().key("spec");
         check_tags(&self.tags, &at.key("tags"), limits, faults);
-        let wall = at.key("budget").key("wall_s");
-        faults.check_range(&wall, self.budget.wall_s, 1e-3..=limits.wall_s, "s");
+        self.budget.check(&at.key("budget"), limits, faults);
         let given = usize::from(!self.cases.is_empty()) + usize::from(self.made.is_some());
         faults.check_one_of(&at, given, "`cases`, `virtual`");
         if let Some(made) = &self.made {

@@ -190,10 +190,7 @@ impl MeshingDocument {
                 format!("tissue lies between {skin} HU and {bone} HU, which has to be larger");
             faults.add(&thresholds, ErrorCode::OutOfRange, detail);
         }
-        let budget = at.key("budget");
-        faults.check_range(&budget.key("wall_s"), self.budget.wall_s, 1e-3..=limits.wall_s, "s");
-        let memory = self.budget.memory_mb;
-        faults.check_range(&budget.key("memory_mb"), memory, 1.0..=limits.memory_mb, "MB");
+        self.budget.check(&at.key("budget"), limits, faults);
         check_tags(&self.tags, &at.key("tags"), limits, faults);
         self.check_surfaces(&at, limits, faults);
         let planned = self.to_osteotomy(&at, scan, limits, faults);

@@ -3,6 +3,9 @@
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
+use crate::schema::wire::fault::{Faults, Pointer};
+use crate::schema::wire::limits::Limits;
+
 /// What a job may take.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
@@ -13,6 +16,14 @@ pub struct BudgetDocument {
     #[serde(default = "usual_memory")]
     #[schema(default = 4000.0, minimum = 1.0)]
     pub memory_mb: f64,
+}
+
+impl BudgetDocument {
+    /// Adds what is wrong with it, at its place.
+    pub fn check(&self, at: &Pointer, limits: &Limits, faults: &mut Faults) {
+        faults.check_range(&at.key("wall_s"), self.wall_s, 1e-3..=limits.wall_s, "s");
+        faults.check_range(&at.key("memory_mb"), self.memory_mb, 1.0..=limits.memory_mb, "MB");
+    }
 }
 
 fn usual_wall() -> f64 {

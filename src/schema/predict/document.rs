@@ -165,10 +165,7 @@ impl PredictDocument {
         let residual = self.tolerance.relative_residual;
         let place = at.key("tolerance").key("relative_residual");
         faults.check_range(&place, residual, 1e-14..=1e-2, "");
-        let budget = at.key("budget");
-        faults.check_range(&budget.key("wall_s"), self.budget.wall_s, 1e-3..=limits.wall_s, "s");
-        let memory = self.budget.memory_mb;
-        faults.check_range(&budget.key("memory_mb"), memory, 1.0..=limits.memory_mb, "MB");
+        self.budget.check(&at.key("budget"), limits, faults);
         check_tags(&self.tags, &at.key("tags"), limits, faults);
         faults.check_range(&at.key("range_mm"), self.range_mm(), RANGES_MM, "mm");
         self.check_accepted(&at, faults);
@@ -191,7 +188,7 @@ impl PredictDocument {
             element: self.element.choice(),
             contact: self.contact.into(),
             relative_residual: residual,
-            memory_mb: memory.min(limits.slot_memory_mb),
+            memory_mb: self.budget.memory_mb.min(limits.slot_memory_mb),
             membrane,
             estimate: self.estimate == EstimateName::Auto,
             corrected: self.corrected,
