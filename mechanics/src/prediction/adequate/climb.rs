@@ -102,13 +102,11 @@ impl Climb<'_> {
         // 1. The linear answer, and what it tells of itself.
         let Watched { progress, .. } = self.watched;
         let solved = answer::linear(self.scene, progress)?;
-        let known = match &solved {
-            Linear::Solved(known) => Some(&**known),
-            Linear::Other(answer) => {
-                self.in_contact = answer.contact.is_some();
-                None
-            }
+        let (known, in_contact) = match &solved {
+            Linear::Solved(known) => (Some(&**known), false),
+            Linear::Other(answer) => (None, answer.contact.is_some()),
         };
+        self.in_contact = in_contact;
         if let Some(known) = known {
             self.moving = self.scene.skin.moving_points(known.displacement());
             self.newton_takes = newton_takes(least_det_f(self.scene, known.displacement()));
