@@ -60,7 +60,7 @@ impl Hold {
     }
 
     /// Holds u . direction = value too, unless earlier directions decide it already.
-    pub(super) fn add(&mut self, direction: &Vector, value: f64) {
+    pub(in crate::boundary) fn add(&mut self, direction: &Vector, value: f64) {
         let mut across = *direction;
         let mut rest = value;
         for held in 0..self.count {

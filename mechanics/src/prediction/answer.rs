@@ -1,12 +1,11 @@
 //! The answer of a scene: its equilibrium, what the mesh leaves out of it, and what linearity does.
 
-use super::contact::{Touch, touch, touch_at_finite_strain};
+use super::contact::{InTouch, Touch, touch, touch_at_finite_strain};
 use super::method::MethodKind;
 use super::nonlinearity::{self, Estimated, NonlinearityUnknown};
 use super::numerical_error::{self, NotEstimated, NumericalError};
 use super::scene::Scene;
 use crate::mesh::Vector;
-use crate::model::fem::finite_strain::NoMeshError;
 use crate::model::fem::linear_system::{LinearSystem, Solved};
 use crate::model::problem::{Equilibrium, ModelError};
 use crate::progress::Progress;
@@ -49,38 +48,65 @@ pub(super) fn linear<'a>(
 ) -> Result<Linear<'a>, ModelError> {
     let of_mesh = numerical_error::reason_for_none(scene);
     let of_linearity = nonlinearity::reason_for_none(scene);
-    let without = |of_mesh, of_linearity| -> Result<Linear, ModelError> {
-        let (numerical_error, nonlinearity) = (Err(of_mesh), Err(of_linearity));
-        let (equilibrium, contact) = equilibrium(scene, progress)?;
-        Ok(other(Answer { equilibrium, numerical_error, nonlinearity, contact }))
+    answered(scene, Unknown { of_mesh, of_linearity }, progress)
+}
+
+/// The equilibrium of a scene by its method, and what touches, without estimates.
+pub fn equilibrium(
+    scene: &Scene,
+    progress: &dyn Progress,
+) -> Result<(Equilibrium, Option<Touch>), ModelError> {
+    let (of_mesh, of_linearity) = (NotEstimated::NotAsked, NonlinearityUnknown::NotAsked);
+    let unknown = Unknown { of_mesh: Some(of_mesh), of_linearity: Some(of_linearity) };
+    let Answer { equilibrium, contact, .. } = match answered(scene, unknown, progress)? {
+        Linear::Solved(answer) => answer.into_answer(scene)?,
+        Linear::Other(answer) => *answer,
     };
-    if let (Some(of_mesh), Some(of_linearity)) = (&of_mesh, &of_linearity) {
-        return without(of_mesh.clone(), of_linearity.clone());
+    Ok((equilibrium, contact))
+}
+
+/// Why what a mesh and what linearity leaves out is not estimated; nothing where it is.
+struct Unknown {
+    of_mesh: Option<NotEstimated>,
+    of_linearity: Option<NonlinearityUnknown>,
+}
+
+fn answered<'a>(
+    scene: &'a Scene,
+    unknown: Unknown,
+    progress: &dyn Progress,
+) -> Result<Linear<'a>, ModelError> {
+    if scene.settings.method.kind() == MethodKind::FemNonlinear {
+        return Ok(other(at_finite_strain(scene, unknown, progress)?));
     }
-    if let (None, Some(of_linearity)) = (&of_mesh, &of_linearity)
-        && scene.settings.method.kind() == MethodKind::FemNonlinear
-    {
-        let (equilibrium, numerical_error) = at_finite_strain(scene, progress)?;
-        let nonlinearity = Err(of_linearity.clone());
-        let free = Answer { equilibrium, numerical_error, nonlinearity, contact: None };
-        return Ok(other(free.touching_at_finite_strain(scene, progress)?));
-    }
-    let Some(system) = scene.assemble(progress)? else {
-        return without(NotEstimated::Quadratic, NonlinearityUnknown::Quadratic);
+    let Unknown { of_mesh, of_linearity } = unknown;
+    let is_without = of_mesh.is_some() && of_linearity.is_some();
+    // With contact quadratic elements and methods of other kinds are refused before.
+    let system = match is_without && !scene.settings.contact.is_unilateral() {
+        true => None,
+        false => scene.assemble(progress)?,
+    };
+    let Some(system) = system else {
+        return Ok(other(Answer {
+            equilibrium: scene.solve(progress)?,
+            numerical_error: Err(of_mesh.unwrap_or(NotEstimated::Quadratic)),
+            nonlinearity: Err(of_linearity.unwrap_or(NonlinearityUnknown::Quadratic)),
+            contact: None,
+        }));
     };
     let solved = system.solve(&[scene.load_case()], progress)?.remove(0);
-    if let Some((equilibrium, contact)) = touch(scene, &system, &solved, progress)? {
-        return Ok(other(Answer {
-            equilibrium,
-            numerical_error: Err(of_mesh.unwrap_or(NotEstimated::Contact)),
-            nonlinearity: Err(of_linearity.unwrap_or(NonlinearityUnknown::Contact)),
-            contact: Some(contact),
-        }));
-    }
-    let numerical_error = match of_mesh {
-        Some(reason) => Err(reason),
-        None => numerical_error::estimate(scene, &system, &solved, progress)?,
+    let touched = touch(scene, &system, &solved, of_mesh.is_none(), progress)?;
+    let in_contact = touched.as_ref().and_then(|touched| touched.numerical_error.clone());
+    let numerical_error = match (of_mesh, in_contact) {
+        (Some(reason), _) => Err(reason),
+        (None, Some(known)) => known,
+        (None, None) => numerical_error::estimate(scene, &system, &solved, progress)?,
     };
+    if let Some(InTouch { equilibrium, touch, .. }) = touched {
+        let nonlinearity = Err(of_linearity.unwrap_or(NonlinearityUnknown::Contact));
+        let contact = Some(touch);
+        return Ok(other(Answer { equilibrium, numerical_error, nonlinearity, contact }));
+    }
     let nonlinearity = match of_linearity {
         Some(reason) => Err(reason),
         None => nonlinearity::estimate(scene, &system, &solved, progress)?,
@@ -93,37 +119,27 @@ fn other<'a>(answer: Answer) -> Linear<'a> {
     Linear::Other(Box::new(answer))
 }
 
-/// The equilibrium of a scene by its method, and what touches, without estimates.
-pub fn equilibrium(
-    scene: &Scene,
-    progress: &dyn Progress,
-) -> Result<(Equilibrium, Option<Touch>), ModelError> {
-    if !scene.settings.contact.is_unilateral() {
-        return Ok((scene.solve(progress)?, None));
-    }
-    if scene.settings.method.kind() == MethodKind::FemNonlinear {
-        let free = scene.solve(progress)?;
-        let found = touch_at_finite_strain(scene, &free, progress)?;
-        return Ok(found.map_or((free, None), |(own, contact)| (own, Some(contact))));
-    }
-    // Quadratic elements and methods of other kinds are refused before.
-    let Some(system) = scene.assemble(progress)? else { return Ok((scene.solve(progress)?, None)) };
-    let solved = system.solve(&[scene.load_case()], progress)?.remove(0);
-    let found = touch(scene, &system, &solved, progress)?;
-    Ok(match found {
-        Some((own, contact)) => (own, Some(contact)),
-        None => (scene.stated(&system, solved)?, None),
-    })
-}
-
-/// At finite strain the last tangent is at hand.
+/// At finite strain, where the last tangent is at hand; with contact where it closes and is asked for.
 fn at_finite_strain(
     scene: &Scene,
+    unknown: Unknown,
     progress: &dyn Progress,
-) -> Result<(Equilibrium, Result<NumericalError, NotEstimated>), ModelError> {
-    let (equilibrium, error) = scene.solve_at_finite_strain(true, progress)?;
-    let error = error.unwrap_or(Err(NoMeshError::NotSolved));
-    Ok((equilibrium, error.map(NumericalError::from).map_err(NotEstimated::AtRest)))
+) -> Result<Answer, ModelError> {
+    let with_error = unknown.of_mesh.is_none();
+    let (free, error) = scene.solve_at_finite_strain(with_error, progress)?;
+    let touched = touch_at_finite_strain(scene, &free, with_error, progress)?;
+    let (equilibrium, in_contact, contact) = match touched {
+        Some(found) => (found.equilibrium, found.numerical_error, Some(found.touch)),
+        None => (free, None, None),
+    };
+    let known = in_contact.or(error.map(numerical_error::at_last_tangent));
+    let not_asked = unknown.of_mesh.unwrap_or(NotEstimated::NotAsked);
+    Ok(Answer {
+        equilibrium,
+        numerical_error: known.unwrap_or(Err(not_asked)),
+        nonlinearity: Err(unknown.of_linearity.unwrap_or(NonlinearityUnknown::NotAsked)),
+        contact,
+    })
 }
 
 impl LinearAnswer<'_> {
@@ -154,24 +170,6 @@ impl LinearAnswer<'_> {
 }
 
 impl Answer {
-    /// With contact where it closes and is asked for.
-    fn touching_at_finite_strain(
-        self,
-        scene: &Scene,
-        progress: &dyn Progress,
-    ) -> Result<Self, ModelError> {
-        let found = touch_at_finite_strain(scene, &self.equilibrium, progress)?;
-        Ok(match found {
-            Some((equilibrium, contact)) => Answer {
-                equilibrium,
-                numerical_error: self.numerical_error.and(Err(NotEstimated::Contact)),
-                nonlinearity: self.nonlinearity,
-                contact: Some(contact),
-            },
-            None => self,
-        })
-    }
-
     /// Adds what the mesh leaves out to the displacement where that is asked for.
     pub(super) fn corrected(mut self, is_asked: bool) -> Self {
         if let (true, Ok(error)) = (is_asked, &mut self.numerical_error) {

@@ -3,12 +3,14 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::case::ContactKind;
+use super::numerical_error::{Known, at_last_tangent, estimate_in_contact};
 use super::scene::Scene;
 use super::skin_overlap::{Deepest, deepest_overlap};
 use crate::boundary::NodeClass;
 use crate::boundary::contact::FacingSurfaces;
 use crate::mesh::{Vector, Warning};
-use crate::model::fem::contact::{Contact, ContactProblem, InContact, Pressed};
+use crate::model::fem::contact::{Contact, ContactProblem, Effort, Pressed};
+use crate::model::fem::finite_strain;
 use crate::model::fem::linear_system::{LinearSystem, Solved};
 use crate::model::problem::{Equilibrium, ModelError};
 use crate::progress::{Phase, Progress};
@@ -44,37 +46,63 @@ pub struct ContactPair {
     pub nodes: usize,
 }
 
-/// The answer of linear elasticity in which what touches presses; none where nothing does or contact is not asked for.
+/// An answer in which parts of the boundary press on each other, or lie in each other nevertheless.
+pub(super) struct InTouch {
+    pub equilibrium: Equilibrium,
+    pub touch: Touch,
+    /// Where something presses and it was asked for.
+    pub numerical_error: Option<Known>,
+}
+
+/// What a solution with contact found.
+struct Pressing {
+    equilibrium: Equilibrium,
+    contact: Contact,
+    numerical_error: Option<Known>,
+}
+
+/// The answer of linear elasticity in which what touches presses; none where nothing does or contact is not asked for. On
+/// request with what the mesh leaves out.
 pub(super) fn touch(
     scene: &Scene,
     system: &LinearSystem,
     free: &Solved,
+    with_error: bool,
     progress: &dyn Progress,
-) -> Result<Option<(Equilibrium, Touch)>, ModelError> {
+) -> Result<Option<InTouch>, ModelError> {
     let found = pressed(scene, &free.equilibrium, progress, |surfaces| {
         let relative_residual = scene.settings.relative_residual;
         let found = ContactProblem { system, free, surfaces, relative_residual }.solve(progress)?;
-        let Some(InContact { solved, contact }) = found else { return Ok(None) };
-        Ok(Some((scene.stated(system, solved)?, contact)))
+        let Some(mut found) = found else { return Ok(None) };
+        let mut estimate = || estimate_in_contact(scene, system, &mut found, progress);
+        let numerical_error = with_error.then(&mut estimate).transpose()?;
+        let equilibrium = scene.stated(system, found.solved)?;
+        Ok(Some(Pressing { equilibrium, contact: found.contact, numerical_error }))
     })?;
-    let Some((mut own, contact)) = found else { return Ok(None) };
+    let Some(mut found) = found else { return Ok(None) };
     // Where nothing presses the answer is the one without contact.
-    if own.states.cells.is_empty() {
-        own.states = scene.states_of(system, free)?;
+    if found.equilibrium.states.cells.is_empty() {
+        found.equilibrium.states = scene.states_of(system, free)?;
     }
-    Ok(Some((own, contact)))
+    Ok(Some(found))
 }
 
 /// The same at finite strain.
 pub(super) fn touch_at_finite_strain(
     scene: &Scene,
     free: &Equilibrium,
+    with_error: bool,
     progress: &dyn Progress,
-) -> Result<Option<(Equilibrium, Touch)>, ModelError> {
+) -> Result<Option<InTouch>, ModelError> {
     pressed(scene, free, progress, |surfaces| {
-        scene.at_finite_strain(|problem, _| {
-            problem.solve_in_contact(&scene.load_case(), free, surfaces, progress)
-        })
+        let found = scene.at_finite_strain(|problem, finer| {
+            let finer = with_error.then_some(finer);
+            problem.solve_in_contact(&scene.load_case(), free, surfaces, finer, progress)
+        })?;
+        Ok(found.map(|finite_strain::InContact { equilibrium, contact, mesh_error }| {
+            let numerical_error = mesh_error.map(at_last_tangent);
+            Pressing { equilibrium, contact, numerical_error }
+        }))
     })
 }
 
@@ -83,18 +111,20 @@ fn pressed(
     scene: &Scene,
     free: &Equilibrium,
     progress: &dyn Progress,
-    solve: impl FnOnce(&FacingSurfaces) -> Result<Option<(Equilibrium, Contact)>, ModelError>,
-) -> Result<Option<(Equilibrium, Touch)>, ModelError> {
+    solve: impl FnOnce(&FacingSurfaces) -> Result<Option<Pressing>, ModelError>,
+) -> Result<Option<InTouch>, ModelError> {
     if !scene.settings.contact.is_unilateral() {
         return Ok(None);
     }
     progress.phase(Phase::Contact);
     let surfaces = FacingSurfaces::new(&scene.mesh, &scene.boundary, &scene.conditions.holds);
     let found = solve(&surfaces)?;
-    let nothing =
-        Contact { forces: vec![Vector::zeros(); scene.mesh.nodes.len()], ..Contact::default() };
     let nothing_presses = found.is_none();
-    let (equilibrium, contact) = found.unwrap_or_else(|| (free.clone(), nothing));
+    let Pressing { equilibrium, contact, numerical_error } = found.unwrap_or_else(|| {
+        let forces = vec![Vector::zeros(); scene.mesh.nodes.len()];
+        let contact = Contact { forces, ..Contact::default() };
+        Pressing { equilibrium: free.clone(), contact, numerical_error: None }
+    });
     let at_rest = deepest_overlap(surfaces.rest()).map_or(0.0, |at| at.depth);
     let overlap = deepest_overlap(&surfaces.after(&equilibrium.displacement))
         .filter(|deepest| deepest.depth > at_rest + DEEP_MM);
@@ -103,7 +133,8 @@ fn pressed(
         return Ok(None);
     }
     let touch = Touch::new(scene, &surfaces.areas(&contact.forces), contact);
-    Ok(Some((equilibrium, Touch { overlap, ..touch })))
+    let touch = Touch { overlap, ..touch };
+    Ok(Some(InTouch { equilibrium, touch, numerical_error }))
 }
 
 impl Touch {
@@ -134,7 +165,8 @@ impl Touch {
     /// What a reader must know.
     pub(super) fn warnings(&self, scene: &Scene) -> Vec<Warning> {
         let mut warnings = Vec::new();
-        let Contact { pressed, kept, rounds, last_moved_mm, .. } = &self.contact;
+        let Contact { pressed, effort: Effort { kept, rounds, .. }, last_moved_mm, .. } =
+            &self.contact;
         if scene.settings.contact == ContactKind::Auto && !pressed.is_empty() {
             let detail =
                 format!("gaps close: tissue presses on what it touches at {} nodes", pressed.len());

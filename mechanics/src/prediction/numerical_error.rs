@@ -3,8 +3,9 @@
 use super::method::Method;
 use super::scene::Scene;
 use crate::mesh::{Vector, Warning};
+use crate::model::fem::contact::InContact;
 use crate::model::fem::discretisation_error::{DiscretisationError, Estimate};
-use crate::model::fem::finite_strain::NoMeshError;
+use crate::model::fem::finite_strain::{MeshError, NoMeshError};
 use crate::model::fem::linear_system::{LinearSystem, Solved};
 use crate::model::fem::mass_tensor::Iterations;
 use crate::model::problem::ModelError;
@@ -29,6 +30,9 @@ impl From<DiscretisationError> for NumericalError {
     }
 }
 
+/// An estimate, or why there is none.
+pub type Known = Result<NumericalError, NotEstimated>;
+
 /// Why there is no estimate.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum NotEstimated {
@@ -48,8 +52,6 @@ pub enum NotEstimated {
     Spline,
     #[error("a warp solves no equation")]
     Warp,
-    #[error("it is not estimated where tissue presses on what it touches")]
-    Contact,
     #[error("{0}")]
     Failed(String),
 }
@@ -60,14 +62,37 @@ pub(super) fn estimate(
     system: &LinearSystem,
     solved: &Solved,
     progress: &dyn Progress,
-) -> Result<Result<NumericalError, NotEstimated>, ModelError> {
+) -> Result<Known, ModelError> {
+    known(of(scene, system).of(solved, progress))
+}
+
+/// The same where tissue presses on what it touches.
+pub(super) fn estimate_in_contact(
+    scene: &Scene,
+    system: &LinearSystem,
+    found: &mut InContact,
+    progress: &dyn Progress,
+) -> Result<Known, ModelError> {
+    known(of(scene, system).in_contact(found, progress))
+}
+
+fn of<'a>(scene: &'a Scene, system: &'a LinearSystem<'a>) -> Estimate<'a> {
     let (boundary, loads) = (&scene.boundary, &scene.distributed);
-    let estimate = Estimate { tissue: scene.tissue(), system, boundary, loads };
-    match estimate.of(solved, progress) {
+    Estimate { tissue: scene.tissue(), system, boundary, loads }
+}
+
+/// What is only not known is no failure.
+fn known(estimate: Result<DiscretisationError, ModelError>) -> Result<Known, ModelError> {
+    match estimate {
         Ok(error) => Ok(Ok(error.into())),
         Err(stopped @ ModelError::Solver(SolverError::Stopped)) => Err(stopped),
         Err(other) => Ok(Err(NotEstimated::Failed(other.to_string()))),
     }
+}
+
+/// The estimate of an answer at finite strain.
+pub(super) fn at_last_tangent(error: MeshError) -> Known {
+    error.map(NumericalError::from).map_err(NotEstimated::AtRest)
 }
 
 /// Why a method has no estimate.
@@ -89,10 +114,7 @@ pub(super) fn reason_for_none(scene: &Scene) -> Option<NotEstimated> {
 }
 
 /// What a reader must know: an error that is large, a correction that could not be made.
-pub(super) fn warning(
-    scene: &Scene,
-    error: &Result<NumericalError, NotEstimated>,
-) -> Option<Warning> {
+pub(super) fn warning(scene: &Scene, error: &Known) -> Option<Warning> {
     match error {
         Ok(error) => large(scene, error),
         Err(reason) if scene.settings.corrected => {

@@ -196,18 +196,13 @@ impl Scene {
         with_error: bool,
         progress: &dyn Progress,
     ) -> Result<(Equilibrium, Option<MeshError>), ModelError> {
-        self.at_finite_strain(|problem, laws| {
-            let (tissue, boundary) = (self.tissue(), &self.boundary);
-            // What grows and pulls is in the cells already.
-            let loads =
-                DistributedLoads { inner: InnerStress::default(), ..self.distributed.clone() };
-            let finer = Finer { tissue, laws, boundary, loads: &loads };
-            problem.solve_and(&self.load_case(), with_error.then_some(&finer), progress)
+        self.at_finite_strain(|problem, finer| {
+            problem.solve_and(&self.load_case(), with_error.then_some(finer), progress)
         })
     }
 
-    /// The problem of finite strain, for what is done with it.
-    pub(super) fn at_finite_strain<T>(&self, done: impl FnOnce(&FiniteStrain, &[Law]) -> T) -> T {
+    /// The problem of finite strain, and what a finer mesh would see of it, for what is done with them.
+    pub(super) fn at_finite_strain<T>(&self, done: impl FnOnce(&FiniteStrain, &Finer) -> T) -> T {
         let (laws, fibres): (Vec<Law>, Vec<Option<Fibres>>) = self
             .materials
             .iter()
@@ -231,7 +226,10 @@ impl Scene {
             tolerance: Tolerance { relative_residual, memory_mb },
             with_states: self.settings.states,
         };
-        done(&problem, &laws)
+        let (tissue, boundary) = (self.tissue(), &self.boundary);
+        // What grows and pulls is in the cells already.
+        let loads = DistributedLoads { inner: InnerStress::default(), ..self.distributed.clone() };
+        done(&problem, &Finer { tissue, laws: &laws, boundary, loads: &loads })
     }
 
     fn mass_tensors(&self) -> MassTensors<'_> {

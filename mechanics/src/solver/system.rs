@@ -107,6 +107,14 @@ pub fn tell(
 }
 
 impl System {
+    /// Displacements by row of unknowns of which three belong to each free row; zero where held.
+    pub fn by_row(&self, unknowns: &[[f64; 1]]) -> Vec<Lanes<f64, 3, 1>> {
+        let (displacements, _) = unknowns.split_at(3 * self.layout.free);
+        let mut by_row = vec![[[0.0]; 3]; self.matrix.rows()];
+        by_row.iter_mut().zip(displacements.as_chunks::<3>().0).for_each(|(own, u)| *own = *u);
+        by_row
+    }
+
     /// Memory of the matrix, of a multigrid hierarchy for it and of the vectors of the iterations, in MB.
     pub fn megabytes(&self) -> f64 {
         // The hierarchy has half of the bytes of the finest level and some 40 % of that for coarser ones.

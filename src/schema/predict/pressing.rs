@@ -44,11 +44,11 @@ impl From<&Touch> for ContactDocument {
             largest_pressure_kpa: touch.largest_pressure(),
             largest_penetration_mm: touch.largest_penetration(),
             pairs: touch.pairs.iter().map(Into::into).collect(),
-            passes: contact.passes as u64,
-            set_changes: contact.changes as u64,
-            rounds: contact.rounds as u64,
+            passes: contact.effort.passes as u64,
+            set_changes: contact.effort.changes as u64,
+            rounds: contact.effort.rounds as u64,
             last_moved_mm: contact.last_moved_mm,
-            iterations: contact.iterations as u64,
+            iterations: contact.effort.iterations as u64,
         }
     }
 }

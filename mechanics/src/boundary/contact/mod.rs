@@ -6,4 +6,4 @@ mod moved_boundary;
 mod row;
 
 pub use facing::{CLOSED_MM, FacingSurfaces};
-pub use row::ContactRow;
+pub use row::{ContactRow, with_pressing};

@@ -1,5 +1,8 @@
 //! One inequality of contact: a node and the point of the boundary that it may not pass.
 
+use std::collections::BTreeMap;
+
+use crate::boundary::Hold;
 use crate::mesh::Vector;
 
 /// Rows whose gaps differ by less than this, in mm, say the same
@@ -48,4 +51,18 @@ impl ContactRow {
     fn normal(&self) -> Vector {
         self.terms.first().map(|(_, along)| *along).unwrap_or_default()
     }
+}
+
+/// Holds, with those of nodes whose rows press: along the normal of what they press on.
+pub fn with_pressing<'a>(
+    holds: &[Hold],
+    pressing: impl Iterator<Item = &'a ContactRow>,
+) -> Vec<Hold> {
+    let mut by_node: BTreeMap<u32, Hold> =
+        holds.iter().map(|hold| (hold.node, hold.clone())).collect();
+    for row in pressing {
+        let hold = by_node.entry(row.node).or_insert_with(|| Hold::free(row.node));
+        hold.add(&row.normal(), 0.0);
+    }
+    by_node.into_values().collect()
 }

@@ -228,7 +228,7 @@ impl<'a> LinearSystem<'a> {
                 solved.into_iter().map(without).collect()
             }
         };
-        Ok(solutions.into_par_iter().map(|mixed| self.correction(mixed)).collect())
+        Ok(solutions.into_par_iter().map(|mixed| self.mixed_correction(mixed)).collect())
     }
 
     /// What holds exert on tissue that a correction displaces, with internal forces in mN at each node beside those of K.
@@ -258,18 +258,40 @@ impl<'a> LinearSystem<'a> {
         constrained.reactions(&internal, &known.force)
     }
 
-    fn correction(&self, mixed: MixedSolution) -> Correction {
+    fn mixed_correction(&self, mixed: MixedSolution) -> Correction {
         let MixedSolution { solution, pressures } = mixed;
-        let mut total = vec![[[0.0]; 3]; self.stiffness.matrix.rows()];
-        for (total, unknowns) in total.iter_mut().zip(&solution.unknowns) {
-            *total = unknowns.map(|value| [value]);
-        }
+        let unknowns = solution.unknowns.into_flattened().into_iter().map(|value| [value]);
+        let found: Vec<[f64; 1]> = unknowns.chain(pressures).collect();
+        let report = &solution.report;
+        self.correction(&found, report.iterations, report.relative_residual)
+    }
+
+    /// A correction of its unknowns, three for each free row and then the pressures.
+    pub(super) fn correction(
+        &self,
+        found: &[[f64; 1]],
+        iterations: usize,
+        relative_residual: f64,
+    ) -> Correction {
+        let (_, pressures) = found.split_at(3 * self.stiffness.layout.free);
         Correction {
-            displacement: self.constrained().displacement(&total),
-            pressures: pressures.into_flattened(),
-            iterations: solution.report.iterations,
-            relative_residual: solution.report.relative_residual,
+            displacement: self.constrained().displacement(&self.stiffness.by_row(found)),
+            pressures: pressures.as_flattened().to_vec(),
+            iterations,
+            relative_residual,
         }
+    }
+
+    /// A residual with its sign turned, in the order and with the weights of `preconditioned`.
+    pub(super) fn taken_away(&self, residual: &Residual) -> Vec<[f64; 1]> {
+        let forces = self.constrained().free_forces(&self.stiffness, &residual.forces);
+        let mut volumes = residual.volumes.clone();
+        if let Some(own) = &self.pressures {
+            let weights = own.coupling.weights();
+            volumes.resize(weights.len(), 0.0);
+            volumes.iter_mut().zip(&weights).for_each(|(volume, weight)| *volume *= weight);
+        }
+        forces.into_flattened().into_iter().chain(volumes).map(|value| [-value]).collect()
     }
 
     /// What matrices, hierarchy and vectors take, in MB.

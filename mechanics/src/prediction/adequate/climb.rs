@@ -83,7 +83,7 @@ struct Climb<'a> {
     linear_s: f64,
     /// Newton's method as a multiple of that.
     newton_takes: f64,
-    /// Whether tissue presses on something in the linear answer, of which nothing is estimated then.
+    /// Whether tissue presses on something in the linear answer: what linearity leaves out is not estimated then.
     in_contact: bool,
     /// Points of the skin that the linear answer moves.
     moving: Vec<u32>,
@@ -102,19 +102,21 @@ impl Climb<'_> {
         // 1. The linear answer, and what it tells of itself.
         let Watched { progress, .. } = self.watched;
         let solved = answer::linear(self.scene, progress)?;
-        let (known, in_contact) = match &solved {
-            Linear::Solved(known) => (Some(&**known), false),
-            Linear::Other(answer) => (None, answer.contact.is_some()),
+        let known = match &solved {
+            Linear::Solved(known) => Some(&**known),
+            Linear::Other(_) => None,
         };
-        self.in_contact = in_contact;
-        if let Some(known) = known {
-            self.moving = self.scene.skin.moving_points(known.displacement());
-            self.newton_takes = newton_takes(least_det_f(self.scene, known.displacement()));
-            let mesh = known.numerical_error.as_ref().ok();
-            self.errors.mesh = mesh.map(|error| self.means(&error.missing));
-            let linearity = known.nonlinearity.as_ref().ok();
-            self.errors.linearity = linearity.map(|left| self.means(&left.left_out));
-        }
+        let (displacement, mesh, linearity) = match &solved {
+            Linear::Solved(own) => (own.displacement(), &own.numerical_error, &own.nonlinearity),
+            Linear::Other(own) => {
+                (&*own.equilibrium.displacement, &own.numerical_error, &own.nonlinearity)
+            }
+        };
+        self.in_contact = matches!(&solved, Linear::Other(answer) if answer.contact.is_some());
+        self.moving = self.scene.skin.moving_points(displacement);
+        self.newton_takes = newton_takes(least_det_f(self.scene, displacement));
+        self.errors.mesh = mesh.as_ref().ok().map(|error| self.means(&error.missing));
+        self.errors.linearity = linearity.as_ref().ok().map(|left| self.means(&left.left_out));
         self.linear_s = self.elapsed();
         self.note(Rung::Linear, Some(self.linear_s), self.linear_s);
 
@@ -300,11 +302,11 @@ impl Climb<'_> {
     /// The first rung that is adequate, or else the first that is nearly as good as the best. In contact, where no error is known,
     /// finite strain where it was tried: linear elements hold nodes against faces that small strain makes too large.
     fn chosen(&self) -> Rung {
-        if self.in_contact {
+        let least = self.least_share();
+        if self.in_contact && least.is_infinite() {
             let solved = self.shares().filter(|(rung, _)| !rung.is_corrected());
             return solved.last().map_or(Rung::Linear, |(rung, _)| rung);
         }
-        let least = self.least_share();
         let enough = if least <= 1.0 { 1.0 } else { least / WORTHWHILE };
         let found = self.shares().find(|(_, share)| *share <= enough);
         found.map_or(Rung::Linear, |(rung, _)| rung)

@@ -4,9 +4,11 @@ use std::collections::BTreeMap;
 
 use mechanics::mesh::sample::block;
 use mechanics::mesh::{CellShape, Vector};
-use mechanics::prediction::{Case, CaseSegment, ElementChoice, Method, Settings};
+use mechanics::prediction::{Case, CaseSegment, Method, Settings};
 
-use super::contact::{at, bar, blocks, force, jaws, pushed, raised, together, unilateral};
+use super::contact::{
+    PRESSING, at, bar, blocks, force, jaws, pushed, raised, together, unilateral,
+};
 use crate::scenes::{case_of, material, set, solve};
 
 fn at_finite_strain() -> Settings {
@@ -18,12 +20,7 @@ fn at_finite_strain() -> Settings {
 fn a_bar_at_finite_strain_presses_with_the_force_of_its_law() {
     let stretch: f64 = 0.95;
     let resisted = 7.5 * 100.0 * (1.0 / stretch - stretch);
-    for (shape, element) in [
-        (CellShape::Hex8, ElementChoice::Auto),
-        (CellShape::Tet4, ElementChoice::Plain),
-        (CellShape::Tet4, ElementChoice::Stabilised),
-        (CellShape::Wedge6, ElementChoice::Auto),
-    ] {
+    for (shape, element) in PRESSING {
         let case = bar(shape);
         for (by, wanted) in [(0.3, 0.0), (1.5, resisted)] {
             let found = solve(&case, &pushed(by), &Settings { element, ..at_finite_strain() });

@@ -112,26 +112,28 @@ pub fn reaction_of(answer: &Prediction, place: usize) -> Vector {
     answer.condition_reactions[place].force
 }
 
+/// Holds the sides of a block across, all but that at z_max, which is held as asked.
+pub(super) fn between_walls(top: Option<Prescribed>) -> Vec<Prescribed> {
+    let zero = Some(0.0);
+    let mut prescribed = vec![
+        hold("x_min", [zero, None, None]),
+        hold("x_max", [zero, None, None]),
+        hold("y_min", [None, zero, None]),
+        hold("y_max", [None, zero, None]),
+        hold("z_min", [None, None, zero]),
+    ];
+    prescribed.extend(top);
+    prescribed
+}
+
 #[test]
 fn a_layer_held_at_its_sides_thins_and_a_confined_one_is_pressed_by_the_closed_forms() {
-    let sides = |more: Option<Prescribed>| {
-        let zero = Some(0.0);
-        let mut prescribed = vec![
-            hold("x_min", [zero, None, None]),
-            hold("x_max", [zero, None, None]),
-            hold("y_min", [None, zero, None]),
-            hold("y_max", [None, zero, None]),
-            hold("z_min", [None, None, zero]),
-        ];
-        prescribed.extend(more);
-        prescribed
-    };
     for (shape, element) in ELEMENTS {
         let settings = Settings { element, ..exact() };
         let case = case_of(distorted(shape), material(15.0, 0.46));
         // g .98: eps_zz -.0181462 and .186434 kPa; g .9: 6.47074 kPa where nothing yields (docs/verification.md#growth).
         let growth = growing("tissue", -0.02);
-        let plan = Plan { prescribed: sides(None), growth, ..Plan::default() };
+        let plan = Plan { prescribed: between_walls(None), growth, ..Plan::default() };
         let answer = solve(&case, &plan, &settings);
         let error = largest_error(&case.volume, &answer.displacement, |x| {
             Vector::z() * (-0.018_146_2 * x.z)
@@ -142,7 +144,7 @@ fn a_layer_held_at_its_sides_thins_and_a_confined_one_is_pressed_by_the_closed_f
 
         let above = hold("z_max", [None, None, Some(0.0)]);
         let growth = growing("tissue", -0.1);
-        let plan = Plan { prescribed: sides(Some(above)), growth, ..Plan::default() };
+        let plan = Plan { prescribed: between_walls(Some(above)), growth, ..Plan::default() };
         let answer = solve(&case, &plan, &settings);
         let across = reaction_of(&answer, 1).x / (SIZE.y * SIZE.z);
         assert!((across - 6.470_74).abs() < 1e-5, "{shape:?} {element:?}: {across}");

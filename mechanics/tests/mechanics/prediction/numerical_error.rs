@@ -19,12 +19,12 @@ use mechanics::study::scenes::{half_head, slab, slab_hex, slab_wedge, sphere_of}
 use crate::scenes::{case_of, exact, material, set, solve};
 
 /// A scene whose error is estimated, and what is held for true.
-struct Question {
-    case: Case,
-    plan: Plan,
-    settings: Settings,
-    halved: u32,
-    truth: ElementChoice,
+pub(super) struct Question {
+    pub case: Case,
+    pub plan: Plan,
+    pub settings: Settings,
+    pub halved: u32,
+    pub truth: ElementChoice,
 }
 
 /// Mean and 95th percentile over the skin, estimated over true, and the mean error that is left once it is added.
@@ -67,7 +67,7 @@ impl Question {
     }
 
     /// Between one half and two, and a correction that is worth its name.
-    fn assert_effective(&self, name: &str) {
+    pub(super) fn assert_effective(&self, name: &str) {
         let Effectivity { mean, p95, left } = self.effectivity();
         println!("{name}: effectivity {mean:.2} in the mean, {p95:.2} at p95, {left:.2} left");
         assert!((0.5..=2.0).contains(&mean), "{name}: {mean:.2}");

@@ -12,11 +12,13 @@ use mechanics::model::fem::law_states::at_second_order;
 use mechanics::model::fem::strain::gradient_at_centre;
 use mechanics::prediction::{
     Activation, Case, CellState, ContactKind, ElementChoice, FibreDirection, Growth, Method,
-    MethodKind, Muscle, MuscleCourse, Plan, Prediction, Settings, linear_strain, node_states,
+    MethodKind, Muscle, MuscleCourse, Plan, Prediction, Prescribed, Settings, linear_strain,
+    node_states,
 };
 use mechanics::study::methods;
 use nalgebra::Matrix3;
 
+use super::growth::between_walls;
 use crate::material::anisotropy::{ELEMENTS, MUSCLE, fibred, gradients, tight};
 use crate::material::hyperelastic::rows;
 use crate::scenes::{case_of, exact, hold, material, on_the_boundary, set, solve};
@@ -128,18 +130,9 @@ fn tissue_with_fibres_has_the_stress_of_its_tensor() {
     }
 }
 
-/// Holds the sides of a block across, and its other faces too where `more` says so.
-fn between_walls(more: bool, top: Option<f64>) -> Vec<mechanics::prediction::Prescribed> {
-    let zero = Some(0.0);
-    let mut prescribed = vec![
-        hold("x_min", [zero, None, None]),
-        hold("x_max", [zero, None, None]),
-        hold("y_min", [None, zero, None]),
-        hold("y_max", [None, zero, None]),
-        hold("z_min", [None, None, zero]),
-    ];
-    prescribed.extend(more.then(|| hold("z_max", [None, None, top])));
-    prescribed
+/// Holds the upper side of a block at a height in mm over where it lies at rest.
+fn top_at(height: f64) -> Prescribed {
+    hold("z_max", [None, None, Some(height)])
 }
 
 #[test]
@@ -150,7 +143,7 @@ fn growth_that_is_not_allowed_is_stress_and_growth_that_is_none() {
         let case = case_of(distorted(shape), material(15.0, 0.46));
         // g .9 confined: 6.47074 kPa of tension; g .98 held at its sides: .186434 kPa along them (docs/verification.md#growth).
         let plan = Plan {
-            prescribed: between_walls(true, Some(0.0)),
+            prescribed: between_walls(Some(top_at(0.0))),
             growth: growth(-0.1),
             ..Plan::default()
         };
@@ -158,11 +151,8 @@ fn growth_that_is_not_allowed_is_stress_and_growth_that_is_none() {
         let stress = Matrix3::from_diagonal_element(6.470_74);
         let confined = CellState { stress, strain: Matrix3::zeros() };
         assert_uniform(&answer, &case.volume, &confined, 2e-5, &what);
-        let plan = Plan {
-            prescribed: between_walls(false, None),
-            growth: growth(-0.02),
-            ..Plan::default()
-        };
+        let plan =
+            Plan { prescribed: between_walls(None), growth: growth(-0.02), ..Plan::default() };
         let answer = solve(&case, &plan, &asked(element));
         let stress = Matrix3::from_diagonal(&Vector::new(0.186_434, 0.186_434, 0.0));
         let strain = Matrix3::from_diagonal(&Vector::new(0.0, 0.0, -0.018_146_2));
@@ -210,7 +200,7 @@ fn a_column_between_walls_is_pressed_by_the_closed_form() {
         for (shape, element) in ELEMENTS {
             let mesh = block(Vector::repeat(10.0), [3, 3, 3], shape);
             let case = case_of(mesh, material(15.0, nu));
-            let plan = Plan { prescribed: between_walls(true, Some(-0.5)), ..Plan::default() };
+            let plan = Plan { prescribed: between_walls(Some(top_at(-0.5))), ..Plan::default() };
             let answer = solve(&case, &plan, &asked(element));
             for state in &answer.states.cells {
                 let found = state.stress[(2, 2)];

@@ -3,6 +3,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::touch::{Contact, Pressed};
 use crate::boundary::contact::ContactRow;
 use crate::mesh::Vector;
 
@@ -55,5 +56,26 @@ impl KeptRows {
             }
         }
         forces
+    }
+
+    /// By node, the gap in mm after a displacement.
+    pub fn gaps(&self, displacement: &[Vector]) -> BTreeMap<u32, f64> {
+        self.rows.iter().map(|row| (row.node, row.gap_after(displacement))).collect()
+    }
+
+    /// The contact of an answer in which rows with these numbers press with forces in mN.
+    pub fn contact(
+        &self,
+        pressing: impl Iterator<Item = (usize, f64)>,
+        displacement: &[Vector],
+    ) -> Contact {
+        let pressing: Vec<(usize, f64)> = pressing.collect();
+        let pressed = |&(row, force): &(usize, f64)| Pressed { row: self.rows[row].clone(), force };
+        Contact {
+            pressed: pressing.iter().map(pressed).collect(),
+            gaps: self.gaps(displacement),
+            forces: self.forces(pressing.into_iter(), displacement.len()),
+            ..Contact::default()
+        }
     }
 }

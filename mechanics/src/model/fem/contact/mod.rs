@@ -8,8 +8,10 @@ mod active_set;
 mod equations;
 mod kept_rows;
 mod pressing;
+mod touch;
 
-pub(super) use active_set::{ActiveSet, Settled, Task};
+pub(super) use active_set::{ActiveSet, Task};
 pub(super) use equations::FreeUnknowns;
 pub(super) use kept_rows::KeptRows;
-pub use pressing::{Contact, ContactProblem, InContact, Pressed};
+pub use pressing::{ContactProblem, InContact, Pressing};
+pub use touch::{Contact, Effort, Pressed};

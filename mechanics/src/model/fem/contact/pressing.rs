@@ -1,17 +1,16 @@
 //! An answer of linear elasticity in which nothing passes through what it faces: closest points and the set that presses, along
 //! the movement in steps, and at its end until closest points stay.
 
-use std::collections::BTreeMap;
-
 use super::active_set::{ActiveSet, Settled, Task};
 use super::equations::FreeUnknowns;
 use super::kept_rows::{KeptRows, Round};
+use super::touch::{Contact, Effort};
 use crate::boundary::contact::{CLOSED_MM, ContactRow, FacingSurfaces};
 use crate::mesh::Vector;
-use crate::model::fem::linear_system::{LinearSystem, Solved};
+use crate::model::fem::linear_system::{Correction, LinearSystem, Residual, Solved};
 use crate::model::problem::{Equilibrium, LoadCase, ModelError};
 use crate::progress::Progress;
-use crate::solver::constrained::{Equations, Point};
+use crate::solver::constrained::{Equations, Point, Wanted};
 
 /// Beyond this, in mm, an answer is none.
 const UNSETTLED_MM: f64 = 0.1;
@@ -33,43 +32,24 @@ pub struct ContactProblem<'a> {
     pub relative_residual: f64,
 }
 
-/// A row that presses.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Pressed {
-    pub row: ContactRow,
-    /// In mN, never below 0 but for rounding.
-    pub force: f64,
-}
-
-/// How tissue presses on what it touches.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Contact {
-    pub pressed: Vec<Pressed>,
-    /// For each node that faces another part of the boundary, the gap in mm.
-    pub gaps: BTreeMap<u32, f64>,
-    /// In mN, for each node.
-    pub forces: Vec<Vector>,
-    /// Solutions for a set, in all; how many of them changed the set.
-    pub passes: usize,
-    pub changes: usize,
-    /// Rows that press because they changed too often.
-    pub kept: usize,
-    /// How often closest points were looked for, and how far they moved the answer the last time, in mm.
-    pub rounds: usize,
-    pub last_moved_mm: f64,
-    pub iterations: usize,
-    pub relative_residual: f64,
-}
-
 /// An answer with contact.
-pub struct InContact {
+pub struct InContact<'a> {
     pub solved: Solved,
     pub contact: Contact,
+    pub pressing: Pressing<'a>,
 }
 
-impl ContactProblem<'_> {
+/// The equations of what presses in an answer.
+pub struct Pressing<'a> {
+    system: &'a LinearSystem<'a>,
+    equations: Equations<'a>,
+    /// Those that are met.
+    rows: Vec<usize>,
+}
+
+impl<'a> ContactProblem<'a> {
     /// The answer with contact; none where nothing touches.
-    pub fn solve(&self, progress: &dyn Progress) -> Result<Option<InContact>, ModelError> {
+    pub fn solve(&self, progress: &dyn Progress) -> Result<Option<InContact<'a>>, ModelError> {
         match self.solve_in_steps(STEPS[0], progress) {
             Err(ModelError::ContactUnsettled { .. }) => self.solve_in_steps(STEPS[1], progress),
             other => other,
@@ -80,7 +60,7 @@ impl ContactProblem<'_> {
         &self,
         step: f64,
         progress: &dyn Progress,
-    ) -> Result<Option<InContact>, ModelError> {
+    ) -> Result<Option<InContact<'a>>, ModelError> {
         let mut rounds = Rounds::new(self);
         let steps = self.surfaces.steps(self.free(), step);
         for step in 1..=steps {
@@ -110,7 +90,7 @@ impl ContactProblem<'_> {
             }
         }
         if last_moved_mm > UNSETTLED_MM {
-            let passes = rounds.passes;
+            let passes = rounds.effort.passes;
             return Err(ModelError::ContactUnsettled { passes, moved_mm: last_moved_mm });
         }
         rounds.settle(self.relative_residual, progress)?;
@@ -126,9 +106,26 @@ impl ContactProblem<'_> {
     }
 }
 
+impl Pressing<'_> {
+    /// What a residual changes where holds stay and what presses neither opens nor gives way, to a relative residual.
+    pub fn correction(
+        &mut self,
+        residual: &Residual,
+        relative_residual: f64,
+        progress: &dyn Progress,
+    ) -> Result<Correction, ModelError> {
+        let less = self.system.taken_away(residual);
+        let values = vec![0.0; self.rows.len()];
+        let wanted = Wanted { rows: &self.rows, values: &values, less: &less, relative_residual };
+        let found = self.equations.solve(&wanted, Point::default(), progress)?;
+        let iterations = found.iterations;
+        Ok(self.system.correction(&found.point.x, iterations, found.relative_residual))
+    }
+}
+
 /// What is known of contact while its points are looked for.
-struct Rounds<'a> {
-    problem: &'a ContactProblem<'a>,
+struct Rounds<'a, 'b> {
+    problem: &'b ContactProblem<'a>,
     unknowns: FreeUnknowns<'a>,
     /// Those of `kept_rows`.
     equations: Equations<'a>,
@@ -139,16 +136,12 @@ struct Rounds<'a> {
     /// What contact adds to the answer without it, and the multipliers of the rows that press.
     added: Point,
     active: Vec<usize>,
-    passes: usize,
-    changes: usize,
-    kept: usize,
-    iterations: usize,
-    rounds: usize,
+    effort: Effort,
     relative_residual: f64,
 }
 
-impl<'a> Rounds<'a> {
-    fn new(problem: &'a ContactProblem<'a>) -> Self {
+impl<'a, 'b> Rounds<'a, 'b> {
+    fn new(problem: &'b ContactProblem<'a>) -> Self {
         let system = problem.system;
         Rounds {
             problem,
@@ -159,11 +152,7 @@ impl<'a> Rounds<'a> {
             displacement: vec![Vector::zeros(); problem.free().len()],
             added: Point::default(),
             active: Vec::new(),
-            passes: 0,
-            changes: 0,
-            kept: 0,
-            iterations: 0,
-            rounds: 0,
+            effort: Effort::default(),
             relative_residual: 0.0,
         }
     }
@@ -179,7 +168,7 @@ impl<'a> Rounds<'a> {
     }
 
     fn has_touched(&self) -> bool {
-        self.rounds > 0
+        self.effort.rounds > 0
     }
 
     /// Whether anything touches or has touched.
@@ -211,9 +200,10 @@ impl<'a> Rounds<'a> {
         let task = Task { gaps: &gaps, movement, relative_residual, before: &[], progress };
         let start = Point { x: std::mem::take(&mut self.added.x), multipliers: Vec::new() };
         let settled = set.settle(&mut self.equations, &task, start)?;
-        self.count(&settled);
+        self.effort.count(&settled);
+        self.relative_residual = settled.relative_residual;
         if !settled.repeats {
-            let (passes, moved_mm) = (self.passes, f64::INFINITY);
+            let (passes, moved_mm) = (self.effort.passes, f64::INFINITY);
             return Err(ModelError::ContactUnsettled { passes, moved_mm });
         }
         let Settled { point, rows: active, .. } = settled;
@@ -227,28 +217,14 @@ impl<'a> Rounds<'a> {
         Ok(moved_mm)
     }
 
-    fn count(&mut self, settled: &Settled) {
-        self.rounds += 1;
-        self.passes += settled.passes;
-        self.changes += settled.changes;
-        self.kept = settled.kept;
-        self.iterations += settled.iterations;
-        self.relative_residual = settled.relative_residual;
-    }
-
-    /// What presses on each node.
-    fn forces(&self) -> Vec<Vector> {
-        let pressed = self.active.iter().copied().zip(self.added.multipliers.iter().copied());
-        self.kept_rows.forces(pressed, self.displacement.len())
+    /// The rows that press, with their forces in mN.
+    fn pressing(&self) -> impl Iterator<Item = (usize, f64)> {
+        self.active.iter().copied().zip(self.added.multipliers.iter().copied())
     }
 
     /// Displacements by row that contact adds.
     fn added_by_row(&self) -> Vec<[[f64; 1]; 3]> {
-        let stiffness = &self.problem.system.stiffness;
-        let mut total = vec![[[0.0]; 3]; stiffness.matrix.rows()];
-        let (u, _) = self.added.x.split_at(3 * stiffness.layout.free);
-        total.iter_mut().zip(u.as_chunks::<3>().0).for_each(|(total, u)| *total = *u);
-        total
+        self.problem.system.stiffness.by_row(&self.added.x)
     }
 
     /// The part of the answer without contact, and what contact adds to it.
@@ -259,33 +235,14 @@ impl<'a> Rounds<'a> {
     }
 
     /// At the end of the movement.
-    fn answer(self, last_moved_mm: f64) -> InContact {
-        let forces = self.forces();
-        let solved = self.solved(&forces);
-        let pressed = self.active.iter().zip(&self.added.multipliers);
-        let pressed: Vec<Pressed> = pressed
-            .map(|(&row, &force)| Pressed { row: self.kept_rows.rows[row].clone(), force })
-            .collect();
-        let gaps = self
-            .kept_rows
-            .rows
-            .iter()
-            .map(|row| (row.node, row.gap_after(&self.displacement)))
-            .collect();
-        let Rounds { passes, changes, kept, iterations, rounds, relative_residual, .. } = self;
-        let contact = Contact {
-            pressed,
-            gaps,
-            forces,
-            passes,
-            changes,
-            kept,
-            rounds,
-            last_moved_mm,
-            iterations,
-            relative_residual,
-        };
-        InContact { solved, contact }
+    fn answer(self, last_moved_mm: f64) -> InContact<'a> {
+        let Rounds { effort, relative_residual, .. } = self;
+        let found = self.kept_rows.contact(self.pressing(), &self.displacement);
+        let contact = Contact { effort, last_moved_mm, relative_residual, ..found };
+        let solved = self.solved(&contact.forces);
+        let Rounds { problem, equations, active: rows, .. } = self;
+        let pressing = Pressing { system: problem.system, equations, rows };
+        InContact { solved, contact, pressing }
     }
 
     fn solved(&self, forces: &[Vector]) -> Solved {

@@ -29,7 +29,10 @@ mod simplex;
 mod two_level;
 
 use super::assembly::Tissue;
-use super::linear_system::{Correction, LinearSystem, Solved};
+use super::contact::InContact;
+use super::linear_system::{Correction, LinearSystem, Residual, Solved};
+use crate::boundary::Hold;
+use crate::boundary::contact::with_pressing;
 use crate::material::LinearElastic;
 use crate::mesh::Vector;
 use crate::mesh::volume::BoundaryFace;
@@ -85,16 +88,41 @@ impl Estimate<'_> {
         progress: &dyn Progress,
     ) -> Result<DiscretisationError, ModelError> {
         progress.phase(Phase::Estimate);
-        let pressures = self.system.pressures.as_ref();
+        self.missing(solved, self.system.holds, &mut |residual, tolerance| {
+            Ok(self.system.solve_for(&[residual], tolerance, progress)?.remove(0))
+        })
+    }
+
+    /// Estimates the error of an answer in which something presses, and goes on to do so where it does.
+    pub fn in_contact(
+        &self,
+        found: &mut InContact,
+        progress: &dyn Progress,
+    ) -> Result<DiscretisationError, ModelError> {
+        progress.phase(Phase::Estimate);
+        let InContact { solved, contact, pressing } = found;
+        let rows = contact.pressed.iter().map(|pressed| &pressed.row);
+        let holds = with_pressing(self.system.holds, rows);
+        self.missing(solved, &holds, &mut |residual, tolerance| {
+            pressing.correction(&residual, tolerance, progress)
+        })
+    }
+
+    /// What an answer lacks, by what its holds are for edges and by what solves for the nodes.
+    fn missing(
+        &self,
+        solved: &Solved,
+        holds: &[Hold],
+        solve: &mut dyn FnMut(Residual, f64) -> Result<Correction, ModelError>,
+    ) -> Result<DiscretisationError, ModelError> {
+        let has_pressures = self.system.pressures.is_some();
         let cells = self.cells(self.answered(solved));
-        let two_level = self.two_level(&cells);
+        let two_level = TwoLevel { holds, ..self.two_level(&cells) };
         let (residual, squared_energy_norm) = two_level.at_corners()?;
-        let tolerance = tolerance(self.tissue.materials, pressures.is_some());
-        let mut corrections = self.system.solve_for(&[residual], tolerance, progress)?;
-        let correction = corrections.remove(0);
-        let factor = factor(pressures.is_some());
-        let missing = correction.displacement.into_iter().map(|e| e * factor).collect();
-        let iterations = correction.iterations;
+        let tolerance = tolerance(self.tissue.materials, has_pressures);
+        let Correction { displacement, iterations, .. } = solve(residual, tolerance)?;
+        let factor = factor(has_pressures);
+        let missing = displacement.into_iter().map(|e| e * factor).collect();
         Ok(DiscretisationError { missing, squared_energy_norm, iterations })
     }
 

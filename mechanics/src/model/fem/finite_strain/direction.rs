@@ -129,10 +129,8 @@ impl Directions {
                 Ahead { displacement: &displacement, unbalanced, relative, progress: &inner };
             let matrix = Preconditioned::new(&system, coupling, &hierarchy.solver);
             if let Some(change) = touching.change(matrix, &ahead)? {
-                let (u, p) = change.step.split_at(3 * system.layout.free);
-                let mut total = vec![[[0.0]; 3]; system.matrix.rows()];
-                total.iter_mut().zip(u.as_chunks::<3>().0).for_each(|(total, u)| *total = *u);
-                let added = constrained.displacement(&total);
+                let (_, p) = change.step.split_at(3 * system.layout.free);
+                let added = constrained.displacement(&system.by_row(&change.step));
                 by_node.iter_mut().zip(&added).for_each(|(d, added)| *d += added);
                 found.pressures.iter_mut().zip(p).for_each(|(d, [added])| *d += added);
                 multipliers = change.multipliers;

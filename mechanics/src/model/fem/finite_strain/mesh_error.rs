@@ -47,22 +47,23 @@ impl Finer<'_> {
     ) -> Result<MeshError, ModelError> {
         progress.phase(Phase::Estimate);
         let Constrained { holds, numbering } = *constrained;
-        let Rest { positions, pressures: values, directions, .. } = rest;
+        let Rest { positions, pressures: values, directions, touching, .. } = rest;
         let mesh = self.tissue.mesh;
         let by_node = |row: &u32| positions[*row as usize];
         let nodes: Vec<Vector> = numbering.layout.place.iter().map(by_node).collect();
         let displacement: Vec<Vector> =
             nodes.iter().zip(&mesh.nodes).map(|(x, rest)| x - rest).collect();
 
-        // 1. What the edge functions do to the equations of the corners.
+        // 1. What the edge functions do to the equations of the corners; edges that press do not move across what they press on.
         let pressures = directions.pressures.as_ref();
         let deformed = tissue.at(positions, values, pressures);
         let pressed = Pressed { pressures, values };
+        let holds_and_contact = touching.as_ref().map(|touching| touching.held(holds));
         let two_level = TwoLevel {
             tissue: &self.tissue,
             numbering,
             boundary: self.boundary,
-            holds,
+            holds: holds_and_contact.as_deref().unwrap_or(holds),
             loads: self.loads,
             displacement: &displacement,
             cells: &Enriched::new(&self.tissue, self.laws, tissue, &deformed, &pressed),
@@ -72,6 +73,7 @@ impl Finer<'_> {
 
         // 2. What that does to the corners, by the last tangent.
         let has_pressures = pressures.is_some();
+        let unbalanced = residual.forces.iter().map(Vector::norm_squared).sum::<f64>().sqrt();
         let case = LoadCase {
             held: vec![Vector::zeros(); holds.len()],
             forces: residual.forces,
@@ -85,10 +87,11 @@ impl Finer<'_> {
             nodes: &nodes,
             displacement: &displacement,
             relative,
-            unbalanced: 0.0,
+            unbalanced,
             progress,
         };
-        let found = directions.of(&deformed, constrained, &remaining, None)?;
+        let mut touching = touching.clone();
+        let found = directions.of(&deformed, constrained, &remaining, touching.as_mut())?;
         if !found.is_convex {
             return Ok(Err(NoMeshError::Unstable));
         }

@@ -55,6 +55,13 @@ use states::cell_states;
 use tissue::Tissue;
 use touching::Touching;
 
+/// An answer with contact, and what its mesh leaves out where that was asked for.
+pub struct InContact {
+    pub equilibrium: Equilibrium,
+    pub contact: Contact,
+    pub mesh_error: Option<MeshError>,
+}
+
 /// What moves goes by at most this part of its longest edges in a step where things touch.
 const STEP: f64 = 0.5;
 
@@ -83,19 +90,31 @@ impl<'a> FiniteStrain<'a> {
         let question =
             Question { constrained: &constrained, case, tolerance: self.tolerance, progress };
         let (tissue, mut rest) = self.rest(question, None)?;
-        let error = finer.map(|finer| finer.of(&tissue, &mut rest, &constrained, progress));
-        let error = error.transpose()?;
+        let error = self.mesh_error(finer, &tissue, &mut rest, &question)?;
         Ok((self.equilibrium(&tissue, &question, rest, &case.forces)?, error))
     }
 
+    fn mesh_error(
+        &self,
+        finer: Option<&Finer>,
+        tissue: &Tissue,
+        rest: &mut Rest,
+        question: &Question,
+    ) -> Result<Option<MeshError>, ModelError> {
+        let Question { constrained, progress, .. } = *question;
+        finer.map(|finer| finer.of(tissue, rest, constrained, progress)).transpose()
+    }
+
     /// The answer in which nothing passes through what it faces, by the answer without contact; none where nothing touches.
+    /// With what its mesh leaves out, as `solve_and`.
     pub fn solve_in_contact(
         &self,
         case: &LoadCase,
         free: &Equilibrium,
         surfaces: &FacingSurfaces,
+        finer: Option<&Finer>,
         progress: &dyn Progress,
-    ) -> Result<Option<(Equilibrium, Contact)>, ModelError> {
+    ) -> Result<Option<InContact>, ModelError> {
         let steps = surfaces.steps(&free.displacement, STEP);
         if !surfaces.touches(&free.displacement, steps) {
             return Ok(None);
@@ -106,6 +125,7 @@ impl<'a> FiniteStrain<'a> {
             Question { constrained: &constrained, case, tolerance: self.tolerance, progress };
         let touching = Touching::new(surfaces, self.holds, &numbering, 1.0 / steps as f64);
         let (tissue, mut rest) = self.rest(question, Some(touching))?;
+        let mesh_error = self.mesh_error(finer, &tissue, &mut rest, &question)?;
         let Some(touching) = rest.touching.take() else { return Ok(None) };
         let residual = rest.report.relative_residual;
         let pressing = touching.forces(self.mesh.nodes.len());
@@ -113,7 +133,7 @@ impl<'a> FiniteStrain<'a> {
             case.forces.iter().zip(&pressing).map(|(force, pressing)| force + pressing).collect();
         let equilibrium = self.equilibrium(&tissue, &question, rest, &acting)?;
         let contact = touching.answer(&equilibrium.displacement, residual)?;
-        Ok(contact.map(|contact| (equilibrium, contact)))
+        Ok(contact.map(|contact| InContact { equilibrium, contact, mesh_error }))
     }
 
     /// Displacements and reactions of tissue at rest under forces in mN, by node.

@@ -7,12 +7,10 @@
 use std::collections::BTreeMap;
 
 use crate::boundary::Hold;
-use crate::boundary::contact::{CLOSED_MM, ContactRow, FacingSurfaces};
+use crate::boundary::contact::{CLOSED_MM, FacingSurfaces, with_pressing};
 use crate::mesh::Vector;
 use crate::model::dofs::Numbering;
-use crate::model::fem::contact::{
-    ActiveSet, Contact, FreeUnknowns, KeptRows, Pressed, Settled, Task,
-};
+use crate::model::fem::contact::{ActiveSet, Contact, Effort, FreeUnknowns, KeptRows, Task};
 use crate::model::problem::ModelError;
 use crate::progress::Progress;
 use crate::solver::SolverError;
@@ -44,11 +42,7 @@ pub(super) struct Touching<'a> {
     new: usize,
     /// Whether the set that presses repeated at the last step.
     repeats: bool,
-    passes: usize,
-    changes: usize,
-    kept: usize,
-    rounds: usize,
-    iterations: usize,
+    effort: Effort,
 }
 
 /// What contact changes of a step.
@@ -85,11 +79,7 @@ impl<'a> Touching<'a> {
             late_rounds: 0,
             new: 0,
             repeats: true,
-            passes: 0,
-            changes: 0,
-            kept: 0,
-            rounds: 0,
-            iterations: 0,
+            effort: Effort::default(),
         }
     }
 
@@ -118,7 +108,18 @@ impl<'a> Touching<'a> {
 
     /// What presses on each node, in mN.
     pub fn forces(&self, nodes: usize) -> Vec<Vector> {
-        self.kept_rows.forces(self.multipliers.iter().copied().enumerate(), nodes)
+        self.kept_rows.forces(self.pressing(), nodes)
+    }
+
+    /// The rows that press, with their forces in mN.
+    fn pressing(&self) -> impl Iterator<Item = (usize, f64)> {
+        let forces = self.multipliers.iter().copied().enumerate();
+        forces.filter(|(_, force)| *force != 0.0)
+    }
+
+    /// Holds of tissue, with those of the points that press.
+    pub fn held(&self, holds: &[Hold]) -> Vec<Hold> {
+        with_pressing(holds, self.pressing().map(|(row, _)| &self.kept_rows.rows[row]))
     }
 
     /// What presses after a step, and what that changes of it; nothing where nothing presses before and after.
@@ -148,14 +149,10 @@ impl<'a> Touching<'a> {
         let mut equations = Equations::new(matrix, equations);
         let (before, progress) = (&*self.multipliers, ahead.progress);
         let task = Task { gaps: &gaps, movement, relative_residual, before, progress };
-        let Settled { point, rows: active, passes, changes, kept, iterations, repeats, .. } =
-            set.settle(&mut equations, &task, Point::default())?;
-        self.passes += passes;
-        self.changes += changes;
-        self.iterations += iterations;
-        self.rounds += 1;
-        self.kept = kept;
-        self.repeats = repeats;
+        let settled = set.settle(&mut equations, &task, Point::default())?;
+        self.effort.count(&settled);
+        self.repeats = settled.repeats;
+        let (point, active) = (settled.point, settled.rows);
         self.kept_rows.pressing = active.iter().map(|&row| rows[row].node).collect();
         let mut multipliers = vec![0.0; rows.len()];
         active.iter().zip(&point.multipliers).for_each(|(&row, m)| multipliers[row] = *m);
@@ -176,7 +173,7 @@ impl<'a> Touching<'a> {
 
     /// What ends without an answer.
     pub fn unsettled(&self, moved_mm: f64) -> ModelError {
-        ModelError::ContactUnsettled { passes: self.passes, moved_mm }
+        ModelError::ContactUnsettled { passes: self.effort.passes, moved_mm }
     }
 
     /// The contact of an answer; none where nothing presses.
@@ -185,12 +182,7 @@ impl<'a> Touching<'a> {
         displacement: &[Vector],
         relative_residual: f64,
     ) -> Result<Option<Contact>, ModelError> {
-        let forces = self.forces(displacement.len());
-        let rows = self.kept_rows.rows.iter().zip(&self.multipliers);
-        let pressed: Vec<Pressed> = rows
-            .filter(|(_, force)| **force != 0.0)
-            .map(|(row, force)| Pressed { row: row.clone(), force: *force })
-            .collect();
+        let found = self.kept_rows.contact(self.pressing(), displacement);
         // Where points were not looked for any more, what a last look finds is what they still move by.
         self.late_rounds = 0;
         self.look(displacement, false);
@@ -198,22 +190,9 @@ impl<'a> Touching<'a> {
         if last_moved_mm > UNSETTLED_MM {
             return Err(self.unsettled(last_moved_mm));
         }
-        let of_row = |row: &ContactRow| (row.node, row.gap_after(displacement));
-        let gaps = self.kept_rows.rows.iter().map(of_row).collect();
-        let Touching { passes, changes, kept, rounds, iterations, .. } = self;
-        let touches = !pressed.is_empty();
-        let contact = Contact {
-            pressed,
-            gaps,
-            forces,
-            passes,
-            changes,
-            kept,
-            rounds,
-            last_moved_mm,
-            iterations,
-            relative_residual,
-        };
-        Ok(touches.then_some(contact))
+        let Touching { effort, kept_rows, .. } = self;
+        let gaps = kept_rows.gaps(displacement);
+        let contact = Contact { gaps, effort, last_moved_mm, relative_residual, ..found };
+        Ok((!contact.pressed.is_empty()).then_some(contact))
     }
 }

@@ -1,0 +1,53 @@
+//! Contact of an answer: what presses with which force, what does not, and what it took to find out.
+
+use std::collections::BTreeMap;
+
+use super::active_set::Settled;
+use crate::boundary::contact::ContactRow;
+use crate::mesh::Vector;
+
+/// A row that presses.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pressed {
+    pub row: ContactRow,
+    /// In mN, never below 0 but for rounding.
+    pub force: f64,
+}
+
+/// How tissue presses on what it touches.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Contact {
+    pub pressed: Vec<Pressed>,
+    /// For each node that faces another part of the boundary, the gap in mm.
+    pub gaps: BTreeMap<u32, f64>,
+    /// In mN, for each node.
+    pub forces: Vec<Vector>,
+    pub effort: Effort,
+    /// How far closest points moved the answer when they were looked for the last time, in mm.
+    pub last_moved_mm: f64,
+    pub relative_residual: f64,
+}
+
+/// What the search for what presses took.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Effort {
+    /// Solutions for a set, in all; how many of them changed the set.
+    pub passes: usize,
+    pub changes: usize,
+    /// Rows that press in the end because they changed too often.
+    pub kept: usize,
+    /// How often closest points were looked for.
+    pub rounds: usize,
+    pub iterations: usize,
+}
+
+impl Effort {
+    /// Counts one more round.
+    pub fn count(&mut self, settled: &Settled) {
+        self.rounds += 1;
+        self.passes += settled.passes;
+        self.changes += settled.changes;
+        self.kept = settled.kept;
+        self.iterations += settled.iterations;
+    }
+}
