@@ -58,7 +58,9 @@ pub async fn picture(
         Some(bytes) => bytes,
         None => drawn(service, job, wanted).await?,
     };
-    let disposition = format!("attachment; filename=\"{name}\"");
+    // A report is for reading; pictures, which may hold scripts where a client made their texts, are not opened by browsers.
+    let shown = if media_type.starts_with("text/html") { "inline" } else { "attachment" };
+    let disposition = format!("{shown}; filename=\"{name}\"");
     let told = [
         (header::CONTENT_TYPE, media_type),
         (header::CACHE_CONTROL, "private, no-cache"),

@@ -50,6 +50,9 @@ pub enum Enqueued {
 }
 
 const KNOWN: &str = "SELECT id FROM jobs WHERE spec_hash = $1 AND tenant = $2";
+/// A dismissed job keeps its row, and no longer its key: what was dismissed may be asked for anew.
+const RELEASED: &str = "UPDATE jobs SET spec_hash = 'dismissed ' || id || ' ' || spec_hash \
+     WHERE spec_hash = $1 AND tenant = $2 AND status = 'dismissed'";
 const WAITING: &str = "SELECT COUNT(*) FROM jobs WHERE tenant = $1 AND status = 'accepted'";
 /// Locked before its jobs, as by an erasure.
 const CASE: &str = "SELECT 1 FROM cases WHERE id = $1 FOR UPDATE";
@@ -66,6 +69,11 @@ impl Store {
     /// Accepts a job, unless one with the same inputs is known.
     pub async fn enqueue(&self, job: &NewJob, longest_queue: i64) -> Result<Enqueued, StoreError> {
         let mut transaction = self.database.begin().await?;
+        query(RELEASED)
+            .bind(self.key(job))
+            .bind(self.tenant())
+            .execute(&mut transaction)
+            .await?;
         let known = query(KNOWN)
             .bind(self.key(job))
             .bind(self.tenant())

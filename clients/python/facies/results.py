@@ -22,7 +22,7 @@ class Case:
     spec: dict[str, Any] = field(default_factory=dict)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Prediction:
     """A predicted skin; `results` is `result.json` (statistics, reactions, provenance, files)."""
 
@@ -36,6 +36,12 @@ class Prediction:
         return self.skin.values["_DISPLACEMENT_MM"]
 
     @property
+    def numerical_error_mm(self) -> NDArray[np.float32] | None:
+        """For each vertex of the skin how much the mesh is estimated to leave out; `None` where that is not known, and
+        `results["numerical_error_unknown"]` says why."""
+        return self.skin.values.get("_NUMERICAL_ERROR_MM")
+
+    @property
     def rest_mm(self) -> NDArray[np.float64]:
         """Where each vertex was before."""
         return self.skin.points_mm - self.displacement_mm
@@ -46,8 +52,12 @@ class Prediction:
         warnings: list[dict[str, Any]] = self.results["warnings"]
         return warnings
 
+    def __repr__(self) -> str:
+        codes = ", ".join(warning["code"] for warning in self.warnings)
+        return f"{type(self).__name__}(job={self.job!r}, {len(self.skin.points_mm)} points of skin, warnings: {codes or 'none'})"
 
-@dataclass(frozen=True)
+
+@dataclass(frozen=True, repr=False)
 class Optimisation(Prediction):
     """A plan that was found, with the skin that it gives."""
 

@@ -36,7 +36,7 @@ pub fn tearing(mesh: &VolumeMesh, holds: &[Hold]) -> Option<Warning> {
     }
     let (a, b) = worst_edge;
     let detail = format!(
-        "tearing at osteotomy: {} edges between held nodes are displaced by more than their length, \
+        "tearing between segments or beside what is fixed: {} edges between held nodes are displaced by more than their length, \
          worst between nodes {a} and {b}",
         torn.len()
     );

@@ -14,7 +14,7 @@ use crate::model::fem::strain::gradient_at_centre;
 /// Ratios of volume that tissue is taken to keep.
 const KEPT: std::ops::RangeInclusive<f64> = 0.95..=1.05;
 
-/// A cell of an exponential law.
+/// A cell of an exponential law, less its growth.
 struct Strained {
     cell: usize,
     exponent: f64,
@@ -34,7 +34,9 @@ pub(super) fn warnings(scene: &Scene, displacement: &[Vector]) -> Vec<Warning> {
         .iter()
         .enumerate()
         .filter_map(|(cell, &material)| {
-            let f = Matrix3::identity() + gradient_at_centre(&scene.mesh, displacement, cell);
+            let grown = scene.distributed.inner.grown(cell).length;
+            let moved = gradient_at_centre(&scene.mesh, displacement, cell);
+            let f = (Matrix3::identity() + moved) / grown;
             let direction = scene.fibres.get(cell).copied().unwrap_or_default();
             let exponent = exponent(&laws[usize::from(material)], &f, &direction)?;
             Some(Strained { cell, exponent, volume: f.determinant() })

@@ -381,7 +381,7 @@ impl Scene {
         let locking = cells.filter(|((shape, _), material)| locks(*shape, **material)).count();
         let largest = self.materials.iter().map(LinearElastic::poisson_ratio).fold(0.0, f64::max);
         let detail = format!(
-            "{locking} plain cells have a Poisson ratio above {LOCKING}: they lock, and the skin moves too little"
+            "{locking} cells of plain elements have a Poisson ratio above {LOCKING}: they lock, and the skin moves too little"
         );
         let warning = Warning::new("locking", detail).with("cells", locking as f64);
         (locking > 0 && has_elements).then(|| warning.with("largest_poisson_ratio", largest))

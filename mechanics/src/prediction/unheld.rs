@@ -16,7 +16,7 @@ use crate::plan::{PlannedSegment, RigidMovement};
 pub const NOTHING_HELD: &str = "nothing-held";
 
 /// What to do about it.
-const CURE: &str = "name in `fixed` what stays, or allow it with `allow_unfixed`";
+const CURE: &str = "name in `fixed` what stays, or allow it with `allow_unfixed` (contact with other parts is no hold)";
 
 /// Parts that go along as one with a plan.
 #[derive(Clone, Debug, Default, PartialEq)]

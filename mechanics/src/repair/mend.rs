@@ -50,6 +50,8 @@ pub fn repair(mesh: &mut VolumeMesh, bounds: &Bounds, progress: &dyn Progress) -
     let scales = scales(mesh, &around);
     let mut work =
         Sweep { mesh: &mut *mesh, bounds, first: &first, around: &around, scales: &scales };
+    // Sweeps may leave more cells unproven than there were: what is kept is the best on the way.
+    let mut best = (unproven.clone(), first.clone());
     for margin in MARGINS {
         let (mut fewest, mut since) = (unproven.len(), 0);
         while !unproven.is_empty() && since < PATIENCE && !progress.is_cancelled() {
@@ -58,8 +60,12 @@ pub fn repair(mesh: &mut VolumeMesh, bounds: &Bounds, progress: &dyn Progress) -
             report.sweeps += 1;
             since = if unproven.len() < fewest { 0 } else { since + 1 };
             fewest = fewest.min(unproven.len());
+            if unproven.len() < best.0.len() {
+                best = (unproven.clone(), work.mesh.nodes.clone());
+            }
         }
     }
+    (unproven, mesh.nodes) = best;
     report.tell_moves(&first, &mesh.nodes);
     report.unproven = named(mesh, &unproven);
     report

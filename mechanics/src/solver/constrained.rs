@@ -156,6 +156,10 @@ struct Run<'a, 'b> {
 impl Run<'_, '_> {
     fn solve(&mut self, progress: &dyn Progress) -> Result<f64, SolverError> {
         let unknowns = self.equations.matrix.unknowns();
+        if self.wanted.rows.is_empty() && self.wanted.less.is_empty() {
+            self.point = Point { x: vec![[0.0]; unknowns], multipliers: Vec::new() };
+            return Ok(0.0);
+        }
         self.point.x.resize(unknowns, [0.0]);
         self.point.multipliers.resize(self.wanted.rows.len(), 0.0);
         for dependent in self.independent.dependent() {

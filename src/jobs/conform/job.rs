@@ -148,6 +148,7 @@ impl PreparedConformation {
         let shape = StoredShape::Volume(Arc::new(found.mesh.clone()));
         let made = [(volume.to_owned(), StoredMesh::made(shape, self.frame))];
         let (check, refused) = match check_made(&case, made.into(), place) {
+            Ok(_) if found.after.inverted > 0 => (None, Some(with_inverted_cells(&found.after))),
             Ok(check) => (check, None),
             Err(JobError::Refused(problem)) => (None, Some(refused_case(&problem))),
             Err(error) => return Err(error),
@@ -157,8 +158,20 @@ impl PreparedConformation {
 }
 
 fn refused_case(problem: &Problem) -> Warning {
-    let detail = format!("the case of the mesh is refused as it stands: {}", problem.detail);
-    Warning::new("made-case-refused", detail)
+    made_case_refused(&problem.detail)
+}
+
+/// A mesh whose cells no repair made valid is refused where it is read.
+fn with_inverted_cells(after: &QualityReport) -> Warning {
+    let why = format!(
+        "{} of {} cells are turned inside out at some point, and no repair within its bounds mended them; look at the distances          of skin and bone, state landmarks, leave out a bone surface that is open or not that of the template's nodes, or let          nodes move farther with `repair`",
+        after.inverted, after.cells
+    );
+    made_case_refused(&why).with("cells", after.inverted as f64)
+}
+
+fn made_case_refused(why: &str) -> Warning {
+    Warning::new("made-case-refused", format!("the case of the mesh is refused as it stands: {why}"))
 }
 
 /// From nodes to a surface, where there is one, in mm.

@@ -234,7 +234,7 @@ fn measures(measures: &[MeasureDocument], words: &Words) -> Option<Section> {
 fn how_sure(result: &ResultDocument, words: &Words) -> Section {
     let mut sentences = Vec::new();
     let unknown =
-        |sentence: &str, why: &Option<String>| why.as_ref().map(|why| format!("{sentence} {why}"));
+        |sentence: &str, why: &Option<String>| why.as_ref().map(|why| format!("{sentence} {why}."));
     match &result.numerical_error_mm {
         Some(own) => sentences.push(filled(words.mesh_error, &[mm(own.mean), mm(own.p95)])),
         None => sentences.extend(unknown(words.mesh_unknown, &result.numerical_error_unknown)),

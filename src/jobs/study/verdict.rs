@@ -38,8 +38,13 @@ pub fn judge(report: &mut ReportDocument, baseline: &Baseline) {
         Baseline::NotAsked | Baseline::Missing(_) => BTreeMap::new(),
     };
     let rules = report.rules.clone();
+    let scenes = &report.scenes;
     for row in &mut report.rows {
-        let earlier = before.get(&place(row)).copied();
+        let answers_the_same = |_: &&RowDocument| match baseline {
+            Baseline::Report(earlier) => is_same_question(row, scenes, earlier),
+            Baseline::NotAsked | Baseline::Missing(_) => false,
+        };
+        let earlier = before.get(&place(row)).copied().filter(answers_the_same);
         (row.verdict, row.reasons) = judge_row(row, earlier, &rules);
     }
     let now: Vec<Place> = report.rows.iter().map(place).collect();
@@ -175,21 +180,39 @@ impl Growth {
     }
 }
 
+/// The mesh and the truth of a scene, in words.
+fn question(scene: &StudySceneDocument) -> String {
+    let StudySceneDocument { nodes, cells, truth, .. } = scene;
+    format!("{nodes} nodes, {cells} cells and the truth {truth:?}")
+}
+
+/// Whether a row is about the same mesh, truth and movement as the row of the same names in the baseline.
+fn is_same_question(
+    row: &RowDocument,
+    scenes: &[StudySceneDocument],
+    earlier: &ReportDocument,
+) -> bool {
+    let find = |scenes: &[StudySceneDocument]| -> Option<(String, Option<String>)> {
+        let scene = scenes.iter().find(|scene| scene.name == row.scene)?;
+        Some((question(scene), scene.plans.get(&row.plan).cloned()))
+    };
+    let (Some((now, plan)), Some((then, before))) = (find(scenes), find(&earlier.scenes)) else {
+        return true;
+    };
+    now == then && (plan == before || plan.is_none() || before.is_none())
+}
+
 /// Scenes of one name that are not the same in the baseline: their rows answer other questions.
 fn other_questions(report: &ReportDocument, earlier: &ReportDocument) -> Vec<String> {
-    let of = |scene: &StudySceneDocument| {
-        let StudySceneDocument { nodes, cells, truth, .. } = scene;
-        format!("{nodes} nodes, {cells} cells and the truth {truth:?}")
-    };
     let pair = |scene: &StudySceneDocument| {
         let before = earlier.scenes.iter().find(|other| other.name == scene.name)?;
         let words = format!(
             "the scene {:?} has {}, and in the baseline {}: their rows cannot be compared",
             scene.name,
-            of(scene),
-            of(before)
+            question(scene),
+            question(before)
         );
-        (of(scene) != of(before)).then_some(words)
+        (question(scene) != question(before)).then_some(words)
     };
     let scenes = report.scenes.iter().filter_map(pair);
     scenes.chain(other_plans(report, earlier)).collect()

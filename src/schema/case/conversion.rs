@@ -63,7 +63,10 @@ impl CaseDocument {
         warnings.extend(unusual_size(&volume, self.units));
         warnings.extend(mended.as_ref().and_then(Mended::warning));
         let regions = self.to_regions(&at.key("regions"), faults);
-        check_regions(&[own, spec], &regions, &volume, faults);
+        if let Some(known) = region_names(&regions, &volume) {
+            warnings.extend(spec.serves_nothing(&own, &known));
+            check_regions(&[own, spec], &known, faults);
+        }
         let (skin, skin_regions) = self.to_skin(&at, limits, faults);
         let case = Case {
             frame: self.frame.into(),
@@ -302,29 +305,22 @@ fn bounding_box(volume: &VolumeMesh) -> Option<(Vector, Vector)> {
     Some(nodes.fold((first, first), |(low, high), node| (low.inf(node), high.sup(node))))
 }
 
+/// The regions of a mesh by name. None where their array is missing: that is refused, with the arrays there are, where the scene
+/// is built.
+fn region_names(regions: &Option<RegionNames>, volume: &VolumeMesh) -> Option<BTreeSet<String>> {
+    let Some(regions) = regions else { return Some(BTreeSet::from(["tissue".to_owned()])) };
+    let labels = volume.cell_labels.get(&regions.array)?;
+    let values: BTreeSet<i64> = labels.iter().copied().collect();
+    let name = |value: &i64| regions.names.get(value).cloned();
+    Some(values.iter().map(|value| name(value).unwrap_or_else(|| value.to_string())).collect())
+}
+
 /// Refuses materials for regions that the mesh does not have.
-fn check_regions(
-    materials: &[PlacedMaterials],
-    regions: &Option<RegionNames>,
-    volume: &VolumeMesh,
-    faults: &mut Faults,
-) {
-    let known = match regions {
-        None => BTreeSet::from(["tissue".to_owned()]),
-        Some(regions) => {
-            // An array that is missing is refused, with the arrays there are, where the scene is built.
-            let Some(labels) = volume.cell_labels.get(&regions.array) else {
-                return;
-            };
-            let values: BTreeSet<i64> = labels.iter().copied().collect();
-            let name = |value: &i64| regions.names.get(value).cloned();
-            values.iter().map(|value| name(value).unwrap_or_else(|| value.to_string())).collect()
-        }
-    };
+fn check_regions(materials: &[PlacedMaterials], known: &BTreeSet<String>, faults: &mut Faults) {
     for placed in materials {
         for region in placed.materials.into_iter().flat_map(BTreeMap::keys) {
             if region != "*" && !known.contains(region) {
-                let names = listed(&known);
+                let names = listed(known);
                 let detail = format!("the mesh has no region `{region}`; it has {names}");
                 faults.add(&placed.at.key(region), ErrorCode::UnknownRegion, detail);
             }

@@ -1,6 +1,6 @@
 //! The materials of a case with those of a spec over them, by region.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::material::{DEFAULT_TISSUE, MaterialDocument, MaterialDocuments};
 use super::preset::expanded;
@@ -9,6 +9,7 @@ use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::limits::Limits;
 use mechanics::material::LinearElastic;
 use mechanics::mesh::Warning;
+use mechanics::mesh::ignored::listed;
 use mechanics::prediction::FibreDirection;
 
 /// Serves every region without a material of its own.
@@ -18,6 +19,31 @@ const EVERY_REGION: &str = "*";
 pub struct PlacedMaterials<'a> {
     pub at: Pointer,
     pub materials: Option<&'a MaterialDocuments>,
+}
+
+impl PlacedMaterials<'_> {
+    fn names(&self, region: &str) -> bool {
+        self.materials.is_some_and(|given| given.contains_key(region))
+    }
+
+    /// The `*` of a spec where every region of the mesh has an entry of its own, in the spec or in the case below.
+    pub fn serves_nothing(
+        &self,
+        case: &PlacedMaterials,
+        regions: &BTreeSet<String>,
+    ) -> Option<Warning> {
+        let has_own = |region: &String| self.names(region) || case.names(region);
+        if !self.names(EVERY_REGION) || !regions.iter().all(has_own) {
+            return None;
+        }
+        let detail = format!(
+            "{} changes nothing: it serves regions without an entry of their own, and each of {} has one; name these to change \
+             them",
+            self.at.key(EVERY_REGION),
+            listed(regions)
+        );
+        Some(Warning::new("material-serves-nothing", detail).with("regions", regions.len() as f64))
+    }
 }
 
 /// Materials by region name, the courses of their fibres, and what a reader must know.

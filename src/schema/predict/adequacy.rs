@@ -94,7 +94,7 @@ impl AdequacyDocument {
             }
         };
         format!(
-            "`{}` with an expected mean error of {error:.3} mm over the skin is {verdict} {} mm",
+            "`{}` with an expected mean error of {error:.3} mm over the skin that moves is {verdict} {} mm",
             self.taken, self.accepted_mm
         )
     }

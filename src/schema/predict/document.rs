@@ -200,8 +200,7 @@ impl PredictDocument {
     pub fn accepted(&self) -> Option<Accepted> {
         let chooses = self.method == MethodName::Auto
             && self.estimate == EstimateName::Auto
-            && !self.corrected
-            && self.contact != ContactName::Unilateral;
+            && !self.corrected;
         chooses.then(|| Accepted {
             skin_mm: self.accept_mm.unwrap_or(USUALLY_ACCEPTED_MM),
             regions_mm: self.accept_regions_mm.clone(),

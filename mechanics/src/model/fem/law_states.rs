@@ -15,6 +15,7 @@ use super::assembly::Tissue;
 use super::cell_stiffness::Dilatation;
 use crate::material::ElasticTensor;
 use crate::material::hyperelastic::point::{Carried, Point};
+use crate::material::hyperelastic::{Law, NeoHookean};
 use crate::mesh::Vector;
 use crate::model::cell_state::CellState;
 use crate::model::fem::inner_stress::{Grown, InnerStress};
@@ -78,7 +79,11 @@ fn of_cell(
     let (mesh, grown) = (tissue.mesh, inner.grown(cell));
     let (shape, nodes) = (mesh.cells.shape(cell), mesh.cells.nodes(cell));
     let corners: Vec<Vector> = mesh.corners(cell).collect();
-    let law = tissue.materials[tissue.material_of_cell[cell] as usize].hyperelastic().law;
+    // Tissue with linear fibres is across them what its tensor says, not what it is without.
+    let tensor = tissue.tensor(cell);
+    let of_tensor = NeoHookean { lambda: tensor.lambda, mu: tensor.mu };
+    let material = &tissue.materials[tissue.material_of_cell[cell] as usize];
+    let law = material.stated_law().copied().unwrap_or(Law::NeoHookean(of_tensor));
     let mut points = Vec::new();
     for point in &reference_cell(shape).points {
         let at = point.at(&corners)?;
@@ -91,7 +96,6 @@ fn of_cell(
         }
         points.push((Point::new(&law, None, f).pulled(inner.pulls(cell)), at.volume));
     }
-    let tensor = tissue.tensor(cell);
     let carried = match (pressure, (tissue.dilatation)(shape)) {
         (Some(pressure), _) => Some(Carried { pressure, modulus: tensor.pressure_part().lambda }),
         (None, Dilatation::Mean) => Some(of_mean(&points, tensor.split_volume().1.lambda)),

@@ -5,13 +5,14 @@ use super::tissue::Deformed;
 use crate::mesh::Vector;
 use crate::model::dofs::Constrained;
 
-/// Forces are measured against what holds and loads exert, at least this share of the most on the way: tissue that is turned
-/// as a whole exerts nothing in the end.
+/// Forces are measured against what holds and loads exert, at least this share of the most on the way, and of what the movement
+/// would exert on nodes that stay: tissue that is moved or turned as a whole exerts nothing in the end.
 const LEAST_SCALE: f64 = 1e-3;
 
 /// |f_free| / |f_held|, with the forces that volumes left over by pressures stand for.
-#[derive(Default)]
 pub(super) struct Balance {
+    /// The norm of forces in mN that rounding leaves: as much is none.
+    rounding: f64,
     /// The largest norm of the forces of holds and loads on the way, in mN.
     most_exerted: f64,
     /// The norm of the forces on free nodes that nothing balances, in mN.
@@ -21,6 +22,15 @@ pub(super) struct Balance {
 }
 
 impl Balance {
+    pub fn new(rounding: f64) -> Self {
+        Balance { rounding, most_exerted: 0.0, unbalanced: 0.0, residual: 0.0 }
+    }
+
+    /// Takes up the norm in mN of what a part of the movement would exert on nodes that stay.
+    pub fn moved(&mut self, load: f64) {
+        self.most_exerted = self.most_exerted.max(load);
+    }
+
     /// Measures tissue at positions; what acts is given by row.
     pub fn measure(
         &mut self,
@@ -42,6 +52,9 @@ impl Balance {
         self.unbalanced = (left.iter().map(Vector::norm_squared).sum::<f64>() + volumes).sqrt();
         self.most_exerted = self.most_exerted.max(exerted.sqrt());
         let scale = exerted.sqrt().max(LEAST_SCALE * self.most_exerted);
-        self.residual = if scale > 0.0 { self.unbalanced / scale } else { 0.0 };
+        self.residual = match self.unbalanced <= self.rounding || scale == 0.0 {
+            true => 0.0,
+            false => self.unbalanced / scale,
+        };
     }
 }

@@ -121,14 +121,15 @@ impl<'a> Bricks<'a> {
         (points * (size_of::<Point>() + 8 * size_of::<Vector>())) as f64 / 1e6
     }
 
-    /// The norm of the force on each corner that a stress of lambda + 2 mu exerts, and V (lambda + 2 mu), of each point.
-    pub fn moduli(&self) -> impl Iterator<Item = (f64, f64)> {
-        self.bricks.iter().flat_map(|brick| {
+    /// As those of simplices, of each point.
+    pub fn moduli(&self, farthest: f64) -> impl Iterator<Item = (f64, f64)> {
+        self.bricks.iter().flat_map(move |brick| {
             let (lambda, mu) = self.laws[usize::from(brick.law)].at_rest();
             brick.points.iter().map(move |point| {
                 let modulus = point.volume * (lambda + 2.0 * mu);
                 let squares: f64 = point.gradients.iter().map(Vector::norm_squared).sum();
-                (modulus * squares.sqrt(), modulus)
+                let slope = squares.sqrt();
+                (modulus * slope * (1.0 + farthest * slope), modulus)
             })
         })
     }
@@ -226,7 +227,9 @@ impl Brick {
 impl PointAtRest {
     /// F for the positions of the corners.
     fn gradient(&self, corners: &[Vector]) -> Matrix3<f64> {
-        corners.iter().zip(&self.gradients).map(|(x, g)| x * g.transpose()).sum()
+        let Some(first) = corners.first() else { return Matrix3::zeros() };
+        let others = corners.iter().zip(&self.gradients).skip(1);
+        others.map(|(x, g)| (x - first) * g.transpose()).sum()
     }
 }
 

@@ -42,6 +42,8 @@ struct Hierarchy {
 pub(super) struct Direction {
     pub positions: Vec<Vector>,
     pub pressures: Vec<f64>,
+    /// The norm in mN of what the step was to balance.
+    pub load: f64,
     /// Forces of the rows of contact in mN after the whole step; nothing where nothing presses.
     pub multipliers: Vec<f64>,
     pub iterations: usize,
@@ -100,6 +102,9 @@ impl Directions {
         let system = constrained.system(deformed.tangent(progress)?, remaining.nodes);
         self.check_memory(&system)?;
         let known = constrained.known(remaining.case);
+        let forces = known.right_hand_side(&system);
+        let squares = forces.as_flattened().iter().map(|force| force * force);
+        let load = squares.sum::<f64>().sqrt();
         let mut hierarchy = self.hierarchy();
         let inner = Inner(progress);
         let coupling = self
@@ -109,11 +114,11 @@ impl Directions {
         let mut found = match coupling {
             None => {
                 let multigrid = hierarchy.solver.hierarchy(&system);
-                alone(&system, multigrid, &known, remaining.relative, &inner)?
+                alone(&system, multigrid, &forces, remaining.relative, &inner)?
             }
             Some(coupling) => {
                 let volumes = left_volumes(&known, coupling, remaining.volumes);
-                let right = MixedRightHandSide { forces: known.right_hand_side(&system), volumes };
+                let right = MixedRightHandSide { forces, volumes };
                 let solver = &hierarchy.solver;
                 let system = MixedSystem { stiffness: &system, coupling, solver };
                 together(&system, &right, remaining.relative, &inner)?
@@ -143,6 +148,7 @@ impl Directions {
         Ok(Direction {
             positions: constrained.numbering.by_row(&by_node),
             pressures: found.pressures,
+            load,
             multipliers,
             iterations: found.iterations,
             is_convex: found.is_convex,
@@ -222,14 +228,13 @@ impl Hierarchy {
 fn alone(
     system: &System,
     multigrid: &Multigrid,
-    known: &Known,
+    right_hand_side: &Unknowns,
     relative_residual: f64,
     progress: &Inner,
 ) -> Result<Found, SolverError> {
     let enough = Enough { relative_residual, most_iterations: MOST_INNER };
-    let right_hand_side = known.right_hand_side(system);
     let found =
-        conjugate_gradient::direction(system, multigrid, &right_hand_side, enough, progress)?;
+        conjugate_gradient::direction(system, multigrid, right_hand_side, enough, progress)?;
     let conjugate_gradient::Direction { unknowns, iterations, is_convex } = found;
     Ok(Found { unknowns, pressures: Vec::new(), iterations, is_convex, is_met: true })
 }

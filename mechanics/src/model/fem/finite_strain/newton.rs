@@ -88,8 +88,8 @@ impl<'a, 'b> Newton<'a, 'b> {
             short: 0,
             jammed: 0,
             unsettled: false,
+            balance: Balance::new(tissue.rounding().force),
             rounding: tissue.rounding(),
-            balance: Balance::default(),
             history: start.history,
             path: start.path,
             halved: 0,
@@ -111,8 +111,7 @@ impl<'a, 'b> Newton<'a, 'b> {
             self.history.push(residual);
             self.path.push(self.made);
             tell(progress, self.history.len(), residual, wanted)?;
-            let rests = residual <= wanted || self.balance.unbalanced <= self.rounding.force;
-            if self.made >= 1.0 && rests && contact_rests {
+            if self.made >= 1.0 && residual <= wanted && contact_rests {
                 let report = self.report(&deformed)?;
                 let (positions, pressures, forces) = (self.x, self.p, deformed.forces);
                 let (directions, touching) = (self.directions, self.touching);
@@ -164,6 +163,7 @@ impl<'a, 'b> Newton<'a, 'b> {
         self.x.iter_mut().zip(&direction.positions).for_each(|(x, d)| *x += d * taken);
         self.p.iter_mut().zip(&direction.pressures).for_each(|(p, d)| *p += d * taken);
         if ahead > 0.0 {
+            self.balance.moved(direction.load);
             self.made = advanced(self.made, taken * ahead);
             let most = self.touching.as_ref().map_or(1.0, |touching| touching.most_ahead);
             self.ahead = (2.0 * taken * ahead).max(LEAST_AHEAD).min(most);
@@ -209,6 +209,10 @@ impl<'a, 'b> Newton<'a, 'b> {
         let last = self.history.iter().rev().nth(1).copied().unwrap_or(1.0);
         let wanted = self.question.tolerance.relative_residual;
         let residual = self.balance.residual;
+        // Nothing is left to balance, and contact goes on.
+        if residual == 0.0 {
+            return 2.0 * ADVANCING;
+        }
         let ratio = residual / last;
         (0.9 * ratio * ratio).clamp(SHARPEST, 2.0 * ADVANCING).max(0.3 * wanted / residual)
     }

@@ -87,14 +87,16 @@ impl<'a> Simplices<'a> {
         (self.cells.len() * (size_of::<Simplex>() + size_of::<Point>())) as f64 / 1e6
     }
 
-    /// The norm of the forces that a stress of lambda + 2 mu exerts on the corners, and V (lambda + 2 mu), of each cell.
-    pub fn moduli(&self) -> impl Iterator<Item = (f64, f64)> {
+    /// The norm of the forces that a stress of lambda + 2 mu exerts on the corners, more by as often as a cell fits into the
+    /// `farthest` distance of a node from the origin in mm, whose last digit is lost; and V (lambda + 2 mu), of each cell.
+    pub fn moduli(&self, farthest: f64) -> impl Iterator<Item = (f64, f64)> {
         let at_rest: Vec<f64> =
             self.laws.iter().map(Law::at_rest).map(|(lambda, mu)| lambda + 2.0 * mu).collect();
         self.cells.iter().map(move |cell| {
             let modulus = cell.volume * at_rest[usize::from(cell.law)];
             let squares: f64 = cell.gradients.iter().map(Vector::norm_squared).sum();
-            (modulus * squares.sqrt(), modulus)
+            let slope = squares.sqrt();
+            (modulus * slope * (1.0 + farthest * slope), modulus)
         })
     }
 
@@ -145,10 +147,11 @@ impl<'a> Simplices<'a> {
 }
 
 impl Simplex {
-    /// F at positions, or the derivative of F along a step.
+    /// F at positions, or the derivative of F along a step; from differences, so that it does not matter where the cell lies.
     fn gradient(&self, x: &[Vector]) -> Matrix3<f64> {
-        let nodes = self.rows.iter().zip(&self.gradients);
-        nodes.map(|(&row, g)| x[row as usize] * g.transpose()).sum()
+        let first = x[self.rows[0] as usize];
+        let nodes = self.rows.iter().zip(&self.gradients).skip(1);
+        nodes.map(|(&row, g)| (x[row as usize] - first) * g.transpose()).sum()
     }
 
     fn corner_of(&self, row: usize) -> usize {

@@ -113,7 +113,8 @@ impl<'a> Tissue<'a> {
     /// What rounding leaves: the norm of forces in mN, since stress is a difference of terms as large as the moduli, and
     /// energy in mN mm.
     pub fn rounding(&self) -> Rounding {
-        let moduli = || self.simplices.moduli().chain(self.bricks.moduli());
+        let farthest = self.rest.iter().map(Vector::norm).fold(0.0, f64::max);
+        let moduli = || self.simplices.moduli(farthest).chain(self.bricks.moduli(farthest));
         let squares: f64 = moduli().map(|(force, _)| force * force).sum();
         let energy: f64 = moduli().map(|(_, energy)| energy).sum();
         Rounding { force: ROUNDING * squares.sqrt(), energy: ROUNDING * energy }
