@@ -18,6 +18,8 @@ import { isDrawnBySoftware, lights, setBands } from "./shading.js";
 export type { Shape } from "./geometry.js";
 export interface Hit {
   node: number;
+  /** The triangle. */
+  face: number;
   point_mm: Triple;
 }
 export type SkinLook = "solid" | "through" | "hidden";
@@ -116,6 +118,11 @@ export class Scene {
     this.draw();
   }
 
+  /** The skin at rest, as it was shown. */
+  get resting(): Shape {
+    return this.rest;
+  }
+
   /** Where the nodes of the skin are drawn: xyz in mm in the frame of the case. */
   get skinPositions_mm(): Float32Array {
     return this.skin === undefined ? new Float32Array() : this.skin.geometry.attributes.position!.array as Float32Array;
@@ -149,11 +156,11 @@ export class Scene {
   }
 
   /** Another state of the skin as a light shell over it, or none. */
-  overlay(shape: Shape | undefined, colour = 0x3d6fb4): void {
+  overlay(shape: Shape | undefined, colour = 0x3d6fb4, opacity = 0.35): void {
     if (this.ghost !== undefined) this.drop(this.ghost);
     this.ghost = undefined;
     if (shape !== undefined) {
-      const material = new MeshLambertMaterial({ color: colour, transparent: true, opacity: 0.35, side: DoubleSide, depthWrite: false });
+      const material = new MeshLambertMaterial({ color: colour, transparent: true, opacity, side: DoubleSide, depthWrite: false });
       this.ghost = new Mesh(geometryOf(shape), material);
       this.ghost.renderOrder = 3;
       this.head.add(this.ghost);
@@ -276,7 +283,7 @@ export class Scene {
     const at = seen.geometry.attributes.position!.array;
     const away = (node: number) => point.distanceTo(new Vector3(at[3 * node], at[3 * node + 1], at[3 * node + 2]));
     const node = [hit.face.a, hit.face.b, hit.face.c].reduce((nearest, next) => (away(next) < away(nearest) ? next : nearest));
-    return { node, point_mm: point.toArray() };
+    return { node, face: hit.faceIndex!, point_mm: point.toArray() };
   }
 
   /** The node of the skin in the middle of the view, or of its right half. */

@@ -8,7 +8,7 @@ import { note } from "../route.js";
 import { readVtp } from "../vtp.js";
 import { Workbench } from "../workbench.js";
 import { crumbs } from "./crumbs.js";
-import { kindOf } from "./plain.js";
+import { kindOf } from "./kinds.js";
 import { comparisonFacts, histogram } from "./distances.js";
 
 export async function comparePage(app: App): Promise<Leave> {

@@ -12,6 +12,7 @@ import { address, note } from "../route.js";
 import { mm } from "../figures.js";
 import { Workbench } from "../workbench.js";
 import { crumbs } from "./crumbs.js";
+import { Further } from "./further.js";
 import { innerSliders, type InnerSliders } from "./inner.js";
 import { movements, told, type Movements } from "./movements.js";
 import { savedPlans } from "./plans.js";
@@ -270,18 +271,26 @@ class Planning {
     const { words, service } = this.app;
     const models = [["auto", words.auto], ["fem_linear", "fem_linear"], ["fem_nonlinear", "fem_nonlinear"]] as const;
     const said = make("div");
+    const method = select(words.method, models, this.model, (value) => { this.model = value; });
+    // What was learned is learned of one method.
+    const further = new Further(this.app, this.opened.document, () => {
+      if (this.model !== "auto") return;
+      this.model = "fem_linear";
+      method.querySelector("select")!.value = this.model;
+    });
     const predict = button(words.predict, () => {
       predict.disabled = true;
+      const { outputs, ...asked } = further.asked;
       const spec = {
         kind: "predict", case: this.opened.id, plan: planDocument(this.plan, this.pivots, this.opened.frame),
-        outputs: ["skin.vtp", "skin.glb"], ...(this.model === "auto" ? {} : { method: this.model }),
+        outputs: ["skin.vtp", "skin.glb", ...outputs], ...asked, ...(this.model === "auto" ? {} : { method: this.model }),
       };
       service.post<Documents["StatusInfo"]>("/v1/jobs", spec).then(
         ({ id }) => { location.hash = address(["job", id], written(this.plan, this.pivots)); },
         (error: unknown) => { predict.disabled = false; said.replaceChildren(refusal(error, words)); });
     }, { className: "primary" });
     const glb = button(words.glb, () => void this.saveGlb().catch((error: unknown) => said.replaceChildren(refusal(error, words))));
-    return make("div", { className: "stack" }, select(words.method, models, this.model, (value) => { this.model = value; }),
+    return make("div", { className: "stack wide" }, method, further.element,
       make("div", { className: "row" }, predict, glb), said);
   }
 
