@@ -53,7 +53,7 @@ export function materialChoices(app: App, document: CaseDocument, changed: (chos
 function aboutPreset({ words }: App, { material, state, source, doubt }: Preset): HTMLElement[] {
   const numbers = [material.young_modulus_kpa === undefined || material.young_modulus_kpa === null ? "" : `E ${figure(material.young_modulus_kpa)} kPa`,
     material.poisson_ratio === undefined || material.poisson_ratio === null ? "" : `ν ${figure(material.poisson_ratio, 4)}`, material.law?.kind.replaceAll("_", " ") ?? ""].filter((part) => part !== "").join(", ");
-  return [make("p", {}, `${numbers === "" ? "" : `${numbers}. `}${state} (${source.authors} ${source.year}, ${source.place})`),
+  return [make("p", {}, `${numbers === "" ? "" : `${numbers}: `}${state} (${source.authors} ${source.year}, ${source.place})`),
     ...(typeof doubt === "string" ? [make("p", { className: "warned" }, `${words.doubt}: ${doubt}`)] : [])];
 }
 

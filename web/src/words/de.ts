@@ -110,7 +110,7 @@ export const de: Words = {
   coverageHint: "Gewinn ist der Fehler der Mechanik weniger dem der Methode. Kleinstes p: das kleinste, das so viele Fälle geben können. Im Band: Zahlen in ihrem Band von 10 bis 90 %; 80 % sind richtig.",
   theta: "Theta", thetaHint: "Des Gewebes von Rubin und Bodner, nach Art der Operation. Es ist bestimmt, wo der Fehler sich um 0,01 mm oder mehr ändert und im Innern am kleinsten ist.",
   surgeryClass: "Art", patients: "Patienten", spreadMm: "Fehler ändert sich um, mm", determined: "bestimmt", yes: "ja", no: "nein",
-  errorMapHint: "Eine Methode unter den Farben wählen: wo sie irrt, als Mittel über die Fälle, auf dem mittleren Gesicht.",
+  errorMapHint: "Eine Methode unter den Farben wählen: wo sie irrt, als Mittel über die Fälle, auf dem Gesicht des ersten.",
 
   methods: "Methoden", subjects: "Personen", sd: "Streuung", median: "Median", everyTwo: "Je zwei", medianDifference: "Unterschied, Median, mm", differing: "verschieden", exact: "exakt",
   smallestHint: "Kleinstes p: das kleinste, das so viele verschiedene Personen geben können. Mit weniger als sechs ist kein Unterschied unter 0,05.",

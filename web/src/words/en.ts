@@ -108,7 +108,7 @@ export const en = {
   coverageHint: "Gain is what mechanics errs less what the method errs. Least p: the smallest that so many cases can give. In band: numbers within their band from 10 to 90 %; 80 % is right.",
   theta: "Theta", thetaHint: "Of Rubin and Bodner's tissue, by class of surgery. It is determined where the error changes by 0.01 mm or more and is smallest inside the interval.",
   surgeryClass: "Class", patients: "patients", spreadMm: "error changes by, mm", determined: "determined", yes: "yes", no: "no",
-  errorMapHint: "Choose a method among the colours: where it errs, as the mean over the cases, on the mean face.",
+  errorMapHint: "Choose a method among the colours: where it errs, as the mean over the cases, on the face of the first.",
 
   methods: "Methods", subjects: "Subjects", sd: "sd", median: "median", everyTwo: "Every two", medianDifference: "median difference, mm", differing: "differing", exact: "exact",
   smallestHint: "Least p: the smallest that so many differing subjects can give. With fewer than six no difference is below 0.05.",
