@@ -106,7 +106,7 @@ fn what_mechanics_misses_alike_is_added_to_the_next_prediction() {
     for array in ["no_movement", "linear", "GRNN", "linear_GRNN", "linear_SDM"] {
         assert!(errors.contains(&format!("Name=\"mean_error_{array}_mm\"")), "{array}");
     }
-    assert!(!errors.contains("tuned") && errors.contains("NumberOfPoints=\"96\""), "{errors}");
+    assert!(!errors.contains("tuned") && errors.contains("NumberOfPoints=\"66\""), "{errors}");
     sources.model = std::fs::read(out.path().join("model.json")).unwrap();
 
     let spec = json!({"method": "fem_linear", "correction": {"model": "any"}});
