@@ -126,7 +126,7 @@ export async function kinds(page) {
     await page.locator("[data-region=fat] select").selectOption("tissue_chabanas_2003");
     await page.locator("[data-region=fat]").getByText("(Chabanas, Luboz").waitFor();
     assert.deepEqual(await serious(page), []);
-    await page.getByLabel("Model", { exact: true }).selectOption("fem_linear");
+    await page.locator("section", { has: page.getByRole("button", { name: "Predict in full" }) }).getByRole("combobox").first().selectOption("fem_linear");
     await page.getByRole("button", { name: "Predict in full" }).click();
     await page.getByRole("img", { name: "Mises' stress, kPa" }).waitFor();
     const id = await page.evaluate(() => /job\/([0-9a-f-]+)/.exec(location.hash)[1]);
