@@ -82,7 +82,6 @@ class Planning {
       now: () => planDocument(this.plan, this.pivots, opened.frame), 
       load: (plan) => this.set(plan), read: (stored) => this.readable(stored), called: (plan) => told(plan, words), compare: (plan) => this.differenceTo(plan),
     }));
-    bench.start();
     bench.canvasKeys((event) => this.pressed(event));
     await bones;
     this.moveAll();
@@ -102,6 +101,7 @@ class Planning {
     const centres = this.loaded.description.segments.map(({ name, centre_mm }) => [name, centre_mm as Triple] as const);
     this.pivots = { ...Object.fromEntries(centres), ...readPivots(planState(app.route.state)) };
     bench.scene.showSkin(this.loaded.rest);
+    bench.start();
     const { words } = app;
     bench.offer([
       { name: "displacement", label: words.displacement, scheme: "length", range_mm: 10, values: () => lengths(this.sum.displacement_mm) },

@@ -102,12 +102,12 @@ class Result {
     this.bench.scene.orient(this.opened.frame);
     this.bench.scene.showSkin(this.before);
     this.bench.scene.moveSkin(this.displacement_mm);
+    this.bench.start();
     this.knowPlan();
     const values = { ...await this.furtherValues(), ...await this.stress() };
     for (const [name, chosen] of Object.entries(values)) if (name.startsWith("set_")) this.parts[name.slice("set_".length)] = chosen;
     this.bench.offer(this.maps(values));
     this.draw();
-    this.bench.start();
     await this.bones();
   }
 
