@@ -57,7 +57,7 @@ struct ListParameters {
     kind: Option<JobKind>,
     /// Only jobs with this tag.
     tag: Option<String>,
-    /// Only jobs of this case.
+    /// Only jobs of this case, and those that read it among others: all that goes when it is erased, such as models that were learned from it.
     #[param(format = Uuid)]
     case: Option<String>,
     cursor: Option<String>,

@@ -92,7 +92,9 @@ const BY_ID: &str = found!("id = $1 AND tenant = $2");
 const LIST: &str = found!(
     "tenant = $7 AND id < $1 AND ($2 = '' OR status = $2) AND ($3 = '' OR kind = $3) \
      AND ($4 = '' OR EXISTS (SELECT 1 FROM job_tags WHERE job_tags.job_id = jobs.id AND job_tags.tag = $4)) \
-     AND ($5 = '' OR case_id = $5) ORDER BY id DESC LIMIT $6"
+     AND ($5 = '' OR case_id = $5 \
+       OR EXISTS (SELECT 1 FROM job_cases WHERE job_cases.job_id = jobs.id AND job_cases.case_id = $5)) \
+     ORDER BY id DESC LIMIT $6"
 );
 const DOCUMENT: &str = "SELECT document FROM jobs WHERE id = $1 AND tenant = $2";
 const STATUS: &str = "SELECT status FROM jobs WHERE id = $1 AND tenant = $2";

@@ -47,6 +47,30 @@ async fn a_worker_that_is_killed_in_the_middle_of_a_solution_is_followed_by_the_
 }
 
 #[tokio::test]
+async fn a_training_that_dies_in_its_middle_is_learned_again_to_the_last_digit() {
+    let spec = json!({"kind": "learn", "virtual": {"patients": 4, "seed": 3, "fineness": 1}});
+    let alone = Server::start();
+    let id = accepted(&alone, &spec).await;
+    let expected = files(&succeeds(&alone, &id, 1).await);
+
+    // Its process dies once the cohort is gathered, and the next one learns.
+    let server = faulty("compare:begin:1:kill:attempt=1", &["--workers", "1"]);
+    let id = accepted(&server, &spec).await;
+    assert_eq!(files(&succeeds(&server, &id, 2).await), expected);
+
+    // The whole service dies, and the next one learns.
+    let server = faulty("compare:begin:1:hold", &["--workers", "1"]);
+    let id = accepted(&server, &spec).await;
+    until("it learns", async || {
+        (state(&server, &id).await["phase"] == "compare").then_some(())
+    })
+    .await;
+    shows_no_result(&server, &id).await;
+    let server = Server::start_in(server.kill(), &[]);
+    assert_eq!(files(&succeeds(&server, &id, 2).await), expected);
+}
+
+#[tokio::test]
 async fn a_service_that_is_killed_while_it_meshes_loses_neither_the_case_nor_what_waits_for_it() {
     for fault in ["mesh:begin:1:hold", "publish:before:1:kill", "publish:after:1:kill"] {
         let server = faulty(fault, &["--workers", "1"]);

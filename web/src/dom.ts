@@ -20,6 +20,16 @@ export function make<Name extends keyof HTMLElementTagNameMap>(
   return element as HTMLElementTagNameMap[Name];
 }
 
+const SVG = "http://www.w3.org/2000/svg";
+
+/** A part of a drawing with its attributes and what it holds. */
+export function svg(name: string, attributes: Record<string, string | number>, ...children: (SVGElement | string)[]): SVGElement {
+  const element = document.createElementNS(SVG, name);
+  for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, String(value));
+  element.append(...children);
+  return element;
+}
+
 export const find = <T extends Element = HTMLElement>(selector: string): T => document.querySelector<T>(selector)!;
 
 export function button(text: string, clicked: () => void, attributes: Attributes<"button"> = {}): HTMLButtonElement {
@@ -31,6 +41,11 @@ export function button(text: string, clicked: () => void, attributes: Attributes
 /** What may be wider than its place, to be scrolled by keys too. */
 export function scrolling(label: string, ...children: Child[]): HTMLElement {
   return make("div", { className: "scroll", tabIndex: 0, role: "region", aria: { label } }, ...children);
+}
+
+/** A part of a result under a heading. */
+export function card(title: string, ...children: Child[]): HTMLElement {
+  return make("section", { className: "card said" }, make("h2", {}, title), ...children);
 }
 
 export type Cell = string | number | Node;

@@ -15,3 +15,6 @@ export const signed = (value: number): string => (Math.abs(value) < 0.005 ? "0.0
 export function when(time: string): string {
   return new Date(time).toLocaleString(document.documentElement.lang, { dateStyle: "medium", timeStyle: "short" });
 }
+
+/** A probability; nothing where there is none. */
+export const probability = (p: number | null | undefined): string => (p === null || p === undefined ? "–" : p < 0.001 ? p.toExponential(1) : figure(p, 3));

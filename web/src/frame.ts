@@ -45,6 +45,13 @@ const AXES: Record<FrameName, Axes> = {
 export const still = (): Motion => ({ forward: 0, up: 0, left: 0, pitch: 0, roll: 0, yaw: 0 });
 export const isStill = (motion: Motion): boolean => MOTIONS.every((name) => motion[name] === 0);
 
+/** The three angles of a rotation R = Rz Ry Rx in degrees, that about y in [-90, 90]; of a row-major 4x4 matrix. */
+export function angles(matrix: ArrayLike<number>): Triple {
+  const degrees = 180 / Math.PI;
+  const [a, b, c, d, e] = [0, 4, 8, 9, 10].map((at) => matrix[at]!) as [number, number, number, number, number];
+  return [Math.atan2(d, e) * degrees, Math.asin(Math.min(Math.max(-c, -1), 1)) * degrees, Math.atan2(b, a) * degrees];
+}
+
 /** As a plan says it, in the frame of the case. */
 export function movement(motion: Motion, frame: FrameName): { translation_mm: Triple; rotation_deg: Triple } {
   const translation_mm: Triple = [0, 0, 0];

@@ -32,8 +32,6 @@ const TISSUE = { "*": { young_modulus_kpa: 15, poisson_ratio: 0.45 } };
 
 const nodes = (set: string) => ({ node_set: set });
 const having = (roles: SetRoles, role: Role) => Object.keys(roles).filter((set) => roles[set] === role);
-/** One set, or the union of several. */
-const union = (sets: string[]) => (sets.length === 1 ? nodes(sets[0]!) : { any: sets.map(nodes) });
 
 /** The document; a bone is drawn by its surface, whose file is called as it is. */
 export function documentOf({ name, frame, units, mesh }: CaseSettings, roles: SetRoles, bones: string[]): object {
@@ -42,6 +40,13 @@ export function documentOf({ name, frame, units, mesh }: CaseSettings, roles: Se
     materials: TISSUE,
   };
   return withRoles(start as unknown as CaseDocument, roles);
+}
+
+/** A set that no mesh has: nodes on the faces of a surface that was painted. */
+export interface PaintedSet {
+  name: string;
+  role: Role;
+  selection: { surface: string; within_mm: number };
 }
 
 type Selected = { node_set?: string; any?: Selected[] };
@@ -62,6 +67,21 @@ export function rolesOf(document: CaseDocument, sets: string[]): SetRoles {
   return Object.fromEntries(sets.map((set) => [set, role(set) ?? "none"]));
 }
 
+/** The document with sets that were painted; what it says already stays. */
+export function withPainted(document: CaseDocument, sets: PaintedSet[]): CaseDocument {
+  return sets.reduce((made, { name, role, selection }): CaseDocument => {
+    const whole = (made.skin ?? undefined) === undefined ? selection : { any: [...partsOf(made.skin), selection] };
+    const added: Record<Role, object> = {
+      none: {}, skin: { skin: whole }, region: { skin_regions: { ...made.skin_regions, [name]: selection } },
+      segment: { segments: [...(made.segments ?? []), { name, nodes: selection }] }, fixed: { fixed: [...(made.fixed ?? []), selection] },
+      sliding: { sliding: [...(made.sliding ?? []), { nodes: selection, normal: "surface" }] },
+    };
+    return { ...made, ...added[role] } as CaseDocument;
+  }, document);
+}
+/** What a union is of. */
+const partsOf = (selection: unknown): Selected[] => (selection as Selected).any ?? [selection as Selected];
+
 /** The document with other roles: what it says of sets that keep theirs, and of nodes that are no set, stays as it is. */
 export function withRoles(document: CaseDocument, roles: SetRoles): CaseDocument {
   const before = rolesOf(document, Object.keys(roles));
@@ -77,11 +97,13 @@ export function withRoles(document: CaseDocument, roles: SetRoles): CaseDocument
   const sliding = [...carried, ...added("sliding").map((set) => ({ nodes: nodes(set), normal: "surface" }))];
   const regions = { ...Object.fromEntries(Object.entries(document.skin_regions ?? {}).filter(([, held]) => !changed(held))),
     ...Object.fromEntries(added("region").map((set) => [set, nodes(set)])) };
-  const skin = having(roles, "skin");
+  // Painted parts of the skin stay whatever becomes of its sets.
+  const unnamed = document.skin === undefined || document.skin === null ? [] : partsOf(document.skin).filter((part) => setsIn(part).length === 0);
+  const skin = [...having(roles, "skin").map(nodes), ...unnamed];
   const { skin: _, skin_regions: __, sliding: ___, ...rest } = document;
   const sameSkin = document.skin !== undefined && !changed(document.skin) && added("skin").length === 0;
   return {
-    ...rest, ...(sameSkin ? { skin: document.skin } : skin.length === 0 ? {} : { skin: union(skin) }),
+    ...rest, ...(sameSkin ? { skin: document.skin } : skin.length === 0 ? {} : { skin: skin.length === 1 ? skin[0]! : { any: skin } }),
     ...(Object.keys(regions).length === 0 ? {} : { skin_regions: regions }), segments,
     fixed: [...kept(document.fixed, (one) => one), ...added("fixed").map(nodes)],
     ...(sliding.length === 0 ? {} : { sliding }),

@@ -9,6 +9,7 @@ import {
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import type { Triple } from "./api.js";
 import { share, type Scheme } from "./colours.js";
+import { coarse } from "./coarse.js";
 import { drawn, type FrameName } from "./frame.js";
 import { geometryOf, seenFrom, VIEWS, type Shape } from "./geometry.js";
 import { Marks, type Mark } from "./marks.js";
@@ -18,6 +19,8 @@ import { isDrawnBySoftware, lights, setBands } from "./shading.js";
 export type { Shape } from "./geometry.js";
 export interface Hit {
   node: number;
+  /** The triangle. */
+  face: number;
   point_mm: Triple;
 }
 export type SkinLook = "solid" | "through" | "hidden";
@@ -28,6 +31,12 @@ const MOVING_BONE = 0xd8c48f;
 /** Around the head there is a little room, above all for what stands over it. */
 const ROOM = 1.2;
 const KEY_TURN = Math.PI / 24;
+/** Pixels of the picture for one of the page. */
+const STILL = { ratio: () => Math.min(devicePixelRatio, 2) };
+/** Without a graphics card, while something moves: fewer pixels, and of a large surface fewer triangles. */
+const MOVING = { ratio: 0.5, triangles: 12_000 };
+/** What follows another change within this is a movement, which ends after as long without one; in ms. */
+const SETTLED = 250;
 
 export class Scene {
   readonly canvas: HTMLCanvasElement;
@@ -56,10 +65,15 @@ export class Scene {
   private radius = 100;
   private reach = { across: 100, tall: 100 };
   private waiting = false;
+  /** Over all nodes and over some, where there are many. */
+  private indices: { all: BufferAttribute; few: BufferAttribute } | undefined;
+  private isMoving = false;
+  private changed = -Infinity;
+  private settling: ReturnType<typeof setTimeout> | undefined;
 
   constructor(private readonly host: HTMLElement, label: string) {
-    this.renderer = new WebGLRenderer({ antialias: !isDrawnBySoftware(), preserveDrawingBuffer: true, alpha: true });
-    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+    this.renderer = new WebGLRenderer({ antialias: !isDrawnBySoftware(), alpha: true });
+    this.renderer.setPixelRatio(STILL.ratio());
     this.canvas = this.renderer.domElement;
     this.canvas.tabIndex = 0;
     this.canvas.setAttribute("role", "img");
@@ -70,7 +84,7 @@ export class Scene {
     this.head.add(this.marks.group, this.pointed.group);
     this.controls = new OrbitControls(this.camera, this.canvas);
     this.controls.enableDamping = false;
-    this.controls.addEventListener("change", () => this.draw());
+    this.controls.addEventListener("change", () => this.stir());
     this.watcher = new ResizeObserver(() => this.resize());
     this.watcher.observe(host);
     // For tests, and for whoever wants the numbers that are drawn.
@@ -87,6 +101,7 @@ export class Scene {
 
   showSkin(rest: Shape): void {
     this.rest = rest;
+    this.settle();
     for (const old of [this.skin, this.prepass]) if (old !== undefined) this.drop(old);
     const geometry = geometryOf(rest);
     geometry.setAttribute("uv", new BufferAttribute(new Float32Array((rest.points_mm.length / 3) * 2), 2));
@@ -96,6 +111,8 @@ export class Scene {
     this.prepass.renderOrder = 1;
     this.prepass.visible = this.skinMaterial.transparent;
     this.head.add(this.prepass, this.skin);
+    const few = isDrawnBySoftware() ? coarse(rest.points_mm, rest.triangles, MOVING.triangles) : undefined;
+    this.indices = few === undefined ? undefined : { all: geometry.index!, few: new BufferAttribute(few, 1) };
     geometry.computeBoundingSphere();
     const sphere = geometry.boundingSphere!;
     this.centre = sphere.center.clone().applyMatrix4(this.head.matrix);
@@ -113,7 +130,12 @@ export class Scene {
     normals(into, this.rest.triangles, normal.array as Float32Array);
     position.needsUpdate = true;
     normal.needsUpdate = true;
-    this.draw();
+    this.stir();
+  }
+
+  /** The skin at rest, as it was shown. */
+  get resting(): Shape {
+    return this.rest;
   }
 
   /** Where the nodes of the skin are drawn: xyz in mm in the frame of the case. */
@@ -149,11 +171,11 @@ export class Scene {
   }
 
   /** Another state of the skin as a light shell over it, or none. */
-  overlay(shape: Shape | undefined, colour = 0x3d6fb4): void {
+  overlay(shape: Shape | undefined, colour = 0x3d6fb4, opacity = 0.35): void {
     if (this.ghost !== undefined) this.drop(this.ghost);
     this.ghost = undefined;
     if (shape !== undefined) {
-      const material = new MeshLambertMaterial({ color: colour, transparent: true, opacity: 0.35, side: DoubleSide, depthWrite: false });
+      const material = new MeshLambertMaterial({ color: colour, transparent: true, opacity, side: DoubleSide, depthWrite: false });
       this.ghost = new Mesh(geometryOf(shape), material);
       this.ghost.renderOrder = 3;
       this.head.add(this.ghost);
@@ -262,12 +284,13 @@ export class Scene {
     this.camera.zoom *= nearer;
     this.camera.updateProjectionMatrix();
     this.controls.update();
-    this.draw();
+    this.stir();
   }
 
   /** The node of the skin under the pointer. */
   pick(event: PointerEvent | MouseEvent): Hit | undefined {
     if (this.skin === undefined || !this.skin.visible) return undefined;
+    if (this.isMoving) this.settle();
     const ray = this.ray(event);
     const seen = this.twin !== undefined && this.isLeft(event) ? this.twin : this.skin;
     const [hit] = ray.intersectObject(seen, false);
@@ -276,7 +299,7 @@ export class Scene {
     const at = seen.geometry.attributes.position!.array;
     const away = (node: number) => point.distanceTo(new Vector3(at[3 * node], at[3 * node + 1], at[3 * node + 2]));
     const node = [hit.face.a, hit.face.b, hit.face.c].reduce((nearest, next) => (away(next) < away(nearest) ? next : nearest));
-    return { node, point_mm: point.toArray() };
+    return { node, face: hit.faceIndex!, point_mm: point.toArray() };
   }
 
   /** The node of the skin in the middle of the view, or of its right half. */
@@ -301,6 +324,35 @@ export class Scene {
   /** Pixels of a millimetre, for a scale beside the picture. */
   get pixelsPerMm(): number {
     return (this.canvas.clientHeight * this.camera.zoom) / (this.camera.top - this.camera.bottom);
+  }
+
+  /** Something moves, if it did a moment ago. */
+  private stir(): void {
+    this.draw();
+    if (!isDrawnBySoftware()) return;
+    const now = performance.now();
+    if (now - this.changed < SETTLED && !this.isMoving) this.hasten(true);
+    this.changed = now;
+    clearTimeout(this.settling);
+    this.settling = setTimeout(() => this.settle(), SETTLED);
+  }
+
+  private settle(): void {
+    if (this.isMoving) this.hasten(false);
+  }
+
+  /** Draws as while something moves, or all there is. */
+  private hasten(on: boolean): void {
+    this.isMoving = on;
+    const { indices, skin, twin, ghost } = this;
+    for (const mesh of [skin, twin, ghost]) {
+      const now = mesh?.geometry.index;
+      // Another state of the skin has the same triangles.
+      if (indices === undefined || mesh === undefined || (now?.count !== indices.all.count && now !== indices.few)) continue;
+      mesh.geometry.setIndex(on ? indices.few : indices.all);
+    }
+    this.renderer.setPixelRatio(on ? MOVING.ratio : STILL.ratio());
+    this.draw();
   }
 
   draw(): void {
@@ -344,11 +396,13 @@ export class Scene {
 
   /** At once, for a picture. */
   drawNow(): HTMLCanvasElement {
+    this.settle();
     this.render();
     return this.canvas;
   }
 
   leave(): void {
+    clearTimeout(this.settling);
     this.watcher.disconnect();
     this.controls.dispose();
     this.graph.traverse((object) => {
@@ -391,6 +445,9 @@ export class Scene {
 
   private drop(mesh: Mesh): void {
     this.head.remove(mesh);
+    // Triangles that are the skin's stay in use.
+    const { indices, skin } = this;
+    if (mesh.geometry !== skin?.geometry && indices !== undefined && [indices.all, indices.few].includes(mesh.geometry.index!)) mesh.geometry.index = null;
     mesh.geometry.dispose();
     const kept: unknown[] = [this.skinMaterial, this.mapMaterial, this.depth];
     if (!kept.includes(mesh.material)) (mesh.material as Material).dispose();

@@ -12,7 +12,9 @@ export interface SkinMap {
   name: string;
   label: string;
   scheme: Scheme;
-  /** The range that is chosen unless the address says otherwise, in mm: the same for every plan. */
+  /** Of its values; absent: mm. */
+  unit?: string;
+  /** The range that is chosen unless the address says otherwise, in that unit: the same for every plan. */
   range_mm: number;
   /** The value of each node of the skin. */
   values: () => ArrayLike<number> | undefined;
@@ -120,10 +122,10 @@ export class Workbench {
     });
     const numbers = ticks(this.range_mm, map.scheme).filter((_, at) => at % 2 === 0).map((value) => make("span", {}, figure(value)));
     legend.replaceChildren(
-      make("figcaption", {}, `${map.label}, mm`),
+      make("figcaption", {}, `${map.label}, ${map.unit ?? "mm"}`),
       make("div", { className: "bands", aria: { hidden: "true" } }, ...swatches),
       make("div", { className: "ticks" }, ...numbers),
-      select(words.range, RANGES.map((range) => [String(range), `${range} mm`] as const), String(this.range_mm),
+      select(words.range, RANGES.map((range) => [String(range), `${range} ${map.unit ?? "mm"}`] as const), String(this.range_mm),
         (value) => this.setRange(Number(value))));
   }
 
@@ -187,6 +189,6 @@ export class Workbench {
     pen.fillStyle = "#222222";
     pen.font = "18px sans-serif";
     ticks(this.range_mm, map.scheme).forEach((value, at) => { if (at % 2 === 0) pen.fillText(figure(value), left + at * width, bottom - 18); });
-    pen.fillText(`${map.label}, mm`, left + (BANDS + 1) * width, bottom - 44);
+    pen.fillText(`${map.label}, ${map.unit ?? "mm"}`, left + (BANDS + 1) * width, bottom - 44);
   }
 }

@@ -162,7 +162,16 @@ impl<'a> Compared<'a> {
 
     /// Each training case predicted from the others; a tuned width stays as it is.
     pub fn left_out(&self, learner: Learner, training: &[usize]) -> Vec<LeftOut> {
-        let whole = self.fit(learner, training);
+        self.left_out_of(&self.fit(learner, training), learner, training)
+    }
+
+    /// The same where the rule is fitted to all of them already.
+    pub fn left_out_of(
+        &self,
+        whole: &Fitted,
+        learner: Learner,
+        training: &[usize],
+    ) -> Vec<LeftOut> {
         let of = |(place, &case): (usize, &usize)| {
             let others = without(training, place);
             let fitted = match &whole.rule {

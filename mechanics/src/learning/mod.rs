@@ -2,6 +2,7 @@
 //! case that is predicted (docs/learning.md).
 
 pub mod bands;
+pub mod classes;
 pub mod cohort;
 pub mod curve;
 pub mod deformation_model;

@@ -56,11 +56,12 @@ impl LearnedModel {
     pub fn new(cohort: &Cohort, method: Method, distance: Distance) -> Self {
         let compared = Compared::new(cohort, method.target, distance);
         let all: Vec<usize> = (0..cohort.len()).collect();
+        let fitted = compared.fit(method.learner, &all);
         LearnedModel {
             method,
-            fitted: compared.fit(method.learner, &all),
             cases: cohort.cases.clone(),
-            left_out: compared.left_out(method.learner, &all),
+            left_out: compared.left_out_of(&fitted, method.learner, &all),
+            fitted,
             answers: compared.answers,
         }
     }

@@ -29,6 +29,8 @@ pub struct Column {
     pub name: String,
     /// In the order of the cohort.
     pub cases: Vec<CaseErrors>,
+    /// Of each point of the skin, the mean over the cases in mm.
+    pub points: Vec<f64>,
 }
 
 /// A learned method, each case predicted from the others.
@@ -78,7 +80,17 @@ impl Column {
         let errors = |(told, case): (&Vec<f64>, &super::cohort::LearningCase)| {
             CaseErrors::of(told, &case.actual, &cohort.regions)
         };
-        Column { name: name.to_owned(), cases: cases.map(errors).collect() }
+        let points = told.first().map_or(0, |told| told.len() / 3);
+        let mut sums = vec![0.0; points];
+        for (told, case) in cases.clone() {
+            let errors = lengths(told, &case.actual);
+            sums.iter_mut().zip(&errors).for_each(|(sum, error)| *sum += error);
+        }
+        Column {
+            name: name.to_owned(),
+            cases: cases.map(errors).collect(),
+            points: sums.iter().map(|sum| sum / told.len() as f64).collect(),
+        }
     }
 
     /// The mean error of each case.

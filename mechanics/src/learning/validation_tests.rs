@@ -55,6 +55,26 @@ fn what_mechanics_misses_in_the_same_way_is_learned() {
 }
 
 #[test]
+fn errors_of_points_are_means_over_cases_whose_mean_is_that_of_the_column() {
+    let cohort = cohort(5, |x| 2.0 + x[0], 0.05, 3);
+    let column = mechanics(&cohort);
+    let of_point = |point: usize| {
+        let apart = |case: &LearningCase| {
+            let at = 3 * point..3 * point + 3;
+            let both = case.predicted[at.clone()].iter().zip(&case.actual[at]);
+            both.map(|(told, actual)| (told - actual).powi(2)).sum::<f64>().sqrt()
+        };
+        cohort.cases.iter().map(apart).sum::<f64>() / 5.0
+    };
+    assert_eq!(column.points.len(), cohort.cases[0].actual.len() / 3);
+    for (point, error) in column.points.iter().enumerate() {
+        assert!((error - of_point(point)).abs() < 1e-12, "point {point}");
+    }
+    let mean = column.points.iter().sum::<f64>() / column.points.len() as f64;
+    assert!((mean - column.mean()).abs() < 1e-12);
+}
+
+#[test]
 fn what_mechanics_misses_by_chance_makes_learning_harm() {
     let cohort = cohort(11, |_| 0.0, 1.0, 5);
     let [before, after] = [mechanics(&cohort), validate(&cohort, CORRECTED, Distance::L1).nested];

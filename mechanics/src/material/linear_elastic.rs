@@ -2,7 +2,7 @@
 
 use super::elastic_tensor::ElasticTensor;
 use super::error::{MaterialError, is_modulus};
-use super::hyperelastic::{Fibres, Hyperelastic, Law, NeoHookean};
+use super::hyperelastic::{Fibres, Hyperelastic, Law, NeoHookean, RubinBodner};
 use super::isotropic::Isotropic;
 use super::transversely_isotropic::{Fibre, TransverselyIsotropic};
 
@@ -52,6 +52,13 @@ impl LinearElastic {
             _ => MaterialError::LawAtRest { young_modulus, poisson_ratio },
         })?;
         Ok(LinearElastic { law: Some(law), ..tissue })
+    }
+
+    /// Tissue of Rubin and Bodner's law with another theta, and what that makes of it at rest; nothing of tissue of another law.
+    pub fn with_theta(&self, theta: f64) -> Option<Result<Self, MaterialError>> {
+        let Some(Law::RubinBodner(law)) = self.law else { return None };
+        let other = Self::of_law(Law::RubinBodner(RubinBodner { theta, ..law }), self.density);
+        Some(other.map(|other| LinearElastic { fibre: self.fibre, fibres: self.fibres, ..other }))
     }
 
     /// The tissue with fibres that only pull at finite strain.

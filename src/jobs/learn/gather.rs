@@ -2,7 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use super::input::{LearnInput, LearnedCase};
+use super::input::LearnInput;
+use super::thetas::at_thetas;
 use crate::jobs::clock::Observed;
 use crate::jobs::failure::JobError;
 use crate::jobs::fetch::fetch;
@@ -11,11 +12,12 @@ use crate::jobs::predict::Prepared;
 use crate::jobs::source::StoredShape;
 use crate::schema::predict::result::InputDocument;
 use crate::schema::{ErrorCode, Pointer, Problem};
+use mechanics::learning::classes::{ThetaOfClass, held_out, thetas};
 use mechanics::learning::validation::Column;
-use mechanics::learning::virtual_cohort::{ThetaOfClass, VirtualError, virtual_cohort};
+use mechanics::learning::virtual_cohort::{VirtualError, virtual_cohort};
 use mechanics::learning::{Cohort, CohortError, LearningCase, measures};
-use mechanics::mesh::{Frame, Vector};
-use mechanics::prediction::{Scene, equilibrium};
+use mechanics::mesh::{Frame, TriangleSurface, Vector};
+use mechanics::prediction::{Scene, Skin, equilibrium};
 use mechanics::progress::Progress;
 
 /// What is learned from, and the columns of the table that are not learned.
@@ -26,6 +28,8 @@ pub struct Gathered {
     pub thetas: Vec<ThetaOfClass>,
     pub inputs: Vec<InputDocument>,
     pub frame: Frame,
+    /// The skin of the first case at rest.
+    pub face: TriangleSurface,
 }
 
 /// How the table calls the mechanical prediction that is corrected.
@@ -47,6 +51,7 @@ pub fn gather(
                 thetas: cohort.thetas,
                 inputs: Vec::new(),
                 frame: Frame::Lps,
+                face: cohort.face,
             })
         }
         None => of_cases(input, place, clock),
@@ -84,6 +89,7 @@ fn of_cases(input: &LearnInput, place: &Workplace, clock: &Observed) -> Result<G
     let mut first: Option<Prepared> = None;
     let mut cases = Vec::new();
     let mut inputs = Vec::new();
+    let mut told = Vec::new();
     for (index, member) in input.cases.iter().enumerate() {
         let at = Pointer::root().key("spec").key("cases").index(index);
         let prepared = member.prediction.prepare(place.sources, place.limits)?;
@@ -101,24 +107,35 @@ fn of_cases(input: &LearnInput, place: &Workplace, clock: &Observed) -> Result<G
             );
             return Err(Problem::at(&at.key("actual"), ErrorCode::FrameConflict, detail).into());
         }
-        cases.push(learned(name, member, &prepared.scene, &after, clock)?);
+        let class = input.spec.class(index, prepared.plan.segments.len());
+        cases.push(learned([name, class], &prepared.scene, &after, clock)?);
+        if input.spec.theta {
+            told.push(at_thetas(&prepared, &at.key("prediction"), clock)?);
+        }
         clock.step(index + 1, input.cases.len());
         clock.check()?;
         first.get_or_insert(prepared);
     }
-    let (regions, frame) = first.map_or((BTreeMap::new(), Frame::Unspecified), |own| {
-        (own.scene.skin.regions.clone(), own.case.frame)
+    let nothing = (TriangleSurface::default(), BTreeMap::new(), Frame::Unspecified);
+    let (face, regions, frame) = first.map_or(nothing, |own| {
+        let Skin { surface, regions } = own.scene.skin;
+        (surface, regions, own.case.frame)
     });
     let cohort = Cohort::new(cases, regions).map_err(|error| refused(&error))?;
     let column = |name: &str, of: &dyn Fn(&LearningCase) -> Vec<f64>| {
         let told: Vec<Vec<f64>> = cohort.cases.iter().map(of).collect();
         Column::of(name, &told, &cohort)
     };
-    let mechanical = vec![
+    let mut mechanical = vec![
         column("no movement", &|case| vec![0.0; case.actual.len()]),
         column(MECHANICAL, &|case| case.predicted.clone()),
     ];
-    Ok(Gathered { mechanical, cohort, thetas: Vec::new(), inputs, frame })
+    let mut fitted = Vec::new();
+    if input.spec.theta {
+        mechanical.push(held_out(&cohort, &told));
+        fitted = thetas(&cohort, &told);
+    }
+    Ok(Gathered { mechanical, cohort, thetas: fitted, inputs, frame, face })
 }
 
 /// Cases have the same cells, frame, skin and method.
@@ -182,8 +199,7 @@ fn places(shape: &StoredShape, scene: &Scene, at: &Pointer) -> Result<Vec<Vector
 }
 
 fn learned(
-    name: String,
-    member: &LearnedCase,
+    [name, class]: [String; 2],
     scene: &Scene,
     after: &[Vector],
     clock: &Observed,
@@ -194,7 +210,7 @@ fn learned(
     let moved = after.iter().zip(before).map(|(after, before)| after - before);
     Ok(LearningCase {
         name,
-        class: member.prediction.plan.segments.len().to_string(),
+        class,
         features: measures::features(scene, displacement),
         bone: measures::bone(scene, displacement),
         predicted: measures::skin(scene, displacement),

@@ -5,6 +5,7 @@ use rayon::prelude::*;
 use super::chart::learning_chart;
 use super::gather::{Gathered, MECHANICAL, gather};
 use super::input::LearnInput;
+use super::maps::{ERRORS_FILE, error_maps};
 use crate::jobs::clock::Observed;
 use crate::jobs::cohort::tested_pair;
 use crate::jobs::failure::JobError;
@@ -54,7 +55,7 @@ pub fn learn_job(
     let found = document(&gathered, &validated, &model, distance)?;
     clock.check()?;
 
-    // 3. The model, the picture and the manifest.
+    // 3. The model, where it errs, the picture and the manifest.
     clock.phase(Phase::Write);
     let origin = Origin {
         spec_hash: input.spec_hash(),
@@ -67,6 +68,11 @@ pub fn learn_job(
     let bytes = serde_json::to_vec(&model)
         .map_err(|error| JobError::NotFinite { what: error.to_string() })?;
     folder.add_file(MODEL_FILE, "application/json", &bytes)?;
+    folder.add_file(
+        ERRORS_FILE,
+        OutputName::SkinVtp.media_type(),
+        &error_maps(&gathered, &validated)?,
+    )?;
     let chart = learning_chart(&found, gathered.cohort.len());
     folder.add_file("learning.svg", "image/svg+xml", chart.as_bytes())?;
     let warnings = model.warning().iter().map(Into::into).collect();

@@ -4,6 +4,8 @@ mod chart;
 mod gather;
 mod input;
 mod job;
+mod maps;
+mod thetas;
 
 pub use input::{LearnInput, LearnedCase};
 pub use job::learn_job;

@@ -1,5 +1,6 @@
 //! A prediction corrected by a learned model: the corrected skin beside the mechanical one, with its band.
 
+use super::fitted_model::FittedModel;
 use super::input::{PredictInput, Prepared};
 use crate::jobs::failure::JobError;
 use crate::jobs::source::{MeshSource, SourceError};
@@ -29,7 +30,7 @@ impl PredictInput {
     pub(super) fn fetch_model(
         &self,
         sources: &dyn MeshSource,
-    ) -> Result<Option<ModelDocument>, JobError> {
+    ) -> Result<Option<FittedModel>, JobError> {
         let Some(correction) = &self.spec.correction else { return Ok(None) };
         let at = Pointer::from_text("/spec/correction/model");
         let refused = |code, detail: String| JobError::from(Problem::at(&at, code, detail));
@@ -49,7 +50,9 @@ impl PredictInput {
             );
             return Err(refused(ErrorCode::MethodMismatch, detail));
         }
-        Ok(Some(model))
+        let fitted = FittedModel::new(model)
+            .map_err(|error| refused(ErrorCode::NotCorresponding, error.to_string()))?;
+        Ok(Some(fitted))
     }
 }
 
@@ -59,13 +62,11 @@ pub fn corrected(
     prepared: &Prepared,
     prediction: &Prediction,
 ) -> Result<Option<Correction>, JobError> {
-    let (Some(spec), Some(model)) = (&input.spec.correction, &prepared.model) else {
+    let (Some(spec), Some(fitted)) = (&input.spec.correction, &prepared.model) else {
         return Ok(None);
     };
+    let FittedModel { document: model, learned } = fitted;
     let at = Pointer::from_text("/spec/correction/model");
-    let learned = model.to_model().map_err(|error| {
-        JobError::from(Problem::at(&at, ErrorCode::NotCorresponding, error.to_string()))
-    })?;
     let (scene, displacement) = (&prepared.scene, &prediction.displacement);
     let features = measures::features(scene, displacement);
     let (bone, predicted) =

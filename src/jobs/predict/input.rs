@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::facing::looks_elsewhere;
+use super::fitted_model::FittedModel;
 use super::refinable::check_refinable;
 use crate::jobs::compare::{ComparedMeshes, admit};
 use crate::jobs::failure::JobError;
@@ -16,7 +17,6 @@ use crate::schema::case::document::{CaseMeshes, NamedMesh};
 use crate::schema::case::norm::check_norms;
 use crate::schema::compare::document::CompareToDocument;
 use crate::schema::hashes;
-use crate::schema::learn::model::ModelDocument;
 use crate::schema::plan::document::PlanContext;
 use crate::schema::predict::document::OutputName;
 use crate::schema::predict::output::PictureName;
@@ -57,7 +57,7 @@ pub struct Prepared {
     /// The surface that the skin is to be compared with.
     pub compared: Option<ComparedMeshes>,
     /// What the skin is corrected by.
-    pub model: Option<ModelDocument>,
+    pub model: Option<FittedModel>,
     /// Of the meshes and of the conversion; those of the scene are in the scene.
     pub warnings: Vec<Warning>,
     /// What the meshing of the volume had to say.

@@ -7,6 +7,7 @@ mod cost;
 mod density;
 mod expectation;
 mod facing;
+mod fitted_model;
 mod input;
 mod job;
 mod made;

@@ -48,6 +48,11 @@ pub struct LearnDocument {
     pub target: TargetName,
     #[serde(default)]
     pub distance: DistanceName,
+    /// Whether theta of Rubin and Bodner's law is fitted to each class of surgery, and each case predicted with that of the others of its
+    /// class: three more predictions of each case at finite strain, whose tissues of that law get another theta. Virtual patients always
+    /// have it. Default: false.
+    #[serde(default)]
+    pub theta: bool,
     #[serde(default)]
     pub budget: BudgetDocument,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -67,6 +72,10 @@ pub struct LearnCaseDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub name: Option<String>,
+    /// Of surgery, such as `two_jaw`, for which one `theta` is fitted. Absent: how many segments the plan moves.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub class: Option<String>,
 }
 
 /// Patients that are the same for the same numbers.
@@ -150,6 +159,12 @@ impl LearnDocument {
         named.unwrap_or_else(|| (index + 1).to_string())
     }
 
+    /// The class of surgery of a case whose plan moves so many segments.
+    pub fn class(&self, index: usize, segments: usize) -> String {
+        let stated = self.cases.get(index).and_then(|case| case.class.clone());
+        stated.unwrap_or_else(|| format!("{segments} moved"))
+    }
+
     /// Adds what is wrong with it; pointers start at `/spec`.
     pub fn check(&self, limits: &Limits, faults: &mut Faults) {
         let at = Pointer::root().key("spec");
@@ -181,8 +196,10 @@ impl LearnDocument {
         let mut seen: [BTreeSet<String>; 3] = Default::default();
         for (index, case) in self.cases.iter().enumerate() {
             let place = at.index(index);
-            if let Some(name) = &case.name {
-                faults.check_name(&place.key("name"), name, limits.name_characters as usize);
+            for (member, named) in [("name", &case.name), ("class", &case.class)] {
+                if let Some(named) = named {
+                    faults.check_name(&place.key(member), named, limits.name_characters as usize);
+                }
             }
             let name = self.name(index);
             let members =

@@ -6,10 +6,10 @@ use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use crate::schema::cohort::result::CohortPairDocument;
+use mechanics::learning::classes::ThetaOfClass;
 use mechanics::learning::curve::CurvePoint;
 use mechanics::learning::regression::WidthEnd;
 use mechanics::learning::validation::{CaseErrors, Column, Validated};
-use mechanics::learning::virtual_cohort::ThetaOfClass;
 
 /// What was learned, and how good it is. Lengths in mm.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -28,7 +28,7 @@ pub struct LearningDocument {
     pub tests: Vec<CohortPairDocument>,
     pub validation: Vec<ValidationDocument>,
     pub curve: Vec<CurveDocument>,
-    /// Of Rubin and Bodner's tissue, of virtual patients.
+    /// Of Rubin and Bodner's tissue: of virtual patients, and where `theta` was asked for.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub thetas: Vec<ThetaDocument>,
 }

@@ -102,6 +102,11 @@ fn what_mechanics_misses_alike_is_added_to_the_next_prediction() {
     let test = found.tests.iter().find(|test| test.second == "linear + GRNN").unwrap();
     assert_eq!((test.p, test.smallest_p), (Some(0.125), 0.125));
     assert!(std::fs::read_to_string(out.path().join("learning.svg")).unwrap().contains("<svg"));
+    let errors = std::fs::read_to_string(out.path().join("errors.vtp")).unwrap();
+    for array in ["no_movement", "linear", "GRNN", "linear_GRNN", "linear_SDM"] {
+        assert!(errors.contains(&format!("Name=\"mean_error_{array}_mm\"")), "{array}");
+    }
+    assert!(!errors.contains("tuned") && errors.contains("NumberOfPoints=\"66\""), "{errors}");
     sources.model = std::fs::read(out.path().join("model.json")).unwrap();
 
     let spec = json!({"method": "fem_linear", "correction": {"model": "any"}});
@@ -203,4 +208,48 @@ fn virtual_patients_are_the_same_for_the_same_seed() {
     // Nobody is nearer than what happened, which mapping and registration hide.
     assert!(error("what happened") < error("linear") && error("linear") < error("no movement"));
     assert_ne!(one.table, learned(2).table);
+}
+
+/// Four operations on tissue of Rubin and Bodner's law, whose bulk modulus is twice its shear modulus at theta 1.
+fn operated_with_theta(truth: f64) -> (Sources, LearnInput) {
+    let mut meshes = BTreeMap::from([("block".to_owned(), volume(block([4, 4, 2])))]);
+    let law = |theta: f64| json!({"*": {"law": {"kind": "rubin_bodner", "eps0_kpa": 100.0, "p": 2.0, "eta1": 0.1, "eta2": 0.05, "theta": theta}}});
+    let of = |x: f64, theta: f64| {
+        let mut own = prediction(x, json!({"method": "fem_nonlinear", "materials": law(theta)}));
+        own.plan = serde_json::from_value(json!({"segments": [{"name": "bone", "translation_mm": [x, 0, -x]}]})).unwrap();
+        own
+    };
+    let (mut cases, mut named) = (Vec::new(), Vec::new());
+    for number in 1..=4 {
+        let x = 2.0 * f64::from(number);
+        let sources = Sources { meshes: meshes.clone(), model: Vec::new() };
+        let scene = of(x, truth).prepare(&sources, &Limits::default()).unwrap().scene;
+        let (solved, _) = equilibrium(&scene, &Unobserved).unwrap();
+        let mut after = block([4, 4, 2]);
+        after.nodes.iter_mut().zip(&solved.displacement).for_each(|(node, u)| *node += u);
+        meshes.insert(format!("after {number}"), volume(after));
+        named.push(json!({"prediction": format!("p {number}"), "actual": format!("after {number}"), "class": "both jaws"}));
+        cases.push(LearnedCase { case: None, spec_hash: None, prediction: of(x, 1.0) });
+    }
+    let spec = serde_json::from_value(json!({"cases": named, "theta": true})).unwrap();
+    (Sources { meshes, model: Vec::new() }, LearnInput { job: None, queue_s: None, spec, cases })
+}
+
+#[test]
+fn theta_of_a_class_is_fitted_to_its_cases() {
+    let (sources, input) = operated_with_theta(0.8);
+    let found = done(JobInput::Learn(input), &sources).unwrap().0.result.learning.unwrap();
+    let [theta] = found.thetas.as_slice() else { panic!("{:?}", found.thetas) };
+    assert_eq!((theta.class.as_str(), theta.patients), ("both jaws", 4));
+    assert!((theta.theta - 0.8).abs() < 0.02 && theta.is_determined, "{theta:?}");
+    let error = |name: &str| found.table.iter().find(|own| own.name == name).unwrap().mean;
+    assert!(error("Rubin-Bodner") < 0.1 * error("linear"), "{:?}", found.table);
+}
+
+#[test]
+fn theta_is_of_one_law_only() {
+    let (sources, mut input) = operated();
+    input.spec.theta = true;
+    let fault = first_fault(done(JobInput::Learn(input), &sources).map(|_| ()));
+    assert_eq!(fault, ("/spec/cases/0/prediction".to_owned(), "law-mismatch".to_owned()));
 }

@@ -65,6 +65,16 @@ async fn a_model_goes_with_each_case_that_it_was_learned_from_and_so_does_what_i
     let problem = problem.problem(422, "validation-failed");
     assert_eq!(problem["errors"][0]["pointer"], "/cases/2/prediction");
 
+    // What goes with a case is known before: the model, and what that corrected of another.
+    let of = async |case: &str, kind: &str| -> Vec<Value> {
+        let listed = ask(server.get(&format!("/v1/jobs?kind={kind}&case={case}"))).await;
+        let jobs = listed.expect(StatusCode::OK)["items"].as_array().unwrap().clone();
+        jobs.iter().map(|job| job["id"].clone()).collect()
+    };
+    assert_eq!(of(&cases[1], "learn").await, [learned["id"].clone()]);
+    assert_eq!(of(&cases[1], "predict").await, [done["id"].clone(), json!(jobs[1])]);
+    assert_eq!(of(&fourth, "learn").await, Vec::<Value>::new());
+
     // Erasing a case erases what was learned from it, and nothing of the others.
     let path = format!("/v1/cases/{}", cases[1]);
     let erased = ask(server.delete(&path).header("if-match", "\"1\"")).await;

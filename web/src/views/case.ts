@@ -28,7 +28,6 @@ export async function casePage(app: App): Promise<Leave> {
   bench.section(words.document, make("details", {}, make("summary", {}, "JSON"), make("pre", {}, make("code", {}, JSON.stringify(opened.document, null, 2)))));
   try {
     const [nodes] = await Promise.all([boundary(app, opened, bench), addBones(service, opened, bench.scene)]);
-    bench.start();
     await setsSection(app, opened, bench, place, nodes);
   } catch (error) {
     bench.panel.prepend(refusal(error, words));
@@ -40,6 +39,7 @@ export async function casePage(app: App): Promise<Leave> {
 async function boundary({ service }: App, { document, frame }: Opened, bench: Workbench): Promise<Uint32Array | undefined> {
   const shape = await meshOf(service, document.volume!, frame);
   bench.scene.showSkin(shape);
+  bench.start();
   bench.offer([]);
   return shape.node_ids;
 }

@@ -8,7 +8,7 @@ import { note } from "../route.js";
 import { readVtp } from "../vtp.js";
 import { Workbench } from "../workbench.js";
 import { crumbs } from "./crumbs.js";
-import { kindOf } from "./plain.js";
+import { kindOf } from "./kinds.js";
 import { comparisonFacts, histogram } from "./distances.js";
 
 export async function comparePage(app: App): Promise<Leave> {
@@ -18,7 +18,8 @@ export async function comparePage(app: App): Promise<Leave> {
   const bench = new Workbench(app, crumbs(words, opened.id, opened.name, "comparison"));
   bench.scene.orient(opened.frame);
   bench.offer([]);
-  const predictions = jobs.filter(({ kind }) => kind === "predict" || kind === "optimise");
+  // Others that read this case among others are not of it.
+  const predictions = jobs.filter((job) => job.case === opened.id && (job.kind === "predict" || job.kind === "optimise"));
   bench.section(words.comparison, make("p", {}, words.compareWhy),
     predictions.length === 0 ? make("p", { className: "warned" }, words.noPredictions) : form(app, opened, bench, predictions));
   const chosen = predictions.find(({ id }) => id === route.state.get("job")) ?? predictions[0];

@@ -1,7 +1,7 @@
 // How far a predicted skin is from a real one.
 import type { Documents } from "../api.js";
 import type { App } from "../app.js";
-import { make, table } from "../dom.js";
+import { make, svg, table } from "../dom.js";
 import { mm } from "../figures.js";
 import type { Words } from "../words/en.js";
 
@@ -21,7 +21,6 @@ export function comparisonFacts({ words }: App, comparison: Documents["Compariso
     make("p", {}, `${words.registration}: ${registered}`));
 }
 
-const SVG = "http://www.w3.org/2000/svg";
 const REACH_MM = 3;
 const BARS = 24;
 
@@ -33,26 +32,17 @@ export function histogram(words: Words, distances: Float32Array): SVGElement {
     counts[bar]! += 1;
   }
   const most = Math.max(...counts);
-  const drawing = element("svg", { viewBox: "0 0 240 96", role: "img", "aria-label": words.histogram, class: "drawing" });
+  const drawing = svg("svg", { viewBox: "0 0 240 96", role: "img", "aria-label": words.histogram, class: "drawing" });
   counts.forEach((count, at) => {
     const height = (70 * count) / most;
-    const bar = element("rect", { x: String(at * 10 + 1), y: String(76 - height), width: "8", height: String(height), fill: "#0b5c7a" });
-    const title = element("title", {});
+    const bar = svg("rect", { x: String(at * 10 + 1), y: String(76 - height), width: "8", height: String(height), fill: "#0b5c7a" });
     const from = -REACH_MM + (2 * REACH_MM * at) / BARS;
-    title.textContent = `${from.toFixed(2)} … ${(from + (2 * REACH_MM) / BARS).toFixed(2)} mm: ${count}`;
-    bar.append(title);
+    bar.append(svg("title", {}, `${from.toFixed(2)} … ${(from + (2 * REACH_MM) / BARS).toFixed(2)} mm: ${count}`));
     drawing.append(bar);
   });
   for (const value of [-3, -2, -1, 0, 1, 2, 3]) {
-    const text = element("text", { x: String(value === 3 ? 238 : 120 + value * 38), y: "90", "font-size": "9", "text-anchor": value === 3 ? "end" : "middle", fill: "#222" });
-    text.textContent = value === 3 ? "3 mm" : String(value);
+    const text = svg("text", { x: String(value === 3 ? 238 : 120 + value * 38), y: "90", "font-size": "9", "text-anchor": value === 3 ? "end" : "middle", fill: "#222" }, value === 3 ? "3 mm" : String(value));
     drawing.append(text);
   }
   return drawing;
-}
-
-function element(name: string, attributes: Record<string, string>): SVGElement {
-  const made = document.createElementNS(SVG, name);
-  for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, value);
-  return made;
 }

@@ -4,7 +4,8 @@ import { refusal, type App, type Leave } from "../app.js";
 import { button, make, scrolling, table } from "../dom.js";
 import { address } from "../route.js";
 import { mm, when } from "../figures.js";
-import { kindOf, statusOf } from "./plain.js";
+import { kindOf, statusOf } from "./kinds.js";
+import { reportLinks } from "./reports.js";
 
 /** Jobs under way are looked at again after so long, in ms. */
 const AGAIN = 2000;
@@ -54,14 +55,15 @@ export async function studies(app: App): Promise<Leave> {
   const row = (job: Job) => make("li", { className: "card" },
     make("h2", {}, when(job.created)),
     make("p", {}, `${statusOf(words, job.status)}${job.results?.study === undefined ? "" : ` · ${words.verdict}: ${job.results.study.verdict.outcome}`}`),
-    ...(job.status === "successful" ? [button(words.report, () => open(job))] : []));
+    job.status === "successful" && button(words.chart, () => open(job)), " ", make("a", { className: "button", href: address(["job", job.id]) }, words.result));
   stage.replaceChildren(make("h1", {}, words.studies),
     list.length === 0 ? make("p", {}, words.noStudies) : make("ul", { className: "cards" }, ...list.map(row)), shown);
   return () => {};
 }
 
 /** The chart of a study with the rows behind its marks. */
-async function report({ service, words }: App, job: Job, into: HTMLElement): Promise<void> {
+async function report(app: App, job: Job, into: HTMLElement): Promise<void> {
+  const { service, words } = app;
   const path = `/v1/jobs/${job.id}/report`;
   const chart = await (await service.ask("GET", `${path}?format=svg`)).blob();
   const { rows, verdict } = await service.get<Documents["ReportDocument"]>(path);
@@ -69,6 +71,7 @@ async function report({ service, words }: App, job: Job, into: HTMLElement): Pro
     row.p95_mm === undefined || row.p95_mm === null ? "–" : mm(row.p95_mm), row.status]);
   into.replaceChildren(
     make("img", { className: "drawing", src: URL.createObjectURL(chart), alt: words.chart }),
+    reportLinks(app, job) ?? "",
     ...verdict.reasons.map((reason) => make("p", { className: "warned" }, reason)),
     table(words.rows, [words.variant, words.scene, words.wall, words.p95mm, words.state], cells));
 }

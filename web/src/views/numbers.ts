@@ -49,15 +49,18 @@ export function landmarks(shown: Shown, { statistics, numerical_error_mm: errors
 export function cephalometry(words: Words, measures: Documents["MeasureDocument"][]): HTMLElement {
   const number = (value: number | null | undefined) => (value === undefined || value === null ? "–" : value.toFixed(1));
   const unit = (name: string) => ({ deg: "°", mm: "mm" })[name] ?? "";
-  return table(words.cephalometry, [words.measure, words.before, words.planned, words.predicted], measures.map((one) =>
-    [make("span", { title: one.source }, `${one.name.replaceAll("_", " ")}${unit(one.unit) === "" ? "" : `, ${unit(one.unit)}`}`), number(one.before), number(one.planned), number(one.predicted)]));
+  // A reproduction has what was performed, a prediction what is predicted.
+  const columns = ([["planned", words.planned], ["performed", words.performed], ["predicted", words.predicted]] as const)
+    .filter(([member]) => member !== "performed" || measures.some((one) => typeof one.performed === "number"));
+  return table(words.cephalometry, [words.measure, words.before, ...columns.map(([, label]) => label)], measures.map((one) =>
+    [make("span", { title: one.source }, `${one.name.replaceAll("_", " ")}${unit(one.unit) === "" ? "" : `, ${unit(one.unit)}`}`), number(one.before), ...columns.map(([member]) => number(one[member]))]));
 }
 
 export function provenance(words: Words, stated: Documents["ProvenanceDocument"] | undefined): HTMLElement {
   const facts: [string, string][] = stated === undefined ? [] : [
-    [words.solvedBy, stated.method ?? "–"], ["", stated.why ?? ""],
+    [words.solvedBy, stated.method ?? ""], ["", stated.why ?? ""],
     [words.took, `${stated.timing?.total_s?.toFixed(1) ?? "–"} ${words.seconds}`],
-    [words.nodes, String(stated.mesh?.nodes ?? "–")], ["facies", stated.engine.version], [words.hash, stated.spec_hash.slice(0, 16)],
+    [words.nodes, String(stated.mesh?.nodes ?? "")], ["facies", stated.engine.version], [words.hash, stated.spec_hash.slice(0, 16)],
     ["", stated.statement ?? words.notice],
   ];
   return make("dl", { className: "facts" }, ...facts.filter(([, value]) => value !== "").flatMap(([name, value]) => [make("dt", {}, name), make("dd", {}, value)]));

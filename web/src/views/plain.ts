@@ -1,25 +1,41 @@
 // The result of a job that has no skin to show: what it found in numbers, where it leads, its report and files.
 import type { CaseDocument, Job } from "../api.js";
 import { refusal, warnings, type App } from "../app.js";
-import { button, make } from "../dom.js";
+import { button, card, make } from "../dom.js";
 import { when } from "../figures.js";
 import { address } from "../route.js";
-import type { Words } from "../words/en.js";
 import { anything } from "./anything.js";
+import { conformedFacts } from "./conformed.js";
 import { comparisonFacts } from "./distances.js";
 import { fileList } from "./files.js";
+import { groupFacts } from "./groups.js";
+import { kindOf, statusOf } from "./kinds.js";
+import { learnedFacts, learnedInShort } from "./learned.js";
+import { cephalometry, provenance } from "./numbers.js";
+import { performedFacts } from "./performed.js";
 import { reportLinks } from "./reports.js";
 
 /** Members of a result that are told elsewhere, or are not for reading. */
 const ELSEWHERE = ["files", "pictures", "warnings", "job", "kept", "case", "comparison", "provenance", "optimisation", "numerical_error_mm", "nonlinearity_mm"];
 
-export const kindOf = (words: Words, kind: string): string => words.kinds[kind] ?? kind;
-export const statusOf = (words: Words, status: string): string => words.statuses[status] ?? status;
+/** Charts and tables of what a kind finds, by the members of its result. */
+async function told(app: App, job: Job): Promise<Record<string, HTMLElement[]>> {
+  const { words } = app;
+  const { learning, cohort, conformation, reproduction, provenance: stated } = job.results ?? {};
+  return {
+    ...(learning ? { learning: [learnedInShort(words, learning), ...learnedFacts(words, learning)] } : {}),
+    ...(cohort ? { cohort: groupFacts(words, cohort) } : {}),
+    ...(conformation ? { conformation: conformedFacts(words, conformation) } : {}),
+    ...(reproduction ? { reproduction: await performedFacts(app, reproduction, stated?.frame ?? "unspecified") } : {}),
+  };
+}
 
-export function plainResult(app: App, job: Job): HTMLElement[] {
+export async function plainResult(app: App, job: Job): Promise<HTMLElement[]> {
   const { words } = app;
   const results = job.results;
-  const found = Object.entries(results ?? {}).filter(([member, value]) => !ELSEWHERE.includes(member) && typeof value === "object" && value !== null && !Array.isArray(value));
+  const facts = results === undefined ? {} : await told(app, job);
+  const measures = results?.cephalometry ?? [];
+  const found = Object.entries(results ?? {}).filter(([member, value]) => !ELSEWHERE.includes(member) && facts[member] === undefined && typeof value === "object" && value !== null && !Array.isArray(value) && Object.keys(value).length > 0);
   const report = results === undefined ? undefined : reportLinks(app, job);
   return [
     make("h1", {}, `${kindOf(words, job.kind)} · ${statusOf(words, job.status)}`),
@@ -28,7 +44,10 @@ export function plainResult(app: App, job: Job): HTMLElement[] {
     make("section", {}, make("h2", {}, words.warnings), warnings(job.warnings, words)),
     ...(report === undefined ? [] : [make("section", {}, make("h2", {}, words.report), report)]),
     ...(results?.comparison === undefined ? [] : [comparisonFacts(app, results.comparison)]),
+    ...Object.values(facts).flat(),
+    ...(measures.length === 0 ? [] : [card(words.cephalometry, cephalometry(words, measures))]),
     ...found.map(([member, value]) => anything(words, member.replaceAll("_", " "), value as Record<string, unknown>, ["case", "plan"])),
+    ...(results?.provenance === undefined ? [] : [card(words.provenance, provenance(words, results.provenance))]),
     ...(results === undefined ? [] : [fileList(app, job)]),
   ];
 }
@@ -38,7 +57,7 @@ function onwards({ service, words }: App, job: Job): HTMLElement[] {
   const link = (path: string[], text: string) => make("a", { className: "button", href: address(path) }, text);
   const links: HTMLElement[] = job.case === undefined || job.case === null ? [] : [link(["case", job.case], words.toCase)];
   if (job.kind === "response" && job.case) links.push(link(["case", job.case, "plan"], words.planIt));
-  if (job.kind === "study" || job.kind === "batch") links.push(link(["studies"], words.toStudies));
+  if (job.kind === "study" || (job.kind as string) === "batch") links.push(link(["studies"], words.toStudies));
   const conformed = job.results?.conformation?.case;
   if (conformed === undefined) return links;
   const said = make("div", { role: "status" });

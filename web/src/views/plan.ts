@@ -12,6 +12,7 @@ import { address, note } from "../route.js";
 import { mm } from "../figures.js";
 import { Workbench } from "../workbench.js";
 import { crumbs } from "./crumbs.js";
+import { Further } from "./further.js";
 import { innerSliders, type InnerSliders } from "./inner.js";
 import { movements, told, type Movements } from "./movements.js";
 import { savedPlans } from "./plans.js";
@@ -21,6 +22,7 @@ import { appliedLines } from "./trusted.js";
 
 /** The service is asked what is left out once nothing has moved for so long, in ms. */
 const IDLE = 350;
+const MOST_MEASURES = 512;
 /** A slider may differ from the service by so much, in mm: f32 columns, and their sum in another order. */
 const AGREED_MM = 1e-4;
 
@@ -56,6 +58,7 @@ class Planning {
   private asking: ReturnType<typeof setTimeout> | undefined;
   private asked = 0;
   private model = "auto";
+  private steps = 0;
 
   constructor(private readonly app: App, private readonly opened: Opened, private readonly bench: Workbench) {}
 
@@ -79,7 +82,6 @@ class Planning {
       now: () => planDocument(this.plan, this.pivots, opened.frame), 
       load: (plan) => this.set(plan), read: (stored) => this.readable(stored), called: (plan) => told(plan, words), compare: (plan) => this.differenceTo(plan),
     }));
-    bench.start();
     bench.canvasKeys((event) => this.pressed(event));
     await bones;
     this.moveAll();
@@ -99,6 +101,7 @@ class Planning {
     const centres = this.loaded.description.segments.map(({ name, centre_mm }) => [name, centre_mm as Triple] as const);
     this.pivots = { ...Object.fromEntries(centres), ...readPivots(planState(app.route.state)) };
     bench.scene.showSkin(this.loaded.rest);
+    bench.start();
     const { words } = app;
     bench.offer([
       { name: "displacement", label: words.displacement, scheme: "length", range_mm: 10, values: () => lengths(this.sum.displacement_mm) },
@@ -181,7 +184,7 @@ class Planning {
     this.sum.pull(innerFactors(this.loaded.columns.inner, this.plan.inner));
     this.bench.scene.moveSkin(this.sum.displacement_mm);
     this.after();
-    performance.measure("slider", { start: begin });
+    this.timed(begin);
   }
 
   private moving(name: string, word: MotionName, value: number): void {
@@ -190,8 +193,14 @@ class Planning {
     this.plan = { ...this.plan, segments: { ...this.plan.segments, [name]: motion } };
     this.moveOne(name);
     this.after();
-    // For whoever wants to know what a step of a slider takes.
-    performance.measure("slider", { start: begin });
+    this.timed(begin);
+  }
+
+  /** For whoever wants to know what a step of a slider takes; the browser would keep all of them. */
+  private timed(start: number): void {
+    performance.measure("slider", { start });
+    this.steps += 1;
+    if (this.steps % 64 === 0 && performance.getEntriesByName("slider").length > MOST_MEASURES) performance.clearMeasures("slider");
   }
 
   /** A slider was let go. */
@@ -270,18 +279,26 @@ class Planning {
     const { words, service } = this.app;
     const models = [["auto", words.auto], ["fem_linear", "fem_linear"], ["fem_nonlinear", "fem_nonlinear"]] as const;
     const said = make("div");
+    const method = select(words.method, models, this.model, (value) => { this.model = value; });
+    // What was learned is learned of one method.
+    const further = new Further(this.app, this.opened.document, () => {
+      if (this.model !== "auto") return;
+      this.model = "fem_linear";
+      method.querySelector("select")!.value = this.model;
+    });
     const predict = button(words.predict, () => {
       predict.disabled = true;
+      const { outputs, ...asked } = further.asked;
       const spec = {
         kind: "predict", case: this.opened.id, plan: planDocument(this.plan, this.pivots, this.opened.frame),
-        outputs: ["skin.vtp", "skin.glb"], ...(this.model === "auto" ? {} : { method: this.model }),
+        outputs: ["skin.vtp", "skin.glb", ...outputs], ...asked, ...(this.model === "auto" ? {} : { method: this.model }),
       };
       service.post<Documents["StatusInfo"]>("/v1/jobs", spec).then(
         ({ id }) => { location.hash = address(["job", id], written(this.plan, this.pivots)); },
         (error: unknown) => { predict.disabled = false; said.replaceChildren(refusal(error, words)); });
     }, { className: "primary" });
     const glb = button(words.glb, () => void this.saveGlb().catch((error: unknown) => said.replaceChildren(refusal(error, words))));
-    return make("div", { className: "stack" }, select(words.method, models, this.model, (value) => { this.model = value; }),
+    return make("div", { className: "stack wide" }, method, further.element,
       make("div", { className: "row" }, predict, glb), said);
   }
 

@@ -1,17 +1,10 @@
 // The lateral profile: outlines of the skin in the sagittal plane before and after, to scale.
 import type { Triple } from "../api.js";
+import { svg } from "../dom.js";
 import { inWords, type FrameName } from "../frame.js";
 import { section } from "../outline.js";
 import type { Shape } from "../scene.js";
 import type { Words } from "../words/en.js";
-
-const SVG = "http://www.w3.org/2000/svg";
-
-function element(name: string, attributes: Record<string, string>): SVGElement {
-  const made = document.createElementNS(SVG, name);
-  for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, value);
-  return made;
-}
 
 /** The middle of the head from left to right. */
 function middle(points: Float32Array): number {
@@ -35,17 +28,16 @@ export function profile(words: Words, frame: FrameName, before: Shape, after: Sh
   const all = pieces.flat(2);
   const [left, top] = [0, 1].map((axis) => all.reduce((least, point) => Math.min(least, point[axis]!), Infinity)) as [number, number];
   const [right, bottom] = [0, 1].map((axis) => all.reduce((most, point) => Math.max(most, point[axis]!), -Infinity)) as [number, number];
-  const drawing = element("svg", {
+  const drawing = svg("svg", {
     viewBox: `${left - 5} ${top - 5} ${right - left + 10} ${bottom - top + 18}`, role: "img", "aria-label": words.profileHint, class: "drawing",
   });
   const path = (lines: (typeof pieces)[number]) => lines.map(([a, b]) => `M${a[0].toFixed(2)} ${a[1].toFixed(2)}L${b[0].toFixed(2)} ${b[1].toFixed(2)}`).join("");
   // Pieces are short: dashes would begin anew in each, so that what was before is thin and light instead.
   drawing.append(
-    element("path", { d: path(pieces[0] ?? []), fill: "none", stroke: "#8a939a", "stroke-width": "0.7" }),
-    element("path", { d: path(pieces[1] ?? []), fill: "none", stroke: "#0b5c7a", "stroke-width": "1.1" }),
-    element("path", { d: `M${left} ${bottom + 6}h20m0 -1.500v3m-20 0v-3`, fill: "none", stroke: "#222", "stroke-width": "0.6" }));
-  const scale = element("text", { x: String(left + 22), y: String(bottom + 8), "font-size": "6", fill: "#222" });
-  scale.textContent = "20 mm";
+    svg("path", { d: path(pieces[0] ?? []), fill: "none", stroke: "#8a939a", "stroke-width": "0.7" }),
+    svg("path", { d: path(pieces[1] ?? []), fill: "none", stroke: "#0b5c7a", "stroke-width": "1.1" }),
+    svg("path", { d: `M${left} ${bottom + 6}h20m0 -1.500v3m-20 0v-3`, fill: "none", stroke: "#222", "stroke-width": "0.6" }));
+  const scale = svg("text", { x: String(left + 22), y: String(bottom + 8), "font-size": "6", fill: "#222" }, "20 mm");
   drawing.append(scale);
   return drawing;
 }

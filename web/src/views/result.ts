@@ -9,19 +9,22 @@ import { matrix } from "../matrix.js";
 import { fromDocument, PLAN_STATE, pivotsOf, planState, read, readPivots, written, type Plan, type Pivots } from "../plan.js";
 import { address, note } from "../route.js";
 import type { Hit, Shape } from "../scene.js";
-import { readVtp } from "../vtp.js";
+import { pointArrays, readVtp } from "../vtp.js";
 import { mm, signed } from "../figures.js";
 import { Workbench, type SkinMap } from "../workbench.js";
+import { resultBeside } from "./above.js";
+import { correctionFacts } from "./corrected.js";
 import { crumbs } from "./crumbs.js";
 import { foundFacts } from "./found.js";
 import { comparisonFacts } from "./distances.js";
 import { fileList } from "./files.js";
 import { told } from "./movements.js";
 import { cephalometry, landmarks, provenance, regions, type Shown } from "./numbers.js";
-import { kindOf, plainResult, statusOf } from "./plain.js";
+import { kindOf, statusOf } from "./kinds.js";
 import { placesOf, type Parts } from "./places.js";
 import { profile } from "./profile.js";
 import { reportLinks } from "./reports.js";
+import { stressFacts } from "./stressed.js";
 import { drawTrust } from "./trust.js";
 import { resultLines } from "./trusted.js";
 
@@ -39,8 +42,8 @@ export async function resultPage(app: App): Promise<Leave> {
   }
   const files = job.results?.files.map(({ name }) => name) ?? [];
   if (!files.includes("skin.glb")) {
-    app.stage.replaceChildren(...plainResult(app, job));
-    return () => { left = true; };
+    const leave = await resultBeside(app, job);
+    return () => { left = true; leave(); };
   }
   const result = new Result(app, job);
   await result.start();
@@ -99,12 +102,12 @@ class Result {
     this.bench.scene.orient(this.opened.frame);
     this.bench.scene.showSkin(this.before);
     this.bench.scene.moveSkin(this.displacement_mm);
-    this.knowPlan();
-    const values = await this.furtherValues();
-    for (const [name, chosen] of Object.entries(values)) if (name.startsWith("set_")) this.parts[name.slice("set_".length)] = chosen;
-    this.bench.offer(this.maps(values.nonlinearity_mm));
-    this.draw();
     this.bench.start();
+    this.knowPlan();
+    const values = { ...await this.furtherValues(), ...await this.stress() };
+    for (const [name, chosen] of Object.entries(values)) if (name.startsWith("set_")) this.parts[name.slice("set_".length)] = chosen;
+    this.bench.offer(this.maps(values));
+    this.draw();
     await this.bones();
   }
 
@@ -122,7 +125,20 @@ class Result {
     return (await readVtp(await this.app.service.file(this.job.id, "skin.vtp"))).values;
   }
 
-  private maps(leftOut: Float32Array | undefined): SkinMap[] {
+  /** Stress at the nodes of the skin, from the file of the tissue. */
+  private async stress(): Promise<Record<string, Float32Array>> {
+    const { results, job, app: { service } } = this;
+    const has = (name: string) => results.files.some((file) => file.name === name);
+    if ((results.stress ?? undefined) === undefined || !has("volume.vtu") || !has("skin.vtp")) return {};
+    const [tissue, skin] = await Promise.all([service.file(job.id, "volume.vtu"), service.file(job.id, "skin.vtp")]);
+    const [inside, own] = await Promise.all([
+      pointArrays(tissue, (name) => name === "node_id" || name === "von_mises_kpa"), pointArrays(skin, (name) => name === "node_id")]);
+    if (inside.von_mises_kpa === undefined || inside.node_id === undefined || own.node_id === undefined) return {};
+    const place = new Map(Array.from(inside.node_id, (node, at) => [node, at]));
+    return { von_mises_kpa: own.node_id.map((node) => inside.von_mises_kpa![place.get(node) ?? -1] ?? 0) };
+  }
+
+  private maps({ nonlinearity_mm: leftOut, von_mises_kpa, contact_pressure_kpa }: Record<string, Float32Array>): SkinMap[] {
     const { words } = this.app;
     const { _DISPLACEMENT_MAGNITUDE_MM, _NUMERICAL_ERROR_MM, _SIGNED_DISTANCE_MM } = this.after.values;
     const maps: SkinMap[] = [];
@@ -134,6 +150,12 @@ class Result {
     }
     if (leftOut !== undefined) {
       maps.push({ name: "model", label: words.leftOutMap, scheme: "length", range_mm: 1, values: () => leftOut });
+    }
+    if (von_mises_kpa !== undefined) {
+      maps.push({ name: "stress", label: words.vonMises, unit: "kPa", scheme: "length", range_mm: 5, values: () => von_mises_kpa });
+    }
+    if (contact_pressure_kpa !== undefined) {
+      maps.push({ name: "contact", label: words.contactPressure, unit: "kPa", scheme: "length", range_mm: 5, values: () => contact_pressure_kpa });
     }
     if (_SIGNED_DISTANCE_MM !== undefined) {
       maps.push({ name: "distance", label: words.signedDistance, scheme: "signed", range_mm: 2, values: () => _SIGNED_DISTANCE_MM });
@@ -155,6 +177,8 @@ class Result {
     if (results.comparison !== undefined) bench.section(words.comparison, comparisonFacts(this.app, results.comparison));
     const shown: Shown = { words, warnings: list, show: (name) => places({ code: "", detail: name }).find(({ label }) => label === name)?.show };
     bench.section(words.regions, regions(shown, results));
+    if (results.correction) bench.section(words.correction, correctionFacts(this.app, this.job, results.correction, this.before, bench.scene));
+    if (results.stress) bench.section(words.stress, stressFacts(words, results.stress));
     if (Object.keys(results.statistics?.landmarks ?? {}).length > 0) bench.section(words.landmarks, landmarks(shown, results, opened.frame));
     if ((results.cephalometry ?? []).length > 0) bench.section(words.cephalometry, cephalometry(words, results.cephalometry!));
     bench.section(words.profile, profile(words, opened.frame, this.before, this.after), make("p", { className: "fine" }, words.profileHint));

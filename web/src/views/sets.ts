@@ -3,9 +3,11 @@ import type { CaseDocument } from "../api.js";
 import { announce, refusal, type App } from "../app.js";
 import { button, make, select } from "../dom.js";
 import { setsOf, type Opened } from "../loading.js";
-import { rolesOf, withRoles, type Role, type SetRoles } from "../roles.js";
+import { rolesOf, withPainted, withRoles, type PaintedSet, type Role, type SetRoles } from "../roles.js";
 import { address } from "../route.js";
 import type { Workbench } from "../workbench.js";
+import { materialChoices, withPresets, type Presets } from "./materials.js";
+import { Painter } from "./paint.js";
 
 const ROLES: Role[] = ["none", "skin", "region", "segment", "fixed", "sliding"];
 /** As in the picture of what holds the nodes. */
@@ -39,6 +41,10 @@ class Sets {
   private readonly said = make("div", { role: "status" });
   private readonly rows = new Map<string, HTMLElement>();
   private readonly made = make("details", {}, make("summary", {}, ""));
+  private readonly painted: PaintedSet[] = [];
+  private readonly paintedList = make("ul", { className: "plans sets" });
+  private painter: Painter | undefined;
+  private presets: Presets = {};
   private chosen: string | undefined;
   private over = "";
 
@@ -54,7 +60,11 @@ class Sets {
     const post = button(words.newCase, () => void this.post(), { className: "primary" });
     made.replaceChildren(make("summary", {}, words.document), text, make("p", { className: "fine" }, words.newCaseHint));
     this.here.textContent = words.setsClick;
-    section.append(this.here, list, make("div", { className: "row" }, post, button(words.reset2, () => this.reset())), made, this.said);
+    const { document } = this.opened;
+    const names = [...Object.keys(held.sizes), ...(document.segments ?? []).map(({ name }) => name), ...Object.keys(document.skin_regions ?? {})];
+    this.painter = new Painter(this.app, this.opened, this.bench, (name) => [...names, ...this.painted.map((one) => one.name)].includes(name), (set) => { this.painted.push(set); this.drawPainted(); });
+    const materials = materialChoices(this.app, document, (presets) => { this.presets = presets; this.write(); });
+    section.append(this.here, list, this.paintedList, this.painter.element, materials, make("div", { className: "row" }, post, button(words.reset2, () => this.reset())), made, this.said);
     this.write();
     this.listen();
   }
@@ -69,6 +79,14 @@ class Sets {
     return row;
   }
 
+  private drawPainted(): void {
+    const { words } = this.app;
+    const row = (set: PaintedSet) => make("li", { className: "changed" }, make("strong", {}, set.name), make("span", { className: "fine" }, words.role[set.role]),
+      button("×", () => { this.painted.splice(this.painted.indexOf(set), 1); this.drawPainted(); }, { aria: { label: `${words.remove} ${set.name}` } }));
+    this.paintedList.replaceChildren(...this.painted.map(row));
+    this.write();
+  }
+
   /** The sets of a drawn node, the smallest first. */
   private at(node: number): string[] {
     const { inside, sizes } = this.held;
@@ -81,7 +99,7 @@ class Sets {
     let next: PointerEvent | undefined;
     canvas.addEventListener("pointerdown", (event) => { from = [event.clientX, event.clientY]; });
     canvas.addEventListener("pointerup", (event) => {
-      if (Math.hypot(event.clientX - from[0], event.clientY - from[1]) > 4) return;
+      if (Math.hypot(event.clientX - from[0], event.clientY - from[1]) > 4 || this.painter?.isPainting === true) return;
       const hit = this.bench.scene.pick(event);
       const found = hit === undefined ? [] : this.at(hit.node);
       if (found.length === 0) return;
@@ -120,8 +138,8 @@ class Sets {
 
   private write(): void {
     const { opened: { document, name }, app: { words } } = this;
-    const changed = Object.keys(this.roles).some((set) => this.roles[set] !== this.before[set]);
-    const other = withRoles(document, this.roles);
+    const changed = Object.keys(this.roles).some((set) => this.roles[set] !== this.before[set]) || this.painted.length > 0 || Object.keys(this.presets).length > 0;
+    const other = withPresets(withPainted(withRoles(document, this.roles), this.painted), this.presets);
     // Two cases of one name are not told apart in a list.
     this.text.value = JSON.stringify(changed ? { ...other, name: `${name} · ${words.otherRoles}` } : other, null, 2);
     for (const [set, row] of this.rows) row.classList.toggle("changed", this.roles[set] !== this.before[set]);

@@ -89,6 +89,41 @@ export const en = {
   toCase: "Open the case", toStudies: "Open the studies", makeCase: "Make this case", furtherRows: (count: number) => `and ${count} more`,
   kind: "Kind", status: "State", progress: "Progress", created: "Made", noJobs: "No jobs.", noStudies: "No studies yet. A study is posted as a job of kind study.",
   verdict: "Verdict", report: "Report", chart: "Chart", rows: "Rows", variant: "Variant", scene: "Scene", wall: "s", p95mm: "p95 mm",
+
+  materials: "Materials of the literature", asStated: "as the case says", otherRegions: "all other tissue", measuredModuli: "Moduli that were measured", tissue: "Tissue", source: "Source", doubt: "What speaks against it",
+  materialsHint: "A preset takes the place of what the case says of that tissue. Presets with fibres are offered where the case states their course.",
+  withStress: "Stress in the tissue too", stress: "Stress", vonMises: "Mises' stress", pressure: "Pressure", contactPressure: "Pressure of contact",
+  stressBoxHint: "Boxes from the first to the third quartile of the tissue by volume, whiskers from the least to the 95th percentile.",
+  stressHint: (strain: string) => `Means over cells; strain: ${strain}. Beside bone that moves the largest value says how fine the mesh is. Cell by cell it is in volume.vtu.`,
+  correction: "Correction by what was learned", correctionHint: "Adds what a model learned of operated cases, in a file of its own; it needs the method that the model was learned with.",
+  noModels: "Nothing was learned yet. Learning is a job of kind learn.", model: "Model learned", toModel: "The model", overCorrected: "Lay the corrected skin over it", otherPoints: "The corrected skin has other points.",
+  changedBy: "Changed by, mean", bandWidth: "Band from 10 to 90 %, mean width", fromLearned: "From the nearest case / most allowed",
+
+  learningHelps: "Closer to what happened than mechanics alone.", learningHarms: "Not closer to what happened than mechanics alone.",
+  learnedErrors: (own: string, mechanics: string) => `${own} mm with it, ${mechanics} mm without.`,
+  learningCurve: "Error by the number of cases", casesLearnedFrom: "cases learned from", meanErrorMm: "Mean error, mm", curveHint: "Each case predicted from so many others. Dotted: what nothing was learned for.",
+  errorsOfCases: "Error of each case", boxHint: "Boxes from the first to the third quartile with the median, whiskers to the ends, a dot for each.", nested: "nested", validation: "Validation", width: "width",
+  widthEnds: { inside: "found at", nearest_neighbour: "none: the nearest case is best", mean: "none: features say nothing" } as Record<string, string>,
+  againstMechanics: "Against the mechanical prediction", medianGain: "median gain, mm", smallestP: "least p", harmed: "harmed", refusedCases: "refused", coverage: "in band",
+  coverageHint: "Gain is what mechanics errs less what the method errs. Least p: the smallest that so many cases can give. In band: numbers within their band from 10 to 90 %; 80 % is right.",
+  theta: "Theta", thetaHint: "Of Rubin and Bodner's tissue, by class of surgery. It is determined where the error changes by 0.01 mm or more and is smallest inside the interval.",
+  surgeryClass: "Class", patients: "patients", spreadMm: "error changes by, mm", determined: "determined", yes: "yes", no: "no",
+  errorMapHint: "Choose a method among the colours: where it errs, as the mean over the cases, on the face of the first.",
+
+  methods: "Methods", subjects: "Subjects", sd: "sd", median: "median", everyTwo: "Every two", medianDifference: "median difference, mm", differing: "differing", exact: "exact",
+  smallestHint: "Least p: the smallest that so many differing subjects can give. With fewer than six no difference is below 0.05.",
+  performed: "What was performed", turnedBy: "turned", beyondPlan: "Beyond what was planned", unmovedBone: "bone that stayed", pairs: "points that counted", fits: "How well surfaces lie on each other",
+  fitsHint: "Root mean square of the distances that counted, and the share that is left more than 1 mm away.", onCase: "On the case",
+  noCaseFits: "No case here has this frame and these segments.",
+  leftOver: "What is left", repair: "Repair of cells", inverted: "inverted", undecided: "undecided", points: "points", bone: "Bone", byLandmarksAlone: "By landmarks alone: no surface was given.",
+  withPartner: (share: string) => `${share} % of the template's skin lies opposite the patient's; the rest follows.`,
+  nodesMoved: (count: string, mean: string, most: string) => `${count} nodes moved, by ${mean} mm in the mean and ${most} mm at most.`, unproven: (count: number) => `${count} cells are not proven valid.`,
+  lines: "lines", onTemplate: "on the template", onPatient: "on the patient", widening: "as wide", otherMap: "other map", conformedHint: "The boundary of the mesh as it lies on the patient.",
+
+  paint: "Paint a set", paintHint: "Turn the head until the place is seen, then paint on it: faces under the brush become a set of nodes. With the head in focus, Enter paints in the middle of the view.",
+  brush: "Pointer", painting: "Paint", rubbing: "Rub out", brushMm: "Brush, radius", paintMiddle: "Paint the middle of the view", clearPaint: "Clear", setName: "Name of the set", roleOf: "What it is", addPainted: "Add the set to the case",
+  painted: (faces: string, area: string) => `${faces} faces, ${area} cm²`, nameAsked: "The set needs a name.", nameTaken: (name: string) => `${name} is the name of another part.`,
+  strangers: (count: number) => `${count} nodes that are not painted lie on painted faces, as those of the other lip of a closed mouth do: they are in the set too.`,
 };
 
 export type Words = typeof en;

@@ -9,4 +9,4 @@ mod tissue;
 
 pub use noise::MAPPING;
 pub use patient::{VirtualError, VirtualPatient};
-pub use report::{ThetaOfClass, VirtualCohort, virtual_cohort};
+pub use report::{VirtualCohort, virtual_cohort};

@@ -18,7 +18,7 @@ use crate::boundary::NodeSelection;
 use crate::draws::Draws;
 use crate::material::MaterialError;
 use crate::mesh::half_head::LAYERS;
-use crate::mesh::{Frame, Vector, VolumeMesh};
+use crate::mesh::{Frame, TriangleSurface, Vector, VolumeMesh};
 use crate::model::problem::ModelError;
 use crate::prediction::{
     Activation, Case, CaseSegment, FibreDirection, Growth, Method, Muscle, MuscleCourse, Plan,
@@ -32,6 +32,8 @@ use super::super::theta::THETAS;
 #[derive(Clone, Debug, PartialEq)]
 pub struct VirtualPatient {
     pub operation: Operation,
+    /// The skin at rest, as it was mapped.
+    pub face: TriangleSurface,
     /// Points of the skin by region.
     pub regions: BTreeMap<String, Vec<u32>>,
     pub features: Features,
@@ -98,6 +100,7 @@ impl VirtualPatient {
         let [low, high] = THETAS;
         Ok(VirtualPatient {
             operation,
+            face: scene.skin.surface.clone(),
             regions: scene.skin.regions.clone(),
             features: measures::features(&scene, &linear),
             bone: measures::bone(&scene, &linear),

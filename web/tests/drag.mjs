@@ -1,0 +1,12 @@
+// Frames and memory by hand: `web/tests/drag [SECONDS]`.
+import { browser, check, counted, ended, opened, service, caseId } from "./tools.mjs";
+import { dragged, framed } from "./frames.mjs";
+
+const seconds = Number(process.argv[2]);
+const page = await opened();
+await ended({ kind: "response", case: caseId });
+await check("frames of a large head", () => framed(page, 60));
+await check(`memory over ${seconds} s of dragging`, () => dragged(page, seconds));
+await browser.close();
+await service.stop();
+process.exitCode = counted.failed === 0 ? 0 : 1;
