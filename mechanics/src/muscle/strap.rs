@@ -67,7 +67,8 @@ pub fn box_surface(centre: Vector, [a, b, c]: [Vector; 3]) -> TriangleSurface {
         centre + a * side(0) + b * side(1) + c * side(2)
     };
     // Around each face seen from outside, where a, b and c are right-handed.
-    let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let faces =
+        [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
     let is_right_handed = a.dot(&b.cross(&c)) > 0.0;
     let halves = faces.iter().flat_map(|&[p, q, r, s]| [[p, q, r], [p, r, s]]);
     let facing = |[p, q, r]: [u32; 3]| if is_right_handed { [p, q, r] } else { [p, r, q] };

@@ -33,7 +33,8 @@ impl Scene {
         let element = check.element(settings);
         let mut tissue = check.tissue_of_cells(&region_of_cell, materials);
         let (of_cells, made) = ((&regions[..], &region_of_cell[..]), (&mut tissue, &mut fibres));
-        let (muscles, muscle_tissue) = check.muscles_of_cells(of_cells, made, &settings.method);
+        let (muscles, muscle_tissue) =
+            check.muscles_of_cells(of_cells, made, (&settings.method, plan));
 
         // 2. What every node is held to.
         let sound = check.problems.count();

@@ -46,8 +46,8 @@ use std::collections::BTreeMap;
 
 pub use case::{
     Activation, BodyFibres, Bone, Case, CaseSegment, ContactKind, FibreDirection, Growth,
-    Hounsfield, Load, Mixing, Muscle, MuscleCourse, MuscleMixing, Plan, Prescribed, RegionNames, Settings, SkinMembrane, Sliding,
-    SlidingNormal, TissueWindow,
+    Hounsfield, Load, Mixing, Muscle, MuscleCourse, MuscleMixing, Plan, Prescribed, RegionNames,
+    Settings, SkinMembrane, Sliding, SlidingNormal, Stiffening, TissueWindow,
 };
 pub use contact::{ContactPair, Touch};
 pub use element_choice::ElementChoice;

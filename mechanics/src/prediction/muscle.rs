@@ -13,9 +13,9 @@ use super::case::{Activation, BodyFibres, FibreDirection, MuscleCourse, Plan};
 use super::check::Check;
 use super::error_code::SceneErrorCode;
 use super::fibres::{Course, unit};
-use super::muscle_field::{MuscleBody, MuscleField};
 use super::hounsfield::TissueOfCells;
 use super::method::Method;
+use super::muscle_field::{MuscleBody, MuscleField};
 use super::muscle_lines::{Lines, PullShare};
 use super::muscle_tissue::MuscleTissue;
 use super::scene::Scene;
@@ -64,21 +64,17 @@ impl<'a> Check<'a> {
         &mut self,
         (regions, region_of_cell): (&[String], &[u16]),
         (tissue, fibres): (&mut TissueOfCells, &mut Vec<Vector>),
-        method: &Method,
+        (method, plan): (&Method, &Plan),
     ) -> (Vec<MuscleField>, Option<MuscleTissue>) {
         if self.problems.count() > 0 {
             return (Vec::new(), None);
         }
         let muscles = self.muscles(regions, region_of_cell);
-        let made = self.muscle_tissue(&muscles, (tissue, fibres), method);
+        let made = self.muscle_tissue(&muscles, (tissue, fibres), (method, plan));
         (muscles, made)
     }
 
-    fn muscles(
-        &mut self,
-        regions: &[String],
-        region_of_cell: &[u16],
-    ) -> Vec<MuscleField> {
+    fn muscles(&mut self, regions: &[String], region_of_cell: &[u16]) -> Vec<MuscleField> {
         let mut names = BTreeSet::new();
         let mut fields = Vec::new();
         for (index, muscle) in self.case.muscles.iter().enumerate() {
@@ -105,7 +101,7 @@ impl<'a> Check<'a> {
                     self.inside((surface, fibres), (index, &muscle.name), &pointer)
                 }
             };
-            let field = MuscleField::new(&muscle.name, &self.case.volume, cells, body);
+            let field = MuscleField::new(muscle, &self.case.volume, cells, body);
             self.warnings.extend(doubts(&field));
             fields.push(field);
         }
@@ -304,7 +300,9 @@ fn not_a_strap(name: &str, strap: &Strap) -> Option<Warning> {
          their box: state `direction`, `array` or `lines_mm`",
         strap.broadness
     );
-    strap.is_broad().then(|| Warning::new("muscle-broad", detail).with("broadness", strap.broadness))
+    strap
+        .is_broad()
+        .then(|| Warning::new("muscle-broad", detail).with("broadness", strap.broadness))
 }
 
 /// `reaches from (0.0, 0.0, 0.0) to (1.0, 1.0, 1.0) mm`.

@@ -1,5 +1,6 @@
 //! A muscle on a mesh: the stress of its cells for each kPa with which it pulls, and how much of them it is.
 
+use super::case::Muscle;
 use crate::mesh::jacobian::signed_volume;
 use crate::mesh::{Vector, VolumeMesh};
 use crate::model::fem::inner_stress::{CellStress, InnerStress};
@@ -14,6 +15,8 @@ pub struct MuscleField {
     pub volume: f64,
     /// Of a muscle with a surface.
     pub body: Option<MuscleBody>,
+    /// Whether its tissue becomes stiffer as it pulls, so that what it does is not in proportion to its stress.
+    pub stiffens: bool,
 }
 
 /// What the closed surface of a muscle says.
@@ -27,13 +30,14 @@ pub struct MuscleBody {
 
 impl MuscleField {
     pub(super) fn new(
-        name: &str,
+        muscle: &Muscle,
         mesh: &VolumeMesh,
         cells: Vec<CellStress>,
         body: Option<MuscleBody>,
     ) -> Self {
         let volume = cells.iter().map(|own| muscle_volume(mesh, own)).sum();
-        MuscleField { name: name.to_owned(), cells, volume, body }
+        let (name, stiffens) = (muscle.name.clone(), muscle.stiffening.is_some());
+        MuscleField { name, cells, volume, body, stiffens }
     }
 
     /// What it exerts in a mesh of so many cells when it pulls with `stress` in kPa.

@@ -9,6 +9,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use nalgebra::Matrix3;
 
+use super::case::{Muscle, Plan};
 use super::check::Check;
 use super::error_code::SceneErrorCode;
 use super::fibres::fibres_ignored;
@@ -54,9 +55,9 @@ impl Check<'_> {
         &mut self,
         muscles: &[MuscleField],
         (tissue, fibres): (&mut TissueOfCells, &mut Vec<Vector>),
-        method: &Method,
+        (method, plan): (&Method, &Plan),
     ) -> Option<MuscleTissue> {
-        let own = self.tissue_of_muscles(method);
+        let own = self.tissue_of_muscles(method, plan);
         let mut parts: Vec<Vec<Part>> = vec![Vec::new(); tissue.material_of_cell.len()];
         for (number, field) in muscles.iter().enumerate().filter(|(n, _)| own[*n].is_some()) {
             for cell in field.cells.iter().filter(|cell| cell.stress.trace() > 0.0) {
@@ -93,17 +94,49 @@ impl Check<'_> {
         Some(told)
     }
 
-    /// That of each muscle, without fibres where the method knows none.
-    fn tissue_of_muscles(&mut self, method: &Method) -> Vec<Option<LinearElastic>> {
-        let own = self.case.muscles.iter().map(|muscle| muscle.tissue);
+    /// That of each muscle as it pulls in a plan, without fibres where the method knows none.
+    fn tissue_of_muscles(&mut self, method: &Method, plan: &Plan) -> Vec<Option<LinearElastic>> {
+        let case = self.case;
+        let own = case.muscles.iter().map(|muscle| muscle.tissue);
         if method.properties().knows_fibres {
-            return own.collect();
+            let all = case.muscles.iter();
+            return all
+                .map(|muscle| Some(self.as_it_pulls(muscle, muscle.tissue?, plan)))
+                .collect();
         }
         let ignored = own.clone().flatten().filter(LinearElastic::has_fibre).count();
         if ignored > 0 {
             self.warnings.push(fibres_ignored(ignored, "muscles"));
         }
         own.map(|tissue| tissue.map(LinearElastic::without_fibre)).collect()
+    }
+
+    /// The tissue of a muscle, stiffer where the plan activates it.
+    fn as_it_pulls(
+        &mut self,
+        muscle: &Muscle,
+        tissue: LinearElastic,
+        plan: &Plan,
+    ) -> LinearElastic {
+        let mut activations = plan.activations.iter().enumerate();
+        let own = activations.find(|(_, activation)| activation.muscle == muscle.name);
+        let Some((stiffening, (index, activation))) = muscle.stiffening.as_ref().zip(own) else {
+            return tissue;
+        };
+        let at = format!("/plan/activations/{index}/stress_kpa");
+        let (stress, most) = (activation.stress, stiffening.stress);
+        if !(0.0..=most).contains(&stress) {
+            let detail = format!(
+                "{stress} kPa is more than the {most} kPa of the fully active muscle {:?}, beyond which its stiffness is not known",
+                muscle.name
+            );
+            self.problems.add(at, SceneErrorCode::PlanOutOfRange, detail);
+            return tissue;
+        }
+        stiffening.at(tissue, stress).unwrap_or_else(|error| {
+            self.problems.add(at, SceneErrorCode::PlanOutOfRange, error.to_string());
+            tissue
+        })
     }
 
     /// Stiffnesses mix: laws of finite strain and fibres that only pull have more.
@@ -116,7 +149,8 @@ impl Check<'_> {
         };
         let more = filled.iter().filter(is_more).count();
         if tissue.materials.len() + self.case.muscles.len() > MOST_MATERIALS {
-            let detail = format!("{MOST_MATERIALS} tissues at most are told apart, with those of muscles");
+            let detail =
+                format!("{MOST_MATERIALS} tissues at most are told apart, with those of muscles");
             self.problems.add("/case/muscles", SceneErrorCode::TooManyRegions, detail);
             return false;
         }
@@ -157,11 +191,7 @@ struct Mixer<'a> {
 }
 
 impl<'a> Mixer<'a> {
-    fn new(
-        own: &[Option<LinearElastic>],
-        rule: MixingRule,
-        tissue: &'a mut TissueOfCells,
-    ) -> Self {
+    fn new(own: &[Option<LinearElastic>], rule: MixingRule, tissue: &'a mut TissueOfCells) -> Self {
         let mut pure = Vec::new();
         for material in own {
             pure.push(material.map(|_| tissue.materials.len() as u16));
@@ -188,9 +218,9 @@ impl<'a> Mixer<'a> {
     fn axis(&self, cell: usize, parts: &[Part], fibres: &[Vector]) -> Option<MeanAxis> {
         let has_fibre = |number: u16| self.tissue.materials[usize::from(number)].has_fibre();
         let shares: f64 = parts.iter().map(|(_, stress)| stress.trace()).sum();
-        let with = parts.iter().filter(|(number, _)| {
-            self.pure[usize::from(*number)].is_some_and(has_fibre)
-        });
+        let with = parts
+            .iter()
+            .filter(|(number, _)| self.pure[usize::from(*number)].is_some_and(has_fibre));
         let mut sum: Matrix3<f64> = with.map(|(_, stress)| stress).sum();
         if has_fibre(self.tissue.material_of_cell[cell]) && shares < 1.0 {
             let own = fibres.get(cell).copied().unwrap_or_default();

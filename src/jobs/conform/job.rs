@@ -216,6 +216,7 @@ fn refused(error: &ConformationError, clock: &Observed) -> JobError {
         | ConformationError::FewLandmarks { .. }
         | ConformationError::Mirrored { .. }
         | ConformationError::Exchanged { .. }
+        | ConformationError::Permuted { .. }
         | ConformationError::Unlike { .. } => at.key("landmarks"),
     };
     Problem::at(&place, ErrorCode::AlignmentFailed, error.to_string()).into()

@@ -3,6 +3,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
+use rayon::prelude::*;
+
 use super::document::{CaseDocument, FrameName, LengthUnit, NormalDocument};
 use super::hounsfield::HounsfieldDocument;
 use super::material::MaterialDocuments;
@@ -51,6 +53,7 @@ impl CaseDocument {
         let repair = self.repair.as_ref();
         let mended = repair.and_then(|own| own.mended(&volume, &at.key("repair"), faults));
         let volume = mended.as_ref().map_or(volume, |mended| mended.volume.clone());
+        check_cells(&volume, self.repair.is_some(), &at, faults);
         let own = PlacedMaterials { at: at.key("materials"), materials: self.materials.as_ref() };
         let spec = PlacedMaterials {
             at: Pointer::root().key("spec").key("materials"),
@@ -340,6 +343,25 @@ fn check_regions(
             }
         }
     }
+}
+
+/// Refuses cells of which no stiffness can be formed: those that no repair was asked for, or that it left.
+fn check_cells(volume: &VolumeMesh, is_repaired: bool, at: &Pointer, faults: &mut Faults) {
+    let cells = (0..volume.cells.len()).into_par_iter();
+    let invalid: Vec<usize> =
+        cells.filter(|&cell| !volume.cell_jacobian(cell).is_valid()).collect();
+    let (Some(first), count) = (invalid.first(), invalid.len()) else { return };
+    let (place, remedy) = match is_repaired {
+        true => {
+            ("repair", "they stay so within the bounds of the repair: larger ones may mend them")
+        }
+        false => ("volume", "`repair` in the case may mend them"),
+    };
+    let detail = format!(
+        "{count} of {} cells are inverted or flat at a Gauss point, the first of them {first} (from 0): {remedy}",
+        volume.cells.len()
+    );
+    faults.add(&at.key(place), ErrorCode::MeshInvertedElements, detail);
 }
 
 fn unusual_size(volume: &VolumeMesh, units: LengthUnit) -> Option<Warning> {

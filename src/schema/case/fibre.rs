@@ -112,12 +112,7 @@ impl FibreDocument {
         if !is_linear {
             return pulling.map(|_| across);
         }
-        let law = match self.law.unwrap_or_default() {
-            FibreLawName::Engineering => FibreLaw::Engineering,
-            FibreLawName::Paper002 => FibreLaw::Paper002,
-        };
-        let (young_modulus, shear_modulus) = (self.young_modulus_kpa?, self.shear_modulus_kpa);
-        match across.with_fibre(&Fibre { young_modulus, shear_modulus, law }) {
+        match across.with_fibre(&self.to_fibre()?) {
             Ok(material) => Some(material),
             Err(error) => {
                 let (field, code) = match error {
@@ -141,6 +136,16 @@ impl FibreDocument {
 }
 
 impl FibreDocument {
+    /// Its constants at small strain, where there are some.
+    pub(super) fn to_fibre(&self) -> Option<Fibre> {
+        let law = match self.law.unwrap_or_default() {
+            FibreLawName::Engineering => FibreLaw::Engineering,
+            FibreLawName::Paper002 => FibreLaw::Paper002,
+        };
+        let (young_modulus, shear_modulus) = (self.young_modulus_kpa?, self.shear_modulus_kpa);
+        Some(Fibre { young_modulus, shear_modulus, law })
+    }
+
     /// The fibres that only pull, where both of their constants are stated.
     fn pulling(&self, at: &Pointer, faults: &mut Faults) -> Option<Fibres> {
         if self.k1_kpa.is_none() && self.k2.is_none() {

@@ -9,6 +9,7 @@ use utoipa::ToSchema;
 use super::fibre::to_course;
 use super::material::{MaterialDocument, MaterialDocuments};
 use super::muscle_box::MuscleBoxDocument;
+use super::muscle_mixing::StiffeningDocument;
 use super::preset::expanded;
 use super::preset_name::doubt;
 use crate::schema::Triple;
@@ -18,7 +19,7 @@ use crate::schema::wire::limits::Limits;
 use crate::schema::wire::names::check_distinct;
 use mechanics::material::LinearElastic;
 use mechanics::mesh::{TriangleSurface, Vector, Warning};
-use mechanics::prediction::{BodyFibres, Muscle, MuscleCourse};
+use mechanics::prediction::{BodyFibres, Muscle, MuscleCourse, Stiffening};
 
 /// Distances from its lines within which a muscle may pull, in mm.
 pub const REACH_MM: (f64, f64) = (0.1, 50.0);
@@ -72,6 +73,10 @@ pub struct MuscleDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub material: Option<MaterialDocument>,
+    /// The `fibre` of its material becomes stiffer as the muscle pulls. Absent: it stays what it is.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub stiffening: Option<StiffeningDocument>,
 }
 
 /// The usual reach of a muscle around its lines.
@@ -134,12 +139,13 @@ impl MuscleDocument {
             return None;
         }
         let tissue = self.to_tissue(&at.key("material"), faults);
+        let stiffening = self.to_stiffening(at, faults);
         let course = match (&self.region, &self.lines_mm) {
             (Some(region), _) => self.in_region(region, at, faults)?,
             (None, Some(lines)) if !has_body => self.around(lines, at, context.limits, faults)?,
             (None, _) => self.body(at, context, faults)?,
         };
-        Some(Muscle { name: self.name.trim().to_owned(), course, tissue })
+        Some(Muscle { name: self.name.trim().to_owned(), course, tissue, stiffening })
     }
 
     fn in_region(&self, region: &str, at: &Pointer, faults: &mut Faults) -> Option<MuscleCourse> {
@@ -148,6 +154,7 @@ impl MuscleDocument {
             ("within_mm", self.within_mm.is_some()),
             ("boxes", self.boxes.is_some()),
             ("material", self.material.is_some()),
+            ("stiffening", self.stiffening.is_some()),
         ];
         refuse(&others, "region", at, faults);
         let fibres = match (self.direction, &self.array) {
@@ -209,7 +216,12 @@ impl MuscleDocument {
     }
 
     /// The one way in which fibres of a body are stated; without one along its box.
-    fn body_fibres(&self, at: &Pointer, limits: &Limits, faults: &mut Faults) -> Option<BodyFibres> {
+    fn body_fibres(
+        &self,
+        at: &Pointer,
+        limits: &Limits,
+        faults: &mut Faults,
+    ) -> Option<BodyFibres> {
         let ways = [
             self.direction.is_some(),
             self.array.is_some(),
@@ -239,6 +251,17 @@ impl MuscleDocument {
             }
         };
         Some(BodyFibres::Box { halvings })
+    }
+
+    fn to_stiffening(&self, at: &Pointer, faults: &mut Faults) -> Option<Stiffening> {
+        let own = self.stiffening.as_ref()?;
+        let material = self.material.as_ref().map(expanded);
+        let Some(fibre) = material.and_then(|material| material.fibre?.to_fibre()) else {
+            let detail = "what becomes stiffer is `young_modulus_kpa` of the `fibre` of `material`";
+            faults.add(&at.key("stiffening"), ErrorCode::MissingField, detail);
+            return None;
+        };
+        own.to_stiffening(fibre, &at.key("stiffening"), faults)
     }
 
     /// Linear tissue, with presets written out, whose fibres run along the muscle.

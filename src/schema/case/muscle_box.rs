@@ -37,7 +37,8 @@ impl MuscleBoxDocument {
         }
         let (volume, cube) = (a.dot(&b.cross(&c)), a.norm() * b.norm() * c.norm());
         if !(volume.abs() > FLAT * cube && cube > 0.0) {
-            let detail = format!("a box has a volume, and this one has {:.3} mm³", 8.0 * volume.abs());
+            let detail =
+                format!("a box has a volume, and this one has {:.3} mm³", 8.0 * volume.abs());
             faults.add(&at.key("half_axes"), ErrorCode::OutOfRange, detail);
             return None;
         }

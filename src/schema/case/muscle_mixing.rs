@@ -1,4 +1,4 @@
-//! How the material of muscles becomes that of cells, and what muscles are in the cells of a mesh.
+//! How the material of muscles becomes that of cells and changes as they pull, and what muscles are in the cells of a mesh.
 
 use std::collections::BTreeMap;
 
@@ -7,8 +7,9 @@ use utoipa::ToSchema;
 
 use crate::schema::wire::fault::{Faults, Pointer};
 use mechanics::image::MOST_SAMPLES;
+use mechanics::material::Fibre;
 use mechanics::material::mixture::MixingRule;
-use mechanics::prediction::{MuscleField, MuscleMixing, MuscleTissue, Scene};
+use mechanics::prediction::{MuscleField, MuscleMixing, MuscleTissue, Scene, Stiffening};
 
 /// How the `material` of muscles becomes the tissue of cells that they fill in part.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -64,6 +65,34 @@ impl MuscleMixingDocument {
         let range = 1.0..=MOST_SAMPLES as f64;
         faults.check_range(&at.key("samples"), f64::from(self.samples), range, "");
         MuscleMixing { rule: self.rule.into(), samples: self.samples as usize }
+    }
+}
+
+/// Stiffness along the fibres of a muscle that pulls: E_f + (E_0 - E_f) T / T_0 with E_f that of its material, T the `stress_kpa` of
+/// its activation, up to T_0 (Chabanas et al. 2003: from 6.2 to 110 kPa).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct StiffeningDocument {
+    /// E_0, of the fully active muscle; in [1e-9, 1e9] and not below that of the material.
+    #[schema(minimum = 1e-9, maximum = 1e9)]
+    pub young_modulus_kpa: f64,
+    /// T_0, with which it pulls then; in [0.001, 10000].
+    #[schema(minimum = 0.001, maximum = 10000.0)]
+    pub stress_kpa: f64,
+}
+
+impl StiffeningDocument {
+    pub(super) fn to_stiffening(
+        self,
+        fibre: Fibre,
+        at: &Pointer,
+        faults: &mut Faults,
+    ) -> Option<Stiffening> {
+        let (own, stress) = (self.young_modulus_kpa, self.stress_kpa);
+        let least = fibre.young_modulus;
+        let is_right = faults.check_range(&at.key("stress_kpa"), stress, 1e-3..=1e4, "kPa");
+        (faults.check_range(&at.key("young_modulus_kpa"), own, least..=1e9, "kPa") && is_right)
+            .then_some(Stiffening { fibre, young_modulus: own, stress })
     }
 }
 

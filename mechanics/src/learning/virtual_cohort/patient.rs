@@ -163,7 +163,7 @@ fn case(volume: Arc<VolumeMesh>, materials: Tissue) -> Case {
         skin_regions: ["nose", "lips", "chin"].map(|name| (name.to_owned(), set(name))).into(),
         segments: vec![segment("maxilla"), segment("mandible")],
         fixed: vec![set("skull"), set("rim")],
-        muscles: vec![Muscle { name: "muscle".to_owned(), course, tissue: None }],
+        muscles: vec![Muscle { name: "muscle".to_owned(), course, tissue: None, stiffening: None }],
         materials,
         volume,
         ..Case::default()

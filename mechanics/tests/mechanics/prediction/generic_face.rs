@@ -24,6 +24,7 @@ fn face(lips: Lips) -> Face {
         name: own.name.clone(),
         course: MuscleCourse::Lines { lines: own.lines.clone(), within: own.within },
         tissue: None,
+        stiffening: None,
     });
     let segment = |name: &str| CaseSegment { name: name.to_owned(), nodes: set(name) };
     let slides = |(nodes, segment): (&str, &str)| Sliding {
