@@ -101,8 +101,8 @@ impl<'a> Check<'a> {
                     self.inside((surface, fibres), (index, &muscle.name), &pointer)
                 }
             };
-            let field = MuscleField::new(muscle, &self.case.volume, cells, body);
-            self.warnings.extend(doubts(&field));
+            let field = MuscleField::new(muscle, cells, body);
+            self.warnings.extend(elsewhere(&field, &self.case.volume));
             fields.push(field);
         }
         fields
@@ -281,9 +281,9 @@ impl<'a> Check<'a> {
 }
 
 /// The warning of a body of which little lies in the tissue.
-fn doubts(field: &MuscleField) -> Option<Warning> {
+fn elsewhere(field: &MuscleField, mesh: &VolumeMesh) -> Option<Warning> {
     let body = field.body.filter(|_| !field.cells.is_empty())?;
-    let share = field.volume / body.enclosed;
+    let share = field.volume(mesh) / body.enclosed;
     let detail = format!(
         "{:.0} % of the volume of muscle {:?} lies in the tissue: are both in the same frame?",
         100.0 * share,

@@ -11,8 +11,6 @@ pub struct MuscleField {
     pub name: String,
     /// w f (x) f of its cells, ascending, w the share of the cell that is muscle.
     pub cells: Vec<CellStress>,
-    /// Of the muscle in the tissue, in mm³.
-    pub volume: f64,
     /// Of a muscle with a surface.
     pub body: Option<MuscleBody>,
     /// Whether its tissue becomes stiffer as it pulls, so that what it does is not in proportion to its stress.
@@ -29,15 +27,14 @@ pub struct MuscleBody {
 }
 
 impl MuscleField {
-    pub(super) fn new(
-        muscle: &Muscle,
-        mesh: &VolumeMesh,
-        cells: Vec<CellStress>,
-        body: Option<MuscleBody>,
-    ) -> Self {
-        let volume = cells.iter().map(|own| muscle_volume(mesh, own)).sum();
+    pub(super) fn new(muscle: &Muscle, cells: Vec<CellStress>, body: Option<MuscleBody>) -> Self {
         let (name, stiffens) = (muscle.name.clone(), muscle.stiffening.is_some());
-        MuscleField { name, cells, volume, body, stiffens }
+        MuscleField { name, cells, body, stiffens }
+    }
+
+    /// Of the muscle in the tissue of its mesh, in mm³.
+    pub fn volume(&self, mesh: &VolumeMesh) -> f64 {
+        self.cells.iter().map(|own| muscle_volume(mesh, own)).sum()
     }
 
     /// What it exerts in a mesh of so many cells when it pulls with `stress` in kPa.

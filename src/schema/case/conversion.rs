@@ -3,8 +3,6 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-use rayon::prelude::*;
-
 use super::document::{CaseDocument, FrameName, LengthUnit, NormalDocument};
 use super::hounsfield::HounsfieldDocument;
 use super::material::MaterialDocuments;
@@ -12,7 +10,7 @@ use super::merged::{Merged, PlacedMaterials, merge_materials};
 use super::meshes::CaseMeshes;
 use super::muscle::{MuscleContext, doubts, to_muscles};
 use crate::schema::code::ErrorCode;
-use crate::schema::repair::Mended;
+use crate::schema::repair::{Mended, check_cells};
 use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::limits::Limits;
 use crate::schema::wire::names::{check_distinct, check_tags};
@@ -343,25 +341,6 @@ fn check_regions(
             }
         }
     }
-}
-
-/// Refuses cells of which no stiffness can be formed: those that no repair was asked for, or that it left.
-fn check_cells(volume: &VolumeMesh, is_repaired: bool, at: &Pointer, faults: &mut Faults) {
-    let cells = (0..volume.cells.len()).into_par_iter();
-    let invalid: Vec<usize> =
-        cells.filter(|&cell| !volume.cell_jacobian(cell).is_valid()).collect();
-    let (Some(first), count) = (invalid.first(), invalid.len()) else { return };
-    let (place, remedy) = match is_repaired {
-        true => {
-            ("repair", "they stay so within the bounds of the repair: larger ones may mend them")
-        }
-        false => ("volume", "`repair` in the case may mend them"),
-    };
-    let detail = format!(
-        "{count} of {} cells are inverted or flat at a Gauss point, the first of them {first} (from 0): {remedy}",
-        volume.cells.len()
-    );
-    faults.add(&at.key(place), ErrorCode::MeshInvertedElements, detail);
 }
 
 fn unusual_size(volume: &VolumeMesh, units: LengthUnit) -> Option<Warning> {

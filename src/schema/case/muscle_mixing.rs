@@ -9,6 +9,7 @@ use crate::schema::wire::fault::{Faults, Pointer};
 use mechanics::image::MOST_SAMPLES;
 use mechanics::material::Fibre;
 use mechanics::material::mixture::MixingRule;
+use mechanics::mesh::VolumeMesh;
 use mechanics::prediction::{MuscleField, MuscleMixing, MuscleTissue, Scene, Stiffening};
 
 /// How the `material` of muscles becomes the tissue of cells that they fill in part.
@@ -140,17 +141,19 @@ pub struct MuscleTissueDocument {
 impl MusclesDocument {
     /// Absent where the case names none.
     pub fn of(scene: &Scene) -> Option<Self> {
-        let muscles = scene.muscles.iter().map(|own| (own.name.clone(), own.into())).collect();
+        let of =
+            |own: &MuscleField| (own.name.clone(), MuscleInCellsDocument::of(own, &scene.mesh));
+        let muscles = scene.muscles.iter().map(of).collect();
         let tissue = scene.muscle_tissue.as_ref().map(Into::into);
         (!scene.muscles.is_empty()).then_some(MusclesDocument { muscles, tissue })
     }
 }
 
-impl From<&MuscleField> for MuscleInCellsDocument {
-    fn from(field: &MuscleField) -> Self {
+impl MuscleInCellsDocument {
+    fn of(field: &MuscleField, mesh: &VolumeMesh) -> Self {
         MuscleInCellsDocument {
             cells: field.cells.len() as u64,
-            volume_mm3: field.volume,
+            volume_mm3: field.volume(mesh),
             enclosed_mm3: field.body.map(|body| body.enclosed),
             broadness: field.body.and_then(|body| body.broadness),
         }

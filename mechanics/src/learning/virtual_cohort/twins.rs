@@ -13,7 +13,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use rayon::prelude::*;
 
 use super::face::FaceModes;
-use super::noise::{mapping, registration};
+use super::noise::{mapping, measured, registration};
 use super::operation::{OPERATIONS, Operation};
 use super::patient::VirtualError;
 use crate::boundary::NodeSelection;
@@ -104,11 +104,7 @@ impl Twin {
         let after = mapping(&face.mesh.nodes, &skin, &mut draws);
         let happened = face.happened(&mut draws, progress)?;
         let missed = registration(&mut draws);
-        let measured = |node: usize| {
-            let place = face.mesh.nodes[node] + happened[node];
-            happened[node] + missed.displacement(&place) + after[node] - before[node]
-        };
-        let measured: Vec<Vector> = (0..face.mesh.nodes.len()).map(measured).collect();
+        let measured = measured(&face.mesh.nodes, &happened, [&before, &after], &missed);
 
         let mut mapped = (*face.mesh).clone();
         mapped.nodes.iter_mut().zip(&before).for_each(|(node, error)| *node += error);

@@ -93,7 +93,10 @@ fn cells_that_a_muscle_fills_are_those_of_a_region_of_its_tissue() {
     assert_eq!((tissue.cells, tissue.mixed, tissue.crossing), (32, 0, 0));
     assert!(tissue.rule_decides.abs() < 1e-12);
     let body = made.muscles[0].body.unwrap();
-    assert!((made.muscles[0].volume - 864.0).abs() < 1e-9 && (body.enclosed - 864.0).abs() < 1e-9);
+    assert!(
+        (made.muscles[0].volume(&made.mesh) - 864.0).abs() < 1e-9
+            && (body.enclosed - 864.0).abs() < 1e-9
+    );
     assert!(body.broadness.unwrap() < 0.4 && told(&made, "muscle-broad").is_none());
 }
 
