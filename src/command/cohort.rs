@@ -11,15 +11,42 @@ use super::files::{FileSource, ScaleArguments};
 use super::screen::{print_files, print_warnings, work_in_sight};
 use crate::jobs::{CohortInput, JobInput, Workplace};
 use crate::schema::case::document::LengthUnit;
+use crate::schema::cohort::document::TwinsDocument;
 use crate::schema::cohort::result::CohortResultDocument;
+use crate::schema::predict::budget::BudgetDocument;
 use crate::schema::predict::result::ResultDocument;
 use crate::schema::{CohortDocument, Limits};
+
+/// Time that a cohort of twins may take here, in seconds.
+const WALL_S: f64 = 3600.0;
 
 #[derive(Debug, Args)]
 pub struct Arguments {
     /// A cohort as it is posted, with folders of results, from its own folder, in place of ids
-    #[arg(long, value_name = "FILE", help_heading = "What is compared")]
-    spec: PathBuf,
+    #[arg(
+        long,
+        value_name = "FILE",
+        required_unless_present = "patients",
+        help_heading = "What is compared"
+    )]
+    spec: Option<PathBuf>,
+    /// So many twins of the generic face, of one tissue or with muscles, glued to the teeth or sliding along them
+    #[arg(
+        long = "virtual",
+        value_name = "PATIENTS",
+        conflicts_with = "spec",
+        help_heading = "What is compared"
+    )]
+    patients: Option<u32>,
+    /// Of the twins
+    #[arg(long, value_name = "NUMBER", default_value_t = 1, help_heading = "What is compared")]
+    seed: u32,
+    /// Of the twins' faces: 5616 times its square in hexahedra
+    #[arg(long, value_name = "NUMBER", default_value_t = 1, help_heading = "What is compared")]
+    fineness: u32,
+    /// Of the twins, in place of the whole skin: nose, lips, chin or cheeks
+    #[arg(long, value_name = "NAME", requires = "patients", help_heading = "What is compared")]
+    region: Option<String>,
     /// The folder for the result
     #[arg(long, visible_alias = "output", value_name = "FOLDER", help_heading = "Result")]
     out: PathBuf,
@@ -27,8 +54,10 @@ pub struct Arguments {
 
 /// Reads the comparisons, and prints the table and the tests.
 pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
-    let spec: CohortDocument = read(&arguments.spec)?;
-    let folder = arguments.spec.parent().unwrap_or(Path::new(""));
+    let (spec, folder) = match &arguments.spec {
+        Some(path) => (read(path)?, path.parent().unwrap_or(Path::new(""))),
+        None => (of_twins(arguments), Path::new("")),
+    };
     let (comparisons, actuals) = (BTreeMap::new(), BTreeMap::new());
     let mut input = CohortInput { job: None, queue_s: None, spec, comparisons, actuals };
     let spec = input.spec.clone();
@@ -53,13 +82,25 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
     Ok(())
 }
 
+fn of_twins(arguments: &Arguments) -> CohortDocument {
+    let Arguments { patients, seed, fineness, ref region, .. } = *arguments;
+    let made = TwinsDocument {
+        patients: patients.unwrap_or_default(),
+        seed,
+        fineness,
+        budget: BudgetDocument { wall_s: WALL_S, ..BudgetDocument::default() },
+    };
+    let region = region.clone();
+    CohortDocument { made: Some(made), region, ..CohortDocument::default() }
+}
+
 fn print_cohort(cohort: &CohortResultDocument) {
     println!("distance in mm                    mean     sd    p90    p95    max");
     for group in &cohort.groups {
         for row in &group.rows {
             let d = &row.distances;
             println!(
-                "{:<14} {:<14} {:>7.3} {:>6.3} {:>6.3} {:>6.3} {:>6.3}",
+                "{:<19} {:<9} {:>7.3} {:>6.3} {:>6.3} {:>6.3} {:>6.3}",
                 group.name, row.subject, d.mean, d.sd, d.p90, d.p95, d.max
             );
         }
@@ -67,7 +108,7 @@ fn print_cohort(cohort: &CohortResultDocument) {
     for group in &cohort.groups {
         let over = &group.over_subjects;
         println!(
-            "{:<14} box {:.3} {:.3} {:.3} {:.3} {:.3}, mean {:.3} +- {:.3}",
+            "{:<19} box {:.3} {:.3} {:.3} {:.3} {:.3}, mean {:.3} +- {:.3}",
             group.name, over.min, over.p25, over.median, over.p75, over.max, over.mean, over.sd
         );
     }

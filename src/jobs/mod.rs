@@ -10,6 +10,7 @@ mod fetch;
 mod head;
 mod input;
 mod learn;
+mod made;
 mod meshing;
 mod optimise;
 mod output;

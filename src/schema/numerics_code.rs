@@ -20,6 +20,7 @@ impl From<SceneErrorCode> for ErrorCode {
             SceneErrorCode::MethodNotAvailable => ErrorCode::MethodNotAvailable,
             SceneErrorCode::MissingField => ErrorCode::MissingField,
             SceneErrorCode::MissingMaterial => ErrorCode::MissingMaterial,
+            SceneErrorCode::NoInside => ErrorCode::NoInside,
             SceneErrorCode::NothingHeld => ErrorCode::NothingHeld,
             SceneErrorCode::OutsideImage => ErrorCode::OutsideImage,
             SceneErrorCode::PlanConflict => ErrorCode::PlanConflict,

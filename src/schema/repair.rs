@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
@@ -151,4 +152,23 @@ impl From<&RepairReport> for RepairResultDocument {
             unproven: unproven.collect(),
         }
     }
+}
+
+/// Refuses cells of which no stiffness can be formed: those that no repair was asked for, or that it left.
+pub fn check_cells(volume: &VolumeMesh, is_repaired: bool, at: &Pointer, faults: &mut Faults) {
+    let cells = (0..volume.cells.len()).into_par_iter();
+    let invalid: Vec<usize> =
+        cells.filter(|&cell| !volume.cell_jacobian(cell).is_valid()).collect();
+    let (Some(first), count) = (invalid.first(), invalid.len()) else { return };
+    let (place, remedy) = match is_repaired {
+        true => {
+            ("repair", "they stay so within the bounds of the repair: larger ones may mend them")
+        }
+        false => ("volume", "`repair` in the case may mend them"),
+    };
+    let detail = format!(
+        "{count} of {} cells are inverted or flat at a Gauss point, the first of them {first} (from 0): {remedy}",
+        volume.cells.len()
+    );
+    faults.add(&at.key(place), ErrorCode::MeshInvertedElements, detail);
 }

@@ -175,6 +175,9 @@ impl ResponseDocument {
                 let at = root.key("spec").key("muscles").index(place.unwrap_or_default());
                 (at, ErrorCode::UnknownMuscle)
             }
+            ResponseError::Stiffens { .. } => {
+                (root.key("spec").key("muscles"), ErrorCode::NotLinear)
+            }
             ResponseError::NoSecondOrder | ResponseError::NoSecondOrderInside => {
                 (root.key("spec").key("order"), ErrorCode::MethodNotAvailable)
             }

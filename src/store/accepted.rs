@@ -69,11 +69,7 @@ impl Store {
     /// Accepts a job, unless one with the same inputs is known.
     pub async fn enqueue(&self, job: &NewJob, longest_queue: i64) -> Result<Enqueued, StoreError> {
         let mut transaction = self.database.begin().await?;
-        query(RELEASED)
-            .bind(self.key(job))
-            .bind(self.tenant())
-            .execute(&mut transaction)
-            .await?;
+        query(RELEASED).bind(self.key(job)).bind(self.tenant()).execute(&mut transaction).await?;
         let known = query(KNOWN)
             .bind(self.key(job))
             .bind(self.tenant())

@@ -18,7 +18,9 @@ pub enum StoreError {
     SchemaTooOld { found: i64, known: i64 },
     #[error("the schema of the database does not fit this program: {0}")]
     Schema(String),
-    #[error("another facies serves this data folder: end it, or name another folder in the setting `data`")]
+    #[error(
+        "another facies serves this data folder: end it, or name another folder in the setting `data`"
+    )]
     InUse,
     #[error("blob {sha256} has changed on disk, its hash is {found}")]
     Integrity { sha256: String, found: String },

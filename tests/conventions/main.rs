@@ -40,7 +40,7 @@ const MECHANICS: [(&str, &[&str]); 29] = [
     ("model", &["mesh", "boundary", "material", "element", "solver", "progress", "rows"]),
     (
         "prediction",
-        &["mesh", "image", "plan", "boundary", "material", "solver", "model", "progress"],
+        &["mesh", "image", "plan", "boundary", "material", "muscle", "solver", "model", "progress"],
     ),
     ("response", &["mesh", "plan", "boundary", "solver", "model", "prediction", "progress"]),
     ("optimisation", &["mesh", "plan", "response"]),

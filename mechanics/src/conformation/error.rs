@@ -33,6 +33,10 @@ pub enum ConformationError {
     )]
     Exchanged { one: String, other: String, apart: f64, exchanged: f64 },
     #[error(
+        "landmarks lie where others are said to be, {names}: they are left {rms:.1} mm (rms) from their places, and {after:.1} mm if each is put where it belongs"
+    )]
+    Permuted { names: String, rms: f64, after: f64 },
+    #[error(
         "the landmarks are left {rms:.1} mm (rms) from their places by the best similarity, {share:.0} % of their spread of {spread:.1} mm; {worst:?} is left {left:.1} mm: they are no pairs"
     )]
     Unlike { rms: f64, share: f64, spread: f64, worst: String, left: f64 },

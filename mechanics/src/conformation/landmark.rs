@@ -17,6 +17,9 @@ const MIRRORED: f64 = 0.5;
 /// Two landmarks are exchanged when that leaves less than this share of what they are apart.
 const EXCHANGED: f64 = 0.5;
 
+/// So many triples of landmarks are tried for one that most agree with.
+const MOST_TRIPLES: usize = 2048;
+
 /// In mm.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Landmark {
@@ -36,19 +39,102 @@ pub(super) fn similarity(landmarks: &[Landmark]) -> Result<Affine, ConformationE
     }
     let from: Vec<Vector> = landmarks.iter().map(|landmark| landmark.template).collect();
     let to: Vec<Vector> = landmarks.iter().map(|landmark| landmark.patient).collect();
-    let [(from_middle, from_size), (to_middle, to_size)] = [&from, &to].map(|x| spread(x));
-    let scale = to_size / from_size;
-    let scaled: Vec<Vector> = from.iter().map(|x| (x - from_middle) * scale).collect();
-    let aligned = align_points(&scaled, &to).map_err(ConformationError::Landmarks)?;
-    let matrix = aligned.transform.rotation * scale;
-    let map = Affine { matrix, shift: to_middle - matrix * from_middle };
+    let Fitted { map, aligned, scale, spread } = fitted(&from, &to)?;
     refuse_scale(scale)?;
     refuse_mirrored(&aligned)?;
-    if aligned.rms <= NO_PAIRS * to_size {
+    if aligned.rms <= NO_PAIRS * spread {
         refuse_exchanges(landmarks, &map)?;
     }
-    refuse_unlike(landmarks, &map, aligned.rms, to_size)?;
+    if aligned.rms > MOST_LEFT * spread {
+        refuse_permuted(landmarks, aligned.rms, spread)?;
+    }
+    refuse_unlike(landmarks, &map, aligned.rms, spread)?;
     Ok(map)
+}
+
+/// A similarity of least squares, and what it leaves.
+struct Fitted {
+    map: Affine,
+    aligned: PointAlignment,
+    scale: f64,
+    /// Of the second points, in mm.
+    spread: f64,
+}
+
+fn fitted(from: &[Vector], to: &[Vector]) -> Result<Fitted, ConformationError> {
+    let [(from_middle, from_size), (to_middle, spread)] = [from, to].map(spread);
+    let scale = spread / from_size;
+    let scaled: Vec<Vector> = from.iter().map(|x| (x - from_middle) * scale).collect();
+    let aligned = align_points(&scaled, to).map_err(ConformationError::Landmarks)?;
+    let matrix = aligned.transform.rotation * scale;
+    let map = Affine { matrix, shift: to_middle - matrix * from_middle };
+    Ok(Fitted { map, aligned, scale, spread })
+}
+
+/// Names landmarks that are where others are said to be, however far they spoil the similarity of all: the similarity that
+/// most of them agree on tells who belongs where.
+fn refuse_permuted(landmarks: &[Landmark], rms: f64, spread: f64) -> Result<(), ConformationError> {
+    let near = MOST_LEFT * spread;
+    let Some(map) = agreed(landmarks, near) else { return Ok(()) };
+    let all = || 0..landmarks.len();
+    let apart = |from: usize, to: usize| left_of(&landmarks[from], &landmarks[to].patient, &map);
+    let wrong: Vec<usize> = all().filter(|&own| apart(own, own) > near).collect();
+    let place_of = |&own: &usize| {
+        let nearest = wrong.iter().min_by(|a, b| apart(own, **a).total_cmp(&apart(own, **b)));
+        nearest.copied().filter(|&place| apart(own, place) <= near)
+    };
+    let Some(places) = wrong.iter().map(place_of).collect::<Option<Vec<usize>>>() else {
+        return Ok(());
+    };
+    let mut taken = places.clone();
+    taken.sort_unstable();
+    if wrong.is_empty() || taken != wrong {
+        return Ok(());
+    }
+    let mut to: Vec<Vector> = landmarks.iter().map(|own| own.patient).collect();
+    for (&own, &place) in wrong.iter().zip(&places) {
+        to[own] = landmarks[place].patient;
+    }
+    let from: Vec<Vector> = landmarks.iter().map(|own| own.template).collect();
+    let after = fitted(&from, &to)?.aligned.rms;
+    let name = |at: usize| landmarks[at].name.clone();
+    if let (&[one, other], true) = (&wrong[..], after < rms) {
+        let (one, other) = (name(one), name(other));
+        return Err(ConformationError::Exchanged { one, other, apart: rms, exchanged: after });
+    }
+    let pairs = wrong.iter().zip(&places);
+    let told = pairs.map(|(&own, &place)| format!("{:?} at {:?}", name(own), name(place)));
+    let names = told.collect::<Vec<_>>().join(", ");
+    Err(ConformationError::Permuted { names, rms, after })
+}
+
+/// The similarity with which most landmarks agree to a distance in mm, from those of three of them; nothing where no more than
+/// half of them, or fewer than four, agree with any.
+fn agreed(landmarks: &[Landmark], near: f64) -> Option<Affine> {
+    let count = landmarks.len();
+    let triples = (0..count)
+        .flat_map(|a| (a + 1..count).flat_map(move |b| (b + 1..count).map(move |c| [a, b, c])));
+    // All of them up to 24 landmarks, and evenly chosen ones of more.
+    let every = (count * (count - 1) * (count - 2) / 6).div_ceil(MOST_TRIPLES);
+    let of = |members: &[usize]| {
+        let places = |of: fn(&Landmark) -> Vector| -> Vec<Vector> {
+            members.iter().map(|&member| of(&landmarks[member])).collect()
+        };
+        fitted(&places(|own| own.template), &places(|own| own.patient)).ok()
+    };
+    let mut best: (Vec<usize>, f64) = (Vec::new(), f64::INFINITY);
+    for triple in triples.step_by(every) {
+        let Some(map) = of(&triple).filter(|own| refuse_scale(own.scale).is_ok()) else { continue };
+        let left = |at: &usize| left_of(&landmarks[*at], &landmarks[*at].patient, &map.map);
+        let agree: Vec<usize> = (0..count).filter(|at| left(at) <= near).collect();
+        let sum: f64 = agree.iter().map(left).sum();
+        if agree.len() > best.0.len() || agree.len() == best.0.len() && sum < best.1 {
+            best = (agree, sum);
+        }
+    }
+    let (members, _) = best;
+    let is_most = members.len() >= 4 && 2 * members.len() > count;
+    is_most.then(|| of(&members)).flatten().map(|own| own.map)
 }
 
 pub(super) fn refuse_scale(scale: f64) -> Result<(), ConformationError> {

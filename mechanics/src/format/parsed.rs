@@ -259,6 +259,13 @@ fn orient(
                 format!("all {all} {} cells were inverted and are reordered", shape.name());
             warnings.push(Warning::new("cells-reordered", detail).with("count", all as f64));
         }
+    } else if invalid.count > 0 && may_be_repaired(shape, (invalid.count, reversed), all) {
+        let detail = format!(
+            "{} of {all} {} cells are inverted or flat at a Gauss point: a case takes this mesh with `repair` only",
+            invalid.count,
+            shape.name()
+        );
+        warnings.push(Warning::new("repair-needed", detail).with("count", invalid.count as f64));
     } else if invalid.count > 0 {
         return Err(FormatError::InvertedElements {
             shape: shape.name(),
@@ -275,6 +282,16 @@ fn orient(
         warnings.push(Warning::new("dented-cells", detail).with("count", dented as f64));
     }
     Ok(())
+}
+
+/// Whether a repair may mend cells of a shape that no stiffness can be formed of: few, and none that is only numbered the other way
+/// round.
+fn may_be_repaired(shape: CellShape, (invalid, reversed): (u64, u64), all: u64) -> bool {
+    let has_corners_to_spare = match shape {
+        CellShape::Hex8 | CellShape::Wedge6 => true,
+        CellShape::Tet4 => false,
+    };
+    has_corners_to_spare && reversed == 0 && 10 * invalid <= all
 }
 
 fn reverse_all(mesh: &mut VolumeMesh, shape: CellShape) {

@@ -58,27 +58,6 @@ impl ElasticTensor {
         ElasticTensor { lambda, mu, fibre: None }
     }
 
-    /// Σ f_i C_i of parts with shares that sum to 1 and one axis of length 1, which is that of all their fibres: lambda, mu, dlam,
-    /// dmu and beta are linear in the shares.
-    pub fn mixed(
-        parts: impl IntoIterator<Item = (f64, ElasticTensor)>,
-        axis: &Vector,
-    ) -> ElasticTensor {
-        let mut sum = ElasticTensor::isotropic(0.0, 0.0);
-        let mut of_fibres = FibreModuli::default();
-        for (share, part) in parts {
-            sum.lambda += share * part.lambda;
-            sum.mu += share * part.mu;
-            if let Some(AlongFibre { moduli, .. }) = part.fibre {
-                of_fibres.delta_lambda += share * moduli.delta_lambda;
-                of_fibres.delta_mu += share * moduli.delta_mu;
-                of_fibres.beta += share * moduli.beta;
-            }
-        }
-        let fibre = AlongFibre { direction: *axis, moduli: of_fibres };
-        ElasticTensor { fibre: (of_fibres != FibreModuli::default()).then_some(fibre), ..sum }
-    }
-
     /// block += weight g_j.C.g_k; the weight is the volume that a point stands for.
     #[inline]
     pub fn add_pair(&self, block: &mut Block, [gj, gk]: [&Vector; 2], weight: f64) {

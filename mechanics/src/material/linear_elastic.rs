@@ -4,6 +4,7 @@ use super::elastic_tensor::ElasticTensor;
 use super::error::{MaterialError, is_modulus};
 use super::hyperelastic::{Fibres, Hyperelastic, Law, NeoHookean, RubinBodner};
 use super::isotropic::Isotropic;
+use super::mixing_rule::MixingRule;
 use super::transversely_isotropic::{Fibre, TransverselyIsotropic};
 
 /// Linear elastic tissue at small strain: isotropic, or with fibres of one direction at each point.
@@ -91,7 +92,11 @@ impl LinearElastic {
 
     /// The tissue with the fibres of a mixture, whose parts have these shares and one direction of fibres; without where no part
     /// has any.
-    pub(super) fn with_mixed_fibres(self, parts: &[(f64, LinearElastic)]) -> Self {
+    pub(super) fn with_mixed_fibres(
+        self,
+        parts: &[(f64, LinearElastic)],
+        rule: MixingRule,
+    ) -> Self {
         if parts.iter().all(|(_, part)| part.fibre.is_none()) {
             return self;
         }
@@ -101,7 +106,7 @@ impl LinearElastic {
         };
         let parts: Vec<(f64, TransverselyIsotropic)> =
             parts.iter().map(|(share, part)| (*share, about(part))).collect();
-        LinearElastic { fibre: Some(TransverselyIsotropic::mixture(&parts)), ..self }
+        LinearElastic { fibre: Some(TransverselyIsotropic::mixture(&parts, rule)), ..self }
     }
 
     /// Young's modulus along the fibres in kPa, where there are any.

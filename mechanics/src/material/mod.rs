@@ -6,6 +6,7 @@ pub mod hyperelastic;
 mod isotropic;
 pub mod law_series;
 mod linear_elastic;
+mod mixing_rule;
 pub mod mixture;
 pub mod plane_stress;
 pub mod stress_series;

@@ -16,6 +16,9 @@ use nalgebra::Vector3;
 /// In mm.
 const THICKNESSES: std::ops::RangeInclusive<f64> = 1e-3..=20.0;
 
+/// In kPa.
+const TENSIONS: std::ops::RangeInclusive<f64> = 0.0..=1000.0;
+
 /// A sheet of skin: what it is made of, and how thick it is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlaneStress {
@@ -24,6 +27,8 @@ pub struct PlaneStress {
     lambda: f64,
     mu: f64,
     lines: Option<FibreModuli>,
+    /// At rest, in kPa.
+    tension: f64,
 }
 
 /// Constants of a sheet, as stated.
@@ -57,6 +62,8 @@ pub enum SheetError {
          {least} kPa"
     )]
     TooSoftAlongLines { along: f64, least: f64 },
+    #[error("the tension at rest is {0} kPa, and has to be at least 0 and at most 1000 kPa")]
+    Tension(f64),
 }
 
 impl PlaneStress {
@@ -87,7 +94,20 @@ impl PlaneStress {
         let beta = c11 - c22 - 2.0 * delta_lambda;
         let moduli = FibreModuli { delta_lambda, delta_mu: 0.0, beta };
         let lines = along_lines.map(|_| moduli);
-        Ok(PlaneStress { thickness, young_modulus, lambda, mu, lines })
+        Ok(PlaneStress { thickness, young_modulus, lambda, mu, lines, tension: 0.0 })
+    }
+
+    /// The sheet with a stress in kPa, in [0, 1000], that is there at rest, the same in every direction of its plane.
+    pub fn with_tension(self, tension: f64) -> Result<Self, SheetError> {
+        match TENSIONS.contains(&tension) {
+            true => Ok(PlaneStress { tension, ..self }),
+            false => Err(SheetError::Tension(tension)),
+        }
+    }
+
+    /// At rest, in kPa.
+    pub fn tension(&self) -> f64 {
+        self.tension
     }
 
     /// In mm.

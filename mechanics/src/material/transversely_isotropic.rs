@@ -16,7 +16,9 @@
 use super::elastic_tensor::{AlongFibre, ElasticTensor, FibreModuli};
 use super::error::{MaterialError, is_modulus};
 use super::isotropic::Isotropic;
-use nalgebra::Vector3;
+use super::mixing_rule::MixingRule;
+use nalgebra::{Matrix2, Vector3};
+use std::f64::consts::SQRT_2;
 
 /// How moduli along and across the fibre become a stiffness.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -87,14 +89,23 @@ impl TransverselyIsotropic {
         }
     }
 
-    /// C = sum_i f_i C_i of parts with these shares about one fibre direction, which is positive definite as they are. E_f is that
-    /// of the shares too: what is told of the mixture, and not what a block of it would show.
-    pub(super) fn mixture(parts: &[(f64, TransverselyIsotropic)]) -> Self {
-        let mean = |of: fn(&TransverselyIsotropic) -> f64| -> f64 {
-            parts.iter().map(|(share, part)| share * of(part)).sum()
+    /// C of parts with these shares about one fibre direction, which is positive definite as they are: by Voigt sum_i f_i C_i, by
+    /// Reuss the inverse of sum_i f_i C_i^-1, and the exponential of sum_i f_i ln C_i. E_f is a mean by the same rule: what is told
+    /// of the mixture, and not what a block of it would show.
+    pub(super) fn mixture(parts: &[(f64, TransverselyIsotropic)], rule: MixingRule) -> Self {
+        let terms = |of: fn(&TransverselyIsotropic) -> f64| {
+            parts.iter().map(move |(share, part)| (*share, of(part)))
         };
+        let young_modulus = rule.mean(terms(|part| part.young_modulus));
+        if rule != MixingRule::Voigt {
+            let normal = rule.matrix_mean(parts.iter().map(|(f, part)| (*f, part.normal())));
+            let across = rule.mean(terms(|part| 2.0 * part.mu));
+            let along = rule.mean(terms(|part| 2.0 * part.shear_modulus()));
+            return Self::of_parts(young_modulus, normal, [across, along]);
+        }
+        let mean = |of: fn(&TransverselyIsotropic) -> f64| rule.mean(terms(of));
         TransverselyIsotropic {
-            young_modulus: mean(|part| part.young_modulus),
+            young_modulus,
             lambda: mean(|part| part.lambda),
             mu: mean(|part| part.mu),
             moduli: FibreModuli {
@@ -103,6 +114,30 @@ impl TransverselyIsotropic {
                 beta: mean(|part| part.moduli.beta),
             },
         }
+    }
+
+    /// C between the two strains that it couples, (1, sqrt 2) / sqrt 3, which is a change of volume, and (sqrt 2, -1) / sqrt 3, of
+    /// the strain along the fibre and sqrt 1/2 of both across it. Shear across and along the fibre, 2 mu and 2 (mu + dmu), go by
+    /// themselves (Walpole 1984), so that a function of C is that of these three.
+    fn normal(&self) -> Matrix2<f64> {
+        let FibreModuli { delta_lambda: mixed, delta_mu, beta } = self.moduli;
+        let across = 2.0 * self.mu;
+        let along = across + 2.0 * mixed + 4.0 * delta_mu + beta;
+        let coupled = SQRT_2 * (along + mixed - across) / 3.0;
+        let volume = 3.0 * self.lambda + (along + 4.0 * mixed + 2.0 * across) / 3.0;
+        Matrix2::new(volume, coupled, coupled, (2.0 * along - 4.0 * mixed + across) / 3.0)
+    }
+
+    /// The stiffness of these three.
+    fn of_parts(young_modulus: f64, normal: Matrix2<f64>, [across, along_shear]: [f64; 2]) -> Self {
+        let mixed = (SQRT_2 * normal[(0, 1)] + across - normal[(1, 1)]) / 2.0;
+        let along = 3.0 / SQRT_2 * normal[(0, 1)] - mixed + across;
+        let lambda = (normal[(0, 0)] - (along + 4.0 * mixed + 2.0 * across) / 3.0) / 3.0;
+        let mu = across / 2.0;
+        let delta_mu = along_shear / 2.0 - mu;
+        let beta = along - across - 2.0 * mixed - 4.0 * delta_mu;
+        let moduli = FibreModuli { delta_lambda: mixed, delta_mu, beta };
+        TransverselyIsotropic { young_modulus, lambda, mu, moduli }
     }
 
     /// E_f in kPa.

@@ -17,6 +17,15 @@ pub struct MeanAxis {
 }
 
 impl MeanAxis {
+    /// Of a sum Σ w a aᵀ; nothing where it is zero.
+    pub fn of(sum: &Matrix3<f64>) -> Option<Self> {
+        if sum.trace() <= 0.0 {
+            return None;
+        }
+        let (values, vectors) = principal(sum);
+        Some(MeanAxis { direction: vectors[0], crossing: (values[1] / values[0]).max(0.0) })
+    }
+
     /// Whether fibres cross in it, so that one axis does not stand for them.
     pub fn is_crossing(&self) -> bool {
         self.crossing > CROSSING
@@ -34,11 +43,7 @@ pub fn mean_axis(axes: impl IntoIterator<Item = (f64, Vector)>) -> Option<MeanAx
             sum += unit * unit.transpose() * weight;
         }
     }
-    if sum.trace() <= 0.0 {
-        return None;
-    }
-    let (values, vectors) = principal(&sum);
-    Some(MeanAxis { direction: vectors[0], crossing: (values[1] / values[0]).max(0.0) })
+    MeanAxis::of(&sum)
 }
 
 /// Eigenvalues of a symmetric matrix, the largest first, and their unit vectors.

@@ -60,6 +60,25 @@ pub fn strap_of(surface: &TriangleSurface, halvings: usize) -> Option<Strap> {
     Some(Strap { boxes, broadness })
 }
 
+/// The closed surface of a box from its centre and the ways to the middles of three of its faces, facing outwards.
+pub fn box_surface(centre: Vector, [a, b, c]: [Vector; 3]) -> TriangleSurface {
+    let corner = |number: u32| {
+        let side = |bit: u32| if number >> bit & 1 == 1 { 1.0 } else { -1.0 };
+        centre + a * side(0) + b * side(1) + c * side(2)
+    };
+    // Around each face seen from outside, where a, b and c are right-handed.
+    let faces =
+        [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let is_right_handed = a.dot(&b.cross(&c)) > 0.0;
+    let halves = faces.iter().flat_map(|&[p, q, r, s]| [[p, q, r], [p, r, s]]);
+    let facing = |[p, q, r]: [u32; 3]| if is_right_handed { [p, q, r] } else { [p, r, q] };
+    TriangleSurface {
+        points: (0..8).map(corner).collect(),
+        triangles: halves.map(facing).collect(),
+        ..TriangleSurface::default()
+    }
+}
+
 fn box_of(triangles: &[[Vector; 3]]) -> Option<StrapBox> {
     let (centre, moments) = moments(triangles)?;
     Some(StrapBox { centre, axis: principal(&moments).1[0] })

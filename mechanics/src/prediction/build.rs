@@ -29,9 +29,12 @@ impl Scene {
         let mut materials = check.materials(&regions);
         let (of_cell, of_region) = (&region_of_cell, &mut materials);
         let tissues = Tissues { regions: &regions, region_of_cell: of_cell, materials: of_region };
-        let fibres = check.fibres(tissues, &settings.method);
+        let mut fibres = check.fibres(tissues, &settings.method);
         let element = check.element(settings);
-        let tissue = check.tissue_of_cells(&region_of_cell, materials);
+        let mut tissue = check.tissue_of_cells(&region_of_cell, materials);
+        let (of_cells, made) = ((&regions[..], &region_of_cell[..]), (&mut tissue, &mut fibres));
+        let (muscles, muscle_tissue) =
+            check.muscles_of_cells(of_cells, made, (&settings.method, plan));
 
         // 2. What every node is held to.
         let sound = check.problems.count();
@@ -68,7 +71,8 @@ impl Scene {
             segments,
             forces: vec![Vector::zeros(); case.volume.nodes.len()],
             distributed: DistributedLoads::default(),
-            muscles: Vec::new(),
+            muscles,
+            muscle_tissue,
             landmarks: case.landmarks.clone(),
             allow_unfixed: case.allow_unfixed,
             settings: settings.clone(),

@@ -4,7 +4,8 @@ use super::element_choice::ElementChoice;
 use super::method::Method;
 use crate::boundary::NodeSelection;
 use crate::image::ImageVolume;
-use crate::material::{LinearElastic, PlaneStress};
+use crate::material::mixture::MixingRule;
+use crate::material::{Fibre, LinearElastic, MaterialError, PlaneStress};
 use crate::mesh::{Frame, TriangleSurface, Vector, VolumeMesh};
 use crate::plan::PlannedSegment;
 use std::collections::BTreeMap;
@@ -36,6 +37,7 @@ pub struct Case {
     pub fibres: BTreeMap<String, FibreDirection>,
     /// Muscles that a plan may activate; names differ.
     pub muscles: Vec<Muscle>,
+    pub muscle_mixing: MuscleMixing,
 }
 
 /// The course of fibres or of lines of the skin; its sign and its length do not matter.
@@ -132,6 +134,31 @@ pub struct Activation {
 pub struct Muscle {
     pub name: String,
     pub course: MuscleCourse,
+    /// What it is made of, mixed by its share into the tissue of its cells; absent: it pulls in tissue that stays what it is.
+    /// Of lines and bodies only.
+    pub tissue: Option<LinearElastic>,
+    /// How its tissue becomes stiffer along its fibres as it pulls; of tissue with fibres.
+    pub stiffening: Option<Stiffening>,
+}
+
+/// A modulus along fibres that grows with the stress with which they pull, E_f (1 - T / T_0) + E_0 T / T_0 (Chabanas et al. 2003).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stiffening {
+    /// At rest.
+    pub fibre: Fibre,
+    /// E_0 in kPa, of the fully active muscle.
+    pub young_modulus: f64,
+    /// T_0 in kPa, above 0.
+    pub stress: f64,
+}
+
+impl Stiffening {
+    /// Tissue whose fibres pull with a stress in kPa.
+    pub fn at(&self, tissue: LinearElastic, stress: f64) -> Result<LinearElastic, MaterialError> {
+        let share = stress / self.stress;
+        let young_modulus = self.fibre.young_modulus * (1.0 - share) + self.young_modulus * share;
+        tissue.without_fibre().with_fibre(&Fibre { young_modulus, ..self.fibre })
+    }
 }
 
 /// Where a muscle is, and which way it pulls.
@@ -141,6 +168,34 @@ pub enum MuscleCourse {
     Region { region: String, fibres: Option<FibreDirection> },
     /// Around polylines: full at a line, and nothing at the distance `within` in mm.
     Lines { lines: Vec<Vec<Vector>>, within: f64 },
+    /// Inside a closed surface in mm.
+    Body { surface: std::sync::Arc<TriangleSurface>, fibres: BodyFibres },
+}
+
+/// The course of fibres in a body.
+#[derive(Clone, Debug, PartialEq)]
+pub enum BodyFibres {
+    /// Along the longest axis of its box, halved so many times (0 to 2): of strap muscles only.
+    Box {
+        halvings: usize,
+    },
+    Course(FibreDirection),
+    /// Along the nearest of some polylines.
+    Lines(Vec<Vec<Vector>>),
+}
+
+/// How muscles become the tissue of cells that they fill in part.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MuscleMixing {
+    pub rule: MixingRule,
+    /// Points in each cell by which the share of a body is found.
+    pub samples: usize,
+}
+
+impl Default for MuscleMixing {
+    fn default() -> Self {
+        MuscleMixing { rule: MixingRule::Voigt, samples: 64 }
+    }
 }
 
 /// Displacements in mm prescribed at nodes.

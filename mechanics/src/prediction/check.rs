@@ -233,10 +233,9 @@ impl<'a> Check<'a> {
         }
     }
 
-    /// Loads, muscles and growth.
+    /// Loads, growth and muscles that pull.
     pub(super) fn add_what_acts(&mut self, plan: &Plan, scene: &mut Scene) {
         self.add_loads(plan, scene);
-        self.muscles(scene);
         self.add_inner_stress(plan, scene);
     }
 

@@ -11,6 +11,7 @@ pub enum SceneErrorCode {
     MethodNotAvailable,
     MissingField,
     MissingMaterial,
+    NoInside,
     NothingHeld,
     OutsideImage,
     PlanConflict,
@@ -29,7 +30,7 @@ pub enum SceneErrorCode {
 }
 
 impl SceneErrorCode {
-    pub const ALL: [SceneErrorCode; 23] = [
+    pub const ALL: [SceneErrorCode; 24] = [
         SceneErrorCode::DuplicateSegment,
         SceneErrorCode::EmptySelection,
         SceneErrorCode::FibreDirectionZero,
@@ -38,6 +39,7 @@ impl SceneErrorCode {
         SceneErrorCode::MethodNotAvailable,
         SceneErrorCode::MissingField,
         SceneErrorCode::MissingMaterial,
+        SceneErrorCode::NoInside,
         SceneErrorCode::NothingHeld,
         SceneErrorCode::OutsideImage,
         SceneErrorCode::PlanConflict,
@@ -65,6 +67,7 @@ impl SceneErrorCode {
             SceneErrorCode::MethodNotAvailable => "method-not-available",
             SceneErrorCode::MissingField => "missing-field",
             SceneErrorCode::MissingMaterial => "missing-material",
+            SceneErrorCode::NoInside => "no-inside",
             SceneErrorCode::NothingHeld => "nothing-held",
             SceneErrorCode::OutsideImage => "outside-image",
             SceneErrorCode::PlanConflict => "plan-conflict",

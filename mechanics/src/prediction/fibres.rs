@@ -1,8 +1,6 @@
 //! The checks of what is stiffer one way than another: fibres of the tissue, the skin as a membrane.
 
-use nalgebra::Matrix3;
-
-use super::case::{Case, FibreDirection, Settings};
+use super::case::{Case, FibreDirection, Muscle, Settings};
 use super::check::Check;
 use super::error_code::SceneErrorCode;
 use super::method::{Laws, Method, MethodProperties};
@@ -12,12 +10,10 @@ use crate::material::hyperelastic::Law;
 use crate::mesh::ignored::listed;
 use crate::mesh::{ArrayUse, Vector, VolumeMesh, Warning};
 use crate::model::fem::membrane::Membrane;
+use crate::muscle::axis::{CROSSING, mean_axis};
 
 /// A direction shorter than this, and a line of the skin of which less than this lies in a face, has no angle.
 const SHORTEST: f64 = 1e-6;
-
-/// The second eigenvalue of the fibres of the nodes of a cell, as a share of the first, from which on they run in two ways.
-const TWO_WAYS: f64 = 0.5;
 
 /// Regions by number, and what each is made of.
 pub(super) struct Tissues<'a> {
@@ -44,12 +40,13 @@ impl Check<'_> {
         };
         let ignored: Vec<&mut LinearElastic> = materials.iter_mut().filter(is_ignored).collect();
         if !ignored.is_empty() {
-            self.warnings.push(fibres_ignored(ignored.len()));
+            self.warnings.push(fibres_ignored(ignored.len(), "regions"));
             ignored.into_iter().for_each(|material| *material = material.without_fibre());
         }
         let has_fibres: Vec<bool> = materials.iter().map(has_directions).collect();
         if !has_fibres.contains(&true) {
-            if properties.expects_fibres {
+            let of_muscle = |muscle: &Muscle| muscle.tissue.is_some_and(|own| own.has_fibre());
+            if properties.expects_fibres && !self.case.muscles.iter().any(of_muscle) {
                 let detail = "no region has fibres: this is the isotropic mass-tensor model";
                 self.warnings.push(Warning::new("fibres-missing", detail));
             }
@@ -181,7 +178,7 @@ impl Check<'_> {
             },
         };
         let along = |corners: &[u32; 3]| match (stated, vectors) {
-            (_, Some(vectors)) => mean_axis(corners.map(|node| vectors[node as usize])),
+            (_, Some(vectors)) => towards_first(corners.map(|node| vectors[node as usize])),
             (FibreDirection::Uniform(direction), _) => *direction,
             (FibreDirection::Array(_), None) => Vector::zeros(),
         };
@@ -207,11 +204,12 @@ impl Check<'_> {
 /// The code of the warning that a method has no fibres.
 pub(super) const FIBRES_IGNORED: &str = "fibres-ignored";
 
-fn fibres_ignored(regions: usize) -> Warning {
+/// The warning of regions or muscles with fibres, which are not known.
+pub(super) fn fibres_ignored(count: usize, what: &'static str) -> Warning {
     let detail = format!(
-        "{regions} regions have fibres, which this method does not know: they are as stiff along as across"
+        "{count} {what} have fibres, which this method does not know: they are as stiff along as across"
     );
-    Warning::new(FIBRES_IGNORED, detail).with("regions", regions as f64)
+    Warning::new(FIBRES_IGNORED, detail).with(what, count as f64)
 }
 
 /// Gives cells their directions; the first that has none, and how many there are.
@@ -237,7 +235,7 @@ pub(super) fn unit(vector: &Vector) -> Option<Vector> {
 }
 
 /// The course of fibres in an array of the mesh.
-enum Course<'a> {
+pub(super) enum Course<'a> {
     Cells(&'a [Vector]),
     /// At the nodes of a mesh (Zachow et al. 2006, section 4.2).
     Nodes(&'a VolumeMesh, &'a [Vector]),
@@ -245,41 +243,39 @@ enum Course<'a> {
 
 /// The axis of a cell, of any length, and how nearly those of its nodes have another one: 0 where all agree, 1 where none is
 /// preferred.
-struct Axis {
-    along: Vector,
+pub(super) struct Axis {
+    pub along: Vector,
     beside: f64,
 }
 
 impl<'a> Course<'a> {
     /// None where neither cells nor nodes have an array of that name.
-    fn of(mesh: &'a VolumeMesh, array: &str) -> Option<Self> {
+    pub(super) fn of(mesh: &'a VolumeMesh, array: &str) -> Option<Self> {
         let of_cells = mesh.cell_vectors.get(array).map(|vectors| Course::Cells(vectors));
         let of_nodes = mesh.node_vectors.get(array);
         of_cells.or_else(|| of_nodes.map(|vectors| Course::Nodes(mesh, vectors)))
     }
 
     /// Of nodes the leading eigenvector of sum a a^T over those of a cell that have a direction a of length 1.
-    fn axis(&self, cell: usize) -> Axis {
+    pub(super) fn axis(&self, cell: usize) -> Axis {
         let (mesh, vectors) = match self {
             Course::Cells(vectors) => return Axis { along: vectors[cell], beside: 0.0 },
             Course::Nodes(mesh, vectors) => (mesh, vectors),
         };
         let nodes = mesh.cells.nodes(cell).iter();
         let units: Vec<Vector> = nodes.filter_map(|&node| unit(&vectors[node as usize])).collect();
-        let Some(first) = units.first() else {
+        let mean = mean_axis(units.iter().map(|axis| (1.0, *axis)));
+        let Some((mean, first)) = mean.zip(units.first()) else {
             return Axis { along: Vector::zeros(), beside: 0.0 };
         };
-        let modes = units.iter().map(|a| a * a.transpose()).sum::<Matrix3<f64>>().symmetric_eigen();
-        let along = modes.eigenvectors.column(modes.eigenvalues.imax()).into_owned();
-        let mut sizes: [f64; 3] = modes.eigenvalues.into();
-        sizes.sort_by(f64::total_cmp);
+        let along = mean.direction;
         let along = if along.dot(first) < 0.0 { -along } else { along };
-        Axis { along, beside: sizes[1].max(0.0) / sizes[2] }
+        Axis { along, beside: mean.crossing }
     }
 
     /// The warning of cells whose nodes have no common direction.
     fn disagreeing(&self, region: &str, cells: &[usize]) -> Option<Warning> {
-        let count = cells.iter().filter(|&&cell| self.axis(cell).beside > TWO_WAYS).count();
+        let count = cells.iter().filter(|&&cell| self.axis(cell).beside > CROSSING).count();
         let detail = format!(
             "in {count} of {} cells of region {region:?} the fibres of the nodes run in two ways, and their mean is taken",
             cells.len()
@@ -289,8 +285,8 @@ impl<'a> Course<'a> {
     }
 }
 
-/// The mean of axes, which have no sign.
-fn mean_axis([a, b, c]: [Vector; 3]) -> Vector {
+/// The sum of axes, which have no sign, each on the side of the first.
+fn towards_first([a, b, c]: [Vector; 3]) -> Vector {
     let towards_a = |vector: Vector| if vector.dot(&a) < 0.0 { -vector } else { vector };
     a + towards_a(b) + towards_a(c)
 }

@@ -12,13 +12,13 @@ use super::error_code::SceneErrorCode;
 use super::imaged_tissue::{ImagedTissue, TissueShare};
 use crate::image::{SampledCells, SamplingRule, Windows, sample_cells};
 use crate::material::LinearElastic;
-use crate::material::mixture::mixture;
+use crate::material::mixture::{MixingRule, mixture};
 use crate::mesh::jacobian::signed_volume;
 use crate::mesh::{Vector, VolumeMesh, Warning};
 use std::collections::BTreeMap;
 
 /// Cells name their material in 16 bits.
-const MOST_MATERIALS: usize = u16::MAX as usize;
+pub(super) const MOST_MATERIALS: usize = u16::MAX as usize;
 
 /// Where windows and images are told to be wrong.
 const PLACE: &str = "/case/hounsfield";
@@ -180,7 +180,7 @@ fn imaged(
                 let shares = parts.iter().map(|&part| f64::from(part) / steps);
                 let mixed: Vec<(f64, LinearElastic)> =
                     shares.zip(entries.map(|entry| materials[entry])).collect();
-                materials.push(mixture(&mixed));
+                materials.push(mixture(&mixed, MixingRule::Voigt));
                 (materials.len() - 1) as u16
             })
         })

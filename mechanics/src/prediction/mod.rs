@@ -21,6 +21,8 @@ mod listed;
 mod method;
 mod muscle;
 mod muscle_field;
+mod muscle_lines;
+mod muscle_tissue;
 mod nonlinearity;
 mod numerical_error;
 mod numerics_revision;
@@ -43,9 +45,9 @@ mod walls;
 use std::collections::BTreeMap;
 
 pub use case::{
-    Activation, Bone, Case, CaseSegment, ContactKind, FibreDirection, Growth, Hounsfield, Load,
-    Mixing, Muscle, MuscleCourse, Plan, Prescribed, RegionNames, Settings, SkinMembrane, Sliding,
-    SlidingNormal, TissueWindow,
+    Activation, BodyFibres, Bone, Case, CaseSegment, ContactKind, FibreDirection, Growth,
+    Hounsfield, Load, Mixing, Muscle, MuscleCourse, MuscleMixing, Plan, Prescribed, RegionNames,
+    Settings, SkinMembrane, Sliding, SlidingNormal, Stiffening, TissueWindow,
 };
 pub use contact::{ContactPair, Touch};
 pub use element_choice::ElementChoice;
@@ -54,7 +56,8 @@ pub use growth::{VOLUME_CHANGE, linear_strain};
 pub use imaged_tissue::{ImagedTissue, TissueShare};
 pub use method::{Laws, Method, MethodKind, MethodProperties, Unknowns};
 pub use muscle::PULL;
-pub use muscle_field::MuscleField;
+pub use muscle_field::{MuscleBody, MuscleField};
+pub use muscle_tissue::MuscleTissue;
 pub use nonlinearity::{Estimated, Nonlinearity, NonlinearityUnknown};
 pub use numerical_error::{NotEstimated, NumericalError};
 pub use numerics_revision::NUMERICS_REVISION;

@@ -1,42 +1,82 @@
-//! Muscles of a case: the cells that pull along their fibres, from a region or from polylines.
+//! Muscles of a case: the cells that pull along their fibres, in a region, around polylines, or inside a closed surface.
 //!
-//! A muscle that pulls with T adds T w f (x) f to the stress of a cell: w = 1 in a region, and around polylines
-//! w = (1 - (d / r)²)² at the distance d < r of the nearest line, whose direction f is, as the mean over the quadrature points
-//! of the cell. A single line pulls with the force int T w dA = pi r² T / 3, spread smoothly over its width, so that the skin
-//! converges as the mesh is refined, which it would not under forces at single nodes.
+//! A muscle that pulls with T adds T w f (x) f to the stress of a cell, w the share of the cell that is muscle and f its direction:
+//! w = 1 in a region, the share of sample points inside a surface, and around polylines w = (1 - (d / r)²)² at the distance
+//! d < r of the nearest line, as the mean over the quadrature points of the cell. A single line pulls with the force
+//! int T w dA = pi r² T / 3, spread smoothly over its width, so that the skin converges as the mesh is refined, which it would not
+//! under forces at single nodes.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::ops::RangeInclusive;
 
-use nalgebra::Matrix3;
-use rayon::prelude::*;
-
-use super::case::{Activation, FibreDirection, Muscle, MuscleCourse, Plan};
+use super::case::{Activation, BodyFibres, FibreDirection, MuscleCourse, Plan};
 use super::check::Check;
 use super::error_code::SceneErrorCode;
-use super::fibres::unit;
-use super::muscle_field::MuscleField;
+use super::fibres::{Course, unit};
+use super::hounsfield::TissueOfCells;
+use super::method::Method;
+use super::muscle_field::{MuscleBody, MuscleField};
+use super::muscle_lines::{Lines, PullShare};
+use super::muscle_tissue::MuscleTissue;
 use super::scene::Scene;
 use crate::mesh::ignored::listed;
-use crate::mesh::jacobian::signed_volume;
-use crate::mesh::refinement::refine;
-use crate::mesh::{ArrayUse, Vector, VolumeMesh, Warning};
+use crate::mesh::{ArrayUse, TriangleSurface, Vector, VolumeMesh, Warning};
 use crate::model::fem::inner_stress::{CellStress, InnerStress};
-use crate::model::reference_cell;
+use crate::muscle::lines::nearest;
+use crate::muscle::share::shares_inside;
+use crate::muscle::strap::{Strap, strap_of};
 
 /// Stresses in kPa with which a muscle may pull.
 pub const PULL: RangeInclusive<f64> = 0.0..=10_000.0;
 
-/// A muscle of so few cells around lines is told.
-const FEW_CELLS: usize = 20;
+/// Of the volume of a body the share in the tissue below which it may lie elsewhere.
+const MOSTLY: f64 = 0.5;
 
-/// And one that pulls by more than this share otherwise than its lines say.
-const PULL_OFF: f64 = 0.1;
+/// Directions in the cells of a mesh, of any length.
+enum Along<'a> {
+    Uniform(Vector),
+    Array(Course<'a>),
+    Strap(Strap),
+    Lines(&'a [Vec<Vector>]),
+}
 
-impl Check<'_> {
-    /// The muscles of the case.
-    pub(super) fn muscles(&mut self, scene: &mut Scene) {
+impl Along<'_> {
+    fn at(&self, mesh: &VolumeMesh, cell: usize) -> Option<Vector> {
+        let middle = || {
+            let corners = mesh.corners(cell);
+            let count = corners.len() as f64;
+            corners.sum::<Vector>() / count
+        };
+        let along = match self {
+            Along::Uniform(direction) => *direction,
+            Along::Array(course) => course.axis(cell).along,
+            Along::Strap(strap) => strap.axis_at(&middle())?,
+            Along::Lines(lines) => nearest(&middle(), lines)?.1,
+        };
+        unit(&along)
+    }
+}
+
+impl<'a> Check<'a> {
+    /// The muscles of a case that is right so far, in regions with these names and the region of each cell, and what they make
+    /// of its tissue and of the fibres of its cells.
+    pub(super) fn muscles_of_cells(
+        &mut self,
+        (regions, region_of_cell): (&[String], &[u16]),
+        (tissue, fibres): (&mut TissueOfCells, &mut Vec<Vector>),
+        (method, plan): (&Method, &Plan),
+    ) -> (Vec<MuscleField>, Option<MuscleTissue>) {
+        if self.problems.count() > 0 {
+            return (Vec::new(), None);
+        }
+        let muscles = self.muscles(regions, region_of_cell);
+        let made = self.muscle_tissue(&muscles, (tissue, fibres), (method, plan));
+        (muscles, made)
+    }
+
+    fn muscles(&mut self, regions: &[String], region_of_cell: &[u16]) -> Vec<MuscleField> {
         let mut names = BTreeSet::new();
+        let mut fields = Vec::new();
         for (index, muscle) in self.case.muscles.iter().enumerate() {
             let pointer = format!("/case/muscles/{index}");
             if !names.insert(&muscle.name) {
@@ -44,104 +84,172 @@ impl Check<'_> {
                 let at = format!("{pointer}/name");
                 self.problems.add(at, SceneErrorCode::PlanConflict, detail);
             }
-            let cells = self.cells_of(muscle, &pointer, scene);
-            scene.muscles.push(MuscleField { name: muscle.name.clone(), cells });
+            let (cells, body) = match &muscle.course {
+                MuscleCourse::Region { region, fibres } => {
+                    let cells = self.cells_of_region(region, regions, region_of_cell, &pointer);
+                    let along = match cells.is_empty() {
+                        true => None,
+                        false => self.along_in_region(region, fibres.as_ref(), &pointer),
+                    };
+                    let whole = cells.into_iter().map(|cell| (cell, 1.0));
+                    (self.directed(whole, along, &pointer), None)
+                }
+                MuscleCourse::Lines { lines, within } => {
+                    (self.around(lines, *within, (&muscle.name, &pointer)), None)
+                }
+                MuscleCourse::Body { surface, fibres } => {
+                    self.inside((surface, fibres), (index, &muscle.name), &pointer)
+                }
+            };
+            let field = MuscleField::new(muscle, cells, body);
+            self.warnings.extend(elsewhere(&field, &self.case.volume));
+            fields.push(field);
         }
+        fields
     }
 
-    fn cells_of(&mut self, muscle: &Muscle, pointer: &str, scene: &Scene) -> Vec<CellStress> {
-        match &muscle.course {
-            MuscleCourse::Region { region, fibres } => {
-                let case = self.case;
-                let own = fibres.as_ref().or_else(|| case.fibres.get(region));
-                match own.or_else(|| case.fibres.get("*")) {
-                    Some(course) => self.in_region(region, course, pointer, scene),
-                    None => {
-                        let detail = format!(
-                            "region {region:?} has no fibres along which the muscle could pull: state `direction` or `array`"
-                        );
-                        self.problems.add(pointer, SceneErrorCode::MissingField, detail);
-                        Vec::new()
-                    }
-                }
-            }
-            MuscleCourse::Lines { lines, within } => {
-                let Some(course) = Lines::new(lines, *within) else {
-                    self.no_tissue_near(&muscle.name, pointer);
-                    return Vec::new();
-                };
-                let cells = course.cells(&scene.mesh);
-                match cells.is_empty() {
-                    true => self.no_tissue_near(&muscle.name, pointer),
-                    false => {
-                        let pull = PullShare::new(&course, &scene.mesh, &cells);
-                        self.warnings.extend(pull.warning(&muscle.name));
-                    }
-                }
-                cells
-            }
-        }
-    }
-
-    fn in_region(
+    fn cells_of_region(
         &mut self,
         region: &str,
-        course: &FibreDirection,
+        regions: &[String],
+        region_of_cell: &[u16],
         pointer: &str,
-        scene: &Scene,
-    ) -> Vec<CellStress> {
-        let Some(number) = scene.regions.iter().position(|name| name == region) else {
-            let known = listed(scene.regions.iter());
+    ) -> Vec<usize> {
+        let Some(number) = regions.iter().position(|name| name == region) else {
+            let known = listed(regions.iter());
             let detail = format!("no region is called {region:?}; there are: {known}");
             let at = format!("{pointer}/region");
             self.problems.add(at, SceneErrorCode::UnknownRegion, detail);
             return Vec::new();
         };
-        let vectors = match course {
-            FibreDirection::Uniform(_) => None,
-            FibreDirection::Array(array) => {
-                let vectors = scene.mesh.cell_vectors.get(array);
-                if vectors.is_none() {
-                    let detail = scene.mesh.missing_array(ArrayUse::CellVectors, array);
-                    let at = format!("{pointer}/array");
-                    self.problems.add(at, SceneErrorCode::UnknownArray, detail);
-                    return Vec::new();
-                }
-                vectors
+        let cells = region_of_cell.iter().enumerate();
+        cells.filter(|(_, own)| usize::from(**own) == number).map(|(cell, _)| cell).collect()
+    }
+
+    /// The fibres that are stated, or else those of the material of the region.
+    fn along_in_region(
+        &mut self,
+        region: &str,
+        fibres: Option<&'a FibreDirection>,
+        pointer: &str,
+    ) -> Option<Along<'a>> {
+        let case = self.case;
+        let own = fibres.or_else(|| case.fibres.get(region)).or_else(|| case.fibres.get("*"));
+        match own {
+            Some(course) => self.along(course, pointer),
+            None => {
+                let detail = format!(
+                    "region {region:?} has no fibres along which the muscle could pull: state `direction` or `array`"
+                );
+                self.problems.add(pointer, SceneErrorCode::MissingField, detail);
+                None
             }
+        }
+    }
+
+    fn along(&mut self, course: &FibreDirection, pointer: &str) -> Option<Along<'a>> {
+        let array = match course {
+            FibreDirection::Uniform(direction) => return Some(Along::Uniform(*direction)),
+            FibreDirection::Array(array) => array,
         };
-        let of_region = scene.region_of_cell.iter().enumerate();
-        let of_region = of_region.filter(|(_, own)| usize::from(**own) == number);
-        let mut cells = Vec::new();
-        let mut without = 0;
-        for (cell, _) in of_region {
-            let along = match (course, vectors) {
-                (_, Some(vectors)) => vectors[cell],
-                (FibreDirection::Uniform(direction), None) => *direction,
-                (FibreDirection::Array(_), None) => Vector::zeros(),
-            };
-            match unit(&along) {
+        let found = Course::of(&self.case.volume, array);
+        if found.is_none() {
+            let detail = self.case.volume.missing_array(ArrayUse::CellVectors, array);
+            let at = format!("{pointer}/array");
+            self.problems.add(at, SceneErrorCode::UnknownArray, detail);
+        }
+        found.map(Along::Array)
+    }
+
+    /// w f (x) f of cells and their shares.
+    fn directed(
+        &mut self,
+        shares: impl IntoIterator<Item = (usize, f64)>,
+        along: Option<Along>,
+        pointer: &str,
+    ) -> Vec<CellStress> {
+        let Some(along) = along else { return Vec::new() };
+        let (mut cells, mut without) = (Vec::new(), 0);
+        for (cell, share) in shares {
+            match along.at(&self.case.volume, cell) {
                 Some(f) => {
-                    cells.push(CellStress { cell: cell as u32, stress: f * f.transpose() });
+                    let stress = f * f.transpose() * share;
+                    cells.push(CellStress { cell: cell as u32, stress });
                 }
                 None => without += 1,
             }
         }
         if without > 0 {
             let detail = format!(
-                "{without} cells of region {region:?} have a fibre direction without length: the muscle pulls along none there"
+                "{without} cells of the muscle have a fibre direction without length: it pulls along none there"
             );
             self.problems.add(pointer, SceneErrorCode::FibreDirectionZero, detail);
         }
         cells
     }
 
-    fn no_tissue_near(&mut self, name: &str, pointer: &str) {
-        let detail = format!(
-            "no cell has a point of its tissue near the lines of muscle {name:?}: are they in mm, in the frame of the case?"
-        );
-        let at = format!("{pointer}/lines_mm");
-        self.problems.add(at, SceneErrorCode::EmptySelection, detail);
+    fn around(
+        &mut self,
+        lines: &[Vec<Vector>],
+        within: f64,
+        (name, pointer): (&str, &str),
+    ) -> Vec<CellStress> {
+        let course = Lines::new(lines, within);
+        let cells = course.as_ref().map_or_else(Vec::new, |own| own.cells(&self.case.volume));
+        match course.filter(|_| !cells.is_empty()) {
+            Some(course) => {
+                let pull = PullShare::new(&course, &self.case.volume, &cells);
+                self.warnings.extend(pull.warning(name));
+            }
+            None => {
+                let detail = format!(
+                    "no cell has a point of its tissue near the lines of muscle {name:?}: are they in mm, in the frame of the case?"
+                );
+                let at = format!("{pointer}/lines_mm");
+                self.problems.add(at, SceneErrorCode::EmptySelection, detail);
+            }
+        }
+        cells
+    }
+
+    fn inside(
+        &mut self,
+        (surface, fibres): (&TriangleSurface, &'a BodyFibres),
+        (number, name): (usize, &str),
+        pointer: &str,
+    ) -> (Vec<CellStress>, Option<MuscleBody>) {
+        let samples = self.case.muscle_mixing.samples;
+        let shares = match shares_inside(&self.case.volume, surface, number, samples) {
+            Ok(shares) => shares,
+            Err(error) => {
+                let at = format!("{pointer}/surface");
+                self.problems.add(at, SceneErrorCode::NoInside, error.to_string());
+                return (Vec::new(), None);
+            }
+        };
+        let filled: Vec<(usize, f64)> =
+            shares.into_iter().enumerate().filter(|(_, share)| *share > 0.0).collect();
+        if filled.is_empty() {
+            let detail = format!(
+                "no cell has a sample point inside muscle {name:?}, which {}; the mesh {}: are both in the same frame and unit?",
+                reach(&surface.points),
+                reach(&self.case.volume.nodes)
+            );
+            self.problems.add(pointer, SceneErrorCode::EmptySelection, detail);
+            return (Vec::new(), None);
+        }
+        let mut broadness = None;
+        let along = match fibres {
+            BodyFibres::Course(course) => self.along(course, pointer),
+            BodyFibres::Lines(lines) => Some(Along::Lines(lines)),
+            BodyFibres::Box { halvings } => strap_of(surface, *halvings).map(|strap| {
+                broadness = Some(strap.broadness);
+                self.warnings.extend(not_a_strap(name, &strap));
+                Along::Strap(strap)
+            }),
+        };
+        let body = MuscleBody { enclosed: surface.signed_volume().abs(), broadness };
+        (self.directed(filled, along, pointer), Some(body))
     }
 
     pub(super) fn activate(&mut self, plan: &Plan, scene: &Scene, inner: &mut InnerStress) {
@@ -172,148 +280,35 @@ impl Check<'_> {
     }
 }
 
-/// How much of the pull of lines the cells of a mesh carry: int w dV by their quadrature points over what it is in the same tissue
-/// with every edge halved twice.
-struct PullShare {
-    cells: usize,
-    share: f64,
+/// The warning of a body of which little lies in the tissue.
+fn elsewhere(field: &MuscleField, mesh: &VolumeMesh) -> Option<Warning> {
+    let body = field.body.filter(|_| !field.cells.is_empty())?;
+    let share = field.volume(mesh) / body.enclosed;
+    let detail = format!(
+        "{:.0} % of the volume of muscle {:?} lies in the tissue: are both in the same frame?",
+        100.0 * share,
+        field.name
+    );
+    let warning = Warning::new("muscle-outside", detail).with("share", share);
+    (share < MOSTLY).then_some(warning)
 }
 
-impl PullShare {
-    fn new(lines: &Lines, mesh: &VolumeMesh, cells: &[CellStress]) -> Self {
-        let near = lines.tissue_near(mesh);
-        let finer = refine(&refine(&near));
-        let exact = pull_of(&finer, &lines.cells(&finer));
-        PullShare { cells: cells.len(), share: pull_of(mesh, cells) / exact }
-    }
-
-    /// Where cells are so few or so coarse that the muscle pulls otherwise than its lines say.
-    fn warning(&self, name: &str) -> Option<Warning> {
-        let PullShare { cells, share } = *self;
-        if cells >= FEW_CELLS && (share - 1.0).abs() <= PULL_OFF {
-            return None;
-        }
-        let detail = format!(
-            "{cells} cells have tissue near the lines of muscle {name:?}, and it pulls with {:.0} % of what lines of its width exert: \
-             its pull is as coarse as they are; finer cells or a larger `within_mm` carry it",
-            100.0 * share
-        );
-        let warning = Warning::new("muscle-few-cells", detail).with("cells", cells as f64);
-        Some(warning.with("pull_share", share))
-    }
+/// The warning of a broad muscle whose fibres are taken from its boxes.
+fn not_a_strap(name: &str, strap: &Strap) -> Option<Warning> {
+    let detail = format!(
+        "muscle {name:?} is no strap, {:.2} times as broad as long, and fibres of broad muscles may run across the longest axis of \
+         their box: state `direction`, `array` or `lines_mm`",
+        strap.broadness
+    );
+    strap
+        .is_broad()
+        .then(|| Warning::new("muscle-broad", detail).with("broadness", strap.broadness))
 }
 
-/// int w dV in mm^3 of stresses w f (x) f.
-fn pull_of(mesh: &VolumeMesh, cells: &[CellStress]) -> f64 {
-    let of = |own: &CellStress| {
-        let corners: Vec<Vector> = mesh.corners(own.cell as usize).collect();
-        own.stress.trace() * signed_volume(mesh.cells.shape(own.cell as usize), &corners)
-    };
-    cells.iter().map(of).sum()
-}
-
-/// Squared distances that differ by less than this share of the squared reach are equal.
-const EQUAL: f64 = 1e-9;
-
-/// A straight piece of a line: its start, and the way to its end.
-struct Piece {
-    from: Vector,
-    along: Vector,
-}
-
-/// The lines of a muscle.
-struct Lines {
-    pieces: Vec<Piece>,
-    within: f64,
-    /// The box around all that is within reach.
-    low: Vector,
-    high: Vector,
-}
-
-impl Lines {
-    /// None where no line has a length.
-    fn new(lines: &[Vec<Vector>], within: f64) -> Option<Self> {
-        let pairs = lines.iter().flat_map(|line| line.windows(2));
-        let pieces = pairs.map(|pair| Piece { from: pair[0], along: pair[1] - pair[0] });
-        let pieces: Vec<Piece> = pieces.filter(|piece| unit(&piece.along).is_some()).collect();
-        let first = pieces.first()?.from;
-        let ends = pieces.iter().flat_map(|piece| [piece.from, piece.from + piece.along]);
-        let (low, high) = ends.fold((first, first), |(l, h), x| (l.inf(&x), h.sup(&x)));
-        let reach = Vector::repeat(within);
-        Some(Lines { pieces, within, low: low - reach, high: high + reach })
-    }
-
-    /// w f (x) f of all cells where it is not zero.
-    fn cells(&self, mesh: &VolumeMesh) -> Vec<CellStress> {
-        let of_cell = |cell: usize| {
-            let stress = self.mean(mesh, cell)?;
-            Some(CellStress { cell: cell as u32, stress })
-        };
-        (0..mesh.cells.len()).into_par_iter().filter_map(of_cell).collect()
-    }
-
-    /// Whether a cell may have tissue within reach.
-    fn may_reach(&self, corners: &[Vector]) -> bool {
-        let Some(&first) = corners.first() else { return false };
-        let (low, high) = corners.iter().fold((first, first), |(l, h), x| (l.inf(x), h.sup(x)));
-        (0..3).all(|axis| high[axis] >= self.low[axis] && low[axis] <= self.high[axis])
-    }
-
-    /// The cells that may have tissue within reach.
-    fn tissue_near(&self, mesh: &VolumeMesh) -> VolumeMesh {
-        let mut near = VolumeMesh::default();
-        let mut number_of = BTreeMap::new();
-        for (cell, (shape, nodes)) in mesh.cells.iter().enumerate() {
-            let corners: Vec<Vector> = mesh.corners(cell).collect();
-            if !self.may_reach(&corners) {
-                continue;
-            }
-            let numbered = nodes.iter().map(|&node| {
-                *number_of.entry(node).or_insert_with(|| {
-                    near.nodes.push(mesh.nodes[node as usize]);
-                    near.nodes.len() as u32 - 1
-                })
-            });
-            let numbered: Vec<u32> = numbered.collect();
-            near.cells.push(shape, &numbered);
-        }
-        near
-    }
-
-    /// The mean over a cell; none where no point of it is within reach.
-    fn mean(&self, mesh: &VolumeMesh, cell: usize) -> Option<Matrix3<f64>> {
-        let corners: Vec<Vector> = mesh.corners(cell).collect();
-        if !self.may_reach(&corners) {
-            return None;
-        }
-        let (mut sum, mut volume) = (Matrix3::zeros(), 0.0);
-        for point in &reference_cell(mesh.cells.shape(cell)).points {
-            let physical = point.at(&corners)?;
-            let place: Vector = corners.iter().zip(&point.values).map(|(x, n)| x * *n).sum();
-            sum += self.at(&place) * physical.volume;
-            volume += physical.volume;
-        }
-        (sum != Matrix3::zeros()).then(|| sum / volume)
-    }
-
-    /// w f (x) f at a place; where pieces are equally near, the mean of theirs, so that rounding does not choose.
-    fn at(&self, place: &Vector) -> Matrix3<f64> {
-        let reach = self.within * self.within;
-        let (mut nearest, mut sum, mut count) = (reach, Matrix3::zeros(), 0.0);
-        for piece in &self.pieces {
-            let share = (place - piece.from).dot(&piece.along) / piece.along.norm_squared();
-            let foot = piece.from + piece.along * share.clamp(0.0, 1.0);
-            let squared = (place - foot).norm_squared();
-            let Some(f) = unit(&piece.along).filter(|_| squared < nearest + EQUAL * reach) else {
-                continue;
-            };
-            if squared < nearest - EQUAL * reach {
-                (nearest, sum, count) = (squared, Matrix3::zeros(), 0.0);
-            }
-            sum += f * f.transpose();
-            count += 1.0;
-        }
-        let fall = 1.0 - nearest / reach;
-        if count == 0.0 { Matrix3::zeros() } else { sum * (fall * fall / count) }
-    }
+/// `reaches from (0.0, 0.0, 0.0) to (1.0, 1.0, 1.0) mm`.
+fn reach(points: &[Vector]) -> String {
+    let shown = |x: Vector| format!("({:.1}, {:.1}, {:.1})", x.x, x.y, x.z);
+    let Some(&first) = points.first() else { return "has no points".to_owned() };
+    let (low, high) = points.iter().fold((first, first), |(l, h), x| (l.inf(x), h.sup(x)));
+    format!("reaches from {} to {} mm", shown(low), shown(high))
 }

@@ -1,20 +1,52 @@
-//! A muscle on a mesh: the stress of its cells for each kPa with which it pulls.
+//! A muscle on a mesh: the stress of its cells for each kPa with which it pulls, and how much of them it is.
 
+use super::case::Muscle;
+use crate::mesh::jacobian::signed_volume;
+use crate::mesh::{Vector, VolumeMesh};
 use crate::model::fem::inner_stress::{CellStress, InnerStress};
 
 /// A muscle, whether it pulls or not.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MuscleField {
     pub name: String,
-    /// w f (x) f of its cells, ascending.
+    /// w f (x) f of its cells, ascending, w the share of the cell that is muscle.
     pub cells: Vec<CellStress>,
+    /// Of a muscle with a surface.
+    pub body: Option<MuscleBody>,
+    /// Whether its tissue becomes stiffer as it pulls, so that what it does is not in proportion to its stress.
+    pub stiffens: bool,
+}
+
+/// What the closed surface of a muscle says.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MuscleBody {
+    /// That it encloses, in mm³.
+    pub enclosed: f64,
+    /// Of the second to the first standard deviation of the surface, where fibres run along its boxes.
+    pub broadness: Option<f64>,
 }
 
 impl MuscleField {
+    pub(super) fn new(muscle: &Muscle, cells: Vec<CellStress>, body: Option<MuscleBody>) -> Self {
+        let (name, stiffens) = (muscle.name.clone(), muscle.stiffening.is_some());
+        MuscleField { name, cells, body, stiffens }
+    }
+
+    /// Of the muscle in the tissue of its mesh, in mm³.
+    pub fn volume(&self, mesh: &VolumeMesh) -> f64 {
+        self.cells.iter().map(|own| muscle_volume(mesh, own)).sum()
+    }
+
     /// What it exerts in a mesh of so many cells when it pulls with `stress` in kPa.
     pub fn pulling(&self, cells: usize, stress: f64) -> InnerStress {
         let mut inner = InnerStress::default();
         inner.pull(cells, &self.cells, stress);
         inner
     }
+}
+
+/// The volume of a muscle in a cell, in mm³.
+pub(super) fn muscle_volume(mesh: &VolumeMesh, own: &CellStress) -> f64 {
+    let corners: Vec<Vector> = mesh.corners(own.cell as usize).collect();
+    own.stress.trace() * signed_volume(mesh.cells.shape(own.cell as usize), &corners)
 }

@@ -81,6 +81,7 @@ impl Scene {
             forces: finer.forces_at_nodes()?,
             distributed: finer.distributed(),
             muscles: finer.muscles(),
+            muscle_tissue: self.muscle_tissue,
             landmarks: self.landmarks.clone(),
             allow_unfixed: self.allow_unfixed,
             settings: self.settings.clone(),
@@ -269,7 +270,7 @@ impl Finer<'_> {
                 of_root.get(root).map(|own| CellStress { cell, ..*own })
             };
             let cells = (0..).zip(&roots).filter_map(of_cell).collect();
-            MuscleField { name: muscle.name.clone(), cells }
+            MuscleField { cells, ..muscle.clone() }
         };
         self.scene.muscles.iter().map(finer).collect()
     }

@@ -8,6 +8,7 @@ use super::element_choice::ElementChoice;
 use super::imaged_tissue::ImagedTissue;
 use super::method::{Method, MethodKind, Unknowns};
 use super::muscle_field::MuscleField;
+use super::muscle_tissue::MuscleTissue;
 use super::skin::Skin;
 use super::stated::StatedCondition;
 use crate::boundary::{Conditions, ConnectedPart, NodeClass};
@@ -56,7 +57,7 @@ pub struct Scene {
     /// Region names, and for each cell its entry.
     pub regions: Vec<String>,
     pub region_of_cell: Vec<u16>,
-    /// For each region, then what an image adds.
+    /// For each region, then what an image and muscles add.
     pub materials: Vec<LinearElastic>,
     /// For each cell its entry in `materials`, and the one whose pressure it takes part in.
     pub material_of_cell: Vec<u16>,
@@ -82,6 +83,8 @@ pub struct Scene {
     pub distributed: DistributedLoads,
     /// Those of the case, whether they pull or not.
     pub muscles: Vec<MuscleField>,
+    /// What they make of the tissue, where some have their own.
+    pub muscle_tissue: Option<MuscleTissue>,
     pub landmarks: BTreeMap<String, Vector>,
     /// Whether a plan may carry the whole tissue away as one.
     pub allow_unfixed: bool,

@@ -32,6 +32,11 @@ fn known(scene: &Scene, load: &InnerLoad) -> Result<(), ResponseError> {
             let known = listed(scene.muscles.iter().map(|own| &own.name));
             Err(ResponseError::UnknownMuscle { name: name.clone(), known })
         }
+        InnerLoad::Muscle(name)
+            if scene.muscles.iter().any(|own| own.name == *name && own.stiffens) =>
+        {
+            Err(ResponseError::Stiffens { name: name.clone() })
+        }
         InnerLoad::Growth(_) | InnerLoad::Muscle(_) => Ok(()),
     }
 }

@@ -27,6 +27,10 @@ pub enum ResponseError {
     #[error("the case has no muscle {name:?}; its muscles: {known}")]
     UnknownMuscle { name: String, known: String },
     #[error(
+        "muscle {name:?} becomes stiffer as it pulls, so that what it does is no multiple of a column: leave it out of the response"
+    )]
+    Stiffens { name: String },
+    #[error(
         "the second order of a response is not known for quadratic tetrahedra, nor for fibres that only pull"
     )]
     NoSecondOrder,

@@ -51,6 +51,8 @@ fn face(name: &str, jaw: &str, skull: &str, left: Vector) -> Result<Face, Missin
     let muscle = |(name, lines): (&String, &Vec<Vec<Vector>>)| Muscle {
         name: name.clone(),
         course: MuscleCourse::Lines { lines: lines.clone(), within: 6.0 },
+        tissue: None,
+        stiffening: None,
     };
     let case = Case {
         skin: Some(set("outer_skin")),

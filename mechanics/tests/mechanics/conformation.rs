@@ -6,6 +6,7 @@ use mechanics::conformation::{
 use mechanics::mesh::sample::{ThickSphere, thick_sphere_octant};
 use mechanics::mesh::{CellShape, SurfaceSearch, TriangleSurface, Vector, VolumeMesh};
 use mechanics::progress::Unobserved;
+use nalgebra::Rotation3;
 
 fn template() -> VolumeMesh {
     let sphere =
@@ -141,6 +142,68 @@ fn two_exchanged_landmarks_are_named() {
         panic!("not exchanged");
     };
     assert_eq!([one, other], [landmarks[0].name.clone(), landmarks[last].name.clone()]);
+}
+
+/// Twelve points about a face, of which a twin has others by 4 mm.
+fn face_points() -> Vec<Landmark> {
+    let places: [[f64; 3]; 12] = [
+        [0.0, -60.0, 80.0],
+        [0.0, -80.0, 40.0],
+        [0.0, -95.0, 0.0],
+        [0.0, -85.0, -20.0],
+        [0.0, -84.0, -30.0],
+        [0.0, -78.0, -55.0],
+        [0.0, -60.0, -70.0],
+        [40.0, -70.0, 40.0],
+        [-40.0, -70.0, 40.0],
+        [25.0, -72.0, -25.0],
+        [-25.0, -72.0, -25.0],
+        [60.0, 0.0, -40.0],
+    ];
+    let turn = Rotation3::new(Vector::new(0.1, -0.2, 0.15));
+    let landmark = |(number, place): (usize, &[f64; 3])| {
+        let template = Vector::from(*place);
+        let wave = (0.05 * (place[0] + 2.0 * place[2]) + number as f64).sin();
+        let patient = turn * template * 1.05 + Vector::new(2.0, -2.0, 3.0) * wave;
+        Landmark { name: format!("point {number}"), template, patient }
+    };
+    places.iter().enumerate().map(landmark).collect()
+}
+
+#[test]
+fn landmarks_that_stand_at_others_are_named_however_far_apart_they_are() {
+    let twin = Twin::new();
+    let error = |landmarks: &[Landmark]| {
+        let patient = Patient { skin: None, bone: None, landmarks };
+        conform(&twin.sheets(), &patient, Start::Auto, &Unobserved).unwrap_err()
+    };
+    let sound = face_points();
+    // The hairline and the chin, which turn the similarity of all over.
+    let mut swapped = sound.clone();
+    (swapped[0].patient, swapped[6].patient) = (sound[6].patient, sound[0].patient);
+    let told = error(&swapped);
+    let ConformationError::Exchanged { one, other, apart, exchanged } = &told else {
+        panic!("{told}")
+    };
+    assert_eq!([one.as_str(), other.as_str()], ["point 0", "point 6"]);
+    assert!(*apart > 20.0 && *exchanged < 6.0, "{told}");
+    // Three of them, around.
+    let mut around = sound.clone();
+    around[0].patient = sound[11].patient;
+    around[11].patient = sound[2].patient;
+    around[2].patient = sound[0].patient;
+    let told = error(&around);
+    let ConformationError::Permuted { names, after, .. } = &told else { panic!("{told}") };
+    assert_eq!(
+        names,
+        "\"point 0\" at \"point 2\", \"point 2\" at \"point 11\", \"point 11\" at \"point 0\""
+    );
+    assert!(*after < 6.0, "{told}");
+    // One that is nobody's place is no permutation.
+    let mut away = sound.clone();
+    away[0].patient += Vector::new(0.0, 120.0, 60.0);
+    let told = error(&away);
+    assert!(matches!(told, ConformationError::Unlike { .. }), "{told}");
 }
 
 #[test]

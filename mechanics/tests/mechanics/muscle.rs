@@ -3,15 +3,15 @@
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use mechanics::conformation::angle_between;
-use mechanics::material::mixture::Mixing;
+use mechanics::material::mixture::MixingRule;
 use mechanics::material::{Fibre, FibreLaw, LinearElastic};
 use mechanics::mesh::sample::block;
 use mechanics::mesh::{CellShape, TriangleSurface, Vector};
 use mechanics::muscle::axis::mean_axis;
-use mechanics::muscle::equivalent::{MuscleShare, decided_by_rule, equivalent, equivalent_tensor};
+use mechanics::muscle::equivalent::{EquivalentTissue, decided_by_rule};
 use mechanics::muscle::lines::{MuscleLines, fibre_cells, widened};
 use mechanics::muscle::share::shares_inside;
-use mechanics::muscle::strap::strap_of;
+use mechanics::muscle::strap::{box_surface, strap_of};
 use nalgebra::Rotation3;
 
 /// A closed tube of rings about a line, its ends closed by fans.
@@ -171,44 +171,26 @@ fn tissue(young_modulus: f64, poisson_ratio: f64) -> LinearElastic {
 
 #[test]
 fn the_tissue_of_a_cell_with_a_tenth_of_muscle_depends_on_the_rule() {
-    let muscle = MuscleShare { share: 0.1, tissue: tissue(790.0, 0.43), axis: Some(Vector::z()) };
-    let fat = tissue(3.0, 0.46);
-    let of = |muscles: &[MuscleShare], rule| equivalent(muscles, fat, rule).unwrap();
-    for (rule, known) in [(Mixing::Voigt, 81.74), (Mixing::Reuss, 3.33), (Mixing::Geometric, 5.24)]
-    {
-        let found = of(&[muscle], rule);
+    let parts = [(0.1, tissue(790.0, 0.43)), (0.9, tissue(3.0, 0.46))];
+    let known =
+        [(MixingRule::Voigt, 81.74), (MixingRule::Reuss, 3.33), (MixingRule::Geometric, 5.24)];
+    for (rule, known) in known {
+        let found = EquivalentTissue::new(&parts, rule);
         assert!((found.tissue.young_modulus() - known).abs() < 0.005, "{rule:?}: {found:?}");
         assert!((found.rule_ratio - 81.74 / 3.332).abs() < 0.02, "{}", found.rule_ratio);
-        assert!(angle_between(&found.axis.unwrap().direction, &Vector::z()) < 1e-9);
     }
-    // Two muscles that cross, and none.
-    let other = MuscleShare { axis: Some(Vector::x()), ..muscle };
-    assert!(of(&[muscle, other], Mixing::Voigt).axis.unwrap().is_crossing());
-    let none = of(&[], Mixing::Reuss);
-    assert!((none.tissue.young_modulus() - 3.0).abs() < 1e-9 && none.axis.is_none());
-    // Muscles that overlap fill the cell, and leave nothing to the rest.
-    let whole = MuscleShare { share: 0.9, ..muscle };
-    let full = of(&[whole, MuscleShare { share: 0.6, ..whole }], Mixing::Voigt);
-    assert!((full.tissue.young_modulus() - 790.0).abs() < 1e-6, "{full:?}");
-    assert!((full.rule_ratio - 1.0).abs() < 1e-9);
+    let alone = EquivalentTissue::new(&[(1.0, tissue(3.0, 0.46))], MixingRule::Reuss);
+    assert!((alone.tissue.young_modulus() - 3.0).abs() < 1e-9);
+    assert!((alone.rule_ratio - 1.0).abs() < 1e-9);
+    // Stiff along its fibres alone.
+    let fibre = Fibre { young_modulus: 110.0, shear_modulus: None, law: FibreLaw::Engineering };
+    let fibred = tissue(3.0, 0.46).with_fibre(&fibre).unwrap();
+    let parts = [(0.5, fibred), (0.5, tissue(3.0, 0.46))];
+    let found = EquivalentTissue::new(&parts, MixingRule::Voigt);
+    assert!((found.rule_ratio - 56.5 * (0.5 / 110.0 + 0.5 / 3.0)).abs() < 1e-9, "{found:?}");
     let decided = decided_by_rule([(2.0, 24.5), (6.0, 1.2), (2.0, 3.5)]);
     assert!((decided - 0.4).abs() < 1e-12);
     assert_eq!(decided_by_rule([]), 0.0);
-}
-
-#[test]
-fn stiffness_with_fibres_is_linear_in_the_shares() {
-    let fibre = Fibre { young_modulus: 110.0, shear_modulus: None, law: FibreLaw::Engineering };
-    let fibred = tissue(6.2, 0.45).with_fibre(&fibre).unwrap();
-    let axis = Vector::new(1.0, 2.0, -2.0) / 3.0;
-    let muscle = MuscleShare { share: 0.3, tissue: fibred, axis: Some(-axis * 5.0) };
-    let fat = tissue(3.0, 0.46);
-    let mixed = equivalent_tensor(&[muscle], fat);
-    let (own, rest) = (fibred.tensor(&axis), fat.tensor(&axis));
-    let gradient = nalgebra::Matrix3::new(0.1, 0.02, -0.3, 0.2, -0.1, 0.05, 0.0, 0.4, 0.2);
-    let known = own.stress(&gradient) * 0.3 + rest.stress(&gradient) * 0.7;
-    assert!((mixed.stress(&gradient) - known).norm() < 1e-12 * known.norm());
-    assert!(equivalent_tensor(&[], fat).fibre.is_none());
 }
 
 #[test]
@@ -239,4 +221,17 @@ fn cells_near_lines_take_the_tangent_of_the_nearest() {
     let degenerate =
         MuscleLines { name: "point".to_owned(), lines: vec![vec![Vector::zeros(); 2]] };
     assert!(fibre_cells(&mesh, &[degenerate], &[100.0]).is_empty());
+}
+
+#[test]
+fn a_box_encloses_its_volume_and_faces_outwards_whichever_way_its_axes_turn() {
+    let turned = Rotation3::new(Vector::new(0.4, -0.7, 1.1));
+    let axes = [20.0, 5.0, 2.5].map(|size| size * Vector::x());
+    let axes = [axes[0], Vector::y() * axes[1].x, Vector::z() * axes[2].x].map(|own| turned * own);
+    for half_axes in [axes, [axes[1], axes[0], axes[2]]] {
+        let surface = box_surface(Vector::new(7.0, -3.0, 2.0), half_axes);
+        assert!((surface.signed_volume() - 2000.0).abs() < 1e-9, "{}", surface.signed_volume());
+        let strap = strap_of(&surface, 0).unwrap();
+        assert!(angle_between(&strap.boxes[0].axis, &axes[0]) < 1e-6 && !strap.is_broad());
+    }
 }

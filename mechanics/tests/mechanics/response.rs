@@ -290,6 +290,8 @@ fn head_with_muscles() -> Case {
     let muscle = |name: &str, x: f64| Muscle {
         name: name.to_owned(),
         course: MuscleCourse::Lines { lines: vec![line(x)], within: 15.0 },
+        tissue: None,
+        stiffening: None,
     };
     Case { muscles: vec![muscle("left", 0.1), muscle("right", 0.2)], ..case }
 }
@@ -299,7 +301,8 @@ fn growth_and_muscles_add_to_the_sum_of_columns_as_they_do_to_the_direct_solutio
     let mut block = block(CellShape::Hex8);
     let lines = vec![vec![Vector::new(30.0, 5.0, 9.0), Vector::new(50.0, 35.0, 6.0)]];
     let course = MuscleCourse::Lines { lines, within: 8.0 };
-    block.muscles = vec![Muscle { name: "left".to_owned(), course }];
+    block.muscles =
+        vec![Muscle { name: "left".to_owned(), course, tissue: None, stiffening: None }];
     for (case, element) in [
         (head_with_muscles(), ElementChoice::Auto),
         (block.clone(), ElementChoice::Auto),

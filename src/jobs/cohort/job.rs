@@ -1,24 +1,26 @@
 //! The job of a cohort.
 
+use super::groups::{Groups, group};
 use super::input::CohortInput;
 use super::subjects::doubts;
+use super::twins::groups_of_twins;
 use crate::jobs::clock::Observed;
 use crate::jobs::failure::JobError;
 use crate::jobs::output::{JobOutput, Workplace};
 use crate::jobs::result::folder::ResultFolder;
 use crate::jobs::result::provenance::{Origin, encode_result};
 use crate::jobs::result::warnings::warning_documents;
+use crate::schema::cohort::document::{CohortDistance, CohortStatistic};
 use crate::schema::cohort::result::{
     CohortGroupDocument, CohortPairDocument, CohortResultDocument, CohortRowDocument,
 };
-use crate::schema::compare::result::StatDocument;
 use crate::schema::predict::document::OutputName;
 use crate::schema::predict::result::ResultDocument;
 use crate::schema::{ErrorCode, Faults, Pointer};
 use mechanics::mesh::Frame;
 use mechanics::progress::{Phase, Progress};
 use mechanics::study::paired::{Equality, ZeroRule, signed_rank};
-use mechanics::validation::{Statistics, StatisticsError};
+use mechanics::validation::Statistics;
 
 /// Time a cohort may take, in seconds.
 const WALL_S: f64 = 60.0;
@@ -32,15 +34,25 @@ pub fn cohort_job(
     place: &Workplace,
     progress: &dyn Progress,
 ) -> Result<JobOutput, JobError> {
-    let clock = Observed::start(progress, WALL_S);
+    let made = input.spec.made.as_ref();
+    let clock = Observed::start(progress, made.map_or(WALL_S, |made| made.budget.wall_s));
     let mut faults = Faults::default();
     input.spec.check(place.limits, &mut faults);
     faults.into_result()?;
 
+    let mut distance = input.spec.distance;
+    let mut groups = match made {
+        Some(made) => {
+            clock.phase(Phase::Solve);
+            distance = CohortDistance::NodeWise;
+            groups_of_twins(&input.spec, made, &clock)?
+        }
+        None => groups(input)?,
+    };
     clock.phase(Phase::Compare);
-    let groups = groups(input)?;
-    let pairs = pairs(input, &groups)?;
-    let (distance, statistic) = (input.spec.distance, input.spec.statistic);
+    let pairs = pairs(input.spec.statistic, &groups.tested)?;
+    groups.tested.extend(groups.beside);
+    let (groups, statistic) = (groups.tested, input.spec.statistic);
     let cohort = CohortResultDocument { distance, statistic, groups, pairs };
 
     clock.phase(Phase::Write);
@@ -61,15 +73,14 @@ pub fn cohort_job(
     Ok(JobOutput { result, files: folder.files, meshes: Vec::new() })
 }
 
-fn groups(input: &CohortInput) -> Result<Vec<CohortGroupDocument>, JobError> {
+fn groups(input: &CohortInput) -> Result<Groups, JobError> {
     let spec = &input.spec;
     let mut faults = Faults::default();
     let mut groups = Vec::new();
     for (name, jobs) in &spec.groups {
         let mut rows = Vec::new();
         for (index, job) in jobs.iter().enumerate() {
-            let subject = spec.subjects.get(index).cloned();
-            let subject = subject.unwrap_or_else(|| (index + 1).to_string());
+            let subject = spec.subject(index);
             match input.comparisons.get(job).and_then(|comparison| spec.row(comparison)) {
                 Some(distances) => rows.push(CohortRowDocument { subject, distances }),
                 None => {
@@ -79,23 +90,18 @@ fn groups(input: &CohortInput) -> Result<Vec<CohortGroupDocument>, JobError> {
                 }
             }
         }
-        let values: Vec<f64> = rows.iter().map(|row| spec.statistic.of(&row.distances)).collect();
-        let over_subjects = match Statistics::plain(&values) {
-            Err(StatisticsError::Empty) => StatDocument::default(),
-            found => StatDocument::from(&found?),
-        };
-        groups.push(CohortGroupDocument { name: name.clone(), rows, over_subjects });
+        groups.push(group(spec, name, rows)?);
     }
     faults.into_result()?;
-    Ok(groups)
+    Ok(Groups { tested: groups, beside: Vec::new() })
 }
 
 fn pairs(
-    input: &CohortInput,
+    statistic: CohortStatistic,
     groups: &[CohortGroupDocument],
 ) -> Result<Vec<CohortPairDocument>, JobError> {
     let values = |group: &CohortGroupDocument| -> Vec<f64> {
-        group.rows.iter().map(|row| input.spec.statistic.of(&row.distances)).collect()
+        group.rows.iter().map(|row| statistic.of(&row.distances)).collect()
     };
     let mut pairs = Vec::new();
     for (index, first) in groups.iter().enumerate() {

@@ -171,7 +171,10 @@ fn with_inverted_cells(after: &QualityReport) -> Warning {
 }
 
 fn made_case_refused(why: &str) -> Warning {
-    Warning::new("made-case-refused", format!("the case of the mesh is refused as it stands: {why}"))
+    Warning::new(
+        "made-case-refused",
+        format!("the case of the mesh is refused as it stands: {why}"),
+    )
 }
 
 /// From nodes to a surface, where there is one, in mm.
@@ -229,6 +232,7 @@ fn refused(error: &ConformationError, clock: &Observed) -> JobError {
         | ConformationError::FewLandmarks { .. }
         | ConformationError::Mirrored { .. }
         | ConformationError::Exchanged { .. }
+        | ConformationError::Permuted { .. }
         | ConformationError::Unlike { .. } => at.key("landmarks"),
     };
     Problem::at(&place, ErrorCode::AlignmentFailed, error.to_string()).into()

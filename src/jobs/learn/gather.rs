@@ -7,6 +7,7 @@ use super::thetas::at_thetas;
 use crate::jobs::clock::Observed;
 use crate::jobs::failure::JobError;
 use crate::jobs::fetch::fetch;
+use crate::jobs::made::{refused_cohort, refused_virtual};
 use crate::jobs::output::Workplace;
 use crate::jobs::predict::Prepared;
 use crate::jobs::source::StoredShape;
@@ -14,8 +15,8 @@ use crate::schema::predict::result::InputDocument;
 use crate::schema::{ErrorCode, Pointer, Problem};
 use mechanics::learning::classes::{ThetaOfClass, held_out, thetas};
 use mechanics::learning::validation::Column;
-use mechanics::learning::virtual_cohort::{VirtualError, virtual_cohort};
-use mechanics::learning::{Cohort, CohortError, LearningCase, measures};
+use mechanics::learning::virtual_cohort::virtual_cohort;
+use mechanics::learning::{Cohort, LearningCase, measures};
 use mechanics::mesh::{Frame, TriangleSurface, Vector};
 use mechanics::prediction::{Scene, Skin, equilibrium};
 use mechanics::progress::Progress;
@@ -58,33 +59,6 @@ pub fn gather(
     }
 }
 
-fn refused_virtual(error: VirtualError, clock: &Observed) -> JobError {
-    match error {
-        VirtualError::Model(error) => clock.judge(error),
-        VirtualError::Scene(errors) => JobError::Refused(errors.into()),
-        VirtualError::Cohort(error) => refused(&error),
-        VirtualError::Material(error) => {
-            let at = Pointer::from_text("/spec/virtual");
-            Problem::at(&at, ErrorCode::OutOfRange, error.to_string()).into()
-        }
-    }
-}
-
-/// A cohort from which nothing can be learned.
-fn refused(error: &CohortError) -> JobError {
-    let cases = Pointer::from_text("/spec/cases");
-    let (at, code) = match error {
-        CohortError::TooFew { .. } => (cases, ErrorCode::OutOfRange),
-        CohortError::NamedTwice { second, .. } | CohortError::SamePatient { second, .. } => {
-            (cases.index(*second), ErrorCode::DuplicateName)
-        }
-        CohortError::Length { case, .. } => (cases.index(*case), ErrorCode::NotCorresponding),
-        CohortError::NotFinite { case, .. } => (cases.index(*case), ErrorCode::NotFinite),
-        CohortError::NoSuchPoint { .. } => (cases, ErrorCode::NotCorresponding),
-    };
-    Problem::at(&at, code, error.to_string()).into()
-}
-
 fn of_cases(input: &LearnInput, place: &Workplace, clock: &Observed) -> Result<Gathered, JobError> {
     let mut first: Option<Prepared> = None;
     let mut cases = Vec::new();
@@ -121,7 +95,7 @@ fn of_cases(input: &LearnInput, place: &Workplace, clock: &Observed) -> Result<G
         let Skin { surface, regions } = own.scene.skin;
         (surface, regions, own.case.frame)
     });
-    let cohort = Cohort::new(cases, regions).map_err(|error| refused(&error))?;
+    let cohort = Cohort::new(cases, regions).map_err(|error| refused_cohort(&error))?;
     let column = |name: &str, of: &dyn Fn(&LearningCase) -> Vec<f64>| {
         let told: Vec<Vec<f64>> = cohort.cases.iter().map(of).collect();
         Column::of(name, &told, &cohort)

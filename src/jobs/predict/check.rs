@@ -10,6 +10,7 @@ use crate::jobs::result::pictures::classes_picture;
 use crate::jobs::result::warnings::warnings_after;
 use crate::jobs::source::MeshSource;
 use crate::schema::Limits;
+use crate::schema::case::muscle_mixing::MusclesDocument;
 use crate::schema::predict::check::{CheckDocument, ClassCounts, SkinSummary};
 use mechanics::mesh::Warning;
 use mechanics::prediction::{NodeClass, Scene};
@@ -68,6 +69,7 @@ impl Prepared {
             },
             repair: self.repair.as_ref().map(Into::into),
             imaged: scene.imaged.as_ref().map(Into::into),
+            muscles: MusclesDocument::of(scene),
             unknowns: (3 * nodes - held) as u64,
             memory_mb: cost::memory_mb(scene, 0),
             time_s: cost::time_s(scene, input.spec.method),

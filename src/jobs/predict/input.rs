@@ -280,7 +280,11 @@ impl PredictInput {
                 return "image".to_owned();
             }
             let bone = self.case.bones.iter().find(|bone| bone.mesh == id);
-            bone.map_or_else(|| "surface".to_owned(), |bone| format!("bone {}", bone.name))
+            let mut muscles = self.case.muscles.iter();
+            let muscle = muscles.find(|muscle| muscle.surface.as_deref() == Some(id));
+            let bone = bone.map(|bone| format!("bone {}", bone.name));
+            let muscle = muscle.map(|muscle| format!("muscle {}", muscle.name));
+            bone.or(muscle).unwrap_or_else(|| "surface".to_owned())
         };
         let mut inputs: Vec<InputDocument> =
             stored.iter().map(|(id, mesh)| mesh.to_input(&role(id))).collect();

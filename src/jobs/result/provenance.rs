@@ -10,6 +10,7 @@ use crate::schema::case::document::{CaseDocument, LengthUnit};
 use crate::schema::case::hounsfield::HounsfieldDocument;
 use crate::schema::case::material::MaterialDocuments;
 use crate::schema::case::merged::expanded_materials;
+use crate::schema::case::muscle::muscle_materials;
 use crate::schema::case::preset::{UsedPresetDocument, used_presets};
 use crate::schema::methods::MethodName;
 use crate::schema::predict::newton::NewtonDocument;
@@ -120,7 +121,8 @@ pub fn presets(
 ) -> BTreeMap<String, UsedPresetDocument> {
     let regions = expanded_materials(case.materials.as_ref(), spec);
     let tissues = case.hounsfield.as_ref().map(HounsfieldDocument::expanded).unwrap_or_default();
-    used_presets(regions.iter().chain(&tissues))
+    let muscles = muscle_materials(&case.muscles);
+    used_presets(regions.iter().chain(&tissues).chain(&muscles))
 }
 
 /// How provenance names the mesh that was computed on.

@@ -8,9 +8,9 @@ use super::hounsfield::HounsfieldDocument;
 use super::material::MaterialDocuments;
 use super::merged::{Merged, PlacedMaterials, merge_materials};
 use super::meshes::CaseMeshes;
-use super::muscle::to_muscles;
+use super::muscle::{MuscleContext, doubts, to_muscles};
 use crate::schema::code::ErrorCode;
-use crate::schema::repair::Mended;
+use crate::schema::repair::{Mended, check_cells};
 use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::limits::Limits;
 use crate::schema::wire::names::{check_distinct, check_tags};
@@ -18,7 +18,7 @@ use mechanics::boundary::NodeSelection;
 use mechanics::mesh::ignored::listed;
 use mechanics::mesh::{Frame, TriangleSurface, Vector, VolumeMesh, Warning};
 use mechanics::prediction::{
-    Bone, Case, CaseSegment, Hounsfield, RegionNames, Sliding, SlidingNormal,
+    Bone, Case, CaseSegment, Hounsfield, MuscleMixing, RegionNames, Sliding, SlidingNormal,
 };
 use mechanics::repair::RepairReport;
 
@@ -51,6 +51,7 @@ impl CaseDocument {
         let repair = self.repair.as_ref();
         let mended = repair.and_then(|own| own.mended(&volume, &at.key("repair"), faults));
         let volume = mended.as_ref().map_or(volume, |mended| mended.volume.clone());
+        check_cells(&volume, self.repair.is_some(), &at, faults);
         let own = PlacedMaterials { at: at.key("materials"), materials: self.materials.as_ref() };
         let spec = PlacedMaterials {
             at: Pointer::root().key("spec").key("materials"),
@@ -60,6 +61,7 @@ impl CaseDocument {
             merge_materials(&own, &spec, limits, faults);
         warnings.extend(frame_warning);
         warnings.extend(self.hounsfield.iter().flat_map(HounsfieldDocument::doubts));
+        warnings.extend(doubts(&self.muscles));
         warnings.extend(unusual_size(&volume, self.units));
         warnings.extend(mended.as_ref().and_then(Mended::warning));
         let regions = self.to_regions(&at.key("regions"), faults);
@@ -68,9 +70,10 @@ impl CaseDocument {
             check_regions(&[own, spec], &known, faults);
         }
         let (skin, skin_regions) = self.to_skin(&at, limits, faults);
+        let surfaces = self.to_surfaces(meshes);
+        let muscles_read_with = MuscleContext { limits, surfaces: Some(&surfaces) };
         let case = Case {
             frame: self.frame.into(),
-            surfaces: self.to_surfaces(meshes),
             bones: self.to_bones(&at.key("bones"), meshes, faults),
             landmarks: self.to_landmarks(&at.key("landmarks"), limits, faults),
             regions,
@@ -81,7 +84,9 @@ impl CaseDocument {
             allow_unfixed: self.allow_unfixed,
             sliding: self.to_sliding(&at.key("sliding"), limits, faults),
             hounsfield: self.to_hounsfield(&at.key("hounsfield"), meshes, limits, faults),
-            muscles: to_muscles(&self.muscles, &at.key("muscles"), limits, faults),
+            muscles: to_muscles(&self.muscles, &at.key("muscles"), muscles_read_with, faults),
+            muscle_mixing: self.to_muscle_mixing(&at.key("muscle_mixing"), faults),
+            surfaces,
             materials,
             fibres,
             volume,
@@ -147,6 +152,12 @@ impl CaseDocument {
         let image = meshes.image.as_ref()?;
         let (from, to) = (image.frame.unwrap_or_default(), self.frame_of_meshes(meshes));
         Some(document.to_hounsfield(Arc::new(image.mesh.turned(from, to)), tissues))
+    }
+
+    /// How muscles are mixed into cells.
+    fn to_muscle_mixing(&self, at: &Pointer, faults: &mut Faults) -> MuscleMixing {
+        let Some(own) = self.muscle_mixing else { return MuscleMixing::default() };
+        own.to_mixing(at, faults)
     }
 
     /// The frame of the case, or else the first that a mesh is marked with.

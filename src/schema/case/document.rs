@@ -9,6 +9,7 @@ use super::bone_landmark::BoneLandmarkOfCaseDocument;
 use super::hounsfield::HounsfieldDocument;
 use super::material::{MaterialDocument, MaterialDocuments};
 use super::muscle::MuscleDocument;
+use super::muscle_mixing::MuscleMixingDocument;
 use super::norm::{NormDocument, NormDocuments};
 use super::selection::SelectionDocument;
 use crate::schema::Triple;
@@ -76,6 +77,10 @@ pub struct CaseDocument {
     /// Muscles that plans may activate.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub muscles: Vec<MuscleDocument>,
+    /// How muscles with a `material` become the tissue of cells that they fill in part. Absent: `voigt`, 64 samples.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub muscle_mixing: Option<MuscleMixingDocument>,
     /// Materials by what an image shows, over those of the regions.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
@@ -243,13 +248,14 @@ impl CaseDocument {
             sliding: Vec::new(),
             materials: None,
             muscles: Vec::new(),
+            muscle_mixing: None,
             hounsfield: None,
             repair: None,
         }
     }
 
-    /// Every mesh and image the case asks for, with its place: the volume, the bones, the image, and the
-    /// surfaces of selections.
+    /// Every mesh and image the case asks for, with its place: the volume, the bones, the image, the surfaces of muscles, and
+    /// those of selections.
     /// A selection may also name a bone; the names of bones are left out.
     pub fn mesh_references_mut(&mut self) -> Vec<(Pointer, &mut String)> {
         let root = Pointer::root();
@@ -260,6 +266,10 @@ impl CaseDocument {
         }
         if let Some(hounsfield) = &mut self.hounsfield {
             found.push((root.key("hounsfield").key("image"), &mut hounsfield.image));
+        }
+        for (index, muscle) in self.muscles.iter_mut().enumerate() {
+            let at = root.key("muscles").index(index).key("surface");
+            found.extend(muscle.surface.as_mut().map(|surface| (at, surface)));
         }
         let mut surfaces = Vec::new();
         if let Some(skin) = &mut self.skin {

@@ -87,6 +87,18 @@ impl FibreDocument {
         at: &Pointer,
         faults: &mut Faults,
     ) -> Option<(LinearElastic, FibreDirection)> {
+        let material = self.to_stiffened(across, at, faults);
+        let course = to_course(self.direction, self.array.as_deref(), at, faults);
+        Some((material?, course?))
+    }
+
+    /// The material with these fibres, wherever they run.
+    pub(super) fn to_stiffened(
+        &self,
+        across: LinearElastic,
+        at: &Pointer,
+        faults: &mut Faults,
+    ) -> Option<LinearElastic> {
         let pulling = self.pulling(at, faults);
         let is_linear = self.young_modulus_kpa.is_some()
             || self.shear_modulus_kpa.is_some()
@@ -96,18 +108,12 @@ impl FibreDocument {
             let place = at.key("young_modulus_kpa");
             faults.add(&place, ErrorCode::MissingField, "missing field `young_modulus_kpa`");
         }
-        let course = to_course(self.direction, self.array.as_deref(), at, faults);
         let across = pulling.map_or(across, |fibres| across.with_pulling_fibres(fibres));
         if !is_linear {
-            return Some((pulling.map(|_| across)?, course?));
+            return pulling.map(|_| across);
         }
-        let law = match self.law.unwrap_or_default() {
-            FibreLawName::Engineering => FibreLaw::Engineering,
-            FibreLawName::Paper002 => FibreLaw::Paper002,
-        };
-        let (young_modulus, shear_modulus) = (self.young_modulus_kpa?, self.shear_modulus_kpa);
-        match across.with_fibre(&Fibre { young_modulus, shear_modulus, law }) {
-            Ok(material) => Some((material, course?)),
+        match across.with_fibre(&self.to_fibre()?) {
+            Ok(material) => Some(material),
             Err(error) => {
                 let (field, code) = match error {
                     MaterialError::FibreShear(_) => ("shear_modulus_kpa", ErrorCode::OutOfRange),
@@ -130,6 +136,16 @@ impl FibreDocument {
 }
 
 impl FibreDocument {
+    /// Its constants at small strain, where there are some.
+    pub(super) fn to_fibre(&self) -> Option<Fibre> {
+        let law = match self.law.unwrap_or_default() {
+            FibreLawName::Engineering => FibreLaw::Engineering,
+            FibreLawName::Paper002 => FibreLaw::Paper002,
+        };
+        let (young_modulus, shear_modulus) = (self.young_modulus_kpa?, self.shear_modulus_kpa);
+        Some(Fibre { young_modulus, shear_modulus, law })
+    }
+
     /// The fibres that only pull, where both of their constants are stated.
     fn pulling(&self, at: &Pointer, faults: &mut Faults) -> Option<Fibres> {
         if self.k1_kpa.is_none() && self.k2.is_none() {

@@ -26,6 +26,11 @@ pub struct MembraneDocument {
     #[serde(default = "usual_ratio")]
     #[schema(default = 0.45, minimum = 0.0, maximum = 0.5)]
     pub poisson_ratio: f64,
+    /// Stress of the skin in its plane as it was scanned, in balance with the tissue below, in [0, 1000]: a taut skin resists slopes
+    /// and dents. Default 0.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false, minimum = 0.0, maximum = 1000.0)]
+    pub pretension_kpa: Option<f64>,
     /// Lines along which the skin is stiffer, such as Langer's.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
@@ -79,6 +84,7 @@ impl MembraneDocument {
             poisson_ratio: self.poisson_ratio,
             along_lines: self.fibre.as_ref().map(|lines| lines.young_modulus_kpa),
         });
+        let sheet = sheet.and_then(|own| own.with_tension(self.pretension_kpa.unwrap_or(0.0)));
         match (sheet, lines) {
             (Ok(_), Some(None)) => None,
             (Ok(sheet), lines) => Some(SkinMembrane { sheet, lines: lines.flatten() }),
@@ -90,6 +96,7 @@ impl MembraneDocument {
                         (at.key("young_modulus_kpa"), ErrorCode::OutOfRange)
                     }
                     SheetError::PoissonRatio(_) => (at.key("poisson_ratio"), ErrorCode::OutOfRange),
+                    SheetError::Tension(_) => (at.key("pretension_kpa"), ErrorCode::OutOfRange),
                     SheetError::AlongLines(_) => (along, ErrorCode::OutOfRange),
                     SheetError::TooSoftAlongLines { .. } => (along, ErrorCode::NotPositiveDefinite),
                 };

@@ -13,6 +13,8 @@ pub mod merged;
 pub mod meshed;
 pub mod meshes;
 pub mod muscle;
+pub mod muscle_box;
+pub mod muscle_mixing;
 pub mod norm;
 mod normal;
 pub mod preset;

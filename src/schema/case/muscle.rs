@@ -1,25 +1,34 @@
-//! Muscles of a case, as regions with fibres or as polylines.
+//! Muscles of a case, as regions with fibres, as polylines or as bodies with a surface, and the tissue that they are of.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use super::fibre::to_course;
+use super::material::{MaterialDocument, MaterialDocuments};
+use super::muscle_box::MuscleBoxDocument;
+use super::muscle_mixing::StiffeningDocument;
+use super::preset::expanded;
+use super::preset_name::doubt;
 use crate::schema::Triple;
 use crate::schema::code::ErrorCode;
 use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::limits::Limits;
 use crate::schema::wire::names::check_distinct;
-use mechanics::mesh::Vector;
-use mechanics::prediction::{Muscle, MuscleCourse};
+use mechanics::material::LinearElastic;
+use mechanics::mesh::{TriangleSurface, Vector, Warning};
+use mechanics::prediction::{BodyFibres, Muscle, MuscleCourse, Stiffening};
 
 /// Distances from its lines within which a muscle may pull, in mm.
 pub const REACH_MM: (f64, f64) = (0.1, 50.0);
 
 /// Farthest coordinate of a point of a line in mm.
-const FARTHEST_MM: f64 = 1e8;
+pub(super) const FARTHEST_MM: f64 = 1e8;
 
-/// A muscle that plans may activate: a region with fibres, or polylines through the tissue. Exactly one of `region` and
-/// `lines_mm`.
+/// A muscle that plans may activate: a region with fibres, polylines through the tissue, or what a closed surface holds. Exactly
+/// one of `region`, `surface`, `box_mm` and, without these, `lines_mm`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MuscleDocument {
@@ -28,15 +37,16 @@ pub struct MuscleDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub region: Option<String>,
-    /// Of the fibres in the whole region; without it and `array` those of the material of the region.
+    /// Of the fibres everywhere in it; without it and `array` those of the material of the `region`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub direction: Option<Triple>,
-    /// A cell array of the volume mesh with 3 components, in the place of `direction`.
+    /// A cell array of the volume mesh with 3 components, or else a point array, in the place of `direction`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub array: Option<String>,
-    /// Lines through the tissue along which it pulls, each of two points or more, in mm in the frame of the case.
+    /// Lines through the tissue along which it pulls, each of two points or more, in mm in the frame of the case. Beside `surface`
+    /// or `box_mm` they say where its fibres run, each cell along the nearest.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false, value_type = Option<Vec<Vec<Triple>>>)]
     pub lines_mm: Option<Vec<Vec<Triple>>>,
@@ -45,40 +55,108 @@ pub struct MuscleDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false, minimum = 0.1, maximum = 50.0)]
     pub within_mm: Option<f64>,
+    /// The closed surface of the muscle: the id of a mesh. Cells are muscle by the share of their sample points inside.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub surface: Option<String>,
+    /// A box in the place of `surface`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub box_mm: Option<MuscleBoxDocument>,
+    /// Fibres along the longest axis of so many boxes of `surface`, one after the other: 1, 2 or 4. Of strap muscles only
+    /// (`muscle-broad`). Default 1, where nothing else says where fibres run.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false, minimum = 1, maximum = 4)]
+    pub boxes: Option<u32>,
+    /// What the muscle is made of, mixed into the tissue of its cells by its share as `muscle_mixing` says. Its `fibre` has no course:
+    /// it runs along the muscle. Not of a `region`, which has its own. Absent: the muscle pulls, and tissue stays what it is.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub material: Option<MaterialDocument>,
+    /// The `fibre` of its material becomes stiffer as the muscle pulls. Absent: it stays what it is.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub stiffening: Option<StiffeningDocument>,
 }
 
 /// The usual reach of a muscle around its lines.
 pub const USUAL_REACH_MM: f64 = 6.0;
 
+/// Surfaces in mm by their ids.
+pub type Surfaces = BTreeMap<String, Arc<TriangleSurface>>;
+
+/// What muscles are read with.
+#[derive(Clone, Copy)]
+pub struct MuscleContext<'a> {
+    pub limits: &'a Limits,
+    /// Absent: bodies are refused.
+    pub surfaces: Option<&'a Surfaces>,
+}
+
 /// The muscles of a case, with distinct names.
 pub fn to_muscles(
     documents: &[MuscleDocument],
     at: &Pointer,
-    limits: &Limits,
+    context: MuscleContext,
     faults: &mut Faults,
 ) -> Vec<Muscle> {
-    faults.check_length(at, documents.len(), limits.map_entries as usize);
+    faults.check_length(at, documents.len(), context.limits.map_entries as usize);
     check_distinct(documents.iter().map(|muscle| muscle.name.as_str()), at, faults);
     let documents = documents.iter().enumerate();
-    documents.filter_map(|(index, own)| own.to_muscle(&at.index(index), limits, faults)).collect()
+    documents.filter_map(|(index, own)| own.to_muscle(&at.index(index), context, faults)).collect()
+}
+
+/// What speaks against the presets of muscles.
+pub(super) fn doubts(documents: &[MuscleDocument]) -> impl Iterator<Item = Warning> + '_ {
+    let preset = |own: &MuscleDocument| own.material.as_ref().and_then(|material| material.preset);
+    documents.iter().filter_map(move |own| doubt(&own.name, preset(own)))
+}
+
+/// The materials of muscles by name, with presets written out.
+pub fn muscle_materials(documents: &[MuscleDocument]) -> MaterialDocuments {
+    let of = |own: &MuscleDocument| Some((own.name.clone(), expanded(own.material.as_ref()?)));
+    documents.iter().filter_map(of).collect()
 }
 
 impl MuscleDocument {
-    fn to_muscle(&self, at: &Pointer, limits: &Limits, faults: &mut Faults) -> Option<Muscle> {
-        faults.check_name(&at.key("name"), &self.name, limits.name_characters as usize);
-        let given = usize::from(self.region.is_some()) + usize::from(self.lines_mm.is_some());
-        if !faults.check_one_of(at, given, "`region`, `lines_mm`") {
+    fn to_muscle(
+        &self,
+        at: &Pointer,
+        context: MuscleContext,
+        faults: &mut Faults,
+    ) -> Option<Muscle> {
+        let longest = context.limits.name_characters as usize;
+        faults.check_name(&at.key("name"), &self.name, longest);
+        let has_body = self.surface.is_some() || self.box_mm.is_some();
+        let sources = [
+            self.region.is_some(),
+            self.surface.is_some(),
+            self.box_mm.is_some(),
+            self.lines_mm.is_some() && !has_body,
+        ];
+        let given = sources.into_iter().filter(|is_given| *is_given).count();
+        if !faults.check_one_of(at, given, "`region`, `surface`, `box_mm`, `lines_mm`") {
             return None;
         }
+        let tissue = self.to_tissue(&at.key("material"), faults);
+        let stiffening = self.to_stiffening(at, faults);
         let course = match (&self.region, &self.lines_mm) {
             (Some(region), _) => self.in_region(region, at, faults)?,
-            (None, lines) => self.around(lines.as_ref()?, at, limits, faults)?,
+            (None, Some(lines)) if !has_body => self.around(lines, at, context.limits, faults)?,
+            (None, _) => self.body(at, context, faults)?,
         };
-        Some(Muscle { name: self.name.trim().to_owned(), course })
+        Some(Muscle { name: self.name.trim().to_owned(), course, tissue, stiffening })
     }
 
     fn in_region(&self, region: &str, at: &Pointer, faults: &mut Faults) -> Option<MuscleCourse> {
-        self.refuse("within_mm", self.within_mm.is_some(), at, faults);
+        let others = [
+            ("lines_mm", self.lines_mm.is_some()),
+            ("within_mm", self.within_mm.is_some()),
+            ("boxes", self.boxes.is_some()),
+            ("material", self.material.is_some()),
+            ("stiffening", self.stiffening.is_some()),
+        ];
+        refuse(&others, "region", at, faults);
         let fibres = match (self.direction, &self.array) {
             (None, None) => None,
             (direction, array) => Some(to_course(direction, array.as_deref(), at, faults)?),
@@ -93,31 +171,158 @@ impl MuscleDocument {
         limits: &Limits,
         faults: &mut Faults,
     ) -> Option<MuscleCourse> {
-        self.refuse("direction", self.direction.is_some(), at, faults);
-        self.refuse("array", self.array.is_some(), at, faults);
-        let place = at.key("lines_mm");
-        faults.check_length(&place, lines.len(), limits.map_entries as usize);
-        for (index, line) in lines.iter().enumerate() {
-            check_line(line, &place.index(index), limits, faults);
-        }
-        if lines.is_empty() {
-            faults.add(&place, ErrorCode::MissingField, "a muscle has at least one line");
-        }
+        let others = [
+            ("direction", self.direction.is_some()),
+            ("array", self.array.is_some()),
+            ("boxes", self.boxes.is_some()),
+        ];
+        refuse(&others, "lines_mm", at, faults);
         let within = self.within_mm.unwrap_or(USUAL_REACH_MM);
         let (least, most) = REACH_MM;
         faults.check_range(&at.key("within_mm"), within, least..=most, "mm");
-        let points = |line: &Vec<Triple>| line.iter().map(|&point| Vector::from(point)).collect();
-        Some(MuscleCourse::Lines { lines: lines.iter().map(points).collect(), within })
+        let lines = to_lines(lines, &at.key("lines_mm"), limits, faults);
+        Some(MuscleCourse::Lines { lines, within })
     }
 
-    /// Refuses a member that belongs to the other form.
-    fn refuse(&self, name: &str, is_given: bool, at: &Pointer, faults: &mut Faults) {
-        if is_given {
-            let form = if self.region.is_some() { "region" } else { "lines_mm" };
-            let detail = format!("`{name}` does not belong to a muscle with `{form}`");
-            faults.add(&at.key(name), ErrorCode::UnknownField, detail);
+    fn body(
+        &self,
+        at: &Pointer,
+        context: MuscleContext,
+        faults: &mut Faults,
+    ) -> Option<MuscleCourse> {
+        let (place, form) = match &self.surface {
+            Some(_) => (at.key("surface"), "surface"),
+            None => (at.key("box_mm"), "box_mm"),
+        };
+        refuse(&[("within_mm", self.within_mm.is_some())], form, at, faults);
+        let Some(surfaces) = context.surfaces else {
+            let detail = "the muscles of a template are regions or lines: nothing maps a surface to the patient";
+            faults.add(&place, ErrorCode::MethodNotAvailable, detail);
+            return None;
+        };
+        let fibres = self.body_fibres(at, context.limits, faults);
+        let surface = match (&self.surface, &self.box_mm) {
+            (Some(id), _) => {
+                let found = surfaces.get(id).cloned();
+                if found.is_none() {
+                    let detail = format!("mesh `{id}` is not a surface that is there");
+                    faults.add(&place, ErrorCode::UnknownMesh, detail);
+                }
+                found?
+            }
+            (None, own) => Arc::new(own.as_ref()?.to_surface(&place, faults)?),
+        };
+        Some(MuscleCourse::Body { surface, fibres: fibres? })
+    }
+
+    /// The one way in which fibres of a body are stated; without one along its box.
+    fn body_fibres(
+        &self,
+        at: &Pointer,
+        limits: &Limits,
+        faults: &mut Faults,
+    ) -> Option<BodyFibres> {
+        let ways = [
+            self.direction.is_some(),
+            self.array.is_some(),
+            self.lines_mm.is_some(),
+            self.boxes.is_some(),
+        ];
+        let given = ways.into_iter().filter(|is_given| *is_given).count();
+        let forms = "`direction`, `array`, `lines_mm`, `boxes`";
+        if given > 0 && !faults.check_one_of(at, given, forms) {
+            return None;
+        }
+        if let Some(lines) = &self.lines_mm {
+            return Some(BodyFibres::Lines(to_lines(lines, &at.key("lines_mm"), limits, faults)));
+        }
+        if self.direction.is_some() || self.array.is_some() {
+            let course = to_course(self.direction, self.array.as_deref(), at, faults)?;
+            return Some(BodyFibres::Course(course));
+        }
+        let halvings = match self.boxes.unwrap_or(1) {
+            1 => 0,
+            2 => 1,
+            4 => 2,
+            other => {
+                let detail = format!("a muscle is divided into 1, 2 or 4 boxes, not into {other}");
+                faults.add(&at.key("boxes"), ErrorCode::OutOfRange, detail);
+                return None;
+            }
+        };
+        Some(BodyFibres::Box { halvings })
+    }
+
+    fn to_stiffening(&self, at: &Pointer, faults: &mut Faults) -> Option<Stiffening> {
+        let own = self.stiffening.as_ref()?;
+        let material = self.material.as_ref().map(expanded);
+        let Some(fibre) = material.and_then(|material| material.fibre?.to_fibre()) else {
+            let detail = "what becomes stiffer is `young_modulus_kpa` of the `fibre` of `material`";
+            faults.add(&at.key("stiffening"), ErrorCode::MissingField, detail);
+            return None;
+        };
+        own.to_stiffening(fibre, &at.key("stiffening"), faults)
+    }
+
+    /// Linear tissue, with presets written out, whose fibres run along the muscle.
+    fn to_tissue(&self, at: &Pointer, faults: &mut Faults) -> Option<LinearElastic> {
+        let material = expanded(self.material.as_ref()?);
+        let place = at.key("fibre");
+        let fibre = material.fibre.as_ref();
+        let wrong = [
+            ("/law", material.law.is_some(), "tissue that is mixed has no law of finite strain"),
+            (
+                "/fibre/direction",
+                fibre.is_some_and(|own| own.direction.is_some()),
+                "the muscle says where its fibres run",
+            ),
+            (
+                "/fibre/array",
+                fibre.is_some_and(|own| own.array.is_some()),
+                "the muscle says where its fibres run",
+            ),
+            (
+                "/fibre/k1_kpa",
+                fibre.is_some_and(|own| own.k1_kpa.is_some() || own.k2.is_some()),
+                "tissue that is mixed has no fibres that only pull",
+            ),
+        ];
+        for (member, _, why) in wrong.into_iter().filter(|(_, is_given, _)| *is_given) {
+            let at = Pointer::from_text(&format!("{at}{member}"));
+            faults.add(&at, ErrorCode::MethodNotAvailable, why);
+        }
+        let isotropic = material.to_isotropic(at, faults)?;
+        match fibre {
+            Some(fibre) => fibre.to_stiffened(isotropic, &place, faults),
+            None => Some(isotropic),
         }
     }
+}
+
+/// Refuses members that do not belong to the form that is given.
+fn refuse(members: &[(&str, bool)], form: &str, at: &Pointer, faults: &mut Faults) {
+    for (name, _) in members.iter().filter(|(_, is_given)| *is_given) {
+        let detail = format!("`{name}` does not belong to a muscle with `{form}`");
+        faults.add(&at.key(name), ErrorCode::UnknownField, detail);
+    }
+}
+
+/// Lines of a muscle, each of two points or more.
+fn to_lines(
+    lines: &[Vec<Triple>],
+    at: &Pointer,
+    limits: &Limits,
+    faults: &mut Faults,
+) -> Vec<Vec<Vector>> {
+    faults.check_length(at, lines.len(), limits.map_entries as usize);
+    for (index, line) in lines.iter().enumerate() {
+        check_line(line, &at.index(index), limits, faults);
+    }
+    if lines.is_empty() {
+        faults.add(at, ErrorCode::MissingField, "a muscle has at least one line");
+    }
+    let points = |line: &Vec<Triple>| line.iter().map(|&point| Vector::from(point)).collect();
+    lines.iter().map(points).collect()
 }
 
 fn check_line(line: &[Triple], at: &Pointer, limits: &Limits, faults: &mut Faults) {

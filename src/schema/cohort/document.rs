@@ -7,9 +7,18 @@ use utoipa::ToSchema;
 
 use crate::schema::code::ErrorCode;
 use crate::schema::compare::result::{ComparisonDocument, StatDocument};
+use crate::schema::predict::budget::BudgetDocument;
 use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::limits::Limits;
 use crate::schema::wire::names::check_tags;
+use mechanics::learning::virtual_cohort::PARTS;
+use mechanics::mesh::ignored::listed;
+
+/// As many subjects have a p that is counted out.
+const MOST_TWINS: f64 = 25.0;
+
+/// What every client's whole numbers hold.
+const MOST_SEED: f64 = 2_147_483_647.0;
 
 /// `cohort`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
@@ -19,21 +28,28 @@ pub enum CohortKind {
     Cohort,
 }
 
-/// Comparisons with scans, of the same subjects in each group, held against each other in pairs.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+/// Comparisons with scans, of the same subjects in each group, held against each other in pairs. Exactly one of `groups` and
+/// `virtual`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CohortDocument {
     #[serde(default)]
     #[schema(required)]
     pub kind: CohortKind,
     /// By the name of a method: the id of a job that compared, for each subject in the same order.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub groups: BTreeMap<String, Vec<String>>,
+    /// Twins that the program makes itself, modelled in four ways; the groups are these, and distances are of nodes.
+    #[serde(default, rename = "virtual", skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub made: Option<TwinsDocument>,
     /// Names of the subjects; absent: their numbers from 1.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub subjects: Vec<String>,
     #[serde(default)]
     pub distance: CohortDistance,
-    /// A region of every comparison, of which closest points are told; absent: the whole surface.
+    /// A region of every comparison, of which closest points are told; of twins `nose`, `lips`, `chin` or `cheeks`. Absent: the whole
+    /// surface.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub region: Option<String>,
@@ -42,6 +58,38 @@ pub struct CohortDocument {
     pub statistic: CohortStatistic,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub tags: Vec<String>,
+}
+
+/// Operated twins of the generic face, the same for the same numbers: one tissue or muscles along their fibres in it, glued to
+/// the teeth or sliding along them.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TwinsDocument {
+    #[schema(minimum = 3, maximum = 25)]
+    pub patients: u32,
+    #[serde(default)]
+    #[schema(maximum = 2147483647)]
+    pub seed: u32,
+    /// Of the generic face: 5616 n² hexahedra.
+    #[serde(default = "one")]
+    #[schema(default = 1, minimum = 1, maximum = 2)]
+    pub fineness: u32,
+    #[serde(default)]
+    pub budget: BudgetDocument,
+}
+
+fn one() -> u32 {
+    1
+}
+
+impl TwinsDocument {
+    fn check(&self, at: &Pointer, limits: &Limits, faults: &mut Faults) {
+        let range = 3.0..=MOST_TWINS;
+        faults.check_range(&at.key("patients"), f64::from(self.patients), range, "patients");
+        faults.check_range(&at.key("fineness"), f64::from(self.fineness), 1.0..=2.0, "");
+        faults.check_range(&at.key("seed"), f64::from(self.seed), 0.0..=MOST_SEED, "");
+        self.budget.check(&at.key("budget"), limits, faults);
+    }
 }
 
 /// Which distances of a comparison.
@@ -88,6 +136,9 @@ impl CohortDocument {
     pub fn check(&self, limits: &Limits, faults: &mut Faults) {
         let at = Pointer::root().key("spec");
         check_tags(&self.tags, &at.key("tags"), limits, faults);
+        if let Some(made) = &self.made {
+            return self.check_made(made, &at, limits, faults);
+        }
         let place = at.key("groups");
         faults.check_length(&place, self.groups.len(), limits.map_entries as usize);
         if self.groups.is_empty() {
@@ -113,6 +164,21 @@ impl CohortDocument {
         }
     }
 
+    fn check_made(&self, made: &TwinsDocument, at: &Pointer, limits: &Limits, faults: &mut Faults) {
+        let given = 1 + usize::from(!self.groups.is_empty());
+        faults.check_one_of(at, given, "`groups`, `virtual`");
+        made.check(&at.key("virtual"), limits, faults);
+        self.check_subjects(made.patients as usize, at, limits, faults);
+        if self.distance == CohortDistance::TpsCp {
+            let detail = "of twins every node is known: their distances are of nodes";
+            faults.add(&at.key("distance"), ErrorCode::NoSuchOutput, detail);
+        }
+        if let Some(region) = self.region.as_ref().filter(|own| !PARTS.contains(&own.as_str())) {
+            let detail = format!("twins have no region {region:?}; they have: {}", listed(PARTS));
+            faults.add(&at.key("region"), ErrorCode::UnknownRegion, detail);
+        }
+    }
+
     fn check_subjects(&self, count: usize, at: &Pointer, limits: &Limits, faults: &mut Faults) {
         let at = at.key("subjects");
         if !self.subjects.is_empty() && self.subjects.len() != count {
@@ -127,6 +193,11 @@ impl CohortDocument {
                 faults.add(&at.index(index), ErrorCode::DuplicateName, detail);
             }
         }
+    }
+
+    /// The name of a subject: its number from 1 where none is stated.
+    pub fn subject(&self, index: usize) -> String {
+        self.subjects.get(index).cloned().unwrap_or_else(|| (index + 1).to_string())
     }
 
     /// The jobs with their places, in the order of the groups.

@@ -12,8 +12,9 @@ pub struct CohortResultDocument {
     pub distance: CohortDistance,
     /// The number that boxes and tests are of.
     pub statistic: CohortStatistic,
+    /// Of twins the four variants of the model, then what happened, with the errors of measuring it, and no movement.
     pub groups: Vec<CohortGroupDocument>,
-    /// Every two groups, in the order of their names.
+    /// Every two groups, in the order of their names; of twins every two variants.
     pub pairs: Vec<CohortPairDocument>,
 }
 

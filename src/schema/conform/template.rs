@@ -10,7 +10,8 @@ use crate::schema::case::document::{
     LengthUnit, NormalDocument, RegionsDocument, SegmentDocument, SlidingDocument,
 };
 use crate::schema::case::material::{MaterialDocument, MaterialDocuments};
-use crate::schema::case::muscle::{MuscleDocument, to_muscles};
+use crate::schema::case::muscle::{MuscleContext, MuscleDocument, to_muscles};
+use crate::schema::case::muscle_mixing::MuscleMixingDocument;
 use crate::schema::case::selection::SelectionDocument;
 use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::limits::Limits;
@@ -50,6 +51,10 @@ pub struct TemplateDocument {
     /// As in a case, with `lines_mm` in mm in the frame of the template.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub muscles: Vec<MuscleDocument>,
+    /// As in a case.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub muscle_mixing: Option<MuscleMixingDocument>,
 }
 
 /// Nodes of a template that slide.
@@ -78,7 +83,8 @@ impl TemplateDocument {
         let entries = limits.list_entries as usize;
         faults.check_length(&at.key("held"), self.held.len(), entries);
         faults.check_length(&at.key("sliding"), self.sliding.len(), entries);
-        to_muscles(&self.muscles, &at.key("muscles"), limits, faults);
+        let context = MuscleContext { limits, surfaces: None };
+        to_muscles(&self.muscles, &at.key("muscles"), context, faults);
     }
 
     /// Every node set that it names, with its place.
@@ -125,6 +131,7 @@ impl TemplateDocument {
         case.regions.clone_from(&self.regions);
         case.materials.clone_from(&self.materials);
         case.muscles.clone_from(&self.muscles);
+        case.muscle_mixing = self.muscle_mixing;
         case
     }
 }

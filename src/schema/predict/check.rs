@@ -12,6 +12,7 @@ use super::planned::{
 use super::refine::RefineBoundDocument;
 use super::time_band::TimeBandDocument;
 use crate::schema::case::hounsfield::ImagedTissueDocument;
+use crate::schema::case::muscle_mixing::MusclesDocument;
 use crate::schema::repair::RepairResultDocument;
 use crate::schema::wire::warning::WarningDocument;
 
@@ -30,6 +31,10 @@ pub struct CheckDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub imaged: Option<ImagedTissueDocument>,
+    /// The muscles of the case in the cells of the mesh.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub muscles: Option<MusclesDocument>,
     /// Unknown displacement components.
     pub unknowns: u64,
     /// What the process of the job is expected to take; above `slot_memory_mb` of the limits the job is refused.

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use facies::jobs::{CohortInput, CompareInput, JobInput, StoredMesh, StoredShape, Workplace, work};
 use facies::schema::Limits;
-use facies::schema::cohort::result::CohortResultDocument;
+use facies::schema::cohort::result::{CohortPairDocument, CohortResultDocument};
 use facies::schema::compare::result::ComparisonDocument;
 use mechanics::mesh::sample::block;
 use mechanics::mesh::{CellShape, TriangleSurface, Vector};
@@ -154,6 +154,51 @@ fn a_cohort_says_which_comparison_does_not_serve() {
         ),
     ] {
         let refused = cohort(spec.clone(), &comparisons).unwrap_err();
+        assert!(refused.contains(at), "{spec}: {refused}");
+    }
+}
+
+#[test]
+fn twins_are_modelled_in_four_ways_beside_what_happened_and_no_movement() {
+    let none = BTreeMap::new();
+    let found = cohort(json!({"virtual": {"patients": 3, "seed": 7}}), &none).unwrap();
+    let names: Vec<&str> = found.groups.iter().map(|group| group.name.as_str()).collect();
+    let variants = ["homogeneous", "muscles", "sliding", "muscles and sliding"];
+    assert_eq!(names, [&variants[..], &["what happened", "no movement"]].concat());
+    assert!(found.groups.iter().all(|group| group.rows.len() == 3));
+    let mean = |group: usize, row: usize| found.groups[group].rows[row].distances.mean;
+    for twin in 0..3 {
+        // The errors of measuring are below every model, and every model below none.
+        assert!((0.05..0.4).contains(&mean(4, twin)), "{}", mean(4, twin));
+        for variant in 0..4 {
+            assert!(mean(4, twin) < mean(variant, twin) && mean(variant, twin) < mean(5, twin));
+        }
+        // The same truth by two models: muscles and sliding change the answer.
+        assert!((mean(0, twin) - mean(1, twin)).abs() > 1e-3);
+        assert!((mean(0, twin) - mean(2, twin)).abs() > 1e-3);
+    }
+    assert_eq!(found.pairs.len(), 6);
+    let tested = |pair: &CohortPairDocument| variants.contains(&pair.second.as_str());
+    assert!(found.pairs.iter().all(|pair| pair.is_exact && tested(pair)), "{:?}", found.pairs);
+    // With three twins no p is below a quarter.
+    assert!(found.pairs.iter().all(|pair| pair.smallest_p == 0.25), "{:?}", found.pairs);
+}
+
+#[test]
+fn what_is_wrong_with_twins_is_told_before_any_is_made() {
+    let none = BTreeMap::new();
+    let twins = || json!({"patients": 3});
+    for (spec, at) in [
+        (json!({"virtual": {"patients": 2}}), "/spec/virtual/patients"),
+        (json!({"virtual": {"patients": 26}}), "/spec/virtual/patients"),
+        (json!({"virtual": {"patients": 3, "fineness": 3}}), "/spec/virtual/fineness"),
+        (json!({"virtual": twins(), "groups": {"a": ["b"]}}), "`groups`, `virtual`"),
+        (json!({"virtual": twins(), "region": "ear"}), "/spec/region"),
+        (json!({"virtual": twins(), "distance": "tps_cp"}), "/spec/distance"),
+        (json!({"virtual": twins(), "subjects": ["one"]}), "/spec/subjects"),
+        (json!({"groups": {}}), "/spec/groups"),
+    ] {
+        let refused = cohort(spec.clone(), &none).unwrap_err();
         assert!(refused.contains(at), "{spec}: {refused}");
     }
 }

@@ -4,6 +4,7 @@ mod documents;
 mod fibres;
 mod laws;
 mod methods;
+mod muscles;
 mod plan;
 mod presets;
 mod syntax;

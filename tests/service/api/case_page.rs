@@ -6,6 +6,7 @@ use mechanics::format::vtk::{vtp, vtu};
 use mechanics::format::{SurfaceOutput, VolumeOutput, nrrd};
 use mechanics::image::{ImageVolume, Placement, Voxels};
 use mechanics::mesh::{CellShape, Frame, TriangleSurface, Vector, sample};
+use mechanics::muscle::strap::box_surface;
 use reqwest::StatusCode;
 use reqwest::multipart::{Form, Part};
 use serde_json::{Value, json};
@@ -67,6 +68,13 @@ fn mandible() -> Vec<u8> {
     vtp::write(&SurfaceOutput::plain(&surface, Frame::Unspecified)).unwrap()
 }
 
+/// A strap in the middle.
+fn muscle() -> Vec<u8> {
+    let half = [(0, 20.0), (1, 6.0), (2, 6.0)].map(|(axis, size)| Vector::ith(axis, size));
+    let surface = box_surface(Vector::new(40.0, 30.0, 20.0), half);
+    vtp::write(&SurfaceOutput::plain(&surface, Frame::Unspecified)).unwrap()
+}
+
 /// Muscle everywhere.
 fn ct() -> Vec<u8> {
     let steps = [Vector::x() * 20.0, Vector::y() * 20.0, Vector::z() * 20.0];
@@ -95,7 +103,13 @@ fn with(block: &Value) -> Value {
 async fn post_case(server: &Server, case: &Value) -> Answer {
     let text = case.to_string();
     let mut form = Form::new().part("case", Part::text(text.clone()));
-    for (name, bytes) in [("face", face()), ("mandible_surface", mandible()), ("ct", ct())] {
+    let parts = [
+        ("face", face()),
+        ("mandible_surface", mandible()),
+        ("muscle_surface", muscle()),
+        ("ct", ct()),
+    ];
+    for (name, bytes) in parts {
         if text.contains(&format!("\"{name}\"")) {
             form = form.part(name, Part::bytes(bytes));
         }

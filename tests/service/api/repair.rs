@@ -10,21 +10,21 @@ use serde_json::{Value, json};
 use crate::helpers::{Answer, SMALL, Server, ask};
 
 /// A block of cells of 6 mm, of which some inner nodes went over their neighbours: the cells there have a corner that is
-/// inverted, and Gauss points that are not.
-fn dented(cells: usize, is_moved: impl Fn([usize; 3]) -> bool) -> VolumeMesh {
+/// inverted, and Gauss points that are not where nodes went by 6.3 mm.
+fn dented(cells: usize, by: f64, is_moved: impl Fn([usize; 3]) -> bool) -> VolumeMesh {
     let size = 6.0 * cells as f64;
     let mut mesh = sample::block(Vector::repeat(size), [cells; 3], CellShape::Hex8);
     for node in &mut mesh.nodes {
         let place = [0, 1, 2].map(|axis| (node[axis] / 6.0).round() as usize);
         if place.iter().all(|&at| at > 0 && at < cells) && is_moved(place) {
-            node.x += 6.3;
+            node.x += by;
         }
     }
     mesh
 }
 
 fn one() -> VolumeMesh {
-    dented(4, |place| place == [2, 2, 2])
+    dented(4, 6.3, |place| place == [2, 2, 2])
 }
 
 async fn posted(server: &Server, mesh: &VolumeMesh, repair: &Value) -> Answer {
@@ -86,7 +86,7 @@ async fn what_no_repair_mends_is_named_and_a_mesh_of_distorted_cells_is_refused(
     let problem = far.problem(422, "validation-failed");
     assert_eq!(problem["errors"][0]["pointer"], "/repair/inner_mm", "{problem}");
 
-    let many = dented(8, |place| place.iter().all(|at| at % 2 == 0));
+    let many = dented(8, 6.3, |place| place.iter().all(|at| at % 2 == 0));
     let problem = posted(&server, &many, &json!({})).await.problem(422, "validation-failed");
     let fault = &problem["errors"][0];
     assert_eq!(
@@ -94,4 +94,30 @@ async fn what_no_repair_mends_is_named_and_a_mesh_of_distorted_cells_is_refused(
         (&json!("/repair"), &json!("mesh-inverted-elements")),
         "{problem}"
     );
+}
+
+#[tokio::test]
+async fn cells_that_are_inverted_where_they_are_integrated_are_taken_for_repair_alone() {
+    let server = Server::start();
+    let folded = dented(4, 10.0, |place| place == [2, 2, 2]);
+    let problem = posted(&server, &folded, &Value::Null).await.problem(422, "validation-failed");
+    let fault = &problem["errors"][0];
+    assert_eq!(
+        (&fault["pointer"], &fault["code"]),
+        (&json!("/volume"), &json!("mesh-inverted-elements")),
+        "{problem}"
+    );
+    assert!(fault["detail"].as_str().unwrap().contains("of 64 cells"), "{problem}");
+
+    // Moves of 1 mm do not mend it.
+    let little = posted(&server, &folded, &json!({"inner_mm": 1})).await;
+    let problem = little.problem(422, "validation-failed");
+    assert_eq!(problem["errors"][0]["pointer"], "/repair", "{problem}");
+    let kept = posted(&server, &folded, &json!({"inner_mm": 8})).await.expect(StatusCode::CREATED);
+    assert_eq!(kept["check"]["repair"]["unproven"], json!([]), "{kept}");
+    let told = codes(&kept["check"]);
+    assert!(told.contains(&"mesh-repaired") && !told.contains(&"mesh-inverted-elements"), "{kept}");
+    let plan = json!({"segments": [{"name": "bone", "translation_mm": [0, 0, 1]}]});
+    let job = server.job(&json!({"kind": "predict", "case": kept["id"], "plan": plan})).await;
+    assert_eq!(job.expect(StatusCode::OK)["status"], "successful");
 }

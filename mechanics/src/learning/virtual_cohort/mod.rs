@@ -6,7 +6,9 @@ mod operation;
 mod patient;
 mod report;
 mod tissue;
+mod twins;
 
 pub use noise::MAPPING;
 pub use patient::{VirtualError, VirtualPatient};
 pub use report::{VirtualCohort, virtual_cohort};
+pub use twins::{PARTS, Twin, VARIANTS, Variant, twins};

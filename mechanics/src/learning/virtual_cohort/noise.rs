@@ -43,3 +43,17 @@ pub fn registration(draws: &mut Draws) -> RigidMovement {
     let shift = Vector::from_fn(|_, _| SHIFT * draws.normal());
     RigidMovement::about_pivot(angles, Vector::zeros(), shift)
 }
+
+/// What is measured of a displacement at some points: with the errors of both mappings, and of the registration where they go to.
+pub fn measured(
+    points: &[Vector],
+    happened: &[Vector],
+    [before, after]: [&[Vector]; 2],
+    missed: &RigidMovement,
+) -> Vec<Vector> {
+    let of = |node: usize| {
+        let place = points[node] + happened[node];
+        happened[node] + missed.displacement(&place) + after[node] - before[node]
+    };
+    (0..points.len()).map(of).collect()
+}

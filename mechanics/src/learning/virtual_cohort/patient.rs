@@ -11,7 +11,7 @@ use super::super::cohort::CohortError;
 use super::super::features::Features;
 use super::super::measures;
 use super::face::face;
-use super::noise::{mapping, registration};
+use super::noise::{mapping, measured, registration};
 use super::operation::{OPERATIONS, Operation, TWO};
 use super::tissue::{Tissue, rubin_bodner, supposed, true_tissue};
 use crate::boundary::NodeSelection;
@@ -79,11 +79,7 @@ impl VirtualPatient {
         let after = mapping(&mesh.nodes, &skin, &mut draws);
         let happened = happened(&mesh, &plan, operation, &mut draws, progress)?;
         let missed = registration(&mut draws);
-        let measured = |node: usize| {
-            let place = mesh.nodes[node] + happened[node];
-            happened[node] + missed.displacement(&place) + after[node] - before[node]
-        };
-        let measured: Vec<Vector> = (0..mesh.nodes.len()).map(measured).collect();
+        let measured = measured(&mesh.nodes, &happened, [&before, &after], &missed);
 
         // 2. What models predict on the mapped mesh.
         let mut mapped = mesh;
@@ -166,7 +162,7 @@ fn case(volume: Arc<VolumeMesh>, materials: Tissue) -> Case {
         skin_regions: ["nose", "lips", "chin"].map(|name| (name.to_owned(), set(name))).into(),
         segments: vec![segment("maxilla"), segment("mandible")],
         fixed: vec![set("skull"), set("rim")],
-        muscles: vec![Muscle { name: "muscle".to_owned(), course }],
+        muscles: vec![Muscle { name: "muscle".to_owned(), course, tissue: None, stiffening: None }],
         materials,
         volume,
         ..Case::default()

@@ -101,8 +101,7 @@ impl Point {
     #[inline]
     pub fn pulled(mut self, stress: Option<&Matrix3<f64>>) -> Point {
         self.pull = stress.map(|stress| {
-            let strain = self.f.transpose() * self.f - Matrix3::identity();
-            Box::new(Pull { energy: 0.5 * stress.dot(&strain), stress: *stress })
+            Box::new(Pull { energy: stress.dot(&self.green_strain()), stress: *stress })
         });
         self
     }

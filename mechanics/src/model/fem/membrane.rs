@@ -8,6 +8,10 @@
 //! displacement as the face below them; four triangles of three nodes would have another one between nodes, and
 //! lose an order. Three points in the middles of the sides integrate them exactly.
 //!
+//! A sheet that is under a stress s at rest, in balance with the tissue below, resists its own slopes too: t s int (g_j.g_k) I dA, the
+//! stiffness of a stretched skin. Its energy t s |grad u|^2 / 2 is that of the second Piola-Kirchhoff stress s P whatever the
+//! displacement, so that it adds nothing of a higher order. What balances it at rest is left out.
+//!
 //! Source: Zienkiewicz, Taylor, The Finite Element Method, 5th ed., vol. 1, chapter 4; skin as a membrane:
 //! Zachow et al. 2006, section 4.2 (docs/methods.md#membrane). The sheet weighs nothing.
 
@@ -37,6 +41,8 @@ pub(super) struct Triangle {
     /// Of the barycentric coordinates, in 1/mm.
     pub gradients: [Vector; 3],
     tensor: ElasticTensor,
+    /// At rest, in kPa.
+    tension: f64,
 }
 
 impl Membrane {
@@ -131,6 +137,7 @@ impl Membrane {
                 volume: self.sheet.thickness() * area,
                 gradients: [across(c - b), across(a - c), across(b - a)],
                 tensor: self.sheet.tensor(&lines),
+                tension: self.sheet.tension(),
             };
             Some((triangle, nodes))
         })
@@ -162,7 +169,8 @@ impl Triangle {
         self.tensor.add_pair(&mut block, [gj, gk], self.volume);
         let off_plane = self.tensor.mu * self.volume * gj.dot(gk);
         let n = &self.normal;
-        Matrix3::from_fn(|i, j| block[i][j] - off_plane * n[i] * n[j])
+        let taut = Matrix3::from_diagonal_element(self.tension * self.volume * gj.dot(gk));
+        taut + Matrix3::from_fn(|i, j| block[i][j] - off_plane * n[i] * n[j])
     }
 
     fn linear(&self) -> [Block; 9] {
@@ -195,10 +203,12 @@ impl Triangle {
             let (gj, gk) = (&gradients[entry / count], &gradients[entry % count]);
             self.tensor.add_pair(block, [gj, gk], volume);
             let off_plane = self.tensor.mu * volume * gj.dot(gk);
+            let taut = self.tension * volume * gj.dot(gk);
             for (r, row) in block.iter_mut().enumerate() {
                 for (c, value) in row.iter_mut().enumerate() {
                     *value -= off_plane * n[r] * n[c];
                 }
+                row[r] += taut;
             }
         }
     }

@@ -6,7 +6,8 @@ use mechanics::mesh::{CellShape, Vector, VolumeMesh};
 use mechanics::model::fem::membrane::Membrane;
 use mechanics::plan::{PlannedSegment, RigidMovement};
 use mechanics::prediction::{
-    Case, CaseSegment, ElementChoice, FibreDirection, Method, Plan, Scene, Settings, SkinMembrane,
+    Case, CaseSegment, ElementChoice, FibreDirection, Load, Method, Plan, Scene, Settings,
+    SkinMembrane,
 };
 use mechanics::progress::Unobserved;
 use mechanics::response::build;
@@ -240,6 +241,55 @@ fn a_response_of_tissue_with_fibres_and_membrane_is_the_direct_solution() {
         for other in [bare, isotropic] {
             let pairs = other.displacement.iter().zip(&direct.displacement);
             assert!(pairs.map(|(a, b)| (a - b).norm()).fold(0.0, f64::max) > 0.01, "{element:?}");
+        }
+    }
+}
+
+#[test]
+fn a_taut_sheet_pulls_by_its_slope_and_dents_as_a_stretched_skin_does() {
+    // Tilted by a slope of .03 along the strip: the ends pull with s t times the slope and the width, 20 * 1.5 * .03 * 10 mN.
+    let turn = Rotation3::from_euler_angles(0.4, 1.0, -2.0);
+    let (mesh, mut membrane) = strip(&SKIN, Vector::x(), turn);
+    membrane.sheet = membrane.sheet.with_tension(20.0).unwrap();
+    let (normal, along) = (turn * Vector::z(), turn * Vector::x());
+    let tilted: Vec<Vector> = mesh.nodes.iter().map(|x| normal * (0.03 * along.dot(x))).collect();
+    let forces = membrane.internal_forces(&mesh, &tilted);
+    let at_end = |x: &Vector| along.dot(x) > 39.9;
+    let ends = mesh.nodes.iter().zip(&forces).filter(|(x, _)| at_end(x));
+    let end: Vector = ends.map(|(_, force)| force).sum();
+    assert!((end - normal * 9.0).norm() < 1e-10, "{end}");
+    assert!(forces.iter().sum::<Vector>().norm() < 1e-10);
+    assert!(matches!(membrane.sheet.with_tension(-1.0), Err(SheetError::Tension(_))));
+
+    // Held at both ends and pressed by p: w = p x (L - x) / (2 s t), and nothing of the tissue below, which is too soft.
+    let sheet = PlaneStress::new(&Sheet { young_modulus: 1e-6, ..SKIN }).unwrap();
+    let (tension, pressure, length) = (20.0, 0.1, 40.0);
+    for (shape, element) in [
+        (CellShape::Hex8, ElementChoice::Auto),
+        (CellShape::Tet4, ElementChoice::Plain),
+        (CellShape::Wedge6, ElementChoice::Auto),
+    ] {
+        let mesh = block(Vector::new(length, 10.0, 4.0), [8, 2, 1], shape);
+        let case = Case { skin: Some(set("z_max")), ..case_of(mesh, material(1e-6, 0.3)) };
+        let zero = Some(0.0);
+        let plan = Plan {
+            prescribed: vec![
+                hold("x_min", [zero; 3]),
+                hold("x_max", [zero; 3]),
+                hold("z_min", [zero; 3]),
+            ],
+            loads: vec![Load::Pressure { faces: set("z_max"), pressure }],
+            ..Plan::default()
+        };
+        let sheet = sheet.with_tension(tension).unwrap();
+        let membrane = Some(SkinMembrane { sheet, lines: None });
+        let settings = Settings { membrane, element, estimate: false, ..exact() };
+        let found = solve(&case, &plan, &settings);
+        for &node in &case.volume.node_sets["z_max"] {
+            let x = case.volume.nodes[node as usize].x;
+            let known = -pressure * x * (length - x) / (2.0 * tension * 1.5);
+            let moved = found.displacement[node as usize].z;
+            assert!((moved - known).abs() < 1e-5, "{shape:?} at {x}: {moved} {known}");
         }
     }
 }

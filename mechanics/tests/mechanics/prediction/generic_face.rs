@@ -23,6 +23,8 @@ fn face(lips: Lips) -> Face {
     let muscles = face.muscles.iter().map(|own| Muscle {
         name: own.name.clone(),
         course: MuscleCourse::Lines { lines: own.lines.clone(), within: own.within },
+        tissue: None,
+        stiffening: None,
     });
     let segment = |name: &str| CaseSegment { name: name.to_owned(), nodes: set(name) };
     let slides = |(nodes, segment): (&str, &str)| Sliding {

@@ -13,6 +13,7 @@ mod growth;
 mod inner_at_finite_strain;
 mod jump;
 mod moving_walls;
+mod muscle_tissue;
 mod muscles;
 mod no_free_node;
 mod nonlinearity;

@@ -17,11 +17,12 @@ use crate::scenes::{case_of, exact, hold, largest_error, material, set, solve};
 pub fn in_region(name: &str, region: &str, along: Vector) -> Muscle {
     let fibres = Some(FibreDirection::Uniform(along));
     let course = MuscleCourse::Region { region: region.to_owned(), fibres };
-    Muscle { name: name.to_owned(), course }
+    Muscle { name: name.to_owned(), course, tissue: None, stiffening: None }
 }
 
 fn around(name: &str, lines: Vec<Vec<Vector>>, within: f64) -> Muscle {
-    Muscle { name: name.to_owned(), course: MuscleCourse::Lines { lines, within } }
+    let course = MuscleCourse::Lines { lines, within };
+    Muscle { name: name.to_owned(), course, tissue: None, stiffening: None }
 }
 
 fn pull(muscle: &str, stress: f64) -> Activation {
@@ -62,7 +63,8 @@ fn a_free_block_shortens_along_its_fibres_by_the_closed_form_in_every_element() 
             let mut case = case_of(mesh, stuff);
             case.fibres.insert("*".to_owned(), FibreDirection::Uniform(Vector::x()));
             let course = MuscleCourse::Region { region: "tissue".to_owned(), fibres: None };
-            case.muscles = vec![Muscle { name: "biceps".to_owned(), course }];
+            case.muscles =
+                vec![Muscle { name: "biceps".to_owned(), course, tissue: None, stiffening: None }];
             let zero = Some(0.0);
             let prescribed = vec![
                 Prescribed::Uniform {
@@ -311,7 +313,10 @@ fn what_is_wrong_with_muscles_is_told_with_its_place() {
     let (_, code, _) = refused(in_region("biceps", "tissue", Vector::zeros()), &still);
     assert_eq!(code, "fibre-direction-zero");
     let course = MuscleCourse::Region { region: "tissue".to_owned(), fibres: None };
-    let (pointer, code, _) = refused(Muscle { name: "biceps".to_owned(), course }, &still);
+    let (pointer, code, _) = refused(
+        Muscle { name: "biceps".to_owned(), course, tissue: None, stiffening: None },
+        &still,
+    );
     assert_eq!((pointer.as_str(), code), ("/case/muscles/0", "missing-field"));
 }
 

@@ -37,6 +37,8 @@ fn everything() -> (Case, Plan) {
                 region: "1".to_owned(),
                 fibres: Some(FibreDirection::Uniform(Vector::new(1.0, 2.0, 0.5))),
             },
+            tissue: None,
+            stiffening: None,
         }],
         skin_regions: BTreeMap::from([("near".to_owned(), set("near"))]),
         segments: vec![CaseSegment { name: "jaw".to_owned(), nodes: set("jaw") }],

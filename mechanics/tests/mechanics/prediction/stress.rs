@@ -180,7 +180,12 @@ fn a_muscle_that_cannot_shorten_is_stressed_along_its_fibres_alone() {
         };
         let case = Case {
             fixed: SIDES.map(set).to_vec(),
-            muscles: vec![Muscle { name: "biceps".to_owned(), course }],
+            muscles: vec![Muscle {
+                name: "biceps".to_owned(),
+                course,
+                tissue: None,
+                stiffening: None,
+            }],
             ..case_of(distorted(shape), material(15.0, 0.46))
         };
         let activations = vec![Activation { muscle: "biceps".to_owned(), stress: 10.0 }];

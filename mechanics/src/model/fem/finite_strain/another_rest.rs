@@ -65,7 +65,7 @@ fn pressed_share(problem: &FiniteStrain, displacement: &[Vector]) -> f64 {
         let along = problem.fibres.along(number, cell);
         let point = Point::new(&problem.laws[usize::from(number)], along, f);
         let point = point.pulled(problem.inner.pulls(cell));
-        let cauchy = point.stress() * f.transpose() / point.volume();
+        let cauchy = point.kirchhoff() / point.volume();
         let least = cauchy.symmetric_eigenvalues().min();
         let corners: Vec<Vector> = problem.mesh.corners(cell).collect();
         let volume = grown.volume * signed_volume(problem.mesh.cells.shape(cell), &corners);

@@ -1,0 +1,159 @@
+//! Muscles around polylines: w = (1 - (d / r)²)² at the distance d < r of the nearest line, along which it pulls.
+
+use std::collections::BTreeMap;
+
+use nalgebra::Matrix3;
+use rayon::prelude::*;
+
+use super::fibres::unit;
+use super::muscle_field::muscle_volume;
+use crate::mesh::refinement::refine;
+use crate::mesh::{Vector, VolumeMesh, Warning};
+use crate::model::fem::inner_stress::CellStress;
+use crate::model::reference_cell;
+use crate::muscle::lines::FEW_CELLS;
+
+/// A muscle that pulls by more than this share otherwise than its lines say is told.
+const PULL_OFF: f64 = 0.1;
+
+/// How much of the pull of lines the cells of a mesh carry: int w dV by their quadrature points over what it is in the same tissue
+/// with every edge halved twice.
+pub(super) struct PullShare {
+    cells: usize,
+    share: f64,
+}
+
+impl PullShare {
+    pub(super) fn new(lines: &Lines, mesh: &VolumeMesh, cells: &[CellStress]) -> Self {
+        let near = lines.tissue_near(mesh);
+        let finer = refine(&refine(&near));
+        let exact = pull_of(&finer, &lines.cells(&finer));
+        PullShare { cells: cells.len(), share: pull_of(mesh, cells) / exact }
+    }
+
+    /// Where cells are so few or so coarse that the muscle pulls otherwise than its lines say.
+    pub(super) fn warning(&self, name: &str) -> Option<Warning> {
+        let PullShare { cells, share } = *self;
+        if cells >= FEW_CELLS && (share - 1.0).abs() <= PULL_OFF {
+            return None;
+        }
+        let detail = format!(
+            "{cells} cells have tissue near the lines of muscle {name:?}, and it pulls with {:.0} % of what lines of its width exert: \
+             its pull is as coarse as they are; finer cells or a larger `within_mm` carry it",
+            100.0 * share
+        );
+        let warning = Warning::new("muscle-few-cells", detail).with("cells", cells as f64);
+        Some(warning.with("pull_share", share))
+    }
+}
+
+/// int w dV in mm^3 of stresses w f (x) f.
+fn pull_of(mesh: &VolumeMesh, cells: &[CellStress]) -> f64 {
+    cells.iter().map(|own| muscle_volume(mesh, own)).sum()
+}
+
+/// Squared distances that differ by less than this share of the squared reach are equal.
+const EQUAL: f64 = 1e-9;
+
+/// A straight piece of a line: its start, and the way to its end.
+struct Piece {
+    from: Vector,
+    along: Vector,
+}
+
+/// The lines of a muscle.
+pub(super) struct Lines {
+    pieces: Vec<Piece>,
+    within: f64,
+    /// The box around all that is within reach.
+    low: Vector,
+    high: Vector,
+}
+
+impl Lines {
+    /// None where no line has a length.
+    pub(super) fn new(lines: &[Vec<Vector>], within: f64) -> Option<Self> {
+        let pairs = lines.iter().flat_map(|line| line.windows(2));
+        let pieces = pairs.map(|pair| Piece { from: pair[0], along: pair[1] - pair[0] });
+        let pieces: Vec<Piece> = pieces.filter(|piece| unit(&piece.along).is_some()).collect();
+        let first = pieces.first()?.from;
+        let ends = pieces.iter().flat_map(|piece| [piece.from, piece.from + piece.along]);
+        let (low, high) = ends.fold((first, first), |(l, h), x| (l.inf(&x), h.sup(&x)));
+        let reach = Vector::repeat(within);
+        Some(Lines { pieces, within, low: low - reach, high: high + reach })
+    }
+
+    /// w f (x) f of all cells where it is not zero.
+    pub(super) fn cells(&self, mesh: &VolumeMesh) -> Vec<CellStress> {
+        let of_cell = |cell: usize| {
+            let stress = self.mean(mesh, cell)?;
+            Some(CellStress { cell: cell as u32, stress })
+        };
+        (0..mesh.cells.len()).into_par_iter().filter_map(of_cell).collect()
+    }
+
+    /// Whether a cell may have tissue within reach.
+    fn may_reach(&self, corners: &[Vector]) -> bool {
+        let Some(&first) = corners.first() else { return false };
+        let (low, high) = corners.iter().fold((first, first), |(l, h), x| (l.inf(x), h.sup(x)));
+        (0..3).all(|axis| high[axis] >= self.low[axis] && low[axis] <= self.high[axis])
+    }
+
+    /// The cells that may have tissue within reach.
+    fn tissue_near(&self, mesh: &VolumeMesh) -> VolumeMesh {
+        let mut near = VolumeMesh::default();
+        let mut number_of = BTreeMap::new();
+        for (cell, (shape, nodes)) in mesh.cells.iter().enumerate() {
+            let corners: Vec<Vector> = mesh.corners(cell).collect();
+            if !self.may_reach(&corners) {
+                continue;
+            }
+            let numbered = nodes.iter().map(|&node| {
+                *number_of.entry(node).or_insert_with(|| {
+                    near.nodes.push(mesh.nodes[node as usize]);
+                    near.nodes.len() as u32 - 1
+                })
+            });
+            let numbered: Vec<u32> = numbered.collect();
+            near.cells.push(shape, &numbered);
+        }
+        near
+    }
+
+    /// The mean over a cell; none where no point of it is within reach.
+    fn mean(&self, mesh: &VolumeMesh, cell: usize) -> Option<Matrix3<f64>> {
+        let corners: Vec<Vector> = mesh.corners(cell).collect();
+        if !self.may_reach(&corners) {
+            return None;
+        }
+        let (mut sum, mut volume) = (Matrix3::zeros(), 0.0);
+        for point in &reference_cell(mesh.cells.shape(cell)).points {
+            let physical = point.at(&corners)?;
+            let place: Vector = corners.iter().zip(&point.values).map(|(x, n)| x * *n).sum();
+            sum += self.at(&place) * physical.volume;
+            volume += physical.volume;
+        }
+        (sum != Matrix3::zeros()).then(|| sum / volume)
+    }
+
+    /// w f (x) f at a place; where pieces are equally near, the mean of theirs, so that rounding does not choose.
+    fn at(&self, place: &Vector) -> Matrix3<f64> {
+        let reach = self.within * self.within;
+        let (mut nearest, mut sum, mut count) = (reach, Matrix3::zeros(), 0.0);
+        for piece in &self.pieces {
+            let share = (place - piece.from).dot(&piece.along) / piece.along.norm_squared();
+            let foot = piece.from + piece.along * share.clamp(0.0, 1.0);
+            let squared = (place - foot).norm_squared();
+            let Some(f) = unit(&piece.along).filter(|_| squared < nearest + EQUAL * reach) else {
+                continue;
+            };
+            if squared < nearest - EQUAL * reach {
+                (nearest, sum, count) = (squared, Matrix3::zeros(), 0.0);
+            }
+            sum += f * f.transpose();
+            count += 1.0;
+        }
+        let fall = 1.0 - nearest / reach;
+        if count == 0.0 { Matrix3::zeros() } else { sum * (fall * fall / count) }
+    }
+}
