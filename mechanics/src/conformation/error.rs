@@ -29,6 +29,14 @@ pub enum ConformationError {
     )]
     Mirrored { rms: f64, mirrored: f64 },
     #[error(
+        "the landmarks turn the template by {degrees:.0} degrees and lie in one plane, where left and right exchanged would look the same: check their sides, or add one that lies off the plane"
+    )]
+    SidesUndecided { degrees: f64 },
+    #[error(
+        "the landmark {name:?} lies {distance:.0} mm from the template, which is {size:.0} mm across: it is in another unit or frame"
+    )]
+    FarFromTemplate { name: String, distance: f64, size: f64 },
+    #[error(
         "the landmarks {one:?} and {other:?} are left {apart:.1} mm (rms) from their places, and {exchanged:.1} mm if they are exchanged"
     )]
     Exchanged { one: String, other: String, apart: f64, exchanged: f64 },

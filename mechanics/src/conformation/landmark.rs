@@ -2,7 +2,7 @@
 
 use super::affine::Affine;
 use super::error::ConformationError;
-use crate::mesh::Vector;
+use crate::mesh::{Vector, VolumeMesh};
 use crate::registration::{PointAlignment, align_points};
 
 /// What a similarity may leave of landmarks, as a share of their spread: two faces of the shared data leave 0.1.
@@ -13,6 +13,9 @@ const NO_PAIRS: f64 = 0.6;
 
 /// Sides are swapped when a mirror image leaves less than this share.
 const MIRRORED: f64 = 0.5;
+
+/// Landmarks whose mirror image leaves at most this share of their spread more lie in one plane.
+const PLANAR: f64 = 0.01;
 
 /// Two landmarks are exchanged when that leaves less than this share of what they are apart.
 const EXCHANGED: f64 = 0.5;
@@ -41,7 +44,7 @@ pub(super) fn similarity(landmarks: &[Landmark]) -> Result<Affine, ConformationE
     let to: Vec<Vector> = landmarks.iter().map(|landmark| landmark.patient).collect();
     let Fitted { map, aligned, scale, spread } = fitted(&from, &to)?;
     refuse_scale(scale)?;
-    refuse_mirrored(&aligned)?;
+    refuse_mirrored(&aligned, spread)?;
     if aligned.rms <= NO_PAIRS * spread {
         refuse_exchanges(landmarks, &map)?;
     }
@@ -144,12 +147,36 @@ pub(super) fn refuse_scale(scale: f64) -> Result<(), ConformationError> {
     }
 }
 
-fn refuse_mirrored(aligned: &PointAlignment) -> Result<(), ConformationError> {
+fn refuse_mirrored(aligned: &PointAlignment, spread: f64) -> Result<(), ConformationError> {
     let (rms, mirrored) = (aligned.rms, aligned.mirrored_rms);
-    match mirrored < MIRRORED * rms {
-        true => Err(ConformationError::Mirrored { rms, mirrored }),
+    if mirrored < MIRRORED * rms {
+        return Err(ConformationError::Mirrored { rms, mirrored });
+    }
+    let degrees = aligned.transform.angle().to_degrees();
+    match mirrored - rms < PLANAR * spread && degrees > 90.0 {
+        true => Err(ConformationError::SidesUndecided { degrees }),
         false => Ok(()),
     }
+}
+
+/// Refuses a landmark of the template that lies farther from it than half its size.
+pub(super) fn refuse_far(
+    landmarks: &[Landmark],
+    mesh: &VolumeMesh,
+) -> Result<(), ConformationError> {
+    let Some(first) = mesh.nodes.first() else { return Ok(()) };
+    let nodes = mesh.nodes.iter();
+    let (low, high) =
+        nodes.fold((*first, *first), |(low, high), node| (low.inf(node), high.sup(node)));
+    let size = (high - low).norm();
+    for Landmark { name, template, .. } in landmarks {
+        let distance = (template - template.sup(&low).inf(&high)).norm();
+        if distance > 0.5 * size {
+            let name = name.clone();
+            return Err(ConformationError::FarFromTemplate { name, distance, size });
+        }
+    }
+    Ok(())
 }
 
 fn refuse_unlike(

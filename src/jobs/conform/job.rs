@@ -231,6 +231,8 @@ fn refused(error: &ConformationError, clock: &Observed) -> JobError {
         | ConformationError::Spline(_)
         | ConformationError::FewLandmarks { .. }
         | ConformationError::Mirrored { .. }
+        | ConformationError::SidesUndecided { .. }
+        | ConformationError::FarFromTemplate { .. }
         | ConformationError::Exchanged { .. }
         | ConformationError::Permuted { .. }
         | ConformationError::Unlike { .. } => at.key("landmarks"),

@@ -159,6 +159,7 @@ fn kept(input: &LearnInput, gathered: &Gathered, found: &LearningDocument) -> Mo
         spec: input.spec.clone(),
         cases: gathered.cohort.cases.iter().enumerate().map(case).collect(),
         regions: gathered.cohort.regions.clone(),
+        frame: Some(gathered.frame.into()),
         predicted_by: input.predicted_by(),
         helps: found.helps,
         error_mm: error(&found.method),

@@ -11,7 +11,7 @@ use mechanics::format::vtk::vtp;
 use mechanics::format::{ArrayValues, NamedValues, SurfaceOutput};
 use mechanics::learning::validation::lengths;
 use mechanics::learning::{Asked, Corrected, Refusal, measures};
-use mechanics::mesh::{Vector, Warning};
+use mechanics::mesh::{Frame, Vector, Warning};
 use mechanics::prediction::Prediction;
 
 /// The file of the corrected skin.
@@ -67,6 +67,15 @@ pub fn corrected(
     };
     let FittedModel { document: model, learned } = fitted;
     let at = Pointer::from_text("/spec/correction/model");
+    let frame = prepared.case.frame;
+    if let Some(own) = model.frame.map(Frame::from).filter(|own| *own != frame) {
+        let detail = format!(
+            "the model was learned from cases in the frame {}, and the case is in {}: what it adds has other directions there",
+            own.name(),
+            frame.name()
+        );
+        return Err(Problem::at(&at, ErrorCode::FrameConflict, detail).into());
+    }
     let (scene, displacement) = (&prepared.scene, &prediction.displacement);
     let features = measures::features(scene, displacement);
     let (bone, predicted) =
@@ -93,6 +102,10 @@ pub fn corrected(
             document.refused = Some(refusal.to_string());
             warnings.push(Warning::new("out-of-distribution", refusal.to_string()));
             None
+        }
+        Ok(found) if found.distance == 0.0 => {
+            let detail = "the model was learned from this very prediction: what it says of it is what it was told";
+            return Err(Problem::at(&at, ErrorCode::DuplicateName, detail).into());
         }
         Ok(found) => {
             document.distance = Some(found.distance);

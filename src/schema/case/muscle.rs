@@ -307,6 +307,9 @@ fn refuse(members: &[(&str, bool)], form: &str, at: &Pointer, faults: &mut Fault
     }
 }
 
+/// Points of all lines of a muscle: each is held against each cell.
+const MOST_POINTS: usize = 1000;
+
 /// Lines of a muscle, each of two points or more.
 fn to_lines(
     lines: &[Vec<Triple>],
@@ -320,6 +323,13 @@ fn to_lines(
     }
     if lines.is_empty() {
         faults.add(at, ErrorCode::MissingField, "a muscle has at least one line");
+    }
+    let count: usize = lines.iter().map(Vec::len).sum();
+    if count > MOST_POINTS {
+        let detail = format!(
+            "the lines have {count} points, and {MOST_POINTS} is the most: leave out points of straight parts"
+        );
+        faults.add(at, ErrorCode::TooMany, detail);
     }
     let points = |line: &Vec<Triple>| line.iter().map(|&point| Vector::from(point)).collect();
     lines.iter().map(points).collect()

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::document::LearnDocument;
+use crate::schema::case::document::FrameName;
 use crate::schema::engine::EngineDocument;
 use mechanics::learning::{Cohort, CohortError, Features, LearnedModel, LearningCase};
 use mechanics::mesh::Warning;
@@ -19,6 +20,9 @@ pub struct ModelDocument {
     pub spec: LearnDocument,
     pub cases: Vec<ModelCaseDocument>,
     pub regions: BTreeMap<String, Vec<u32>>,
+    /// That of the cases; models of earlier versions do not say it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub frame: Option<FrameName>,
     /// The method of the predictions that it corrects.
     pub predicted_by: String,
     /// Whether the validation found it nearer to the truth than the mechanical prediction alone.

@@ -90,7 +90,7 @@ impl InnerStress {
     }
 
     /// By how much a cell is longer where nothing holds it, and by how much larger.
-    pub(super) fn grown(&self, cell: usize) -> Grown {
+    pub(crate) fn grown(&self, cell: usize) -> Grown {
         let length = 1.0 + self.strain(cell);
         Grown { length, volume: length.powi(3) }
     }
@@ -148,7 +148,7 @@ impl InnerStress {
 
 /// Factors of a grown cell; 1 where nothing grows.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Grown {
+pub(crate) struct Grown {
     pub length: f64,
     pub volume: f64,
 }
