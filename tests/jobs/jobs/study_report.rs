@@ -225,6 +225,9 @@ fn a_baseline_of_another_mesh_or_truth_or_without_numbers_is_told() {
         assert_eq!(verdict.outcome, OutcomeName::Incomplete);
         assert!(verdict.reasons[0].contains("\"slab\" has 100 nodes"), "{:?}", verdict.reasons);
     }
+    let mut better = of(125, "refined");
+    better.rows[0].numbers.as_mut().unwrap().p95_mm = 0.01;
+    assert_eq!(against(&better).outcome, OutcomeName::Incomplete, "another question is not judged");
     let mut damaged = of(100, "refined");
     damaged.rows[0].numbers.as_mut().unwrap().p95_mm = f64::NAN;
     assert_eq!(against(&damaged).outcome, OutcomeName::Worse);

@@ -169,6 +169,20 @@ fn lengths_become_millimetres() {
 }
 
 #[test]
+fn a_star_of_the_spec_that_no_region_is_left_for_says_so() {
+    let star = r#"{"materials":{"*":{"young_modulus_kpa":15000}}}"#;
+    let warned = |case: &str, spec: &str| {
+        let (_, warnings) = case_with(case, spec, None).expect("accepted");
+        warnings.contains(&"material-serves-nothing")
+    };
+    let own = r#"{"units":"mm","volume":"v","materials":{"tissue":{"young_modulus_kpa":15}}}"#;
+    assert!(warned(own, star));
+    let all = r#"{"units":"mm","volume":"v","materials":{"*":{"young_modulus_kpa":15}}}"#;
+    assert!(!warned(all, star));
+    assert!(!warned(own, "{}"));
+}
+
+#[test]
 fn a_case_without_materials_has_the_default_one_and_says_so() {
     let (case, warnings) = case(r#"{"units":"mm","volume":"v"}"#).expect("accepted");
     assert_eq!(warnings, ["default-material"]);

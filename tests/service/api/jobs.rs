@@ -189,6 +189,26 @@ async fn a_job_that_is_not_waited_for_is_accepted_and_found_again() {
 }
 
 #[tokio::test]
+async fn a_dismissed_job_may_be_asked_for_anew() {
+    let server = Server::start_with(&["--workers", "0"]);
+    let case = server.case(&SMALL).await;
+    let post = || server.post("/v1/jobs").json(&spec(&case, 1.0));
+    let first = ask(post()).await.expect(StatusCode::CREATED);
+    let known = ask(post()).await.expect(StatusCode::OK);
+    assert_eq!(known["id"], first["id"]);
+    let id = first["id"].as_str().unwrap();
+    ask(server.delete(&format!("/v1/jobs/{id}"))).await.expect(StatusCode::OK);
+    let anew = ask(post()).await.expect(StatusCode::CREATED);
+    assert_ne!(anew["id"], first["id"]);
+    assert_eq!(anew["spec_hash"], first["spec_hash"]);
+    let before = ask(server.get(&format!("/v1/jobs/{id}"))).await.expect(StatusCode::OK);
+    assert_eq!(
+        (&before["status"], &before["spec_hash"]),
+        (&json!("dismissed"), &first["spec_hash"])
+    );
+}
+
+#[tokio::test]
 async fn jobs_are_listed_in_pages_newest_first_and_by_what_they_are() {
     let server = Server::start_with(&["--workers", "0"]);
     let case = server.case(&SMALL).await;

@@ -34,6 +34,21 @@ fn a_bar_at_finite_strain_presses_with_the_force_of_its_law() {
 }
 
 #[test]
+fn a_bar_at_finite_strain_presses_alike_wherever_it_lies() {
+    let stretch: f64 = 0.95;
+    let resisted = 7.5 * 100.0 * (1.0 / stretch - stretch);
+    for (shape, element) in PRESSING {
+        let mut case = bar(shape);
+        let mesh = std::sync::Arc::make_mut(&mut case.volume);
+        mesh.nodes.iter_mut().for_each(|node| *node += Vector::new(100.0, -200.0, 300.0));
+        let found = solve(&case, &pushed(1.5), &Settings { element, ..at_finite_strain() });
+        let exerted = force(&found, "fixed");
+        let told = format!("{shape:?} {element:?}: {exerted:?}");
+        assert!((exerted - Vector::new(-resisted, 0.0, 0.0)).norm() < 1e-5, "{told}");
+    }
+}
+
+#[test]
 fn contact_at_finite_strain_goes_over_into_that_of_linear_elasticity() {
     let case = bar(CellShape::Hex8);
     let beyond = |press: f64| {

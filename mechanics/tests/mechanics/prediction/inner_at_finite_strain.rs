@@ -55,6 +55,28 @@ fn free_tissue_grows_in_shape_without_stress_in_every_element() {
     }
 }
 
+/// Far from the origin coordinates keep fewer digits of a deformation.
+#[test]
+fn tissue_that_exerts_nothing_rests_wherever_it_lies() {
+    for (shape, element) in EVERY {
+        let mut mesh = distorted(shape);
+        mesh.nodes.iter_mut().for_each(|node| *node += Vector::new(100.0, -200.0, 300.0));
+        let middle = mesh.nodes[0];
+        let (case, plan) = free(mesh, material(15.0, 0.46));
+        for change in [0.0, 0.1] {
+            let plan = Plan { growth: growing("tissue", change), ..plan.clone() };
+            let settings = Settings { relative_residual: 1e-8, ..tight(element) };
+            let answer = solve(&case, &plan, &settings);
+            let strain = linear_strain(change);
+            let at = |x: &Vector| (x - middle) * strain;
+            let shift = answer.displacement[0];
+            let error = largest_error(&case.volume, &answer.displacement, |x| at(&x) + shift);
+            assert!(error < 1e-6, "{shape:?} {element:?} {change}: {error:e}");
+            assert!(largest_reaction(&answer) < 1e-5, "{shape:?} {element:?} {change}");
+        }
+    }
+}
+
 #[test]
 fn free_tissue_of_every_law_grows_without_stress() {
     for row in rows() {

@@ -12,7 +12,7 @@ use mechanics::model::fem::law_states::at_second_order;
 use mechanics::model::fem::strain::gradient_at_centre;
 use mechanics::prediction::{
     Activation, Case, CellState, ContactKind, ElementChoice, FibreDirection, Growth, Method,
-    MethodKind, Muscle, MuscleCourse, Plan, Prediction, Prescribed, Settings, linear_strain,
+    MethodKind, Muscle, MuscleCourse, Plan, Prediction, Prescribed, Scene, Settings, linear_strain,
     node_states,
 };
 use mechanics::study::methods;
@@ -369,6 +369,27 @@ fn an_answer_to_second_order_has_the_stress_of_its_law_at_its_displacement() {
                 .iter()
                 .all(Option::is_none)
         );
+    }
+}
+
+#[test]
+fn tissue_with_fibres_has_to_second_order_the_stress_of_its_tensor_where_strain_is_small() {
+    let small = 1e-4;
+    let along = Vector::new(1.0, 2.0, -0.5).normalize();
+    let tissue = fibred(MUSCLE).unwrap();
+    let expected = tissue.tensor(&along).stress(&(affine() * small));
+    for shape in [CellShape::Tet4, CellShape::Hex8, CellShape::Wedge6] {
+        let mut mesh = distorted(shape);
+        let plan = moved_by(&mut mesh, affine() * small);
+        let mut case = case_of(mesh, tissue);
+        case.fibres.insert("*".to_owned(), FibreDirection::Uniform(along));
+        let scene = Scene::new(&case, &plan, &asked(ElementChoice::Plain)).unwrap();
+        let moved: Vec<Vector> = case.volume.nodes.iter().map(|x| affine() * small * x).collect();
+        let states = at_second_order(&scene.tissue(), &InnerStress::default(), &moved, &[]);
+        for state in states {
+            let off = (state.unwrap().stress - expected).amax() / expected.amax();
+            assert!(off < 1e-5, "{shape:?}: {off:e}");
+        }
     }
 }
 
