@@ -170,9 +170,11 @@ impl LinearAnswer<'_> {
 }
 
 impl Answer {
-    /// Adds what the mesh leaves out to the displacement where that is asked for.
+    /// Adds what the mesh leaves out to the displacement where that is asked for. Not in contact: what opens or closes on a finer
+    /// mesh is not known, and parts would pass each other.
     pub(super) fn corrected(mut self, is_asked: bool) -> Self {
-        if let (true, Ok(error)) = (is_asked, &mut self.numerical_error) {
+        let is_added = is_asked && self.contact.is_none();
+        if let (true, Ok(error)) = (is_added, &mut self.numerical_error) {
             let displacement = self.equilibrium.displacement.iter_mut();
             displacement.zip(&error.missing).for_each(|(u, missing)| *u += missing);
             error.is_added = true;

@@ -115,12 +115,16 @@ pub(super) fn reason_for_none(scene: &Scene) -> Option<NotEstimated> {
 
 /// What a reader must know: an error that is large, a correction that could not be made.
 pub(super) fn warning(scene: &Scene, error: &Known) -> Option<Warning> {
+    let not_corrected = |why: &str| {
+        let detail = format!("the answer is not corrected for the error of its mesh: {why}");
+        Some(Warning::new("not-corrected", detail))
+    };
     match error {
+        Ok(error) if scene.settings.corrected && !error.is_added => not_corrected(
+            "tissue presses on what it touches, and what opens or closes on a finer mesh is not known",
+        ),
         Ok(error) => large(scene, error),
-        Err(reason) if scene.settings.corrected => {
-            let detail = format!("the answer is not corrected for the error of its mesh: {reason}");
-            Some(Warning::new("not-corrected", detail))
-        }
+        Err(reason) if scene.settings.corrected => not_corrected(&reason.to_string()),
         Err(_) => None,
     }
 }

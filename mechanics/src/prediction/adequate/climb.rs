@@ -154,7 +154,7 @@ impl Climb<'_> {
                     self.errors.mesh_at_rest = mesh;
                     let spent = self.elapsed() - begun;
                     self.note(Rung::FiniteStrain, Some(spent), self.time_of(Rung::FiniteStrain));
-                    self.refuse_inverted(&scene, &found);
+                    self.refuse_correction(&scene, &found);
                     finite_strain = Some((scene, found));
                 }
                 Err(Failure::Stopped(error)) => return Err(error),
@@ -274,17 +274,21 @@ impl Climb<'_> {
         }
     }
 
-    /// Passes over the corrected answer where what is added turns cells inside out that the answer itself does not.
-    fn refuse_inverted(&mut self, scene: &Scene, found: &Answer) {
+    /// Passes over the corrected answer where something presses, and where what is added turns cells inside out that the answer
+    /// itself does not.
+    fn refuse_correction(&mut self, scene: &Scene, found: &Answer) {
         let Ok(error) = &found.numerical_error else { return };
         let pairs = found.equilibrium.displacement.iter().zip(&error.missing);
         let corrected: Vec<Vector> = pairs.map(|(u, missing)| u + missing).collect();
-        if least_det_f(scene, &corrected) > 0.0 {
+        let why = if found.contact.is_some() {
+            "what the mesh leaves out is not added where tissue presses on what it touches"
+        } else if least_det_f(scene, &corrected) <= 0.0 {
+            "what the mesh is estimated to leave out would turn cells inside out"
+        } else {
             return;
-        }
+        };
         let of_it = |considered: &&mut Considered| considered.rung == Rung::FiniteStrainCorrected;
         for considered in self.considered.iter_mut().filter(of_it) {
-            let why = "what the mesh is estimated to leave out would turn cells inside out";
             considered.passed_over = Some(why.to_owned());
         }
     }

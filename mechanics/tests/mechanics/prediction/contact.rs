@@ -8,7 +8,7 @@ use mechanics::prediction::{
     SceneErrorCode, Settings, Touch,
 };
 
-use super::numerical_error::Question;
+use super::numerical_error::{Effectivity, Question};
 use crate::scenes::{case_of, hold, material, set, solve};
 
 /// Cells and elements that press.
@@ -196,22 +196,28 @@ fn jaws_that_close_by_twice_their_slit_and_four_times_their_cells_press_and_do_n
     assert!(open.contact.is_none());
 }
 
+/// In its size: where contact opens and closes on a finer mesh is not known, and what is missing is not to be added.
 #[test]
 fn the_error_of_the_mesh_is_estimated_where_tissue_presses() {
+    let mut outside = Vec::new();
     for method in [Method::FemLinear, Method::FemNonlinear] {
-        for (size, halved) in [(5.0, 2), (2.5, 1)] {
-            for (shape, element) in [
-                (CellShape::Hex8, ElementChoice::MeanDilatation),
-                (CellShape::Tet4, ElementChoice::Stabilised),
-            ] {
-                let settings = Settings { method: method.clone(), element, ..unilateral() };
-                let case = jaws_of(shape, size);
-                let question =
-                    Question { case, plan: raised(6.0), settings, halved, truth: element };
-                question.assert_effective(&format!("{method:?} {shape:?} {size} mm"));
+        for (shape, element) in [
+            (CellShape::Hex8, ElementChoice::MeanDilatation),
+            (CellShape::Tet4, ElementChoice::Stabilised),
+        ] {
+            let (plan, truth) = (raised(6.0), element);
+            let settings = Settings { method: method.clone(), element, ..unilateral() };
+            let case = jaws_of(shape, 2.5);
+            let Effectivity { mean, p95, .. } =
+                Question { case, plan, settings, halved: 1, truth }.effectivity();
+            let told = format!("{method:?} {shape:?}: {mean:.2} in the mean, {p95:.2} at p95");
+            println!("{told}");
+            if !((0.5..=2.0).contains(&mean) && (0.5..=2.0).contains(&p95)) {
+                outside.push(told);
             }
         }
     }
+    assert!(outside.is_empty(), "{outside:?}");
 }
 
 #[test]

@@ -28,9 +28,9 @@ pub(super) struct Question {
 }
 
 /// Mean and 95th percentile over the skin, estimated over true, and the mean error that is left once it is added.
-struct Effectivity {
-    mean: f64,
-    p95: f64,
+pub(super) struct Effectivity {
+    pub mean: f64,
+    pub p95: f64,
     left: f64,
 }
 
@@ -48,7 +48,7 @@ impl Question {
         Question { case, plan, settings, halved: 0, truth: ElementChoice::Quadratic }
     }
 
-    fn effectivity(&self) -> Effectivity {
+    pub(super) fn effectivity(&self) -> Effectivity {
         let scene = Scene::new(&self.case, &self.plan, &self.settings).unwrap();
         let found = predict(&scene, &Unobserved).unwrap();
         let estimated = found.numerical_error.as_ref().expect("linear elements are estimated");
@@ -67,7 +67,7 @@ impl Question {
     }
 
     /// Between one half and two, and a correction that is worth its name.
-    pub(super) fn assert_effective(&self, name: &str) {
+    fn assert_effective(&self, name: &str) {
         let Effectivity { mean, p95, left } = self.effectivity();
         println!("{name}: effectivity {mean:.2} in the mean, {p95:.2} at p95, {left:.2} left");
         assert!((0.5..=2.0).contains(&mean), "{name}: {mean:.2}");
