@@ -242,7 +242,10 @@ fn orient(
     let all = jacobians.len() as u64;
     let reversed = count(CellJacobian::is_reversed);
     let flat = count(|jacobian| jacobian.gauss_min == 0.0 && jacobian.gauss_max == 0.0);
-    let dented = count(|jacobian| jacobian.corner_min <= 0.0 && jacobian.corner_max >= 0.0);
+    let dented = count(|jacobian| {
+        let is_usable = jacobian.is_valid() || jacobian.is_reversed();
+        is_usable && jacobian.corner_min <= 0.0 && jacobian.corner_max >= 0.0
+    });
     let mut invalid = Offenders::default();
     for (cell, _) in jacobians.iter().filter(|(_, jacobian)| !jacobian.is_valid()) {
         invalid.add(*cell);

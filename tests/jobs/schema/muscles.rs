@@ -60,7 +60,7 @@ fn refused(muscle: &Value) -> (String, String, String) {
 }
 
 fn fibred() -> Value {
-    json!({"young_modulus_kpa": 60, "poisson_ratio": 0.45, "fibre": {"young_modulus_kpa": 110}})
+    json!({"young_modulus_kpa": 60, "poisson_ratio": 0.45, "fibre": {"young_modulus_kpa": 300}})
 }
 
 #[test]

@@ -109,11 +109,12 @@ async fn cells_that_are_inverted_where_they_are_integrated_are_taken_for_repair_
     );
     assert!(fault["detail"].as_str().unwrap().contains("of 64 cells"), "{problem}");
 
-    // Moves of 1 mm do not mend it.
-    let little = posted(&server, &folded, &json!({"inner_mm": 1})).await;
+    // No moves mend nothing.
+    let still = json!({"boundary_mm": 0, "inner_mm": 0});
+    let little = posted(&server, &folded, &still).await;
     let problem = little.problem(422, "validation-failed");
     assert_eq!(problem["errors"][0]["pointer"], "/repair", "{problem}");
-    let kept = posted(&server, &folded, &json!({"inner_mm": 8})).await.expect(StatusCode::CREATED);
+    let kept = posted(&server, &folded, &json!({"inner_mm": 6})).await.expect(StatusCode::CREATED);
     assert_eq!(kept["check"]["repair"]["unproven"], json!([]), "{kept}");
     let told = codes(&kept["check"]);
     assert!(told.contains(&"mesh-repaired") && !told.contains(&"mesh-inverted-elements"), "{kept}");
