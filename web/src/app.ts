@@ -50,22 +50,35 @@ export function warnings(list: Warning[] | undefined, words: Words, places: (war
       ...places(warning).map(({ label, show }) => button(words.showPlace(label), show, { className: "place" })))));
 }
 
+/** Solving ends here in per cent of a job. */
+const SOLVED = 90;
+/** Unbalanced forces beside all, above which nothing is solved yet. */
+const UNBALANCED = 1e-3;
+
+/** How far a job is in per cent; undefined where that cannot be said: at finite strain one solution follows another, and the first of
+ * them has filled the space of all. */
+export function shareOf({ phase, progress, residual }: { phase?: string; progress: number; residual?: number }): number | undefined {
+  return phase === "solve" && progress >= SOLVED && residual !== undefined && residual > UNBALANCED ? undefined : progress;
+}
+
 /** A line that tells how far something is, with a way to stop it. */
 export class ProgressLine {
   readonly element: HTMLElement;
   private readonly bar = make("progress", { max: 100, value: 0 });
   private readonly text = make("span");
 
-  constructor(label: string, stop?: { text: string; clicked: () => void }) {
+  constructor(private readonly words: Words, label: string, stop?: { text: string; clicked: () => void }) {
     this.bar.setAttribute("aria-label", label);
     this.element = make("div", { className: "progress" }, make("span", {}, label), this.bar, this.text,
       stop !== undefined && button(stop.text, stop.clicked));
   }
 
   tell(event: { status: string; phase?: string; progress: number; iteration?: number; residual?: number }): void {
-    this.bar.value = event.progress;
-    const solving = event.iteration !== undefined && event.residual !== undefined && event.phase === "solve"
-      ? ` · ${event.iteration} · ${event.residual.toExponential(1)}` : "";
-    this.text.textContent = `${event.phase ?? event.status} · ${event.progress} %${solving}`;
+    const { words } = this;
+    const share = shareOf(event);
+    if (share === undefined) this.bar.removeAttribute("value"); else this.bar.value = share;
+    const phase = event.phase === undefined || event.phase === "" ? words.statuses[event.status] ?? event.status : words.phases[event.phase] ?? event.phase;
+    const step = event.phase === "solve" && event.iteration !== undefined ? words.step(event.iteration) : "";
+    this.text.textContent = [phase, step, share === undefined ? "" : `${share} %`].filter((part) => part !== "").join(" · ");
   }
 }

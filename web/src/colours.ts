@@ -1,15 +1,16 @@
 // Colours of maps: they grow darker with the value, so that they survive printing and colour blindness, and what does not move
 // stays light.
 //
-// Yellow to blue for lengths and orange to blue for signed distances, with light greys between (schemes that C. Brewer, colorbrewer2.org,
-// marks as safe for colour blindness and print). Maps are in bands, so that a colour is a number between two lines of the legend.
+// Those of the pictures and reports of the service: magma from its light end for lengths (S. van der Walt and N. Smith, matplotlib 1.5,
+// 2015, CC0), and blue to orange with light greys between for signed distances (C. Brewer, colorbrewer2.org: safe for colour blindness
+// and print). Maps are in bands, so that a colour is a number between two lines of the legend.
 
 export type Rgb = [number, number, number];
 export type Scheme = "length" | "signed";
 
 /** At equal distances; between them linear. */
 const LENGTH: Rgb[] = [
-  [247, 241, 226], [250, 236, 174], [214, 226, 146], [152, 208, 158], [92, 186, 178], [49, 156, 188], [33, 119, 174], [36, 82, 150], [30, 50, 112], [14, 24, 66],
+  [252, 253, 191], [254, 194, 135], [251, 135, 97], [229, 80, 100], [181, 54, 122], [129, 37, 129], [79, 18, 123],
 ];
 /** The two in the middle are nearly one: a distance of nothing has no side. */
 const SIGNED: Rgb[] = [

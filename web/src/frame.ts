@@ -70,6 +70,13 @@ export function motion(translation_mm: Triple, rotation_deg: Triple, frame: Fram
   return found;
 }
 
+/** The word that a parameter of inverse planning, such as `translation_mm.y`, follows, and which way. */
+export function wordOf(parameter: string, frame: FrameName): { word: MotionName; sign: 1 | -1 } {
+  const axis = "xyz".indexOf(parameter.at(-1)!);
+  const word = (parameter.startsWith("rotation") ? ROTATIONS : TRANSLATIONS).find((one) => AXES[frame][one].axis === axis)!;
+  return { word, sign: AXES[frame][word].sign };
+}
+
 /** A vector of the case as forward, up and left. */
 export function inWords(vector: Triple, frame: FrameName): Triple {
   return TRANSLATIONS.map((name) => AXES[frame][name].sign * vector[AXES[frame][name].axis] || 0) as Triple;

@@ -2,10 +2,12 @@
 import { Refused, type Case, type CaseDocument, type Documents, type Service, readGlb } from "./api.js";
 import { ProgressLine, type App } from "./app.js";
 import { readColumns, type Columns } from "./columns.js";
+import { tail } from "./views/called.js";
 import type { FrameName } from "./frame.js";
 import { inFrame, readPly } from "./ply.js";
 import { pointArrays } from "./vtp.js";
 import type { Scene, Shape } from "./scene.js";
+import type { Workbench } from "./workbench.js";
 
 export interface Opened {
   id: string;
@@ -18,7 +20,7 @@ export interface Opened {
 export async function openCase(service: Service, id: string): Promise<Opened> {
   const view = await service.get<Case>(`/v1/cases/${id}`);
   const document = view.case as CaseDocument;
-  return { id, view, document, frame: document.frame ?? "unspecified", name: document.name ?? id.slice(0, 8) };
+  return { id, view, document, frame: document.frame ?? "unspecified", name: document.name ?? tail(id) };
 }
 
 /** A surface that the service has, or the boundary of a volume with its nodes, as it lies in the frame of the case. */
@@ -59,16 +61,25 @@ export interface LoadedResponse extends RestingSkin {
 const OCTETS = { Accept: "application/octet-stream" };
 const NOT_THERE = ["response-not-built", "response-stale"];
 
-/** The skin of a case with a response, which is built where there is none; `into` shows how far that is. */
-export async function restingSkin(app: App, id: string, into: HTMLElement): Promise<RestingSkin> {
+/** The boundary of the mesh, for as long as nothing else is to be seen. */
+export async function showBoundary(service: Service, { document, frame }: Opened, bench: Workbench): Promise<Uint32Array | undefined> {
+  const shape = await meshOf(service, document.volume!, frame);
+  bench.scene.showSkin(shape);
+  bench.offer([]);
+  return shape.node_ids;
+}
+
+/** The skin of a case with a response, which is built where there is none; `into` shows how far that is, and `waiting` is told that it
+ * takes a while. */
+export async function restingSkin(app: App, id: string, into: HTMLElement, waiting: () => void = () => {}): Promise<RestingSkin> {
   const path = `/v1/cases/${id}/response`;
-  const description = await described(app, id, into);
+  const description = await described(app, id, into, waiting);
   const glb = await app.service.ask("GET", `${path}?job=${description.job}`, undefined, { Accept: "model/gltf-binary" });
   const { points_mm, triangles } = readGlb(await glb.arrayBuffer());
   return { description, rest: { points_mm, triangles } };
 }
 
-async function described(app: App, id: string, into: HTMLElement): Promise<Description> {
+async function described(app: App, id: string, into: HTMLElement, waiting: () => void): Promise<Description> {
   const path = `/v1/cases/${id}/response`;
   const built = await app.service.get<Documents["JobList"]>(`/v1/jobs?kind=response&status=successful&case=${id}&limit=1`);
   try {
@@ -76,12 +87,13 @@ async function described(app: App, id: string, into: HTMLElement): Promise<Descr
   } catch (error) {
     if (!(error instanceof Refused) || !NOT_THERE.includes(error.code)) throw error;
   }
+  waiting();
   await buildResponse(app, id, 1, into);
   return app.service.get<Description>(path);
 }
 
-export async function responseOf(app: App, id: string, into: HTMLElement): Promise<LoadedResponse> {
-  const { description, rest } = await restingSkin(app, id, into);
+export async function responseOf(app: App, id: string, into: HTMLElement, waiting?: () => void): Promise<LoadedResponse> {
+  const { description, rest } = await restingSkin(app, id, into, waiting);
   const path = `/v1/cases/${id}/response?job=${description.job}`;
   const bytes = async (query: string) => (await app.service.ask("GET", path + query, undefined, OCTETS)).arrayBuffer();
   const [linear, second] = await Promise.all([bytes(""), description.second_order === undefined ? undefined : bytes("&order=2")]);
@@ -90,7 +102,7 @@ export async function responseOf(app: App, id: string, into: HTMLElement): Promi
 }
 
 export async function buildResponse(app: App, id: string, order: 1 | 2, into: HTMLElement): Promise<void> {
-  const line = new ProgressLine(app.words.building);
+  const line = new ProgressLine(app.words, app.words.building);
   into.append(line.element);
   const job = { kind: "response" as const, case: id, ...(order === 2 ? { order } : {}) };
   try {

@@ -106,6 +106,7 @@ function calls({ service: { calls: list }, service: asked, words }: App): void {
     drawer.hidden = !drawer.hidden;
     toggle.setAttribute("aria-expanded", String(!drawer.hidden));
     draw();
+    if (!drawer.hidden) drawer.scrollIntoView({ block: "end" });
   };
   draw();
 }

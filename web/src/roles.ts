@@ -14,17 +14,25 @@ export interface CaseSettings {
   mesh: string;
 }
 
-const NAMES: [RegExp, Role][] = [
-  [/^(skin|haut|face_skin)$/i, "skin"],
-  [/skull|rim|fixed|neck|cranium|schädel/i, "fixed"],
-  [/slid|wall|teeth/i, "sliding"],
-  [/mandib|maxill|jaw|genio|ramus|condyl|zygom|kiefer/i, "segment"],
-  [/nose|lip|chin|cheek|nase|lippe|kinn/i, "region"],
+/** Words of names, the first that fits; what attaches to bone or may move is not the bone. */
+const NAMES: [string[], Role][] = [
+  [["ligament", "ligaments", "free", "muscle", "muscles", "band", "muskel"], "none"],
+  [["skin", "face", "haut", "gesicht"], "skin"],
+  [["skull", "rim", "fixed", "neck", "cranium", "schädel"], "fixed"],
+  [["sliding", "slide", "slides", "wall", "walls", "teeth"], "sliding"],
+  [["mandible", "maxilla", "jaw", "genioplasty", "ramus", "condyle", "zygoma", "unterkiefer", "oberkiefer", "kiefer"], "segment"],
+  [["nose", "lip", "lips", "chin", "cheek", "cheeks", "nase", "lippe", "lippen", "kinn", "wange"], "region"],
 ];
 
-/** By its name, to begin with. */
+/** By the whole words of its name, to begin with; a name whose words say nothing, or several things, is left to the person. */
 export function guess(set: string): Role {
-  return NAMES.find(([name]) => name.test(set))?.[1] ?? "none";
+  const words = set.toLowerCase().split(/[^\p{L}]+/u);
+  const said = NAMES.filter(([names]) => names.some((name) => words.includes(name))).map(([, role]) => role);
+  if (said.includes("none") || said.length === 0) return "none";
+  const bare = words.filter((word) => word !== "");
+  // "lip_skin" is a part of the skin, "skull_wall" may be either.
+  if (said.length === 2 && said.includes("skin") && said.includes("region")) return "region";
+  return said.length === 1 && (said[0] !== "skin" || bare.length <= 2) ? said[0]! : "none";
 }
 
 /** Soft tissue of the face, to begin with: Young's modulus 15 kPa, Poisson's ratio 0.45. */

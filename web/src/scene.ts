@@ -14,7 +14,7 @@ import { drawn, type FrameName } from "./frame.js";
 import { geometryOf, seenFrom, VIEWS, type Shape } from "./geometry.js";
 import { Marks, type Mark } from "./marks.js";
 import { normals } from "./normals.js";
-import { isDrawnBySoftware, lights, setBands } from "./shading.js";
+import { contour, isDrawnBySoftware, lights, setBands, veil } from "./shading.js";
 
 export type { Shape } from "./geometry.js";
 export interface Hit {
@@ -27,6 +27,8 @@ export type SkinLook = "solid" | "through" | "hidden";
 
 const SKIN = 0xe9b9a1;
 const BONE = 0xefe6d2;
+/** Dark enough on skin and on light bands, and none of a map's colours. */
+const OUTLINE = 0x006b3c;
 const MOVING_BONE = 0xd8c48f;
 /** Around the head there is a little room, above all for what stands over it. */
 const ROOM = 1.2;
@@ -58,6 +60,8 @@ export class Scene {
   private skin: Mesh | undefined;
   private prepass: Mesh | undefined;
   private ghost: Mesh | undefined;
+  /** What of the ghost is in front. */
+  private veil: Mesh | undefined;
   /** The skin of the left half, where there are two. */
   private twin: Mesh | undefined;
   private rest: Shape = { points_mm: new Float32Array(), triangles: new Uint32Array() };
@@ -170,15 +174,20 @@ export class Scene {
     this.draw();
   }
 
-  /** Another state of the skin as a light shell over it, or none. */
-  overlay(shape: Shape | undefined, colour = 0x3d6fb4, opacity = 0.35): void {
-    if (this.ghost !== undefined) this.drop(this.ghost);
-    this.ghost = undefined;
+  /** Another state of the skin as its outline over this one, or none. Two skins so near to each other would fight for what is in
+   * front, and a shell would tint the colours of a map. */
+  overlay(shape: Shape | undefined, colour = OUTLINE): void {
+    for (const old of [this.ghost, this.veil]) if (old !== undefined) this.drop(old);
+    this.ghost = this.veil = undefined;
     if (shape !== undefined) {
-      const material = new MeshLambertMaterial({ color: colour, transparent: true, opacity, side: DoubleSide, depthWrite: false });
-      this.ghost = new Mesh(geometryOf(shape), material);
-      this.ghost.renderOrder = 3;
-      this.head.add(this.ghost);
+      const geometry = geometryOf(shape);
+      // Of the outline only that is left out which the other skin itself hides.
+      this.veil = new Mesh(geometry, veil());
+      this.veil.renderOrder = 3;
+      this.veil.onBeforeRender = () => this.renderer.clearDepth();
+      this.ghost = new Mesh(geometry, contour(colour));
+      this.ghost.renderOrder = 4;
+      this.head.add(this.veil, this.ghost);
     }
     this.draw();
   }
@@ -382,7 +391,7 @@ export class Scene {
 
   /** The left half: the other skin, and bones where they were. */
   private renderTwin(twin: Mesh): void {
-    const hidden = [this.skin, this.prepass, this.ghost, this.marks.group, this.pointed.group].filter((one) => one?.visible);
+    const hidden = [this.skin, this.prepass, this.ghost, this.veil, this.marks.group, this.pointed.group].filter((one) => one?.visible);
     const moved = [...this.bones.values()].map((bone) => [bone, bone.matrix.clone()] as const);
     const place = (bone: Mesh, matrix: Matrix4) => { bone.matrix.copy(matrix); bone.matrixWorldNeedsUpdate = true; };
     twin.visible = this.skin?.visible ?? true;

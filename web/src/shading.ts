@@ -1,6 +1,6 @@
 // What light falls on the head, and the colours of maps as a texture.
 import {
-  DataTexture, DirectionalLight, HemisphereLight, NearestFilter, SRGBColorSpace, type MeshLambertMaterial, type Object3D, type Scene,
+  Color, DataTexture, DirectionalLight, DoubleSide, HemisphereLight, MeshBasicMaterial, NearestFilter, ShaderMaterial, SRGBColorSpace, type MeshLambertMaterial, type Object3D, type Scene,
 } from "three";
 import type { Triple } from "./api.js";
 import { BANDS, bands, type Scheme } from "./colours.js";
@@ -21,6 +21,31 @@ function askRenderer(): boolean {
 }
 
 /** From above and a little aside, with the viewer. */
+/** Hides what lies behind a surface without drawing it, after all that is seen through. */
+export const veil = (): MeshBasicMaterial => new MeshBasicMaterial({ colorWrite: false, transparent: true, side: DoubleSide });
+
+/** The lines where a surface turns away from the viewer, and nothing between them: what lies under it keeps its colour. */
+export function contour(colour: number): ShaderMaterial {
+  return new ShaderMaterial({
+    side: DoubleSide, transparent: true, depthWrite: false, uniforms: { colour: { value: new Color(colour) } },
+    vertexShader: `varying float facing;
+      void main() {
+        facing = normalize(normalMatrix * normal).z;
+        gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+      }`,
+    // The camera is orthographic: what faces the viewer has a normal along z everywhere. At least two pixels wide.
+    fragmentShader: `uniform vec3 colour;
+      varying float facing;
+      void main() {
+        float away = abs(facing);
+        float line = 1.0 - smoothstep(0.1, 0.22, min(away, away / max(fwidth(facing), 1e-4) * 0.07));
+        if (line < 0.02) discard;
+        gl_FragColor = vec4(colour, 0.9 * line);
+        #include <colorspace_fragment>
+      }`,
+  });
+}
+
 export function lights(graph: Scene, camera: Object3D): void {
   const lamp = (strength: number, place: Triple) => {
     const light = new DirectionalLight(0xffffff, strength);

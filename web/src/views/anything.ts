@@ -38,13 +38,13 @@ function rows(words: Words, name: string, list: Members[]): HTMLElement {
 
 /** All that a document says, but for members that are left out by name. */
 export function anything(words: Words, name: string, members: Members, without: string[] = [], depth = 0): HTMLElement {
-  const entries = Object.entries(members).filter(([member, value]) => !without.includes(member) && value !== null && value !== undefined);
+  const entries = Object.entries(members).filter(([member, value]) => !without.includes(member) && value !== null && value !== undefined && !(Array.isArray(value) && value.length === 0));
   const short = entries.filter(([, value]) => isShort(value));
   const parts = entries.filter(([, value]) => !isShort(value)).map(([member, value]) => {
     if (Array.isArray(value)) return rows(words, member, value.filter(isMembers));
     return isMembers(value) && depth < MOST_DEPTH ? anything(words, member, value, without, depth + 1) : undefined;
   });
   return make("section", { className: "said" }, depth === 0 ? make("h2", {}, name) : make("h3", {}, called(name)),
-    short.length > 0 && make("dl", { className: "facts" }, ...short.flatMap(([member, value]) => [make("dt", {}, called(member)), make("dd", {}, shown(value))])),
+    short.length > 0 && make("dl", { className: "facts" }, ...short.flatMap(([member, value]) => [make("dt", {}, called(member)), make("dd", {}, typeof value === "boolean" ? (value ? words.yes : words.no) : shown(value))])),
     ...parts);
 }

@@ -2,7 +2,7 @@
 import type { Case, Documents, Job } from "../api.js";
 import { ProgressLine, refusal, warnings, type App, type Leave } from "../app.js";
 import { button, make } from "../dom.js";
-import { addBones, meshOf, openCase, type Opened } from "../loading.js";
+import { addBones, openCase, showBoundary, type Opened } from "../loading.js";
 import { address } from "../route.js";
 import { figure } from "../figures.js";
 import { Workbench } from "../workbench.js";
@@ -20,28 +20,21 @@ export async function casePage(app: App): Promise<Leave> {
   bench.scene.orient(opened.frame);
   bench.panel.append(make("section", {}, make("a", { className: "button primary", href: address(["case", opened.id, "plan"]) }, words.planIt)));
   const { check } = opened.view;
-  if (check !== undefined) bench.section(words.checkFound, facts(checked(app, check)));
+  const loose = Object.entries(check?.classes.joined ?? {}).filter(([, count]) => count === 0).map(([name]) => name);
+  if (check !== undefined) bench.section(words.checkFound, ...loose.map((name) => make("p", { className: "warned" }, words.joinedToNothing(name))), facts(checked(app, check)));
   bench.section(words.warnings, warnings(check?.warnings, words, placesOf(words, opened, bench.scene, () => ({}))));
   const place = bench.section(words.sets);
   bench.section(words.classes, held(app, opened));
   bench.section(words.meshes, ...(opened.view.meshes ?? []).map((mesh) => facts(meshFacts(app, mesh))));
   bench.section(words.document, make("details", {}, make("summary", {}, "JSON"), make("pre", {}, make("code", {}, JSON.stringify(opened.document, null, 2)))));
   try {
-    const [nodes] = await Promise.all([boundary(app, opened, bench), addBones(service, opened, bench.scene)]);
+    const shown = showBoundary(service, opened, bench).then((nodes) => { bench.start(); return nodes; });
+    const [nodes] = await Promise.all([shown, addBones(service, opened, bench.scene)]);
     await setsSection(app, opened, bench, place, nodes);
   } catch (error) {
     bench.panel.prepend(refusal(error, words));
   }
   return () => bench.leave();
-}
-
-/** Draws the boundary of the mesh; its nodes, where the file says them. */
-async function boundary({ service }: App, { document, frame }: Opened, bench: Workbench): Promise<Uint32Array | undefined> {
-  const shape = await meshOf(service, document.volume!, frame);
-  bench.scene.showSkin(shape);
-  bench.start();
-  bench.offer([]);
-  return shape.node_ids;
 }
 
 function facts(list: Fact[]): HTMLElement {
@@ -83,7 +76,7 @@ async function meshing(app: App, opened: Opened): Promise<Leave> {
   const { service, words, stage } = app;
   const { meshing: made } = opened.view as Case;
   let left = false;
-  const line = new ProgressLine(words.running, {
+  const line = new ProgressLine(words, words.running, {
     text: words.cancel, clicked: () => void (made === undefined ? undefined : service.ask("DELETE", `/v1/jobs/${made!.job}`).catch(() => {})),
   });
   stage.replaceChildren(crumbs(words, undefined, opened.name, "overview"), make("div", { className: "card" }, line.element));

@@ -4,6 +4,7 @@ import type { App, Leave } from "../app.js";
 import { make } from "../dom.js";
 import { when } from "../figures.js";
 import { address } from "../route.js";
+import { tail } from "./called.js";
 import { uploadForm } from "./upload.js";
 
 export async function cases(app: App): Promise<Leave> {
@@ -12,10 +13,10 @@ export async function cases(app: App): Promise<Leave> {
   const row = (one: Case) => {
     const document = one.case as CaseDocument;
     const check = one.check;
-    const name = document.name ?? one.id.slice(0, 8);
+    const name = document.name ?? tail(one.id);
     return make("li", { className: "card" },
       make("h2", {}, make("a", { href: address(["case", one.id]) }, name)),
-      make("p", { className: "fine" }, `${words.states[one.state] ?? one.state} · ${when(one.created)}`),
+      make("p", { className: "fine" }, `${words.states[one.state] ?? one.state} · ${when(one.created)} · ${tail(one.id)}`),
       check !== undefined && make("p", {}, words.size(check.nodes.toLocaleString(), check.cells.toLocaleString())
         + ` · ${(document.segments ?? []).map((segment) => segment.name).join(", ")}`),
       (check?.warnings.length ?? 0) > 0 && make("p", { className: "warned" }, `${words.warnings}: ${check!.warnings.length}`),

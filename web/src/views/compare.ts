@@ -2,13 +2,12 @@
 import { readGlb, type Documents, type Job } from "../api.js";
 import { ProgressLine, refusal, type App, type Leave } from "../app.js";
 import { button, choice, make, select } from "../dom.js";
-import { when } from "../figures.js";
 import { openCase, type Opened } from "../loading.js";
 import { note } from "../route.js";
 import { readVtp } from "../vtp.js";
 import { Workbench } from "../workbench.js";
 import { crumbs } from "./crumbs.js";
-import { kindOf } from "./kinds.js";
+import { jobInWords } from "./called.js";
 import { comparisonFacts, histogram } from "./distances.js";
 
 export async function comparePage(app: App): Promise<Leave> {
@@ -27,7 +26,8 @@ export async function comparePage(app: App): Promise<Leave> {
     bench.scene.showSkin(readGlb(await service.file(chosen.id, "skin.glb")));
     bench.start();
   }
-  const before = jobs.find(({ id }) => id === route.state.get("comparison"));
+  const stated = route.state.get("comparison") ?? undefined;
+  const before = stated === undefined ? undefined : jobs.find(({ id }) => id === stated) ?? await service.get<Job>(`/v1/jobs/${stated}`);
   if (before !== undefined) await show(app, bench, before);
   return () => bench.leave();
 }
@@ -41,7 +41,7 @@ function form(app: App, opened: Opened, bench: Workbench, predictions: Job[]): H
   const compare = button(words.compareNow, () => {
     const [surface] = file.files ?? [];
     if (surface === undefined) { file.click(); return; }
-    const line = new ProgressLine(words.comparison);
+    const line = new ProgressLine(words, words.comparison);
     said.replaceChildren(line.element);
     void (async () => {
       const mesh = await service.upload(surface, "mm", opened.frame, (upload) => line.tell({ status: words.sending, ...upload }));
@@ -52,9 +52,8 @@ function form(app: App, opened: Opened, bench: Workbench, predictions: Job[]): H
       said.replaceChildren();
     })().catch((error: unknown) => said.replaceChildren(refusal(error, words)));
   }, { className: "primary" });
-  const called = (one: Job) => `${kindOf(words, one.kind)} ${when(one.created)}`;
   return make("div", { className: "stack" },
-    select(words.chooseJob, predictions.map((one) => [one.id, called(one)] as const), job, (value) => { job = value; }),
+    select(words.chooseJob, predictions.map((one) => [one.id, jobInWords(words, one)] as const), job, (value) => { job = value; }),
     make("label", { className: "field" }, make("span", {}, words.actual), file),
     choice(words.align, [["icp", words.alignIcp], ["none", words.alignNone]] as const, "icp", (value) => { align = value; }), compare, said);
 }

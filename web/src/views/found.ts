@@ -3,26 +3,73 @@ import type { Documents, Job } from "../api.js";
 import { rowChart, type Row } from "../charts.js";
 import type { App } from "../app.js";
 import { make, table } from "../dom.js";
+import { wordOf, type FrameName } from "../frame.js";
 import type { Opened } from "../loading.js";
 import { planState } from "../plan.js";
 import { address } from "../route.js";
 import { mm } from "../figures.js";
-
-/** `mandible translation_mm.x` as a person reads it. */
-const called = (segment: string, name: string) => `${segment} ${name.replace("translation_mm.", "").replace("rotation_deg.", "↻ ")}${name.startsWith("rotation") ? ", °" : ", mm"}`;
+import { wordFor } from "./movements.js";
+import type { TrustLine } from "./trust.js";
+import type { Words } from "../words/en.js";
 
 type Found = Documents["OptimisationDocument"];
+type Parameter = { segment: string; name: string; value: number };
+
+/** What a target is called, and the standard deviation of its components in mm. */
+export interface NamedTarget {
+  label: string;
+  sigma_mm: number;
+}
+const TAG = /^target (\d+): (.+), sigma ([\d.e+-]+) mm$/;
+/** A target is missed where more than so many standard deviations of it are left. */
+const MISSED = 2;
+
+/** Targets as they stand in the tags of the job, which keeps their names: results have numbers only. */
+export const targetTags = (targets: NamedTarget[]): string[] => targets.map(({ label, sigma_mm }, at) => `target ${at + 1}: ${label}, sigma ${sigma_mm} mm`);
+
+/** What targets are called; those of jobs that another client posted have numbers and the usual deviation of 1 mm. */
+export function targetsOf(words: Words, tags: string[], count: number): NamedTarget[] {
+  const stated = tags.map((tag) => TAG.exec(tag)).filter((match) => match !== null);
+  return Array.from({ length: count }, (_, at) => {
+    const [, , label = `${words.target} ${at + 1}`, sigma = "1"] = stated.find(([, number]) => Number(number) === at + 1) ?? [];
+    return { label, sigma_mm: Number(sigma) };
+  });
+}
+
+/** A parameter with the word and the sign of its slider. */
+function inSliders(words: Words, frame: FrameName, { segment, name, value }: Parameter): { label: string; value: number } {
+  const { word, sign } = wordOf(name, frame);
+  return { label: `${segment} ${wordFor(words, word, frame)}, ${name.startsWith("rotation") ? "°" : "mm"}`, value: sign * value || 0 };
+}
+
+/** A parameter that is stopped where there was room to move. */
+const stoppedOf = ({ at_bound }: Found) => at_bound.filter(({ value }) => value !== 0);
+
+/** How near the plan comes to its targets; to be heeded where one is missed or a movement is stopped by its bound. */
+export function foundLine(words: Words, found: Found, named: NamedTarget[], frame: FrameName): TrustLine {
+  const missed = found.targets.flatMap(({ residual_mm }, at) => (residual_mm > MISSED * named[at]!.sigma_mm ? [words.missedBy(named[at]!.label, mm(residual_mm))] : []));
+  const stopped = stoppedOf(found).map((one) => { const { label, value } = inSliders(words, frame, one); return words.stoppedAt(label, value.toFixed(2)); });
+  const most = Math.max(0, ...found.targets.map(({ residual_mm }) => residual_mm));
+  const why = [words.missedRule(MISSED), ...missed, ...stopped].join(" ");
+  return { name: words.targets, value: words.leftAtMost(mm(most)), trusted: missed.length + stopped.length > 0 ? "heed" : "good", why };
+}
 
 export function foundFacts({ words, route }: App, job: Job, opened: Opened, found: Found): HTMLElement {
-  const numbers = found.parameters.map(({ segment, name, value }, at) =>
-    [called(segment, name), value.toFixed(2), found.standard_error[at]!.toFixed(2)]);
-  const stopped = found.at_bound.map(({ segment, name, value }) => [called(segment, name), value.toFixed(2), words.atBound]);
-  const targets = found.targets.map(({ residual_mm, largest_mm, points }, at) => [`${words.target} ${at + 1} (${points})`, mm(residual_mm), mm(largest_mm)]);
-  const loose = found.undetermined.map((parts) => make("li", {}, parts.map(({ segment, name, part }) => `${part.toFixed(2)} ${segment} ${name}`).join(" + ")));
-  const bars = found.parameters.map(({ segment, name, value }, at): Row => ({ name: called(segment, name), value, error: found.standard_error[at]! }));
+  const frame = job.results?.provenance?.frame ?? opened.frame;
+  const free = found.parameters.map((one, at) => ({ ...inSliders(words, frame, one), error: found.standard_error[at]! }));
+  const stopped = stoppedOf(found).map((one) => inSliders(words, frame, one));
+  const numbers = [...free.map(({ label, value, error }) => [label, value.toFixed(2), error.toFixed(2)]), ...stopped.map(({ label, value }) => [label, value.toFixed(2), words.atBound])];
+  const named = targetsOf(words, job.tags, found.targets.length);
+  const targets = found.targets.map(({ residual_mm, largest_mm, points }, at) =>
+    [points > 1 ? `${named[at]!.label}, ${words.pointsOf(points)}` : named[at]!.label, mm(residual_mm), mm(largest_mm)]);
+  const loose = found.undetermined.map((parts) => make("li", {}, parts.map(({ segment, name, part }) => {
+    const { label, value } = inSliders(words, frame, { segment, name, value: part });
+    return `${value.toFixed(2)} × ${label}`;
+  }).join(" + ")));
+  const bars = [...free, ...stopped].map(({ label, ...one }): Row => ({ name: label, ...one }));
   return make("div", {},
-    rowChart(words.movement, "mm, °", [...bars, ...found.at_bound.map(({ segment, name, value }): Row => ({ name: called(segment, name), value }))], true),
-    table(words.movement, ["", "mm, °", words.standardError], [...numbers, ...stopped]),
+    rowChart(words.movement, "mm, °", bars, true),
+    table(words.movement, ["", "mm, °", words.standardError], numbers),
     table(words.targets, ["", `${words.left_} mm`, words.max], targets),
     loose.length > 0 && make("div", { className: "warned" }, words.notDetermined, make("ul", {}, ...loose)),
     make("a", { className: "button primary", href: address(["case", opened.id, "plan"], planState(route.state)), data: { job: job.id } }, words.openPlan));

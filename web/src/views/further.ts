@@ -3,6 +3,7 @@ import type { CaseDocument, Job } from "../api.js";
 import { refusal, type App } from "../app.js";
 import { make, select } from "../dom.js";
 import { when } from "../figures.js";
+import { tail } from "./called.js";
 import { inSpec, materialChoices, type Presets } from "./materials.js";
 
 /** Members of a spec; `outputs` come beside the usual ones. */
@@ -44,7 +45,7 @@ export class Further {
     if (into.childElementCount > 0) return;
     try {
       const jobs = await service.list<Job>("/v1/jobs?kind=learn&status=successful", 50);
-      const label = ({ created, results }: Job) => `${results?.learning?.method ?? ""} · ${when(created)}${results?.learning?.helps === false ? ` · ${words.learningHarms}` : ""}`;
+      const label = ({ id, created, results }: Job) => `${results?.learning?.method ?? ""} · ${when(created)}${results?.learning?.helps === false ? ` · ${words.learningHarms}` : ""} · ${tail(id)}`;
       const choose = (model: string) => { this.model = model; if (model !== "") this.corrected(); };
       into.replaceChildren(make("p", { className: "fine" }, words.correctionHint),
         jobs.length === 0 ? make("p", {}, words.noModels) : select(words.model, [["", words.none], ...jobs.map((job) => [job.id, label(job)] as const)], "", choose));

@@ -1,24 +1,16 @@
 // Planning backwards: where the skin is wanted is dragged or stated, and the service finds the movement that comes nearest.
 import type { Documents, Triple } from "../api.js";
-import { refusal, type App, type Leave } from "../app.js";
+import { announce, refusal, type App, type Leave } from "../app.js";
 import { button, choice, make, select } from "../dom.js";
 import { inAxes, inWords, movement, still, TRANSLATIONS, type FrameName, type MotionName } from "../frame.js";
 import { openCase, restingSkin, type Opened, type RestingSkin } from "../loading.js";
+import { mm } from "../figures.js";
 import { address } from "../route.js";
+import { beyondBounds, type Bounds, type Target } from "../targets.js";
 import { Workbench } from "../workbench.js";
 import { crumbs } from "./crumbs.js";
-
-/** Where a point is wanted: forward, up and left of where it is, in mm; null is free. */
-interface Target {
-  label: string;
-  /** Of the case; without one it is the point of the skin at `at_mm`. */
-  landmark?: string;
-  at_mm: Triple;
-  by: [number | null, number | null, number | null];
-  sigma_mm: number;
-}
-/** How far a segment may go to either side along or about each word; 0 holds it. */
-type Bounds = Record<string, Record<MotionName, number>>;
+import { targetTags } from "./found.js";
+import { wordFor } from "./movements.js";
 
 const COLOUR = 0xb5461d;
 const STARTING_BOUND_MM = 10;
@@ -49,8 +41,11 @@ class Inverse {
   /** How many points of the skin were named. */
   private points = 0;
   private readonly bounds: Bounds;
+  private readonly boundFields = make("div", {});
   private readonly list = make("div", {});
   private readonly said = make("div", { role: "status" });
+  /** Directions of targets that the bounds forbid. */
+  private readonly forbidden = make("div", { role: "status" });
 
   constructor(private readonly app: App, private readonly opened: Opened, private readonly bench: Workbench, private readonly loaded: RestingSkin) {
     const held = { forward: STARTING_BOUND_MM, up: STARTING_BOUND_MM, left: 0, pitch: 0, roll: 0, yaw: 0 };
@@ -67,8 +62,9 @@ class Inverse {
       (value) => bench.scene.turnable(value === "turn"));
     bench.section(words.targets, make("p", {}, words.inverseWhy), pulling, make("p", { className: "fine" }, words.dragHint),
       make("div", { className: "row" }, add, button(words.addPoint, () => this.addMiddle())), this.list);
-    bench.section(words.bounds, ...Object.keys(this.bounds).map((name) => this.boundsOf(name)));
-    bench.section(words.find, button(words.find, () => void this.find(), { className: "primary" }), this.said);
+    bench.section(words.bounds, this.boundFields);
+    bench.section(words.find, this.forbidden, button(words.find, () => void this.find(), { className: "primary" }), this.said);
+    this.drawBounds();
     this.draw();
     this.dragging(pulling);
   }
@@ -116,9 +112,9 @@ class Inverse {
   /** For whoever has no pointer: the point of the skin in the middle of the view. */
   private addMiddle(): void {
     const hit = this.bench.scene.middle();
-    if (hit === undefined) this.said.textContent = this.app.words.noSkinThere;
-    else this.targetAt(this.restAt(hit.node));
+    if (hit !== undefined) this.targetAt(this.restAt(hit.node));
     this.draw();
+    if (hit === undefined) this.said.textContent = this.app.words.noSkinThere;
   }
 
   private restAt(node: number): Triple {
@@ -137,16 +133,39 @@ class Inverse {
       return make("fieldset", { className: "target" }, make("legend", {}, target.label), number(0), number(1), number(2),
         button(words.remove, () => { this.targets.splice(at, 1); this.draw(); }));
     };
+    this.said.replaceChildren();
     this.list.replaceChildren(...(this.targets.length === 0 ? [make("p", { className: "fine" }, words.noTargets)] : this.targets.map(row)));
     this.marks();
   }
 
+  /** Says before solving which way no segment may go as far as a target asks, and offers to allow it or to leave that way free. */
+  private warn(): void {
+    const { words } = this.app;
+    this.forbidden.replaceChildren(...beyondBounds(this.targets, this.bounds).map(({ target, at, wanted, allowed }) => {
+      const word = TRANSLATIONS[at]!;
+      const called = wordFor(words, word, this.opened.frame);
+      const enough = Math.ceil(Math.abs(wanted));
+      const sentence = allowed === 0 ? words.heldThere(target.label, called, mm(wanted)) : words.notThatFar(target.label, called, mm(wanted), mm(allowed));
+      return make("p", { className: "warned" }, sentence, " ",
+        button(words.allowThat(called, enough), () => {
+          for (const bound of Object.values(this.bounds)) bound[word] = Math.max(bound[word], enough);
+          this.drawBounds();
+          this.marks();
+        }), " ", button(words.leaveFree(called), () => { target.by[at] = null; this.draw(); }));
+    }));
+  }
+
   private marks(): void {
     const { frame } = this.opened;
+    this.warn();
     this.bench.scene.mark(this.targets.map(({ at_mm, by }) => {
       const moved = inAxes(by.map((value) => value ?? 0) as Triple, frame);
       return { at_mm, colour: COLOUR, to_mm: at_mm.map((value, axis) => value + moved[axis]!) as Triple };
     }));
+  }
+
+  private drawBounds(): void {
+    this.boundFields.replaceChildren(...Object.keys(this.bounds).map((name) => this.boundsOf(name)));
   }
 
   private boundsOf(name: string): HTMLElement {
@@ -155,7 +174,7 @@ class Inverse {
     const unit = (word: MotionName) => ((TRANSLATIONS as readonly string[]).includes(word) ? "mm" : "°");
     const fields = (Object.keys(bound) as MotionName[]).map((word) => {
       const input = make("input", { type: "number", min: "0", step: "0.5", value: String(bound[word]), aria: { label: `${name} ${words[word]} ± ${unit(word)}` } });
-      input.addEventListener("input", () => { bound[word] = Number.isFinite(input.valueAsNumber) ? Math.abs(input.valueAsNumber) : 0; });
+      input.addEventListener("input", () => { bound[word] = Number.isFinite(input.valueAsNumber) ? Math.abs(input.valueAsNumber) : 0; this.warn(); });
       return make("label", { className: "field" }, make("span", {}, `${words[word]} ± ${unit(word)}`), input);
     });
     return make("details", { className: "segment", open: true }, make("summary", {}, name), make("div", { className: "bounds" }, ...fields));
@@ -163,6 +182,11 @@ class Inverse {
 
   private async find(): Promise<void> {
     const { app: { service, words }, opened } = this;
+    if (this.targets.length === 0) {
+      this.said.replaceChildren(make("p", { className: "warned" }, words.targetsAsked));
+      announce(words.targetsAsked);
+      return;
+    }
     try {
       const job = await service.post<Documents["StatusInfo"]>("/v1/jobs", this.spec(opened.frame));
       location.hash = address(["job", job.id]);
@@ -174,7 +198,7 @@ class Inverse {
   private spec(frame: FrameName): object {
     const targets = this.targets.map(({ landmark, at_mm, by, sigma_mm }) => ({ ...(landmark === undefined ? { point_mm: at_mm } : { landmark }), displacement_mm: inAxes(by, frame), sigma_mm }));
     const bounds = Object.fromEntries(this.loaded.description.segments.map(({ name, centre_mm }) => [name, interval(this.bounds[name]!, centre_mm as Triple, frame)]));
-    return { kind: "optimise", case: this.opened.id, targets, bounds, outputs: ["skin.vtp", "skin.glb"] };
+    return { kind: "optimise", case: this.opened.id, targets, bounds, outputs: ["skin.vtp", "skin.glb"], tags: targetTags(this.targets) };
   }
 }
 

@@ -4,6 +4,7 @@ import { refusal, type App, type Leave } from "../app.js";
 import { button, make, scrolling, table } from "../dom.js";
 import { address } from "../route.js";
 import { mm, when } from "../figures.js";
+import { aboutJob, tail } from "./called.js";
 import { kindOf, statusOf } from "./kinds.js";
 import { reportLinks } from "./reports.js";
 
@@ -18,12 +19,13 @@ export async function jobs(app: App): Promise<Leave> {
   const said = make("div", {});
   const body = make("tbody", {});
   const cases = await service.list<Case>("/v1/cases").catch((): Case[] => []);
-  const names = new Map(cases.map(({ id, case: document }) => [id, document.name ?? id.slice(0, 8)]));
+  const names = new Map(cases.map(({ id, case: document }) => [id, document.name ?? tail(id)]));
   const row = (job: Job) => {
     const cancel = button(words.cancel, () => { service.ask("DELETE", `/v1/jobs/${job.id}`).then(draw).catch((error: unknown) => said.replaceChildren(refusal(error, words))); });
     const working = WORKING.includes(job.status);
     const bar = make("progress", { max: 100, value: job.progress, ariaLabel: `${kindOf(words, job.kind)} ${words.progress}` });
-    return make("tr", {}, make("th", { scope: "row" }, make("a", { href: address(["job", job.id]) }, kindOf(words, job.kind))),
+    return make("tr", {}, make("th", { scope: "row" }, make("a", { href: address(["job", job.id]) }, kindOf(words, job.kind)),
+      make("span", { className: "fine" }, ` ${[aboutJob(words, job), tail(job.id)].filter((part) => part !== "").join(" · ")}`)),
       make("td", {}, names.get(job.case ?? "") ?? ""), make("td", {}, statusOf(words, job.status)), make("td", { className: "detail" }, working ? bar : failure(job)),
       make("td", {}, when(job.created)), make("td", {}, working ? cancel : ""));
   };
@@ -52,8 +54,17 @@ export async function studies(app: App): Promise<Leave> {
   const list = await service.list<Job>("/v1/jobs?kind=study", 50);
   const shown = make("div", {});
   const open = (job: Job) => void report(app, job, shown).catch((error: unknown) => shown.replaceChildren(refusal(error, words)));
+  // Lists say the verdict of a study, its report what it was of.
+  const about = (job: Job) => {
+    const into = make("p", { className: "fine" }, tail(job.id));
+    if (job.status === "successful") {
+      service.get<Documents["ReportDocument"]>(`/v1/jobs/${job.id}/report`)
+        .then(({ rows, scenes }) => { into.textContent = [scenes.map(({ name }) => name).join(", "), each(rows.map(({ label }) => label)).join(", "), tail(job.id)].join(" · "); }, () => {});
+    }
+    return into;
+  };
   const row = (job: Job) => make("li", { className: "card" },
-    make("h2", {}, when(job.created)),
+    make("h2", {}, when(job.created)), about(job),
     make("p", {}, `${statusOf(words, job.status)}${job.results?.study === undefined ? "" : ` · ${words.verdict}: ${job.results.study.verdict.outcome}`}`),
     job.status === "successful" && button(words.chart, () => open(job)), " ", make("a", { className: "button", href: address(["job", job.id]) }, words.result));
   stage.replaceChildren(make("h1", {}, words.studies),
@@ -61,17 +72,20 @@ export async function studies(app: App): Promise<Leave> {
   return () => {};
 }
 
+/** Each once. */
+const each = (names: string[]): string[] => [...new Set(names)];
+
 /** The chart of a study with the rows behind its marks. */
 async function report(app: App, job: Job, into: HTMLElement): Promise<void> {
   const { service, words } = app;
   const path = `/v1/jobs/${job.id}/report`;
   const chart = await (await service.ask("GET", `${path}?format=svg`)).blob();
   const { rows, verdict } = await service.get<Documents["ReportDocument"]>(path);
-  const cells = rows.map((row) => [row.label, row.scene, row.wall_s?.toPrecision(2) ?? "–",
-    row.p95_mm === undefined || row.p95_mm === null ? "–" : mm(row.p95_mm), row.status]);
+  const length = (value: number | null | undefined) => (value === undefined || value === null ? "–" : mm(value));
+  const cells = rows.map((row) => [row.label, row.scene, row.plan, row.material, row.level, length(row.mean_mm), length(row.p95_mm), row.wall_s?.toPrecision(2) ?? "–", row.status]);
   into.replaceChildren(
     make("img", { className: "drawing", src: URL.createObjectURL(chart), alt: words.chart }),
     reportLinks(app, job) ?? "",
     ...verdict.reasons.map((reason) => make("p", { className: "warned" }, reason)),
-    table(words.rows, [words.variant, words.scene, words.wall, words.p95mm, words.state], cells));
+    table(words.rows, [words.variant, words.scene, words.plan, words.material, words.level, words.meanMm, words.p95mm, words.wall, words.state], cells));
 }

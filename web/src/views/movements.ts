@@ -45,11 +45,15 @@ export function movements(
   return { element, show };
 }
 
+/** A movement as the sliders call it, within a sentence. */
+export const wordFor = (words: Words, word: MotionName, frame: FrameName): string => (frame === "unspecified" ? words.axes[word] : words[word].toLowerCase());
+const unitOf = (word: MotionName) => ((TRANSLATIONS as readonly string[]).includes(word) ? " mm" : "°");
+
 /** A plan in a line. */
-export function told(plan: Plan, words: Words): string {
+export function told(plan: Plan, words: Words, frame: FrameName): string {
   const parts = Object.entries(plan.segments).map(([name, motion]) => {
     const moved = Object.entries(motion).filter(([, value]) => value !== 0);
-    const text = moved.map(([word, value]) => `${words[word as MotionName].toLowerCase()} ${Number(value.toFixed(2))}`).join(", ");
+    const text = moved.map(([word, value]) => `${wordFor(words, word as MotionName, frame)} ${Number(value.toFixed(2))}${unitOf(word as MotionName)}`).join(", ");
     return text === "" ? "" : `${name} ${text}`;
   });
   return [...parts.filter((part) => part !== ""), ...toldInner(plan.inner, words)].join("; ") || words.atRest;

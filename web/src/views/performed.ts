@@ -2,6 +2,7 @@
 import type { Case, CaseDocument, Documents, Triple } from "../api.js";
 import { rowChart } from "../charts.js";
 import type { App } from "../app.js";
+import { tail } from "./called.js";
 import { card, make, select, table } from "../dom.js";
 import { mm, signed } from "../figures.js";
 import { angles, inWords, motion, type FrameName } from "../frame.js";
@@ -44,7 +45,7 @@ async function asPlan({ service, words }: App, segments: Reproduction["segments"
   if (fits.length === 0) return stored.length === 0 ? undefined : make("p", { className: "fine" }, words.noCaseFits);
   const link = make("a", { className: "button primary" }, words.openPlan);
   const choose = (id: string) => { link.href = address(["case", id, "plan"], written(...planOf(segments, frame))); };
-  const options = fits.map(({ id, document }) => [id, document.name ?? id.slice(0, 8)] as const);
+  const options = fits.map(({ id, document }) => [id, document.name ?? tail(id)] as const);
   choose(options[0]![0]);
   return make("div", { className: "row" }, select(words.onCase, options, options[0]![0], choose), link);
 }

@@ -47,15 +47,32 @@ export async function plainResult(app: App, job: Job): Promise<HTMLElement[]> {
     ...Object.values(facts).flat(),
     ...(measures.length === 0 ? [] : [card(words.cephalometry, cephalometry(words, measures))]),
     ...found.map(([member, value]) => anything(words, member.replaceAll("_", " "), value as Record<string, unknown>, ["case", "plan"])),
+    ...drawings(app, job),
     ...(results?.provenance === undefined ? [] : [card(words.provenance, provenance(words, results.provenance))]),
     ...(results === undefined ? [] : [fileList(app, job)]),
   ];
 }
 
+const PICTURE = /\.(svg|png)$/;
+
+/** Files of the result that are pictures, fetched with the key where one is needed. */
+function drawings({ service, words }: App, job: Job): HTMLElement[] {
+  const names = (job.results?.files ?? []).map(({ name }) => name).filter((name) => PICTURE.test(name));
+  if (names.length === 0) return [];
+  const images = names.map((name) => {
+    const image = make("img", { className: "drawing", alt: name });
+    const path = `/v1/jobs/${job.id}/results/${name}`;
+    service.ask("GET", path).then(async (answer) => { image.src = URL.createObjectURL(await answer.blob()); }).catch(() => image.remove());
+    return image;
+  });
+  return [card(words.pictures, ...images)];
+}
+
 /** Where a result leads: the case it is of, the case it made, the study that it is. */
 function onwards({ service, words }: App, job: Job): HTMLElement[] {
-  const link = (path: string[], text: string) => make("a", { className: "button", href: address(path) }, text);
+  const link = (path: string[], text: string, state = {}) => make("a", { className: "button", href: address(path, state) }, text);
   const links: HTMLElement[] = job.case === undefined || job.case === null ? [] : [link(["case", job.case], words.toCase)];
+  if (job.kind === "compare" && job.case) links.push(link(["case", job.case, "compare"], words.toComparison, { comparison: job.id }));
   if (job.kind === "response" && job.case) links.push(link(["case", job.case, "plan"], words.planIt));
   if (job.kind === "study" || (job.kind as string) === "batch") links.push(link(["studies"], words.toStudies));
   const conformed = job.results?.conformation?.case;

@@ -3,7 +3,7 @@ import type { Documents, Triple } from "../api.js";
 import { announce, refusal, warnings, type App, type Leave } from "../app.js";
 import { button, make, save, select } from "../dom.js";
 import { movement, still, type Motion, type MotionName } from "../frame.js";
-import { addBones, buildResponse, openCase, responseOf, type LoadedResponse, type Opened } from "../loading.js";
+import { addBones, buildResponse, openCase, responseOf, showBoundary, type LoadedResponse, type Opened } from "../loading.js";
 import { matrix } from "../matrix.js";
 import { INNER_KINDS, innerFactors, type InnerKind } from "../columns.js";
 import { atRest, document as planDocument, fromDocument, History, planState, read, readPivots, withInner, written, type Pivots, type Plan } from "../plan.js";
@@ -80,7 +80,7 @@ class Planning {
     const saved = bench.section(words.savedPlans);
     saved.append(await savedPlans(app, opened, {
       now: () => planDocument(this.plan, this.pivots, opened.frame), 
-      load: (plan) => this.set(plan), read: (stored) => this.readable(stored), called: (plan) => told(plan, words), compare: (plan) => this.differenceTo(plan),
+      load: (plan) => this.set(plan), read: (stored) => this.readable(stored), called: (plan) => told(plan, words, opened.frame), compare: (plan) => this.differenceTo(plan),
     }));
     bench.canvasKeys((event) => this.pressed(event));
     await bones;
@@ -95,7 +95,16 @@ class Planning {
     const { app, opened, bench } = this;
     const wait = make("div", { className: "wait" }, make("p", { className: "loading" }, app.words.loading));
     bench.panel.append(wait);
-    this.loaded = await responseOf(app, opened.id, wait);
+    let isWaiting = true;
+    const face = async () => {
+      await showBoundary(app.service, opened, bench);
+      if (isWaiting) bench.start();
+    };
+    // Whoever waits sees the face at rest; without it they wait all the same.
+    const shown: Promise<void>[] = [];
+    this.loaded = await responseOf(app, opened.id, wait, () => { shown.push(face().catch(() => {})); });
+    isWaiting = false;
+    await Promise.all(shown);
     wait.remove();
     this.sum = new SkinSum(this.loaded.columns);
     const centres = this.loaded.description.segments.map(({ name, centre_mm }) => [name, centre_mm as Triple] as const);
@@ -249,7 +258,7 @@ class Planning {
     const most = lengths(this.sum.displacement_mm).reduce((largest, one) => Math.max(largest, one), 0);
     this.told.textContent = `${words.movesMost} ${mm(most)} mm ${words.atMost}`;
     this.bench.repaint();
-    this.bench.caption.textContent = `${this.opened.name} · ${told(this.plan, words)}`;
+    this.bench.caption.textContent = `${this.opened.name} · ${told(this.plan, words, this.opened.frame)}`;
     clearTimeout(this.asking);
     this.asking = setTimeout(() => void this.ask(), IDLE);
   }

@@ -5,6 +5,7 @@ import { button, make } from "../dom.js";
 import { when } from "../figures.js";
 import type { Opened } from "../loading.js";
 import type { Plan } from "../plan.js";
+import { tail } from "./called.js";
 
 type Stored = Documents["PlanView"];
 interface Planner {
@@ -37,7 +38,7 @@ export async function savedPlans(app: App, opened: Opened, planner: Planner): Pr
       compare.setAttribute("aria-pressed", String(on));
       said.textContent = planner.compare(on ? plan : undefined);
     }, { aria: { pressed: "false" } });
-    const name = plan === undefined ? stored.id.slice(0, 8) : planner.called(plan);
+    const name = plan === undefined ? tail(stored.id) : planner.called(plan);
     const usable = plan === undefined ? [make("span", { className: "fine" }, words.otherPlan)]
       : [button(words.load, () => planner.load(plan)), compare];
     return make("li", {}, make("span", { className: "name" }, name),

@@ -15,7 +15,7 @@ import { Workbench, type SkinMap } from "../workbench.js";
 import { resultBeside } from "./above.js";
 import { correctionFacts } from "./corrected.js";
 import { crumbs } from "./crumbs.js";
-import { foundFacts } from "./found.js";
+import { foundFacts, foundLine, targetsOf } from "./found.js";
 import { comparisonFacts } from "./distances.js";
 import { fileList } from "./files.js";
 import { told } from "./movements.js";
@@ -53,7 +53,7 @@ export async function resultPage(app: App): Promise<Leave> {
 /** Shows how far a job is until it has ended. */
 async function follow(app: App, job: Job, left: () => boolean): Promise<Job> {
   const { service, words, stage } = app;
-  const line = new ProgressLine(words.running, {
+  const line = new ProgressLine(words, words.running, {
     text: words.cancel, clicked: () => void service.ask("DELETE", `/v1/jobs/${job.id}`).catch(() => {}),
   });
   line.tell(job);
@@ -168,13 +168,16 @@ class Result {
     const probe = make("p", { className: "told", role: "status" }, words.probe);
     const list = this.job.warnings;
     const places = placesOf(words, opened, bench.scene, () => this.parts);
-    drawTrust(bench.strip, words, resultLines(words, results, list));
+    const { optimisation } = results;
+    const aims = optimisation === undefined ? [] : [foundLine(words, optimisation, targetsOf(words, this.job.tags, optimisation.targets.length), results.provenance?.frame ?? opened.frame)];
+    drawTrust(bench.strip, words, [...aims, ...resultLines(words, results, list)]);
     bench.section(words.beforeAfter, this.slider(), probe);
     bench.section(words.warnings, warnings(list, words, places));
     const report = reportLinks(this.app, this.job);
     if (report !== undefined) bench.section(words.report, report);
     if (results.optimisation !== undefined) bench.section(words.found, foundFacts(this.app, this.job, opened, results.optimisation));
-    if (results.comparison !== undefined) bench.section(words.comparison, comparisonFacts(this.app, results.comparison));
+    if (results.comparison !== undefined) bench.section(words.comparison, comparisonFacts(this.app, results.comparison),
+      make("a", { className: "button", href: address(["case", opened.id, "compare"], { comparison: this.job.id }) }, words.toComparison));
     const shown: Shown = { words, warnings: list, show: (name) => places({ code: "", detail: name }).find(({ label }) => label === name)?.show };
     bench.section(words.regions, regions(shown, results));
     if (results.correction) bench.section(words.correction, correctionFacts(this.app, this.job, results.correction, this.before, bench.scene));
@@ -184,7 +187,7 @@ class Result {
     bench.section(words.profile, profile(words, opened.frame, this.before, this.after), make("p", { className: "fine" }, words.profileHint));
     bench.section(words.provenance, provenance(words, results.provenance ?? undefined));
     bench.panel.append(fileList(this.app, this.job));
-    bench.caption.textContent = [opened.name, this.plan === undefined ? "" : told(this.plan, words), results.provenance?.method ?? this.job.kind].filter((part) => part !== "").join(" · ");
+    bench.caption.textContent = [opened.name, this.plan === undefined ? "" : told(this.plan, words, opened.frame), results.provenance?.method ?? this.job.kind].filter((part) => part !== "").join(" · ");
     bench.provenance = `job ${this.job.id} · ${results.provenance?.engine.version ?? ""} · ${results.provenance?.spec_hash.slice(0, 16) ?? ""}`;
     this.probing(probe);
   }

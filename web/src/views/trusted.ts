@@ -4,8 +4,23 @@ import { mm } from "../figures.js";
 import type { Words } from "../words/en.js";
 import type { TrustLine } from "./trust.js";
 
-/** Means above this are to be heeded, in mm: that of which the service calls a response trustworthy. */
-const HEEDED_MM = 0.5;
+/** Means above this are to be heeded, in mm: what the program aims at, above which it warns of the mesh (`numerical-error-large`). */
+const AIM_MM = 0.1;
+
+/** Warnings of what the lines of the strip say: where one stands, its line is not as it should be. */
+const TOPICS = {
+  model: ["another-equilibrium", "built-in-poisson-ratio", "conditions-ignored", "exponent-bounded", "fibres-ignored", "law-at-rest", "materials-ignored", "volume-not-kept"],
+  leftOut: ["cells-inverted", "large-rotation", "large-strain", "outside-linear-range", "outside-second-order-range", "sliding-normal-turned", "verification-differs"],
+  mesh: ["locking", "not-corrected", "numerical-error-large", "thin-stiff-layer"],
+  accepted: ["tolerance-not-met"],
+};
+
+/** The line as a warning of its topic, or a mean above the aim, makes it, with the reason. */
+function heeded(words: Words, line: TrustLine, topic: keyof typeof TOPICS, warnings: Warning[], mean_mm = 0): TrustLine {
+  const said = warnings.filter(({ code }) => TOPICS[topic].includes(code)).map(({ detail }) => detail);
+  const why = [...(line.why === undefined ? [] : [line.why]), ...(mean_mm > AIM_MM ? [words.aboveAim(String(AIM_MM))] : []), ...said].join(" ");
+  return said.length > 0 || mean_mm > AIM_MM ? { ...line, trusted: "heed", why } : line;
+}
 
 const warned = (words: Words, count: number): TrustLine =>
   ({ name: words.warnings, value: count === 0 ? words.none : String(count), trusted: count === 0 ? "good" : "heed" });
@@ -18,10 +33,11 @@ export function appliedLines(words: Words, answer: Documents["AppliedDocument"],
     ? { name: words.leftOutName, value: words.notKnown, trusted: "unknown", why: words.leftOutUnknown }
     : { name: words.leftOutName, value: words.leftOut(mm(left)), trusted: answer.within_linear_range ? "good" : "heed",
       ...(answer.within_linear_range ? {} : { why: words.outside }) };
+  const model: TrustLine = { name: words.method, value: answer.order === 2 ? words.methodOrder2 : words.methodOrder1, trusted: "good",
+    ...(second === undefined ? {} : { why: words.secondAdds(mm(second)) }) };
   return [
-    { name: words.method, value: answer.order === 2 ? words.methodOrder2 : words.methodOrder1, trusted: "good",
-      ...(second === undefined ? {} : { why: words.secondAdds(mm(second)) }) },
-    leftOut,
+    heeded(words, model, "model", answer.warnings),
+    heeded(words, leftOut, "leftOut", answer.warnings, left),
     { name: words.numericalError, value: words.notKnown, trusted: "unknown", why: words.errorWithPredict },
     { name: words.sameAsService, value: (apart <= most ? words.agrees : words.disagrees)(apart.toExponential(0)), trusted: apart <= most ? "good" : "heed" },
     warned(words, answer.warnings.length),
@@ -32,23 +48,22 @@ type Lengths = { mean: number; p95: number };
 
 function measured(words: Words, name: string, lengths: Lengths | null | undefined, unknown: string | null | undefined): TrustLine {
   if (lengths === null || lengths === undefined) return { name, value: words.notKnown, trusted: "unknown", ...(unknown ? { why: unknown } : {}) };
-  return { name, value: words.meanAnd95(mm(lengths.mean), mm(lengths.p95)), trusted: lengths.mean <= HEEDED_MM ? "good" : "heed" };
+  return { name, value: words.meanAnd95(mm(lengths.mean), mm(lengths.p95)), trusted: "good" };
 }
 
 /** Of a result. */
 export function resultLines(words: Words, results: Documents["ResultDocument"], warnings: Warning[]): TrustLine[] {
   const { provenance, nonlinearity_mm, nonlinearity_unknown, numerical_error_mm, numerical_error_unknown, adequacy } = results;
   const model = [provenance?.method, provenance?.model].filter((part) => part !== undefined && part !== null);
-  const lines: TrustLine[] = [
-    { name: words.solvedBy, value: [...new Set(model)].join(" · ") || words.notKnown, trusted: "good", ...(provenance?.why ? { why: provenance.why } : {}) },
-  ];
+  const solved: TrustLine = { name: words.solvedBy, value: [...new Set(model)].join(" · ") || words.notKnown, trusted: "good", ...(provenance?.why ? { why: provenance.why } : {}) };
+  const lines: TrustLine[] = [heeded(words, solved, "model", warnings)];
   const finite = /nonlinear|finite/.test(model.join(" "));
-  if (finite && (nonlinearity_mm ?? undefined) === undefined) lines.push({ name: words.leftOutName, value: words.nothingOfThat, trusted: "good", why: words.finiteStrain });
-  else lines.push(measured(words, words.leftOutName, nonlinearity_mm?.skin, nonlinearity_unknown));
+  if (finite && (nonlinearity_mm ?? undefined) === undefined) lines.push(heeded(words, { name: words.leftOutName, value: words.nothingOfThat, trusted: "good", why: words.finiteStrain }, "leftOut", warnings));
+  else lines.push(heeded(words, measured(words, words.leftOutName, nonlinearity_mm?.skin, nonlinearity_unknown), "leftOut", warnings, nonlinearity_mm?.skin.mean));
   const error = measured(words, words.numericalError, numerical_error_mm, numerical_error_unknown);
-  lines.push(numerical_error_mm?.corrected === true ? { ...error, why: words.correctedHere } : error);
+  lines.push(numerical_error_mm?.corrected === true ? { ...error, why: words.correctedHere } : heeded(words, error, "mesh", warnings, numerical_error_mm?.mean));
   if (adequacy !== undefined && adequacy !== null) {
-    lines.push({ name: words.accepted, value: `${mm(adequacy.accepted_mm)} mm: ${adequacy.met ? words.met : words.notMet}`, trusted: adequacy.met ? "good" : "heed" });
+    lines.push(heeded(words, { name: words.accepted, value: `${mm(adequacy.accepted_mm)} mm: ${adequacy.met ? words.met : words.notMet}`, trusted: adequacy.met ? "good" : "heed" }, "accepted", warnings));
   }
   return [...lines, warned(words, warnings.length)];
 }

@@ -5,6 +5,18 @@ import { button, make, select } from "../dom.js";
 import { address } from "../route.js";
 import { guess, documentOf, type Role, type SetRoles } from "../roles.js";
 
+/** The least that a document says to have a scan, or surfaces, meshed. */
+const MESHED = {
+  image: (scan: string) => ({ meshing: { kind: "mesh", scan, osteotomy: "…" } }),
+  surface: (skin: string) => ({ meshing: { kind: "mesh", surfaces: { skin, bones: [{ name: "mandible", mesh: "mandible" }] } } }),
+};
+
+/** The name stands before the choice already: it is for those who do not see that. */
+function named(choice: HTMLLabelElement): HTMLLabelElement {
+  choice.querySelector("span")!.className = "hidden";
+  return choice;
+}
+
 const ROLES: Role[] = ["none", "skin", "region", "segment", "fixed", "sliding"];
 const SURFACES = /\.(vtp|stl|ply)$/i;
 
@@ -40,6 +52,7 @@ const isCase = (stated: Stated) => stated.case !== undefined || stated.volume !=
 
 /** Files with a document are sent as they are; a mesh alone is looked at first. */
 async function taken(app: App, files: File[], said: HTMLElement, next: HTMLElement): Promise<void> {
+  const { words } = app;
   const documents = await Promise.all(files.filter(({ name }) => name.endsWith(".json"))
     .map(async (file) => JSON.parse(await file.text()) as Stated));
   const meshes = files.filter(({ name }) => !name.endsWith(".json"));
@@ -50,11 +63,16 @@ async function taken(app: App, files: File[], said: HTMLElement, next: HTMLEleme
     return;
   }
   const volume = meshes.find(({ name }) => !SURFACES.test(name)) ?? meshes[0]!;
-  const line = new ProgressLine(app.words.sending);
+  const line = new ProgressLine(app.words, app.words.sending);
   said.replaceChildren(line.element);
   const id = await app.service.upload(volume, "mm", "unspecified", (upload) => line.tell({ status: "", ...upload }));
   const mesh = await app.service.get<Documents["MeshDocument"]>(`/v1/meshes/${id}`);
   said.replaceChildren();
+  if (mesh.report.kind !== "volume") {
+    next.replaceChildren(make("div", { className: "warned" }, make("p", {}, mesh.report.kind === "surface" ? words.surfaceAlone(volume.name) : words.imageAlone(volume.name)),
+      make("pre", {}, make("code", {}, JSON.stringify(MESHED[mesh.report.kind](stem(volume.name)), null, 2)))));
+    return;
+  }
   next.replaceChildren(editor(app, mesh, volume.name, meshes.filter((file) => file !== volume)));
 }
 
@@ -80,12 +98,14 @@ function editor(app: App, mesh: Documents["MeshDocument"], name: string, bones: 
   const { words } = app;
   const sets = Object.entries(mesh.report.node_sets ?? {});
   const roles: SetRoles = Object.fromEntries(sets.map(([set]) => [set, guess(set)]));
-  const settings = { name: stem(name), frame: (mesh.report.space ?? "LPS") as string, units: "mm", mesh: mesh.id };
+  const settings = { name: stem(name), frame: (mesh.report.space ?? "unspecified") as string, units: "mm", mesh: mesh.id };
   const text = make("textarea", { spellcheck: false, aria: { label: words.document } });
   const found = make("div", { role: "status" });
   const write = () => { text.value = JSON.stringify(documentOf(settings, roles, bones.map((file) => stem(file.name))), null, 2); };
   const rows = sets.map(([set, count]) => make("li", {}, make("span", { className: "name" }, `${set} · ${count} ${words.nodes}`),
-    select(set, ROLES.map((role) => [role, words.role[role]] as const), roles[set]!, (role) => { roles[set] = role as Role; write(); })));
+    named(select(set, ROLES.map((role) => [role, words.role[role]] as const), roles[set]!, (role) => { roles[set] = role as Role; write(); })),
+    count === 0 && make("span", { className: "warned" }, words.emptySet)));
+  const asked = make("p", { className: "warned", hidden: settings.frame !== "unspecified" }, words.frameAsked);
   const parts = () => Object.fromEntries(bones.map((file) => [stem(file.name), file]));
   const post = button(words.sendCase, () => {
     try {
@@ -98,8 +118,9 @@ function editor(app: App, mesh: Documents["MeshDocument"], name: string, bones: 
   return make("div", { className: "split" },
     make("div", {}, make("h3", {}, words.sets), make("p", { className: "fine" }, words.setsHint),
       make("div", { className: "row" },
-        select(words.frame, [["LPS", "LPS"], ["RAS", "RAS"], ["unspecified", "–"]], settings.frame, (value) => { settings.frame = value; write(); }),
+        select(words.frame, [["unspecified", words.frames.unspecified], ["LPS", words.frames.LPS], ["RAS", words.frames.RAS]], settings.frame,
+          (value) => { settings.frame = value; asked.hidden = value !== "unspecified"; write(); }),
         select(words.units, [["mm", "mm"], ["m", "m"], ["um", "µm"]], settings.units, (value) => { settings.units = value; write(); })),
-      make("ul", { className: "plans" }, ...rows)),
+      asked, make("ul", { className: "plans" }, ...rows)),
     make("div", {}, make("h3", {}, words.document), text, make("p", { className: "fine" }, words.documentHint), post, found));
 }

@@ -78,6 +78,24 @@ export const de: Words = {
   atBound: "an der Grenze", openPlan: "Als Plan öffnen", noTargets: "Noch keine Ziele.", emptyFree: "frei", movement: "Bewegung",
   dragHint: "Ziehen: an jedem Punkt der Haut. Drehen: am Kopf.", addPoint: "Punkt in der Mitte der Ansicht dazu", noSkinThere: "In der Mitte der Ansicht ist keine Haut.", pulling: "Ziehen", turning: "Drehen",
 
+  missedBy: (target, mm) => `${target} ist um ${mm} mm verfehlt.`, stoppedAt: (movement, value) => `${movement} wird an der Grenze bei ${value} aufgehalten.`,
+  missedRule: (sigmas) => `Ein Ziel ist verfehlt, wo mehr als ${sigmas} Standardabweichungen übrig sind.`, leftAtMost: (mm) => `höchstens ${mm} mm übrig`,
+  pointsOf: (count) => `${count} Punkte`, targetsAsked: "Noch gibt es nichts zu suchen: erst eine Landmarke hinzufügen oder einen Punkt der Haut ziehen.",
+  heldThere: (target, way, mm) => `${target} soll nach ${way} ${mm} mm, aber kein Segment darf sich dorthin bewegen.`,
+  notThatFar: (target, way, mm, most) => `${target} soll nach ${way} ${mm} mm, aber kein Segment darf dort weiter als ${most} mm.`,
+  allowThat: (way, mm) => `${way} ± ${mm} mm erlauben`, leaveFree: (way) => `${way} freilassen`,
+  aboveAim: (mm) => `Mehr als die ${mm} mm, die angestrebt werden.`,
+
+  phases: { validate: "Anfrage wird geprüft", mesh: "Netz wird vorbereitet", assemble: "Gleichungen werden aufgestellt", solve: "Lösen", estimate: "Fehler wird geschätzt", contact: "Berührung wird gelöst", surface: "Haut wird gezeichnet", compare: "Vergleichen", write: "Dateien werden geschrieben" },
+  step: (count) => `Schritt ${count}`, idEnd: "Ende der Kennung",
+  frameAsked: "Wohin zeigen die Achsen dieses Netzes? Die Datei sagt es nicht. LPS: x zur Linken des Patienten, y nach hinten. RAS: x zur Rechten, y nach vorn. Ohne Antwort sind Bewegungen entlang und um diese Achsen.",
+  frames: { unspecified: "nicht angegeben", LPS: "LPS: links, hinten, oben", RAS: "RAS: rechts, vorn, oben" }, emptySet: "hält keinen Knoten",
+  joinedToNothing: (name) => `Kein Gewebe ist mit ${name} verbunden: seine Bewegung bewegt nichts. Die Knoten auf dem Knochen wählen.`,
+  surfaceAlone: (file) => `${file} ist eine Fläche und jetzt gespeichert. Um darauf vorherzusagen, muss das Gewebe zwischen Haut und Knochen vernetzt werden: noch einmal ablegen, zusammen mit der Haut, den Knochen und einem Dokument (case.json), das mit "meshing" sagt, wie.`,
+  imageAlone: (file) => `${file} ist eine Aufnahme und jetzt gespeichert. Um darauf vorherzusagen, muss ihr Weichgewebe vernetzt werden: noch einmal ablegen, zusammen mit einem Dokument (case.json), das mit "meshing" sagt, wie. osteotomy sagt, wo Knochen geschnitten wird: ohne das lässt sich nichts bewegen.`,
+
+  material: "Material", level: "Netzstufe", meanMm: "Mittel mm", toComparison: "Auf der Haut zeigen", pictures: "Bilder",
+
   compareWhy: "Die vorhergesagte Haut gegen eine wirkliche halten, nach der Operation.", actual: "Wirkliche Haut (VTP, STL oder PLY)", align: "Zuerst registrieren", alignIcp: "mit ICP", alignNone: "nein",
   compareNow: "Vergleichen", histogram: "Abstände", registration: "Registrierung", turned: "gedreht", shifted: "verschoben", residual: "rms",
   chooseJob: "Vorhersage", noPredictions: "Noch keine Vorhersage dieses Falls: erst eine planen.",

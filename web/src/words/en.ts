@@ -76,6 +76,24 @@ export const en = {
   atBound: "stopped by its bound", openPlan: "Open as plan", noTargets: "No targets yet.", emptyFree: "free", movement: "Movement",
   dragHint: "Pull: drag any point of the skin. Turn: drag the head.", addPoint: "Add the point in the middle of the view", noSkinThere: "No skin in the middle of the view.", pulling: "Pull", turning: "Turn",
 
+  missedBy: (target: string, mm: string) => `${target} is missed by ${mm} mm.`, stoppedAt: (movement: string, value: string) => `${movement} is stopped by its bound at ${value}.`,
+  missedRule: (sigmas: number) => `A target is missed where more than ${sigmas} standard deviations of it are left.`, leftAtMost: (mm: string) => `at most ${mm} mm left over`,
+  pointsOf: (count: number) => `${count} points`, targetsAsked: "There is nothing to find a plan for yet: add a landmark or pull a point of the skin first.",
+  heldThere: (target: string, way: string, mm: string) => `${target} is to go ${way} ${mm} mm, but no segment may move that way.`,
+  notThatFar: (target: string, way: string, mm: string, most: string) => `${target} is to go ${way} ${mm} mm, but no segment may go further than ${most} mm that way.`,
+  allowThat: (way: string, mm: number) => `Allow ${way} ± ${mm} mm`, leaveFree: (way: string) => `Leave ${way} free`,
+  aboveAim: (mm: string) => `More than the ${mm} mm that is aimed at.`,
+
+  phases: { validate: "Checking the request", mesh: "Preparing the mesh", assemble: "Setting up the equations", solve: "Solving", estimate: "Estimating the error", contact: "Solving contact", surface: "Drawing the skin", compare: "Comparing", write: "Writing files" } as Record<string, string>,
+  step: (count: number) => `step ${count}`, idEnd: "End of the id",
+  frameAsked: "Which way do the axes of this mesh point? The file does not say. LPS: x to the patient's left, y to the back. RAS: x to the right, y to the front. Without an answer movements are along and about its axes.",
+  frames: { unspecified: "not stated", LPS: "LPS: left, back, up", RAS: "RAS: right, front, up" }, emptySet: "holds no node",
+  joinedToNothing: (name: string) => `No tissue is joined to ${name}: moving it moves nothing. Choose the nodes on its bone.`,
+  surfaceAlone: (file: string) => `${file} is a surface and is stored now. To predict on it the tissue between skin and bone has to be meshed: drop it again together with the skin, the bones, and a document (case.json) that says how, with "meshing".`,
+  imageAlone: (file: string) => `${file} is a scan and is stored now. To predict on it its soft tissue has to be meshed: drop it again together with a document (case.json) that says how, with "meshing". osteotomy says where bone is cut: without it nothing can be moved.`,
+
+  material: "Material", level: "Mesh level", meanMm: "mean mm", toComparison: "Show it on the skin", pictures: "Pictures",
+
   compareWhy: "Hold the predicted skin against a real one, after the operation.", actual: "Real skin (VTP, STL or PLY)", align: "Register first", alignIcp: "by ICP", alignNone: "no",
   compareNow: "Compare", histogram: "Distances", registration: "Registration", turned: "turned", shifted: "shifted", residual: "rms",
   chooseJob: "Prediction", noPredictions: "No prediction of this case yet: plan one first.",

@@ -2,8 +2,13 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import type { Documents } from "../../../clients/typescript/src/facies.js";
-import { documentOf, rolesOf, withRoles, type SetRoles } from "../../src/roles.js";
+import { documentOf, guess, rolesOf, withRoles, type SetRoles } from "../../src/roles.js";
+import { shareOf } from "../../src/app.js";
+import { wordOf } from "../../src/frame.js";
+import { beyondBounds } from "../../src/targets.js";
 import { called } from "../../src/views/anything.js";
+import { jobInWords, planInWords } from "../../src/views/called.js";
+import { foundLine, targetsOf, targetTags } from "../../src/views/found.js";
 import { names } from "../../src/views/places.js";
 import { appliedLines, resultLines } from "../../src/views/trusted.js";
 import { de } from "../../src/words/de.js";
@@ -64,8 +69,68 @@ test("what is not known of an answer is not told as good", () => {
   const results = (changes: object) => ({ provenance: { method: "fem_linear" }, nonlinearity_mm: null, numerical_error_mm: null, ...changes }) as unknown as Documents["ResultDocument"];
   const of = (changes: object) => resultLines(en, results(changes), []).map(({ trusted }) => trusted);
   assert.deepEqual(of({}), ["good", "unknown", "unknown", "good"]);
-  assert.deepEqual(of({ nonlinearity_mm: { skin: { mean: 0.1, p95: 0.2 } }, numerical_error_mm: { mean: 0.6, p95: 2 } }), ["good", "good", "heed", "good"]);
+  assert.deepEqual(of({ nonlinearity_mm: { skin: { mean: 0.1, p95: 0.2 } }, numerical_error_mm: { mean: 0.14, p95: 2 } }), ["good", "good", "heed", "good"]);
   assert.deepEqual(of({ provenance: { method: "fem_nonlinear" } }), ["good", "good", "unknown", "good"]);
+});
+
+test("no line of the strip is good where a warning of its topic stands, or above the aim of 0.1 mm", () => {
+  const results = { provenance: { method: "fem_linear" }, nonlinearity_mm: { skin: { mean: 0.05, p95: 1.2 } }, numerical_error_mm: { mean: 0.05, p95: 0.2 } } as unknown as Documents["ResultDocument"];
+  const warned = (code: string) => resultLines(en, results, [{ code, detail: "As it is." }]).map(({ trusted }) => trusted);
+  assert.deepEqual(resultLines(en, results, []).map(({ trusted }) => trusted), ["good", "good", "good", "good"]);
+  assert.deepEqual(warned("large-rotation"), ["good", "heed", "good", "heed"]);
+  assert.deepEqual(warned("numerical-error-large"), ["good", "good", "heed", "heed"]);
+  assert.deepEqual(warned("materials-ignored"), ["heed", "good", "good", "heed"]);
+  const applied = (mean: number, code?: string) => appliedLines(en, { order: 1, within_linear_range: true, nonlinearity_estimate_mm: mean, warnings: code === undefined ? [] : [{ code, detail: "So." }] } as unknown as Documents["AppliedDocument"], { apart: 0, most: 1 })[1]!;
+  assert.deepEqual([applied(0.09).trusted, applied(0.11).trusted, applied(0.01, "outside-linear-range").trusted], ["good", "heed", "heed"]);
+  assert.equal(applied(0.11).why, "More than the 0.1 mm that is aimed at.");
+});
+
+test("roles are guessed by whole words, and what is not certain is nothing", () => {
+  const guesses = { outer_skin: "skin", skin: "skin", face: "skin", zygomatic_free: "none", zygomatic_ligament: "none", mandibular_ligament_idxplus1: "none",
+    mandible: "segment", mandible_left: "segment", maxilla: "segment", skull: "fixed", "cut-rim": "fixed", skull_wall: "none", vestibule_wall: "sliding", upper_lip: "region", lip_skin: "region",
+    interface: "none", surface_nodes: "none", eclipse: "none", primitive: "none", skin_of_the_neck: "none", Haut: "skin" };
+  assert.deepEqual(Object.fromEntries(Object.keys(guesses).map((set) => [set, guess(set)])), guesses);
+});
+
+test("what was found has the words and signs of the sliders", () => {
+  assert.deepEqual(wordOf("translation_mm.y", "LPS"), { word: "forward", sign: -1 });
+  assert.deepEqual(wordOf("translation_mm.y", "RAS"), { word: "forward", sign: 1 });
+  assert.deepEqual(wordOf("rotation_deg.x", "LPS"), { word: "pitch", sign: -1 });
+  assert.deepEqual(wordOf("translation_mm.x", "RAS"), { word: "left", sign: -1 });
+  const plan = { segments: [{ name: "maxilla", translation_mm: [0, -5, 0] }] } as unknown as Documents["PlanDocument"];
+  assert.equal(planInWords(en, plan, "LPS"), "maxilla forward 5 mm");
+  const job = { kind: "predict", id: "0199-aaaa-bbbb-123456", created: "2026-01-01T00:00:00Z", results: { provenance: { frame: "LPS", plan } } } as unknown as Documents["StatusInfo"];
+  globalThis.document = { documentElement: { lang: "en" } } as unknown as Document;
+  assert.match(jobInWords(en, job), /^Prediction · maxilla forward 5 mm · .+ · …123456$/);
+});
+
+test("targets keep their names, and a missed one or a stopped movement is to be heeded", () => {
+  const named = [{ label: "pogonion", sigma_mm: 1 }, { label: "Point 1", sigma_mm: 0.5 }];
+  assert.deepEqual(targetsOf(en, ["else", ...targetTags(named).reverse()], 2), named);
+  assert.deepEqual(targetsOf(en, [], 1), [{ label: "Target 1", sigma_mm: 1 }]);
+  const found = (residuals: number[], at_bound: object[] = []) => foundLine(en, { targets: residuals.map((residual_mm) => ({ residual_mm, largest_mm: residual_mm, points: 1 })), at_bound } as unknown as Documents["OptimisationDocument"], named, "LPS");
+  assert.equal(found([1.9, 0.9]).trusted, "good");
+  const missed = found([1.9, 1.1]);
+  assert.deepEqual([missed.trusted, missed.value], ["heed", "at most 1.90 mm left over"]);
+  assert.match(missed.why!, /more than 2 standard deviations.*Point 1 is missed by 1\.10 mm\.$/);
+  const stopped = found([0, 0], [{ segment: "maxilla", name: "translation_mm.y", value: -10, bound: "lower" }]);
+  assert.equal(stopped.trusted, "heed");
+  assert.match(stopped.why!, /maxilla forward, mm is stopped by its bound at 10\.00\./);
+});
+
+test("targets that the bounds forbid are known before anything is solved", () => {
+  const held = { forward: 10, up: 10, left: 0, pitch: 0, roll: 0, yaw: 0 };
+  const target = { label: "Point 1", at_mm: [0, 0, 0], by: [2, null, 8.7], sigma_mm: 1 } as Parameters<typeof beyondBounds>[0][number];
+  assert.deepEqual(beyondBounds([target], { jaw: held }).map(({ at, wanted, allowed }) => [at, wanted, allowed]), [[2, 8.7, 0]]);
+  assert.deepEqual(beyondBounds([target], { jaw: held, upper: { ...held, left: 9 } }), []);
+  assert.deepEqual(beyondBounds([{ ...target, by: [11, 0, null] }], { jaw: held }).map(({ at }) => at), [0]);
+  assert.deepEqual(beyondBounds([target], { jaw: { ...held, yaw: 5 } }), [], "a turn may take it there");
+});
+
+test("a share is told only where it is known", () => {
+  assert.equal(shareOf({ phase: "solve", progress: 90, residual: 8.8e-2 }), undefined);
+  assert.equal(shareOf({ phase: "solve", progress: 43, residual: 8.8e-2 }), 43);
+  assert.equal(shareOf({ phase: "contact", progress: 90 }), 90);
 });
 
 test("both languages have the same words, and none is empty", () => {
