@@ -17,6 +17,9 @@ const MOST_BEYOND: f64 = 0.05;
 /// How deep in the box an end may lie, of its diagonal.
 const DEEPEST: f64 = 0.05;
 
+/// How often an end is looked for about the middle of what was found.
+const CENTRINGS: usize = 5;
+
 /// Where a scan ended.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct CutEnds {
@@ -28,8 +31,8 @@ pub(super) struct CutEnds {
     pub bounds: (Vector, Vector),
 }
 
-/// The flat ends of a surface in its box.
-pub(super) fn cut_ends(facets: &[Facet], bounds: (Vector, Vector)) -> CutEnds {
+/// The flat ends of a surface in its box, of which so much is left as its level says, 1 for a whole one.
+pub(super) fn cut_ends(facets: &[Facet], bounds: (Vector, Vector), level: f64) -> CutEnds {
     let (low, high) = bounds;
     let mut ends = CutEnds { triangles: Vec::new(), faces: [[false; 2]; 3], bounds };
     let thickness = (high - low).norm() * THICKNESS;
@@ -41,7 +44,7 @@ pub(super) fn cut_ends(facets: &[Facet], bounds: (Vector, Vector)) -> CutEnds {
                 place: place[axis],
                 outward: if end == 0 { -1.0 } else { 1.0 },
                 thickness,
-                area: size[(axis + 1) % 3] * size[(axis + 2) % 3],
+                area: level.min(1.0) * size[(axis + 1) % 3] * size[(axis + 2) % 3],
             };
             let Some(face) = face.with_end(facets) else { continue };
             ends.faces[axis][end] = true;
@@ -63,7 +66,7 @@ struct Face {
     outward: f64,
     /// How far from it corners may be.
     thickness: f64,
-    /// Of the face of the box.
+    /// Of the face of the box, as much of it as is left of the surface.
     area: f64,
 }
 
@@ -95,11 +98,27 @@ impl Face {
                 return None;
             }
             if sum >= LEAST_COVER * self.area && there.has_end(facets) {
+                let there = there.centred(facets);
                 return (there.beyond(facets) <= MOST_BEYOND * self.area).then_some(there);
             }
             sum -= flat[first].1;
         }
         None
+    }
+
+    /// In the middle of what looks outwards within reach.
+    fn centred(self, facets: &[Facet]) -> Face {
+        let mut face = self;
+        for _ in 0..CENTRINGS {
+            let (mut area, mut moment) = (0.0, 0.0);
+            for facet in face.triangles(facets) {
+                let own = facet.corners.area_vector().norm();
+                area += own;
+                moment += own * facet.corners.middle()[face.axis];
+            }
+            face.place = moment / area;
+        }
+        face
     }
 
     fn has_end(&self, facets: &[Facet]) -> bool {

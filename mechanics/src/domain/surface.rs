@@ -48,7 +48,7 @@ impl SurfaceDomain {
             assessments.push(of_bone);
         }
         let containments = contained(&skin, &shells)?;
-        let ends = cut_ends(skin.tree.facets(), skin.tree.bounds());
+        let ends = cut_ends(skin.tree.facets(), skin.tree.bounds(), of_skin.level);
         let airways = AirwayMap::new(ends.bounds, ends.faces, |point| skin.value(point) > 0.0);
         let cut = ends.triangles;
         Ok(SurfaceDomain { skin, bones: shells, cut, airways, limits, assessments, containments })

@@ -23,8 +23,8 @@ const VOLUME: f64 = 0.01;
 /// How much of the volume may lie elsewhere, and what is near enough to the undamaged boundary not to count, in cells.
 const ELSEWHERE: f64 = 0.01;
 const NEAR: f64 = 0.5;
-/// How many of the nodes where the scan ended there are at least.
-const ENDS: f64 = 0.9;
+/// How many of the nodes where the scan ended there are at least; a lattice that is moved a little has a tenth fewer.
+const ENDS: f64 = 0.75;
 /// In degrees.
 const LEAST_ANGLE: f64 = 5.0;
 
@@ -197,6 +197,8 @@ fn name(error: &SurfaceDomainError) -> &'static str {
         SurfaceDomainError::NoInside { .. } => "no inside",
         SurfaceDomainError::Incomplete { .. } => "incomplete",
         SurfaceDomainError::Uncertain { .. } => "uncertain",
+        SurfaceDomainError::Open { .. } => "open",
+        SurfaceDomainError::Doubled { .. } => "doubled",
         SurfaceDomainError::Tangled { .. } => "tangled",
         SurfaceDomainError::BoneOutside { .. } => "bone outside",
         SurfaceDomainError::NoTissue { .. } => "no tissue",
