@@ -1,4 +1,4 @@
-//! `facies mesh`: from a scan or surfaces to a volume mesh with its node sets and the case that it is made for.
+//! `facies mesh`: from a scan, a label map or surfaces to a volume mesh with its node sets and the case that it is made for.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -14,6 +14,7 @@ use super::watch::Watch;
 use crate::jobs::JobError;
 use crate::jobs::{JobInput, JobOutput, MadeMesh, MeshingInput, StoredMesh, Workplace};
 use crate::schema::case::document::LengthUnit;
+use crate::schema::meshing::labels::LabelsDocument;
 use crate::schema::meshing::result::MeshingResultDocument;
 use crate::schema::meshing::surfaces::SurfacesDocument;
 use crate::schema::wire::canonical;
@@ -26,12 +27,13 @@ use mechanics::mesh::Frame;
 const SCAN: &str = "What is meshed";
 const RESULT: &str = "Result";
 
-const NO_SCAN: &str = "give what is to be meshed: --scan FILE, or --skin FILE and --bone FILE";
+const NO_SCAN: &str = "give what is to be meshed: --scan FILE, --labels FILE, or --skin FILE and --bone FILE";
+const NO_CLASSES: &str = "--labels needs what its labels are: `labels.classes` in the file of --mesh-spec";
 const NO_SKIN: &str = "--bone needs the skin around it: --skin FILE";
-const SKIN_OF_SCAN: &str = "--skin has no meaning with --scan: the skin is found in the scan, and is the node set `skin` of the \
+const SKIN_OF_SCAN: &str = "--skin has no meaning with --scan or --labels: the skin is found in the scan, and is the node set `skin` of the \
                             mesh; with --bone it is the file of the skin";
 const UNITS_OF_SCAN: &str =
-    "--units has no meaning with --scan: an image says its own spacing, in mm";
+    "--units has no meaning with --scan or --labels: an image says its own spacing, in mm";
 const TWO_KINDS_OF_BONE: &str =
     "give --bone once as a FILE of all bone, or every time as NAME=FILE for a segment";
 
@@ -71,11 +73,14 @@ pub struct ScanArguments {
     /// A CT in Hounsfield units, to be meshed first
     #[arg(long, value_name = "FILE", group = "meshed", help_heading = SCAN)]
     scan: Option<PathBuf>,
+    /// A label map, to be meshed first; what its labels are stands in `labels.classes` of --mesh-spec
+    #[arg(long, value_name = "FILE", conflicts_with = "scan", requires = "mesh_spec", group = "meshed", help_heading = SCAN)]
+    labels: Option<PathBuf>,
     /// The surface of all bone, to be meshed first with the skin around it; NAME=FILE, which may be given several
     /// times, for bones that are segments already
-    #[arg(long, value_name = "FILE|NAME=FILE", conflicts_with = "scan", group = "meshed", help_heading = SCAN)]
+    #[arg(long, value_name = "FILE|NAME=FILE", conflicts_with_all = ["scan", "labels"], group = "meshed", help_heading = SCAN)]
     bone: Vec<String>,
-    /// A meshing document, as it is posted but for `scan`, `surfaces` and `osteotomy`
+    /// A meshing document, as it is posted but for `scan`, `labels.image`, `surfaces` and `osteotomy`
     #[arg(long, value_name = "FILE", requires = "meshed", help_heading = SCAN)]
     mesh_spec: Option<PathBuf>,
     /// About how many tetrahedra; default 300000
@@ -105,7 +110,7 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
 
 impl ScanArguments {
     pub fn is_given(&self) -> bool {
-        self.scan.is_some() || !self.bone.is_empty()
+        self.scan.is_some() || self.labels.is_some() || !self.bone.is_empty()
     }
 
     /// Meshes the scan, or what lies between skin and bone, into a folder and tells what came out: the case with the plan
@@ -134,7 +139,7 @@ impl ScanArguments {
 
     /// Refuses what says of surfaces what an image says itself.
     fn refuse_beside_image(&self, beside: &Beside) -> Result<(), CommandError> {
-        let is_image = self.scan.is_some();
+        let is_image = self.scan.is_some() || self.labels.is_some();
         let why = match (beside.skin.is_some(), beside.units.is_some()) {
             _ if !is_image => return Ok(()),
             (true, _) => SKIN_OF_SCAN,
@@ -155,6 +160,11 @@ impl ScanArguments {
             None => MeshingDocument::default(),
         };
         spec.scan = self.scan.as_ref().map(|scan| scan.to_string_lossy().into_owned());
+        match (&self.labels, &mut spec.labels) {
+            (Some(file), Some(labels)) => labels.image = file.to_string_lossy().into_owned(),
+            (Some(_), None) => return Err(CommandError::Usage(NO_CLASSES.to_owned())),
+            (None, labels) => *labels = None,
+        }
         spec.surfaces = match self.bone.is_empty() {
             true => None,
             false => Some(surfaces(skin, &self.bone)?),
@@ -177,8 +187,9 @@ impl ScanArguments {
 fn check_segments(plan: &PlanDocument, spec: &MeshingDocument) -> Result<(), CommandError> {
     let cut = spec.osteotomy.iter().flat_map(|osteotomy| &osteotomy.segments);
     let given = spec.surfaces.iter().flat_map(|surfaces| &surfaces.bones);
-    let known: Vec<&str> =
-        cut.map(|segment| segment.name.trim()).chain(given.map(|bone| bone.name.trim())).collect();
+    let labelled = spec.labels.iter().flat_map(LabelsDocument::segments);
+    let named = cut.map(|segment| segment.name.trim()).chain(given.map(|bone| bone.name.trim()));
+    let known: Vec<&str> = named.chain(labelled).collect();
     let at = Pointer::root().key("plan").key("segments");
     let mut faults = Faults::default();
     for (number, segment) in plan.segments.iter().enumerate() {

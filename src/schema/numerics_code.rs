@@ -117,6 +117,8 @@ impl From<&SurfaceDomainError> for ErrorCode {
             | SurfaceDomainError::NoInside { .. }
             | SurfaceDomainError::Incomplete { .. }
             | SurfaceDomainError::Uncertain { .. }
+            | SurfaceDomainError::Open { .. }
+            | SurfaceDomainError::Doubled { .. }
             | SurfaceDomainError::Tangled { .. }
             | SurfaceDomainError::Limit(_) => ErrorCode::NoInside,
         }

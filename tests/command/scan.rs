@@ -5,7 +5,7 @@ use std::fs;
 use serde_json::{Value, json};
 
 use crate::program::{facies, path, result, text};
-use crate::samples::{BONE_BALL, SKIN_BALL, SampleBall, ball_ct, ball_stl};
+use crate::samples::{BONE_BALL, SKIN_BALL, SampleBall, ball_ct, ball_labels, ball_stl};
 
 fn plan() -> Value {
     json!({
@@ -97,6 +97,37 @@ fn what_has_no_meaning_where_a_scan_is_meshed_is_refused_by_name() {
         assert!(told.contains(&format!("{argument} has no meaning")), "{argument}: {told}");
         assert!(!out.exists(), "{argument}");
     }
+}
+
+#[test]
+fn a_label_map_is_meshed_in_its_regions_and_says_which_labels_it_was_not_told_of() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = |name: &str| folder.path().join(name);
+    fs::write(file("labels.nrrd"), ball_labels()).unwrap();
+    let classes = json!([
+        {"label": "1", "is": "tissue", "name": "muscle"},
+        {"label": "2", "is": "tissue", "name": "fat"},
+        {"label": "3", "is": "bone", "name": "jaw"},
+    ]);
+    let (labels, spec, out) = (file("labels.nrrd"), file("spec.json"), file("out"));
+    let asked = ["mesh", "--labels", path(&labels), "--mesh-spec", path(&spec)];
+    let asked = [&asked[..], &["--out", path(&out)]].concat();
+    let document =
+        json!({"labels": {"image": "", "classes": classes}, "size": {"tetrahedra": 20_000}});
+    let mut short = document.clone();
+    short["labels"]["classes"].as_array_mut().unwrap().remove(1);
+    fs::write(&spec, short.to_string()).unwrap();
+    let refused = facies(&asked);
+    let told = text(&refused.stderr);
+    assert_eq!(refused.status.code(), Some(2), "{told}");
+    assert!(told.contains("/spec/labels/classes") && told.contains("2 ("), "{told}");
+    fs::write(&spec, document.to_string()).unwrap();
+    let done = facies(&asked);
+    assert_eq!(done.status.code(), Some(0), "{}", text(&done.stderr));
+    let case: Value = serde_json::from_slice(&fs::read(out.join("case.json")).unwrap()).unwrap();
+    let regions = json!({"array": "region", "names": {"0": "muscle", "1": "fat"}});
+    assert_eq!(case["case"]["regions"], regions);
+    assert_eq!(case["case"]["segments"][0]["name"], "jaw");
 }
 
 /// The same ball in m.

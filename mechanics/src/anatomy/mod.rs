@@ -6,6 +6,7 @@
 //! `fixed`, `skin`, and parts of the skin.
 
 mod face;
+pub mod label_bone;
 pub mod left_out;
 pub mod loose;
 pub mod region;
@@ -111,9 +112,18 @@ pub fn part_bone(scan: &ImageVolume, rules: &AnatomyRules) -> Result<PartedBone,
 
 fn parted(bone: &BoneImage<'_>, osteotomy: &Osteotomy) -> Result<PartedBone, AnatomyError> {
     let labelled = label(bone, osteotomy)?;
-    let surface = |segment| label_surface(bone, osteotomy, &labelled.labels, segment);
-    let surfaces = (0..labelled.segments.len()).into_par_iter().map(surface).collect();
+    let surfaces = surfaces_of(bone, osteotomy, &labelled);
     Ok(PartedBone { labelled, surfaces, teeth: None })
+}
+
+/// A closed surface for each segment, in their order.
+fn surfaces_of(
+    bone: &BoneImage<'_>,
+    osteotomy: &Osteotomy,
+    labelled: &Labelled,
+) -> Vec<TriangleSurface> {
+    let surface = |segment| label_surface(bone, osteotomy, &labelled.labels, segment);
+    (0..labelled.segments.len()).into_par_iter().map(surface).collect()
 }
 
 /// Builds the model of a body whose bone is parted. The same body and rules give the same bits on any number of threads.
@@ -176,9 +186,9 @@ fn uncut() -> Warning {
     Warning::new("no-cuts", detail)
 }
 
-/// Surfaces do not tell teeth from bone.
+/// Surfaces, and label maps without teeth, do not tell teeth from bone.
 fn teeth_joined() -> Warning {
-    let detail = "surfaces do not tell teeth from bone: tissue is joined to the teeth of segments, and does not slide on them";
+    let detail = "nothing tells teeth from bone: tissue is joined to the teeth of segments, and does not slide on them";
     Warning::new("teeth-joined", detail)
 }
 

@@ -35,7 +35,7 @@ pub fn take_as_segments(
 ) -> Result<PartedBone, AnatomyError> {
     let BoneDepths { image, deepest } = domain.bone_depths();
     let bone = BoneImage { image: &image, threshold: 0.0 };
-    let labelled = label_given(&bone, segments, |voxel| usize::from(deepest[voxel]))?;
+    let labelled = label_given(&bone, segments, |voxel| Some(usize::from(deepest[voxel])))?;
     let surfaces = bones.iter().map(|&bone| bone.clone()).collect();
     Ok(PartedBone { labelled, surfaces, teeth: None })
 }

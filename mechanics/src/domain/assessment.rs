@@ -24,6 +24,10 @@ const FEWEST: usize = 8;
 const WHOLE: f64 = 0.85;
 /// Winding numbers between these parts of the level say neither inside nor outside.
 const BETWEEN: std::ops::Range<f64> = 0.2..0.8;
+/// A surface with a median winding number above this goes around its inside more than once.
+const SEVERAL: f64 = 1.3;
+/// Winding numbers between these parts of the median belong to some of its sheets.
+const SOME: [f64; 2] = [0.25, 0.75];
 /// Where triangles are missing all over, winding numbers above this part of the level show that they are not missing evenly.
 const UNEVEN: f64 = 1.25;
 /// Steps of the sequence R3: powers of the positive root of x (x³ - 1) = 1, inverted (Roberts, 2018).
@@ -44,6 +48,10 @@ pub struct Assessment {
     /// How much of what is not outside has a winding number between 0.2 and 0.8 of the level, or above 1.25 of a level below
     /// that of a whole surface; away from the surface.
     pub uncertain: f64,
+    /// The sum of all area vectors in parts of the area: 0 for a whole surface, the share of an opening for one that was cut off.
+    pub opening: f64,
+    /// Of a surface that goes around its inside more than once how much of that lies between its sheets; 0 of others.
+    pub between_sheets: f64,
     /// Where the winding number is above half of the level, in mm³.
     pub volume: f64,
     /// By the divergence theorem over the triangles, in mm³: the same for a whole surface, twice as much for a doubled one.
@@ -86,6 +94,8 @@ pub(super) fn assess(
         pieces: mended.pieces,
         level,
         uncertain,
+        opening: opening(tree),
+        between_sheets: between_sheets(&samples),
         volume: box_volume * inside.len() as f64 / SAMPLES as f64,
         volume_of_triangles: six_volumes.sum::<f64>() / 6.0,
     };
@@ -100,6 +110,27 @@ fn uncertain(samples: &[Sample], level: f64) -> f64 {
     let is_certain = |winding: &&f64| (BETWEEN.end * level..=most).contains(*winding);
     let certain = counted.iter().filter(is_certain).count();
     1.0 - certain as f64 / counted.len().max(1) as f64
+}
+
+/// How much of what all sheets of a surface go around only some of them do.
+fn between_sheets(samples: &[Sample]) -> f64 {
+    let mut all: Vec<f64> = samples.iter().map(|sample| sample.winding).collect();
+    all.retain(|&winding| winding > OUTSIDE);
+    all.sort_unstable_by(f64::total_cmp);
+    let sheets = all.get(all.len() / 2).copied().unwrap_or_default();
+    if sheets < SEVERAL {
+        return 0.0;
+    }
+    let [few, most] = SOME.map(|part| part * sheets);
+    let within = all.len() - all.partition_point(|&winding| winding <= few);
+    let between = within - (all.len() - all.partition_point(|&winding| winding < most));
+    between as f64 / within.max(1) as f64
+}
+
+fn opening(tree: &TriangleTree) -> f64 {
+    let areas = tree.facets().iter().map(|facet| facet.corners.area_vector());
+    let (sum, area) = areas.fold((Vector::zeros(), 0.0), |(sum, area), one| (sum + one, area + one.norm()));
+    sum.norm() / area
 }
 
 /// The winding numbers above `least` away from the surface, or all where those are few.

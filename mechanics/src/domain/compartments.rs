@@ -51,10 +51,21 @@ const CORNER: f64 = 1.5;
 
 /// The compartment of each voxel.
 pub(super) fn compartments(values: &[f32], division: &Division) -> Vec<Compartment> {
-    let size = division.size;
     let has_body = |voxel: usize| f64::from(values[voxel]) >= division.skin;
     let has_bone = |voxel: usize| f64::from(values[voxel]) >= division.bone;
-    let head = largest_piece(size, has_body);
+    let mut all = known_compartments(division, has_body, has_bone);
+    close_cavities(&mut all, division);
+    close_linings(&mut all, division.size);
+    all
+}
+
+/// The compartments of voxels of which it is known what they are: nothing is closed.
+pub(super) fn known_compartments(
+    division: &Division,
+    has_body: impl Fn(usize) -> bool,
+    has_bone: impl Fn(usize) -> bool,
+) -> Vec<Compartment> {
+    let head = largest_piece(division.size, &has_body);
     let outer = outer_air(&head, division);
     let of = |voxel: usize| match (head[voxel], outer[voxel] || has_body(voxel)) {
         (true, _) if has_bone(voxel) => Compartment::Bone,
@@ -62,10 +73,7 @@ pub(super) fn compartments(values: &[f32], division: &Division) -> Vec<Compartme
         (false, true) => Compartment::OuterAir,
         (false, false) => Compartment::InnerAir,
     };
-    let mut all: Vec<Compartment> = (0..values.len()).map(of).collect();
-    close_cavities(&mut all, division);
-    close_linings(&mut all, size);
-    all
+    (0..head.len()).map(of).collect()
 }
 
 /// For each voxel whether the air nearest to it is that of an airway.

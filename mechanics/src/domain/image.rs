@@ -7,15 +7,19 @@
 
 use rayon::prelude::*;
 
+use super::channels::{channels, tissue_box, values, world_box};
 use super::compartments::{Compartment, Division, compartments};
+use super::flood::place;
+use super::image_error::ImageDomainError;
 use super::left_out::{LeftOut, left_out};
 use super::limit::{Limit, LimitError, Limits};
 use super::nearest_boundary::{Reach, Slope, Slopes, nearest};
+use super::region_map::RegionMap;
 use super::thickness::{Level, Surroundings, surroundings};
 use super::{Boundary, Coverage, Crossing, Domain, root};
 use crate::image::reduction::reduced;
 use crate::image::smoothing::gaussian;
-use crate::image::{CubicSpline, ImageError, ImageVolume, SplineRanges, SplineValue, Voxels};
+use crate::image::{CubicSpline, ImageVolume, SplineRanges, SplineValue};
 use crate::mesh::Vector;
 use nalgebra::Matrix3;
 
@@ -50,29 +54,6 @@ impl Default for ImageOptions {
     }
 }
 
-/// Why an image has no tissue that could be meshed.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum ImageDomainError {
-    #[error(
-        "the threshold of skin, {skin}, must be less than that of bone, {bone}, and both finite"
-    )]
-    Thresholds { skin: f64, bone: f64 },
-    #[error("{name} is {value} mm; {least} to 100 mm are possible")]
-    Length { name: &'static str, value: f64, least: f64 },
-    #[error("no voxel lies between {skin} and {bone}: the image has values from {low} to {high}")]
-    NoTissue { skin: f64, bone: f64, low: f64, high: f64 },
-    #[error("all {voxels} voxels of soft tissue are enclosed by bone or air")]
-    Enclosed { voxels: usize },
-    #[error(
-        "the image holds {pieces} pieces of tissue and bone with {all:.1} ml together, and the largest is {kept:.1} ml: this is no scan of one body"
-    )]
-    Scattered { pieces: usize, all: f64, kept: f64 },
-    #[error(transparent)]
-    Image(#[from] ImageError),
-    #[error(transparent)]
-    Limit(#[from] LimitError),
-}
-
 /// A CT as a body to mesh.
 #[derive(Clone, Debug)]
 pub struct ImageDomain {
@@ -91,6 +72,28 @@ pub struct ImageDomain {
     left_out: LeftOut,
     /// The longest step to a neighbouring voxel, in mm.
     step: f64,
+    /// Of a label map.
+    regions: Option<RegionMap>,
+}
+
+/// What the grid of an image knows.
+pub(super) struct Divided {
+    pub division: Division,
+    /// The first and the last voxel along each axis that tissue may reach into.
+    pub tissue: [[usize; 3]; 2],
+    pub left_out: LeftOut,
+    pub surroundings: Surroundings,
+}
+
+/// The surroundings of voxels by their compartments and by the values for skin and for bone.
+pub(super) fn surroundings_of(
+    all: &[Compartment],
+    division: &Division,
+    [skin, bone]: &[Vec<f32>; 2],
+) -> Surroundings {
+    let skin = Level { values: skin, level: division.skin };
+    let bone = Level { values: bone, level: division.bone };
+    surroundings(all, division, skin, bone)
 }
 
 /// The parts of f, of which the least is f.
@@ -132,36 +135,57 @@ impl ImageDomain {
         let tissue = tissue_box(&all, size).ok_or_else(|| nothing(image, &values, options))?;
         let has_body = |voxel: usize| f64::from(values[voxel]) >= skin;
         let left_out = left_out(image, &all, has_body);
-        if left_out.is_most() {
-            let LeftOut { pieces, all, kept, .. } = left_out;
-            let (pieces, all) = (pieces + 1, all + kept);
-            return Err(ImageDomainError::Scattered { pieces, all, kept });
-        }
-        let scale = bone - skin;
-        let [skin_values, bone_values] = channels(values, &all, options);
-        let skin_level = Level { values: &skin_values, level: skin };
-        let bone_level = Level { values: &bone_values, level: bone };
-        let Surroundings { thickness, airway } =
-            surroundings(&all, &division, skin_level, bone_level);
-        let spline = CubicSpline::new(size, [skin_values, bone_values]);
-        let mut limits = Limits::new(&options.limits)?;
-        let to_index = *image.to_index();
+        ImageDomainError::refuse_scattered(&left_out)?;
+        let channels = channels(values, &all, [skin, bone]);
+        let surroundings = surroundings_of(&all, &division, &channels);
+        let spline = CubicSpline::new(size, channels);
+        let divided = Divided { division, tissue, left_out, surroundings };
+        ImageDomain::of_spline(image, spline, divided, &options.limits)
+    }
+
+    /// Of a spline of the values for skin and for bone.
+    pub(super) fn of_spline(
+        image: &ImageVolume,
+        spline: CubicSpline<2>,
+        divided: Divided,
+        limits: &[Limit],
+    ) -> Result<Self, ImageDomainError> {
+        let Divided { division, tissue, left_out, surroundings } = divided;
+        let mut limits = Limits::new(limits)?;
         limits.push_border(image);
+        let span = division.bone - division.skin;
         Ok(ImageDomain {
             ranges: SplineRanges::new(&spline),
             spline,
             origin: image.placement().origin,
-            to_index,
-            skin,
-            bone,
-            scale,
+            to_index: *image.to_index(),
+            skin: division.skin,
+            bone: division.bone,
+            scale: if span > 0.0 { span } else { 1.0 },
             limits,
-            thickness,
-            airway,
+            thickness: surroundings.thickness,
+            airway: surroundings.airway,
             bounds: world_box(image, tissue),
             left_out,
-            step: spacing.iter().copied().fold(0.0, f64::max),
+            step: division.spacing.iter().copied().fold(0.0, f64::max),
+            regions: None,
         })
+    }
+
+    /// The same tissue in regions.
+    #[must_use]
+    pub(super) fn with_regions(self, regions: RegionMap) -> Self {
+        ImageDomain { regions: Some(regions), ..self }
+    }
+
+    /// How far the value for bone of each voxel is above that from which on there is bone.
+    pub fn bone_values(&self) -> Vec<f32> {
+        let size = self.spline.size();
+        let above = |voxel: usize| {
+            let place = place(voxel, size).map(|index| index as f64);
+            (self.spline.at(place)[1] - self.bone) as f32
+        };
+        (0..size.iter().product()).into_par_iter().map(above).collect()
     }
 
     /// What hangs together with the body nowhere, and was taken for air.
@@ -308,6 +332,19 @@ impl Domain for ImageDomain {
         }
         sum
     }
+
+    fn regions(&self) -> usize {
+        self.regions.as_ref().map_or(1, RegionMap::count)
+    }
+
+    fn region(&self, point: &Vector) -> u8 {
+        self.regions.as_ref().map_or(0, |regions| regions.at(self.place(point)))
+    }
+
+    fn interface(&self, point: &Vector, between: [u8; 2]) -> Vector {
+        let Some(regions) = &self.regions else { return *point };
+        regions.interface(point, between, &|point| self.place(point), &self.to_index)
+    }
 }
 
 fn check(options: &ImageOptions) -> Result<(), ImageDomainError> {
@@ -327,13 +364,6 @@ fn check(options: &ImageOptions) -> Result<(), ImageDomainError> {
     Ok(())
 }
 
-fn values(image: &ImageVolume) -> Vec<f32> {
-    match image.voxels() {
-        Voxels::I16(values) => values.iter().map(|&value| f32::from(value)).collect(),
-        Voxels::F32(values) => values.clone(),
-    }
-}
-
 fn nothing(image: &ImageVolume, values: &[f32], options: &ImageOptions) -> ImageDomainError {
     let (skin, bone) = (options.skin_threshold, options.bone_threshold);
     let between = |value: &&f32| (skin..bone).contains(&f64::from(**value));
@@ -344,49 +374,4 @@ fn nothing(image: &ImageVolume, values: &[f32], options: &ImageOptions) -> Image
         }
         voxels => ImageDomainError::Enclosed { voxels },
     }
-}
-
-/// The values for skin and those for bone.
-fn channels(values: Vec<f32>, all: &[Compartment], options: &ImageOptions) -> [Vec<f32>; 2] {
-    let (skin, bone) = (options.skin_threshold as f32, options.bone_threshold as f32);
-    let scale = bone - skin;
-    let emptied = |value: f32| (2.0 * skin - value).clamp(skin - scale, skin - 0.3 * scale);
-    let filled = |value: f32| (2.0 * bone - value).clamp(bone + 0.3 * scale, bone + scale);
-    let each = values.iter().zip(all);
-    let for_bone = each.map(|(&value, compartment)| match compartment {
-        Compartment::Cavity | Compartment::Lining => value.max(filled(value)),
-        _ => value,
-    });
-    let for_bone = for_bone.collect();
-    let mut for_skin = values;
-    for (value, compartment) in for_skin.iter_mut().zip(all) {
-        if *compartment == Compartment::OuterAir && *value >= skin {
-            *value = emptied(*value);
-        }
-    }
-    [for_skin, for_bone]
-}
-
-/// The first and the last voxel along each axis that tissue may reach into.
-fn tissue_box(all: &[Compartment], size: [usize; 3]) -> Option<[[usize; 3]; 2]> {
-    let tissue = (0..all.len()).filter(|&voxel| all[voxel] == Compartment::Tissue);
-    let places = tissue.map(|voxel| super::flood::place(voxel, size));
-    let boxed = places.map(|place| [place, place]).reduce(|[low, high], [a, b]| {
-        let axis = |axis: usize| (low[axis].min(a[axis]), high[axis].max(b[axis]));
-        [[axis(0).0, axis(1).0, axis(2).0], [axis(0).1, axis(1).1, axis(2).1]]
-    })?;
-    let [low, high] = boxed;
-    let last = |axis: usize| (high[axis] + 2).min(size[axis] - 1);
-    Some([low.map(|index| index.saturating_sub(2)), [last(0), last(1), last(2)]])
-}
-
-fn world_box(image: &ImageVolume, [first, last]: [[usize; 3]; 2]) -> (Vector, Vector) {
-    let corner = |number: usize| {
-        let index = std::array::from_fn(|axis| match number >> axis & 1 {
-            0 => first[axis],
-            _ => last[axis],
-        });
-        image.centre(index)
-    };
-    (1..8).map(corner).fold((corner(0), corner(0)), |(low, high), x| (low.inf(&x), high.sup(&x)))
 }

@@ -6,6 +6,7 @@
 mod airway_map;
 pub mod assessment;
 mod bone_depths;
+mod channels;
 mod closed;
 mod compartments;
 mod containment;
@@ -13,10 +14,13 @@ mod cut_ends;
 mod facets;
 mod flood;
 pub mod image;
+pub mod image_error;
+mod label_body;
 mod left_out;
 pub mod limit;
 pub mod mending;
 mod nearest_boundary;
+mod region_map;
 mod root;
 mod shell;
 pub mod surface;
@@ -30,7 +34,9 @@ pub use assessment::Assessment;
 pub use bone_depths::BoneDepths;
 pub use closed::ClosedSurface;
 pub use containment::Containment;
-pub use image::{ImageDomain, ImageDomainError, ImageOptions};
+pub use image::{ImageDomain, ImageOptions};
+pub use image_error::ImageDomainError;
+pub use label_body::{LabelBody, LabelClass};
 pub use left_out::LeftOut;
 pub use limit::{Ball, Limit, LimitError, Limits};
 pub use mending::Mending;
@@ -91,4 +97,19 @@ pub trait Domain: Sync {
 
     /// How thick the tissue is about a place; infinite where that is not known.
     fn thickness(&self, point: &Vector) -> f64;
+
+    /// How many regions tissue is in, at most 255.
+    fn regions(&self) -> usize {
+        1
+    }
+
+    /// The region of a place in tissue, from 0.
+    fn region(&self, _point: &Vector) -> u8 {
+        0
+    }
+
+    /// A place near a point where two regions meet, or `point` itself where none is found.
+    fn interface(&self, point: &Vector, _between: [u8; 2]) -> Vector {
+        *point
+    }
 }

@@ -13,6 +13,10 @@ use crate::mesh::{TriangleSurface, Vector};
 const FARTHEST: f64 = 1e6;
 /// A surface with more of its inside uncertain is refused.
 const MOST_UNCERTAIN: f64 = 0.1;
+/// A surface with a larger opening, in parts of its area, was cut off: a hole of a damaged one is a hundredth or two.
+const MOST_OPEN: f64 = 0.03;
+/// A surface whose sheets enclose more of its inside between them is refused.
+const MOST_BETWEEN: f64 = 0.04;
 /// Triangles of more than this many times the area of their box are refused: searches among them would not end.
 const MOST_AREA: f64 = 20.0;
 /// A surface of which less is left is refused.
@@ -56,20 +60,8 @@ impl Shell {
         let Some(Assessed { assessment, inside }) = assess(&mended, &tree, &cells) else {
             return Err(SurfaceDomainError::NoInside { surface: name, triangles, open_edges });
         };
-        let Assessment { level, uncertain, pieces, .. } = assessment;
-        if level < LEAST_LEVEL {
-            return Err(SurfaceDomainError::Incomplete { surface: name, level, open_edges });
-        }
-        if uncertain > MOST_UNCERTAIN {
-            let percent = 100.0 * uncertain;
-            return Err(SurfaceDomainError::Uncertain {
-                surface: name,
-                percent,
-                open_edges,
-                pieces,
-            });
-        }
-        let threshold = 0.5 * level;
+        refuse_unsure(&assessment, name)?;
+        let threshold = 0.5 * assessment.level;
         Ok((Shell { tree, cells, threshold, inside }, assessment))
     }
 
@@ -115,6 +107,27 @@ impl Shell {
         }
         let is_near = (point - start).norm() <= distance;
         (is_near && excess(&point).abs() < 0.01).then_some(point)
+    }
+}
+
+/// Refuses a surface whose inside is not certain.
+fn refuse_unsure(found: &Assessment, surface: SurfaceName) -> Result<(), SurfaceDomainError> {
+    let Assessment { level, uncertain, opening, between_sheets, pieces, open_edges, .. } = *found;
+    let percent = |share: f64| 100.0 * share;
+    if level < LEAST_LEVEL {
+        return Err(SurfaceDomainError::Incomplete { surface, level, open_edges });
+    }
+    if uncertain > MOST_UNCERTAIN {
+        let percent = percent(uncertain);
+        return Err(SurfaceDomainError::Uncertain { surface, percent, open_edges, pieces });
+    }
+    if opening > MOST_OPEN {
+        let percent = percent(opening);
+        return Err(SurfaceDomainError::Open { surface, percent, open_edges });
+    }
+    match between_sheets > MOST_BETWEEN {
+        true => Err(SurfaceDomainError::Doubled { surface, percent: percent(between_sheets) }),
+        false => Ok(()),
     }
 }
 

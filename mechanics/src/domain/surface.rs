@@ -48,9 +48,8 @@ impl SurfaceDomain {
             assessments.push(of_bone);
         }
         let containments = contained(&skin, &shells)?;
-        let bounds = skin.tree.bounds();
-        let ends = cut_ends(skin.tree.facets(), bounds);
-        let airways = AirwayMap::new(bounds, ends.faces, |point| skin.value(point) > 0.0);
+        let ends = cut_ends(skin.tree.facets(), skin.tree.bounds(), of_skin.level);
+        let airways = AirwayMap::new(ends.bounds, ends.faces, |point| skin.value(point) > 0.0);
         let cut = ends.triangles;
         Ok(SurfaceDomain { skin, bones: shells, cut, airways, limits, assessments, containments })
     }

@@ -50,6 +50,14 @@ pub enum SurfaceDomainError {
     )]
     Uncertain { surface: SurfaceName, percent: f64, open_edges: usize, pieces: usize },
     #[error(
+        "{surface}: it has an opening as large as {percent:.0} % of its area ({open_edges} open edges): it was cut off there, and what is beyond is not known; close it where it was made"
+    )]
+    Open { surface: SurfaceName, percent: f64, open_edges: usize },
+    #[error(
+        "{surface}: {percent:.1} % of its inside lies between sheets that are there twice: which of them bounds the body is not known; give one of them alone"
+    )]
+    Doubled { surface: SurfaceName, percent: f64 },
+    #[error(
         "{surface}: its triangles have {times:.0} times the area of its box; more than 20 times is no surface of a body: is it cut into many layers, or does the file hold several bodies? Give its outer surface alone"
     )]
     Tangled { surface: SurfaceName, times: f64 },
@@ -84,6 +92,8 @@ impl SurfaceDomainError {
             | SurfaceDomainError::NoInside { surface, .. }
             | SurfaceDomainError::Incomplete { surface, .. }
             | SurfaceDomainError::Uncertain { surface, .. }
+            | SurfaceDomainError::Open { surface, .. }
+            | SurfaceDomainError::Doubled { surface, .. }
             | SurfaceDomainError::Tangled { surface, .. }
             | SurfaceDomainError::BoneOutside { surface, .. } => Some(*surface),
             SurfaceDomainError::NoTissue { .. } | SurfaceDomainError::Limit(_) => None,

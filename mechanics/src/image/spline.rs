@@ -46,6 +46,11 @@ impl<const N: usize> CubicSpline<N> {
         CubicSpline { size, coefficients: padded(size, &channels) }
     }
 
+    /// With the values as coefficients: the values of each channel blurred by β³, as wide as a Gaussian of .58 voxels.
+    pub fn blurred(size: [usize; 3], channels: &[Vec<f32>; N]) -> Self {
+        CubicSpline { size, coefficients: padded(size, channels) }
+    }
+
     /// Voxels along each axis.
     pub fn size(&self) -> [usize; 3] {
         self.size
@@ -117,6 +122,43 @@ impl<const N: usize> CubicSpline<N> {
                 }
             }
         }
+    }
+}
+
+/// A voxel that a place sees.
+#[derive(Clone, Copy, Debug)]
+pub struct Seen {
+    pub voxel: usize,
+    pub weight: f64,
+    /// How the weight changes by the index along each axis.
+    pub slope: [f64; 3],
+}
+
+/// The voxels that a place sees, with their weights, whose sum is one; those beyond the border are mirrored.
+pub fn seen_from(size: [usize; 3], place: [f64; 3], mut each: impl FnMut(Seen)) {
+    let support: [Support; 3] =
+        std::array::from_fn(|axis| Support::new(place[axis], size[axis]));
+    let [x, y, z] = support.map(Support::weights);
+    let [dx, dy, dz] = support.map(Support::slopes);
+    let index = |axis: usize, n: usize| unpadded(support[axis].first + n, size[axis]);
+    for k in 0..4 {
+        for j in 0..4 {
+            let row = (index(2, k) * size[1] + index(1, j)) * size[0];
+            for i in 0..4 {
+                let slope = [dx[i] * y[j] * z[k], x[i] * dy[j] * z[k], x[i] * y[j] * dz[k]];
+                let weight = x[i] * y[j] * z[k];
+                each(Seen { voxel: row + index(0, i), weight, slope });
+            }
+        }
+    }
+}
+
+/// The voxel at a place of the padded array: beyond the border the mirror of the second.
+fn unpadded(place: usize, size: usize) -> usize {
+    match place {
+        0 => 1,
+        _ if place == size + 1 => size - 2,
+        _ => place - 1,
     }
 }
 
@@ -192,18 +234,13 @@ fn causal_start(scaled: &[f64]) -> f64 {
 /// Channels side by side, with a layer more on each side.
 fn padded<const N: usize>(size: Size, channels: &[Vec<f32>; N]) -> Vec<[f32; N]> {
     let [px, py, pz] = size.map(|size| size + 2);
-    let source = |place: usize, size: usize| match place {
-        0 => 1,
-        _ if place == size + 1 => size - 2,
-        _ => place - 1,
-    };
     let mut all = vec![[0.0; N]; px * py * pz];
     all.par_chunks_mut(px * py).enumerate().for_each(|(z, slice)| {
-        let z = source(z, size[2]);
+        let z = unpadded(z, size[2]);
         for (y, row) in slice.chunks_mut(px).enumerate() {
-            let start = (z * size[1] + source(y, size[1])) * size[0];
+            let start = (z * size[1] + unpadded(y, size[1])) * size[0];
             for (x, coefficient) in row.iter_mut().enumerate() {
-                let from = start + source(x, size[0]);
+                let from = start + unpadded(x, size[0]);
                 *coefficient = std::array::from_fn(|channel| channels[channel][from]);
             }
         }

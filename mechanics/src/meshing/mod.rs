@@ -3,7 +3,7 @@
 //! [`mesh`] is the path: an octree that is as fine as the [size field](SizeField) asks for (`octree`, `refine`), the lattice
 //! of its leaves (`lattice`), the places where that is cut by the boundary (`cuts`), nodes moved onto it (`warp`), places
 //! where tissue touches itself taken apart (`pinches`, `edge_copies`), the cells (`stencils`), nodes moved to where the worst
-//! of them are better (`climb`), and the surface moved to where it encloses the volume of the body (`fitting`). What comes
+//! of them are better (`climb`), cells told their region (`regions`), and the surface moved to where it encloses the volume of the body (`fitting`). What comes
 //! out is held against what is promised of it (`check`): cells of positive volume, a boundary whose edges lie between two
 //! triangles each, one piece.
 //!
@@ -31,6 +31,7 @@ mod pieces;
 mod pinches;
 mod prism;
 mod refine;
+mod regions;
 mod report;
 mod rims;
 mod settings;
@@ -50,4 +51,4 @@ pub use pieces::Piece;
 pub use report::{Angles, MeshingReport};
 pub use settings::MeshingSettings;
 pub use size::{RegionShape, SizeField, SizeRegion, ThicknessRule};
-pub use tissue::{TissueMesh, mesh};
+pub use tissue::{REGIONS, TissueMesh, mesh};

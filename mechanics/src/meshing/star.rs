@@ -130,6 +130,16 @@ impl<'a> Star<'a> {
             .map(|way| self.move_to(self.here + way))
     }
 
+    /// The node where two regions meet or on the way there, as far as cells stay good enough or no worse.
+    pub fn at_interface(&self, between: [u8; 2], fair: f64) -> Option<Move> {
+        let way = self.domain.interface(&self.here, between) - self.here;
+        let enough = self.worst.min(fair);
+        let is_way = way.norm() > 0.0 && way.norm() < 0.5 * self.reach;
+        let places = STEPS.map(|part| self.here + way * part);
+        let good = |place: &Vector| self.worst_at(place, enough) >= enough;
+        places.into_iter().filter(|_| is_way).find(good).map(|place| self.move_to(place))
+    }
+
     /// A place a little way into the star, where the worst cell is hardly worse.
     pub fn inwards(&self) -> Option<Move> {
         let way = self.to_middle();

@@ -18,7 +18,7 @@ use super::settings::MeshingSettings;
 use super::size::SizeField;
 use super::warp::Warp;
 use super::watch::Watch;
-use super::{creases, edge_copies, fitting, pieces, pinches, stencils, target};
+use super::{creases, edge_copies, fitting, pieces, pinches, regions, stencils, target};
 use crate::domain::{Boundary, Domain};
 use crate::mesh::{CellShape, VolumeMesh};
 use crate::progress::{Phase, Progress};
@@ -33,7 +33,7 @@ const FEWEST_OF_TARGET: usize = 4;
 /// Soft tissue as it comes out of a mesher.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TissueMesh {
-    /// Tetrahedra of positive volume; no sets and no labels.
+    /// Tetrahedra of positive volume; no sets, and no labels but those of regions, where there are several.
     pub volume: VolumeMesh,
     /// For each node the boundaries of the body that it lies on.
     pub boundaries: Vec<BoundarySet>,
@@ -82,6 +82,7 @@ pub fn mesh(
     let creased = creases::sharpen(&mut climb, &watch)?;
     climb.climb(settings.sweeps, &watch)?;
     climb.settle(&watch)?;
+    let regions = regions::part(&mut climb, &watch)?;
     let fitted = fitting::fit(&mut climb, &watch)?;
     if settings.part_copies {
         climb.part_copies();
@@ -109,7 +110,7 @@ pub fn mesh(
         sheets_lost: counts.thin.sheets,
     };
     watch.end();
-    Ok(finished(draft, report))
+    Ok(finished(draft, &regions, report))
 }
 
 /// Refuses the largest piece of tissue that holds together nowhere, as in an image of noise.
@@ -177,10 +178,17 @@ fn stuff(
     Ok((draft, counts))
 }
 
-fn finished(draft: Draft, report: MeshingReport) -> TissueMesh {
+/// The array of cells that says their regions, where tissue is of several.
+pub const REGIONS: &str = "region";
+
+fn finished(draft: Draft, regions: &[u8], report: MeshingReport) -> TissueMesh {
     let mut volume = VolumeMesh { nodes: draft.nodes, ..VolumeMesh::default() };
     for tet in &draft.tetrahedra {
         volume.cells.push(CellShape::Tet4, tet);
+    }
+    if !regions.is_empty() {
+        let labels = regions.iter().map(|&region| i64::from(region)).collect();
+        volume.cell_labels.insert(REGIONS.to_owned(), labels);
     }
     TissueMesh { volume, boundaries: draft.boundaries, report }
 }

@@ -47,22 +47,26 @@ pub fn label(bone: &BoneImage<'_>, osteotomy: &Osteotomy) -> Result<Labelled, La
     let markers = markers(osteotomy, bone, &grid, &labels)?;
     flood(osteotomy, &grid, |voxel| bone.value(voxel), &markers, &mut labels);
     saw(osteotomy, &grid, &mut labels);
-    Ok(Labelled::new(osteotomy, bone, &grid, labels))
+    let found = Labelled::segments_of(osteotomy, bone, &grid, &labels);
+    let loose = set_loose(osteotomy, bone, &grid, &mut labels);
+    Ok(Labelled { loose, ..Labelled::new(osteotomy, &grid, labels, found) })
 }
 
-/// Takes bone as it is: `segment_of` gives for each voxel of bone the number of its segment, all of it one piece or not.
+/// Takes bone as it is: `segment_of` gives for each voxel of bone the number of its segment, all of it one piece or not; none
+/// for bone that stays.
 pub fn label_given(
     bone: &BoneImage<'_>,
     osteotomy: &Osteotomy,
-    segment_of: impl Fn(usize) -> usize,
+    segment_of: impl Fn(usize) -> Option<usize>,
 ) -> Result<Labelled, LabelError> {
     let grid = Grid::new(bone.image);
     let is_bone = |voxel: usize| bone.value(voxel) > bone.threshold;
     let mut labels = BoneLabels::new(bone.image.size(), *bone.image.placement(), is_bone);
     for voxel in (0..grid.len()).filter(|&voxel| is_bone(voxel)) {
-        labels.set(voxel, Owner::Segment(segment_of(voxel)));
+        labels.set(voxel, segment_of(voxel).map_or(Owner::Rest, Owner::Segment));
     }
-    let labelled = Labelled::new(osteotomy, bone, &grid, labels);
+    let found = Labelled::segments_of(osteotomy, bone, &grid, &labels);
+    let labelled = Labelled::new(osteotomy, &grid, labels, found);
     match labelled.segments.iter().find(|segment| segment.voxels == 0) {
         Some(missing) => Err(LabelError::NoBone { segment: missing.name.clone() }),
         None => Ok(labelled),
@@ -70,20 +74,26 @@ pub fn label_given(
 }
 
 impl Labelled {
-    /// What is told of labelled bone.
+    /// What is told of labelled bone of which nothing is loose.
     fn new(
+        osteotomy: &Osteotomy,
+        grid: &Grid<'_>,
+        labels: BoneLabels,
+        segments: Vec<FoundSegment>,
+    ) -> Labelled {
+        let contacts = contacts(osteotomy, grid, &labels);
+        let bridges = bridges(osteotomy, grid, &labels);
+        Labelled { labels, segments, contacts, loose: PieceSummary::default(), bridges }
+    }
+
+    fn segments_of(
         osteotomy: &Osteotomy,
         bone: &BoneImage<'_>,
         grid: &Grid<'_>,
-        mut labels: BoneLabels,
-    ) -> Labelled {
-        let segments = (0..osteotomy.segments().len())
-            .map(|segment| found(osteotomy, bone, grid, &labels, segment))
-            .collect();
-        let loose = set_loose(osteotomy, bone, grid, &mut labels);
-        let contacts = contacts(osteotomy, grid, &labels);
-        let bridges = bridges(osteotomy, grid, &labels);
-        Labelled { labels, segments, contacts, loose, bridges }
+        labels: &BoneLabels,
+    ) -> Vec<FoundSegment> {
+        let segments = 0..osteotomy.segments().len();
+        segments.map(|segment| found(osteotomy, bone, grid, labels, segment)).collect()
     }
 }
 

@@ -1,16 +1,6 @@
-//! Surfaces damaged at random, meshed, and held against the undamaged ones.
-//!
-//! An ending is right where cells are positive, the boundary is a manifold, the volume is within 1 % of the undamaged mesh's,
-//! no angle is below 5 degrees, and what was mended is named; or it is a refusal, by its name. All else is wrong.
+//! Surfaces damaged at random, in sixteen ways.
 
-use std::collections::BTreeMap;
-
-use mechanics::anatomy::surfaces::mended;
-use mechanics::domain::{SurfaceDomain, SurfaceDomainError};
-use mechanics::mesh::quality::quality;
 use mechanics::mesh::{TriangleSurface, Vector};
-use mechanics::meshing::{MeshingSettings, SizeField, TissueMesh, mesh};
-use mechanics::progress::Unobserved;
 
 use super::surfaces::{Noise, map, sphere};
 
@@ -68,7 +58,7 @@ impl Damage {
     ];
 
     /// Whether somebody has to be told of it: the rest changes no triangle, or only where it lies.
-    fn is_told(self) -> bool {
+    pub fn is_told(self) -> bool {
         match self {
             Damage::None | Damage::Noise | Damage::SelfIntersections | Damage::ThinGap => false,
             // A piece of its own is no damage: what of it is tissue is left out, and told.
@@ -220,122 +210,4 @@ fn soup(surface: &mut TriangleSurface, size: f64, random: &mut Noise) {
         corners.map(|corner| corner + (shift().map(|x| 2.0 * x - 1.0)) * size).collect();
     let triangles = (0..points.len() as u32 / 3).map(|n| [3 * n, 3 * n + 1, 3 * n + 2]).collect();
     *surface = TriangleSurface { points, triangles, node_ids: None };
-}
-
-/// A skin with a bone, and the mesh between them undamaged.
-pub struct Undamaged {
-    pub skin: TriangleSurface,
-    pub bone: TriangleSurface,
-    /// The edge of the cubes of the lattice, in mm.
-    pub edge: f64,
-    pub volume: f64,
-}
-
-/// How a damaged surface ended.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Ending {
-    Right,
-    /// By its name.
-    Refused(String),
-    /// What is wrong with it.
-    Wrong(String),
-}
-
-impl Undamaged {
-    pub fn new(skin: TriangleSurface, bone: TriangleSurface, edge: f64) -> Undamaged {
-        let mut undamaged = Undamaged { skin, bone, edge, volume: 0.0 };
-        let (tissue, _) = undamaged.tissue(&undamaged.skin, &undamaged.bone).unwrap();
-        undamaged.volume = tissue.report.volume;
-        undamaged
-    }
-
-    /// The mesh between surfaces and what was mended of them, or why there is none.
-    pub fn tissue(
-        &self,
-        skin: &TriangleSurface,
-        bone: &TriangleSurface,
-    ) -> Result<(TissueMesh, usize), String> {
-        let domain = SurfaceDomain::new(skin, &[bone], &[]).map_err(|error| name(&error))?;
-        let settings =
-            MeshingSettings { size: SizeField::uniform(self.edge), ..MeshingSettings::default() };
-        let tissue = mesh(&domain, &settings, &Unobserved).map_err(|error| error.to_string())?;
-        let told = mended(&domain).len();
-        Ok((tissue, told))
-    }
-
-    /// Damages the skin with even seeds, the bone with odd ones.
-    pub fn damaged(&self, damage: Damage, seed: u64) -> [TriangleSurface; 2] {
-        match seed % 2 {
-            0 => [damage.of(&self.skin, seed), self.bone.clone()],
-            _ => [self.skin.clone(), damage.of(&self.bone, seed)],
-        }
-    }
-
-    pub fn ending(&self, damage: Damage, seed: u64) -> Ending {
-        let [skin, bone] = self.damaged(damage, seed);
-        match self.tissue(&skin, &bone) {
-            Err(refusal) => Ending::Refused(refusal),
-            Ok((tissue, told)) => self.judged(damage, &tissue, told),
-        }
-    }
-
-    pub fn endings(&self, seeds: std::ops::Range<u64>) -> Endings {
-        let mut found = Endings::new();
-        for seed in seeds {
-            for damage in Damage::ALL {
-                found.entry((damage, self.ending(damage, seed))).or_default().push(seed);
-            }
-        }
-        found
-    }
-
-    fn judged(&self, damage: Damage, tissue: &TissueMesh, told: usize) -> Ending {
-        let quality = quality(&tissue.volume);
-        let off = tissue.report.volume / self.volume - 1.0;
-        let angle = tissue.report.angles.smallest;
-        if quality.smallest_volume <= 0.0 || quality.inverted > 0 {
-            Ending::Wrong("cells that are not positive".to_owned())
-        } else if off.abs() > 0.01 {
-            let silently = if told > 0 { "told" } else { "silently" };
-            Ending::Wrong(format!("volume {silently}"))
-        } else if angle < 5.0 {
-            Ending::Wrong("angle".to_owned())
-        } else if damage.is_told() && told == 0 {
-            Ending::Wrong("not told".to_owned())
-        } else {
-            Ending::Right
-        }
-    }
-}
-
-fn name(error: &SurfaceDomainError) -> String {
-    let name = match error {
-        SurfaceDomainError::Coordinate { .. } => "no place",
-        SurfaceDomainError::Corner { .. } => "no corner",
-        SurfaceDomainError::Empty { .. } => "empty",
-        SurfaceDomainError::NoInside { .. } => "no inside",
-        SurfaceDomainError::Incomplete { .. } => "incomplete",
-        SurfaceDomainError::Uncertain { .. } => "uncertain",
-        SurfaceDomainError::Tangled { .. } => "tangled",
-        SurfaceDomainError::BoneOutside { .. } => "bone outside",
-        SurfaceDomainError::NoTissue { .. } => "no tissue",
-        SurfaceDomainError::Limit(_) => "limit",
-    };
-    name.to_owned()
-}
-
-/// For each damage and ending the seeds that led there.
-pub type Endings = BTreeMap<(Damage, Ending), Vec<u64>>;
-
-/// As many as `DAMAGE_SEEDS` says.
-pub fn seeds(usual: u64) -> std::ops::Range<u64> {
-    let asked = std::env::var("DAMAGE_SEEDS").ok().and_then(|count| count.parse().ok());
-    0..asked.unwrap_or(usual)
-}
-
-/// Rows of a table.
-pub fn print_counts(endings: &Endings) {
-    for ((damage, ending), seeds) in endings {
-        println!("| {damage:?} | {ending:?} | {} |", seeds.len());
-    }
 }

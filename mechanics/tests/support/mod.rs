@@ -2,7 +2,9 @@
 
 #![allow(dead_code, unused_macros, reason = "each target uses a part")]
 
+pub mod chords;
 pub mod damage;
+pub mod damaged;
 pub mod domains;
 pub mod external;
 pub mod responses;

@@ -457,3 +457,17 @@ pub fn ball_stl(ball: SampleBall) -> Vec<u8> {
     text += "endsolid ball\n";
     text.into_bytes()
 }
+
+/// The balls of `ball_ct` as labels: 1 within 40 mm of the middle and 2 around it, 3 bone.
+pub fn ball_labels() -> Vec<u8> {
+    use mechanics::mesh::Vector;
+    ball_ct_with(|at| {
+        let depth = (at - Vector::repeat(60.0)).norm();
+        Some(match (at - Vector::new(60.0, 55.0, 60.0)).norm() < 30.0 {
+            true => 3,
+            false if depth < 40.0 => 1,
+            false if depth < 50.0 => 2,
+            false => 0,
+        })
+    })
+}

@@ -1,4 +1,4 @@
-//! The body that is meshed: a scan, or a skin with bones, with its bone parted.
+//! The body that is meshed: a scan, a label map, or a skin with bones, with its bone parted.
 
 use std::sync::Arc;
 
@@ -7,13 +7,14 @@ use crate::schema::meshing::surfaces::SurfacesDocument;
 use crate::schema::{ErrorCode, Pointer, Problem};
 use mechanics::anatomy::surfaces::{mended, outside, part_by_cuts, take_as_segments};
 use mechanics::anatomy::{AnatomyRules, PartedBone};
-use mechanics::domain::{Domain, SurfaceDomain, SurfaceDomainError, SurfaceName};
+use mechanics::domain::{Domain, LabelBody, SurfaceDomain, SurfaceDomainError, SurfaceName};
 use mechanics::image::ImageVolume;
 use mechanics::mesh::{TriangleSurface, Warning};
 
 /// What was read.
 pub enum Body {
     Scan(Arc<ImageVolume>),
+    Labels(Box<LabelBody>),
     Surfaces(Surfaces),
 }
 

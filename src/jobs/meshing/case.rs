@@ -2,11 +2,12 @@
 
 use crate::schema::CaseDocument;
 use crate::schema::case::document::{
-    BoneDocument, LengthUnit, NormalDocument, SegmentDocument, SlidingDocument,
+    BoneDocument, LengthUnit, NormalDocument, RegionsDocument, SegmentDocument, SlidingDocument,
 };
 use crate::schema::case::selection::SelectionDocument;
 use mechanics::anatomy::Anatomy;
 use mechanics::mesh::Frame;
+use mechanics::meshing::REGIONS;
 use mechanics::osteotomy::classes::sliding_set;
 use mechanics::osteotomy::labelling::FoundSegment;
 
@@ -15,8 +16,8 @@ pub fn bone_file(segment: usize) -> String {
     format!("bone-{}.vtp", segment + 1)
 }
 
-/// The case of a volume mesh: its segments, what is fixed, and its skin, all by node sets.
-pub fn case_of(anatomy: &Anatomy, volume: &str, frame: Frame) -> CaseDocument {
+/// The case of a volume mesh: its segments, what is fixed, and its skin, all by node sets, and the names of its regions.
+pub fn case_of(anatomy: &Anatomy, volume: &str, frame: Frame, regions: &[&str]) -> CaseDocument {
     let mut case = CaseDocument::of_volume(volume, LengthUnit::Mm);
     case.frame = frame.into();
     let has = |name: &str| anatomy.volume.node_sets.get(name).is_some_and(|set| !set.is_empty());
@@ -47,6 +48,10 @@ pub fn case_of(anatomy: &Anatomy, volume: &str, frame: Frame) -> CaseDocument {
         name: segment.name.clone(),
         mesh: bone_file(number),
     };
+    case.regions = anatomy.volume.cell_labels.contains_key(REGIONS).then(|| RegionsDocument {
+        array: REGIONS.to_owned(),
+        names: (0..).zip(regions).map(|(n, name)| (i32::to_string(&n), (*name).to_owned())).collect(),
+    });
     case.bones = anatomy.bone.segments.iter().enumerate().map(bone).collect();
     case
 }

@@ -1,4 +1,4 @@
-//! Input of a meshing: its document with the scan or the surfaces, checked and converted.
+//! Input of a meshing: its document with the scan, the label map or the surfaces, checked and converted.
 
 use std::sync::Arc;
 
@@ -9,6 +9,7 @@ use crate::jobs::failure::JobError;
 use crate::jobs::fetch::{fetch, no_surface};
 use crate::jobs::source::{MeshSource, SourceError, StoredMesh, StoredShape};
 use crate::schema::case::meshed::MeshedCaseDocument;
+use crate::schema::meshing::labels::LabelsDocument;
 use crate::schema::meshing::surfaces::SurfacesDocument;
 use crate::schema::{ErrorCode, Faults, Limits, MeshingDocument, Pointer, Problem, hashes};
 use mechanics::anatomy::AnatomyRules;
@@ -60,11 +61,13 @@ impl MeshingInput {
         sources: &dyn MeshSource,
         limits: &Limits,
     ) -> Result<PreparedMeshing, JobError> {
-        let Fetched { meshes, body, frame } = match (&self.spec.scan, &self.spec.surfaces) {
-            (Some(scan), None) => fetch_scan(scan, sources)?,
-            (None, Some(surfaces)) => self.fetch_surfaces(surfaces, sources)?,
-            (Some(_), Some(_)) | (None, None) => {
-                let detail = "exactly one of `scan` and `surfaces` has to be given";
+        let MeshingDocument { scan, labels, surfaces, .. } = &self.spec;
+        let Fetched { meshes, body, frame } = match (scan, labels, surfaces) {
+            (Some(scan), None, None) => fetch_scan(scan, sources)?,
+            (None, Some(labels), None) => fetch_labels(labels, sources)?,
+            (None, None, Some(surfaces)) => self.fetch_surfaces(surfaces, sources)?,
+            _ => {
+                let detail = "exactly one of `scan`, `labels` and `surfaces` has to be given";
                 return Err(Problem::at(&place(), ErrorCode::OneOf, detail).into());
             }
         };
@@ -115,22 +118,46 @@ fn place() -> Pointer {
 }
 
 fn fetch_scan(id: &str, sources: &dyn MeshSource) -> Result<Fetched, JobError> {
-    let at = place().key("scan");
-    let scan = sources.mesh(id).map_err(|error| match error {
+    let (scan, image, frame) = fetch_image(id, &place().key("scan"), sources)?;
+    Ok(Fetched { meshes: vec![("scan".to_owned(), scan)], body: Body::Scan(image), frame })
+}
+
+fn fetch_labels(
+    document: &LabelsDocument,
+    sources: &dyn MeshSource,
+) -> Result<Fetched, JobError> {
+    let at = place().key("labels");
+    let (labels, image, frame) = fetch_image(&document.image, &at.key("image"), sources)?;
+    let mut faults = Faults::default();
+    let body = document.to_body(&image, &at, &mut faults);
+    faults.into_result()?;
+    let body = body.map(Box::new).map(Body::Labels).ok_or_else(|| {
+        Problem::at(&at, ErrorCode::WrongMesh, "this label map cannot be meshed")
+    })?;
+    Ok(Fetched { meshes: vec![("labels".to_owned(), labels)], body, frame })
+}
+
+/// An image, turned to LPS if it is known how it lies, and its frame then.
+fn fetch_image(
+    id: &str,
+    at: &Pointer,
+    sources: &dyn MeshSource,
+) -> Result<(StoredMesh, Arc<ImageVolume>, Frame), JobError> {
+    let stored = sources.mesh(id).map_err(|error| match error {
         SourceError::Unknown { .. } => {
             let detail = format!("there is no image {id:?}");
-            Problem::at(&at, ErrorCode::UnknownMesh, detail).into()
+            Problem::at(at, ErrorCode::UnknownMesh, detail).into()
         }
-        SourceError::Refused { code, detail, .. } => Problem::at(&at, code, detail).into(),
+        SourceError::Refused { code, detail, .. } => Problem::at(at, code, detail).into(),
         other @ SourceError::Unreadable { .. } => JobError::Source(other),
     })?;
-    let StoredShape::Image(image) = &scan.shape else {
+    let StoredShape::Image(image) = &stored.shape else {
         let detail = "this is a mesh, and the image of a scan is needed";
-        return Err(Problem::at(&at, ErrorCode::WrongMesh, detail).into());
+        return Err(Problem::at(at, ErrorCode::WrongMesh, detail).into());
     };
-    let frame = scan.frame.unwrap_or_default();
-    let body = Body::Scan(image_in_lps(image, frame));
-    Ok(Fetched { meshes: vec![("scan".to_owned(), scan)], body, frame: lps_if_known(frame) })
+    let frame = stored.frame.unwrap_or_default();
+    let image = image_in_lps(image, frame);
+    Ok((stored, image, lps_if_known(frame)))
 }
 
 fn roles_of_bones(document: &SurfacesDocument) -> impl Iterator<Item = String> {

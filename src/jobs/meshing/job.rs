@@ -14,6 +14,7 @@ use crate::jobs::result::provenance::{Origin, encode_result, mesh_summary};
 use crate::jobs::result::warnings::warning_documents;
 use crate::jobs::source::StoredShape;
 use crate::schema::WarningDocument;
+use crate::schema::meshing::labels::LabelsDocument;
 use crate::schema::meshing::result::MeshingResultDocument;
 use crate::schema::predict::document::OutputName;
 use crate::schema::predict::keep::MadeName;
@@ -49,7 +50,10 @@ pub fn meshing_job(
     clock.check()?;
 
     // 4. The case, and what holds it.
-    let case = case_of(&anatomy, OutputName::VolumeVtu.file_name(), prepared.frame);
+    let labels = input.spec.labels.as_ref();
+    let regions = labels.map(LabelsDocument::regions).unwrap_or_default();
+    let volume = OutputName::VolumeVtu.file_name();
+    let case = case_of(&anatomy, volume, prepared.frame, &regions);
     let mut found = MeshingResultDocument::new(&anatomy, case);
     if let Some(waiting) = &input.case {
         found.case = waiting.document.complete(found.case);

@@ -6,11 +6,12 @@ use crate::jobs::clock::Observed;
 use crate::jobs::failure::JobError;
 use crate::schema::osteotomy::conversion::{refuse_bridges, unfound};
 use crate::schema::{Faults, Pointer};
+use mechanics::anatomy::label_bone::part_labels;
 use mechanics::anatomy::left_out::left_out_of_scan;
 use mechanics::anatomy::loose::{loose_bone, without_loose};
 use mechanics::anatomy::region::around_segments;
 use mechanics::anatomy::{Anatomy, AnatomyError, build, part_bone};
-use mechanics::domain::{ImageDomain, ImageDomainError, ImageOptions};
+use mechanics::domain::{ImageDomain, ImageDomainError, ImageOptions, LabelBody};
 use mechanics::image::{ImageVolume, scan_report};
 use mechanics::mesh::Warning;
 use mechanics::meshing::MeshingError;
@@ -21,9 +22,13 @@ impl PreparedMeshing {
     /// The body with its bone in segments; refused where it does not hold them, or a cut leaves a bridge.
     pub fn part(&self) -> Result<PartedBody, JobError> {
         let osteotomy = &self.rules.osteotomy;
-        let at = Pointer::root().key("spec").key("osteotomy");
+        let at = match &self.body {
+            Body::Scan(_) | Body::Surfaces(_) => Pointer::root().key("spec").key("osteotomy"),
+            Body::Labels(_) => Pointer::root().key("spec").key("labels"),
+        };
         let parted = match &self.body {
             Body::Scan(scan) => self.part_scan(scan).map_err(JobError::Anatomy),
+            Body::Labels(labels) => self.part_labels(labels).map_err(JobError::Anatomy),
             Body::Surfaces(surfaces) => surfaces.part(&self.rules),
         };
         let body = parted.map_err(|error| match error {
@@ -50,6 +55,14 @@ impl PreparedMeshing {
         warnings.extend(left_out_of_scan(domain.left_out(), &warnings));
         warnings.extend(loose_bone(&bone.labelled));
         warnings.extend(cut_off(&domain, &options)?);
+        Ok(PartedBody { domain: Box::new(domain), bone, warnings })
+    }
+
+    /// With what is told of the label map.
+    fn part_labels(&self, labels: &LabelBody) -> Result<PartedBody, AnatomyError> {
+        let domain = labels.domain(&[])?;
+        let bone = part_labels(labels, &domain, &self.rules)?;
+        let warnings = left_out_of_scan(domain.left_out(), &[]).into_iter().collect();
         Ok(PartedBody { domain: Box::new(domain), bone, warnings })
     }
 

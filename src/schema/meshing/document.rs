@@ -1,9 +1,10 @@
-//! The spec of a meshing: the scan or the surfaces, what of them is tissue and bone, what is cut, and how fine the mesh is.
+//! The spec of a meshing: the scan, the label map or the surfaces, what of them is tissue and bone, what is cut, and how fine the mesh is.
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use utoipa::ToSchema;
 
+use super::labels::LabelsDocument;
 use super::surfaces::SurfacesDocument;
 use crate::schema::case::document::FrameName;
 use crate::schema::code::ErrorCode;
@@ -29,7 +30,7 @@ pub enum MeshingKind {
 }
 
 /// A volume mesh of the soft tissue in a CT or between surfaces, with a node set for each bone segment that an operation
-/// cuts loose: exactly one of `scan` and `surfaces`.
+/// cuts loose: exactly one of `scan`, `labels` and `surfaces`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MeshingDocument {
@@ -40,6 +41,10 @@ pub struct MeshingDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub scan: Option<String>,
+    /// Instead of a scan: a label map, whose regions of tissue are those of the mesh.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub labels: Option<LabelsDocument>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub surfaces: Option<SurfacesDocument>,
@@ -89,6 +94,7 @@ impl Default for MeshingDocument {
         MeshingDocument {
             kind: MeshingKind::Mesh,
             scan: None,
+            labels: None,
             surfaces: None,
             thresholds_hu: HounsfieldThresholdsDocument::default(),
             osteotomy: None,
@@ -168,9 +174,12 @@ impl MeshingDocument {
     /// Every mesh that it names, with its place in the document that stands at a place.
     pub fn mesh_references_mut(&mut self, root: &Pointer) -> Vec<(Pointer, &mut String)> {
         let scan = self.scan.iter_mut().map(|scan| (root.key("scan"), scan));
+        let at = root.key("labels").key("image");
+        let labels = self.labels.iter_mut().map(|labels| (at.clone(), &mut labels.image));
+        let labels: Vec<_> = labels.collect();
         let at = root.key("surfaces");
         let surfaces = self.surfaces.iter_mut().flat_map(|surfaces| surfaces.references_mut(&at));
-        scan.chain(surfaces).collect()
+        scan.chain(labels).chain(surfaces).collect()
     }
 
     /// The ids of the meshes that it names, in their order.
@@ -192,6 +201,7 @@ impl MeshingDocument {
         }
         self.budget.check(&at.key("budget"), limits, faults);
         check_tags(&self.tags, &at.key("tags"), limits, faults);
+        self.check_labels(&at, limits, faults);
         self.check_surfaces(&at, limits, faults);
         let planned = self.to_osteotomy(&at, scan, limits, faults);
         let around_segments_mm = self.region.map(|region| region.around_segments_mm);
@@ -218,17 +228,31 @@ impl MeshingDocument {
         }
     }
 
-    fn check_surfaces(&self, at: &Pointer, limits: &Limits, faults: &mut Faults) {
-        let Some(surfaces) = &self.surfaces else { return };
-        surfaces.check(&at.key("surfaces"), limits, faults);
+    fn check_labels(&self, at: &Pointer, limits: &Limits, faults: &mut Faults) {
+        let Some(labels) = &self.labels else { return };
+        labels.check(&at.key("labels"), limits, faults);
+        self.check_without_scan(at, "a label map has no values that thresholds part", faults);
+        if self.osteotomy.is_some() && !labels.segments().is_empty() {
+            let detail = "bone of `labels` that has a name is a segment already: leave the names out to have it cut";
+            faults.add(&at.key("osteotomy"), ErrorCode::OneOf, detail);
+        }
+    }
+
+    /// Refuses what only a scan has.
+    fn check_without_scan(&self, at: &Pointer, detail: &str, faults: &mut Faults) {
         if self.thresholds_hu != HounsfieldThresholdsDocument::default() {
-            let detail = "surfaces have no values that thresholds part";
             faults.add(&at.key("thresholds_hu"), ErrorCode::NoScan, detail);
         }
         if self.region.is_some() {
             let detail = "only what a scan shows is meshed in part";
             faults.add(&at.key("region"), ErrorCode::NoScan, detail);
         }
+    }
+
+    fn check_surfaces(&self, at: &Pointer, limits: &Limits, faults: &mut Faults) {
+        let Some(surfaces) = &self.surfaces else { return };
+        surfaces.check(&at.key("surfaces"), limits, faults);
+        self.check_without_scan(at, "surfaces have no values that thresholds part", faults);
         if self.osteotomy.is_some() && !surfaces.bones.is_empty() {
             let detail = "`surfaces.bones` are segments already: give all bone as `surfaces.bone` to have it cut";
             faults.add(&at.key("osteotomy"), ErrorCode::OneOf, detail);
@@ -244,6 +268,10 @@ impl MeshingDocument {
     ) -> Option<PlannedOsteotomy> {
         let bones = self.surfaces.iter().flat_map(|surfaces| &surfaces.bones);
         let names: Vec<&str> = bones.map(|bone| bone.name.trim()).collect();
+        let labelled = self.labels.as_ref().map(LabelsDocument::segments).unwrap_or_default();
+        if !labelled.is_empty() {
+            return given_segments(&labelled, &at.key("labels").key("classes"), faults);
+        }
         if !names.is_empty() {
             return given_segments(&names, &at.key("surfaces").key("bones"), faults);
         }

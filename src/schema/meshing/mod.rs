@@ -1,6 +1,7 @@
-//! Meshing: the job that makes a volume mesh from a scan or surfaces, and what it says of the mesh.
+//! Meshing: the job that makes a volume mesh from a scan, a label map or surfaces, and what it says of the mesh.
 
 pub mod document;
+pub mod labels;
 pub mod result;
 pub mod surfaces;
 

@@ -5,7 +5,9 @@ use reqwest::StatusCode;
 use serde_json::{Value, json};
 
 use crate::helpers::{Server, ask};
-use crate::samples::{BONE_BALL, SKIN_BALL, SampleBall, ball_ct, ball_ct_with, ball_stl};
+use crate::samples::{
+    BONE_BALL, SKIN_BALL, SampleBall, ball_ct, ball_ct_with, ball_labels, ball_stl,
+};
 
 /// The lower half of the bone comes loose.
 fn half() -> Value {
@@ -314,4 +316,51 @@ async fn no_segment_is_called_like_a_part_of_the_skin() {
     asked["osteotomy"]["segments"][0]["name"] = json!("skin_chin");
     let problem = server.job(&asked).await.problem(422, "validation-failed");
     assert_eq!(problem["errors"][0]["code"], "bad-name", "{problem}");
+}
+
+#[tokio::test]
+async fn a_label_map_becomes_a_case_with_a_material_for_each_region() {
+    let server = Server::start();
+    let request = server.post("/v1/meshes").header("content-type", "application/x-nrrd");
+    let image = ask(request.body(ball_labels())).await.expect(StatusCode::CREATED);
+    let classes = json!([
+        {"label": "1", "is": "tissue", "name": "muscle"},
+        {"label": "2", "is": "tissue", "name": "fat"},
+        {"label": "3", "is": "bone", "name": "jaw"},
+    ]);
+    let asked = json!({"kind": "mesh", "labels": {"image": image["id"], "classes": classes},
+        "size": {"tetrahedra": 20_000}});
+    let job = ended(&server, &asked).await;
+    assert_eq!(job["status"], "successful", "{job}");
+    let made = &job["results"]["meshing"];
+    // 4/3 pi (50^3 - 30^3) mm3.
+    let volume = made["volume_ml"].as_f64().unwrap();
+    assert!((volume / 410.5 - 1.0).abs() < 0.02, "{volume}");
+    let mut case = made["case"].clone();
+    case["materials"] = json!({"muscle": {"young_modulus_kpa": 30}, "fat": {"young_modulus_kpa": 3}});
+    let kept = ask(server.post("/v1/cases").json(&case)).await.expect(StatusCode::CREATED);
+    assert_eq!(kept["check"]["classes"]["fixed"], 0, "{kept}");
+
+    let refused = async |change: &dyn Fn(&mut Value), code: &str, at: &str| {
+        let mut wrong = asked.clone();
+        change(&mut wrong);
+        let problem = server.job(&wrong).await.problem(422, "validation-failed");
+        let fault = &problem["errors"][0];
+        assert_eq!((&fault["pointer"], &fault["code"]), (&json!(at), &json!(code)), "{problem}");
+    };
+    let short = |asked: &mut Value| {
+        asked["labels"]["classes"].as_array_mut().unwrap().remove(1);
+    };
+    refused(&short, "unknown-label", "/labels/classes").await;
+    let foreign = |asked: &mut Value| asked["labels"]["classes"][0]["label"] = json!("masseter");
+    refused(&foreign, "unknown-label", "/labels/classes/0/label").await;
+    let twice = |asked: &mut Value| asked["labels"]["classes"][1]["label"] = json!("1");
+    refused(&twice, "duplicate-name", "/labels/classes/1/label").await;
+    let cut = |asked: &mut Value| asked["osteotomy"] = half();
+    refused(&cut, "one-of", "/osteotomy").await;
+    let solid = |asked: &mut Value| {
+        let classes = asked["labels"]["classes"].as_array_mut().unwrap();
+        classes.iter_mut().for_each(|class| class["is"] = json!("bone"));
+    };
+    refused(&solid, "missing-field", "/labels/classes").await;
 }

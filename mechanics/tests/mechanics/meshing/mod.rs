@@ -3,6 +3,7 @@
 mod damage;
 mod held;
 mod refused;
+mod regions;
 mod scenes;
 mod shapes;
 mod sizes;
