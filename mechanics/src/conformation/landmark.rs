@@ -159,7 +159,7 @@ fn refuse_mirrored(aligned: &PointAlignment, spread: f64) -> Result<(), Conforma
     }
 }
 
-/// Refuses a landmark of the template that lies farther from it than half its size.
+/// Refuses a landmark of the template that lies farther from it than it is large.
 pub(super) fn refuse_far(
     landmarks: &[Landmark],
     mesh: &VolumeMesh,
@@ -171,7 +171,7 @@ pub(super) fn refuse_far(
     let size = (high - low).norm();
     for Landmark { name, template, .. } in landmarks {
         let distance = (template - template.sup(&low).inf(&high)).norm();
-        if distance > 0.5 * size {
+        if distance > size {
             let name = name.clone();
             return Err(ConformationError::FarFromTemplate { name, distance, size });
         }

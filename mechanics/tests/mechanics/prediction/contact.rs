@@ -196,7 +196,8 @@ fn jaws_that_close_by_twice_their_slit_and_four_times_their_cells_press_and_do_n
     assert!(open.contact.is_none());
 }
 
-/// In its size: where contact opens and closes on a finer mesh is not known, and what is missing is not to be added.
+/// In its size, rather too large than too small: where contact opens and closes on a finer mesh is not known, and what is
+/// missing is not to be added. A mesh halved once sees two thirds to three quarters of it.
 #[test]
 fn the_error_of_the_mesh_is_estimated_where_tissue_presses() {
     let mut outside = Vec::new();
@@ -212,7 +213,7 @@ fn the_error_of_the_mesh_is_estimated_where_tissue_presses() {
                 Question { case, plan, settings, halved: 1, truth }.effectivity();
             let told = format!("{method:?} {shape:?}: {mean:.2} in the mean, {p95:.2} at p95");
             println!("{told}");
-            if !((0.5..=2.0).contains(&mean) && (0.5..=2.0).contains(&p95)) {
+            if !((0.75..=4.0).contains(&mean) && (0.75..=4.0).contains(&p95)) {
                 outside.push(told);
             }
         }

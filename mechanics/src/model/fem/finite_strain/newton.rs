@@ -111,7 +111,8 @@ impl<'a, 'b> Newton<'a, 'b> {
             self.history.push(residual);
             self.path.push(self.made);
             tell(progress, self.history.len(), residual, wanted)?;
-            if self.made >= 1.0 && residual <= wanted && contact_rests {
+            let rests = self.balance.rest() <= wanted;
+            if self.made >= 1.0 && rests && contact_rests {
                 let report = self.report(&deformed)?;
                 let (positions, pressures, forces) = (self.x, self.p, deformed.forces);
                 let (directions, touching) = (self.directions, self.touching);
@@ -209,10 +210,6 @@ impl<'a, 'b> Newton<'a, 'b> {
         let last = self.history.iter().rev().nth(1).copied().unwrap_or(1.0);
         let wanted = self.question.tolerance.relative_residual;
         let residual = self.balance.residual;
-        // Nothing is left to balance, and contact goes on.
-        if residual == 0.0 {
-            return 2.0 * ADVANCING;
-        }
         let ratio = residual / last;
         (0.9 * ratio * ratio).clamp(SHARPEST, 2.0 * ADVANCING).max(0.3 * wanted / residual)
     }
@@ -335,7 +332,7 @@ impl<'a, 'b> Newton<'a, 'b> {
             why: format!("tissue at finite strain, {} halvings for the energy", self.halved),
             unknowns,
             iterations: self.history.len() - 1,
-            relative_residual: self.balance.residual,
+            relative_residual: self.balance.rest(),
             wanted_residual: self.question.tolerance.relative_residual,
             history: self.history.clone(),
             steps: 1,
