@@ -9,6 +9,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::jobs::{JobError, JobInput, JobOutput, Workplace, work};
 use crate::schema::WarningDocument;
+use crate::schema::case::muscle_mixing::MusclesDocument;
 use crate::schema::predict::check::CheckDocument;
 use crate::schema::predict::expectation::ExpectationDocument;
 use crate::schema::predict::result::FileDocument;
@@ -114,6 +115,7 @@ pub fn print_check(check: &CheckDocument) {
     for (name, count) in &skin.regions {
         println!("  {name:<8} {count} nodes");
     }
+    check.muscles.iter().for_each(print_muscles);
     let time = check.time_s.map(|time| format!(", {:.1} to {:.1} s", time.low, time.high));
     let (unknowns, time) = (check.unknowns, time.unwrap_or_default());
     println!("unknowns   {unknowns}, about {:.0} MB{time}", check.memory_mb);
@@ -139,6 +141,27 @@ pub fn print_check(check: &CheckDocument) {
         println!("symmetry   {} off by {before:.2}{planned} mm", own.landmark);
     }
     print_warnings(&check.warnings);
+}
+
+fn print_muscles(told: &MusclesDocument) {
+    for (name, own) in &told.muscles {
+        let of = own.enclosed_mm3.map(|enclosed| format!(" of {enclosed:.0}"));
+        println!(
+            "muscle     {name}: {} cells, {:.0}{} mm3",
+            own.cells,
+            own.volume_mm3,
+            of.unwrap_or_default()
+        );
+    }
+    if let Some(tissue) = &told.tissue {
+        println!(
+            "  mixed    {} of {} cells, {} with fibres that cross; the rule decides in {:.1} % of the tissue",
+            tissue.mixed_cells,
+            tissue.cells,
+            tissue.crossing_cells,
+            100.0 * tissue.rule_decides_share
+        );
+    }
 }
 
 fn print_expectation(auto: &ExpectationDocument) {

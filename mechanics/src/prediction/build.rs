@@ -5,6 +5,9 @@ use super::check::Check;
 use super::cut;
 use super::far_segment::far_segments;
 use super::fibres::Tissues;
+use super::hounsfield::TissueOfCells;
+use super::muscle_field::MuscleField;
+use super::muscle_tissue::MuscleTissue;
 use super::problem::SceneErrors;
 use super::scene::Scene;
 use super::skin_check::doubtful_skin;
@@ -17,6 +20,33 @@ use crate::mesh::{Vector, Warning};
 use crate::model::fem::discretisation_error::DistributedLoads;
 use crate::plan::doubt::nothing_moves;
 
+/// What cells are made of, and what runs through them.
+struct InCells {
+    tissue: TissueOfCells,
+    fibres: Vec<Vector>,
+    muscles: Vec<MuscleField>,
+    muscle_tissue: Option<MuscleTissue>,
+}
+
+impl Check<'_> {
+    /// The tissue of cells in regions with these names: their materials and fibres, what an image shows of them, and muscles.
+    fn in_cells(
+        &mut self,
+        (regions, region_of_cell): (&[String], &[u16]),
+        settings: &Settings,
+        plan: &Plan,
+    ) -> InCells {
+        let mut materials = self.materials(regions);
+        let tissues = Tissues { regions, region_of_cell, materials: &mut materials };
+        let mut fibres = self.fibres(tissues, &settings.method);
+        let mut tissue = self.tissue_of_cells(region_of_cell, materials);
+        let (of_cells, made) = ((regions, region_of_cell), (&mut tissue, &mut fibres));
+        let (muscles, muscle_tissue) =
+            self.muscles_of_cells(of_cells, made, (&settings.method, plan));
+        InCells { tissue, fibres, muscles, muscle_tissue }
+    }
+}
+
 impl Scene {
     /// Checks a case and a plan together; says everything that is wrong, not the first thing only.
     pub fn new(case: &Case, plan: &Plan, settings: &Settings) -> Result<Scene, SceneErrors> {
@@ -26,15 +56,10 @@ impl Scene {
 
         // 1. Tissue.
         let (regions, region_of_cell) = check.regions();
-        let mut materials = check.materials(&regions);
-        let (of_cell, of_region) = (&region_of_cell, &mut materials);
-        let tissues = Tissues { regions: &regions, region_of_cell: of_cell, materials: of_region };
-        let mut fibres = check.fibres(tissues, &settings.method);
+        let of_cells = (&regions[..], &region_of_cell[..]);
+        let InCells { tissue, fibres, muscles, muscle_tissue } =
+            check.in_cells(of_cells, settings, plan);
         let element = check.element(settings);
-        let mut tissue = check.tissue_of_cells(&region_of_cell, materials);
-        let (of_cells, made) = ((&regions[..], &region_of_cell[..]), (&mut tissue, &mut fibres));
-        let (muscles, muscle_tissue) =
-            check.muscles_of_cells(of_cells, made, (&settings.method, plan));
 
         // 2. What every node is held to.
         let sound = check.problems.count();

@@ -8,7 +8,7 @@ use utoipa::ToSchema;
 
 use super::fibre::to_course;
 use super::material::{MaterialDocument, MaterialDocuments};
-use super::muscle_box::MuscleBoxDocument;
+use super::muscle_box::{FARTHEST_MM, MuscleBoxDocument};
 use super::muscle_mixing::StiffeningDocument;
 use super::preset::expanded;
 use super::preset_name::doubt;
@@ -23,9 +23,6 @@ use mechanics::prediction::{BodyFibres, Muscle, MuscleCourse, Stiffening};
 
 /// Distances from its lines within which a muscle may pull, in mm.
 pub const REACH_MM: (f64, f64) = (0.1, 50.0);
-
-/// Farthest coordinate of a point of a line in mm.
-pub(super) const FARTHEST_MM: f64 = 1e8;
 
 /// A muscle that plans may activate: a region with fibres, polylines through the tissue, or what a closed surface holds. Exactly
 /// one of `region`, `surface`, `box_mm` and, without these, `lines_mm`.

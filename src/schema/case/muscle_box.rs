@@ -3,12 +3,14 @@
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-use super::muscle::FARTHEST_MM;
 use crate::schema::Triple;
 use crate::schema::code::ErrorCode;
 use crate::schema::wire::fault::{Faults, Pointer};
 use mechanics::mesh::{TriangleSurface, Vector};
 use mechanics::muscle::strap::box_surface;
+
+/// Farthest coordinate of a point of a muscle in mm.
+pub(super) const FARTHEST_MM: f64 = 1e8;
 
 /// The volume of a box over that of one with the same axes at right angles, at and below which it is flat.
 const FLAT: f64 = 1e-6;
