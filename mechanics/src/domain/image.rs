@@ -341,6 +341,11 @@ impl Domain for ImageDomain {
         self.regions.as_ref().map_or(0, |regions| regions.at(self.place(point)))
     }
 
+    fn meeting(&self, [one, other]: &[Vector; 2], between: [u8; 2]) -> Vector {
+        let Some(regions) = &self.regions else { return (one + other) * 0.5 };
+        root::between(one, other, |point| regions.lead(self.place(point), between))
+    }
+
     fn interface(&self, point: &Vector, between: [u8; 2]) -> Vector {
         let Some(regions) = &self.regions else { return *point };
         regions.interface(point, between, &|point| self.place(point), &self.to_index)

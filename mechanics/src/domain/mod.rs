@@ -108,6 +108,12 @@ pub trait Domain: Sync {
         0
     }
 
+    /// The place on the way from one point to another, of two regions, where that of the first ends; the middle where tissue is of
+    /// one kind.
+    fn meeting(&self, [one, other]: &[Vector; 2], _between: [u8; 2]) -> Vector {
+        (one + other) * 0.5
+    }
+
     /// A place near a point where two regions meet, or `point` itself where none is found.
     fn interface(&self, point: &Vector, _between: [u8; 2]) -> Vector {
         *point

@@ -9,7 +9,9 @@ use crate::image::spline::seen_from;
 use crate::mesh::Vector;
 
 /// Steps to where two regions meet.
-const STEPS: usize = 6;
+const STEPS: usize = 12;
+/// The longest step, in voxels.
+const LONGEST: f64 = 0.5;
 /// Votes that differ by less are equal.
 const EQUAL: f64 = 1e-3;
 
@@ -59,6 +61,13 @@ impl RegionMap {
         (most.0 - 1) as u8
     }
 
+    /// By how much the votes for the first region are more than those for the second at a place in voxels; -1 where there are none
+    /// for the first.
+    pub(super) fn lead(&self, place: [f64; 3], [one, other]: [u8; 2]) -> f64 {
+        let [one, other] = self.votes(place, [one, other]);
+        if one.sum == 0.0 { -1.0 } else { one.sum - other.sum }
+    }
+
     /// The place near a point where two regions have as many votes, or the point where none is found. `place` leads to voxels,
     /// `to_index` is its derivative.
     pub(super) fn interface(
@@ -76,7 +85,8 @@ impl RegionMap {
                 return at;
             }
             let slope = to_index.tr_mul(&(one.slope - other.slope));
-            at -= slope * (lead / slope.norm_squared());
+            let step = slope * (lead / slope.norm_squared());
+            at -= step * (LONGEST / (to_index * step).norm()).min(1.0);
             if !at.iter().all(|x| x.is_finite()) {
                 return *point;
             }

@@ -16,7 +16,7 @@ const MOST_UNCERTAIN: f64 = 0.1;
 /// A surface with a larger opening, in parts of its area, was cut off: a hole of a damaged one is a hundredth or two.
 const MOST_OPEN: f64 = 0.03;
 /// A surface whose sheets enclose more of its inside between them is refused.
-const MOST_BETWEEN: f64 = 0.04;
+const MOST_BETWEEN: f64 = 0.08;
 /// Triangles of more than this many times the area of their box are refused: searches among them would not end.
 const MOST_AREA: f64 = 20.0;
 /// A surface of which less is left is refused.
@@ -117,13 +117,13 @@ fn refuse_unsure(found: &Assessment, surface: SurfaceName) -> Result<(), Surface
     if level < LEAST_LEVEL {
         return Err(SurfaceDomainError::Incomplete { surface, level, open_edges });
     }
-    if uncertain > MOST_UNCERTAIN {
-        let percent = percent(uncertain);
-        return Err(SurfaceDomainError::Uncertain { surface, percent, open_edges, pieces });
-    }
     if opening > MOST_OPEN {
         let percent = percent(opening);
         return Err(SurfaceDomainError::Open { surface, percent, open_edges });
+    }
+    if uncertain > MOST_UNCERTAIN {
+        let percent = percent(uncertain);
+        return Err(SurfaceDomainError::Uncertain { surface, percent, open_edges, pieces });
     }
     match between_sheets > MOST_BETWEEN {
         true => Err(SurfaceDomainError::Doubled { surface, percent: percent(between_sheets) }),

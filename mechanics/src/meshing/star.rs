@@ -130,11 +130,11 @@ impl<'a> Star<'a> {
             .map(|way| self.move_to(self.here + way))
     }
 
-    /// The node where two regions meet or on the way there, as far as cells stay good enough or no worse.
-    pub fn at_interface(&self, between: [u8; 2], fair: f64) -> Option<Move> {
-        let way = self.domain.interface(&self.here, between) - self.here;
+    /// The node at a place or on the way there, as far as cells stay good enough or no worse.
+    pub fn towards(&self, place: &Vector, fair: f64) -> Option<Move> {
+        let way = place - self.here;
         let enough = self.worst.min(fair);
-        let is_way = way.norm() > 0.0 && way.norm() < 0.5 * self.reach;
+        let is_way = way.norm() > 0.0 && way.norm() < 0.7 * self.reach;
         let places = STEPS.map(|part| self.here + way * part);
         let good = |place: &Vector| self.worst_at(place, enough) >= enough;
         places.into_iter().filter(|_| is_way).find(good).map(|place| self.move_to(place))

@@ -4,6 +4,7 @@ use mechanics::domain::{Assessment, Domain, SurfaceDomain, SurfaceDomainError, S
 use mechanics::mesh::{TriangleSurface, Vector};
 
 use super::{part, sphere, torus};
+use crate::surfaces::sphere as ball;
 
 /// A ring, so that an inside has a hole, and 12 800 triangles of about 1.6 mm.
 fn sound() -> TriangleSurface {
@@ -241,7 +242,7 @@ fn what_is_not_certain_of_its_inside_is_refused_with_its_numbers() {
     keep(&mut half, |corners| corners[0].y > 0.0);
     let found = assess(&half);
     println!("{found:?}");
-    assert!(matches!(found, Err(SurfaceDomainError::Uncertain { .. })), "{found:?}");
+    assert!(matches!(found, Err(SurfaceDomainError::Open { .. })), "{found:?}");
 
     let sheet = TriangleSurface {
         points: vec![
@@ -282,4 +283,47 @@ fn coordinates_that_are_no_place_are_refused_by_name() {
     assert_eq!(SurfaceDomain::new(&sound(), &[&surface], &[]).unwrap_err(), wanted);
     let empty = TriangleSurface::default();
     assert!(matches!(assess(&empty), Err(SurfaceDomainError::Empty { triangles: 0, .. })));
+}
+
+/// The wall of a ball: tissue between two spheres.
+fn wall(outer: f64, inner: f64) -> TriangleSurface {
+    let mut surface = ball(outer, Vector::zeros(), 4);
+    let mut hollow = ball(inner, Vector::zeros(), 4);
+    hollow.triangles.iter_mut().for_each(|corners| corners.swap(1, 2));
+    add(&mut surface, hollow);
+    surface
+}
+
+#[test]
+fn a_thin_body_that_was_cut_off_or_is_there_twice_is_refused_by_name() {
+    assert!(assess(&wall(40.0, 36.0)).is_ok());
+    let mut half = wall(40.0, 36.0);
+    keep(&mut half, |corners| corners[0].z < 2.0);
+    let refused = assess(&half).unwrap_err();
+    println!("{refused}");
+    let SurfaceDomainError::Open { percent, .. } = refused else { panic!("{refused}") };
+    assert!((3.0..12.0).contains(&percent), "{percent}");
+    // Its second sheets lie half a mm further in: of 4.5 mm that they all enclose 1 mm is of one of them alone.
+    let mut twice = wall(40.0, 36.0);
+    add(&mut twice, wall(39.5, 35.5));
+    let refused = assess(&twice).unwrap_err();
+    println!("{refused}");
+    let SurfaceDomainError::Doubled { percent, .. } = refused else { panic!("{refused}") };
+    assert!((15.0..30.0).contains(&percent), "{percent}");
+}
+
+#[test]
+fn a_flat_end_is_found_though_a_speck_lies_beyond_it_and_half_of_it_is_gone() {
+    let mut skin = ball(40.0, Vector::zeros(), 5);
+    skin.points.iter_mut().for_each(|point| point.z = point.z.max(-20.0));
+    let ends =
+        |skin: &TriangleSurface| SurfaceDomain::new(skin, &[], &[]).unwrap().cut_triangles() as f64;
+    let whole = ends(&skin);
+    assert!(whole > 1000.0, "{whole}");
+    let mut random = Random(3);
+    let mut sparse = skin.clone();
+    keep(&mut sparse, |_| random.next() < 0.5);
+    assert!((ends(&sparse) / whole - 0.5).abs() < 0.05, "{} {whole}", ends(&sparse));
+    add(&mut skin, ball(2.0, Vector::new(5.0, 3.0, -21.5), 1));
+    assert!((ends(&skin) / whole - 1.0).abs() < 0.02, "{} {whole}", ends(&skin));
 }
