@@ -1,5 +1,6 @@
 //! Meshing: the job that makes a volume mesh from a scan or surfaces, and what it says of the mesh.
 
+pub mod cuts;
 pub mod document;
 pub mod result;
 pub mod surfaces;

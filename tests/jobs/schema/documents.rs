@@ -245,7 +245,7 @@ fn methods_that_are_not_built_are_refused_by_name() {
 #[test]
 fn a_volume_spline_is_told_in_seconds_and_newtons_per_metre() {
     use mechanics::model::spline::stepping::{Clock, Damping, Scheme};
-    use mechanics::model::spline::{Stiffness, VolumeSpline};
+    use mechanics::model::spline::{Bone, ControlPoints, Stiffness, VolumeSpline};
     let method = |text: &str| method_of(&settings(text).unwrap());
     let usual = Method::VolumeSpline(VolumeSpline::default());
     assert_eq!(method(r#"{"method":"dvs"}"#), usual);
@@ -253,20 +253,45 @@ fn a_volume_spline_is_told_in_seconds_and_newtons_per_metre() {
     let lattice = r#"{"method":"dvs","dvs":{"stiffness":"lattice","degree":2,"control_spacing_mm":5,
         "damping_n_s_per_m":4,"stepping":"newmark","step_s":0.002,"hold_weight":20}}"#;
     let stated = VolumeSpline {
-        degree: 2,
-        control_spacing: Some(5.0),
+        degrees: [2; 3],
+        control: ControlPoints::Spaced(5.0),
+        bone: Bone::Springs,
         hold_weight: 20.0,
         stiffness: Stiffness::Lattice(80.0),
         damping: Damping { mass: 0.0, stiffness: 50.0 },
         clock: Some(Clock { scheme: Scheme::Newmark, step: 2.0, end: 10_000.0 }),
     };
     assert_eq!(method(lattice), Method::VolumeSpline(stated));
+    let of_the_paper = r#"{"method":"dvs","dvs":{"degrees":[3,3,1],"control_points":[5,5,2],"bone":"control_points"}}"#;
+    let stated = VolumeSpline {
+        degrees: [3, 3, 1],
+        control: ControlPoints::Counted([5, 5, 2]),
+        bone: Bone::ControlPoints,
+        ..VolumeSpline::default()
+    };
+    assert_eq!(method(of_the_paper), Method::VolumeSpline(stated));
 
     let mismatch = "method-mismatch";
     for (text, code, at) in [
         (r#"{"dvs":{}}"#, mismatch, "/spec/dvs"),
         (r#"{"method":"dvs","thickness_warp":{}}"#, mismatch, "/spec/thickness_warp"),
         (r#"{"method":"dvs","dvs":{"step_s":0.1}}"#, mismatch, "/spec/dvs/step_s"),
+        (
+            r#"{"method":"dvs","dvs":{"bone":"control_points","stepping":"newmark"}}"#,
+            mismatch,
+            "/spec/dvs/bone",
+        ),
+        (
+            r#"{"method":"dvs","dvs":{"degrees":[3,3,1],"control_points":[5,3,2]}}"#,
+            "out-of-range",
+            "/spec/dvs/control_points/1",
+        ),
+        (r#"{"method":"dvs","dvs":{"degrees":[3,0,1]}}"#, "out-of-range", "/spec/dvs/degrees/1"),
+        (
+            r#"{"method":"dvs","dvs":{"control_points":[5,5,4],"control_spacing_mm":5}}"#,
+            "one-of",
+            "/spec/dvs",
+        ),
         (
             r#"{"method":"dvs","dvs":{"stiffness_n_per_m":9}}"#,
             mismatch,
