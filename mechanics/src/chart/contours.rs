@@ -170,7 +170,7 @@ fn levels([low, high]: [f64; 2]) -> Vec<f64> {
 fn write_legend(document: &mut Document, [low, high]: [f64; 2], has_noise: bool) {
     let x = PLOT.x + PLOT.width + 22.0;
     let bar = Place { x, y: PLOT.y + 24.0, width: 18.0, height: 240.0 };
-    document.text([x, PLOT.y + 12.0], 150.0, Style::of(13.0), "mean distance D, mm");
+    document.text([x, PLOT.y + 12.0], 150.0, Style::of(13.0), "mean D, mm");
     let height = bar.height / BANDS;
     for number in 0..BANDS as usize {
         let y = bar.y + bar.height - height * (number + 1) as f64;

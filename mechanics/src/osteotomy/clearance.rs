@@ -124,7 +124,7 @@ mod tests {
     #[test]
     fn a_cut_goes_around_the_bone_that_it_saws_and_has_its_area() {
         let (osteotomy, surface) = halved(1.0);
-        let faces = cut_faces(&osteotomy, &[surface]);
+        let faces = cut_faces(&osteotomy, &[surface], 0.5);
         let [face] = &faces[..] else { panic!("{faces:?}") };
         assert!((face.area - 1200.0).abs() < 1e-9 && face.paths.len() == 1, "{}", face.area);
         assert!(face.paths[0].iter().all(|point| (point.z - 10.0).abs() < 1e-12));
@@ -138,7 +138,7 @@ mod tests {
             }
         }
         let surface = tube.surface_of(&tube.boundary_faces());
-        let faces = cut_faces(&osteotomy, &[surface]);
+        let faces = cut_faces(&osteotomy, &[surface], 0.5);
         assert!((faces[0].area - 800.0).abs() < 1e-9 && faces[0].paths.len() == 2);
     }
 
@@ -146,7 +146,7 @@ mod tests {
     fn a_plane_that_does_not_reach_the_segment_and_a_bounded_cut_beside_it_saw_nothing() {
         let (osteotomy, mut surface) = halved(0.0);
         surface.points.iter_mut().for_each(|point| point.z -= 1.0);
-        assert!(cut_faces(&osteotomy, std::slice::from_ref(&surface)).is_empty());
+        assert!(cut_faces(&osteotomy, std::slice::from_ref(&surface), 0.5).is_empty());
         surface.points.iter_mut().for_each(|point| point.z += 1.0);
         let plane = Plane::new(Vector::new(90.0, 5.0, 10.0), Vector::z()).unwrap();
         let disc = Some(Extent::Disc { radius: 20.0 });
@@ -154,13 +154,13 @@ mod tests {
         let segment =
             SegmentRule { seeds: vec![Vector::zeros()], ..osteotomy.segments()[0].clone() };
         let beside = Osteotomy::new(vec![cut], vec![segment]).unwrap();
-        assert!(cut_faces(&beside, &[surface]).is_empty());
+        assert!(cut_faces(&beside, &[surface], 0.5).is_empty());
     }
 
     #[test]
     fn clearances_are_those_of_lines_from_a_rectangle() {
         let (osteotomy, surface) = halved(1.0);
-        let face = &cut_faces(&osteotomy, &[surface])[0];
+        let face = &cut_faces(&osteotomy, &[surface], 0.5)[0];
         let cut = &osteotomy.cuts()[0];
         let of = |points: &[[f64; 3]], radius: f64| {
             let points = points.iter().map(|&point| Vector::from(point)).collect();

@@ -1,16 +1,14 @@
 //! Faces of cuts: where a saw goes through the bone of a segment, as closed paths on the plane of the cut.
 //!
-//! The surface of the segment is sliced just inside the cut, where it shows the outline of the bone that was cut, and
-//! the slice is brought onto the plane. Paths turn one way around bone and the other way around holes in it.
+//! The surface of the segment is sliced half a voxel inside the cut, since surfaces of labelled voxels are bevelled by about as
+//! much where they are cut, and the slice is brought onto the plane. Paths turn one way around bone and the other way
+//! around holes in it.
 
 use std::collections::BTreeMap;
 
 use super::cut::{Cut, Plane, Side};
 use super::rule::Osteotomy;
 use crate::mesh::{TriangleSurface, Vector};
-
-/// How far inside a cut a segment is sliced: a quarter of an edge of its surface, and never more than this, in mm.
-const FARTHEST_INSIDE: f64 = 0.25;
 
 /// The bone of a segment at one of its cuts.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,14 +21,14 @@ pub struct CutFace {
     pub area: f64,
 }
 
-/// Every cut of every segment that goes through its bone; `surfaces` are those of the segments, closed.
-pub fn cut_faces(osteotomy: &Osteotomy, surfaces: &[TriangleSurface]) -> Vec<CutFace> {
+/// Every cut of every segment that goes through its bone; `surfaces` are those of the segments, closed, made of voxels of
+/// that size in mm.
+pub fn cut_faces(osteotomy: &Osteotomy, surfaces: &[TriangleSurface], voxel: f64) -> Vec<CutFace> {
     let mut faces = Vec::new();
     for (segment, (rule, surface)) in osteotomy.segments().iter().zip(surfaces).enumerate() {
-        let inside = (0.25 * mean_edge(surface)).min(FARTHEST_INSIDE);
         for side in &rule.sides {
             let cut = &osteotomy.cuts()[side.cut];
-            let paths = paths(surface, cut, side.side, inside);
+            let paths = paths(surface, cut, side.side, 0.5 * voxel);
             let area = paths.iter().map(|path| area(cut.plane(), path)).sum::<f64>().abs();
             if !paths.is_empty() {
                 faces.push(CutFace { cut: side.cut, segment, paths, area });
@@ -38,15 +36,6 @@ pub fn cut_faces(osteotomy: &Osteotomy, surfaces: &[TriangleSurface]) -> Vec<Cut
         }
     }
     faces
-}
-
-fn mean_edge(surface: &TriangleSurface) -> f64 {
-    let lengths = |triangle: usize| {
-        let [a, b, c] = surface.corners(triangle);
-        (b - a).norm() + (c - b).norm() + (a - c).norm()
-    };
-    let count = surface.triangles.len();
-    (0..count).map(lengths).sum::<f64>() / (3 * count.max(1)) as f64
 }
 
 fn paths(surface: &TriangleSurface, cut: &Cut, side: Side, inside: f64) -> Vec<Vec<Vector>> {

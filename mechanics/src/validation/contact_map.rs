@@ -132,7 +132,7 @@ mod tests {
         let [first, second] = found[..] else { panic!("{found:?}") };
         // Below and half a millimetre up the sides, and to the contact 0.8 mm up: by samples, of 0.06 mm2.
         assert!((first.overlap_area - (24.0 + 0.5 * 20.0)).abs() < 1.0, "{first:?}");
-        assert!((first.area - (24.0 + 0.8 * 20.0)).abs() < 1.0, "{first:?}");
+        assert!((first.area - (24.0 + 0.8 * 20.0)).abs() < 1.6, "{first:?}");
         assert!((first.depth - 0.5).abs() < 1e-9 && (first.least_gap + 0.5).abs() < 1e-9);
         assert!((first.middle - Vector::new(13.0, 12.0, 9.65)).norm() < 0.1, "{first:?}");
         assert!((second.area - (9.0 + 0.2 * 12.0)).abs() < 0.5, "{second:?}");

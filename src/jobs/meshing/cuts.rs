@@ -16,7 +16,9 @@ pub const CUT_PATHS_MEDIA_TYPE: &str = "text/csv; charset=utf-8";
 /// The cuts of a mesh that was made, and a warning for each structure that one comes too near to.
 pub fn cut_paths(osteotomy: &Osteotomy, anatomy: &Anatomy) -> (Vec<CutPathDocument>, Vec<Warning>) {
     let mut warnings = Vec::new();
-    let faces = cut_faces(osteotomy, &anatomy.bones);
+    let [x, y, z] = anatomy.bone.labels.placement().steps;
+    let voxel = x.dot(&y.cross(&z)).abs().cbrt();
+    let faces = cut_faces(osteotomy, &anatomy.bones, voxel);
     let documents = faces.iter().map(|face| path(osteotomy, face, &mut warnings)).collect();
     (documents, warnings)
 }

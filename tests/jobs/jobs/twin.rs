@@ -174,9 +174,9 @@ fn transform_plan_and_constants_that_were_planted_come_back() {
     grid.sort_by(f64::total_cmp);
     assert_eq!(grid.len(), MODULI.len() * RATIOS.len());
     // No other pair is as near: the data determine the constants.
-    assert!(grid[1] > 2.0 * grid[0] && grid[1] > 0.005, "{grid:?}");
+    assert!(grid[1] > 2.0 * grid[0] && grid[1] > 0.001, "{grid:?}");
     assert!(map.axes.iter().all(|axis| axis.is_determined), "{map:?}");
-    assert!(report.scenes[0].unmoved_mm.unwrap() > 1.0, "{:?}", report.scenes);
+    assert!(report.scenes[0].unmoved_mm.unwrap() > 0.2, "{:?}", report.scenes);
     assert!(!codes.iter().any(|code| code.starts_with("constant-")), "{codes:?}");
     let covered =
         report.rows.iter().map(|row| row.numbers.as_ref().unwrap().covered_share.unwrap());
