@@ -36,25 +36,13 @@ struct Depth {
 /// The bones that reach into each other, of those that the plan moves against each other.
 pub fn collisions(case: &Case, scene: &Scene) -> Vec<Collision> {
     let bones = planned_bones(case, scene);
-    let mut found = Vec::new();
-    for (number, bone) in bones.iter().enumerate() {
-        for other in bones[number + 1..].iter().filter(|other| other.movement != bone.movement) {
-            found.extend(bone.collision(other));
-        }
-    }
-    found
+    moved_pairs(&bones).filter_map(|(bone, other)| bone.collision(other)).collect()
 }
 
 /// Where bones that the plan moves against each other touch; pairs that touch nowhere are left out.
 pub fn contacts(case: &Case, scene: &Scene) -> Vec<BoneContactDocument> {
     let bones = planned_bones(case, scene);
-    let mut found = Vec::new();
-    for (number, bone) in bones.iter().enumerate() {
-        for other in bones[number + 1..].iter().filter(|other| other.movement != bone.movement) {
-            found.extend(bone.contact(other));
-        }
-    }
-    found
+    moved_pairs(&bones).filter_map(|(bone, other)| bone.contact(other)).collect()
 }
 
 /// `bones.vtp`, with how near bones come to each other.
@@ -142,6 +130,16 @@ fn planned_bones<'a>(case: &'a Case, scene: &Scene) -> Vec<PlannedBone<'a>> {
         Some(PlannedBone { name: &bone.name, surface, search, movement })
     };
     case.bones.iter().filter_map(planned).collect()
+}
+
+/// Every two bones that the plan moves against each other.
+fn moved_pairs<'b, 'a>(
+    bones: &'b [PlannedBone<'a>],
+) -> impl Iterator<Item = (&'b PlannedBone<'a>, &'b PlannedBone<'a>)> {
+    bones.iter().enumerate().flat_map(move |(number, bone)| {
+        let others = bones[number + 1..].iter();
+        others.filter(|other| other.movement != bone.movement).map(move |other| (bone, other))
+    })
 }
 
 impl PlannedBone<'_> {
