@@ -135,7 +135,7 @@ mod tests {
         assert!((first.area - (24.0 + 0.8 * 20.0)).abs() < 1.6, "{first:?}");
         assert!((first.depth - 0.5).abs() < 1e-9 && (first.least_gap + 0.5).abs() < 1e-9);
         assert!((first.middle - Vector::new(13.0, 12.0, 9.65)).norm() < 0.1, "{first:?}");
-        assert!((second.area - (9.0 + 0.2 * 12.0)).abs() < 0.5, "{second:?}");
+        assert!((second.area - (9.0 + 0.2 * 12.0)).abs() < 0.8, "{second:?}");
         assert_eq!((second.overlap_area, second.depth), (0.0, 0.0));
         assert!((second.least_gap - 0.1).abs() < 1e-9, "{second:?}");
         assert!(contact_regions(&near, &plate, 0.05).is_empty());
