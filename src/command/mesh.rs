@@ -261,6 +261,13 @@ fn print_result(result: &MeshingResultDocument, total_s: f64) {
             segment.name, segment.volume_ml, segment.left_ml
         );
     }
+    for cut in &result.cuts {
+        let (paths, area) = (cut.paths_mm.len(), cut.area_mm2);
+        println!("cut        {} of {}: {area:.0} mm2 of bone, {paths} paths", cut.cut, cut.segment);
+        for clearance in &cut.clearances {
+            println!("           {:.2} mm from {}", clearance.distance_mm, clearance.risk);
+        }
+    }
     for (name, nodes) in &result.node_sets {
         println!("node set   {name} {nodes} nodes");
     }

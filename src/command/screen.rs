@@ -12,6 +12,7 @@ use crate::schema::WarningDocument;
 use crate::schema::case::muscle_mixing::MusclesDocument;
 use crate::schema::predict::check::CheckDocument;
 use crate::schema::predict::expectation::ExpectationDocument;
+use crate::schema::predict::planned::ContactMapDocument;
 use crate::schema::predict::result::FileDocument;
 use mechanics::progress::{Phase, Progress};
 
@@ -121,6 +122,14 @@ pub fn print_check(check: &CheckDocument) {
     println!("unknowns   {unknowns}, about {:.0} MB{time}", check.memory_mb);
     if let Some(auto) = &check.auto {
         print_expectation(auto);
+    }
+    for contact in &check.contacts {
+        let [one, other] = &contact.bones;
+        let [before, planned] = [&contact.before, &contact.planned].map(|map| {
+            let ContactMapDocument { area_mm2, overlap_area_mm2, depth_mm, count, .. } = map;
+            format!("{count} of {area_mm2:.1} mm2, {overlap_area_mm2:.1} mm2 {depth_mm:.2} mm deep")
+        });
+        println!("contacts   {one} with {other}: {before} -> {planned}");
     }
     for measure in &check.cephalometry {
         let planned = measure.planned.map(|planned| format!(" -> {planned:.2}"));

@@ -15,6 +15,7 @@ use super::sweep::{self, Sweep};
 use crate::jobs::study::ALL_METHODS;
 use crate::jobs::study::files::REPORT_JSON;
 use crate::jobs::{JobInput, StudyInput, Workplace};
+use crate::schema::study::constants::ConstantMapDocument;
 use crate::schema::study::document::{
     CaseReference, PlanReference, SceneReference, StudyKind, ThresholdsDocument,
 };
@@ -174,6 +175,11 @@ impl Arguments {
             let given = spec.thresholds.take().unwrap_or_default();
             spec.thresholds = Some(ThresholdsDocument { p95_mm: Some(p95_mm), ..given });
         }
+        // Paths of a document lead from where it lies.
+        let folder = self.spec.as_deref().and_then(Path::parent).unwrap_or(Path::new(""));
+        for (_, id) in spec.truth_meshes_mut() {
+            *id = folder.join(&*id).to_string_lossy().into_owned();
+        }
         let baseline = self.read_baseline(&mut spec)?;
         Ok(StudyInput { job: None, queue_s: None, cases, baseline, earlier: None, spec })
     }
@@ -307,7 +313,19 @@ fn print_report(report: &ReportDocument) {
             println!("  {} does not apply: {}", skipped.label, skipped.reason);
         }
     }
+    for map in &report.constant_maps {
+        print_map(map);
+    }
     println!("\noutcome    {}", report.verdict.outcome.name());
+}
+
+/// The constants with which the skin is nearest to a scan.
+fn print_map(map: &ConstantMapDocument) {
+    println!("\n{} {}: {:.4} mm from the scan at best", map.plan, map.label, map.best.mean_mm);
+    for (axis, value) in map.axes.iter().zip(&map.best.values) {
+        let as_good: Vec<String> = axis.as_good.iter().map(f64::to_string).collect();
+        println!("  {:<32} {value}; as good: {}", axis.words(), as_good.join(", "));
+    }
 }
 
 fn print_row(row: &RowDocument) {

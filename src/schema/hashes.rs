@@ -95,6 +95,9 @@ pub fn study_hash(
     if let Some(job) = spec.truth.as_mut().and_then(|truth| truth.job.as_mut()) {
         replace(job, content_of);
     }
+    for (_, id) in spec.truth_meshes_mut() {
+        replace(id, content_of);
+    }
     hash(json!({
         "cases": cases.iter().map(to_value).collect::<Vec<_>>(),
         "spec": spec.content(),

@@ -6,6 +6,8 @@ mod axis;
 mod callout;
 mod classes;
 pub mod colour;
+mod contour_grid;
+mod contours;
 mod displacement;
 pub mod drawing;
 mod facet;
@@ -25,6 +27,8 @@ pub mod view;
 mod views;
 
 pub use classes::{ClassKind, ClassesPicture, NodeClasses};
+pub use contour_grid::ContourAxis;
+pub use contours::ContourPicture;
 pub use displacement::DisplacementPicture;
 pub use ladder::{LadderFailure, LadderMark, LadderPicture};
 pub use learning::{LearningPicture, LearningSeries};

@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::cut::{Cut, Side};
+use super::risk::Risk;
 use crate::mesh::Vector;
 
 /// Labels of voxels are bytes, and some of them are taken.
@@ -52,6 +53,7 @@ pub struct SegmentRule {
 pub struct Osteotomy {
     cuts: Vec<Cut>,
     segments: Vec<SegmentRule>,
+    risks: Vec<Risk>,
 }
 
 impl Osteotomy {
@@ -73,7 +75,16 @@ impl Osteotomy {
         if let Some(unused) = (0..cuts.len()).find(|cut| !named.contains(cut)) {
             return Err(RuleError::Unused { name: cuts[unused].name.clone() });
         }
-        Ok(Osteotomy { cuts, segments })
+        Ok(Osteotomy { cuts, segments, risks: Vec::new() })
+    }
+
+    /// The same with structures that its cuts have to keep clear of.
+    pub fn with_risks(self, risks: Vec<Risk>) -> Osteotomy {
+        Osteotomy { risks, ..self }
+    }
+
+    pub fn risks(&self) -> &[Risk] {
+        &self.risks
     }
 
     pub fn cuts(&self) -> &[Cut] {

@@ -1,4 +1,4 @@
-//! Error of an answer: the distance of its skin from the true one.
+//! Error of an answer: the distance of its skin from the true one, whose displacement is known.
 //!
 //! Node-wise e_i = |u_i - u*_i| at the skin nodes of level 0, which refined meshes keep; closest point
 //! e_i = min_{y in S*} |x_i + u_i - y|, S* the skin of level 0 moved by u*. Node i weighs a third of the area of its
@@ -13,7 +13,7 @@ use crate::prediction::Skin;
 use crate::validation::{Statistics, StatisticsError};
 
 /// The skin of level 0 after the true displacement.
-pub(super) struct TrueSkin<'a> {
+pub(super) struct DisplacedSkin<'a> {
     skin: &'a Skin,
     areas: Vec<f64>,
     displacement: &'a [Vector],
@@ -22,13 +22,15 @@ pub(super) struct TrueSkin<'a> {
 
 /// What is told of an answer.
 pub(super) struct Measured {
-    pub node_wise: Errors,
+    pub error: Errors,
     pub closest_point: Errors,
     pub regions: BTreeMap<String, Errors>,
     pub skin_mean_mm: f64,
+    /// Share of the moving skin's area that has a scan opposite; none where displacements are compared.
+    pub covered_share: Option<f64>,
 }
 
-impl<'a> TrueSkin<'a> {
+impl<'a> DisplacedSkin<'a> {
     /// Of a skin and its true displacement, as far as there are both.
     pub(super) fn of(
         skin: &'a Result<Skin, Refusal>,
@@ -40,7 +42,7 @@ impl<'a> TrueSkin<'a> {
         })?;
         let search = SurfaceSearch::new(&moved(&skin.surface, displacement))
             .map_err(|error| Refusal::new("truth-failed", error.to_string()))?;
-        Ok(TrueSkin { skin, areas: skin.surface.point_areas(), displacement, search })
+        Ok(DisplacedSkin { skin, areas: skin.surface.point_areas(), displacement, search })
     }
 
     /// The errors of another displacement of the same nodes.
@@ -59,10 +61,11 @@ impl<'a> TrueSkin<'a> {
             regions.insert(name.clone(), errors(&of(&apart), &of(&self.areas))?);
         }
         Ok(Measured {
-            node_wise: errors(&apart, &self.areas)?,
+            error: errors(&apart, &self.areas)?,
             closest_point: errors(&closest, &self.areas)?,
             regions,
             skin_mean_mm: Statistics::weighted(&length, &self.areas)?.mean,
+            covered_share: None,
         })
     }
 }
@@ -73,7 +76,8 @@ pub(super) fn errors(values: &[f64], areas: &[f64]) -> Result<Errors, Statistics
     Ok(Errors { mean, p95, max })
 }
 
-fn moved(surface: &TriangleSurface, displacement: &[Vector]) -> TriangleSurface {
+/// A surface after its points have moved.
+pub(super) fn moved(surface: &TriangleSurface, displacement: &[Vector]) -> TriangleSurface {
     let mut moved = surface.clone();
     for (point, u) in moved.points.iter_mut().zip(displacement) {
         *point += u;

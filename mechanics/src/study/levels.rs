@@ -33,6 +33,10 @@ impl<'a> Levels<'a> {
         let mut case =
             Case { volume, materials: materials.by_region.clone(), ..self.scene.case.clone() };
         case.fibres.extend(materials.fibres.clone());
+        for window in case.hounsfield.iter_mut().flat_map(|image| &mut image.tissues) {
+            window.material =
+                materials.tissues.get(&window.name).copied().unwrap_or(window.material);
+        }
         Ok(case)
     }
 

@@ -1,6 +1,7 @@
 //! Methods side by side on the same scenes: how long each takes, and how far each is from the truth.
 
 mod answer;
+pub mod constant_map;
 pub mod convergence;
 mod deadline;
 mod error;
@@ -12,11 +13,13 @@ pub mod pairwise;
 pub mod pareto;
 pub mod report;
 mod run;
+mod scan;
 pub mod scenes;
 pub mod stability;
 pub mod sweep;
 mod truth;
 mod truth_cost;
+mod truth_words;
 pub mod variant;
 
 pub use answer::LONG_S;
@@ -25,7 +28,7 @@ pub use levels::{MOST_CELLS, cells_at};
 pub use report::{Errors, Outcome, Report, Row, SceneReport, Skipped, Solved};
 pub use run::{NOT_RUN, run};
 pub use truth_cost::{TruthCost, TruthMesh, truth_cost};
-pub use variant::{ClosedForm, Materials, Study, StudyScene, Truth, Variant};
+pub use variant::{ClosedForm, Materials, Scan, Study, StudyScene, Truth, Variant};
 
 /// What the caller measures while the study computes: numerics know neither clock nor memory.
 pub trait Stopwatch: Sync {

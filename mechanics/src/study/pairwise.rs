@@ -68,8 +68,8 @@ fn of_label<'a>(rows: &'a [Row], label: &str) -> BTreeMap<Place<'a>, &'a Outcome
 
 fn compare(rows: &[Row], [first, second]: [&str; 2], measure: Measure) -> Pairwise {
     let of = |solved: &Solved| match measure {
-        Measure::Mean => solved.node_wise.mean,
-        Measure::P95 => solved.node_wise.p95,
+        Measure::Mean => solved.error.mean,
+        Measure::P95 => solved.error.p95,
     };
     let others = of_label(rows, second);
     let mut scenes: BTreeMap<&str, Vec<[f64; 2]>> = BTreeMap::new();

@@ -38,7 +38,7 @@ pub fn of_plan(report: &Report, scene: &str, plan: &str) -> Vec<usize> {
             && row.plan == plan
         {
             places.push(place);
-            points.push([solved.wall_s, solved.node_wise.p95]);
+            points.push([solved.wall_s, solved.error.p95]);
         }
     }
     front(&points).into_iter().map(|point| places[point]).collect()

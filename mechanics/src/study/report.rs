@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use crate::mesh::Warning;
+
 /// All rows in the order of the study: scene, plan, material, level, variant.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Report {
@@ -35,6 +37,12 @@ pub struct SceneReport {
     /// What the truth itself is off by, mean and p95 over the skin in mm, by extrapolation; none for a
     /// closed form. Of the plan and the material for which it is largest.
     pub truth_error_mm: Option<[f64; 2]>,
+    /// The distance of the skin at rest from a scan, over what rows are measured on; none without a scan.
+    pub unmoved_mm: Option<f64>,
+    /// Root of the mean squared distance that the registration of a scan left; none without a scan, or where it is not known.
+    pub noise_mm: Option<f64>,
+    /// What speaks against a scan.
+    pub warnings: Vec<Warning>,
     /// Making the truth, in s; not part of any row.
     pub truth_s: f64,
 }
@@ -79,13 +87,16 @@ pub struct Solved {
     pub peak_mb: Option<f64>,
     /// Mean of |u| over the skin nodes of level 0 in mm, by area.
     pub skin_mean_mm: f64,
-    /// |u - u_truth| at the skin nodes of level 0, by area.
-    pub node_wise: Errors,
+    /// |u - u_truth| at the skin nodes of level 0, by area; of a scan the distance between both surfaces where the skin
+    /// moves ([`super::variant::Scan`]).
+    pub error: Errors,
     /// From the predicted skin of level 0 to the closest point of the true one, by area.
     pub closest_point: Errors,
-    /// Node-wise, for each named part of the skin.
+    /// The error of each named part of the skin.
     pub regions: BTreeMap<String, Errors>,
     pub smallest_det_f: f64,
+    /// Share of the moving skin's area that has a scan opposite; none without a scan.
+    pub covered_share: Option<f64>,
     /// Codes of the warnings.
     pub warnings: Vec<String>,
 }

@@ -2,18 +2,23 @@
 
 use super::Stopwatch;
 use super::answer::{Answer, Bench, NoAnswer, Refusal};
-use super::error::TrueSkin;
+use super::error::{DisplacedSkin, Measured};
 use super::failure::StudyError;
 use super::levels::Levels;
 use super::report::{Outcome, Report, Row, SceneReport, Skipped, Solved};
+use super::scan::{ScannedSkin, before_operation, is_partial};
 use super::truth::{Asked, is_the_truth};
-use super::variant::{Materials, Study, StudyScene, Variant};
+use super::variant::{Materials, Study, StudyScene, Truth, Variant};
+use crate::mesh::{Vector, Warning};
 use crate::prediction::{Plan, Scene, Settings, Skin};
 use crate::progress::Progress;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The code of rows that were not begun, because the time of the study was used up.
 pub const NOT_RUN: &str = "not-run";
+
+/// The code of rows whose skin moves where a scan has nothing opposite.
+const PARTIAL: &str = "partial-coverage";
 
 /// Runs every scene with every plan, material, level and variant. The same study gives the same report but for times
 /// and memory. Combinations that are the truth themselves have no row, nor have variants that do not serve a scene.
@@ -108,26 +113,69 @@ impl<'a> SceneWork<'a> {
         let truth_s = self.bench.stopwatch.seconds() - begin;
 
         // 4. How far apart they are.
-        let mut rows = Vec::new();
+        let (mut rows, mut of_scan) = (Vec::new(), OfScan::default());
+        let farthest = self.farthest(&attempts);
         let mut attempts = attempts.into_iter();
-        for (((plan, _), skin), of_plan) in self.scene.plans.iter().zip(&skins).zip(&truths.skins) {
+        let plans = self.scene.plans.iter().zip(&skins).zip(&truths.skins).zip(&farthest);
+        for ((((plan, _), skin), of_plan), farthest) in plans {
+            let scanned = self.scanned(skin, farthest);
             for (materials, truth) in self.scene.materials.iter().zip(of_plan) {
-                let truth = TrueSkin::of(skin, truth);
+                let truth = match &scanned {
+                    Some(scanned) => {
+                        scanned.as_ref().map(TrueSkin::Scanned).map_err(Refusal::clone)
+                    }
+                    None => DisplacedSkin::of(skin, truth).map(TrueSkin::Displaced),
+                };
                 for attempt in attempts.next().into_iter().flatten() {
                     rows.push(self.row(plan, materials, attempt, &truth));
                 }
             }
+            if let Some(Ok(scanned)) = scanned {
+                of_scan = OfScan::of(scanned, &rows);
+            }
+        }
+        if self.bench.progress.is_cancelled() {
+            return Err(StudyError::Cancelled);
         }
         let about = SceneReport {
             name: self.scene.name.clone(),
             nodes: self.scene.case.volume.nodes.len(),
             cells: self.scene.case.volume.cells.len(),
             skin_nodes: skins.iter().flatten().map(|skin| skin.nodes().len()).next().unwrap_or(0),
-            truth: truths.words,
+            truth: of_scan.about.unwrap_or(truths.words),
             truth_error_mm: truths.error_mm,
+            unmoved_mm: of_scan.unmoved,
+            noise_mm: of_scan.noise,
+            warnings: of_scan.warnings,
             truth_s,
         };
         Ok((about, rows, summed(skipped)))
+    }
+
+    /// The skin as its scan is measured from it, where a scan is the truth.
+    fn scanned<'s>(
+        &'s self,
+        skin: &'s Result<Skin, Refusal>,
+        farthest: &[f64],
+    ) -> Option<Result<ScannedSkin<'s>, Refusal>> {
+        let Truth::Scan(scan) = &self.scene.truth else { return None };
+        Some(ScannedSkin::of(skin, scan, farthest, self.bench.progress))
+    }
+
+    /// For each plan how far any answer moves each point of the skin, in mm.
+    fn farthest(&self, attempts: &[Vec<Attempt>]) -> Vec<Vec<f64>> {
+        let mut all = Vec::new();
+        for of_plan in attempts.chunks(self.scene.materials.len().max(1)) {
+            let mut farthest = Vec::new();
+            for answer in of_plan.iter().flatten().filter_map(|of| of.answer.as_ref().ok()) {
+                farthest.resize(answer.displacement.len(), 0.0_f64);
+                for (most, u) in farthest.iter_mut().zip(&answer.displacement) {
+                    *most = most.max(u.norm());
+                }
+            }
+            all.push(farthest);
+        }
+        all
     }
 
     fn skin(&self, levels: &mut Levels, plan: &Plan) -> Result<Skin, Refusal> {
@@ -250,11 +298,46 @@ fn summed(skipped: Vec<Skipped>) -> Vec<Skipped> {
     all
 }
 
-fn solved(answer: Answer, truth: &Result<TrueSkin, Refusal>) -> Result<Solved, Refusal> {
+/// What a report tells of the scan of a scene.
+#[derive(Default)]
+struct OfScan {
+    about: Option<String>,
+    unmoved: Option<f64>,
+    noise: Option<f64>,
+    warnings: Vec<Warning>,
+}
+
+impl OfScan {
+    fn of(scanned: ScannedSkin, rows: &[Row]) -> Self {
+        let unmoved = scanned.unmoved();
+        let ScannedSkin { about, noise, mut warnings, .. } = scanned;
+        warnings.extend(unmoved.and_then(|unmoved| before_operation(unmoved, rows)));
+        OfScan { about: Some(about), unmoved, noise, warnings }
+    }
+}
+
+/// What answers are held against.
+enum TrueSkin<'a> {
+    Displaced(DisplacedSkin<'a>),
+    Scanned(&'a ScannedSkin<'a>),
+}
+
+impl TrueSkin<'_> {
+    fn measure(&self, found: &[Vector]) -> Result<Measured, Refusal> {
+        match self {
+            TrueSkin::Displaced(skin) => {
+                let measured = skin.measure(found);
+                measured.map_err(|error| Refusal::new("not-measured", error.to_string()))
+            }
+            TrueSkin::Scanned(skin) => skin.measure(found),
+        }
+    }
+}
+
+fn solved(mut answer: Answer, truth: &Result<TrueSkin, Refusal>) -> Result<Solved, Refusal> {
     let truth = truth.as_ref().map_err(Refusal::clone)?;
-    let measured = truth
-        .measure(&answer.displacement)
-        .map_err(|error| Refusal::new("not-measured", error.to_string()))?;
+    let measured = truth.measure(&answer.displacement)?;
+    answer.warnings.extend(is_partial(measured.covered_share).then(|| PARTIAL.to_owned()));
     Ok(Solved {
         unknowns: answer.unknowns,
         iterations: answer.iterations,
@@ -262,10 +345,11 @@ fn solved(answer: Answer, truth: &Result<TrueSkin, Refusal>) -> Result<Solved, R
         repeats: answer.repeats,
         peak_mb: answer.peak_mb,
         skin_mean_mm: measured.skin_mean_mm,
-        node_wise: measured.node_wise,
+        error: measured.error,
         closest_point: measured.closest_point,
         regions: measured.regions,
         smallest_det_f: answer.smallest_det_f,
         warnings: answer.warnings,
+        covered_share: measured.covered_share,
     })
 }

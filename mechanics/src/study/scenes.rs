@@ -58,7 +58,7 @@ fn materials(name: &str, by_region: &[(&str, f64, f64)]) -> Materials {
         (region.to_owned(), made.expect("the constants of the scenes are within the ranges"))
     };
     let by_region: BTreeMap<_, _> = by_region.iter().map(material).collect();
-    Materials { name: name.to_owned(), by_region, fibres: BTreeMap::new() }
+    Materials { name: name.to_owned(), by_region, ..Materials::default() }
 }
 
 /// One segment shifted by a length in mm along a direction, e.g. `patch 4 mm`.

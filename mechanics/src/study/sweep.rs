@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use super::report::{Outcome, Report, Row};
 use super::variant::Materials;
 use crate::material::{LinearElastic, MaterialError};
-use crate::prediction::Case;
+use crate::prediction::{Case, TissueWindow};
 
 /// More combinations are refused.
 pub const MOST_COMBINATIONS: usize = 1000;
@@ -26,6 +26,10 @@ pub enum SweepError {
     TooMany { combinations: usize },
     #[error("region {region:?} has no material that a sweep could start from")]
     UnknownRegion { region: String },
+    #[error(
+        "{region:?} is a region of the tissue and a tissue of the image: only one of them can be meant"
+    )]
+    TwoThings { region: String },
     #[error("the material of region {region:?} has fibres, and a sweep varies isotropic ones")]
     Fibres { region: String },
     #[error(
@@ -36,10 +40,11 @@ pub enum SweepError {
     Material { region: String, source: MaterialError },
 }
 
-/// Every combination of the values, over the materials of a case. The last constant of the last region varies
+/// Every combination of the values, over the materials of a case and of the tissues that its image shows. The last constant of the last region varies
 /// fastest; names tell what varies: `muscle E 300 kPa nu 0.44, soft nu 0.46`.
 pub fn combinations(
     base: &BTreeMap<String, LinearElastic>,
+    tissues: &[TissueWindow],
     sweep: &BTreeMap<String, Values>,
 ) -> Result<Vec<Materials>, SweepError> {
     let count =
@@ -49,10 +54,14 @@ pub fn combinations(
     if combinations > MOST_COMBINATIONS {
         return Err(SweepError::TooMany { combinations });
     }
-    let mut all =
-        vec![Materials { name: String::new(), by_region: base.clone(), fibres: BTreeMap::new() }];
+    let mut all = vec![Materials { by_region: base.clone(), ..Materials::default() }];
     for (region, values) in sweep {
-        let start = base.get(region).or_else(|| base.get("*"));
+        let tissue = tissues.iter().find(|tissue| tissue.name == *region);
+        if tissue.is_some() && base.contains_key(region) {
+            return Err(SweepError::TwoThings { region: region.clone() });
+        }
+        let start = tissue.map(|tissue| &tissue.material).or_else(|| base.get(region));
+        let start = start.or_else(|| base.get("*"));
         let start = start.ok_or_else(|| SweepError::UnknownRegion { region: region.clone() })?;
         if start.has_fibre() || start.has_pulling_fibres() {
             return Err(SweepError::Fibres { region: region.clone() });
@@ -64,16 +73,20 @@ pub fn combinations(
         all = all
             .iter()
             .flat_map(|before| {
-                choices.iter().map(|(name, material)| with(before, region, name, material))
+                choices.iter().map(|(name, material)| {
+                    with(before, (region, tissue.is_some()), name, material)
+                })
             })
             .collect();
     }
     Ok(all)
 }
 
-/// Whether the tissue of a case has a region of that name; `*` is all of it.
+/// Whether the tissue of a case has a region of that name, or its image shows such a tissue; `*` is all of it.
 pub fn has_region(case: &Case, region: &str) -> bool {
+    let mut tissues = case.hounsfield.iter().flat_map(|image| &image.tissues);
     region == "*"
+        || tissues.any(|tissue| tissue.name == region)
         || match &case.regions {
             None => region == "tissue",
             Some(regions) => {
@@ -115,11 +128,49 @@ fn choices(
     Ok(choices)
 }
 
-fn with(before: &Materials, region: &str, name: &str, material: &LinearElastic) -> Materials {
-    let mut by_region = before.by_region.clone();
-    by_region.insert(region.to_owned(), *material);
+fn with(
+    before: &Materials,
+    (region, is_tissue): (&str, bool),
+    name: &str,
+    material: &LinearElastic,
+) -> Materials {
+    let mut with = before.clone();
+    let of = if is_tissue { &mut with.tissues } else { &mut with.by_region };
+    of.insert(region.to_owned(), *material);
     let names = [before.name.as_str(), name].into_iter().filter(|name| !name.is_empty());
-    Materials { name: names.collect::<Vec<_>>().join(", "), by_region, fibres: BTreeMap::new() }
+    with.name = names.collect::<Vec<_>>().join(", ");
+    with
+}
+
+/// A constant that takes several values.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SweptAxis {
+    pub region: String,
+    pub constant: Constant,
+    pub values: Vec<f64>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Constant {
+    /// In kPa.
+    YoungModulus,
+    PoissonRatio,
+}
+
+/// The constants of a sweep in the order of its combinations: the last one varies fastest.
+pub fn axes(sweep: &BTreeMap<String, Values>) -> Vec<SweptAxis> {
+    let of_region = |(region, values): (&String, &Values)| {
+        let both = [
+            (Constant::YoungModulus, &values.young_modulus),
+            (Constant::PoissonRatio, &values.poisson_ratio),
+        ];
+        both.map(|(constant, values)| SweptAxis {
+            region: region.clone(),
+            constant,
+            values: values.clone(),
+        })
+    };
+    sweep.iter().flat_map(of_region).filter(|axis| !axis.values.is_empty()).collect()
 }
 
 /// Which rows a sweep is judged by.
@@ -131,7 +182,7 @@ pub struct Judged<'a> {
     pub level: u32,
 }
 
-/// The row whose materials leave the least mean node-wise error; the first of equal ones.
+/// The row whose materials leave the least mean error; the first of equal ones.
 pub fn best<'r>(report: &'r Report, judged: &Judged) -> Option<&'r Row> {
     let wanted = |row: &&Row| {
         row.scene == judged.scene
@@ -140,7 +191,7 @@ pub fn best<'r>(report: &'r Report, judged: &Judged) -> Option<&'r Row> {
             && row.level == judged.level
     };
     let error = |row: &'r Row| match &row.outcome {
-        Outcome::Solved(solved) => Some((row, solved.node_wise.mean)),
+        Outcome::Solved(solved) => Some((row, solved.error.mean)),
         Outcome::Failed { .. } => None,
     };
     let rows = report.rows.iter().filter(wanted).filter_map(error);

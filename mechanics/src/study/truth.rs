@@ -13,6 +13,7 @@ use super::StudyError;
 use super::answer::{NoAnswer, Refusal, solve};
 use super::error;
 use super::levels::Levels;
+use super::truth_words::{grouped, halved};
 use super::variant::{ClosedForm, Materials, StudyScene, Truth};
 use crate::mesh::{CellShape, Vector, VolumeMesh};
 use crate::plan::RigidMovement;
@@ -61,7 +62,7 @@ pub(super) fn is_the_truth(scene: &StudyScene, settings: &Settings, level: u32) 
                 && settings.membrane.is_none()
                 && in_effect(settings.element, mesh) == in_effect(*element, mesh)
         }
-        Truth::ClosedForm(_) | Truth::Known(_) => false,
+        Truth::ClosedForm(_) | Truth::Known(_) | Truth::Scan(_) => false,
     }
 }
 
@@ -80,6 +81,7 @@ impl Asked<'_> {
         match &self.scene.truth {
             Truth::ClosedForm(formula) => Ok(self.closed_form(formula)),
             Truth::Known(displacement) => Ok(self.known(displacement)),
+            Truth::Scan(_) => Ok(self.scanned()),
             Truth::Refined { times, element } => self.refined(levels, *times, *element),
         }
     }
@@ -110,6 +112,12 @@ impl Asked<'_> {
             }
         });
         Truths { skins, words: "given with the scene".to_owned(), error_mm: None }
+    }
+
+    /// No displacement: a scan shows none.
+    fn scanned(&self) -> Truths {
+        let skins = self.each(|_, _, _| Ok(Vec::new()));
+        Truths { skins, words: "a scan".to_owned(), error_mm: None }
     }
 
     /// What holds for each plan and each material.
@@ -353,31 +361,9 @@ pub(super) fn coarsest(times: u32) -> u32 {
     times.saturating_sub(2)
 }
 
-fn halved(times: u32) -> String {
-    match times {
-        0 => "on the mesh of level 0".to_owned(),
-        1 => "every edge of level 0 halved once".to_owned(),
-        2 => "every edge of level 0 halved twice".to_owned(),
-        times => format!("every edge of level 0 halved {times} times"),
-    }
-}
-
-/// A number with a space between groups of three digits.
-fn grouped(number: usize) -> String {
-    let digits = number.to_string();
-    let mut text = String::new();
-    for (place, digit) in digits.chars().enumerate() {
-        if place > 0 && (digits.len() - place).is_multiple_of(3) {
-            text.push(' ');
-        }
-        text.push(digit);
-    }
-    text
-}
-
 #[cfg(test)]
 mod tests {
-    use super::{Vector, grouped, own_error};
+    use super::{Vector, own_error};
 
     #[test]
     fn the_error_of_the_finest_field_is_extrapolated_from_the_steps_before() {
@@ -391,10 +377,5 @@ mod tests {
         let own = own_error(&fields[1..], &[1.0]).expect("two fields");
         assert!(!own.is_observed && (own.mean_and_p95[0] - 0.6).abs() < 1e-12);
         assert!(own_error(&fields[2..], &[1.0]).is_none());
-    }
-
-    #[test]
-    fn numbers_are_grouped_by_three_digits() {
-        assert_eq!([7, 693, 69_301, 1_234_567].map(grouped), ["7", "693", "69 301", "1 234 567"]);
     }
 }

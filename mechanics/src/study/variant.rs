@@ -3,8 +3,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::material::LinearElastic;
-use crate::mesh::{Vector, VolumeMesh};
+use crate::mesh::{TriangleSurface, Vector, VolumeMesh};
 use crate::prediction::{Case, ElementChoice, FibreDirection, Plan, Settings};
+use crate::validation::Alignment;
 
 /// Every scene with every variant, or with its own, and with every material, plan and level.
 pub struct Study {
@@ -45,11 +46,14 @@ pub struct StudyScene {
 }
 
 /// Materials of all regions, under a name for the row.
+#[derive(Clone, Default)]
 pub struct Materials {
     pub name: String,
     pub by_region: BTreeMap<String, LinearElastic>,
     /// Courses of fibres over those of the case.
     pub fibres: BTreeMap<String, FibreDirection>,
+    /// Of tissues that an image shows, over those of the case, by their names.
+    pub tissues: BTreeMap<String, LinearElastic>,
 }
 
 /// A way of modelling under a name for the row.
@@ -74,6 +78,21 @@ pub enum Truth {
     },
     /// Displacement in mm at each skin node of level 0, from elsewhere.
     Known(Vec<Vector>),
+    /// A surface that shows where the skin went, but not which point went where.
+    Scan(Box<Scan>),
+}
+
+/// A scanned surface.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scan {
+    pub surface: TriangleSurface,
+    /// Onto the skin of the case. By anything but that skin itself: a scan that is fitted to each answer shows no
+    /// difference between them.
+    pub alignment: Alignment,
+    /// Only triangles of the skin count that an answer moves by more than this in the mean of their corners, in mm.
+    pub moved_by_more_than: f64,
+    /// Root of the mean squared distance that the registration left, in mm. Default: what the alignment leaves.
+    pub noise: Option<f64>,
 }
 
 /// A formula, and the walls between which it holds.

@@ -4,6 +4,7 @@
 use super::error::ComparisonError;
 use crate::mesh::{TriangleSurface, Vector, Warning};
 use crate::progress::Progress;
+use crate::registration::closest_point::FAR;
 use crate::registration::mirror::{MirrorCheck, check_mirror};
 use crate::registration::{
     IterativeClosestPoint, Place, RigidTransform, Start, SurfaceAlignment, align_points,
@@ -11,6 +12,9 @@ use crate::registration::{
 
 /// A landmark may lie outside the box around its surface by this share of the box's diagonal.
 const MARGIN: f64 = 0.1;
+
+/// Bone that nothing was done to fits to 0.1 to 0.25 mm, 0.5 % of it beyond 1 mm (Zachow et al. 2006, section 3.2).
+const BONE_SHARE: f64 = 0.25;
 
 /// How the actual surface is brought onto the prediction.
 #[derive(Clone, Debug, PartialEq)]
@@ -91,7 +95,32 @@ impl AlignmentReport {
     }
 }
 
-pub(super) fn align(
+/// The actual surface where an alignment puts it.
+pub struct Aligned {
+    pub surface: TriangleSurface,
+    pub report: AlignmentReport,
+    /// A mirror image fits better, or bone does not fit.
+    pub warnings: Vec<Warning>,
+}
+
+/// Brings the actual surface onto the prediction.
+pub fn aligned(
+    prediction: &TriangleSurface,
+    actual: &TriangleSurface,
+    alignment: &Alignment,
+    progress: &dyn Progress,
+) -> Result<Aligned, ComparisonError> {
+    let report = align(prediction, actual, alignment, progress)?;
+    let mirrored = mirror_warning(prediction, actual, alignment, &report);
+    let warnings = mirrored.into_iter().chain(another_bone(&report)).collect();
+    let mut surface = actual.clone();
+    if *alignment != Alignment::None {
+        surface.points.iter_mut().for_each(|point| *point = report.transform.apply(point));
+    }
+    Ok(Aligned { surface, report, warnings })
+}
+
+fn align(
     prediction: &TriangleSurface,
     actual: &TriangleSurface,
     alignment: &Alignment,
@@ -137,7 +166,7 @@ pub(super) fn align(
 }
 
 /// A warning where a mirror image of the actual surface would fit much better.
-pub(super) fn mirror_warning(
+fn mirror_warning(
     prediction: &TriangleSurface,
     actual: &TriangleSurface,
     alignment: &Alignment,
@@ -164,6 +193,18 @@ pub(super) fn mirror_warning(
             .with("rms_mm", check.rms)
             .with("mirrored_rms_mm", check.mirrored_rms)
     })
+}
+
+/// A warning where bone that was aligned by its shape does not fit.
+fn another_bone(report: &AlignmentReport) -> Option<Warning> {
+    let (rms, share) = (report.rms?, report.share_far?);
+    let percent = share * 100.0;
+    let detail = format!(
+        "{percent:.0} % of the bone is left more than {FAR} mm from its partner, rms {rms:.2} mm: is it somebody else's, or not the same bone?"
+    );
+    let warning = Warning::new("another-person-suspect", detail);
+    let warning = warning.with("share_above_1_mm", share).with("rms_mm", rms);
+    (report.method == Alignment::SURFACES && share > BONE_SHARE).then_some(warning)
 }
 
 fn refuse_outside(

@@ -5,7 +5,7 @@
 
 use std::collections::BTreeMap;
 
-use super::alignment::{Alignment, AlignmentReport, LandmarkPair, align, mirror_warning};
+use super::alignment::{Aligned, Alignment, AlignmentReport, LandmarkPair, aligned};
 use super::both_ways::{BothDirections, Coverage, Pair};
 use super::correspondence::corresponding_points;
 use super::distance::signed_distances;
@@ -104,10 +104,10 @@ pub fn compare(
     let mut warnings = Vec::new();
 
     // 2. The actual surface goes onto the prediction.
-    let alignment = align(prediction, actual, &settings.alignment, progress)?;
-    warnings.extend(mirror_warning(prediction, actual, &settings.alignment, &alignment));
+    let aligned = aligned(prediction, actual, &settings.alignment, progress)?;
+    let Aligned { surface: aligned_actual, report: alignment, warnings: told } = aligned;
+    warnings.extend(told);
     let is_moved = settings.alignment != Alignment::None;
-    let aligned_actual = if is_moved { moved(actual, &alignment) } else { actual.clone() };
 
     // 3. Distances as they were, and as they are.
     let density = settings.samples_per_mm2;
@@ -149,14 +149,6 @@ pub fn compare(
         aligned_actual,
         warnings,
     })
-}
-
-fn moved(surface: &TriangleSurface, alignment: &AlignmentReport) -> TriangleSurface {
-    let mut moved = surface.clone();
-    for point in &mut moved.points {
-        *point = alignment.transform.apply(point);
-    }
-    moved
 }
 
 fn node_wise(

@@ -3,6 +3,7 @@
 pub mod alignment;
 pub mod both_ways;
 pub mod comparison;
+pub mod contact_map;
 mod correspondence;
 pub mod distance;
 mod error;
@@ -14,7 +15,7 @@ pub mod statistics;
 mod suspicion;
 mod warped;
 
-pub use alignment::{Alignment, AlignmentReport, BoneSurfaces, LandmarkPair};
+pub use alignment::{Aligned, Alignment, AlignmentReport, BoneSurfaces, LandmarkPair, aligned};
 pub use both_ways::{BothDirections, Coverage};
 pub use comparison::{Comparison, ComparisonSettings, NodeWise, compare};
 pub use distance::{DistanceStatistics, Distances};

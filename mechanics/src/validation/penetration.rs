@@ -7,7 +7,7 @@ use crate::mesh::surface_edges::count_edges;
 use crate::mesh::{SurfaceSearch, TriangleSurface, Vector};
 
 /// Deeper than this, in mm, the side of an open surface says nothing about inside and outside.
-const DEEPEST: f64 = 20.0;
+pub const DEEPEST: f64 = 20.0;
 
 /// The side of a surface on which points are counted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -6,10 +6,6 @@ use super::both_ways::{BothDirections, Pair};
 use super::error::ComparisonError;
 use super::region::MovedSurface;
 use crate::mesh::{SurfaceSearch, TriangleSurface, Vector, Warning, area_sampling};
-use crate::registration::closest_point::FAR;
-
-/// Bone that nothing was done to fits to 0.1 to 0.25 mm, 0.5 % of it beyond 1 mm (Zachow et al. 2006, section 3.2).
-const BONE_SHARE: f64 = 0.25;
 
 /// In mm: predictions of the field are 0.6 to 1.2 mm off in the mean.
 const SKIN_MEDIAN: f64 = 2.0;
@@ -27,21 +23,12 @@ const APART: f64 = 20.0;
 const POINTS: usize = 2000;
 const FEWEST: usize = 20;
 
-/// A warning where surfaces that were aligned by their shapes do not fit.
+/// A warning where surfaces that were aligned by their own shapes do not fit.
 pub(super) fn another_person(
     report: &AlignmentReport,
     distances: &BothDirections,
 ) -> Option<Warning> {
     let rms = report.rms?;
-    let share = report.share_far?;
-    if report.method == Alignment::SURFACES && share > BONE_SHARE {
-        let percent = share * 100.0;
-        let detail = format!(
-            "{percent:.0} % of the bone is left more than {FAR} mm from its partner, rms {rms:.2} mm: is it somebody else's, or not the same bone?"
-        );
-        let warning = Warning::new("another-person-suspect", detail);
-        return Some(warning.with("share_above_1_mm", share).with("rms_mm", rms));
-    }
     let median = distances.both.unsigned.median;
     if report.method == Alignment::ICP && median > SKIN_MEDIAN {
         let detail = format!(

@@ -104,7 +104,8 @@ impl Pair<'_> {
         Ok(Region::Points(points.clone()))
     }
 
-    fn alignment(&self, align: &AlignDocument) -> Result<Alignment, JobError> {
+    /// What a document that was checked asks for.
+    pub fn alignment(&self, align: &AlignDocument) -> Result<Alignment, JobError> {
         let mask = align.mask.as_ref().and_then(place_of);
         let pairs =
             || -> Vec<LandmarkPair> { align.landmarks.values().map(landmark_pair).collect() };

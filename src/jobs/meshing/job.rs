@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::case::{bone_file, case_of};
 use super::check::{MadeAnatomy, check_anatomy};
+use super::cuts::{CUT_PATHS_FILE, CUT_PATHS_MEDIA_TYPE, cut_paths, cut_paths_csv};
 use super::input::{MeshingInput, PreparedMeshing};
 use crate::jobs::clock::Observed;
 use crate::jobs::failure::JobError;
@@ -11,7 +12,7 @@ use crate::jobs::output::{JobOutput, MadeMesh, Workplace};
 use crate::jobs::result::folder::ResultFolder;
 use crate::jobs::result::pictures::slices_picture;
 use crate::jobs::result::provenance::{Origin, encode_result, mesh_summary};
-use crate::jobs::result::warnings::warning_documents;
+use crate::jobs::result::warnings::{warning_documents, warnings_after};
 use crate::jobs::source::StoredShape;
 use crate::schema::WarningDocument;
 use crate::schema::meshing::labels::LabelsDocument;
@@ -22,8 +23,8 @@ use crate::schema::predict::result::{FileDocument, ResultDocument};
 use mechanics::anatomy::Anatomy;
 use mechanics::format::vtk::{vtp, vtu};
 use mechanics::format::{SurfaceOutput, VolumeOutput};
-use mechanics::mesh::Frame;
 use mechanics::mesh::quality::quality;
+use mechanics::mesh::{Frame, Warning};
 use mechanics::progress::{Phase, Progress};
 
 /// The picture of slices through the mesh.
@@ -55,6 +56,8 @@ pub fn meshing_job(
     let volume = OutputName::VolumeVtu.file_name();
     let case = case_of(&anatomy, volume, prepared.frame, &regions);
     let mut found = MeshingResultDocument::new(&anatomy, case);
+    let (cuts, near) = cut_paths(&prepared.rules.osteotomy, &anatomy);
+    found.cuts = cuts;
     if let Some(waiting) = &input.case {
         found.case = waiting.document.complete(found.case);
         let told = prepared.told(&anatomy);
@@ -68,7 +71,7 @@ pub fn meshing_job(
 
     // 5. Files.
     clock.phase(Phase::Write);
-    let made = Made { prepared: &prepared, anatomy: &anatomy, found };
+    let made = Made { prepared: &prepared, anatomy: &anatomy, found, near };
     let (result, files) = made.publish(input, place, &clock)?;
     let told = result.warnings.clone();
     Ok(JobOutput { result, files, meshes: meshes_of(anatomy, prepared.frame, told) })
@@ -102,6 +105,8 @@ struct Made<'a> {
     prepared: &'a PreparedMeshing,
     anatomy: &'a Anatomy,
     found: MeshingResultDocument,
+    /// Cuts that come too near to what must not be sawn.
+    near: Vec<Warning>,
 }
 
 impl Made<'_> {
@@ -111,7 +116,7 @@ impl Made<'_> {
         place: &Workplace,
         clock: &Observed,
     ) -> Result<(ResultDocument, Vec<FileDocument>), JobError> {
-        let Made { prepared, anatomy, found } = self;
+        let Made { prepared, anatomy, found, near } = self;
         let frame = prepared.frame;
         let origin = Origin {
             spec_hash: prepared.spec_hash.clone(),
@@ -128,7 +133,11 @@ impl Made<'_> {
         }
         let picture = slices_picture(anatomy, frame)?;
         folder.add_file(SLICES_FILE, OutputName::ClassesSvg.media_type(), picture.as_bytes())?;
-        let warnings = prepared.told(anatomy);
+        if !found.cuts.is_empty() {
+            let table = cut_paths_csv(&found.cuts, frame);
+            folder.add_file(CUT_PATHS_FILE, CUT_PATHS_MEDIA_TYPE, table.as_bytes())?;
+        }
+        let warnings = warnings_after(&prepared.told(anatomy), near.iter());
         let mut provenance = origin.provenance(clock);
         provenance.mesh = Some(mesh_summary(&anatomy.volume, &quality(&anatomy.volume)));
         let rest = ResultDocument::new(input.job.clone(), &folder.files, provenance, warnings);

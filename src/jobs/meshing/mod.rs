@@ -3,6 +3,7 @@
 mod body;
 mod case;
 mod check;
+mod cuts;
 mod input;
 mod job;
 mod model;

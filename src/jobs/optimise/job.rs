@@ -7,7 +7,7 @@ use super::targets::PreparedOptimisation;
 use crate::jobs::clock::Observed;
 use crate::jobs::failure::JobError;
 use crate::jobs::output::{JobOutput, Workplace};
-use crate::jobs::predict::{PredictInput, Predicted, Prepared, statistics};
+use crate::jobs::predict::{PredictInput, Predicted, Prepared, bones_file, statistics};
 use crate::jobs::report::{PredictionFacts, write_reports};
 use crate::jobs::result::folder::ResultFolder;
 use crate::jobs::result::pictures::displacement_picture;
@@ -15,7 +15,6 @@ use crate::jobs::result::provenance::{
     Origin, add_method, encode_result, mesh_summary, solver_document,
 };
 use crate::jobs::result::skin::PredictedSkin;
-use crate::jobs::result::tissue::encode_bones;
 use crate::jobs::result::warnings::warnings_after;
 use crate::schema::optimise::result::OptimisationDocument;
 use crate::schema::predict::document::OutputName;
@@ -174,7 +173,7 @@ impl Found {
         let mut folder = ResultFolder::open(place.out)?;
         for name in input.files() {
             let bytes = match name {
-                OutputName::BonesVtp => encode_bones(&planned.case, scene, &field_data)?,
+                OutputName::BonesVtp => bones_file(&planned.case, scene, &field_data)?,
                 OutputName::ClassesSvg => planned.classes_picture()?.into_bytes(),
                 OutputName::DisplacementSvg => {
                     let numbers = &statistics.skin.nodes;

@@ -3,7 +3,7 @@
 use super::cost;
 use super::density::default_density;
 use super::input::{PredictInput, Prepared};
-use super::overlap::{Collision, collisions};
+use super::overlap::{Collision, collisions, contacts};
 use super::planned::{in_numbers, movements, swapped_sides};
 use crate::jobs::failure::JobError;
 use crate::jobs::result::pictures::classes_picture;
@@ -79,6 +79,7 @@ impl Prepared {
             auto: self.expectation(input),
             movements: movements(scene, self.case.frame),
             collisions: collisions.iter().map(Collision::document).collect(),
+            contacts: contacts(&self.case, scene),
             cephalometry: head.measures,
             symmetry: head.symmetry,
             warnings: warnings_after(&self.told, warnings),

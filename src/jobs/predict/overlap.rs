@@ -1,13 +1,22 @@
 //! Overlap of surfaces under a plan: warned of, since nothing in the model stops it.
 
-use crate::schema::predict::planned::{CollisionDocument, OverlapDocument};
+use crate::jobs::result::tissue::encode_bones;
+use crate::schema::predict::planned::{BoneContactDocument, CollisionDocument, OverlapDocument};
+use mechanics::format::WriteError;
 use mechanics::mesh::{SurfaceSearch, TriangleSurface, Vector, Warning};
 use mechanics::plan::RigidMovement;
 use mechanics::prediction::{Bone, Case, Prediction, Scene};
+use mechanics::validation::contact_map::{contact_regions, gaps};
 use mechanics::validation::penetration::{Side, overlap, reach};
 
 /// A plan has to push this much deeper than the scan had it, in mm: surfaces of one scan touch.
 const NOTICEABLE: f64 = 0.1;
+
+/// Surfaces nearer to each other than this, in mm, touch: what teeth of scans are known to.
+const CONTACT: f64 = 0.3;
+
+/// Bone farther from other bone than this, in mm, shows nothing of how both meet.
+const FARTHEST_GAP: f64 = 5.0;
 
 /// A bone where it was scanned, and how the plan moves it.
 struct PlannedBone<'a> {
@@ -27,13 +36,47 @@ struct Depth {
 /// The bones that reach into each other, of those that the plan moves against each other.
 pub fn collisions(case: &Case, scene: &Scene) -> Vec<Collision> {
     let bones = planned_bones(case, scene);
-    let mut found = Vec::new();
-    for (number, bone) in bones.iter().enumerate() {
-        for other in bones[number + 1..].iter().filter(|other| other.movement != bone.movement) {
-            found.extend(bone.collision(other));
+    moved_pairs(&bones).filter_map(|(bone, other)| bone.collision(other)).collect()
+}
+
+/// Where bones that the plan moves against each other touch; pairs that touch nowhere are left out.
+pub fn contacts(case: &Case, scene: &Scene) -> Vec<BoneContactDocument> {
+    let bones = planned_bones(case, scene);
+    moved_pairs(&bones).filter_map(|(bone, other)| bone.contact(other)).collect()
+}
+
+/// `bones.vtp`, with how near bones come to each other.
+pub fn bones_file(
+    case: &Case,
+    scene: &Scene,
+    field_data: &[(String, String)],
+) -> Result<Vec<u8>, WriteError> {
+    encode_bones(case, scene, planned_gaps(case, scene).as_deref(), field_data)
+}
+
+/// For each point of each bone that has a surface, as planned, the signed distance from the nearest bone that the plan
+/// moves against it, in mm, negative inside; [`FARTHEST_GAP`] where none is as near. `None` where no bone moves against
+/// another.
+fn planned_gaps(case: &Case, scene: &Scene) -> Option<Vec<f64>> {
+    let bones = planned_bones(case, scene);
+    let mut all = Vec::new();
+    let mut has_pair = false;
+    for bone in case.bones.iter().filter(|bone| case.surfaces.contains_key(&bone.surface)) {
+        let mut nearest = vec![FARTHEST_GAP; case.surfaces[&bone.surface].points.len()];
+        let own = bones.iter().find(|own| own.name == bone.name);
+        for (own, other) in own.iter().flat_map(|own| bones.iter().map(move |other| (own, other))) {
+            if other.movement == own.movement {
+                continue;
+            }
+            has_pair = true;
+            let points = own.moved_by(&own.movement.then(&other.movement.inverse()));
+            let against = TriangleSurface { points, ..own.surface.clone() };
+            let found = gaps(&against, &other.search, FARTHEST_GAP);
+            nearest.iter_mut().zip(found).for_each(|(least, gap)| *least = least.min(gap));
         }
+        all.extend(nearest);
     }
-    found
+    has_pair.then_some(all)
 }
 
 /// A warning for each bone that the plan pushes through the predicted skin.
@@ -89,6 +132,16 @@ fn planned_bones<'a>(case: &'a Case, scene: &Scene) -> Vec<PlannedBone<'a>> {
     case.bones.iter().filter_map(planned).collect()
 }
 
+/// Every two bones that the plan moves against each other.
+fn moved_pairs<'b, 'a>(
+    bones: &'b [PlannedBone<'a>],
+) -> impl Iterator<Item = (&'b PlannedBone<'a>, &'b PlannedBone<'a>)> {
+    bones.iter().enumerate().flat_map(move |(number, bone)| {
+        let others = bones[number + 1..].iter();
+        others.filter(|other| other.movement != bone.movement).map(move |other| (bone, other))
+    })
+}
+
 impl PlannedBone<'_> {
     fn collision(&self, other: &PlannedBone) -> Option<Collision> {
         let (there, back) = (self.reach_into(other), other.reach_into(self));
@@ -103,6 +156,27 @@ impl PlannedBone<'_> {
         };
         let bones = [self.name.to_owned(), other.name.to_owned()];
         Some(Collision { bones, depth, placed: [placed(self), placed(other)] })
+    }
+
+    fn contact(&self, other: &PlannedBone) -> Option<BoneContactDocument> {
+        let before = contact_regions(self.surface, &other.search, CONTACT);
+        // The other stays where its search was prepared, and what is found goes with it to where it is planned.
+        let relative = self.movement.then(&other.movement.inverse());
+        let points = self.moved_by(&relative);
+        let against = TriangleSurface { points, ..self.surface.clone() };
+        let mut planned = contact_regions(&against, &other.search, CONTACT);
+        for region in &mut planned {
+            region.middle = other.movement.apply(&region.middle);
+        }
+        if before.is_empty() && planned.is_empty() {
+            return None;
+        }
+        Some(BoneContactDocument {
+            bones: [self.name.to_owned(), other.name.to_owned()],
+            within_mm: CONTACT,
+            before: before.as_slice().into(),
+            planned: planned.as_slice().into(),
+        })
     }
 
     /// How deep this bone reaches into another one. Only the movement of one against the other counts,

@@ -8,7 +8,7 @@ use super::comparison::compare_skin;
 use super::correction::{CORRECTED_FILE, Correction, corrected};
 use super::density::default_density;
 use super::input::{PredictInput, Prepared};
-use super::overlap::{Collision, collisions, through_skin};
+use super::overlap::{Collision, bones_file, collisions, through_skin};
 use super::planned::{in_numbers, swapped_sides};
 use crate::jobs::clock::Observed;
 use crate::jobs::failure::JobError;
@@ -21,7 +21,7 @@ use crate::jobs::result::provenance::{
 };
 use crate::jobs::result::skin::PredictedSkin;
 use crate::jobs::result::stress::stress_by_region;
-use crate::jobs::result::tissue::{encode_bones, encode_volume};
+use crate::jobs::result::tissue::encode_volume;
 use crate::jobs::result::warnings::warnings_after;
 use crate::jobs::source::StoredShape;
 use crate::schema::Triple;
@@ -207,7 +207,7 @@ impl Finished<'_> {
         for name in input.files() {
             let bytes = match name {
                 OutputName::VolumeVtu => encode_volume(scene, self.prediction, frame, &field_data)?,
-                OutputName::BonesVtp => encode_bones(&self.prepared.case, scene, &field_data)?,
+                OutputName::BonesVtp => bones_file(&self.prepared.case, scene, &field_data)?,
                 OutputName::ClassesSvg => self.prepared.classes_picture()?.into_bytes(),
                 OutputName::DisplacementSvg => {
                     let numbers = &self.statistics.skin.nodes;

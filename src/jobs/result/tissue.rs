@@ -112,6 +112,7 @@ impl ImagedArrays {
 pub fn encode_bones(
     case: &Case,
     scene: &Scene,
+    gaps: Option<&[f64]>,
     field_data: &[(String, String)],
 ) -> Result<Vec<u8>, WriteError> {
     let mut moved = TriangleSurface::default();
@@ -142,5 +143,7 @@ pub fn encode_bones(
         NamedValues { name: "displacement_mm", values: ArrayValues::Vectors(&displacement) },
         NamedValues { name: "segment", values: ArrayValues::Integers(&segment) },
     ];
+    let gaps = gaps.map(ArrayValues::Reals);
+    output.point_arrays.extend(gaps.map(|values| NamedValues { name: "gap_mm", values }));
     vtp::write(&output)
 }

@@ -29,7 +29,9 @@ impl StudyInput {
     /// The ids of all meshes that its cases read.
     pub fn mesh_ids(&self) -> Vec<String> {
         let mut ids: Vec<String> = self.cases.values().flat_map(CaseDocument::mesh_ids).collect();
-        for plan in self.spec.clone().plan_documents_mut() {
+        let mut spec = self.spec.clone();
+        ids.extend(spec.truth_meshes_mut().into_iter().map(|(_, id)| id.clone()));
+        for plan in spec.plan_documents_mut() {
             for (_, id) in plan.surface_references_mut() {
                 let is_bone = |case: &CaseDocument| case.bones.iter().any(|bone| bone.name == *id);
                 if !self.cases.values().any(is_bone) {

@@ -3,6 +3,7 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use super::chart::chart;
+use super::constants::constants_chart;
 use super::files::{
     CHART_SVG, CSV_MEDIA_TYPE, JSON_MEDIA_TYPE, JUNIT_MEDIA_TYPE, REPORT_CSV, REPORT_JSON,
     REPORT_JUNIT, SVG_MEDIA_TYPE, csv, junit,
@@ -21,9 +22,12 @@ use crate::jobs::result::warnings::warning_documents;
 use crate::schema::predict::document::OutputName;
 use crate::schema::predict::output::PictureName;
 use crate::schema::predict::result::ResultDocument;
+use crate::schema::study::constants::ConstantMapDocument;
 use crate::schema::study::report::ReportDocument;
 use mechanics::mesh::Frame;
 use mechanics::progress::{Phase, Progress};
+use mechanics::study::constant_map::constant_maps;
+use mechanics::study::sweep::axes;
 use mechanics::study::{Stopwatch, StudyError, run};
 
 /// What a study may take in all: its budget once for rows, once for truths, and a minute for the rest, in s.
@@ -107,7 +111,9 @@ pub fn study_job(
         frame: Frame::Unspecified,
         queue_s: input.queue_s,
     };
-    let warnings = warning_documents(prepared.warnings.iter());
+    let mut warnings = warning_documents(prepared.warnings.iter());
+    warnings.extend(report.scenes.iter().flat_map(|scene| scene.warnings.iter().cloned()));
+    warnings.extend(report.constant_maps.iter().flat_map(|map| map.warnings.iter().cloned()));
     let provenance = origin.provenance(&clock);
     let result = ResultDocument {
         study: Some(report.summary()),
@@ -146,10 +152,14 @@ fn rows_of(
         StudyError::Cancelled => clock.stopped(),
         other => JobError::Study(other),
     })?;
-    Ok(report_document(&found, spec, variants, origin()))
+    let swept = spec.sweep.iter().map(|(region, of)| (region.clone(), of.to_values())).collect();
+    let maps = constant_maps(&found, &prepared.study, &axes(&swept));
+    let constant_maps = maps.iter().filter_map(ConstantMapDocument::new).collect();
+    Ok(ReportDocument { constant_maps, ..report_document(&found, spec, variants, origin()) })
 }
 
-/// The report in every form, a chart over all scenes, and one for each where there are several.
+/// The report in every form, a chart over all scenes, one for each where there are several, and one for each map of
+/// swept constants.
 fn write_report(report: &ReportDocument, folder: &mut ResultFolder) -> Result<(), JobError> {
     folder.add_file(REPORT_JSON, JSON_MEDIA_TYPE, &encode_report(report)?)?;
     folder.add_file(REPORT_CSV, CSV_MEDIA_TYPE, csv(report).as_bytes())?;
@@ -161,6 +171,11 @@ fn write_report(report: &ReportDocument, folder: &mut ResultFolder) -> Result<()
             let svg = chart(report, Some(&scene.name));
             folder.add_file(&file, SVG_MEDIA_TYPE, svg.as_bytes())?;
         }
+    }
+    for (index, map) in report.constant_maps.iter().enumerate() {
+        let file = format!("constants-{}-{}.svg", index + 1, file_name(&map.label));
+        let svg = constants_chart(report, map)?;
+        folder.add_file(&file, SVG_MEDIA_TYPE, svg.as_bytes())?;
     }
     Ok(())
 }

@@ -2,6 +2,7 @@
 
 mod batch;
 mod chart;
+mod constants;
 mod documents;
 pub mod files;
 mod input;

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::jobs::failure::JobError;
 use crate::jobs::result::provenance::first_null;
+use crate::schema::WarningDocument;
 use crate::schema::predict::result::{EngineDocument, NOT_A_DEVICE};
 use crate::schema::study::document::StudyDocument;
 use crate::schema::study::report::{
@@ -55,6 +56,7 @@ pub fn report_document(
         skipped: report.skipped.iter().map(skipped_document).collect(),
         comparisons: comparisons.iter().map(comparison_document).collect(),
         comparisons_note: many_comparisons(&comparisons),
+        constant_maps: Vec::new(),
         convergence: series(report).iter().map(convergence_document).collect(),
         statement: NOT_A_DEVICE.to_owned(),
     }
@@ -132,6 +134,9 @@ fn scene_document(
         plans: plans.get(&scene.name).cloned().unwrap_or_default(),
         truth: scene.truth.clone(),
         truth_error_mm: scene.truth_error_mm.map(|[mean, p95]| TruthErrorDocument { mean, p95 }),
+        unmoved_mm: scene.unmoved_mm,
+        noise_mm: scene.noise_mm,
+        warnings: scene.warnings.iter().map(WarningDocument::from).collect(),
         truth_s: scene.truth_s,
     }
 }
@@ -182,13 +187,14 @@ fn numbers(solved: &Solved) -> NumbersDocument {
         wall_s: solved.wall_s,
         repeats: solved.repeats as u64,
         peak_mb: solved.peak_mb,
-        mean_mm: solved.node_wise.mean,
-        p95_mm: solved.node_wise.p95,
-        max_mm: solved.node_wise.max,
+        mean_mm: solved.error.mean,
+        p95_mm: solved.error.p95,
+        max_mm: solved.error.max,
         closest_point_mm: errors(&solved.closest_point),
         regions_mm: solved.regions.iter().map(|(name, of)| (name.clone(), errors(of))).collect(),
         skin_mean_mm: solved.skin_mean_mm,
         smallest_det_f: solved.smallest_det_f.is_finite().then_some(solved.smallest_det_f),
+        covered_share: solved.covered_share,
     }
 }
 

@@ -5,10 +5,8 @@ use std::collections::BTreeMap;
 use serde_json::Value;
 
 use super::documents::{Documents, Scenes, spec_at};
-use super::truth::known_displacement;
 use crate::jobs::failure::JobError;
 
-use crate::jobs::fetch::found as found_mesh;
 use crate::jobs::predict::{PredictInput, Prepared};
 use crate::schema::ErrorCode;
 use crate::schema::case::merged::{PlacedMaterials, in_words, merge_materials};
@@ -22,7 +20,7 @@ use mechanics::mesh::ignored::listed;
 use mechanics::prediction::MethodKind;
 use mechanics::study::scenes::{scene_of, usual_truth};
 use mechanics::study::sweep::{self, SweepError};
-use mechanics::study::{Materials, StudyScene, Truth, Variant, methods};
+use mechanics::study::{Materials, StudyScene, Variant, methods};
 
 /// Fields of a `predict` spec that have their own place in a study.
 const OF_THE_STUDY: [&str; 10] = [
@@ -228,6 +226,7 @@ impl Documents<'_> {
                     name: in_words(document),
                     by_region: merged.materials,
                     fibres: merged.fibres,
+                    ..Materials::default()
                 });
             }
         }
@@ -288,6 +287,7 @@ impl Documents<'_> {
             name: of_the_first.as_ref().map_or_else(|| "case".to_owned(), in_words),
             by_region: first.case.materials.clone(),
             fibres: first.case.fibres.clone(),
+            ..Materials::default()
         }];
         for (place, document) in given.iter().skip(1) {
             let Some((at, plan)) = documents.first() else { break };
@@ -298,6 +298,7 @@ impl Documents<'_> {
                 name: in_words(document),
                 by_region: case.materials,
                 fibres: case.fibres,
+                ..Materials::default()
             });
         }
         let name = reference.name.clone().or_else(|| case.name.clone());
@@ -313,13 +314,7 @@ impl Documents<'_> {
         self.sweep(&mut scene, &mut faults);
         self.truth(&mut scene, &mut faults);
         faults.into_result()?;
-        if let Some(job) = self.spec.truth.as_ref().and_then(|truth| truth.job.as_ref()) {
-            let at = spec_at().key("truth").key("job");
-            let skin = found_mesh(self.sources.predicted_skin(job), job, &at)?;
-            found.contents.insert(job.clone(), skin.sha256.clone());
-            found.inputs.push(skin.to_input("truth"));
-            scene.truth = Truth::Known(known_displacement(&skin, &first, &at)?);
-        }
+        self.stored_truth(&mut scene, &first, found)?;
         let stated = (1..).zip(documents).map(|(number, (_, plan))| {
             let text = canonical::to_value(plan).to_string();
             (format!("plan {number}"), canonical::sha256_hex(text.as_bytes()))
@@ -341,10 +336,12 @@ impl Documents<'_> {
         let swept: BTreeMap<String, sweep::Values> = swept.collect();
         let at = spec_at().key("sweep");
         for region in swept.keys().filter(|region| !sweep::has_region(&scene.case, region)) {
-            let detail = format!("scene {} has no region called {region:?}", scene.name);
+            let detail =
+                format!("scene {} has no region and no tissue called {region:?}", scene.name);
             faults.add(&at.key(region), ErrorCode::UnknownRegion, detail);
         }
-        match sweep::combinations(&scene.case.materials, &swept) {
+        let tissues = scene.case.hounsfield.as_ref().map_or(&[][..], |image| &image.tissues);
+        match sweep::combinations(&scene.case.materials, tissues, &swept) {
             Ok(materials) => scene.materials = materials,
             Err(error) => {
                 let (place, code) = match &error {
@@ -352,6 +349,7 @@ impl Documents<'_> {
                     SweepError::UnknownRegion { region } => {
                         (at.key(region), ErrorCode::UnknownRegion)
                     }
+                    SweepError::TwoThings { region } => (at.key(region), ErrorCode::DuplicateName),
                     SweepError::Fibres { region } | SweepError::Law { region } => {
                         (at.key(region), ErrorCode::MethodNotAvailable)
                     }

@@ -1,16 +1,19 @@
 //! Reference solution of a study, as its documents state it.
 
-use super::documents::{Documents, spec_at};
+use super::documents::{Documents, Scenes, spec_at};
+use crate::jobs::compare::{ComparedMeshes, Pair, surface_of};
 use crate::jobs::failure::JobError;
+use crate::jobs::fetch::found as found_mesh;
 use crate::jobs::predict::Prepared;
 use crate::jobs::source::StoredMesh;
+use crate::schema::compare::document::{CompareToDocument, MeshReference};
 use crate::schema::methods::ElementName;
 use crate::schema::study::document::TruthDocument;
 use crate::schema::{ErrorCode, Faults, Pointer, Problem};
-use mechanics::mesh::Vector;
+use mechanics::mesh::{Frame, Vector};
 use mechanics::prediction::ElementChoice;
 use mechanics::study::scenes::usual_truth_element;
-use mechanics::study::{MOST_CELLS, StudyScene, Truth, cells_at};
+use mechanics::study::{MOST_CELLS, Scan, StudyScene, Truth, cells_at};
 
 impl Documents<'_> {
     /// What the spec holds for true, if it says so.
@@ -32,6 +35,76 @@ impl Documents<'_> {
             }
             _ => {}
         }
+    }
+}
+
+/// Skin counts that some answer moves by more than this, in mm, where nothing else is stated: more than registration
+/// leaves of bone that nothing was done to.
+const USUAL_MOVED_MM: f64 = 0.5;
+
+impl Documents<'_> {
+    /// A truth that is stored: the skin of a job, or a scan.
+    pub(super) fn stored_truth(
+        &self,
+        scene: &mut StudyScene,
+        first: &Prepared,
+        found: &mut Scenes,
+    ) -> Result<(), JobError> {
+        let Some(truth) = &self.spec.truth else { return Ok(()) };
+        let at = spec_at().key("truth");
+        if let Some(job) = &truth.job {
+            let at = at.key("job");
+            let skin = found_mesh(self.sources.predicted_skin(job), job, &at)?;
+            found.contents.insert(job.clone(), skin.sha256.clone());
+            found.inputs.push(skin.to_input("truth"));
+            scene.truth = Truth::Known(known_displacement(&skin, first, &at)?);
+        }
+        if let Some(mesh) = &truth.mesh {
+            let scan = self.scan(truth, mesh, first, found);
+            // A truth names its mesh where a comparison names what is actual.
+            let [from, to] = [at.key("actual").key("mesh"), at.key("mesh")];
+            scene.truth = Truth::Scan(Box::new(scan.map_err(|error| match error {
+                JobError::Refused(problem) => {
+                    JobError::Refused(problem.moved(from.as_str(), to.as_str()))
+                }
+                other => other,
+            })?));
+        }
+        Ok(())
+    }
+
+    fn scan(
+        &self,
+        truth: &TruthDocument,
+        mesh: &str,
+        first: &Prepared,
+        found: &mut Scenes,
+    ) -> Result<Scan, JobError> {
+        let at = spec_at().key("truth");
+        let actual = MeshReference { mesh: mesh.to_owned() };
+        let spec =
+            CompareToDocument { align: truth.align.clone(), ..CompareToDocument::of(actual) };
+        let meshes = ComparedMeshes::fetch(&spec, self.sources, &at)?;
+        let frame = Some(first.case.frame).filter(|frame| *frame != Frame::Unspecified);
+        meshes.check_frames(frame, &at)?;
+        let rest = &first.scene.skin;
+        let pair = Pair {
+            prediction: &rest.surface,
+            prediction_frame: frame,
+            displacement: None,
+            skin_regions: &rest.regions,
+            meshes: &meshes,
+            at: at.clone(),
+        };
+        let alignment = pair.alignment(&truth.align)?;
+        let surface = surface_of(&meshes.actual, &at.key("actual").key("mesh"))?;
+        found.inputs.extend(meshes.to_inputs());
+        for id in spec.mesh_ids() {
+            found.contents.extend(meshes.content_of(&spec, &id).map(|content| (id, content)));
+        }
+        found.warnings.extend(meshes.actual.warnings.iter().cloned());
+        let moved_by_more_than = truth.moved_by_more_than_mm.unwrap_or(USUAL_MOVED_MM);
+        Ok(Scan { surface, alignment, moved_by_more_than, noise: truth.noise_mm })
     }
 }
 

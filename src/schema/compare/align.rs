@@ -60,7 +60,9 @@ pub enum AlignReference {
     Document(Box<AlignDocument>),
 }
 
-pub(super) fn align<'de, D: Deserializer<'de>>(deserializer: D) -> Result<AlignDocument, D::Error> {
+pub(in crate::schema) fn align<'de, D: Deserializer<'de>>(
+    deserializer: D,
+) -> Result<AlignDocument, D::Error> {
     Ok(match TextOrObject::deserialize(deserializer)? {
         TextOrObject::Text(name) => {
             let method = AlignMethod::deserialize(name.into_deserializer())?;
@@ -127,7 +129,7 @@ pub enum StartName {
 }
 
 impl AlignDocument {
-    pub(super) fn check(&self, at: &Pointer, limits: &Limits, faults: &mut Faults) {
+    pub(in crate::schema) fn check(&self, at: &Pointer, limits: &Limits, faults: &mut Faults) {
         check_landmarks(&self.landmarks, &at.key("landmarks"), limits, faults);
         let (method, name) = (self.method, self.method.name());
         let by_surfaces = method == AlignMethod::Surfaces;

@@ -97,6 +97,20 @@ pub enum NodeWise {
 }
 
 impl CompareToDocument {
+    /// With another surface as it lies, and all else as usual.
+    pub fn of(actual: MeshReference) -> Self {
+        CompareToDocument {
+            kind: CompareKind::Compare,
+            actual,
+            align: AlignDocument::default(),
+            regions: BTreeMap::new(),
+            samples_per_mm2: usual_density(),
+            node_wise: NodeWise::Auto,
+            landmarks: BTreeMap::new(),
+            histogram_edges_mm: Vec::new(),
+        }
+    }
+
     /// Adds what is wrong with it.
     pub fn check(&self, at: &Pointer, limits: &Limits, faults: &mut Faults) {
         self.align.check(&at.key("align"), limits, faults);

@@ -1,5 +1,6 @@
 //! Meshing: the job that makes a volume mesh from a scan, a label map or surfaces, and what it says of the mesh.
 
+pub mod cuts;
 pub mod document;
 pub mod labels;
 pub mod result;

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
+use super::cuts::CutPathDocument;
 use crate::schema::Triple;
 use crate::schema::case::document::CaseDocument;
 use crate::schema::predict::check::CheckDocument;
@@ -22,6 +23,9 @@ pub struct MeshingResultDocument {
     pub finest_mm: f64,
     pub dihedral_angles_deg: AnglesDocument,
     pub segments: Vec<FoundSegmentDocument>,
+    /// Cuts through their bone, for navigation.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub cuts: Vec<CutPathDocument>,
     /// How many nodes each node set has.
     pub node_sets: BTreeMap<String, u64>,
     /// Nodes on bone that are free because others near them move otherwise.
@@ -92,6 +96,7 @@ impl MeshingResultDocument {
             finest_mm: report.finest,
             dihedral_angles_deg: (&report.angles).into(),
             segments: anatomy.bone.segments.iter().map(segment).collect(),
+            cuts: Vec::new(),
             node_sets: sets.map(|(name, nodes)| (name.clone(), nodes.len() as u64)).collect(),
             free_beside_cuts: anatomy.classes.in_band as u64,
             gaps_closed: report.gaps_closed.iter().map(GapDocument::from).collect(),

@@ -8,10 +8,13 @@ use super::document::{Description, ParameterDocument, parameter};
 use crate::schema::code::ErrorCode;
 use crate::schema::wire::fault::{Faults, Pointer};
 use mechanics::model::spline::stepping::{Clock, Damping, Scheme};
-use mechanics::model::spline::{Stiffness, VolumeSpline};
+use mechanics::model::spline::{Bone, ControlPoints, Stiffness, VolumeSpline};
 
 /// The most steps between rest and `duration_s`.
 const MOST_STEPS: f64 = 1e6;
+
+/// Along one axis.
+const MOST_CONTROL_POINTS: f64 = 200.0;
 
 /// Defaults of the lattice in N/m and N s/m (Ulusoy et al. 2010; docs/methods.md#volume-spline).
 const LINK_STIFFNESS: f64 = 80.0;
@@ -27,6 +30,17 @@ pub enum DvsStiffness {
     /// Equal links between neighbouring control points; materials are ignored but for density, and rotation
     /// is resisted.
     Lattice,
+}
+
+/// How bone moves the spline.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum DvsBone {
+    /// Springs draw held nodes to where they have to be.
+    #[default]
+    Springs,
+    /// The control points nearest to held nodes are bone and move with these, by K_ff C_f = -K_fb C_b; `static` only.
+    ControlPoints,
 }
 
 /// How rest is found.
@@ -50,7 +64,7 @@ pub enum DvsStepping {
 pub struct DvsDocument {
     #[serde(default)]
     pub stiffness: DvsStiffness,
-    /// Of the B-splines: 2 or 3.
+    /// Of the B-splines along every axis: 2 or 3.
     #[serde(default = "cubic")]
     #[schema(default = 3, minimum = 2, maximum = 3)]
     pub degree: u32,
@@ -59,6 +73,17 @@ pub struct DvsDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false, minimum = 0.1, maximum = 1000.0)]
     pub control_spacing_mm: Option<f64>,
+    /// Of the B-splines along each principal axis of the tissue, the longest first, 1 to 3 each, in place of `degree`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub degrees: Option<[u32; 3]>,
+    /// How many control points there are along each principal axis of the tissue, the longest first, in place of
+    /// `control_spacing_mm`: more than its degree, and 200 at most.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub control_points: Option<[u32; 3]>,
+    #[serde(default)]
+    pub bone: DvsBone,
     /// Stiffness of what holds held nodes, over that of the tissue around a control point. A large one brings
     /// held nodes nearer to where they have to be, and leaves less freedom beside them.
     #[serde(default = "usual_hold")]
@@ -106,6 +131,9 @@ impl Default for DvsDocument {
             stiffness: DvsStiffness::Galerkin,
             degree: cubic(),
             control_spacing_mm: None,
+            degrees: None,
+            control_points: None,
+            bone: DvsBone::Springs,
             hold_weight: usual_hold(),
             stepping: DvsStepping::Static,
             step_s: None,
@@ -129,12 +157,52 @@ impl DvsDocument {
             }
         };
         VolumeSpline {
-            degree: self.degree as usize,
-            control_spacing: self.control_spacing_mm,
+            degrees: self.degrees().map(|degree| degree as usize),
+            control: match (self.control_points, self.control_spacing_mm) {
+                (Some(counts), _) => ControlPoints::Counted(counts.map(|count| count as usize)),
+                (None, Some(spacing)) => ControlPoints::Spaced(spacing),
+                (None, None) => ControlPoints::Chosen,
+            },
+            bone: match self.bone {
+                DvsBone::Springs => Bone::Springs,
+                DvsBone::ControlPoints => Bone::ControlPoints,
+            },
             hold_weight: self.hold_weight,
             damping: self.damping(&stiffness),
             stiffness,
             clock: self.clock(at, faults),
+        }
+    }
+
+    fn degrees(&self) -> [u32; 3] {
+        self.degrees.unwrap_or([self.degree; 3])
+    }
+
+    fn check_lattice(&self, at: &Pointer, faults: &mut Faults) {
+        faults.check_range(&at.key("degree"), f64::from(self.degree), 2.0..=3.0, "");
+        let degrees = self.degrees();
+        if self.degrees.is_some() {
+            if self.degree != cubic() {
+                faults.check_one_of(at, 2, "`degree`, `degrees`");
+            }
+            for (axis, degree) in degrees.into_iter().enumerate() {
+                let place = at.key("degrees").index(axis);
+                faults.check_range(&place, f64::from(degree), 1.0..=3.0, "");
+            }
+        }
+        if let Some(counts) = self.control_points {
+            if self.control_spacing_mm.is_some() {
+                faults.check_one_of(at, 2, "`control_points`, `control_spacing_mm`");
+            }
+            for (axis, (count, degree)) in counts.into_iter().zip(degrees).enumerate() {
+                let place = at.key("control_points").index(axis);
+                let least = f64::from(degree) + 1.0;
+                faults.check_range(&place, f64::from(count), least..=MOST_CONTROL_POINTS, "");
+            }
+        }
+        if self.bone == DvsBone::ControlPoints && self.stepping != DvsStepping::Static {
+            let detail = "control points of bone are there where rest is found at once: `stepping` is `static`";
+            faults.add(&at.key("bone"), ErrorCode::MethodMismatch, detail);
         }
     }
 
@@ -174,7 +242,7 @@ impl DvsDocument {
     }
 
     fn check(&self, at: &Pointer, faults: &mut Faults) {
-        faults.check_range(&at.key("degree"), f64::from(self.degree), 2.0..=3.0, "");
+        self.check_lattice(at, faults);
         faults.check_range(&at.key("hold_weight"), self.hold_weight, 1.0..=1e6, "");
         let is_lattice = self.stiffness == DvsStiffness::Lattice;
         let moves = self.stepping != DvsStepping::Static;
@@ -223,8 +291,8 @@ pub(super) fn description() -> Description {
         assumptions: &[
             "displacement is smooth, with continuous second derivatives for degree 3: steep changes beside the \
                 edge of a bone are smeared over about two control spacings",
-            "bone lies between control points: held nodes are pulled to where they have to be, and what is \
-                left is told as `held-nodes-missed`",
+            "bone lies between control points: held nodes are pulled to where they have to be, or the control points \
+                nearest to them move in their place; what is left is told as `held-nodes-missed`",
             "galerkin: small strain and linear elastic regions, without means against locking above a Poisson \
                 ratio of 0.49; gaps narrower than a control spacing, such as between the lips, are bridged",
             "lattice: control points are tied by equal links, component by component: tissue has no Poisson \
@@ -257,6 +325,19 @@ fn parameters() -> Vec<ParameterDocument> {
         parameter("stiffness", "what ties control points", json!("galerkin"), "galerkin | lattice"),
         parameter("degree", "of the B-splines", json!(3), "2 | 3"),
         parameter("control_spacing_mm", "between control points", json!(chosen), "[0.1, 1000]"),
+        parameter("degrees", "of each axis", json!("`degree`"), "1 to 3 each"),
+        parameter(
+            "control_points",
+            "along each axis",
+            json!("as many as `control_spacing_mm` says"),
+            "above the degree, to 200",
+        ),
+        parameter(
+            "bone",
+            "springs that draw held nodes, or control points that move with them",
+            json!("springs"),
+            "springs | control_points",
+        ),
         parameter(
             "hold_weight",
             "stiffness of what holds held nodes over that of the tissue around a control point",

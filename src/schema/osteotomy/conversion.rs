@@ -3,7 +3,8 @@
 use mechanics::mesh::Vector;
 use mechanics::osteotomy::contact::Bridge;
 use mechanics::osteotomy::{
-    Cut, CutError, CutSide, Extent, LabelError, Osteotomy, Plane, RuleError, SegmentRule, Side,
+    Cut, CutError, CutSide, Extent, LabelError, Osteotomy, Plane, Risk, RuleError, SegmentRule,
+    Side,
 };
 
 use super::document::{CutDocument, CutSegmentDocument, OsteotomyDocument};
@@ -11,10 +12,14 @@ use crate::schema::Triple;
 use crate::schema::code::ErrorCode;
 use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::limits::Limits;
+use crate::schema::wire::names::check_distinct;
 use crate::schema::wire::problem::Problem;
 
 /// Beside an osteotomy tissue is lifted; with cells of 4 mm this frees one row of nodes on either side.
 const FREE_BAND_MM: f64 = 3.0;
+
+/// No head is farther from the origin of its scan.
+const FARTHEST_MM: f64 = 1e5;
 
 /// What the document is read in.
 pub struct OsteotomyContext<'a> {
@@ -54,6 +59,7 @@ impl OsteotomyDocument {
         }
         let free_band_mm = self.free_band_mm.unwrap_or(FREE_BAND_MM);
         let has_band = faults.check_range(&at.key("free_band_mm"), free_band_mm, 0.0..=30.0, "mm");
+        let risks = self.to_risks(&at.key("risks"), context, faults);
         let cuts: Vec<_> = (self.cuts.iter().enumerate())
             .map(|(number, cut)| cut.to_cut(&at.key("cuts").index(number), context, faults))
             .collect();
@@ -67,9 +73,46 @@ impl OsteotomyDocument {
         let segments = segments.into_iter().collect::<Option<Vec<_>>>()?;
         let osteotomy = Osteotomy::new(cuts, segments)
             .map_err(|error| faults.add(at, code_of(&error), error.to_string()))
-            .ok()?;
+            .ok()?
+            .with_risks(risks);
         (has_band && !self.segments.is_empty())
             .then_some(PlannedOsteotomy { osteotomy, free_band_mm })
+    }
+}
+
+impl OsteotomyDocument {
+    fn to_risks(&self, at: &Pointer, context: &OsteotomyContext, faults: &mut Faults) -> Vec<Risk> {
+        let most = context.limits.list_entries as usize;
+        faults.check_length(at, self.risks.len(), most);
+        check_distinct(self.risks.iter().map(|risk| risk.name.as_str()), at, faults);
+        let mut risks = Vec::new();
+        for (number, risk) in self.risks.iter().enumerate() {
+            let at = at.index(number);
+            let name = risk.name.trim();
+            faults.check_name(&at.key("name"), name, context.limits.name_characters as usize);
+            let (place, count) = (at.key("points_mm"), risk.points_mm.len());
+            faults.check_length(&place, count, most);
+            if count < 2 {
+                let detail = format!("a line has two points or more, here are {count}");
+                faults.add(&place, ErrorCode::OutOfRange, detail);
+            }
+            for (number, point) in risk.points_mm.iter().enumerate() {
+                for (axis, &value) in point.0.iter().enumerate() {
+                    let place = place.index(number).index(axis);
+                    faults.check_range(&place, value, -FARTHEST_MM..=FARTHEST_MM, "mm");
+                }
+            }
+            let radius = risk.radius_mm.unwrap_or(0.0);
+            faults.check_range(&at.key("radius_mm"), radius, 0.0..=20.0, "mm");
+            faults.check_range(&at.key("clearance_mm"), risk.clearance_mm, 0.0..=50.0, "mm");
+            risks.push(Risk {
+                name: name.to_owned(),
+                points: risk.points_mm.iter().map(|&point| context.vector(point)).collect(),
+                radius,
+                clearance: risk.clearance_mm,
+            });
+        }
+        risks
     }
 }
 

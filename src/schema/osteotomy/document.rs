@@ -14,6 +14,9 @@ pub struct OsteotomyDocument {
     pub cuts: Vec<CutDocument>,
     /// Pieces of bone; the plan says by the same names how they move, and those that it does not name stay.
     pub segments: Vec<CutSegmentDocument>,
+    /// Structures that the cuts have to keep clear of, such as the nerve of the lower jaw.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub risks: Vec<RiskDocument>,
     /// Nodes on bone this near to bone that moves otherwise are free, 0 to 30 mm. Default: 3.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
@@ -40,6 +43,23 @@ pub struct CutDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub kerf_mm: Option<f64>,
+}
+
+/// A structure that must not be sawn, as a line of points.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RiskDocument {
+    pub name: String,
+    /// Two or more, in their order along the line.
+    #[schema(min_items = 2)]
+    pub points_mm: Vec<Triple>,
+    /// How thick it is around its line, 0 to 20 mm. Default: 0.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false, minimum = 0.0, maximum = 20.0)]
+    pub radius_mm: Option<f64>,
+    /// Cuts nearer to it than this are warned of, 0 to 50 mm.
+    #[schema(minimum = 0.0, maximum = 50.0)]
+    pub clearance_mm: f64,
 }
 
 /// The bone on given sides of cuts that is in one piece with its seeds.

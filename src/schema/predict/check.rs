@@ -7,7 +7,8 @@ use utoipa::ToSchema;
 
 use super::expectation::ExpectationDocument;
 use super::planned::{
-    CollisionDocument, MeasureDocument, MovementReportDocument, SymmetryDocument,
+    BoneContactDocument, CollisionDocument, MeasureDocument, MovementReportDocument,
+    SymmetryDocument,
 };
 use super::refine::RefineBoundDocument;
 use super::time_band::TimeBandDocument;
@@ -60,6 +61,10 @@ pub struct CheckDocument {
     /// Bones that the plan moves into each other.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub collisions: Vec<CollisionDocument>,
+    /// Where bones that the plan moves against each other touch, before and as planned: the occlusion, of jaws with their
+    /// teeth.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub contacts: Vec<BoneContactDocument>,
     /// Measures of the head before and as planned, of the landmarks that the case states.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub cephalometry: Vec<MeasureDocument>,

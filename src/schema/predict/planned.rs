@@ -7,7 +7,11 @@ use crate::schema::{Matrix4x4, Triple};
 use mechanics::cephalometry::Asymmetry;
 use mechanics::mesh::Frame;
 use mechanics::plan::{PlannedSegment, RigidMovement};
+use mechanics::validation::contact_map::ContactRegion;
 use mechanics::validation::penetration::Overlap;
+
+/// Stretches of contact that are told one by one.
+const MOST_REGIONS: usize = 50;
 
 /// A segment that moves. Every text gives the same bits when it is read again.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -45,6 +49,44 @@ pub struct OverlapDocument {
     /// Its middle, with the second bone where the plan takes it.
     pub middle_mm: Triple,
     pub radius_mm: f64,
+}
+
+/// Where two bones, such as jaws with their teeth, are near to each other or in each other: before the plan, and as
+/// planned.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct BoneContactDocument {
+    /// Areas are of the first.
+    pub bones: [String; 2],
+    /// Nearer than this is contact.
+    pub within_mm: f64,
+    pub before: ContactMapDocument,
+    pub planned: ContactMapDocument,
+}
+
+/// What of a bone touches another.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct ContactMapDocument {
+    pub area_mm2: f64,
+    /// What of it lies inside the other bone.
+    pub overlap_area_mm2: f64,
+    /// How deep; 0 where nothing does.
+    pub depth_mm: f64,
+    /// How many stretches of contact there are.
+    pub count: u64,
+    /// The largest of them, the largest first, at most 50.
+    pub regions: Vec<ContactRegionDocument>,
+}
+
+/// A stretch of contact.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct ContactRegionDocument {
+    pub area_mm2: f64,
+    pub overlap_area_mm2: f64,
+    pub depth_mm: f64,
+    /// The smallest distance; negative inside.
+    pub least_gap_mm: f64,
+    /// Its middle, where the bones are then.
+    pub middle_mm: Triple,
 }
 
 /// `bone` or `skin`.
@@ -164,6 +206,31 @@ impl MovementReportDocument {
                 Frame::Unspecified => None,
             },
         })
+    }
+}
+
+impl From<&[ContactRegion]> for ContactMapDocument {
+    fn from(regions: &[ContactRegion]) -> Self {
+        let sum = |of: fn(&ContactRegion) -> f64| regions.iter().map(of).sum::<f64>();
+        ContactMapDocument {
+            area_mm2: sum(|region| region.area),
+            overlap_area_mm2: sum(|region| region.overlap_area),
+            depth_mm: regions.iter().map(|region| region.depth).fold(0.0, f64::max),
+            count: regions.len() as u64,
+            regions: regions.iter().take(MOST_REGIONS).map(Into::into).collect(),
+        }
+    }
+}
+
+impl From<&ContactRegion> for ContactRegionDocument {
+    fn from(region: &ContactRegion) -> Self {
+        ContactRegionDocument {
+            area_mm2: region.area,
+            overlap_area_mm2: region.overlap_area,
+            depth_mm: region.depth,
+            least_gap_mm: region.least_gap,
+            middle_mm: region.middle.into(),
+        }
     }
 }
 

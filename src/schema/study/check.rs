@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use super::batch::ItemDocument;
 use super::document::{CaseReference, SceneReference, StudyDocument, StudyKind};
 
 use crate::schema::code::ErrorCode;
@@ -47,7 +48,7 @@ impl StudyDocument {
             faults.check_one_of(&at, 2, "`materials`, `sweep`");
         }
         self.check_levels(&at, faults);
-        self.check_truth(&at.key("truth"), faults);
+        self.check_truth(&at.key("truth"), limits, faults);
         let repeats = f64::from(self.repeats);
         faults.check_range(&at.key("repeats"), repeats, 1.0..=f64::from(MOST_REPEATS), "");
         self.check_sweep(&at.key("sweep"), faults);
@@ -139,16 +140,9 @@ impl StudyDocument {
         }
     }
 
-    fn check_truth(&self, at: &Pointer, faults: &mut Faults) {
+    fn check_truth(&self, at: &Pointer, limits: &Limits, faults: &mut Faults) {
         let Some(truth) = &self.truth else { return };
-        let forms = [truth.refine.is_some(), truth.closed_form, truth.job.is_some()];
-        let given = forms.into_iter().filter(|&form| form).count();
-        faults.check_one_of(at, given, "`refine`, `closed_form`, `job`");
-        if truth.element.is_some() && truth.refine.is_none() {
-            faults.add(&at.key("element"), ErrorCode::WrongType, "`element` belongs to `refine`");
-        }
-        let refine = f64::from(truth.refine.unwrap_or_default());
-        faults.check_range(&at.key("refine"), refine, 0.0..=f64::from(MOST_LEVEL), "");
+        truth.check(at, limits, faults);
         let one_plan = match self.scenes.as_slice() {
             [SceneReference::Case(reference)] => self.plans_of(0, reference).len() == 1,
             _ => self.items.len() == 1,
@@ -159,6 +153,17 @@ impl StudyDocument {
                 "the skin of a job is the truth of one case with one plan and one material";
             faults.add(&at.key("job"), ErrorCode::WrongType, detail);
         }
+        if truth.mesh.is_some() && !(one_plan || self.is_of_one_plan()) {
+            let detail = "a mesh shows what one plan did to the skin of one case";
+            faults.add(&at.key("mesh"), ErrorCode::WrongType, detail);
+        }
+    }
+
+    /// Whether all items of a batch are about the same case and plan.
+    fn is_of_one_plan(&self) -> bool {
+        let of = |item: &ItemDocument| (item.case.clone(), item.plan.clone(), item.plan_id.clone());
+        let mut items = self.items.iter().map(of);
+        items.next().is_some_and(|first| items.all(|other| other == first))
     }
 
     fn check_sweep(&self, at: &Pointer, faults: &mut Faults) {

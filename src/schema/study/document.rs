@@ -9,6 +9,7 @@ use utoipa::ToSchema;
 
 use super::batch::ItemDocument;
 pub use super::reference::{CaseReference, PlanReference, SceneReference};
+pub use super::truth::TruthDocument;
 use crate::schema::case::material::{MaterialDocument, MaterialDocuments};
 use crate::schema::methods::{ElementName, MethodName};
 use crate::schema::plan::document::PlanDocument;
@@ -61,7 +62,7 @@ pub struct StudyDocument {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[schema(value_type = Vec<BTreeMap<String, MaterialDocument>>)]
     pub materials: Vec<MaterialDocuments>,
-    /// Every combination of these values, by region; `*` for regions without an entry.
+    /// Every combination of these values, by region or by tissue of the case's `hounsfield`; `*` for regions without an entry.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub sweep: BTreeMap<String, SweepDocument>,
     /// Level n halves every edge n times; from 0 to 4.
@@ -139,31 +140,6 @@ impl SweepDocument {
         let young_modulus = self.young_modulus_kpa.clone();
         Values { young_modulus, poisson_ratio: self.poisson_ratio.clone() }
     }
-}
-
-/// What is held for true: exactly one of `refine` with `element`, `closed_form` and `job`.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
-pub struct TruthDocument {
-    /// Linear finite elements with every edge of level 0 halved so often.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false, minimum = 0, maximum = 4)]
-    pub refine: Option<u32>,
-    /// Of `refine`. Default: `quadratic` where all cells are tetrahedra, else `mean_dilatation`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
-    pub element: Option<ElementName>,
-    /// The formula of the scene; `true` or absent.
-    #[serde(default, skip_serializing_if = "is_false")]
-    pub closed_form: bool,
-    /// The skin that this job predicted, for a study of one case with one plan and one material.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
-    pub job: Option<String>,
-}
-
-fn is_false(value: &bool) -> bool {
-    !value
 }
 
 /// Bounds on rows; a row above one makes the outcome `worse`.
@@ -344,6 +320,13 @@ impl StudyDocument {
         });
         let of_items = self.items.iter_mut().filter_map(|item| item.plan.as_mut());
         shared.chain(own.flatten()).chain(of_items).collect()
+    }
+
+    /// The meshes of its truth, with their places.
+    pub fn truth_meshes_mut(&mut self) -> Vec<(Pointer, &mut String)> {
+        let at = Pointer::root().key("spec").key("truth");
+        let truth = self.truth.iter_mut();
+        truth.flat_map(|truth| truth.mesh_references_mut(&at)).collect()
     }
 
     /// The names of wanted plans of scenes by name, with their places in `plans`.

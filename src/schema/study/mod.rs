@@ -2,7 +2,10 @@
 
 pub mod batch;
 pub mod check;
+pub mod constants;
 pub mod document;
 pub mod expected;
 pub mod reference;
 pub mod report;
+pub mod scene;
+pub mod truth;

@@ -5,10 +5,13 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
+use super::constants::ConstantMapDocument;
 use super::document::{ThresholdsDocument, TolerancesDocument};
+pub use super::scene::{StudySceneDocument, TruthErrorDocument};
 use crate::schema::engine::EngineDocument;
 
-/// The report of a study. Errors are distances at the skin nodes of level 0 from where the truth has them, by area.
+/// The report of a study. Errors are distances at the skin nodes of level 0 from where the truth has them, by area; of a
+/// scan they are distances between it and the predicted skin, both ways, where the skin moves and both are there.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct ReportDocument {
     /// The version of this document: 1.
@@ -34,6 +37,10 @@ pub struct ReportDocument {
     pub rules: RulesDocument,
     pub scenes: Vec<StudySceneDocument>,
     pub rows: Vec<RowDocument>,
+    /// Of a study with a scan for its truth and swept constants.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schema(required = false)]
+    pub constant_maps: Vec<ConstantMapDocument>,
     /// What does not apply, which has no rows and judges nothing: variants that do not serve a scene.
     #[serde(default)]
     #[schema(required = false)]
@@ -138,33 +145,6 @@ pub struct RulesDocument {
     pub thresholds: Option<ThresholdsDocument>,
     pub tolerances: TolerancesDocument,
     pub expected_failures: Vec<String>,
-}
-
-/// A scene at level 0, and what is held for true in it.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct StudySceneDocument {
-    pub name: String,
-    pub nodes: u64,
-    pub cells: u64,
-    pub skin_nodes: u64,
-    /// Of a case: the SHA-256 of each of its plans as it was stated, by its name.
-    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
-    #[schema(required = false)]
-    pub plans: BTreeMap<String, String>,
-    pub truth: String,
-    /// What the truth itself is off by, mean and p95 over the skin, by extrapolation; absent where it is a formula or
-    /// not known.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
-    pub truth_error_mm: Option<TruthErrorDocument>,
-    /// Making the truth; part of no row.
-    pub truth_s: f64,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct TruthErrorDocument {
-    pub mean: f64,
-    pub p95: f64,
 }
 
 /// What came of a row.
@@ -279,6 +259,10 @@ pub struct NumbersDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub smallest_det_f: Option<f64>,
+    /// Share of the moving skin's area that has a scan opposite; absent without a scan.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub covered_share: Option<f64>,
 }
 
 /// By area; p95 is the smallest value whose cumulative weight reaches 95 %.

@@ -2,6 +2,7 @@
 
 mod cohort;
 mod comparisons;
+mod cuts;
 mod failures;
 mod image;
 mod learn;

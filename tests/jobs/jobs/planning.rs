@@ -201,6 +201,30 @@ fn a_check_names_bones_that_a_plan_moves_into_each_other_before_anything_is_solv
 }
 
 #[test]
+fn a_check_maps_where_bones_touch_before_and_as_planned() {
+    let by = |x: f64| json!({"segments": [{"name": "right", "translation_mm": [x, 2, 2]}]});
+    let contacts = |plan: Value| checked(json!({}), plan).contacts;
+    // Nearly touching: faces of 8 x 8 mm, 0.1 mm apart.
+    let found = contacts(by(-1.9));
+    let [contact] = &found[..] else { panic!("{found:?}") };
+    assert_eq!((contact.bones.join(" "), contact.before.count), ("left right".to_owned(), 0));
+    let [region] = contact.planned.regions[..] else { panic!("{contact:?}") };
+    // 0.28 mm beyond two edges of the face, and 0.2 mm up the sides there, by samples.
+    let beside = 2.0 * 8.0 * (0.08_f64.sqrt() + 0.2);
+    assert!((region.area_mm2 - 64.0 - beside).abs() < 1.5, "{region:?}");
+    assert!((region.least_gap_mm - 0.1).abs() < 1e-9 && region.overlap_area_mm2 == 0.0);
+    let middle = Vector::from(region.middle_mm);
+    assert!((middle - Vector::new(30.0, 26.0, 26.0)).norm() < 0.3, "{region:?}");
+    // Pushed into each other: the face and 3 mm of four sides lie inside.
+    let found = contacts(by(-5.0));
+    let planned = &found[0].planned;
+    assert!((planned.depth_mm - 3.0).abs() < 1e-9 && planned.count == 1, "{planned:?}");
+    assert!((planned.overlap_area_mm2 - (64.0 + 2.0 * 24.0)).abs() < 3.0, "{planned:?}");
+    assert!(contacts(by(1.0)).is_empty(), "apart before and as planned");
+    assert!(contacts(json!({})).is_empty(), "nothing moves against anything");
+}
+
+#[test]
 fn a_check_tells_movements_for_navigation_that_read_again_are_equal_to_the_bit() {
     let plan = json!({"segments": [{"name": "right", "translation_mm": [1, 0.3, -0.2],
         "rotation_deg": [0, 3, 0], "pivot_mm": [70, 30, 20], "restrict_to": {"plane_normal": [0, 1, 0]}}]});

@@ -5,21 +5,21 @@
 
 use std::fs;
 
-use facies::jobs::{CompareInput, JobInput, PredictInput, StoredMesh, Workplace, work};
-use facies::schema::compare::result::ComparisonDocument;
+use facies::jobs::{JobInput, PredictInput, StoredMesh, StudyInput, Workplace, work};
 use facies::schema::reproduce::result::ReproductionDocument;
-use facies::schema::{Limits, Matrix4x4};
+use facies::schema::{Faults, Limits, Matrix4x4, ReportDocument, StudyDocument};
 use mechanics::format::{self, ReadLimits};
 use mechanics::mesh::sample::block;
 use mechanics::mesh::{CellShape, TriangleSurface, Vector, VolumeMesh};
 use mechanics::plan::RigidMovement;
 use mechanics::progress::Unobserved;
 use serde_json::{Value, json};
+use tempfile::TempDir;
 
 use super::planning::{moved, performed, reproduced, surface};
 use crate::sources::{Meshes, stored};
 
-/// Young's modulus of the outer layer in kPa, where that of the inner one is 15, and Poisson's ratio of both.
+/// Young's modulus of the outer layer in kPa, where that of the inner one is 15, and its Poisson's ratio.
 const MODULI: [f64; 3] = [15.0, 60.0, 240.0];
 const RATIOS: [f64; 4] = [0.3, 0.38, 0.46, 0.49];
 const PLANTED: (f64, f64) = (60.0, 0.46);
@@ -47,13 +47,14 @@ fn tissue() -> VolumeMesh {
     mesh
 }
 
+/// Of these constants of the outer layer.
 fn case((young_modulus, poisson_ratio): (f64, f64)) -> Value {
     json!({
         "units": "mm", "volume": "tissue", "skin": {"node_set": "z_max"}, "fixed": [{"node_set": "rest"}],
         "segments": [{"name": "jaw", "nodes": {"node_set": "jaw"}}],
         "regions": {"array": "layer", "names": {"0": "deep", "1": "outer"}},
         "materials": {
-            "deep": {"young_modulus_kpa": 15, "poisson_ratio": poisson_ratio},
+            "deep": {"young_modulus_kpa": 15, "poisson_ratio": 0.46},
             "outer": {"young_modulus_kpa": young_modulus, "poisson_ratio": poisson_ratio}}
     })
 }
@@ -95,17 +96,40 @@ fn scanned(skin: &TriangleSurface) -> TriangleSurface {
     TriangleSurface { points, triangles, node_ids: None }
 }
 
-fn comparison(sources: &Meshes, way_back: Matrix4x4) -> ComparisonDocument {
+/// A study of the constants of the outer layer against a scan, its folder and the warnings of its result.
+fn study(
+    sources: &Meshes,
+    plan: &Value,
+    truth: Value,
+) -> Result<(ReportDocument, Vec<String>, TempDir), String> {
     let folder = tempfile::tempdir().unwrap();
-    let spec = serde_json::from_value(json!({
-        "prediction": {"mesh": "skin"}, "actual": {"mesh": "scan"},
-        "align": {"method": "matrix", "matrix4x4": way_back},
-        "regions": {"moved": {"moved_by_more_than_mm": 0.5}}
-    }));
-    let input = CompareInput { job: None, queue_s: None, spec: spec.unwrap() };
+    let spec = json!({
+        "kind": "study", "scenes": [{"case": "twin", "name": "twin", "plans": [plan]}],
+        "methods": [{"method": "fem_linear", "label": "fem"}], "repeats": 1, "truth": truth,
+        "sweep": {"outer": {"young_modulus_kpa": MODULI, "poisson_ratio": RATIOS}}
+    });
+    let cases = [("twin".to_owned(), serde_json::from_value(case((30.0, 0.4))).unwrap())];
+    let input = StudyInput {
+        job: None,
+        queue_s: None,
+        cases: cases.into(),
+        baseline: None,
+        earlier: None,
+        spec: serde_json::from_value(spec).unwrap(),
+    };
     let place = Workplace { sources, limits: &Limits::default(), out: folder.path() };
-    let done = work(&JobInput::Compare(input), &place, &Unobserved).unwrap();
-    done.result.comparison.unwrap()
+    let done = work(&JobInput::Study(input), &place, &Unobserved);
+    let done = done.map_err(|error| format!("{error:?}"))?;
+    let report = fs::read(folder.path().join("report.json")).unwrap();
+    let codes = done.result.warnings.into_iter().map(|warning| warning.code).collect();
+    Ok((serde_json::from_slice(&report).unwrap(), codes, folder))
+}
+
+/// The scan of the skin as bone leads it back.
+fn by_bone() -> Value {
+    json!({"mesh": "scan", "align": {
+        "method": "surfaces", "fixed": {"mesh": "before"}, "moving": {"mesh": "after"},
+        "mask": {"box_mm": [-50, -50, -8, 150, 100, 60]}}})
 }
 
 /// The scans of a twin: where its scanner stood after the operation, what was done, and all meshes.
@@ -134,7 +158,7 @@ fn assert_near(found: &Matrix4x4, planted: &RigidMovement, what: &str) {
 
 #[test]
 fn transform_plan_and_constants_that_were_planted_come_back() {
-    let (scan, done, mut sources, spec) = twin();
+    let (scan, done, sources, spec) = twin();
     // 1. Bone says where the scan lies and what was done.
     let ReproductionDocument { plan, base, segments } = reproduced(&sources, spec).unwrap();
     assert_near(&base.matrix4x4, &scan, "where the scan lies");
@@ -142,20 +166,76 @@ fn transform_plan_and_constants_that_were_planted_come_back() {
     let plan = serde_json::to_value(&plan).unwrap();
 
     // 2. D of each pair of constants, where the operation moves the skin.
-    let mut grid = Vec::new();
-    for young_modulus in MODULI {
-        for poisson_ratio in RATIOS {
-            let constants = (young_modulus, poisson_ratio);
-            let skin = predicted(&sources, constants, &plan);
-            sources.0.insert("skin".to_owned(), skin);
-            let found = comparison(&sources, base.matrix4x4);
-            grid.push((found.regions["moved"].to_prediction.mean, constants));
-        }
-    }
-    grid.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let [(least, best), (next, _), ..] = grid[..] else { panic!("a grid") };
-    assert_eq!(best, PLANTED, "{grid:?}");
-    assert!(least < 0.02, "{grid:?}");
+    let (report, codes, folder) = study(&sources, &plan, by_bone()).unwrap();
+    let [map] = &report.constant_maps[..] else { panic!("one map") };
+    assert_eq!(map.best.values, [PLANTED.0, PLANTED.1], "{map:?}");
+    assert!(map.best.mean_mm < 0.02 && report.scenes[0].noise_mm.unwrap() < 0.02, "{map:?}");
+    let mut grid: Vec<f64> = map.cells.iter().map(|cell| cell.mean_mm).collect();
+    grid.sort_by(f64::total_cmp);
+    assert_eq!(grid.len(), MODULI.len() * RATIOS.len());
     // No other pair is as near: the data determine the constants.
-    assert!(next > 2.0 * least && next > 0.005, "{grid:?}");
+    assert!(grid[1] > 2.0 * grid[0] && grid[1] > 0.001, "{grid:?}");
+    assert!(map.axes.iter().all(|axis| axis.is_determined), "{map:?}");
+    assert!(report.scenes[0].unmoved_mm.unwrap() > 0.2, "{:?}", report.scenes);
+    assert!(!codes.iter().any(|code| code.starts_with("constant-")), "{codes:?}");
+    let covered =
+        report.rows.iter().map(|row| row.numbers.as_ref().unwrap().covered_share.unwrap());
+    // The hole has 79 mm2 of the skin.
+    assert!(covered.into_iter().all(|share| (0.9..1.0).contains(&share)));
+    let chart = fs::read_to_string(folder.path().join("constants-1-fem.svg")).unwrap();
+    assert_eq!(chart.matches("class=\"cell\"").count(), grid.len());
+}
+
+#[test]
+fn a_registration_that_leaves_more_than_constants_change_is_told_to_determine_none() {
+    let (_, done, sources, _) = twin();
+    let plan = json!({"segments": [{"name": "jaw", "matrix4x4": done.matrix4()}]});
+    let mut truth = by_bone();
+    truth["noise_mm"] = 5.0.into();
+    let (report, codes, _) = study(&sources, &plan, truth).unwrap();
+    let map = &report.constant_maps[0];
+    assert_eq!((map.noise_mm, map.axes[1].as_good.as_slice()), (Some(5.0), &RATIOS[..]));
+    assert_eq!(codes.iter().filter(|code| *code == "constant-not-determined").count(), 2);
+
+    // Planted at an end of what is looked at, the best may lie beyond.
+    let mut sources = sources;
+    let skin = predicted(&sources, (MODULI[0], PLANTED.1), &plan).surface().unwrap();
+    sources.0.insert("scan".to_owned(), surface((*skin).clone()));
+    let (report, codes, _) = study(&sources, &plan, json!({"mesh": "scan"})).unwrap();
+    assert_eq!(report.constant_maps[0].best.values, [MODULI[0], PLANTED.1]);
+    assert_eq!(report.constant_maps[0].noise_mm, None);
+    assert_eq!(codes.iter().filter(|code| *code == "constant-at-end").count(), 1, "{codes:?}");
+
+    // The skin before the operation in place of that after it.
+    let rest = predicted(&sources, PLANTED, &json!({})).surface().unwrap();
+    sources.0.insert("scan".to_owned(), surface((*rest).clone()));
+    let (_, codes, _) = study(&sources, &plan, json!({"mesh": "scan"})).unwrap();
+    assert!(codes.iter().any(|code| code == "before-operation-suspect"), "{codes:?}");
+}
+
+#[test]
+fn a_scan_that_cannot_be_the_truth_is_refused_where_it_stands() {
+    let (_, _, sources, _) = twin();
+    let plan = json!({"segments": [{"name": "jaw", "translation_mm": [3, 0, 0]}]});
+    let refused = |truth: Value| study(&sources, &plan, truth).map(|_| ()).unwrap_err();
+    let wrong = [
+        (json!({"mesh": "scan", "align": "icp"}), "/spec/truth/align/method"),
+        (json!({"mesh": "nowhere"}), "/spec/truth/mesh"),
+        (json!({"mesh": "scan", "refine": 1}), "/spec/truth"),
+        (json!({"refine": 1, "noise_mm": 1.0}), "/spec/truth/noise_mm"),
+        (json!({"mesh": "scan", "noise_mm": -1.0}), "/spec/truth/noise_mm"),
+        (json!({"mesh": "scan", "align": "matrix"}), "/spec/truth/align/matrix4x4"),
+    ];
+    for (truth, place) in wrong {
+        let told = refused(truth.clone());
+        assert!(told.contains(&format!("{place:?}")), "{truth}: {told}");
+    }
+    let two = json!({
+        "kind": "study", "scenes": [{"case": "twin", "plans": [plan, {"segments": []}]}], "truth": {"mesh": "scan"}
+    });
+    let mut faults = Faults::default();
+    let spec: StudyDocument = serde_json::from_value(two).unwrap();
+    spec.check(&Limits::default(), &mut faults);
+    let told = format!("{:?}", faults.into_result());
+    assert!(told.contains("\"/spec/truth/mesh\""), "{told}");
 }

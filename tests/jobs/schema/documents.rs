@@ -259,7 +259,7 @@ fn methods_that_are_not_built_are_refused_by_name() {
 #[test]
 fn a_volume_spline_is_told_in_seconds_and_newtons_per_metre() {
     use mechanics::model::spline::stepping::{Clock, Damping, Scheme};
-    use mechanics::model::spline::{Stiffness, VolumeSpline};
+    use mechanics::model::spline::{Bone, ControlPoints, Stiffness, VolumeSpline};
     let method = |text: &str| method_of(&settings(text).unwrap());
     let usual = Method::VolumeSpline(VolumeSpline::default());
     assert_eq!(method(r#"{"method":"dvs"}"#), usual);
@@ -267,8 +267,9 @@ fn a_volume_spline_is_told_in_seconds_and_newtons_per_metre() {
     let lattice = r#"{"method":"dvs","dvs":{"stiffness":"lattice","degree":2,"control_spacing_mm":5,
         "damping_n_s_per_m":4,"stepping":"newmark","step_s":0.002,"hold_weight":20}}"#;
     let stated = VolumeSpline {
-        degree: 2,
-        control_spacing: Some(5.0),
+        degrees: [2; 3],
+        control: ControlPoints::Spaced(5.0),
+        bone: Bone::Springs,
         hold_weight: 20.0,
         stiffness: Stiffness::Lattice(80.0),
         damping: Damping { mass: 0.0, stiffness: 50.0 },
@@ -384,4 +385,40 @@ fn documents_survive_being_written_and_read() {
     let case: CaseDocument = parse(text).expect("accepted");
     let again: CaseDocument = parse(&canonical::to_value(&case).to_string()).expect("accepted");
     assert_eq!(case, again);
+}
+
+#[test]
+fn a_volume_spline_is_told_its_degrees_and_control_points_axis_by_axis() {
+    use mechanics::model::spline::{Bone, ControlPoints, VolumeSpline};
+    let method = |text: &str| method_of(&settings(text).unwrap());
+    let of_the_paper = r#"{"method":"dvs","dvs":{"degrees":[3,3,1],"control_points":[5,5,2],"bone":"control_points"}}"#;
+    let stated = VolumeSpline {
+        degrees: [3, 3, 1],
+        control: ControlPoints::Counted([5, 5, 2]),
+        bone: Bone::ControlPoints,
+        ..VolumeSpline::default()
+    };
+    assert_eq!(method(of_the_paper), Method::VolumeSpline(stated));
+    let mismatch = "method-mismatch";
+    for (text, code, at) in [
+        (
+            r#"{"method":"dvs","dvs":{"bone":"control_points","stepping":"newmark"}}"#,
+            mismatch,
+            "/spec/dvs/bone",
+        ),
+        (
+            r#"{"method":"dvs","dvs":{"degrees":[3,3,1],"control_points":[5,3,2]}}"#,
+            "out-of-range",
+            "/spec/dvs/control_points/1",
+        ),
+        (r#"{"method":"dvs","dvs":{"degrees":[3,0,1]}}"#, "out-of-range", "/spec/dvs/degrees/1"),
+        (
+            r#"{"method":"dvs","dvs":{"control_points":[5,5,4],"control_spacing_mm":5}}"#,
+            "one-of",
+            "/spec/dvs",
+        ),
+    ] {
+        let whole = if code == mismatch { mismatch } else { "validation-failed" };
+        assert_eq!(refused(settings(text)), one(whole, code, at), "{text}");
+    }
 }

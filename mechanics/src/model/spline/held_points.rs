@@ -25,6 +25,7 @@ const TOLD: f64 = 0.01;
 /// Holds along the axes of the lattice's frame.
 pub struct HeldPoints(Vec<HeldPoint>);
 
+#[derive(Clone)]
 struct HeldPoint {
     place: Place,
     /// Along the frame, with what each is held at in mm.
@@ -67,12 +68,16 @@ impl HeldPoints {
         HeldPoints(points)
     }
 
+    /// Those that hold in one or two directions only.
+    pub fn sliding(&self) -> HeldPoints {
+        HeldPoints(self.0.iter().filter(|point| point.directions.len() < 3).cloned().collect())
+    }
+
     /// The springs' stiffness over control points.
     pub fn stiffness(&self, assembly: &Assembly) -> Option<HalfMatrix<f64, 3>> {
         let mut by_span: Vec<Vec<&HeldPoint>> = vec![Vec::new(); assembly.lattice.cliques.len()];
         self.0.iter().for_each(|point| by_span[point.place.span].push(point));
-        let order = assembly.lattice.order();
-        let members = order.pow(3);
+        let (orders, members) = (assembly.lattice.orders(), assembly.lattice.members());
         assembly.sum_over_spans(&Unobserved, |span| {
             let mut blocks = vec![[[0.0; 3]; 3]; members * members];
             for point in &by_span[span] {
@@ -82,7 +87,7 @@ impl HeldPoints {
                     .fold(nalgebra::Matrix3::zeros(), |sum: nalgebra::Matrix3<f64>, (e, _)| {
                         sum + e * e.transpose() * point.weight
                     });
-                let values: Vec<f64> = point.place.products(order).collect();
+                let values: Vec<f64> = point.place.products(orders).collect();
                 for (j, a) in values.iter().enumerate() {
                     for (k, b) in values.iter().enumerate() {
                         let block = &mut blocks[j * members + k];
@@ -126,7 +131,7 @@ impl HeldPoints {
 /// Shares a force at a place out to the control points around it.
 pub fn add_at(assembly: &Assembly, place: &Place, force: &Vector, forces: &mut Unknowns) {
     let members = assembly.lattice.cliques.row(place.span).iter();
-    for (&control, value) in members.zip(place.products(assembly.lattice.order())) {
+    for (&control, value) in members.zip(place.products(assembly.lattice.orders())) {
         let sum = &mut forces[assembly.numbering.row(control)];
         (0..3).for_each(|k| sum[k] += force[k] * value);
     }

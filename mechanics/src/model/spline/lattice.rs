@@ -40,6 +40,18 @@ pub struct Place {
     pub gradients: [Local; 3],
 }
 
+/// How many control points there are.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum ControlPoints {
+    /// The finest of at least 1.5 mean edges of the mesh that leaves at most 4000 of them.
+    #[default]
+    Chosen,
+    /// So many mm apart, as nearly as whole spans allow.
+    Spaced(f64),
+    /// So many along each principal axis, the longest first; one more than the degree at least.
+    Counted([usize; 3]),
+}
+
 /// Control points and the spans of the lattice that hold tissue.
 pub struct Lattice {
     pub frame: Frame,
@@ -101,13 +113,12 @@ fn told_apart(moments: &Matrix3<f64>) -> Matrix3<f64> {
 }
 
 impl Lattice {
-    /// Control points `spacing` mm apart, as nearly as whole spans allow; with none the finest of at least
-    /// 1.5 mean edges that leaves at most 4000 of them.
+    /// Functions of a degree along each principal axis, the longest first, over the box around the tissue.
     pub fn fit(
         mesh: &VolumeMesh,
         points: &[TissuePoint],
-        degree: usize,
-        spacing: Option<f64>,
+        degrees: [usize; 3],
+        control: ControlPoints,
     ) -> Lattice {
         let frame = Frame::principal(points);
         let infinite = Vector::repeat(f64::INFINITY);
@@ -115,19 +126,26 @@ impl Lattice {
         let bounds = of_cells.map(|&node| frame.local(&mesh.nodes[node as usize]));
         let (low, high) =
             bounds.fold((infinite, -infinite), |(low, high), x| (low.inf(&x), high.sup(&x)));
+        let basis = |axis: usize, spans: usize| {
+            Basis::clamped(degrees[axis], spans, [low[axis], high[axis]])
+        };
         let bases = |spacing: f64| {
-            [0, 1, 2].map(|axis| {
-                let spans = ((high[axis] - low[axis]) / spacing).round().max(1.0) as usize;
-                Basis::clamped(degree, spans, [low[axis], high[axis]])
-            })
+            let spans = |axis: usize| ((high[axis] - low[axis]) / spacing).round().max(1.0);
+            [0, 1, 2].map(|axis| basis(axis, spans(axis) as usize))
         };
         let seen: Vec<Vector> = (mesh.cells.iter().flat_map(|(_, nodes)| nodes))
             .map(|&node| mesh.nodes[node as usize])
             .chain(points.iter().map(|point| point.position))
             .map(|point| frame.local(&point))
             .collect();
-        if let Some(spacing) = spacing {
-            return Lattice::over(frame, bases(spacing), &seen);
+        match control {
+            ControlPoints::Spaced(spacing) => return Lattice::over(frame, bases(spacing), &seen),
+            ControlPoints::Counted(counts) => {
+                let spans = |axis: usize| counts[axis].saturating_sub(degrees[axis]).max(1);
+                let bases = [0, 1, 2].map(|axis| basis(axis, spans(axis)));
+                return Lattice::over(frame, bases, &seen);
+            }
+            ControlPoints::Chosen => {}
         }
         let mut spacing = FINEST_IN_EDGES * mean_edge(mesh);
         loop {
@@ -176,15 +194,20 @@ impl Lattice {
         unpacked(self.spans[span])
     }
 
-    /// Functions along one axis.
-    pub fn order(&self) -> usize {
-        self.bases[0].degree() + 1
+    /// Functions of a span along each axis.
+    pub fn orders(&self) -> [usize; 3] {
+        [0, 1, 2].map(|axis: usize| self.bases[axis].degree() + 1)
+    }
+
+    /// Functions of a span.
+    pub fn members(&self) -> usize {
+        self.orders().iter().product()
     }
 
     /// Displacement at a place from those of control points, along the axes of the frame.
     pub fn displacement(&self, place: &Place, of_control: &[Vector]) -> Vector {
         let members = self.cliques.row(place.span).iter();
-        let values = place.products(self.order());
+        let values = place.products(self.orders());
         members.zip(values).fold(Vector::zeros(), |sum, (&control, value)| {
             sum + of_control[control as usize] * value
         })
@@ -209,17 +232,17 @@ impl Lattice {
 
 impl Place {
     /// N_m(u) N_n(v) N_p(w), first axis fastest.
-    pub fn products(&self, order: usize) -> impl Iterator<Item = f64> + '_ {
+    pub fn products(&self, [a, b, c]: [usize; 3]) -> impl Iterator<Item = f64> + '_ {
         let [u, v, w] = &self.values;
-        let lines = w[..order].iter().flat_map(move |c| v[..order].iter().map(move |b| b * c));
-        lines.flat_map(move |line| u[..order].iter().map(move |a| a * line))
+        let lines = w[..c].iter().flat_map(move |z| v[..b].iter().map(move |y| y * z));
+        lines.flat_map(move |line| u[..a].iter().map(move |x| x * line))
     }
 
     /// Gradients of the products along the axes of the frame.
-    pub fn gradients(&self, order: usize) -> impl Iterator<Item = Vector> + '_ {
+    pub fn gradients(&self, [m, n, p]: [usize; 3]) -> impl Iterator<Item = Vector> + '_ {
         let ([u, v, w], [du, dv, dw]) = (&self.values, &self.gradients);
-        (0..order.pow(3)).map(move |at| {
-            let (a, b, c) = (at % order, at / order % order, at / order / order);
+        (0..m * n * p).map(move |at| {
+            let (a, b, c) = (at % m, at / m % n, at / m / n);
             Vector::new(du[a] * v[b] * w[c], u[a] * dv[b] * w[c], u[a] * v[b] * dw[c])
         })
     }
@@ -241,10 +264,9 @@ fn span_key(bases: &[Basis; 3], local: &Vector) -> u64 {
 }
 
 fn control_keys(bases: &[Basis; 3], span: u64) -> impl Iterator<Item = u64> {
-    let order = bases[0].degree() as u32 + 1;
+    let [m, n, p] = [0, 1, 2].map(|axis: usize| bases[axis].degree() as u32 + 1);
     let [a, b, c] = unpacked(span);
-    (0..order.pow(3))
-        .map(move |at| packed([a + at % order, b + at / order % order, c + at / order / order]))
+    (0..m * n * p).map(move |at| packed([a + at % m, b + at / m % n, c + at / m / n]))
 }
 
 fn mean_edge(mesh: &VolumeMesh) -> f64 {

@@ -6,6 +6,7 @@
 //! `held_points` what bone does to them, `stepping` how time passes.
 
 pub mod basis;
+mod bone_points;
 pub mod held_points;
 pub mod lattice;
 pub mod stepping;
@@ -22,7 +23,9 @@ use crate::solver::lanes::Lanes;
 use crate::solver::{
     self, Solution, SolveReport, SolverError, System, Unknowns, cholesky, ordering,
 };
+use bone_points::BonePoints;
 use held_points::{HeldPoints, add_at};
+pub use lattice::ControlPoints;
 use lattice::Lattice;
 use stepping::{Clock, Damping, Motion, State};
 use stiffness::Assembly;
@@ -31,16 +34,26 @@ use tissue_points::tissue_points;
 /// What the user of a volume spline decides.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VolumeSpline {
-    /// 2 or 3.
-    pub degree: usize,
-    /// Between control points in mm; none: chosen from the mesh, see [`Lattice::fit`].
-    pub control_spacing: Option<f64>,
+    /// Along each principal axis of the tissue, the longest first; 1 to 3.
+    pub degrees: [usize; 3],
+    pub control: ControlPoints,
+    pub bone: Bone,
     /// How hard held nodes are held, see [`held_points`]; in [1, 1e6].
     pub hold_weight: f64,
     pub stiffness: Stiffness,
     pub damping: Damping,
     /// None: at rest at once.
     pub clock: Option<Clock>,
+}
+
+/// How bone moves the spline.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Bone {
+    /// Springs draw held nodes to where they have to be.
+    #[default]
+    Springs,
+    /// Control points next to held nodes are bone, and go where these go ([`bone_points`]); at rest only.
+    ControlPoints,
 }
 
 /// What holds control points together.
@@ -61,8 +74,9 @@ const FACTORISED: f64 = 1e11;
 impl Default for VolumeSpline {
     fn default() -> Self {
         VolumeSpline {
-            degree: 3,
-            control_spacing: None,
+            degrees: [3; 3],
+            control: ControlPoints::Chosen,
+            bone: Bone::Springs,
             hold_weight: 5.0,
             stiffness: Stiffness::Galerkin,
             damping: Damping { mass: 0.0, stiffness: RELAXATION },
@@ -78,7 +92,13 @@ impl VolumeSpline {
             Stiffness::Galerkin => "galerkin",
             Stiffness::Lattice(_) => "lattice",
         };
-        format!("B-spline degree {} {stiffness}", self.degree)
+        let [a, b, c] = self.degrees;
+        let degrees = if a == b && b == c { a.to_string() } else { format!("{a} x {b} x {c}") };
+        let bone = match self.bone {
+            Bone::Springs => "",
+            Bone::ControlPoints => ", control points of bone",
+        };
+        format!("B-spline degree {degrees} {stiffness}{bone}")
     }
 }
 
@@ -86,6 +106,8 @@ impl VolumeSpline {
 struct Assembled<'a> {
     assembly: Assembly<'a>,
     held: HeldPoints,
+    /// Where control points are bone.
+    bone: Option<BonePoints>,
     /// Of tissue and holds.
     system: System,
     force: Unknowns,
@@ -101,7 +123,7 @@ pub fn solve(
     progress.phase(Phase::Assemble);
     let mesh = problem.tissue.mesh;
     let points = tissue_points(mesh)?;
-    let lattice = Lattice::fit(mesh, &points, spline.degree, spline.control_spacing);
+    let lattice = Lattice::fit(mesh, &points, spline.degrees, spline.control);
     check_memory(&lattice, problem)?;
     let nothing_held = vec![false; lattice.points.len()];
     let numbering = Numbering::of(&lattice.cliques, &lattice.points, &nothing_held);
@@ -114,8 +136,7 @@ pub fn solve(
         Stiffness::Lattice(links) => assembly.links(links),
     };
     let resisted = rotation_resisted(spline, &assembly);
-    let assembled =
-        assemble(assembly, stiffness, problem, spline.hold_weight).ok_or_else(stopped)?;
+    let assembled = assemble(assembly, stiffness, problem, spline).ok_or_else(stopped)?;
 
     // 3. Rest.
     progress.phase(Phase::Solve);
@@ -129,7 +150,8 @@ pub fn solve(
 
 /// Matrix and factor of that many control points, each of which couples with 7^3 - 1 others at most.
 fn check_memory(lattice: &Lattice, problem: &Problem) -> Result<(), SolverError> {
-    let reach = (2 * lattice.order() - 1).pow(3).min(lattice.points.len());
+    let reach: usize = lattice.orders().iter().map(|order| 2 * order - 1).product();
+    let reach = reach.min(lattice.points.len());
     let needed_mb = lattice.points.len() as f64 * reach as f64 / 2.0 * 76.0 / 1e6;
     let allowed_mb = problem.tolerance.memory_mb;
     match needed_mb > allowed_mb {
@@ -143,11 +165,16 @@ fn assemble<'a>(
     assembly: Assembly<'a>,
     stiffness: HalfMatrix<f64, 3>,
     problem: &Problem,
-    hold_weight: f64,
+    spline: &VolumeSpline,
 ) -> Option<Assembled<'a>> {
     let (lattice, mesh) = (assembly.lattice, problem.tissue.mesh);
-    let held = HeldPoints::new(&assembly, problem.holds, &stiffness, hold_weight);
-    let mut matrix = held.stiffness(&assembly)?;
+    let held = HeldPoints::new(&assembly, problem.holds, &stiffness, spline.hold_weight);
+    let springs = match spline.bone {
+        Bone::Springs => None,
+        Bone::ControlPoints => Some(held.sliding()),
+    };
+    let springs = springs.as_ref().unwrap_or(&held);
+    let mut matrix = springs.stiffness(&assembly)?;
     let blocks = matrix.diagonal.iter_mut().chain(&mut matrix.lower);
     for (sum, block) in blocks.zip(stiffness.diagonal.iter().chain(&stiffness.lower)) {
         for (sum, value) in sum.as_flattened_mut().iter_mut().zip(block.as_flattened()) {
@@ -155,16 +182,22 @@ fn assemble<'a>(
         }
     }
     let mut force: Unknowns = vec![[0.0; 3]; lattice.points.len()];
-    held.add_forces(&assembly, &mut force);
+    springs.add_forces(&assembly, &mut force);
     for (node, nodal) in problem.forces.iter().enumerate().filter(|(_, f)| **f != Vector::zeros()) {
         if let Some(place) = lattice.place(&lattice.frame.local(&mesh.nodes[node])) {
             add_at(&assembly, &place, &(lattice.frame.axes.transpose() * nodal), &mut force);
         }
     }
+    let bone = match spline.bone {
+        Bone::Springs => None,
+        Bone::ControlPoints => {
+            Some(BonePoints::take_out(&assembly, problem.holds, &mut matrix, &mut force))
+        }
+    };
     let layout = assembly.numbering.layout.clone();
     let positions = assembly.numbering.by_row(&lattice.points);
     let system = System { layout, matrix, partly_held: Vec::new(), positions };
-    Some(Assembled { assembly, held, system, force })
+    Some(Assembled { assembly, held, bone, system, force })
 }
 
 impl Assembled<'_> {
@@ -175,7 +208,8 @@ impl Assembled<'_> {
         spline: &VolumeSpline,
         progress: &dyn Progress,
     ) -> Result<(Vec<Vector>, SolveReport), ModelError> {
-        let Some(clock) = &spline.clock else {
+        let clock = spline.clock.as_ref().filter(|_| self.bone.is_none());
+        let Some(clock) = clock else {
             let solution = self.static_solution(problem, progress)?;
             let by_row = solution.unknowns.iter().map(|d| Vector::from(*d)).collect();
             return Ok((self.by_control(by_row), solution.report));
@@ -274,9 +308,19 @@ impl Assembled<'_> {
             along.map_or(Vector::zeros(), |along| lattice.frame.axes * along)
         };
         let missed = self.held.missed(lattice, control);
+        let mut reactions = self.held.reactions(lattice, &missed);
+        if let Some(bone) = &self.bone {
+            let places = &self.assembly.numbering.layout.place;
+            let mut of_row = vec![Vector::zeros(); control.len()];
+            places.iter().zip(control).for_each(|(&row, d)| of_row[row as usize] = *d);
+            let of_bone = bone.reactions(&of_row);
+            for (reaction, own) in reactions.iter_mut().zip(of_bone) {
+                *reaction = own.map_or(*reaction, |own| lattice.frame.axes * own);
+            }
+        }
         Equilibrium {
             displacement: mesh.nodes.iter().map(moved).collect(),
-            reactions: self.held.reactions(lattice, &missed),
+            reactions,
             solver,
             warnings: held_points::warning(&missed).into_iter().collect(),
             states: Default::default(),

@@ -7,8 +7,8 @@
 //! A span that holds little tissue leaves its functions next to no stiffness. What the tissue does not say
 //! is therefore told to continue smoothly: gamma mu V h^(2p-2) |d^p u / dx^p|^2 is added for each span with
 //! tissue, V its volume, h its length along the axis, p the degree. It is zero for every polynomial below
-//! degree p, rigid movements and constant strains among them, and vanishes with h faster than the spline's
-//! own error. After the ghost penalty of Burman, Comptes Rendus Mathématique 348 (2010), p. 1217, with
+//! degree p, rigid movements and for p above 1 constant strains among them, and vanishes with h faster than the spline's
+//! own error; where p is 1 it is added by the share of the span that holds no tissue, so that full spans have none. After the ghost penalty of Burman, Comptes Rendus Mathématique 348 (2010), p. 1217, with
 //! the highest derivative itself in place of its jumps.
 //!
 //! Lattice, as in Ulusoy et al. 2010: links of k_s between neighbouring control points, each component
@@ -100,12 +100,11 @@ impl<'a> Assembly<'a> {
     /// int rho N N dV in mg.
     pub fn mass(&self, progress: &dyn Progress) -> Option<HalfMatrix<f64, 3>> {
         self.sum_over_spans(progress, |span| {
-            let order = self.lattice.order();
-            let members = order.pow(3);
+            let (orders, members) = (self.lattice.orders(), self.lattice.members());
             let mut blocks = vec![[[0.0; 3]; 3]; members * members];
             for point in self.points(span) {
                 let density = self.tissue.materials[point.material as usize].density();
-                let values: Vec<f64> = self.place(point).products(order).collect();
+                let values: Vec<f64> = self.place(point).products(orders).collect();
                 for (j, a) in values.iter().enumerate() {
                     for (k, b) in values.iter().enumerate() {
                         add_to_diagonal(
@@ -172,8 +171,7 @@ impl<'a> Assembly<'a> {
     }
 
     fn span_stiffness(&self, span: usize, mean_shear: f64) -> Vec<Block> {
-        let order = self.lattice.order();
-        let members = order.pow(3);
+        let (orders, members) = (self.lattice.orders(), self.lattice.members());
         let mut blocks = vec![[[0.0; 3]; 3]; members * members];
         let mut moments = vec![0.0; members * 9 * members];
         let (mut shear, mut volume) = (0.0, 0.0);
@@ -186,7 +184,7 @@ impl<'a> Assembly<'a> {
                 let mut gradients = Gradients([[[0.0; MOST_MEMBERS]; 3]; AT_ONCE]);
                 for (at, point) in some.iter().enumerate() {
                     volumes[at] = point.volume;
-                    gradients.set(at, &self.place(point), order);
+                    gradients.set(at, &self.place(point), orders);
                     shear += mu * point.volume;
                     volume += point.volume;
                 }
@@ -195,22 +193,25 @@ impl<'a> Assembly<'a> {
             add_stiffness(&moments, [lambda, mu], members, &mut blocks);
         }
         let shear = if volume > 0.0 { shear / volume } else { mean_shear };
-        self.continue_smoothly(span, CONTINUATION * shear, &mut blocks);
+        self.continue_smoothly(span, [CONTINUATION * shear, volume], &mut blocks);
         blocks
     }
 
     /// Adds the penalty on the highest derivatives.
-    fn continue_smoothly(&self, span: usize, modulus: f64, blocks: &mut [Block]) {
+    fn continue_smoothly(&self, span: usize, [modulus, tissue]: [f64; 2], blocks: &mut [Block]) {
         let bases = &self.lattice.bases;
-        let (order, place) = (self.lattice.order(), self.lattice.span(span));
-        let members = order.pow(3);
-        let degree = order as i32 - 1;
+        let (orders, place) = (self.lattice.orders(), self.lattice.span(span));
+        let members = self.lattice.members();
         let volume: f64 = bases.iter().map(|basis| basis.spacing()).product();
         for (axis, basis) in bases.iter().enumerate() {
+            let order = orders[axis];
+            let degree = order as i32 - 1;
             let derivatives = basis.highest_derivatives(place[axis] as usize);
-            let weight =
-                modulus * volume * basis.spacing().powi(2 * degree - 2) / (order * order) as f64;
-            let stride = order.pow(axis as u32);
+            // A constant strain is the highest derivative of degree 1: only where tissue is missing.
+            let share = if degree > 1 { 1.0 } else { (1.0 - tissue / volume).clamp(0.0, 1.0) };
+            let lines = (members / order) as f64;
+            let weight = share * modulus * volume * basis.spacing().powi(2 * degree - 2) / lines;
+            let stride: usize = orders[..axis].iter().product();
             for first in (0..members).filter(|at| at / stride % order == 0) {
                 for (j, a) in derivatives[..order].iter().enumerate() {
                     for (k, b) in derivatives[..order].iter().enumerate() {
@@ -231,8 +232,8 @@ impl<'a> Assembly<'a> {
 }
 
 impl Gradients {
-    fn set(&mut self, at: usize, place: &Place, order: usize) {
-        for (member, gradient) in place.gradients(order).enumerate() {
+    fn set(&mut self, at: usize, place: &Place, orders: [usize; 3]) {
+        for (member, gradient) in place.gradients(orders).enumerate() {
             for axis in 0..3 {
                 self.0[at][axis][member] = gradient[axis];
             }

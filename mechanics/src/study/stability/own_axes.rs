@@ -10,7 +10,7 @@ use super::{Axis, Probe, Refusal, Truth, Variant};
 use crate::material::{Fibre, FibreLaw, LinearElastic, MaterialError};
 use crate::mesh::{CellShape, Vector};
 use crate::model::spline::stepping::{Clock, Damping, Scheme};
-use crate::model::spline::{Stiffness, VolumeSpline};
+use crate::model::spline::{ControlPoints, Stiffness, VolumeSpline};
 use crate::prediction::{Case, FibreDirection, Method, Settings};
 
 pub fn every() -> Vec<Axis> {
@@ -137,7 +137,7 @@ fn at_once() -> Truth {
 
 fn spline(clock: Option<Clock>) -> Result<Probe, Refusal> {
     let spline = VolumeSpline {
-        control_spacing: Some(SPACING),
+        control: ControlPoints::Spaced(SPACING),
         damping: DAMPING,
         clock,
         ..VolumeSpline::default()

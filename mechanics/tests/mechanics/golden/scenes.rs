@@ -10,7 +10,7 @@ use mechanics::mesh::{CellShape, Vector};
 use mechanics::model::fem::mass_tensor::{Iterations, MassTensorSettings};
 use mechanics::model::mass_spring::{MassSpringSettings, Search};
 use mechanics::model::spline::stepping::{Clock, Scheme};
-use mechanics::model::spline::{Stiffness, VolumeSpline};
+use mechanics::model::spline::{ControlPoints, Stiffness, VolumeSpline};
 use mechanics::model::thickness_warp::ThicknessWarp;
 use mechanics::optimisation::{Question, optimise};
 use mechanics::plan::{PlannedSegment, RigidMovement};
@@ -243,8 +243,8 @@ fn other_models() -> Vec<Found> {
         Settings { relative_residual, ..with_method(Method::MassSpring(settings)) }
     };
     let spline = |stiffness, clock| {
-        let control_spacing = Some(6.0);
-        let spline = VolumeSpline { stiffness, clock, control_spacing, ..VolumeSpline::default() };
+        let control = ControlPoints::Spaced(6.0);
+        let spline = VolumeSpline { stiffness, clock, control, ..VolumeSpline::default() };
         with_method(Method::VolumeSpline(spline))
     };
     let clock = Clock { scheme: Scheme::BackwardEuler, step: 50.0, end: 5000.0 };

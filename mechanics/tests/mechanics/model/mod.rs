@@ -9,6 +9,7 @@ mod mass_spring;
 mod mass_tensor;
 mod mass_tensor_nonlinear;
 mod membrane;
+mod spline_axes;
 mod spline_stepping;
 mod spline_volume;
 mod thickness_warp;

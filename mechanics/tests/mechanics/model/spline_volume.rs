@@ -10,7 +10,7 @@ use mechanics::model::fem::cell_stiffness::Dilatation;
 use mechanics::model::spline::lattice::Lattice;
 use mechanics::model::spline::stiffness::Assembly;
 use mechanics::model::spline::tissue_points::tissue_points;
-use mechanics::model::spline::{Stiffness, VolumeSpline};
+use mechanics::model::spline::{ControlPoints, Stiffness, VolumeSpline};
 use mechanics::plan::{PlannedSegment, RigidMovement};
 use mechanics::prediction::{
     Case, CaseSegment, Method, ModelError, Plan, Prediction, Scene, Settings, Sliding,
@@ -29,7 +29,7 @@ pub fn with(spline: VolumeSpline) -> Settings {
 }
 
 pub fn spaced(control_spacing: f64) -> VolumeSpline {
-    VolumeSpline { control_spacing: Some(control_spacing), ..VolumeSpline::default() }
+    VolumeSpline { control: ControlPoints::Spaced(control_spacing), ..VolumeSpline::default() }
 }
 
 fn number(prediction: &Prediction, code: &str, name: &str) -> Option<f64> {
@@ -52,7 +52,7 @@ fn galerkin(
     let dilatation = |_| Dilatation::Pointwise;
     let tissue = Tissue::isotropic(mesh, &materials, &material_of_cell, dilatation);
     let points = tissue_points(mesh).unwrap();
-    let lattice = Lattice::fit(mesh, &points, 3, Some(spacing));
+    let lattice = Lattice::fit(mesh, &points, [3; 3], ControlPoints::Spaced(spacing));
     let free = vec![false; lattice.points.len()];
     let numbering = Numbering::of(&lattice.cliques, &lattice.points, &free);
     let assembly = Assembly::new(&lattice, &numbering, &tissue, &points);
@@ -78,7 +78,7 @@ fn affine() -> Matrix3<f64> {
 fn an_affine_map_of_the_control_points_is_that_map_of_the_volume() {
     let mesh = half_head(1).mesh;
     let points = tissue_points(&mesh).unwrap();
-    let lattice = Lattice::fit(&mesh, &points, 3, Some(15.0));
+    let lattice = Lattice::fit(&mesh, &points, [3; 3], ControlPoints::Spaced(15.0));
     let control: Vec<Vector> = lattice.points.iter().map(|x| affine() * x).collect();
     for node in &mesh.nodes {
         let local = lattice.frame.local(node);

@@ -10,6 +10,7 @@ use mechanics::mesh::{CellShape, Vector};
 use mechanics::plan::{PlannedSegment, RigidMovement};
 use mechanics::prediction::{
     Case, CaseSegment, ElementChoice, Method, MethodKind, Plan, RegionNames, Scene, Settings,
+    TissueWindow,
 };
 use mechanics::progress::{Phase, Progress, Unobserved};
 use mechanics::study::report::Solved;
@@ -112,16 +113,16 @@ fn the_errors_of_a_row_are_those_of_its_displacement() {
         let row = (row.label.as_str(), solved(row));
         // The same equations, solved to the same residual: what is left is rounding in sums.
         for (a, b) in [
-            (row.1.node_wise.mean, expected.mean),
-            (row.1.node_wise.p95, expected.p95),
-            (row.1.node_wise.max, expected.max),
+            (row.1.error.mean, expected.mean),
+            (row.1.error.p95, expected.p95),
+            (row.1.error.max, expected.max),
         ] {
             assert!((a - b).abs() < 1e-9, "{label}: {a} and {b}");
         }
         assert_eq!(row.0, label);
         let closest = &row.1.closest_point;
-        assert!(closest.mean > 0.0 && closest.mean <= row.1.node_wise.mean);
-        assert!(closest.max <= row.1.node_wise.max);
+        assert!(closest.mean > 0.0 && closest.mean <= row.1.error.mean);
+        assert!(closest.max <= row.1.error.max);
         let over: Vec<usize> = (0..skin.nodes().len())
             .filter(|&p| skin.surface.points[p].x.abs() < 12.1 && skin.surface.points[p].y < 12.1)
             .collect();
@@ -148,7 +149,7 @@ fn halving_the_cells_of_the_sphere_quarters_its_errors() {
     // at level 2, are still on their way to it.
     for (label, least) in [("plain", 1.5), ("stabilised", 1.6), ("quadratic", 1.9)] {
         let rows: Vec<&Row> = report.rows.iter().filter(|row| row.label == label).collect();
-        let means = [0, 1, 2].map(|level| solved(rows[level]).node_wise.mean);
+        let means = [0, 1, 2].map(|level| solved(rows[level]).error.mean);
         let [first, last] = [(means[0] / means[1]).log2(), (means[1] / means[2]).log2()];
         println!("{label}: {means:?}, orders {first:.2} and {last:.2}");
         assert!(last > least && last < 2.2, "{label}: {means:?}");
@@ -167,7 +168,7 @@ fn a_truth_summed_from_unit_movements_is_the_truth_of_each_plan() {
         assert!(!alone.scenes[0].truth.contains("summed"));
         let (a, b) = (solved(row), solved(&alone.rows[0]));
         // Both truths are solved to a residual of 1e-10 of what moves them, 10 mm at most.
-        for (a, b) in [(a.node_wise, b.node_wise), (a.closest_point, b.closest_point)] {
+        for (a, b) in [(a.error, b.error), (a.closest_point, b.closest_point)] {
             let apart = [a.mean - b.mean, a.p95 - b.p95, a.max - b.max];
             assert!(apart.iter().all(|d| d.abs() < 1e-8), "{}: {apart:?}", row.plan);
         }
@@ -431,7 +432,7 @@ fn a_sweep_finds_the_constants_that_were_planted() {
         Values { young_modulus: vec![150.0, 300.0, 450.0], poisson_ratio: vec![0.4, 0.43, 0.46] };
     let soft = Values { poisson_ratio: vec![0.45, 0.47], ..Values::default() };
     let sweep = BTreeMap::from([("muscle".to_owned(), muscle), ("*".to_owned(), soft)]);
-    let materials = combinations(&case.materials, &sweep).unwrap();
+    let materials = combinations(&case.materials, &[], &sweep).unwrap();
     assert_eq!(materials.len(), 18);
     assert_eq!(materials[0].name, "all nu 0.45, muscle E 150 kPa nu 0.4");
     let scene = StudyScene {
@@ -446,9 +447,9 @@ fn a_sweep_finds_the_constants_that_were_planted() {
     let found = best(&report, &judged).unwrap();
     assert_eq!(found.material, "all nu 0.45, muscle E 300 kPa nu 0.43");
     // Both are solved to a relative residual of 1e-8, of 3 mm.
-    assert!(solved(found).node_wise.max < 1e-6);
+    assert!(solved(found).error.max < 1e-6);
     let others = report.rows.iter().filter(|row| row.material != found.material);
-    assert!(others.map(|row| solved(row).node_wise.mean).all(|mean| mean > 1e-4));
+    assert!(others.map(|row| solved(row).error.mean).all(|mean| mean > 1e-4));
 }
 
 #[test]
@@ -457,17 +458,31 @@ fn a_sweep_of_unknown_regions_or_too_many_values_is_refused() {
     let sweep = |region: &str, values: usize| {
         let poisson_ratio = (0..values).map(|k| 0.4 / values as f64 * k as f64).collect();
         let values = Values { poisson_ratio, ..Values::default() };
-        combinations(&base, &BTreeMap::from([(region.to_owned(), values)]))
+        combinations(&base, &[], &BTreeMap::from([(region.to_owned(), values)]))
     };
     assert!(matches!(sweep("bone", 2), Err(SweepError::UnknownRegion { .. })));
     assert_eq!(sweep("soft", 1001).err(), Some(SweepError::TooMany { combinations: 1001 }));
     let along = Fibre { young_modulus: 80.0, shear_modulus: None, law: FibreLaw::default() };
     let striped = BTreeMap::from([("soft".to_owned(), base["soft"].with_fibre(&along).unwrap())]);
     let soft = Values { poisson_ratio: vec![0.4], ..Values::default() };
-    let refused = combinations(&striped, &BTreeMap::from([("soft".to_owned(), soft)]));
+    let refused = combinations(&striped, &[], &BTreeMap::from([("soft".to_owned(), soft)]));
     assert!(matches!(refused, Err(SweepError::Fibres { .. })));
+    let window = TissueWindow {
+        name: "muscle".to_owned(),
+        from_hu: -30.0,
+        to_hu: 100.0,
+        material: material(300.0, 0.43),
+    };
+    let nu = Values { poisson_ratio: vec![0.4, 0.45], ..Values::default() };
+    let sweep = |region: &str| BTreeMap::from([(region.to_owned(), nu.clone())]);
+    let of_tissue = combinations(&base, std::slice::from_ref(&window), &sweep("muscle")).unwrap();
+    assert_eq!(of_tissue[1].tissues["muscle"], material(300.0, 0.45));
+    assert_eq!((of_tissue[1].name.as_str(), &of_tissue[1].by_region), ("muscle nu 0.45", &base));
+    let twice = TissueWindow { name: "soft".to_owned(), ..window };
+    let refused = combinations(&base, &[twice], &sweep("soft"));
+    assert!(matches!(refused, Err(SweepError::TwoThings { .. })));
     let stiff = Values { young_modulus: vec![-1.0], ..Values::default() };
-    let refused = combinations(&base, &BTreeMap::from([("soft".to_owned(), stiff)]));
+    let refused = combinations(&base, &[], &BTreeMap::from([("soft".to_owned(), stiff)]));
     assert!(matches!(refused, Err(SweepError::Material { .. })));
 }
 
@@ -488,10 +503,11 @@ fn row(label: &str, level: u32, wall_s: f64, p95: f64, skin_mean_mm: f64) -> Row
             repeats: 1,
             peak_mb: None,
             skin_mean_mm,
-            node_wise: errors,
+            error: errors,
             closest_point: errors,
             regions: BTreeMap::new(),
             smallest_det_f: 1.0,
+            covered_share: None,
             warnings: Vec::new(),
         }),
     }
@@ -568,7 +584,7 @@ fn on_the_slab_elements_come_in_the_order_of_the_table_and_the_truth_knows_its_o
     // The measure is not that of the table, which weighs 45 points alike; the order of elements is.
     let mean = |label: &str, level| {
         let found = report.rows.iter().find(|row| row.label == label && row.level == level);
-        solved(found.unwrap()).node_wise.mean
+        solved(found.unwrap()).error.mean
     };
     assert!(mean("fem_linear quadratic", 1) < 0.3 * mean("fem_linear stabilised", 1));
     assert!(mean("fem_linear stabilised", 1) < 0.5 * mean("fem_linear plain", 1));

@@ -1,0 +1,108 @@
+//! What a study holds for true.
+
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+use crate::schema::code::ErrorCode;
+use crate::schema::compare::align::{AlignDocument, AlignMethod, AlignReference, align};
+use crate::schema::methods::ElementName;
+use crate::schema::wire::fault::{Faults, Pointer};
+use crate::schema::wire::limits::Limits;
+
+/// Halving every edge once more makes eight cells of one.
+const MOST_LEVEL: u32 = 4;
+
+/// No skin moves farther, in mm.
+const FARTHEST_MM: f64 = 100.0;
+
+/// What is held for true: exactly one of `refine` with `element`, `closed_form`, `job`, and `mesh` with `align`,
+/// `moved_by_more_than_mm` and `noise_mm`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TruthDocument {
+    /// Linear finite elements with every edge of level 0 halved so often.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false, minimum = 0, maximum = 4)]
+    pub refine: Option<u32>,
+    /// Of `refine`. Default: `quadratic` where all cells are tetrahedra, else `mean_dilatation`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub element: Option<ElementName>,
+    /// The formula of the scene; `true` or absent.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub closed_form: bool,
+    /// The skin that this job predicted, for a study of one case with one plan and one material.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub job: Option<String>,
+    /// A surface that shows where the skin of one case went after one plan, such as a scan after the operation: errors
+    /// are distances between it and the predicted skin, both ways, where the skin moves and both are there.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub mesh: Option<String>,
+    /// Of `mesh` onto the skin of the case, by anything but `icp`, which would take back from each answer what tells it
+    /// from others. Default: `none`.
+    #[serde(default, skip_serializing_if = "is_usual", deserialize_with = "align")]
+    #[schema(value_type = AlignReference, required = false)]
+    pub align: AlignDocument,
+    /// Of `mesh`: only skin counts that some answer moves by more than this. Default: 0.5.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false, minimum = 0.0, maximum = 100.0)]
+    pub moved_by_more_than_mm: Option<f64>,
+    /// Of `mesh`: root of the mean squared distance that its registration left. Default: what `align` leaves where it
+    /// fits `surfaces` or `landmarks`, else not known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false, minimum = 0.0, maximum = 100.0)]
+    pub noise_mm: Option<f64>,
+}
+
+fn is_false(value: &bool) -> bool {
+    !value
+}
+
+fn is_usual(align: &AlignDocument) -> bool {
+    *align == AlignDocument::default()
+}
+
+impl TruthDocument {
+    /// Adds what is wrong with it, but for what scenes and meshes tell.
+    pub(super) fn check(&self, at: &Pointer, limits: &Limits, faults: &mut Faults) {
+        let forms =
+            [self.refine.is_some(), self.closed_form, self.job.is_some(), self.mesh.is_some()];
+        let given = forms.into_iter().filter(|&form| form).count();
+        faults.check_one_of(at, given, "`refine`, `closed_form`, `job`, `mesh`");
+        if self.element.is_some() && self.refine.is_none() {
+            faults.add(&at.key("element"), ErrorCode::WrongType, "`element` belongs to `refine`");
+        }
+        let refine = f64::from(self.refine.unwrap_or_default());
+        faults.check_range(&at.key("refine"), refine, 0.0..=f64::from(MOST_LEVEL), "");
+        let of_mesh = [
+            ("align", !is_usual(&self.align)),
+            ("moved_by_more_than_mm", self.moved_by_more_than_mm.is_some()),
+            ("noise_mm", self.noise_mm.is_some()),
+        ];
+        for (name, _) in of_mesh.into_iter().filter(|(_, given)| *given && self.mesh.is_none()) {
+            let detail = format!("`{name}` belongs to `mesh`");
+            faults.add(&at.key(name), ErrorCode::WrongType, detail);
+        }
+        self.align.check(&at.key("align"), limits, faults);
+        if self.align.method == AlignMethod::Icp {
+            let detail = "fitted to each answer the scan shows no difference between them: align it by `surfaces`, \
+                          such as bone, by `landmarks` or by a `matrix`";
+            faults.add(&at.key("align").key("method"), ErrorCode::AlignmentFailed, detail);
+        }
+        let lengths =
+            [("moved_by_more_than_mm", self.moved_by_more_than_mm), ("noise_mm", self.noise_mm)];
+        for (name, length) in lengths {
+            faults.check_range(&at.key(name), length.unwrap_or(0.0), 0.0..=FARTHEST_MM, "mm");
+        }
+    }
+
+    /// Every mesh that it names, with its place.
+    pub fn mesh_references_mut(&mut self, at: &Pointer) -> Vec<(Pointer, &mut String)> {
+        let mut found: Vec<(Pointer, &mut String)> =
+            self.mesh.as_mut().map(|mesh| (at.key("mesh"), mesh)).into_iter().collect();
+        found.extend(self.align.surfaces_mut(&at.key("align")));
+        found
+    }
+}

@@ -1,0 +1,115 @@
+//! Cuts through the bone of a scan: their paths for navigation, and how clear they keep of what must not be sawn.
+
+use std::collections::BTreeMap;
+use std::f64::consts::PI;
+use std::fs;
+
+use facies::jobs::{JobInput, MeshingInput, StoredMesh, Workplace, work};
+use facies::schema::Limits;
+use facies::schema::meshing::cuts::CutPathDocument;
+use facies::schema::predict::result::ResultDocument;
+use mechanics::format::{self, ReadLimits};
+use mechanics::mesh::Vector;
+use mechanics::progress::Unobserved;
+use serde_json::{Value, json};
+use tempfile::TempDir;
+
+use crate::samples::ball_ct;
+use crate::sources::Meshes;
+
+/// A ball of bone of 30 mm around (60, 55, 60) mm in a scan with voxels of 4 mm, cut 12 mm below its middle.
+fn meshed(risks: Value) -> Result<(ResultDocument, TempDir), String> {
+    let read = format::read(&ball_ct(), &ReadLimits::default()).unwrap();
+    let scan = StoredMesh::new(read, None, "scan".to_owned());
+    let sources = Meshes(BTreeMap::from([("scan".to_owned(), scan)]));
+    let spec = json!({
+        "kind": "mesh", "scan": "scan", "thresholds_hu": {"skin": -480, "bone": 620}, "size": {"tetrahedra": 8000},
+        "osteotomy": {
+            "cuts": [{"name": "low", "point_mm": [0, 0, 48], "normal": [0, 0, 2], "kerf_mm": 1}],
+            "segments": [{"name": "jaw, lower", "below": ["low"]}], "risks": risks}
+    });
+    let spec = serde_json::from_value(spec).unwrap();
+    let input = JobInput::Meshing(MeshingInput { job: None, queue_s: None, spec, case: None });
+    let folder = tempfile::tempdir().unwrap();
+    let place = Workplace { sources: &sources, limits: &Limits::default(), out: folder.path() };
+    let done = work(&input, &place, &Unobserved).map_err(|error| format!("{error:?}"))?;
+    Ok((done.result, folder))
+}
+
+fn line(name: &str, points: Value, clearance_mm: f64) -> Value {
+    json!({"name": name, "points_mm": points, "radius_mm": 1.5, "clearance_mm": clearance_mm})
+}
+
+#[test]
+fn a_cut_has_the_outline_of_the_bone_and_its_distance_from_a_nerve() {
+    // A nerve along y 6 mm below the cut, and one that goes through it.
+    let nerve = line("nerve", json!([[60, 20, 42], [60, 90, 42]]), 5.0);
+    let far = line("far", json!([[60, 20, 42], [60, 90, 42]]), 3.0);
+    let through = line("through", json!([[50, 55, 30], [50, 55, 70]]), 0.0);
+    let (result, folder) = meshed(json!([nerve, far, through])).unwrap();
+    let cuts: &[CutPathDocument] = &result.meshing.as_ref().unwrap().cuts;
+    let [cut] = cuts else { panic!("{cuts:?}") };
+    assert_eq!((cut.cut.as_str(), cut.segment.as_str()), ("low", "jaw, lower"));
+    // sqrt(30² - 12²) mm around the axis, to half a voxel.
+    let radius = (900.0_f64 - 144.0).sqrt();
+    assert!((cut.area_mm2 / (PI * radius * radius) - 1.0).abs() < 0.12, "{}", cut.area_mm2);
+    assert_eq!((cut.normal.0, cut.paths_mm.len()), ([0.0, 0.0, 1.0], 1));
+    for &point in &cut.paths_mm[0] {
+        let from_axis = Vector::from(point) - Vector::new(60.0, 55.0, 48.0);
+        assert!((from_axis.norm() - radius).abs() < 2.0 && from_axis.z.abs() < 1e-9);
+    }
+    let distances: Vec<f64> = cut.clearances.iter().map(|own| own.distance_mm).collect();
+    // 6 mm less half of the saw and the radius of the nerve.
+    for (found, expected) in distances.iter().zip([4.0, 4.0, -2.0]) {
+        assert!((found - expected).abs() < 1e-9, "{distances:?}");
+    }
+    let near: Vec<&str> = result
+        .warnings
+        .iter()
+        .filter(|warning| warning.code == "cut-near-risk")
+        .map(|warning| warning.detail.as_str())
+        .collect();
+    let [first, second] = near[..] else { panic!("{near:?}") };
+    assert!(first.contains("too near to \"nerve\"") && second.contains("goes through \"through\""));
+    read_again(&folder, cut);
+}
+
+/// The table has the same bits.
+fn read_again(folder: &TempDir, cut: &CutPathDocument) {
+    let table = fs::read_to_string(folder.path().join("cut-paths.csv")).unwrap();
+    let rows =
+        table.lines().skip(1).map(|row| row.strip_prefix("LPS,low,\"jaw, lower\",1,").unwrap());
+    let points: Vec<[u64; 3]> = rows
+        .map(|row| {
+            let numbers: Vec<f64> = row.split(',').map(|number| number.parse().unwrap()).collect();
+            assert_eq!(numbers[3..], cut.normal.0);
+            [0, 1, 2].map(|axis| numbers[axis].to_bits())
+        })
+        .collect();
+    let told: Vec<[u64; 3]> =
+        cut.paths_mm[0].iter().map(|point| point.0.map(f64::to_bits)).collect();
+    assert_eq!(points, told);
+}
+
+#[test]
+fn a_structure_that_is_no_line_is_refused_where_it_stands() {
+    let good = || line("nerve", json!([[60, 20, 42], [60, 90, 42]]), 5.0);
+    let mut short = good();
+    short["points_mm"] = json!([[60, 20, 42]]);
+    let mut thick = good();
+    thick["radius_mm"] = json!(-1);
+    let mut clearance = good();
+    clearance["clearance_mm"] = json!(51);
+    let mut beyond = good();
+    beyond["points_mm"][1][2] = json!(1e9);
+    for (risks, place) in [
+        (json!([short]), "risks/0/points_mm"),
+        (json!([good(), thick]), "risks/1/radius_mm"),
+        (json!([clearance]), "risks/0/clearance_mm"),
+        (json!([beyond]), "risks/0/points_mm/1/2"),
+        (json!([good(), good()]), "risks/1"),
+    ] {
+        let told = meshed(risks).map(|_| ()).unwrap_err();
+        assert!(told.contains(&format!("/spec/osteotomy/{place}")), "{place}: {told}");
+    }
+}
