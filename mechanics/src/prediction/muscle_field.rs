@@ -1,6 +1,7 @@
-//! A muscle on a mesh: the stress of its cells for each kPa with which it pulls, and how much of them it is.
+//! Muscles on a mesh: the stress of cells for each kPa with which one pulls, how much of them it is, and what all make of the tissue.
 
 use super::case::Muscle;
+use crate::material::mixture::MixingRule;
 use crate::mesh::jacobian::signed_volume;
 use crate::mesh::{Vector, VolumeMesh};
 use crate::model::fem::inner_stress::{CellStress, InnerStress};
@@ -24,6 +25,20 @@ pub struct MuscleBody {
     pub enclosed: f64,
     /// Of the second to the first standard deviation of the surface, where fibres run along its boxes.
     pub broadness: Option<f64>,
+}
+
+/// What muscles make of the tissue of a mesh.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MuscleTissue {
+    pub rule: MixingRule,
+    /// Cells that have some muscle in them.
+    pub cells: usize,
+    /// Cells of several parts.
+    pub mixed: usize,
+    /// Cells whose fibres cross, so that one axis does not stand for them.
+    pub crossing: usize,
+    /// The share of the volume of the tissue in which Voigt's modulus is more than three times Reuss's.
+    pub rule_decides: f64,
 }
 
 impl MuscleField {

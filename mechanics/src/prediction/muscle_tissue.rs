@@ -15,7 +15,7 @@ use super::error_code::SceneErrorCode;
 use super::fibres::fibres_ignored;
 use super::hounsfield::{MOST_MATERIALS, TissueOfCells};
 use super::method::Method;
-use super::muscle_field::MuscleField;
+use super::muscle_field::{MuscleField, MuscleTissue};
 use crate::material::LinearElastic;
 use crate::material::mixture::MixingRule;
 use crate::mesh::jacobian::signed_volume;
@@ -28,20 +28,6 @@ const STEPS: u16 = 512;
 
 /// A share of the volume in which the rule decides that is told.
 const DECIDED: f64 = 0.01;
-
-/// What muscles make of the tissue of a mesh.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MuscleTissue {
-    pub rule: MixingRule,
-    /// Cells that have some muscle in them.
-    pub cells: usize,
-    /// Cells of several parts.
-    pub mixed: usize,
-    /// Cells whose fibres cross, so that one axis does not stand for them.
-    pub crossing: usize,
-    /// The share of the volume of the tissue in which Voigt's modulus is more than three times Reuss's.
-    pub rule_decides: f64,
-}
 
 /// A muscle in a cell: its number, and its share times f (x) f.
 type Part = (u16, Matrix3<f64>);
