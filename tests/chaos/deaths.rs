@@ -61,10 +61,8 @@ async fn a_training_that_dies_in_its_middle_is_learned_again_to_the_last_digit()
     // The whole service dies, and the next one learns.
     let server = faulty("compare:begin:1:hold", &["--workers", "1"]);
     let id = accepted(&server, &spec).await;
-    until("it learns", async || {
-        (state(&server, &id).await["phase"] == "compare").then_some(())
-    })
-    .await;
+    until("it learns", async || (state(&server, &id).await["phase"] == "compare").then_some(()))
+        .await;
     shows_no_result(&server, &id).await;
     let server = Server::start_in(server.kill(), &[]);
     assert_eq!(files(&succeeds(&server, &id, 2).await), expected);

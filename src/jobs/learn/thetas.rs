@@ -42,13 +42,13 @@ fn with_theta(case: &Case, theta: f64, at: &Pointer) -> Result<Case, JobError> {
     let mut tissues = 0;
     for material in other.materials.values_mut() {
         let Some(changed) = LinearElastic::with_theta(material, theta) else { continue };
-        *material =
-            changed.map_err(|error| refused(ErrorCode::LawMismatch, error.to_string()))?;
+        *material = changed.map_err(|error| refused(ErrorCode::LawMismatch, error.to_string()))?;
         tissues += 1;
     }
     match tissues {
         0 => {
-            let detail = "no tissue of the case has a law of kind `rubin_bodner`, whose constant theta is";
+            let detail =
+                "no tissue of the case has a law of kind `rubin_bodner`, whose constant theta is";
             Err(refused(ErrorCode::LawMismatch, detail.to_owned()))
         }
         _ => Ok(other),

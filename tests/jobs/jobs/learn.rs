@@ -216,7 +216,10 @@ fn operated_with_theta(truth: f64) -> (Sources, LearnInput) {
     let law = |theta: f64| json!({"*": {"law": {"kind": "rubin_bodner", "eps0_kpa": 100.0, "p": 2.0, "eta1": 0.1, "eta2": 0.05, "theta": theta}}});
     let of = |x: f64, theta: f64| {
         let mut own = prediction(x, json!({"method": "fem_nonlinear", "materials": law(theta)}));
-        own.plan = serde_json::from_value(json!({"segments": [{"name": "bone", "translation_mm": [x, 0, -x]}]})).unwrap();
+        own.plan = serde_json::from_value(
+            json!({"segments": [{"name": "bone", "translation_mm": [x, 0, -x]}]}),
+        )
+        .unwrap();
         own
     };
     let (mut cases, mut named) = (Vec::new(), Vec::new());
