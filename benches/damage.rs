@@ -53,7 +53,8 @@ struct Run {
 fn main() {
     let arguments = arguments();
     let bodies: Vec<Undamaged> = bodies(arguments.body.as_deref());
-    let kinds: Vec<Damage> = Damage::ALL.into_iter().filter(|kind| arguments.takes(*kind)).collect();
+    let kinds: Vec<Damage> =
+        Damage::ALL.into_iter().filter(|kind| arguments.takes(*kind)).collect();
     let mut counts: BTreeMap<(Damage, Ending), Vec<usize>> = BTreeMap::new();
     let mut runs = Vec::new();
     let begin = Instant::now();
@@ -65,25 +66,39 @@ fn main() {
         let body = turn.min(bodies.len() - 1);
         let started = Instant::now();
         let outcome = bodies[body].outcome(damage, seed);
-        let repeat = format!("--body {} --damage {damage:?} --runs 1 --seed {seed}", bodies[body].name);
+        let repeat =
+            format!("--body {} --damage {damage:?} --runs 1 --seed {seed}", bodies[body].name);
         let seconds = started.elapsed().as_secs_f64();
         if seconds > slowest.0 {
             slowest = (seconds, repeat.clone());
         }
         let Outcome { ending, off, elsewhere, angle, .. } = outcome;
         if matches!(ending, Ending::Told(_) | Ending::Silent(_)) || arguments.runs <= 32 {
-            println!("{ending:?}: volume {:+.2} %, {:.2} % elsewhere, {angle:.1} degrees, {seconds:.1} s: {repeat}",
-                100.0 * off, 100.0 * elsewhere);
+            println!(
+                "{ending:?}: volume {:+.2} %, {:.2} % elsewhere, {angle:.1} degrees, {seconds:.1} s: {repeat}",
+                100.0 * off,
+                100.0 * elsewhere
+            );
         }
         counts.entry((damage, ending)).or_insert_with(|| vec![0; bodies.len()])[body] += 1;
         runs.push(Run { body, damage, seed, off, elsewhere });
         if n % 100 == 99 {
-            eprintln!("{} of {} after {:.0} s", n + 1, arguments.runs, begin.elapsed().as_secs_f64());
+            eprintln!(
+                "{} of {} after {:.0} s",
+                n + 1,
+                arguments.runs,
+                begin.elapsed().as_secs_f64()
+            );
         }
     }
     print_table(&bodies, &counts);
-    println!("\n{} runs, {:.0} s; the slowest took {:.1} s: {}", arguments.runs,
-        begin.elapsed().as_secs_f64(), slowest.0, slowest.1);
+    println!(
+        "\n{} runs, {:.0} s; the slowest took {:.1} s: {}",
+        arguments.runs,
+        begin.elapsed().as_secs_f64(),
+        slowest.0,
+        slowest.1
+    );
     if let Some(file) = &arguments.pictures {
         montage::write(&tiles(&bodies, runs), file);
     }
@@ -91,7 +106,11 @@ fn main() {
 
 fn print_table(bodies: &[Undamaged], counts: &BTreeMap<(Damage, Ending), Vec<usize>>) {
     let names: Vec<&str> = bodies.iter().map(|body| body.name).collect();
-    println!("\n| damage | ending | runs | {} |\n|{}", names.join(" | "), " --- |".repeat(3 + names.len()));
+    println!(
+        "\n| damage | ending | runs | {} |\n|{}",
+        names.join(" | "),
+        " --- |".repeat(3 + names.len())
+    );
     for ((damage, ending), of_bodies) in counts {
         let each: Vec<String> = of_bodies.iter().map(ToString::to_string).collect();
         let all: usize = of_bodies.iter().sum();
@@ -129,8 +148,7 @@ fn tiles(bodies: &[Undamaged], mut runs: Vec<Run>) -> Vec<montage::Tile> {
 }
 
 fn arguments() -> Arguments {
-    let mut found =
-        Arguments { runs: 320, seed: 0, body: None, damage: None, pictures: None };
+    let mut found = Arguments { runs: 320, seed: 0, body: None, damage: None, pictures: None };
     let mut given = std::env::args().skip(1);
     while let Some(argument) = given.next() {
         let mut value = || given.next().expect("the argument needs a value");

@@ -27,8 +27,12 @@ impl Tile {
     pub fn new(body: &Undamaged, damage: Damage, seed: u64) -> Tile {
         let Outcome { made, ending, off, elsewhere, .. } = body.outcome(damage, seed);
         let tissue = made.expect("a mesh that was made before").tissue;
-        println!("tile: {} {damage:?} seed {seed}: {ending:?}, {:+.2} %, {:.2} % elsewhere",
-            body.name, 100.0 * off, 100.0 * elsewhere);
+        println!(
+            "tile: {} {damage:?} seed {seed}: {ending:?}, {:+.2} %, {:.2} % elsewhere",
+            body.name,
+            100.0 * off,
+            100.0 * elsewhere
+        );
         let other = body.lines.chords(&boundary(&tissue));
         let length = |spans: &[[f64; 2]]| spans.iter().map(|[from, to]| to - from).sum::<f64>();
         let differs = |x: usize| -> f64 {

@@ -27,8 +27,10 @@ use mechanics::mesh::Frame;
 const SCAN: &str = "What is meshed";
 const RESULT: &str = "Result";
 
-const NO_SCAN: &str = "give what is to be meshed: --scan FILE, --labels FILE, or --skin FILE and --bone FILE";
-const NO_CLASSES: &str = "--labels needs what its labels are: `labels.classes` in the file of --mesh-spec";
+const NO_SCAN: &str =
+    "give what is to be meshed: --scan FILE, --labels FILE, or --skin FILE and --bone FILE";
+const NO_CLASSES: &str =
+    "--labels needs what its labels are: `labels.classes` in the file of --mesh-spec";
 const NO_SKIN: &str = "--bone needs the skin around it: --skin FILE";
 const SKIN_OF_SCAN: &str = "--skin has no meaning with --scan or --labels: the skin is found in the scan, and is the node set `skin` of the \
                             mesh; with --bone it is the file of the skin";

@@ -129,7 +129,8 @@ fn between_sheets(samples: &[Sample]) -> f64 {
 
 fn opening(tree: &TriangleTree) -> f64 {
     let areas = tree.facets().iter().map(|facet| facet.corners.area_vector());
-    let (sum, area) = areas.fold((Vector::zeros(), 0.0), |(sum, area), one| (sum + one, area + one.norm()));
+    let (sum, area) =
+        areas.fold((Vector::zeros(), 0.0), |(sum, area), one| (sum + one, area + one.norm()));
     sum.norm() / area
 }
 

@@ -122,7 +122,8 @@ impl Face {
     }
 
     fn has_end(&self, facets: &[Facet]) -> bool {
-        let area: f64 = self.triangles(facets).map(|facet| facet.corners.area_vector().norm()).sum();
+        let area: f64 =
+            self.triangles(facets).map(|facet| facet.corners.area_vector().norm()).sum();
         area >= LEAST_COVER * self.area
     }
 

@@ -27,7 +27,10 @@ pub enum LabelClass {
     /// Of a region, from 0.
     Tissue(u8),
     /// Of a segment by its number, or bone that stays.
-    Bone { segment: Option<usize>, is_tooth: bool },
+    Bone {
+        segment: Option<usize>,
+        is_tooth: bool,
+    },
 }
 
 /// A label map of which it is known what each label is.
@@ -101,8 +104,7 @@ impl LabelBody {
             airway_opening: OPENING,
             bone_gap: 0.0,
         };
-        let all =
-            known_compartments(&division, |v| self.is_body(v), |v| self.is_bone(v));
+        let all = known_compartments(&division, |v| self.is_body(v), |v| self.is_bone(v));
         let tissue = tissue_box(&all, size).ok_or(ImageDomainError::NoSoftLabel)?;
         let left_out = left_out(image, &all, |voxel| self.is_body(voxel));
         ImageDomainError::refuse_scattered(&left_out)?;

@@ -136,8 +136,7 @@ pub struct Seen {
 
 /// The voxels that a place sees, with their weights, whose sum is one; those beyond the border are mirrored.
 pub fn seen_from(size: [usize; 3], place: [f64; 3], mut each: impl FnMut(Seen)) {
-    let support: [Support; 3] =
-        std::array::from_fn(|axis| Support::new(place[axis], size[axis]));
+    let support: [Support; 3] = std::array::from_fn(|axis| Support::new(place[axis], size[axis]));
     let [x, y, z] = support.map(Support::weights);
     let [dx, dy, dz] = support.map(Support::slopes);
     let index = |axis: usize, n: usize| unpadded(support[axis].first + n, size[axis]);

@@ -69,9 +69,9 @@ fn ends(climb: &Climb, watch: &Watch) -> Result<Vec<Option<Vector>>, MeshingErro
     let (draft, domain) = (&*climb.draft, climb.domain);
     let regions = watch.map(&draft.nodes, |at| domain.region(at))?;
     let found = watch.gather(&draft.tetrahedra, |cells, list| {
-        let edges = cells.iter().flat_map(|tet| {
-            CellShape::Tet4.edges().iter().map(|ends| ends.map(|end| tet[end]))
-        });
+        let edges = cells
+            .iter()
+            .flat_map(|tet| CellShape::Tet4.edges().iter().map(|ends| ends.map(|end| tet[end])));
         list.extend(edges.filter_map(|edge| nearer_end(draft, domain, &regions, edge)));
     })?;
     let mut wanted: Vec<Option<Vector>> = vec![None; draft.nodes.len()];
@@ -106,9 +106,8 @@ fn nearer_end(
     }
     let mut ends = [(off[0], edge[0]), (off[1], edge[1])];
     ends.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let is_free = |&&(off, node): &&(f64, u32)| {
-        off < FAR && draft.boundaries[node as usize].is_empty()
-    };
+    let is_free =
+        |&&(off, node): &&(f64, u32)| off < FAR && draft.boundaries[node as usize].is_empty();
     ends.iter().find(is_free).map(|&(_, node)| (node, meeting))
 }
 

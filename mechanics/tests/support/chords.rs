@@ -48,7 +48,8 @@ impl Lines {
 
     fn pass(&self, corners: [Vector; 3], found: &mut [Vec<(f64, i32)>]) {
         let span = |axis: usize| {
-            let of = corners.map(|corner| (corner[2 * axis] - self.low[2 * axis]) / self.step[axis]);
+            let of =
+                corners.map(|corner| (corner[2 * axis] - self.low[2 * axis]) / self.step[axis]);
             let least = of.into_iter().fold(f64::INFINITY, f64::min).max(0.0) as usize;
             let most = of.into_iter().fold(0.0, f64::max) as usize;
             least..(most + 1).min(LINES)

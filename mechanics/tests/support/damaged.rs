@@ -75,7 +75,8 @@ pub struct Outcome {
 
 impl Undamaged {
     pub fn new(name: &'static str, surfaces: Vec<TriangleSurface>, edge: f64) -> Undamaged {
-        let Made { tissue, domain, told } = made(&surfaces, edge).unwrap_or_else(|why| panic!("{name}: {why}"));
+        let Made { tissue, domain, told } =
+            made(&surfaces, edge).unwrap_or_else(|why| panic!("{name}: {why}"));
         let [low, high] = tissue.volume.bounds();
         let lines = Lines::through(&low, &high);
         let chords = lines.chords(&boundary(&tissue));
@@ -224,9 +225,8 @@ pub fn print_counts(endings: &Endings) {
 
 /// A head cut flat at its neck, around a bone that is three quarters of it.
 pub fn made_head() -> Vec<TriangleSurface> {
-    let skin = super::surfaces::map(&super::surfaces::head(5), |x| {
-        Vector::new(x.x, x.y, x.z.max(-90.0))
-    });
+    let skin =
+        super::surfaces::map(&super::surfaces::head(5), |x| Vector::new(x.x, x.y, x.z.max(-90.0)));
     let bone = super::surfaces::map(&super::surfaces::head(4), |x| {
         Vector::new(x.x, x.y, x.z * 0.9) * 0.75
     });

@@ -50,7 +50,10 @@ pub fn case_of(anatomy: &Anatomy, volume: &str, frame: Frame, regions: &[&str]) 
     };
     case.regions = anatomy.volume.cell_labels.contains_key(REGIONS).then(|| RegionsDocument {
         array: REGIONS.to_owned(),
-        names: (0..).zip(regions).map(|(n, name)| (i32::to_string(&n), (*name).to_owned())).collect(),
+        names: (0..)
+            .zip(regions)
+            .map(|(n, name)| (i32::to_string(&n), (*name).to_owned()))
+            .collect(),
     });
     case.bones = anatomy.bone.segments.iter().enumerate().map(bone).collect();
     case

@@ -122,18 +122,16 @@ fn fetch_scan(id: &str, sources: &dyn MeshSource) -> Result<Fetched, JobError> {
     Ok(Fetched { meshes: vec![("scan".to_owned(), scan)], body: Body::Scan(image), frame })
 }
 
-fn fetch_labels(
-    document: &LabelsDocument,
-    sources: &dyn MeshSource,
-) -> Result<Fetched, JobError> {
+fn fetch_labels(document: &LabelsDocument, sources: &dyn MeshSource) -> Result<Fetched, JobError> {
     let at = place().key("labels");
     let (labels, image, frame) = fetch_image(&document.image, &at.key("image"), sources)?;
     let mut faults = Faults::default();
     let body = document.to_body(&image, &at, &mut faults);
     faults.into_result()?;
-    let body = body.map(Box::new).map(Body::Labels).ok_or_else(|| {
-        Problem::at(&at, ErrorCode::WrongMesh, "this label map cannot be meshed")
-    })?;
+    let body = body
+        .map(Box::new)
+        .map(Body::Labels)
+        .ok_or_else(|| Problem::at(&at, ErrorCode::WrongMesh, "this label map cannot be meshed"))?;
     Ok(Fetched { meshes: vec![("labels".to_owned(), labels)], body, frame })
 }
 

@@ -144,7 +144,8 @@ impl LabelsDocument {
                 continue;
             }
             let Some(label) = known(text, &map, &there) else {
-                let detail = format!("the label map has no label `{text}`; it has {}", told(&there));
+                let detail =
+                    format!("the label map has no label `{text}`; it has {}", told(&there));
                 faults.add(&at, ErrorCode::UnknownLabel, detail);
                 continue;
             };

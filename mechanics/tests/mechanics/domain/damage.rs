@@ -316,9 +316,8 @@ fn a_thin_body_that_was_cut_off_or_is_there_twice_is_refused_by_name() {
 fn a_flat_end_is_found_though_a_speck_lies_beyond_it_and_half_of_it_is_gone() {
     let mut skin = ball(40.0, Vector::zeros(), 5);
     skin.points.iter_mut().for_each(|point| point.z = point.z.max(-20.0));
-    let ends = |skin: &TriangleSurface| {
-        SurfaceDomain::new(skin, &[], &[]).unwrap().cut_triangles() as f64
-    };
+    let ends =
+        |skin: &TriangleSurface| SurfaceDomain::new(skin, &[], &[]).unwrap().cut_triangles() as f64;
     let whole = ends(&skin);
     assert!(whole > 1000.0, "{whole}");
     let mut random = Random(3);
