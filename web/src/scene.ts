@@ -176,7 +176,7 @@ export class Scene {
 
   /** Another state of the skin as its outline over this one, or none. Two skins so near to each other would fight for what is in
    * front, and a shell would tint the colours of a map. */
-  overlay(shape: Shape | undefined, colour = OUTLINE): void {
+  overlay(shape: Shape | undefined): void {
     for (const old of [this.ghost, this.veil]) if (old !== undefined) this.drop(old);
     this.ghost = this.veil = undefined;
     if (shape !== undefined) {
@@ -185,11 +185,21 @@ export class Scene {
       this.veil = new Mesh(geometry, veil());
       this.veil.renderOrder = 3;
       this.veil.onBeforeRender = () => this.renderer.clearDepth();
-      this.ghost = new Mesh(geometry, contour(colour));
+      this.ghost = new Mesh(geometry, contour(OUTLINE));
       this.ghost.renderOrder = 4;
       this.head.add(this.veil, this.ghost);
     }
     this.draw();
+  }
+
+  /** Some triangles of the skin under a light colour, or none. */
+  cover(part: Shape | undefined, colour: number): void {
+    this.overlay(undefined);
+    if (part === undefined) return;
+    const material = new MeshLambertMaterial({ color: colour, transparent: true, opacity: 0.75, side: DoubleSide, depthWrite: false, polygonOffset: true, polygonOffsetFactor: -1, polygonOffsetUnits: -1 });
+    this.ghost = new Mesh(geometryOf(part), material);
+    this.ghost.renderOrder = 3;
+    this.head.add(this.ghost);
   }
 
   /** Another state of the skin in the left half, with bones at rest, seen by the same camera; or the whole view for one. */

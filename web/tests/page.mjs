@@ -4,6 +4,7 @@ import { readFile, writeFile } from "node:fs/promises";
 import { join } from "node:path";
 import { kinds } from "./kinds.mjs";
 import { dragged, framed } from "./frames.mjs";
+import { mended } from "./mended.mjs";
 import { muscles } from "./muscles.mjs";
 import { guarded } from "./service.mjs";
 import {
@@ -303,6 +304,8 @@ await check("a predicted skin is compared with a real one", async () => {
   assert.deepEqual(await serious(page), []);
   await pictured(page, "comparison");
 });
+
+await mended(page, job);
 
 await check("files that are no mesh are refused in words", async () => {
   await go(page, `#/cases`);

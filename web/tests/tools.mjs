@@ -10,6 +10,8 @@ import { demo } from "./service.mjs";
 export const BINARY = process.env.FACIES_BINARY;
 export const CHROMIUM = process.env.FACIES_CHROMIUM ?? "/usr/bin/chromium";
 export const PICTURES = process.env.FACIES_PICTURES;
+/** A folder with a page that was built since the program was, which is served in the place of that within it. */
+const PAGE = process.env.FACIES_PAGE;
 export const KEY = "a-key-of-this-one-run";
 export const AXE = await readFile(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
 export const HEAD = fileURLToPath(new URL("../../examples/head/", import.meta.url));
@@ -38,9 +40,19 @@ export const browser = await chromium.launch({ executablePath: CHROMIUM, args: S
 export const hosts = new Set();
 export const complaints = [];
 
+const TYPES = { html: "text/html", js: "text/javascript", css: "text/css", svg: "image/svg+xml" };
+/** With the headers of the program, above all its Content Security Policy. */
+async function fresh(route) {
+  const { pathname } = new URL(route.request().url());
+  const file = pathname === "/" ? "index.html" : pathname.slice(1);
+  const response = await route.fetch();
+  await route.fulfill({ response, status: 200, contentType: TYPES[file.split(".").at(-1)], body: await readFile(join(PAGE, file)) });
+}
+
 export async function opened(size = WIDE, options = {}) {
   const context = await browser.newContext({ viewport: size, locale: "en-GB", ...options });
   context.setDefaultTimeout(DEADLINE_MS);
+  if (PAGE !== undefined) await context.route(({ pathname }) => pathname === "/" || pathname.startsWith("/assets/"), fresh);
   const page = await context.newPage();
   page.on("request", (request) => { if (/^https?:/.test(request.url())) hosts.add(new URL(request.url()).host); });
   page.on("console", (message) => { if (message.type() === "error") complaints.push(`${message.text()} ${message.location().url}`); });

@@ -8,7 +8,6 @@ import type { Scene, Shape } from "../scene.js";
 import { readVtp } from "../vtp.js";
 
 const FILE = "corrected.vtp";
-const COLOUR = 0x8a4a8f;
 
 export function correctionFacts({ service, words }: App, job: Job, found: Documents["CorrectedDocument"], before: Shape, scene: Scene): HTMLElement {
   const facts: [string, string][] = [
@@ -25,7 +24,7 @@ export function correctionFacts({ service, words }: App, job: Job, found: Docume
     if (!on) { scene.overlay(undefined); return; }
     service.file(job.id, FILE).then(readVtp).then(({ points_mm, triangles }) => {
       if (points_mm.length !== before.points_mm.length) throw new Error(words.otherPoints);
-      scene.overlay({ points_mm, triangles }, COLOUR);
+      scene.overlay({ points_mm, triangles });
     }).catch((error: unknown) => said.replaceChildren(refusal(error, words)));
   }, { aria: { pressed: "false" } });
   return make("div", { className: "stack" },

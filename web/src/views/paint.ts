@@ -153,7 +153,7 @@ export class Painter {
 
   private draw(): void {
     const { app: { words }, faces, canvas, bench } = this;
-    bench.scene.overlay(faces.size === 0 ? undefined : canvas.part(faces), COLOUR, 0.75);
+    bench.scene.cover(faces.size === 0 ? undefined : canvas.part(faces), COLOUR);
     this.told.textContent = words.painted(faces.size.toLocaleString(), figure(canvas.area(faces) / 100, 1));
     this.undoButton.disabled = !this.history.canUndo;
     this.redoButton.disabled = !this.history.canRedo;
