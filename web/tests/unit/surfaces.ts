@@ -54,7 +54,7 @@ test("nodes that lie on painted faces without being painted are counted", () => 
 
 test("the distance to a triangle is that to its inside, an edge or a corner", () => {
   const [a, b, c] = [[0, 0, 0], [2, 0, 0], [0, 2, 0]] as [[number, number, number], [number, number, number], [number, number, number]];
-  for (const [point, expected] of [[[0.5, 0.5, 3], 3], [[1, -2, 0], 2], [[-3, -4, 0], 5], [[5, 0, 4], 5], [[0, 4, 0], 2], [[2, 2, 0], Math.SQRT2]] as const) {
+  for (const [point, expected] of [[[0.5, 0.5, 3], 3], [[1, -2, 0], 2], [[-3, -4, 0], 5], [[5, 0, 4], 5], [[0, 4, 0], 2], [[2, 2, 0], Math.SQRT2], [[2.5, 1.5, 0], Math.SQRT2]] as const) {
     assert(Math.abs(distance([...point], a, b, c) - expected) < 1e-12, `${point}`);
   }
 });
