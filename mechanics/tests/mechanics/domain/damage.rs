@@ -295,7 +295,7 @@ fn wall(outer: f64, inner: f64) -> TriangleSurface {
 }
 
 #[test]
-fn a_thin_body_that_was_cut_off_or_is_there_twice_is_refused_by_name() {
+fn a_thin_body_that_was_cut_off_is_refused_by_name() {
     assert!(assess(&wall(40.0, 36.0)).is_ok());
     let mut half = wall(40.0, 36.0);
     keep(&mut half, |corners| corners[0].z < 2.0);
@@ -303,13 +303,6 @@ fn a_thin_body_that_was_cut_off_or_is_there_twice_is_refused_by_name() {
     println!("{refused}");
     let SurfaceDomainError::Open { percent, .. } = refused else { panic!("{refused}") };
     assert!((3.0..12.0).contains(&percent), "{percent}");
-    // Its second sheets lie half a mm further in: of 4.5 mm that they all enclose 1 mm is of one of them alone.
-    let mut twice = wall(40.0, 36.0);
-    add(&mut twice, wall(39.5, 35.5));
-    let refused = assess(&twice).unwrap_err();
-    println!("{refused}");
-    let SurfaceDomainError::Doubled { percent, .. } = refused else { panic!("{refused}") };
-    assert!((15.0..30.0).contains(&percent), "{percent}");
 }
 
 #[test]
