@@ -10,7 +10,7 @@ use mechanics::mesh::crossing::{cross, self_crossings};
 use mechanics::mesh::jacobian::scaled_jacobian;
 use mechanics::mesh::quality::quality;
 use mechanics::mesh::{CellShape, Vector, VolumeMesh, Warning};
-use mechanics::model::fem::contact::Contact;
+use mechanics::model::fem::contact::{Contact, Effort};
 use mechanics::model::fem::force_series::{ForceSeries, Moved};
 use mechanics::model::fem::linear_system::Residual;
 use mechanics::model::spline::VolumeSpline;
@@ -146,7 +146,8 @@ fn crossings_in_contact(case: &Case, by: f64, settings: &Settings, name: &str) -
     let rest = &scene.skin.surface;
     let new = self_crossings(&moved, |pair| !cross(rest, pair)).count;
     let touch = found.contact.as_ref().unwrap();
-    let Contact { pressed, rounds, passes, iterations, last_moved_mm, .. } = &touch.contact;
+    let Contact { pressed, effort, last_moved_mm, .. } = &touch.contact;
+    let Effort { rounds, passes, iterations, .. } = effort;
     println!(
         "{name} {by} mm: {took:?}, {new} new crossings, {} press, {rounds} rounds, {passes} passes, {iterations} iterations, moved {last_moved_mm:.1e}, overlap {:?}, {:.1} mm2, {:.2} kPa",
         pressed.len(),
