@@ -20,6 +20,7 @@ mod left_out;
 pub mod limit;
 pub mod mending;
 mod nearest_boundary;
+mod node_stack;
 mod region_map;
 mod root;
 mod shell;

@@ -2,14 +2,16 @@
 //!
 //! Winding numbers are those of Jacobson, Kavan, Sorkine-Hornung, Robust inside-outside segmentation using generalized
 //! winding numbers, ACM Transactions on Graphics 32 (2013): the solid angle of all triangles over 4 pi, 1 inside and 0
-//! outside a closed surface with outward normals. Triangles farther than twice the radius of their box count as one dipole:
-//! Barill, Dickson, Schmidt, Levin, Jacobson, Fast winding numbers for soups and clouds, ACM Transactions on Graphics
-//! 37 (2018), order 0. Solid angles: Van Oosterom, Strackee, IEEE Transactions on Biomedical Engineering 30 (1983) 125-126.
+//! outside a closed surface with outward normals. Triangles farther than twice the radius of their box count as one dipole
+//! and the next term of its series: Barill, Dickson, Schmidt, Levin, Jacobson, Fast winding numbers for soups and clouds, ACM
+//! Transactions on Graphics 37 (2018), order 1. Solid angles: Van Oosterom, Strackee, IEEE Transactions on Biomedical Engineering 30 (1983) 125-126.
 
 use std::f64::consts::PI;
 
+use super::node_stack::Stack;
 use super::triangle::{Corners, Passage, SolidAngles};
 use crate::mesh::Vector;
+use nalgebra::Matrix3;
 
 /// Triangles in a leaf.
 const LEAF: usize = 4;
@@ -111,6 +113,8 @@ struct Node {
     /// Middle of the area, sum of the area vectors, radius about the middle.
     middle: Vector,
     area_vector: Vector,
+    /// Of the places of area vectors from the middle with these: what is left of sheets that face each other.
+    spread: Matrix3<f64>,
     radius: f64,
     open_length: f64,
 }
@@ -209,8 +213,8 @@ impl TriangleTree {
     /// Whether any place is less than `radius` mm away.
     pub(super) fn has_within(&self, point: &Vector, radius: f64) -> bool {
         let square = radius * radius;
-        let is_near =
-            |facet: &Facet| (facet.corners.closest(point) - point).norm_squared() < square;
+        let off = |facet: &Facet| facet.corners.closest(point) - point;
+        let is_near = |facet: &Facet| off(facet).norm_squared() < square;
         let mut stack = Stack::new(self.nodes.len());
         while let Some(number) = stack.pop() {
             let node = &self.nodes[number];
@@ -239,7 +243,8 @@ impl TriangleTree {
             let way = node.middle - point;
             let square = way.norm_squared();
             if square > FAR * FAR * node.radius * node.radius {
-                far += node.area_vector.dot(&way) / (square * square.sqrt());
+                let next = node.spread.trace() - 3.0 * way.dot(&(node.spread * way)) / square;
+                far += (node.area_vector.dot(&way) + next) / (square * square.sqrt());
             } else if node.second != 0 {
                 stack.push(node.second as usize);
                 stack.push(number + 1);
@@ -354,30 +359,6 @@ impl<'a> Iterator for LeavesAlong<'a> {
     }
 }
 
-/// Nodes still to be visited. A tree halved to leaves of four over at most 2^32 triangles is less than 32 deep, and a visit
-/// leaves one node for each level.
-struct Stack {
-    nodes: [u32; 40],
-    count: usize,
-}
-
-impl Stack {
-    /// With the root, if the tree has one.
-    fn new(nodes: usize) -> Stack {
-        Stack { nodes: [0; 40], count: usize::from(nodes > 0) }
-    }
-
-    fn push(&mut self, node: usize) {
-        self.nodes[self.count] = node as u32;
-        self.count += 1;
-    }
-
-    fn pop(&mut self) -> Option<usize> {
-        self.count = self.count.checked_sub(1)?;
-        Some(self.nodes[self.count] as usize)
-    }
-}
-
 fn node(facets: &[Facet], first: usize) -> Node {
     let mut bounds = Bounds::EMPTY;
     let (mut area, mut area_vector, mut moment) = (0.0, Vector::zeros(), Vector::zeros());
@@ -392,8 +373,10 @@ fn node(facets: &[Facet], first: usize) -> Node {
         open_length += facet.open.iter().sum::<f64>();
     }
     let middle = if area > 0.0 { moment / area } else { (bounds.low + bounds.high) * 0.5 };
+    let off = |corners: &Corners| (corners.middle() - middle) * corners.area_vector().transpose();
+    let spread = facets.iter().map(|facet| off(&facet.corners)).sum();
     // Of the box about the middle: its farthest corner.
     let radius = (bounds.high - middle).sup(&(middle - bounds.low)).norm();
     let (first, count) = (first as u32, facets.len() as u32);
-    Node { bounds, first, count, second: 0, middle, area_vector, radius, open_length }
+    Node { bounds, first, count, second: 0, middle, area_vector, spread, radius, open_length }
 }

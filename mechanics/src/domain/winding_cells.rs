@@ -55,7 +55,10 @@ impl WindingCells {
         let half = (high - low).max() * 0.505;
         let centre = (low + high) * 0.5;
         let mut cells = vec![Cell::Halved(0)];
-        let mut front = vec![Waiting { number: 0, centre, from: None }];
+        // A surface without open edges goes around nothing outside.
+        let far = centre + Vector::new(4.0, 2.9, 2.3) * half;
+        let from = (tree.winding_change(&centre, half) == 0.0).then_some((far, 0.0));
+        let mut front = vec![Waiting { number: 0, centre, from }];
         for depth in 0..=DEPTH {
             let half = half / f64::from(1u32 << depth);
             let look = |waiting: &Waiting| ball(tree, waiting, half * 3f64.sqrt() * (1.0 + 1e-9));

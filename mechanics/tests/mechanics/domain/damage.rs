@@ -295,14 +295,26 @@ fn wall(outer: f64, inner: f64) -> TriangleSurface {
 }
 
 #[test]
-fn a_thin_body_that_was_cut_off_is_refused_by_name() {
-    assert!(assess(&wall(40.0, 36.0)).is_ok());
+fn a_thin_body_that_was_cut_off_or_is_there_twice_is_refused_by_name() {
+    // Sheets that face each other, seen from the middle: what is hollow stays hollow.
+    for inner in [36.0, 28.0] {
+        let found = assess(&wall(40.0, inner)).unwrap();
+        let exact = 4.0 / 3.0 * std::f64::consts::PI * (40.0_f64.powi(3) - inner.powi(3));
+        assert!((found.volume / exact - 1.0).abs() < 0.03, "{found:?}");
+    }
     let mut half = wall(40.0, 36.0);
     keep(&mut half, |corners| corners[0].z < 2.0);
     let refused = assess(&half).unwrap_err();
     println!("{refused}");
     let SurfaceDomainError::Open { percent, .. } = refused else { panic!("{refused}") };
     assert!((3.0..12.0).contains(&percent), "{percent}");
+    // Its second sheets lie half a mm further in: of 4.5 mm that they all enclose 1 mm is of one of them alone.
+    let mut twice = wall(40.0, 36.0);
+    add(&mut twice, wall(39.5, 35.5));
+    let refused = assess(&twice).unwrap_err();
+    println!("{refused}");
+    let SurfaceDomainError::Doubled { percent, .. } = refused else { panic!("{refused}") };
+    assert!((15.0..30.0).contains(&percent), "{percent}");
 }
 
 #[test]
