@@ -227,9 +227,7 @@ impl Brick {
 impl PointAtRest {
     /// F for the positions of the corners.
     fn gradient(&self, corners: &[Vector]) -> Matrix3<f64> {
-        let Some(first) = corners.first() else { return Matrix3::zeros() };
-        let others = corners.iter().zip(&self.gradients).skip(1);
-        others.map(|(x, g)| (x - first) * g.transpose()).sum()
+        corners.iter().zip(&self.gradients).map(|(x, g)| x * g.transpose()).sum()
     }
 }
 

@@ -147,11 +147,10 @@ impl<'a> Simplices<'a> {
 }
 
 impl Simplex {
-    /// F at positions, or the derivative of F along a step; from differences, so that it does not matter where the cell lies.
+    /// F at positions, or the derivative of F along a step.
     fn gradient(&self, x: &[Vector]) -> Matrix3<f64> {
-        let first = x[self.rows[0] as usize];
-        let nodes = self.rows.iter().zip(&self.gradients).skip(1);
-        nodes.map(|(&row, g)| (x[row as usize] - first) * g.transpose()).sum()
+        let nodes = self.rows.iter().zip(&self.gradients);
+        nodes.map(|(&row, g)| x[row as usize] * g.transpose()).sum()
     }
 
     fn corner_of(&self, row: usize) -> usize {
