@@ -75,12 +75,12 @@ pub struct DvsDocument {
     pub control_spacing_mm: Option<f64>,
     /// Of the B-splines along each principal axis of the tissue, the longest first, 1 to 3 each, in place of `degree`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
+    #[schema(nullable = false, min_items = 3, max_items = 3)]
     pub degrees: Option<[u32; 3]>,
     /// How many control points there are along each principal axis of the tissue, the longest first, in place of
     /// `control_spacing_mm`: more than its degree, and 200 at most.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
+    #[schema(nullable = false, min_items = 3, max_items = 3)]
     pub control_points: Option<[u32; 3]>,
     #[serde(default)]
     pub bone: DvsBone,

@@ -170,14 +170,14 @@ fn lengths_become_millimetres() {
 
 #[test]
 fn a_star_of_the_spec_that_no_region_is_left_for_says_so() {
-    let star = r#"{"materials":{"*":{"young_modulus_kpa":15000}}}"#;
+    let star = r#"{"materials":{"*":{"young_modulus_kpa":15000,"poisson_ratio":0.3}}}"#;
     let warned = |case: &str, spec: &str| {
         let (_, warnings) = case_with(case, spec, None).expect("accepted");
         warnings.contains(&"material-serves-nothing")
     };
-    let own = r#"{"units":"mm","volume":"v","materials":{"tissue":{"young_modulus_kpa":15}}}"#;
+    let own = r#"{"units":"mm","volume":"v","materials":{"tissue":{"young_modulus_kpa":15,"poisson_ratio":0.46}}}"#;
     assert!(warned(own, star));
-    let all = r#"{"units":"mm","volume":"v","materials":{"*":{"young_modulus_kpa":15}}}"#;
+    let all = r#"{"units":"mm","volume":"v","materials":{"*":{"young_modulus_kpa":15,"poisson_ratio":0.46}}}"#;
     assert!(!warned(all, star));
     assert!(!warned(own, "{}"));
 }

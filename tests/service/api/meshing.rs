@@ -337,8 +337,7 @@ async fn a_label_map_becomes_a_case_with_a_material_for_each_region() {
     let volume = made["volume_ml"].as_f64().unwrap();
     assert!((volume / 410.5 - 1.0).abs() < 0.02, "{volume}");
     let mut case = made["case"].clone();
-    case["materials"] =
-        json!({"muscle": {"young_modulus_kpa": 30}, "fat": {"young_modulus_kpa": 3}});
+    case["materials"] = json!({"muscle": {"young_modulus_kpa": 30, "poisson_ratio": 0.46}, "fat": {"young_modulus_kpa": 3, "poisson_ratio": 0.46}});
     let kept = ask(server.post("/v1/cases").json(&case)).await.expect(StatusCode::CREATED);
     assert_eq!(kept["check"]["classes"]["fixed"], 0, "{kept}");
 
