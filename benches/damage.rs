@@ -116,7 +116,8 @@ fn print_table(bodies: &[Undamaged], counts: &BTreeMap<(Damage, Ending), Vec<usi
         let all: usize = of_bodies.iter().sum();
         println!("| {damage:?} | {ending:?} | {all} | {} |", each.join(" | "));
     }
-    let kinds: [(&str, fn(&Ending) -> bool); 4] = [
+    type IsSuch = fn(&Ending) -> bool;
+    let kinds: [(&str, IsSuch); 4] = [
         ("right", |ending| matches!(ending, Ending::Right)),
         ("refused", |ending| matches!(ending, Ending::Refused(_))),
         ("wrong and told", |ending| matches!(ending, Ending::Told(_))),

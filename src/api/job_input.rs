@@ -42,7 +42,7 @@ pub async fn of(service: &Service, document: JobDocument) -> ApiResult<NewJob> {
         JobDocument::Learn(spec) => of_learning(service, spec).await,
         JobDocument::Conform(spec) => of_conformation(service, spec).await,
         JobDocument::Mesh(spec) => of_meshing(service, spec).await,
-        JobDocument::Study(spec) => of_study(service, spec).await,
+        JobDocument::Study(spec) => of_study(service, *spec).await,
     }
 }
 

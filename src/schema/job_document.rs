@@ -133,7 +133,7 @@ impl JobKind {
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 #[serde(untagged)]
 pub enum JobDocument {
-    // By far the largest of the documents.
+    // By far the largest of the documents are predictions and studies.
     Predict(Box<PredictDocument>),
     Compare(CompareDocument),
     Response(ResponseDocument),
@@ -143,7 +143,7 @@ pub enum JobDocument {
     Learn(LearnDocument),
     Conform(ConformDocument),
     Mesh(MeshingDocument),
-    Study(StudyDocument),
+    Study(Box<StudyDocument>),
 }
 
 impl JobDocument {
@@ -180,7 +180,9 @@ impl JobDocument {
             JobKind::Learn => strict::from_value(value).map(JobDocument::Learn),
             JobKind::Conform => strict::from_value(value).map(JobDocument::Conform),
             JobKind::Mesh => strict::from_value(value).map(JobDocument::Mesh),
-            JobKind::Study | JobKind::Batch => strict::from_value(value).map(JobDocument::Study),
+            JobKind::Study | JobKind::Batch => {
+                strict::from_value(value).map(Box::new).map(JobDocument::Study)
+            }
         }
     }
 }

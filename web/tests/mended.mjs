@@ -119,6 +119,8 @@ export async function mended(page, job) {
   });
 
   await check("a scan or a surface alone says what comes next", async () => {
+    // The view of before has the same address, and stays where it is asked for again.
+    await go(page, "#/jobs");
     await go(page, "#/cases");
     await page.locator("input[data-files]").setInputFiles([`${HEAD}mandible.vtp`]);
     await page.getByText("is a surface and is stored now").waitFor();

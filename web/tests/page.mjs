@@ -101,9 +101,11 @@ await check("colours are those of the legend", async () => {
     const { scene } = document.querySelector(".screen");
     const { canvas } = scene;
     const box = canvas.getBoundingClientRect();
-    const copy = Object.assign(document.createElement("canvas"), { width: canvas.width, height: canvas.height });
+    // All pixels are drawn again first: what moved before was drawn with fewer.
+    const drawn = scene.drawNow();
+    const copy = Object.assign(document.createElement("canvas"), { width: drawn.width, height: drawn.height });
     const pen = copy.getContext("2d");
-    pen.drawImage(scene.drawNow(), 0, 0);
+    pen.drawImage(drawn, 0, 0);
     const values = scene.skin.geometry.attributes.uv.array;
     const found = [];
     for (let down = 0.3; down < 0.9; down += 0.02) {

@@ -147,9 +147,12 @@ impl Grid<'_> {
                 else {
                     continue;
                 };
-                let mean =
-                    |of: &dyn Fn(&([f64; 2], f64)) -> f64| ring.iter().map(of).sum::<f64>() / 4.0;
-                let middle = ([mean(&|c| c.0[0]), mean(&|c| c.0[1])], mean(&|c| c.1));
+                let (mut place, mut value) = ([0.0; 2], 0.0);
+                for (at, own) in &ring {
+                    place = [place[0] + at[0] / 4.0, place[1] + at[1] / 4.0];
+                    value += own / 4.0;
+                }
+                let middle = (place, value);
                 for side in 0..4 {
                     let triangle = [ring[side], ring[(side + 1) % 4], middle];
                     if let Some([from, to]) = crossing(&triangle, level) {

@@ -97,7 +97,8 @@ pub(super) fn touch_at_finite_strain(
     pressed(scene, free, progress, |surfaces| {
         let found = scene.at_finite_strain(|problem, finer| {
             let finer = with_error.then_some(finer);
-            problem.solve_in_contact(&scene.load_case(), free, surfaces, finer, progress)
+            let may_touch = finite_strain::MayTouch { free, surfaces };
+            problem.solve_in_contact(&scene.load_case(), may_touch, finer, progress)
         })?;
         Ok(found.map(|finite_strain::InContact { equilibrium, contact, mesh_error }| {
             let numerical_error = mesh_error.map(at_last_tangent);

@@ -124,7 +124,7 @@ impl<'a> SceneWork<'a> {
                     Some(scanned) => {
                         scanned.as_ref().map(TrueSkin::Scanned).map_err(Refusal::clone)
                     }
-                    None => DisplacedSkin::of(skin, truth).map(TrueSkin::Displaced),
+                    None => DisplacedSkin::of(skin, truth).map(Box::new).map(TrueSkin::Displaced),
                 };
                 for attempt in attempts.next().into_iter().flatten() {
                     rows.push(self.row(plan, materials, attempt, &truth));
@@ -318,7 +318,7 @@ impl OfScan {
 
 /// What answers are held against.
 enum TrueSkin<'a> {
-    Displaced(DisplacedSkin<'a>),
+    Displaced(Box<DisplacedSkin<'a>>),
     Scanned(&'a ScannedSkin<'a>),
 }
 

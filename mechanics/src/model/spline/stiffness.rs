@@ -212,7 +212,7 @@ impl<'a> Assembly<'a> {
             let lines = (members / order) as f64;
             let weight = share * modulus * volume * basis.spacing().powi(2 * degree - 2) / lines;
             let stride: usize = orders[..axis].iter().product();
-            for first in (0..members).filter(|at| at / stride % order == 0) {
+            for first in (0..members).filter(|at| (at / stride).is_multiple_of(order)) {
                 for (j, a) in derivatives[..order].iter().enumerate() {
                     for (k, b) in derivatives[..order].iter().enumerate() {
                         let entry = (first + j * stride) * members + first + k * stride;

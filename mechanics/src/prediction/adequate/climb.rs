@@ -106,17 +106,7 @@ impl Climb<'_> {
             Linear::Solved(known) => Some(&**known),
             Linear::Other(_) => None,
         };
-        let (displacement, mesh, linearity) = match &solved {
-            Linear::Solved(own) => (own.displacement(), &own.numerical_error, &own.nonlinearity),
-            Linear::Other(own) => {
-                (&*own.equilibrium.displacement, &own.numerical_error, &own.nonlinearity)
-            }
-        };
-        self.in_contact = matches!(&solved, Linear::Other(answer) if answer.contact.is_some());
-        self.moving = self.scene.skin.moving_points(displacement);
-        self.newton_takes = newton_takes(least_det_f(self.scene, displacement));
-        self.errors.mesh = mesh.as_ref().ok().map(|error| self.means(&error.missing));
-        self.errors.linearity = linearity.as_ref().ok().map(|left| self.means(&left.left_out));
+        self.look_at(&solved);
         self.linear_s = self.elapsed();
         self.note(Rung::Linear, Some(self.linear_s), self.linear_s);
 
@@ -168,6 +158,21 @@ impl Climb<'_> {
             Linear::Other(answer) => *answer,
         };
         Ok(self.taken(Answers { linear, second_order, finite_strain }))
+    }
+
+    /// What the linear answer tells of itself.
+    fn look_at(&mut self, solved: &Linear) {
+        let (displacement, mesh, linearity) = match solved {
+            Linear::Solved(own) => (own.displacement(), &own.numerical_error, &own.nonlinearity),
+            Linear::Other(own) => {
+                self.in_contact = own.contact.is_some();
+                (&*own.equilibrium.displacement, &own.numerical_error, &own.nonlinearity)
+            }
+        };
+        self.moving = self.scene.skin.moving_points(displacement);
+        self.newton_takes = newton_takes(least_det_f(self.scene, displacement));
+        self.errors.mesh = mesh.as_ref().ok().map(|error| self.means(&error.missing));
+        self.errors.linearity = linearity.as_ref().ok().map(|left| self.means(&left.left_out));
     }
 
     fn taken(&mut self, answers: Answers) -> Adequate {

@@ -70,7 +70,7 @@ fn tissue_that_exerts_nothing_rests_wherever_it_lies() {
             let strain = linear_strain(change);
             let at = |x: &Vector| (x - middle) * strain;
             let shift = answer.displacement[0];
-            let error = largest_error(&case.volume, &answer.displacement, |x| at(&x) + shift);
+            let error = largest_error(&case.volume, &answer.displacement, |x| at(x) + shift);
             assert!(error < 1e-6, "{shape:?} {element:?} {change}: {error:e}");
             assert!(largest_reaction(&answer) < 1e-5, "{shape:?} {element:?} {change}");
         }

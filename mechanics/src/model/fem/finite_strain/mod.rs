@@ -55,6 +55,13 @@ use states::cell_states;
 use tissue::Tissue;
 use touching::Touching;
 
+/// An answer without contact, and what may touch in it.
+#[derive(Clone, Copy)]
+pub struct MayTouch<'a> {
+    pub free: &'a Equilibrium,
+    pub surfaces: &'a FacingSurfaces<'a>,
+}
+
 /// An answer with contact, and what its mesh leaves out where that was asked for.
 pub struct InContact {
     pub equilibrium: Equilibrium,
@@ -110,8 +117,7 @@ impl<'a> FiniteStrain<'a> {
     pub fn solve_in_contact(
         &self,
         case: &LoadCase,
-        free: &Equilibrium,
-        surfaces: &FacingSurfaces,
+        MayTouch { free, surfaces }: MayTouch,
         finer: Option<&Finer>,
         progress: &dyn Progress,
     ) -> Result<Option<InContact>, ModelError> {
