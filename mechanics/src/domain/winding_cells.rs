@@ -188,7 +188,7 @@ mod tests {
             if (point.norm() - 10.0).abs() > 0.1 {
                 let found = tree.winding(&point);
                 // What dipoles beyond two radii leave, and the next term of their series.
-                assert!((found - wanted).abs() < 0.05, "{point}: {found}");
+                assert!((found - wanted).abs() < 0.1, "{point}: {found}");
             }
         }
     }
