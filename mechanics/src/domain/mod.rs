@@ -11,6 +11,7 @@ mod closed;
 mod compartments;
 mod containment;
 mod cut_ends;
+mod dipoles;
 mod facets;
 mod flood;
 pub mod image;

@@ -2,20 +2,19 @@
 //!
 //! Winding numbers are those of Jacobson, Kavan, Sorkine-Hornung, Robust inside-outside segmentation using generalized
 //! winding numbers, ACM Transactions on Graphics 32 (2013): the solid angle of all triangles over 4 pi, 1 inside and 0
-//! outside a closed surface with outward normals. Triangles farther than twice the radius of their box count as one dipole
-//! and the next term of its series: Barill, Dickson, Schmidt, Levin, Jacobson, Fast winding numbers for soups and clouds, ACM
-//! Transactions on Graphics 37 (2018), order 1. Solid angles: Van Oosterom, Strackee, IEEE Transactions on Biomedical Engineering 30 (1983) 125-126.
+//! outside a closed surface with outward normals. Triangles farther than twice the radius of their box count as `dipoles` do.
+//! Solid angles: Van Oosterom, Strackee, IEEE Transactions on Biomedical Engineering 30 (1983) 125-126.
 
 use std::f64::consts::PI;
 
+use super::dipoles::Dipoles;
 use super::node_stack::Stack;
 use super::triangle::{Corners, Passage, SolidAngles};
 use crate::mesh::Vector;
-use nalgebra::Matrix3;
 
 /// Triangles in a leaf.
 const LEAF: usize = 4;
-/// How many radii away a box counts as one dipole; also as one length of open edges.
+/// How many radii away a box counts by its dipoles; also as one length of open edges.
 const FAR: f64 = 2.0;
 
 /// A triangle with what the tree needs of it.
@@ -110,12 +109,10 @@ struct Node {
     count: u32,
     /// The second child of a branch, the first follows it; 0 for a leaf.
     second: u32,
-    /// Middle of the area, sum of the area vectors, radius about the middle.
+    /// Middle of the area, and the radius about it.
     middle: Vector,
-    area_vector: Vector,
-    /// Of the places of area vectors from the middle with these: what is left of sheets that face each other.
-    spread: Matrix3<f64>,
     radius: f64,
+    dipoles: Dipoles,
     open_length: f64,
 }
 
@@ -241,10 +238,8 @@ impl TriangleTree {
         while let Some(number) = stack.pop() {
             let node = &self.nodes[number];
             let way = node.middle - point;
-            let square = way.norm_squared();
-            if square > FAR * FAR * node.radius * node.radius {
-                let next = node.spread.trace() - 3.0 * way.dot(&(node.spread * way)) / square;
-                far += (node.area_vector.dot(&way) + next) / (square * square.sqrt());
+            if way.norm_squared() > FAR * FAR * node.radius * node.radius {
+                far += node.dipoles.solid_angle(&way);
             } else if node.second != 0 {
                 stack.push(node.second as usize);
                 stack.push(number + 1);
@@ -361,22 +356,19 @@ impl<'a> Iterator for LeavesAlong<'a> {
 
 fn node(facets: &[Facet], first: usize) -> Node {
     let mut bounds = Bounds::EMPTY;
-    let (mut area, mut area_vector, mut moment) = (0.0, Vector::zeros(), Vector::zeros());
+    let (mut area, mut moment) = (0.0, Vector::zeros());
     let mut open_length = 0.0;
     for facet in facets {
         bounds = bounds.with(&Bounds::of(&facet.corners));
-        let vector = facet.corners.area_vector();
-        let size = vector.norm();
+        let size = facet.corners.area_vector().norm();
         area += size;
-        area_vector += vector;
         moment += facet.corners.middle() * size;
         open_length += facet.open.iter().sum::<f64>();
     }
     let middle = if area > 0.0 { moment / area } else { (bounds.low + bounds.high) * 0.5 };
-    let off = |corners: &Corners| (corners.middle() - middle) * corners.area_vector().transpose();
-    let spread = facets.iter().map(|facet| off(&facet.corners)).sum();
+    let dipoles = Dipoles::of(facets.iter().map(|facet| &facet.corners), &middle);
     // Of the box about the middle: its farthest corner.
     let radius = (bounds.high - middle).sup(&(middle - bounds.low)).norm();
     let (first, count) = (first as u32, facets.len() as u32);
-    Node { bounds, first, count, second: 0, middle, area_vector, spread, radius, open_length }
+    Node { bounds, first, count, second: 0, middle, radius, dipoles, open_length }
 }
