@@ -49,10 +49,10 @@ pub enum Enqueued {
     NotMeshed,
 }
 
-const KNOWN: &str = "SELECT id FROM jobs WHERE spec_hash = $1 AND tenant = $2";
+const KNOWN: &str = "SELECT id, status FROM jobs WHERE spec_hash = $1 AND tenant = $2";
 /// A dismissed job keeps its row, and no longer its key: what was dismissed may be asked for anew.
 const RELEASED: &str = "UPDATE jobs SET spec_hash = 'dismissed ' || id || ' ' || spec_hash \
-     WHERE spec_hash = $1 AND tenant = $2 AND status = 'dismissed'";
+     WHERE id = $1 AND status = 'dismissed'";
 const WAITING: &str = "SELECT COUNT(*) FROM jobs WHERE tenant = $1 AND status = 'accepted'";
 /// Locked before its jobs, as by an erasure.
 const CASE: &str = "SELECT 1 FROM cases WHERE id = $1 FOR UPDATE";
@@ -69,14 +69,17 @@ impl Store {
     /// Accepts a job, unless one with the same inputs is known.
     pub async fn enqueue(&self, job: &NewJob, longest_queue: i64) -> Result<Enqueued, StoreError> {
         let mut transaction = self.database.begin().await?;
-        query(RELEASED).bind(self.key(job)).bind(self.tenant()).execute(&mut transaction).await?;
         let known = query(KNOWN)
             .bind(self.key(job))
             .bind(self.tenant())
             .fetch_optional(&mut transaction)
             .await?;
         if let Some(row) = known {
-            return Ok(Enqueued::Known(row.try_get(0)?));
+            let status: String = row.try_get(1)?;
+            if JobStatus::from_name(&status) != Some(JobStatus::Dismissed) {
+                return Ok(Enqueued::Known(row.try_get(0)?));
+            }
+            query(RELEASED).bind(row.try_get::<String, _>(0)?).execute(&mut transaction).await?;
         }
         if self.is_queue_full(&mut transaction, longest_queue).await? {
             return Ok(Enqueued::QueueFull);
