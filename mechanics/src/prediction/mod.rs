@@ -148,7 +148,7 @@ fn described(scene: &Scene, answer: Answer, progress: &dyn Progress) -> Predicti
     let moved = scene.skin.moved(&equilibrium.displacement);
     warnings.extend(skin_overlap(&scene.skin, &moved));
     warnings.extend(far_landmarks(&landmarks));
-    warnings.extend(numerical_error::warning(scene, &numerical_error));
+    warnings.extend(numerical_error::warnings(scene, &numerical_error));
     let at_landmarks =
         |missing| skin::landmark_displacement(&scene.mesh, &scene.landmarks, missing);
     let missing = numerical_error.as_ref().map(|error| at_landmarks(&error.missing));

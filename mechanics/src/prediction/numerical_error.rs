@@ -114,19 +114,21 @@ pub(super) fn reason_for_none(scene: &Scene) -> Option<NotEstimated> {
 }
 
 /// What a reader must know: an error that is large, a correction that could not be made.
-pub(super) fn warning(scene: &Scene, error: &Known) -> Option<Warning> {
-    let not_corrected = |why: &str| {
-        let detail = format!("the answer is not corrected for the error of its mesh: {why}");
-        Some(Warning::new("not-corrected", detail))
-    };
-    match error {
-        Ok(error) if scene.settings.corrected && !error.is_added => not_corrected(
-            "tissue presses on what it touches, and what opens or closes on a finer mesh is not known",
+pub(super) fn warnings(scene: &Scene, error: &Known) -> Vec<Warning> {
+    let why = match error {
+        Ok(error) if error.is_added => None,
+        Ok(_) => Some(
+            "tissue presses on what it touches, and what opens or closes on a finer mesh is not known"
+                .to_owned(),
         ),
-        Ok(error) => large(scene, error),
-        Err(reason) if scene.settings.corrected => not_corrected(&reason.to_string()),
-        Err(_) => None,
-    }
+        Err(reason) => Some(reason.to_string()),
+    };
+    let not_corrected = why.filter(|_| scene.settings.corrected).map(|why| {
+        let detail = format!("the answer is not corrected for the error of its mesh: {why}");
+        Warning::new("not-corrected", detail)
+    });
+    let large = error.as_ref().ok().and_then(|error| large(scene, error));
+    [large, not_corrected].into_iter().flatten().collect()
 }
 
 fn large(scene: &Scene, error: &NumericalError) -> Option<Warning> {

@@ -5,7 +5,7 @@
 //! be nearer than that.
 
 use crate::draws::Draws;
-use crate::mesh::Vector;
+use crate::mesh::{Vector, VolumeMesh};
 use crate::plan::RigidMovement;
 
 /// The mean length of a mapping error at the skin in mm.
@@ -18,8 +18,35 @@ const TURN: f64 = 0.1;
 const BELLS: usize = 40;
 const WIDTH: f64 = 20.0;
 
+/// A face as it is known: mapped before, and measured after what happened.
+pub struct Scanned {
+    /// Of each node in mm: what happened, and what is measured of it.
+    pub happened: Vec<Vector>,
+    pub measured: Vec<Vector>,
+    pub mapped: VolumeMesh,
+}
+
+impl Scanned {
+    /// A face whose `skin` is a node set, under what happens to it: displacements of its nodes in mm.
+    pub fn of<E>(
+        face: &VolumeMesh,
+        draws: &mut Draws,
+        happens: impl FnOnce(&mut Draws) -> Result<Vec<Vector>, E>,
+    ) -> Result<Self, E> {
+        let skin = face.node_set("skin").unwrap_or_default();
+        let before = mapping(&face.nodes, skin, draws);
+        let after = mapping(&face.nodes, skin, draws);
+        let happened = happens(draws)?;
+        let missed = registration(draws);
+        let measured = measured(&face.nodes, &happened, [&before, &after], &missed);
+        let mut mapped = face.clone();
+        mapped.nodes.iter_mut().zip(&before).for_each(|(node, error)| *node += error);
+        Ok(Scanned { happened, measured, mapped })
+    }
+}
+
 /// A mapping error at each of some points, whose mean length at `skin` is [`MAPPING`].
-pub fn mapping(points: &[Vector], skin: &[u32], draws: &mut Draws) -> Vec<Vector> {
+fn mapping(points: &[Vector], skin: &[u32], draws: &mut Draws) -> Vec<Vector> {
     let bells: Vec<(Vector, Vector)> = (0..BELLS)
         .map(|_| {
             let middle = points[skin[draws.below(skin.len())] as usize];
@@ -38,14 +65,14 @@ pub fn mapping(points: &[Vector], skin: &[u32], draws: &mut Draws) -> Vec<Vector
 }
 
 /// By what a registration misses, about the middle of the head.
-pub fn registration(draws: &mut Draws) -> RigidMovement {
+fn registration(draws: &mut Draws) -> RigidMovement {
     let angles = Vector::from_fn(|_, _| (TURN * draws.normal()).to_radians());
     let shift = Vector::from_fn(|_, _| SHIFT * draws.normal());
     RigidMovement::about_pivot(angles, Vector::zeros(), shift)
 }
 
 /// What is measured of a displacement at some points: with the errors of both mappings, and of the registration where they go to.
-pub fn measured(
+fn measured(
     points: &[Vector],
     happened: &[Vector],
     [before, after]: [&[Vector]; 2],

@@ -11,7 +11,7 @@ use super::super::cohort::CohortError;
 use super::super::features::Features;
 use super::super::measures;
 use super::face::face;
-use super::noise::{mapping, measured, registration};
+use super::noise::Scanned;
 use super::operation::{OPERATIONS, Operation, TWO};
 use super::tissue::{Tissue, rubin_bodner, supposed, true_tissue};
 use crate::boundary::NodeSelection;
@@ -74,16 +74,10 @@ impl VirtualPatient {
         let plan = operation.plan(&mesh, &mut draws);
 
         // 1. What happens, and what is measured of it.
-        let skin = mesh.node_set("skin").unwrap_or_default().to_vec();
-        let before = mapping(&mesh.nodes, &skin, &mut draws);
-        let after = mapping(&mesh.nodes, &skin, &mut draws);
-        let happened = happened(&mesh, &plan, operation, &mut draws, progress)?;
-        let missed = registration(&mut draws);
-        let measured = measured(&mesh.nodes, &happened, [&before, &after], &missed);
+        let happens = |draws: &mut Draws| happened(&mesh, &plan, operation, draws, progress);
+        let Scanned { happened, measured, mapped } = Scanned::of(&mesh, &mut draws, happens)?;
 
         // 2. What models predict on the mapped mesh.
-        let mut mapped = mesh;
-        mapped.nodes.iter_mut().zip(&before).for_each(|(node, error)| *node += error);
         let known = Arc::new(mapped);
         let solved =
             |tissue: Tissue, method: Method| solved(&known, &plan, tissue, method, progress);

@@ -13,7 +13,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use rayon::prelude::*;
 
 use super::face::FaceModes;
-use super::noise::{mapping, measured, registration};
+use super::noise::Scanned;
 use super::operation::{OPERATIONS, Operation};
 use super::patient::VirtualError;
 use crate::boundary::NodeSelection;
@@ -99,15 +99,8 @@ impl Twin {
     ) -> Result<Self, VirtualError> {
         let mut draws = Draws::of(seed, number as u64);
         let mut face = OperatedFace::new(number, fineness, &mut draws);
-        let skin = face.mesh.node_set("skin").unwrap_or_default().to_vec();
-        let before = mapping(&face.mesh.nodes, &skin, &mut draws);
-        let after = mapping(&face.mesh.nodes, &skin, &mut draws);
-        let happened = face.happened(&mut draws, progress)?;
-        let missed = registration(&mut draws);
-        let measured = measured(&face.mesh.nodes, &happened, [&before, &after], &missed);
-
-        let mut mapped = (*face.mesh).clone();
-        mapped.nodes.iter_mut().zip(&before).for_each(|(node, error)| *node += error);
+        let happens = |draws: &mut Draws| face.happened(draws, progress);
+        let Scanned { happened, measured, mapped } = Scanned::of(&face.mesh, &mut draws, happens)?;
         face.mesh = Arc::new(mapped);
         let apart = |moved: &[Vector], scene: &Scene| -> Vec<f64> {
             let nodes = scene.skin.nodes().iter().map(|&node| node as usize);
