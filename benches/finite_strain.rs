@@ -113,6 +113,7 @@ fn solve(mesh: &VolumeMesh, plan: &Plan) -> (Result<Equilibrium, ModelError>, f6
         law_of_cell: &one,
         pressure_of_cell: &one,
         fibres: FibreField::default(),
+        membrane: None,
         inner: std::sync::Arc::default(),
         elements: plan.elements,
         holds: &holds,

@@ -23,7 +23,7 @@ const DAMAGED: [u8; 3] = [220, 30, 30];
 pub struct Tile(Vec<[u8; 3]>);
 
 impl Tile {
-    /// Through the place where the meshes differ most.
+    /// Through the place where the meshes differ most; through the middle where they do not.
     pub fn new(body: &Undamaged, damage: Damage, seed: u64) -> Tile {
         let Outcome { made, ending, off, elsewhere, .. } = body.outcome(damage, seed);
         let tissue = made.expect("a mesh that was made before").tissue;
@@ -41,7 +41,7 @@ impl Tile {
             });
             lines.sum()
         };
-        let all = (0..COUNT).map(|x| (x, differs(x)));
+        let all = (0..COUNT).map(|x| (x, differs(x))).filter(|(_, length)| *length > 0.0);
         let x = all.max_by(|a, b| a.1.total_cmp(&b.1)).map_or(COUNT / 2, |(x, _)| x);
         let [low, high] = tissue.volume.bounds();
         let frame = Frame::new(low, high);

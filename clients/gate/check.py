@@ -23,6 +23,7 @@ import facies_gate
 
 HERE = pathlib.Path(__file__).resolve().parent
 CLIENTS = HERE.parent
+BLOCK = CLIENTS.parent / "examples" / "block" / "block.vtu"
 STUDY = HERE / "study" / "study.json"
 
 
@@ -159,6 +160,11 @@ def broken(folder: pathlib.Path) -> None:
         refused(what, folder, [str(path)], 2)
     (told, _) = refused("which is named", folder, [str(path)], 2)
     expect("by its member", "`method`" in told and "tags" not in told, True)
+    case = folder / "case-of-a-bone.json"
+    case.write_text(json.dumps({"case": {**usual, "volume": str(BLOCK), "segments": [{"name": "jaw"}]}}))
+    (folder / "of-a-bone.json").write_text(json.dumps({"scenes": [{"case": case.name}]}))
+    (told, _) = refused("a segment without nodes", folder, ["of-a-bone.json"], 2)
+    expect("of its file, in words", "case-of-a-bone.json: POST /v1/cases: 422 /segments/0/nodes: missing field" in told and "{" not in told, True)
     refused("a report that cannot be written", folder, [str(STUDY), "--report", str(folder)], 2)
     for address in ("localhost:8080", "127.0.0.1:8080", "ftp://localhost", "http://", "http://localhost:x", ""):
         told, took_s = refused(f"the address {address!r}", folder, [str(STUDY)], 2, FACIES_ADDRESS=address)

@@ -18,6 +18,7 @@ reach, 4 incomplete, 5 no baseline.
 from __future__ import annotations
 
 import argparse
+import contextlib
 import hashlib
 import html
 import http.client
@@ -70,7 +71,7 @@ class Service:
                     return answer.read(), answer.headers
             except urllib.error.HTTPError as error:
                 text = error.read().decode(errors="replace")
-                why = f"{method} {path}: {error.code} {text}"
+                why = f"{method} {path.partition('?')[0]}: {error.code} {in_words(text)}"
                 if error.code < 500 and error.code != 429:
                     raise Stop(REFUSED, why) from error
                 # In seconds, as the service sends it.
@@ -93,6 +94,25 @@ class Service:
         except ValueError as error:
             why = f"{self.address} is no facies service: {method} {path} is answered with {answer[:60]!r}"
             raise Stop(OUT_OF_REACH, why) from error
+
+
+def in_words(text: str) -> str:
+    """What the service says of a mistake, in one line; anything else as it is."""
+    try:
+        problem = json.loads(text)
+        mistakes = [f"{own['pointer']}: {own['detail']} ({own['code']})" for own in problem.get("errors", [])]
+        return "; ".join(mistakes) or f"{problem['detail']} ({problem.get('code', problem['type'])})"
+    except (ValueError, LookupError, TypeError, AttributeError):
+        return text
+
+
+@contextlib.contextmanager
+def of_file(path: pathlib.Path):
+    """What is refused of a file is told with its name."""
+    try:
+        yield
+    except Stop as stop:
+        raise Stop(stop.code, f"{path}: {stop}") from stop
 
 
 def checked(address: str) -> str:
@@ -173,16 +193,19 @@ class Cases:
         units = {name: as_type(str, case.get(name, usual), f"{path}: /case/{name}")
                  for name, usual in (("units", "mm"), ("frame", "unspecified"))}
         for document, key in [*mesh_places(case, bones), *mesh_places(plan, bones)]:
-            document[key] = self.mesh(path.parent / document[key], units)
+            mesh = path.parent / document[key]
+            with of_file(mesh):
+                document[key] = self.mesh(mesh, units)
         own = {} if has_plans else {"plans": [plan]}
-        return {**own, "name": path.stem, **scene, "case": self.case(case)}
+        with of_file(path):
+            return {**own, "name": path.stem, **scene, "case": self.case(case)}
 
     def mesh(self, path: pathlib.Path, units: dict[str, str]) -> str:
         """The id of a mesh. The service knows bytes that it has."""
         try:
             content = path.read_bytes()
         except OSError as error:
-            raise Stop(REFUSED, f"{path}: {error}") from error
+            raise Stop(REFUSED, str(error)) from error
         query = urllib.parse.urlencode(units)
         return self.service.document("POST", f"/v1/meshes?{query}", content)["id"]
 
@@ -295,7 +318,7 @@ def run(arguments: argparse.Namespace) -> int:
         say(expected(truth))
     job = finished(service, job, arguments.timeout_s)
     if job["status"] != "successful":
-        raise Stop(FAILED, f"job {job['id']} is {job['status']}: {json.dumps(job.get('error'))}")
+        raise Stop(FAILED, f"job {job['id']} is {job['status']}: {in_words(json.dumps(job.get('error')))}")
     query = f"?baseline={baseline}" if baseline else ""
     report = f"/v1/jobs/{job['id']}/report{query}"
     if arguments.report:

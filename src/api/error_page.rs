@@ -6,6 +6,7 @@ use axum::http::header;
 use axum::response::{IntoResponse, Response};
 use utoipa_axum::routes;
 
+use super::plain_page::plain_page;
 use super::resources::Resources;
 
 /// The page as it is written; a test holds it to the codes of the program.
@@ -49,10 +50,7 @@ fn html(written: &str) -> String {
             paragraph => body += &format!("<p>{}</p>\n", inline(&paragraph.join("\n"))),
         }
     }
-    format!(
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head><meta charset=\"utf-8\"><title>facies: errors and warnings</title></head>\n\
-         <body>\n{body}</body>\n</html>\n"
-    )
+    plain_page("errors and warnings", &body)
 }
 
 fn headline(line: &str) -> String {
@@ -63,14 +61,15 @@ fn headline(line: &str) -> String {
 
 /// A table whose rows have anchors, but for words that are told `above` already: a warning may say what an error says.
 fn table(above: &str, head: &str, rows: &[&str]) -> String {
-    let mut table = format!("<table>\n<tr>{}</tr>\n", cells(head, "th"));
+    let mut table =
+        format!("<div class=\"wide\" tabindex=\"0\"><table>\n<tr>{}</tr>\n", cells(head, "th"));
     for row in rows {
         let name = escaped(row.split('`').nth(1).unwrap_or_default());
         let anchor = format!(" id=\"{name}\"");
         let anchor = if above.contains(&anchor) { String::new() } else { anchor };
         table += &format!("<tr{anchor}>{}</tr>\n", cells(row, "td"));
     }
-    table + "</table>\n"
+    table + "</table></div>\n"
 }
 
 fn cells(row: &str, tag: &str) -> String {
@@ -78,8 +77,9 @@ fn cells(row: &str, tag: &str) -> String {
     inner.split(" | ").map(|cell| format!("<{tag}>{}</{tag}>", inline(cell))).collect()
 }
 
-/// Text with what stands in backquotes as code.
+/// Text with what stands in backquotes as code. Links lead to documentation that the service does not have: their words stay.
 fn inline(text: &str) -> String {
+    let text = without_links(text);
     let mut parts = text.split('`').map(escaped);
     let first = parts.next().unwrap_or_default();
     let code = |(index, part): (usize, String)| match index % 2 {
@@ -87,6 +87,19 @@ fn inline(text: &str) -> String {
         _ => part,
     };
     first + &parts.enumerate().map(code).collect::<String>()
+}
+
+/// `[words](target)` as its words.
+fn without_links(text: &str) -> String {
+    let mut parts = text.split("](");
+    let mut plain = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        if let Some(start) = plain.rfind('[') {
+            plain.remove(start);
+        }
+        plain += part.split_once(')').map_or("", |(_, rest)| rest);
+    }
+    plain
 }
 
 fn escaped(text: &str) -> String {

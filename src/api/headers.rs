@@ -6,8 +6,8 @@ use axum::http::{HeaderName, HeaderValue, header};
 use axum::middleware::Next;
 use axum::response::Response;
 
-/// No script, no form, nothing that is fetched, in no frame. Styles within a page or a picture are its own.
-const NOTHING: &str = "default-src 'none'; style-src 'unsafe-inline'; base-uri 'none'; \
+/// No script, no form, nothing that is fetched, in no frame. Styles and images within a report or a picture are its own.
+const NOTHING: &str = "default-src 'none'; style-src 'unsafe-inline'; img-src data:; base-uri 'none'; \
      form-action 'none'; frame-ancestors 'none'";
 /// Scripts, styles and pictures of this service, which ask this service only.
 const OWN: &str = "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; \

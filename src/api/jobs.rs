@@ -66,7 +66,8 @@ struct ListParameters {
     limit: Option<u32>,
 }
 
-/// Accepts a job. The same inputs, whoever sends them, are the same job, which gets the tags of each. With `Prefer: wait=n` the answer
+/// Accepts a job. The same inputs, whoever sends them, are the same job, which gets the tags of each; a job that was dismissed, or
+/// failed by its budget or through no fault of its own, is accepted anew. With `Prefer: wait=n` the answer
 /// comes when the job has ended, at the latest after n seconds (at most 30). One that keeps meshes (`keep`) stores what it
 /// makes, which a key has to allow (`write`).
 #[utoipa::path(

@@ -44,6 +44,7 @@ mod packages;
 mod page;
 mod paging;
 mod parameters;
+mod plain_page;
 mod plans;
 mod prefer;
 mod rate;

@@ -9,6 +9,7 @@ use utoipa_axum::routes;
 use super::error::{ApiError, ApiResult};
 use super::headers::as_page;
 use super::parameters::ServedFile;
+use super::plain_page::plain_page;
 use super::resources::Resources;
 use super::{Service, conditional};
 use crate::schema::ErrorCode;
@@ -34,11 +35,8 @@ async fn clients(service: Service) -> ApiResult {
     }
     let item = |name: &String| format!("<li><a href=\"/clients/{name}\">{name}</a></li>\n");
     let items: String = names.iter().map(item).collect();
-    let page = format!(
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head><meta charset=\"utf-8\"><title>facies: clients</title></head>\n\
-         <body>\n<h1>Clients</h1>\n<ul>\n{items}</ul>\n</body>\n</html>\n"
-    );
-    Ok(Html(page).into_response())
+    let body = format!("<h1>Clients</h1>\n<ul>\n{items}</ul>\n");
+    Ok(Html(plain_page("clients", &body)).into_response())
 }
 
 /// A file of the clients: a package for pip or npm, or a part of the example page.

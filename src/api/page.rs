@@ -20,7 +20,7 @@ struct Asset {
 }
 
 const SCRIPT: &str = "text/javascript; charset=utf-8";
-const ASSETS: [Asset; 4] = [
+const ASSETS: [Asset; 5] = [
     Asset {
         name: "icon.svg",
         media_type: "image/svg+xml",
@@ -30,6 +30,11 @@ const ASSETS: [Asset; 4] = [
         name: "index.css",
         media_type: "text/css; charset=utf-8",
         content: include_bytes!("../../web/dist/assets/index.css"),
+    },
+    Asset {
+        name: "palette.css",
+        media_type: "text/css; charset=utf-8",
+        content: include_bytes!("../../web/dist/assets/palette.css"),
     },
     Asset {
         name: "page.js",

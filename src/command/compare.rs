@@ -35,12 +35,15 @@ pub struct Arguments {
     /// all ways of aligning. `--prediction` and `--actual` stand for its own
     #[arg(
         long, help_heading = WHAT, value_name = "FILE",
-        conflicts_with_all = ["align", "mask_sphere_mm", "mask_box_mm", "align_fixed", "align_moving", "matrix4x4", "samples_per_mm2", "node_wise"]
+        conflicts_with_all = ["align", "mask_sphere_mm", "mask_box_mm", "align_fixed", "align_moving", "matrix4x4", "samples_per_mm2", "node_wise", "range_mm"]
     )]
     spec: Option<PathBuf>,
     /// The folder for the result
     #[arg(long, visible_alias = "output", value_name = "FOLDER", help_heading = "Result")]
     out: PathBuf,
+    /// Also skin.ply and skin.glb in colours of the signed distance, which end at minus and plus so many mm
+    #[arg(long, value_name = "MM", help_heading = "Result")]
+    range_mm: Option<f64>,
     /// Whether the actual surface is moved rigidly onto the prediction first
     #[arg(long, help_heading = ALIGNED, default_value = "none")]
     align: AlignArgument,
@@ -170,6 +173,8 @@ impl Arguments {
             regions: Default::default(),
             landmarks: Default::default(),
             histogram_edges_mm: Vec::new(),
+            acquisition: None,
+            range_mm: self.range_mm,
             samples_per_mm2: self.samples_per_mm2,
             node_wise: match self.node_wise {
                 NodeWiseArgument::Auto => NodeWise::Auto,

@@ -117,6 +117,7 @@ fn usual_outputs() -> Vec<OutputName> {
         OutputName::BonesVtp,
         OutputName::ClassesSvg,
         OutputName::DisplacementSvg,
+        OutputName::GapsSvg,
         OutputName::ReportHtml,
         OutputName::ReportPdf,
     ]

@@ -27,7 +27,7 @@ pub fn run(out: &Path, scenes: u64, seed: u64) -> Result<(), CommandError> {
             eprintln!("{ended} scenes …");
         }
     };
-    let found = random(seed, scenes, &bounds, &told);
+    let found = random(seed, 0..scenes, &bounds, &told);
     print(&found);
     write(&out.join("random.json"), format!("{:#}\n", document(&found)))?;
     write(&out.join("random.csv"), table(&found))?;

@@ -13,8 +13,10 @@ use super::stability;
 use super::stability_random;
 use super::sweep::{self, Sweep};
 use crate::jobs::study::ALL_METHODS;
+use crate::jobs::study::cell_sizes::settled_words;
 use crate::jobs::study::files::REPORT_JSON;
 use crate::jobs::{JobInput, StudyInput, Workplace};
+use crate::schema::study::cell_sizes::CellSizesDocument;
 use crate::schema::study::constants::ConstantMapDocument;
 use crate::schema::study::document::{
     CaseReference, PlanReference, SceneReference, StudyKind, ThresholdsDocument,
@@ -51,6 +53,9 @@ pub struct Arguments {
     /// A file with a case and a plan, as for `predict`; may be given several times
     #[arg(long, help_heading = WHAT, value_name = "FILE")]
     case: Vec<PathBuf>,
+    /// The cases of --case are one face on meshes of different cell sizes, under this name: how the skin converges over them
+    #[arg(long, help_heading = WHAT, value_name = "NAME", requires = "case")]
+    series: Option<String>,
     /// A method by its name; may be given several times; default: all
     #[arg(long, help_heading = WHAT, value_name = "NAME")]
     method: Vec<String>,
@@ -67,7 +72,7 @@ pub struct Arguments {
     /// Instead of a study: map where each method fails, what it does as movements, materials and meshes become
     /// impossible
     #[arg(long, help_heading = WHAT, conflicts_with_all = [
-        "small", "scene", "case", "method", "level", "sweep", "repeats", "spec", "baseline", "threshold_p95_mm",
+        "small", "scene", "case", "series", "method", "level", "sweep", "repeats", "spec", "baseline", "threshold_p95_mm",
     ])]
     stability: bool,
     /// With --stability: end so many random small scenes instead, each by a method and a law of its own, and count how
@@ -195,6 +200,7 @@ impl Arguments {
             let named = self.case.iter().map(|path| CaseReference {
                 case: path.to_string_lossy().into_owned(),
                 name: None,
+                series: self.series.clone(),
                 plans: Vec::new(),
             });
             spec.scenes.extend(named.map(SceneReference::Case));
@@ -215,8 +221,12 @@ impl Arguments {
         }
         for item in &mut spec.items {
             let path = folder.unwrap_or(Path::new("")).join(&item.case);
-            let mut reference =
-                CaseReference { case: item.case.clone(), name: None, plans: Vec::new() };
+            let mut reference = CaseReference {
+                case: item.case.clone(),
+                name: None,
+                series: None,
+                plans: Vec::new(),
+            };
             let mut case = read_case(&path, &mut reference, false)?;
             case.name = case.name.or(reference.name);
             item.plan = item.plan.take().or(reference.plans.pop());
@@ -316,7 +326,27 @@ fn print_report(report: &ReportDocument) {
     for map in &report.constant_maps {
         print_map(map);
     }
+    for of in &report.cell_sizes {
+        print_cell_sizes(of);
+    }
     println!("\noutcome    {}", report.verdict.outcome.name());
+}
+
+/// One face on meshes of several cell sizes.
+fn print_cell_sizes(of: &CellSizesDocument) {
+    println!("\n{} {} {}: cell sizes", of.series, of.plan, of.label);
+    println!(
+        "  {:<28} {:>8} {:>9} {:>9} {:>9} {:>12} {:>9}",
+        "mesh", "cell mm", "cells", "unknowns", "s", "skin mean mm", "change %"
+    );
+    for mesh in &of.meshes {
+        let change = mesh.change.map_or_else(String::new, |share| format!("{:.3}", 100.0 * share));
+        println!(
+            "  {:<28} {:>8.3} {:>9} {:>9} {:>9.3} {:>12.4} {change:>9}",
+            mesh.scene, mesh.cell_mm, mesh.cells, mesh.unknowns, mesh.wall_s, mesh.skin_mean_mm
+        );
+    }
+    println!("  {}", settled_words(of));
 }
 
 /// The constants with which the skin is nearest to a scan.

@@ -19,7 +19,9 @@ use crate::schema::predict::result::ResultDocument;
 use crate::schema::response_description::{ResponseDescription, ResponseOrigin};
 use crate::schema::second_order::{ColumnsDocument, SecondOrderDocument};
 use crate::schema::wire::canonical;
-use crate::schema::{CaseDocument, Faults, Limits, PlanDocument, ResponseDocument};
+use crate::schema::{
+    CaseDocument, Faults, Limits, PlanDocument, ResponseDocument, WarningDocument,
+};
 use mechanics::format::SurfaceOutput;
 use mechanics::format::vtk::vtp;
 use mechanics::progress::{Phase, Progress};
@@ -146,11 +148,15 @@ pub fn response_job(
     let mut provenance = origin.provenance(&clock);
     let mesh = mesh_summary(&prepared.scene.mesh, &prepared.quality);
     add_method(&mut provenance, input.spec.method, mesh, solver);
-    let warnings = prepared.warnings.iter().chain(&prepared.scene.warnings);
-    let warnings = warnings_after(&prepared.told, warnings);
+    let warnings = warnings_of(&prepared);
     let result = ResultDocument::new(input.job.clone(), &folder.files, provenance, warnings);
     folder.add(OutputName::ResultJson, &encode_result(&result)?)?;
     Ok(JobOutput { result, files: folder.files, meshes: Vec::new() })
+}
+
+/// Of the case and its mesh.
+fn warnings_of(prepared: &Prepared) -> Vec<WarningDocument> {
+    warnings_after(&prepared.told, prepared.warnings.iter().chain(&prepared.scene.warnings))
 }
 
 /// The columns and their description.
@@ -184,6 +190,7 @@ fn write_columns(
             sha256: canonical::sha256_hex(&bytes),
         },
         second_order,
+        warnings: warnings_of(prepared),
     };
     let description = ResponseDescription::new(columns, origin);
     let text = serde_json::to_vec(&description)

@@ -79,7 +79,7 @@ impl LoadedResponse {
         };
         let summary = AppliedSummary::new(&displacement, beyond, &linear);
         let mut warnings = summary.warnings();
-        warnings.extend(self.description.warnings(plan));
+        warnings.extend(self.description.warnings_of(plan));
         Applied { displacement, summary, warnings, skin_checked: false }
     }
 
@@ -377,6 +377,7 @@ mod tests {
             staying: Vec::new(),
             columns: ColumnsDocument { file, layout, count: 12, bytes: 0, sha256 },
             second_order: None,
+            warnings: Vec::new(),
         };
         let description = ResponseDescription::new(&columns, origin);
         let response = columns.to_response();

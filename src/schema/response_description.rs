@@ -62,6 +62,9 @@ pub struct ResponseDescription {
     /// What hangs together, and what holds it.
     #[serde(default)]
     pub parts: Vec<ResponsePartDocument>,
+    /// Of the case and its mesh, whatever the plan: each plan that is applied repeats them.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub warnings: Vec<WarningDocument>,
 }
 
 /// A segment that the columns can move: x' = x + (R - I)(x - centre) + t.
@@ -103,6 +106,7 @@ pub struct ResponseOrigin {
     pub staying: Vec<String>,
     pub columns: ColumnsDocument,
     pub second_order: Option<SecondOrderDocument>,
+    pub warnings: Vec<WarningDocument>,
 }
 
 impl ResponseDescription {
@@ -139,6 +143,7 @@ impl ResponseDescription {
             mesh_diagonal_mm: columns.diagonal,
             allow_unfixed: columns.allow_unfixed,
             parts: parts.collect(),
+            warnings: origin.warnings,
         }
     }
 
@@ -237,8 +242,8 @@ impl ResponseDescription {
         goes_along(&parts, |segment| movements[segment as usize])
     }
 
-    /// What a reader of the skin of a plan must know of the plan.
-    pub fn warnings(&self, amounts: &PlanAmounts) -> Vec<WarningDocument> {
+    /// What a reader of the skin of a plan must know of the plan, and after that of the case.
+    pub fn warnings_of(&self, amounts: &PlanAmounts) -> Vec<WarningDocument> {
         let movements = &amounts.movements[..];
         let still = movements.iter().all(|movement| *movement == RigidMovement::default())
             && amounts.inner.iter().all(|amount| *amount == 0.0);
@@ -248,7 +253,8 @@ impl ResponseDescription {
         let warnings = still.then(nothing_moves).into_iter();
         let warnings = warnings.chain(suspect_units(&self.moved(movements))).chain(turned);
         let warnings = warnings.chain(self.goes_along(movements).told);
-        warnings.map(|warning| WarningDocument::from(&warning)).collect()
+        let of_plan = warnings.map(|warning| WarningDocument::from(&warning));
+        of_plan.chain(self.warnings.iter().cloned()).collect()
     }
 
     fn moved<'a>(&'a self, movements: &'a [RigidMovement]) -> Vec<MovedSegment<'a>> {

@@ -49,10 +49,13 @@ pub enum Enqueued {
     NotMeshed,
 }
 
-const KNOWN: &str = "SELECT id, status FROM jobs WHERE spec_hash = $1 AND tenant = $2";
-/// A dismissed job keeps its row, and no longer its key: what was dismissed may be asked for anew.
-const RELEASED: &str = "UPDATE jobs SET spec_hash = 'dismissed ' || id || ' ' || spec_hash \
-     WHERE id = $1 AND status = 'dismissed'";
+/// What was dismissed, lost, or stopped by its budget may be asked for anew.
+const KNOWN: &str = "SELECT id, status = 'dismissed' OR \
+     status = 'failed' AND COALESCE(error_class, '') IN ('budget', 'infrastructure') \
+     FROM jobs WHERE spec_hash = $1 AND tenant = $2";
+/// The row stays, without its key.
+const RELEASED: &str =
+    "UPDATE jobs SET spec_hash = status || ' ' || id || ' ' || spec_hash WHERE id = $1";
 const WAITING: &str = "SELECT COUNT(*) FROM jobs WHERE tenant = $1 AND status = 'accepted'";
 /// Locked before its jobs, as by an erasure.
 const CASE: &str = "SELECT 1 FROM cases WHERE id = $1 FOR UPDATE";
@@ -75,11 +78,11 @@ impl Store {
             .fetch_optional(&mut transaction)
             .await?;
         if let Some(row) = known {
-            let status: String = row.try_get(1)?;
-            if JobStatus::from_name(&status) != Some(JobStatus::Dismissed) {
-                return Ok(Enqueued::Known(row.try_get(0)?));
+            let id: String = row.try_get(0)?;
+            if !row.try_get::<bool, _>(1)? {
+                return Ok(Enqueued::Known(id));
             }
-            query(RELEASED).bind(row.try_get::<String, _>(0)?).execute(&mut transaction).await?;
+            query(RELEASED).bind(id).execute(&mut transaction).await?;
         }
         if self.is_queue_full(&mut transaction, longest_queue).await? {
             return Ok(Enqueued::QueueFull);

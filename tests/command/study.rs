@@ -161,6 +161,13 @@ fn cases_from_files_have_each_their_own_plan() {
     };
     // Linear tissue: three times the movement, three times the skin.
     assert!((moved("far") / moved("near") - 3.0).abs() < 1e-5);
+
+    let wrong = fs::read_to_string(&files[1]).unwrap().replace("skull", "skul");
+    fs::write(&files[1], wrong).unwrap();
+    let output = facies(&arguments);
+    let told = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{told}");
+    assert!(told.contains("/cases/far/fixed/0: the mesh has no node set"), "{told}");
 }
 
 #[test]

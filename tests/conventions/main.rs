@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used)]
 
+mod palette;
 mod references;
 mod source;
 mod wildcards;

@@ -104,6 +104,15 @@ fn an_array_that_no_file_had_is_told_from_one_that_was_ignored() {
 }
 
 #[test]
+fn an_array_of_vectors_that_is_asked_for_labels_is_told_for_what_it_is() {
+    let mut mesh = block(Vector::new(100.0, 100.0, 100.0), SMALL, CellShape::Hex8);
+    mesh.cell_vectors.insert("ids".to_owned(), vec![Vector::x(); mesh.cells.len()]);
+    let none =
+        "the mesh has no integer cell array \"ids\": \"ids\" holds vectors of cells; it has none";
+    assert_eq!(details(problems(mesh))[0], ("unknown-array", none.to_owned()));
+}
+
+#[test]
 fn a_mesh_that_was_stored_still_says_what_its_file_had() {
     let first = volume(read_with(&file_of(&numbered(SMALL)), 124));
     let again = volume(read(&file_of(&first), &ReadLimits::default()).unwrap());

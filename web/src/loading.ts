@@ -88,7 +88,7 @@ async function described(app: App, id: string, into: HTMLElement, waiting: () =>
     if (!(error instanceof Refused) || !NOT_THERE.includes(error.code)) throw error;
   }
   waiting();
-  await buildResponse(app, id, 1, into);
+  await buildResponse(app, id, {}, into);
   return app.service.get<Description>(path);
 }
 
@@ -101,10 +101,11 @@ export async function responseOf(app: App, id: string, into: HTMLElement, waitin
   return { description, rest, columns };
 }
 
-export async function buildResponse(app: App, id: string, order: 1 | 2, into: HTMLElement): Promise<void> {
+/** `more` is what the response has beside its linear columns. */
+export async function buildResponse(app: App, id: string, more: { order?: 2; growth?: string[] }, into: HTMLElement): Promise<void> {
   const line = new ProgressLine(app.words, app.words.building);
   into.append(line.element);
-  const job = { kind: "response" as const, case: id, ...(order === 2 ? { order } : {}) };
+  const job = { kind: "response" as const, case: id, ...more };
   try {
     await app.service.run(job as Documents["JobDocument"], (event) => line.tell(event));
   } finally {

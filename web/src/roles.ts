@@ -24,9 +24,20 @@ const NAMES: [string[], Role][] = [
   [["nose", "lip", "lips", "chin", "cheek", "cheeks", "nase", "lippe", "lippen", "kinn", "wange"], "region"],
 ];
 
+const wordsOf = (name: string) => name.toLowerCase().split(/[^\p{L}]+/u);
+
+/** The segment that a surface of bone moves with: the one of its name, or else the only one that is called by the same bone. */
+export function segmentOf(bone: string, segments: string[]): string | undefined {
+  if (segments.includes(bone)) return bone;
+  const [bones] = NAMES.find(([, role]) => role === "segment")!;
+  const said = wordsOf(bone).filter((word) => bones.includes(word));
+  const found = segments.filter((segment) => wordsOf(segment).some((word) => said.includes(word)));
+  return found.length === 1 ? found[0] : undefined;
+}
+
 /** By the whole words of its name, to begin with; a name whose words say nothing, or several things, is left to the person. */
 export function guess(set: string): Role {
-  const words = set.toLowerCase().split(/[^\p{L}]+/u);
+  const words = wordsOf(set);
   const said = NAMES.filter(([names]) => names.some((name) => words.includes(name))).map(([, role]) => role);
   if (said.includes("none") || said.length === 0) return "none";
   const bare = words.filter((word) => word !== "");
@@ -41,10 +52,10 @@ const TISSUE = { "*": { young_modulus_kpa: 15, poisson_ratio: 0.45 } };
 const nodes = (set: string) => ({ node_set: set });
 const having = (roles: SetRoles, role: Role) => Object.keys(roles).filter((set) => roles[set] === role);
 
-/** The document; a bone is drawn by its surface, whose file is called as it is. */
+/** The document; a bone is drawn by its surface, and moves with the segment of its name. */
 export function documentOf({ name, frame, units, mesh }: CaseSettings, roles: SetRoles, bones: string[]): object {
   const start = {
-    name, units, frame, volume: mesh, ...(bones.length === 0 ? {} : { bones: bones.map((bone) => ({ name: bone, mesh: bone })) }),
+    name, units, frame, volume: mesh, ...(bones.length === 0 ? {} : { bones: bones.map((bone) => ({ name: segmentOf(bone, having(roles, "segment")) ?? bone, mesh: bone })) }),
     materials: TISSUE,
   };
   return withRoles(start as unknown as CaseDocument, roles);
@@ -64,6 +75,27 @@ const setsIn = (selection: unknown): string[] => {
   const { any } = (selection ?? {}) as Selected;
   return any === undefined ? [setOf(selection)].filter((set) => set !== undefined) : any.flatMap(setsIn);
 };
+
+const isOfSets = (selection: unknown): boolean => {
+  const { node_set, any } = (selection ?? {}) as Selected;
+  return any === undefined ? node_set !== undefined && Object.keys(selection as object).length === 1 : any.every(isOfSets);
+};
+/** Whether sets alone say what holds the nodes of a case. */
+export const isHeldBySets = ({ segments = [], fixed = [], sliding = [] }: CaseDocument): boolean =>
+  [...segments.map(({ nodes: held }) => held), ...fixed, ...sliding.map(({ nodes: held }) => held)].every(isOfSets);
+
+/** What holds each of so many nodes by the roles of the sets that it is in, as a place in `FREE`, sliding, fixed, and the sets that move: where it is
+ * in several, the stronger holds. */
+export function heldBy(roles: SetRoles, inside: Record<string, ArrayLike<number>>, count: number): { segments: string[]; places: Uint8Array } {
+  const segments = having(roles, "segment");
+  const places = new Uint8Array(count);
+  const order = [...having(roles, "sliding").map((set) => [set, 1] as const), ...having(roles, "fixed").map((set) => [set, 2] as const),
+    ...segments.map((set, at) => [set, 3 + at] as const).reverse()];
+  for (const [set, place] of order) {
+    for (let node = 0; node < count; node += 1) if (inside[set]?.[node]) places[node] = place;
+  }
+  return { segments, places };
+}
 
 /** What a case says that each of these sets is. */
 export function rolesOf(document: CaseDocument, sets: string[]): SetRoles {

@@ -3,17 +3,18 @@
 // Everything is kept in mm in the frame of the case; one group turns that so that x is the patient's left, y up and z to the front.
 // The camera is orthographic: what is seen has one scale everywhere, and a profile is a true profile.
 import {
-  BufferAttribute, DoubleSide, Group, Matrix4, Mesh, MeshBasicMaterial, MeshLambertMaterial, OrthographicCamera, Raycaster,
-  Scene as Graph, Vector2, Vector3, WebGLRenderer, type Material,
+  BufferAttribute, Color, DoubleSide, Group, Matrix4, Mesh, MeshBasicMaterial, MeshLambertMaterial, OrthographicCamera, Raycaster,
+  Scene as Graph, SRGBColorSpace, Vector2, Vector3, WebGLRenderer, type Material,
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import type { Triple } from "./api.js";
-import { share, type Scheme } from "./colours.js";
+import { share, type Rgb, type Scheme } from "./colours.js";
 import { coarse } from "./coarse.js";
 import { drawn, type FrameName } from "./frame.js";
 import { geometryOf, seenFrom, VIEWS, type Shape } from "./geometry.js";
 import { Marks, type Mark } from "./marks.js";
 import { normals } from "./normals.js";
+import { BONE, hex, hexOf, MOVING_BONE, OUTLINE, SKIN } from "./palette.js";
 import { contour, isDrawnBySoftware, lights, setBands, veil } from "./shading.js";
 
 export type { Shape } from "./geometry.js";
@@ -25,11 +26,6 @@ export interface Hit {
 }
 export type SkinLook = "solid" | "through" | "hidden";
 
-const SKIN = 0xe9b9a1;
-const BONE = 0xefe6d2;
-/** Dark enough on skin and on light bands, and none of a map's colours. */
-const OUTLINE = 0x006b3c;
-const MOVING_BONE = 0xd8c48f;
 /** Around the head there is a little room, above all for what stands over it. */
 const ROOM = 1.2;
 const KEY_TURN = Math.PI / 24;
@@ -53,9 +49,11 @@ export class Scene {
   /** What a warning speaks of, or the pointer is over. */
   private readonly pointed = new Marks();
   private lit: Mesh | undefined;
-  private readonly skinMaterial = new MeshLambertMaterial({ color: SKIN, side: DoubleSide });
+  private readonly skinMaterial = new MeshLambertMaterial({ color: hexOf(SKIN), side: DoubleSide });
   /** Half of a map's colour is lit and half shines by itself, so that it is read off the legend also where there is shade. */
   private readonly mapMaterial = new MeshLambertMaterial({ side: DoubleSide, color: 0xbdbdbd, emissive: 0xb0b0b0 });
+  /** Each node in a colour of its own. */
+  private readonly tinted = new MeshLambertMaterial({ side: DoubleSide, vertexColors: true });
   private readonly depth = new MeshBasicMaterial({ colorWrite: false, side: DoubleSide });
   private skin: Mesh | undefined;
   private prepass: Mesh | undefined;
@@ -163,8 +161,19 @@ export class Scene {
     this.draw();
   }
 
+  /** Colours each node of the skin by the place of its colour in a list. */
+  tint(places: ArrayLike<number>, colours: Rgb[]): void {
+    if (this.skin === undefined) return;
+    const [linear, colour] = [new Float32Array(3 * places.length), new Color()];
+    const known = colours.map(([red, green, blue]) => colour.setRGB(red / 255, green / 255, blue / 255, SRGBColorSpace).toArray());
+    for (let node = 0; node < places.length; node += 1) linear.set(known[places[node]!]!, 3 * node);
+    this.skin.geometry.setAttribute("color", new BufferAttribute(linear, 3));
+    this.skin.material = this.tinted;
+    this.draw();
+  }
+
   look(look: SkinLook): void {
-    for (const material of [this.skinMaterial, this.mapMaterial]) {
+    for (const material of [this.skinMaterial, this.mapMaterial, this.tinted]) {
       material.transparent = look === "through";
       material.opacity = look === "through" ? 0.42 : 1;
     }
@@ -185,7 +194,7 @@ export class Scene {
       this.veil = new Mesh(geometry, veil());
       this.veil.renderOrder = 3;
       this.veil.onBeforeRender = () => this.renderer.clearDepth();
-      this.ghost = new Mesh(geometry, contour(OUTLINE));
+      this.ghost = new Mesh(geometry, contour(hexOf(OUTLINE)));
       this.ghost.renderOrder = 4;
       this.head.add(this.veil, this.ghost);
     }
@@ -215,7 +224,7 @@ export class Scene {
   }
 
   addBone(name: string, shape: Shape, moves: boolean): void {
-    const material = new MeshLambertMaterial({ color: moves ? MOVING_BONE : BONE, side: DoubleSide });
+    const material = new MeshLambertMaterial({ color: hex(moves ? MOVING_BONE : BONE), side: DoubleSide });
     const bone = new Mesh(geometryOf(shape), material);
     bone.matrixAutoUpdate = false;
     this.bones.set(name, bone);
@@ -468,7 +477,7 @@ export class Scene {
     const { indices, skin } = this;
     if (mesh.geometry !== skin?.geometry && indices !== undefined && [indices.all, indices.few].includes(mesh.geometry.index!)) mesh.geometry.index = null;
     mesh.geometry.dispose();
-    const kept: unknown[] = [this.skinMaterial, this.mapMaterial, this.depth];
+    const kept: unknown[] = [this.skinMaterial, this.mapMaterial, this.tinted, this.depth];
     if (!kept.includes(mesh.material)) (mesh.material as Material).dispose();
   }
 }

@@ -32,3 +32,53 @@ export function beyondBounds(targets: Target[], bounds: Bounds): Beyond[] {
     return Math.abs(wanted) > allowed ? [{ target, at, wanted, allowed }] : [];
   }));
 }
+
+const PARTS = ";";
+const NUMBERS = ",";
+const numbersOf = (text: string[]): (number | null)[] => text.map((one) => (one === "" || !Number.isFinite(Number(one)) ? null : Number(one)));
+
+/** Targets as they stand in addresses: a landmark by its name, a point by its place, then forward, up and left; nothing is free. */
+export function writeTargets(targets: Target[]): string {
+  const place = ({ landmark, at_mm }: Target) => (landmark === undefined ? at_mm.map((one) => `@${one.toFixed(3)}`).join("") : encodeURIComponent(landmark));
+  return targets.map((target) => [place(target), ...target.by.map((one) => one ?? "")].join(NUMBERS)).join(PARTS);
+}
+
+/** Those of an address; what is no target, or names a landmark that the case has not, is left out. */
+export function readTargets(text: string, landmarks: Record<string, Triple>, point: (number: number) => string): Target[] {
+  let points = 0;
+  return text.split(PARTS).flatMap((part): Target[] => {
+    const [place = "", ...rest] = part.split(NUMBERS);
+    if (rest.length !== 3) return [];
+    const by = numbersOf(rest) as Target["by"];
+    if (place.startsWith("@")) {
+      const at_mm = place.slice(1).split("@").map(Number);
+      if (at_mm.length !== 3 || !at_mm.every(Number.isFinite)) return [];
+      points += 1;
+      return [{ label: point(points), at_mm: at_mm as Triple, by, sigma_mm: 1 }];
+    }
+    const landmark = decodeURIComponent(place);
+    const at_mm = landmarks[landmark];
+    return at_mm === undefined ? [] : [{ label: landmark, landmark, at_mm, by, sigma_mm: 1 }];
+  });
+}
+
+const WORDS = [...TRANSLATIONS, ...ROTATIONS];
+/** Bounds that are not those to begin with. */
+export function writeBounds(bounds: Bounds, start: Bounds): string {
+  const line = (name: string) => WORDS.map((word) => bounds[name]![word]).join(NUMBERS);
+  const changed = Object.keys(bounds).filter((name) => WORDS.some((word) => bounds[name]![word] !== start[name]![word]));
+  return changed.map((name) => `${encodeURIComponent(name)}${NUMBERS}${line(name)}`).join(PARTS);
+}
+
+/** The bounds to begin with, but for those of an address. */
+export function readBounds(text: string, start: Bounds): Bounds {
+  const read = structuredClone(start);
+  for (const part of text.split(PARTS)) {
+    const [name = "", ...rest] = part.split(NUMBERS);
+    const bound = read[decodeURIComponent(name)];
+    const values = numbersOf(rest);
+    if (bound === undefined || values.length !== WORDS.length) continue;
+    WORDS.forEach((word, at) => { bound[word] = Math.abs(values[at] ?? 0); });
+  }
+  return read;
+}

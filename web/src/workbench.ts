@@ -1,9 +1,10 @@
 // A head beside its controls: standard views, looks, colours with their legend, pictures.
 import type { App } from "./app.js";
-import { bands, BANDS, css, ticks, type Scheme } from "./colours.js";
+import { bands, BANDS, css, ticks, type Rgb, type Scheme } from "./colours.js";
 import { button, choice, make, save, select } from "./dom.js";
 import { figure } from "./figures.js";
 import { VIEWS } from "./geometry.js";
+import { INK, PAPER } from "./palette.js";
 import { note } from "./route.js";
 import { Scene, type SkinLook } from "./scene.js";
 
@@ -16,6 +17,8 @@ export interface SkinMap {
   unit?: string;
   /** The range that is chosen unless the address says otherwise, in that unit: the same for every plan. */
   range_mm: number;
+  /** Of values that are places in this list, and no amounts. */
+  kinds?: { name: string; colour: Rgb }[];
   /** The value of each node of the skin. */
   values: () => ArrayLike<number> | undefined;
 }
@@ -77,10 +80,11 @@ export class Workbench {
     this.setLook((state.get("look") ?? "solid") as SkinLook);
   }
 
-  offer(maps: SkinMap[]): void {
+  /** `usual` is the one that is shown where the address names none. */
+  offer(maps: SkinMap[], usual = ""): void {
     const { words, route } = this.app;
     this.maps = maps;
-    const wanted = new URLSearchParams(location.hash.split("?")[1] ?? "").get(SHOWN) ?? route.state.get(SHOWN) ?? "";
+    const wanted = new URLSearchParams(location.hash.split("?")[1] ?? "").get(SHOWN) ?? route.state.get(SHOWN) ?? usual;
     const options = [["", words.plain] as const, ...maps.map(({ name, label }) => [name, label] as const)];
     this.colours.replaceChildren(select(words.map, options, wanted, (name) => this.choose(name)));
     this.choose(wanted);
@@ -88,7 +92,16 @@ export class Workbench {
 
   /** Colours the skin anew, after its values have changed. */
   repaint(): void {
-    this.scene.paint(this.map?.values(), this.range_mm, this.map?.scheme);
+    const { map, scene } = this;
+    const values = map?.values();
+    if (map?.kinds !== undefined && values !== undefined) scene.tint(values, map.kinds.map(({ colour }) => colour));
+    else scene.paint(values, this.range_mm, map?.scheme);
+  }
+
+  /** Skin and legend, where kinds have changed too. */
+  redraw(): void {
+    this.repaint();
+    this.drawLegend();
   }
 
   leave(): void {
@@ -115,11 +128,16 @@ export class Workbench {
     const { map, legend, app: { words } } = this;
     legend.hidden = map === undefined;
     if (map === undefined) return;
-    const swatches = bands(map.scheme).map((colour) => {
-      const swatch = make("span");
-      swatch.style.backgroundColor = css(colour);
-      return swatch;
-    });
+    const swatch = (colour: Rgb) => {
+      const one = make("span", { className: "swatch" });
+      one.style.backgroundColor = css(colour);
+      return one;
+    };
+    if (map.kinds !== undefined) {
+      legend.replaceChildren(make("figcaption", {}, map.label), make("ul", {}, ...map.kinds.map(({ name, colour }) => make("li", {}, swatch(colour), name))));
+      return;
+    }
+    const swatches = bands(map.scheme).map(swatch);
     const numbers = ticks(this.range_mm, map.scheme).filter((_, at) => at % 2 === 0).map((value) => make("span", {}, figure(value)));
     legend.replaceChildren(
       make("figcaption", {}, `${map.label}, ${map.unit ?? "mm"}`),
@@ -161,19 +179,21 @@ export class Workbench {
   /** What is seen, with its legend, what it is and what it is not. */
   private async picture(): Promise<void> {
     const drawn = this.scene.drawNow();
-    const canvas = make("canvas", { width: drawn.width, height: drawn.height + 118 });
+    const legend = this.map === undefined ? 0 : 64;
+    const foot = drawn.height + legend;
+    const canvas = make("canvas", { width: drawn.width, height: foot + 118 });
     const pen = canvas.getContext("2d")!;
-    pen.fillStyle = "#ffffff";
+    pen.fillStyle = PAPER;
     pen.fillRect(0, 0, canvas.width, canvas.height);
     pen.drawImage(drawn, 0, 0);
-    if (this.map !== undefined) this.legendInto(pen, drawn.height);
-    pen.fillStyle = "#222222";
+    if (this.map !== undefined) this.legendInto(pen, foot);
+    pen.fillStyle = INK;
     pen.font = "20px sans-serif";
     [...this.sides.children].forEach((half, at) => { pen.fillText(half.textContent ?? "", (0.22 + 0.5 * at) * canvas.width, 40); });
-    pen.fillText(this.caption.textContent ?? "", 16, drawn.height + 50, canvas.width - 32);
+    pen.fillText(this.caption.textContent ?? "", 16, foot + 50, canvas.width - 32);
     pen.font = "16px sans-serif";
-    pen.fillText(`facies · ${new Date().toISOString()} · ${location.hash.split("?")[0]}`, 16, drawn.height + 78, canvas.width - 32);
-    pen.fillText([this.provenance, this.app.words.notice].filter((part) => part !== "").join(" · "), 16, drawn.height + 106, canvas.width - 32);
+    pen.fillText(`facies · ${new Date().toISOString()} · ${location.hash.split("?")[0]}`, 16, foot + 78, canvas.width - 32);
+    pen.fillText([this.provenance, this.app.words.notice].filter((part) => part !== "").join(" · "), 16, foot + 106, canvas.width - 32);
     const content = await new Promise<Blob | null>((resolve) => canvas.toBlob(resolve, "image/png"));
     if (content !== null) save(content, "facies.png");
   }
@@ -182,11 +202,23 @@ export class Workbench {
     const { map } = this;
     if (map === undefined) return;
     const [left, width, height] = [16, 36, 20];
+    if (map.kinds !== undefined) {
+      pen.font = "18px sans-serif";
+      let x = left;
+      for (const { name, colour } of map.kinds) {
+        pen.fillStyle = css(colour);
+        pen.fillRect(x, bottom - 40, height, height);
+        pen.fillStyle = INK;
+        pen.fillText(name, x + 26, bottom - 24);
+        x += 50 + pen.measureText(name).width;
+      }
+      return;
+    }
     bands(map.scheme).forEach((colour, at) => {
       pen.fillStyle = css(colour);
       pen.fillRect(left + at * width, bottom - 60, width, height);
     });
-    pen.fillStyle = "#222222";
+    pen.fillStyle = INK;
     pen.font = "18px sans-serif";
     ticks(this.range_mm, map.scheme).forEach((value, at) => { if (at % 2 === 0) pen.fillText(figure(value), left + at * width, bottom - 18); });
     pen.fillText(`${map.label}, ${map.unit ?? "mm"}`, left + (BANDS + 1) * width, bottom - 44);

@@ -49,7 +49,7 @@ export async function kinds(page) {
     assert.equal(await page.getByRole("img", { name: "Error of each case" }).locator("circle").count(), 11 * untuned.length);
     await page.getByText(helps ? "Closer to what happened than mechanics alone." : "Not closer to what happened").first().waitFor();
     // The map is that of the table: its mean over the nodes is the mean over the cases.
-    await page.locator(".tools select").selectOption({ label: "Mean error, mm: linear GRNN" });
+    await page.locator(".tools select").selectOption({ label: "Mean error: linear GRNN" });
     const values = await page.evaluate(() => [...document.querySelector(".screen").scene.skin.geometry.attributes.uv.array].filter((_, at) => at % 2 === 0));
     const mean = (2 * values.reduce((sum, one) => sum + one, 0)) / values.length;
     assert(Math.abs(mean - table.find(({ name }) => name === "linear + GRNN").mean) < 0.02, `${mean}`);

@@ -78,6 +78,15 @@ export async function muscles(page) {
   });
 
   await check("tissue grows as the service says, all of it and a layer beside it", async () => {
+    await go(page, `#/case/${face}/plan?muscle=zygomaticus_major_left,20`);
+    await planned(page);
+    const named = await page.locator("input[type=range][data-inner]").count();
+    await page.getByRole("button", { name: "Add growth of tissue" }).click();
+    await page.locator("input[type=number][data-inner=fat]").waitFor();
+    const all = await page.locator("input[type=range][data-inner]").evaluateAll((sliders) => sliders.map((one) => one.dataset.inner));
+    assert(all.length > named && ["*", "fat", "zygomaticus_major_left"].every((name) => all.includes(name)), all.join());
+    assert.equal(await page.locator("input[type=number][data-inner=zygomaticus_major_left]").inputValue(), "20", "the plan stays");
+    assert.equal(await page.getByRole("button", { name: "Add growth of tissue" }).count(), 0);
     assert.equal((await ended({ kind: "response", case: face, growth: ["*", "fat"], muscles: ["orbicularis_oris"] })).status, "successful");
     await go(page, `#/case/${face}/plan?growth=*,-0.2&view=1`);
     await planned(page);

@@ -8,7 +8,7 @@ import { mended } from "./mended.mjs";
 import { muscles } from "./muscles.mjs";
 import { guarded } from "./service.mjs";
 import {
-  ended, fits, BINARY, PICTURES, KEY, HEAD, AGREED_MM, check, service, browser, hosts, complaints, opened, excused, addressed, go, painted,
+  ended, fits, BINARY, WIDE, PICTURES, KEY, HEAD, AGREED_MM, check, service, browser, hosts, complaints, opened, excused, addressed, go, painted,
   positions, planned, apart, slider, slide, json, serious, pictured, address, plan, caseId, counted,
 } from "./tools.mjs";
 
@@ -231,6 +231,23 @@ await check("a report is read and saved", async () => {
   const href = await page.getByRole("link", { name: "Read the report" }).getAttribute("href");
   const read = await (await fetch(address + href)).text();
   assert(read.includes("not a medical device"), "an English report");
+  // As a browser shows it, under the policy of the service: with its pictures, in the colours of the page. What the policy forbids is a complaint.
+  const reader = await opened(WIDE, { colorScheme: "dark" });
+  await reader.goto(address + href);
+  const drawn = await reader.evaluate(() => Promise.all([...document.querySelectorAll("svg image")].map((one) => {
+    const image = new Image();
+    image.src = one.getAttribute("href");
+    return image.decode().then(() => image.naturalWidth, () => 0);
+  })));
+  assert(drawn.length === 9 && drawn.every((width) => width > 100), drawn.join());
+  assert.equal(await reader.evaluate(() => getComputedStyle(document.body).backgroundColor), "rgb(255, 255, 255)", "a report is paper");
+  assert.deepEqual(await serious(reader), []);
+  await pictured(reader, "report");
+  await reader.goto(`${address}/errors`);
+  assert.deepEqual(await serious(reader), []);
+  await fits(reader);
+  await pictured(reader, "errors-dark");
+  await reader.context().close();
   const pdf = Buffer.from(await (await fetch(address + await page.getByRole("link", { name: "Report as PDF" }).getAttribute("href"))).arrayBuffer());
   assert.equal(pdf.subarray(0, 4).toString(), "%PDF");
 });
@@ -325,6 +342,12 @@ await check("a mesh alone becomes a case by saying what its sets are", async () 
   const text = await page.getByLabel("Case document").inputValue();
   const { segments, fixed, skin } = JSON.parse(text);
   assert(segments.some(({ name }) => name === "mandible") && fixed.length > 0 && skin.node_set === "skin", text);
+  // A set that is no part of the skin is refused, and said beside it.
+  excused.push(/status of 422 .*\/v1\/cases/);
+  await page.getByLabel("skull").selectOption("region");
+  await page.getByRole("button", { name: "Send" }).click();
+  await page.locator(".drop li", { hasText: "skull" }).getByText("no node of the selection is on the skin").waitFor();
+  await page.getByLabel("skull").selectOption("fixed");
   assert.deepEqual(await serious(page), []);
   await page.getByRole("button", { name: "Send" }).click();
   await page.getByRole("heading", { name: "What the check found" }).waitFor();
@@ -343,6 +366,21 @@ await check("a case document with its files becomes a case", async () => {
 
 await check("sets are named and chosen in the view, and another role is another case", async () => {
   await page.getByText("Point at the mesh to name its sets").waitFor();
+  // Coloured by what holds it, until another colour is chosen.
+  const held = page.locator(".legend li");
+  await held.first().waitFor();
+  assert.deepEqual(await held.allTextContents(), ["Free", "Sliding", "Fixed", "mandible: moves as a bone", "maxilla: moves as a bone"]);
+  const coloured = () => page.evaluate(() => {
+    const { color } = document.querySelector(".screen").scene.skin.geometry.attributes;
+    const found = new Map();
+    for (let node = 0; node < color.count; node += 1) { const key = color.getX(node).toFixed(3); found.set(key, (found.get(key) ?? 0) + 1); }
+    return [...found.values()].sort((one, other) => other - one);
+  });
+  const sizes = await coloured();
+  assert.equal(sizes.length, 4, `${sizes}: free, fixed and two bones`);
+  await page.locator(".sets li[data-set=maxilla]").getByRole("combobox").selectOption("none");
+  assert.equal((await coloured()).length, 3, "a role that changes colours the skin anew");
+  await page.getByRole("button", { name: "As they were" }).click();
   await page.keyboard.press("1");
   const box = await page.locator(".screen canvas").boundingBox();
   const [x, y] = [box.x + box.width / 2, box.y + 0.7 * box.height];
@@ -375,6 +413,21 @@ await check("a case without a response gets one when it is planned on", async ()
   await planned(page);
   await slide(page, "mandible", "forward", 4);
   await page.locator(".told", { hasText: /The skin moves [1-4]\.\d\d mm at most/ }).waitFor();
+});
+
+await check("what a case was warned of is told beside each of its plans", async () => {
+  const told = { code: "teeth-joined", detail: "tissue is joined to the teeth of this test" };
+  const warned = async (route) => {
+    const answer = await route.fetch();
+    const view = await answer.json();
+    await route.fulfill({ response: answer, json: { ...view, check: { ...view.check, warnings: [told] } } });
+  };
+  await page.route(`**/v1/cases/${caseId}`, warned);
+  await go(page, plan);
+  await planned(page);
+  await page.getByText(told.detail).waitFor();
+  await page.locator(".trust.heed", { hasText: "Warnings" }).getByText("1", { exact: true }).waitFor();
+  await page.unroute(`**/v1/cases/${caseId}`);
 });
 
 await muscles(page);

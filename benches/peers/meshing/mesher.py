@@ -3,7 +3,9 @@
 SURFACE.npz holds `points`, `triangles` (outwards) and `holes`, a point in each void. Writes `nodes` and `cells`.
 """
 
+import os
 import sys
+from pathlib import Path
 
 import numpy as np
 
@@ -68,7 +70,9 @@ MESHERS = {"gmsh-hxt": gmsh(10), "gmsh-delaunay": gmsh(1), "tetgen": tetgen, "ft
 
 def main():
     name, surface, mesh, cell = sys.argv[1:]
-    given = np.load(surface)
+    given, mesh = np.load(surface), Path(mesh).resolve()
+    # TetGen leaves what it skips where it runs.
+    os.chdir(mesh.parent)
     points, triangles = np.ascontiguousarray(given["points"]), np.ascontiguousarray(given["triangles"])
     nodes, cells = MESHERS[name](points, triangles, given["holes"], float(cell))
     a, b, c, d = (nodes[cells[:, corner]] for corner in range(4))

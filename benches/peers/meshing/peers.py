@@ -43,7 +43,9 @@ def rows(options, output):
     bench = [options.bench, "uniform-4", "--scan", options.scan, "--vtu", str(output), "--parted"]
     seconds, wall, told = timed(bench, 600, environment)
     assert told is None, told
-    nodes, cells, sets = vtu.read(output / "uniform-4.vtu")
+    # The next mesh of ours has the same name.
+    ours = (output / "uniform-4.vtu").replace(output / "ours.vtu")
+    nodes, cells, sets = vtu.read(ours)
     known = distances.Reference(options.scan)
     yield row("facies", "scan", seconds, wall, nodes, cells, Against(known, sets["cut"], nodes, cells))
     write_surface(output / "ours.npz", nodes, cells)
@@ -71,7 +73,7 @@ def ours_from_stl(options, output, environment, stl):
 
 
 def peer(name, given, surface, output, limit, against):
-    mesh = output / f"{name}.npz"
+    mesh = output / f"{name}-{surface.stem}.npz"
     mesh.unlink(missing_ok=True)
     seconds, wall, told = timed([sys.executable, HERE / "mesher.py", name, surface, mesh, str(CELL)], limit, None)
     if told or not mesh.exists():

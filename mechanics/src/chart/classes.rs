@@ -109,7 +109,7 @@ impl ClassesPicture<'_> {
         for (panel, png) in draw_all(&panels)?.iter().enumerate() {
             let x = MARGIN + (PANEL_WIDTH + GAP) * panel as f64;
             let place = Place { x, y: HEAD, width: PANEL_WIDTH, height: panel_height };
-            document.rectangle(place, "#f3f4f6", 6.0);
+            document.rectangle(place, colour::GROUND, 6.0);
             document.image(place, png);
             let middle = [place.x + PANEL_WIDTH / 2.0, HEAD - 10.0];
             let style = Style::of(13.0).bold().middle();

@@ -5,6 +5,26 @@ use std::sync::LazyLock;
 /// Red, green and blue as stored in an image (sRGB).
 pub type Rgb = [u8; 3];
 
+/// Words and axes; words beside them; lines under marks; what pictures stand on. As `web/dist/assets/palette.css` has them, where they are
+/// those of the page and of reports too (`tests/conventions/palette.rs`).
+pub const INK: &str = "#22262b";
+pub const FAINT_INK: &str = "#5b636d";
+pub const GRID: &str = "#d9dce1";
+pub const GROUND: &str = "#f3f4f6";
+/// What is to be heeded, and what failed.
+pub const WARN_INK: &str = "#6b4700";
+pub const FAILED_INK: &str = "#a3262a";
+
+/// Series of charts: Okabe and Ito, Color universal design, 2008, without yellow, which is faint on white; in an order in which
+/// neighbours differ in lightness.
+pub const SERIES: [&str; 7] =
+    ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#333333"];
+/// The best compromises of a chart.
+pub(super) const FRONT: &str = "#3a3f47";
+
+/// The outline of what was, on skin and on maps: dark on light bands, and none of their colours.
+pub const OUTLINE: Rgb = [0, 107, 60];
+
 /// Bare skin, for the panels without values.
 pub const SKIN: Rgb = [233, 196, 172];
 /// What is seen of a surface from its back.
@@ -23,7 +43,7 @@ const SEQUENCE: [Rgb; 7] = [
 ];
 
 /// Blue to orange, with light greys between, which colour blindness and print leave apart. Source: C. Brewer,
-/// colorbrewer2.org (RdBu and PuOr, its warm half); as the page has it.
+/// colorbrewer2.org (RdBu and PuOr, its warm half).
 const SIGNED: [Rgb; 10] = [
     [5, 48, 97],
     [33, 102, 172],

@@ -1,7 +1,7 @@
 //! Distance over two swept constants as filled contours, or over one as a curve: where the least lies, and what cannot
 //! be told from it.
 
-use super::colour::{hexadecimal, sequential};
+use super::colour::{GRID, GROUND, INK, SERIES, hexadecimal, sequential};
 use super::contour_grid::{BANDS, ContourAxis, Grid, INSET, PLOT, labelled, position};
 use super::drawing::{Document, Paint, Place, Style, wrapped};
 use super::legend::Scale;
@@ -27,9 +27,6 @@ pub struct ContourPicture<'a> {
 const WIDTH: f64 = 900.0;
 const MARGIN: f64 = 28.0;
 const LINE: f64 = 17.0;
-const GRID: &str = "#d9dce1";
-const INK: &str = "#22262b";
-const BEST: &str = "#0072b2";
 
 impl ContourPicture<'_> {
     /// The picture as one SVG document.
@@ -66,7 +63,7 @@ impl ContourPicture<'_> {
     ) -> Result<(), PngError> {
         let grid = Grid { across: self.across, upwards, distances: self.distances };
         let range = self.range();
-        document.rectangle(PLOT, "#f3f4f6", 0.0);
+        document.rectangle(PLOT, GROUND, 0.0);
         document.image(PLOT, &grid.image(range).to_png()?);
         for level in levels(range) {
             let words = format!("D {level:.3} mm");
@@ -74,7 +71,7 @@ impl ContourPicture<'_> {
         }
         if let (Some(noise), Some(least)) = (self.noise, self.distances[self.best]) {
             let words = "as good as the best, by what registration left";
-            grid.write_level(document, least + noise, (2.6, BEST, words));
+            grid.write_level(document, least + noise, (2.6, SERIES[0], words));
         }
         for (place, distance) in self.distances.iter().enumerate() {
             let at = grid.place_of(place);
@@ -88,7 +85,7 @@ impl ContourPicture<'_> {
         }
         let best = grid.place_of(self.best);
         document.open("best", &grid.words(self.best));
-        write_dot(document, best, (6.5, BEST));
+        write_dot(document, best, (6.5, SERIES[0]));
         document.close();
         write_across(document, self.across);
         let ends = [PLOT.y + PLOT.height - INSET, PLOT.y + INSET];
@@ -131,7 +128,7 @@ impl ContourPicture<'_> {
             let words =
                 format!("{} {}: D {distance:.4} mm", self.across.name, self.across.values[place]);
             let (class, dot) =
-                if place == self.best { ("best", (6.5, BEST)) } else { ("cell", (3.4, INK)) };
+                if place == self.best { ("best", (6.5, SERIES[0])) } else { ("cell", (3.4, INK)) };
             document.open(class, &words);
             write_dot(document, *point, dot);
             document.close();
@@ -184,10 +181,10 @@ fn write_legend(document: &mut Document, [low, high]: [f64; 2], has_noise: bool)
         document.text([x + 26.0, y], 100.0, Style::of(12.0), &words);
     }
     let y = bar.y + bar.height + 30.0;
-    write_dot(document, [x + 9.0, y - 4.0], (6.5, BEST));
+    write_dot(document, [x + 9.0, y - 4.0], (6.5, SERIES[0]));
     document.text([x + 26.0, y], 120.0, Style::of(12.0), "least");
     if has_noise {
-        document.stroke(&[[x, y + 18.0], [x + 18.0, y + 18.0]], BEST, 2.6);
+        document.stroke(&[[x, y + 18.0], [x + 18.0, y + 18.0]], SERIES[0], 2.6);
         document.text([x + 26.0, y + 22.0], 130.0, Style::of(12.0), "as good inside");
     }
 }

@@ -97,7 +97,7 @@ impl DisplacementPicture<'_> {
             .collect();
         for (number, png) in draw_all(&panels)?.iter().enumerate() {
             let place = layout.panel(number / columns.len(), number % columns.len());
-            document.rectangle(place, "#f3f4f6", 6.0);
+            document.rectangle(place, colour::GROUND, 6.0);
             let below = Place { y: place.y + STRIP, height: layout.image_height, ..place };
             document.image(below, png);
         }

@@ -6,8 +6,7 @@ const WIDTH_NARROW: f64 = 0.40;
 const WIDTH_NORMAL: f64 = 0.635;
 const WIDTH_WIDE: f64 = 1.0;
 
-pub const INK: &str = "#22262b";
-const FAINT_INK: &str = "#5b636d";
+use super::colour::{FAINT_INK, INK};
 
 /// How words are set.
 #[derive(Clone, Copy, Debug)]

@@ -3,6 +3,7 @@
 
 use super::axis::{LogAxis, duration, numbers};
 use super::callout::Taken;
+use super::colour::{FAILED_INK, FRONT, GRID, INK};
 use super::drawing::{Document, Paint, Place, Style, estimated_width, wrapped};
 use super::ladder_legend::Legend;
 use super::symbol::Symbol;
@@ -57,14 +58,10 @@ const LEAST_HEIGHT: f64 = 470.0;
 const AXIS_FOOT: f64 = 66.0;
 const NOTE_LINE: f64 = 17.0;
 
-const INK: &str = "#22262b";
 const FINE: &str = "#eceef1";
-const GRID: &str = "#d9dce1";
 const GOAL: &str = "#00704f";
 const PUBLISHED: &str = "#f6ead0";
-const FRONT: &str = "#3a3f47";
 const FAILED: &str = "#faeeee";
-const FAILED_INK: &str = "#a3262a";
 
 impl LadderPicture<'_> {
     /// The picture without its title, which stands over every form of it.

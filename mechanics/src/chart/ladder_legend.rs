@@ -1,5 +1,6 @@
 //! Legend of a chart of speed and accuracy.
 
+use super::colour::{FAILED_INK, FAINT_INK, FRONT};
 use super::drawing::{Document, Paint, Style};
 use super::symbol::Symbol;
 
@@ -55,20 +56,20 @@ impl Legend<'_> {
             y += LINE * 1.4;
         }
         let line = format!("M{x:.1} {:.1}h9v8h9", y - 8.0);
-        document.path(&line, Paint { opacity: 0.85, ..Paint::line("#3a3f47", 2.0) });
+        document.path(&line, Paint { opacity: 0.85, ..Paint::line(FRONT, 2.0) });
         document.text([x + 26.0, y], ROOM - 26.0, words, "best compromises:");
         y += 16.0;
         document.text([x + 26.0, y], ROOM - 26.0, words, "none is better in both");
         if self.has_runs {
             y += LINE;
             let dot = format!("M{:.1} {:.1}a2 2 0 1 1 4 0a2 2 0 1 1 -4 0Z", x + 7.0, y - 4.0);
-            document.path(&dot, Paint { opacity: 0.6, ..Paint::inside("#5b636d") });
+            document.path(&dot, Paint { opacity: 0.6, ..Paint::inside(FAINT_INK) });
             document.text([x + 26.0, y], ROOM - 26.0, words, "single run of a median");
         }
         if self.has_failures {
             y += LINE;
             let cross = format!("M{:.1} {:.1}l12 12m0 -12l-12 12", x + 3.0, y - 10.0);
-            document.path(&cross, Paint::line("#a3262a", 1.8));
+            document.path(&cross, Paint::line(FAILED_INK, 1.8));
             document.text([x + 26.0, y], ROOM - 26.0, words, "gave no answer");
         }
     }

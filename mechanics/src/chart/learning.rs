@@ -1,5 +1,6 @@
 //! Learning curves: error by the number of cases that were learned from, beside levels that need none.
 
+use super::colour::{FAINT_INK, GRID};
 use super::drawing::{Document, Paint, Place, Style};
 use super::svg::svg;
 use super::symbol::Symbol;
@@ -20,8 +21,6 @@ pub struct LearningSeries {
 
 const SIZE: [f64; 2] = [900.0, 520.0];
 const PLOT: Place = Place { x: 76.0, y: 64.0, width: 560.0, height: 380.0 };
-const GRID: &str = "#d9dce1";
-const LEVEL: &str = "#5b636d";
 
 /// Errors between two lines of the grid, as far as these are no more than ten.
 const STEPS: [f64; 5] = [0.1, 0.2, 0.5, 1.0, 5.0];
@@ -36,7 +35,7 @@ impl LearningPicture<'_> {
         for (name, error) in self.levels {
             let y = self.place(1.0, *error)[1];
             let steps = format!("M{:.1} {y:.1}L{:.1} {y:.1}", PLOT.x, PLOT.x + PLOT.width);
-            document.path(&steps, Paint { dashes: "5 4", ..Paint::line(LEVEL, 1.3) });
+            document.path(&steps, Paint { dashes: "5 4", ..Paint::line(FAINT_INK, 1.3) });
             names.push(([PLOT.x + PLOT.width, y], format!("{name} {error:.2}")));
         }
         for (number, series) in self.series.iter().enumerate() {

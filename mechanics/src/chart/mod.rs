@@ -4,6 +4,7 @@
 
 mod axis;
 mod callout;
+mod cell_sizes;
 mod classes;
 pub mod colour;
 mod contour_grid;
@@ -11,6 +12,7 @@ mod contours;
 mod displacement;
 pub mod drawing;
 mod facet;
+mod gaps;
 pub mod helvetica;
 mod ladder;
 mod ladder_legend;
@@ -26,10 +28,12 @@ mod symbol;
 pub mod view;
 mod views;
 
+pub use cell_sizes::{CellSizesPicture, CellSizesSeries};
 pub use classes::{ClassKind, ClassesPicture, NodeClasses};
 pub use contour_grid::ContourAxis;
 pub use contours::ContourPicture;
 pub use displacement::DisplacementPicture;
+pub use gaps::{GapsOfBone, GapsPicture};
 pub use ladder::{LadderFailure, LadderMark, LadderPicture};
 pub use learning::{LearningPicture, LearningSeries};
 pub use raster::{Image, PngError};

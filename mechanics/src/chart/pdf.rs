@@ -10,7 +10,8 @@ use flate2::write::ZlibEncoder;
 use pdf_writer::types::{LineCapStyle, LineJoinStyle};
 use pdf_writer::{Content, Filter, Finish, Name, Pdf, Rect, Ref, Str, TextStr};
 
-use super::drawing::{Anchor, Document, INK, Item, OwnPaint, Place, Run, Style};
+use super::colour::INK;
+use super::drawing::{Anchor, Document, Item, OwnPaint, Place, Run, Style};
 use super::helvetica::{encoded, width};
 use super::path_steps::{Step, steps};
 

@@ -82,7 +82,7 @@ impl SlicesPicture<'_> {
         }
         for (index, png) in draw_all(&panels)?.iter().enumerate() {
             let place = place_of(index);
-            document.rectangle(place, "#f3f4f6", 6.0);
+            document.rectangle(place, colour::GROUND, 6.0);
             document.image(place, png);
             if index < 3 {
                 let above = [place.x + PANEL / 2.0, HEAD - 8.0];

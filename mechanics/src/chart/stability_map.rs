@@ -1,6 +1,7 @@
 //! What each method does as something is turned up: one row for each method, one panel for each axis, one small
 //! cell for each value. A wrong answer without a warning is what the eye must find first.
 
+use super::colour::{INK, SERIES};
 use super::drawing::{Document, Place, Style, wrapped};
 use super::svg::svg;
 
@@ -211,9 +212,9 @@ fn draw_mark(document: &mut Document, [x, y]: [f64; 2], mark: Mark) {
             document.stroke(&sign(&[[-4.5, 0.5], [-1.5, 4.0], [5.0, -4.0]]), "#6b4a00", 2.0);
         }
         Mark::Warned => {
-            document.rectangle(cell, "#e69f00", 3.0);
-            document.stroke(&sign(&[[0.0, -6.0], [0.0, 1.5]]), "#22262b", 2.6);
-            document.stroke(&sign(&[[0.0, 5.8], [0.0, 6.0]]), "#22262b", 2.6);
+            document.rectangle(cell, SERIES[5], 3.0);
+            document.stroke(&sign(&[[0.0, -6.0], [0.0, 1.5]]), INK, 2.6);
+            document.stroke(&sign(&[[0.0, 5.8], [0.0, 6.0]]), INK, 2.6);
         }
         Mark::Refused => {
             document.rectangle(cell, "#a9cbe6", 3.0);

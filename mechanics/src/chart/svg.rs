@@ -2,7 +2,8 @@
 
 use base64::Engine;
 
-use super::drawing::{Anchor, Document, INK, Item, OwnPaint, Place, Run, Style};
+use super::colour::INK;
+use super::drawing::{Anchor, Document, Item, OwnPaint, Place, Run, Style};
 
 /// The whole document, under a title.
 pub fn svg(document: &Document, title: &str) -> String {

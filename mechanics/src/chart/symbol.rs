@@ -1,11 +1,7 @@
 //! Marks that differ in shape and colour, so that either alone tells them apart.
 
+use super::colour::{FAINT_INK, SERIES};
 use super::drawing::{Document, Paint};
-
-/// Okabe and Ito, Color universal design, 2008, without yellow, which is faint on white; in an order in which
-/// neighbours differ in lightness.
-const COLOURS: [&str; 7] =
-    ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#333333"];
 
 /// A shape and a colour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,12 +36,12 @@ const SHAPES: [Shape; 9] = [
 impl Symbol {
     /// The symbol of a series; 63 are different.
     pub fn of(series: usize) -> Symbol {
-        Symbol { colour: COLOURS[series % COLOURS.len()], shape: SHAPES[series % SHAPES.len()] }
+        Symbol { colour: SERIES[series % SERIES.len()], shape: SHAPES[series % SHAPES.len()] }
     }
 
     /// A circle in the colour of words, for what holds of every series.
     pub fn neutral() -> Symbol {
-        Symbol { colour: "#5b636d", shape: Shape::Circle }
+        Symbol { colour: FAINT_INK, shape: Shape::Circle }
     }
 
     /// Draws it around a point; `filled` from 0, an outline, to 1.

@@ -47,7 +47,6 @@ const ASPECTS: [f64; 2] = [0.6, 0.92];
 const SHARPNESS: f64 = 1.6;
 /// Degrees around the head to its right side, and above it.
 const VIEWS: [[f64; 2]; 3] = [[0.0, 0.0], [-45.0, 0.0], [-90.0, 0.0]];
-const OUTLINE: Rgb = [0, 90, 181];
 /// Bands of a legend, and of its colours.
 const BANDS: usize = 10;
 
@@ -63,7 +62,7 @@ impl ViewsPicture<'_> {
             document.text([x, 16.0], PANEL, Style::of(15.0).bold().middle(), name);
         }
         for (place, png) in self.panels(&cameras, &layout)? {
-            document.rectangle(place, "#f3f4f6", 6.0);
+            document.rectangle(place, colour::GROUND, 6.0);
             document.image(place, &png);
         }
         for (index, row) in self.rows.iter().enumerate() {
@@ -176,7 +175,7 @@ fn outline(image: &mut Image, mask: &Image) {
         for x in 1..width.saturating_sub(1) {
             let around = [[x - 1, y], [x + 1, y], [x, y - 1], [x, y + 1]];
             if covered(x, y) && around.iter().any(|&[x, y]| !covered(x, y)) {
-                let [r, g, b] = OUTLINE;
+                let [r, g, b] = colour::OUTLINE;
                 for [x, y] in [[x, y], [x, y - 1], [x - 1, y]] {
                     image.pixels[y * width + x] = [r, g, b, 255];
                 }
@@ -294,7 +293,7 @@ mod tests {
             let cameras = [camera; 3];
             let layout = Layout::of(&cameras, &picture);
             let image = picture.image(&rows[0], &layout.shot(camera, &picture));
-            let [r, g, b] = OUTLINE;
+            let [r, g, b] = colour::OUTLINE;
             image.pixels.iter().filter(|pixel| **pixel == [r, g, b, 255]).count()
         };
         assert_eq!(count(None), 0);

@@ -22,10 +22,31 @@ impl VolumeMesh {
                 ("cell array of 3 components", ValuesOf::Cells, listed(self.cell_vectors.keys()))
             }
         };
-        match self.ignored.find(of, name) {
-            Some(array) => array.to_string(),
-            None => format!("the mesh has no {what} {name:?}; it has {known}"),
+        if let Some(array) = self.ignored.find(of, name) {
+            return array.to_string();
         }
+        let other = self.held_by(wanted, name).map(|held| format!(": {name:?} {held}"));
+        format!("the mesh has no {what} {name:?}{}; it has {known}", other.unwrap_or_default())
+    }
+
+    /// What an array of this name holds in the place of what is wanted.
+    fn held_by(&self, wanted: ArrayUse, name: &str) -> Option<&'static str> {
+        let arrays = [
+            (
+                ArrayUse::PointLabels,
+                self.node_labels.contains_key(name),
+                "holds integers at points",
+            ),
+            (ArrayUse::CellLabels, self.cell_labels.contains_key(name), "holds integers of cells"),
+            (
+                ArrayUse::PointVectors,
+                self.node_vectors.contains_key(name),
+                "holds vectors at points",
+            ),
+            (ArrayUse::CellVectors, self.cell_vectors.contains_key(name), "holds vectors of cells"),
+        ];
+        let mut others = arrays.into_iter().filter(|(held, there, _)| *there && *held != wanted);
+        others.next().map(|(_, _, holds)| holds)
     }
 
     /// What is said of a node set that is asked for and not there: which sets there are, and what else selects nodes.

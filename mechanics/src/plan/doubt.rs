@@ -11,6 +11,8 @@ const RADIANS_DEG: f64 = 0.2;
 /// Up to this many degrees a matrix is no turn but the rounding of one without.
 const ROUNDING_DEG: f64 = 1e-3;
 
+/// The code of the warning of numbers that another unit explains.
+pub const PLAN_UNITS_SUSPECT: &str = "plan-units-suspect";
 /// The code of the warning of a plan that moves nothing.
 pub const NOTHING_MOVES: &str = "nothing-moves";
 
@@ -70,7 +72,7 @@ pub fn suspect_units(segments: &[MovedSegment]) -> Option<Warning> {
         let detail = format!(
             "no segment turns by more than {turn:.3e} degrees: are these radians, {meant:.3} degrees?"
         );
-        let warning = Warning::new("plan-units-suspect", detail).with("rotation_deg", turn);
+        let warning = Warning::new(PLAN_UNITS_SUSPECT, detail).with("rotation_deg", turn);
         return Some(warning.with("if_radians_deg", meant));
     }
     let farthest = segments.iter().map(MovedSegment::farthest).fold(0.0, f64::max);
@@ -79,7 +81,7 @@ pub fn suspect_units(segments: &[MovedSegment]) -> Option<Warning> {
         let detail = format!(
             "no segment moves by more than {farthest:.3e} mm: are these metres, {meant:.3} mm?"
         );
-        let warning = Warning::new("plan-units-suspect", detail).with("translation_mm", farthest);
+        let warning = Warning::new(PLAN_UNITS_SUSPECT, detail).with("translation_mm", farthest);
         return Some(warning.with("if_metres_mm", meant));
     }
     None

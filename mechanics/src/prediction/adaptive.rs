@@ -10,6 +10,7 @@
 use std::collections::BTreeMap;
 
 use super::answer::Answer;
+use super::muscle_field::MuscleField;
 use super::nonlinearity;
 use super::numerical_error::{self, NotEstimated, NumericalError};
 use super::refined_scene::NotRefined;
@@ -17,6 +18,7 @@ use super::scene::Scene;
 use super::skin::Skin;
 use super::{Prediction, described};
 use crate::mesh::bisection::{Bisection, HALVES_EVERY_EDGE, NotTetrahedra};
+use crate::mesh::ignored::listed;
 use crate::mesh::{Vector, Warning};
 use crate::model::fem::discretisation_error::{Estimate, Goal, marked};
 use crate::model::fem::linear_system::{LinearSystem, Solved};
@@ -44,6 +46,19 @@ fn more_is_left_out(scene: &Scene, prediction: &Prediction, wanted: &Wanted) -> 
     );
     let warning = Warning::new("tolerance-not-met", detail).with("accepted_mm", accepted);
     (mean > accepted).then(|| warning.with("expected_mm", mean))
+}
+
+/// The warning where muscles around lines pull on a mesh that is refined.
+fn muscles_stay(scene: &Scene) -> Option<Warning> {
+    let pulls = |own: &&MuscleField| own.has_lines && own.is_active(&scene.distributed.inner);
+    let pulling: Vec<&String> =
+        scene.muscles.iter().filter(pulls).map(|muscle| &muscle.name).collect();
+    let detail = format!(
+        "finer cells pull as those of the first mesh, from which they are cut: how coarse the muscles around lines are there ({}) is in \
+         no estimate; a finer mesh of the case tells",
+        listed(&pulling)
+    );
+    (!pulling.is_empty()).then(|| Warning::new("muscles-not-refined", detail))
 }
 
 /// What is accepted, and what it may take.
@@ -309,6 +324,7 @@ pub fn predict_adaptively(
     });
     prediction.warnings.extend((stop != Stop::Met).then(|| not_met(&limits, &levels, stop)));
     prediction.warnings.extend(more_is_left_out(scene, &prediction, wanted));
+    prediction.warnings.extend(finest.is_some().then(|| muscles_stay(scene)).flatten());
     Ok(Adapted { prediction, finest, levels, stop })
 }
 

@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 use super::case::{Case, Load, Plan, RegionNames, Settings};
 use super::element_choice::ElementChoice;
 use super::error_code::SceneErrorCode;
+use super::method::Method;
 use super::problem::Problems;
 use super::scene::Scene;
 use super::skin::{self, Skin};
@@ -18,6 +19,7 @@ use crate::mesh::volume::BoundaryFace;
 use crate::mesh::{ArrayUse, CellShape, Vector, Warning};
 use crate::model::fem::edge_nodes::EdgeNodes;
 use crate::model::fem::loads::{FaceLoad, add_face_load, add_gravity};
+use crate::model::fem::mass_tensor::{Iterations, MassTensorSettings};
 
 /// Regions and the tissues of an image are numbered together with 16 bits.
 const MOST_REGIONS: usize = 1 << 15;
@@ -203,7 +205,14 @@ impl<'a> Check<'a> {
     pub(super) fn method(&mut self, settings: &Settings, plan: &Plan) {
         let method = settings.method.properties();
         let is_quadratic = settings.element == ElementChoice::Quadratic;
-        if settings.contact.is_unilateral() && (!method.knows_contact || is_quadratic) {
+        let is_node_by_node = matches!(
+            settings.method,
+            Method::MassTensorTransverse(MassTensorSettings {
+                iterations: Iterations::Stationary(_)
+            })
+        );
+        let knows_contact = method.knows_contact && !is_quadratic && !is_node_by_node;
+        if settings.contact.is_unilateral() && !knows_contact {
             let who = match is_quadratic {
                 true => "quadratic elements know",
                 false => &format!("{} knows", method.title),

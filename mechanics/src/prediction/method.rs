@@ -35,8 +35,9 @@ pub enum Method {
     MassSpring(MassSpringSettings),
     /// The energy of plain linear tetrahedra, brought to rest as its settings say.
     MassTensor(MassTensorSettings),
-    /// The mass-tensor of tetrahedra with fibres: force = V g_j.C.g_k u, the plain finite element.
-    MassTensorTransverse,
+    /// The mass-tensor of tetrahedra with fibres: force = V g_j.C.g_k u, the plain finite element, brought to rest as its
+    /// settings say.
+    MassTensorTransverse(MassTensorSettings),
     /// The mass-tensor with the full Green strain: Saint Venant-Kirchhoff tetrahedra.
     MassTensorNonlinear,
     /// A lattice of control points over the tissue.
@@ -140,7 +141,7 @@ const FEM_NONLINEAR: MethodProperties = MethodProperties {
     laws: Laws::Any,
     knows_fibres: false,
     expects_fibres: false,
-    knows_membrane: false,
+    knows_membrane: true,
     knows_loads: true,
     knows_inner_stress: true,
     knows_contact: true,
@@ -290,7 +291,7 @@ impl Method {
             Method::FemNonlinear => MethodKind::FemNonlinear,
             Method::MassSpring(_) => MethodKind::MassSpring,
             Method::MassTensor(_) => MethodKind::MassTensor,
-            Method::MassTensorTransverse => MethodKind::MassTensorTransverse,
+            Method::MassTensorTransverse(_) => MethodKind::MassTensorTransverse,
             Method::MassTensorNonlinear => MethodKind::MassTensorNonlinear,
             Method::VolumeSpline(_) => MethodKind::VolumeSpline,
             Method::ThicknessWarp(_) => MethodKind::ThicknessWarp,
@@ -308,7 +309,7 @@ impl Method {
             | Method::FemNonlinear
             | Method::MassSpring(_)
             | Method::MassTensor(_)
-            | Method::MassTensorTransverse
+            | Method::MassTensorTransverse(_)
             | Method::MassTensorNonlinear
             | Method::ThicknessWarp(_) => None,
         }

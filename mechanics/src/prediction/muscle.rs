@@ -15,7 +15,7 @@ use super::error_code::SceneErrorCode;
 use super::fibres::{Course, unit};
 use super::hounsfield::TissueOfCells;
 use super::method::Method;
-use super::muscle_field::{MuscleBody, MuscleField, MuscleTissue};
+use super::muscle_field::{MuscleBody, MuscleField, MuscleTissue, elsewhere};
 use super::muscle_lines::{Lines, PullShare};
 use super::scene::Scene;
 use crate::mesh::ignored::listed;
@@ -27,9 +27,6 @@ use crate::muscle::strap::{Strap, strap_of};
 
 /// Stresses in kPa with which a muscle may pull.
 pub const PULL: RangeInclusive<f64> = 0.0..=10_000.0;
-
-/// Of the volume of a body the share in the tissue below which it may lie elsewhere.
-const MOSTLY: f64 = 0.5;
 
 /// Directions in the cells of a mesh, of any length.
 enum Along<'a> {
@@ -101,7 +98,7 @@ impl<'a> Check<'a> {
                 }
             };
             let field = MuscleField::new(muscle, cells, body);
-            self.warnings.extend(elsewhere(&field, &self.case.volume));
+            self.warnings.extend(body_elsewhere(&field, &self.case.volume));
             fields.push(field);
         }
         fields
@@ -198,7 +195,7 @@ impl<'a> Check<'a> {
         match course.filter(|_| !cells.is_empty()) {
             Some(course) => {
                 let pull = PullShare::new(&course, &self.case.volume, &cells);
-                self.warnings.extend(pull.warning(name));
+                self.warnings.extend(pull.warnings(name));
             }
             None => {
                 let detail = format!(
@@ -280,16 +277,10 @@ impl<'a> Check<'a> {
 }
 
 /// The warning of a body of which little lies in the tissue.
-fn elsewhere(field: &MuscleField, mesh: &VolumeMesh) -> Option<Warning> {
+fn body_elsewhere(field: &MuscleField, mesh: &VolumeMesh) -> Option<Warning> {
     let body = field.body.filter(|_| !field.cells.is_empty())?;
-    let share = field.volume(mesh) / body.enclosed;
-    let detail = format!(
-        "{:.0} % of the volume of muscle {:?} lies in the tissue: are both in the same frame?",
-        100.0 * share,
-        field.name
-    );
-    let warning = Warning::new("muscle-outside", detail).with("share", share);
-    (share < MOSTLY).then_some(warning)
+    let of = format!("the volume of muscle {:?}", field.name);
+    elsewhere(field.volume(mesh) / body.enclosed, &of, "are both in the same frame?")
 }
 
 /// The warning of a broad muscle whose fibres are taken from its boxes.

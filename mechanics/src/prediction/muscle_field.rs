@@ -1,9 +1,9 @@
 //! Muscles on a mesh: the stress of cells for each kPa with which one pulls, how much of them it is, and what all make of the tissue.
 
-use super::case::Muscle;
+use super::case::{Muscle, MuscleCourse};
 use crate::material::mixture::MixingRule;
 use crate::mesh::jacobian::signed_volume;
-use crate::mesh::{Vector, VolumeMesh};
+use crate::mesh::{Vector, VolumeMesh, Warning};
 use crate::model::fem::inner_stress::{CellStress, InnerStress};
 
 /// A muscle, whether it pulls or not.
@@ -14,6 +14,8 @@ pub struct MuscleField {
     pub cells: Vec<CellStress>,
     /// Of a muscle with a surface.
     pub body: Option<MuscleBody>,
+    /// Whether it pulls around polylines.
+    pub has_lines: bool,
     /// Whether its tissue becomes stiffer as it pulls, so that what it does is not in proportion to its stress.
     pub stiffens: bool,
 }
@@ -44,7 +46,14 @@ pub struct MuscleTissue {
 impl MuscleField {
     pub(super) fn new(muscle: &Muscle, cells: Vec<CellStress>, body: Option<MuscleBody>) -> Self {
         let (name, stiffens) = (muscle.name.clone(), muscle.stiffening.is_some());
-        MuscleField { name, cells, body, stiffens }
+        let has_lines = matches!(muscle.course, MuscleCourse::Lines { .. });
+        MuscleField { name, cells, body, has_lines, stiffens }
+    }
+
+    /// Whether it has cells that pull.
+    pub(super) fn is_active(&self, inner: &InnerStress) -> bool {
+        let pulls = |cell: u32| inner.active.get(cell as usize).is_some_and(|s| s.norm() > 0.0);
+        self.cells.iter().any(|own| pulls(own.cell))
     }
 
     /// Of the muscle in the tissue of its mesh, in mm³.
@@ -58,6 +67,15 @@ impl MuscleField {
         inner.pull(cells, &self.cells, stress);
         inner
     }
+}
+
+/// Of a muscle the share in the tissue below which it may lie elsewhere.
+const MOSTLY: f64 = 0.5;
+
+/// The warning of a muscle of which little lies in the tissue, `of` what of it that is told.
+pub(super) fn elsewhere(share: f64, of: &str, question: &str) -> Option<Warning> {
+    let detail = format!("{:.0} % of {of} lies in the tissue: {question}", 100.0 * share);
+    (share < MOSTLY).then(|| Warning::new("muscle-outside", detail).with("share", share))
 }
 
 /// The volume of a muscle in a cell, in mm³.

@@ -6,7 +6,7 @@ use nalgebra::Matrix3;
 use rayon::prelude::*;
 
 use super::fibres::unit;
-use super::muscle_field::muscle_volume;
+use super::muscle_field::{elsewhere, muscle_volume};
 use crate::mesh::refinement::refine;
 use crate::mesh::{Vector, VolumeMesh, Warning};
 use crate::model::fem::inner_stress::CellStress;
@@ -16,24 +16,39 @@ use crate::muscle::lines::FEW_CELLS;
 /// A muscle that pulls by more than this share otherwise than its lines say is told.
 const PULL_OFF: f64 = 0.1;
 
+/// As many points of lines are looked for in the tissue.
+const POINTS: f64 = 200.0;
+
 /// How much of the pull of lines the cells of a mesh carry: int w dV by their quadrature points over what it is in the same tissue
 /// with every edge halved twice.
 pub(super) struct PullShare {
     cells: usize,
     share: f64,
+    /// Of the length of the lines what lies in the tissue, or within a cell of half the size from it.
+    inside: f64,
 }
 
 impl PullShare {
     pub(super) fn new(lines: &Lines, mesh: &VolumeMesh, cells: &[CellStress]) -> Self {
-        let near = lines.tissue_near(mesh);
-        let finer = refine(&refine(&near));
+        let halved = refine(&lines.tissue_near(mesh));
+        let finer = refine(&halved);
         let exact = pull_of(&finer, &lines.cells(&finer));
-        PullShare { cells: cells.len(), share: pull_of(mesh, cells) / exact }
+        let (share, inside) = (pull_of(mesh, cells) / exact, lines.share_inside(&halved));
+        PullShare { cells: cells.len(), share, inside }
     }
 
-    /// Where cells are so few or so coarse that the muscle pulls otherwise than its lines say.
-    pub(super) fn warning(&self, name: &str) -> Option<Warning> {
-        let PullShare { cells, share } = *self;
+    /// Where lines leave the tissue, and where its cells are so few or so coarse that the muscle pulls otherwise than they say.
+    pub(super) fn warnings(&self, name: &str) -> impl Iterator<Item = Warning> + use<> {
+        self.outside(name).into_iter().chain(self.coarse(name))
+    }
+
+    fn outside(&self, name: &str) -> Option<Warning> {
+        let of = format!("the length of the lines of muscle {name:?}");
+        elsewhere(self.inside, &of, "are they in mm, in the frame of the case?")
+    }
+
+    fn coarse(&self, name: &str) -> Option<Warning> {
+        let PullShare { cells, share, .. } = *self;
         if cells >= FEW_CELLS && (share - 1.0).abs() <= PULL_OFF {
             return None;
         }
@@ -90,6 +105,29 @@ impl Lines {
             Some(CellStress { cell: cell as u32, stress })
         };
         (0..mesh.cells.len()).into_par_iter().filter_map(of_cell).collect()
+    }
+
+    /// Of their length the share that is nearer to the middle of a cell than its farthest corner.
+    fn share_inside(&self, mesh: &VolumeMesh) -> f64 {
+        let balls: Vec<(Vector, f64)> = (0..mesh.cells.len())
+            .map(|cell| {
+                let corners: Vec<Vector> = mesh.corners(cell).collect();
+                let middle = corners.iter().sum::<Vector>() / corners.len() as f64;
+                let squared = corners.iter().map(|x| (x - middle).norm_squared());
+                (middle, squared.fold(0.0, f64::max))
+            })
+            .collect();
+        let length: f64 = self.pieces.iter().map(|piece| piece.along.norm()).sum();
+        let mut inside = 0.0;
+        for piece in &self.pieces {
+            let own = piece.along.norm();
+            let points = (POINTS * own / length).ceil();
+            let at = |k: usize| piece.from + piece.along * ((k as f64 + 0.5) / points);
+            let is_in = |x: &Vector| balls.iter().any(|(m, r)| (x - m).norm_squared() <= *r);
+            let there = (0..points as usize).filter(|&k| is_in(&at(k))).count();
+            inside += own / length * there as f64 / points;
+        }
+        inside
     }
 
     /// Whether a cell may have tissue within reach.

@@ -14,6 +14,7 @@ use super::walls::turned_at_second_order;
 use crate::mesh::Vector;
 use crate::model::fem::force_series::{ForceSeries, Forces, Moved};
 use crate::model::fem::linear_system::{Correction, LinearSystem, Residual, Solved};
+use crate::model::fem::mass_tensor::{Iterations, MassTensorSettings};
 use crate::model::problem::{Equilibrium, ModelError};
 use crate::progress::Progress;
 use crate::solver::SolverError;
@@ -64,7 +65,8 @@ pub(super) fn reason_for_none(scene: &Scene) -> Option<NonlinearityUnknown> {
         return Some(NonlinearityUnknown::NotAsked);
     }
     match scene.settings.method {
-        Method::FemLinear | Method::MassTensorTransverse => {
+        Method::FemLinear
+        | Method::MassTensorTransverse(MassTensorSettings { iterations: Iterations::Fast }) => {
             if scene.has_pulling_fibres() {
                 return Some(NonlinearityUnknown::PullingFibres);
             }
@@ -76,6 +78,7 @@ pub(super) fn reason_for_none(scene: &Scene) -> Option<NonlinearityUnknown> {
         }
         Method::MassSpring(_)
         | Method::MassTensor(_)
+        | Method::MassTensorTransverse(_)
         | Method::VolumeSpline(_)
         | Method::ThicknessWarp(_) => Some(NonlinearityUnknown::OtherMethod),
     }

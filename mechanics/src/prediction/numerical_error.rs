@@ -101,8 +101,8 @@ pub(super) fn reason_for_none(scene: &Scene) -> Option<NotEstimated> {
         return Some(NotEstimated::NotAsked);
     }
     match &scene.settings.method {
-        Method::FemLinear | Method::FemNonlinear | Method::MassTensorTransverse => None,
-        Method::MassTensor(own) => match own.iterations {
+        Method::FemLinear | Method::FemNonlinear => None,
+        Method::MassTensor(own) | Method::MassTensorTransverse(own) => match own.iterations {
             Iterations::Fast => None,
             Iterations::Stationary(_) => Some(NotEstimated::NodeByNode),
         },

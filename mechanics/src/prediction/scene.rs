@@ -23,6 +23,7 @@ use crate::model::fem::edge_nodes::EdgeNodes;
 use crate::model::fem::finite_strain::{Elements, FibreField, Finer, FiniteStrain, MeshError};
 use crate::model::fem::inner_stress::InnerStress;
 use crate::model::fem::linear_system::LinearSystem;
+use crate::model::fem::mass_tensor::{Iterations, MassTensorSettings};
 use crate::model::fem::mass_tensor_nonlinear::MassTensors;
 use crate::model::fem::membrane::Membrane;
 use crate::model::fem::{mass_tensor, quadratic};
@@ -169,12 +170,15 @@ impl Scene {
     pub fn solve(&self, progress: &dyn Progress) -> Result<Equilibrium, ModelError> {
         match &self.settings.method {
             // A mass-tensor is the block of two nodes of a plain tetrahedron.
-            Method::FemLinear | Method::MassTensorTransverse => self.solve_linear(progress),
+            Method::FemLinear
+            | Method::MassTensorTransverse(MassTensorSettings { iterations: Iterations::Fast }) => {
+                self.solve_linear(progress)
+            }
             Method::FemNonlinear => Ok(self.solve_at_finite_strain(false, progress)?.0),
             Method::MassSpring(settings) => {
                 mass_spring::solve(&self.problem(), settings, &self.load_case(), progress)
             }
-            Method::MassTensor(settings) => {
+            Method::MassTensor(settings) | Method::MassTensorTransverse(settings) => {
                 let own = self.problem();
                 self.with_states(mass_tensor::solve(&own, settings, &self.load_case(), progress)?)
             }
@@ -223,6 +227,7 @@ impl Scene {
             pressure_of_cell: &self.pressure_of_cell,
             elements,
             fibres: FibreField { of_law: &fibres, of_cell: &self.fibres },
+            membrane: self.membrane.as_ref(),
             inner: Arc::new(self.distributed.inner.clone()),
             holds: &self.conditions.holds,
             tolerance: Tolerance { relative_residual, memory_mb },
@@ -297,7 +302,7 @@ impl Scene {
             Method::FemLinear
             | Method::FemNonlinear
             | Method::MassTensor(_)
-            | Method::MassTensorTransverse
+            | Method::MassTensorTransverse(_)
             | Method::MassTensorNonlinear => {}
         }
         let dilatation = self.tissue().dilatation;

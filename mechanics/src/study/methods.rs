@@ -44,7 +44,7 @@ pub fn of_method(method: MethodKind) -> Vec<Variant> {
             mass_tensor("mtm jacobi", Iteration::Jacobi),
         ],
         MethodKind::MassTensorTransverse => {
-            vec![variant("mtm_ti", Method::MassTensorTransverse)]
+            vec![variant("mtm_ti", Method::MassTensorTransverse(MassTensorSettings::default()))]
         }
         MethodKind::MassTensorNonlinear => {
             // Saint Venant-Kirchhoff tissue gives way where it is pressed: on the ladder to show that.

@@ -1,6 +1,7 @@
 //! Methods side by side on the same scenes: how long each takes, and how far each is from the truth.
 
 mod answer;
+pub mod cell_sizes;
 pub mod constant_map;
 pub mod convergence;
 mod deadline;

@@ -31,6 +31,8 @@ pub struct SceneReport {
     pub name: String,
     pub nodes: usize,
     pub cells: usize,
+    /// Of [`super::cell_sizes`], in mm.
+    pub cell_size: f64,
     pub skin_nodes: usize,
     /// In words, e.g. `tet10 quadratic, every edge halved once, 69 301 unknowns`.
     pub truth: String,

@@ -2,6 +2,7 @@
 
 use super::Stopwatch;
 use super::answer::{Answer, Bench, NoAnswer, Refusal};
+use super::cell_sizes::cell_size;
 use super::error::{DisplacedSkin, Measured};
 use super::failure::StudyError;
 use super::levels::Levels;
@@ -141,6 +142,7 @@ impl<'a> SceneWork<'a> {
             name: self.scene.name.clone(),
             nodes: self.scene.case.volume.nodes.len(),
             cells: self.scene.case.volume.cells.len(),
+            cell_size: cell_size(&self.scene.case.volume),
             skin_nodes: skins.iter().flatten().map(|skin| skin.nodes().len()).next().unwrap_or(0),
             truth: of_scan.about.unwrap_or(truths.words),
             truth_error_mm: truths.error_mm,

@@ -11,6 +11,7 @@ use super::correspondence::corresponding_points;
 use super::distance::signed_distances;
 use super::error::ComparisonError;
 use super::histogram::{Histograms, histograms};
+use super::inverse_distance::inverse_distance_map;
 use super::landmark_errors::{LandmarkError, landmark_errors};
 use super::region::{MovedSurface, Region, region_statistics};
 use super::statistics::Statistics;
@@ -83,6 +84,10 @@ pub struct Comparison {
     pub node_wise: Option<NodeWiseStatistics>,
     /// By thin-plate spline and closest point; absent where the landmarks do not allow it.
     pub warped: Option<WarpedStatistics>,
+    /// At each point of the prediction: the distance to its corresponding point, where there are such.
+    pub node_errors: Option<Vec<f64>>,
+    /// At each point of the prediction: the distances of the landmarks, by inverse distance; none without landmarks.
+    pub landmark_map: Option<Vec<f64>>,
     pub landmark_errors: BTreeMap<String, LandmarkError>,
     pub histograms: Option<Histograms>,
     /// At each point of the prediction; positive where it lies outside the actual surface.
@@ -124,9 +129,13 @@ pub fn compare(
         MovedSurface { surface: prediction, displacement: settings.displacement.as_deref() };
     let regions = region_statistics(moved, &measured, &settings.regions, &mut warnings)?;
     let coverage = measured.coverage(&mut warnings)?;
-    let node_wise = node_wise(prediction, &aligned_actual, settings.node_wise)?;
+    let node_errors = node_errors(prediction, &aligned_actual, settings.node_wise)?;
+    let of_nodes = node_errors.as_deref().map(|errors| node_wise(prediction, errors));
+    let node_wise = of_nodes.transpose()?;
     let transform = &alignment.transform;
     let landmarks = landmark_errors(&settings.landmarks, transform);
+    let landmark_map =
+        inverse_distance_map(&at_landmarks(settings, &landmarks), &prediction.points);
     let warped = warped(&pair, &settings.landmarks, transform, &mut warnings)?;
 
     // 5. Whether this is the scan that is meant.
@@ -143,6 +152,8 @@ pub fn compare(
         coverage,
         node_wise,
         warped,
+        node_errors,
+        landmark_map,
         landmark_errors: landmarks,
         histograms: histograms(&measured, &settings.histogram_edges),
         signed_distance: signed_distances(&prediction.points, &pair.actual_search),
@@ -151,11 +162,21 @@ pub fn compare(
     })
 }
 
-fn node_wise(
+/// Where the prediction has the landmarks, and how far off each is.
+fn at_landmarks(
+    settings: &ComparisonSettings,
+    errors: &BTreeMap<String, LandmarkError>,
+) -> Vec<(Vector, f64)> {
+    let pairs = settings.landmarks.iter();
+    pairs.filter_map(|(name, pair)| Some((pair.prediction, errors.get(name)?.distance))).collect()
+}
+
+/// Distances between corresponding points.
+fn node_errors(
     prediction: &TriangleSurface,
     actual: &TriangleSurface,
     wanted: NodeWise,
-) -> Result<Option<NodeWiseStatistics>, ComparisonError> {
+) -> Result<Option<Vec<f64>>, ComparisonError> {
     if wanted == NodeWise::Off {
         return Ok(None);
     }
@@ -168,14 +189,16 @@ fn node_wise(
             NodeWise::Auto | NodeWise::Off => Ok(None),
         };
     };
-    let distances: Vec<f64> = prediction
-        .points
-        .iter()
-        .zip(pairs)
-        .map(|(point, other)| (point - actual.points[other]).norm())
-        .collect();
-    Ok(Some(NodeWiseStatistics {
-        nodes: Statistics::plain(&distances)?,
-        area: Statistics::weighted(&distances, &prediction.point_areas())?,
-    }))
+    let points = prediction.points.iter().zip(pairs);
+    Ok(Some(points.map(|(point, other)| (point - actual.points[other]).norm()).collect()))
+}
+
+fn node_wise(
+    prediction: &TriangleSurface,
+    errors: &[f64],
+) -> Result<NodeWiseStatistics, ComparisonError> {
+    Ok(NodeWiseStatistics {
+        nodes: Statistics::plain(errors)?,
+        area: Statistics::weighted(errors, &prediction.point_areas())?,
+    })
 }

@@ -8,6 +8,7 @@ mod correspondence;
 pub mod distance;
 mod error;
 pub mod histogram;
+mod inverse_distance;
 mod landmark_errors;
 pub mod penetration;
 mod region;

@@ -2,6 +2,7 @@
 
 use mechanics::mesh::half_head::half_head;
 use mechanics::mesh::{CellShape, Vector, VolumeMesh, sample};
+use mechanics::model::fem::mass_tensor::MassTensorSettings;
 use mechanics::optimisation::{Goal, Question, SegmentBounds, SkinPoint, Target, optimise};
 use mechanics::plan::RigidMovement;
 use mechanics::prediction::{
@@ -235,7 +236,8 @@ fn a_response_of_tensors_for_tissue_with_fibres_is_that_of_plain_tetrahedra() {
         let settings = Settings { method, element, ..tight() };
         columns(&block(CellShape::Tet4), &settings).values
     };
-    let tensors = of(Method::MassTensorTransverse, ElementChoice::Auto);
+    let tensors =
+        of(Method::MassTensorTransverse(MassTensorSettings::default()), ElementChoice::Auto);
     assert_eq!(tensors, of(Method::FemLinear, ElementChoice::Plain));
 }
 

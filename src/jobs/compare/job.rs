@@ -18,8 +18,9 @@ use crate::schema::predict::document::OutputName;
 use crate::schema::predict::output::PictureName;
 use crate::schema::predict::result::ResultDocument;
 use crate::schema::{Faults, Language, Limits, Pointer};
+use mechanics::chart::colour::{Rgb, signed};
 use mechanics::format::vtk::vtp;
-use mechanics::format::{ArrayValues, NamedValues, SurfaceOutput};
+use mechanics::format::{ArrayValues, ColourScale, NamedValues, SurfaceOutput, glb, ply};
 use mechanics::mesh::{Frame, TriangleSurface};
 use mechanics::progress::{Phase, Progress, Unobserved};
 
@@ -47,7 +48,7 @@ pub fn compare_job(
         queue_s: input.queue_s,
     };
     let mut folder = ResultFolder::open(place.out)?;
-    folder.add(OutputName::SkinVtp, &encode_distances(&surface, &compared, origin.frame)?)?;
+    write_maps(&mut folder, &surface, &compared, (origin.frame, input.spec.range_mm))?;
     let warnings =
         prediction.warnings.iter().chain(&meshes.actual.warnings).chain(&compared.warnings);
     let provenance = origin.provenance(&clock);
@@ -118,6 +119,7 @@ impl CompareInput {
         let facts = ComparisonFacts {
             surface: &surface,
             signed_distance: &compared.signed_distance,
+            range_mm: self.spec.range_mm,
             frame: frame.unwrap_or_default(),
             comparison: result.comparison.as_ref().unwrap_or(&compared.document),
             result,
@@ -126,14 +128,30 @@ impl CompareInput {
     }
 }
 
-/// `skin.vtp` of a comparison: the prediction with its distance at each point.
-fn encode_distances(
+/// `skin.vtp`: the prediction with its distances at each point; with a range `skin.ply` and `skin.glb` too, in its colours.
+fn write_maps(
+    folder: &mut ResultFolder,
     surface: &TriangleSurface,
     compared: &Compared,
-    frame: Frame,
-) -> Result<Vec<u8>, JobError> {
+    (frame, range_mm): (Frame, Option<f64>),
+) -> Result<(), JobError> {
     let mut output = SurfaceOutput::plain(surface, frame);
-    let values = ArrayValues::Reals(&compared.signed_distance);
-    output.point_arrays = vec![NamedValues { name: "signed_distance_mm", values }];
-    Ok(vtp::write(&output)?)
+    let arrays = [
+        ("signed_distance_mm", Some(&compared.signed_distance)),
+        ("node_error_mm", compared.node_errors.as_ref()),
+        ("landmark_error_mm", compared.landmark_map.as_ref()),
+    ];
+    let known = arrays.into_iter().filter_map(|(name, values)| Some((name, values?)));
+    output.point_arrays = known
+        .map(|(name, values)| NamedValues { name, values: ArrayValues::Reals(values) })
+        .collect();
+    folder.add(OutputName::SkinVtp, &vtp::write(&output)?)?;
+    let Some(range) = range_mm else { return Ok(()) };
+    let colour = |distance: &f64| signed(0.5 + 0.5 * distance / range);
+    let colours: Vec<Rgb> = compared.signed_distance.iter().map(colour).collect();
+    output.colours = Some(&colours);
+    let array = "signed_distance_mm";
+    output.colour_scale = Some(ColourScale { array, low: -range, high: range });
+    folder.add(OutputName::SkinPly, &ply::write(&output)?)?;
+    folder.add(OutputName::SkinGlb, &glb::write(&output)?)
 }

@@ -27,6 +27,9 @@ pub struct Compared {
     pub document: ComparisonDocument,
     /// At each point of the prediction in mm, positive outside the actual surface.
     pub signed_distance: Vec<f64>,
+    /// As in [`Comparison`].
+    pub node_errors: Option<Vec<f64>>,
+    pub landmark_map: Option<Vec<f64>>,
     pub warnings: Vec<Warning>,
 }
 
@@ -53,12 +56,10 @@ impl Pair<'_> {
         let actual = surface_of(&self.meshes.actual, &self.at.key("actual").key("mesh"))?;
         let comparison = compare(self.prediction, &actual, &settings, clock)
             .map_err(|error| self.judge(error, clock))?;
-        let Comparison { signed_distance, warnings, .. } = &comparison;
-        Ok(Compared {
-            document: ComparisonDocument::new(&comparison, spec.samples_per_mm2),
-            signed_distance: signed_distance.clone(),
-            warnings: warnings.clone(),
-        })
+        let mut document = ComparisonDocument::new(&comparison, spec.samples_per_mm2);
+        document.acquisition = spec.acquisition.clone();
+        let Comparison { signed_distance, node_errors, landmark_map, warnings, .. } = comparison;
+        Ok(Compared { document, signed_distance, node_errors, landmark_map, warnings })
     }
 
     /// The settings of a spec that was checked.

@@ -7,7 +7,9 @@ use super::targets::PreparedOptimisation;
 use crate::jobs::clock::Observed;
 use crate::jobs::failure::JobError;
 use crate::jobs::output::{JobOutput, Workplace};
-use crate::jobs::predict::{PredictInput, Predicted, Prepared, bones_file, statistics};
+use crate::jobs::predict::{
+    PredictInput, Predicted, Prepared, bones_file, gaps_picture, statistics,
+};
 use crate::jobs::report::{PredictionFacts, write_reports};
 use crate::jobs::result::folder::ResultFolder;
 use crate::jobs::result::pictures::displacement_picture;
@@ -21,6 +23,7 @@ use crate::schema::predict::document::OutputName;
 use crate::schema::predict::result::{ResultDocument, SolverDocument};
 use mechanics::mesh::{Vector, Warning};
 use mechanics::optimisation::{Question, optimise};
+use mechanics::plan::doubt::PLAN_UNITS_SUSPECT;
 use mechanics::prediction::{Prediction, predict};
 use mechanics::progress::{Phase, Progress};
 use mechanics::response::{
@@ -65,6 +68,8 @@ pub fn optimise_job(
     planned.spec_hash = prepared.spec_hash;
     planned.inputs = prepared.rest.inputs;
     planned.warnings.extend(prepared.warnings);
+    // No number of the plan was stated.
+    planned.scene.warnings.retain(|own| own.code != PLAN_UNITS_SUSPECT);
     if !input.spec.verify {
         return found.publish(&prediction, planned, &clock, place);
     }
@@ -174,6 +179,10 @@ impl Found {
         for name in input.files() {
             let bytes = match name {
                 OutputName::BonesVtp => bones_file(&planned.case, scene, &field_data)?,
+                OutputName::GapsSvg => match gaps_picture(&planned.case, scene)? {
+                    Some(picture) => picture.into_bytes(),
+                    None => continue,
+                },
                 OutputName::ClassesSvg => planned.classes_picture()?.into_bytes(),
                 OutputName::DisplacementSvg => {
                     let numbers = &statistics.skin.nodes;

@@ -136,7 +136,7 @@ impl PredictInput {
         let has_bones = !self.case.bones.is_empty();
         files.retain(|name| match name {
             OutputName::ResultJson => false,
-            OutputName::BonesVtp => has_bones,
+            OutputName::BonesVtp | OutputName::GapsSvg => has_bones,
             _ => true,
         });
         files

@@ -20,5 +20,5 @@ pub use check::{CheckReport, check};
 pub use input::{PredictInput, Prepared};
 pub use job::predict_job;
 pub use made::check_made;
-pub use overlap::bones_file;
+pub use overlap::{bones_file, gaps_picture};
 pub use publish::{Predicted, statistics};

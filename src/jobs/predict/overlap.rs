@@ -1,7 +1,9 @@
 //! Overlap of surfaces under a plan: warned of, since nothing in the model stops it.
 
+use crate::jobs::result::pictures::upright;
 use crate::jobs::result::tissue::encode_bones;
 use crate::schema::predict::planned::{BoneContactDocument, CollisionDocument, OverlapDocument};
+use mechanics::chart::{GapsOfBone, GapsPicture, PngError};
 use mechanics::format::WriteError;
 use mechanics::mesh::{SurfaceSearch, TriangleSurface, Vector, Warning};
 use mechanics::plan::RigidMovement;
@@ -54,6 +56,46 @@ pub fn bones_file(
     encode_bones(case, scene, planned_gaps(case, scene).as_deref(), field_data)
 }
 
+/// `gaps.svg`: bones that the plan moves against each other and that come near, before and as planned. `None` where there are
+/// none.
+pub fn gaps_picture(case: &Case, scene: &Scene) -> Result<Option<String>, PngError> {
+    let bones = planned_bones(case, scene);
+    let stages = bones.iter().map(|bone| {
+        let against: Vec<&PlannedBone> =
+            bones.iter().filter(|other| other.movement != bone.movement).collect();
+        let rest = bone.nearest(&against, &|_| RigidMovement::default());
+        let planned =
+            bone.nearest(&against, &|other| bone.movement.then(&other.movement.inverse()));
+        (rest, bone.moved_by(&bone.movement), planned)
+    });
+    let stages: Vec<(Vec<f64>, Vec<Vector>, Vec<f64>)> = stages.collect();
+    let is_near = |gaps: &[f64]| gaps.iter().any(|gap| *gap < FARTHEST_GAP);
+    let shown = bones
+        .iter()
+        .zip(&stages)
+        .filter(|(_, (rest, _, planned))| is_near(rest) || is_near(planned));
+    let shown: Vec<GapsOfBone> = shown
+        .map(|(bone, (rest, moved, planned))| GapsOfBone {
+            name: bone.name,
+            triangles: &bone.surface.triangles,
+            stages: [(&bone.surface.points, rest), (moved, planned)],
+        })
+        .collect();
+    if shown.is_empty() {
+        return Ok(None);
+    }
+    let moving = scene.segments.iter().filter(|segment| segment.movement != Default::default());
+    let names: Vec<&str> = moving.map(|segment| segment.name.as_str()).collect();
+    let picture = GapsPicture {
+        title: "How bones meet",
+        subtitle: &format!("moved: {}", names.join(", ")),
+        bones: &shown,
+        outlook: upright(case.frame, &scene.skin.surface),
+        frame: case.frame.name(),
+    };
+    picture.to_svg().map(Some)
+}
+
 /// For each point of each bone that has a surface, as planned, the signed distance from the nearest bone that the plan
 /// moves against it, in mm, negative inside; [`FARTHEST_GAP`] where none is as near. `None` where no bone moves against
 /// another.
@@ -62,19 +104,14 @@ fn planned_gaps(case: &Case, scene: &Scene) -> Option<Vec<f64>> {
     let mut all = Vec::new();
     let mut has_pair = false;
     for bone in case.bones.iter().filter(|bone| case.surfaces.contains_key(&bone.surface)) {
-        let mut nearest = vec![FARTHEST_GAP; case.surfaces[&bone.surface].points.len()];
-        let own = bones.iter().find(|own| own.name == bone.name);
-        for (own, other) in own.iter().flat_map(|own| bones.iter().map(move |other| (own, other))) {
-            if other.movement == own.movement {
-                continue;
-            }
-            has_pair = true;
-            let points = own.moved_by(&own.movement.then(&other.movement.inverse()));
-            let against = TriangleSurface { points, ..own.surface.clone() };
-            let found = gaps(&against, &other.search, FARTHEST_GAP);
-            nearest.iter_mut().zip(found).for_each(|(least, gap)| *least = least.min(gap));
-        }
-        all.extend(nearest);
+        let Some(own) = bones.iter().find(|own| own.name == bone.name) else {
+            all.extend(vec![FARTHEST_GAP; case.surfaces[&bone.surface].points.len()]);
+            continue;
+        };
+        let against: Vec<&PlannedBone> =
+            bones.iter().filter(|other| other.movement != own.movement).collect();
+        has_pair = has_pair || !against.is_empty();
+        all.extend(own.nearest(&against, &|other| own.movement.then(&other.movement.inverse())));
     }
     has_pair.then_some(all)
 }
@@ -143,6 +180,26 @@ fn moved_pairs<'b, 'a>(
 }
 
 impl PlannedBone<'_> {
+    /// The gap of each of its points, moved so against the other bone, which stays where its search was prepared.
+    fn gaps_to(&self, other: &PlannedBone, relative: &RigidMovement) -> Vec<f64> {
+        let against = TriangleSurface { points: self.moved_by(relative), ..self.surface.clone() };
+        gaps(&against, &other.search, FARTHEST_GAP)
+    }
+
+    /// The least gap of each of its points to several others, [`FARTHEST_GAP`] where none is as near.
+    fn nearest(
+        &self,
+        others: &[&PlannedBone],
+        relative: &dyn Fn(&PlannedBone) -> RigidMovement,
+    ) -> Vec<f64> {
+        let mut nearest = vec![FARTHEST_GAP; self.surface.points.len()];
+        for other in others {
+            let found = self.gaps_to(other, &relative(other));
+            nearest.iter_mut().zip(found).for_each(|(least, gap)| *least = least.min(gap));
+        }
+        nearest
+    }
+
     fn collision(&self, other: &PlannedBone) -> Option<Collision> {
         let (there, back) = (self.reach_into(other), other.reach_into(self));
         let depth =

@@ -6,8 +6,11 @@ use crate::jobs::head::{Bone, Head, Skin};
 use crate::schema::CaseDocument;
 use crate::schema::predict::planned::{MeasureDocument, MovementReportDocument, SymmetryDocument};
 use mechanics::cephalometry::Landmarks;
-use mechanics::mesh::{Frame, Vector, Warning};
+use mechanics::mesh::{Frame, Vector, VolumeMesh, Warning};
 use mechanics::prediction::{Case, Scene};
+
+/// Landmarks of a head lie farther apart: what does not is in metres.
+const CROWDED_MM: f64 = 1.0;
 
 type Places = BTreeMap<String, Vector>;
 
@@ -42,15 +45,41 @@ pub fn in_numbers(
     InNumbers { measures: head.measures(), symmetry: head.symmetry() }
 }
 
-/// A warning for each pair of landmarks of bone whose sides look swapped.
-pub fn swapped_sides(document: &CaseDocument, frame: Frame) -> Vec<Warning> {
+/// Landmarks of bone that something speaks against: sides that look swapped, places and extents that no head has beside this mesh.
+pub fn doubtful_landmarks(document: &CaseDocument, case: &Case) -> Vec<Warning> {
     let landmarks = Bone::before(&document.bone_landmarks).before;
-    let swapped = Landmarks(&landmarks).swapped_sides(frame).into_iter();
-    swapped
-        .map(|swapped| {
-            Warning::new("landmarks-swapped", swapped.to_string()).with("by_mm", swapped.by)
-        })
-        .collect()
+    let swapped = Landmarks(&landmarks).swapped_sides(case.frame).into_iter();
+    let swapped = swapped.map(|swapped| {
+        Warning::new("landmarks-swapped", swapped.to_string()).with("by_mm", swapped.by)
+    });
+    swapped.chain(elsewhere(&landmarks, &case.volume)).chain(crowded(&landmarks)).collect()
+}
+
+/// Landmarks farther from the box of the mesh than half its diagonal.
+fn elsewhere(landmarks: &Places, mesh: &VolumeMesh) -> Vec<Warning> {
+    let [low, high] = mesh.bounds();
+    let away = |at: &Vector| (at - at.sup(&low).inf(&high)).norm();
+    let far = landmarks.iter().filter(|(_, at)| away(at) > 0.5 * (high - low).norm());
+    far.map(|(name, at)| {
+        let detail = format!(
+            "landmark {name:?} of bone lies {:.0} mm from the box of the mesh: is it in mm, in the frame of the case?",
+            away(at)
+        );
+        Warning::new("landmark-far", detail).with("distance_mm", away(at))
+    })
+    .collect()
+}
+
+/// Several landmarks of bone within a millimetre.
+fn crowded(landmarks: &Places) -> Option<Warning> {
+    let first = landmarks.values().next().filter(|_| landmarks.len() > 1)?;
+    let extent = landmarks.values().map(|at| (at - first).norm()).fold(0.0, f64::max);
+    let detail = format!(
+        "all {} landmarks of bone lie within {extent:.3} mm: positions are in mm",
+        landmarks.len()
+    );
+    (extent < CROWDED_MM)
+        .then(|| Warning::new("landmarks-crowded", detail).with("extent_mm", extent))
 }
 
 /// Landmarks where they are predicted.

@@ -8,8 +8,8 @@ use super::comparison::compare_skin;
 use super::correction::{CORRECTED_FILE, Correction, corrected};
 use super::density::default_density;
 use super::input::{PredictInput, Prepared};
-use super::overlap::{Collision, bones_file, collisions, through_skin};
-use super::planned::{in_numbers, swapped_sides};
+use super::overlap::{Collision, bones_file, collisions, gaps_picture, through_skin};
+use super::planned::{doubtful_landmarks, in_numbers};
 use crate::jobs::clock::Observed;
 use crate::jobs::failure::JobError;
 use crate::jobs::output::{JobOutput, MadeMesh};
@@ -96,7 +96,7 @@ impl Predicted {
         let (case, scene) = (&prepared.case, &prepared.scene);
         warnings.extend(collisions(case, scene).iter().filter_map(Collision::warning));
         warnings.extend(through_skin(case, scene, &prediction));
-        warnings.extend(swapped_sides(&input.case, case.frame));
+        warnings.extend(doubtful_landmarks(&input.case, case));
         warnings.extend(default_density(input));
         if let Some(compared) = &compared {
             skin.signed_distance = Some(compared.signed_distance.clone());
@@ -208,6 +208,10 @@ impl Finished<'_> {
             let bytes = match name {
                 OutputName::VolumeVtu => encode_volume(scene, self.prediction, frame, &field_data)?,
                 OutputName::BonesVtp => bones_file(&self.prepared.case, scene, &field_data)?,
+                OutputName::GapsSvg => match gaps_picture(&self.prepared.case, scene)? {
+                    Some(picture) => picture.into_bytes(),
+                    None => continue,
+                },
                 OutputName::ClassesSvg => self.prepared.classes_picture()?.into_bytes(),
                 OutputName::DisplacementSvg => {
                     let numbers = &self.statistics.skin.nodes;
@@ -255,6 +259,7 @@ impl Finished<'_> {
             provenance.why = Some(adequacy.why());
         }
         provenance.laws = laws(&self.prepared.case, &self.prepared.scene);
+        provenance.acquisition = input.case.acquisition.clone();
         provenance.presets = presets(&input.case, input.spec.materials.as_ref());
         let warnings = warnings_after(&self.prepared.told, self.warnings.iter());
         let Prepared { case, scene, .. } = self.prepared;

@@ -11,7 +11,7 @@ use crate::schema::Language;
 use crate::schema::compare::result::{ComparisonDocument, DistanceDocument};
 use crate::schema::predict::result::ResultDocument;
 
-/// Where colours of signed distances end, in mm.
+/// Where colours of signed distances end, in mm, unless the spec says.
 const RANGE_MM: f64 = 2.0;
 
 /// Two surfaces and how far one is from the other.
@@ -19,6 +19,8 @@ pub struct ComparisonFacts<'a> {
     pub surface: &'a TriangleSurface,
     /// At each of its points in mm, positive where it lies outside the actual surface.
     pub signed_distance: &'a [f64],
+    /// Where colours end, as the spec says.
+    pub range_mm: Option<f64>,
     pub frame: Frame,
     pub comparison: &'a ComparisonDocument,
     pub result: &'a ResultDocument,
@@ -45,9 +47,10 @@ pub fn comparison_report(facts: &ComparisonFacts, language: Language) -> Result<
 }
 
 fn views(facts: &ComparisonFacts, words: &Words) -> Result<Section, PngError> {
+    let range_mm = facts.range_mm.unwrap_or(RANGE_MM);
     let values = ViewValues {
         values: facts.signed_distance,
-        range_mm: RANGE_MM,
+        range_mm,
         is_signed: true,
         name: words.distance_mm,
     };
@@ -59,7 +62,7 @@ fn views(facts: &ComparisonFacts, words: &Words) -> Result<Section, PngError> {
         outlook: outlook(facts.frame, facts.surface),
         columns: words.columns,
     };
-    let caption = filled(words.outside, &[format!("{RANGE_MM}")]);
+    let caption = filled(words.outside, &[format!("{range_mm}")]);
     let title = words.comparison.to_owned();
     let figure = Figure { drawing: picture.to_drawing()?, title, caption };
     Ok(Section::new(words.comparison, vec![Block::Figure(figure)]))

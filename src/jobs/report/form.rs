@@ -27,6 +27,7 @@ impl ReportForm {
             | OutputName::BonesVtp
             | OutputName::ClassesSvg
             | OutputName::DisplacementSvg
+            | OutputName::GapsSvg
             | OutputName::ResultJson => None,
         }
     }

@@ -7,22 +7,25 @@ use super::content::{Block, Figure, Report, Section, Table};
 /// No scripts, nothing from elsewhere.
 const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; img-src data:";
 
+/// The colours of the page, of which a report has the light ones: it is paper.
+const PALETTE: &str = include_str!("../../../web/dist/assets/palette.css");
+
 const STYLE: &str = "
 @page { size: A4; margin: 13mm 14mm; }
 * { box-sizing: border-box; }
-body { font: 10.5pt/1.4 Helvetica, Arial, 'Liberation Sans', sans-serif; color: #22262b; background: #fff;
+body { font: 10.5pt/1.4 Helvetica, Arial, 'Liberation Sans', sans-serif; color: var(--ink); background: var(--card);
   max-width: 190mm; margin: 0 auto; padding: 1rem; overflow-wrap: anywhere; }
 h1 { font-size: 1.7em; margin: 0; } h2 { font-size: 1.15em; margin: 1.1em 0 0.3em; }
-p { margin: 0.3em 0; } .subtitle { color: #4d555e; }
-.notice { border: 1px solid #8a4b00; background: #fff6e9; color: #6b3a00; padding: 0.25em 0.6em; font-weight: bold; }
+p { margin: 0.3em 0; } .subtitle { color: var(--soft); }
+.notice { border: 1px solid var(--warn-ink); background: var(--warn-ground); color: var(--warn-ink); padding: 0.25em 0.6em; font-weight: bold; }
 figure { margin: 0.5em 0; } figure svg { width: 100%; height: auto; display: block; }
-figcaption { color: #4d555e; font-size: 0.9em; }
+figcaption { color: var(--soft); font-size: 0.9em; }
 .wide { overflow-x: auto; }
 table { border-collapse: collapse; width: 100%; font-variant-numeric: tabular-nums; font-size: 0.93em; }
-th, td { text-align: right; padding: 0.15em 0.4em; border-bottom: 1px solid #dfe2e6; vertical-align: top; }
+th, td { text-align: right; padding: 0.15em 0.4em; border-bottom: 1px solid var(--line); vertical-align: top; }
 th, td { overflow-wrap: normal; } .facts td { overflow-wrap: anywhere; }
-th:first-child, td:first-child, .facts td { text-align: left; } thead th { border-bottom: 1px solid #6b737d; }
-tbody th { font-weight: normal; } .facts th { width: 26%; color: #4d555e; }
+th:first-child, td:first-child, .facts td { text-align: left; } thead th { border-bottom: 1px solid var(--soft); }
+tbody th { font-weight: normal; } .facts th { width: 26%; color: var(--soft); }
 ul { margin: 0.2em 0; padding-left: 1.3em; }
 @media print { body { font-size: 8.6pt; line-height: 1.3; padding: 0; max-width: none; }
   .page { break-before: page; } figure, tr { break-inside: avoid; } h2 { break-after: avoid; margin-top: 0.8em; }
@@ -34,9 +37,9 @@ pub fn html(report: &Report) -> String {
         [&report.title, &report.subtitle, &report.notice].map(|words| escaped(words));
     let sections: String = report.sections.iter().map(section).collect();
     format!(
-        "<!doctype html>\n<html lang=\"{}\">\n<head>\n<meta charset=\"utf-8\">\n<title>{title}</title>\n\
+        "<!doctype html>\n<html lang=\"{}\" data-theme=\"light\">\n<head>\n<meta charset=\"utf-8\">\n<title>{title}</title>\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
-         <meta http-equiv=\"Content-Security-Policy\" content=\"{POLICY}\">\n<style>{STYLE}</style>\n</head>\n<body>\n\
+         <meta http-equiv=\"Content-Security-Policy\" content=\"{POLICY}\">\n<style>{PALETTE}{STYLE}</style>\n</head>\n<body>\n\
          <header>\n<h1>{title}</h1>\n<p class=\"subtitle\">{subtitle}</p>\n<p class=\"notice\">{notice}</p>\n</header>\n\
          <main>\n{sections}</main>\n<footer><p class=\"notice\">{notice}</p></footer>\n</body>\n</html>\n",
         report.language.tag()

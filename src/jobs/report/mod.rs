@@ -5,6 +5,7 @@ mod content;
 mod directions;
 mod form;
 mod html;
+mod method;
 mod pages;
 mod prediction;
 mod study;

@@ -1,5 +1,6 @@
 //! A report as pages of A4, which are written as PDF.
 
+use mechanics::chart::colour::{GRID, WARN_INK};
 use mechanics::chart::drawing::{Document, Place, Run, Style};
 use mechanics::chart::helvetica::lines;
 use mechanics::chart::pdf::{About, pdf as written};
@@ -17,7 +18,6 @@ const SIZE: f64 = 8.6;
 const LINE: f64 = 11.2;
 /// Room of a table's first column, and of that of facts, of all.
 const FIRST: f64 = 0.26;
-const GRID: &str = "#dfe2e6";
 
 pub fn pdf(report: Report) -> Vec<u8> {
     let Report { language, title, subtitle, notice, sections } = report;
@@ -26,7 +26,7 @@ pub fn pdf(report: Report) -> Vec<u8> {
     pages.page.text([MARGIN, pages.y], ROOM, Style::of(18.0).bold(), &title);
     pages.y += 17.0;
     pages.sentence(&subtitle, Style::of(SIZE).faint(), 0.0);
-    pages.sentence(&notice, Style::of(SIZE).bold().coloured("#6b3a00"), 0.0);
+    pages.sentence(&notice, Style::of(SIZE).bold().coloured(WARN_INK), 0.0);
     sections.into_iter().for_each(|section| pages.section(section));
     let mut all = pages.done;
     all.push(pages.page);

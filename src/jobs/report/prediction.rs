@@ -11,6 +11,7 @@ use super::comparison::distance_table;
 use super::content::{Block, Figure, Report, Section, Table};
 use super::directions::{directions, motion};
 use super::form::ReportForm;
+use super::method::{how_sure, method};
 use super::tables::{
     MOST, mm, number_or_dash, provenance, report, shortened, signed, texts, warnings,
 };
@@ -49,7 +50,7 @@ pub fn prediction_report(facts: &PredictionFacts, language: Language) -> Result<
     sections.extend(compared.map(|table| Section::new(own.comparison, vec![Block::Table(table)])));
     sections.push(how_sure(result, own));
     sections.push(warnings(&result.warnings, own));
-    sections.push(method(result, own));
+    sections.push(method(result, facts.plan, own));
     sections.push(provenance(result, own));
     let title = if result.optimisation.is_some() { own.found_plan } else { own.prediction };
     let case = facts.case.name.as_deref().unwrap_or("–");
@@ -126,16 +127,32 @@ fn centre(scene: &Scene, segment: u32) -> Vector {
 
 /// What a plan does that moves no bone.
 fn beside_bone(plan: &PlanDocument, words: &Words) -> Option<String> {
-    let counts = [
-        (words.growth, plan.growth.len()),
-        (words.activation, plan.activations.len()),
-        (words.loads, plan.loads.len()),
-        (words.prescribed, plan.prescribed.len()),
-    ];
-    let told = counts.iter().filter(|(_, count)| *count > 0);
-    let told: Vec<String> =
-        told.map(|(sentence, count)| filled(sentence, &[count.to_string()])).collect();
+    let plain = |name: &str| match name {
+        "*" => words.all_tissue.to_owned(),
+        named => named.replace('_', " "),
+    };
+    let grows = plan.growth.iter().map(|own| {
+        let percent = format!("{:+}", rounded(100.0 * own.volume_change));
+        filled(words.growth, &[plain(&own.region), percent])
+    });
+    let pulls = plan.activations.iter().filter(|own| own.stress_kpa > 0.0).map(|own| {
+        filled(words.activation, &[plain(&own.muscle), rounded(own.stress_kpa).to_string()])
+    });
+    let mut told: Vec<String> = grows.chain(pulls).collect();
+    if told.len() > MOST {
+        let left = told.len() - MOST;
+        told.truncate(MOST);
+        told.push(filled(words.more, &[left.to_string()]));
+    }
+    let counts = [(words.loads, plan.loads.len()), (words.prescribed, plan.prescribed.len())];
+    let counts = counts.iter().filter(|(_, count)| *count > 0);
+    told.extend(counts.map(|(sentence, count)| filled(sentence, &[count.to_string()])));
     (!told.is_empty()).then(|| format!("{}: {}.", words.beside_bone, told.join(", ")))
+}
+
+/// To two decimals.
+fn rounded(value: f64) -> f64 {
+    (100.0 * value).round() / 100.0
 }
 
 fn views(facts: &PredictionFacts, words: &Words) -> Result<Section, PngError> {
@@ -229,38 +246,4 @@ fn measures(measures: &[MeasureDocument], words: &Words) -> Option<Section> {
     let columns = [words.measure, words.before, words.planned, words.change];
     let table = Table { columns: texts(columns), rows: shortened(rows, MOST, words) };
     (!measures.is_empty()).then(|| Section::new(words.head, vec![Block::Table(table)]))
-}
-
-fn how_sure(result: &ResultDocument, words: &Words) -> Section {
-    let mut sentences = Vec::new();
-    let unknown =
-        |sentence: &str, why: &Option<String>| why.as_ref().map(|why| format!("{sentence} {why}."));
-    match &result.numerical_error_mm {
-        Some(own) => sentences.push(filled(words.mesh_error, &[mm(own.mean), mm(own.p95)])),
-        None => sentences.extend(unknown(words.mesh_unknown, &result.numerical_error_unknown)),
-    }
-    match &result.nonlinearity_mm {
-        Some(own) => {
-            sentences.push(filled(words.model_error, &[mm(own.skin.mean), mm(own.skin.p95)]));
-        }
-        None => sentences.extend(unknown(words.model_unknown, &result.nonlinearity_unknown)),
-    }
-    sentences.push(words.not_clinical.to_owned());
-    Section::new(words.how_sure, vec![Block::Paragraph(sentences.join(" "))])
-}
-
-fn method(result: &ResultDocument, words: &Words) -> Section {
-    let provenance = &result.provenance;
-    let name = provenance.method.as_deref().unwrap_or("–");
-    let way = match name {
-        "fem_linear" => words.linear,
-        "fem_nonlinear" => words.nonlinear,
-        _ => words.other_method,
-    };
-    let mesh = provenance.mesh.as_ref();
-    let counts = mesh.map(|mesh| [mesh.nodes.to_string(), mesh.cells.to_string()]);
-    let on_mesh = counts.map_or_else(String::new, |counts| filled(words.on_mesh, &counts));
-    let why = provenance.why.as_ref().map_or_else(String::new, |why| format!("; {why}"));
-    let sentence = format!("{way} ({name}{why}), {on_mesh}");
-    Section::new(words.method, vec![Block::Paragraph(sentence)])
 }

@@ -120,13 +120,17 @@ pub fn slices_picture(anatomy: &Anatomy, frame: Frame) -> Result<String, PngErro
 
 /// From where the face is seen; without a known frame its front is found from its skin.
 pub fn outlook(frame: Frame, skin: &TriangleSurface) -> Outlook {
-    let outlook = match frame {
+    upright(frame, skin).facing(&skin.points, &skin.triangles)
+}
+
+/// The same of a head, which is upright in its frame however its skin looks.
+pub fn upright(frame: Frame, skin: &TriangleSurface) -> Outlook {
+    match frame {
         Frame::Lps => Outlook::lps(),
         Frame::Ras => Outlook::ras(),
         Frame::Unspecified => {
             let up = Vector::z();
             Outlook { front: front_of(&skin.points, &skin.triangles, up), up }
         }
-    };
-    outlook.facing(&skin.points, &skin.triangles)
+    }
 }

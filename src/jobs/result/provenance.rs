@@ -49,6 +49,7 @@ impl Origin {
             mesh: None,
             laws: BTreeMap::new(),
             presets: BTreeMap::new(),
+            acquisition: None,
             threads: rayon::current_num_threads() as u32,
             determinism: "bitwise".to_owned(),
             timing: clock.timing(self.queue_s),

@@ -92,8 +92,12 @@ impl Documents<'_> {
             true => format!("{name}, item {}", index + 1),
             false => name,
         };
-        let reference =
-            CaseReference { case: item.case.clone(), name: Some(name), plans: vec![plan] };
+        let reference = CaseReference {
+            case: item.case.clone(),
+            name: Some(name),
+            series: None,
+            plans: vec![plan],
+        };
         let plans = vec![(place.key("plan"), &reference.plans[0])];
         let materials: Vec<_> =
             item.materials.iter().map(|given| (place.key("materials"), given)).collect();

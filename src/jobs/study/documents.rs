@@ -27,6 +27,8 @@ pub(super) struct Scenes {
     pub contents: BTreeMap<String, String>,
     /// Of each case the SHA-256 of its plans as they were stated, by the name of its scene.
     pub plans: BTreeMap<String, BTreeMap<String, String>>,
+    /// The series of each scene that belongs to one, by its name.
+    pub series: BTreeMap<String, String>,
     pub warnings: Vec<Warning>,
 }
 

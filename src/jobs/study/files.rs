@@ -90,7 +90,7 @@ fn csv_cells(row: &RowDocument) -> [String; COLUMNS.len()] {
 }
 
 /// A text that a spreadsheet takes for a text: one that begins like a formula gets an apostrophe before it.
-fn cell(text: &str) -> String {
+pub fn cell(text: &str) -> String {
     let guarded = match text.starts_with(['=', '+', '-', '@', '\t', '\r']) {
         true => format!("'{text}"),
         false => text.to_owned(),

@@ -2,6 +2,7 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use super::cell_sizes::{CELL_SIZES_CSV, cell_size_groups, cell_sizes_chart, cell_sizes_csv};
 use super::chart::chart;
 use super::constants::constants_chart;
 use super::files::{
@@ -136,6 +137,7 @@ fn rows_of(
         spec_hash: prepared.spec_hash.clone(),
         rows_key: prepared.rows_key.clone(),
         plans: prepared.plans.clone(),
+        series: prepared.series.clone(),
         created: now_rfc3339(),
     };
     if let Some(earlier) = input.rows_of(&prepared.rows_key) {
@@ -158,8 +160,8 @@ fn rows_of(
     Ok(ReportDocument { constant_maps, ..report_document(&found, spec, variants, origin()) })
 }
 
-/// The report in every form, a chart over all scenes, one for each where there are several, and one for each map of
-/// swept constants.
+/// The report in every form, a chart over all scenes, one for each where there are several, one for each map of
+/// swept constants, and table and charts of cell sizes.
 fn write_report(report: &ReportDocument, folder: &mut ResultFolder) -> Result<(), JobError> {
     folder.add_file(REPORT_JSON, JSON_MEDIA_TYPE, &encode_report(report)?)?;
     folder.add_file(REPORT_CSV, CSV_MEDIA_TYPE, csv(report).as_bytes())?;
@@ -175,6 +177,15 @@ fn write_report(report: &ReportDocument, folder: &mut ResultFolder) -> Result<()
     for (index, map) in report.constant_maps.iter().enumerate() {
         let file = format!("constants-{}-{}.svg", index + 1, file_name(&map.label));
         let svg = constants_chart(report, map)?;
+        folder.add_file(&file, SVG_MEDIA_TYPE, svg.as_bytes())?;
+    }
+    if !report.cell_sizes.is_empty() {
+        let table = cell_sizes_csv(report);
+        folder.add_file(CELL_SIZES_CSV, CSV_MEDIA_TYPE, table.as_bytes())?;
+    }
+    for (index, group) in cell_size_groups(report).into_iter().enumerate() {
+        let file = format!("cell-sizes-{}-{}.svg", index + 1, file_name(group[0]));
+        let svg = cell_sizes_chart(report, group);
         folder.add_file(&file, SVG_MEDIA_TYPE, svg.as_bytes())?;
     }
     Ok(())

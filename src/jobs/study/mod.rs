@@ -1,6 +1,7 @@
 //! Studies: many rows of scenes, plans, materials and ways of modelling, measured and judged.
 
 mod batch;
+pub mod cell_sizes;
 mod chart;
 mod constants;
 mod documents;

@@ -28,6 +28,7 @@ pub struct PreparedStudy {
     pub inputs: Vec<InputDocument>,
     /// As in [`Scenes`](super::documents::Scenes).
     pub plans: BTreeMap<String, BTreeMap<String, String>>,
+    pub series: BTreeMap<String, String>,
     pub warnings: Vec<Warning>,
 }
 
@@ -83,6 +84,7 @@ impl StudyInput {
             rows_key,
             inputs: scenes.inputs,
             plans: scenes.plans,
+            series: scenes.series,
             warnings,
         })
     }

@@ -6,12 +6,14 @@ use crate::jobs::failure::JobError;
 use crate::jobs::result::provenance::first_null;
 use crate::schema::WarningDocument;
 use crate::schema::predict::result::{EngineDocument, NOT_A_DEVICE};
+use crate::schema::study::cell_sizes::CellSizesDocument;
 use crate::schema::study::document::StudyDocument;
 use crate::schema::study::report::{
     ConvergenceDocument, ErrorsDocument, NumbersDocument, ReportDocument, RowDocument,
     RowErrorDocument, RowStatus, RowVerdict, RulesDocument, SignedRankDocument, SkippedDocument,
     StudySceneDocument, TruthErrorDocument, VariantComparisonDocument, VerdictDocument,
 };
+use mechanics::study::cell_sizes::cell_sizes;
 use mechanics::study::convergence::{Series, series};
 use mechanics::study::pairwise::{Pairwise, compare_variants, many_comparisons};
 use mechanics::study::{
@@ -25,6 +27,8 @@ pub struct ReportOrigin {
     pub rows_key: String,
     /// Of each case the SHA-256 of its plans, by the name of its scene.
     pub plans: BTreeMap<String, BTreeMap<String, String>>,
+    /// The series of each scene that belongs to one, by its name.
+    pub series: BTreeMap<String, String>,
     /// RFC 3339, UTC.
     pub created: String,
 }
@@ -58,6 +62,10 @@ pub fn report_document(
         comparisons_note: many_comparisons(&comparisons),
         constant_maps: Vec::new(),
         convergence: series(report).iter().map(convergence_document).collect(),
+        cell_sizes: cell_sizes(report, &origin.series)
+            .iter()
+            .map(CellSizesDocument::from)
+            .collect(),
         statement: NOT_A_DEVICE.to_owned(),
     }
 }
@@ -130,6 +138,7 @@ fn scene_document(
         name: scene.name.clone(),
         nodes: scene.nodes as u64,
         cells: scene.cells as u64,
+        cell_mm: Some(scene.cell_size).filter(|size| size.is_finite()),
         skin_nodes: scene.skin_nodes as u64,
         plans: plans.get(&scene.name).cloned().unwrap_or_default(),
         truth: scene.truth.clone(),

@@ -278,7 +278,8 @@ impl Documents<'_> {
         for (number, (at, document)) in (1..).zip(documents) {
             let input = input(case, (*document).clone(), of_the_first.clone());
             let prepared = input.prepare(self.sources, self.limits);
-            let prepared = prepared.map_err(|error| moved(error, at, &place(0)))?;
+            let prepared =
+                prepared.map_err(|error| self.moved(error, reference, [at, &place(0)]))?;
             plans.push((format!("plan {number}"), prepared.plan.clone()));
             first = first.or(Some(prepared));
         }
@@ -293,7 +294,7 @@ impl Documents<'_> {
             let Some((at, plan)) = documents.first() else { break };
             let input = input(case, (*plan).clone(), Some((*document).clone()));
             let prepared = input.prepare(self.sources, self.limits);
-            let case = prepared.map_err(|error| moved(error, at, place))?.case;
+            let case = prepared.map_err(|error| self.moved(error, reference, [at, place]))?.case;
             materials.push(Materials {
                 name: in_words(document),
                 by_region: case.materials,
@@ -320,11 +321,32 @@ impl Documents<'_> {
             (format!("plan {number}"), canonical::sha256_hex(text.as_bytes()))
         });
         found.plans.insert(scene.name.clone(), stated.collect());
+        found.series.extend(reference.series.clone().map(|series| (scene.name.clone(), series)));
         found.contents.extend(first.contents.clone());
         found.inputs.extend(first.inputs.iter().cloned());
         found.warnings.extend(first.warnings.iter().cloned());
         found.scenes.push(scene);
         Ok(())
+    }
+
+    /// Places of a prediction as places of the study; of several cases the one is named.
+    fn moved(
+        &self,
+        error: JobError,
+        reference: &CaseReference,
+        [plan, materials]: [&Pointer; 2],
+    ) -> JobError {
+        let JobError::Refused(problem) = error else { return error };
+        let case = match self.cases.len() {
+            1 => Pointer::root().key("case"),
+            _ => {
+                let name = reference.name.as_ref().unwrap_or(&reference.case);
+                Pointer::root().key("cases").key(name)
+            }
+        };
+        let problem =
+            problem.moved("/plan", plan.as_str()).moved("/spec/materials", materials.as_str());
+        JobError::Refused(problem.moved("/case", case.as_str()))
     }
 
     /// Every combination of the swept values in place of the materials of the scene.
@@ -369,12 +391,4 @@ fn input(
 ) -> PredictInput {
     let spec = PredictDocument { materials, ..PredictDocument::default() };
     PredictInput { job: None, queue_s: None, case: case.clone(), plan, spec }
-}
-
-/// Places of a prediction as places of the study.
-fn moved(error: JobError, plan: &Pointer, materials: &Pointer) -> JobError {
-    let JobError::Refused(problem) = error else { return error };
-    let problem =
-        problem.moved("/plan", plan.as_str()).moved("/spec/materials", materials.as_str());
-    JobError::Refused(problem)
 }

@@ -103,6 +103,9 @@ impl CaseDocument {
             faults.check_name(&at.key("name"), name, limits.name_characters as usize);
         }
         check_tags(&self.tags, &at.key("tags"), limits, faults);
+        if let Some(acquisition) = &self.acquisition {
+            acquisition.check(&at.key("acquisition"), limits, faults);
+        }
     }
 
     /// Marks in files must agree with the case and with each other.

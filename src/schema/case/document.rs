@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
+use super::acquisition::AcquisitionDocument;
 use super::bone_landmark::BoneLandmarkOfCaseDocument;
 use super::hounsfield::HounsfieldDocument;
 use super::material::{MaterialDocument, MaterialDocuments};
@@ -38,6 +39,10 @@ pub struct CaseDocument {
     pub frame: FrameName,
     /// The volume mesh: its id.
     pub volume: String,
+    /// How the scan was taken that the meshes were made of; results repeat it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub acquisition: Option<AcquisitionDocument>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub bones: Vec<BoneDocument>,
     /// Named points in mm; they move with the tissue around them.
@@ -235,6 +240,7 @@ impl CaseDocument {
             units,
             frame: FrameName::Unspecified,
             volume: volume.to_owned(),
+            acquisition: None,
             bones: Vec::new(),
             landmarks: BTreeMap::new(),
             bone_landmarks: BTreeMap::new(),

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use utoipa::ToSchema;
 
+use super::acquisition::AcquisitionDocument;
 use super::document::CaseDocument;
 use super::hounsfield::HounsfieldDocument;
 use super::material::{MaterialDocument, MaterialDocuments};
@@ -29,6 +30,10 @@ pub struct MeshedCaseDocument {
     pub name: Option<String>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub tags: Vec<String>,
+    /// How the scan was taken; results repeat it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub acquisition: Option<AcquisitionDocument>,
     /// The job that makes the mesh, as it is posted. Its tags are those of the job.
     pub meshing: MeshingDocument,
     /// By region name; `*` serves every region without an entry of its own.
@@ -71,12 +76,16 @@ impl MeshedCaseDocument {
             faults.check_name(&at.key("name"), name, limits.name_characters as usize);
         }
         check_tags(&self.tags, &at.key("tags"), limits, faults);
+        if let Some(acquisition) = &self.acquisition {
+            acquisition.check(&at.key("acquisition"), limits, faults);
+        }
     }
 
     /// The case that a meshing has found, with what is said here.
     pub fn complete(&self, mut found: CaseDocument) -> CaseDocument {
         found.name.clone_from(&self.name);
         found.tags.clone_from(&self.tags);
+        found.acquisition.clone_from(&self.acquisition);
         found.materials.clone_from(&self.materials);
         found.hounsfield.clone_from(&self.hounsfield);
         found.allow_unfixed = self.allow_unfixed;

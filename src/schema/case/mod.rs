@@ -1,5 +1,6 @@
 //! The case document, its parts, and its conversion to the case that is computed.
 
+pub mod acquisition;
 pub mod bone_landmark;
 pub mod conversion;
 pub mod document;

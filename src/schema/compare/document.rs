@@ -11,6 +11,7 @@ pub use super::place::{ComparedRegionDocument, PlaceDocument};
 pub use super::reference::{MeshReference, SurfaceReference};
 
 use super::align::{align, check_landmarks};
+use crate::schema::case::acquisition::AcquisitionDocument;
 use crate::schema::code::ErrorCode;
 use crate::schema::wire::canonical;
 use crate::schema::wire::fault::{Faults, Pointer};
@@ -51,6 +52,15 @@ pub struct CompareDocument {
     /// Ascending edges of the bins of a histogram of distances, in mm.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub histogram_edges_mm: Vec<f64>,
+    /// How the actual surface was taken; the result repeats it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub acquisition: Option<AcquisitionDocument>,
+    /// The signed distance at both ends of the colours of a map, in mm: also writes `skin.ply` and `skin.glb` with it, and is the range
+    /// of the report. Absent: `skin.vtp` only, and 2 mm in the report.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false, minimum = 0.01, maximum = 100.0)]
+    pub range_mm: Option<f64>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub tags: Vec<String>,
 }
@@ -79,6 +89,10 @@ pub struct CompareToDocument {
     /// Ascending edges of the bins of a histogram of distances, in mm.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub histogram_edges_mm: Vec<f64>,
+    /// How the actual surface was taken; the result repeats it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub acquisition: Option<AcquisitionDocument>,
 }
 
 fn usual_density() -> f64 {
@@ -108,6 +122,7 @@ impl CompareToDocument {
             node_wise: NodeWise::Auto,
             landmarks: BTreeMap::new(),
             histogram_edges_mm: Vec::new(),
+            acquisition: None,
         }
     }
 
@@ -124,6 +139,9 @@ impl CompareToDocument {
         let place = at.key("samples_per_mm2");
         faults.check_range(&place, self.samples_per_mm2, density, "per mm2");
         check_landmarks(&self.landmarks, &at.key("landmarks"), limits, faults);
+        if let Some(acquisition) = &self.acquisition {
+            acquisition.check(&at.key("acquisition"), limits, faults);
+        }
         check_edges(&self.histogram_edges_mm, &at.key("histogram_edges_mm"), limits, faults);
     }
 
@@ -155,6 +173,9 @@ impl CompareDocument {
         let given = usize::from(reference.job.is_some()) + usize::from(reference.mesh.is_some());
         faults.check_one_of(&at.key("prediction"), given, "`job`, `mesh`");
         check_tags(&self.tags, &at.key("tags"), limits, faults);
+        if let Some(range) = self.range_mm {
+            faults.check_range(&at.key("range_mm"), range, 0.01..=100.0, "mm");
+        }
         self.to_compare_to().check(&at, limits, faults);
     }
 
@@ -169,6 +190,7 @@ impl CompareDocument {
             node_wise: self.node_wise,
             landmarks: self.landmarks.clone(),
             histogram_edges_mm: self.histogram_edges_mm.clone(),
+            acquisition: self.acquisition.clone(),
         }
     }
 

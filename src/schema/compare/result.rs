@@ -9,6 +9,7 @@ use super::measures::{
     HistogramsDocument, LandmarkErrorDocument, WarpedDocument, landmark_statistics,
 };
 pub use super::statistics::StatDocument;
+use crate::schema::case::acquisition::AcquisitionDocument;
 use crate::schema::{Matrix4x4, Triple};
 use mechanics::validation::{AlignmentReport, BothDirections, Comparison, DistanceStatistics};
 
@@ -82,6 +83,10 @@ pub struct ComparisonDocument {
     #[schema(nullable = false)]
     pub histogram: Option<HistogramsDocument>,
     pub samples_per_mm2: f64,
+    /// How the actual surface was taken, as the spec says.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub acquisition: Option<AcquisitionDocument>,
 }
 
 /// The rigid movement that took the actual surface onto the prediction.
@@ -232,6 +237,7 @@ impl ComparisonDocument {
             landmark_statistics: landmark_statistics(comparison),
             histogram: comparison.histograms.as_ref().map(HistogramsDocument::from),
             samples_per_mm2,
+            acquisition: None,
         }
     }
 }

@@ -34,6 +34,7 @@ use mechanics::prediction::{Method, MethodKind};
 pub struct OwnSettings {
     pub msm: Option<MassSpringDocument>,
     pub mtm: Option<MassTensorDocument>,
+    pub mtm_ti: Option<MassTensorDocument>,
     pub dvs: Option<DvsDocument>,
     pub thickness_warp: Option<ThicknessWarpDocument>,
 }
@@ -68,8 +69,11 @@ fn row(method: MethodKind) -> MethodRow {
         },
         MethodKind::MassTensorTransverse => MethodRow {
             description: mtm_ti::description,
-            is_told: |_| false,
-            to_method: |_, _, _| Method::MassTensorTransverse,
+            is_told: |own| own.mtm_ti.is_some(),
+            to_method: |own, at, faults| {
+                let settings = own.mtm_ti.unwrap_or_default().to_settings(at, faults);
+                Method::MassTensorTransverse(settings)
+            },
         },
         MethodKind::MassTensorNonlinear => MethodRow {
             description: mtm_nonlinear::description,

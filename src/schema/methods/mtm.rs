@@ -15,7 +15,7 @@ pub const USUAL_ITERATIONS: u32 = 50_000;
 /// Iterations allowed at most.
 const MOST_ITERATIONS: u32 = 1_000_000;
 
-/// How the tensors are brought to rest; only with the method `mtm`.
+/// How the tensors are brought to rest; with the methods `mtm` and `mtm_ti`, in the field of each.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MassTensorDocument {
@@ -123,7 +123,7 @@ pub(super) fn description() -> Description {
     }
 }
 
-fn parameters() -> Vec<ParameterDocument> {
+pub(super) fn parameters() -> Vec<ParameterDocument> {
     vec![
         ParameterDocument {
             name: "iterations".to_owned(),

@@ -1,6 +1,7 @@
 //! The mass-tensor model of tissue with fibres: what is told of it.
 
 use super::document::Description;
+use super::mtm;
 
 /// Its words in `GET /v1/methods`.
 pub(super) fn description() -> Description {
@@ -12,6 +13,8 @@ pub(super) fn description() -> Description {
             "tissue is stiffer along the fibre of a cell than across it, by the law that its material names; \
                 Kim et al. 2012 print this tensor with another factor and without one of its terms, which is not \
                 what is solved",
+            "its iterations are those of mtm: with others than fast, tissue is not kept from passing through what it \
+                touches, and each answer stands for itself",
             "strain is small, as with fem_linear; plain tetrahedra lock above a Poisson ratio of 0.45, with a \
                 warning",
         ],
@@ -32,9 +35,10 @@ pub(super) fn description() -> Description {
             "spec.contact",
             "spec.materials",
             "spec.membrane",
+            "spec.mtm_ti",
             "spec.tolerance.relative_residual",
             "spec.budget",
         ],
-        parameters: Vec::new(),
+        parameters: mtm::parameters(),
     }
 }

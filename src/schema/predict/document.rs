@@ -76,6 +76,10 @@ pub struct PredictDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub mtm: Option<MassTensorDocument>,
+    /// Only with the method `mtm_ti`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub mtm_ti: Option<MassTensorDocument>,
     #[serde(default)]
     pub element: ElementName,
     /// Only with the method `dvs`.
@@ -306,6 +310,7 @@ impl PredictDocument {
         OwnSettings {
             msm: self.msm,
             mtm: self.mtm,
+            mtm_ti: self.mtm_ti,
             dvs: self.dvs,
             thickness_warp: self.thickness_warp,
         }

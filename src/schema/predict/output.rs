@@ -26,6 +26,8 @@ pub enum OutputName {
     ClassesSvg,
     #[serde(rename = "displacement.svg")]
     DisplacementSvg,
+    #[serde(rename = "gaps.svg")]
+    GapsSvg,
     #[serde(rename = "report.html")]
     ReportHtml,
     #[serde(rename = "report.pdf")]
@@ -98,6 +100,7 @@ impl OutputName {
             OutputName::BonesVtp => "bones.vtp",
             OutputName::ClassesSvg => "classes.svg",
             OutputName::DisplacementSvg => "displacement.svg",
+            OutputName::GapsSvg => "gaps.svg",
             OutputName::ReportHtml => "report.html",
             OutputName::ReportPdf => "report.pdf",
             OutputName::ResultJson => "result.json",
@@ -113,7 +116,9 @@ impl OutputName {
             OutputName::SkinPly => "application/vnd.ply",
             OutputName::SkinGlb => "model/gltf-binary",
             OutputName::SkinCsv => "text/csv; charset=utf-8",
-            OutputName::ClassesSvg | OutputName::DisplacementSvg => "image/svg+xml",
+            OutputName::ClassesSvg | OutputName::DisplacementSvg | OutputName::GapsSvg => {
+                "image/svg+xml"
+            }
             OutputName::ReportHtml => "text/html; charset=utf-8",
             OutputName::ReportPdf => "application/pdf",
             OutputName::ResultJson => "application/json",

@@ -17,6 +17,7 @@ use super::refine::RefinementDocument;
 use super::stress::StressDocument;
 use super::tissue_law::TissueLawDocument;
 use crate::schema::Triple;
+use crate::schema::case::acquisition::AcquisitionDocument;
 use crate::schema::case::document::{FrameName, LengthUnit};
 use crate::schema::case::hounsfield::ImagedTissueDocument;
 use crate::schema::case::preset::UsedPresetDocument;
@@ -289,6 +290,10 @@ pub struct ProvenanceDocument {
     /// Materials of the literature that were used, written out: by region of the case, or tissue of its image.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub presets: BTreeMap<String, UsedPresetDocument>,
+    /// How the scan of the case was taken, as the case says.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub acquisition: Option<AcquisitionDocument>,
     pub threads: u32,
     /// `bitwise`: the same input gives the same bits on any number of threads.
     pub determinism: String,

@@ -153,10 +153,24 @@ impl StudyDocument {
                 "the skin of a job is the truth of one case with one plan and one material";
             faults.add(&at.key("job"), ErrorCode::WrongType, detail);
         }
-        if truth.mesh.is_some() && !(one_plan || self.is_of_one_plan()) {
+        if truth.mesh.is_some() && !(one_plan || self.is_of_one_plan() || self.is_one_series()) {
             let detail = "a mesh shows what one plan did to the skin of one case";
             faults.add(&at.key("mesh"), ErrorCode::WrongType, detail);
         }
+    }
+
+    /// Whether all scenes are meshes of one face with one plan.
+    fn is_one_series(&self) -> bool {
+        let series = |scene: &SceneReference| match scene {
+            SceneReference::Case(reference) => reference.series.clone(),
+            SceneReference::Name(_) => None,
+        };
+        let first = self.scenes.first().and_then(series);
+        let has_one_plan = self.scenes.iter().enumerate().all(|(index, scene)| match scene {
+            SceneReference::Case(reference) => self.plans_of(index, reference).len() == 1,
+            SceneReference::Name(_) => false,
+        });
+        first.is_some() && has_one_plan && self.scenes.iter().all(|scene| series(scene) == first)
     }
 
     /// Whether all items of a batch are about the same case and plan.
@@ -223,6 +237,9 @@ impl CaseReference {
     fn check(&self, at: &Pointer, limits: &Limits, faults: &mut Faults) {
         if let Some(name) = &self.name {
             faults.check_name(&at.key("name"), name, limits.name_characters as usize);
+        }
+        if let Some(series) = &self.series {
+            faults.check_name(&at.key("series"), series, limits.name_characters as usize);
         }
         faults.check_length(&at.key("plans"), self.plans.len(), limits.list_entries as usize);
     }

@@ -1,6 +1,7 @@
 //! The spec of a study or a batch, its check, and its report.
 
 pub mod batch;
+pub mod cell_sizes;
 pub mod check;
 pub mod constants;
 pub mod document;

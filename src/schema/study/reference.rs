@@ -23,6 +23,11 @@ pub struct CaseReference {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub name: Option<String>,
+    /// The face that this case is a mesh of. Cases of one series are the same face on meshes of different cell sizes: the report
+    /// says how the skin converges over them (`cell_sizes`).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub series: Option<String>,
     /// Those of this case alone. Default: the plans in full of the study.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub plans: Vec<PlanDocument>,

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
+use super::cell_sizes::CellSizesDocument;
 use super::constants::ConstantMapDocument;
 use super::document::{ThresholdsDocument, TolerancesDocument};
 pub use super::scene::{StudySceneDocument, TruthErrorDocument};
@@ -52,6 +53,10 @@ pub struct ReportDocument {
     #[schema(nullable = false)]
     pub comparisons_note: Option<String>,
     pub convergence: Vec<ConvergenceDocument>,
+    /// Of a study with scenes of one `series`: how the skin converges over the cell sizes of their meshes.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schema(required = false)]
+    pub cell_sizes: Vec<CellSizesDocument>,
     /// What the program answers for these numbers.
     pub statement: String,
 }

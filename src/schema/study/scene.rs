@@ -13,6 +13,10 @@ pub struct StudySceneDocument {
     pub name: String,
     pub nodes: u64,
     pub cells: u64,
+    /// Edge of a cube with the volume of six tetrahedra, two wedges or one hexahedron in the mean.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub cell_mm: Option<f64>,
     pub skin_nodes: u64,
     /// Of a case: the SHA-256 of each of its plans as it was stated, by its name.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]

@@ -176,6 +176,46 @@ fn a_scan_is_measured_where_the_plan_moves_the_skin_and_at_landmarks() {
 }
 
 #[test]
+fn errors_of_nodes_and_of_landmarks_are_maps_over_the_skin() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut sources = sources();
+    let (skin, shape) = predicted(&sources, folder.path());
+    sources.0.insert("skin".to_owned(), skin);
+    let mut scan = shape.clone();
+    scan.points.iter_mut().for_each(|x| x.z += 0.02 * x.x);
+    sources.0.insert("scan".to_owned(), surface(&scan));
+    let (a, b) = (shape.points[0], shape.points[shape.points.len() - 1]);
+    let mark = |at: Vector, off: f64| json!({"prediction_mm": [at.x, at.y, at.z], "actual_mm": [at.x, at.y, at.z + off]});
+    let facts = json!({"lips": "apart", "days_after_operation": 180});
+    let spec = json!({
+        "prediction": {"mesh": "skin"}, "actual": {"mesh": "scan"}, "acquisition": facts,
+        "landmarks": {"a": mark(a, 1.0), "b": mark(b, 3.0)},
+    });
+    let found = comparison(&sources, &spec, folder.path());
+    assert_eq!(serde_json::to_value(found.acquisition).unwrap(), facts);
+    let file = fs::read_to_string(folder.path().join("skin.vtp")).unwrap();
+    for name in ["signed_distance_mm", "node_error_mm", "landmark_error_mm"] {
+        assert_eq!(file.matches(&format!("Name=\"{name}\"")).count(), 1, "{name}");
+    }
+    let nodes = found.node_wise.unwrap().nodes;
+    let most = shape.points.iter().map(|x| 0.02 * x.x).fold(0.0, f64::max);
+    assert!((nodes.max - most).abs() < 1e-9, "{} {most}", nodes.max);
+    assert!(!folder.path().join("skin.glb").exists());
+    let mut coloured = spec.clone();
+    coloured["range_mm"] = json!(5);
+    comparison(&sources, &coloured, folder.path());
+    let ply = fs::read(folder.path().join("skin.ply")).unwrap();
+    let head = String::from_utf8_lossy(&ply[..1500]).into_owned();
+    assert!(head.contains("-5") && head.contains("signed_distance_mm"), "{head}");
+    assert!(folder.path().join("skin.glb").exists());
+    let plain =
+        json!({"prediction": {"mesh": "skin"}, "actual": {"mesh": "scan"}, "node_wise": "off"});
+    comparison(&sources, &plain, folder.path());
+    let file = fs::read_to_string(folder.path().join("skin.vtp")).unwrap();
+    assert!(!file.contains("node_error_mm") && !file.contains("landmark_error_mm"));
+}
+
+#[test]
 fn an_alignment_is_told_what_it_needs_and_nothing_else() {
     let folder = tempfile::tempdir().unwrap();
     let mut sources = sources();

@@ -1,5 +1,6 @@
 //! Jobs without a server: from documents to result files.
 
+mod cell_sizes;
 mod cohort;
 mod comparisons;
 mod cuts;
@@ -7,9 +8,11 @@ mod failures;
 mod image;
 mod learn;
 mod optimise;
+mod own_iterations;
 mod planning;
 mod refined;
 mod results;
 mod stress;
 mod study_report;
+mod test_piece;
 mod twin;

@@ -153,7 +153,7 @@ fn a_performed_operation_becomes_a_plan_and_is_held_against_what_was_planned() {
 }
 
 /// Two bones of 10 mm cubes 2 mm apart, of which the right one moves, under a block of tissue.
-fn checked(case: Value, plan: Value) -> CheckDocument {
+fn cubes(case: Value, plan: Value, spec: Value) -> (Meshes, PredictInput) {
     let volume = block(Vector::new(80.0, 60.0, 40.0), [8, 6, 4], CellShape::Hex8);
     let sources = Meshes(BTreeMap::from([
         (
@@ -178,9 +178,37 @@ fn checked(case: Value, plan: Value) -> CheckDocument {
         queue_s: None,
         case: serde_json::from_value(whole).unwrap(),
         plan: serde_json::from_value(plan).unwrap(),
-        spec: serde_json::from_value(json!({})).unwrap(),
+        spec: serde_json::from_value(spec).unwrap(),
     };
+    (sources, input)
+}
+
+fn checked(case: Value, plan: Value) -> CheckDocument {
+    let (sources, input) = cubes(case, plan, json!({}));
     check(&input, &sources, &Limits::default()).unwrap().document
+}
+
+#[test]
+fn a_picture_shows_how_bones_meet_before_and_as_planned() {
+    let folder = tempfile::tempdir().unwrap();
+    let drawn = |plan: Value| {
+        let spec = json!({"method": "thickness_warp", "outputs": ["skin.vtp", "gaps.svg"]});
+        let (sources, input) = cubes(json!({}), plan, spec);
+        let place = Workplace { sources: &sources, limits: &Limits::default(), out: folder.path() };
+        let done = work(&JobInput::Predict(input), &place, &Unobserved).unwrap();
+        let is_there = done.result.files.iter().any(|file| file.name == "gaps.svg");
+        is_there.then(|| std::fs::read_to_string(folder.path().join("gaps.svg")).unwrap())
+    };
+    let by = |x: f64| json!({"segments": [{"name": "right", "translation_mm": [x, 2, 2]}]});
+    let picture = drawn(by(-2.5)).unwrap();
+    for words in
+        ["left, from ", "right, from ", "moved: right", "As planned", "gap, mm", "frame LPS"]
+    {
+        assert!(picture.contains(words), "{words}");
+    }
+    assert_eq!(picture.matches("data:image/png;base64,").count(), 4);
+    // Nothing moves against anything, so that there is nothing to see.
+    assert_eq!(drawn(json!({})), None);
 }
 
 #[test]
@@ -286,6 +314,21 @@ fn a_check_measures_the_head_before_and_as_planned() {
     let swapped = json!({"Po_L": at(-55.0, 38.0, 38.0), "Po_R": at(55.0, 38.0, 38.0)});
     let found = checked(json!({"bone_landmarks": swapped}), plan);
     assert!(found.warnings.iter().any(|warning| warning.code == "landmarks-swapped"));
+}
+
+#[test]
+fn landmarks_of_bone_in_metres_or_far_from_the_mesh_are_told() {
+    let plan = json!({"segments": [{"name": "right", "translation_mm": [0, -4, 0]}]});
+    let told = |nasion: [f64; 3]| -> Vec<String> {
+        let landmarks =
+            json!({"S": {"position_mm": [0, 0.02, 0.06]}, "N": {"position_mm": nasion}});
+        let found = checked(json!({"bone_landmarks": landmarks}), plan.clone());
+        let codes = found.warnings.into_iter().map(|own| own.code);
+        codes.filter(|code| code.starts_with("landmark")).collect()
+    };
+    assert_eq!(told([0.0, -48.0, 10.0]), [""; 0]);
+    assert_eq!(told([0.0, -0.048, 0.07]), ["landmarks-crowded"]);
+    assert_eq!(told([0.0, -480.0, 70.0]), ["landmark-far"]);
 }
 
 #[test]

@@ -3,6 +3,7 @@
 use facies::schema::{Faults, Limits, PredictDocument};
 use mechanics::material::{Fibre, FibreLaw, LinearElastic};
 use mechanics::mesh::Vector;
+use mechanics::model::fem::mass_tensor::MassTensorSettings;
 use mechanics::prediction::{FibreDirection, Method};
 
 use crate::schema::documents::{case, case_with, one, refused, settings};
@@ -138,5 +139,14 @@ fn a_membrane_without_numbers_is_the_usual_one_and_a_wrong_one_is_refused_at_its
         let found = refused(settings(&format!(r#"{{"membrane":{membrane}}}"#)));
         assert_eq!(found, one(FAILED, code, &format!("/spec/membrane{field}")), "{membrane}");
     }
-    assert_eq!(convert(r#"{"method":"mtm_ti"}"#).method, Method::MassTensorTransverse);
+    let usual = MassTensorSettings::default();
+    assert_eq!(convert(r#"{"method":"mtm_ti"}"#).method, Method::MassTensorTransverse(usual));
+    // Each method has its iterations in the field of its name.
+    let own = r#"{"method":"mtm_ti","mtm_ti":{"iterations":"gauss_seidel"}}"#;
+    assert_ne!(convert(own).method, Method::MassTensorTransverse(usual));
+    let of_another = r#"{"method":"mtm_ti","mtm":{"iterations":"gauss_seidel"}}"#;
+    assert_eq!(
+        refused(settings(of_another)),
+        one("method-mismatch", "method-mismatch", "/spec/mtm")
+    );
 }

@@ -47,7 +47,7 @@ async fn clients_are_listed_and_served_to_everybody() {
     let links: Vec<&str> =
         page.split("href=\"").skip(1).map(|rest| rest.split('"').next().unwrap()).collect();
     let wheel = "/clients/facies_client-0.1.0-py3-none-any.whl";
-    assert_eq!(links, [wheel, "/clients/sliders.html"]);
+    assert_eq!(links, ["/", wheel, "/clients/sliders.html"]);
     let package = ask(server.get(wheel)).await;
     assert_eq!((package.status, package.bytes.as_slice()), (StatusCode::OK, &b"package"[..]));
     assert_eq!(package.header("content-type"), "application/zip");

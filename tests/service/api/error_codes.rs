@@ -109,6 +109,10 @@ async fn the_type_of_a_problem_leads_to_the_row_of_its_code_on_a_page_that_needs
     assert_eq!(page.status, StatusCode::OK);
     assert!(page.header("content-type").starts_with("text/html"));
     let page = String::from_utf8(page.bytes).unwrap();
+    // In the colours of the page, and as wide as what shows it.
+    let palette = include_str!("../../../web/dist/assets/palette.css");
+    assert!(page.contains(palette) && page.contains("width=device-width"));
+    assert!(!page.contains("](") && page.contains("(trust.md)"), "links are told by their words");
     assert_eq!(anchor, "unauthorized");
     let codes = ErrorCode::ALL.iter().map(|code| code.name().to_owned());
     for code in codes.chain(warnings_told()) {

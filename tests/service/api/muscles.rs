@@ -182,3 +182,35 @@ async fn auto_knows_what_linear_elasticity_leaves_out_of_growth_and_muscles() {
     let warnings = results["warnings"].as_array().unwrap();
     assert!(warnings.iter().any(|told| told["code"] == "tolerance-not-met"), "{results}");
 }
+
+#[tokio::test]
+async fn a_report_says_what_its_numbers_were_computed_with() {
+    let server = Server::start();
+    let case = case(&server).await;
+    let acts = ["volume of all tissue -5 %", "strap pulls with 5 kPa", "gains or loses volume"];
+    let second = ["its term of second order", "The answer to second order leaves out"];
+    let finite = ["hyperelastic solid at finite strain", "what else it leaves out"];
+    let linear = ["linear elastic solid at small strain", "Linear elasticity leaves out"];
+    let added = ["What the mesh leaves out, as estimated, was added"];
+    let ways = [
+        (
+            json!({"method": "auto", "accept_mm": 0.001}),
+            [&second[..], &acts[..]].concat(),
+            linear[1],
+        ),
+        (json!({"method": "fem_nonlinear"}), [&finite[..], &acts[..]].concat(), linear[1]),
+        (json!({"method": "fem_linear"}), [&linear[..], &acts[..]].concat(), added[0]),
+        (json!({"method": "fem_linear", "corrected": true}), added.to_vec(), second[1]),
+    ];
+    for (way, says, says_not) in ways {
+        let mut spec = json!({"kind": "predict", "case": case, "plan": plan()});
+        spec.as_object_mut().unwrap().extend(way.as_object().unwrap().clone());
+        let job = done(&server, &spec).await;
+        let path = format!("/v1/jobs/{}/results/report.html?lang=en", job["id"].as_str().unwrap());
+        let report = String::from_utf8(ask(server.get(&path)).await.bytes).unwrap();
+        for words in says {
+            assert!(report.contains(words), "{way}: {words}");
+        }
+        assert!(!report.contains(says_not), "{way}: {says_not}");
+    }
+}

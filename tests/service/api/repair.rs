@@ -68,6 +68,12 @@ async fn a_case_with_distorted_cells_is_repaired_where_it_asks_for_that() {
     let job = job.expect(StatusCode::OK);
     assert_eq!(job["status"], "successful", "{job}");
     assert!(codes(&job["results"]).contains(&"mesh-repaired"), "{job}");
+
+    let case = kept["id"].as_str().unwrap();
+    server.job(&json!({"kind": "response", "case": case})).await.expect(StatusCode::OK);
+    let path = format!("/v1/cases/{case}/response/apply");
+    let applied = ask(server.post(&path).json(&json!({"plan": plan}))).await;
+    assert!(codes(&applied.expect(StatusCode::OK)).contains(&"mesh-repaired"));
 }
 
 #[tokio::test]

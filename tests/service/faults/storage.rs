@@ -73,6 +73,8 @@ async fn a_job_over_its_budget_of_time_fails_and_says_so() {
     assert_eq!(job["error"]["type"], "budget-exceeded");
     let results = ask(server.get(&format!("/v1/jobs/{id}/results"))).await;
     assert_eq!(results.problem(422, "job-failed")["error"]["type"], "budget-exceeded");
+    let anew = accepted(&server, &hurried).await;
+    assert_ne!(anew, id, "another time it may be quicker");
 }
 
 #[tokio::test]

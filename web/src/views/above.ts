@@ -1,6 +1,6 @@
 // A result with a surface of its own kind: where learned methods err, or a template on a patient, above its charts and tables.
 import type { Job } from "../api.js";
-import { warnings, type App, type Leave } from "../app.js";
+import type { App, Leave } from "../app.js";
 import { make } from "../dom.js";
 import { when } from "../figures.js";
 import type { FrameName } from "../frame.js";
@@ -37,7 +37,6 @@ export async function resultBeside(app: App, job: Job): Promise<Leave> {
   bench.scene.orient(frame);
   bench.scene.showSkin(surface.shape);
   bench.section(kindOf(words, job.kind), surface.told);
-  bench.section(words.warnings, warnings(job.warnings, words));
   bench.offer(surface.maps);
   bench.caption.textContent = kindOf(words, job.kind);
   bench.provenance = `job ${job.id}`;
@@ -53,7 +52,7 @@ async function surfaceOf({ service, words }: App, job: Job, frame: FrameName): P
     const { values, ...shape } = await readVtp(await service.file(job.id, ERRORS));
     const maps = Object.entries(values).filter(([name]) => ARRAY.test(name)).map(([array, errors]): SkinMap => {
       const method = ARRAY.exec(array)![1]!.replaceAll("_", " ");
-      return { name: array, label: `${words.meanErrorMm}: ${method}`, scheme: "length", range_mm: 2, values: () => errors };
+      return { name: array, label: `${words.meanError}: ${method}`, scheme: "length", range_mm: 2, values: () => errors };
     });
     return { shape, maps, told: make("div", {}, learnedInShort(words, learning), make("p", { className: "fine" }, words.errorMapHint)) };
   }

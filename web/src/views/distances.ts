@@ -3,6 +3,7 @@ import type { Documents } from "../api.js";
 import type { App } from "../app.js";
 import { make, svg, table } from "../dom.js";
 import { mm } from "../figures.js";
+import { INK, SERIES } from "../palette.js";
 import type { Words } from "../words/en.js";
 
 const percent = (share: number) => `${(100 * share).toFixed(1)} %`;
@@ -35,13 +36,13 @@ export function histogram(words: Words, distances: Float32Array): SVGElement {
   const drawing = svg("svg", { viewBox: "0 0 240 96", role: "img", "aria-label": words.histogram, class: "drawing" });
   counts.forEach((count, at) => {
     const height = (70 * count) / most;
-    const bar = svg("rect", { x: String(at * 10 + 1), y: String(76 - height), width: "8", height: String(height), fill: "#0b5c7a" });
+    const bar = svg("rect", { x: String(at * 10 + 1), y: String(76 - height), width: "8", height: String(height), fill: SERIES[0]! });
     const from = -REACH_MM + (2 * REACH_MM * at) / BARS;
     bar.append(svg("title", {}, `${from.toFixed(2)} … ${(from + (2 * REACH_MM) / BARS).toFixed(2)} mm: ${count}`));
     drawing.append(bar);
   });
   for (const value of [-3, -2, -1, 0, 1, 2, 3]) {
-    const text = svg("text", { x: String(value === 3 ? 238 : 120 + value * 38), y: "90", "font-size": "9", "text-anchor": value === 3 ? "end" : "middle", fill: "#222" }, value === 3 ? "3 mm" : String(value));
+    const text = svg("text", { x: String(value === 3 ? 238 : 120 + value * 38), y: "90", "font-size": "9", "text-anchor": value === 3 ? "end" : "middle", fill: INK }, value === 3 ? "3 mm" : String(value));
     drawing.append(text);
   }
   return drawing;

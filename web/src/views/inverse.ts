@@ -5,14 +5,15 @@ import { button, choice, make, select } from "../dom.js";
 import { inAxes, inWords, movement, still, TRANSLATIONS, type FrameName, type MotionName } from "../frame.js";
 import { openCase, restingSkin, type Opened, type RestingSkin } from "../loading.js";
 import { mm } from "../figures.js";
-import { address } from "../route.js";
-import { beyondBounds, type Bounds, type Target } from "../targets.js";
+import { hex, POINTED } from "../palette.js";
+import { address, note } from "../route.js";
+import { beyondBounds, readBounds, readTargets, writeBounds, writeTargets, type Bounds, type Target } from "../targets.js";
 import { Workbench } from "../workbench.js";
 import { crumbs } from "./crumbs.js";
 import { targetTags } from "./found.js";
 import { wordFor } from "./movements.js";
 
-const COLOUR = 0xb5461d;
+const COLOUR = hex(POINTED);
 const STARTING_BOUND_MM = 10;
 /** A pull this near to a target takes that. */
 const GRIP_MM = 4;
@@ -37,10 +38,12 @@ export async function inversePage(app: App): Promise<Leave> {
 }
 
 class Inverse {
-  private readonly targets: Target[] = [];
+  private readonly targets: Target[];
   /** How many points of the skin were named. */
-  private points = 0;
+  private points: number;
   private readonly bounds: Bounds;
+  /** Those to begin with. */
+  private readonly usual: Bounds;
   private readonly boundFields = make("div", {});
   private readonly list = make("div", {});
   private readonly said = make("div", { role: "status" });
@@ -49,7 +52,11 @@ class Inverse {
 
   constructor(private readonly app: App, private readonly opened: Opened, private readonly bench: Workbench, private readonly loaded: RestingSkin) {
     const held = { forward: STARTING_BOUND_MM, up: STARTING_BOUND_MM, left: 0, pitch: 0, roll: 0, yaw: 0 };
-    this.bounds = Object.fromEntries(loaded.description.segments.map(({ name }) => [name, { ...held }]));
+    this.usual = Object.fromEntries(loaded.description.segments.map(({ name }) => [name, { ...held }]));
+    const { state } = app.route;
+    this.bounds = readBounds(state.get("bounds") ?? "", this.usual);
+    this.targets = readTargets(state.get("targets") ?? "", (opened.document.landmarks ?? {}) as Record<string, Triple>, (number) => `${app.words.point} ${number}`);
+    this.points = this.targets.filter(({ landmark }) => landmark === undefined).length;
   }
 
   start(): void {
@@ -141,6 +148,7 @@ class Inverse {
   /** Says before solving which way no segment may go as far as a target asks, and offers to allow it or to leave that way free. */
   private warn(): void {
     const { words } = this.app;
+    note({ targets: writeTargets(this.targets), bounds: writeBounds(this.bounds, this.usual) });
     this.forbidden.replaceChildren(...beyondBounds(this.targets, this.bounds).map(({ target, at, wanted, allowed }) => {
       const word = TRANSLATIONS[at]!;
       const called = wordFor(words, word, this.opened.frame);

@@ -4,13 +4,14 @@ import { button, choice, make, select } from "../dom.js";
 import { figure } from "../figures.js";
 import type { Opened } from "../loading.js";
 import { Canvas, plyOf } from "../painting.js";
+import { hex, POINTED } from "../palette.js";
 import { History } from "../plan.js";
 import type { PaintedSet, Role } from "../roles.js";
 import type { Hit } from "../scene.js";
 import type { Workbench } from "../workbench.js";
 
 type Mode = "turn" | "paint" | "rub";
-const COLOUR = 0xc0501a;
+const COLOUR = hex(POINTED);
 /** Nodes of painted faces lie on them but for rounding. */
 const WITHIN_MM = 0.01;
 const ROLES: Role[] = ["region", "skin", "segment", "fixed", "sliding"];

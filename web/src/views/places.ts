@@ -2,13 +2,14 @@
 import type { Triple, Warning } from "../api.js";
 import { announce, type Place } from "../app.js";
 import type { Opened } from "../loading.js";
+import { hex, POINTED } from "../palette.js";
 import type { Scene } from "../scene.js";
 import type { Words } from "../words/en.js";
 
 /** Nodes of the skin, as they are drawn, by the names of its parts. */
 export type Parts = Record<string, ArrayLike<number>>;
 
-const COLOUR = 0xc2410c;
+const COLOUR = hex(POINTED);
 
 /** Whether a sentence names something, not as a part of another word. */
 export function names(sentence: string, name: string): boolean {

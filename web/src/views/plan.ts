@@ -126,12 +126,21 @@ class Planning {
     const inside = this.loaded.columns.inner.length > 0;
     this.order.replaceChildren(make("span", { className: "badge" }, second ? words.order2 : words.order1),
       inside ? make("span", { className: "fine" }, words.secondNotInside)
-        : second ? "" : button(words.second, () => void this.addSecond(), { title: words.secondWhy }));
+        : second ? "" : button(words.second, () => void this.rebuild({ order: 2 }), { title: words.secondWhy }),
+      second || this.loaded.columns.inner.some(({ kind }) => kind === "growth") ? ""
+        : button(words.addGrowth, () => void this.rebuild({ growth: this.regions() }), { title: words.addGrowthWhy }));
   }
 
-  private async addSecond(): Promise<void> {
+  /** All tissue, and each region that the case tells apart by name. */
+  private regions(): string[] {
+    const { regions, materials } = this.opened.document;
+    return [...new Set(["*", ...Object.values(regions?.names ?? {}), ...Object.keys(materials ?? {})])];
+  }
+
+  /** The response anew with what it lacks. */
+  private async rebuild(more: { order?: 2; growth?: string[] }): Promise<void> {
     try {
-      await buildResponse(this.app, this.opened.id, 2, this.order);
+      await buildResponse(this.app, this.opened.id, more, this.order);
       const pivots = this.pivots;
       await this.load();
       this.pivots = pivots;
@@ -275,7 +284,10 @@ class Planning {
       if (turn !== this.asked) return;
       const apart = here.reduce((most, value, at) => Math.max(most, Math.abs(value - answer.displacement_mm[Math.floor(at / 3)]![at % 3]!)), 0);
       // Whoever has not moved anything yet knows that.
-      const told = answer.warnings.filter(({ code }) => code !== "nothing-moves");
+      const own = answer.warnings.filter(({ code }) => code !== "nothing-moves");
+      // What the case was warned of, its meshing too, is about each of its plans.
+      const ofCase = (this.opened.view.check?.warnings ?? []).filter((one) => !own.some(({ code, detail }) => code === one.code && detail === one.detail));
+      const told = [...ofCase, ...own];
       drawTrust(bench.strip, words, appliedLines(words, { ...answer, warnings: told }, { apart, most: AGREED_MM }));
       this.warned.replaceChildren(told.length === 0 ? "" : warnings(told, words, placesOf(words, this.opened, this.bench.scene, () => ({}))));
       bench.strip.dataset.apart = String(apart);

@@ -1,8 +1,10 @@
 // The lateral profile: outlines of the skin in the sagittal plane before and after, to scale.
 import type { Triple } from "../api.js";
+import { css } from "../colours.js";
 import { svg } from "../dom.js";
 import { inWords, type FrameName } from "../frame.js";
 import { section } from "../outline.js";
+import { INK, OUTLINE } from "../palette.js";
 import type { Shape } from "../scene.js";
 import type { Words } from "../words/en.js";
 
@@ -34,10 +36,10 @@ export function profile(words: Words, frame: FrameName, before: Shape, after: Sh
   const path = (lines: (typeof pieces)[number]) => lines.map(([a, b]) => `M${a[0].toFixed(2)} ${a[1].toFixed(2)}L${b[0].toFixed(2)} ${b[1].toFixed(2)}`).join("");
   // Pieces are short: dashes would begin anew in each, so that what was before is thin and light instead.
   drawing.append(
-    svg("path", { d: path(pieces[0] ?? []), fill: "none", stroke: "#8a939a", "stroke-width": "0.7" }),
-    svg("path", { d: path(pieces[1] ?? []), fill: "none", stroke: "#0b5c7a", "stroke-width": "1.1" }),
-    svg("path", { d: `M${left} ${bottom + 6}h20m0 -1.500v3m-20 0v-3`, fill: "none", stroke: "#222", "stroke-width": "0.6" }));
-  const scale = svg("text", { x: String(left + 22), y: String(bottom + 8), "font-size": "6", fill: "#222" }, "20 mm");
+    svg("path", { d: path(pieces[0] ?? []), fill: "none", stroke: css(OUTLINE), "stroke-width": "0.7" }),
+    svg("path", { d: path(pieces[1] ?? []), fill: "none", stroke: INK, "stroke-width": "1.1" }),
+    svg("path", { d: `M${left} ${bottom + 6}h20m0 -1.500v3m-20 0v-3`, fill: "none", stroke: INK, "stroke-width": "0.6" }));
+  const scale = svg("text", { x: String(left + 22), y: String(bottom + 8), "font-size": "6", fill: INK }, "20 mm");
   drawing.append(scale);
   return drawing;
 }

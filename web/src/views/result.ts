@@ -7,6 +7,7 @@ import { inWords, still } from "../frame.js";
 import { addBones, openCase, type Opened } from "../loading.js";
 import { matrix } from "../matrix.js";
 import { fromDocument, PLAN_STATE, pivotsOf, planState, read, readPivots, written, type Plan, type Pivots } from "../plan.js";
+import { ACCENT, hex } from "../palette.js";
 import { address, note } from "../route.js";
 import type { Hit, Shape } from "../scene.js";
 import { pointArrays, readVtp } from "../vtp.js";
@@ -240,7 +241,7 @@ class Result {
     const moved = [0, 1, 2].map((axis) => this.displacement_mm[3 * hit.node + axis]!) as Triple;
     const [forward, up, left] = inWords(moved, opened.frame);
     const error = this.after.values._NUMERICAL_ERROR_MM?.[hit.node];
-    bench.scene.mark([{ at_mm: hit.point_mm, colour: 0x0b5c7a }]);
+    bench.scene.mark([{ at_mm: hit.point_mm, colour: hex(ACCENT) }]);
     said.textContent = `${words.point} ${hit.node} ${words.movesBy} ${mm(Math.hypot(...moved))} mm`
       + ` (${words.forward.toLowerCase()} ${signed(forward)}, ${words.up.toLowerCase()} ${signed(up)}, ${words.left.toLowerCase()} ${signed(left)})`
       + (error === undefined ? "" : ` ± ${mm(error)}`);

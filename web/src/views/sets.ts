@@ -3,15 +3,17 @@ import type { CaseDocument } from "../api.js";
 import { announce, refusal, type App } from "../app.js";
 import { button, make, select } from "../dom.js";
 import { setsOf, type Opened } from "../loading.js";
-import { rolesOf, withPainted, withRoles, type PaintedSet, type Role, type SetRoles } from "../roles.js";
+import { ACCENT, FIXED, FREE, hex, SEGMENTS, SLIDING } from "../palette.js";
+import { heldBy, isHeldBySets, rolesOf, withPainted, withRoles, type PaintedSet, type Role, type SetRoles } from "../roles.js";
 import { address } from "../route.js";
-import type { Workbench } from "../workbench.js";
+import type { SkinMap, Workbench } from "../workbench.js";
 import { materialChoices, withPresets, type Presets } from "./materials.js";
 import { Painter } from "./paint.js";
 
 const ROLES: Role[] = ["none", "skin", "region", "segment", "fixed", "sliding"];
+const HELD = "held";
 /** As in the picture of what holds the nodes. */
-const COLOUR = 0x0b5c7a;
+const COLOUR = hex(ACCENT);
 /** A file of more nodes than these is not fetched to name sets. */
 const MOST_NODES = 500_000;
 
@@ -65,8 +67,22 @@ class Sets {
     this.painter = new Painter(this.app, this.opened, this.bench, (name) => [...names, ...this.painted.map((one) => one.name)].includes(name), (set) => { this.painted.push(set); this.drawPainted(); });
     const materials = materialChoices(this.app, document, (presets) => { this.presets = presets; this.write(); });
     section.append(this.here, list, this.paintedList, this.painter.element, materials, make("div", { className: "row" }, post, button(words.reset2, () => this.reset())), made, this.said);
+    if (isHeldBySets(document)) this.bench.offer([this.holding()], HELD);
     this.write();
     this.listen();
+  }
+
+  /** The skin by what holds it, as its sets are now. */
+  private holding(): SkinMap {
+    const { words } = this.app;
+    const { inside } = this.held;
+    const count = Object.values(inside)[0]?.length ?? 0;
+    const now = () => heldBy(this.roles, inside, count);
+    const segment = (name: string, at: number) => ({ name: `${name}: ${words.role.segment}`, colour: SEGMENTS[at % SEGMENTS.length]! });
+    return {
+      name: HELD, label: words.classes, scheme: "length", range_mm: 1, values: () => now().places,
+      get kinds() { return [{ name: words.free, colour: FREE }, { name: words.sliding, colour: SLIDING }, { name: words.fixed, colour: FIXED }, ...now().segments.map(segment)]; },
+    };
   }
 
   private row(set: string, count: number): HTMLElement {
@@ -142,6 +158,7 @@ class Sets {
     const other = withPresets(withPainted(withRoles(document, this.roles), this.painted), this.presets);
     // Two cases of one name are not told apart in a list.
     this.text.value = JSON.stringify(changed ? { ...other, name: `${name} · ${words.otherRoles}` } : other, null, 2);
+    this.bench.redraw();
     for (const [set, row] of this.rows) row.classList.toggle("changed", this.roles[set] !== this.before[set]);
     if (this.chosen !== undefined) this.choose(this.chosen);
   }

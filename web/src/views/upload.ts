@@ -1,15 +1,10 @@
 // A case from files: a mesh alone with roles for its sets, or a mesh with the document that says what it means.
-import type { Documents } from "../api.js";
+import { Refused, type Documents } from "../api.js";
 import { ProgressLine, refusal, type App } from "../app.js";
 import { button, make, select } from "../dom.js";
 import { address } from "../route.js";
 import { guess, documentOf, type Role, type SetRoles } from "../roles.js";
-
-/** The least that a document says to have a scan, or surfaces, meshed. */
-const MESHED = {
-  image: (scan: string) => ({ meshing: { kind: "mesh", scan, osteotomy: "…" } }),
-  surface: (skin: string) => ({ meshing: { kind: "mesh", surfaces: { skin, bones: [{ name: "mandible", mesh: "mandible" }] } } }),
-};
+import { scanEditor, surfacesEditor } from "./meshed.js";
 
 /** The name stands before the choice already: it is for those who do not see that. */
 function named(choice: HTMLLabelElement): HTMLLabelElement {
@@ -62,15 +57,19 @@ async function taken(app: App, files: File[], said: HTMLElement, next: HTMLEleme
     await send(app, (stated.case ?? stated) as Documents["CaseDocument"], byReference(stated.case ?? stated, meshes), said);
     return;
   }
-  const volume = meshes.find(({ name }) => !SURFACES.test(name)) ?? meshes[0]!;
+  const parts = Object.fromEntries(meshes.map((file) => [stem(file.name), file]));
+  if (meshes.every(({ name }) => SURFACES.test(name))) {
+    next.replaceChildren(surfacesEditor(app, Object.keys(parts), (document, into) => send(app, document, parts, into)));
+    return;
+  }
+  const volume = meshes.find(({ name }) => !SURFACES.test(name))!;
   const line = new ProgressLine(app.words, app.words.sending);
   said.replaceChildren(line.element);
   const id = await app.service.upload(volume, "mm", "unspecified", (upload) => line.tell({ status: "", ...upload }));
   const mesh = await app.service.get<Documents["MeshDocument"]>(`/v1/meshes/${id}`);
   said.replaceChildren();
-  if (mesh.report.kind !== "volume") {
-    next.replaceChildren(make("div", { className: "warned" }, make("p", {}, mesh.report.kind === "surface" ? words.surfaceAlone(volume.name) : words.imageAlone(volume.name)),
-      make("pre", {}, make("code", {}, JSON.stringify(MESHED[mesh.report.kind](stem(volume.name)), null, 2)))));
+  if (mesh.report.kind === "image") {
+    next.replaceChildren(scanEditor(app, stem(volume.name), id, (document, into) => send(app, document, {}, into)));
     return;
   }
   next.replaceChildren(editor(app, mesh, volume.name, meshes.filter((file) => file !== volume)));
@@ -105,11 +104,23 @@ function editor(app: App, mesh: Documents["MeshDocument"], name: string, bones: 
   const rows = sets.map(([set, count]) => make("li", {}, make("span", { className: "name" }, `${set} · ${count} ${words.nodes}`),
     named(select(set, ROLES.map((role) => [role, words.role[role]] as const), roles[set]!, (role) => { roles[set] = role as Role; write(); })),
     count === 0 && make("span", { className: "warned" }, words.emptySet)));
+  /** What is wrong stands beside the set that it is wrong of, too. */
+  const blame = (error: unknown) => {
+    const faults = error instanceof Refused ? error.problem.errors ?? [] : [];
+    sets.forEach(([set], at) => {
+      const fault = faults.find(({ pointer }) => pointer.split("/").includes(set));
+      if (fault !== undefined) rows[at]!.append(make("p", { className: "warned" }, fault.detail));
+    });
+  };
   const asked = make("p", { className: "warned", hidden: settings.frame !== "unspecified" }, words.frameAsked);
   const parts = () => Object.fromEntries(bones.map((file) => [stem(file.name), file]));
   const post = button(words.sendCase, () => {
     try {
-      send(app, JSON.parse(text.value), parts(), found).catch((error: unknown) => found.replaceChildren(refusal(error, words)));
+      for (const row of rows) row.querySelector("p")?.remove();
+      send(app, JSON.parse(text.value), parts(), found).catch((error: unknown) => {
+        found.replaceChildren(refusal(error, words));
+        blame(error);
+      });
     } catch (error) {
       found.replaceChildren(refusal(error, words));
     }

@@ -47,6 +47,7 @@ export const de: Words = {
   load: "Laden", remove: "Entfernen", noPlans: "Noch keine Pläne.", otherPlan: "Dieser Plan bewegt Knochen so, wie es Regler nicht zeigen können.",
   difference: "Gegen diesen Plan", compareWith: "Vergleichen",
 
+  addGrowth: "Wachstum von Gewebe hinzufügen", addGrowthWhy: "Gewebe, das an Volumen gewinnt oder verliert, alles oder nach Bereichen. Das Hinzufügen dauert etwa so lange wie die Antwort, einmal.",
   muscles: "Muskeln", growth: "Wachstum von Gewebe", allTissue: "alles Gewebe", bothSides: "beide Seiten gleich", atRest: "in Ruhe",
   musclesHint: "Womit jeder Muskel zieht. Ein dünner Muskel des Gesichts hat einige zehn kPa.",
   growthHint: "Was das Gewebe an Volumen gewinnt oder verliert.",
@@ -91,8 +92,9 @@ export const de: Words = {
   frameAsked: "Wohin zeigen die Achsen dieses Netzes? Die Datei sagt es nicht. LPS: x zur Linken des Patienten, y nach hinten. RAS: x zur Rechten, y nach vorn. Ohne Antwort sind Bewegungen entlang und um diese Achsen.",
   frames: { unspecified: "nicht angegeben", LPS: "LPS: links, hinten, oben", RAS: "RAS: rechts, vorn, oben" }, emptySet: "hält keinen Knoten",
   joinedToNothing: (name) => `Kein Gewebe ist mit ${name} verbunden: seine Bewegung bewegt nichts. Die Knoten auf dem Knochen wählen.`,
-  surfaceAlone: (file) => `${file} ist eine Fläche und jetzt gespeichert. Um darauf vorherzusagen, muss das Gewebe zwischen Haut und Knochen vernetzt werden: noch einmal ablegen, zusammen mit der Haut, den Knochen und einem Dokument (case.json), das mit "meshing" sagt, wie.`,
-  imageAlone: (file) => `${file} ist eine Aufnahme und jetzt gespeichert. Um darauf vorherzusagen, muss ihr Weichgewebe vernetzt werden: noch einmal ablegen, zusammen mit einem Dokument (case.json), das mit "meshing" sagt, wie. osteotomy sagt, wo Knochen geschnitten wird: ohne das lässt sich nichts bewegen.`,
+  surfaces: "Flächen", surfacesWhy: "Das Gewebe zwischen Haut und Knochen wird vernetzt, was eine Minute oder länger dauert. Jeder Knochen lässt sich danach bewegen. Längen der Dateien gelten als mm.",
+  surfacesLack: "Eine Fläche muss die Haut sein, und wenigstens eine ein Knochen.", surfaceRole: { skin: "die Haut", bone: "ein Knochen", none: "nichts" },
+  imageAlone: (file) => `${file} ist eine Aufnahme und jetzt gespeichert. Das Dokument daneben lässt ihr Weichgewebe vernetzen und kann vor dem Senden von Hand geändert werden. Was darin "osteotomy" sagt, ist, wo Knochen geschnitten wird: ohne das lässt sich nichts bewegen.`,
 
   material: "Material", level: "Netzstufe", meanMm: "Mittel mm", toComparison: "Auf der Haut zeigen", pictures: "Bilder",
 
@@ -121,7 +123,7 @@ export const de: Words = {
 
   learningHelps: "Näher an dem, was geschah, als Mechanik allein.", learningHarms: "Nicht näher an dem, was geschah, als Mechanik allein.",
   learnedErrors: (own, mechanics) => `${own} mm damit, ${mechanics} mm ohne.`,
-  learningCurve: "Fehler nach Zahl der Fälle", casesLearnedFrom: "Fälle, aus denen gelernt wurde", meanErrorMm: "Mittlerer Fehler, mm", curveHint: "Jeder Fall aus so vielen anderen vorhergesagt. Gepunktet: wofür nichts gelernt wurde.",
+  learningCurve: "Fehler nach Zahl der Fälle", casesLearnedFrom: "Fälle, aus denen gelernt wurde", meanError: "Mittlerer Fehler", meanErrorMm: "Mittlerer Fehler, mm", curveHint: "Jeder Fall aus so vielen anderen vorhergesagt. Gepunktet: wofür nichts gelernt wurde.",
   errorsOfCases: "Fehler jedes Falls", boxHint: "Kästen vom ersten zum dritten Viertel mit dem Median, Striche bis zu den Enden, ein Punkt für jeden.", nested: "verschachtelt", validation: "Prüfung", width: "Breite",
   widthEnds: { inside: "gefunden bei", nearest_neighbour: "keine: der nächste Fall ist am besten", mean: "keine: Merkmale sagen nichts" },
   againstMechanics: "Gegen die mechanische Vorhersage", medianGain: "Gewinn, Median, mm", smallestP: "kleinstes p", harmed: "geschadet", refusedCases: "verweigert", coverage: "im Band",

@@ -45,6 +45,7 @@ export const en = {
   load: "Load", remove: "Remove", noPlans: "No plans yet.", otherPlan: "This plan moves bone in a way that sliders cannot show.",
   difference: "Against this plan", compareWith: "Compare",
 
+  addGrowth: "Add growth of tissue", addGrowthWhy: "Tissue that gains or loses volume, all of it or by region. Adding it takes about as long as the response took, once.",
   muscles: "Muscles", growth: "Growth of tissue", allTissue: "all tissue", bothSides: "both sides alike", atRest: "at rest",
   musclesHint: "What each muscle pulls with. A thin muscle of the face has a few tens of kPa.",
   growthHint: "What the tissue gains or loses of its volume.",
@@ -89,8 +90,9 @@ export const en = {
   frameAsked: "Which way do the axes of this mesh point? The file does not say. LPS: x to the patient's left, y to the back. RAS: x to the right, y to the front. Without an answer movements are along and about its axes.",
   frames: { unspecified: "not stated", LPS: "LPS: left, back, up", RAS: "RAS: right, front, up" }, emptySet: "holds no node",
   joinedToNothing: (name: string) => `No tissue is joined to ${name}: moving it moves nothing. Choose the nodes on its bone.`,
-  surfaceAlone: (file: string) => `${file} is a surface and is stored now. To predict on it the tissue between skin and bone has to be meshed: drop it again together with the skin, the bones, and a document (case.json) that says how, with "meshing".`,
-  imageAlone: (file: string) => `${file} is a scan and is stored now. To predict on it its soft tissue has to be meshed: drop it again together with a document (case.json) that says how, with "meshing". osteotomy says where bone is cut: without it nothing can be moved.`,
+  surfaces: "Surfaces", surfacesWhy: "The tissue between the skin and the bones is meshed, which takes a minute or more. Each bone can be moved afterwards. Lengths of the files are taken as mm.",
+  surfacesLack: "One surface has to be the skin, and at least one a bone.", surfaceRole: { skin: "the skin", bone: "a bone", none: "nothing" },
+  imageAlone: (file: string) => `${file} is a scan and is stored now. The document beside has its soft tissue meshed, and may be changed by hand before it is sent. What it says with "osteotomy" is where bone is cut: without that nothing can be moved.`,
 
   material: "Material", level: "Mesh level", meanMm: "mean mm", toComparison: "Show it on the skin", pictures: "Pictures",
 
@@ -119,7 +121,7 @@ export const en = {
 
   learningHelps: "Closer to what happened than mechanics alone.", learningHarms: "Not closer to what happened than mechanics alone.",
   learnedErrors: (own: string, mechanics: string) => `${own} mm with it, ${mechanics} mm without.`,
-  learningCurve: "Error by the number of cases", casesLearnedFrom: "cases learned from", meanErrorMm: "Mean error, mm", curveHint: "Each case predicted from so many others. Dotted: what nothing was learned for.",
+  learningCurve: "Error by the number of cases", casesLearnedFrom: "cases learned from", meanError: "Mean error", meanErrorMm: "Mean error, mm", curveHint: "Each case predicted from so many others. Dotted: what nothing was learned for.",
   errorsOfCases: "Error of each case", boxHint: "Boxes from the first to the third quartile with the median, whiskers to the ends, a dot for each.", nested: "nested", validation: "Validation", width: "width",
   widthEnds: { inside: "found at", nearest_neighbour: "none: the nearest case is best", mean: "none: features say nothing" } as Record<string, string>,
   againstMechanics: "Against the mechanical prediction", medianGain: "median gain, mm", smallestP: "least p", harmed: "harmed", refusedCases: "refused", coverage: "in band",

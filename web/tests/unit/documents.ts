@@ -2,13 +2,14 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import type { Documents } from "../../../clients/typescript/src/facies.js";
-import { documentOf, guess, rolesOf, withRoles, type SetRoles } from "../../src/roles.js";
+import { documentOf, guess, heldBy, isHeldBySets, rolesOf, segmentOf, withRoles, type SetRoles } from "../../src/roles.js";
 import { shareOf } from "../../src/app.js";
 import { wordOf } from "../../src/frame.js";
-import { beyondBounds } from "../../src/targets.js";
+import { beyondBounds, readBounds, readTargets, writeBounds, writeTargets, type Bounds, type Target } from "../../src/targets.js";
 import { called } from "../../src/views/anything.js";
 import { jobInWords, planInWords } from "../../src/views/called.js";
 import { foundLine, targetsOf, targetTags } from "../../src/views/found.js";
+import { surfaceRole, surfacesDocument } from "../../src/views/meshed.js";
 import { names } from "../../src/views/places.js";
 import { appliedLines, resultLines } from "../../src/views/trusted.js";
 import { de } from "../../src/words/de.js";
@@ -140,4 +141,43 @@ test("both languages have the same words, and none is empty", () => {
   const kept = new Set(["°", "mm", "s", "p95", "p95 mm", "max", "rms", "Jobs", "Plan", "JSON", "Linear", "Material", "Segment", "Name"]);
   const same = Object.entries(en).filter(([name, value]) => typeof value === "string" && value.length > 8 && (de as Record<string, unknown>)[name] === value && !kept.has(value));
   assert.deepEqual(same.map(([name]) => name), []);
+});
+
+test("targets and bounds are in the address and come back, and what is none is left out", () => {
+  const targets: Target[] = [
+    { label: "nose, tip", landmark: "nose, tip", at_mm: [1, 2, 3], by: [3, null, -0.5], sigma_mm: 1 },
+    { label: "Point 1", at_mm: [-1.5, 2.25, 30], by: [null, 0, null], sigma_mm: 1 },
+  ];
+  const written = writeTargets(targets);
+  assert.deepEqual(readTargets(`${written};chin,1,2,3;@1@2,1,1,1;junk`, { "nose, tip": [1, 2, 3] }, (number) => `Point ${number}`), targets);
+  const still = { forward: 10, up: 10, left: 0, pitch: 0, roll: 0, yaw: 0 };
+  const start: Bounds = { "le fort, 1": { ...still }, mandible: { ...still } };
+  const bounds: Bounds = { "le fort, 1": { ...still, left: 2, yaw: 4 }, mandible: { ...still } };
+  assert.deepEqual(readBounds(`${writeBounds(bounds, start)};skull,1,1,1,1,1,1`, start), bounds);
+  assert.equal(writeBounds(start, start), "");
+});
+
+test("surfaces are one skin and bones, or there is nothing to mesh", () => {
+  assert.deepEqual(["patient_skin", "Haut", "mandible"].map(surfaceRole), ["skin", "skin", "bone"]);
+  const bone = (name: string) => ({ name, mesh: name });
+  assert.deepEqual(surfacesDocument("a", "RAS", { skin: "skin", jaw: "bone", other: "none" }),
+    { name: "a", meshing: { kind: "mesh", frame: "RAS", surfaces: { skin: "skin", bones: [bone("jaw")] } } });
+  assert.equal(surfacesDocument("a", "RAS", { skin: "skin" }), undefined);
+  assert.equal(surfacesDocument("a", "RAS", { skin: "skin", face: "skin", jaw: "bone" }), undefined);
+});
+
+test("of what holds a node the stronger counts: bone before what stays, that before what slides", () => {
+  const inside = { wall: [1, 1, 1, 1, 0], skull: [0, 1, 1, 1, 0], jaw: [0, 0, 1, 1, 0], chin: [0, 0, 0, 1, 0] };
+  const { segments, places } = heldBy({ wall: "sliding", skull: "fixed", jaw: "segment", chin: "segment" }, inside, 5);
+  assert.deepEqual([segments, [...places]], [["jaw", "chin"], [1, 2, 3, 3, 0]]);
+  const held = (fixed: object[]) => isHeldBySets({ segments: [{ name: "jaw", nodes: { node_set: "jaw" } }], fixed } as never);
+  assert(held([{ any: [{ node_set: "skull" }, { node_set: "rim" }] }]));
+  assert(!held([{ surface: "bone", within_mm: 1 }]) && !held([{ any: [{ node_set: "skull" }, { surface: "bone", within_mm: 1 }] }]));
+});
+
+test("a surface of bone moves with the segment of its name, or the only one that is called by the same bone", () => {
+  assert.equal(segmentOf("subject_face_jaw", ["jaw_attached", "maxilla"]), "jaw_attached");
+  assert.equal(segmentOf("mandible", ["mandible", "mandible_left"]), "mandible");
+  assert.equal(segmentOf("jaw", ["jaw_left", "jaw_right"]), undefined);
+  assert.equal(segmentOf("cranium", ["jaw_attached"]), undefined);
 });

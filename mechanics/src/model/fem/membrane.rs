@@ -12,6 +12,11 @@
 //! stiffness of a stretched skin. Its energy t s |grad u|^2 / 2 is that of the second Piola-Kirchhoff stress s P whatever the
 //! displacement, so that it adds nothing of a higher order. What balances it at rest is left out.
 //!
+//! At finite strain the same stiffness acts on Green's strain in the plane, F = sum x_a g_a^T, E = (F^T F - P) / 2, S = C:E: the energy of
+//! the sheet is t int E:S / 2 + s |F - P|^2 / 2 dA, its forces are t int (F S + s (F - P)) g_a dA, and their derivatives
+//! t int F C(g_a, g_b) F^T + (g_a.S.g_b + s g_a.g_b) I dA. Turning it strains nothing; pressed in its plane it may wrinkle, and a sheet alone
+//! has no energy against that.
+//!
 //! Source: Zienkiewicz, Taylor, The Finite Element Method, 5th ed., vol. 1, chapter 4; skin as a membrane:
 //! Zachow et al. 2006, section 4.2 (docs/methods.md#membrane). The sheet weighs nothing.
 
@@ -34,6 +39,7 @@ pub struct Membrane {
 }
 
 /// What a triangle needs for its matrix.
+#[derive(Clone)]
 pub(super) struct Triangle {
     normal: Vector,
     /// Thickness times area, in mm³.
@@ -144,7 +150,59 @@ impl Membrane {
     }
 }
 
+/// A triangle whose corners are moved however far.
+pub(super) struct Stretched<'a> {
+    triangle: &'a Triangle,
+    /// F, whose null vector is the normal at rest.
+    gradient: Matrix3<f64>,
+    /// F less what it is at rest.
+    slope: Matrix3<f64>,
+    /// E.
+    strain: Matrix3<f64>,
+    /// S in kPa.
+    stress: Matrix3<f64>,
+}
+
+impl Stretched<'_> {
+    /// In mN mm.
+    pub fn energy(&self) -> f64 {
+        let taut = self.triangle.tension * self.slope.norm_squared();
+        0.5 * self.triangle.volume * (self.strain.dot(&self.stress) + taut)
+    }
+
+    /// In mN, at a node of this gradient.
+    pub fn force(&self, g: &Vector) -> Vector {
+        let stress = self.gradient * self.stress + self.slope * self.triangle.tension;
+        stress * g * self.triangle.volume
+    }
+
+    /// The derivative of the force at a node by the position of another one, in kPa mm.
+    pub fn pair(&self, gj: &Vector, gk: &Vector) -> Matrix3<f64> {
+        let Triangle { volume, tensor, tension, .. } = self.triangle;
+        let mut block: Block = [[0.0; 3]; 3];
+        tensor.add_pair(&mut block, [gj, gk], *volume);
+        let own = Matrix3::from_fn(|i, j| block[i][j]);
+        let taut = volume * (gj.dot(&(self.stress * gk)) + tension * gj.dot(gk));
+        self.gradient * own * self.gradient.transpose() + Matrix3::from_diagonal_element(taut)
+    }
+}
+
 impl Triangle {
+    /// With its corners at these positions.
+    pub fn at(&self, corners: &[Vector; 3]) -> Stretched<'_> {
+        let plane = Matrix3::identity() - self.normal * self.normal.transpose();
+        let moved = corners.iter().zip(&self.gradients);
+        let gradient: Matrix3<f64> = moved.map(|(x, g)| x * g.transpose()).sum();
+        let strain = (gradient.transpose() * gradient - plane) * 0.5;
+        let stress = self.tensor.stress(&strain);
+        Stretched { triangle: self, gradient, slope: gradient - plane, strain, stress }
+    }
+
+    /// Its stiffness times its volume, in mN mm.
+    pub fn modulus(&self) -> f64 {
+        self.volume * (self.tensor.lambda + 2.0 * self.tensor.mu + self.tension)
+    }
+
     /// The gradient of a displacement in the plane.
     fn gradient(&self, nodes: [u32; 3], moved: &[Vector]) -> Matrix3<f64> {
         let nodes = nodes.iter().zip(&self.gradients);

@@ -213,7 +213,7 @@ fn mass_tensors() -> Vec<Found> {
             most_iterations: 50_000,
         })
     };
-    let transverse = with_method(Method::MassTensorTransverse);
+    let transverse = with_method(Method::MassTensorTransverse(MassTensorSettings::default()));
     vec![
         of("fast", Holds::Near, Iterations::Fast),
         of("gauss_seidel", Holds::Bits, own(Iteration::GaussSeidel)),

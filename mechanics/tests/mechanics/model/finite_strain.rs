@@ -49,6 +49,7 @@ fn rest_of(
         pressure_of_cell: &one,
         elements,
         fibres: FibreField::default(),
+        membrane: None,
         inner: std::sync::Arc::default(),
         holds,
         tolerance: Tolerance { relative_residual: 1e-7, memory_mb: 1000.0 },

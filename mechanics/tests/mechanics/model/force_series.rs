@@ -67,6 +67,7 @@ fn newton_forces(mesh: &VolumeMesh, law: &Law, displacement: &[Vector]) -> Vec<V
         pressure_of_cell: &vec![0; mesh.cells.len()],
         elements: Elements::PLAIN,
         fibres: FibreField::default(),
+        membrane: None,
         inner: std::sync::Arc::default(),
         holds: &holds,
         tolerance: TOLERANCE,

@@ -3,6 +3,7 @@
 use mechanics::material::{PlaneStress, Sheet, SheetError};
 use mechanics::mesh::sample::block;
 use mechanics::mesh::{CellShape, Vector, VolumeMesh};
+use mechanics::model::fem::mass_tensor::{Iterations, MassTensorSettings};
 use mechanics::model::fem::membrane::Membrane;
 use mechanics::plan::{PlannedSegment, RigidMovement};
 use mechanics::prediction::{
@@ -131,7 +132,11 @@ const MODELS: [(CellShape, ElementChoice, Method); 6] = [
     (CellShape::Tet4, ElementChoice::Plain, Method::FemLinear),
     (CellShape::Tet4, ElementChoice::Stabilised, Method::FemLinear),
     (CellShape::Tet4, ElementChoice::Quadratic, Method::FemLinear),
-    (CellShape::Tet4, ElementChoice::Plain, Method::MassTensorTransverse),
+    (
+        CellShape::Tet4,
+        ElementChoice::Plain,
+        Method::MassTensorTransverse(MassTensorSettings { iterations: Iterations::Fast }),
+    ),
     (CellShape::Hex8, ElementChoice::MeanDilatation, Method::FemLinear),
     (CellShape::Wedge6, ElementChoice::MeanDilatation, Method::FemLinear),
 ];

@@ -7,7 +7,8 @@ use mechanics::mesh::Vector;
 use mechanics::mesh::refinement::refine;
 use mechanics::mesh::sample::block;
 use mechanics::prediction::{
-    Adapted, Case, ElementChoice, Plan, Scene, Settings, Stop, Wanted, predict, predict_adaptively,
+    Activation, Adapted, Case, ElementChoice, Muscle, MuscleCourse, Plan, Scene, Settings, Stop,
+    Wanted, predict, predict_adaptively,
 };
 use mechanics::progress::Unobserved;
 use mechanics::study::scenes::slab;
@@ -140,4 +141,22 @@ fn the_same_scene_gives_the_same_meshes_on_one_thread_and_on_two() {
         (adapted.levels, adapted.prediction.displacement, adapted.finest.unwrap().scene.mesh)
     };
     assert_eq!(on(1), on(2));
+}
+
+#[test]
+fn muscles_around_lines_are_told_to_stay_as_coarse_as_they_were() {
+    let (mut case, still) = scene();
+    let middle = case.volume.nodes.iter().sum::<Vector>() / case.volume.nodes.len() as f64;
+    let line = vec![middle - Vector::x() * 20.0, middle + Vector::x() * 20.0];
+    let course = MuscleCourse::Lines { lines: vec![line], within: 15.0 };
+    let name = "levator".to_owned();
+    case.muscles = vec![Muscle { name: name.clone(), course, tissue: None, stiffening: None }];
+    let pulling =
+        Plan { activations: vec![Activation { muscle: name, stress: 5.0 }], ..still.clone() };
+    let told = |plan: &Plan, skin_mm: f64| {
+        let adapted = adapted(&case, plan, &wanted(skin_mm, 20_000));
+        adapted.prediction.warnings.iter().any(|own| own.code == "muscles-not-refined")
+    };
+    assert!(told(&pulling, 1e-3));
+    assert!(!told(&still, 1e-3) && !told(&pulling, 1e3));
 }

@@ -98,7 +98,10 @@ fn free_tissue_with_fibres_keeps_its_shape_too() {
 fn the_mass_tensor_grows_as_the_plain_element_does() {
     let (case, plan) = free(distorted(CellShape::Tet4), material(15.0, 0.3));
     let plan = Plan { growth: growing("tissue", -0.1), ..plan };
-    let methods = [Method::MassTensor(MassTensorSettings::default()), Method::MassTensorTransverse];
+    let methods = [
+        Method::MassTensor(MassTensorSettings::default()),
+        Method::MassTensorTransverse(MassTensorSettings::default()),
+    ];
     for method in methods {
         let answer = solve(&case, &plan, &Settings { method: method.clone(), ..exact() });
         let strain = linear_strain(-0.1);

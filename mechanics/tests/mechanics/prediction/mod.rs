@@ -12,6 +12,7 @@ mod generic_face;
 mod growth;
 mod inner_at_finite_strain;
 mod jump;
+mod membrane_at_finite_strain;
 mod moving_walls;
 mod muscle_tissue;
 mod muscles;

@@ -1,6 +1,7 @@
 //! Sliding on bone that moves: n . u = n . ((R - I) x + t) across a wall that a segment carries, free along it.
 
 use mechanics::mesh::{CellShape, Vector, VolumeMesh, sample::block};
+use mechanics::model::fem::mass_tensor::MassTensorSettings;
 use mechanics::model::mass_spring::{MassSpringSettings, Search};
 use mechanics::model::spline::VolumeSpline;
 use mechanics::optimisation::{Goal, Question, SegmentBounds, SkinPoint, Target, optimise};
@@ -29,7 +30,7 @@ fn models() -> Vec<(CellShape, Settings)> {
         fem(CellShape::Hex8, ElementChoice::MeanDilatation),
         fem(CellShape::Wedge6, ElementChoice::MeanDilatation),
         with(CellShape::Tet4, auto, Method::MassTensor(Default::default())),
-        with(CellShape::Tet4, auto, Method::MassTensorTransverse),
+        with(CellShape::Tet4, auto, Method::MassTensorTransverse(MassTensorSettings::default())),
         with(CellShape::Tet4, auto, springs()),
         with(CellShape::Hex8, auto, Method::VolumeSpline(VolumeSpline::default())),
     ]

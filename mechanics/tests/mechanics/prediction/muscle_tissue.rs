@@ -8,6 +8,7 @@ use mechanics::material::hyperelastic::{Law, NeoHookean};
 use mechanics::material::mixture::{MixingRule, mixture};
 use mechanics::material::{Fibre, FibreLaw, LinearElastic};
 use mechanics::mesh::{CellShape, TriangleSurface, Vector, sample::block};
+use mechanics::model::fem::mass_tensor::MassTensorSettings;
 use mechanics::muscle::strap::box_surface;
 use mechanics::prediction::{
     Activation, BodyFibres, Case, FibreDirection, Method, Muscle, MuscleCourse, MuscleMixing, Plan,
@@ -265,7 +266,10 @@ fn a_method_without_fibres_takes_muscles_as_stiff_as_they_are_across_them() {
         !own.has_fibre() && own.young_modulus() == 30.0
     });
     assert_eq!(stiff.count(), 32);
-    let mtm = Settings { method: Method::MassTensorTransverse, ..Settings::default() };
+    let mtm = Settings {
+        method: Method::MassTensorTransverse(MassTensorSettings::default()),
+        ..Settings::default()
+    };
     let tetrahedra = block(Vector::new(24.0, 12.0, 12.0), [8, 4, 4], CellShape::Tet4);
     let case = Case { volume: Arc::new(tetrahedra), ..case };
     let made = Scene::new(&case, &pushed(), &mtm).unwrap();

@@ -349,6 +349,23 @@ fn a_muscle_in_cells_too_coarse_for_its_width_is_told_with_how_much_of_it_pulls(
 }
 
 #[test]
+fn lines_that_leave_the_tissue_are_told_with_how_much_of_them_lies_in_it() {
+    let told = |from: f64| {
+        let mesh = block(Vector::new(60.0, 30.0, 30.0), [24, 12, 12], CellShape::Hex8);
+        let line = vec![Vector::new(from, 15.0, 15.0), Vector::new(from + 60.0, 15.0, 15.0)];
+        let muscles = vec![around("long", vec![line], 4.5)];
+        let case =
+            Case { fixed: vec![set("x_min")], muscles, ..case_of(mesh, material(15.0, 0.46)) };
+        let scene = Scene::new(&case, &pulling("long", 1.0), &Settings::default()).unwrap();
+        let mut told = scene.warnings.into_iter().filter(|own| own.code == "muscle-outside");
+        told.next().map(|own| own.numbers[0].1)
+    };
+    assert_eq!(told(20.0), None);
+    let share = told(45.0).unwrap();
+    assert!((share - 0.25).abs() < 0.03, "{share}");
+}
+
+#[test]
 fn a_muscle_pulls_in_its_region_only() {
     let mut case = arched(CellShape::Hex8, 0);
     let mut mesh = (*case.volume).clone();

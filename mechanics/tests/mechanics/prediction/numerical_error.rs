@@ -67,7 +67,7 @@ impl Question {
     }
 
     /// Between one half and two, and a correction that is worth its name.
-    fn assert_effective(&self, name: &str) {
+    pub(super) fn assert_effective(&self, name: &str) {
         let Effectivity { mean, p95, left } = self.effectivity();
         println!("{name}: effectivity {mean:.2} in the mean, {p95:.2} at p95, {left:.2} left");
         assert!((0.5..=2.0).contains(&mean), "{name}: {mean:.2}");
@@ -266,7 +266,7 @@ fn threads_change_no_bit_of_an_estimate() {
 }
 
 /// A slab whose patch moves along (4, 0, 8) mm by so much at finite strain.
-fn moved_at_finite_strain(element: ElementChoice, length: f64, case: &Case) -> Question {
+pub(super) fn moved_at_finite_strain(element: ElementChoice, length: f64, case: &Case) -> Question {
     let along = Vector::new(4.0, 0.0, 8.0).normalize() * length;
     let movement = RigidMovement::about_pivot(Vector::zeros(), Vector::zeros(), along);
     let segments = vec![PlannedSegment { name: "patch".to_owned(), movement }];

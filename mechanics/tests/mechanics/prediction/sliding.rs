@@ -3,6 +3,7 @@
 use mechanics::boundary::NodeSelection;
 use mechanics::mesh::sample::block;
 use mechanics::mesh::{CellShape, Vector};
+use mechanics::model::fem::mass_tensor::{Iterations, MassTensorSettings};
 use mechanics::model::problem::Equilibrium;
 use mechanics::prediction::{
     ContactKind, ElementChoice, Method, NodeClass, Plan, Prescribed, Scene, Settings, Sliding,
@@ -18,7 +19,11 @@ const MODELS: [(CellShape, ElementChoice, Method); 8] = [
     (CellShape::Tet4, ElementChoice::Plain, Method::FemLinear),
     (CellShape::Tet4, ElementChoice::Stabilised, Method::FemLinear),
     (CellShape::Tet4, ElementChoice::Quadratic, Method::FemLinear),
-    (CellShape::Tet4, ElementChoice::Plain, Method::MassTensorTransverse),
+    (
+        CellShape::Tet4,
+        ElementChoice::Plain,
+        Method::MassTensorTransverse(MassTensorSettings { iterations: Iterations::Fast }),
+    ),
     (CellShape::Hex8, ElementChoice::Plain, Method::FemLinear),
     (CellShape::Hex8, ElementChoice::MeanDilatation, Method::FemLinear),
     (CellShape::Wedge6, ElementChoice::Plain, Method::FemLinear),

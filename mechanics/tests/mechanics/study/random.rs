@@ -8,14 +8,18 @@ use mechanics::study::stability::random::{Ending, random};
 
 use super::stability::Clock;
 
-/// In CI: some 10 s of processor time; `facies study --stability --random 10000` goes on.
-const SCENES: u64 = 350;
+/// In CI: some 15 s of processor time; `facies study --stability --random 10000` goes on.
+const SCENES: u64 = 1000;
+
+/// Scenes of seed 1 that were answered with forces out of balance by up to 8.8 times what holds exert in the end, because they were measured
+/// against what exponential laws had exerted on the way.
+const OUT_OF_BALANCE: [u64; 6] = [1687, 1826, 2120, 5157, 8800, 8829];
 
 #[test]
 fn no_random_scene_is_silently_wrong_and_most_have_an_answer() {
     let clock = Clock(Instant::now());
     let bounds = Bounds { stopwatch: &clock, seconds: 120.0 };
-    let found = random(1, SCENES, &bounds, &|_| {});
+    let found = random(1, 0..SCENES, &bounds, &|_| {});
     for (name, endings) in found.by_method.iter().chain(&found.by_law) {
         println!("{name}: {endings:?}");
     }
@@ -31,11 +35,20 @@ fn no_random_scene_is_silently_wrong_and_most_have_an_answer() {
 }
 
 #[test]
+fn forces_are_in_balance_where_a_law_exerted_far_more_on_the_way() {
+    let clock = Clock(Instant::now());
+    let bounds = Bounds { stopwatch: &clock, seconds: 120.0 };
+    for place in OUT_OF_BALANCE {
+        assert_eq!(random(1, place..place + 1, &bounds, &|_| {}).wrong, []);
+    }
+}
+
+#[test]
 fn the_same_seed_makes_the_same_scenes_and_another_one_others() {
     let clock = Clock(Instant::now());
     // How long a scene takes is the machine's affair.
     let bounds = Bounds { stopwatch: &clock, seconds: f64::INFINITY };
-    let of = |seed| random(seed, 25, &bounds, &|_| {}).by_method;
+    let of = |seed| random(seed, 0..25, &bounds, &|_| {}).by_method;
     assert_eq!(of(7), of(7));
     assert_ne!(of(7), of(8));
 }

@@ -77,6 +77,10 @@ impl<'a> Cells<'a> {
 }
 
 impl EnrichedCells for Cells<'_> {
+    fn is_finite(&self) -> bool {
+        false
+    }
+
     fn pressure_numbers(&self, cell: usize) -> Option<[u32; 4]> {
         self.numbers[cell]
     }

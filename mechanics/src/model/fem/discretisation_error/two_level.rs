@@ -5,7 +5,7 @@ use super::edge_functions::MAX_EDGES;
 use super::edges::Edges;
 use super::held_edges::HeldEdges;
 use super::loads::DistributedLoads;
-use super::sheet::Sheet;
+use super::sheet::{Moved, Sheet};
 use crate::boundary::Hold;
 use crate::element::MAX_NODES;
 use crate::mesh::Vector;
@@ -23,6 +23,9 @@ pub(in crate::model::fem) type OfEdges = [EdgeEquation; MAX_EDGES];
 
 /// Cells of an answer with functions on their edges.
 pub(in crate::model::fem) trait EnrichedCells: Sync {
+    /// Whether the answer is one of finite strain.
+    fn is_finite(&self) -> bool;
+
     /// The numbers of the pressures of its corners, where a cell has any.
     fn pressure_numbers(&self, cell: usize) -> Option<[u32; 4]>;
 
@@ -66,7 +69,7 @@ impl<C: EnrichedCells> TwoLevel<'_, C> {
             },
         )?;
         if let Some(sheet) = self.sheet(edges, &equations) {
-            sheet.add_equations(self.displacement, &mut equations);
+            sheet.add_equations(&mut equations);
         }
         Ok(equations)
     }
@@ -86,7 +89,10 @@ impl<C: EnrichedCells> TwoLevel<'_, C> {
     /// The membrane, if there is one.
     fn sheet<'b>(&'b self, edges: &'b Edges<'b>, equations: &EdgeEquations) -> Option<Sheet<'b>> {
         let is_edge = |edge: usize| equations.stiffness[edge][(0, 0)] > 0.0;
-        self.tissue.membrane.map(|skin| Sheet::new(skin, self.tissue.mesh, edges, is_edge))
+        let (displacement, is_finite) = (self.displacement, self.cells.is_finite());
+        let skin = self.tissue.membrane?;
+        let moved = Moved { displacement, is_finite };
+        Some(Sheet::new((skin, self.tissue.mesh), moved, edges, is_edge))
     }
 
     /// What the edge functions do to the equations of the corners, and their squared energy norm in mN mm.

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use nalgebra::Matrix3;
 use rayon::prelude::*;
 
-use super::elements::Exchange;
+use super::elements::{Exchange, rounded};
 use super::fibres::FibreField;
 use super::problem::FiniteStrain;
 use super::step_length::Volume;
@@ -126,10 +126,7 @@ impl<'a> Bricks<'a> {
         self.bricks.iter().flat_map(move |brick| {
             let (lambda, mu) = self.laws[usize::from(brick.law)].at_rest();
             brick.points.iter().map(move |point| {
-                let modulus = point.volume * (lambda + 2.0 * mu);
-                let squares: f64 = point.gradients.iter().map(Vector::norm_squared).sum();
-                let slope = squares.sqrt();
-                (modulus * slope * (1.0 + farthest * slope), modulus)
+                rounded(point.volume * (lambda + 2.0 * mu), &point.gradients, farthest)
             })
         })
     }

@@ -12,6 +12,7 @@
 //! barrier against collapse (steps of Mooney-Rivlin's and of exponential laws then wander without end). The others take volume at each point.
 
 use crate::material::hyperelastic::Law;
+use crate::mesh::Vector;
 
 /// Elements for tetrahedra, and for the other cells.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -57,4 +58,12 @@ pub(super) struct Exchange {
     /// c; not positive where there is nothing to carry.
     pub carried: f64,
     pub mu: f64,
+}
+
+/// What rounding at a point is relative to, of a modulus times its volume in mN mm: the norm of the forces that such a stress exerts on
+/// nodes of these gradients, more by as often as the cell fits into the `farthest` distance of a node from the origin in mm, whose last
+/// digit is lost; and the energy in mN mm.
+pub(super) fn rounded(modulus: f64, gradients: &[Vector], farthest: f64) -> (f64, f64) {
+    let slope = gradients.iter().map(Vector::norm_squared).sum::<f64>().sqrt();
+    (modulus * slope * (1.0 + farthest * slope), modulus)
 }

@@ -96,6 +96,10 @@ fn smooth_pressures(linear: &assembly::Tissue, deformed: &Deformed) -> Vec<Optio
 }
 
 impl EnrichedCells for Enriched<'_> {
+    fn is_finite(&self) -> bool {
+        true
+    }
+
     fn pressure_numbers(&self, cell: usize) -> Option<[u32; 4]> {
         *self.numbers.get(self.simplex_of_cell[cell] as usize)?
     }

@@ -20,6 +20,7 @@ mod newton;
 mod newton_state;
 mod pressures;
 mod problem;
+mod sheet;
 mod simplices;
 mod states;
 mod step_length;

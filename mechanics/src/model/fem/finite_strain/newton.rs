@@ -164,7 +164,7 @@ impl<'a, 'b> Newton<'a, 'b> {
         self.x.iter_mut().zip(&direction.positions).for_each(|(x, d)| *x += d * taken);
         self.p.iter_mut().zip(&direction.pressures).for_each(|(p, d)| *p += d * taken);
         if ahead > 0.0 {
-            self.balance.moved(direction.load);
+            self.balance.moved(direction.load / ahead);
             self.made = advanced(self.made, taken * ahead);
             let most = self.touching.as_ref().map_or(1.0, |touching| touching.most_ahead);
             self.ahead = (2.0 * taken * ahead).max(LEAST_AHEAD).min(most);

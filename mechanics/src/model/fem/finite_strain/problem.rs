@@ -8,6 +8,7 @@ use crate::boundary::Hold;
 use crate::material::hyperelastic::Law;
 use crate::mesh::VolumeMesh;
 use crate::model::fem::inner_stress::InnerStress;
+use crate::model::fem::membrane::Membrane;
 use crate::solver::Tolerance;
 
 /// Hyperelastic tissue, and what holds it.
@@ -21,6 +22,8 @@ pub struct FiniteStrain<'a> {
     pub pressure_of_cell: &'a [u16],
     pub elements: Elements,
     pub fibres: FibreField<'a>,
+    /// The skin, where it is one.
+    pub membrane: Option<&'a Membrane>,
     /// Growth and active stress of cells (`super::inner`).
     pub inner: Arc<InnerStress>,
     pub holds: &'a [Hold],

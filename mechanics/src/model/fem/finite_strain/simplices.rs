@@ -5,6 +5,7 @@ use std::sync::Arc;
 use nalgebra::Matrix3;
 use rayon::prelude::*;
 
+use super::elements::rounded;
 use super::fibres::FibreField;
 use super::problem::FiniteStrain;
 use super::step_length::Volume;
@@ -87,16 +88,12 @@ impl<'a> Simplices<'a> {
         (self.cells.len() * (size_of::<Simplex>() + size_of::<Point>())) as f64 / 1e6
     }
 
-    /// The norm of the forces that a stress of lambda + 2 mu exerts on the corners, more by as often as a cell fits into the
-    /// `farthest` distance of a node from the origin in mm, whose last digit is lost; and V (lambda + 2 mu), of each cell.
+    /// What rounding of each cell is relative to, lambda + 2 mu its modulus (`rounded`).
     pub fn moduli(&self, farthest: f64) -> impl Iterator<Item = (f64, f64)> {
         let at_rest: Vec<f64> =
             self.laws.iter().map(Law::at_rest).map(|(lambda, mu)| lambda + 2.0 * mu).collect();
         self.cells.iter().map(move |cell| {
-            let modulus = cell.volume * at_rest[usize::from(cell.law)];
-            let squares: f64 = cell.gradients.iter().map(Vector::norm_squared).sum();
-            let slope = squares.sqrt();
-            (modulus * slope * (1.0 + farthest * slope), modulus)
+            rounded(cell.volume * at_rest[usize::from(cell.law)], &cell.gradients, farthest)
         })
     }
 

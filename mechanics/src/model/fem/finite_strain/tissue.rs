@@ -8,6 +8,7 @@ use super::bricks::{Bricks, DeformedBricks};
 use super::elements::{Elements, Exchange, Kept};
 use super::pressures::{PressureCell, Pressures};
 use super::problem::FiniteStrain;
+use super::sheet::{DeformedSheet, Sheet};
 use super::simplices::{DeformedSimplices, Simplices};
 use crate::material::hyperelastic::Law;
 use crate::mesh::Vector;
@@ -30,6 +31,7 @@ pub(super) struct Tissue<'a> {
     pub numbering: &'a Numbering,
     simplices: Simplices<'a>,
     bricks: Bricks<'a>,
+    sheet: Sheet,
     /// Positions at rest, by row.
     pub rest: Vec<Vector>,
     /// The share of its volume that a cell keeps in one step.
@@ -43,6 +45,7 @@ pub(super) struct Deformed<'a> {
     pub tissue: &'a Tissue<'a>,
     pub simplices: DeformedSimplices<'a>,
     pub bricks: DeformedBricks<'a>,
+    sheet: DeformedSheet<'a>,
     /// By row, in mN.
     pub forces: Vec<Vector>,
     /// What the pressures leave of the volumes, in mm^3; none where there are none.
@@ -64,6 +67,7 @@ impl<'a> Tissue<'a> {
             elements.mean_dilatation.then(|| laws.iter().map(|law| kept.of_bricks(law)).collect());
         let simplices = Simplices::new(problem, numbering, &carried)?;
         let bricks = Bricks::new(problem, numbering, means)?;
+        let sheet = Sheet::new(problem, numbering);
         let rest = numbering.by_row(&mesh.nodes);
         let carries_all =
             bricks.is_empty() && simplices.cells.iter().all(|cell| cell.carried > 0.0);
@@ -74,7 +78,7 @@ impl<'a> Tissue<'a> {
         };
         let shares = !bricks.is_empty() || simplices.cells.iter().any(|cell| cell.carried > 0.0);
         let bulk_in_cells = if shares { kept.0 } else { 0.0 };
-        Ok(Tissue { numbering, simplices, bricks, rest, keep, bulk_in_cells })
+        Ok(Tissue { numbering, simplices, bricks, sheet, rest, keep, bulk_in_cells })
     }
 
     /// The pressures of stabilised tetrahedra; none where there are none.
@@ -114,7 +118,8 @@ impl<'a> Tissue<'a> {
     /// energy in mN mm.
     pub fn rounding(&self) -> Rounding {
         let farthest = self.rest.iter().map(Vector::norm).fold(0.0, f64::max);
-        let moduli = || self.simplices.moduli(farthest).chain(self.bricks.moduli(farthest));
+        let of_cells = || self.simplices.moduli(farthest).chain(self.bricks.moduli(farthest));
+        let moduli = || of_cells().chain(self.sheet.moduli(farthest));
         let squares: f64 = moduli().map(|(force, _)| force * force).sum();
         let energy: f64 = moduli().map(|(_, energy)| energy).sum();
         Rounding { force: ROUNDING * squares.sqrt(), energy: ROUNDING * energy }
@@ -130,9 +135,12 @@ impl<'a> Tissue<'a> {
         let (simplices, bricks) = (self.simplices.at(x, &means), self.bricks.at(x));
         let mut forces = simplices.forces(self.numbering);
         bricks.add_forces(&mut forces);
+        let sheet = self.sheet.at(x);
+        sheet.add_forces(&mut forces);
         let log_volume = |cell: u32| simplices.log_volume(cell);
         let volumes = pressures.map(|pressures| pressures.residual(p, &log_volume));
-        Deformed { tissue: self, forces, volumes: volumes.unwrap_or_default(), simplices, bricks }
+        let volumes = volumes.unwrap_or_default();
+        Deformed { tissue: self, forces, volumes, simplices, bricks, sheet }
     }
 
     /// The cell of the mesh of each tetrahedron.
@@ -142,7 +150,7 @@ impl<'a> Tissue<'a> {
 
     /// In mN mm, of tissue without pressures.
     pub fn energy(&self, x: &[Vector]) -> f64 {
-        self.simplices.energy(x) + self.bricks.energy(x)
+        self.simplices.energy(x) + self.bricks.energy(x) + self.sheet.at(x).energy()
     }
 
     /// The largest part of a step up to the whole in which every point keeps enough of its volume.
@@ -158,6 +166,7 @@ impl Deformed<'_> {
         let numbering = self.tissue.numbering;
         let mut matrix = self.simplices.tangent(numbering);
         self.bricks.add_tangent(&mut matrix, numbering, progress)?;
+        self.sheet.add_tangent(&mut matrix);
         Ok(matrix)
     }
 
@@ -173,7 +182,7 @@ impl Deformed<'_> {
 
     /// In mN mm, at these pressures.
     pub fn energy(&self, x: &[Vector]) -> f64 {
-        self.simplices.energy() + self.tissue.bricks.energy(x)
+        self.simplices.energy() + self.tissue.bricks.energy(x) + self.sheet.energy()
     }
 }
 

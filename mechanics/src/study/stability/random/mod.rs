@@ -4,6 +4,7 @@ mod ending;
 mod scene;
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 pub use ending::Ending;
 
@@ -35,10 +36,11 @@ pub struct WrongScene {
     pub why: String,
 }
 
-/// The first scenes of a seed. `told` hears how many have ended.
-pub fn random(seed: u64, scenes: u64, bounds: &Bounds, told: &dyn Fn(u64)) -> RandomMap {
+/// Scenes of a seed by their places. `told` hears up to which place they have ended.
+pub fn random(seed: u64, places: Range<u64>, bounds: &Bounds, told: &dyn Fn(u64)) -> RandomMap {
+    let scenes = places.end - places.start;
     let mut found = RandomMap { seed, scenes, ..RandomMap::default() };
-    for place in 0..scenes {
+    for place in places {
         found.add(place, bounds);
         told(place + 1);
     }
