@@ -87,7 +87,7 @@ impl Config {
             event_streams: read.whole("event-streams", 1..=10_000)? as u32,
             most_keys: read.whole("keys", 1..=100_000)? as u32,
             workers: read.whole("workers", 0..=64)?,
-            threads_per_job: read.whole("threads-per-job", 1..=64)?,
+            threads_per_job: read.threads_per_job()?,
             slot_memory_bytes: read.slot_memory()?,
             lease: read.seconds("lease-s", 0.5, 3600.0)?,
             heartbeat: read.seconds("heartbeat-s", 0.1, 1800.0)?,
@@ -191,6 +191,16 @@ impl<Text: Fn(&str) -> String> Reader<Text> {
         Ok(Some(Secret(key)))
     }
 
+    /// Without a number, the processors that a slot has for itself.
+    fn threads_per_job(&self) -> Result<usize, ConfigError> {
+        const NAME: &str = "threads-per-job";
+        if !(self.text)(NAME).is_empty() {
+            return self.whole(NAME, 1..=64);
+        }
+        let processors = std::thread::available_parallelism().map_or(1, usize::from);
+        Ok((processors / self.whole("workers", 0..=64)?.max(1)).clamp(1, 64))
+    }
+
     fn slot_memory(&self) -> Result<Option<u64>, ConfigError> {
         const NAME: &str = "slot-memory-mib";
         match (self.text)(NAME).as_str() {
@@ -278,6 +288,15 @@ mod tests {
     }
 
     #[test]
+    fn slots_share_the_processors_where_nothing_else_is_said() {
+        let threads = |given: &[(&str, &str)]| config(given).unwrap().threads_per_job;
+        let processors = std::thread::available_parallelism().unwrap().get();
+        assert_eq!(threads(&[("workers", "1")]), processors.min(64));
+        assert_eq!(threads(&[("workers", "64")]), (processors / 64).max(1));
+        assert_eq!(threads(&[("workers", "1"), ("threads-per-job", "3")]), 3);
+    }
+
+    #[test]
     fn an_address_that_others_reach_needs_a_key() {
         let open = ("bind", "0.0.0.0:80");
         assert!(matches!(config(&[open]), Err(ConfigError::OpenWithoutKey(_))));
@@ -289,6 +308,7 @@ mod tests {
         for (name, value) in [
             ("workers", "65"),
             ("workers", "-1"),
+            ("threads-per-job", "0"),
             ("slot-memory-mib", "63"),
             ("lease-s", "nan"),
             ("lease-s", "1e9"),

@@ -103,7 +103,11 @@ pub const SETTINGS: &[Setting] = &[
     setting("event-streams", "8", "streams of events that one client may have open; 1 to 10000"),
     setting("keys", "100", "keys in force that a tenant may have; 1 to 100000"),
     setting("workers", "2", "jobs solved at the same time; 0 to 64, 0 leaves the jobs to others"),
-    setting("threads-per-job", "1", "threads of one job; 1 to 64; the results do not depend on it"),
+    setting(
+        "threads-per-job",
+        "",
+        "threads of one job; 1 to 64; without it the processors of the machine divided by workers; the results do not depend on it",
+    ),
     setting(
         "slot-memory-mib",
         "",

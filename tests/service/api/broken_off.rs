@@ -128,11 +128,10 @@ async fn the_second_leaves(hospital: &Hospital, key: &str, plans: &str) -> bool 
     under_way(2.0).await;
     second.abort();
     under_way(1.0).await;
-    let in_time = !first.is_finished();
     unlock(writer).await;
-    first.await.unwrap();
+    let first = first.await.unwrap();
     post(3).await.unwrap().expect(StatusCode::CREATED);
-    in_time
+    first.status == StatusCode::CREATED
 }
 
 #[tokio::test]
@@ -144,16 +143,23 @@ async fn who_leaves_while_he_waits_to_write_leaves_no_note_behind() {
         if !the_second_leaves(&hospital, &key, &plans).await {
             continue;
         }
-        let kept = hospital.get(&key, &plans).await.expect(StatusCode::OK);
-        assert_eq!(kept["items"].as_array().unwrap().len(), 2);
-        assert_eq!(outcomes(&hospital, &key, "POST /v1/cases/{id}/plans").await, ["201"; 2]);
         let mut database = connected(&hospital.server).await;
-        let open = sqlx::query_scalar("SELECT COUNT(*) FROM deeds").fetch_one(&mut database);
-        let open: i64 = open.await.unwrap();
-        assert_eq!(open, 0, "each that was noted has ended");
-        return;
+        until("each that was noted has ended", async || {
+            let open = sqlx::query_scalar("SELECT COUNT(*) FROM deeds WHERE outcome IS NULL");
+            let open: i64 = open.fetch_one(&mut database).await.unwrap();
+            (open == 0).then_some(())
+        })
+        .await;
+        let kept = hospital.get(&key, &plans).await.expect(StatusCode::OK);
+        let kept = kept["items"].as_array().unwrap().len();
+        let noted = outcomes(&hospital, &key, "POST /v1/cases/{id}/plans").await;
+        assert_eq!(noted, vec!["201"; kept]);
+        // On a busy machine both may have been noted at once, and then the second had begun.
+        if kept == 2 {
+            return;
+        }
     }
-    panic!("no two came within the time that one waits");
+    panic!("who left was never given up");
 }
 
 #[tokio::test]
