@@ -12,9 +12,9 @@ pub(super) fn values(image: &ImageVolume) -> Vec<f32> {
     }
 }
 
-/// The values for skin and those for bone.
+/// The values for skin and those for bone, of those of an image for each.
 pub(super) fn channels(
-    values: Vec<f32>,
+    [mut for_skin, values]: [Vec<f32>; 2],
     all: &[Compartment],
     thresholds: [f64; 2],
 ) -> [Vec<f32>; 2] {
@@ -28,7 +28,6 @@ pub(super) fn channels(
         _ => value,
     });
     let for_bone = for_bone.collect();
-    let mut for_skin = values;
     for (value, compartment) in for_skin.iter_mut().zip(all) {
         if *compartment == Compartment::OuterAir && *value >= skin {
             *value = emptied(*value);

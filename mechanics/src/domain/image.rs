@@ -7,52 +7,22 @@
 
 use rayon::prelude::*;
 
-use super::channels::{channels, tissue_box, values, world_box};
+use super::channels::{channels, tissue_box, world_box};
 use super::compartments::{Compartment, Division, compartments};
 use super::flood::place;
 use super::image_error::ImageDomainError;
+use super::image_options::ImageOptions;
 use super::left_out::{LeftOut, left_out};
 use super::limit::{Limit, LimitError, Limits};
 use super::nearest_boundary::{Reach, Slope, Slopes, nearest};
 use super::region_map::RegionMap;
+use super::scanned_skin::{Replaced, ScannedSkin, replaced};
+use super::smoothed::{Smoothed, divided, nothing};
 use super::thickness::{Level, Surroundings, surroundings};
 use super::{Boundary, Coverage, Crossing, Domain, root};
-use crate::image::reduction::reduced;
-use crate::image::smoothing::gaussian;
-use crate::image::{CubicSpline, ImageVolume, SplineRanges, SplineValue};
+use crate::image::{CubicSpline, ImageVolume, SplineRanges, SplineValue, Voxels};
 use crate::mesh::Vector;
 use nalgebra::Matrix3;
-
-/// What is tissue in an image. Lengths in mm, values in those of the image.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ImageOptions {
-    /// Below this value there is air.
-    pub skin_threshold: f64,
-    /// From this value on there is bone.
-    pub bone_threshold: f64,
-    /// Standard deviation of the Gaussian that smooths the image; 0 for none.
-    pub smoothing: f64,
-    /// Openings of the skin narrower than this lead into an airway.
-    pub airway_opening: f64,
-    /// Passages through bone narrower than this lead into a cavity, which counts as bone.
-    pub bone_gap: f64,
-    /// Where the body is cut off besides the border of the image.
-    pub limits: Vec<Limit>,
-}
-
-impl Default for ImageOptions {
-    /// For Hounsfield units.
-    fn default() -> Self {
-        ImageOptions {
-            skin_threshold: -300.0,
-            bone_threshold: 250.0,
-            smoothing: 0.8,
-            airway_opening: 10.0,
-            bone_gap: 5.0,
-            limits: Vec::new(),
-        }
-    }
-}
 
 /// A CT as a body to mesh.
 #[derive(Clone, Debug)]
@@ -70,6 +40,7 @@ pub struct ImageDomain {
     airway: Vec<bool>,
     bounds: (Vector, Vector),
     left_out: LeftOut,
+    bone_outside: f64,
     /// The longest step to a neighbouring voxel, in mm.
     step: f64,
     /// Of a label map.
@@ -108,8 +79,6 @@ const MEMBERS: [Member; 3] = [Member::Skin, Member::Bone, Member::Cut];
 
 /// What coefficients must be beyond a threshold by to be surely beyond it, of the scale: rounding of sums is far less.
 const SURELY: f64 = 1e-5;
-/// More voxels are taken together: a head is 16 million of 1 mm³, and a boundary lies within a fraction of a voxel.
-const MOST_VOXELS: usize = 1 << 24;
 /// More voxels are not looked at to tell how much tissue was cut off.
 const MOST_SAMPLES: usize = 1 << 20;
 /// Largest value of f, so that it is finite for points infinitely far.
@@ -117,30 +86,65 @@ const LARGEST: f64 = 1e12;
 
 impl ImageDomain {
     pub fn new(image: &ImageVolume, options: &ImageOptions) -> Result<Self, ImageDomainError> {
-        check(options)?;
-        let image = &reduced(image, MOST_VOXELS)?;
-        let (size, spacing) = (image.size(), image.spacing());
-        let (skin, bone) = (options.skin_threshold, options.bone_threshold);
-        let mut values = values(image);
-        gaussian(&mut values, size, spacing.map(|spacing| options.smoothing / spacing));
-        let division = Division {
-            size,
-            spacing,
-            skin,
-            bone,
-            airway_opening: options.airway_opening,
-            bone_gap: options.bone_gap,
-        };
-        let all = compartments(&values, &division);
-        let tissue = tissue_box(&all, size).ok_or_else(|| nothing(image, &values, options))?;
+        ImageDomain::of_values(divided(image, options)?, None, options)
+    }
+
+    /// The same body with a skin that was scanned by itself where this covers it.
+    pub fn with_skin(
+        image: &ImageVolume,
+        options: &ImageOptions,
+        skin: &ScannedSkin,
+    ) -> Result<Self, ImageDomainError> {
+        let mut divided = divided(image, options)?;
+        let Smoothed { image, values, division, all } = &divided;
+        let Replaced { values: for_skin, bone_outside } =
+            replaced(image, values, all, (division, skin))?;
+        let bone_outside = bone_outside as f64 * image.voxel_volume();
+        divided.all = compartments(&for_skin, division);
+        let domain = ImageDomain::of_values(divided, Some(for_skin), options)?;
+        Ok(ImageDomain { bone_outside, ..domain })
+    }
+
+    /// Of values for skin of their own, where there are such.
+    fn of_values(
+        divided: Smoothed,
+        for_skin: Option<Vec<f32>>,
+        options: &ImageOptions,
+    ) -> Result<Self, ImageDomainError> {
+        let Smoothed { image, values: for_bone, division, all } = divided;
+        let Division { size, skin, bone, .. } = division;
+        let values = for_skin.unwrap_or_else(|| for_bone.clone());
+        let tissue = tissue_box(&all, size).ok_or_else(|| nothing(&image, &values, options))?;
         let has_body = |voxel: usize| f64::from(values[voxel]) >= skin;
-        let left_out = left_out(image, &all, has_body);
+        let left_out = left_out(&image, &all, has_body);
         ImageDomainError::refuse_scattered(&left_out)?;
-        let channels = channels(values, &all, [skin, bone]);
+        let channels = channels([values, for_bone], &all, [skin, bone]);
         let surroundings = surroundings_of(&all, &division, &channels);
         let spline = CubicSpline::new(size, channels);
         let divided = Divided { division, tissue, left_out, surroundings };
-        ImageDomain::of_spline(image, spline, divided, &options.limits)
+        ImageDomain::of_spline(&image, spline, divided, &options.limits)
+    }
+
+    /// Depth within the head and all that it encloses: positive there, airways too, negative in the air around it; on its skin the
+    /// values of the image, smoothed, less the threshold of skin.
+    pub fn head(
+        image: &ImageVolume,
+        options: &ImageOptions,
+    ) -> Result<ImageVolume, ImageDomainError> {
+        let Smoothed { image, values, division, all } = divided(image, options)?;
+        let above = |(&value, &compartment): (&f32, &Compartment)| {
+            let above = value - division.skin as f32;
+            match compartment {
+                Compartment::OuterAir => above.min(-1.0),
+                Compartment::InnerAir
+                | Compartment::Tissue
+                | Compartment::Bone
+                | Compartment::Cavity
+                | Compartment::Lining => above.max(1.0),
+            }
+        };
+        let values = Voxels::F32(values.iter().zip(&all).map(above).collect());
+        Ok(ImageVolume::new(image.size(), *image.placement(), values)?)
     }
 
     /// Of a spline of the values for skin and for bone.
@@ -167,6 +171,7 @@ impl ImageDomain {
             airway: surroundings.airway,
             bounds: world_box(image, tissue),
             left_out,
+            bone_outside: 0.0,
             step: division.spacing.iter().copied().fold(0.0, f64::max),
             regions: None,
         })
@@ -186,6 +191,11 @@ impl ImageDomain {
             (self.spline.at(place)[1] - self.bone) as f32
         };
         (0..size.iter().product()).into_par_iter().map(above).collect()
+    }
+
+    /// Bone outside a skin that was scanned by itself, in mm³.
+    pub fn bone_outside(&self) -> f64 {
+        self.bone_outside
     }
 
     /// What hangs together with the body nowhere, and was taken for air.
@@ -349,34 +359,5 @@ impl Domain for ImageDomain {
     fn interface(&self, point: &Vector, between: [u8; 2]) -> Vector {
         let Some(regions) = &self.regions else { return *point };
         regions.interface(point, between, &|point| self.place(point), &self.to_index)
-    }
-}
-
-fn check(options: &ImageOptions) -> Result<(), ImageDomainError> {
-    let (skin, bone) = (options.skin_threshold, options.bone_threshold);
-    if !(skin.is_finite() && bone.is_finite() && skin < bone) {
-        return Err(ImageDomainError::Thresholds { skin, bone });
-    }
-    for (name, value) in [
-        ("smoothing", options.smoothing),
-        ("airway_opening", options.airway_opening),
-        ("bone_gap", options.bone_gap),
-    ] {
-        if !(0.0..=100.0).contains(&value) {
-            return Err(ImageDomainError::Length { name, value, least: 0.0 });
-        }
-    }
-    Ok(())
-}
-
-fn nothing(image: &ImageVolume, values: &[f32], options: &ImageOptions) -> ImageDomainError {
-    let (skin, bone) = (options.skin_threshold, options.bone_threshold);
-    let between = |value: &&f32| (skin..bone).contains(&f64::from(**value));
-    match values.iter().filter(between).count() {
-        0 => {
-            let (low, high) = image.range();
-            ImageDomainError::NoTissue { skin, bone, low, high }
-        }
-        voxels => ImageDomainError::Enclosed { voxels },
     }
 }

@@ -3,6 +3,7 @@
 use super::left_out::LeftOut;
 use super::limit::LimitError;
 use crate::image::ImageError;
+use crate::mesh::SearchError;
 
 /// Why an image has no tissue that could be meshed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -29,6 +30,8 @@ pub enum ImageDomainError {
     Image(#[from] ImageError),
     #[error(transparent)]
     Limit(#[from] LimitError),
+    #[error("the surface scan of the skin cannot be searched: {0}")]
+    Skin(#[from] SearchError),
 }
 
 impl ImageDomainError {
