@@ -29,7 +29,7 @@ const MECHANICS: [(&str, &[&str]); 29] = [
     ("landmarks", &["mesh"]),
     ("cephalometry", &["mesh"]),
     ("osteotomy", &["mesh", "image", "domain"]),
-    ("anatomy", &["mesh", "image", "domain", "meshing", "osteotomy", "landmarks", "progress"]),
+    ("anatomy", &["mesh", "image", "domain", "meshing", "osteotomy", "landmarks", "registration", "progress"]),
     ("plan", &["mesh"]),
     ("registration", &["mesh", "progress"]),
     ("repair", &["mesh", "progress", "rows"]),

@@ -11,6 +11,7 @@ pub mod left_out;
 pub mod loose;
 pub mod region;
 mod size;
+pub mod skin_scan;
 pub mod surfaces;
 
 use std::collections::BTreeMap;
@@ -92,6 +93,8 @@ pub enum AnatomyError {
     Surface(#[from] SurfaceDomainError),
     #[error(transparent)]
     Bone(#[from] LabelError),
+    #[error(transparent)]
+    SkinScan(#[from] skin_scan::SkinScanError),
     #[error(transparent)]
     Meshing(#[from] MeshingError),
     #[error(

@@ -1,0 +1,215 @@
+//! A camera's scan of the face as skin over the bone of a CT: brought onto the skin that the CT shows, and refused where it does
+//! not fit there.
+//!
+//! The registration is that of comparisons ([`IterativeClosestPoint`], robust against what differs), from landmarks or from where
+//! the surfaces lie. What is left is measured from points spread over the scan to the skin of the CT, where this was in the field
+//! of view. Two takes of one face, lying and upright, differ by 1 mm or so in the mean, faces of two people by more than twice as much.
+
+use super::AnatomyError;
+use crate::domain::{ImageDomain, ImageOptions};
+use crate::image::ImageVolume;
+use crate::mesh::{SurfaceSearch, TriangleSurface, Vector, Warning, area_sampling};
+use crate::osteotomy::bone_image::BoneImage;
+use crate::osteotomy::label_surface::label_surface;
+use crate::osteotomy::labelling::label_given;
+use crate::osteotomy::{Osteotomy, RuleError, SegmentRule};
+use crate::progress::Progress;
+use crate::registration::mirror::check_mirror;
+use crate::registration::{
+    AlignmentError, IterativeClosestPoint, Place, RigidTransform, Start, align_points,
+};
+
+/// Points of the scan at which is measured what is left.
+const POINTS: usize = 20_000;
+/// Farther from the skin of the CT than this, in mm, is an outlier.
+pub const OUTLIER_MM: f64 = 3.0;
+/// More of the scan than this, as a share, may not lie farther away.
+const MOST_OUTLIERS: f64 = 0.25;
+/// Half of the scan lies no farther away, in mm.
+const MOST_MEDIAN: f64 = 1.5;
+/// A lower face is more than this, in mm²: 40 cm².
+const LEAST_AREA: f64 = 4000.0;
+/// Outliers are told from this share on.
+const TELL: f64 = 0.05;
+/// How far the scan may lie from the skin of the CT and still take its place, in mm; a jaw that is closed adds its way.
+pub const REACH_MM: f64 = 10.0;
+/// Within so much of the border of the scan both skins go over into each other, in mm.
+pub const BLEND_MM: f64 = 10.0;
+/// Voxels of the skin that a scan is brought onto: enough for half a mm.
+const MOST_VOXELS: usize = 1 << 22;
+
+/// Where the registration starts, and what decides it. Lengths in mm.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SkinScanRules {
+    /// The same place on the scan and in the CT; none, or three and more.
+    pub landmarks: Vec<[Vector; 2]>,
+    /// Only the skin of the CT in it decides.
+    pub mask: Option<Place>,
+}
+
+/// A scan where it lies in the CT, and how well it fits.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FittedScan {
+    pub surface: TriangleSurface,
+    /// Of the scan into the frame of the CT.
+    pub transform: RigidTransform,
+    pub iterations: usize,
+    pub left: Left,
+}
+
+/// Distances from the scan to the skin of the CT, in mm, and areas in mm².
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Left {
+    pub mean: f64,
+    pub median: f64,
+    pub p95: f64,
+    /// The share farther away than [`OUTLIER_MM`], 0 to 1.
+    pub outliers: f64,
+    /// Of the scan within the field of view of the CT and within the mask: what was measured.
+    pub area: f64,
+    /// Of all of the scan.
+    pub whole: f64,
+}
+
+/// Why a surface scan is not the skin of a CT.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SkinScanError {
+    #[error("the surface scan cannot be brought onto the skin of the CT: {0}; give `landmarks`")]
+    Alignment(#[from] AlignmentError),
+    #[error("the skin of the CT is no surface: {0}")]
+    Skin(#[from] RuleError),
+    #[error(
+        "the surface scan does not lie on the skin of the CT: half of it is more than {median:.1} mm away (at most \
+         {MOST_MEDIAN} is possible), {percent:.0} % more than {OUTLIER_MM} mm (at most 25 %). Is it of somebody else, or did the \
+         registration go astray, as without `landmarks` where both stand in frames of their own?"
+    )]
+    Misfit { median: f64, percent: f64 },
+    #[error(
+        "the surface scan is mirrored: its mirror image fits the skin of the CT to {mirrored:.2} mm, itself only to {plain:.2} mm"
+    )]
+    Mirrored { plain: f64, mirrored: f64 },
+    #[error(
+        "the surface scan covers {covered_cm2:.0} cm² of the skin that the CT shows, of {whole_cm2:.0} cm² that it has; at least 40 cm² are needed. Is its unit right?"
+    )]
+    Small { covered_cm2: f64, whole_cm2: f64 },
+}
+
+/// The outer skin that a CT shows, a closed surface: where the image ends it is flat.
+pub fn skin_of(image: &ImageVolume, options: &ImageOptions) -> Result<TriangleSurface, AnatomyError> {
+    let small = crate::image::reduction::reduced(image, MOST_VOXELS);
+    let small = small.map_err(crate::domain::ImageDomainError::from)?;
+    let head = ImageDomain::head(&small, options)?;
+    let name = SegmentRule { name: "head".to_owned(), ..SegmentRule::default() };
+    let whole = Osteotomy::new(Vec::new(), vec![name]).map_err(SkinScanError::from)?;
+    let head = BoneImage { image: &head, threshold: 0.0 };
+    let labelled = label_given(&head, &whole, |_| Some(0))?;
+    Ok(label_surface(&head, &whole, &labelled.labels, 0))
+}
+
+/// Brings a scan onto the skin of a CT.
+pub fn fit(
+    scan: &TriangleSurface,
+    image: &ImageVolume,
+    (options, rules): (&ImageOptions, &SkinScanRules),
+    progress: &dyn Progress,
+) -> Result<FittedScan, AnatomyError> {
+    let skin = skin_of(image, options)?;
+    let found = register(scan, &skin, rules, progress)?;
+    let mut surface = scan.clone();
+    surface.points.iter_mut().for_each(|point| *point = found.0.apply(point));
+    let left = measure(&surface, &skin, (image, rules.mask.as_ref()))?;
+    refuse(&left)?;
+    Ok(FittedScan { surface, transform: found.0, iterations: found.1, left })
+}
+
+/// The movement of the scan, and after how many iterations it was found.
+fn register(
+    scan: &TriangleSurface,
+    skin: &TriangleSurface,
+    rules: &SkinScanRules,
+    progress: &dyn Progress,
+) -> Result<(RigidTransform, usize), SkinScanError> {
+    let start = match rules.landmarks.is_empty() {
+        true => Start::AsItLies,
+        false => {
+            let (from, to): (Vec<Vector>, Vec<Vector>) =
+                rules.landmarks.iter().map(|&[scan, ct]| (scan, ct)).unzip();
+            Start::Known(align_points(&from, &to)?.transform)
+        }
+    };
+    let mask = rules.mask;
+    let method = IterativeClosestPoint { mask, start, ..IterativeClosestPoint::default() };
+    let found = method.align(skin, scan, progress)?;
+    let mirror = check_mirror(skin, scan, mask.as_ref(), &found.transform)?;
+    match mirror.looks_mirrored() {
+        true => {
+            let (plain, mirrored) = (mirror.rms, mirror.mirrored_rms);
+            Err(SkinScanError::Mirrored { plain, mirrored })
+        }
+        false => Ok((found.transform, found.iterations)),
+    }
+}
+
+fn measure(
+    scan: &TriangleSurface,
+    skin: &TriangleSurface,
+    (image, mask): (&ImageVolume, Option<&Place>),
+) -> Result<Left, SkinScanError> {
+    let search = SurfaceSearch::new(skin).map_err(AlignmentError::from)?;
+    let samples = area_sampling::equal_areas(scan, POINTS);
+    let counts = |point: &Vector| mask.is_none_or(|mask| mask.holds(point));
+    let inside = samples.iter().filter(|x| image.at(&x.point).is_some() && counts(&x.point));
+    let points: Vec<Vector> = inside.map(|sample| sample.point).collect();
+    let mut distances: Vec<f64> =
+        points.iter().map(|point| search.closest(point).distance).collect();
+    distances.sort_unstable_by(f64::total_cmp);
+    let whole = scan.area();
+    let area = whole * distances.len() as f64 / samples.len().max(1) as f64;
+    let count = distances.len().max(1) as f64;
+    let at = |share: f64| distances.get((share * count) as usize).copied().unwrap_or(f64::INFINITY);
+    Ok(Left {
+        mean: distances.iter().sum::<f64>() / count,
+        median: at(0.5),
+        p95: at(0.95),
+        outliers: distances.iter().filter(|&&far| far > OUTLIER_MM).count() as f64 / count,
+        area,
+        whole,
+    })
+}
+
+fn refuse(left: &Left) -> Result<(), SkinScanError> {
+    let [covered_cm2, whole_cm2] =
+        [left.area * (1.0 - left.outliers), left.whole].map(|mm2| mm2 / 100.0);
+    if left.area < LEAST_AREA {
+        return Err(SkinScanError::Small { covered_cm2, whole_cm2 });
+    }
+    if left.median > MOST_MEDIAN || left.outliers > MOST_OUTLIERS {
+        let (median, percent) = (left.median, 100.0 * left.outliers);
+        return Err(SkinScanError::Misfit { median, percent });
+    }
+    match left.area * (1.0 - left.outliers) < LEAST_AREA {
+        true => Err(SkinScanError::Small { covered_cm2, whole_cm2 }),
+        false => Ok(()),
+    }
+}
+
+/// What is to be told of a scan that fits: parts that do not, and bone that it leaves outside, in mm³.
+pub fn told(found: &FittedScan, bone_outside: f64) -> Vec<Warning> {
+    let left = &found.left;
+    let percent = 100.0 * left.outliers;
+    let apart = (left.outliers > TELL).then(|| {
+        let detail = format!(
+            "{percent:.0} % of the surface scan lies more than {OUTLIER_MM} mm from the skin of the CT (mean {:.2}, 95 % within \
+             {:.2} mm): another expression, an open mouth, hair, or a scan of another time",
+            left.mean, left.p95
+        );
+        let warning = Warning::new("skin-scan-apart", detail);
+        warning.with("share", left.outliers).with("p95_mm", left.p95)
+    });
+    let ml = bone_outside / 1000.0;
+    let bare = (ml > 0.1).then(|| {
+        let detail = format!("{ml:.1} ml of bone lie outside the surface scan, and have no tissue over them there");
+        Warning::new("bone-outside-skin", detail).with("volume_ml", ml)
+    });
+    apart.into_iter().chain(bare).collect()
+}
