@@ -31,6 +31,7 @@ const NO_SCAN: &str =
     "give what is to be meshed: --scan FILE, --labels FILE, or --skin FILE and --bone FILE";
 const NO_CLASSES: &str =
     "--labels needs what its labels are: `labels.classes` in the file of --mesh-spec";
+const NO_SKIN_SCAN: &str = "`skin_scan` of --mesh-spec says how a surface scan goes onto the CT: give its file as --skin-scan FILE";
 const NO_SKIN: &str = "--bone needs the skin around it: --skin FILE";
 const SKIN_OF_SCAN: &str = "--skin has no meaning with --scan or --labels: the skin is found in the scan, and is the node set `skin` of the \
                             mesh; with --bone it is the file of the skin";
@@ -75,6 +76,10 @@ pub struct ScanArguments {
     /// A CT in Hounsfield units, to be meshed first
     #[arg(long, value_name = "FILE", group = "meshed", help_heading = SCAN)]
     scan: Option<PathBuf>,
+    /// With --scan: a surface scan of the face, which is the skin where it covers that of the CT; landmarks that both have stand in
+    /// `skin_scan.landmarks` of --mesh-spec
+    #[arg(long, value_name = "FILE", requires = "scan", help_heading = SCAN)]
+    skin_scan: Option<PathBuf>,
     /// A label map, to be meshed first; what its labels are stands in `labels.classes` of --mesh-spec
     #[arg(long, value_name = "FILE", conflicts_with = "scan", requires = "mesh_spec", group = "meshed", help_heading = SCAN)]
     labels: Option<PathBuf>,
@@ -145,6 +150,8 @@ impl ScanArguments {
         let why = match (beside.skin.is_some(), beside.units.is_some()) {
             _ if !is_image => return Ok(()),
             (true, _) => SKIN_OF_SCAN,
+            // The unit is that of the surface scan.
+            (false, true) if self.skin_scan.is_some() => return Ok(()),
             (false, true) => UNITS_OF_SCAN,
             (false, false) => return Ok(()),
         };
@@ -162,6 +169,14 @@ impl ScanArguments {
             None => MeshingDocument::default(),
         };
         spec.scan = self.scan.as_ref().map(|scan| scan.to_string_lossy().into_owned());
+        match (&self.skin_scan, &mut spec.skin_scan) {
+            (Some(file), skin) => {
+                let file = file.to_string_lossy().into_owned();
+                skin.get_or_insert_default().mesh = file;
+            }
+            (None, Some(_)) => return Err(CommandError::Usage(NO_SKIN_SCAN.to_owned())),
+            (None, None) => {}
+        }
         match (&self.labels, &mut spec.labels) {
             (Some(file), Some(labels)) => labels.image = file.to_string_lossy().into_owned(),
             (Some(_), None) => return Err(CommandError::Usage(NO_CLASSES.to_owned())),
@@ -267,6 +282,16 @@ fn print_result(result: &MeshingResultDocument, total_s: f64) {
         for clearance in &cut.clearances {
             println!("           {:.2} mm from {}", clearance.distance_mm, clearance.risk);
         }
+    }
+    if let Some(skin) = &result.skin_scan {
+        println!(
+            "skin scan  {:.2} mm (mean), {:.2} (95 %) from the skin of the CT, {:.1} % beyond 3 mm, over {:.0} of its {:.0} cm2",
+            skin.mean_mm,
+            skin.p95_mm,
+            100.0 * skin.share_above_3_mm,
+            skin.compared_cm2,
+            skin.area_cm2
+        );
     }
     for (name, nodes) in &result.node_sets {
         println!("node set   {name} {nodes} nodes");

@@ -151,6 +151,7 @@ fn class_of(error: &AnatomyError) -> ErrorClass {
         AnatomyError::Meshing(MeshingError::Cancelled) => ErrorClass::Cancelled,
         AnatomyError::Image(_)
         | AnatomyError::Surface(_)
+        | AnatomyError::SkinScan(_)
         | AnatomyError::Bone(_)
         | AnatomyError::NoSkin { .. }
         | AnatomyError::Meshing(_) => ErrorClass::Input,

@@ -2,6 +2,7 @@
 
 use super::code::ErrorCode;
 use mechanics::anatomy::AnatomyError;
+use mechanics::anatomy::skin_scan::SkinScanError;
 use mechanics::domain::SurfaceDomainError;
 use mechanics::format::FormatError;
 use mechanics::mesh::SearchError;
@@ -136,6 +137,13 @@ impl From<&AnatomyError> for ErrorCode {
                 | MeshingError::TooFew { .. },
             ) => ErrorCode::NoTissue,
             AnatomyError::Surface(error) => error.into(),
+            AnatomyError::SkinScan(error) => match error {
+                SkinScanError::Alignment(_) => ErrorCode::AlignmentFailed,
+                SkinScanError::Skin(_) => ErrorCode::MeshingFailed,
+                SkinScanError::Misfit { .. } => ErrorCode::SkinScanMisfit,
+                SkinScanError::Mirrored { .. } => ErrorCode::SkinScanMirrored,
+                SkinScanError::Small { .. } => ErrorCode::SkinScanSmall,
+            },
             AnatomyError::Bone(_) => ErrorCode::SegmentNotFound,
             AnatomyError::Meshing(MeshingError::TooMany { .. } | MeshingError::TooFine { .. }) => {
                 ErrorCode::MeshLimits

@@ -95,7 +95,10 @@ pub enum SkinScanError {
 }
 
 /// The outer skin that a CT shows, a closed surface: where the image ends it is flat.
-pub fn skin_of(image: &ImageVolume, options: &ImageOptions) -> Result<TriangleSurface, AnatomyError> {
+pub fn skin_of(
+    image: &ImageVolume,
+    options: &ImageOptions,
+) -> Result<TriangleSurface, AnatomyError> {
     let small = crate::image::reduction::reduced(image, MOST_VOXELS);
     let small = small.map_err(crate::domain::ImageDomainError::from)?;
     let head = ImageDomain::head(&small, options)?;
@@ -208,7 +211,9 @@ pub fn told(found: &FittedScan, bone_outside: f64) -> Vec<Warning> {
     });
     let ml = bone_outside / 1000.0;
     let bare = (ml > 0.1).then(|| {
-        let detail = format!("{ml:.1} ml of bone lie outside the surface scan, and have no tissue over them there");
+        let detail = format!(
+            "{ml:.1} ml of bone lie outside the surface scan, and have no tissue over them there"
+        );
         Warning::new("bone-outside-skin", detail).with("volume_ml", ml)
     });
     apart.into_iter().chain(bare).collect()

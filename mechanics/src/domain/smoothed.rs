@@ -19,7 +19,10 @@ pub(super) struct Smoothed {
     pub all: Vec<Compartment>,
 }
 
-pub(super) fn divided(image: &ImageVolume, options: &ImageOptions) -> Result<Smoothed, ImageDomainError> {
+pub(super) fn divided(
+    image: &ImageVolume,
+    options: &ImageOptions,
+) -> Result<Smoothed, ImageDomainError> {
     check(options)?;
     let image = reduced(image, MOST_VOXELS)?;
     let (size, spacing) = (image.size(), image.spacing());
@@ -55,7 +58,11 @@ fn check(options: &ImageOptions) -> Result<(), ImageDomainError> {
 }
 
 /// Why no voxel is tissue.
-pub(super) fn nothing(image: &ImageVolume, values: &[f32], options: &ImageOptions) -> ImageDomainError {
+pub(super) fn nothing(
+    image: &ImageVolume,
+    values: &[f32],
+    options: &ImageOptions,
+) -> ImageDomainError {
     let (skin, bone) = (options.skin_threshold, options.bone_threshold);
     let between = |value: &&f32| (skin..bone).contains(&f64::from(**value));
     match values.iter().filter(between).count() {

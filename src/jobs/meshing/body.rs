@@ -2,9 +2,11 @@
 
 use std::sync::Arc;
 
+use super::skin_scan::SkinScan;
 use crate::jobs::failure::JobError;
 use crate::schema::meshing::surfaces::SurfacesDocument;
 use crate::schema::{ErrorCode, Pointer, Problem};
+use mechanics::anatomy::skin_scan::FittedScan;
 use mechanics::anatomy::surfaces::{mended, outside, part_by_cuts, take_as_segments};
 use mechanics::anatomy::{AnatomyRules, PartedBone};
 use mechanics::domain::{Domain, LabelBody, SurfaceDomain, SurfaceDomainError, SurfaceName};
@@ -13,9 +15,15 @@ use mechanics::mesh::{TriangleSurface, Warning};
 
 /// What was read.
 pub enum Body {
-    Scan(Arc<ImageVolume>),
+    Scan(ScannedHead),
     Labels(Box<LabelBody>),
     Surfaces(Surfaces),
+}
+
+/// A CT, and where there is one the surface scan that is its skin.
+pub struct ScannedHead {
+    pub image: Arc<ImageVolume>,
+    pub skin: Option<SkinScan>,
 }
 
 /// A skin and bones in mm.
@@ -31,6 +39,8 @@ pub struct PartedBody {
     pub domain: Box<dyn Domain>,
     pub bone: PartedBone,
     pub warnings: Vec<Warning>,
+    /// The surface scan that is its skin.
+    pub skin: Option<FittedScan>,
 }
 
 impl Surfaces {
@@ -45,7 +55,7 @@ impl Surfaces {
         };
         let bone = parted.map_err(JobError::Anatomy)?;
         let warnings = mended(&domain).into_iter().chain(outside(&domain)).collect();
-        Ok(PartedBody { domain: Box::new(domain), bone, warnings })
+        Ok(PartedBody { domain: Box::new(domain), bone, warnings, skin: None })
     }
 
     /// With the place of the surface that it is about.

@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use super::body::{Body, Surfaces};
+use super::body::{Body, ScannedHead, Surfaces};
+use super::skin_scan::SkinScan;
 use crate::jobs::failure::JobError;
 use crate::jobs::fetch::{fetch, no_surface};
 use crate::jobs::source::{MeshSource, SourceError, StoredMesh, StoredShape};
@@ -63,7 +64,7 @@ impl MeshingInput {
     ) -> Result<PreparedMeshing, JobError> {
         let MeshingDocument { scan, labels, surfaces, .. } = &self.spec;
         let Fetched { meshes, body, frame } = match (scan, labels, surfaces) {
-            (Some(scan), None, None) => fetch_scan(scan, sources)?,
+            (Some(scan), None, None) => self.fetch_scan(scan, sources)?,
             (None, Some(labels), None) => fetch_labels(labels, sources)?,
             (None, None, Some(surfaces)) => self.fetch_surfaces(surfaces, sources)?,
             _ => {
@@ -85,6 +86,19 @@ impl MeshingInput {
 
     fn case_id(&self) -> Option<&str> {
         self.case.as_ref().map(|case| case.id.as_str())
+    }
+
+    fn fetch_scan(&self, id: &str, sources: &dyn MeshSource) -> Result<Fetched, JobError> {
+        let (scan, image, frame) = fetch_image(id, &place().key("scan"), sources)?;
+        let mut meshes = vec![("scan".to_owned(), scan)];
+        let stated = self.spec.frame.map(Frame::from).unwrap_or(frame);
+        let skin = self.spec.skin_scan.as_ref();
+        let skin = skin.map(|skin| SkinScan::fetch(skin, stated, sources)).transpose()?;
+        let skin = skin.map(|(stored, skin)| {
+            meshes.push(("skin scan".to_owned(), stored));
+            skin
+        });
+        Ok(Fetched { meshes, body: Body::Scan(ScannedHead { image, skin }), frame })
     }
 
     fn fetch_surfaces(
@@ -115,11 +129,6 @@ impl MeshingInput {
 
 fn place() -> Pointer {
     Pointer::root().key("spec")
-}
-
-fn fetch_scan(id: &str, sources: &dyn MeshSource) -> Result<Fetched, JobError> {
-    let (scan, image, frame) = fetch_image(id, &place().key("scan"), sources)?;
-    Ok(Fetched { meshes: vec![("scan".to_owned(), scan)], body: Body::Scan(image), frame })
 }
 
 fn fetch_labels(document: &LabelsDocument, sources: &dyn MeshSource) -> Result<Fetched, JobError> {

@@ -6,6 +6,7 @@ use super::case::{bone_file, case_of};
 use super::check::{MadeAnatomy, check_anatomy};
 use super::cuts::{CUT_PATHS_FILE, CUT_PATHS_MEDIA_TYPE, cut_paths, cut_paths_csv};
 use super::input::{MeshingInput, PreparedMeshing};
+use super::skin_scan::SKIN_SCAN_FILE;
 use crate::jobs::clock::Observed;
 use crate::jobs::failure::JobError;
 use crate::jobs::output::{JobOutput, MadeMesh, Workplace};
@@ -17,10 +18,12 @@ use crate::jobs::source::StoredShape;
 use crate::schema::WarningDocument;
 use crate::schema::meshing::labels::LabelsDocument;
 use crate::schema::meshing::result::MeshingResultDocument;
+use crate::schema::meshing::skin_scan::FittedScanDocument;
 use crate::schema::predict::document::OutputName;
 use crate::schema::predict::keep::MadeName;
 use crate::schema::predict::result::{FileDocument, ResultDocument};
 use mechanics::anatomy::Anatomy;
+use mechanics::anatomy::skin_scan::FittedScan;
 use mechanics::format::vtk::{vtp, vtu};
 use mechanics::format::{SurfaceOutput, VolumeOutput};
 use mechanics::mesh::quality::quality;
@@ -43,7 +46,8 @@ pub fn meshing_job(
     clock.check()?;
 
     // 2. The bone, parted.
-    let body = prepared.part()?;
+    let mut body = prepared.part(&clock)?;
+    let skin = body.skin.take();
     clock.check()?;
 
     // 3. The mesh.
@@ -58,6 +62,7 @@ pub fn meshing_job(
     let mut found = MeshingResultDocument::new(&anatomy, case);
     let (cuts, near) = cut_paths(&prepared.rules.osteotomy, &anatomy);
     found.cuts = cuts;
+    found.skin_scan = skin.as_ref().map(FittedScanDocument::from);
     if let Some(waiting) = &input.case {
         found.case = waiting.document.complete(found.case);
         let told = prepared.told(&anatomy);
@@ -71,7 +76,7 @@ pub fn meshing_job(
 
     // 5. Files.
     clock.phase(Phase::Write);
-    let made = Made { prepared: &prepared, anatomy: &anatomy, found, near };
+    let made = Made { prepared: &prepared, anatomy: &anatomy, found, near, skin };
     let (result, files) = made.publish(input, place, &clock)?;
     let told = result.warnings.clone();
     Ok(JobOutput { result, files, meshes: meshes_of(anatomy, prepared.frame, told) })
@@ -107,6 +112,8 @@ struct Made<'a> {
     found: MeshingResultDocument,
     /// Cuts that come too near to what must not be sawn.
     near: Vec<Warning>,
+    /// The surface scan where it lies in the CT.
+    skin: Option<FittedScan>,
 }
 
 impl Made<'_> {
@@ -116,7 +123,7 @@ impl Made<'_> {
         place: &Workplace,
         clock: &Observed,
     ) -> Result<(ResultDocument, Vec<FileDocument>), JobError> {
-        let Made { prepared, anatomy, found, near } = self;
+        let Made { prepared, anatomy, found, near, skin } = self;
         let frame = prepared.frame;
         let origin = Origin {
             spec_hash: prepared.spec_hash.clone(),
@@ -130,6 +137,10 @@ impl Made<'_> {
         for (number, bone) in anatomy.bones.iter().enumerate() {
             let bytes = vtp::write(&SurfaceOutput::plain(bone, frame))?;
             folder.add_file(&bone_file(number), OutputName::BonesVtp.media_type(), &bytes)?;
+        }
+        if let Some(skin) = &skin {
+            let bytes = vtp::write(&SurfaceOutput::plain(&skin.surface, frame))?;
+            folder.add_file(SKIN_SCAN_FILE, OutputName::BonesVtp.media_type(), &bytes)?;
         }
         let picture = slices_picture(anatomy, frame)?;
         folder.add_file(SLICES_FILE, OutputName::ClassesSvg.media_type(), picture.as_bytes())?;

@@ -7,6 +7,7 @@ mod cuts;
 mod input;
 mod job;
 mod model;
+mod skin_scan;
 
 pub use input::{MeshingInput, WaitingCase};
 pub use job::meshing_job;

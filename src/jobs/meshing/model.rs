@@ -1,7 +1,8 @@
 //! Construction of the model of the tissue from a prepared meshing.
 
-use super::body::{Body, PartedBody};
+use super::body::{Body, PartedBody, ScannedHead};
 use super::input::PreparedMeshing;
+use super::skin_scan::scanned_skin;
 use crate::jobs::clock::Observed;
 use crate::jobs::failure::JobError;
 use crate::schema::osteotomy::conversion::{refuse_bridges, unfound};
@@ -10,6 +11,7 @@ use mechanics::anatomy::label_bone::part_labels;
 use mechanics::anatomy::left_out::left_out_of_scan;
 use mechanics::anatomy::loose::{loose_bone, without_loose};
 use mechanics::anatomy::region::around_segments;
+use mechanics::anatomy::skin_scan::{FittedScan, told};
 use mechanics::anatomy::{Anatomy, AnatomyError, build, part_bone};
 use mechanics::domain::{ImageDomain, ImageDomainError, ImageOptions, LabelBody};
 use mechanics::image::{ImageVolume, scan_report};
@@ -20,14 +22,14 @@ const MM3_IN_ML: f64 = 1000.0;
 
 impl PreparedMeshing {
     /// The body with its bone in segments; refused where it does not hold them, or a cut leaves a bridge.
-    pub fn part(&self) -> Result<PartedBody, JobError> {
+    pub fn part(&self, clock: &Observed) -> Result<PartedBody, JobError> {
         let osteotomy = &self.rules.osteotomy;
         let at = match &self.body {
             Body::Scan(_) | Body::Surfaces(_) => Pointer::root().key("spec").key("osteotomy"),
             Body::Labels(_) => Pointer::root().key("spec").key("labels"),
         };
         let parted = match &self.body {
-            Body::Scan(scan) => self.part_scan(scan).map_err(JobError::Anatomy),
+            Body::Scan(head) => self.part_scan(head, clock),
             Body::Labels(labels) => self.part_labels(labels).map_err(JobError::Anatomy),
             Body::Surfaces(surfaces) => surfaces.part(&self.rules),
         };
@@ -42,7 +44,19 @@ impl PreparedMeshing {
     }
 
     /// With all that is to be told of the scan: its report, bone that is loose, tissue that is left out.
-    fn part_scan(&self, scan: &ImageVolume) -> Result<PartedBody, AnatomyError> {
+    fn part_scan(&self, head: &ScannedHead, clock: &Observed) -> Result<PartedBody, JobError> {
+        let scan: &ImageVolume = &head.image;
+        let skin = head.skin.as_ref().map(|skin| skin.fit(scan, &self.rules.image, clock));
+        let skin = skin.transpose()?;
+        let parted = self.part_bone_of(scan, skin.as_ref()).map_err(JobError::Anatomy)?;
+        Ok(PartedBody { skin, ..parted })
+    }
+
+    fn part_bone_of(
+        &self,
+        scan: &ImageVolume,
+        skin: Option<&FittedScan>,
+    ) -> Result<PartedBody, AnatomyError> {
         let (report, bone) =
             rayon::join(|| scan_report(scan, self.frame), || part_bone(scan, &self.rules));
         let bone = bone?;
@@ -50,12 +64,17 @@ impl PreparedMeshing {
         let margin = self.rules.around_segments_mm;
         options.limits.extend(margin.and_then(|margin| around_segments(&bone.labelled, margin)));
         let tissue = without_loose(scan, &bone.labelled, &options);
-        let domain = ImageDomain::new(&tissue.map_err(ImageDomainError::from)?, &options)?;
+        let tissue = tissue.map_err(ImageDomainError::from)?;
+        let domain = match skin {
+            Some(skin) => ImageDomain::with_skin(&tissue, &options, &scanned_skin(skin))?,
+            None => ImageDomain::new(&tissue, &options)?,
+        };
         let mut warnings = report.findings;
+        warnings.extend(skin.iter().flat_map(|skin| told(skin, domain.bone_outside())));
         warnings.extend(left_out_of_scan(domain.left_out(), &warnings));
         warnings.extend(loose_bone(&bone.labelled));
         warnings.extend(cut_off(&domain, &options)?);
-        Ok(PartedBody { domain: Box::new(domain), bone, warnings })
+        Ok(PartedBody { domain: Box::new(domain), bone, warnings, skin: None })
     }
 
     /// With what is told of the label map.
@@ -63,12 +82,12 @@ impl PreparedMeshing {
         let domain = labels.domain(&[])?;
         let bone = part_labels(labels, &domain, &self.rules)?;
         let warnings = left_out_of_scan(domain.left_out(), &[]).into_iter().collect();
-        Ok(PartedBody { domain: Box::new(domain), bone, warnings })
+        Ok(PartedBody { domain: Box::new(domain), bone, warnings, skin: None })
     }
 
     /// The mesh with its node sets, and all that is to be told of the body and of it.
     pub fn mesh(&self, body: PartedBody, clock: &Observed) -> Result<Anatomy, JobError> {
-        let PartedBody { domain, bone, warnings } = body;
+        let PartedBody { domain, bone, warnings, .. } = body;
         let mut anatomy =
             build(&*domain, bone, &self.rules, clock).map_err(|error| match error {
                 AnatomyError::Meshing(MeshingError::Cancelled) => clock.stopped(),

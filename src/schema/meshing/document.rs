@@ -5,6 +5,7 @@ use serde_json::Value;
 use utoipa::ToSchema;
 
 use super::labels::LabelsDocument;
+use super::skin_scan::SkinScanDocument;
 use super::surfaces::SurfacesDocument;
 use crate::schema::case::document::FrameName;
 use crate::schema::code::ErrorCode;
@@ -41,6 +42,10 @@ pub struct MeshingDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub scan: Option<String>,
+    /// Beside a scan: a surface scan of the face, which takes the place of the skin of the CT.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub skin_scan: Option<SkinScanDocument>,
     /// Instead of a scan: a label map, whose regions of tissue are those of the mesh.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
@@ -94,6 +99,7 @@ impl Default for MeshingDocument {
         MeshingDocument {
             kind: MeshingKind::Mesh,
             scan: None,
+            skin_scan: None,
             labels: None,
             surfaces: None,
             thresholds_hu: HounsfieldThresholdsDocument::default(),
@@ -174,12 +180,15 @@ impl MeshingDocument {
     /// Every mesh that it names, with its place in the document that stands at a place.
     pub fn mesh_references_mut(&mut self, root: &Pointer) -> Vec<(Pointer, &mut String)> {
         let scan = self.scan.iter_mut().map(|scan| (root.key("scan"), scan));
+        let at = root.key("skin_scan").key("mesh");
+        let skin = self.skin_scan.iter_mut().map(|skin| (at.clone(), &mut skin.mesh));
+        let skin: Vec<_> = skin.collect();
         let at = root.key("labels").key("image");
         let labels = self.labels.iter_mut().map(|labels| (at.clone(), &mut labels.image));
         let labels: Vec<_> = labels.collect();
         let at = root.key("surfaces");
         let surfaces = self.surfaces.iter_mut().flat_map(|surfaces| surfaces.references_mut(&at));
-        scan.chain(labels).chain(surfaces).collect()
+        scan.chain(skin).chain(labels).chain(surfaces).collect()
     }
 
     /// The ids of the meshes that it names, in their order.
@@ -201,6 +210,7 @@ impl MeshingDocument {
         }
         self.budget.check(&at.key("budget"), limits, faults);
         check_tags(&self.tags, &at.key("tags"), limits, faults);
+        self.check_skin_scan(&at, limits, faults);
         self.check_labels(&at, limits, faults);
         self.check_surfaces(&at, limits, faults);
         let planned = self.to_osteotomy(&at, scan, limits, faults);
@@ -225,6 +235,16 @@ impl MeshingDocument {
             scan_ends_fixed: self.scan_ends_fixed,
             teeth_slide: self.teeth_slide,
             frame: scan,
+        }
+    }
+
+    fn check_skin_scan(&self, at: &Pointer, limits: &Limits, faults: &mut Faults) {
+        let Some(skin) = &self.skin_scan else { return };
+        let at = at.key("skin_scan");
+        skin.check(&at, limits, faults);
+        if self.scan.is_none() {
+            let detail = "a surface scan takes the place of the skin of a CT, and there is no `scan`; between surfaces it is `surfaces.skin` itself";
+            faults.add(&at, ErrorCode::NoScan, detail);
         }
     }
 

@@ -4,6 +4,7 @@ pub mod cuts;
 pub mod document;
 pub mod labels;
 pub mod result;
+pub mod skin_scan;
 pub mod surfaces;
 
 pub use document::MeshingDocument;

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use super::cuts::CutPathDocument;
+use super::skin_scan::FittedScanDocument;
 use crate::schema::Triple;
 use crate::schema::case::document::CaseDocument;
 use crate::schema::predict::check::CheckDocument;
@@ -26,6 +27,10 @@ pub struct MeshingResultDocument {
     /// Cuts through their bone, for navigation.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub cuts: Vec<CutPathDocument>,
+    /// Where the surface scan went that is the skin, and how well it fits that of the CT.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub skin_scan: Option<FittedScanDocument>,
     /// How many nodes each node set has.
     pub node_sets: BTreeMap<String, u64>,
     /// Nodes on bone that are free because others near them move otherwise.
@@ -97,6 +102,7 @@ impl MeshingResultDocument {
             dihedral_angles_deg: (&report.angles).into(),
             segments: anatomy.bone.segments.iter().map(segment).collect(),
             cuts: Vec::new(),
+            skin_scan: None,
             node_sets: sets.map(|(name, nodes)| (name.clone(), nodes.len() as u64)).collect(),
             free_beside_cuts: anatomy.classes.in_band as u64,
             gaps_closed: report.gaps_closed.iter().map(GapDocument::from).collect(),

@@ -1,0 +1,103 @@
+//! The surface scan of a face beside its CT: fetched, brought onto the skin of the CT, and put in its place.
+
+use std::sync::Arc;
+
+use crate::jobs::clock::Observed;
+use crate::jobs::compare::place_of;
+use crate::jobs::failure::JobError;
+use crate::jobs::fetch::{fetch, no_surface};
+use crate::jobs::source::{MeshSource, StoredMesh};
+use crate::schema::meshing::skin_scan::{ScanLandmarkDocument, SkinScanDocument};
+use crate::schema::{ErrorCode, Pointer, Problem};
+use mechanics::anatomy::AnatomyError;
+use mechanics::anatomy::skin_scan::{
+    BLEND_MM, FittedScan, REACH_MM, SkinScanError, SkinScanRules, fit,
+};
+use mechanics::domain::{ImageOptions, ScannedSkin};
+use mechanics::image::ImageVolume;
+use mechanics::mesh::{Frame, TriangleSurface, Vector};
+use mechanics::registration::{AlignmentError, Place};
+
+/// Its file, where it lies in the CT.
+pub const SKIN_SCAN_FILE: &str = "skin-scan.vtp";
+
+/// A surface scan in mm, in LPS where its file names a frame.
+pub struct SkinScan {
+    surface: Arc<TriangleSurface>,
+    rules: SkinScanRules,
+}
+
+fn place() -> Pointer {
+    Pointer::root().key("spec").key("skin_scan")
+}
+
+/// Whether x and y of places change their sign, to be in LPS.
+fn turned(point: Vector, frame: Frame) -> Vector {
+    match frame {
+        Frame::Ras => Vector::new(-point.x, -point.y, point.z),
+        Frame::Lps | Frame::Unspecified => point,
+    }
+}
+
+fn turned_place(place: Place, frame: Frame) -> Place {
+    match place {
+        Place::Sphere { centre, radius } => Place::Sphere { centre: turned(centre, frame), radius },
+        Place::Box { lower, upper } => {
+            let [a, b] = [lower, upper].map(|corner| turned(corner, frame));
+            Place::Box { lower: a.inf(&b), upper: a.sup(&b) }
+        }
+    }
+}
+
+impl SkinScan {
+    /// The stored scan, and how it is brought to the CT; places of the document are in `stated`, the frame of its osteotomy.
+    pub fn fetch(
+        document: &SkinScanDocument,
+        stated: Frame,
+        sources: &dyn MeshSource,
+    ) -> Result<(StoredMesh, SkinScan), JobError> {
+        let at = place().key("mesh");
+        let stored = fetch(sources, &document.mesh, &at)?;
+        let own = stored.frame.unwrap_or_default();
+        let mut surface = (*stored.surface_in_mm().ok_or_else(|| no_surface(&at))?).clone();
+        surface.points.iter_mut().for_each(|point| *point = turned(*point, own));
+        let pair = |landmark: &ScanLandmarkDocument| {
+            [turned(landmark.scan_mm.into(), own), turned(landmark.ct_mm.into(), stated)]
+        };
+        let mask = document.mask.as_ref().and_then(place_of);
+        let rules = SkinScanRules {
+            landmarks: document.landmarks.values().map(pair).collect(),
+            mask: mask.map(|mask| turned_place(mask, stated)),
+        };
+        Ok((stored, SkinScan { surface: Arc::new(surface), rules }))
+    }
+
+    /// Brings the scan onto the skin of the CT, or says at the place of the document why not.
+    pub fn fit(
+        &self,
+        image: &ImageVolume,
+        options: &ImageOptions,
+        clock: &Observed,
+    ) -> Result<FittedScan, JobError> {
+        let found = fit(&self.surface, image, (options, &self.rules), clock);
+        found.map_err(|error| match &error {
+            AnatomyError::SkinScan(SkinScanError::Alignment(AlignmentError::Cancelled {
+                ..
+            })) => clock.stopped(),
+            AnatomyError::SkinScan(reason) => {
+                let code = ErrorCode::from(&error);
+                Problem::at(&place().key("mesh"), code, reason.to_string()).into()
+            }
+            AnatomyError::Image(_)
+            | AnatomyError::Surface(_)
+            | AnatomyError::Bone(_)
+            | AnatomyError::Meshing(_)
+            | AnatomyError::NoSkin { .. } => JobError::Anatomy(error),
+        })
+    }
+}
+
+/// The skin of a body by a scan that lies where it belongs.
+pub fn scanned_skin(found: &FittedScan) -> ScannedSkin {
+    ScannedSkin { surface: found.surface.clone(), reach: REACH_MM, blend: BLEND_MM }
+}

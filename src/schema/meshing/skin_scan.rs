@@ -1,0 +1,91 @@
+//! A surface scan of the face, of a camera, as skin over the bone of a CT.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+use crate::schema::code::ErrorCode;
+use crate::schema::compare::document::PlaceDocument;
+use crate::schema::wire::fault::{Faults, Pointer};
+use crate::schema::wire::limits::Limits;
+use crate::schema::{Matrix4x4, Triple};
+use mechanics::anatomy::skin_scan::FittedScan;
+
+const MM2_IN_CM2: f64 = 100.0;
+
+/// A surface scan that takes the place of the skin that the CT shows, where it covers this; it is registered rigidly first, by
+/// iterative closest point.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SkinScanDocument {
+    /// The id of an uploaded surface, open or closed, whose triangles face outwards.
+    pub mesh: String,
+    /// At least three places that the scan and the CT have, where they do not lie near each other already.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub landmarks: BTreeMap<String, ScanLandmarkDocument>,
+    /// Only the skin of the CT in it decides where the scan goes, such as the face above a mouth that is open in the CT.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub mask: Option<PlaceDocument>,
+}
+
+/// The same place on the scan, as its file has it, and in the CT.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ScanLandmarkDocument {
+    pub scan_mm: Triple,
+    pub ct_mm: Triple,
+}
+
+/// Where a surface scan went, and what was left between it and the skin of the CT.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct FittedScanDocument {
+    /// Of the scan into the CT, both in LPS where their frames are known.
+    pub matrix4x4: Matrix4x4,
+    pub iterations: u64,
+    /// Distances from the scan to the skin of the CT, in its field of view and in the mask, by area.
+    pub mean_mm: f64,
+    pub median_mm: f64,
+    pub p95_mm: f64,
+    /// The share of outliers, 0 to 1.
+    pub share_above_3_mm: f64,
+    /// What was compared, and all of the scan.
+    pub compared_cm2: f64,
+    pub area_cm2: f64,
+}
+
+impl SkinScanDocument {
+    pub(super) fn check(&self, at: &Pointer, limits: &Limits, faults: &mut Faults) {
+        let landmarks = at.key("landmarks");
+        faults.check_length(&landmarks, self.landmarks.len(), limits.map_entries as usize);
+        for name in self.landmarks.keys() {
+            faults.check_name(&landmarks.key(name), name, limits.name_characters as usize);
+        }
+        let count = self.landmarks.len();
+        if (1..3).contains(&count) {
+            let detail =
+                format!("a registration by landmarks needs at least 3 of them, here are {count}");
+            faults.add(&landmarks, ErrorCode::AlignmentFailed, detail);
+        }
+        if let Some(mask) = &self.mask {
+            mask.check(&at.key("mask"), faults);
+        }
+    }
+}
+
+impl From<&FittedScan> for FittedScanDocument {
+    fn from(found: &FittedScan) -> Self {
+        let left = &found.left;
+        FittedScanDocument {
+            matrix4x4: Matrix4x4(found.transform.matrix4()),
+            iterations: found.iterations as u64,
+            mean_mm: left.mean,
+            median_mm: left.median,
+            p95_mm: left.p95,
+            share_above_3_mm: left.outliers,
+            compared_cm2: left.area / MM2_IN_CM2,
+            area_cm2: left.whole / MM2_IN_CM2,
+        }
+    }
+}
