@@ -64,6 +64,7 @@ pub mod registration;
 pub mod repair;
 pub mod response;
 pub mod rows;
+pub mod simplification;
 pub mod solver;
 pub mod study;
 pub mod validation;

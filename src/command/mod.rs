@@ -27,6 +27,7 @@ mod screen;
 mod selection;
 pub mod serve;
 pub mod settings;
+pub mod simplify;
 pub mod slot;
 pub mod stability;
 mod stability_random;
@@ -69,6 +70,8 @@ enum Command {
     Conform(conform::Arguments),
     /// Measure the distances between two surfaces
     Compare(compare::Arguments),
+    /// Give a surface fewer triangles, within a bound on how far it goes off
+    Simplify(simplify::Arguments),
     /// Hold methods against each other over comparisons with the scans of several patients
     Cohort(cohort::Arguments),
     /// Learn from operated cases what predictions miss, and say whether that helps
@@ -113,6 +116,7 @@ const GROUPS: [(&str, &[&str]); 2] = [
             "reproduce",
             "conform",
             "compare",
+            "simplify",
             "cohort",
             "learn",
             "study",
@@ -163,6 +167,7 @@ pub fn run(facies: &Facies) -> ExitCode {
         Command::Reproduce(arguments) => reproduce::run(arguments),
         Command::Conform(arguments) => conform::run(arguments),
         Command::Compare(arguments) => compare::run(arguments),
+        Command::Simplify(arguments) => simplify::run(arguments),
         Command::Cohort(arguments) => cohort::run(arguments),
         Command::Learn(arguments) => learn::run(arguments),
         Command::Study(arguments) => study::run(arguments),

@@ -45,6 +45,7 @@ const MECHANICS: [(&str, &[&str]); 29] = [
     ("plan", &["mesh"]),
     ("registration", &["mesh", "progress"]),
     ("repair", &["mesh", "progress", "rows"]),
+    ("simplification", &["mesh", "progress"]),
     ("conformation", &["mesh", "registration", "progress"]),
     ("muscle", &["mesh", "image", "domain", "material"]),
     ("format", &["mesh", "image"]),

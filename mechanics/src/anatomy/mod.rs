@@ -5,6 +5,7 @@
 //! class by the bone that it lies on. The mesh that comes out has the node sets that a case names: one for each segment,
 //! `fixed`, `skin`, and parts of the skin.
 
+pub mod closed_jaw;
 mod face;
 pub mod label_bone;
 pub mod left_out;
@@ -42,6 +43,8 @@ pub struct AnatomyRules {
     /// Of scans.
     pub image: ImageOptions,
     pub osteotomy: Osteotomy,
+    /// A segment that is moved before anything is meshed, beside a skin that was scanned by itself.
+    pub closing: Option<closed_jaw::Closing>,
     /// The sizes of cells are those of the settings, refined around segments that move.
     pub meshing: MeshingSettings,
     /// Nodes on bone this near to others that move otherwise are free.

@@ -89,7 +89,7 @@ pub enum SkinScanError {
     )]
     Mirrored { plain: f64, mirrored: f64 },
     #[error(
-        "the surface scan covers {covered_cm2:.0} cm² of the skin that the CT shows, of {whole_cm2:.0} cm² that it has; at least 40 cm² are needed. Is its unit right?"
+        "{covered_cm2:.2} cm² of the surface scan, of {whole_cm2:.2}, can lie on the skin that the CT shows; at least 40 cm² are needed. Is its unit right?"
     )]
     Small { covered_cm2: f64, whole_cm2: f64 },
 }
@@ -116,6 +116,11 @@ pub fn fit(
     (options, rules): (&ImageOptions, &SkinScanRules),
     progress: &dyn Progress,
 ) -> Result<FittedScan, AnatomyError> {
+    let whole = scan.area();
+    if whole < LEAST_AREA {
+        let [covered_cm2, whole_cm2] = [whole, whole].map(|mm2| mm2 / 100.0);
+        return Err(SkinScanError::Small { covered_cm2, whole_cm2 }.into());
+    }
     let skin = skin_of(image, options)?;
     let found = register(scan, &skin, rules, progress)?;
     let mut surface = scan.clone();

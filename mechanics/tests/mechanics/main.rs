@@ -23,6 +23,8 @@ mod registration;
 mod repair;
 mod response;
 mod segmentation;
+mod simplification;
+mod skin_scan;
 mod solver;
 mod study;
 #[path = "../support/mod.rs"]

@@ -2,7 +2,8 @@
 
 use crate::schema::Triple;
 use crate::schema::meshing::cuts::{ClearanceDocument, CutPathDocument};
-use mechanics::anatomy::Anatomy;
+use mechanics::anatomy::closed_jaw::Closing;
+use mechanics::anatomy::{Anatomy, AnatomyRules};
 use mechanics::format::csv::cell;
 use mechanics::mesh::{Frame, Vector, Warning};
 use mechanics::osteotomy::Osteotomy;
@@ -14,11 +15,18 @@ pub const CUT_PATHS_FILE: &str = "cut-paths.csv";
 pub const CUT_PATHS_MEDIA_TYPE: &str = "text/csv; charset=utf-8";
 
 /// The cuts of a mesh that was made, and a warning for each structure that one comes too near to.
-pub fn cut_paths(osteotomy: &Osteotomy, anatomy: &Anatomy) -> (Vec<CutPathDocument>, Vec<Warning>) {
+pub fn cut_paths(rules: &AnatomyRules, anatomy: &Anatomy) -> (Vec<CutPathDocument>, Vec<Warning>) {
     let mut warnings = Vec::new();
+    let osteotomy = &rules.osteotomy;
     let [x, y, z] = anatomy.bone.labels.placement().steps;
     let voxel = x.dot(&y.cross(&z)).abs().cbrt();
-    let faces = cut_faces(osteotomy, &anatomy.bones, voxel);
+    let mut bones = anatomy.bones.clone();
+    if let Some(Closing { segment, movement }) = rules.closing {
+        // Cuts are where the scan has the jaw, before it was closed.
+        let back = movement.inverse();
+        bones[segment].points.iter_mut().for_each(|point| *point = back.apply(point));
+    }
+    let faces = cut_faces(osteotomy, &bones, voxel);
     let documents = faces.iter().map(|face| path(osteotomy, face, &mut warnings)).collect();
     (documents, warnings)
 }

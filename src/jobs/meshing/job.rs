@@ -60,7 +60,7 @@ pub fn meshing_job(
     let volume = OutputName::VolumeVtu.file_name();
     let case = case_of(&anatomy, volume, prepared.frame, &regions);
     let mut found = MeshingResultDocument::new(&anatomy, case);
-    let (cuts, near) = cut_paths(&prepared.rules.osteotomy, &anatomy);
+    let (cuts, near) = cut_paths(&prepared.rules, &anatomy);
     found.cuts = cuts;
     found.skin_scan = skin.as_ref().map(FittedScanDocument::from);
     if let Some(waiting) = &input.case {

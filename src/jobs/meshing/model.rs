@@ -7,6 +7,7 @@ use crate::jobs::clock::Observed;
 use crate::jobs::failure::JobError;
 use crate::schema::osteotomy::conversion::{refuse_bridges, unfound};
 use crate::schema::{Faults, Pointer};
+use mechanics::anatomy::closed_jaw::{Closed, close};
 use mechanics::anatomy::label_bone::part_labels;
 use mechanics::anatomy::left_out::left_out_of_scan;
 use mechanics::anatomy::loose::{loose_bone, without_loose};
@@ -61,15 +62,25 @@ impl PreparedMeshing {
             rayon::join(|| scan_report(scan, self.frame), || part_bone(scan, &self.rules));
         let bone = bone?;
         let mut options = self.rules.image.clone();
-        let margin = self.rules.around_segments_mm;
-        options.limits.extend(margin.and_then(|margin| around_segments(&bone.labelled, margin)));
         let tissue = without_loose(scan, &bone.labelled, &options);
         let tissue = tissue.map_err(ImageDomainError::from)?;
+        let mut warnings = report.findings;
+        let closing = self.rules.closing.filter(|_| skin.is_some());
+        let (tissue, bone, way) = match closing {
+            Some(closing) => {
+                let Closed { image, bone, farthest, warning } =
+                    close(&tissue, bone, &closing, &self.rules)?;
+                warnings.extend(warning);
+                (image, bone, farthest)
+            }
+            None => (tissue, bone, 0.0),
+        };
+        let margin = self.rules.around_segments_mm;
+        options.limits.extend(margin.and_then(|margin| around_segments(&bone.labelled, margin)));
         let domain = match skin {
-            Some(skin) => ImageDomain::with_skin(&tissue, &options, &scanned_skin(skin))?,
+            Some(skin) => ImageDomain::with_skin(&tissue, &options, &scanned_skin(skin, way))?,
             None => ImageDomain::new(&tissue, &options)?,
         };
-        let mut warnings = report.findings;
         warnings.extend(skin.iter().flat_map(|skin| told(skin, domain.bone_outside())));
         warnings.extend(left_out_of_scan(domain.left_out(), &warnings));
         warnings.extend(loose_bone(&bone.labelled));

@@ -97,7 +97,7 @@ impl SkinScan {
     }
 }
 
-/// The skin of a body by a scan that lies where it belongs.
-pub fn scanned_skin(found: &FittedScan) -> ScannedSkin {
-    ScannedSkin { surface: found.surface.clone(), reach: REACH_MM, blend: BLEND_MM }
+/// The skin of a body by a scan that lies where it belongs, of which a jaw was moved by so many mm.
+pub fn scanned_skin(found: &FittedScan, way: f64) -> ScannedSkin {
+    ScannedSkin { surface: found.surface.clone(), reach: REACH_MM + way, blend: BLEND_MM }
 }

@@ -18,9 +18,11 @@ use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::limits::Limits;
 use crate::schema::wire::names::check_tags;
 use mechanics::anatomy::AnatomyRules;
+use mechanics::anatomy::closed_jaw::Closing;
 use mechanics::domain::ImageOptions;
 use mechanics::mesh::Frame;
 use mechanics::meshing::{MeshingSettings, SizeField};
+use mechanics::osteotomy::Osteotomy;
 
 /// `mesh`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
@@ -214,6 +216,8 @@ impl MeshingDocument {
         self.check_labels(&at, limits, faults);
         self.check_surfaces(&at, limits, faults);
         let planned = self.to_osteotomy(&at, scan, limits, faults);
+        let osteotomy = planned.as_ref().map(|planned| &planned.osteotomy);
+        let closing = self.closing(&at, osteotomy, (scan, limits), faults);
         let around_segments_mm = self.region.map(|region| region.around_segments_mm);
         if let Some(margin) = around_segments_mm {
             let at = at.key("region").key("around_segments_mm");
@@ -229,6 +233,7 @@ impl MeshingDocument {
         AnatomyRules {
             image,
             band_mm: planned.as_ref().map_or(0.0, |planned| planned.free_band_mm),
+            closing,
             osteotomy: planned.map(|planned| planned.osteotomy).unwrap_or_default(),
             meshing: MeshingSettings { part_copies: !self.coincident_nodes, ..meshing },
             around_segments_mm,
@@ -246,6 +251,21 @@ impl MeshingDocument {
             let detail = "a surface scan takes the place of the skin of a CT, and there is no `scan`; between surfaces it is `surfaces.skin` itself";
             faults.add(&at, ErrorCode::NoScan, detail);
         }
+    }
+
+    fn closing(
+        &self,
+        at: &Pointer,
+        osteotomy: Option<&Osteotomy>,
+        (scan, limits): (Frame, &Limits),
+        faults: &mut Faults,
+    ) -> Option<Closing> {
+        let jaw = self.skin_scan.as_ref()?.jaw.as_ref()?;
+        let none = Osteotomy::default();
+        let mirrored_axes = self.frame.is_some_and(|frame| Frame::from(frame) != scan);
+        let context = MovementContext { mirrored_axes, centre: None, limits };
+        let at = at.key("skin_scan").key("jaw");
+        jaw.to_closing(&at, osteotomy.unwrap_or(&none), &context, faults)
     }
 
     fn check_labels(&self, at: &Pointer, limits: &Limits, faults: &mut Faults) {

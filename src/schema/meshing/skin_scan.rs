@@ -7,10 +7,14 @@ use utoipa::ToSchema;
 
 use crate::schema::code::ErrorCode;
 use crate::schema::compare::document::PlaceDocument;
+use crate::schema::plan::movement::{MovementContext, MovementDocument};
 use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::limits::Limits;
 use crate::schema::{Matrix4x4, Triple};
+use mechanics::anatomy::closed_jaw::Closing;
 use mechanics::anatomy::skin_scan::FittedScan;
+use mechanics::osteotomy::Osteotomy;
+use mechanics::registration::RigidTransform;
 
 const MM2_IN_CM2: f64 = 100.0;
 
@@ -28,6 +32,20 @@ pub struct SkinScanDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub mask: Option<PlaceDocument>,
+    /// A segment of the osteotomy that is moved before anything is meshed: a jaw that was open in the CT and closed before the
+    /// camera. Plans move it from there.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub jaw: Option<ClosedJawDocument>,
+}
+
+/// How a jaw is closed.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ClosedJawDocument {
+    /// A segment of the osteotomy.
+    pub segment: String,
+    pub movement: MovementDocument,
 }
 
 /// The same place on the scan, as its file has it, and in the CT.
@@ -71,6 +89,28 @@ impl SkinScanDocument {
         if let Some(mask) = &self.mask {
             mask.check(&at.key("mask"), faults);
         }
+    }
+}
+
+impl ClosedJawDocument {
+    /// The segment by its number and its movement; pointers start at `at`.
+    pub(super) fn to_closing(
+        &self,
+        at: &Pointer,
+        osteotomy: &Osteotomy,
+        context: &MovementContext,
+        faults: &mut Faults,
+    ) -> Option<Closing> {
+        let movement = self.movement.to_movement(&at.key("movement"), context, faults)?;
+        context.check_whole(&at.key("movement"), &movement, faults);
+        let name = self.segment.trim();
+        let segment = osteotomy.segments().iter().position(|segment| segment.name == name);
+        if segment.is_none() {
+            let detail = format!("no segment of the osteotomy is called {name:?}");
+            faults.add(&at.key("segment"), ErrorCode::UnknownSegment, detail);
+        }
+        let movement = RigidTransform::from_matrix4(&movement.matrix4());
+        Some(Closing { segment: segment?, movement })
     }
 }
 
