@@ -1,8 +1,7 @@
 //! The codes of what the numerics say. They have words of their own, which are those of the codes.
 
 use super::code::ErrorCode;
-use mechanics::anatomy::AnatomyError;
-use mechanics::anatomy::skin_scan::SkinScanError;
+use mechanics::anatomy::{AnatomyError, SkinScanError};
 use mechanics::domain::SurfaceDomainError;
 use mechanics::format::FormatError;
 use mechanics::mesh::SearchError;

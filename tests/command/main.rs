@@ -11,6 +11,7 @@ mod program;
 #[path = "../../mechanics/tests/support/samples.rs"]
 mod samples;
 mod scan;
+mod skin_scan;
 mod study;
 
 use std::collections::BTreeSet;

@@ -3,6 +3,7 @@
 //! Where the segment was is soft tissue; where it goes its values, trilinear, take the place of what is fainter. Soft tissue
 //! stays as it was scanned, and ends at the bone where this is now.
 
+use super::closing::Closing;
 use super::{AnatomyError, AnatomyRules, PartedBone};
 use crate::domain::ImageDomainError;
 use crate::image::{ImageVolume, Voxels};
@@ -11,17 +12,9 @@ use crate::osteotomy::bone_image::BoneImage;
 use crate::osteotomy::labelling::{FoundSegment, Labelled, label_given};
 use crate::osteotomy::teeth::{ENAMEL_HU, MUCOSA_MM, Teeth};
 use crate::osteotomy::{BoneLabels, Owner};
-use crate::registration::RigidTransform;
 
 /// Bone that is pushed into other bone is told of from so much on, in mm³.
 const OVERLAP: f64 = 100.0;
-
-/// A segment by its number, and where it goes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Closing {
-    pub segment: usize,
-    pub movement: RigidTransform,
-}
 
 /// A scan and its bone with a segment moved.
 pub struct Closed {

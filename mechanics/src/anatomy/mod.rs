@@ -6,6 +6,7 @@
 //! `fixed`, `skin`, and parts of the skin.
 
 pub mod closed_jaw;
+mod closing;
 mod face;
 pub mod label_bone;
 pub mod left_out;
@@ -13,7 +14,11 @@ pub mod loose;
 pub mod region;
 mod size;
 pub mod skin_scan;
+mod skin_scan_error;
 pub mod surfaces;
+
+pub use closing::Closing;
+pub use skin_scan_error::SkinScanError;
 
 use std::collections::BTreeMap;
 
@@ -44,7 +49,7 @@ pub struct AnatomyRules {
     pub image: ImageOptions,
     pub osteotomy: Osteotomy,
     /// A segment that is moved before anything is meshed, beside a skin that was scanned by itself.
-    pub closing: Option<closed_jaw::Closing>,
+    pub closing: Option<Closing>,
     /// The sizes of cells are those of the settings, refined around segments that move.
     pub meshing: MeshingSettings,
     /// Nodes on bone this near to others that move otherwise are free.
@@ -97,7 +102,7 @@ pub enum AnatomyError {
     #[error(transparent)]
     Bone(#[from] LabelError),
     #[error(transparent)]
-    SkinScan(#[from] skin_scan::SkinScanError),
+    SkinScan(#[from] SkinScanError),
     #[error(transparent)]
     Meshing(#[from] MeshingError),
     #[error(

@@ -6,13 +6,14 @@
 //! of view. Two takes of one face, lying and upright, differ by 1 mm or so in the mean, faces of two people by more than twice as much.
 
 use super::AnatomyError;
+use super::skin_scan_error::{MOST_MEDIAN, OUTLIER_MM, SkinScanError};
 use crate::domain::{ImageDomain, ImageOptions};
 use crate::image::ImageVolume;
 use crate::mesh::{SurfaceSearch, TriangleSurface, Vector, Warning, area_sampling};
 use crate::osteotomy::bone_image::BoneImage;
 use crate::osteotomy::label_surface::label_surface;
 use crate::osteotomy::labelling::label_given;
-use crate::osteotomy::{Osteotomy, RuleError, SegmentRule};
+use crate::osteotomy::{Osteotomy, SegmentRule};
 use crate::progress::Progress;
 use crate::registration::mirror::check_mirror;
 use crate::registration::{
@@ -21,12 +22,8 @@ use crate::registration::{
 
 /// Points of the scan at which is measured what is left.
 const POINTS: usize = 20_000;
-/// Farther from the skin of the CT than this, in mm, is an outlier.
-pub const OUTLIER_MM: f64 = 3.0;
 /// More of the scan than this, as a share, may not lie farther away.
 const MOST_OUTLIERS: f64 = 0.25;
-/// Half of the scan lies no farther away, in mm.
-const MOST_MEDIAN: f64 = 1.5;
 /// A lower face is more than this, in mm²: 40 cm².
 const LEAST_AREA: f64 = 4000.0;
 /// Outliers are told from this share on.
@@ -69,29 +66,6 @@ pub struct Left {
     pub area: f64,
     /// Of all of the scan.
     pub whole: f64,
-}
-
-/// Why a surface scan is not the skin of a CT.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum SkinScanError {
-    #[error("the surface scan cannot be brought onto the skin of the CT: {0}; give `landmarks`")]
-    Alignment(#[from] AlignmentError),
-    #[error("the skin of the CT is no surface: {0}")]
-    Skin(#[from] RuleError),
-    #[error(
-        "the surface scan does not lie on the skin of the CT: half of it is more than {median:.1} mm away (at most \
-         {MOST_MEDIAN} is possible), {percent:.0} % more than {OUTLIER_MM} mm (at most 25 %). Is it of somebody else, or did the \
-         registration go astray, as without `landmarks` where both stand in frames of their own?"
-    )]
-    Misfit { median: f64, percent: f64 },
-    #[error(
-        "the surface scan is mirrored: its mirror image fits the skin of the CT to {mirrored:.2} mm, itself only to {plain:.2} mm"
-    )]
-    Mirrored { plain: f64, mirrored: f64 },
-    #[error(
-        "{covered_cm2:.2} cm² of the surface scan, of {whole_cm2:.2}, can lie on the skin that the CT shows; at least 40 cm² are needed. Is its unit right?"
-    )]
-    Small { covered_cm2: f64, whole_cm2: f64 },
 }
 
 /// The outer skin that a CT shows, a closed surface: where the image ends it is flat.

@@ -160,7 +160,7 @@ impl<'a> Work<'a> {
         };
         for point in 0..count as u32 {
             let later = work.draft.neighbours(point).into_iter().filter(|&other| other > point);
-            later.collect::<Vec<u32>>().into_iter().for_each(|other| work.offer([point, other]));
+            later.for_each(|other| work.offer([point, other]));
         }
         Ok(work)
     }

@@ -23,7 +23,6 @@ mod registration;
 mod repair;
 mod response;
 mod segmentation;
-mod simplification;
 mod skin_scan;
 mod solver;
 mod study;

@@ -2,10 +2,8 @@
 
 use std::sync::LazyLock;
 
-use mechanics::anatomy::AnatomyError;
-use mechanics::anatomy::skin_scan::{
-    BLEND_MM, FittedScan, REACH_MM, SkinScanError, SkinScanRules, fit, skin_of,
-};
+use mechanics::anatomy::skin_scan::{BLEND_MM, FittedScan, REACH_MM, SkinScanRules, fit, skin_of};
+use mechanics::anatomy::{AnatomyError, SkinScanError};
 use mechanics::domain::{Boundary, Domain, ImageDomain, ImageOptions, ScannedSkin};
 use mechanics::image::{ImageVolume, Placement, Voxels};
 use mechanics::mesh::{SurfaceSearch, TriangleSurface, Vector};

@@ -2,8 +2,7 @@
 
 use crate::schema::Triple;
 use crate::schema::meshing::cuts::{ClearanceDocument, CutPathDocument};
-use mechanics::anatomy::closed_jaw::Closing;
-use mechanics::anatomy::{Anatomy, AnatomyRules};
+use mechanics::anatomy::{Anatomy, AnatomyRules, Closing};
 use mechanics::format::csv::cell;
 use mechanics::mesh::{Frame, Vector, Warning};
 use mechanics::osteotomy::Osteotomy;

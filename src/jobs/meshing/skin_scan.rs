@@ -9,10 +9,8 @@ use crate::jobs::fetch::{fetch, no_surface};
 use crate::jobs::source::{MeshSource, StoredMesh};
 use crate::schema::meshing::skin_scan::{ScanLandmarkDocument, SkinScanDocument};
 use crate::schema::{ErrorCode, Pointer, Problem};
-use mechanics::anatomy::AnatomyError;
-use mechanics::anatomy::skin_scan::{
-    BLEND_MM, FittedScan, REACH_MM, SkinScanError, SkinScanRules, fit,
-};
+use mechanics::anatomy::skin_scan::{BLEND_MM, FittedScan, REACH_MM, SkinScanRules, fit};
+use mechanics::anatomy::{AnatomyError, SkinScanError};
 use mechanics::domain::{ImageOptions, ScannedSkin};
 use mechanics::image::ImageVolume;
 use mechanics::mesh::{Frame, TriangleSurface, Vector};

@@ -11,7 +11,7 @@ use crate::schema::plan::movement::{MovementContext, MovementDocument};
 use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::limits::Limits;
 use crate::schema::{Matrix4x4, Triple};
-use mechanics::anatomy::closed_jaw::Closing;
+use mechanics::anatomy::Closing;
 use mechanics::anatomy::skin_scan::FittedScan;
 use mechanics::osteotomy::Osteotomy;
 use mechanics::registration::RigidTransform;
