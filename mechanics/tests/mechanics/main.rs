@@ -23,6 +23,7 @@ mod registration;
 mod repair;
 mod response;
 mod segmentation;
+mod simplification;
 mod skin_scan;
 mod solver;
 mod study;

@@ -63,8 +63,12 @@ fn options() -> ImageOptions {
 /// Noise of .15 mm at each point, then where a camera stood.
 fn taken(face: &TriangleSurface, camera: &RigidTransform) -> TriangleSurface {
     let mut noise = Noise::new(7);
-    let mut jitter = || (noise.uniform() - 0.5) * 0.3;
-    map(face, |point| camera.apply(&(point + Vector::new(jitter(), jitter(), jitter()))))
+    let mut taken = face.clone();
+    for point in &mut taken.points {
+        let off = Vector::from_fn(|_, _| (noise.uniform() - 0.5) * 0.3);
+        *point = camera.apply(&(*point + off));
+    }
+    taken
 }
 
 fn fitted(scan: &TriangleSurface, rules: &SkinScanRules) -> Result<FittedScan, SkinScanError> {

@@ -12,6 +12,7 @@ use crate::schema::code::ErrorCode;
 use crate::schema::osteotomy::OsteotomyDocument;
 use crate::schema::osteotomy::conversion::{PlannedOsteotomy, given_segments};
 use crate::schema::plan::document::PlanDocument;
+use crate::schema::plan::movement::MovementContext;
 use crate::schema::predict::budget::BudgetDocument;
 use crate::schema::wire::canonical;
 use crate::schema::wire::fault::{Faults, Pointer};
