@@ -211,7 +211,8 @@ fn a_surface_is_made_simpler_within_a_bound_and_tells_how_far_it_went() {
         let plain = ["simplify", path(&skin), "--out", path(&out)];
         let asked =
             if wrong[0] == "--out" { vec!["simplify", path(&skin)] } else { plain.to_vec() };
-        let asked = [&asked[..], &[&format!("{}={}", wrong[0], wrong[1])]].concat();
+        let wrong_one = format!("{}={}", wrong[0], wrong[1]);
+        let asked = [&asked[..], &[&wrong_one]].concat();
         let refused = facies(&asked);
         let told = text(&refused.stderr);
         assert_eq!(refused.status.code(), Some(2), "{wrong:?}: {told}");

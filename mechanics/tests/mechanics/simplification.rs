@@ -43,7 +43,9 @@ fn a_head_keeps_within_the_bound_both_ways_with_a_tenth_of_its_triangles() {
         // Euler's number of a sphere.
         let (points, triangles) = (simple.points.len() as i64, simple.triangles.len() as i64);
         assert_eq!(points - 3 * triangles / 2 + triangles, 2);
-        assert!((simple.signed_volume() / given.signed_volume() - 1.0).abs() < 2e-3);
+        // Quadrics keep the volume within a part of what the bound would allow.
+        let off = (simple.signed_volume() - given.signed_volume()).abs() / given.area();
+        assert!(off < 0.35 * deviation, "{off} mm of {deviation}");
         assert_eq!(simple, within(&given, deviation), "the same again");
     }
 }
@@ -75,7 +77,8 @@ fn flat_sheets_keep_their_border_and_what_stops_at_a_count_stops_there() {
     let simple = within(&sheet, 0.01);
     assert!(simple.triangles.len() < 40, "{}", simple.triangles.len());
     assert!((simple.area() - 3600.0).abs() < 1e-6, "{}", simple.area());
-    assert_eq!(simple.bounds(), sheet.bounds());
+    let ((low, high), (sheet_low, sheet_high)) = (simple.bounds(), sheet.bounds());
+    assert!((low - sheet_low).amax() < 1e-9 && (high - sheet_high).amax() < 1e-9);
     let settings =
         SimplificationSettings { deviation: 5.0, triangles: Some(2000), longest: &anything };
     let some = simplify(&head(5), &settings, &Unobserved).unwrap();
