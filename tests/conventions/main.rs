@@ -14,7 +14,7 @@ use std::path::Path;
 use source::{Crate, Module, rust_files};
 
 /// Modules of the numerics, and those that each may use.
-const MECHANICS: [(&str, &[&str]); 29] = [
+const MECHANICS: [(&str, &[&str]); 30] = [
     ("rows", &[]),
     ("progress", &[]),
     ("draws", &[]),
