@@ -4,3 +4,4 @@ export { comparePage } from "./compare.js";
 export { inversePage } from "./inverse.js";
 export { planPage } from "./plan.js";
 export { resultPage } from "./result.js";
+export { plansPage } from "./stored.js";
