@@ -12,7 +12,7 @@ import { share, type Rgb, type Scheme } from "./colours.js";
 import { coarse } from "./coarse.js";
 import { drawn, type FrameName } from "./frame.js";
 import { geometryOf, seenFrom, VIEWS, type Shape } from "./geometry.js";
-import { Marks, type Mark } from "./marks.js";
+import { Marks, type Mark, type Sheet } from "./marks.js";
 import { normals } from "./normals.js";
 import { BONE, hex, hexOf, MOVING_BONE, OUTLINE, SKIN } from "./palette.js";
 import { contour, isDrawnBySoftware, lights, setBands, veil } from "./shading.js";
@@ -58,6 +58,7 @@ export class Scene {
   private readonly marks = new Marks();
   /** What a warning speaks of, or the pointer is over. */
   private readonly pointed = new Marks();
+  private readonly planes = new Marks();
   private lit: Mesh | undefined;
   private readonly skinMaterial = new MeshLambertMaterial({ color: hexOf(SKIN), side: DoubleSide });
   /** Half of a map's colour is lit and half shines by itself, so that it is read off the legend also where there is shade. */
@@ -95,7 +96,7 @@ export class Scene {
     host.prepend(this.canvas);
     lights(this.graph, this.camera);
     this.graph.add(this.head, this.camera);
-    this.head.add(this.marks.group, this.pointed.group);
+    this.head.add(this.planes.group, this.marks.group, this.pointed.group);
     this.controls = new OrbitControls(this.camera, this.canvas);
     this.controls.enableDamping = false;
     this.controls.addEventListener("change", () => this.stir());
@@ -114,8 +115,10 @@ export class Scene {
     this.head.updateMatrixWorld(true);
   }
 
-  showSkin(rest: Shape): void {
+  /** A surface in the colour of skin or another. */
+  showSkin(rest: Shape, colour = hexOf(SKIN)): void {
     this.rest = rest;
+    this.skinMaterial.color.setHex(colour);
     this.settle();
     for (const old of [this.skin, this.prepass]) if (old !== undefined) this.drop(old);
     const geometry = geometryOf(rest);
@@ -267,6 +270,12 @@ export class Scene {
     this.draw();
   }
 
+  /** Planes that are sawn. */
+  saw(sheets: Sheet[]): void {
+    this.planes.sheets(sheets);
+    this.draw();
+  }
+
   /** Points out places, beside the marks. */
   point(points: Mark[]): void {
     this.pointed.place(points);
@@ -377,6 +386,13 @@ export class Scene {
     const point = this.head.localToWorld(new Vector3(...through_mm));
     const along = point.sub(ray.origin).dot(ray.direction);
     return this.head.worldToLocal(ray.origin.clone().addScaledVector(ray.direction, along)).toArray();
+  }
+
+  /** Where a point is seen, in pixels of the window. */
+  seenAt(point_mm: Triple): [number, number] {
+    const { left, top, width, height } = this.canvas.getBoundingClientRect();
+    const { x, y } = this.head.localToWorld(new Vector3(...point_mm)).project(this.camera);
+    return [left + ((x + 1) / 2) * width, top + ((1 - y) / 2) * height];
   }
 
   turnable(on: boolean): void {

@@ -5,3 +5,4 @@ export { inversePage } from "./inverse.js";
 export { planPage } from "./plan.js";
 export { resultPage } from "./result.js";
 export { plansPage } from "./stored.js";
+export { boneOfScan, boneOfSurface, cutEditor } from "./cuts.js";

@@ -92,7 +92,7 @@ export const en = {
   joinedToNothing: (name: string) => `No tissue is joined to ${name}: moving it moves nothing. Choose the nodes on its bone.`,
   surfaces: "Surfaces", surfacesWhy: "The tissue between the skin and the bones is meshed, which takes a minute or more. Each bone can be moved afterwards. Lengths of the files are taken as mm.",
   surfacesLack: "One surface has to be the skin, and at least one a bone.", surfaceRole: { skin: "the skin", bone: "a bone", none: "nothing" },
-  imageAlone: (file: string) => `${file} is a scan and is stored now. The document beside has its soft tissue meshed, and may be changed by hand before it is sent. What it says with "osteotomy" is where bone is cut: without that nothing can be moved.`,
+  imageAlone: (file: string) => `${file} is a scan and is stored now. The document beside has its soft tissue meshed, and may be changed by hand before it is sent. Where bone is cut is placed below: without that nothing can be moved.`,
 
   material: "Material", level: "Mesh level", meanMm: "mean mm", toComparison: "Show it on the skin", pictures: "Pictures",
 
@@ -168,6 +168,27 @@ export const en = {
   clickMarks: "Click a mark, or go there by the tab key and press Enter: the rows behind it stand below.",
   allRows: "All rows",
   rowsOfMark: (name: string, count: number, all: number) => `${name}: ${count} of ${all} rows`,
+
+  cuts: "Cuts",
+  placeCuts: "Place cuts in the view",
+  boneFrom: "Bone from",
+  cutOneBone: "Cuts can be placed where one surface is all bone and the frame is stated; several bones move as they are.",
+  cutsHint: "Choose what is cut. Drag the handle of a plane, point at three places on the bone, or write numbers: pitch, roll and yaw turn the plane as they turn a bone. With the bone in focus Enter takes the place in the middle of the view. The document above follows.",
+  boneLabel: "Bone in three dimensions. Keys 1 to 6 choose a view, arrow keys turn it, Enter takes the place in the middle.",
+  operation: { lefort: "Le Fort I: the upper jaw", rami: "Both rami: the lower jaw", occlusal: "Between teeth that touch" },
+  cut: { "le-fort-1": "Le Fort I", "pterygomaxillary": "At the pterygoid plates", "ramus-right": "Right ramus", "ramus-left": "Left ramus", "ramus-horizontal": "Above the molars", "occlusal": "Between the teeth" } as Record<string, string>,
+  jaw: { maxilla: "the upper jaw", mandible: "the lower jaw" },
+  kerf: "Saw, width",
+  threePoints: "Through three points",
+  markJaw: (jaw: string) => `Point at ${jaw}`,
+  noSeed: "not pointed at: the largest piece on its sides of the cuts is meant",
+  clickJaw: (jaw: string) => `Click on ${jaw}, or turn it into the middle and press Enter. Escape gives up.`,
+  clickPoint: (cut: string, number: number) => `${cut}: click point ${number} of 3 on the bone, or turn it into the middle and press Enter. Escape gives up.`,
+  noBoneHere: "No bone there.",
+  pointsOnLine: "These three points lie on a line: the plane stays.",
+  scanTooLarge: "The scan is too large to be drawn here.",
+  noBoneThere: (hu: string) => `Nothing of the scan is at or above ${hu} HU.`,
+  documentBroken: "The document above is not JSON any more: cuts are not written into it until it is.",
 };
 
 export type Words = typeof en;
