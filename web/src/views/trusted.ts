@@ -25,13 +25,12 @@ function heeded(words: Words, line: TrustLine, topic: keyof typeof TOPICS, warni
 const warned = (words: Words, count: number): TrustLine =>
   ({ name: words.warnings, value: count === 0 ? words.none : String(count), trusted: count === 0 ? "good" : "heed" });
 
-/** What the answer leaves out, as far as that is estimated: a mean over the skin, of a linear response without a place. */
+/** What the answer leaves out, as far as that is estimated: a mean over the skin. */
 export function leftOutLine(words: Words, answer: Documents["AppliedDocument"]): TrustLine {
   const left = answer.nonlinearity_estimate_mm ?? undefined;
   if (left === undefined) return { name: words.leftOutName, value: words.notKnown, trusted: "unknown", why: words.leftOutUnknown };
-  const where = answer.order === 1 ? [words.leftOutNowhere] : [];
-  const why = [...(answer.within_linear_range ? [] : [words.outside]), ...where].join(" ");
-  const line: TrustLine = { name: words.leftOutName, value: words.leftOut(mm(left)), trusted: answer.within_linear_range ? "good" : "heed", ...(why === "" ? {} : { why }) };
+  const line: TrustLine = { name: words.leftOutName, value: words.leftOut(mm(left)), trusted: answer.within_linear_range ? "good" : "heed",
+    ...(answer.within_linear_range ? {} : { why: words.outside }) };
   return heeded(words, line, "leftOut", answer.warnings, left);
 }
 

@@ -166,7 +166,7 @@ export const de: Words = {
   bothPlans: "Zahlen beider Pläne",
   plansAre: (mean, most) => `Die Häute beider Pläne liegen im Mittel ${mean} mm und höchstens ${most} mm auseinander.`,
   partsNotTold: (names) => `Hier nicht gesagt, da keine Menge des Netzes ihre Knoten nennt: ${names}.`,
-  leftOutNowhere: "Wo im Gesicht das liegt, weiß eine lineare Antwort nicht: sie kennt nur das Mittel über die Haut. `Zweite Ordnung dazu` oder `Ganz vorhersagen` färbt es.",
+  leftOutNowhere: "Wo im Gesicht das liegt, weiß eine lineare Antwort nicht: sie kennt nur das Mittel über die Haut. Eine zweite Ordnung, wo sie sich dazurechnen lässt, und `Ganz vorhersagen` färben es.",
   clickMarks: "Eine Marke anklicken, oder mit der Tabulatortaste hingehen und Enter drücken: die Zeilen dahinter stehen darunter.",
   allRows: "Alle Zeilen",
   rowsOfMark: (name, count, all) => `${name}: ${count} von ${all} Zeilen`,

@@ -164,7 +164,7 @@ export const en = {
   bothPlans: "Numbers of both plans",
   plansAre: (mean: string, most: string) => `The skins of both plans are ${mean} mm apart in the mean and ${most} mm at most.`,
   partsNotTold: (names: string) => `Not told here, as no set of the mesh says which nodes they are: ${names}.`,
-  leftOutNowhere: "Where on the face this is, a linear response does not know: it keeps the mean over the skin only. `Add the second order` or `Predict in full` shades it.",
+  leftOutNowhere: "Where on the face this is, a linear response does not know: it keeps the mean over the skin only. A second order, where it can be added, and `Predict in full` shade it.",
   clickMarks: "Click a mark, or go there by the tab key and press Enter: the rows behind it stand below.",
   allRows: "All rows",
   rowsOfMark: (name: string, count: number, all: number) => `${name}: ${count} of ${all} rows`,
