@@ -9,6 +9,8 @@ export interface Mark {
   at_mm: Triple;
   colour: number;
   to_mm?: Triple;
+  /** Of one that is to be dragged, larger than usual. */
+  radius_mm?: number;
 }
 
 /** A plane that is sawn: a square around a point, and the line where it goes through something. */
@@ -31,8 +33,8 @@ export class Marks {
   /** Points in the frame of the case in the place of those before; lines lead to where they are to be. */
   place(points: Mark[]): void {
     this.clear();
-    for (const { at_mm, colour, to_mm } of points) {
-      const ball = new Mesh(new SphereGeometry(MARK_MM, 16, 12), new MeshBasicMaterial({ color: colour, depthTest: false }));
+    for (const { at_mm, colour, to_mm, radius_mm = MARK_MM } of points) {
+      const ball = new Mesh(new SphereGeometry(radius_mm, 16, 12), new MeshBasicMaterial({ color: colour, depthTest: false }));
       ball.position.set(...at_mm);
       this.add(ball);
       if (to_mm === undefined) continue;

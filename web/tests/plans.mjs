@@ -69,7 +69,7 @@ export async function plans(page) {
     await page.getByRole("status").getByText(`apart in the mean and ${between.skin.area.max.toFixed(2)} mm at most`).waitFor();
     assert.deepEqual(await serious(page), []);
     await pictured(page, "plans-overlaid");
-    await page.getByText("side by side").click();
+    await page.getByText("side by side", { exact: true }).click();
     await addressed(page, /show=sides/);
     const rest = await page.evaluate(() => [...document.querySelector(".screen").scene.resting.points_mm]);
     const applied = async (of) => (await json(`/v1/cases/${caseId}/response/apply`, { plan: of.plan })).displacement_mm.flat();
@@ -85,7 +85,7 @@ export async function plans(page) {
     assert.deepEqual(await serious(small), []);
     await pictured(small, "plans-390-dark-german");
     await small.context().close();
-    await page.getByRole("link", { name: "Open six back" }).click();
+    await page.getByRole("link", { name: "Load six back" }).click();
     await planned(page);
     assert.equal(await slider(page, "mandible", "forward").inputValue(), "-6");
   });

@@ -83,13 +83,18 @@ async fn a_name_tells_a_plan_from_others_and_changes_nothing_of_what_is_computed
 
     let job = |id: &Value| json!({"kind": "predict", "case": case, "plan_id": id});
     let jobs = [job(&first["id"]), job(&second["id"])];
-    let hash = async |spec: &Value| server.job(spec).await.expect(StatusCode::OK)["spec_hash"].clone();
+    let hash =
+        async |spec: &Value| server.job(spec).await.expect(StatusCode::OK)["spec_hash"].clone();
     assert_eq!(hash(&jobs[0]).await, hash(&jobs[1]).await);
 
     let long = "a".repeat(129);
     for name in ["", " ", "a\nb", &long] {
         let refused = keep(name).await;
         let fault = &refused.problem(422, "validation-failed")["errors"][0];
-        assert_eq!((fault["code"].as_str(), fault["pointer"].as_str()), (Some("bad-name"), Some("/name")), "{name:?}");
+        assert_eq!(
+            (fault["code"].as_str(), fault["pointer"].as_str()),
+            (Some("bad-name"), Some("/name")),
+            "{name:?}"
+        );
     }
 }

@@ -20,6 +20,8 @@ const REACH = 16;
 const CLICK = 4;
 /** Half the side of a plane as it is drawn, as a share of the bone's longest side. */
 const SIDE = 0.28;
+/** The radius of a handle, likewise. */
+const HANDLE = 0.016;
 const OPERATIONS: Operation[] = ["lefort", "rami", "occlusal"];
 const JAWS: { name: keyof Seeds; operation: Operation }[] = [{ name: "maxilla", operation: "lefort" }, { name: "mandible", operation: "rami" }];
 const SPACES: Record<string, FrameName> = { "left-posterior-superior": "LPS", "right-anterior-superior": "RAS" };
@@ -197,9 +199,15 @@ class CutEditor {
     const { scene, cuts, aim, seeds, frame } = this;
     scene.saw(cuts.map((cut, at) => ({ corners_mm: this.corners(cut), line_mm: this.line(cut), colour: hex(SERIES[at % SERIES.length]!) })));
     const dots = (points: Triple[], colour: string) => points.map((at_mm) => ({ at_mm, colour: hex(colour) }));
-    scene.mark([...cuts.flatMap((cut, at) => dots([cut.point_mm], SERIES[at % SERIES.length]!)), ...dots(aim?.of === "points" ? aim.points : [], "#000000"), ...dots([...seeds.maxilla, ...seeds.mandible], "#ffffff")]);
+    const handles = cuts.map((cut, at) => ({ at_mm: cut.point_mm, colour: hex(SERIES[at % SERIES.length]!), radius_mm: HANDLE * this.longest }));
+    scene.mark([...handles, ...dots(aim?.of === "points" ? aim.points : [], "#000000"), ...dots([...seeds.maxilla, ...seeds.mandible], "#ffffff")]);
     for (const input of this.list.querySelectorAll("input")) if (input !== document.activeElement) input.dispatchEvent(new Event("refresh"));
     this.changed(osteotomy(this.operations, cuts, seeds, frame));
+  }
+
+  /** Of the box around the bone, in mm. */
+  private get longest(): number {
+    return Math.max(...this.box[1].map((high, axis) => high - this.box[0][axis]!));
   }
 
   private line(cut: Cut): number[][] {
@@ -214,7 +222,7 @@ class CutEditor {
     const length = Math.hypot(...along);
     const u = along.map((value) => value / length) as Triple;
     const v: Triple = [normal[1] * u[2] - normal[2] * u[1], normal[2] * u[0] - normal[0] * u[2], normal[0] * u[1] - normal[1] * u[0]];
-    const half = SIDE * Math.max(...this.box[1].map((high, axis) => high - this.box[0][axis]!));
+    const half = SIDE * this.longest;
     return ([[-1, -1], [1, -1], [1, 1], [-1, 1]] as const).map(([a, b]) => cut.point_mm.map((value, axis) => value + half * (a * u[axis]! + b * v[axis]!)) as Triple) as [Triple, Triple, Triple, Triple];
   }
 }
