@@ -11,7 +11,7 @@ import { meshOf } from "../loading.js";
 import { normalOf, osteotomy, planned, throughPoints, type Cut, type Operation, type Seeds } from "../osteotomy.js";
 import { section } from "../outline.js";
 import { inFrame } from "../ply.js";
-import { BONE, hex, SERIES } from "../palette.js";
+import { BONE, hex, INK, PAPER, SERIES } from "../palette.js";
 import { Scene } from "../scene.js";
 
 /** Pixels from a handle within which a press takes it. */
@@ -200,7 +200,7 @@ class CutEditor {
     scene.saw(cuts.map((cut, at) => ({ corners_mm: this.corners(cut), line_mm: this.line(cut), colour: hex(SERIES[at % SERIES.length]!) })));
     const dots = (points: Triple[], colour: string) => points.map((at_mm) => ({ at_mm, colour: hex(colour) }));
     const handles = cuts.map((cut, at) => ({ at_mm: cut.point_mm, colour: hex(SERIES[at % SERIES.length]!), radius_mm: HANDLE * this.longest }));
-    scene.mark([...handles, ...dots(aim?.of === "points" ? aim.points : [], "#000000"), ...dots([...seeds.maxilla, ...seeds.mandible], "#ffffff")]);
+    scene.mark([...handles, ...dots(aim?.of === "points" ? aim.points : [], INK), ...dots([...seeds.maxilla, ...seeds.mandible], PAPER)]);
     for (const input of this.list.querySelectorAll("input")) if (input !== document.activeElement) input.dispatchEvent(new Event("refresh"));
     this.changed(osteotomy(this.operations, cuts, seeds, frame));
   }

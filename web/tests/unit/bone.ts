@@ -116,6 +116,7 @@ test("a mark is of the way of modelling and mesh level that its words begin with
   const rows = [{ label: "fem", level: 0 }, { label: "fem", level: 1 }, { label: "fem: corrected", level: 1 }];
   assert.deepEqual(markOf("fem, level 1: 0.2 s", rows), { label: "fem", level: 1 });
   assert.deepEqual(markOf("fem: corrected, level 1: 0.2 s", rows), { label: "fem: corrected", level: 1 });
+  assert.deepEqual(markOf("fem: corrected: 0.2 s", [{ label: "fem", level: 2 }, { label: "fem: corrected", level: 2 }]), { label: "fem: corrected", level: 2 });
   assert.equal(markOf("msm, level 1: 0.2 s", rows), undefined);
   assert.deepEqual(markOf("fem: 0.2 s", [{ label: "fem", level: 2 }]), { label: "fem", level: 2 });
 });
