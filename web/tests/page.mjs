@@ -155,7 +155,7 @@ let job;
 await check("a prediction is run, and shown before and after", async () => {
   await go(page, `${plan}?p=maxilla,4,0,0,0,0,0;mandible,-6,2,0,0,0,0`);
   await planned(page);
-  await page.locator("section", { hasText: "Predict in full" }).locator("select").selectOption("fem_linear");
+  await page.locator("section", { has: page.getByRole("button", { name: "Predict in full" }) }).getByLabel("Model", { exact: false }).first().selectOption("fem_linear");
   await page.getByRole("button", { name: "Predict in full" }).click();
   await page.getByRole("heading", { name: "Before and after" }).waitFor();
   job = await page.evaluate(() => /job\/([0-9a-f-]+)/.exec(location.hash)[1]);
