@@ -81,6 +81,7 @@ fn scanned() -> Value {
 
 fn plan() -> Value {
     json!({
+        "name": "jaw to the left",
         "frame": "LPS",
         "segments": [{
             "name": "mandible", "translation_mm": [4, 0, 1], "rotation_deg": [0, 5, 0], "pivot_mm": [40, 30, 0],

@@ -30,7 +30,7 @@ pub fn predict_hash(
     let mut case = case.clone();
     case.name = None;
     case.tags.clear();
-    let mut plan = plan.clone();
+    let mut plan = plan.unnamed();
     let mut spec = spec.clone();
     let case_meshes = case.mesh_references_mut().into_iter();
     let plan_meshes = plan.surface_references_mut().into_iter();
@@ -72,7 +72,7 @@ pub fn optimise_hash(
 }
 
 /// The hash of a study: its cases with contents of meshes in place of their ids, in the order of its scenes, and the
-/// report that it is held against; names of cases stay, since rows carry them.
+/// report that it is held against; names of cases stay, since rows carry them, and those of plans do not.
 pub fn study_hash(
     cases: &[&CaseDocument],
     spec: &StudyDocument,
@@ -88,6 +88,7 @@ pub fn study_hash(
     }
     let mut spec = spec.clone();
     for plan in spec.plan_documents_mut() {
+        plan.name = None;
         for (_, id) in plan.surface_references_mut() {
             replace(id, content_of);
         }
