@@ -35,6 +35,8 @@ export async function cuts(page, job) {
     assert.match(before.surfaces.bone, /^[0-9a-f-]{36}$/);
     // The handle, seen from the front: to the right of the window is the patient's left, +x, and up is +z.
     await page.locator(".cuts").getByRole("button", { name: "1: Front" }).click();
+    // What a pointer takes has to be in the window.
+    await page.locator(".cuts canvas").scrollIntoViewIfNeeded();
     const cut = named(before.osteotomy.cuts, "le-fort-1");
     const [x, y] = await handle(page, cut.point_mm);
     await page.mouse.move(x, y);
@@ -115,5 +117,7 @@ export async function cuts(page, job) {
     assert.deepEqual(await serious(page), []);
     await fits(page);
     await pictured(page, "cuts-scan");
+    // Others begin at the list of cases.
+    await go(page, "#/jobs");
   });
 }
