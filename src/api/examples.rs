@@ -33,6 +33,7 @@ fn of(operation: &str) -> Vec<(&'static str, Value)> {
         "create_case" => vec![("case", case()), ("scan to be meshed", scanned())],
         "check_case" => vec![("nothing moves", json!({})), ("plan", json!({ "plan": plan() }))],
         "create_plan" | "replace_plan" => vec![("movements", plan()), ("loads", loads())],
+        "create_cohort" => vec![("cohort", cohort())],
         "apply_response" => vec![("plan", json!({ "plan": plan() }))],
         "create_job" => jobs(),
         "change_job" => {
@@ -94,6 +95,25 @@ fn loads() -> Value {
         "loads": [
             {"gravity_m_per_s2": [0, 0, -9.81]},
             {"pressure_kpa": 0.1, "faces": {"node_set": "skin"}},
+        ],
+    })
+}
+
+/// Three operated blocks, of the last of which only errors may be told.
+fn cohort() -> Value {
+    json!({
+        "name": "one jaw, 2026",
+        "consent": {"statement": "consent form 4, signed by each", "uses": ["learn", "compare"]},
+        "members": [
+            {"prediction": JOB, "actual": SCAN, "name": "P1", "class": "one_jaw", "comparisons": {"linear": COMPARISON}},
+            {
+                "prediction": JOB, "actual": SCAN, "name": "P2", "comparisons": {"linear": COMPARISON},
+                "matrix4x4": [1, 0, 0, 0.4, 0, 1, 0, -0.2, 0, 0, 1, 0, 0, 0, 0, 1],
+            },
+            {
+                "prediction": JOB, "actual": SCAN, "name": "P3", "comparisons": {"linear": COMPARISON},
+                "consent": {"statement": "consent form 4, errors only", "uses": ["compare"]},
+            },
         ],
     })
 }
