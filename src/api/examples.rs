@@ -101,20 +101,22 @@ fn loads() -> Value {
 
 /// Three operated blocks, of the last of which only errors may be told.
 fn cohort() -> Value {
+    let id = |group: u32, number: u32| format!("0199d3a0-0000-7000-8000-0000000000{group}{number}");
+    let member = |number: u32| {
+        json!({
+            "prediction": id(1, number), "actual": id(2, number), "name": format!("P{number}"),
+            "comparisons": {"linear": id(3, number)},
+        })
+    };
+    let mut members = [1, 2, 3].map(member);
+    members[0]["class"] = "one_jaw".into();
+    members[1]["matrix4x4"] = json!([1, 0, 0, 0.4, 0, 1, 0, -0.2, 0, 0, 1, 0, 0, 0, 0, 1]);
+    members[2]["consent"] =
+        json!({"statement": "consent form 4, errors only", "uses": ["compare"]});
     json!({
         "name": "one jaw, 2026",
         "consent": {"statement": "consent form 4, signed by each", "uses": ["learn", "compare"]},
-        "members": [
-            {"prediction": JOB, "actual": SCAN, "name": "P1", "class": "one_jaw", "comparisons": {"linear": COMPARISON}},
-            {
-                "prediction": JOB, "actual": SCAN, "name": "P2", "comparisons": {"linear": COMPARISON},
-                "matrix4x4": [1, 0, 0, 0.4, 0, 1, 0, -0.2, 0, 0, 1, 0, 0, 0, 0, 1],
-            },
-            {
-                "prediction": JOB, "actual": SCAN, "name": "P3", "comparisons": {"linear": COMPARISON},
-                "consent": {"statement": "consent form 4, errors only", "uses": ["compare"]},
-            },
-        ],
+        "members": members,
     })
 }
 
