@@ -10,7 +10,7 @@ use crate::jobs::{JobInput, LearnInput, LearnedCase};
 use crate::schema::cohort::stored::{CohortUse, CohortVersionDocument};
 use crate::schema::learn::model::MODEL_FILE;
 use crate::schema::{ErrorCode, Faults, LearnDocument, Problem};
-use crate::store::NewJob;
+use crate::store::{NewJob, Outdated};
 
 /// Learning from predictions that have ended. It belongs to their cases, and goes with each: erasing a case erases every model
 /// that was learned from it.
@@ -76,6 +76,13 @@ pub async fn learned_from(service: &Service, model: &str, case: &str) -> ApiResu
     let row = successful_job(service, AT, model).await?;
     if service.store.job_file(&row.id, MODEL_FILE).await?.is_none() {
         return Err(fault(AT, ErrorCode::NoSuchOutput, "the job learned nothing"));
+    }
+    if let Some(outdated) = service.store.outdated(&row.id).await? {
+        let Outdated { cohort, learned, version } = outdated;
+        let detail = format!(
+            "the model learned from version {learned} of cohort {cohort}, which is at version {version}: members have left, and it is to be learned again"
+        );
+        return Err(fault(AT, ErrorCode::ModelStale, &detail));
     }
     let cases = service.store.cases_of_job(&row.id).await?;
     match cases.iter().any(|own| own == case) {

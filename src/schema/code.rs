@@ -158,6 +158,7 @@ error_codes! {
     JobFailed 422 "job-failed" REFUSED,
     MethodMismatch 422 "method-mismatch" REFUSED,
     MethodNotAvailable 422 "method-not-available" REFUSED,
+    ModelStale 422 "model-stale" REFUSED,
     NotConsented 422 "not-consented" REFUSED,
     NeedsVerify 422 "needs-verify" REFUSED,
     NotLinear 422 "not-linear" REFUSED,

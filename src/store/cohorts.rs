@@ -61,6 +61,14 @@ pub struct CohortModelRow {
     pub status: Option<JobStatus>,
 }
 
+/// A cohort with the version that a model learned from and the one that it has now.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Outdated {
+    pub cohort: String,
+    pub learned: i64,
+    pub version: i64,
+}
+
 const BY_ID: &str = "SELECT id, name, consent, version, created, updated, \
      (SELECT COUNT(*) FROM cohort_members WHERE cohort_id = cohorts.id) AS members \
      FROM cohorts WHERE id = $1 AND tenant = $2";
@@ -77,6 +85,9 @@ const MODELS: &str = "SELECT cohort_models.job_id, cohort_models.version, jobs.s
      FROM cohort_models LEFT JOIN jobs ON jobs.id = cohort_models.job_id \
      WHERE cohort_id = $1 AND EXISTS (SELECT 1 FROM cohorts WHERE id = $1 AND tenant = $2) \
      ORDER BY cohort_models.job_id DESC";
+const OUTDATED: &str = "SELECT cohorts.id, cohort_models.version AS learned, cohorts.version FROM cohort_models \
+     JOIN cohorts ON cohorts.id = cohort_models.cohort_id \
+     WHERE job_id = $1 AND tenant = $2 AND cohorts.version > cohort_models.version";
 const INSERT: &str = "INSERT INTO cohorts (id, tenant, name, consent, version, created, updated) \
      VALUES ($1, $2, $3, $4, 1, (SELECT now_ms FROM clock), (SELECT now_ms FROM clock))";
 const INSERT_MEMBER: &str = "INSERT INTO cohort_members \
@@ -291,6 +302,17 @@ impl Store {
         let rows = query(MODELS).bind(id).bind(self.tenant());
         let rows = rows.fetch_all(self.database.reader()).await?;
         Ok(rows.iter().map(model_row).collect::<Result<_, _>>()?)
+    }
+
+    /// The cohort that a model was learned from and that members have left since.
+    pub async fn outdated(&self, model: &str) -> Result<Option<Outdated>, StoreError> {
+        let row = query(OUTDATED).bind(model).bind(self.tenant());
+        let row = row.fetch_optional(self.database.reader()).await?;
+        let found = |row: Row| {
+            let (learned, version) = (row.try_get("learned")?, row.try_get("version")?);
+            Ok(Outdated { cohort: row.try_get("id")?, learned, version })
+        };
+        row.map(found).transpose()
     }
 
     /// Deletes a cohort; what was learned from it stays.

@@ -43,7 +43,7 @@ pub use accepted::{Enqueued, NewJob};
 pub use audit::{AuditRow, Chain};
 pub use cases::{AddedCase, CaseMeshing, CaseRow, Change, NewCase};
 pub use claims::Claim;
-pub use cohorts::{CohortModelRow, CohortRow, LeftRow, MemberRow, NewCohort};
+pub use cohorts::{CohortModelRow, CohortRow, LeftRow, MemberRow, NewCohort, Outdated};
 pub use database::Migrated;
 pub use deed::Deed;
 pub use error::StoreError;

@@ -184,14 +184,18 @@ async fn a_member_leaves_with_its_case_or_its_prediction_and_the_cohort_says_wha
     let view = show(&server, &cohort).await;
     let stale =
         json!({"job": second["id"], "version": 2, "state": "stale", "left": [operated.cases[1]]});
+    let both = [operated.cases[0].as_str(), &operated.cases[1]];
+    let erased = json!({"job": first["id"], "version": 1, "state": "erased", "left": both});
     assert_eq!((&view["version"], &view["models"]), (&json!(3), &json!([stale, erased])));
     ask(server.get(&format!("/v1/jobs/{}", id(&second)))).await.expect(StatusCode::OK);
 
+    let mut spec = linear(&operated.cases[2], 2.2);
+    spec["correction"] = json!({"model": second["id"]});
+    refused("stale", &server.job(&spec).await, "/correction/model", "model-stale");
+
     // Two are too few.
-    let problem = server.job(&json!({"kind": "learn", "cohort": other})).await;
-    let problem = problem.problem(422, "validation-failed");
-    assert_eq!(problem["errors"][0]["pointer"], "/cohort/members", "{problem}");
-    assert_eq!(problem["errors"][0]["code"], "out-of-range");
+    let learn = server.job(&json!({"kind": "learn", "cohort": other})).await;
+    refused("two", &learn, "/cohort/members", "out-of-range");
 }
 
 #[tokio::test]
@@ -217,9 +221,7 @@ async fn a_member_leaves_with_the_case_whose_model_corrected_its_prediction() {
     let rest = kept(&server, &operated.cohort(&[1, 2, 4])).await;
     let mut spec = linear(&operated.cases[1], 2.2);
     spec["correction"] = json!({"model": learned(&server, &rest).await["id"]});
-    let problem = server.job(&spec).await.problem(422, "validation-failed");
-    assert_eq!(problem["errors"][0]["code"], "duplicate-name");
-    assert_eq!(problem["errors"][0]["pointer"], "/correction/model");
+    refused("own", &server.job(&spec).await, "/correction/model", "duplicate-name");
 }
 
 #[tokio::test]
@@ -242,9 +244,58 @@ async fn what_was_measured_in_another_place_is_registered_before_it_is_learned_f
     assert_eq!(means(&straight).len(), 10);
 }
 
-/// What is wrong with a cohort, by the place and the code that it is refused with.
+/// A document with another value at a place of it.
+fn set(document: &Value, pointer: &str, value: Value) -> Value {
+    let mut changed = document.clone();
+    *changed.pointer_mut(pointer).unwrap() = value;
+    changed
+}
+
+/// Refused, first of all for what is at this place.
+fn refused(name: &str, answer: &Answer, pointer: &str, code: &str) {
+    let problem = answer.json();
+    assert_eq!(answer.status, StatusCode::UNPROCESSABLE_ENTITY, "{name}: {problem}");
+    let told = &problem["errors"][0];
+    let told = (told["pointer"].as_str().unwrap(), told["code"].as_str().unwrap());
+    assert_eq!(told, (pointer, code), "{name}: {problem}");
+}
+
 #[tokio::test]
-async fn bad_cohorts_are_refused_with_the_place() {
+async fn a_cohort_that_is_wrong_in_itself_is_refused_with_the_place() {
+    let server = Server::start();
+    let operated = Operated::on(&server, 3).await;
+    let good = operated.cohort(&[0, 1, 2]);
+    let one = &operated.members[0];
+    let mut silent = good.clone();
+    silent.as_object_mut().unwrap().remove("consent");
+    let mut flat = good.clone();
+    flat["members"][1]["matrix4x4"] = json!([2, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]);
+    let mut named = good.clone();
+    named["members"][2]["name"] = "1".into();
+    let twice = |member: &str| {
+        let place = format!("/members/2/{member}");
+        (set(&good, &place, one[member].clone()), place)
+    };
+    let [(job_twice, job), (mesh_twice, mesh)] = ["prediction", "actual"].map(twice);
+    let other = set(&good, "/members/1/comparisons", json!({"mtm": one["prediction"]}));
+    let uses = set(&good, "/consent/uses", json!(["sell"]));
+    for (name, document, pointer, code) in [
+        ("n of 1", set(&good, "/members", json!([one])), "/members", "out-of-range"),
+        ("nobody", set(&good, "/members", json!([])), "/members", "out-of-range"),
+        ("a prediction twice", job_twice, &job, "duplicate-name"),
+        ("a mesh twice", mesh_twice, &mesh, "duplicate-name"),
+        ("a name that is a number", named, "/members/2/name", "duplicate-name"),
+        ("no consent", silent, "/members/0/consent", "missing-field"),
+        ("a use without a name", uses, "/consent/uses/0", "unknown-word"),
+        ("not rigid", flat, "/members/1/matrix4x4", "plan-not-rigid"),
+        ("other methods", other, "/members/1/comparisons", "out-of-range"),
+    ] {
+        refused(name, &post(&server, &document).await, pointer, code);
+    }
+}
+
+#[tokio::test]
+async fn a_cohort_of_what_does_not_belong_together_is_refused_with_the_place() {
     let server = Server::start();
     let operated = Operated::on(&server, 3).await;
     let good = operated.cohort(&[0, 1, 2]);
@@ -255,120 +306,42 @@ async fn bad_cohorts_are_refused_with_the_place() {
     let turned = linear(&id(&turned.expect(StatusCode::CREATED)), 1.0);
     let turned = server.job(&turned).await.expect(StatusCode::OK);
     let marked = uploaded(&server, "", after_beside(3, Vector::zeros(), Frame::Ras)).await;
-    let set = |pointer: &str, value: Value| {
-        let mut changed = good.clone();
-        *changed.pointer_mut(pointer).unwrap() = value;
-        changed
-    };
-    let mut silent = good.clone();
-    silent.as_object_mut().unwrap().remove("consent");
-    let mut flat = good.clone();
-    flat["members"][1]["matrix4x4"] = json!([2, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]);
-    let one = operated.members[0].clone();
-    let nobody = json!(uuid::Uuid::now_v7());
     let learning = learned(&server, &kept(&server, &good).await).await;
-    for (name, document, pointer, code) in [
-        ("n of 1", set("/members", json!([one])), "/members", "out-of-range"),
-        ("nobody", set("/members", json!([])), "/members", "out-of-range"),
-        (
-            "a prediction twice",
-            set("/members/2/prediction", one["prediction"].clone()),
-            "/members/2/prediction",
-            "duplicate-name",
-        ),
-        (
-            "a mesh twice",
-            set("/members/2/actual", one["actual"].clone()),
-            "/members/2/actual",
-            "duplicate-name",
-        ),
-        (
-            "a case twice",
-            set("/members/2/prediction", second["id"].clone()),
-            "/members/2/prediction",
-            "duplicate-name",
-        ),
-        (
-            "mixed frames",
-            set("/members/2/prediction", turned["id"].clone()),
-            "/members/2/prediction",
-            "frame-conflict",
-        ),
-        (
-            "a mesh in another frame",
-            set("/members/2/actual", json!(marked)),
-            "/members/2/actual",
-            "frame-conflict",
-        ),
-        ("no consent", silent, "/members/0/consent", "missing-field"),
-        (
-            "a use without a name",
-            set("/consent/uses", json!(["sell"])),
-            "/consent/uses/0",
-            "unknown-word",
-        ),
-        ("not rigid", flat, "/members/1/matrix4x4", "plan-not-rigid"),
-        (
-            "other methods",
-            set("/members/1/comparisons", json!({"mtm": one["prediction"]})),
-            "/members/1/comparisons",
-            "out-of-range",
-        ),
-        (
-            "the comparison of another",
-            set("/members/1/comparisons/linear", one["prediction"].clone()),
-            "/members/1/comparisons/linear",
-            "other-case",
-        ),
-        (
-            "no such job",
-            set("/members/1/prediction", nobody.clone()),
-            "/members/1/prediction",
-            "unknown-job",
-        ),
-        (
-            "no prediction",
-            set("/members/1/prediction", learning["id"].clone()),
-            "/members/1/prediction",
-            "no-such-output",
-        ),
-        (
-            "no such mesh",
-            set("/members/1/actual", nobody.clone()),
-            "/members/1/actual",
-            "unknown-mesh",
-        ),
+    let nobody = json!(uuid::Uuid::now_v7());
+    let first = operated.members[0]["prediction"].clone();
+    let comparison = "/members/1/comparisons/linear";
+    for (name, place, value, code) in [
+        ("a case twice", "/members/2/prediction", second["id"].clone(), "duplicate-name"),
+        ("mixed frames", "/members/2/prediction", turned["id"].clone(), "frame-conflict"),
+        ("a mesh in another frame", "/members/2/actual", json!(marked), "frame-conflict"),
+        ("the comparison of another", comparison, first, "other-case"),
+        ("no comparison", comparison, learning["id"].clone(), "no-such-output"),
+        ("no such job", "/members/1/prediction", nobody.clone(), "unknown-job"),
+        ("no prediction", "/members/1/prediction", learning["id"].clone(), "no-such-output"),
+        ("no such mesh", "/members/1/actual", nobody.clone(), "unknown-mesh"),
     ] {
-        let answer = post(&server, &document).await;
-        assert_eq!(answer.status, StatusCode::UNPROCESSABLE_ENTITY, "{name}: {answer:?}");
-        let problem = answer.json();
-        let told = &problem["errors"][0];
-        assert_eq!(
-            (&told["pointer"], &told["code"]),
-            (&json!(pointer), &json!(code)),
-            "{name}: {problem}"
-        );
+        refused(name, &post(&server, &set(&good, place, value)).await, place, code);
     }
+}
 
-    let mut shy = good.clone();
-    shy["members"][1]["consent"] = json!({"statement": "errors only", "uses": ["compare"]});
-    let shy = kept(&server, &shy).await;
-    server.job(&json!({"kind": "cohort", "cohort": shy})).await.expect(StatusCode::OK);
-    let both = json!({"kind": "learn", "cohort": shy, "virtual": {"patients": 3}});
-    let groups = json!({"a": [one["prediction"]]});
+#[tokio::test]
+async fn a_job_uses_no_member_that_is_not_to_be_used_so() {
+    let server = Server::start();
+    let operated = Operated::on(&server, 3).await;
+    let mut document = operated.cohort(&[0, 1, 2]);
+    document["members"][1]["consent"] = json!({"statement": "errors only", "uses": ["compare"]});
+    let cohort = kept(&server, &document).await;
+    server.job(&json!({"kind": "cohort", "cohort": cohort})).await.expect(StatusCode::OK);
+    let both = json!({"kind": "learn", "cohort": cohort, "virtual": {"patients": 3}});
+    let groups = json!({"a": [operated.members[0]["prediction"]]});
+    let nobody = uuid::Uuid::now_v7();
     for (name, job, pointer, code) in [
-        ("not asked", json!({"kind": "learn", "cohort": shy}), "/cohort", "not-consented"),
+        ("not asked", json!({"kind": "learn", "cohort": cohort}), "/cohort", "not-consented"),
         ("no such cohort", json!({"kind": "learn", "cohort": nobody}), "/cohort", "unknown-cohort"),
         ("two", both, "", "one-of"),
-        ("groups too", json!({"kind": "cohort", "cohort": shy, "groups": groups}), "", "one-of"),
+        ("groups too", json!({"kind": "cohort", "cohort": cohort, "groups": groups}), "", "one-of"),
     ] {
-        let problem = server.job(&job).await.problem_of(name, 422, "validation-failed");
-        let told = &problem["errors"][0];
-        assert_eq!(
-            (&told["pointer"], &told["code"]),
-            (&json!(pointer), &json!(code)),
-            "{name}: {problem}"
-        );
+        refused(name, &server.job(&job).await, pointer, code);
     }
 }
 
