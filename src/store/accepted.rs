@@ -2,10 +2,10 @@
 
 use std::collections::BTreeSet;
 
-use super::cohorts::learn;
 use super::database::{Transaction, is_reference, query};
 use super::events::record;
 use super::job_tags::put_on;
+use super::membership::learn;
 use super::{Store, StoreError};
 use crate::schema::engine::EngineDocument;
 use crate::schema::job::JobStatus;

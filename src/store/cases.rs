@@ -1,10 +1,10 @@
 //! Cases: a document that refers to meshes, with its tags.
 
 use super::accepted::NewJob;
-use super::cohorts::{Leaving, leave};
 use super::database::{Row, Transaction, is_duplicate, is_reference, query};
 use super::events::record;
 use super::made::column;
+use super::membership::{Leaving, leave};
 use super::references::{Content, hashes};
 use super::{NewMesh, Store, StoreError};
 use crate::schema::job::JobStatus;

@@ -1,6 +1,4 @@
 //! Cohorts: operated cases that a tenant learns from, those that left, and what was learned from which version.
-//!
-//! Whoever locks jobs and cohorts locks the jobs first.
 
 use super::cases::{AFTER_ALL, Change};
 use super::database::{Row, Transaction, is_duplicate, is_reference, query};
@@ -92,102 +90,11 @@ const INSERT: &str = "INSERT INTO cohorts (id, tenant, name, consent, version, c
      VALUES ($1, $2, $3, $4, 1, (SELECT now_ms FROM clock), (SELECT now_ms FROM clock))";
 const INSERT_MEMBER: &str = "INSERT INTO cohort_members \
      (cohort_id, number, case_id, job_id, mesh_id, document) VALUES ($1, $2, $3, $4, $5, $6)";
-/// A job is either accepted before its cohort goes, or finds it gone.
-const LEARN: &str = "INSERT INTO cohort_models (cohort_id, job_id, version) VALUES ($1, $2, $3)";
 const VERSION: &str = "SELECT version FROM cohorts WHERE id = $1 AND tenant = $2 FOR UPDATE";
 /// Locked, so that a request which is about to refer to one of them has either done so or finds it gone.
 const MESHES: &str = "SELECT id FROM meshes \
      WHERE id IN (SELECT mesh_id FROM cohort_members WHERE cohort_id = $1) ORDER BY id FOR UPDATE";
 const DELETE: &str = "DELETE FROM cohorts WHERE id = $1";
-
-/// Cohorts that lose a member with a case or with a prediction.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Leaving<'a> {
-    Case(&'a str),
-    Prediction(&'a str),
-}
-
-struct LeavingSql {
-    lock: &'static str,
-    note: &'static str,
-    advance: &'static str,
-    leave: &'static str,
-}
-
-macro_rules! leaving {
-    ($members:literal) => {
-        LeavingSql {
-            lock: concat!(
-                "SELECT id FROM cohorts WHERE id IN (SELECT cohort_id FROM cohort_members WHERE ",
-                $members,
-                ") ORDER BY id FOR UPDATE"
-            ),
-            note: concat!(
-                "INSERT INTO cohort_left (cohort_id, case_id, version) \
-                 SELECT cohort_id, case_id, cohorts.version + 1 \
-                 FROM cohort_members JOIN cohorts ON cohorts.id = cohort_id WHERE ",
-                $members,
-                " ON CONFLICT DO NOTHING"
-            ),
-            advance: concat!(
-                "UPDATE cohorts SET version = version + 1, updated = (SELECT now_ms FROM clock) \
-                 WHERE id IN (SELECT cohort_id FROM cohort_members WHERE ",
-                $members,
-                ")"
-            ),
-            leave: concat!("DELETE FROM cohort_members WHERE ", $members),
-        }
-    };
-}
-
-impl<'a> Leaving<'a> {
-    fn id(self) -> &'a str {
-        match self {
-            Leaving::Case(id) | Leaving::Prediction(id) => id,
-        }
-    }
-
-    fn sql(self) -> LeavingSql {
-        match self {
-            // Its models go with it, and what these corrected, be it of another member.
-            Leaving::Case(_) => leaving!(
-                "case_id = $1 OR job_id IN (SELECT job_id FROM job_cases WHERE case_id = $1)"
-            ),
-            Leaving::Prediction(_) => leaving!("job_id = $1"),
-        }
-    }
-}
-
-/// Takes members out of every cohort, each of which has another version from then on.
-pub(super) async fn leave(
-    transaction: &mut Transaction,
-    leaving: Leaving<'_>,
-) -> Result<(), sqlx::Error> {
-    let LeavingSql { lock, note, advance, leave } = leaving.sql();
-    if column(transaction, lock, leaving.id()).await?.is_empty() {
-        return Ok(());
-    }
-    for step in [note, advance, leave] {
-        query(step).bind(leaving.id()).execute(&mut *transaction).await?;
-    }
-    Ok(())
-}
-
-/// Remembers which version of a cohort a job learns from.
-pub(super) async fn learn(
-    transaction: &mut Transaction,
-    job: &str,
-    (cohort, version): (&str, i64),
-) -> Result<(), sqlx::Error> {
-    query(LEARN).bind(cohort).bind(job).bind(version).execute(&mut *transaction).await?;
-    Ok(())
-}
-
-/// Forgets a model that was removed for its own sake.
-pub(super) async fn unlearn(transaction: &mut Transaction, job: &str) -> Result<(), sqlx::Error> {
-    query("DELETE FROM cohort_models WHERE job_id = $1").bind(job).execute(transaction).await?;
-    Ok(())
-}
 
 fn cohort_row(row: &Row) -> Result<CohortRow, sqlx::Error> {
     Ok(CohortRow {

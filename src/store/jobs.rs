@@ -1,10 +1,10 @@
 //! Jobs as clients see them: looked at, listed, dismissed, removed.
 
 use super::cases::AFTER_ALL;
-use super::cohorts::{Leaving, leave, unlearn};
 use super::database::{Row, query};
 use super::events::record;
 use super::made::meshes_of_job;
+use super::membership::{Leaving, leave, unlearn};
 use super::waiting::fail_waiting;
 use super::{Store, StoreError, tenants};
 use crate::schema::job::JobStatus;

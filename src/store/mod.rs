@@ -23,6 +23,7 @@ mod keys;
 mod leases;
 mod lost;
 mod made;
+mod membership;
 mod meshes;
 mod note_rows;
 mod notes;
