@@ -193,7 +193,7 @@ fn what_is_wrong_with_twins_is_told_before_any_is_made() {
         (json!({"virtual": {"patients": 2}}), "/spec/virtual/patients"),
         (json!({"virtual": {"patients": 26}}), "/spec/virtual/patients"),
         (json!({"virtual": {"patients": 3, "fineness": 3}}), "/spec/virtual/fineness"),
-        (json!({"virtual": twins(), "groups": {"a": ["b"]}}), "`groups`, `virtual`"),
+        (json!({"virtual": twins(), "groups": {"a": ["b"]}}), "`groups`, `cohort`, `virtual`"),
         (json!({"virtual": twins(), "region": "ear"}), "/spec/region"),
         (json!({"virtual": twins(), "distance": "tps_cp"}), "/spec/distance"),
         (json!({"virtual": twins(), "subjects": ["one"]}), "/spec/subjects"),
