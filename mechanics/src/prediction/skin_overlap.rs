@@ -10,7 +10,7 @@ use std::collections::BTreeSet;
 
 use super::skin::Skin;
 use crate::mesh::crossing::{
-    Crossings, Piercing, TrianglePair, cross, pass, pass_inside, piercings, self_crossings,
+    Piercing, TrianglePair, cross, pass, pass_inside, piercings, self_crossings,
 };
 use crate::mesh::disjoint_sets::DisjointSets;
 use crate::mesh::{SurfaceSearch, TriangleSurface, Vector, Warning};
@@ -35,7 +35,7 @@ pub struct Deepest {
 /// The deepest point of a surface that passes through itself. Its points have to be finite.
 pub(super) fn deepest_overlap(surface: &TriangleSurface) -> Option<Deepest> {
     let passes = |pair: &TrianglePair| pass_inside(surface, pair, TOUCHING_MM);
-    deepest(surface, &self_crossings(surface, passes))
+    deepest(surface, &self_crossings(surface, passes).pairs)
 }
 
 /// A warning that counts the triangles of a moved skin that cross and did not cross at rest. The points of the moved
@@ -48,7 +48,7 @@ pub fn skin_overlap(skin: &Skin, moved: &TriangleSurface) -> Option<Warning> {
         return None;
     }
     let at_rest = self_crossings(rest, |pair| passes(rest, pair)).count;
-    let deepest = deepest(moved, &self_crossings(moved, |pair| passes(moved, pair)));
+    let deepest = deepest(moved, &self_crossings(moved, |pair| passes(moved, pair)).pairs);
     let (few, depth) = (
         if found.untried > 0 { "at least " } else { "" },
         deepest.as_ref().map_or_else(String::new, |at| format!(", {:.1} mm deep", at.depth)),
@@ -88,11 +88,11 @@ fn place(skin: &Skin, pairs: &[TrianglePair]) -> String {
 }
 
 /// The deepest of the points that lie behind skin that is not theirs, if any is found there.
-fn deepest(surface: &TriangleSurface, crossings: &Crossings) -> Option<Deepest> {
-    let part_of = parts_inside(surface, crossings);
+fn deepest(surface: &TriangleSurface, pairs: &[TrianglePair]) -> Option<Deepest> {
+    let part_of = parts_inside(surface, pairs);
     let inside: Vec<u32> =
         (0..part_of.len() as u32).filter(|&p| part_of[p as usize].is_some()).collect();
-    let crosses: BTreeSet<u32> = crossings.pairs.as_flattened().iter().copied().collect();
+    let crosses: BTreeSet<u32> = pairs.as_flattened().iter().copied().collect();
     let is_near = |(number, corners): &(u32, &[u32; 3])| {
         crosses.contains(number) || corners.iter().any(|&corner| part_of[corner as usize].is_some())
     };
@@ -116,9 +116,9 @@ fn deepest(surface: &TriangleSurface, crossings: &Crossings) -> Option<Deepest> 
 
 /// For each point the part of the skin that it belongs to, where that lies behind other skin. A part with more than
 /// half of the points is what the others lie behind.
-fn parts_inside(surface: &TriangleSurface, crossings: &Crossings) -> Vec<Option<u32>> {
+fn parts_inside(surface: &TriangleSurface, pairs: &[TrianglePair]) -> Vec<Option<u32>> {
     let mut is_cut = vec![false; surface.triangles.len()];
-    for &triangle in crossings.pairs.as_flattened() {
+    for &triangle in pairs.as_flattened() {
         is_cut[triangle as usize] = true;
     }
     let mut parts = DisjointSets::new(surface.points.len());
@@ -132,19 +132,16 @@ fn parts_inside(surface: &TriangleSurface, crossings: &Crossings) -> Vec<Option<
         points_of[parts.root(point) as usize] += 1;
     }
     let mut is_inside = vec![false; surface.points.len()];
-    let all_are_known = crossings.count == crossings.pairs.len() as u64 && crossings.untried == 0;
-    for [front, behind] in edges_inwards(surface, &crossings.pairs) {
-        let part = parts.root(behind) as usize;
-        // Where triangles cross but cut nothing off, corners and edges only graze each other.
-        let is_cut_off = parts.root(front) as usize != part || !all_are_known;
-        is_inside[part] |= is_cut_off && 2 * points_of[part] <= surface.points.len();
+    for point in ends_inside(surface, pairs) {
+        let part = parts.root(point) as usize;
+        is_inside[part] = 2 * points_of[part] <= surface.points.len();
     }
     let part = |point: u32| Some(parts.root(point)).filter(|&part| is_inside[part as usize]);
     (0..surface.points.len() as u32).map(part).collect()
 }
 
-/// Edges that pierce one triangle only, from their outer end to their inner one.
-fn edges_inwards(surface: &TriangleSurface, pairs: &[TrianglePair]) -> Vec<[u32; 2]> {
+/// The inner ends of edges that pierce one triangle only.
+fn ends_inside(surface: &TriangleSurface, pairs: &[TrianglePair]) -> Vec<u32> {
     let mut found: Vec<Piercing> = pairs.iter().flat_map(|pair| piercings(surface, pair)).collect();
     let edge = |piercing: &Piercing| {
         let [front, behind] = piercing.edge;
@@ -154,47 +151,5 @@ fn edges_inwards(surface: &TriangleSurface, pairs: &[TrianglePair]) -> Vec<[u32;
     found.sort_unstable_by_key(|piercing| (edge(piercing), *piercing));
     found.dedup();
     let of_edges = found.chunk_by(|one, other| edge(one) == edge(other));
-    of_edges.filter(|of_edge| of_edge.len() == 1).map(|of_edge| of_edge[0].edge).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::mesh::CellShape;
-    use crate::mesh::sample::block;
-
-    /// Blocks of 40 mm on each other; the points of the upper one are moved by a function of themselves.
-    fn blocks(moved: impl Fn(&Vector) -> Vector) -> TriangleSurface {
-        let of = |cells: usize| {
-            let mesh = block(Vector::new(40.0, 40.0, 12.0), [cells, cells, 3], CellShape::Hex8);
-            mesh.surface_of(&mesh.boundary_faces())
-        };
-        let (mut both, upper) = (of(6), of(7));
-        let first = both.points.len() as u32;
-        both.points.extend(upper.points.iter().map(|p| moved(&(p + Vector::z() * 12.0))));
-        both.triangles.extend(upper.triangles.iter().map(|corners| corners.map(|c| c + first)));
-        both
-    }
-
-    #[test]
-    fn a_corner_that_dips_in_is_as_deep_as_it_is() {
-        let dipped = |p: &Vector| {
-            let is_corner = (p - Vector::new(40.0 / 7.0, 40.0 / 7.0, 12.0)).norm() < 1e-9;
-            p - Vector::z() * if is_corner { 1.0 } else { 0.0 }
-        };
-        let found = deepest_overlap(&blocks(dipped)).unwrap();
-        assert!((found.depth - 1.0).abs() < 1e-9, "{found:?}");
-    }
-
-    #[test]
-    fn an_edge_that_grazes_is_not_as_deep_as_its_block() {
-        // A corner just above the other block, outside its border, and its neighbour just inside.
-        let tilted = |p: &Vector| {
-            let shift = Vector::new(-37.0, 3.0, 0.0);
-            let sink = if p.x > 39.0 && p.z < 12.1 { 2e-4 * (p.y - 18.0) / 20.0 } else { 0.0 };
-            p + shift - Vector::z() * sink
-        };
-        let found = deepest_overlap(&blocks(tilted));
-        assert!(found.as_ref().is_none_or(|deepest| deepest.depth < 1e-3), "{found:?}");
-    }
+    of_edges.filter(|of_edge| of_edge.len() == 1).map(|of_edge| of_edge[0].edge[1]).collect()
 }
